@@ -1,0 +1,35 @@
+//! Cameras: the pinhole, the view (pinhole behind a chain of stages) and the rays of its pixels.
+
+mod pinhole;
+mod ray_path;
+mod view;
+
+pub use pinhole::{Pinhole, PinholeError, Projection};
+pub use ray_path::{RayPath, RayPoint};
+pub use view::{ImageBox, View, ViewError};
+
+use crate::Miss;
+use glam::{DVec2, DVec3};
+
+/// Image of a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Projected {
+    /// Pixel coordinates: (0, 0) is the outer corner of the top-left pixel, x right, y down. May lie outside the image.
+    pub pixel: DVec2,
+    /// Forward distance of the displaced point along the optical axis, > 0, scene units.
+    pub depth: f64,
+    /// Segment of the ray that sees the point, see [`crate::Displaced::segment`].
+    pub segment: u32,
+    /// Whether a stage folded over at the point.
+    pub folded: bool,
+}
+
+/// Anything with a forward projection and rays.
+///
+/// Law: `project(ray(px).at(d)) == (px, d)`, unless an earlier cell of a curved-ray chain also sees the point.
+pub trait Camera {
+    /// Image of a world point.
+    fn project(&self, p_world: DVec3) -> Result<Projected, Miss>;
+    /// The (curved) ray of a pixel.
+    fn ray(&self, pixel: DVec2) -> RayPath<'_>;
+}

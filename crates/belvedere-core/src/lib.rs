@@ -1,0 +1,22 @@
+//! The mathematics of bent pictures: an image is a pinhole photograph of a gently displaced world.
+//!
+//! A [`View`] is a [`Pinhole`] behind a chain of displacements ([`Stage`]s). Each stage is a
+//! [`SpaceMap`]: it moves every point of space, smoothly and invertibly, so that what would be
+//! hidden is not. Projection, rays, pictures, picking and measures are all written once, against
+//! the chain.
+//!
+//! Everything is `f64`, in scene coordinates (right-handed, Z up, X east, Y north, metres unless
+//! the scene says otherwise). Pixels have their origin at the outer corner of the top-left pixel.
+
+pub mod bounds;
+pub mod camera;
+pub mod map;
+
+pub use bounds::Aabb;
+pub use camera::{Camera, ImageBox, Pinhole, PinholeError, Projected, Projection, RayPath, RayPoint, View, ViewError};
+pub use glam::{DMat3, DVec2, DVec3};
+pub use map::curved_rays::CurvedRays;
+pub use map::earth::EarthCurvature;
+pub use map::spline::SplineBend;
+pub use map::terrain::TerrainDisocclusion;
+pub use map::{Displaced, Miss, SpaceMap, Stage};

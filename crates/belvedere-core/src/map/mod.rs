@@ -1,0 +1,117 @@
+//! Displacements of space: the stages of a view.
+
+pub mod curved_rays;
+pub mod earth;
+pub mod spline;
+pub mod terrain;
+
+use crate::Aabb;
+use glam::{DMat3, DVec3};
+
+/// Why a point has no image. An answer, not an error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Miss {
+    /// The (displaced) point does not lie in front of the eye.
+    BehindEye,
+    /// The point lies where the map is not defined.
+    OutsideDomain,
+}
+
+/// A point after a displacement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Displaced {
+    /// Displaced point, scene coordinates.
+    pub point: DVec3,
+    /// Segment of the curved ray that sees the point: `2k` straight part of viewpoint `k`, `2j-1` transition of turn `j`; 0 without curved rays.
+    pub segment: u32,
+    /// Whether the map has folded over at this point (beyond a spline's fold limit): orientation is reversed there.
+    pub folded: bool,
+}
+
+/// A smooth, orientation-preserving displacement of space.
+///
+/// Laws: `invert(apply(p)) = p`; `det jacobian > 0` on the domain; identity at zero strength; never NaN.
+pub trait SpaceMap {
+    /// Displaced position of `p`, scene coordinates.
+    fn apply(&self, p: DVec3) -> Result<DVec3, Miss>;
+    /// The point that `apply` carries onto `p_displaced`.
+    fn invert(&self, p_displaced: DVec3) -> Result<DVec3, Miss>;
+    /// Derivative of `apply` at `p`, dimensionless; column `i` is the derivative along axis `i`.
+    fn jacobian(&self, p: DVec3) -> Result<DMat3, Miss>;
+}
+
+/// One displacement of a view. A closed set: the vocabulary of scene files and renderers.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Stage {
+    /// The ground falls away with the distance as on a sphere (`earth = "curved"`).
+    EarthCurvature(earth::EarthCurvature),
+    /// The ground makes way for a route (Deng et al. 2013).
+    TerrainDisocclusion(terrain::TerrainDisocclusion),
+    /// Space is carried onto a B-spline over the reference plane (Pasewaldt et al. 2011).
+    SplineBend(spline::SplineBend),
+    /// Rays bend around occluders (Cui et al. 2010).
+    CurvedRays(curved_rays::CurvedRays),
+}
+
+impl Stage {
+    /// This stage as a map.
+    pub fn as_map(&self) -> &dyn SpaceMap {
+        match self {
+            Self::EarthCurvature(m) => m,
+            Self::TerrainDisocclusion(m) => m,
+            Self::SplineBend(m) => m,
+            Self::CurvedRays(m) => m,
+        }
+    }
+
+    /// Position in the fixed order of application: earth, terrain, spline, curved rays.
+    pub fn rank(&self) -> u32 {
+        match self {
+            Self::EarthCurvature(_) => 0,
+            Self::TerrainDisocclusion(_) => 1,
+            Self::SplineBend(_) => 2,
+            Self::CurvedRays(_) => 3,
+        }
+    }
+
+    /// Name of the stage as scene files write it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::EarthCurvature(_) => "earth",
+            Self::TerrainDisocclusion(_) => "terrain_disocclusion",
+            Self::SplineBend(_) => "spline_bend",
+            Self::CurvedRays(_) => "curved_rays",
+        }
+    }
+
+    /// `apply` with the segment and the fold flag.
+    pub fn displace(&self, p: DVec3) -> Result<Displaced, Miss> {
+        match self {
+            Self::SplineBend(m) => Ok(Displaced { point: m.apply(p)?, segment: 0, folded: m.is_folded(p) }),
+            Self::CurvedRays(m) => m.displace(p),
+            _ => Ok(Displaced { point: self.as_map().apply(p)?, segment: 0, folded: false }),
+        }
+    }
+
+    /// Bound on the distance, in scene units, between the image of the straight edge `p0 p1` and the
+    /// straight edge between the images of its ends (the error a renderer makes by not subdividing it).
+    /// Infinite where no bound is known.
+    pub fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
+        match self {
+            Self::EarthCurvature(m) => m.edge_bound(p0, p1),
+            Self::TerrainDisocclusion(m) => m.edge_bound(p0, p1),
+            Self::SplineBend(m) => m.edge_bound(p0, p1),
+            Self::CurvedRays(m) => m.edge_bound(p0, p1),
+        }
+    }
+
+    /// A box that contains the displaced image of every point of `bounds`; `None` if part of it has no image or no bound is known.
+    pub fn displaced_bounds(&self, bounds: &Aabb) -> Option<Aabb> {
+        match self {
+            Self::EarthCurvature(m) => m.displaced_bounds(bounds),
+            Self::TerrainDisocclusion(m) => m.displaced_bounds(bounds),
+            Self::SplineBend(m) => m.displaced_bounds(bounds),
+            Self::CurvedRays(m) => m.displaced_bounds(bounds),
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Pictures and who makes them.
+
+use crate::{Cancelled, Light, Progress, Scene};
+use belvedere_core::View;
+
+/// Buffers wanted beside colour, depth and id.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Aux {
+    /// True (undisplaced) world position per pixel.
+    pub world: bool,
+}
+
+/// How to draw.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RenderOptions {
+    /// Coverage samples per pixel for anti-aliasing: 1, 4 or 16.
+    pub samples: u32,
+    /// Worst error of the bent image by straight edges, pixels.
+    pub tolerance_px: f64,
+    /// Worker threads; 0 = all cores. The picture does not depend on it.
+    pub threads: usize,
+    /// Extra buffers.
+    pub aux: Aux,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        Self { samples: 4, tolerance_px: 0.5, threads: 0, aux: Aux::default() }
+    }
+}
+
+/// Everything a renderer needs for one picture.
+#[derive(Debug, Clone, Copy)]
+pub struct RenderJob<'a> {
+    /// What is looked at.
+    pub scene: &'a Scene,
+    /// How.
+    pub view: &'a View,
+    /// The sun.
+    pub light: &'a Light,
+    /// Quality.
+    pub options: &'a RenderOptions,
+    /// Progress and cancellation.
+    pub progress: &'a Progress,
+}
+
+/// Counts and times of one picture.
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
+pub struct FrameStats {
+    /// Triangles handed in.
+    pub triangles_in: u64,
+    /// Triangles drawn, after subdivision and clipping.
+    pub triangles_drawn: u64,
+    /// Edges split because their bent image would be more than the tolerance off.
+    pub edges_split: u64,
+    /// Vertices without an image (behind the eye or outside the domain).
+    pub vertices_missed: u64,
+    /// Wall time in milliseconds.
+    pub milliseconds: f64,
+}
+
+/// A finished picture. Row-major, row 0 on top.
+#[derive(Debug, Clone)]
+pub struct Frame {
+    /// Width in pixels.
+    pub width: usize,
+    /// Height in pixels.
+    pub height: usize,
+    /// Opaque sRGB colour.
+    pub color: Vec<[u8; 3]>,
+    /// Depth at the pixel centre, scene units; infinite where there is only sky. Surfaces only: lines and points leave it alone.
+    pub depth: Vec<f32>,
+    /// What is seen at the pixel centre: 0 = sky, else 1 + index of the layer (lines, outlines and points where they are visible, not where they shine through).
+    pub id: Vec<u32>,
+    /// True world position of the surface at the pixel centre (NaN where sky), if asked for.
+    pub world: Option<Vec<[f64; 3]>>,
+    /// Counts and times.
+    pub stats: FrameStats,
+}
+
+/// A picture that could not be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// Cancelled through [`Progress`].
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// Too large for the memory budget.
+    #[error(
+        "picture of {width} x {height} pixels at {samples} samples needs about {needed_mib} MiB, more than {limit_mib} MiB; use a smaller --size, fewer samples, or raise --max-mem"
+    )]
+    TooLarge {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+        /// Coverage samples per pixel.
+        samples: u32,
+        /// Memory needed, MiB.
+        needed_mib: u64,
+        /// Memory allowed, MiB.
+        limit_mib: u64,
+    },
+    /// A number of coverage samples that no renderer offers.
+    #[error("{samples} coverage samples per pixel were asked for; use 1, 4 or 16")]
+    Samples {
+        /// Samples asked for.
+        samples: u32,
+    },
+}
+
+/// Makes pictures. The result depends on the job alone, not on threads or time.
+pub trait Renderer {
+    /// Name for reports: `cpu`, `gpu`, `exact`.
+    fn name(&self) -> &'static str;
+    /// Draws one picture.
+    fn render(&self, job: &RenderJob<'_>) -> Result<Frame, RenderError>;
+}

@@ -1,0 +1,222 @@
+//! Terrain heights on a regular metric grid with holes.
+
+use belvedere_core::{Aabb, DVec2, DVec3};
+
+/// Whether a node carries a height.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[repr(u8)]
+pub enum NodeState {
+    /// No data: a hole.
+    Void = 0,
+    /// A measured (or resampled) height.
+    #[default]
+    Measured = 1,
+    /// A height made up to close a hole (`fill_voids`).
+    Filled = 2,
+}
+
+/// A heightfield that cannot be built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum HeightfieldError {
+    /// Fewer than 2 x 2 nodes.
+    #[error("terrain has {cols} x {rows} nodes, at least 2 x 2 are needed")]
+    TooSmall {
+        /// Columns.
+        cols: usize,
+        /// Rows.
+        rows: usize,
+    },
+    /// Number of heights or states is not cols * rows.
+    #[error("terrain of {cols} x {rows} nodes needs {expected} heights and states, got {heights} and {states}")]
+    Length {
+        /// Columns.
+        cols: usize,
+        /// Rows.
+        rows: usize,
+        /// cols * rows.
+        expected: usize,
+        /// Heights given.
+        heights: usize,
+        /// States given.
+        states: usize,
+    },
+    /// Spacing not positive.
+    #[error("terrain spacing is {x} x {y}, both must be greater than 0")]
+    Spacing {
+        /// Along x.
+        x: f64,
+        /// Along y.
+        y: f64,
+    },
+    /// A node that is not a void has no finite height.
+    #[error("terrain node (column {col}, row {row}) has height {height}; mark it as a void instead")]
+    NotFinite {
+        /// Column.
+        col: usize,
+        /// Row.
+        row: usize,
+        /// Height found.
+        height: f32,
+    },
+    /// No node has a height.
+    #[error("terrain of {cols} x {rows} nodes holds no data at all")]
+    AllVoid {
+        /// Columns.
+        cols: usize,
+        /// Rows.
+        rows: usize,
+    },
+}
+
+/// Heights on a grid of nodes, aligned with the axes of the scene. Row 0 is the northernmost.
+///
+/// Holes are a mask ([`NodeState::Void`]), never a magic height; the height stored at a void is 0 and means nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Heightfield {
+    north_west: DVec2,
+    spacing: DVec2,
+    cols: usize,
+    rows: usize,
+    heights: Vec<f32>,
+    states: Vec<NodeState>,
+    z_range: [f64; 2],
+}
+
+impl Heightfield {
+    /// * `north_west`: scene x, y of node (0, 0);
+    /// * `spacing`: metres between columns (towards east) and between rows (towards south), both > 0;
+    /// * `heights`, `states`: row-major, `cols * rows` each.
+    ///
+    /// # Errors
+    /// Every [`HeightfieldError`].
+    pub fn new(
+        north_west: DVec2,
+        spacing: DVec2,
+        cols: usize,
+        rows: usize,
+        mut heights: Vec<f32>,
+        states: Vec<NodeState>,
+    ) -> Result<Self, HeightfieldError> {
+        if cols < 2 || rows < 2 {
+            return Err(HeightfieldError::TooSmall { cols, rows });
+        }
+        if heights.len() != cols * rows || states.len() != cols * rows {
+            return Err(HeightfieldError::Length {
+                cols,
+                rows,
+                expected: cols * rows,
+                heights: heights.len(),
+                states: states.len(),
+            });
+        }
+        if !(spacing.x > 0.0 && spacing.y > 0.0 && spacing.is_finite() && north_west.is_finite()) {
+            return Err(HeightfieldError::Spacing { x: spacing.x, y: spacing.y });
+        }
+        let mut z_range = [f64::INFINITY, f64::NEG_INFINITY];
+        for (i, (h, state)) in heights.iter_mut().zip(&states).enumerate() {
+            if *state == NodeState::Void {
+                *h = 0.0;
+                continue;
+            }
+            if !h.is_finite() {
+                return Err(HeightfieldError::NotFinite { col: i % cols, row: i / cols, height: *h });
+            }
+            z_range = [z_range[0].min(f64::from(*h)), z_range[1].max(f64::from(*h))];
+        }
+        if z_range[0] > z_range[1] {
+            return Err(HeightfieldError::AllVoid { cols, rows });
+        }
+        Ok(Self { north_west, spacing, cols, rows, heights, states, z_range })
+    }
+
+    /// Number of columns.
+    pub fn cols(&self) -> usize {
+        self.cols
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Metres between columns and between rows.
+    pub fn spacing(&self) -> DVec2 {
+        self.spacing
+    }
+
+    /// Scene x, y of node (column 0, row 0).
+    pub fn north_west(&self) -> DVec2 {
+        self.north_west
+    }
+
+    /// Heights, row-major; meaningless where [`Heightfield::states`] says void.
+    pub fn heights(&self) -> &[f32] {
+        &self.heights
+    }
+
+    /// States, row-major.
+    pub fn states(&self) -> &[NodeState] {
+        &self.states
+    }
+
+    /// Smallest and largest height.
+    pub fn z_range(&self) -> [f64; 2] {
+        self.z_range
+    }
+
+    /// Scene position of a node; `None` at a void.
+    pub fn node(&self, col: usize, row: usize) -> Option<DVec3> {
+        let i = row * self.cols + col;
+        (self.states[i] != NodeState::Void).then(|| self.node_xy(col, row).extend(f64::from(self.heights[i])))
+    }
+
+    /// Scene x, y of a node.
+    pub fn node_xy(&self, col: usize, row: usize) -> DVec2 {
+        DVec2::new(self.north_west.x + col as f64 * self.spacing.x, self.north_west.y - row as f64 * self.spacing.y)
+    }
+
+    /// Fractional column and row of a scene position (may lie outside the grid).
+    pub fn grid_from_scene(&self, xy: DVec2) -> DVec2 {
+        DVec2::new((xy.x - self.north_west.x) / self.spacing.x, (self.north_west.y - xy.y) / self.spacing.y)
+    }
+
+    /// Bilinear height at a scene position; `None` outside the grid or where one of the four nodes is a void.
+    pub fn height_at(&self, xy: DVec2) -> Option<f64> {
+        let g = self.grid_from_scene(xy);
+        let (last_c, last_r) = ((self.cols - 1) as f64, (self.rows - 1) as f64);
+        if !(g.x >= 0.0 && g.x <= last_c && g.y >= 0.0 && g.y <= last_r) {
+            return None;
+        }
+        let (c, r) = ((g.x as usize).min(self.cols - 2), (g.y as usize).min(self.rows - 2));
+        let (u, v) = (g.x - c as f64, g.y - r as f64);
+        let i = r * self.cols + c;
+        let corners = [i, i + 1, i + self.cols, i + self.cols + 1];
+        let weights = [(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v];
+        let mut height = 0.0;
+        for (k, w) in corners.into_iter().zip(weights) {
+            if w == 0.0 {
+                continue; // on a grid line the nodes beside it do not matter
+            }
+            if self.states[k] == NodeState::Void {
+                return None;
+            }
+            height += w * f64::from(self.heights[k]);
+        }
+        Some(height)
+    }
+
+    /// Share of nodes in `state`, 0..=1.
+    pub fn share_of(&self, state: NodeState) -> f64 {
+        self.states.iter().filter(|&&s| s == state).count() as f64 / self.states.len() as f64
+    }
+
+    /// Smallest box around all nodes.
+    pub fn bounds(&self) -> Aabb {
+        let se = self.node_xy(self.cols - 1, self.rows - 1);
+        Aabb {
+            min: DVec3::new(self.north_west.x, se.y, self.z_range[0]),
+            max: DVec3::new(se.x, self.north_west.y, self.z_range[1]),
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! Layers and their styles.
+
+use crate::Heightfield;
+use belvedere_core::{Aabb, DVec2, DVec3};
+
+/// sRGB colour with straight alpha, 8 bits per channel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Color {
+    /// Red.
+    pub r: u8,
+    /// Green.
+    pub g: u8,
+    /// Blue.
+    pub b: u8,
+    /// Alpha, 255 = opaque.
+    pub a: u8,
+}
+
+impl Color {
+    /// Opaque colour.
+    pub const fn rgb(r: u8, g: u8, b: u8) -> Self {
+        Self { r, g, b, a: 255 }
+    }
+
+    /// This colour with another alpha.
+    pub const fn with_alpha(self, a: u8) -> Self {
+        Self { a, ..self }
+    }
+}
+
+/// What happens to the parts of a line, area outline or point that the terrain hides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Hidden {
+    /// Drawn as if nothing were in front.
+    Show,
+    /// Drawn faintly.
+    Fade,
+    /// Drawn dashed and thinner.
+    #[default]
+    Dash,
+    /// Not drawn.
+    Cut,
+}
+
+/// Relief shading of terrain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Relief {
+    /// Several light directions blended as in Swiss relief maps.
+    #[default]
+    Swiss,
+    /// The scene's single light.
+    Sun,
+    /// No shading.
+    None,
+}
+
+/// Normals used to shade terrain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Shading {
+    /// Undisplaced normals: light stays fixed to the map.
+    #[default]
+    Map,
+    /// Normals of the deformed ground.
+    Deformed,
+}
+
+/// Hypsometric tint by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Palette {
+    /// Chosen by the height range of the terrain.
+    #[default]
+    Auto,
+    /// Green valleys, brown slopes, white summits.
+    Alpine,
+    /// Sand and rust, for deserts and canyons.
+    Desert,
+    /// Rock and ice, for high mountains.
+    Glacial,
+    /// One light grey.
+    Plain,
+}
+
+/// A georeferenced picture draped over terrain.
+#[derive(Debug, Clone)]
+pub struct Drape {
+    /// Pixels, row-major, row 0 first, sRGB with straight alpha; alpha 0 = no picture there.
+    pub pixels: Vec<[u8; 4]>,
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Column and row (in pixels, pixel centres at .5) of a scene point: `col = a[0] x + a[1] y + a[2]`, `row = a[3] x + a[4] y + a[5]`.
+    pub pixel_from_scene: [f64; 6],
+}
+
+/// A terrain layer.
+#[derive(Debug, Clone)]
+pub struct TerrainLayer {
+    /// Heights.
+    pub heightfield: Heightfield,
+    /// Pictures draped over it, later ones on top.
+    pub drapes: Vec<Drape>,
+    /// Relief shading.
+    pub relief: Relief,
+    /// Shading normals; `None` = deformed under terrain disocclusion, else map.
+    pub shading: Option<Shading>,
+    /// Vertical exaggeration of the shading only, > 0.
+    pub exaggeration: f64,
+    /// Hypsometric tint.
+    pub palette: Palette,
+}
+
+/// One polyline of a line layer.
+#[derive(Debug, Clone, Default)]
+pub struct LineFeature {
+    /// Name, possibly empty.
+    pub name: String,
+    /// Vertices, scene coordinates, draped on the terrain (z = ground) and densified to its spacing; at least 2.
+    pub points: Vec<DVec3>,
+}
+
+/// A layer of lines.
+#[derive(Debug, Clone)]
+pub struct LineLayer {
+    /// Polylines.
+    pub features: Vec<LineFeature>,
+    /// Colour.
+    pub color: Color,
+    /// Width on screen, pixels.
+    pub width_px: f64,
+    /// Casing colour; `None` = no casing.
+    pub casing: Option<Color>,
+    /// Style of hidden parts.
+    pub hidden: Hidden,
+    /// Height above ground at which the line is drawn and judged visible, metres.
+    pub lift_m: f64,
+}
+
+/// One polygon of an area layer.
+#[derive(Debug, Clone, Default)]
+pub struct AreaFeature {
+    /// Name, possibly empty.
+    pub name: String,
+    /// Rings, outer first, then holes; x and y in scene coordinates, closed implicitly.
+    pub rings: Vec<Vec<DVec2>>,
+}
+
+/// A layer of areas painted on the terrain.
+#[derive(Debug, Clone)]
+pub struct AreaLayer {
+    /// Polygons.
+    pub features: Vec<AreaFeature>,
+    /// Fill colour; alpha blends over the ground.
+    pub fill: Color,
+    /// Outline colour; `None` = none.
+    pub outline: Option<Color>,
+    /// Outline width on screen, pixels.
+    pub width_px: f64,
+    /// Whether it is water: flat, without relief shading.
+    pub water: bool,
+    /// Style of hidden parts of the outline.
+    pub hidden: Hidden,
+    /// Height above ground for visibility, metres.
+    pub lift_m: f64,
+}
+
+/// One point.
+#[derive(Debug, Clone, Default)]
+pub struct PointFeature {
+    /// Name, possibly empty.
+    pub name: String,
+    /// Position, scene coordinates, z = ground.
+    pub position: DVec3,
+}
+
+/// A layer of points.
+#[derive(Debug, Clone)]
+pub struct PointLayer {
+    /// Points.
+    pub features: Vec<PointFeature>,
+    /// Colour.
+    pub color: Color,
+    /// Diameter on screen, pixels.
+    pub size_px: f64,
+    /// Style of hidden points.
+    pub hidden: Hidden,
+    /// Height above ground, metres.
+    pub lift_m: f64,
+}
+
+/// An upright box: a building of a block model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoxShape {
+    /// Centre of the base, scene coordinates.
+    pub base: DVec3,
+    /// Full extents along its own x, its own y, and z, scene units.
+    pub size: DVec3,
+    /// Rotation about z, radians, counter-clockwise.
+    pub yaw: f64,
+    /// Colour.
+    pub color: Color,
+}
+
+impl BoxShape {
+    /// The eight corners: bit 0 = +x side, bit 1 = +y side, bit 2 = top.
+    pub fn corners(&self) -> [DVec3; 8] {
+        let (sin, cos) = self.yaw.sin_cos();
+        std::array::from_fn(|i| {
+            let side = |bit: usize| if i >> bit & 1 == 1 { 0.5 } else { -0.5 };
+            let (lx, ly) = (side(0) * self.size.x, side(1) * self.size.y);
+            let lz = if i >> 2 & 1 == 1 { self.size.z } else { 0.0 };
+            self.base + DVec3::new(cos * lx - sin * ly, sin * lx + cos * ly, lz)
+        })
+    }
+}
+
+/// A layer of boxes.
+#[derive(Debug, Clone, Default)]
+pub struct BoxLayer {
+    /// Boxes.
+    pub boxes: Vec<BoxShape>,
+}
+
+/// Content of a layer.
+#[derive(Debug, Clone)]
+pub enum LayerKind {
+    /// Ground.
+    Terrain(TerrainLayer),
+    /// Upright boxes.
+    Boxes(BoxLayer),
+    /// Polylines on the ground.
+    Line(LineLayer),
+    /// Polygons on the ground.
+    Area(AreaLayer),
+    /// Points on the ground.
+    Point(PointLayer),
+}
+
+/// One layer of a scene.
+#[derive(Debug, Clone)]
+pub struct Layer {
+    /// Unique id within the scene.
+    pub id: String,
+    /// Whether constructors and measures work for it.
+    pub must_see: bool,
+    /// Content.
+    pub kind: LayerKind,
+}
+
+impl Layer {
+    /// Smallest box around the layer; areas contribute nothing (they lie on the terrain).
+    pub fn bounds(&self) -> Aabb {
+        match &self.kind {
+            LayerKind::Terrain(t) => t.heightfield.bounds(),
+            LayerKind::Boxes(b) => Aabb::of(b.boxes.iter().flat_map(BoxShape::corners)),
+            LayerKind::Line(l) => Aabb::of(l.features.iter().flat_map(|f| f.points.iter().copied())),
+            LayerKind::Area(_) => Aabb::EMPTY,
+            LayerKind::Point(p) => Aabb::of(p.features.iter().map(|f| f.position)),
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! What is looked at: terrain, lines, areas, points and boxes as plain data, never view-dependent;
+//! and the contract between pictures and whoever needs them ([`Renderer`], [`RenderJob`], [`Frame`]).
+
+pub mod frame;
+pub mod heightfield;
+pub mod layer;
+pub mod light;
+pub mod progress;
+pub mod scene;
+
+pub use frame::{Aux, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer};
+pub use heightfield::{Heightfield, HeightfieldError, NodeState};
+pub use layer::{
+    AreaFeature, AreaLayer, BoxLayer, BoxShape, Color, Drape, Hidden, Layer, LayerKind, LineFeature, LineLayer,
+    Palette, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
+};
+pub use light::Light;
+pub use progress::{Cancelled, Progress};
+pub use scene::{Crs, Scene, Unit};
