@@ -1,0 +1,86 @@
+//! The import rule of docs/ARCHITECTURE.md, read off `cargo metadata`.
+
+use std::collections::BTreeMap;
+use std::process::Command;
+
+/// Which workspace crates and which external crates each crate may depend on (dev-dependencies are free).
+const RULES: &[(&str, &[&str], &[&str])] = &[
+    ("belvedere-core", &[], &["glam", "serde", "thiserror"]),
+    ("belvedere-scene", &["belvedere-core"], &["glam", "rayon", "serde", "thiserror"]),
+    (
+        "belvedere-io",
+        &["belvedere-core", "belvedere-scene"],
+        &[
+            "crs-definitions", "dbase", "flate2", "geojson", "glam", "gpx", "png", "proj4rs", "quick-xml", "rayon", "ruzstd",
+            "serde", "serde_json", "shapefile", "tempfile", "thiserror", "tiff", "tracing", "weezl", "zip", "zune-core", "zune-jpeg",
+        ],
+    ),
+    ("belvedere-construct", &["belvedere-core", "belvedere-scene"], &["glam", "rayon", "serde", "thiserror", "tracing"]),
+    ("belvedere-cpu", &["belvedere-core", "belvedere-scene"], &["glam", "rayon", "thiserror", "tracing"]),
+    (
+        "belvedere",
+        &["belvedere-construct", "belvedere-core", "belvedere-cpu", "belvedere-io", "belvedere-scene"],
+        &["glam", "rayon", "schemars", "serde", "serde_json", "sha2", "strsim", "thiserror", "toml", "tracing"],
+    ),
+    ("belvedere-testkit", &["belvedere-core", "belvedere-scene"], &["glam"]),
+    ("belvedere-cli", &["belvedere"], &["anyhow", "clap", "ctrlc", "indicatif", "serde_json", "tracing", "tracing-subscriber"]),
+];
+
+/// Normal and build dependencies of every workspace crate: (workspace, external).
+fn edges() -> BTreeMap<String, (Vec<String>, Vec<String>)> {
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--no-deps", "--offline"])
+        .current_dir(belvedere_testkit::workspace_root())
+        .output()
+        .expect("cargo metadata runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).expect("cargo metadata prints JSON");
+    let packages = metadata["packages"].as_array().expect("packages");
+    packages
+        .iter()
+        .map(|package| {
+            let (mut workspace, mut external) = (Vec::new(), Vec::new());
+            for dependency in package["dependencies"].as_array().expect("dependencies") {
+                if dependency["kind"] == "dev" {
+                    continue;
+                }
+                let name = dependency["name"].as_str().expect("name").to_owned();
+                if dependency["path"].is_string() { workspace.push(name) } else { external.push(name) }
+            }
+            (package["name"].as_str().expect("name").to_owned(), (workspace, external))
+        })
+        .collect()
+}
+
+/// Every violation of the rules, one sentence each.
+fn violations(edges: &BTreeMap<String, (Vec<String>, Vec<String>)>) -> Vec<String> {
+    let mut found = Vec::new();
+    for (package, (workspace, external)) in edges {
+        let Some((_, may_workspace, may_external)) = RULES.iter().find(|(name, ..)| name == package) else {
+            found.push(format!("{package} has no rule; add one to RULES and docs/ARCHITECTURE.md"));
+            continue;
+        };
+        found.extend(
+            workspace.iter().filter(|d| !may_workspace.contains(&d.as_str())).map(|d| format!("{package} may not import {d}")),
+        );
+        found.extend(
+            external.iter().filter(|d| !may_external.contains(&d.as_str())).map(|d| format!("{package} may not use the crate {d}")),
+        );
+    }
+    found
+}
+
+#[test]
+fn dependencies_point_downwards() {
+    let edges = edges();
+    assert_eq!(edges.len(), RULES.len(), "every workspace crate has a rule: {:?}", edges.keys());
+    assert_eq!(violations(&edges), Vec::<String>::new());
+}
+
+#[test]
+fn a_forbidden_edge_is_found() {
+    let mut edges = edges();
+    edges.get_mut("belvedere-core").expect("core").0.push("belvedere-io".to_owned());
+    edges.get_mut("belvedere-cli").expect("cli").1.push("tiff".to_owned());
+    assert_eq!(violations(&edges).len(), 2);
+}

@@ -1,0 +1,6 @@
+//! Checks of the workspace itself: who imports whom, that documents name what exists, that files stay small.
+
+mod dependencies;
+mod layering;
+mod papers;
+mod sources;
