@@ -11,11 +11,35 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         "belvedere-io",
         &["belvedere-core", "belvedere-scene"],
         &[
-            "crs-definitions", "dbase", "flate2", "geojson", "glam", "gpx", "png", "proj4rs", "quick-xml", "rayon", "ruzstd",
-            "serde", "serde_json", "shapefile", "tempfile", "thiserror", "tiff", "tracing", "weezl", "zip", "zune-core", "zune-jpeg",
+            "crs-definitions",
+            "dbase",
+            "flate2",
+            "geojson",
+            "glam",
+            "gpx",
+            "png",
+            "proj4rs",
+            "quick-xml",
+            "rayon",
+            "ruzstd",
+            "serde",
+            "serde_json",
+            "shapefile",
+            "tempfile",
+            "thiserror",
+            "tiff",
+            "tracing",
+            "weezl",
+            "zip",
+            "zune-core",
+            "zune-jpeg",
         ],
     ),
-    ("belvedere-construct", &["belvedere-core", "belvedere-scene"], &["glam", "rayon", "serde", "thiserror", "tracing"]),
+    (
+        "belvedere-construct",
+        &["belvedere-core", "belvedere-scene"],
+        &["glam", "rayon", "serde", "thiserror", "tracing"],
+    ),
     ("belvedere-cpu", &["belvedere-core", "belvedere-scene"], &["glam", "rayon", "thiserror", "tracing"]),
     (
         "belvedere",
@@ -23,7 +47,11 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         &["glam", "rayon", "schemars", "serde", "serde_json", "sha2", "strsim", "thiserror", "toml", "tracing"],
     ),
     ("belvedere-testkit", &["belvedere-core", "belvedere-scene"], &["glam"]),
-    ("belvedere-cli", &["belvedere"], &["anyhow", "clap", "ctrlc", "indicatif", "serde_json", "tracing", "tracing-subscriber"]),
+    (
+        "belvedere-cli",
+        &["belvedere"],
+        &["anyhow", "clap", "ctrlc", "indicatif", "serde_json", "tracing", "tracing-subscriber"],
+    ),
 ];
 
 /// Normal and build dependencies of every workspace crate: (workspace, external).
@@ -61,10 +89,16 @@ fn violations(edges: &BTreeMap<String, (Vec<String>, Vec<String>)>) -> Vec<Strin
             continue;
         };
         found.extend(
-            workspace.iter().filter(|d| !may_workspace.contains(&d.as_str())).map(|d| format!("{package} may not import {d}")),
+            workspace
+                .iter()
+                .filter(|d| !may_workspace.contains(&d.as_str()))
+                .map(|d| format!("{package} may not import {d}")),
         );
         found.extend(
-            external.iter().filter(|d| !may_external.contains(&d.as_str())).map(|d| format!("{package} may not use the crate {d}")),
+            external
+                .iter()
+                .filter(|d| !may_external.contains(&d.as_str()))
+                .map(|d| format!("{package} may not use the crate {d}")),
         );
     }
     found

@@ -39,7 +39,8 @@ fn files_hold_one_idea() {
 #[test]
 fn nothing_is_left_unfinished_or_silently_skipped() {
     // Written in two halves so that this file does not find itself.
-    let marks = [["todo", "!("], ["unimplemented", "!("], ["#[ign", "ore"], ["FIX", "ME"], ["XX", "X:"]].map(|m| m.concat());
+    let marks =
+        [["todo", "!("], ["unimplemented", "!("], ["#[ign", "ore"], ["FIX", "ME"], ["XX", "X:"]].map(|m| m.concat());
     let mut found = Vec::new();
     for file in all_rust_files() {
         let text = fs::read_to_string(&file).expect("source");
