@@ -1,5 +1,7 @@
 //! Loaders and writers, one file per format: bytes in, [`Loaded`] values and warnings out.
 
 mod error;
+pub mod raster;
 
 pub use error::{IoError, Loaded};
+pub use raster::{Affine, Alpha, CrsKind, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, SourceCrs};
