@@ -206,6 +206,45 @@ impl Heightfield {
         Some(height)
     }
 
+    /// Height of the drawn surface inside cell (`col`, `row`) at fractions `u` (east) and `v` (south) of the cell, 0..=1.
+    ///
+    /// Every cell is two triangles that share the diagonal from its north-west to its south-east node; a triangle
+    /// with a void among its nodes is a hole (`None`). Renderers and lines of sight both stand on this surface.
+    ///
+    /// # Panics
+    /// If the cell is not in the grid: `col + 1 < cols` and `row + 1 < rows` are needed.
+    pub fn surface_in_cell(&self, col: usize, row: usize, u: f64, v: f64) -> Option<f64> {
+        let nw = row * self.cols + col;
+        let (ne, sw, se) = (nw + 1, nw + self.cols, nw + self.cols + 1);
+        // The diagonal and the cell's border belong to both triangles that meet there.
+        let upper = || self.triangle_height([nw, ne, se], [1.0 - u, u - v, v]);
+        let lower = || self.triangle_height([nw, sw, se], [1.0 - v, v - u, u]);
+        if u > v {
+            upper()
+        } else if v > u {
+            lower()
+        } else {
+            upper().or_else(lower)
+        }
+    }
+
+    /// Height of the drawn surface (two triangles per cell, see [`Heightfield::surface_in_cell`]) at a scene
+    /// position; `None` outside the grid and in holes. Differs from the bilinear [`Heightfield::height_at`] inside cells only.
+    pub fn surface_at(&self, xy: DVec2) -> Option<f64> {
+        let g = self.grid_from_scene(xy);
+        let (last_c, last_r) = ((self.cols - 1) as f64, (self.rows - 1) as f64);
+        if !(g.x >= 0.0 && g.x <= last_c && g.y >= 0.0 && g.y <= last_r) {
+            return None;
+        }
+        let (c, r) = ((g.x as usize).min(self.cols - 2), (g.y as usize).min(self.rows - 2));
+        self.surface_in_cell(c, r, g.x - c as f64, g.y - r as f64)
+    }
+
+    fn triangle_height(&self, nodes: [usize; 3], weights: [f64; 3]) -> Option<f64> {
+        let solid = nodes.iter().all(|&n| self.states[n] != NodeState::Void);
+        solid.then(|| nodes.iter().zip(weights).map(|(&n, w)| w * f64::from(self.heights[n])).sum())
+    }
+
     /// Share of nodes in `state`, 0..=1.
     pub fn share_of(&self, state: NodeState) -> f64 {
         self.states.iter().filter(|&&s| s == state).count() as f64 / self.states.len() as f64
@@ -218,5 +257,38 @@ impl Heightfield {
             min: DVec3::new(self.north_west.x, se.y, self.z_range[0]),
             max: DVec3::new(se.x, self.north_west.y, self.z_range[1]),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn saddle(void: Option<usize>) -> Heightfield {
+        let mut states = vec![NodeState::Measured; 4];
+        if let Some(i) = void {
+            states[i] = NodeState::Void;
+        }
+        // North-west and south-east low, the other two 40 m higher: bilinear and triangles differ by 20 m in the middle.
+        Heightfield::new(DVec2::new(0.0, 10.0), DVec2::splat(10.0), 2, 2, vec![0.0, 40.0, 40.0, 0.0], states).unwrap()
+    }
+
+    #[test]
+    fn surface_is_two_triangles_along_the_north_west_south_east_diagonal() {
+        let hf = saddle(None);
+        assert_eq!(hf.surface_at(DVec2::new(5.0, 5.0)), Some(0.0));
+        assert_eq!(hf.height_at(DVec2::new(5.0, 5.0)), Some(20.0));
+        assert_eq!(hf.surface_at(DVec2::new(10.0, 10.0)), Some(40.0));
+        assert_eq!(hf.surface_at(DVec2::new(7.5, 7.5)), Some(20.0), "upper right triangle");
+        assert_eq!(hf.surface_at(DVec2::new(2.5, 2.5)), Some(20.0), "lower left triangle");
+        assert_eq!(hf.surface_at(DVec2::new(10.1, 5.0)), None);
+    }
+
+    #[test]
+    fn a_void_node_opens_only_the_triangles_it_belongs_to() {
+        let hf = saddle(Some(1));
+        assert_eq!(hf.surface_at(DVec2::new(7.5, 7.5)), None);
+        assert_eq!(hf.surface_at(DVec2::new(2.5, 2.5)), Some(20.0));
+        assert_eq!(hf.surface_at(DVec2::new(5.0, 5.0)), Some(0.0), "the diagonal belongs to the solid triangle too");
     }
 }
