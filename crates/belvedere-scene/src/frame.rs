@@ -21,11 +21,13 @@ pub struct RenderOptions {
     pub threads: usize,
     /// Extra buffers.
     pub aux: Aux,
+    /// Memory the renderer may use for one picture, bytes; more is [`RenderError::TooLarge`].
+    pub max_bytes: u64,
 }
 
 impl Default for RenderOptions {
     fn default() -> Self {
-        Self { samples: 4, tolerance_px: 0.5, threads: 0, aux: Aux::default() }
+        Self { samples: 4, tolerance_px: 0.5, threads: 0, aux: Aux::default(), max_bytes: 4 << 30 }
     }
 }
 
