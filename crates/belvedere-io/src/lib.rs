@@ -1,5 +1,6 @@
 //! Loaders and writers, one file per format: bytes in, [`Loaded`] values and warnings out.
 
+pub mod crs;
 mod error;
 pub mod raster;
 

@@ -1,0 +1,290 @@
+//! Well-known text of coordinate systems, OGC 1 and 2 and ESRI.
+
+use super::{CoordinateSystem, CrsError};
+use std::fmt::Write;
+
+/// Deeper nesting than any real text has.
+const MAX_DEPTH: usize = 32;
+
+/// `KEYWORD["text", 1.5, CHILD[...]]`.
+#[derive(Debug, Default)]
+struct Node {
+    keyword: String,
+    texts: Vec<String>,
+    numbers: Vec<f64>,
+    children: Vec<Node>,
+}
+
+impl Node {
+    fn child(&self, keywords: &[&str]) -> Option<&Node> {
+        self.children.iter().find(|c| keywords.iter().any(|k| c.keyword.eq_ignore_ascii_case(k)))
+    }
+
+    fn name(&self) -> &str {
+        self.texts.first().map_or("", String::as_str)
+    }
+
+    fn is(&self, keywords: &[&str]) -> bool {
+        keywords.iter().any(|k| self.keyword.eq_ignore_ascii_case(k))
+    }
+
+    /// EPSG code of this node itself, not of its children.
+    fn epsg(&self) -> Option<u32> {
+        let id = self.child(&["AUTHORITY", "ID"])?;
+        if !id.name().eq_ignore_ascii_case("EPSG") {
+            return None;
+        }
+        let code = id.texts.get(1).and_then(|t| t.parse().ok());
+        code.or_else(|| id.numbers.first().filter(|n| (1.0..1e6).contains(*n)).map(|n| *n as u32))
+    }
+}
+
+fn text_error(reason: impl Into<String>) -> CrsError {
+    CrsError::Text { reason: reason.into() }
+}
+
+/// Reads one node from `rest`, leaving what follows it.
+fn node(rest: &mut &str, depth: usize) -> Result<Node, CrsError> {
+    if depth > MAX_DEPTH {
+        return Err(text_error(format!("it is nested more than {MAX_DEPTH} deep")));
+    }
+    let open = rest.find(['[', '(']).ok_or_else(|| text_error("a bracket is missing"))?;
+    let keyword = rest[..open].trim().to_owned();
+    if keyword.is_empty() || !keyword.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
+        return Err(text_error("it does not start with a keyword"));
+    }
+    *rest = &rest[open + 1..];
+    let mut out = Node { keyword, ..Node::default() };
+    loop {
+        *rest = rest.trim_start();
+        let first = rest.chars().next().ok_or_else(|| text_error("it ends inside a bracket"))?;
+        match first {
+            ']' | ')' => {
+                *rest = &rest[1..];
+                return Ok(out);
+            }
+            ',' => *rest = &rest[1..],
+            '"' => out.texts.push(quoted(rest)?),
+            _ => {
+                let end = rest.find([',', ']', ')', '[', '(']).ok_or_else(|| text_error("it ends inside a bracket"))?;
+                if rest[end..].starts_with(['[', '(']) {
+                    out.children.push(node(rest, depth + 1)?);
+                    continue;
+                }
+                let word = rest[..end].trim();
+                match word.parse::<f64>() {
+                    Ok(v) if v.is_finite() => out.numbers.push(v),
+                    _ => out.texts.push(word.to_owned()),
+                }
+                *rest = &rest[end..];
+            }
+        }
+    }
+}
+
+/// Reads a quoted text; `""` inside it is a quote.
+fn quoted(rest: &mut &str) -> Result<String, CrsError> {
+    let mut out = String::new();
+    let mut at = 1;
+    loop {
+        let tail = rest.get(at..).unwrap_or("");
+        let end = tail.find('"').ok_or_else(|| text_error("a closing quote is missing"))?;
+        out.push_str(&tail[..end]);
+        at += end + 1;
+        if !rest[at..].starts_with('"') {
+            *rest = &rest[at..];
+            return Ok(out);
+        }
+        out.push('"');
+        at += 1;
+    }
+}
+
+const PROJECTED: [&str; 4] = ["PROJCS", "PROJCRS", "PROJECTEDCRS", "BASEPROJCRS"];
+const GEOGRAPHIC: [&str; 6] = ["GEOGCS", "GEOGCRS", "GEODCRS", "GEODETICCRS", "BASEGEOGCRS", "BASEGEODCRS"];
+
+/// See [`CoordinateSystem::from_wkt`].
+pub(super) fn parse(text: &str) -> Result<CoordinateSystem, CrsError> {
+    let mut rest = text.trim_start_matches('\u{feff}').trim();
+    let root = node(&mut rest, 0)?;
+    let horizontal = find(&root).ok_or_else(|| text_error(format!("{} holds no horizontal system", root.keyword)))?;
+    if let Some(code) = horizontal.epsg().or_else(|| code_by_name(horizontal.name())) {
+        return CoordinateSystem::from_epsg(code);
+    }
+    let name = match horizontal.name() {
+        "" => "the system of the file",
+        name => name,
+    };
+    if let Some(extension) = horizontal.child(&["EXTENSION"])
+        && extension.name().eq_ignore_ascii_case("PROJ4")
+        && let Some(proj) = extension.texts.get(1)
+    {
+        return CoordinateSystem::from_proj_string(name, proj);
+    }
+    CoordinateSystem::from_proj_string(name, &proj_string(horizontal)?)
+}
+
+/// The projected or geographic node of a (possibly compound or bound) system.
+fn find(node: &Node) -> Option<&Node> {
+    if node.is(&PROJECTED) || node.is(&GEOGRAPHIC) {
+        return Some(node);
+    }
+    node.children.iter().find_map(find)
+}
+
+/// EPSG codes of names that texts without codes use, mostly ESRI's.
+fn code_by_name(name: &str) -> Option<u32> {
+    let plain: String = name.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase();
+    let fixed = match plain.as_str() {
+        "gcswgs1984" | "wgs84" | "wgs1984" => 4326,
+        "gcsnorthamerican1983" | "nad83" => 4269,
+        "gcsnorthamerican1927" | "nad27" => 4267,
+        "gcsetrs1989" | "etrs89" => 4258,
+        "wgs1984webmercatorauxiliarysphere" | "wgs84pseudomercator" | "webmercator" => 3857,
+        "ch1903lv95" | "ch1903lv95lv95" => 2056,
+        "britishnationalgrid" | "osgb1936britishnationalgrid" => 27700,
+        "rgf1993lambert93" | "rgf93lambert93" => 2154,
+        "etrs1989laea" | "etrs89laeaeurope" | "etrs89extendedlaeaeurope" => 3035,
+        _ => 0,
+    };
+    if fixed != 0 {
+        return Some(fixed);
+    }
+    let (head, zone) = plain.split_once("utmzone")?;
+    let (number, north) = match zone.strip_suffix('n') {
+        Some(n) => (n, true),
+        None => (zone.strip_suffix('s')?, false),
+    };
+    let zone: u32 = number.parse().ok().filter(|z| (1..=60).contains(z))?;
+    match (head, north) {
+        ("wgs1984" | "wgs84", true) => Some(32600 + zone),
+        ("wgs1984" | "wgs84", false) => Some(32700 + zone),
+        ("etrs1989" | "etrs89", true) if (28..=38).contains(&zone) => Some(25800 + zone),
+        ("nad1983" | "nad83", true) if zone <= 23 => Some(26900 + zone),
+        ("nad1927" | "nad27", true) if zone <= 22 => Some(26700 + zone),
+        _ => None,
+    }
+}
+
+/// PROJ string from the parameters of a WKT 1 node.
+fn proj_string(system: &Node) -> Result<String, CrsError> {
+    let projected = system.is(&PROJECTED);
+    let geographic = if projected { system.child(&GEOGRAPHIC) } else { Some(system) };
+    let geographic = geographic.ok_or_else(|| text_error("it has no geographic system inside"))?;
+    let angle_rad = unit(geographic).unwrap_or(1f64.to_radians());
+    let mut out = if projected { projection(system, angle_rad)? } else { String::from("+proj=longlat") };
+    push(&mut out, &datum(geographic)?);
+    if let Some(meridian) = geographic.child(&["PRIMEM", "PRIMEMERIDIAN"]).and_then(|m| m.numbers.first())
+        && *meridian != 0.0
+    {
+        push(&mut out, &format!("+pm={}", degrees(*meridian, angle_rad)));
+    }
+    if projected {
+        push(&mut out, &format!("+to_meter={}", unit(system).unwrap_or(1.0)));
+    }
+    Ok(out)
+}
+
+fn push(out: &mut String, part: &str) {
+    if !part.is_empty() {
+        let _ = write!(out, " {part}");
+    }
+}
+
+fn unit(node: &Node) -> Option<f64> {
+    let unit = node.child(&["UNIT", "LENGTHUNIT", "ANGLEUNIT"])?;
+    unit.numbers.first().copied().filter(|u| *u > 0.0)
+}
+
+fn degrees(value: f64, angle_rad: f64) -> f64 {
+    // the common rounding of pi/180 must not move anything
+    if (angle_rad - 1f64.to_radians()).abs() < 1e-12 { value } else { (value * angle_rad).to_degrees() }
+}
+
+fn datum(geographic: &Node) -> Result<String, CrsError> {
+    let datum = geographic.child(&["DATUM", "GEODETICDATUM", "TRF", "ENSEMBLE"]);
+    let datum = datum.ok_or_else(|| text_error("it has no datum"))?;
+    let plain: String = datum.name().chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase();
+    match plain.as_str() {
+        "dwgs1984" | "wgs1984" | "worldgeodeticsystem1984" | "worldgeodeticsystem1984ensemble" => {
+            return Ok("+datum=WGS84".into());
+        }
+        "dnorthamerican1983" | "northamericandatum1983" => return Ok("+datum=NAD83".into()),
+        "dnorthamerican1927" | "northamericandatum1927" => return Ok("+datum=NAD27".into()),
+        _ => {}
+    }
+    let spheroid = datum.child(&["SPHEROID", "ELLIPSOID"]).ok_or_else(|| text_error("it has no spheroid"))?;
+    let (a, rf) = match spheroid.numbers.as_slice() {
+        [a, rf, ..] if *a > 0.0 && *rf >= 0.0 => (*a, *rf),
+        _ => return Err(text_error("its spheroid has no valid axis and flattening")),
+    };
+    let mut out = if rf == 0.0 { format!("+a={a} +b={a}") } else { format!("+a={a} +rf={rf}") };
+    let etrs = matches!(plain.as_str(), "detrs1989" | "europeanterrestrialreferencesystem1989");
+    if let Some(shift) = datum.child(&["TOWGS84"]) {
+        let numbers: Vec<String> = shift.numbers.iter().map(f64::to_string).collect();
+        if matches!(numbers.len(), 3 | 7) {
+            push(&mut out, &format!("+towgs84={}", numbers.join(",")));
+        }
+    } else if etrs {
+        push(&mut out, "+towgs84=0,0,0");
+    }
+    Ok(out)
+}
+
+/// Projection method and its parameters.
+fn projection(system: &Node, angle_rad: f64) -> Result<String, CrsError> {
+    let method = system.child(&["PROJECTION"]).map(Node::name);
+    let method = method.ok_or_else(|| text_error("it has no EPSG code and no PROJECTION element of WKT 1"))?;
+    let plain: String = method.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase();
+    let proj = match plain.as_str() {
+        "transversemercator" | "gausskruger" => "tmerc",
+        "lambertconformalconic" | "lambertconformalconic1sp" | "lambertconformalconic2sp" => "lcc",
+        "albers" | "albersconicequalarea" => "aea",
+        "mercator" | "mercator1sp" | "mercator2sp" => "merc",
+        "polarstereographic" | "stereographic" | "stereographicnorthpole" | "stereographicsouthpole" => "stere",
+        "obliquestereographic" | "doublestereographic" => "sterea",
+        "lambertazimuthalequalarea" => "laea",
+        "azimuthalequidistant" => "aeqd",
+        "geostationarysatellite" => "geos",
+        "equirectangular" | "platecarree" | "equidistantcylindrical" => "eqc",
+        "cylindricalequalarea" => "cea",
+        "cassini" | "cassinisoldner" => "cass",
+        "sinusoidal" => "sinu",
+        "polyconic" => "poly",
+        _ => {
+            let name = system.name().to_owned();
+            return Err(CrsError::Unsupported { name, reason: format!("the projection method {method} is not supported") });
+        }
+    };
+    let mut out = format!("+proj={proj}");
+    for parameter in system.children.iter().filter(|c| c.is(&["PARAMETER"])) {
+        let Some(&value) = parameter.numbers.first() else { continue };
+        push(&mut out, &proj_parameter(proj, &plain, parameter.name(), value, angle_rad, unit(system).unwrap_or(1.0)));
+    }
+    Ok(out)
+}
+
+fn proj_parameter(proj: &str, method: &str, name: &str, value: f64, angle_rad: f64, unit_m: f64) -> String {
+    let angle = degrees(value, angle_rad);
+    match name.to_ascii_lowercase().as_str() {
+        "false_easting" => format!("+x_0={}", value * unit_m),
+        "false_northing" => format!("+y_0={}", value * unit_m),
+        "scale_factor" => format!("+k_0={value}"),
+        "central_meridian" | "longitude_of_center" | "longitude_of_origin" => format!("+lon_0={angle}"),
+        "standard_parallel_1" if matches!(proj, "merc" | "stere" | "eqc" | "cea") => {
+            let pole = if proj == "stere" { format!(" +lat_0={}", 90f64.copysign(angle)) } else { String::new() };
+            format!("+lat_ts={angle}{pole}")
+        }
+        "standard_parallel_1" => format!("+lat_1={angle}"),
+        "standard_parallel_2" => format!("+lat_2={angle}"),
+        "latitude_of_origin" if method == "polarstereographic" && angle.abs() < 90.0 => {
+            format!("+lat_ts={angle} +lat_0={}", 90f64.copysign(angle))
+        }
+        "latitude_of_origin" | "latitude_of_center" if method == "lambertconformalconic1sp" => {
+            format!("+lat_0={angle} +lat_1={angle}")
+        }
+        "latitude_of_origin" | "latitude_of_center" => format!("+lat_0={angle}"),
+        "satellite_height" => format!("+h={value}"),
+        _ => String::new(),
+    }
+}

@@ -1,0 +1,3 @@
+//! Tests of the loaders and writers.
+
+mod crs;
