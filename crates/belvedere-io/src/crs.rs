@@ -17,7 +17,9 @@ use std::sync::Arc;
 #[non_exhaustive]
 pub enum CrsError {
     /// The code is in no table.
-    #[error("EPSG:{code} is not a known projected or geographic 2D system; give the code of one (for example 4326 or 32631)")]
+    #[error(
+        "EPSG:{code} is not a known projected or geographic 2D system; give the code of one (for example 4326 or 32631)"
+    )]
     UnknownCode {
         /// The code.
         code: u32,
@@ -136,8 +138,8 @@ impl CoordinateSystem {
         }
         let proj_string = parts.join(" ");
         let unsupported = |reason: String| CrsError::Unsupported { name: name.to_owned(), reason };
-        let proj =
-            Proj::from_proj_string(&proj_string).map_err(|e| unsupported(format!("its projection is not supported ({e})")))?;
+        let proj = Proj::from_proj_string(&proj_string)
+            .map_err(|e| unsupported(format!("its projection is not supported ({e})")))?;
         if proj.is_geocent() {
             return Err(unsupported("earth-centred coordinates are not supported".into()));
         }
@@ -189,7 +191,9 @@ impl CoordinateSystem {
         if let Some(shift) = value("+towgs84=") {
             let null = shift.split(',').all(|v| v.parse::<f64>().is_ok_and(|v| v == 0.0));
             return (!null).then(|| {
-                format!("{self} is joined to WGS 84 by a Helmert shift without a grid: positions may be off by a few metres")
+                format!(
+                    "{self} is joined to WGS 84 by a Helmert shift without a grid: positions may be off by a few metres"
+                )
             });
         }
         match value("+datum=") {
@@ -198,7 +202,9 @@ impl CoordinateSystem {
                 "{self} is joined to WGS 84 by a Helmert shift without a grid: positions may be off by a few metres"
             )),
             None if value("+nadgrids=").is_some() => None,
-            None => Some(format!("the datum shift of {self} is unknown and taken as zero: positions may be off by some 100 m")),
+            None => Some(format!(
+                "the datum shift of {self} is unknown and taken as zero: positions may be off by some 100 m"
+            )),
         }
     }
 }

@@ -204,7 +204,8 @@ fn degrees(value: f64, angle_rad: f64) -> f64 {
 fn datum(geographic: &Node) -> Result<String, CrsError> {
     let datum = geographic.child(&["DATUM", "GEODETICDATUM", "TRF", "ENSEMBLE"]);
     let datum = datum.ok_or_else(|| text_error("it has no datum"))?;
-    let plain: String = datum.name().chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase();
+    let plain: String =
+        datum.name().chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase();
     match plain.as_str() {
         "dwgs1984" | "wgs1984" | "worldgeodeticsystem1984" | "worldgeodeticsystem1984ensemble" => {
             return Ok("+datum=WGS84".into());
@@ -253,7 +254,10 @@ fn projection(system: &Node, angle_rad: f64) -> Result<String, CrsError> {
         "polyconic" => "poly",
         _ => {
             let name = system.name().to_owned();
-            return Err(CrsError::Unsupported { name, reason: format!("the projection method {method} is not supported") });
+            return Err(CrsError::Unsupported {
+                name,
+                reason: format!("the projection method {method} is not supported"),
+            });
         }
     };
     let mut out = format!("+proj={proj}");

@@ -156,7 +156,9 @@ fn well_known_text_of_the_usual_kinds() {
 fn broken_well_known_text_is_one_sentence() {
     let deep = "A[".repeat(100_000);
     let long_quote = format!("GEOGCS[\"{}", "x".repeat(100_000));
-    for text in ["", "[", "GEOGCS", "GEOGCS[", "GEOGCS[\"a\"", "GEOGCS[]", "GEOGCS[\"é\"\"]", "é[1]", &deep, &long_quote] {
+    for text in
+        ["", "[", "GEOGCS", "GEOGCS[", "GEOGCS[\"a\"", "GEOGCS[]", "GEOGCS[\"é\"\"]", "é[1]", &deep, &long_quote]
+    {
         let error = CoordinateSystem::from_wkt(text).unwrap_err();
         assert!(matches!(error, CrsError::Text { .. }) && error.to_string().len() < 300, "{text:.40}: {error}");
     }
