@@ -43,6 +43,12 @@ pub enum IoError {
         /// What is wrong, with measured value, limit and remedy.
         reason: String,
     },
+    /// An output exists and may not be replaced.
+    #[error("{}: exists already; give --overwrite to replace it", path.display())]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] belvedere_scene::Cancelled),

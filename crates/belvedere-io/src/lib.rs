@@ -1,7 +1,9 @@
 //! Loaders and writers, one file per format: bytes in, [`Loaded`] values and warnings out.
 
+pub mod atomic;
 pub mod crs;
 mod error;
+pub mod png;
 pub mod raster;
 
 pub use error::{IoError, Loaded};

@@ -1,3 +1,5 @@
 //! Tests of the loaders and writers.
 
+mod atomic;
 mod crs;
+mod png;

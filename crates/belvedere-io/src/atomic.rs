@@ -1,0 +1,135 @@
+//! Writing a file so that it is there whole or not at all.
+
+use crate::IoError;
+use std::ffi::OsString;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Fails at once if [`write_atomic`] could not write `path`: it exists and `overwrite` is false, it is a folder, or its
+/// folder does not exist. Ask before long work.
+///
+/// # Errors
+/// [`IoError::Exists`], [`IoError::Format`], [`IoError::Os`].
+pub fn check_output(path: &Path, overwrite: bool) -> Result<(), IoError> {
+    if path.file_name().is_none() {
+        return Err(IoError::format(path, "is no file name; give the name of a file to write"));
+    }
+    let folder = folder_of(path);
+    match fs::metadata(folder) {
+        Ok(m) if m.is_dir() => {}
+        Ok(_) => return Err(IoError::format(folder, "is not a folder; give an output inside one")),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => {
+            return Err(IoError::format(path, format!("folder {} does not exist; create it first", folder.display())));
+        }
+        Err(e) => return Err(IoError::os(folder, e)),
+    }
+    match fs::symlink_metadata(path) {
+        Ok(m) if m.is_dir() => Err(IoError::format(path, "is a folder; give the name of a file to write")),
+        Ok(m) if m.is_file() || m.is_symlink() => {
+            // what a link to a device leads to is written through, like the device itself
+            let regular = m.is_file() || fs::metadata(path).map_or(true, |target| target.is_file());
+            if regular && !overwrite { Err(IoError::Exists { path: path.to_owned() }) } else { Ok(()) }
+        }
+        Ok(_) => Ok(()),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(e) => Err(IoError::os(path, e)),
+    }
+}
+
+/// Writes `path` through a temporary file beside it: complete, flushed to the disk (file and folder) and then renamed, so
+/// that nobody ever sees half a file. Without `overwrite` an existing file stays, even one that appears during the work.
+/// The temporary file is removed if `write` fails. A device or pipe (such as `/dev/stdout`) is written directly.
+///
+/// # Errors
+/// [`IoError::Exists`] if the file is there and may not be replaced; [`IoError::Format`] for a folder;
+/// [`IoError::Os`] with what the system or `write` said.
+pub fn write_atomic(
+    path: &Path,
+    overwrite: bool,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), IoError> {
+    check_output(path, overwrite)?;
+    let os = |e| IoError::os(path, e);
+    // follow a link, so that it is not replaced by a file
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if fs::metadata(&target).is_ok_and(|m| !m.is_file()) {
+        let mut device = OpenOptions::new().write(true).open(&target).map_err(os)?;
+        return write(&mut device).and_then(|()| device.flush()).map_err(os);
+    }
+    let (temporary, file) = Temporary::beside(&target).map_err(os)?;
+    let mut out = BufWriter::with_capacity(1 << 16, file);
+    write(&mut out).map_err(os)?;
+    let file = out.into_inner().map_err(|e| os(e.into_error()))?;
+    file.sync_all().map_err(os)?;
+    drop(file);
+    if overwrite {
+        fs::rename(&temporary.path, &target).map_err(os)?;
+    } else {
+        temporary.publish_new(&target)?;
+    }
+    sync_folder(folder_of(&target));
+    Ok(())
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// A file that removes itself.
+struct Temporary {
+    path: PathBuf,
+}
+
+impl Temporary {
+    fn beside(target: &Path) -> io::Result<(Self, File)> {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        for _ in 0..100 {
+            let mut name = OsString::from(".");
+            // a long name plus the ending could pass the system's limit
+            name.push(target.file_name().unwrap_or_default().to_string_lossy().chars().take(40).collect::<String>());
+            name.push(format!(".{}-{}.tmp", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
+            let path = folder_of(target).join(name);
+            match OpenOptions::new().write(true).create_new(true).open(&path) {
+                Ok(file) => return Ok((Self { path }, file)),
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(e) => return Err(e),
+            }
+        }
+        Err(io::Error::new(io::ErrorKind::AlreadyExists, "100 temporary names are taken; remove the .tmp files beside it"))
+    }
+
+    /// Gives the file its final name unless that is taken.
+    fn publish_new(&self, target: &Path) -> Result<(), IoError> {
+        let exists = || IoError::Exists { path: target.to_owned() };
+        match fs::hard_link(&self.path, target) {
+            Ok(()) => Ok(()),
+            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => Err(exists()),
+            // a file system without links: the smallest possible gap between look and rename
+            Err(_) if fs::symlink_metadata(target).is_ok() => Err(exists()),
+            Err(_) => fs::rename(&self.path, target).map_err(|e| IoError::os(target, e)),
+        }
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        // after a rename there is nothing left to remove
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+#[cfg(unix)]
+fn sync_folder(folder: &Path) {
+    // some file systems cannot do this; the data are safe already
+    if let Ok(folder) = File::open(folder) {
+        let _ = folder.sync_all();
+    }
+}
+
+#[cfg(not(unix))]
+fn sync_folder(_: &Path) {}

@@ -1,0 +1,105 @@
+//! PNG pictures with provenance in text chunks.
+
+use crate::{IoError, atomic};
+use png::{BitDepth, ColorType, Compression, Encoder, Filter, SrgbRenderingIntent};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Longest keyword that the format allows, bytes.
+const MAX_KEYWORD: usize = 79;
+
+/// Channels of a picture of 8 bits per channel, sRGB.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Channels {
+    /// Brightness.
+    Gray,
+    /// Red, green, blue.
+    Rgb,
+    /// Red, green, blue and straight alpha.
+    Rgba,
+}
+
+impl Channels {
+    /// Bytes per pixel.
+    pub fn count(self) -> usize {
+        match self {
+            Self::Gray => 1,
+            Self::Rgb => 3,
+            Self::Rgba => 4,
+        }
+    }
+}
+
+/// Writes a picture of `width` x `height` pixels, row 0 first, as PNG; the same input gives the same bytes.
+///
+/// `text` holds keyword and text of each text chunk, in order: `tEXt` where both are ASCII, `iTXt` else. Keywords need
+/// 1 to 79 printable ASCII characters.
+///
+/// # Errors
+/// [`io::ErrorKind::InvalidInput`] for a size that does not fit `pixels` or a bad keyword, else what `out` says.
+pub fn encode(
+    out: &mut dyn Write,
+    width: usize,
+    height: usize,
+    channels: Channels,
+    pixels: &[u8],
+    text: &[(&str, &str)],
+) -> io::Result<()> {
+    let bad = |message: String| io::Error::new(io::ErrorKind::InvalidInput, message);
+    let expected = width.checked_mul(height).and_then(|n| n.checked_mul(channels.count()));
+    let side = |n: usize| u32::try_from(n).ok().filter(|n| (1..=i32::MAX as u32).contains(n));
+    let (Some(w), Some(h), true) = (side(width), side(height), expected == Some(pixels.len())) else {
+        let bytes = pixels.len();
+        return Err(bad(format!("a PNG of {width} x {height} pixels with {channels:?} cannot be made of {bytes} bytes")));
+    };
+    let mut encoder = Encoder::new(out, w, h);
+    encoder.set_color(match channels {
+        Channels::Gray => ColorType::Grayscale,
+        Channels::Rgb => ColorType::Rgb,
+        Channels::Rgba => ColorType::Rgba,
+    });
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_compression(Compression::Fast);
+    encoder.set_filter(Filter::Adaptive);
+    encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
+    for (keyword, value) in text {
+        let printable = keyword.bytes().all(|b| (0x20..0x7f).contains(&b)) && keyword.trim() == *keyword;
+        if keyword.is_empty() || keyword.len() > MAX_KEYWORD || !printable {
+            return Err(bad(format!("PNG keyword {keyword:?} is not 1 to {MAX_KEYWORD} printable ASCII characters")));
+        }
+        // a zero byte ends a text chunk
+        let value = value.replace('\0', " ");
+        let added = if value.is_ascii() {
+            encoder.add_text_chunk((*keyword).to_owned(), value)
+        } else {
+            encoder.add_itxt_chunk((*keyword).to_owned(), value)
+        };
+        added.map_err(io_error)?;
+    }
+    let mut writer = encoder.write_header().map_err(io_error)?;
+    writer.write_image_data(pixels).map_err(io_error)?;
+    writer.finish().map_err(io_error)
+}
+
+fn io_error(e: png::EncodingError) -> io::Error {
+    match e {
+        png::EncodingError::IoError(e) => e,
+        other => io::Error::other(other.to_string()),
+    }
+}
+
+/// [`encode`] into a file, see [`atomic::write_atomic`].
+///
+/// # Errors
+/// [`IoError::Exists`], [`IoError::Os`].
+pub fn write(
+    path: &Path,
+    overwrite: bool,
+    width: usize,
+    height: usize,
+    channels: Channels,
+    pixels: &[u8],
+    text: &[(&str, &str)],
+) -> Result<(), IoError> {
+    atomic::write_atomic(path, overwrite, |out| encode(out, width, height, channels, pixels, text))
+}
