@@ -100,7 +100,10 @@ impl Temporary {
                 Err(e) => return Err(e),
             }
         }
-        Err(io::Error::new(io::ErrorKind::AlreadyExists, "100 temporary names are taken; remove the .tmp files beside it"))
+        Err(io::Error::new(
+            io::ErrorKind::AlreadyExists,
+            "100 temporary names are taken; remove the .tmp files beside it",
+        ))
     }
 
     /// Gives the file its final name unless that is taken.

@@ -50,7 +50,9 @@ pub fn encode(
     let side = |n: usize| u32::try_from(n).ok().filter(|n| (1..=i32::MAX as u32).contains(n));
     let (Some(w), Some(h), true) = (side(width), side(height), expected == Some(pixels.len())) else {
         let bytes = pixels.len();
-        return Err(bad(format!("a PNG of {width} x {height} pixels with {channels:?} cannot be made of {bytes} bytes")));
+        return Err(bad(format!(
+            "a PNG of {width} x {height} pixels with {channels:?} cannot be made of {bytes} bytes"
+        )));
     };
     let mut encoder = Encoder::new(out, w, h);
     encoder.set_color(match channels {
