@@ -1,5 +1,10 @@
 //! Law suites, data helpers and synthetic scenes for the tests of the workspace.
 
+pub mod laws;
+mod random;
+
+pub use random::Random;
+
 use std::path::{Path, PathBuf};
 
 /// Root of the workspace.
