@@ -198,8 +198,8 @@ pub enum Photometric {
     Gray,
     /// As [`Self::Gray`], but 0 is white.
     GrayInverted,
-    /// Bands 0, 1, 2 are red, green, blue (sRGB).
-    Rgb,
+    /// The bands of these indices are red, green, blue (sRGB).
+    Rgb([usize; 3]),
     /// Band 0 is an index into these colours.
     Palette(Vec<[u8; 3]>),
 }
@@ -351,45 +351,55 @@ impl Raster {
     /// One sentence if it is no picture of 8 or 16 bits per sample.
     pub fn to_rgba(&self) -> Result<Vec<[u8; 4]>, String> {
         let info = &self.info;
-        let byte: fn(f64) -> u8 = match (info.sample_type, &info.photometric) {
-            (SampleType::U8, _) | (_, Photometric::Palette(_)) => |v| v as u8,
-            (SampleType::U16, _) => |v| (v / 257.0).round() as u8,
-            (other, _) => {
+        let full = match info.sample_type {
+            SampleType::U8 => 255.0,
+            SampleType::U16 => 65535.0,
+            other => {
                 return Err(format!(
                     "samples are {}, a picture needs uint8 or uint16; convert it or use it as terrain",
                     other.name()
                 ));
             }
         };
-        let colors = match info.photometric {
-            Photometric::Rgb => 3,
-            _ => 1,
-        };
-        if info.bands < colors {
-            return Err(format!("an RGB picture needs 3 bands, it has {}", info.bands));
+        if let Photometric::Rgb(bands) = info.photometric
+            && let Some(band) = bands.into_iter().find(|&b| b >= info.bands)
+        {
+            return Err(format!("colour is said to be in band {}, there are {}", band + 1, info.bands));
         }
         let pixels = info.width * info.height;
-        Ok((0..pixels).map(|i| self.rgba_at(i, colors, byte)).collect())
+        let alpha_full = self.alpha_full(full);
+        Ok((0..pixels).map(|i| self.rgba_at(i, full, alpha_full)).collect())
     }
 
-    fn rgba_at(&self, pixel: usize, colors: usize, byte: fn(f64) -> u8) -> [u8; 4] {
+    /// Alpha that means opaque: some writers put 0..=255 into an alpha band of 16 bits.
+    fn alpha_full(&self, full: f64) -> f64 {
+        let Some(band) = self.info.alpha.band() else { return full };
+        let alphas = (band..self.samples.len()).step_by(self.info.bands.max(1));
+        let largest = alphas.filter_map(|i| self.samples.get_f64(i)).fold(0.0, f64::max);
+        if largest > 0.0 && largest <= 255.0 { 255.0 } else { full }
+    }
+
+    fn rgba_at(&self, pixel: usize, full: f64, alpha_full: f64) -> [u8; 4] {
         let info = &self.info;
         let stored = |band: usize| self.samples.get_f64(pixel * info.bands + band).unwrap_or(0.0);
-        if self.mask.as_ref().is_some_and(|m| !m.get(pixel).copied().unwrap_or(false))
-            || (0..colors).all(|b| self.is_nodata(stored(b)))
-        {
+        let byte = |v: f64| (v * 255.0 / full).round() as u8;
+        let absent = match info.photometric {
+            Photometric::Rgb(bands) => bands.into_iter().all(|b| self.is_nodata(stored(b))),
+            _ => self.is_nodata(stored(0)),
+        };
+        if absent || self.mask.as_ref().is_some_and(|m| !m.get(pixel).copied().unwrap_or(false)) {
             return [0; 4];
         }
         let mut rgb = match &info.photometric {
             Photometric::Gray => [byte(stored(0)); 3],
             Photometric::GrayInverted => [255 - byte(stored(0)); 3],
-            Photometric::Rgb => [byte(stored(0)), byte(stored(1)), byte(stored(2))],
+            Photometric::Rgb(bands) => bands.map(|b| byte(stored(b))),
             Photometric::Palette(colors) => match colors.get(stored(0) as usize) {
                 Some(color) => *color,
                 None => return [0; 4],
             },
         };
-        let alpha = info.alpha.band().map_or(255, |band| byte(stored(band)));
+        let alpha = info.alpha.band().map_or(255, |band| (stored(band) * 255.0 / alpha_full).round() as u8);
         if let Alpha::Premultiplied(_) = info.alpha
             && alpha > 0
         {

@@ -2,4 +2,5 @@
 
 mod atomic;
 mod crs;
+mod geotiff;
 mod png;

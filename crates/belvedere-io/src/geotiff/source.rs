@@ -1,0 +1,70 @@
+//! Bytes of a file at a position, from disk or memory.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+/// Where the bytes come from. Reads may come from many threads.
+#[derive(Debug)]
+pub(super) struct Source {
+    len: u64,
+    inner: Inner,
+}
+
+#[derive(Debug)]
+enum Inner {
+    File(Mutex<File>),
+    Bytes(Vec<u8>),
+}
+
+impl Source {
+    pub(super) fn open(path: &Path) -> std::io::Result<Self> {
+        let file = File::open(path)?;
+        let meta = file.metadata()?;
+        if meta.is_dir() {
+            return Err(std::io::Error::other("is a folder, not a file"));
+        }
+        Ok(Self { len: meta.len(), inner: Inner::File(Mutex::new(file)) })
+    }
+
+    pub(super) fn bytes(bytes: Vec<u8>) -> Self {
+        Self { len: bytes.len() as u64, inner: Inner::Bytes(bytes) }
+    }
+
+    pub(super) fn len(&self) -> u64 {
+        self.len
+    }
+
+    /// Replaces the content of `out` by `count` bytes from `at` on. `what` names them in the message.
+    pub(super) fn read_into(&self, at: u64, count: u64, what: &str, out: &mut Vec<u8>) -> Result<(), String> {
+        let end = at.checked_add(count).filter(|&end| end <= self.len);
+        let (Some(end), Ok(size)) = (end, usize::try_from(count)) else {
+            return Err(format!(
+                "{what} should be {count} bytes at byte {at}, but the file ends at byte {}; it is truncated or damaged, fetch it again",
+                self.len
+            ));
+        };
+        out.clear();
+        match &self.inner {
+            Inner::Bytes(bytes) => {
+                let part = bytes.get(at as usize..end as usize);
+                out.extend_from_slice(part.ok_or_else(|| format!("{what} cannot be read"))?);
+                Ok(())
+            }
+            Inner::File(file) => {
+                out.resize(size, 0);
+                let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
+                let result = file.seek(SeekFrom::Start(at)).and_then(|_| file.read_exact(out));
+                result.map_err(|e| format!("{what} cannot be read: {e}"))
+            }
+        }
+    }
+
+    /// As [`Self::read_into`], into a new vector.
+    pub(super) fn read(&self, at: u64, count: u64, what: &str) -> Result<Vec<u8>, String> {
+        let mut out = Vec::new();
+        self.read_into(at, count, what, &mut out)?;
+        Ok(out)
+    }
+}
