@@ -1,1 +1,16 @@
-//! Skeleton.
+//! From intent to stages, and the metrics that judge them.
+//!
+//! [`measure()`] says what a picture shows of the features it is made for; [`reveal()`] chooses a view and a bend that
+//! show more of them.
+
+mod error;
+mod ground;
+pub mod measure;
+mod samples;
+mod sight;
+
+pub use error::ConstructError;
+pub use ground::Ground;
+pub use measure::{MeasureOptions, Measures, measure};
+pub use samples::{Amount, Sample, SampledFeature, default_spacing, sample_features};
+pub use sight::{Obstacles, SightOptions};

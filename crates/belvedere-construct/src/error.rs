@@ -1,0 +1,71 @@
+//! What can go wrong when a view is judged or chosen.
+
+use belvedere_core::{PinholeError, ViewError};
+use belvedere_scene::{Cancelled, RenderError};
+
+/// A measure or a constructor that could not do its work. A goal not reached is a result, not an error.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ConstructError {
+    /// Cancelled through [`belvedere_scene::Progress`].
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The renderer failed.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The renderer answered with buffers of another size.
+    #[error("renderer {renderer} returned {got} depth values for a picture of {expected} pixels; use another renderer")]
+    FrameSize {
+        /// Name of the renderer.
+        renderer: &'static str,
+        /// Values returned.
+        got: usize,
+        /// Pixels of the picture.
+        expected: usize,
+    },
+    /// No layer of the scene must be seen.
+    #[error("none of the {layers} layers has must_see = true; mark the features that the picture is made for")]
+    NothingToSee {
+        /// Layers of the scene.
+        layers: usize,
+    },
+    /// The layers that must be seen hold no usable point.
+    #[error("the layers to be seen ({layers}) hold no point on the terrain; check their coordinates and CRS")]
+    NoSamples {
+        /// Ids of the layers.
+        layers: String,
+    },
+    /// There is no terrain.
+    #[error("the scene has no terrain layer; reveal needs one")]
+    NoTerrain,
+    /// The eye is under ground.
+    #[error("the eye lies {below_m:.1} m under ground; raise it by at least {raise_m:.1} m")]
+    EyeUnderGround {
+        /// Depth under ground, metres.
+        below_m: f64,
+        /// Smallest useful raise, metres.
+        raise_m: f64,
+    },
+    /// The features are not in the picture.
+    #[error(
+        "{in_frame_share:.0} % of the features lie in the picture, at least {needed:.0} % needed; turn the camera towards them or give no view"
+    )]
+    OutOfFrame {
+        /// Percentage in the picture.
+        in_frame_share: f64,
+        /// Percentage needed.
+        needed: f64,
+    },
+    /// No usable eye was found.
+    #[error("none of {tried} eyes around the features gives a usable picture; give a view (eye and look_at)")]
+    NoView {
+        /// Eyes tried.
+        tried: usize,
+    },
+    /// A pinhole could not be made.
+    #[error(transparent)]
+    Pinhole(#[from] PinholeError),
+    /// Stages could not be chained.
+    #[error(transparent)]
+    View(#[from] ViewError),
+}

@@ -1,0 +1,180 @@
+//! Lines of sight over terrain: the largest heights of ever larger blocks let a straight line skip what it clears.
+
+use belvedere_core::{DVec2, DVec3};
+use belvedere_scene::{Heightfield, NodeState};
+
+/// A heightfield with the largest height of every block of 2^k x 2^k cells (the "maximum mipmap" of Tevs et al. 2008).
+pub struct Ground<'a> {
+    heightfield: &'a Heightfield,
+    levels: Vec<Level>,
+}
+
+struct Level {
+    cols: usize,
+    rows: usize,
+    max: Vec<f32>,
+}
+
+impl<'a> Ground<'a> {
+    /// Builds the pyramid: one pass over the nodes, a third more memory than the heights.
+    pub fn new(heightfield: &'a Heightfield) -> Self {
+        let mut levels = vec![finest(heightfield)];
+        while let Some(last) = levels.last()
+            && (last.cols > 1 || last.rows > 1)
+        {
+            let next = coarser(last);
+            levels.push(next);
+        }
+        Self { heightfield, levels }
+    }
+
+    /// The heights themselves.
+    pub fn heightfield(&self) -> &'a Heightfield {
+        self.heightfield
+    }
+
+    /// Smallest height of the straight segment `a b` over the drawn surface, metres; negative = under ground.
+    ///
+    /// Exact for the two triangles per cell of [`Heightfield::surface_in_cell`]. Answers `cap` if the segment never
+    /// comes closer than that (or never lies over the terrain), and returns early, with any value below `floor`,
+    /// once the height is less than `floor`.
+    pub fn min_gap(&self, a: DVec3, b: DVec3, cap: f64, floor: f64) -> f64 {
+        let (ga, gb) = (self.heightfield.grid_from_scene(a.truncate()), self.heightfield.grid_from_scene(b.truncate()));
+        let Some((t_in, t_out)) = self.clip(ga, gb) else { return cap };
+        let line = Line { start: ga, dir: gb - ga, z: a.z, dz: b.z - a.z };
+        // Small enough to be nothing, large enough to step over a cell border in f64.
+        let nudge = 1e-10;
+        let top = self.levels.len() - 1;
+        let (mut t, mut level, mut best) = (t_in, top.min(3), cap);
+        while t <= t_out {
+            let (block, exit) = line.block(&self.levels[level], level, t + nudge, t_out);
+            let z_min = (line.z + t * line.dz).min(line.z + exit * line.dz);
+            let clear = z_min - f64::from(self.levels[level].max[block.1 * self.levels[level].cols + block.0]) >= best;
+            if !clear && level > 0 {
+                level -= 1;
+                continue;
+            }
+            if clear {
+                level = (level + 1).min(top);
+            } else {
+                best = best.min(self.gap_in_cell(&line, block, t, exit));
+                if best < floor {
+                    return best;
+                }
+            }
+            t = exit.max(t + nudge);
+        }
+        best
+    }
+
+    /// Whether the straight segment `a b` stays on or above the drawn surface.
+    pub fn sees(&self, a: DVec3, b: DVec3) -> bool {
+        self.min_gap(a, b, 0.0, 0.0) >= 0.0
+    }
+
+    /// Part of the segment that lies over the grid.
+    fn clip(&self, ga: DVec2, gb: DVec2) -> Option<(f64, f64)> {
+        let last = [(self.heightfield.cols() - 1) as f64, (self.heightfield.rows() - 1) as f64];
+        let (mut t0, mut t1) = (0.0f64, 1.0f64);
+        for (axis, limit) in last.into_iter().enumerate() {
+            let (p, d) = (ga[axis], gb[axis] - ga[axis]);
+            if !(p.is_finite() && d.is_finite()) {
+                return None;
+            }
+            if d == 0.0 {
+                if !(0.0..=limit).contains(&p) {
+                    return None;
+                }
+                continue;
+            }
+            let (s0, s1) = ((0.0 - p) / d, (limit - p) / d);
+            t0 = t0.max(s0.min(s1));
+            t1 = t1.min(s0.max(s1));
+        }
+        (t0 <= t1).then_some((t0, t1))
+    }
+
+    /// Smallest gap over `t0..t1` inside one cell: it is linear on either side of the diagonal.
+    fn gap_in_cell(&self, line: &Line, (col, row): (usize, usize), t0: f64, t1: f64) -> f64 {
+        let corner = DVec2::new(col as f64, row as f64);
+        let fractions = |t: f64| (line.start + t * line.dir - corner).clamp(DVec2::ZERO, DVec2::ONE);
+        let (slope, offset) = (line.dir.x - line.dir.y, line.start.x - corner.x - (line.start.y - corner.y));
+        let crossing = if slope == 0.0 { t1 } else { (-offset / slope).clamp(t0, t1) };
+        let mut least = f64::INFINITY;
+        for (from, to) in [(t0, crossing), (crossing, t1)] {
+            let middle = fractions(0.5 * (from + to));
+            for t in [from, to] {
+                let f = fractions(t);
+                if let Some(ground) = self.on_triangle(col, row, f, middle.x >= middle.y) {
+                    least = least.min(line.z + t * line.dz - ground);
+                }
+            }
+        }
+        least
+    }
+
+    fn on_triangle(&self, col: usize, row: usize, f: DVec2, upper: bool) -> Option<f64> {
+        // The point may sit on the diagonal up to rounding: keep it in the triangle that the interval lies in.
+        let mid = 0.5 * (f.x + f.y);
+        let (u, v) = match upper {
+            true if f.x <= f.y => (mid + 1e-12, mid),
+            false if f.x >= f.y => (mid, mid + 1e-12),
+            _ => (f.x, f.y),
+        };
+        self.heightfield.surface_in_cell(col, row, u, v)
+    }
+}
+
+struct Line {
+    start: DVec2,
+    dir: DVec2,
+    z: f64,
+    dz: f64,
+}
+
+impl Line {
+    /// Block of `level` at `t`, and where the line leaves it (at most `t_out`).
+    fn block(&self, level: &Level, k: usize, t: f64, t_out: f64) -> ((usize, usize), f64) {
+        let size = (1usize << k) as f64;
+        let at = (self.start + t * self.dir) / size;
+        let index = |x: f64, n: usize| (x.max(0.0) as usize).min(n - 1);
+        let block = (index(at.x, level.cols), index(at.y, level.rows));
+        let exit = |p: f64, d: f64, i: usize| {
+            if d > 0.0 {
+                ((i + 1) as f64 * size - p) / d
+            } else if d < 0.0 {
+                (i as f64 * size - p) / d
+            } else {
+                f64::INFINITY
+            }
+        };
+        let leave = exit(self.start.x, self.dir.x, block.0).min(exit(self.start.y, self.dir.y, block.1));
+        (block, leave.max(t).min(t_out))
+    }
+}
+
+fn finest(hf: &Heightfield) -> Level {
+    let (cols, rows) = (hf.cols() - 1, hf.rows() - 1);
+    let height = |i: usize| if hf.states()[i] == NodeState::Void { f32::NEG_INFINITY } else { hf.heights()[i] };
+    let mut max = Vec::with_capacity(cols * rows);
+    for row in 0..rows {
+        for col in 0..cols {
+            let i = row * hf.cols() + col;
+            let corners = [i, i + 1, i + hf.cols(), i + hf.cols() + 1];
+            max.push(corners.into_iter().map(height).fold(f32::NEG_INFINITY, f32::max));
+        }
+    }
+    Level { cols, rows, max }
+}
+
+fn coarser(fine: &Level) -> Level {
+    let (cols, rows) = (fine.cols.div_ceil(2), fine.rows.div_ceil(2));
+    let mut max = vec![f32::NEG_INFINITY; cols * rows];
+    for row in 0..fine.rows {
+        for col in 0..fine.cols {
+            let out = &mut max[row / 2 * cols + col / 2];
+            *out = out.max(fine.max[row * fine.cols + col]);
+        }
+    }
+    Level { cols, rows, max }
+}

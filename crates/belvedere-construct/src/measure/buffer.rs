@@ -1,0 +1,131 @@
+//! Method (b): draw the picture and compare each sample's depth with the depth buffer.
+
+use super::Judged;
+use crate::ConstructError;
+use crate::samples::{Sample, SampledFeature};
+use belvedere_core::{Camera, DVec2, DVec3, View};
+use belvedere_scene::{Frame, Heightfield, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
+
+pub(super) struct Job<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) renderer: &'a dyn Renderer,
+    pub(super) light: &'a Light,
+    pub(super) progress: &'a Progress,
+}
+
+/// What the depth buffer says of a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Buffered {
+    /// Nothing was drawn in front of the sample's ground.
+    pub(crate) seen: bool,
+    /// What was drawn lies behind the ground: a hole, or a wrong depth.
+    pub(crate) missed: bool,
+}
+
+/// How a plane through a sample shows up in the depth buffer: `depth(pixel) = depth + gradient . (pixel - at)`.
+struct Footprint {
+    at: DVec2,
+    depth: f64,
+    gradient: DVec2,
+    /// Whether the plane turns its upper side to the eye.
+    facing: bool,
+}
+
+impl Job<'_> {
+    /// Fills in [`Judged::in_buffer`].
+    pub(super) fn judge(
+        &self,
+        view: &View,
+        features: &[SampledFeature],
+        judged: &mut [Vec<Judged>],
+    ) -> Result<(), ConstructError> {
+        let options = RenderOptions { samples: 1, ..RenderOptions::default() };
+        let job = RenderJob { scene: self.scene, view, light: self.light, options: &options, progress: self.progress };
+        let frame = self.renderer.render(&job)?;
+        let expected = frame.width * frame.height;
+        let [width, height] = view.pinhole().image.map(|n| n as usize);
+        if frame.depth.len() != expected || (frame.width, frame.height) != (width, height) {
+            return Err(ConstructError::FrameSize {
+                renderer: self.renderer.name(),
+                got: frame.depth.len(),
+                expected: width * height,
+            });
+        }
+        let terrain = self.scene.terrain();
+        for (feature, row) in features.iter().zip(judged) {
+            for (sample, j) in feature.samples.iter().zip(row.iter_mut()).filter(|(_, j)| j.in_frame) {
+                j.in_buffer = Some(in_buffer(view, terrain, sample, j, &frame));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether the depths around the sample's pixel belong to the ground the sample stands on, or to something behind it.
+///
+/// The four nearest pixel centres vote, each with its bilinear weight and with its own expected depth.
+fn in_buffer(view: &View, terrain: Option<&Heightfield>, sample: &Sample, j: &Judged, frame: &Frame) -> Buffered {
+    let plane = terrain.and_then(|hf| footprint(view, hf, sample)).unwrap_or(Footprint {
+        at: j.pixel,
+        depth: j.depth,
+        gradient: DVec2::ZERO,
+        facing: true,
+    });
+    if !plane.facing {
+        return Buffered { seen: false, missed: false };
+    }
+    // The plane stands for the ground about one cell around; beyond that its slope says nothing.
+    let reach = 1.5 * terrain.map_or(0.0, |hf| hf.spacing().max_element());
+    // Edges may be drawn up to half a pixel off, and the buffer holds f32.
+    let tolerance = (0.5 * plane.gradient.length()).min(reach) + 1e-6 * j.depth;
+    let corner = (j.pixel - 0.5).floor();
+    let part = j.pixel - 0.5 - corner;
+    let (mut seen, mut missed) = (0.0, true);
+    for (dx, dy) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+        let at = corner + DVec2::new(dx, dy);
+        let column = (at.x.max(0.0) as usize).min(frame.width - 1);
+        let row = (at.y.max(0.0) as usize).min(frame.height - 1);
+        let centre = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
+        let weight = (1.0 - (part.x - dx).abs()) * (1.0 - (part.y - dy).abs());
+        // Sky is infinitely far away: nothing was drawn in front.
+        let drawn = f64::from(frame.depth[row * frame.width + column]);
+        let expected = plane.depth + plane.gradient.dot(centre - plane.at).clamp(-reach, reach);
+        if drawn >= expected - tolerance {
+            seen += weight;
+        }
+        missed &= drawn > expected + tolerance + 1e-3 * j.depth;
+    }
+    Buffered { seen: seen >= 0.5, missed: missed && terrain.is_some() }
+}
+
+/// Image of the tangent plane of the drawn ground under `sample`, by differences over a tenth of a cell.
+fn footprint(view: &View, hf: &Heightfield, sample: &Sample) -> Option<Footprint> {
+    let ground = sample.p_world - DVec3::Z * sample.lift;
+    let cell = hf.grid_from_scene(ground.truncate()).floor();
+    let step = 0.1 * hf.spacing();
+    // Differences must stay in one triangle: lean towards its middle.
+    let inside = hf.grid_from_scene(ground.truncate()) - cell;
+    let middle = if inside.x >= inside.y { DVec2::new(2.0 / 3.0, 1.0 / 3.0) } else { DVec2::new(1.0 / 3.0, 2.0 / 3.0) };
+    let base = inside.lerp(middle, 0.5);
+    let (col, row) = (cell.x as usize, cell.y as usize);
+    if cell.min_element() < 0.0 || col + 1 >= hf.cols() || row + 1 >= hf.rows() {
+        return None;
+    }
+    let height = |f: DVec2| hf.surface_in_cell(col, row, f.x, f.y);
+    let (delta, h0) = (0.02, height(base)?);
+    let slope_x = (height(base + DVec2::new(delta, 0.0))? - h0) / (delta * hf.spacing().x);
+    let slope_y = -(height(base + DVec2::new(0.0, delta))? - h0) / (delta * hf.spacing().y);
+    let image = |p: DVec3| view.project(p).ok();
+    let (i0, ix, iy) = (
+        image(ground)?,
+        image(ground + step.x * DVec3::new(1.0, 0.0, slope_x))?,
+        image(ground + step.y * DVec3::new(0.0, 1.0, slope_y))?,
+    );
+    let (px, py) = (ix.pixel - i0.pixel, iy.pixel - i0.pixel);
+    let (wx, wy) = (ix.depth - i0.depth, iy.depth - i0.depth);
+    let area = px.x * py.y - px.y * py.x;
+    // East then north turns clockwise on an image whose y points down: negative area = seen from above.
+    let facing = area < -1e-12;
+    let gradient = if facing { DVec2::new(wx * py.y - wy * px.y, wy * px.x - wx * py.x) / area } else { DVec2::ZERO };
+    Some(Footprint { at: i0.pixel, depth: i0.depth, gradient, facing })
+}

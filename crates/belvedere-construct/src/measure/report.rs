@@ -1,0 +1,197 @@
+//! Figures of a measure, ready to be written as JSON.
+
+use super::bend::BendMeasure;
+use super::{Judged, bend};
+use crate::samples::{Amount, SampledFeature};
+use serde::Serialize;
+
+/// Everything [`super::measure`] found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Measures {
+    /// One entry per feature of the layers that must be seen.
+    pub features: Vec<FeatureMeasure>,
+    /// All line features together (amounts are lengths); `None` without lines.
+    pub lines: Option<FeatureMeasure>,
+    /// All area features together (amounts are areas in plan); `None` without areas.
+    pub areas: Option<FeatureMeasure>,
+    /// All point features together (amounts are counts); `None` without points.
+    pub points: Option<FeatureMeasure>,
+    /// Largest difference between the two methods over lines, areas and points, straight and bent, after leaving out
+    /// near misses; `None` without a renderer.
+    pub largest_difference: Option<f64>,
+    /// What the bend does to the picture.
+    pub bend: BendMeasure,
+    /// Oddities, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// What two pictures show of one feature.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FeatureMeasure {
+    /// Id of the layer.
+    pub layer: String,
+    /// Index of the feature in its layer; for sums the number of features.
+    pub feature: usize,
+    /// Name, possibly empty.
+    pub name: String,
+    /// What amounts count.
+    pub unit: Amount,
+    /// Points judged.
+    pub samples: usize,
+    /// Length, area or count of the whole feature.
+    pub total: f64,
+    /// In the picture without bends.
+    pub straight: Visibility,
+    /// In the picture as it is.
+    pub bent: Visibility,
+    /// How far the bends carry what is in either picture: largest distance, scene units.
+    pub displacement_max: f64,
+    /// The same, root mean square.
+    pub displacement_rms: f64,
+    /// Largest distance between the two images of a sample that is in both, pixels.
+    pub displacement_max_px: f64,
+}
+
+/// What one picture shows of one feature.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Visibility {
+    /// Length, area or count inside the image.
+    pub in_frame: f64,
+    /// By line of sight along the ray.
+    pub sight: MethodShare,
+    /// By the depth buffer; `None` without a renderer.
+    pub buffer: Option<MethodShare>,
+    /// Difference of the two shares over the samples that are no near misses.
+    pub difference: Option<f64>,
+    /// Share of those samples on which the methods disagree, either way.
+    pub mismatched_share: Option<f64>,
+    /// Share of the in-frame amount whose ground the renderer left out or drew too far away; `None` without a renderer.
+    pub surface_missed_share: Option<f64>,
+    /// Share of the in-frame amount whose sight line passes nearer to the edge of visibility than the near-miss distance.
+    pub near_miss_share: f64,
+    /// Clearances of the sight lines; `None` if nothing is in the frame.
+    pub clearance: Option<Clearance>,
+    /// Share of the in-frame amount that lies where the picture folds over.
+    pub folded_share: f64,
+}
+
+/// Visible amount by one method.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MethodShare {
+    /// Visible length, area or count.
+    pub visible: f64,
+    /// Visible share of the in-frame amount, 0..=1; `None` if nothing is in the frame.
+    pub share: Option<f64>,
+    /// The same without near misses.
+    pub share_without_near_misses: Option<f64>,
+}
+
+/// Heights of the sight lines over the ground, scene units; negative = under ground, that is hidden. Capped above.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Clearance {
+    /// Smallest.
+    pub min: f64,
+    /// Median over samples.
+    pub median: f64,
+    /// Largest (at most the cap).
+    pub max: f64,
+}
+
+pub(super) fn summarise(
+    features: &[SampledFeature],
+    straight: &[Vec<Judged>],
+    bent: &[Vec<Judged>],
+    near_miss: f64,
+    bend: BendMeasure,
+    warnings: Vec<String>,
+) -> Measures {
+    let all: Vec<usize> = (0..features.len()).collect();
+    let one = |members: &[usize]| summarise_group(features, straight, bent, members, near_miss);
+    let group = |unit: Amount, name: &str| {
+        let members: Vec<usize> = all.iter().copied().filter(|&i| features[i].amount == unit).collect();
+        (!members.is_empty()).then(|| FeatureMeasure { name: name.to_owned(), feature: members.len(), ..one(&members) })
+    };
+    let (lines, areas, points) =
+        (group(Amount::Length, "all lines"), group(Amount::Area, "all areas"), group(Amount::Count, "all points"));
+    let largest_difference = [&lines, &areas, &points]
+        .into_iter()
+        .flatten()
+        .flat_map(|f| [f.straight.difference, f.bent.difference])
+        .flatten()
+        .reduce(f64::max);
+    let features = all.iter().map(|&i| one(&[i])).collect();
+    Measures { features, lines, areas, points, largest_difference, bend, warnings }
+}
+
+fn summarise_group(
+    features: &[SampledFeature],
+    straight: &[Vec<Judged>],
+    bent: &[Vec<Judged>],
+    members: &[usize],
+    near_miss: f64,
+) -> FeatureMeasure {
+    let first = &features[members[0]];
+    let samples = members.iter().flat_map(|&i| features[i].samples.iter());
+    let rows = |judged: &[Vec<Judged>]| -> Vec<(f64, Judged)> {
+        let pairs = members.iter().flat_map(|&i| features[i].samples.iter().zip(&judged[i]));
+        pairs.map(|(s, j)| (s.amount, *j)).collect()
+    };
+    let (straight_rows, bent_rows) = (rows(straight), rows(bent));
+    let moved = bend::moved(&straight_rows, &bent_rows);
+    FeatureMeasure {
+        layer: first.layer_id.clone(),
+        feature: first.feature,
+        name: first.name.clone(),
+        unit: first.amount,
+        samples: straight_rows.len(),
+        total: samples.map(|s| s.amount).sum(),
+        straight: visibility(&straight_rows, near_miss),
+        bent: visibility(&bent_rows, near_miss),
+        displacement_max: moved.max,
+        displacement_rms: moved.rms,
+        displacement_max_px: moved.max_px,
+    }
+}
+
+fn ratio(part: f64, whole: f64) -> Option<f64> {
+    (whole > 0.0).then(|| part / whole)
+}
+
+fn visibility(rows: &[(f64, Judged)], near_miss: f64) -> Visibility {
+    let framed: Vec<&(f64, Judged)> = rows.iter().filter(|(_, j)| j.in_frame).collect();
+    let sum = |keep: &dyn Fn(&Judged) -> bool| framed.iter().filter(|(_, j)| keep(j)).map(|(a, _)| a).sum::<f64>();
+    let sharp = |j: &Judged| j.clearance.is_some_and(|c| c.abs() >= near_miss);
+    let in_frame = sum(&|_| true);
+    let clear_cut = sum(&sharp);
+    let method = |seen: &dyn Fn(&Judged) -> bool| MethodShare {
+        visible: sum(seen),
+        share: ratio(sum(seen), in_frame),
+        share_without_near_misses: ratio(sum(&|j| sharp(j) && seen(j)), clear_cut),
+    };
+    let sight = method(&Judged::visible);
+    let has_buffer = framed.iter().any(|(_, j)| j.in_buffer.is_some());
+    let buffer = has_buffer.then(|| method(&|j: &Judged| j.in_buffer.is_some_and(|b| b.seen)));
+    let difference = buffer.and_then(|b| {
+        let (a, b) = (sight.share_without_near_misses?, b.share_without_near_misses?);
+        Some((a - b).abs())
+    });
+    let mismatched = sum(&|j| sharp(j) && j.in_buffer.is_some_and(|b| b.seen != j.visible()));
+    let missed = sum(&|j| j.in_buffer.is_some_and(|b| b.missed));
+    Visibility {
+        in_frame,
+        sight,
+        buffer,
+        difference,
+        mismatched_share: if has_buffer { ratio(mismatched, clear_cut) } else { None },
+        surface_missed_share: if has_buffer { ratio(missed, in_frame) } else { None },
+        near_miss_share: ratio(in_frame - clear_cut, in_frame).unwrap_or(0.0).max(0.0),
+        clearance: clearances(&framed),
+        folded_share: ratio(sum(&|j| j.folded), in_frame).unwrap_or(0.0).max(0.0),
+    }
+}
+
+fn clearances(framed: &[&(f64, Judged)]) -> Option<Clearance> {
+    let mut all: Vec<f64> = framed.iter().filter_map(|(_, j)| j.clearance).collect();
+    all.sort_by(f64::total_cmp);
+    Some(Clearance { min: *all.first()?, median: *all.get(all.len() / 2)?, max: *all.last()? })
+}

@@ -1,0 +1,5 @@
+//! Integration tests of belvedere-construct.
+
+mod measure;
+mod sight;
+mod synthetic;

@@ -1,0 +1,106 @@
+use crate::synthetic::{Marcher, camera, line_layer, on_a_small_planet, point_layer, scene};
+use belvedere_construct::{ConstructError, MeasureOptions, Measures, measure};
+use belvedere_core::{DVec3, View};
+use belvedere_scene::{Progress, Renderer, Scene};
+
+fn run(scene: &Scene, view: &View, renderer: Option<&dyn Renderer>) -> Result<Measures, ConstructError> {
+    measure(scene, view, renderer, &MeasureOptions::default(), &Progress::silent())
+}
+
+#[test]
+fn line_of_sight_and_depth_buffer_agree_within_one_percent() {
+    for (seed, height) in [(1, 500.0), (2, 900.0), (5, 300.0)] {
+        let scene = scene(48, seed);
+        let pinhole = camera(&scene, height, [960, 540]);
+        for view in [View::straight(pinhole.clone()), on_a_small_planet(pinhole.clone(), 15_000.0)] {
+            let m = run(&scene, &view, Some(&Marcher { fault: 1.0 })).unwrap();
+            let lines = m.lines.unwrap();
+            assert!(lines.straight.in_frame > 1000.0, "route out of the picture: {lines:?}");
+            assert!(m.largest_difference.unwrap() <= 0.01, "seed {seed}: {lines:#?}");
+            assert!(lines.bent.surface_missed_share.unwrap() < 0.01, "seed {seed}: {lines:#?}");
+            let share = lines.straight.sight.share.unwrap();
+            assert!((0.05..0.97).contains(&share), "seed {seed}: share {share} tests one side only");
+        }
+    }
+}
+
+#[test]
+fn a_depth_buffer_one_percent_off_is_found_out() {
+    let scene = scene(48, 1);
+    let view = View::straight(camera(&scene, 500.0, [480, 270]));
+    let judge = |fault| run(&scene, &view, Some(&Marcher { fault })).unwrap();
+    let (nearer, farther) = (judge(0.99), judge(1.01));
+    assert!(nearer.largest_difference.unwrap() > 0.1, "ground 1 % too near went unnoticed: {:#?}", nearer.lines);
+    let missed = farther.lines.unwrap().straight.surface_missed_share.unwrap();
+    assert!(missed > 0.3, "ground 1 % too far went unnoticed: {missed}");
+}
+
+#[test]
+fn amounts_add_up() {
+    let mut scene = scene(48, 1);
+    scene.layers.push(point_layer("summit", DVec3::new(1000.0, 1200.0, 0.0)));
+    let view = View::straight(camera(&scene, 500.0, [480, 270]));
+    let m = run(&scene, &view, None).unwrap();
+    let (lines, points) = (m.lines.unwrap(), m.points.unwrap());
+    assert_eq!(m.features.len(), 2);
+    assert!((lines.total - 4354.0).abs() < 10.0, "a trail of 4354 m measures {} m", lines.total);
+    assert!(lines.straight.sight.visible <= lines.straight.in_frame && lines.straight.in_frame <= lines.total + 1e-9);
+    assert_eq!(lines.straight, lines.bent, "no bend, no difference");
+    assert_eq!((points.total, points.samples), (1.0, 1));
+    assert_eq!(m.bend.folded_share, 0.0);
+    assert_eq!(m.bend.displacement_max, 0.0);
+    assert!(m.bend.facing_min.unwrap() > 0.0);
+    assert!(m.largest_difference.is_none(), "nothing to compare without a renderer");
+    let json = serde_json::to_string(&m.bend).unwrap();
+    assert!(!json.contains("null"), "{json}");
+}
+
+#[test]
+fn degenerate_features_have_defined_answers() {
+    let base = scene(32, 1);
+    let view = View::straight(camera(&base, 500.0, [480, 270]));
+    let with = |points: Vec<DVec3>| {
+        let mut s = base.clone();
+        s.layers[1] = line_layer("odd", points);
+        run(&s, &view, Some(&Marcher { fault: 1.0 })).unwrap()
+    };
+    let empty = with(Vec::new());
+    assert_eq!(empty.lines.as_ref().unwrap().straight.sight.share, None);
+    assert!(empty.warnings[0].contains("no point to judge"), "{:?}", empty.warnings);
+    let one = with(vec![DVec3::new(700.0, 700.0, 0.0)]);
+    assert_eq!(one.lines.unwrap().total, 0.0);
+    let outside = with(vec![DVec3::new(-9000.0, -9000.0, 0.0), DVec3::new(-9500.0, -9000.0, 0.0)]);
+    let lines = outside.lines.unwrap();
+    assert_eq!((lines.total, lines.straight.in_frame, lines.straight.sight.share), (500.0, 0.0, None));
+    let not_finite = with(vec![DVec3::new(f64::NAN, 700.0, 0.0), DVec3::new(700.0, 700.0, 0.0)]);
+    assert_eq!(not_finite.lines.unwrap().total, 0.0);
+}
+
+#[test]
+fn an_eye_under_ground_sees_nothing_and_says_why() {
+    let scene = scene(32, 1);
+    let mut pinhole = camera(&scene, 500.0, [480, 270]);
+    pinhole.eye = DVec3::new(800.0, 200.0, 900.0);
+    let m = run(&scene, &View::straight(pinhole), None).unwrap();
+    assert_eq!(m.lines.unwrap().straight.sight.visible, 0.0);
+    assert!(m.warnings[0].contains("under ground"), "{:?}", m.warnings);
+}
+
+#[test]
+fn nothing_to_see_is_an_error() {
+    let mut scene = scene(16, 1);
+    scene.layers[1].must_see = false;
+    let view = View::straight(camera(&scene, 500.0, [480, 270]));
+    let error = run(&scene, &view, None).unwrap_err().to_string();
+    assert!(error.contains("must_see"), "{error}");
+}
+
+#[test]
+fn cancelling_stops_the_measure() {
+    let scene = scene(16, 1);
+    let progress = Progress::silent();
+    progress.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
+    let view = View::straight(camera(&scene, 500.0, [480, 270]));
+    let result = measure(&scene, &view, None, &MeasureOptions::default(), &progress);
+    assert!(matches!(result, Err(ConstructError::Cancelled(_))));
+}
