@@ -5,6 +5,7 @@ use belvedere_scene::{
     Color, Frame, FrameStats, Heightfield, Hidden, Layer, LayerKind, LineFeature, LineLayer, NodeState, Palette,
     PointFeature, PointLayer, Relief, RenderError, RenderJob, Renderer, Scene, TerrainLayer,
 };
+use rayon::prelude::*;
 
 /// Ridged ground of `n` x `n` nodes 50 m apart, 400 m of relief.
 pub(crate) fn mountains(n: usize, seed: u64) -> Heightfield {
@@ -136,6 +137,7 @@ impl Renderer for Marcher {
         let hf = job.scene.terrain().unwrap();
         let far = 2.5 * hf.bounds().max.x;
         let depth: Vec<f32> = (0..width * height)
+            .into_par_iter()
             .map(|i| {
                 let pixel = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
                 march(job.view, hf, pixel, 1.0, far, 700).map_or(f32::INFINITY, |d| (d * self.fault) as f32)
