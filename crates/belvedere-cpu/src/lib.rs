@@ -1,1 +1,196 @@
-//! Skeleton.
+//! The renderer without a GPU: a threaded, deterministic rasteriser for bent views.
+//!
+//! Every vertex is displaced and projected once per frame; surfaces are cut into blocks that are culled by their
+//! displaced bounds; cell edges that the bend would visibly curve are split. Bands of image rows are then drawn and
+//! coloured independently, so the picture is the same, byte for byte, for any number of threads.
+
+mod blocks;
+mod lens;
+mod marks;
+mod raster;
+mod refine;
+mod resolve;
+mod shade;
+
+use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
+use blocks::Blocks;
+use lens::{Lens, Pass};
+use marks::Marks;
+use raster::{Band, sample_offsets};
+use rayon::prelude::*;
+use resolve::{Rows, resolve};
+use shade::Shader;
+use shade::color::{Packed, encode};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+/// Rows of a band.
+const BAND: usize = 16;
+
+/// Draws scenes on the processor.
+///
+/// ```
+/// use belvedere_core::{DVec3, Pinhole, Projection, View};
+/// use belvedere_cpu::CpuRenderer;
+/// use belvedere_scene::{Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
+///
+/// let lens = Projection::Perspective { fov_y: 0.8 };
+/// let pinhole = Pinhole::look_at(DVec3::ZERO, DVec3::Y, DVec3::Z, lens, [64, 48], 1.0, None)?;
+/// let (scene, view) = (Scene::default(), View::straight(pinhole));
+/// let (light, options, progress) = (Light::default(), RenderOptions::default(), Progress::silent());
+/// let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
+/// let frame = CpuRenderer.render(&job)?;
+/// assert!(frame.id.iter().all(|&id| id == 0), "nothing but sky");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, Default)]
+pub struct CpuRenderer;
+
+impl Renderer for CpuRenderer {
+    fn name(&self) -> &'static str {
+        "cpu"
+    }
+
+    fn render(&self, job: &RenderJob<'_>) -> Result<Frame, RenderError> {
+        let options = job.options;
+        if ![1, 4, 16].contains(&options.samples) {
+            return Err(RenderError::Samples { samples: options.samples });
+        }
+        check_memory(job)?;
+        if options.threads == 0 {
+            return render(job);
+        }
+        match rayon::ThreadPoolBuilder::new().num_threads(options.threads).build() {
+            Ok(pool) => pool.install(|| render(job)),
+            // No threads to be had: the caller's serve as well.
+            Err(_) => render(job),
+        }
+    }
+}
+
+fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
+    let start = Instant::now();
+    job.progress.tick("project", 0.0)?;
+    let lens = Lens::new(job.view.pinhole());
+    let passes = Pass::all(job.view);
+    // A tolerance of zero or less would split without end.
+    let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
+    let blocks = Blocks::build(job.scene, &passes, &lens, tolerance_px);
+    job.progress.tick("project", 1.0)?;
+    let shader = Shader::new(job, &lens, &blocks);
+    let mut buffers = Buffers::new(job);
+    draw_surfaces(job, &lens, &blocks, &shader, &mut buffers)?;
+    let marks = Marks::new(job, &passes, &lens, tolerance_px, &buffers.depth);
+    job.progress.tick("lines", 0.0)?;
+    let color = finish(&marks, &lens, &mut buffers);
+    job.progress.tick("lines", 1.0)?;
+    let counts = blocks.counts();
+    let stats = FrameStats {
+        triangles_in: blocks.triangles_in,
+        triangles_drawn: counts.drawn,
+        edges_split: counts.split,
+        vertices_missed: counts.missed,
+        milliseconds: start.elapsed().as_secs_f64() * 1e3,
+    };
+    let (width, height) = (lens.width as usize, lens.height as usize);
+    Ok(Frame { width, height, color, depth: buffers.depth, id: buffers.id, world: buffers.world, stats })
+}
+
+struct Buffers {
+    color: Vec<Packed>,
+    depth: Vec<f32>,
+    id: Vec<u32>,
+    world: Option<Vec<[f64; 3]>>,
+}
+
+impl Buffers {
+    fn new(job: &RenderJob<'_>) -> Self {
+        let n = job.view.pinhole().image.map(|s| s as usize).iter().product();
+        Self {
+            color: vec![Packed::default(); n],
+            depth: vec![f32::INFINITY; n],
+            id: vec![0; n],
+            world: job.options.aux.world.then(|| vec![[f64::NAN; 3]; n]),
+        }
+    }
+}
+
+fn draw_surfaces(
+    job: &RenderJob<'_>,
+    lens: &Lens,
+    blocks: &Blocks,
+    shader: &Shader<'_>,
+    buffers: &mut Buffers,
+) -> Result<(), RenderError> {
+    let chunk = BAND * lens.width as usize;
+    let bands = (lens.height as usize).div_ceil(BAND);
+    let done = AtomicUsize::new(0);
+    let offsets = sample_offsets(job.options.samples);
+    let mut worlds: Vec<Option<&mut [[f64; 3]]>> = match &mut buffers.world {
+        Some(w) => w.chunks_mut(chunk).map(Some).collect(),
+        None => (0..bands).map(|_| None).collect(),
+    };
+    let color = buffers.color.par_chunks_mut(chunk);
+    let depth = buffers.depth.par_chunks_mut(chunk);
+    let id = buffers.id.par_chunks_mut(chunk);
+    color.zip(depth).zip(id).zip(worlds.par_iter_mut()).enumerate().try_for_each(
+        |(i, (((color, depth), id), world))| {
+            let y0 = (i * BAND) as i32;
+            let mut band = Band::new(y0, (y0 + BAND as i32).min(lens.height), lens.width, offsets.clone());
+            blocks.draw(&mut band);
+            resolve(&band, shader, lens, &mut Rows { color, depth, id, world: world.as_deref_mut() });
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            Ok(job.progress.tick("draw", done as f64 / bands as f64)?)
+        },
+    )
+}
+
+/// Lines and points over the surfaces, and the stored colours.
+fn finish(marks: &Marks, lens: &Lens, buffers: &mut Buffers) -> Vec<[u8; 3]> {
+    let chunk = BAND * lens.width as usize;
+    let mut out = vec![[0u8; 3]; buffers.color.len()];
+    out.par_chunks_mut(chunk)
+        .zip(buffers.color.par_chunks_mut(chunk))
+        .zip(buffers.id.par_chunks_mut(chunk))
+        .enumerate()
+        .for_each(|(i, ((out, color), id))| {
+            marks.draw((i * BAND) as i32, lens.width, color, id);
+            for (o, c) in out.iter_mut().zip(color.iter()) {
+                *o = encode(c.rgb());
+            }
+        });
+    out
+}
+
+/// Bytes that a picture takes: the frame, the bands in work and the projected vertices.
+fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
+    let [width, height] = job.view.pinhole().image;
+    let samples = job.options.samples;
+    let pixels = u64::from(width) * u64::from(height);
+    let per_pixel = 3 + 4 + 4 + 6 + if job.options.aux.world { 24 } else { 0 };
+    let threads = if job.options.threads == 0 { rayon::current_num_threads() } else { job.options.threads } as u64;
+    let bands = threads * (BAND as u64) * u64::from(width) * (u64::from(samples) + 1) * 8;
+    let nodes: u64 = job
+        .scene
+        .layers
+        .iter()
+        .map(|l| match &l.kind {
+            // Nearness, pixel and the shading pyramid; twice for subdivision.
+            belvedere_scene::LayerKind::Terrain(t) => (t.heightfield.cols() * t.heightfield.rows()) as u64 * 64,
+            belvedere_scene::LayerKind::Boxes(b) => b.boxes.len() as u64 * 12 * 64,
+            _ => 0,
+        })
+        .sum();
+    let needed = pixels * per_pixel + bands + nodes;
+    if needed > job.options.max_bytes {
+        let mib = |b: u64| b.div_ceil(1 << 20);
+        return Err(RenderError::TooLarge {
+            width,
+            height,
+            samples,
+            needed_mib: mib(needed),
+            limit_mib: job.options.max_bytes >> 20,
+        });
+    }
+    Ok(())
+}

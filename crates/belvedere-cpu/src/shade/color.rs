@@ -1,0 +1,71 @@
+//! Linear light and its storage.
+
+use std::sync::LazyLock;
+
+/// Linear red, green, blue; 1 = white.
+pub(crate) type Rgb = glam::Vec3A;
+
+/// Linear value of every 8-bit sRGB value.
+static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|i| {
+        let s = i as f32 / 255.0;
+        if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) }
+    })
+});
+
+/// sRGB value of the square of `i / 4095`.
+static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    (0..4096)
+        .map(|i| {
+            let l = (i as f32 / 4095.0).powi(2);
+            let s = if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
+            (s * 255.0 + 0.5) as u8
+        })
+        .collect()
+});
+
+/// sRGB to linear light.
+pub(crate) fn linear(rgb: [u8; 3]) -> Rgb {
+    let t = &*LINEAR;
+    Rgb::new(t[rgb[0] as usize], t[rgb[1] as usize], t[rgb[2] as usize])
+}
+
+/// Linear light to sRGB.
+pub(crate) fn encode(c: Rgb) -> [u8; 3] {
+    let t = &*ENCODED;
+    c.to_array().map(|v| t[(v.clamp(0.0, 1.0).sqrt() * 4095.0 + 0.5) as usize])
+}
+
+/// Linear light kept in 16 bits per channel, by square root so that dark tones keep their steps.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Packed([u16; 3]);
+
+impl Packed {
+    pub(crate) fn new(c: Rgb) -> Self {
+        Self(c.to_array().map(|v| (v.clamp(0.0, 1.0).sqrt() * 65535.0 + 0.5) as u16))
+    }
+
+    pub(crate) fn rgb(self) -> Rgb {
+        let [r, g, b] = self.0.map(|v| f32::from(v) / 65535.0);
+        Rgb::new(r * r, g * g, b * b)
+    }
+}
+
+/// 0 below `a`, 1 above `b`, smooth between.
+pub(crate) fn smoothstep(a: f32, b: f32, x: f32) -> f32 {
+    let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_srgb_value_survives_linear_light_and_packing() {
+        for v in 0..=255u8 {
+            assert_eq!(encode(linear([v; 3])), [v; 3]);
+            assert_eq!(encode(Packed::new(linear([v; 3])).rgb()), [v; 3]);
+        }
+    }
+}

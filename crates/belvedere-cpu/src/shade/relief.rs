@@ -1,0 +1,74 @@
+//! Relief light on terrain.
+
+use super::color::{Rgb, linear};
+use belvedere_scene::{Light, Relief};
+use glam::Vec3A;
+
+/// Light model of a terrain layer.
+#[derive(Debug)]
+pub(crate) struct ReliefLight {
+    relief: Relief,
+    sun: Vec3A,
+    /// Side lights of the blend and the direction their weight vanishes in.
+    sides: [(Vec3A, [f32; 2]); 4],
+    warm: Rgb,
+    cool: Rgb,
+}
+
+impl ReliefLight {
+    pub(crate) fn new(relief: Relief, light: &Light) -> Self {
+        let towards = |azimuth: f64, altitude: f64| {
+            let d = Light { azimuth, altitude, shadows: false }.direction();
+            Vec3A::new(d.x as f32, d.y as f32, d.z as f32)
+        };
+        let altitude = light.altitude.clamp(0.05, 1.5);
+        let sides = [-90f64, -45.0, 0.0, 45.0].map(|turn| {
+            let azimuth = light.azimuth + turn.to_radians();
+            (towards(azimuth, altitude.min(0.6)), [azimuth.sin() as f32, azimuth.cos() as f32])
+        });
+        Self {
+            relief,
+            sun: towards(light.azimuth, altitude),
+            sides,
+            warm: linear([255, 247, 232]) * 1.12,
+            cool: linear([126, 142, 176]),
+        }
+    }
+
+    /// Factor by which light from everywhere colours a surface with unit normal `n`.
+    /// `open` is the share of the sky that the surroundings leave, 1 = level ground.
+    ///
+    /// Swiss: the main light blended with four side lights, each weighted by the squared sine of the angle between its
+    /// azimuth and the slope's aspect, so that slopes along the main light are modelled too (after Mark 1992, USGS
+    /// multidirectional shading; the blend and the tones are ours).
+    pub(crate) fn at(&self, n: Vec3A, open: f32) -> Rgb {
+        let level = self.sun.z;
+        let bright = match self.relief {
+            Relief::None => return Rgb::ONE,
+            Relief::Sun => n.dot(self.sun).max(0.0) / level,
+            Relief::Swiss => {
+                let main = n.dot(self.sun).max(0.0) / level;
+                let steep = n.x * n.x + n.y * n.y;
+                if steep < 1e-9 {
+                    main
+                } else {
+                    let (mut sum, mut weights) = (0.0, 0.0);
+                    for (d, [sx, sy]) in &self.sides {
+                        let cross = n.x * sy - n.y * sx;
+                        let w = cross * cross;
+                        sum += w * n.dot(*d).max(0.0) / d.z;
+                        weights += w;
+                    }
+                    // Level ground has no aspect: fade the side lights in with the slope.
+                    let share = 0.42 * (steep * 12.0).min(1.0);
+                    main + share * (sum / weights.max(1e-9) - main)
+                }
+            }
+        };
+        // 1 on level ground; softly limited above, lifted below so that shadows keep their drawing.
+        let tone = if bright > 1.0 { 1.0 + 0.55 * (1.0 - (-(bright - 1.0) / 0.55).exp()) } else { bright };
+        let direct = self.warm * (0.80 * tone);
+        let ambient = self.cool * (0.62 * (0.55 + 0.45 * n.z) * open);
+        direct * (0.7 + 0.3 * open) + ambient
+    }
+}

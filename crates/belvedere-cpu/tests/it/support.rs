@@ -1,0 +1,103 @@
+//! Scenes, cameras and picture files for the tests.
+
+use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
+use belvedere_cpu::CpuRenderer;
+use belvedere_scene::{
+    Color, Frame, Heightfield, Hidden, Layer, LayerKind, Light, LineFeature, LineLayer, NodeState, Palette, Progress,
+    Relief, RenderJob, RenderOptions, Renderer, Scene, TerrainLayer,
+};
+
+/// Deterministic numbers in [0, 1).
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    pub fn next(&mut self) -> f64 {
+        // splitmix64
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z ^ (z >> 31)) as f64 / 2f64.powi(64)
+    }
+
+    pub fn range(&mut self, lo: f64, hi: f64) -> f64 {
+        lo + (hi - lo) * self.next()
+    }
+}
+
+pub fn terrain(heightfield: Heightfield) -> TerrainLayer {
+    TerrainLayer {
+        heightfield,
+        drapes: Vec::new(),
+        relief: Relief::Swiss,
+        shading: None,
+        exaggeration: 1.0,
+        palette: Palette::Auto,
+    }
+}
+
+pub fn layer(id: &str, kind: LayerKind) -> Layer {
+    Layer { id: id.into(), must_see: false, kind }
+}
+
+pub fn scene(layers: Vec<Layer>) -> Scene {
+    Scene { layers, ..Scene::default() }
+}
+
+/// Rolling hills of `n` x `n` nodes, `spacing` metres apart, centred on the origin.
+pub fn hills(n: usize, spacing: f64, height: f64, seed: u64) -> Heightfield {
+    let mut random = Random::new(seed);
+    let waves: Vec<(DVec2, f64, f64)> = (0..8)
+        .map(|i| {
+            let k = 1.7f64.powi(i) * 3.0 / (n as f64 * spacing);
+            (DVec2::from_angle(random.range(0.0, 6.28)) * k, random.range(0.0, 6.28), 0.62f64.powi(i))
+        })
+        .collect();
+    let half = 0.5 * (n - 1) as f64 * spacing;
+    let heights = (0..n * n)
+        .map(|i| {
+            let p = DVec2::new((i % n) as f64 * spacing - half, half - (i / n) as f64 * spacing);
+            let z: f64 = waves.iter().map(|(k, phase, a)| a * (k.dot(p) * 6.28 + phase).sin()).sum();
+            (0.3 * height * z) as f32
+        })
+        .collect();
+    Heightfield::new(DVec2::new(-half, half), DVec2::splat(spacing), n, n, heights, vec![NodeState::Measured; n * n])
+        .expect("hills are well formed")
+}
+
+pub fn pinhole(eye: DVec3, look_at: DVec3, fov_deg: f64, image: [u32; 2]) -> Pinhole {
+    let projection = Projection::Perspective { fov_y: fov_deg.to_radians() };
+    Pinhole::look_at(eye, look_at, DVec3::Z, projection, image, 1.0, None).expect("camera is well formed")
+}
+
+pub fn render(scene: &Scene, view: &View, options: &RenderOptions) -> Frame {
+    let job = RenderJob { scene, view, light: &Light::default(), options, progress: &Progress::silent() };
+    CpuRenderer.render(&job).expect("picture is possible")
+}
+
+pub fn options(samples: u32) -> RenderOptions {
+    RenderOptions { samples, ..RenderOptions::default() }
+}
+
+pub fn line(points: Vec<DVec3>, hidden: Hidden) -> LineLayer {
+    LineLayer {
+        features: vec![LineFeature { name: String::new(), points }],
+        color: Color::rgb(215, 48, 31),
+        width_px: 3.0,
+        casing: Some(Color::rgb(255, 255, 255)),
+        hidden,
+        lift_m: 2.0,
+    }
+}
+
+/// Writes a picture as PPM into `$BELVEDERE_PICTURES`, if set: for looking at.
+pub fn show(name: &str, frame: &Frame) {
+    let Some(dir) = std::env::var_os("BELVEDERE_PICTURES") else { return };
+    let mut bytes = format!("P6 {} {} 255\n", frame.width, frame.height).into_bytes();
+    bytes.extend(frame.color.iter().flatten());
+    std::fs::write(std::path::Path::new(&dir).join(format!("{name}.ppm")), bytes).expect("picture folder is writable");
+}
