@@ -1,0 +1,67 @@
+//! What can go wrong, in one sentence each.
+
+use std::path::PathBuf;
+
+/// Anything that ends a verb without a result.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BelvedereError {
+    /// A mistake in a scene, preset or other text document.
+    #[error("{}{}: {reason}", path.display(), line.map(|l| format!(":{l}")).unwrap_or_default())]
+    Scene {
+        /// The document.
+        path: PathBuf,
+        /// Line of the mistake, 1-based.
+        line: Option<usize>,
+        /// What is wrong, measured value, limit, what to do.
+        reason: String,
+    },
+    /// A file name that a scene may not use.
+    #[error("path \"{name}\" {reason}")]
+    Path {
+        /// The name as given.
+        name: String,
+        /// Why it is refused and what to do.
+        reason: String,
+    },
+    /// Points or pixels that cannot be read.
+    #[error("{}: {reason}", path.display())]
+    Points {
+        /// The file.
+        path: PathBuf,
+        /// Which element, what is wrong, what to do.
+        reason: String,
+    },
+    /// An output that would destroy something, or cannot be written.
+    #[error("{}: {reason}", path.display())]
+    Output {
+        /// The output.
+        path: PathBuf,
+        /// Why not, and what to do.
+        reason: String,
+    },
+    /// A request that makes no sense.
+    #[error("{0}")]
+    Usage(String),
+    /// A loader or writer failed.
+    #[error(transparent)]
+    Io(#[from] belvedere_io::IoError),
+    /// A renderer failed.
+    #[error(transparent)]
+    Render(#[from] belvedere_scene::RenderError),
+    /// Cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] belvedere_scene::Cancelled),
+}
+
+impl BelvedereError {
+    /// Whether the work was cancelled rather than failed.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(
+            self,
+            Self::Cancelled(_)
+                | Self::Io(belvedere_io::IoError::Cancelled(_))
+                | Self::Render(belvedere_scene::RenderError::Cancelled(_))
+        )
+    }
+}

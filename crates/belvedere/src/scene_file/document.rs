@@ -1,0 +1,238 @@
+//! The scene document, key by key. Defaults are those of the format; `None` means the key was not given.
+
+use super::layers::LayerDoc;
+use super::stages::StageDoc;
+use schemars::JsonSchema;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Serialize};
+
+/// A whole scene file, version 1.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Document {
+    /// Version of the format; 1.
+    pub format: u32,
+    /// Title for pictures and reports.
+    #[serde(default)]
+    pub title: String,
+    /// `auto`, `EPSG:n` or `local`: the system of every coordinate that is read or written.
+    pub crs: String,
+    /// Unit of all lengths.
+    pub unit: UnitDoc,
+    /// `flat`, or `curved` for the drop of the ground with distance (refraction 0.13).
+    pub earth: EarthDoc,
+    /// The camera.
+    pub camera: CameraDoc,
+    /// The sun.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<LightDoc>,
+    /// Layers, a flat list; terrain first in drawing order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub layer: Vec<LayerDoc>,
+    /// Stages in order of application: terrain_disocclusion, spline_bend, curved_rays.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stage: Vec<StageDoc>,
+    /// Builds stages from an intent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub constructor: Option<super::intent::ConstructorDoc>,
+    /// A fly-through.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub animation: Option<super::intent::AnimationDoc>,
+}
+
+/// The keys of a [`Document`] as they stand in a file; layers and stages are read by kind.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Head {
+    #[serde(default = "one")]
+    pub(super) format: u32,
+    #[serde(default)]
+    pub(super) title: String,
+    #[serde(default = "auto")]
+    pub(super) crs: String,
+    #[serde(default)]
+    pub(super) unit: UnitDoc,
+    #[serde(default)]
+    pub(super) earth: EarthDoc,
+    pub(super) camera: CameraDoc,
+    pub(super) light: Option<LightDoc>,
+    #[serde(default)]
+    #[serde(rename = "layer")]
+    pub(super) _layer: serde::de::IgnoredAny,
+    #[serde(default)]
+    #[serde(rename = "stage")]
+    pub(super) _stage: serde::de::IgnoredAny,
+    pub(super) constructor: Option<super::intent::ConstructorDoc>,
+    pub(super) animation: Option<super::intent::AnimationDoc>,
+}
+
+fn one() -> u32 {
+    1
+}
+
+fn auto() -> String {
+    "auto".into()
+}
+
+/// Unit of length of a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum UnitDoc {
+    /// Metres.
+    #[default]
+    Metre,
+    /// Angstrom, for molecules.
+    Angstrom,
+    /// Voxel edges, for volumes.
+    Voxel,
+}
+
+/// Shape of the earth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EarthDoc {
+    /// A plane.
+    #[default]
+    Flat,
+    /// A sphere of the ellipsoid's radius at the eye, refraction 0.13.
+    Curved,
+}
+
+/// Perspective or parallel rays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ProjectionDoc {
+    /// A pinhole.
+    #[default]
+    Perspective,
+    /// Parallel rays; needs `ortho_height_m`.
+    Orthographic,
+}
+
+/// The camera.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CameraDoc {
+    /// Eye.
+    pub eye: PointDoc,
+    /// Point that the optical axis meets; or give `heading_deg` and `pitch_deg`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub look_at: Option<PointDoc>,
+    /// Direction of view, degrees clockwise from north.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heading_deg: Option<f64>,
+    /// Direction of view, degrees below the horizon.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pitch_deg: Option<f64>,
+    /// Upright direction.
+    #[serde(default = "up")]
+    pub up: [f64; 3],
+    /// Perspective or orthographic.
+    #[serde(default)]
+    pub projection: ProjectionDoc,
+    /// Full vertical field of view, degrees, in (0, 180).
+    #[serde(default = "fov")]
+    pub fov_y_deg: f64,
+    /// Scene units that fill an orthographic picture from top to bottom.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ortho_height_m: Option<f64>,
+    /// Width and height in pixels.
+    #[serde(default = "image")]
+    pub image: [u32; 2],
+    /// Nearest drawn depth, scene units, > 0.
+    #[serde(default = "near")]
+    pub near: f64,
+    /// Farthest drawn depth, scene units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub far: Option<f64>,
+}
+
+fn up() -> [f64; 3] {
+    [0.0, 0.0, 1.0]
+}
+
+fn fov() -> f64 {
+    45.0
+}
+
+fn image() -> [u32; 2] {
+    [1280, 720]
+}
+
+fn near() -> f64 {
+    1.0
+}
+
+/// A place: `[x, y, z]` in the scene's system, or a table with two horizontal and one vertical key.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum PointDoc {
+    /// Scene coordinates.
+    Scene([f64; 3]),
+    /// On the map.
+    Map(MapPointDoc),
+}
+
+/// A place on the map: `lon` and `lat` (WGS84 degrees) with `height_m` or `above_ground_m`, or `x` and `y` with `above_ground_m`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MapPointDoc {
+    /// Longitude, WGS84 degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lon: Option<f64>,
+    /// Latitude, WGS84 degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lat: Option<f64>,
+    /// Scene x.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x: Option<f64>,
+    /// Scene y.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub y: Option<f64>,
+    /// Height above the data's datum.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub height_m: Option<f64>,
+    /// Height above the undeformed terrain.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub above_ground_m: Option<f64>,
+}
+
+impl<'de> Deserialize<'de> for PointDoc {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct PointVisitor;
+        impl<'de> Visitor<'de> for PointVisitor {
+            type Value = PointDoc;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("[x, y, z] or { lon, lat, height_m | above_ground_m } or { x, y, above_ground_m }")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<PointDoc, A::Error> {
+                <[f64; 3]>::deserialize(SeqAccessDeserializer::new(seq)).map(PointDoc::Scene)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PointDoc, A::Error> {
+                MapPointDoc::deserialize(MapAccessDeserializer::new(map)).map(PointDoc::Map)
+            }
+        }
+        deserializer.deserialize_any(PointVisitor)
+    }
+}
+
+/// The sun: a direction, or a time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LightDoc {
+    /// Direction the light comes from, degrees clockwise from north; 315 by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub azimuth_deg: Option<f64>,
+    /// Height of the light over the horizon, degrees in (0, 90]; 45 by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub altitude_deg: Option<f64>,
+    /// The sun at this time (RFC 3339, e.g. `2026-07-01T15:00:00Z`) over the eye.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<String>,
+    /// Whether cast shadows are wanted.
+    #[serde(default)]
+    pub shadows: bool,
+}

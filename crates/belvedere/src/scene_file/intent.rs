@@ -1,0 +1,96 @@
+//! Constructors and animations of the scene document: read and validated, built by later versions.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Kind of a constructor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ConstructorKind {
+    /// Bends rays so that a moving target stays visible.
+    TargetTracking,
+    /// Bends rays along a path.
+    PathPreview,
+    /// Probes for unseen space.
+    AutoProbe,
+    /// The explicit stages, as they are.
+    Manual,
+}
+
+/// Builds stages from an intent, on top of the explicit stages.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ConstructorDoc {
+    /// Which one.
+    pub kind: ConstructorKind,
+    /// Layer or selection to keep in view.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub target: Option<String>,
+    /// Depth of the first transition plane, scene units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub z0: Option<f64>,
+    /// Largest sideways move of the second viewpoint, scene units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub a: Option<f64>,
+    /// Step of the search, in (0, 1].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub f_step: Option<f64>,
+    /// Largest change of the state per second.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cap_per_s: Option<f64>,
+    /// Growth of the target's box, pixels.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grow_px: Option<f64>,
+    /// Layer or file of the path.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub path: Option<String>,
+    /// Position along the path, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub position_m: Option<f64>,
+    /// Length that is previewed, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub preview_m: Option<f64>,
+    /// Lens of the preview.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lens: Option<serde_json::Value>,
+}
+
+/// A fly-through: exactly one of `along`, `camera`, `sweep`, `turntable`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AnimationDoc {
+    /// Line layer to follow.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub along: Option<String>,
+    /// File of cameras.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub camera: Option<String>,
+    /// Sweep of the viewing angle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sweep: Option<SweepDoc>,
+    /// Turn about the pivot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turntable: Option<TurntableDoc>,
+    /// Number of frames, > 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frames: Option<u32>,
+    /// Frames per second, > 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fps: Option<f64>,
+}
+
+/// Sweep of the viewing angle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SweepDoc {
+    /// First, last, step; degrees.
+    pub phi_deg: [f64; 3],
+}
+
+/// Turn about the pivot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TurntableDoc {
+    /// Degrees per second.
+    pub deg_per_s: f64,
+}

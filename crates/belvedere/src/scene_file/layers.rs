@@ -1,0 +1,489 @@
+//! Layers of the scene document.
+
+use schemars::JsonSchema;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Serialize};
+
+/// One layer.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum LayerDoc {
+    /// Ground.
+    Terrain(TerrainDoc),
+    /// Polylines on the ground.
+    Line(LineDoc),
+    /// Polygons on the ground.
+    Area(AreaDoc),
+    /// Points on the ground.
+    Point(PointLayerDoc),
+    /// Upright boxes.
+    Boxes(BoxesDoc),
+    /// Triangles. Not drawn by this version.
+    Mesh(ModelDoc),
+    /// A city model. Not drawn by this version.
+    City(ModelDoc),
+    /// Atoms. Not drawn by this version.
+    Molecule(ModelDoc),
+    /// Voxels. Not drawn by this version.
+    Volume(ModelDoc),
+}
+
+/// Names of the kinds of layers.
+pub(super) const LAYER_KINDS: &[&str] =
+    &["terrain", "mesh", "boxes", "city", "molecule", "volume", "line", "area", "point"];
+
+impl LayerDoc {
+    /// Unique id within the scene.
+    pub fn id(&self) -> &str {
+        match self {
+            Self::Terrain(l) => &l.id,
+            Self::Line(l) => &l.id,
+            Self::Area(l) => &l.id,
+            Self::Point(l) => &l.id,
+            Self::Boxes(l) => &l.id,
+            Self::Mesh(l) | Self::City(l) | Self::Molecule(l) | Self::Volume(l) => &l.id,
+        }
+    }
+
+    /// Whether constructors and measures work for the layer.
+    pub fn must_see(&self) -> bool {
+        match self {
+            Self::Terrain(_) => false,
+            Self::Line(l) => l.must_see,
+            Self::Area(l) => l.must_see,
+            Self::Point(l) => l.must_see,
+            Self::Boxes(l) => l.must_see,
+            Self::Mesh(l) | Self::City(l) | Self::Molecule(l) | Self::Volume(l) => l.must_see,
+        }
+    }
+
+    /// Name of the kind, as files write it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Terrain(_) => "terrain",
+            Self::Line(_) => "line",
+            Self::Area(_) => "area",
+            Self::Point(_) => "point",
+            Self::Boxes(_) => "boxes",
+            Self::Mesh(_) => "mesh",
+            Self::City(_) => "city",
+            Self::Molecule(_) => "molecule",
+            Self::Volume(_) => "volume",
+        }
+    }
+}
+
+/// One path or several.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Paths {
+    /// One.
+    One(String),
+    /// Several, read as one source.
+    Many(Vec<String>),
+}
+
+impl Paths {
+    /// All of them.
+    pub fn as_slice(&self) -> &[String] {
+        match self {
+            Self::One(p) => std::slice::from_ref(p),
+            Self::Many(p) => p,
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Paths {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct PathsVisitor;
+        impl<'de> Visitor<'de> for PathsVisitor {
+            type Value = Paths;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a path or a list of paths")
+            }
+
+            fn visit_str<E: serde::de::Error>(self, path: &str) -> Result<Paths, E> {
+                Ok(Paths::One(path.to_owned()))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Paths, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(Paths::Many)
+            }
+        }
+        deserializer.deserialize_any(PathsVisitor)
+    }
+}
+
+/// Ground.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TerrainDoc {
+    /// Unique id within the scene.
+    pub id: String,
+    /// A file, a list of tiles, or a built-in scene such as `builtin:massif?seed=7`.
+    pub source: Paths,
+    /// Whether holes are filled; filled parts are marked.
+    #[serde(default)]
+    pub fill_voids: bool,
+    /// Georeferenced pictures laid over the ground, later ones on top.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drape: Option<Paths>,
+    /// How it is drawn.
+    #[serde(default)]
+    pub style: TerrainStyleDoc,
+}
+
+/// How terrain is drawn.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct TerrainStyleDoc {
+    /// Relief shading.
+    pub relief: ReliefDoc,
+    /// Vertical exaggeration of the shading only, in (0, 100].
+    pub exaggeration: f64,
+    /// Normals used for the shading; by default `deformed` under terrain disocclusion, else `map`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shading: Option<ShadingDoc>,
+    /// Tint by height.
+    pub palette: PaletteDoc,
+}
+
+impl Default for TerrainStyleDoc {
+    fn default() -> Self {
+        Self { relief: ReliefDoc::Swiss, exaggeration: 1.0, shading: None, palette: PaletteDoc::Auto }
+    }
+}
+
+/// Relief shading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ReliefDoc {
+    /// Several light directions, as in Swiss relief maps.
+    Swiss,
+    /// The scene's light.
+    Sun,
+    /// None.
+    None,
+}
+
+/// Normals used for shading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ShadingDoc {
+    /// Those of the map.
+    Map,
+    /// Those of the deformed ground.
+    Deformed,
+}
+
+/// Tint by height.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PaletteDoc {
+    /// Chosen by the range of heights.
+    Auto,
+    /// Green valleys, brown slopes, white summits.
+    Alpine,
+    /// Sand and rust.
+    Desert,
+    /// Rock and ice.
+    Glacial,
+    /// One light grey.
+    Plain,
+}
+
+/// What happens to the parts that the terrain hides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum HiddenDoc {
+    /// Drawn as if nothing were in front.
+    Show,
+    /// Drawn faintly.
+    Fade,
+    /// Drawn dashed and thinner.
+    #[default]
+    Dash,
+    /// Not drawn.
+    Cut,
+}
+
+/// Polylines on the ground: from a file, or a valley route found by least cost.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LineDoc {
+    /// Unique id within the scene.
+    pub id: String,
+    /// A file, several, or `builtin:NAME` for the lines of a built-in scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub source: Option<Paths>,
+    /// A generated route along the valleys instead of a file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub route: Option<RouteDoc>,
+    /// Whether constructors and measures work for it.
+    #[serde(default)]
+    pub must_see: bool,
+    /// How it is drawn.
+    #[serde(default)]
+    pub style: LineStyleDoc,
+}
+
+/// A generated route: the cheapest way over the terrain, preferring valleys.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RouteDoc {
+    /// Start.
+    pub from: PlaceDoc,
+    /// End.
+    pub to: PlaceDoc,
+    /// Seed of its small random windings.
+    #[serde(default)]
+    pub seed: u64,
+}
+
+/// A place without a height: `[x, y]` or `{ lon, lat }`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum PlaceDoc {
+    /// Scene x and y.
+    Scene([f64; 2]),
+    /// WGS84 degrees.
+    Geographic(LonLatDoc),
+}
+
+/// A place in WGS84 degrees.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LonLatDoc {
+    /// Longitude, degrees.
+    pub lon: f64,
+    /// Latitude, degrees.
+    pub lat: f64,
+}
+
+impl<'de> Deserialize<'de> for PlaceDoc {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct PlaceVisitor;
+        impl<'de> Visitor<'de> for PlaceVisitor {
+            type Value = PlaceDoc;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("[x, y] or { lon, lat }")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<PlaceDoc, A::Error> {
+                <[f64; 2]>::deserialize(SeqAccessDeserializer::new(seq)).map(PlaceDoc::Scene)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PlaceDoc, A::Error> {
+                LonLatDoc::deserialize(MapAccessDeserializer::new(map)).map(PlaceDoc::Geographic)
+            }
+        }
+        deserializer.deserialize_any(PlaceVisitor)
+    }
+}
+
+/// How lines are drawn.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct LineStyleDoc {
+    /// `#rrggbb` or `#rrggbbaa`.
+    pub color: String,
+    /// Width on screen, pixels, in (0, 100].
+    pub width_px: f64,
+    /// Colour of the casing, or `none`.
+    pub casing: String,
+    /// What happens to hidden parts.
+    pub hidden: HiddenDoc,
+    /// Height above ground at which the line is drawn and judged visible, metres, in [0, 1000].
+    pub lift_m: f64,
+}
+
+impl Default for LineStyleDoc {
+    fn default() -> Self {
+        Self { color: "#d7301f".into(), width_px: 3.0, casing: "#ffffff".into(), hidden: HiddenDoc::Dash, lift_m: 1.0 }
+    }
+}
+
+/// Polygons on the ground.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AreaDoc {
+    /// Unique id within the scene.
+    pub id: String,
+    /// A file, several, or `builtin:NAME` for the areas of a built-in scene.
+    pub source: Paths,
+    /// Whether constructors and measures work for it.
+    #[serde(default)]
+    pub must_see: bool,
+    /// How it is drawn.
+    #[serde(default)]
+    pub style: AreaStyleDoc,
+}
+
+/// How areas are drawn.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct AreaStyleDoc {
+    /// Fill, `#rrggbb` or `#rrggbbaa`.
+    pub color: String,
+    /// Outline colour, or `none`.
+    pub outline: String,
+    /// Outline width on screen, pixels, in (0, 100].
+    pub width_px: f64,
+    /// Whether it is water: flat, without relief shading.
+    pub water: bool,
+    /// What happens to hidden parts of the outline.
+    pub hidden: HiddenDoc,
+    /// Height above ground at which it is judged visible, metres, in [0, 1000].
+    pub lift_m: f64,
+}
+
+impl Default for AreaStyleDoc {
+    fn default() -> Self {
+        Self {
+            color: "#4a90c8".into(),
+            outline: "none".into(),
+            width_px: 1.5,
+            water: true,
+            hidden: HiddenDoc::Cut,
+            lift_m: 1.0,
+        }
+    }
+}
+
+/// Points on the ground.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointLayerDoc {
+    /// Unique id within the scene.
+    pub id: String,
+    /// A file, or several.
+    pub source: Paths,
+    /// Whether constructors and measures work for it.
+    #[serde(default)]
+    pub must_see: bool,
+    /// How it is drawn.
+    #[serde(default)]
+    pub style: PointStyleDoc,
+}
+
+/// How points are drawn.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct PointStyleDoc {
+    /// `#rrggbb` or `#rrggbbaa`.
+    pub color: String,
+    /// Diameter on screen, pixels, in (0, 200].
+    pub size_px: f64,
+    /// What happens to hidden points.
+    pub hidden: HiddenDoc,
+    /// Height above ground, metres, in [0, 1000].
+    pub lift_m: f64,
+}
+
+impl Default for PointStyleDoc {
+    fn default() -> Self {
+        Self { color: "#6a3d9a".into(), size_px: 8.0, hidden: HiddenDoc::Fade, lift_m: 1.0 }
+    }
+}
+
+/// Upright boxes: inline, or from a JSON or CSV file with the same names.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxesDoc {
+    /// Unique id within the scene.
+    pub id: String,
+    /// A JSON file (a list of boxes), a CSV file (`x,y,z,size_x,size_y,size_z[,yaw_deg[,color]]`), or `builtin:street`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// The boxes themselves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boxes: Option<Vec<BoxDoc>>,
+    /// Whether constructors and measures work for it.
+    #[serde(default)]
+    pub must_see: bool,
+    /// How they are drawn.
+    #[serde(default)]
+    pub style: BoxStyleDoc,
+    /// Moves all boxes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transform: Option<TransformDoc>,
+}
+
+/// How boxes are drawn.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct BoxStyleDoc {
+    /// Colour of boxes that have none of their own.
+    pub color: String,
+}
+
+impl Default for BoxStyleDoc {
+    fn default() -> Self {
+        Self { color: "#c9c2b8".into() }
+    }
+}
+
+/// One upright box.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxDoc {
+    /// Centre of the base, scene coordinates.
+    pub base: [f64; 3],
+    /// Full extents along its own x, its own y, and z, scene units, > 0.
+    pub size: [f64; 3],
+    /// Rotation about z, degrees counter-clockwise.
+    #[serde(default)]
+    pub yaw_deg: f64,
+    /// Colour of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color: Option<String>,
+}
+
+/// Placement of a model: scaled, then rotated about z (and x, y), then moved.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct TransformDoc {
+    /// Added last, scene units.
+    pub translate: [f64; 3],
+    /// Rotations about x, y and z, degrees; boxes take z only.
+    pub rotate_deg: [f64; 3],
+    /// Scale, > 0.
+    pub scale: f64,
+}
+
+impl Default for TransformDoc {
+    fn default() -> Self {
+        Self { translate: [0.0; 3], rotate_deg: [0.0; 3], scale: 1.0 }
+    }
+}
+
+/// A model of a kind that this version reads but does not draw.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModelDoc {
+    /// Unique id within the scene.
+    pub id: String,
+    /// A file, or several.
+    pub source: Paths,
+    /// Whether constructors and measures work for it.
+    #[serde(default)]
+    pub must_see: bool,
+    /// Placement.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transform: Option<TransformDoc>,
+    /// Coordinate system of the file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crs: Option<String>,
+    /// Movement: a CSV file with columns t, x, y, z, yaw_deg.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<String>,
+    /// Transfer function of a volume: a name or a file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transfer: Option<String>,
+    /// How it is drawn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub style: Option<std::collections::BTreeMap<String, serde_json::Value>>,
+}

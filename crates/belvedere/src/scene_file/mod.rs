@@ -1,0 +1,220 @@
+//! Scene files: TOML or JSON to a [`Document`], with mistakes named by file, line and nearest valid key.
+
+mod de;
+mod document;
+mod intent;
+mod json;
+mod layers;
+mod node;
+pub mod paths;
+mod stages;
+mod toml_tree;
+
+pub(crate) use de::{DocError, suggestion};
+pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDoc, ProjectionDoc, UnitDoc};
+pub use intent::{AnimationDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
+pub use layers::{
+    AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, HiddenDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc,
+    ModelDoc, PaletteDoc, Paths, PlaceDoc, PointLayerDoc, PointStyleDoc, ReliefDoc, RouteDoc, ShadingDoc, TerrainDoc,
+    TerrainStyleDoc, TransformDoc,
+};
+pub(crate) use node::{Node, Value};
+pub use stages::{
+    AxisDoc, BendDoc, BendRule, CurveFrameDoc, CurveUnitsDoc, DetailDoc, EaseDoc, PlaneDoc, PresetDoc,
+    PresetDocumentDoc, PresetsDoc, RayModelDoc, RaysStageDoc, SolverMode, SplineStageDoc, StageDoc, TagDoc,
+    TerrainStageDoc, TurnDoc,
+};
+
+use crate::BelvedereError;
+use std::path::{Path, PathBuf};
+
+/// Largest document, bytes.
+pub const MAX_BYTES: u64 = 16 << 20;
+
+/// A document and the lines of its keys, for messages about what they mean.
+#[derive(Debug, Clone)]
+pub struct SourceDocument {
+    path: PathBuf,
+    root: Node,
+    /// The document.
+    pub document: Document,
+}
+
+impl SourceDocument {
+    /// File it came from.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// An error at the line of the key that `keys` leads to.
+    pub fn error(&self, keys: &[&str], reason: impl std::fmt::Display) -> BelvedereError {
+        BelvedereError::Scene {
+            path: self.path.clone(),
+            line: Some(self.root.line_of(keys)),
+            reason: reason.to_string(),
+        }
+    }
+}
+
+/// Reads a scene file; JSON if its name ends in `.json` or its text starts with `{`, else TOML.
+///
+/// # Errors
+/// [`BelvedereError::Scene`] with the line of the mistake; [`BelvedereError::Io`] if the file cannot be read.
+pub fn read(path: &Path) -> Result<SourceDocument, BelvedereError> {
+    parse(path, &read_text(path)?)
+}
+
+/// Parses the text of a scene file; `path` serves messages only.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(path: &Path, text: &str) -> Result<SourceDocument, BelvedereError> {
+    let fail = |e: DocError| BelvedereError::Scene { path: path.to_owned(), line: e.line, reason: e.to_string() };
+    let root = tree(path, text).map_err(fail)?;
+    let document = document(&root).map_err(fail)?;
+    Ok(SourceDocument { path: path.to_owned(), root, document })
+}
+
+/// Parses a preset document, TOML or JSON; `path` serves messages only.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse_presets(path: &Path, text: &str) -> Result<PresetDocumentDoc, BelvedereError> {
+    let fail = |e: DocError| BelvedereError::Scene { path: path.to_owned(), line: e.line, reason: e.to_string() };
+    let root = tree(path, text).map_err(fail)?;
+    de::from_node(&root).map_err(fail)
+}
+
+/// Reads a text file of at most [`MAX_BYTES`].
+///
+/// # Errors
+/// [`BelvedereError::Scene`] if it is too large or not UTF-8, [`BelvedereError::Io`] if it cannot be read.
+pub fn read_text(path: &Path) -> Result<String, BelvedereError> {
+    use std::io::Read;
+    let os = |e| belvedere_io::IoError::os(path, e);
+    let refuse = |reason: String| BelvedereError::Scene { path: path.to_owned(), line: None, reason };
+    let meta = std::fs::metadata(path).map_err(os)?;
+    if !meta.is_file() {
+        return Err(refuse("this is not a regular file; give the path of a file".into()));
+    }
+    let too_large = |bytes: u64| refuse(format!("the document has {bytes} bytes, at most {MAX_BYTES} are read; move bulk data into files of their own"));
+    if meta.len() > MAX_BYTES {
+        return Err(too_large(meta.len()));
+    }
+    let mut bytes = Vec::new();
+    std::fs::File::open(path).and_then(|f| f.take(MAX_BYTES + 1).read_to_end(&mut bytes)).map_err(os)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(too_large(bytes.len() as u64));
+    }
+    let text = String::from_utf8(bytes)
+        .map_err(|e| refuse(format!("byte {} is not UTF-8 text; save the document as UTF-8", e.utf8_error().valid_up_to())))?;
+    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
+}
+
+/// Parses TOML or JSON into a tree.
+pub(crate) fn tree(path: &Path, text: &str) -> Result<Node, DocError> {
+    let named_json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+    let root = if named_json || text.trim_start().starts_with('{') { json::parse(text)? } else { toml_tree::parse(text)? };
+    root.check_limits()?;
+    Ok(root)
+}
+
+/// Parses JSON into a tree.
+pub(crate) fn json_tree(text: &str) -> Result<Node, DocError> {
+    let root = json::parse(text)?;
+    root.check_limits()?;
+    Ok(root)
+}
+
+/// Reads a `T` out of a tree.
+pub(crate) fn decode<'a, T: serde::Deserialize<'a>>(node: &'a Node) -> Result<T, DocError> {
+    de::from_node(node)
+}
+
+fn document(root: &Node) -> Result<Document, DocError> {
+    if !matches!(root.value, Value::Table(_)) {
+        return Err(DocError::at(root.line, format!("a scene document is a table of keys, found {}", root.describe())));
+    }
+    if let Some(version) = root.get("format").filter(|n| matches!(n.value, Value::Int(v) if v != 1)) {
+        return Err(DocError::at(
+            version.line,
+            format!("format is {}, this program reads format 1; use a newer version", version.describe()),
+        ));
+    }
+    let head: document::Head = de::from_node(root)?;
+    Ok(Document {
+        format: head.format,
+        title: head.title,
+        crs: head.crs,
+        unit: head.unit,
+        earth: head.earth,
+        camera: head.camera,
+        light: head.light,
+        layer: each(root, "layer", layers::LAYER_KINDS, layer)?,
+        stage: each(root, "stage", stages::STAGE_KINDS, stage)?,
+        constructor: head.constructor,
+        animation: head.animation,
+    })
+}
+
+/// Reads every table of the list `key` by its `kind`.
+fn each<T>(
+    root: &Node,
+    key: &str,
+    kinds: &'static [&'static str],
+    read: impl Fn(&str, &Node) -> Result<Option<T>, DocError>,
+) -> Result<Vec<T>, DocError> {
+    let Some(node) = root.get(key).filter(|n| n.value != Value::Null) else { return Ok(Vec::new()) };
+    let Some(items) = node.list() else {
+        return Err(DocError::at(
+            node.line,
+            format!("a list of tables ([[{key}]]) was expected, found {}", node.describe()),
+        )
+        .inside(key));
+    };
+    items.iter().enumerate().map(|(i, item)| one_of(item, kinds, &read).map_err(|e| e.inside(format!("{key} {}", i + 1)))).collect()
+}
+
+fn one_of<T>(
+    item: &Node,
+    kinds: &'static [&'static str],
+    read: impl Fn(&str, &Node) -> Result<Option<T>, DocError>,
+) -> Result<T, DocError> {
+    if !matches!(item.value, Value::Table(_)) {
+        return Err(DocError::at(item.line, format!("a table was expected, found {}", item.describe())));
+    }
+    let kind = item
+        .get("kind")
+        .ok_or_else(|| DocError::at(item.line, format!("key \"kind\" is missing; give one of: {}", kinds.join(", "))))?;
+    let Value::Text(name) = &kind.value else {
+        return Err(DocError::at(kind.line, format!("kind: a text was expected, found {}", kind.describe())));
+    };
+    read(name, &item.without("kind"))?.ok_or_else(|| {
+        let shown = node::shorten(name);
+        DocError::at(kind.line, format!("\"{shown}\" is not a kind that exists here; {}", suggestion(name, kinds)))
+    })
+}
+
+fn layer(kind: &str, node: &Node) -> Result<Option<LayerDoc>, DocError> {
+    Ok(Some(match kind {
+        "terrain" => LayerDoc::Terrain(de::from_node(node)?),
+        "line" => LayerDoc::Line(de::from_node(node)?),
+        "area" => LayerDoc::Area(de::from_node(node)?),
+        "point" => LayerDoc::Point(de::from_node(node)?),
+        "boxes" => LayerDoc::Boxes(de::from_node(node)?),
+        "mesh" => LayerDoc::Mesh(de::from_node(node)?),
+        "city" => LayerDoc::City(de::from_node(node)?),
+        "molecule" => LayerDoc::Molecule(de::from_node(node)?),
+        "volume" => LayerDoc::Volume(de::from_node(node)?),
+        _ => return Ok(None),
+    }))
+}
+
+fn stage(kind: &str, node: &Node) -> Result<Option<StageDoc>, DocError> {
+    Ok(Some(match kind {
+        "terrain_disocclusion" => StageDoc::TerrainDisocclusion(de::from_node(node)?),
+        "spline_bend" => StageDoc::SplineBend(de::from_node(node)?),
+        "curved_rays" => StageDoc::CurvedRays(de::from_node(node)?),
+        _ => return Ok(None),
+    }))
+}

@@ -1,0 +1,133 @@
+//! Which files a scene may name: those in its own folder or below, unless the user allows more.
+
+use crate::BelvedereError;
+use std::path::{Component, Path, PathBuf};
+
+/// Where the files of a scene may lie.
+#[derive(Debug, Clone, Default)]
+pub struct Roots {
+    /// Folder of the scene file.
+    pub scene_dir: PathBuf,
+    /// Folders that the user allowed.
+    pub allowed: Vec<PathBuf>,
+}
+
+impl Roots {
+    /// The file that a scene means by `name`.
+    ///
+    /// It is looked for beside the scene file, then (relative names) in each allowed folder. After links are
+    /// followed it must lie in one of these folders.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Path`] if the name is refused or nothing is found.
+    pub fn resolve(&self, name: &str) -> Result<PathBuf, BelvedereError> {
+        let refuse = |reason: String| BelvedereError::Path { name: super::node::shorten(name), reason };
+        check_name(name).map_err(refuse)?;
+        let path = Path::new(name);
+        let leaves = path.is_absolute() || looks_absolute(name) || path.components().any(|c| c == Component::ParentDir);
+        if leaves && self.allowed.is_empty() {
+            return Err(refuse(
+                "leaves the folder of the scene file; use a path below that folder, or allow a folder with --allow-root DIR"
+                    .into(),
+            ));
+        }
+        let bases = std::iter::once(&self.scene_dir).chain(self.allowed.iter().filter(|_| !path.is_absolute()));
+        let Some(found) = bases.map(|base| base.join(path)).find(|p| std::fs::symlink_metadata(p).is_ok()) else {
+            let folders: Vec<String> = std::iter::once(&self.scene_dir).chain(&self.allowed).map(|p| shown(p)).collect();
+            return Err(refuse(format!(
+                "is not there (looked in {}); check the name, or give the folder with --allow-root DIR",
+                folders.join(", ")
+            )));
+        };
+        let real = found.canonicalize().map_err(|e| refuse(format!("cannot be followed: {e}; check the name")))?;
+        let inside = std::iter::once(&self.scene_dir)
+            .chain(&self.allowed)
+            .filter_map(|base| if base.as_os_str().is_empty() { Path::new(".").canonicalize() } else { base.canonicalize() }.ok())
+            .any(|base| real.starts_with(base));
+        if !inside {
+            return Err(refuse(format!(
+                "leads to {}, outside the folder of the scene file; use a path below that folder, or allow a folder with --allow-root DIR",
+                real.display()
+            )));
+        }
+        match std::fs::metadata(&real) {
+            Ok(meta) if meta.is_file() => Ok(real),
+            _ => Err(refuse("is not a regular file; give a file".into())),
+        }
+    }
+}
+
+fn shown(dir: &Path) -> String {
+    if dir.as_os_str().is_empty() { ".".into() } else { dir.display().to_string() }
+}
+
+/// Refusals that no option lifts.
+fn check_name(name: &str) -> Result<(), String> {
+    if name.is_empty() {
+        return Err("is empty; give the path of a file".into());
+    }
+    if name.chars().any(char::is_control) {
+        return Err("holds a control character; give a plain path".into());
+    }
+    let lower = name.to_lowercase();
+    let scheme = lower.split_once(':').map(|(s, _)| s).filter(|s| s.len() > 1 && s.bytes().all(|b| b.is_ascii_alphanumeric() || b"+-.".contains(&b)));
+    if let Some(scheme) = scheme {
+        return Err(format!("is a {scheme}: address; download it and give the path of the file"));
+    }
+    for part in name.split(['/', '\\']) {
+        if is_device(part) {
+            return Err(format!("names the device {part}; give the path of a file"));
+        }
+    }
+    Ok(())
+}
+
+/// Windows roots and drives, whatever the system we run on.
+fn looks_absolute(name: &str) -> bool {
+    name.starts_with(['/', '\\']) || name.as_bytes().get(1) == Some(&b':') || name.split(['/', '\\']).any(|p| p == "..")
+}
+
+fn is_device(part: &str) -> bool {
+    let stem = part.split('.').next().unwrap_or(part).trim_end().to_ascii_uppercase();
+    let numbered = |prefix: &str| {
+        stem.strip_prefix(prefix).is_some_and(|n| n.chars().count() == 1 && n.chars().all(|c| "0123456789¹²³".contains(c)))
+    };
+    ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$", "CLOCK$"].contains(&stem.as_str()) || numbered("COM") || numbered("LPT")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(roots: &Roots, name: &str) -> String {
+        roots.resolve(name).expect_err(name).to_string()
+    }
+
+    #[test]
+    fn names_that_leave_the_folder_are_refused() {
+        let roots = Roots { scene_dir: env!("CARGO_MANIFEST_DIR").into(), allowed: vec![] };
+        for name in ["../belvedere-core/Cargo.toml", "src/../../x", "/etc/passwd", "C:\\x", "\\\\host\\x", "..\\x"] {
+            assert!(refusal(&roots, name).contains("--allow-root"), "{name}: {}", refusal(&roots, name));
+        }
+        assert!(roots.resolve("Cargo.toml").is_ok());
+        assert!(roots.resolve("src/lib.rs").is_ok());
+    }
+
+    #[test]
+    fn addresses_and_devices_are_always_refused() {
+        let roots = Roots { scene_dir: env!("CARGO_MANIFEST_DIR").into(), allowed: vec!["/".into()] };
+        for name in ["file:///etc/passwd", "http://x/y.tif", "HTTPS://x", "s3:x", "CON", "a/nul.tif", "com1.txt", "", "a\0b", "src"] {
+            assert!(roots.resolve(name).is_err(), "{name:?} was accepted");
+        }
+        assert!(roots.resolve("/dev/zero").is_err());
+    }
+
+    #[test]
+    fn an_allowed_root_is_searched_and_enough() {
+        let dir = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let roots = Roots { scene_dir: dir.join("src"), allowed: vec![dir.to_owned()] };
+        assert_eq!(roots.resolve("Cargo.toml").ok(), dir.join("Cargo.toml").canonicalize().ok());
+        assert!(roots.resolve("../Cargo.toml").is_ok());
+        assert!(roots.resolve("../../belvedere-core/Cargo.toml").is_err());
+    }
+}

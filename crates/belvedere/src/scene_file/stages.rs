@@ -1,0 +1,415 @@
+//! Stages of the scene document.
+
+use schemars::JsonSchema;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, MapAccess, Visitor};
+use serde::{Deserialize, Serialize};
+
+/// One stage.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum StageDoc {
+    /// The ground makes way for a route.
+    TerrainDisocclusion(TerrainStageDoc),
+    /// Space is carried onto a B-spline over the reference plane.
+    SplineBend(SplineStageDoc),
+    /// Rays bend around occluders.
+    CurvedRays(RaysStageDoc),
+}
+
+/// Names of the kinds of stages.
+pub(super) const STAGE_KINDS: &[&str] = &["terrain_disocclusion", "spline_bend", "curved_rays"];
+
+impl StageDoc {
+    /// Name of the kind, as files write it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::TerrainDisocclusion(_) => "terrain_disocclusion",
+            Self::SplineBend(_) => "spline_bend",
+            Self::CurvedRays(_) => "curved_rays",
+        }
+    }
+}
+
+/// How the terrain solver works.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum SolverMode {
+    /// As published.
+    #[serde(rename = "paper")]
+    Paper,
+    /// As published, finished by a quadratic program.
+    #[serde(rename = "paper+qp")]
+    PaperQp,
+    /// A quadratic program.
+    #[serde(rename = "qp")]
+    Qp,
+}
+
+/// Detail of the terrain that the solver moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DetailDoc {
+    /// Scaled with the lowering.
+    Scaled,
+    /// Kept as it is.
+    Plain,
+}
+
+/// Terrain disocclusion: `delta`, a solved grid, or an intent for the solver.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct TerrainStageDoc {
+    /// Grid of height changes, a single-band raster in the scene's system, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub delta: Option<String>,
+    /// sha256 of the grid, hexadecimal; checked if given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub delta_sha256: Option<String>,
+    /// Solver.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mode: Option<SolverMode>,
+    /// Cells along the longer side.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cells: Option<f64>,
+    /// Spacing of reference points, cells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spacing: Option<f64>,
+    /// Height of reference points over the ground, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lift_m: Option<f64>,
+    /// Guard width, cells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub guard: Option<f64>,
+    /// Weight eta.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub eta: Option<f64>,
+    /// Weight mu.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mu: Option<f64>,
+    /// Weight mu of deviations.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mu_dev: Option<f64>,
+    /// Smoothness weight.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub w: Option<f64>,
+    /// Weight of the rows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rows_weight: Option<f64>,
+    /// Time constant of temporal smoothing, seconds; 0 = off.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gamma_time_s: Option<f64>,
+    /// Nodes of the solver's grid on the longer side.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solver_nodes: Option<u32>,
+    /// What happens to detail.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub detail: Option<DetailDoc>,
+    /// Most the ground may rise, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rise_limit_m: Option<f64>,
+    /// Clearance of lines of sight, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub margin_m: Option<f64>,
+    /// Spacing of candidates, cells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub candidates: Option<f64>,
+    /// Only features within this path distance, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ahead_m: Option<f64>,
+}
+
+/// Spline bend.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SplineStageDoc {
+    /// Name of a built-in document, path of a document, or the whole document inline.
+    pub presets: PresetsDoc,
+    /// Point about which the view turns; by default where the line of sight meets the plane.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pivot: Option<[f64; 3]>,
+    /// Reference plane.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plane: Option<PlaneDoc>,
+}
+
+/// The reference plane: points `p` with `p . unit(normal) = height_m`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneDoc {
+    /// Normal; `[0, 0, 1]` by default.
+    #[serde(default = "z_up")]
+    pub normal: [f64; 3],
+    /// Height along the normal; by default the median height of the undeformed terrain, or that of `look_at`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub height_m: Option<f64>,
+}
+
+fn z_up() -> [f64; 3] {
+    [0.0, 0.0, 1.0]
+}
+
+/// A built-in name, a path, or a document.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum PresetsDoc {
+    /// Built-in name, or path of a TOML or JSON document.
+    Named(String),
+    /// The document.
+    Inline(Box<PresetDocumentDoc>),
+}
+
+impl<'de> Deserialize<'de> for PresetsDoc {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct PresetsVisitor;
+        impl<'de> Visitor<'de> for PresetsVisitor {
+            type Value = PresetsDoc;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("the name of a built-in preset, a path, or a preset document")
+            }
+
+            fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<PresetsDoc, E> {
+                Ok(PresetsDoc::Named(name.to_owned()))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PresetsDoc, A::Error> {
+                PresetDocumentDoc::deserialize(MapAccessDeserializer::new(map)).map(Box::new).map(PresetsDoc::Inline)
+            }
+        }
+        deserializer.deserialize_any(PresetsVisitor)
+    }
+}
+
+/// Frame in which curves live.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CurveFrameDoc {
+    /// Aligned with the camera.
+    #[default]
+    Camera,
+    /// Aligned with the reference plane.
+    Plane,
+}
+
+/// Unit of `s` and `e`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CurveUnitsDoc {
+    /// Scene units.
+    #[default]
+    Absolute,
+    /// Units of the distance from the eye to the pivot.
+    Distance,
+}
+
+/// Easing between presets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EaseDoc {
+    /// Straight.
+    #[default]
+    Linear,
+    /// Smooth at both ends.
+    Smoothstep,
+}
+
+/// A preset document.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PresetDocumentDoc {
+    /// Version of the format; 1.
+    pub version: u32,
+    /// Frame of the curves.
+    #[serde(default)]
+    pub frame: CurveFrameDoc,
+    /// Unit of `s` and `e`.
+    #[serde(default)]
+    pub units: CurveUnitsDoc,
+    /// Whether the pivot stays where it is on screen.
+    #[serde(default = "yes")]
+    pub pin: bool,
+    /// Easing between presets.
+    #[serde(default)]
+    pub ease: EaseDoc,
+    /// Whether the curve follows the camera beyond the last preset.
+    #[serde(default)]
+    pub follow: bool,
+    /// The presets.
+    pub presets: Vec<PresetDoc>,
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn all_section() -> Vec<String> {
+    vec!["all".to_owned()]
+}
+
+/// One preset.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PresetDoc {
+    /// Name.
+    #[serde(default)]
+    pub name: String,
+    /// Viewing angle, degrees.
+    pub phi: f64,
+    /// Half width of its validity, degrees.
+    #[serde(default)]
+    pub tau: f64,
+    /// Depth of the near end, see `units`.
+    pub s: f64,
+    /// Depth of the far end, see `units`.
+    pub e: f64,
+    /// Start of the exchange of representations, share of the transition.
+    #[serde(default)]
+    pub a: f64,
+    /// End of the exchange of representations, share of the transition.
+    #[serde(default = "one")]
+    pub b: f64,
+    /// Control points from near to far, at least 4.
+    pub control: Vec<[f64; 2]>,
+    /// Knots; clamped and uniform by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub knots: Option<Vec<f64>>,
+    /// Interior tags, ascending.
+    #[serde(default)]
+    pub tags: Vec<TagDoc>,
+    /// Geometry of each section, one more than tags.
+    #[serde(default = "all_section")]
+    pub sections: Vec<String>,
+    /// Field of view at this preset, degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fov_y_deg: Option<f64>,
+}
+
+/// A tag point.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TagDoc {
+    /// Place on the curve, 0..=1.
+    pub u: f64,
+    /// Half width of the transition.
+    #[serde(default)]
+    pub delta: f64,
+}
+
+/// Model of the transition of curved rays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RayModelDoc {
+    /// Conic arcs in perspective.
+    #[default]
+    Modified,
+    /// Bezier arcs.
+    Original,
+    /// Broken lines.
+    C0,
+    /// Curvature-continuous rays.
+    C2,
+    /// Circular arcs.
+    Circular,
+}
+
+/// Curved rays.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RaysStageDoc {
+    /// Model of the transition.
+    #[serde(default)]
+    pub model: RayModelDoc,
+    /// The turns, in ray order; at least one.
+    pub turn: Vec<TurnDoc>,
+}
+
+/// One turn: exactly one of `line` and `normal`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TurnDoc {
+    /// Viewpoint after the turn.
+    pub viewpoint: [f64; 3],
+    /// A point of the first plane.
+    pub t0: [f64; 3],
+    /// The bend point.
+    pub t1: [f64; 3],
+    /// A point of the last plane.
+    pub t2: [f64; 3],
+    /// Common line of the planes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<AxisDoc>,
+    /// Normal of parallel planes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub normal: Option<[f64; 3]>,
+    /// Bending: a number in [0.2, 20], `bend`, `left` or `mid`.
+    #[serde(default)]
+    pub m: BendDoc,
+}
+
+/// A line.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AxisDoc {
+    /// A point of it.
+    pub point: [f64; 3],
+    /// Its direction, not zero.
+    pub dir: [f64; 3],
+}
+
+/// The bending of a turn.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum BendDoc {
+    /// The number itself.
+    Number(f64),
+    /// A rule.
+    Rule(BendRule),
+}
+
+impl Default for BendDoc {
+    fn default() -> Self {
+        Self::Rule(BendRule::Bend)
+    }
+}
+
+/// Rule for the bending of a turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BendRule {
+    /// That of the ray through the bend point.
+    Bend,
+    /// That of the left-most ray.
+    Left,
+    /// Half way between the extremes at the image corners.
+    Mid,
+}
+
+impl<'de> Deserialize<'de> for BendDoc {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct BendVisitor;
+        impl Visitor<'_> for BendVisitor {
+            type Value = BendDoc;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a number in [0.2, 20], \"bend\", \"left\" or \"mid\"")
+            }
+
+            fn visit_f64<E: serde::de::Error>(self, m: f64) -> Result<BendDoc, E> {
+                Ok(BendDoc::Number(m))
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, m: i64) -> Result<BendDoc, E> {
+                Ok(BendDoc::Number(m as f64))
+            }
+
+            fn visit_str<E: serde::de::Error>(self, rule: &str) -> Result<BendDoc, E> {
+                BendRule::deserialize(serde::de::value::StrDeserializer::new(rule)).map(BendDoc::Rule)
+            }
+        }
+        deserializer.deserialize_any(BendVisitor)
+    }
+}

@@ -1,0 +1,207 @@
+//! Points to pixels and back: `project`, `rays`, `displace`.
+
+use crate::scene_file::{Node, Value, json_points};
+use crate::{BelvedereError, Session};
+use belvedere_core::{Camera, DVec2, DVec3, Miss, View};
+use serde::Serialize;
+use std::path::Path;
+
+/// Most samples of all rays together.
+pub const MAX_SAMPLES: usize = 50_000_000;
+
+/// Answer of [`project`].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ProjectReport {
+    /// One per input point, in input order.
+    pub points: Vec<ProjectedPoint>,
+}
+
+/// Image of one point.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ProjectedPoint {
+    /// Pixel, origin at the outer corner of the top-left pixel.
+    pub pixel: Option<[f64; 2]>,
+    /// Forward distance of the displaced point, scene units.
+    pub depth: Option<f64>,
+    /// Segment of the curved ray: `2k` straight part of viewpoint `k`, `2j-1` transition of turn `j`.
+    pub segment: Option<u32>,
+    /// Whether the pixel lies on the image.
+    pub inside: bool,
+    /// Why there is no image.
+    pub miss: Option<&'static str>,
+}
+
+/// Answer of [`rays`].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RaysReport {
+    /// Samples of each pixel's ray, in input order.
+    pub rays: Vec<Vec<RaySample>>,
+}
+
+/// One sample of a ray.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct RaySample {
+    /// World point; null where the ray leaves the domain of the stages.
+    pub point: Option<[f64; 3]>,
+    /// Depth at which the pixel sees it.
+    pub depth: f64,
+    /// Segment of the ray.
+    pub segment: Option<u32>,
+    /// Why there is no point; left out where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub miss: Option<&'static str>,
+}
+
+/// Answer of [`displace`].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DisplaceReport {
+    /// One per input point, in input order.
+    pub points: Vec<DisplacedPoint>,
+}
+
+/// One displaced point.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DisplacedPoint {
+    /// The point after all stages, before the pinhole, scene coordinates.
+    pub displaced: Option<[f64; 3]>,
+    /// Whether a stage folded over there.
+    pub folded: bool,
+    /// Why there is no displaced point.
+    pub miss: Option<&'static str>,
+}
+
+fn name(miss: Miss) -> &'static str {
+    match miss {
+        Miss::BehindEye => "behind_eye",
+        Miss::OutsideDomain => "outside_domain",
+    }
+}
+
+/// Pixel and depth of each point.
+pub fn project(view: &View, points: &[[f64; 3]]) -> ProjectReport {
+    let one = |p: &[f64; 3]| match view.project(DVec3::from_array(*p)) {
+        Ok(image) if image.pixel.is_finite() && image.depth.is_finite() => ProjectedPoint {
+            pixel: Some(image.pixel.to_array()),
+            depth: Some(image.depth),
+            segment: Some(image.segment),
+            inside: view.pinhole().contains(image.pixel),
+            miss: None,
+        },
+        other => {
+            let miss = other.err().unwrap_or(Miss::OutsideDomain);
+            ProjectedPoint { pixel: None, depth: None, segment: None, inside: false, miss: Some(name(miss)) }
+        }
+    };
+    ProjectReport { points: points.iter().map(one).collect() }
+}
+
+/// Where each point goes, before the pinhole.
+pub fn displace(view: &View, points: &[[f64; 3]]) -> DisplaceReport {
+    let one = |p: &[f64; 3]| match view.displace(DVec3::from_array(*p)) {
+        Ok(d) if d.point.is_finite() => {
+            DisplacedPoint { displaced: Some(d.point.to_array()), folded: d.folded, miss: None }
+        }
+        other => {
+            let miss = other.err().unwrap_or(Miss::OutsideDomain);
+            DisplacedPoint { displaced: None, folded: false, miss: Some(name(miss)) }
+        }
+    };
+    DisplaceReport { points: points.iter().map(one).collect() }
+}
+
+/// `samples` world points of each pixel's ray, equidistant in depth from the near depth to `far`.
+///
+/// # Errors
+/// [`BelvedereError::Usage`] if `far` does not lie beyond the near depth or there are too many samples.
+pub fn rays(view: &View, pixels: &[[f64; 2]], samples: usize, far: f64) -> Result<RaysReport, BelvedereError> {
+    let near = view.pinhole().near;
+    if !(far > near && far.is_finite()) {
+        return Err(BelvedereError::Usage(format!("rays end at depth {far}, it must be finite and beyond near = {near}; give a larger --far")));
+    }
+    if samples == 0 || samples.saturating_mul(pixels.len().max(1)) > MAX_SAMPLES {
+        return Err(BelvedereError::Usage(format!(
+            "{samples} samples of {} rays were asked for; at least 1 and together at most {MAX_SAMPLES} are needed",
+            pixels.len()
+        )));
+    }
+    let last = (samples - 1).max(1) as f64;
+    let one = |pixel: &[f64; 2]| {
+        let ray = view.ray(DVec2::from_array(*pixel));
+        let sample = |i: usize| {
+            let depth = if i + 1 == samples && samples > 1 { far } else { near + (far - near) * i as f64 / last };
+            match ray.at(depth) {
+                Ok(p) if p.point.is_finite() => {
+                    RaySample { point: Some(p.point.to_array()), depth, segment: Some(p.segment), miss: None }
+                }
+                other => {
+                    let miss = other.err().unwrap_or(Miss::OutsideDomain);
+                    RaySample { point: None, depth, segment: None, miss: Some(name(miss)) }
+                }
+            }
+        };
+        (0..samples).map(sample).collect()
+    };
+    Ok(RaysReport { rays: pixels.iter().map(one).collect() })
+}
+
+/// Depth at which rays end: `far` if given, else the camera's, else the largest depth of the scene.
+///
+/// # Errors
+/// [`BelvedereError::Usage`] if there is none of them.
+pub fn far_depth(session: &Session, far: Option<f64>) -> Result<f64, BelvedereError> {
+    let view = session.view();
+    if let Some(far) = far.or(view.pinhole().far) {
+        return Ok(far);
+    }
+    let bounds = session.scene().bounds();
+    let corners = bounds.corners();
+    let straight = corners.iter().map(|&c| (c - view.pinhole().eye).dot(view.pinhole().forward));
+    let bent = corners.iter().filter_map(|&c| view.project(c).ok()).map(|image| image.depth);
+    let deepest = straight.chain(bent).fold(0.0, f64::max);
+    if bounds.is_empty() || !(deepest > view.pinhole().near) {
+        return Err(BelvedereError::Usage(
+            "nothing says where rays end: the scene has no layer in front of the camera; give --far or camera.far".into(),
+        ));
+    }
+    Ok(deepest)
+}
+
+/// Reads `[[x, y, z], ...]` or `[[x, y], ...]`: `N` finite numbers per element.
+///
+/// # Errors
+/// [`BelvedereError::Points`] with the index of the first bad element.
+pub fn read_points<const N: usize>(path: &Path) -> Result<Vec<[f64; N]>, BelvedereError> {
+    let fail = |reason: String| BelvedereError::Points { path: path.to_owned(), reason };
+    let text = std::fs::read(path).map_err(|e| belvedere_io::IoError::os(path, e))?;
+    let text = String::from_utf8(text).map_err(|e| fail(format!("byte {} is not UTF-8 text; give JSON", e.utf8_error().valid_up_to())))?;
+    let shape = if N == 3 { "[x, y, z]" } else { "[x, y]" };
+    let root = json_points(&text).map_err(|e| fail(format!("line {}: {e}", e.line.unwrap_or(1))))?;
+    let items = root.list().ok_or_else(|| fail(format!("a list of {shape} was expected, found {}", root.describe())))?;
+    items
+        .iter()
+        .enumerate()
+        .map(|(i, item)| {
+            numbers::<N>(item).ok_or_else(|| {
+                fail(format!("element {i}: {shape} of finite numbers was expected, found {} on line {}", found(item, N), item.line))
+            })
+        })
+        .collect()
+}
+
+fn numbers<const N: usize>(node: &Node) -> Option<[f64; N]> {
+    let values: Option<Vec<f64>> = node.list()?.iter().map(number).collect();
+    values?.try_into().ok()
+}
+
+fn number(node: &Node) -> Option<f64> {
+    match node.value {
+        Value::Int(i) => Some(i as f64),
+        Value::Float(f) => Some(f),
+        _ => None,
+    }
+}
+
+fn found(item: &Node, count: usize) -> String {
+    let wrong = item.list().filter(|l| l.len() == count).and_then(|l| l.iter().find(|n| number(n).is_none()));
+    wrong.map_or_else(|| item.describe(), Node::describe)
+}
