@@ -1,2 +1,52 @@
-//! The `belvedere` command line.
-fn main() {}
+//! The `belvedere` command line: arguments in, one verb of the library, one line about failures out.
+
+mod args;
+mod report;
+mod verbs;
+
+use args::Cli;
+use clap::Parser;
+use report::Context;
+use std::process::ExitCode;
+
+/// Stack of the thread that works: deep enough for any document that passes the limits.
+const STACK_BYTES: usize = 64 << 20;
+
+fn main() -> ExitCode {
+    std::panic::set_hook(Box::new(|_| {}));
+    let worker = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(run);
+    match worker.map(std::thread::JoinHandle::join) {
+        Ok(Ok(code)) => code,
+        Ok(Err(panic)) => {
+            let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+            let what = text.unwrap_or("no message").lines().next().unwrap_or_default();
+            report::complain(&format!(
+                "internal error ({what}); please report this with the command line and the files"
+            ));
+            ExitCode::from(2)
+        }
+        Err(e) => {
+            report::complain(&format!("no thread could be started: {e}"));
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(e) => return report::usage(&e),
+    };
+    let context = Context::new(cli.common);
+    match verbs::run(cli.verb, &context) {
+        Ok(goal) => {
+            context.finish();
+            if goal.is_missed() && context.common.strict { ExitCode::from(1) } else { ExitCode::SUCCESS }
+        }
+        Err(e) => {
+            context.finish();
+            report::complain(&report::one_line(&e));
+            ExitCode::from(2)
+        }
+    }
+}

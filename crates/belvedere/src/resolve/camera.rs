@@ -11,6 +11,7 @@ pub(crate) struct ResolvedCamera {
     /// The pinhole.
     pub(crate) pinhole: Pinhole,
     /// The given or implied point on the optical axis.
+    #[expect(dead_code, reason = "stages come next")]
     pub(crate) look_at: Option<DVec3>,
     /// The document with every place as `[x, y, z]`.
     pub(crate) document: CameraDoc,
@@ -37,9 +38,12 @@ pub(crate) fn resolve(
                 "camera has look_at and heading_deg/pitch_deg; give either look_at or both angles",
             ));
         }
-        (None, None, None) => return Err(source.error(&["camera"], "camera has no direction; give look_at, or heading_deg and pitch_deg")),
+        (None, None, None) => {
+            return Err(source.error(&["camera"], "camera has no direction; give look_at, or heading_deg and pitch_deg"));
+        }
         (None, given, _) => {
-            let (has, lacks) = if given.is_some() { ("heading_deg", "pitch_deg") } else { ("pitch_deg", "heading_deg") };
+            let (has, lacks) =
+                if given.is_some() { ("heading_deg", "pitch_deg") } else { ("pitch_deg", "heading_deg") };
             return Err(source.error(&["camera", has], format!("camera has {has} but no {lacks}; add it")));
         }
     };

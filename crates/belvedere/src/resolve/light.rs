@@ -7,7 +7,12 @@ use belvedere_core::DVec3;
 use belvedere_scene::Light;
 
 /// The light, and warnings.
-pub(crate) fn resolve(source: &SourceDocument, ground: &Ground<'_>, eye: DVec3, warnings: &mut Vec<String>) -> Result<Light, BelvedereError> {
+pub(crate) fn resolve(
+    source: &SourceDocument,
+    ground: &Ground<'_>,
+    eye: DVec3,
+    warnings: &mut Vec<String>,
+) -> Result<Light, BelvedereError> {
     let default = Light::default();
     let Some(doc) = &source.document.light else { return Ok(default) };
     let light = match &doc.time {
@@ -48,7 +53,10 @@ fn from_time(
     })?;
     let [azimuth_deg, altitude_deg] = sun_position_deg(days, place.x, place.y);
     if altitude_deg <= 0.0 {
-        warnings.push(format!("the sun stands {:.1} degrees below the horizon at {time}; the ground is lit by the sky alone", -altitude_deg));
+        warnings.push(format!(
+            "the sun stands {:.1} degrees below the horizon at {time}; the ground is lit by the sky alone",
+            -altitude_deg
+        ));
     }
     Ok(Light { azimuth: azimuth_deg.to_radians(), altitude: altitude_deg.to_radians(), shadows: doc.shadows })
 }
@@ -67,7 +75,8 @@ pub(crate) fn sun_position_deg(days: f64, lon_deg: f64, lat_deg: f64) -> [f64; 2
     let sidereal_deg = 280.460_618_37 + 360.985_647_366_29 * days + lon_deg;
     let hour_angle = sidereal_deg.rem_euclid(360.0).to_radians() - ascension;
     let lat = lat_deg.to_radians();
-    let altitude = (lat.sin() * declination.sin() + lat.cos() * declination.cos() * hour_angle.cos()).clamp(-1.0, 1.0).asin();
+    let altitude =
+        (lat.sin() * declination.sin() + lat.cos() * declination.cos() * hour_angle.cos()).clamp(-1.0, 1.0).asin();
     let east = -declination.cos() * hour_angle.sin();
     let north = lat.cos() * declination.sin() - lat.sin() * declination.cos() * hour_angle.cos();
     [east.atan2(north).to_degrees().rem_euclid(360.0), altitude.to_degrees()]
@@ -81,13 +90,15 @@ fn days_since_j2000(time: &str) -> Option<f64> {
     if !(1..=12).contains(&(month as i64)) || !(1.0..=31.0).contains(&day) || !(1900.0..=2100.0).contains(&year) {
         return None;
     }
-    let [hour, minute, second] = numbers::<3>(clock, ':').or_else(|| numbers::<2>(clock, ':').map(|[h, m]| [h, m, 0.0]))?;
+    let [hour, minute, second] =
+        numbers::<3>(clock, ':').or_else(|| numbers::<2>(clock, ':').map(|[h, m]| [h, m, 0.0]))?;
     if !(0.0..24.0).contains(&hour) || !(0.0..60.0).contains(&minute) || !(0.0..61.0).contains(&second) {
         return None;
     }
     // Days of the proleptic Gregorian calendar, with the year starting in March.
     let (y, m) = (year as i64 - i64::from(month < 3.0), (month as i64 + 9) % 12);
-    let day_number = 365 * y + y.div_euclid(4) - y.div_euclid(100) + y.div_euclid(400) + (306 * m + 5) / 10 + day as i64 - 1;
+    let day_number =
+        365 * y + y.div_euclid(4) - y.div_euclid(100) + y.div_euclid(400) + (306 * m + 5) / 10 + day as i64 - 1;
     const J2000_DAY: i64 = 730_425;
     let minutes = hour * 60.0 + minute + second / 60.0 - offset_minutes;
     Some((day_number - J2000_DAY) as f64 + (minutes - 720.0) / 1440.0)

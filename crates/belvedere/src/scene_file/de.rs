@@ -1,7 +1,9 @@
 //! Serde over [`Node`]: every error knows its line and the path of keys that leads to it.
 
 use super::node::{Entry, Node, Value, shorten};
-use serde::de::{self, DeserializeSeed, Deserializer, Expected, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor};
+use serde::de::{
+    self, DeserializeSeed, Deserializer, Expected, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor,
+};
 use serde::forward_to_deserialize_any;
 
 /// A mistake in a document: where and what.
@@ -164,7 +166,11 @@ fn visit_list<'de, V: Visitor<'de>>(items: &'de [Node], visitor: V) -> Result<V:
     let value = visitor.visit_seq(&mut access)?;
     match access.rest.len() {
         0 => Ok(value),
-        left => Err(de::Error::custom(format!("the list has {} elements, {} are expected", items.len(), items.len() - left))),
+        left => Err(de::Error::custom(format!(
+            "the list has {} elements, {} are expected",
+            items.len(),
+            items.len() - left
+        ))),
     }
 }
 
@@ -194,7 +200,8 @@ impl<'de> MapAccess<'de> for Entries<'de> {
     fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, DocError> {
         let Some(entry) = self.rest.next() else { return Ok(None) };
         self.pending = Some(entry);
-        let key: de::value::BorrowedStrDeserializer<'de, DocError> = de::value::BorrowedStrDeserializer::new(&entry.key);
+        let key: de::value::BorrowedStrDeserializer<'de, DocError> =
+            de::value::BorrowedStrDeserializer::new(&entry.key);
         seed.deserialize(key).map(Some).map_err(|e| e.or_line(entry.line))
     }
 

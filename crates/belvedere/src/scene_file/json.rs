@@ -51,7 +51,10 @@ impl Parser<'_> {
 
     fn value(&mut self, depth: usize) -> Result<Node, DocError> {
         if depth > MAX_DEPTH {
-            return Err(DocError::at(self.line, format!("the document is nested more than {MAX_DEPTH} deep; flatten it")));
+            return Err(DocError::at(
+                self.line,
+                format!("the document is nested more than {MAX_DEPTH} deep; flatten it"),
+            ));
         }
         let line = self.line;
         let value = match self.peek() {
@@ -165,7 +168,12 @@ impl Parser<'_> {
         }
         let raw = &self.text[start..self.at];
         // The JSON library knows the grammar (no leading zeros, digits after the point), the standard library rounds exactly.
-        let bad = || DocError::at(self.line, format!("\"{}\" is not a finite number; give finite numbers", super::node::shorten(raw)));
+        let bad = || {
+            DocError::at(
+                self.line,
+                format!("\"{}\" is not a finite number; give finite numbers", super::node::shorten(raw)),
+            )
+        };
         serde_json::from_str::<serde_json::Number>(raw).map_err(|_| bad())?;
         if let Ok(i) = raw.parse::<i64>() {
             return Ok(Value::Int(i));

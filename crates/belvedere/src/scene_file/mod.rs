@@ -97,7 +97,11 @@ pub fn read_text(path: &Path) -> Result<String, BelvedereError> {
     if !meta.is_file() {
         return Err(refuse("this is not a regular file; give the path of a file".into()));
     }
-    let too_large = |bytes: u64| refuse(format!("the document has {bytes} bytes, at most {MAX_BYTES} are read; move bulk data into files of their own"));
+    let too_large = |bytes: u64| {
+        refuse(format!(
+            "the document has {bytes} bytes, at most {MAX_BYTES} are read; move bulk data into files of their own"
+        ))
+    };
     if meta.len() > MAX_BYTES {
         return Err(too_large(meta.len()));
     }
@@ -106,27 +110,28 @@ pub fn read_text(path: &Path) -> Result<String, BelvedereError> {
     if bytes.len() as u64 > MAX_BYTES {
         return Err(too_large(bytes.len() as u64));
     }
-    let text = String::from_utf8(bytes)
-        .map_err(|e| refuse(format!("byte {} is not UTF-8 text; save the document as UTF-8", e.utf8_error().valid_up_to())))?;
+    let text = String::from_utf8(bytes).map_err(|e| {
+        refuse(format!("byte {} is not UTF-8 text; save the document as UTF-8", e.utf8_error().valid_up_to()))
+    })?;
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
 /// Parses TOML or JSON into a tree.
 pub(crate) fn tree(path: &Path, text: &str) -> Result<Node, DocError> {
     let named_json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    let root = if named_json || text.trim_start().starts_with('{') { json::parse(text)? } else { toml_tree::parse(text)? };
+    let root =
+        if named_json || text.trim_start().starts_with('{') { json::parse(text)? } else { toml_tree::parse(text)? };
     root.check_limits()?;
     Ok(root)
 }
 
-/// Parses JSON into a tree.
-pub(crate) fn json_tree(text: &str) -> Result<Node, DocError> {
-    let root = json::parse(text)?;
-    root.check_limits()?;
-    Ok(root)
+/// Parses the JSON of a list of points: as many values as the file holds.
+pub(crate) fn json_points(text: &str) -> Result<Node, DocError> {
+    json::parse(text)
 }
 
 /// Reads a `T` out of a tree.
+#[cfg(test)]
 pub(crate) fn decode<'a, T: serde::Deserialize<'a>>(node: &'a Node) -> Result<T, DocError> {
     de::from_node(node)
 }
@@ -172,7 +177,11 @@ fn each<T>(
         )
         .inside(key));
     };
-    items.iter().enumerate().map(|(i, item)| one_of(item, kinds, &read).map_err(|e| e.inside(format!("{key} {}", i + 1)))).collect()
+    items
+        .iter()
+        .enumerate()
+        .map(|(i, item)| one_of(item, kinds, &read).map_err(|e| e.inside(format!("{key} {}", i + 1))))
+        .collect()
 }
 
 fn one_of<T>(
@@ -183,9 +192,9 @@ fn one_of<T>(
     if !matches!(item.value, Value::Table(_)) {
         return Err(DocError::at(item.line, format!("a table was expected, found {}", item.describe())));
     }
-    let kind = item
-        .get("kind")
-        .ok_or_else(|| DocError::at(item.line, format!("key \"kind\" is missing; give one of: {}", kinds.join(", "))))?;
+    let kind = item.get("kind").ok_or_else(|| {
+        DocError::at(item.line, format!("key \"kind\" is missing; give one of: {}", kinds.join(", ")))
+    })?;
     let Value::Text(name) = &kind.value else {
         return Err(DocError::at(kind.line, format!("kind: a text was expected, found {}", kind.describe())));
     };

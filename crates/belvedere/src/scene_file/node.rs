@@ -69,9 +69,10 @@ impl Node {
     pub(crate) fn line_of(&self, path: &[&str]) -> usize {
         let Some((first, rest)) = path.split_first() else { return self.line };
         match &self.value {
-            Value::Table(entries) => entries.iter().find(|e| e.key == *first).map_or(self.line, |e| {
-                if rest.is_empty() { e.line } else { e.value.line_of(rest) }
-            }),
+            Value::Table(entries) => entries
+                .iter()
+                .find(|e| e.key == *first)
+                .map_or(self.line, |e| if rest.is_empty() { e.line } else { e.value.line_of(rest) }),
             Value::List(items) => {
                 first.parse::<usize>().ok().and_then(|i| items.get(i)).map_or(self.line, |n| n.line_of(rest))
             }
@@ -99,7 +100,10 @@ impl Node {
         while let Some((node, depth)) = stack.pop() {
             count += 1;
             if depth > MAX_DEPTH {
-                return Err(DocError::at(node.line, format!("the document is nested more than {MAX_DEPTH} deep; flatten it")));
+                return Err(DocError::at(
+                    node.line,
+                    format!("the document is nested more than {MAX_DEPTH} deep; flatten it"),
+                ));
             }
             if count > MAX_NODES {
                 return Err(DocError::at(

@@ -33,7 +33,8 @@ impl Roots {
         }
         let bases = std::iter::once(&self.scene_dir).chain(self.allowed.iter().filter(|_| !path.is_absolute()));
         let Some(found) = bases.map(|base| base.join(path)).find(|p| std::fs::symlink_metadata(p).is_ok()) else {
-            let folders: Vec<String> = std::iter::once(&self.scene_dir).chain(&self.allowed).map(|p| shown(p)).collect();
+            let folders: Vec<String> =
+                std::iter::once(&self.scene_dir).chain(&self.allowed).map(|p| shown(p)).collect();
             return Err(refuse(format!(
                 "is not there (looked in {}); check the name, or give the folder with --allow-root DIR",
                 folders.join(", ")
@@ -42,7 +43,9 @@ impl Roots {
         let real = found.canonicalize().map_err(|e| refuse(format!("cannot be followed: {e}; check the name")))?;
         let inside = std::iter::once(&self.scene_dir)
             .chain(&self.allowed)
-            .filter_map(|base| if base.as_os_str().is_empty() { Path::new(".").canonicalize() } else { base.canonicalize() }.ok())
+            .filter_map(|base| {
+                if base.as_os_str().is_empty() { Path::new(".").canonicalize() } else { base.canonicalize() }.ok()
+            })
             .any(|base| real.starts_with(base));
         if !inside {
             return Err(refuse(format!(
@@ -70,7 +73,10 @@ fn check_name(name: &str) -> Result<(), String> {
         return Err("holds a control character; give a plain path".into());
     }
     let lower = name.to_lowercase();
-    let scheme = lower.split_once(':').map(|(s, _)| s).filter(|s| s.len() > 1 && s.bytes().all(|b| b.is_ascii_alphanumeric() || b"+-.".contains(&b)));
+    let scheme = lower
+        .split_once(':')
+        .map(|(s, _)| s)
+        .filter(|s| s.len() > 1 && s.bytes().all(|b| b.is_ascii_alphanumeric() || b"+-.".contains(&b)));
     if let Some(scheme) = scheme {
         return Err(format!("is a {scheme}: address; download it and give the path of the file"));
     }
@@ -90,9 +96,12 @@ fn looks_absolute(name: &str) -> bool {
 fn is_device(part: &str) -> bool {
     let stem = part.split('.').next().unwrap_or(part).trim_end().to_ascii_uppercase();
     let numbered = |prefix: &str| {
-        stem.strip_prefix(prefix).is_some_and(|n| n.chars().count() == 1 && n.chars().all(|c| "0123456789¹²³".contains(c)))
+        stem.strip_prefix(prefix)
+            .is_some_and(|n| n.chars().count() == 1 && n.chars().all(|c| "0123456789¹²³".contains(c)))
     };
-    ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$", "CLOCK$"].contains(&stem.as_str()) || numbered("COM") || numbered("LPT")
+    ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$", "CLOCK$"].contains(&stem.as_str())
+        || numbered("COM")
+        || numbered("LPT")
 }
 
 #[cfg(test)]
@@ -116,7 +125,18 @@ mod tests {
     #[test]
     fn addresses_and_devices_are_always_refused() {
         let roots = Roots { scene_dir: env!("CARGO_MANIFEST_DIR").into(), allowed: vec!["/".into()] };
-        for name in ["file:///etc/passwd", "http://x/y.tif", "HTTPS://x", "s3:x", "CON", "a/nul.tif", "com1.txt", "", "a\0b", "src"] {
+        for name in [
+            "file:///etc/passwd",
+            "http://x/y.tif",
+            "HTTPS://x",
+            "s3:x",
+            "CON",
+            "a/nul.tif",
+            "com1.txt",
+            "",
+            "a\0b",
+            "src",
+        ] {
             assert!(roots.resolve(name).is_err(), "{name:?} was accepted");
         }
         assert!(roots.resolve("/dev/zero").is_err());

@@ -116,7 +116,9 @@ pub fn displace(view: &View, points: &[[f64; 3]]) -> DisplaceReport {
 pub fn rays(view: &View, pixels: &[[f64; 2]], samples: usize, far: f64) -> Result<RaysReport, BelvedereError> {
     let near = view.pinhole().near;
     if !(far > near && far.is_finite()) {
-        return Err(BelvedereError::Usage(format!("rays end at depth {far}, it must be finite and beyond near = {near}; give a larger --far")));
+        return Err(BelvedereError::Usage(format!(
+            "rays end at depth {far}, it must be finite and beyond near = {near}; give a larger --far"
+        )));
     }
     if samples == 0 || samples.saturating_mul(pixels.len().max(1)) > MAX_SAMPLES {
         return Err(BelvedereError::Usage(format!(
@@ -160,7 +162,8 @@ pub fn far_depth(session: &Session, far: Option<f64>) -> Result<f64, BelvedereEr
     let deepest = straight.chain(bent).fold(0.0, f64::max);
     if bounds.is_empty() || !(deepest > view.pinhole().near) {
         return Err(BelvedereError::Usage(
-            "nothing says where rays end: the scene has no layer in front of the camera; give --far or camera.far".into(),
+            "nothing says where rays end: the scene has no layer in front of the camera; give --far or camera.far"
+                .into(),
         ));
     }
     Ok(deepest)
@@ -173,16 +176,22 @@ pub fn far_depth(session: &Session, far: Option<f64>) -> Result<f64, BelvedereEr
 pub fn read_points<const N: usize>(path: &Path) -> Result<Vec<[f64; N]>, BelvedereError> {
     let fail = |reason: String| BelvedereError::Points { path: path.to_owned(), reason };
     let text = std::fs::read(path).map_err(|e| belvedere_io::IoError::os(path, e))?;
-    let text = String::from_utf8(text).map_err(|e| fail(format!("byte {} is not UTF-8 text; give JSON", e.utf8_error().valid_up_to())))?;
+    let text = String::from_utf8(text)
+        .map_err(|e| fail(format!("byte {} is not UTF-8 text; give JSON", e.utf8_error().valid_up_to())))?;
     let shape = if N == 3 { "[x, y, z]" } else { "[x, y]" };
     let root = json_points(&text).map_err(|e| fail(format!("line {}: {e}", e.line.unwrap_or(1))))?;
-    let items = root.list().ok_or_else(|| fail(format!("a list of {shape} was expected, found {}", root.describe())))?;
+    let items =
+        root.list().ok_or_else(|| fail(format!("a list of {shape} was expected, found {}", root.describe())))?;
     items
         .iter()
         .enumerate()
         .map(|(i, item)| {
             numbers::<N>(item).ok_or_else(|| {
-                fail(format!("element {i}: {shape} of finite numbers was expected, found {} on line {}", found(item, N), item.line))
+                fail(format!(
+                    "element {i}: {shape} of finite numbers was expected, found {} on line {}",
+                    found(item, N),
+                    item.line
+                ))
             })
         })
         .collect()

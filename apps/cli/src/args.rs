@@ -1,0 +1,146 @@
+//! Arguments.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Pictures in which what matters is not hidden: bent projections of terrain and routes
+#[derive(Debug, Parser)]
+#[command(name = "belvedere", version, max_term_width = 120)]
+pub(crate) struct Cli {
+    #[command(flatten)]
+    pub(crate) common: Common,
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+/// Options of every verb.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct Common {
+    /// Print one machine-readable result on stdout
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+    /// No warnings, no progress
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
+    /// Replace existing outputs
+    #[arg(long, global = true)]
+    pub(crate) overwrite: bool,
+    /// Exit with 1 if a stated goal is missed
+    #[arg(long, global = true)]
+    pub(crate) strict: bool,
+    /// Worker threads; 0 = all cores
+    #[arg(long, global = true, default_value_t = 0, value_name = "N")]
+    pub(crate) threads: usize,
+    /// Memory for one picture, such as 2GiB or 800MiB
+    #[arg(long, global = true, value_name = "SIZE", value_parser = parse_bytes)]
+    pub(crate) max_mem: Option<u64>,
+    /// Seed of whatever is generated, instead of the scene's
+    #[arg(long, global = true, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// Folder outside the scene's own from which its files may come; may be given several times
+    #[arg(long, global = true, value_name = "DIR")]
+    pub(crate) allow_root: Vec<PathBuf>,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    /// Points to pixels: [[x,y,z],...] in scene coordinates
+    Project(ProjectArgs),
+    /// Pixels to sampled (curved) rays: [[x,y],...]
+    Rays(RaysArgs),
+    /// Points after all stages, before the pinhole
+    Displace(ProjectArgs),
+    /// Validate a scene
+    Check(SceneArgs),
+    /// The scene with every default and rule resolved
+    Show(ShowArgs),
+    /// JSON Schema of scene files
+    Schema(SchemaArgs),
+}
+
+/// A scene.
+#[derive(Debug, Args)]
+pub(crate) struct SceneArgs {
+    /// Scene file, TOML or JSON
+    pub(crate) scene: PathBuf,
+}
+
+/// A scene and points.
+#[derive(Debug, Args)]
+pub(crate) struct ProjectArgs {
+    /// Scene file, TOML or JSON
+    pub(crate) scene: PathBuf,
+    /// JSON file of points [[x,y,z],...]
+    #[arg(long, value_name = "P.json")]
+    pub(crate) points: PathBuf,
+    /// Output; standard output if left out
+    #[arg(short, long, value_name = "OUT.json")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// A scene and pixels.
+#[derive(Debug, Args)]
+pub(crate) struct RaysArgs {
+    /// Scene file, TOML or JSON
+    pub(crate) scene: PathBuf,
+    /// JSON file of pixels [[x,y],...]
+    #[arg(long, value_name = "P.json")]
+    pub(crate) pixels: PathBuf,
+    /// Samples per ray, equidistant in depth
+    #[arg(long, value_name = "N")]
+    pub(crate) samples: usize,
+    /// Depth of the last sample; by default the camera's far, else the scene's largest depth
+    #[arg(long, value_name = "W")]
+    pub(crate) far: Option<f64>,
+    /// Output; standard output if left out
+    #[arg(short, long, value_name = "OUT.json")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// A scene to show.
+#[derive(Debug, Args)]
+pub(crate) struct ShowArgs {
+    /// Scene file, TOML or JSON
+    pub(crate) scene: PathBuf,
+    /// Output (TOML, or JSON if named so); standard output if left out
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// The schema.
+#[derive(Debug, Args)]
+pub(crate) struct SchemaArgs {
+    /// Output; standard output if left out
+    #[arg(short, long, value_name = "OUT.json")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// Renderers of this version.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RendererKind {
+    /// The best there is.
+    Auto,
+    /// Without a GPU.
+    Cpu,
+}
+
+/// Bytes of `512MiB`, `2GB`, `100000`.
+fn parse_bytes(text: &str) -> Result<u64, String> {
+    let split = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let (number, unit) = text.split_at(split);
+    let scale = match unit.trim().to_ascii_lowercase().as_str() {
+        "" | "b" => 1.0,
+        "k" | "kib" => 1024.0,
+        "kb" => 1e3,
+        "m" | "mib" => 1024.0 * 1024.0,
+        "mb" => 1e6,
+        "g" | "gib" => 1024.0 * 1024.0 * 1024.0,
+        "gb" => 1e9,
+        _ => return Err("give a size such as 800MiB or 2GiB".into()),
+    };
+    match number.parse::<f64>() {
+        Ok(n) if n * scale >= 1024.0 * 1024.0 && n * scale <= 1e15 => Ok((n * scale) as u64),
+        _ => Err("give a size of at least 1MiB, such as 800MiB or 2GiB".into()),
+    }
+}

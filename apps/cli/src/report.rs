@@ -1,0 +1,164 @@
+//! What the user sees: one line per failure, warnings, progress, results.
+
+use crate::args::Common;
+use belvedere::scene::Progress;
+use belvedere::{BelvedereError, Needs, OpenOptions, Session};
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+/// Work shorter than this shows no progress bar.
+const QUIET_FOR: Duration = Duration::from_millis(500);
+
+/// `belvedere: text` on standard error; a closed pipe is nobody's fault.
+pub(crate) fn complain(text: &str) {
+    let _ = writeln!(std::io::stderr(), "belvedere: {text}");
+}
+
+/// An error as one line.
+pub(crate) fn one_line(error: &anyhow::Error) -> String {
+    if error.downcast_ref::<BelvedereError>().is_some_and(BelvedereError::is_cancelled) {
+        return "cancelled; nothing was written".into();
+    }
+    let text = format!("{error:#}");
+    text.split('\n').map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ")
+}
+
+/// What clap found: help and version on standard output, a mistake as one line.
+pub(crate) fn usage(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() {
+        let _ = error.print();
+        return ExitCode::SUCCESS;
+    }
+    let text = error.render().to_string();
+    let mut lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
+    let first = lines.next().unwrap_or("bad arguments");
+    let more: Vec<&str> =
+        lines.take_while(|l| !l.starts_with("Usage")).map(|l| l.trim_start_matches("tip: ")).collect();
+    let first = first.trim_start_matches("error: ");
+    let what = if first.starts_with("Pictures in which") {
+        "a verb is missing".to_owned()
+    } else {
+        [&[first], &more[..]].concat().join("; ")
+    };
+    complain(&format!("{what}; see belvedere --help"));
+    ExitCode::from(2)
+}
+
+/// Options, progress and cancellation of one run.
+pub(crate) struct Context {
+    pub(crate) common: Common,
+    pub(crate) progress: Progress,
+    bar: Arc<Mutex<Option<indicatif::ProgressBar>>>,
+}
+
+impl Context {
+    /// Installs Ctrl-C (once: stop cleanly; twice: stop at once) and the progress bar.
+    pub(crate) fn new(common: Common) -> Self {
+        let bar: Arc<Mutex<Option<indicatif::ProgressBar>>> = Arc::default();
+        let show = std::io::stderr().is_terminal() && !common.quiet;
+        let progress = if show { with_bar(Arc::clone(&bar)) } else { Progress::silent() };
+        let flag = progress.cancel_flag();
+        // Without a handler Ctrl-C still ends the process, only less politely.
+        let _ = ctrlc::set_handler(move || {
+            if flag.swap(true, Ordering::SeqCst) {
+                std::process::exit(2);
+            }
+        });
+        Self { common, progress, bar }
+    }
+
+    /// Takes the progress bar away.
+    pub(crate) fn finish(&self) {
+        if let Ok(mut slot) = self.bar.lock()
+            && let Some(bar) = slot.take()
+        {
+            bar.finish_and_clear();
+        }
+    }
+
+    /// Opens a scene with the options of the run.
+    pub(crate) fn open(&self, scene: &Path, needs: Needs, image: Option<[u32; 2]>) -> anyhow::Result<Session> {
+        let options = OpenOptions {
+            allow_roots: self.common.allow_root.clone(),
+            needs,
+            image,
+            seed: self.common.seed,
+            progress: self.progress.clone(),
+        };
+        Ok(Session::open(scene, &options)?)
+    }
+
+    /// Prints warnings.
+    pub(crate) fn warn(&self, warnings: &[String]) {
+        self.finish();
+        if !self.common.quiet {
+            for warning in warnings {
+                complain(&format!("warning: {warning}"));
+            }
+        }
+    }
+
+    /// The result of a verb that makes a text: into `out`, or on standard output.
+    pub(crate) fn deliver(
+        &self,
+        verb: &str,
+        out: Option<&Path>,
+        text: &str,
+        warnings: &[String],
+    ) -> anyhow::Result<()> {
+        match out {
+            Some(path) => {
+                belvedere::verbs::output::write_text(path, text, self.common.overwrite)?;
+                if self.common.json {
+                    self.print(&done(verb, &[path.to_owned()], warnings))?;
+                }
+            }
+            None => print(text)?,
+        }
+        self.warn(warnings);
+        Ok(())
+    }
+
+    /// Prints a result as one line of JSON.
+    pub(crate) fn print(&self, value: &serde_json::Value) -> anyhow::Result<()> {
+        print(&format!("{value}\n"))
+    }
+}
+
+/// What `--json` prints for a verb that wrote files.
+pub(crate) fn done(verb: &str, outputs: &[PathBuf], warnings: &[String]) -> serde_json::Value {
+    let outputs: Vec<String> = outputs.iter().map(|p| p.display().to_string()).collect();
+    serde_json::json!({ "verb": verb, "outputs": outputs, "warnings": warnings })
+}
+
+/// Text on standard output; a reader that has gone away ends the output, not the program.
+pub(crate) fn print(text: &str) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(anyhow::anyhow!("standard output: {e}")),
+        _ => Ok(()),
+    }
+}
+
+fn with_bar(slot: Arc<Mutex<Option<indicatif::ProgressBar>>>) -> Progress {
+    let started = Instant::now();
+    Progress::new(move |stage, done| {
+        if started.elapsed() < QUIET_FOR {
+            return;
+        }
+        let Ok(mut slot) = slot.lock() else { return };
+        let bar = slot.get_or_insert_with(|| {
+            let bar = indicatif::ProgressBar::new(1000);
+            if let Ok(style) = indicatif::ProgressStyle::with_template("{msg:24} [{bar:40}] {percent:>3} %") {
+                bar.set_style(style);
+            }
+            bar
+        });
+        bar.set_message(stage.to_owned());
+        bar.set_position((done.clamp(0.0, 1.0) * 1000.0) as u64);
+    })
+}

@@ -1,0 +1,159 @@
+//! Checks of a document that need nothing but the document.
+
+use crate::BelvedereError;
+use crate::scene_file::{AnimationDoc, ConstructorDoc, ConstructorKind, LayerDoc, SourceDocument, StageDoc};
+use std::collections::HashSet;
+
+/// Ids, ranges and combinations of keys.
+pub(super) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
+    let mut ids = HashSet::new();
+    for (i, layer) in source.document.layer.iter().enumerate() {
+        let at = i.to_string();
+        let fail = |key: &str, reason: String| source.error(&["layer", &at, key], reason);
+        if layer.id().trim().is_empty() {
+            return Err(fail("id", "the id is empty; give the layer a name of its own".into()));
+        }
+        if !ids.insert(layer.id()) {
+            return Err(fail("id", format!("two layers have the id \"{}\"; give each its own", layer.id())));
+        }
+        layer_sources(layer).map_err(|(key, reason)| fail(key, format!("layer \"{}\": {reason}", layer.id())))?;
+        layer_style(layer).map_err(|(key, reason)| {
+            source.error(&["layer", &at, "style", key], format!("layer \"{}\": {reason}", layer.id()))
+        })?;
+    }
+    stage_order(source)?;
+    if let Some(doc) = &source.document.constructor {
+        constructor(doc)
+            .map_err(|(key, reason)| source.error(&["constructor", key], format!("constructor: {reason}")))?;
+    }
+    if let Some(doc) = &source.document.animation {
+        animation(doc).map_err(|(key, reason)| source.error(&["animation", key], format!("animation: {reason}")))?;
+    }
+    Ok(())
+}
+
+type Complaint = (&'static str, String);
+
+fn layer_sources(layer: &LayerDoc) -> Result<(), Complaint> {
+    match layer {
+        LayerDoc::Line(l) if l.source.is_some() == l.route.is_some() => {
+            Err(("source", "a line layer needs exactly one of source and route".into()))
+        }
+        LayerDoc::Boxes(l) if l.source.is_some() == l.boxes.is_some() => {
+            Err(("source", "a boxes layer needs exactly one of source and boxes".into()))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
+    let width = |v: f64| within("width_px", v, 0.0, 100.0);
+    match layer {
+        LayerDoc::Terrain(l) => within("exaggeration", l.style.exaggeration, 0.0, 100.0),
+        LayerDoc::Line(l) => {
+            color("color", &l.style.color)?;
+            optional_color("casing", &l.style.casing)?;
+            width(l.style.width_px)?;
+            lift(l.style.lift_m)
+        }
+        LayerDoc::Area(l) => {
+            color("color", &l.style.color)?;
+            optional_color("outline", &l.style.outline)?;
+            width(l.style.width_px)?;
+            lift(l.style.lift_m)
+        }
+        LayerDoc::Point(l) => {
+            color("color", &l.style.color)?;
+            within("size_px", l.style.size_px, 0.0, 200.0)?;
+            lift(l.style.lift_m)
+        }
+        LayerDoc::Boxes(l) => color("color", &l.style.color).map(|_| ()),
+        LayerDoc::Mesh(_) | LayerDoc::City(_) | LayerDoc::Molecule(_) | LayerDoc::Volume(_) => Ok(()),
+    }
+}
+
+/// Above `low`, up to `high`.
+fn within(key: &'static str, value: f64, low: f64, high: f64) -> Result<(), Complaint> {
+    if value > low && value <= high {
+        return Ok(());
+    }
+    Err((key, format!("{key} is {value}, it must lie above {low} and up to {high}")))
+}
+
+fn lift(value: f64) -> Result<(), Complaint> {
+    if (0.0..=1000.0).contains(&value) {
+        return Ok(());
+    }
+    Err(("lift_m", format!("lift_m is {value}, it must lie in 0..=1000")))
+}
+
+/// Parses `#rrggbb` or `#rrggbbaa`.
+pub(super) fn color(key: &'static str, text: &str) -> Result<belvedere_scene::Color, Complaint> {
+    let digits = text.strip_prefix('#').filter(|d| d.is_ascii() && (d.len() == 6 || d.len() == 8));
+    let byte = |i: usize| digits.and_then(|d| d.get(2 * i..2 * i + 2)).and_then(|d| u8::from_str_radix(d, 16).ok());
+    let alpha = if digits.is_some_and(|d| d.len() == 6) { Some(255) } else { byte(3) };
+    match (byte(0), byte(1), byte(2), alpha) {
+        (Some(r), Some(g), Some(b), Some(a)) if digits.is_some_and(|d| d.bytes().all(|c| c.is_ascii_hexdigit())) => {
+            Ok(belvedere_scene::Color { r, g, b, a })
+        }
+        _ => Err((
+            key,
+            format!("{key} \"{}\" is no colour; write #rrggbb or #rrggbbaa", text.chars().take(40).collect::<String>()),
+        )),
+    }
+}
+
+/// As [`color`]; `none` is no colour.
+pub(super) fn optional_color(key: &'static str, text: &str) -> Result<Option<belvedere_scene::Color>, Complaint> {
+    if text.eq_ignore_ascii_case("none") { Ok(None) } else { color(key, text).map(Some) }
+}
+
+fn rank(stage: &StageDoc) -> u32 {
+    match stage {
+        StageDoc::TerrainDisocclusion(_) => 1,
+        StageDoc::SplineBend(_) => 2,
+        StageDoc::CurvedRays(_) => 3,
+    }
+}
+
+/// The same rule as `View::new`, with the line of the stage that breaks it.
+fn stage_order(source: &SourceDocument) -> Result<(), BelvedereError> {
+    for (i, pair) in source.document.stage.windows(2).enumerate() {
+        if rank(&pair[0]) >= rank(&pair[1]) {
+            let error = belvedere_core::ViewError::Order { first: pair[0].kind(), second: pair[1].kind() };
+            return Err(source.error(&["stage", &(i + 1).to_string(), "kind"], error));
+        }
+    }
+    Ok(())
+}
+
+fn constructor(doc: &ConstructorDoc) -> Result<(), Complaint> {
+    match doc.kind {
+        ConstructorKind::TargetTracking if doc.target.is_none() => {
+            Err(("kind", "target_tracking needs target, the layer to keep in view".into()))
+        }
+        ConstructorKind::PathPreview if doc.path.is_none() => Err(("kind", "path_preview needs path".into())),
+        _ => {
+            let positive =
+                [("z0", doc.z0), ("f_step", doc.f_step), ("cap_per_s", doc.cap_per_s), ("preview_m", doc.preview_m)];
+            match positive.into_iter().find(|(_, v)| v.is_some_and(|v| v <= 0.0)) {
+                Some((key, v)) => Err((key, format!("{key} is {}, it must be greater than 0", v.unwrap_or_default()))),
+                None => Ok(()),
+            }
+        }
+    }
+}
+
+fn animation(doc: &AnimationDoc) -> Result<(), Complaint> {
+    let ways = [doc.along.is_some(), doc.camera.is_some(), doc.sweep.is_some(), doc.turntable.is_some()];
+    if ways.iter().filter(|w| **w).count() != 1 {
+        return Err(("", "exactly one of along, camera, sweep and turntable is needed".into()));
+    }
+    if doc.frames == Some(0) {
+        return Err(("frames", "frames is 0, it must be at least 1".into()));
+    }
+    if doc.fps.is_some_and(|f| f <= 0.0) {
+        return Err(("fps", format!("fps is {}, it must be greater than 0", doc.fps.unwrap_or_default())));
+    }
+    Ok(())
+}

@@ -1,0 +1,108 @@
+//! An opened scene: everything resolved, nothing left to look up.
+
+use crate::BelvedereError;
+use crate::resolve;
+use crate::scene_file::paths::Roots;
+use crate::scene_file::{self, Document, SourceDocument};
+use belvedere_core::View;
+use belvedere_scene::{Light, Progress, Scene};
+use std::path::{Path, PathBuf};
+
+/// What of a scene is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Needs {
+    /// The view alone: of the layers only the terrain is read, and only if the camera or a stage stands on it.
+    View,
+    /// Every layer.
+    #[default]
+    Everything,
+}
+
+/// How to open a scene.
+#[derive(Debug, Clone, Default)]
+pub struct OpenOptions {
+    /// Folders beside that of the scene from which files may come.
+    pub allow_roots: Vec<PathBuf>,
+    /// What is wanted.
+    pub needs: Needs,
+    /// Another size of the picture than the scene's, pixels.
+    pub image: Option<[u32; 2]>,
+    /// Another seed than the scene's for whatever is generated.
+    pub seed: Option<u64>,
+    /// Progress and cancellation.
+    pub progress: Progress,
+}
+
+/// An opened scene: layers, view and light, and what was odd on the way.
+#[derive(Debug, Clone)]
+pub struct Session {
+    pub(crate) document: Document,
+    pub(crate) path: PathBuf,
+    pub(crate) scene: Scene,
+    pub(crate) view: View,
+    pub(crate) light: Light,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) inputs: Vec<PathBuf>,
+}
+
+impl Session {
+    /// Opens a scene file.
+    ///
+    /// # Errors
+    /// Every [`BelvedereError`]; mistakes in the file come with their line.
+    pub fn open(path: &Path, options: &OpenOptions) -> Result<Self, BelvedereError> {
+        Self::from_document(scene_file::read(path)?, options)
+    }
+
+    /// Opens a scene from its text (TOML, or JSON if it starts with `{`); `path` says where its files are.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn from_text(path: &Path, text: &str, options: &OpenOptions) -> Result<Self, BelvedereError> {
+        Self::from_document(scene_file::parse(path, text)?, options)
+    }
+
+    fn from_document(mut source: SourceDocument, options: &OpenOptions) -> Result<Self, BelvedereError> {
+        if let Some(image) = options.image {
+            source.document.camera.image = image;
+        }
+        let scene_dir = source.path().parent().map(Path::to_owned).unwrap_or_default();
+        let roots = Roots { scene_dir, allowed: options.allow_roots.clone() };
+        resolve::session(source, &roots, options)
+    }
+
+    /// Layers, unit and coordinate system.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The view.
+    pub fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// The light.
+    pub fn light(&self) -> &Light {
+        &self.light
+    }
+
+    /// What was odd: one sentence each.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Files that were read, the scene first.
+    pub fn inputs(&self) -> &[PathBuf] {
+        &self.inputs
+    }
+
+    /// The scene file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The document with every default filled in and every place, name and rule replaced by its value; it opens to the same view.
+    pub fn resolved(&self) -> &Document {
+        &self.document
+    }
+}

@@ -1,0 +1,99 @@
+//! `check`, `show` and `schema`.
+
+use crate::scene_file::Document;
+use crate::{BelvedereError, Session};
+use belvedere_scene::LayerKind;
+use serde::Serialize;
+
+/// Answer of [`check`].
+#[derive(Debug, Clone, Serialize)]
+pub struct CheckReport {
+    /// The scene file.
+    pub scene: String,
+    /// Coordinate system.
+    pub crs: String,
+    /// One line per layer.
+    pub layers: Vec<CheckedLayer>,
+    /// Stages in order of application.
+    pub stages: Vec<&'static str>,
+    /// What was odd.
+    pub warnings: Vec<String>,
+}
+
+/// One checked layer.
+#[derive(Debug, Clone, Serialize)]
+pub struct CheckedLayer {
+    /// Id.
+    pub id: String,
+    /// Kind.
+    pub kind: &'static str,
+    /// Nodes of a terrain, features of the others.
+    pub count: usize,
+    /// Whether it must be seen.
+    pub must_see: bool,
+}
+
+impl std::fmt::Display for CheckReport {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        writeln!(f, "{}: valid, {}, {} layers, {} stages", self.scene, self.crs, self.layers.len(), self.stages.len())?;
+        for layer in &self.layers {
+            let must = if layer.must_see { ", must be seen" } else { "" };
+            writeln!(f, "  {} ({}): {}{must}", layer.id, layer.kind, layer.count)?;
+        }
+        self.stages.iter().try_for_each(|stage| writeln!(f, "  stage {stage}"))
+    }
+}
+
+/// What an opened scene holds; that it opened is the check.
+///
+/// # Errors
+/// [`BelvedereError`] if it could be opened but not drawn.
+pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
+    let layers = session.scene().layers.iter().map(|layer| {
+        let (kind, count) = match &layer.kind {
+            LayerKind::Terrain(t) => ("terrain", t.heightfield.heights().len()),
+            LayerKind::Line(l) => ("line", l.features.len()),
+            LayerKind::Area(l) => ("area", l.features.len()),
+            LayerKind::Point(l) => ("point", l.features.len()),
+            LayerKind::Boxes(l) => ("boxes", l.boxes.len()),
+        };
+        CheckedLayer { id: layer.id.clone(), kind, count, must_see: layer.must_see }
+    });
+    Ok(CheckReport {
+        scene: session.path().display().to_string(),
+        crs: session.scene().crs.to_string(),
+        layers: layers.collect(),
+        stages: session.view().stages().iter().map(|s| s.name()).collect(),
+        warnings: session.warnings().to_vec(),
+    })
+}
+
+/// A document as TOML.
+///
+/// # Errors
+/// [`BelvedereError::Usage`] if it cannot be written, which no valid document does.
+pub fn document_toml(document: &Document) -> Result<String, BelvedereError> {
+    toml::to_string(document).map_err(|e| BelvedereError::Usage(format!("the document cannot be written as TOML: {e}")))
+}
+
+/// A document as JSON, indented.
+///
+/// # Errors
+/// As [`document_toml`].
+pub fn document_json(document: &Document) -> Result<String, BelvedereError> {
+    pretty(document)
+}
+
+/// The JSON Schema of scene documents.
+///
+/// # Errors
+/// As [`document_toml`].
+pub fn schema_json() -> Result<String, BelvedereError> {
+    pretty(&schemars::schema_for!(Document))
+}
+
+fn pretty<T: Serialize>(value: &T) -> Result<String, BelvedereError> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|e| BelvedereError::Usage(format!("the document cannot be written as JSON: {e}")))?;
+    Ok(text + "\n")
+}

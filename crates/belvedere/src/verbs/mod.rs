@@ -1,0 +1,5 @@
+//! The verbs of the command line as functions.
+
+pub mod check;
+pub mod output;
+pub mod points;
