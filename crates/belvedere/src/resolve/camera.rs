@@ -39,7 +39,9 @@ pub(crate) fn resolve(
             ));
         }
         (None, None, None) => {
-            return Err(source.error(&["camera"], "camera has no direction; give look_at, or heading_deg and pitch_deg"));
+            return Err(
+                source.error(&["camera"], "camera has no direction; give look_at, or heading_deg and pitch_deg")
+            );
         }
         (None, given, _) => {
             let (has, lacks) =
