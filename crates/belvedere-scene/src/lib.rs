@@ -1,13 +1,17 @@
 //! What is looked at: terrain, lines, areas, points and boxes as plain data, never view-dependent;
 //! and the contract between pictures and whoever needs them ([`Renderer`], [`RenderJob`], [`Frame`]).
 
+pub mod builtin;
+pub mod drape;
 pub mod frame;
 pub mod heightfield;
 pub mod layer;
 pub mod light;
 pub mod progress;
+pub mod route;
 pub mod scene;
 
+pub use drape::{Draped, drape_polyline};
 pub use frame::{Aux, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer};
 pub use heightfield::{Heightfield, HeightfieldError, NodeState};
 pub use layer::{
@@ -16,4 +20,5 @@ pub use layer::{
 };
 pub use light::Light;
 pub use progress::{Cancelled, Progress};
+pub use route::{RouteCost, RouteError, least_cost_route, valley_route};
 pub use scene::{Crs, Scene, Unit};

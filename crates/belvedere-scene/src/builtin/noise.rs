@@ -1,0 +1,116 @@
+//! Seeded random numbers and gradient noise that give the same bits on every platform: integer hashes and + - * / only.
+
+use belvedere_core::DVec2;
+
+/// splitmix64 (Steele, Lea, Flood 2014).
+#[derive(Debug, Clone)]
+pub(crate) struct Random(u64);
+
+impl Random {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5bf0_3635)
+    }
+
+    pub(crate) fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        mix(self.0)
+    }
+
+    /// In [0, 1).
+    pub(crate) fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// In [lo, hi).
+    pub(crate) fn range(&mut self, lo: f64, hi: f64) -> f64 {
+        lo + (hi - lo) * self.unit()
+    }
+}
+
+fn mix(mut x: u64) -> u64 {
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+/// Unit vectors 22.5 degrees apart, written out because sine and cosine differ between platforms in the last bit.
+pub(crate) const DIRECTIONS: [DVec2; 16] = {
+    const A: f64 = 0.923_879_532_511_286_7;
+    const B: f64 = 0.382_683_432_365_089_8;
+    const D: f64 = std::f64::consts::FRAC_1_SQRT_2;
+    [
+        DVec2::new(1.0, 0.0),
+        DVec2::new(A, B),
+        DVec2::new(D, D),
+        DVec2::new(B, A),
+        DVec2::new(0.0, 1.0),
+        DVec2::new(-B, A),
+        DVec2::new(-D, D),
+        DVec2::new(-A, B),
+        DVec2::new(-1.0, 0.0),
+        DVec2::new(-A, -B),
+        DVec2::new(-D, -D),
+        DVec2::new(-B, -A),
+        DVec2::new(0.0, -1.0),
+        DVec2::new(B, -A),
+        DVec2::new(D, -D),
+        DVec2::new(A, -B),
+    ]
+};
+
+/// Gradient noise over the plane, about -1..1, period none.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Noise {
+    seed: u64,
+}
+
+impl Noise {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self { seed: mix(seed ^ 0x006e_6f69_7365) }
+    }
+
+    fn gradient(&self, cx: i64, cy: i64) -> DVec2 {
+        let h = mix(self.seed
+            ^ (cx as u64).wrapping_mul(0x8da6_b343_d8f1_a8c5)
+            ^ (cy as u64).wrapping_mul(0xd816_3841_ca72_3f1d));
+        DIRECTIONS[(h >> 60) as usize]
+    }
+
+    /// Noise of unit wavelength (Perlin 2002 fade), about -1..1.
+    pub(crate) fn at(&self, p: DVec2) -> f64 {
+        let cell = p.floor();
+        let (cx, cy, f) = (cell.x as i64, cell.y as i64, p - cell);
+        let fade = |t: f64| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+        let corner = |dx: i64, dy: i64| self.gradient(cx + dx, cy + dy).dot(f - DVec2::new(dx as f64, dy as f64));
+        let (u, v) = (fade(f.x), fade(f.y));
+        let north = corner(0, 0) + u * (corner(1, 0) - corner(0, 0));
+        let south = corner(0, 1) + u * (corner(1, 1) - corner(0, 1));
+        1.5 * (north + v * (south - north))
+    }
+
+    /// Sum of octaves, each half as long and half as strong, about -1..1.
+    pub(crate) fn fbm(&self, p: DVec2, octaves: u32) -> f64 {
+        let (mut sum, mut weight, mut scale) = (0.0, 0.5, 1.0);
+        for k in 0..octaves {
+            sum += weight * self.at(p * scale + DVec2::splat(17.3 * f64::from(k)));
+            weight *= 0.5;
+            scale *= 2.0;
+        }
+        sum
+    }
+
+    /// Ridged multifractal (Musgrave 1994), 0..1: crests where the noise changes sign, rougher where it is high.
+    pub(crate) fn ridged(&self, p: DVec2, octaves: u32) -> f64 {
+        let (mut sum, mut amplitude, mut scale, mut weight, mut total) = (0.0, 1.0, 1.0, 1.0f64, 0.0);
+        for k in 0..octaves {
+            let crest = 1.0 - self.at(p * scale + DVec2::splat(31.7 * f64::from(k))).abs().min(1.0);
+            let signal = crest * crest * weight;
+            sum += amplitude * signal;
+            total += amplitude;
+            weight = (2.0 * signal).clamp(0.0, 1.0);
+            amplitude *= 0.5;
+            scale *= 2.1;
+        }
+        sum / total
+    }
+}

@@ -1,0 +1,143 @@
+//! Lines laid on terrain.
+
+use crate::Heightfield;
+use belvedere_core::{DVec2, DVec3};
+
+/// A polyline laid on terrain.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Draped {
+    /// The pieces that lie on the terrain, in order, at least 2 vertices each; z = ground.
+    pub parts: Vec<Vec<DVec3>>,
+    /// Horizontal length of the whole polyline, metres.
+    pub length_m: f64,
+    /// Horizontal length that lies outside the grid or over voids, metres.
+    pub outside_m: f64,
+}
+
+/// Lays a polyline on the drawn surface of the terrain ([`Heightfield::surface_at`]): a vertex wherever it crosses an edge of a
+/// triangle, so that it neither floats nor sinks anywhere; split where the ground is missing.
+///
+/// Repeated points and points that are not finite are dropped. Pieces of no length vanish.
+pub fn drape_polyline(terrain: &Heightfield, line: &[DVec2]) -> Draped {
+    let mut out = Draped::default();
+    let mut part: Vec<DVec3> = Vec::new();
+    let points: Vec<DVec2> = line.iter().copied().filter(|p| p.is_finite()).collect();
+    for pair in points.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let length = a.distance(b);
+        if length == 0.0 {
+            continue;
+        }
+        out.length_m += length;
+        let mut start = 0.0;
+        for end in edge_crossings(terrain, a, b) {
+            let middle = a.lerp(b, 0.5 * (start + end));
+            // rounding may put an end a hair outside the triangle its middle lies in
+            let ground = |t: f64| {
+                let xy = a.lerp(b, t);
+                let z = terrain.surface_at(xy).or_else(|| terrain.surface_at(xy.lerp(middle, 1e-6)))?;
+                Some(xy.extend(z))
+            };
+            match (terrain.surface_at(middle), ground(start), ground(end)) {
+                (Some(_), Some(p), Some(q)) => {
+                    for p in [p, q] {
+                        if part.last().is_none_or(|last| last.truncate().distance(p.truncate()) > 1e-6) {
+                            part.push(p);
+                        }
+                    }
+                }
+                _ => {
+                    out.outside_m += (end - start) * length;
+                    close(&mut part, &mut out.parts);
+                }
+            }
+            start = end;
+        }
+    }
+    close(&mut part, &mut out.parts);
+    out
+}
+
+fn close(part: &mut Vec<DVec3>, parts: &mut Vec<Vec<DVec3>>) {
+    let done = std::mem::take(part);
+    if done.len() >= 2 {
+        parts.push(done);
+    }
+}
+
+/// Parameters in (0, 1] at which a -> b crosses columns, rows and diagonals of the grid, ascending, ending with 1.
+fn edge_crossings(terrain: &Heightfield, a: DVec2, b: DVec2) -> Vec<f64> {
+    let (ga, gb) = (terrain.grid_from_scene(a), terrain.grid_from_scene(b));
+    let (cols, rows) = ((terrain.cols() - 1) as f64, (terrain.rows() - 1) as f64);
+    let mut ts = vec![1.0];
+    // diagonals are where column - row is whole
+    for (from, to, first, last) in
+        [(ga.x, gb.x, 0.0, cols), (ga.y, gb.y, 0.0, rows), (ga.x - ga.y, gb.x - gb.y, -rows, cols)]
+    {
+        let (lo, hi) = (from.min(to).max(first).ceil(), from.max(to).min(last).floor());
+        if from == to || lo > hi {
+            continue;
+        }
+        ts.extend(
+            (0..=(hi - lo) as usize).map(|k| (lo + k as f64 - from) / (to - from)).filter(|t| *t > 0.0 && *t < 1.0),
+        );
+    }
+    ts.sort_by(f64::total_cmp);
+    ts.dedup_by(|x, y| (*x - *y).abs() < 1e-12);
+    ts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::NodeState;
+
+    fn ridge(void: Option<usize>) -> Heightfield {
+        let heights = (0..36).map(|i| ((i % 6) * (i % 6) + (i / 6) * 3) as f32).collect();
+        let mut states = vec![NodeState::Measured; 36];
+        if let Some(i) = void {
+            states[i] = NodeState::Void;
+        }
+        Heightfield::new(DVec2::new(0.0, 50.0), DVec2::splat(10.0), 6, 6, heights, states).unwrap()
+    }
+
+    #[test]
+    fn a_draped_line_lies_on_the_surface_everywhere() {
+        let hf = ridge(None);
+        let d = drape_polyline(
+            &hf,
+            &[DVec2::new(1.0, 3.0), DVec2::new(47.3, 41.9), DVec2::new(47.3, 41.9), DVec2::new(3.0, 30.0)],
+        );
+        assert_eq!(d.parts.len(), 1);
+        assert_eq!(d.outside_m, 0.0);
+        let mut length = 0.0;
+        for w in d.parts[0].windows(2) {
+            length += w[0].truncate().distance(w[1].truncate());
+            for k in 0..=10 {
+                let p = w[0].lerp(w[1], f64::from(k) / 10.0);
+                let z = hf.surface_at(p.truncate()).unwrap();
+                assert!((p.z - z).abs() < 1e-9, "{p} floats {} m", p.z - z);
+            }
+        }
+        assert!((length - d.length_m).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_line_across_a_void_falls_into_two_parts() {
+        let hf = ridge(Some(2 * 6 + 2)); // node at (20, 30)
+        let d = drape_polyline(&hf, &[DVec2::new(0.0, 29.0), DVec2::new(50.0, 29.0)]);
+        assert_eq!(d.parts.len(), 2);
+        // along y = 29 the triangles with that corner are crossed at x = 11..20 (upper one of its cell) and 20..30 (both)
+        assert!((d.outside_m - 19.0).abs() < 1e-9, "{}", d.outside_m);
+    }
+
+    #[test]
+    fn what_leaves_the_grid_is_measured() {
+        let d = drape_polyline(&ridge(None), &[DVec2::new(-30.0, 25.0), DVec2::new(70.0, 25.0)]);
+        assert_eq!(d.parts.len(), 1);
+        assert!((d.outside_m - 50.0).abs() < 1e-9);
+        let d = drape_polyline(&ridge(None), &[DVec2::new(-30.0, 90.0), DVec2::new(70.0, 90.0)]);
+        assert!(d.parts.is_empty());
+        assert!((d.outside_m - d.length_m).abs() < 1e-9);
+    }
+}

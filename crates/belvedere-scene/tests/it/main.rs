@@ -1,0 +1,4 @@
+//! Tests of the scene crate.
+
+mod builtin;
+mod route;
