@@ -9,8 +9,12 @@
 //! the scene says otherwise). Pixels have their origin at the outer corner of the top-left pixel.
 
 pub mod bounds;
+pub mod bspline;
 pub mod camera;
+pub mod grid;
 pub mod map;
+pub mod presets;
+pub mod sections;
 
 pub use bounds::Aabb;
 pub use camera::{Camera, ImageBox, Pinhole, PinholeError, Projected, Projection, RayPath, RayPoint, View, ViewError};

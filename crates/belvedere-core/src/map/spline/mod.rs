@@ -1,40 +1,195 @@
-//! Skeleton.
+//! View-dependent multi-perspective deformation: space is carried onto a B-spline over the reference plane.
+
+mod arc_build;
+mod bound;
+mod check;
+mod curve;
+mod plane;
+mod resolve;
+
+pub use check::{PresetWarning, check_presets};
+pub use curve::{CurveFrame, CurveTooShort, DeformationCurve};
+pub use plane::{ReferencePlane, default_pivot, viewing_angle};
+pub use resolve::{ResolvedPreset, SplineError};
 
 use super::{Miss, SpaceMap};
-use crate::Aabb;
-use glam::{DMat3, DVec3};
+use crate::sections::StylingSections;
+use glam::{DMat3, DVec2, DVec3};
 
-/// Skeleton of the stage.
+/// The ground bends along a curve in the direction of view: steep where it should read as a map, flat where it should show a horizon.
+///
+/// A point at depth `z` and height `d` over the reference plane goes to the point of the curve at arc length `l = (z - s) / K`, plus
+/// `d` along the curve's normal; nothing changes across the direction of view. Lengths along the ground are kept, straight lines continue
+/// the curve at both ends, and a straight curve of slope phi is the ordinary perspective.
+///
+/// Everything is resolved: plain data for one camera. Source: Pasewaldt et al. 2011, section 4; arc-length units, pin, `plane` frame and
+/// follow are ours.
+///
+/// ```
+/// use belvedere_core::map::spline::{ReferencePlane, SplineBend, default_pivot};
+/// use belvedere_core::{DVec3, Pinhole, Projection, SpaceMap, presets::PresetDocument};
+/// let camera = Pinhole::look_at(
+///     DVec3::new(0.0, -800.0, 650.0), DVec3::ZERO, DVec3::Z,
+///     Projection::Perspective { fov_y: 50f64.to_radians() }, [1280, 720], 1.0, None,
+/// )?;
+/// let ground = ReferencePlane::level(0.0);
+/// let pivot = default_pivot(&camera, &ground);
+/// let bend = SplineBend::new(&camera, &PresetDocument::builtin("progressive")?, &ground, pivot)?;
+/// assert!(bend.apply(pivot).unwrap().distance(pivot) < 1e-9);
+/// assert!(bend.apply(DVec3::new(0.0, 3000.0, 0.0)).unwrap().z > 500.0); // the far ground rises towards the horizon
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct SplineBend {}
+pub struct SplineBend {
+    /// Pivot dropped onto the plane.
+    origin: DVec3,
+    right: DVec3,
+    heading: DVec3,
+    normal: DVec3,
+    /// Output directions of the curve coordinates u and v.
+    out_u: DVec3,
+    out_v: DVec3,
+    /// Scene units per curve unit.
+    scale: f64,
+    /// Arc length of the origin, curve units.
+    l_origin: f64,
+    /// Added to the curve so that coordinates count from the origin.
+    shift: DVec2,
+    /// Eye in shifted curve coordinates.
+    eye: DVec2,
+    curve: DeformationCurve,
+    sections: StylingSections,
+    resolved: ResolvedPreset,
+}
+
+/// Coordinates of a point along and above the deformation curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurveCoordinates {
+    /// Arc length from the near end, curve units; outside 0..=length on the extensions.
+    pub l: f64,
+    /// Signed height over the reference plane, scene units.
+    pub d: f64,
+    /// Distance to the right of the pivot, scene units.
+    pub a: f64,
+}
 
 impl SplineBend {
-    /// See [`crate::Stage::edge_bound`].
-    pub fn edge_bound(&self, _p0: DVec3, _p1: DVec3) -> f64 {
-        0.0
+    /// The deformation curve, without pin.
+    pub fn curve(&self) -> &DeformationCurve {
+        &self.curve
     }
 
-    /// See [`crate::Stage::displaced_bounds`].
-    pub fn displaced_bounds(&self, bounds: &Aabb) -> Option<Aabb> {
-        Some(*bounds)
+    /// Styling sections along the curve.
+    pub fn sections(&self) -> &StylingSections {
+        &self.sections
     }
 
-    /// Whether the map has folded over at `p`.
-    pub fn is_folded(&self, _p: DVec3) -> bool {
-        false
+    /// What the preset document came to for this camera.
+    pub fn resolved(&self) -> &ResolvedPreset {
+        &self.resolved
+    }
+
+    /// The pivot dropped onto the reference plane, scene coordinates. It does not move if the curve is pinned.
+    pub fn pivot(&self) -> DVec3 {
+        self.origin
+    }
+
+    /// Scene units per curve unit (`K = e - s`).
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Coordinates of `p` along and above the curve.
+    pub fn coordinates(&self, p: DVec3) -> CurveCoordinates {
+        let v = p - self.origin;
+        CurveCoordinates {
+            l: self.l_origin + v.dot(self.heading) / self.scale,
+            d: v.dot(self.normal),
+            a: v.dot(self.right),
+        }
+    }
+
+    /// Place of `p` on the curve as a share of its length: the argument of the section weights. Below 0 and above 1 on the extensions.
+    pub fn section_parameter(&self, p: DVec3) -> f64 {
+        self.coordinates(p).l / self.curve.length()
+    }
+
+    /// Factor by which lengths along the heading change at `p`; the sign of the Jacobian's determinant. 1 on the reference plane.
+    pub fn stretch(&self, p: DVec3) -> f64 {
+        let at = self.coordinates(p);
+        1.0 - self.curve.curvature_at(at.l) * at.d / self.scale
+    }
+
+    /// Whether the map has folded over at `p`: `p` lies beyond the curve's centre of curvature.
+    pub fn is_folded(&self, p: DVec3) -> bool {
+        !(self.stretch(p) > 0.0)
+    }
+
+    /// Heights over the reference plane between which nothing folds anywhere, scene units: `[h_min, h_max]`, `h_min < 0 < h_max`, infinite where
+    /// the curve never bends that way.
+    pub fn fold_heights(&self) -> [f64; 2] {
+        let [down, up] = self.curve.curvature_range();
+        [
+            if down < 0.0 { self.scale / down } else { f64::NEG_INFINITY },
+            if up > 0.0 { self.scale / up } else { f64::INFINITY },
+        ]
+    }
+
+    /// Smallest height of the eye over the tangents of the deformed ground, curve units, from the near end to one curve length beyond the
+    /// far end. The ground is seen from above everywhere, and rises in the picture with its depth, if and only if this is positive.
+    pub fn facing(&self) -> f64 {
+        self.curve.min_facing(self.eye - self.shift, 0.0, 2.0 * self.curve.length())
+    }
+
+    /// [`SplineBend::facing`] between two points' depths.
+    pub fn facing_between(&self, near: DVec3, far: DVec3) -> f64 {
+        let (l0, l1) = (self.coordinates(near).l, self.coordinates(far).l);
+        self.curve.min_facing(self.eye - self.shift, l0.min(l1), l0.max(l1))
+    }
+
+    /// Slope of the deformed ground at `p` in the coordinates of the frame, radians; in frame `camera` the viewing angle of the ground there.
+    pub fn slope(&self, p: DVec3) -> f64 {
+        self.curve.at(self.coordinates(p).l).1.to_angle()
+    }
+
+    /// Scene point of shifted curve coordinates `q` and right offset `a`.
+    fn scene_from_curve(&self, a: f64, q: DVec2) -> DVec3 {
+        self.origin + a * self.right + self.scale * (q.x * self.out_u + q.y * self.out_v)
     }
 }
 
+fn finite(p: DVec3) -> Result<DVec3, Miss> {
+    if p.is_finite() { Ok(p) } else { Err(Miss::OutsideDomain) }
+}
+
 impl SpaceMap for SplineBend {
+    /// Defined for every finite point, also beyond the fold limit.
     fn apply(&self, p: DVec3) -> Result<DVec3, Miss> {
-        Ok(p)
+        let at = self.coordinates(finite(p)?);
+        let (point, tangent) = self.curve.at(at.l);
+        finite(self.scene_from_curve(at.a, point + self.shift + (at.d / self.scale) * tangent.perp()))
     }
 
+    /// The point nearest to the reference plane whose image is `p_displaced`.
+    ///
+    /// # Errors
+    /// [`Miss::OutsideDomain`] where no perpendicular from the curve arrives before its centre of curvature.
     fn invert(&self, p_displaced: DVec3) -> Result<DVec3, Miss> {
-        Ok(p_displaced)
+        let v = finite(p_displaced)? - self.origin;
+        let q = DVec2::new(v.dot(self.out_u), v.dot(self.out_v)) / self.scale - self.shift;
+        let (l, d) = self.curve.foot(q).ok_or(Miss::OutsideDomain)?;
+        let along = self.scale * (l - self.l_origin);
+        finite(self.origin + v.dot(self.right) * self.right + along * self.heading + self.scale * d * self.normal)
     }
 
-    fn jacobian(&self, _p: DVec3) -> Result<DMat3, Miss> {
-        Ok(DMat3::IDENTITY)
+    /// Its determinant is [`SplineBend::stretch`], negative beyond the fold limit.
+    fn jacobian(&self, p: DVec3) -> Result<DMat3, Miss> {
+        let at = self.coordinates(finite(p)?);
+        let frame = self.curve.frame_at(at.l);
+        let world = |q: DVec2| q.x * self.out_u + q.y * self.out_v;
+        let along = (1.0 - frame.kap * at.d / self.scale) * world(frame.tangent);
+        let image = DMat3::from_cols(self.right, along, world(frame.normal()));
+        let jacobian = image * DMat3::from_cols(self.right, self.heading, self.normal).transpose();
+        if jacobian.is_finite() { Ok(jacobian) } else { Err(Miss::OutsideDomain) }
     }
 }

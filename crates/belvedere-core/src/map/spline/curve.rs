@@ -1,0 +1,288 @@
+//! A planar curve parametrised by arc length, with its curvature, turning and closest points.
+
+use crate::bspline::{BSpline, CubicSpan};
+use glam::DVec2;
+
+use super::arc_build;
+
+/// A B-spline parametrised by its arc length `l` in 0..=[`DeformationCurve::length`], with straight extensions along its end tangents.
+///
+/// Arc length is inverted by polynomial pieces fitted to the Newton solution on Gauss-Legendre lengths; pieces are split until
+/// the error in arc length is below 1e-14 of the curve's length. Curve units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeformationCurve {
+    pub(super) spans: Vec<CubicSpan>,
+    pub(super) cells: Vec<Cell>,
+    pub(super) starts: Vec<f64>,
+    pub(super) length: f64,
+    pub(super) scale: f64,
+    pub(super) far: (DVec2, DVec2),
+    pub(super) turning: f64,
+    pub(super) variation: f64,
+    pub(super) corners: Vec<f64>,
+    pub(super) corner_sense: [bool; 2],
+}
+
+/// Piece of the curve on which the curvature is monotone and of one sign.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Cell {
+    pub(super) l0: f64,
+    pub(super) l1: f64,
+    pub(super) span: usize,
+    pub(super) x_mid: f64,
+    pub(super) x_half: f64,
+    /// Span parameter as `x_mid + x_half * poly(y)`, `y` in -1..=1 over the cell's arc length.
+    pub(super) poly: [f64; 8],
+    pub(super) point: DVec2,
+    /// Tangents at the start and at the end.
+    pub(super) tangent: [DVec2; 2],
+    /// Curvature at the start and at the end.
+    pub(super) kap: [f64; 2],
+    /// Turning and total variation of the curvature from `l = -inf` to the start of the cell.
+    pub(super) turning: f64,
+    pub(super) variation: f64,
+}
+
+/// Point, unit tangent and curvature of a [`DeformationCurve`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurveFrame {
+    /// Position, curve units.
+    pub point: DVec2,
+    /// Unit tangent towards the far end.
+    pub tangent: DVec2,
+    /// Signed curvature in 1 / curve unit, > 0 where the curve bends upwards; 0 on the extensions.
+    pub kap: f64,
+}
+
+impl CurveFrame {
+    /// Unit normal, the tangent turned by +90 degrees: upwards on a curve that runs to the right.
+    pub fn normal(&self) -> DVec2 {
+        self.tangent.perp()
+    }
+}
+
+/// A curve without extent.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("the deformation curve is {length:e} curve units long, at least 1e-9 is needed; move its control points apart")]
+pub struct CurveTooShort {
+    /// Length found, curve units.
+    pub length: f64,
+}
+
+impl DeformationCurve {
+    /// Shortest accepted curve, curve units.
+    pub const MIN_LENGTH: f64 = 1e-9;
+
+    /// Arc-length parametrisation of `spline`.
+    ///
+    /// # Errors
+    /// [`CurveTooShort`] below [`DeformationCurve::MIN_LENGTH`].
+    pub fn new(spline: &BSpline) -> Result<Self, CurveTooShort> {
+        arc_build::build(spline)
+    }
+
+    /// Length of the curve, curve units.
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// Point and unit tangent at arc length `l`; on the straight extensions outside 0..=length. `l` must be finite.
+    pub fn at(&self, l: f64) -> (DVec2, DVec2) {
+        if l < 0.0 {
+            let near = &self.cells[0];
+            return (near.point + l * near.tangent[0], near.tangent[0]);
+        }
+        if l > self.length {
+            let (p, t) = self.far;
+            return (p + (l - self.length) * t, t);
+        }
+        let cell = self.cell_at(l);
+        let x = cell.parameter(l);
+        let span = &self.spans[cell.span];
+        (span.point(x), self.tangent_in(cell, x))
+    }
+
+    /// Point, tangent and curvature at arc length `l`. At the ends of the curve the curvature is that of the curve.
+    pub fn frame_at(&self, l: f64) -> CurveFrame {
+        let (point, tangent) = self.at(l);
+        CurveFrame { point, tangent, kap: self.curvature_at(l) }
+    }
+
+    /// Signed curvature at arc length `l`, 1 / curve unit; at its jumps that of the far side.
+    pub fn curvature_at(&self, l: f64) -> f64 {
+        if !(0.0..=self.length).contains(&l) {
+            return 0.0;
+        }
+        let cell = self.cell_at(l);
+        curvature_in(&self.spans[cell.span], cell.parameter(l), cell.x_mid, self.scale)
+    }
+
+    /// Turning of the tangent from the near extension to `l`: the integral of `|kap|`, radians, never decreasing.
+    pub fn turning_to(&self, l: f64) -> f64 {
+        if l < 0.0 {
+            return 0.0;
+        }
+        if l > self.length {
+            return self.turning;
+        }
+        let cell = self.cell_at(l);
+        let t = self.tangent_in(cell, cell.parameter(l));
+        cell.turning + angle(cell.tangent[0], t)
+    }
+
+    /// Total variation of the curvature from the near extension to `l`, jumps included, 1 / curve unit, never decreasing.
+    pub fn curvature_variation_to(&self, l: f64) -> f64 {
+        if l < 0.0 {
+            return 0.0;
+        }
+        if l > self.length {
+            return self.variation;
+        }
+        let cell = self.cell_at(l);
+        cell.variation + (self.curvature_at(l) - cell.kap[0]).abs()
+    }
+
+    /// Smallest (<= 0) and largest (>= 0) curvature, 1 / curve unit, exact; infinite at a corner.
+    pub fn curvature_range(&self) -> [f64; 2] {
+        let range = self.cells.iter().flat_map(|c| c.kap).fold([0.0f64, 0.0f64], |[lo, hi], k| [lo.min(k), hi.max(k)]);
+        let [down, up] = self.corner_sense;
+        [if down { f64::NEG_INFINITY } else { range[0] }, if up { f64::INFINITY } else { range[1] }]
+    }
+
+    /// Arc lengths at which the tangent jumps (control points of threefold or more coincidence, or such knots).
+    pub fn corners(&self) -> &[f64] {
+        &self.corners
+    }
+
+    /// Arc length and signed distance of the closest foot of the perpendicular from `q`; extensions included.
+    /// `None` where there is none before the centre of curvature, e.g. opposite a corner.
+    pub fn foot(&self, q: DVec2) -> Option<(f64, f64)> {
+        let mut best: Option<(f64, f64)> = None;
+        let mut offer = |l: f64, d: f64| {
+            if best.is_none_or(|(_, b)| d.abs() < b.abs()) {
+                best = Some((l, d));
+            }
+        };
+        let near = &self.cells[0];
+        let along = (q - near.point).dot(near.tangent[0]);
+        if along < 0.0 {
+            offer(along, (q - near.point).dot(near.tangent[0].perp()));
+        }
+        let (far_point, far_tangent) = self.far;
+        let along = (q - far_point).dot(far_tangent);
+        if along > 0.0 {
+            offer(self.length + along, (q - far_point).dot(far_tangent.perp()));
+        }
+        for (i, cell) in self.cells.iter().enumerate() {
+            let end = self.cells.get(i + 1).map_or(far_point, |c| c.point);
+            if (q - cell.point).dot(cell.tangent[0]) >= 0.0
+                && (q - end).dot(cell.tangent[1]) <= 0.0
+                && let Some((l, d)) = self.foot_in(cell, q)
+            {
+                offer(l, d);
+            }
+        }
+        best
+    }
+
+    /// Root of `(q - P(l)) . T(l)` in a cell at whose ends it changes sign from + to -.
+    fn foot_in(&self, cell: &Cell, q: DVec2) -> Option<(f64, f64)> {
+        let span = &self.spans[cell.span];
+        let (mut lo, mut hi) = (cell.l0, cell.l1);
+        let mut l = 0.5 * (lo + hi);
+        for _ in 0..80 {
+            let x = cell.parameter(l);
+            let t = self.tangent_in(cell, x);
+            let v = q - span.point(x);
+            let (g, d) = (v.dot(t), v.dot(t.perp()));
+            let j = 1.0 - curvature_in(span, x, cell.x_mid, self.scale) * d;
+            if g > 0.0 { lo = l } else { hi = l }
+            let newton = l + g / j;
+            let next = if j > 0.0 && newton >= lo && newton <= hi { newton } else { 0.5 * (lo + hi) };
+            if (next - l).abs() <= 2e-16 * self.length || g == 0.0 {
+                return (j > 1e-9).then_some((next, d));
+            }
+            l = next;
+        }
+        let (p, t) = self.at(l);
+        let d = (q - p).dot(t.perp());
+        (1.0 - self.curvature_at(l) * d > 1e-9).then_some((l, d))
+    }
+
+    /// Smallest value of `n(l) . (eye - P(l))` for `l` between `l0 <= l1`: how far the eye lies above the tangents, curve units.
+    /// It is constant on the extensions.
+    pub fn min_facing(&self, eye: DVec2, l0: f64, l1: f64) -> f64 {
+        let at = |l: f64| {
+            let (p, t) = self.at(l);
+            (eye - p).dot(t.perp())
+        };
+        let (a, b) = (l0.clamp(0.0, self.length), l1.clamp(0.0, self.length));
+        let mut least = at(a).min(at(b));
+        for cell in self.cells.iter().filter(|c| c.l1 >= a && c.l0 <= b) {
+            // Stationary where the curvature changes sign (a cell's end) or where the eye has its foot.
+            for k in 0..4 {
+                let l = cell.l0 + (cell.l1 - cell.l0) * f64::from(k) / 4.0;
+                least = if l >= a && l <= b { least.min(at(l)) } else { least };
+            }
+            if let Some((l, d)) = self.foot_in(cell, eye).filter(|f| f.0 >= a && f.0 <= b) {
+                least = if (eye - self.at(l).0).dot(self.at(l).1).abs() < 1e-9 { least.min(d) } else { least };
+            }
+        }
+        least
+    }
+
+    fn cell_at(&self, l: f64) -> &Cell {
+        let i = self.starts.partition_point(|&s| s <= l);
+        &self.cells[i.max(1) - 1]
+    }
+
+    fn tangent_in(&self, cell: &Cell, x: f64) -> DVec2 {
+        tangent_in(&self.spans[cell.span], x, cell.x_mid, self.scale)
+    }
+}
+
+impl Cell {
+    fn parameter(&self, l: f64) -> f64 {
+        let y = ((2.0 * l - self.l0 - self.l1) / (self.l1 - self.l0)).clamp(-1.0, 1.0);
+        self.x_mid + self.x_half * self.poly.iter().rev().fold(0.0, |sum, c| sum * y + c)
+    }
+}
+
+/// Angle between two unit vectors, 0..=pi, accurate near 0.
+pub(super) fn angle(a: DVec2, b: DVec2) -> f64 {
+    a.perp_dot(b).abs().atan2(a.dot(b))
+}
+
+/// Unit tangent at `x`; where the speed vanishes that of the side of `inward`.
+pub(super) fn tangent_in(span: &CubicSpan, x: f64, inward: f64, scale: f64) -> DVec2 {
+    let d = span.d1(x);
+    let speed2 = d.length_squared();
+    if speed2 > 1e-18 * scale * scale {
+        return d / speed2.sqrt();
+    }
+    span.d1(moving(span, x, inward, 1e-9 * scale)).normalize_or(DVec2::X)
+}
+
+/// Curvature at `x`; where the speed vanishes that of the side of `inward`. At most 1e8 / scale.
+pub(super) fn curvature_in(span: &CubicSpan, x: f64, inward: f64, scale: f64) -> f64 {
+    let slow = 1e-7 * scale;
+    let x = if span.d1(x).length_squared() > slow * slow { x } else { moving(span, x, inward, slow) };
+    let (d1, d2) = (span.d1(x), span.d2(x));
+    let cross = d1.perp_dot(d2);
+    // Below this it is the rounding of the difference of two products.
+    if cross.abs() <= 1e-15 * scale * d2.length() {
+        return 0.0;
+    }
+    let limit = 1e8 / scale;
+    (cross / d1.length().powi(3)).clamp(-limit, limit)
+}
+
+/// The nearest of a few parameters between `x` and `inward` at which the speed exceeds `slow`.
+fn moving(span: &CubicSpan, x: f64, inward: f64, slow: f64) -> f64 {
+    let toward = if inward >= x { 1.0 } else { -1.0 };
+    [1e-6, 1e-5, 1e-4, 1e-3, 1e-2]
+        .into_iter()
+        .map(|h| x + toward * h)
+        .find(|&x| span.d1(x).length() > slow)
+        .unwrap_or(inward)
+}

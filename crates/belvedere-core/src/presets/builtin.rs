@@ -1,0 +1,121 @@
+//! Built-in preset documents.
+
+use super::{BendFrame, DepthUnits, Ease, Preset, PresetDocument, PresetError, Tag, one_section};
+
+/// Names of the built-in documents; `identity` also takes an angle in degrees, as in `identity(35)`.
+pub const BUILTIN_NAMES: [&str; 7] =
+    ["progressive", "degressive", "hybrid-flat-steep-flat", "hybrid-steep-flat-steep", "map", "identity", "demo"];
+
+impl PresetDocument {
+    /// A built-in document by name, see [`BUILTIN_NAMES`]. Underscores and hyphens are the same.
+    ///
+    /// Source of the curves: ours, after the figures of Pasewaldt et al. 2011 (which print no control points).
+    ///
+    /// # Errors
+    /// [`PresetError::UnknownName`]; [`PresetError::Range`] for an angle outside -90..=90.
+    ///
+    /// ```
+    /// use belvedere_core::presets::PresetDocument;
+    /// let document = PresetDocument::builtin("progressive")?;
+    /// assert_eq!(document.presets[0].phi, 40.0);
+    /// # Ok::<(), belvedere_core::presets::PresetError>(())
+    /// ```
+    pub fn builtin(name: &str) -> Result<Self, PresetError> {
+        let key = name.trim().replace('_', "-");
+        let document = match key.as_str() {
+            "progressive" => document(vec![progressive(40.0)]),
+            "degressive" => document(vec![degressive(25.0)]),
+            "hybrid-flat-steep-flat" => document(vec![flat_steep_flat()]),
+            "hybrid-steep-flat-steep" => document(vec![steep_flat_steep()]),
+            "map" => document(vec![map()]),
+            "identity" => Self { frame: BendFrame::Plane, ..document(vec![straight(0.0)]) },
+            "demo" => demo(),
+            _ => document(vec![straight(angle_of(&key).ok_or(PresetError::UnknownName { name: name.to_owned() })?)]),
+        };
+        document.validate()?;
+        Ok(document)
+    }
+}
+
+fn angle_of(key: &str) -> Option<f64> {
+    key.strip_prefix("identity(")?.strip_suffix(')')?.trim().parse().ok()
+}
+
+fn document(presets: Vec<Preset>) -> PresetDocument {
+    PresetDocument {
+        version: PresetDocument::VERSION,
+        frame: BendFrame::Camera,
+        units: DepthUnits::Distance,
+        pin: true,
+        ease: Ease::Linear,
+        follow: true,
+        presets,
+    }
+}
+
+fn preset(name: &str, phi: f64, [s, e]: [f64; 2], control: &[[f64; 2]]) -> Preset {
+    Preset {
+        name: name.to_owned(),
+        phi,
+        tau: 0.0,
+        s,
+        e,
+        a: 0.1,
+        b: 0.6,
+        control: control.to_vec(),
+        knots: None,
+        tags: Vec::new(),
+        sections: one_section(),
+        fov_y_deg: None,
+    }
+}
+
+/// Steep in front, flat behind: a map in the foreground under a horizon.
+fn progressive(phi: f64) -> Preset {
+    preset("progressive", phi, [0.5, 1.9], &[[0.0, -0.42], [0.17, -0.08], [0.42, 0.03], [1.0, 0.20]])
+}
+
+/// Flat in front, steep behind: a close view in front of a map of what lies ahead.
+fn degressive(phi: f64) -> Preset {
+    preset("degressive", phi, [0.4, 1.6], &[[0.0, -0.22], [0.45, -0.12], [0.80, 0.05], [0.98, 0.62]])
+}
+
+fn flat_steep_flat() -> Preset {
+    let control = [[0.0, -0.26], [0.26, -0.19], [0.26, -0.19], [0.46, 0.08], [0.46, 0.08], [1.0, 0.24]];
+    preset("hybrid-flat-steep-flat", 35.0, [0.4, 1.6], &control)
+}
+
+fn steep_flat_steep() -> Preset {
+    let control = [[0.0, -0.45], [0.20, -0.10], [0.20, -0.10], [0.80, 0.12], [0.80, 0.12], [1.0, 0.55]];
+    preset("hybrid-steep-flat-steep", 35.0, [0.4, 1.6], &control)
+}
+
+/// A plane seen under 80 degrees.
+fn map() -> Preset {
+    let run = 0.6 / 80f64.to_radians().tan();
+    let control = [0.0, 1.0, 2.0, 3.0].map(|i| [0.4 + i * run, -0.9 + i * 0.6]);
+    preset("map", 80.0, [0.4, 1.6], &control)
+}
+
+/// A straight curve of slope `phi`: the ordinary perspective at that viewing angle.
+fn straight(phi: f64) -> Preset {
+    let (sin, cos) = phi.to_radians().sin_cos();
+    let control = [-0.5, -0.5 + 1.0 / 3.0, 0.5 - 1.0 / 3.0, 0.5].map(|l| [0.5 + l * cos, l * sin]);
+    preset("identity", phi, [0.4, 1.6], &control)
+}
+
+/// Three presets over the whole range of viewing angles, with levels of abstraction `loa0` (detailed) to `loa2`.
+fn demo() -> PresetDocument {
+    let styled = |name: &str, preset: Preset, tau: f64, sections: [&str; 3]| Preset {
+        name: name.to_owned(),
+        tau,
+        tags: [1.0, 2.0].map(|i| Tag { u: i / 3.0, delta: 0.05 }).to_vec(),
+        sections: sections.map(str::to_owned).to_vec(),
+        ..preset
+    };
+    document(vec![
+        styled("low", degressive(25.0), 3.0, ["loa0", "loa1", "loa2"]),
+        styled("medium", progressive(42.0), 4.0, ["loa0", "loa1", "loa2"]),
+        styled("high", map(), 5.0, ["loa1", "loa1", "loa2"]),
+    ])
+}

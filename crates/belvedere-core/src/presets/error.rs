@@ -1,0 +1,118 @@
+//! What can be wrong with a preset document.
+
+use crate::bspline::BSplineError;
+
+/// A preset document that describes no usable deformation. `preset` is the name in quotes, or the position from 1 if it has none.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PresetError {
+    /// Unknown version.
+    #[error("preset document has version {version}, this program reads version 1; use a newer program or convert it")]
+    Version {
+        /// Version found.
+        version: u32,
+    },
+    /// No preset at all.
+    #[error("preset document holds 0 presets, at least 1 is needed; add one")]
+    Empty,
+    /// NaN or infinite.
+    #[error("preset {preset}: {field} is not a finite number; give a finite value")]
+    NotFinite {
+        /// Preset.
+        preset: String,
+        /// Which value.
+        field: &'static str,
+    },
+    /// A value outside its range.
+    #[error("preset {preset}: {field} is {value}, it must be in {min}..={max}")]
+    Range {
+        /// Preset.
+        preset: String,
+        /// Which value.
+        field: &'static str,
+        /// The value.
+        value: f64,
+        /// Smallest allowed.
+        min: f64,
+        /// Largest allowed.
+        max: f64,
+    },
+    /// `e <= s`.
+    #[error("preset {preset}: far depth e = {e} does not exceed near depth s = {s}; give e > s")]
+    EndBeforeStart {
+        /// Preset.
+        preset: String,
+        /// Near depth.
+        s: f64,
+        /// Far depth.
+        e: f64,
+    },
+    /// Bad control points or knots.
+    #[error("preset {preset}: {source}")]
+    Curve {
+        /// Preset.
+        preset: String,
+        /// What is wrong.
+        source: BSplineError,
+    },
+    /// The control points run towards the eye.
+    #[error(
+        "preset {preset}: the last control point (u = {far}) is nearer than the first (u = {near}); list them near to far"
+    )]
+    FarEndNearer {
+        /// Preset.
+        preset: String,
+        /// u of the first control point.
+        near: f64,
+        /// u of the last control point.
+        far: f64,
+    },
+    /// All control points coincide.
+    #[error("preset {preset}: the curve is {length:e} long, at least 1e-9 is needed; move its control points apart")]
+    CurveTooShort {
+        /// Preset.
+        preset: String,
+        /// Length, curve units.
+        length: f64,
+    },
+    /// Tags not ascending.
+    #[error("preset {preset}: tag {index} lies at u = {u}, not beyond the tag before it ({before}); sort the tags")]
+    TagOrder {
+        /// Preset.
+        preset: String,
+        /// Index of the tag, from 0.
+        index: usize,
+        /// Its place.
+        u: f64,
+        /// Place of the tag before.
+        before: f64,
+    },
+    /// Number of sections.
+    #[error("preset {preset}: {sections} sections for {tags} tags; exactly {needed} are needed")]
+    SectionCount {
+        /// Preset.
+        preset: String,
+        /// Sections found.
+        sections: usize,
+        /// Tags found.
+        tags: usize,
+        /// Tags + 1.
+        needed: usize,
+    },
+    /// Two presets for one angle.
+    #[error("presets {first} and {second} have the same phi = {phi} degrees; change one of them")]
+    DuplicatePhi {
+        /// One preset.
+        first: String,
+        /// The other.
+        second: String,
+        /// The angle, degrees.
+        phi: f64,
+    },
+    /// No built-in document of that name.
+    #[error("there is no built-in preset {name:?}; use one of {}", super::BUILTIN_NAMES.join(", "))]
+    UnknownName {
+        /// Name asked for.
+        name: String,
+    },
+}

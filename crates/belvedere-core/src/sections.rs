@@ -1,0 +1,99 @@
+//! Styling sections: which representation is shown where along the deformation curve.
+
+use crate::presets::Tag;
+
+/// Two lists of styling sections over common tag points, cross-faded by `beta`.
+///
+/// Weights are functions of `t`, the arc length along the curve as a share of its length (below 0 and above 1 on the extensions).
+/// For every `t` the weights of the sections are non-negative and sum to 1, also where transitions overlap.
+///
+/// Source: Pasewaldt et al. 2011, section 4.4; the monotone steps are ours (the printed ramps leave holes).
+#[derive(Debug, Clone, PartialEq)]
+pub struct StylingSections {
+    tags: Vec<Tag>,
+    start: Vec<String>,
+    target: Vec<String>,
+    beta: f64,
+}
+
+impl StylingSections {
+    /// Sections `start` fading to `target`, both with one more entry than `tags`; `beta` in 0..=1 is the share of `target`.
+    /// `None` if the numbers do not fit or a value is not finite.
+    pub fn new(tags: Vec<Tag>, start: Vec<String>, target: Vec<String>, beta: f64) -> Option<Self> {
+        let fits = start.len() == tags.len() + 1 && target.len() == start.len();
+        let finite = tags.iter().all(|t| t.u.is_finite() && t.delta.is_finite()) && (0.0..=1.0).contains(&beta);
+        (fits && finite).then_some(Self { tags, start, target, beta })
+    }
+
+    /// One section of the representation `all`.
+    pub fn plain() -> Self {
+        let all = vec!["all".to_owned()];
+        Self { tags: Vec::new(), start: all.clone(), target: all, beta: 0.0 }
+    }
+
+    /// Number of sections, at least 1.
+    pub fn len(&self) -> usize {
+        self.start.len()
+    }
+
+    /// Never: there is at least one section.
+    pub fn is_empty(&self) -> bool {
+        self.start.is_empty()
+    }
+
+    /// Tag points between the sections.
+    pub fn tags(&self) -> &[Tag] {
+        &self.tags
+    }
+
+    /// Share of the target representations, 0..=1.
+    pub fn beta(&self) -> f64 {
+        self.beta
+    }
+
+    /// Representations of section `i` before and after the transition.
+    pub fn ids(&self, i: usize) -> Option<(&str, &str)> {
+        Some((self.start.get(i)?, self.target.get(i)?))
+    }
+
+    /// Weight of each section at `t`, near to far.
+    pub fn weights(&self, t: f64) -> Vec<f64> {
+        let mut step = 1.0;
+        let mut weights = Vec::with_capacity(self.len());
+        for tag in &self.tags {
+            let next = ramp(tag, t).min(step);
+            weights.push(step - next);
+            step = next;
+        }
+        weights.push(step);
+        weights
+    }
+
+    /// The distinct representations, in order of first appearance.
+    pub fn representations(&self) -> Vec<&str> {
+        let mut ids: Vec<&str> = Vec::new();
+        for id in self.start.iter().chain(&self.target) {
+            if !ids.contains(&id.as_str()) {
+                ids.push(id);
+            }
+        }
+        ids
+    }
+
+    /// Weight of representation `id` at `t`: the section weights, cross-faded by `beta`; 0 for an id that does not occur.
+    pub fn representation_weight(&self, id: &str, t: f64) -> f64 {
+        let share = |i: usize| {
+            let before = if self.start[i] == id { 1.0 - self.beta } else { 0.0 };
+            before + if self.target[i] == id { self.beta } else { 0.0 }
+        };
+        self.weights(t).iter().enumerate().map(|(i, w)| w * share(i)).sum()
+    }
+}
+
+/// Step from 0 to 1 at a tag, over the width of its transition.
+fn ramp(tag: &Tag, t: f64) -> f64 {
+    if tag.delta < 1e-12 || t.is_nan() {
+        return if t >= tag.u { 1.0 } else { 0.0 };
+    }
+    ((t - tag.u + tag.delta) / (2.0 * tag.delta)).clamp(0.0, 1.0)
+}
