@@ -52,7 +52,9 @@ pub enum BSplineError {
         before: f64,
     },
     /// First or last four knots differ, or the whole range is empty.
-    #[error("the knots run from {first} to {last} but are not clamped; the first four must be equal, the last four too")]
+    #[error(
+        "the knots run from {first} to {last} but are not clamped; the first four must be equal, the last four too"
+    )]
     NotClamped {
         /// First knot.
         first: f64,

@@ -2,6 +2,9 @@
 
 use super::{Preset, Tag};
 
+/// Sections of both presets that belong together; `None` = without partner.
+type Pair = (Option<usize>, Option<usize>);
+
 /// One preset's sections after matching.
 pub(super) struct Aligned {
     pub(super) tags: Vec<Tag>,
@@ -14,7 +17,7 @@ pub(super) struct Aligned {
 /// partner the other preset's neighbouring section is split in two of the same id, with a border of no width: nothing is seen of it.
 pub(super) fn align(p: &Preset, q: &Preset) -> [Aligned; 2] {
     let pairs = pair(p, q);
-    let indices = |side: fn(&(Option<usize>, Option<usize>)) -> Option<usize>| -> Vec<usize> {
+    let indices = |side: fn(&Pair) -> Option<usize>| -> Vec<usize> {
         let first = pairs.iter().find_map(side).unwrap_or(0);
         pairs
             .iter()
@@ -40,7 +43,7 @@ fn border(preset: &Preset, i: usize) -> Tag {
 }
 
 /// Partners by edit distance; every entry advances at least one side.
-fn pair(p: &Preset, q: &Preset) -> Vec<(Option<usize>, Option<usize>)> {
+fn pair(p: &Preset, q: &Preset) -> Vec<Pair> {
     let (m, n) = (p.sections.len(), q.sections.len());
     let alone = |preset: &Preset, i: usize| {
         let [from, to] = extent(preset, i);

@@ -147,7 +147,8 @@ impl Preset {
 
     fn validate(&self, index: usize) -> Result<(), PresetError> {
         let preset = || self.label(index);
-        let numbers = [("phi", self.phi), ("tau", self.tau), ("s", self.s), ("e", self.e), ("a", self.a), ("b", self.b)];
+        let numbers =
+            [("phi", self.phi), ("tau", self.tau), ("s", self.s), ("e", self.e), ("a", self.a), ("b", self.b)];
         let tags = self.tags.iter().flat_map(|t| [("tag u", t.u), ("tag delta", t.delta)]);
         let control = self.control.iter().flatten().map(|&v| ("control", v));
         let fov = self.fov_y_deg.map(|v| ("fov_y_deg", v));
@@ -172,7 +173,8 @@ impl Preset {
         if far < near - 1e-12 {
             return Err(PresetError::FarEndNearer { preset: preset(), near, far });
         }
-        DeformationCurve::new(&spline).map_err(|e| PresetError::CurveTooShort { preset: preset(), length: e.length })?;
+        DeformationCurve::new(&spline)
+            .map_err(|e| PresetError::CurveTooShort { preset: preset(), length: e.length })?;
         self.validate_sections(index)
     }
 

@@ -144,7 +144,11 @@ fn solve(span: &CubicSpan, x0: f64, x1: f64, length: f64, l: f64) -> f64 {
     let mut x = x0 + (x1 - x0) * (l / length).clamp(0.0, 1.0);
     for _ in 0..60 {
         let error = gauss_length(span, x0, x) - l;
-        if error > 0.0 { hi = x } else { lo = x }
+        if error > 0.0 {
+            hi = x
+        } else {
+            lo = x
+        }
         let newton = x - error / span.d1(x).length();
         let next = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
         if (next - x).abs() <= 1e-16 * (x1 - x0) || next == x {

@@ -52,7 +52,7 @@ pub enum PresetWarning {
     FacesAway {
         /// Viewing angle with the worst facing, degrees.
         phi_deg: f64,
-        /// Facing there, curve units.
+        /// Facing there, a sine.
         facing: f64,
     },
     /// The data reach beyond the fold limit.

@@ -196,7 +196,11 @@ impl DeformationCurve {
             let v = q - span.point(x);
             let (g, d) = (v.dot(t), v.dot(t.perp()));
             let j = 1.0 - curvature_in(span, x, cell.x_mid, self.scale) * d;
-            if g > 0.0 { lo = l } else { hi = l }
+            if g > 0.0 {
+                lo = l
+            } else {
+                hi = l
+            }
             let newton = l + g / j;
             let next = if j > 0.0 && newton >= lo && newton <= hi { newton } else { 0.5 * (lo + hi) };
             if (next - l).abs() <= 2e-16 * self.length || g == 0.0 {
@@ -209,26 +213,18 @@ impl DeformationCurve {
         (1.0 - self.curvature_at(l) * d > 1e-9).then_some((l, d))
     }
 
-    /// Smallest value of `n(l) . (eye - P(l))` for `l` between `l0 <= l1`: how far the eye lies above the tangents, curve units.
-    /// It is constant on the extensions.
+    /// Smallest sine of the angle between the curve and the ray from `eye`, for `l` between `l0 <= l1`; negative where the eye lies
+    /// below the tangent. Sampled sixteen times on each monotone piece; exact in sign on the extensions.
     pub fn min_facing(&self, eye: DVec2, l0: f64, l1: f64) -> f64 {
         let at = |l: f64| {
             let (p, t) = self.at(l);
-            (eye - p).dot(t.perp())
+            (eye - p).normalize_or_zero().dot(t.perp())
         };
-        let (a, b) = (l0.clamp(0.0, self.length), l1.clamp(0.0, self.length));
-        let mut least = at(a).min(at(b));
-        for cell in self.cells.iter().filter(|c| c.l1 >= a && c.l0 <= b) {
-            // Stationary where the curvature changes sign (a cell's end) or where the eye has its foot.
-            for k in 0..4 {
-                let l = cell.l0 + (cell.l1 - cell.l0) * f64::from(k) / 4.0;
-                least = if l >= a && l <= b { least.min(at(l)) } else { least };
-            }
-            if let Some((l, d)) = self.foot_in(cell, eye).filter(|f| f.0 >= a && f.0 <= b) {
-                least = if (eye - self.at(l).0).dot(self.at(l).1).abs() < 1e-9 { least.min(d) } else { least };
-            }
-        }
-        least
+        let inner = self.cells.iter().filter(|c| c.l1 >= l0 && c.l0 <= l1).flat_map(|c| {
+            let place = move |k: u32| c.l0 + (c.l1 - c.l0) * f64::from(k) / 16.0;
+            (0..=16).map(place).filter(|l| (l0..=l1).contains(l))
+        });
+        inner.map(at).fold(at(l0).min(at(l1)), f64::min)
     }
 
     fn cell_at(&self, l: f64) -> &Cell {

@@ -15,6 +15,7 @@ pub use resolve::{ResolvedPreset, SplineError};
 use super::{Miss, SpaceMap};
 use crate::sections::StylingSections;
 use glam::{DMat3, DVec2, DVec3};
+use std::sync::Arc;
 
 /// The ground bends along a curve in the direction of view: steep where it should read as a map, flat where it should show a horizon.
 ///
@@ -22,7 +23,7 @@ use glam::{DMat3, DVec2, DVec3};
 /// `d` along the curve's normal; nothing changes across the direction of view. Lengths along the ground are kept, straight lines continue
 /// the curve at both ends, and a straight curve of slope phi is the ordinary perspective.
 ///
-/// Everything is resolved: plain data for one camera. Source: Pasewaldt et al. 2011, section 4; arc-length units, pin, `plane` frame and
+/// Everything is resolved: plain data for one camera; clones share the curve. Source: Pasewaldt et al. 2011, section 4; arc-length units, pin, `plane` frame and
 /// follow are ours.
 ///
 /// ```
@@ -57,9 +58,9 @@ pub struct SplineBend {
     shift: DVec2,
     /// Eye in shifted curve coordinates.
     eye: DVec2,
-    curve: DeformationCurve,
-    sections: StylingSections,
-    resolved: ResolvedPreset,
+    curve: Arc<DeformationCurve>,
+    sections: Arc<StylingSections>,
+    resolved: Arc<ResolvedPreset>,
 }
 
 /// Coordinates of a point along and above the deformation curve.
@@ -135,8 +136,8 @@ impl SplineBend {
         ]
     }
 
-    /// Smallest height of the eye over the tangents of the deformed ground, curve units, from the near end to one curve length beyond the
-    /// far end. The ground is seen from above everywhere, and rises in the picture with its depth, if and only if this is positive.
+    /// Smallest sine of the angle under which the eye sees the deformed reference plane, from the near end of the curve to one curve
+    /// length beyond the far end. If it is positive the ground is seen from above and rises in the picture with its depth.
     pub fn facing(&self) -> f64 {
         self.curve.min_facing(self.eye - self.shift, 0.0, 2.0 * self.curve.length())
     }

@@ -5,6 +5,7 @@ use super::{CurveTooShort, DeformationCurve, ReferencePlane, SplineBend};
 use crate::presets::{BendFrame, DepthUnits, PresetDocument, PresetError};
 use crate::{Pinhole, Projection};
 use glam::{DVec2, DVec3};
+use std::sync::Arc;
 
 /// A preset document that cannot be resolved for a camera.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -108,8 +109,8 @@ impl SplineBend {
         let scale = e - s;
         let depth = (origin - pinhole.eye).dot(pinhole.forward);
         let l_origin = (depth - s) / scale;
-        let curve = DeformationCurve::new(&preset.spline)
-            .map_err(|source| SplineError::Vanishes { phi_deg, source })?;
+        let curve =
+            DeformationCurve::new(&preset.spline).map_err(|source| SplineError::Vanishes { phi_deg, source })?;
         let shift = if document.pin { -curve.at(l_origin).0 } else { DVec2::new(-l_origin, 0.0) };
         let follow = follow_angle(document, phi_deg);
         let slope = match document.frame {
@@ -131,9 +132,9 @@ impl SplineBend {
             l_origin,
             shift,
             eye: DVec2::new(to_eye.dot(out_u), to_eye.dot(out_v)) / scale,
-            curve,
-            sections: preset.sections,
-            resolved: ResolvedPreset {
+            curve: Arc::new(curve),
+            sections: Arc::new(preset.sections),
+            resolved: Arc::new(ResolvedPreset {
                 phi_deg,
                 start: selection.start.name.clone(),
                 target: selection.target.name.clone(),
@@ -147,7 +148,7 @@ impl SplineBend {
                 control: preset.spline.control().iter().map(|p| p.to_array()).collect(),
                 knots: preset.spline.knots().to_vec(),
                 fov_y_deg: preset.fov_y_deg,
-            },
+            }),
         })
     }
 

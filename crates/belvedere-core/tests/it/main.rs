@@ -1,0 +1,3 @@
+//! Laws and references for the mathematics.
+
+mod spline_figures;
