@@ -1,5 +1,7 @@
 //! Rasters as every loader returns them: samples, georeference and what counts as no data.
 
+use rayon::prelude::*;
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 /// Affine map of the plane: `x' = a[0] x + a[1] y + a[2]`, `y' = a[3] x + a[4] y + a[5]`.
@@ -155,6 +157,7 @@ macro_rules! with_samples {
         }
     };
 }
+pub(crate) use with_samples;
 
 impl Samples {
     /// Number of samples of all bands together.
@@ -351,55 +354,69 @@ impl Raster {
     /// One sentence if it is no picture of 8 or 16 bits per sample.
     pub fn to_rgba(&self) -> Result<Vec<[u8; 4]>, String> {
         let info = &self.info;
-        let full = match info.sample_type {
-            SampleType::U8 => 255.0,
-            SampleType::U16 => 65535.0,
-            other => {
-                return Err(format!(
-                    "samples are {}, a picture needs uint8 or uint16; convert it or use it as terrain",
-                    other.name()
-                ));
-            }
-        };
         if let Photometric::Rgb(bands) = info.photometric
             && let Some(band) = bands.into_iter().find(|&b| b >= info.bands)
         {
             return Err(format!("colour is said to be in band {}, there are {}", band + 1, info.bands));
         }
-        let pixels = info.width * info.height;
-        let alpha_full = self.alpha_full(full);
-        Ok((0..pixels).map(|i| self.rgba_at(i, full, alpha_full)).collect())
+        let bytes = self.picture_bytes()?;
+        let bands = info.bands.max(1);
+        let pixels = bytes.par_chunks_exact(bands).enumerate();
+        Ok(pixels
+            .with_min_len(1 << 14)
+            .map(|(i, pixel)| if self.is_absent(i) { [0; 4] } else { self.rgba(pixel) })
+            .collect())
     }
 
-    /// Alpha that means opaque: some writers put 0..=255 into an alpha band of 16 bits.
-    fn alpha_full(&self, full: f64) -> f64 {
-        let Some(band) = self.info.alpha.band() else { return full };
-        let alphas = (band..self.samples.len()).step_by(self.info.bands.max(1));
-        let largest = alphas.filter_map(|i| self.samples.get_f64(i)).fold(0.0, f64::max);
-        if largest > 0.0 && largest <= 255.0 { 255.0 } else { full }
-    }
-
-    fn rgba_at(&self, pixel: usize, full: f64, alpha_full: f64) -> [u8; 4] {
+    /// Samples scaled to 8 bits, but for palette indices.
+    fn picture_bytes(&self) -> Result<Cow<'_, [u8]>, String> {
         let info = &self.info;
-        let stored = |band: usize| self.samples.get_f64(pixel * info.bands + band).unwrap_or(0.0);
-        let byte = |v: f64| (v * 255.0 / full).round() as u8;
-        let absent = match info.photometric {
-            Photometric::Rgb(bands) => bands.into_iter().all(|b| self.is_nodata(stored(b))),
-            _ => self.is_nodata(stored(0)),
-        };
-        if absent || self.mask.as_ref().is_some_and(|m| !m.get(pixel).copied().unwrap_or(false)) {
-            return [0; 4];
+        match &self.samples {
+            Samples::U8(v) => Ok(Cow::Borrowed(v)),
+            Samples::U16(v) if !matches!(info.photometric, Photometric::Palette(_)) => {
+                let bands = info.bands.max(1);
+                let alpha = info.alpha.band().unwrap_or(usize::MAX);
+                // Some writers put 0..=255 into an alpha band of 16 bits.
+                let short_alpha = v.iter().skip(alpha).step_by(bands).all(|&a| a <= 255);
+                let byte = |(i, &v): (usize, &u16)| match i % bands == alpha && short_alpha {
+                    true => v as u8,
+                    false => ((u32::from(v) * 255 + 32767) / 65535) as u8,
+                };
+                Ok(Cow::Owned(v.iter().enumerate().map(byte).collect()))
+            }
+            other => Err(format!(
+                "samples are {}, a picture needs uint8 or uint16 without palette, or uint8 with one; convert it or use it as terrain",
+                other.sample_type().name()
+            )),
         }
+    }
+
+    fn is_absent(&self, pixel: usize) -> bool {
+        let info = &self.info;
+        let nodata = |band: usize| {
+            info.nodata.is_some()
+                && self.samples.get_f64(pixel * info.bands + band).is_some_and(|stored| self.is_nodata(stored))
+        };
+        let absent = match info.photometric {
+            Photometric::Rgb(bands) => bands.into_iter().all(nodata),
+            _ => nodata(0),
+        };
+        absent || self.mask.as_ref().is_some_and(|m| !m.get(pixel).copied().unwrap_or(false))
+    }
+
+    fn rgba(&self, pixel: &[u8]) -> [u8; 4] {
+        let info = &self.info;
+        let at = |band: usize| pixel.get(band).copied().unwrap_or(0);
         let mut rgb = match &info.photometric {
-            Photometric::Gray => [byte(stored(0)); 3],
-            Photometric::GrayInverted => [255 - byte(stored(0)); 3],
-            Photometric::Rgb(bands) => bands.map(|b| byte(stored(b))),
-            Photometric::Palette(colors) => match colors.get(stored(0) as usize) {
+            Photometric::Gray => [at(0); 3],
+            Photometric::GrayInverted => [255 - at(0); 3],
+            Photometric::Rgb(bands) => bands.map(at),
+            Photometric::Palette(colors) => match colors.get(usize::from(at(0))) {
                 Some(color) => *color,
                 None => return [0; 4],
             },
         };
-        let alpha = info.alpha.band().map_or(255, |band| (stored(band) * 255.0 / alpha_full).round() as u8);
+        let alpha = info.alpha.band().map_or(255, at);
         if let Alpha::Premultiplied(_) = info.alpha
             && alpha > 0
         {

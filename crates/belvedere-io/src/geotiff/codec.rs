@@ -29,7 +29,7 @@ impl Scratch {
         let row_bytes = (size / rows.max(1)).max(1);
         let sample = (layout.stored.bits() / 8) as usize;
         let bands = layout.chunk_bands();
-        let predictor = if layout.compression == Compression::None { 1 } else { layout.predictor };
+        let predictor = if layout.compression.takes_predictor() { layout.predictor } else { 1 };
         if predictor == 3 {
             for row in self.out.chunks_exact_mut(row_bytes) {
                 undo_float_predictor(row, bands, sample, &mut self.turn);
@@ -91,8 +91,7 @@ impl Scratch {
         let lzw = self.lzw.get_or_insert_with(|| Lzw::with_tiff_size_switch(BitOrder::Msb, 8));
         lzw.reset();
         let (mut read, mut wrote) = (0, 0);
-        loop {
-            let (Some(input), Some(output)) = (self.raw.get(read..), self.out.get_mut(wrote..)) else { break };
+        while let (Some(input), Some(output)) = (self.raw.get(read..), self.out.get_mut(wrote..)) {
             let result = lzw.decode_bytes(input, output);
             read += result.consumed_in;
             wrote += result.consumed_out;

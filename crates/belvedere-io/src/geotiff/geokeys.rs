@@ -143,7 +143,7 @@ fn transform(container: &Container, ifd: &Ifd, warnings: &mut Vec<String>) -> Re
     let found = match (&scale[..], &ties[..], &matrix[..]) {
         (&[sx, sy, ..], &[i, j, _, x, y, _, ..], _) if sx != 0.0 && sy != 0.0 => {
             if sy < 0.0 {
-                warnings.push(format!("pixel height is stored as {sy}; rows are taken to run southwards as usual"));
+                warnings.push(format!("pixel height is stored as {sy:e}; rows are taken to run southwards as usual"));
             }
             Affine([sx, 0.0, x - i * sx, 0.0, -sy.abs(), y + j * sy.abs()])
         }
@@ -158,7 +158,7 @@ fn transform(container: &Container, ifd: &Ifd, warnings: &mut Vec<String>) -> Re
     if found.inverse().is_none() {
         let [a, b, c, d, e, f] = found.0;
         return Err(format!(
-            "its georeference [{a}, {b}, {c}; {d}, {e}, {f}] cannot be inverted; assign a proper one, for example with gdal_edit"
+            "its georeference [{a:e}, {b:e}, {c:e}; {d:e}, {e:e}, {f:e}] cannot be inverted; assign a proper one, for example with gdal_edit"
         ));
     }
     Ok(Some(found))

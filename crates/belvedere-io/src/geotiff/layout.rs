@@ -48,6 +48,11 @@ impl Compression {
         }
     }
 
+    /// Whether the predictor tag means something; elsewhere it is ignored, as libtiff does.
+    pub(super) fn takes_predictor(self) -> bool {
+        matches!(self, Self::Lzw | Self::Deflate | Self::Zstd)
+    }
+
     /// More decoded bytes than this per stored byte cannot come from an honest encoder.
     fn max_ratio(self) -> u64 {
         match self {
@@ -159,8 +164,8 @@ impl Layout {
         let same = |number: u16, default: u64, what: &str| -> Result<u64, String> {
             let values = container.uints(ifd, number)?.unwrap_or_default();
             let first = values.first().copied().unwrap_or(default);
-            if values.iter().any(|&v| v != first) {
-                return Err(format!("bands differ in {what} ({values:?}); convert them to one type"));
+            if let Some(other) = values.iter().find(|&&v| v != first) {
+                return Err(format!("bands differ in {what} ({first} and {other}); convert them to one type"));
             }
             Ok(first)
         };
@@ -218,7 +223,7 @@ impl Layout {
             3 => matches!(self.stored, Stored::Half | Stored::Plain(SampleType::F32 | SampleType::F64)),
             _ => false,
         };
-        if !fits && self.compression != Compression::Jpeg && self.compression != Compression::None {
+        if !fits && self.compression.takes_predictor() {
             return Err(format!("predictor {} does not go with samples of {bits} bits", self.predictor));
         }
         if bits < 8 && (self.planar || self.bands > 1) {

@@ -10,6 +10,9 @@ mod layout;
 mod meta;
 mod read;
 mod source;
+mod write;
+
+pub use write::write_geotiff;
 
 use crate::raster::{Limits, Raster, RasterInfo, SampleType, Samples};
 use crate::{IoError, Loaded};

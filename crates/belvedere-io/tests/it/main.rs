@@ -3,4 +3,6 @@
 mod atomic;
 mod crs;
 mod geotiff;
+mod geotiff_made;
 mod png;
+mod tiff_writer;
