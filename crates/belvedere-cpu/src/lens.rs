@@ -118,7 +118,6 @@ impl Lens {
     }
 
     /// Pixel of a view-space point with z > 0.
-    #[allow(dead_code)]
     #[inline]
     pub(crate) fn pixel(&self, v: DVec3) -> DVec2 {
         let s = if self.ortho { self.scale } else { self.scale / v.z };

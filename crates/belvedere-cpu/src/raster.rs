@@ -210,15 +210,13 @@ impl Setup {
     fn span(&self, ys: i32, ox: i32, xa: i32, xb: i32) -> (i32, i32) {
         let e = self.edges_at(xa * SUB + ox, ys);
         let (mut lo, mut hi) = (0i64, i64::from(xb - xa));
-        for i in 0..3 {
-            match self.dx[i] {
-                0 if e[i] < 0 => return (1, 0),
-                0 => {}
-                // e + k dx >= 0
-                d if d > 0 && e[i] < 0 => lo = lo.max((-e[i] + d - 1) / d),
-                d if d < 0 && e[i] < 0 => return (1, 0),
-                d if d < 0 => hi = hi.min(e[i] / -d),
-                _ => {}
+        for (e, d) in e.into_iter().zip(self.dx) {
+            // e + k d >= 0
+            match (e < 0, d.signum()) {
+                (true, 1) => lo = lo.max((-e + d - 1) / d),
+                (true, _) => return (1, 0),
+                (false, -1) => hi = hi.min(e / -d),
+                (false, _) => {}
             }
         }
         if lo > hi { (1, 0) } else { (xa + lo as i32, xa + hi as i32) }

@@ -8,14 +8,14 @@ use belvedere_scene::{
 };
 
 /// Deterministic numbers in [0, 1).
-pub struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    pub fn next(&mut self) -> f64 {
+    pub(crate) fn next(&mut self) -> f64 {
         // splitmix64
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -24,12 +24,12 @@ impl Random {
         (z ^ (z >> 31)) as f64 / 2f64.powi(64)
     }
 
-    pub fn range(&mut self, lo: f64, hi: f64) -> f64 {
+    pub(crate) fn range(&mut self, lo: f64, hi: f64) -> f64 {
         lo + (hi - lo) * self.next()
     }
 }
 
-pub fn terrain(heightfield: Heightfield) -> TerrainLayer {
+pub(crate) fn terrain(heightfield: Heightfield) -> TerrainLayer {
     TerrainLayer {
         heightfield,
         drapes: Vec::new(),
@@ -40,16 +40,16 @@ pub fn terrain(heightfield: Heightfield) -> TerrainLayer {
     }
 }
 
-pub fn layer(id: &str, kind: LayerKind) -> Layer {
+pub(crate) fn layer(id: &str, kind: LayerKind) -> Layer {
     Layer { id: id.into(), must_see: false, kind }
 }
 
-pub fn scene(layers: Vec<Layer>) -> Scene {
+pub(crate) fn scene(layers: Vec<Layer>) -> Scene {
     Scene { layers, ..Scene::default() }
 }
 
 /// Rolling hills of `n` x `n` nodes, `spacing` metres apart, centred on the origin.
-pub fn hills(n: usize, spacing: f64, height: f64, seed: u64) -> Heightfield {
+pub(crate) fn hills(n: usize, spacing: f64, height: f64, seed: u64) -> Heightfield {
     let mut random = Random::new(seed);
     let waves: Vec<(DVec2, f64, f64)> = (0..8)
         .map(|i| {
@@ -69,21 +69,21 @@ pub fn hills(n: usize, spacing: f64, height: f64, seed: u64) -> Heightfield {
         .expect("hills are well formed")
 }
 
-pub fn pinhole(eye: DVec3, look_at: DVec3, fov_deg: f64, image: [u32; 2]) -> Pinhole {
+pub(crate) fn pinhole(eye: DVec3, look_at: DVec3, fov_deg: f64, image: [u32; 2]) -> Pinhole {
     let projection = Projection::Perspective { fov_y: fov_deg.to_radians() };
     Pinhole::look_at(eye, look_at, DVec3::Z, projection, image, 1.0, None).expect("camera is well formed")
 }
 
-pub fn render(scene: &Scene, view: &View, options: &RenderOptions) -> Frame {
+pub(crate) fn render(scene: &Scene, view: &View, options: &RenderOptions) -> Frame {
     let job = RenderJob { scene, view, light: &Light::default(), options, progress: &Progress::silent() };
     CpuRenderer.render(&job).expect("picture is possible")
 }
 
-pub fn options(samples: u32) -> RenderOptions {
+pub(crate) fn options(samples: u32) -> RenderOptions {
     RenderOptions { samples, ..RenderOptions::default() }
 }
 
-pub fn line(points: Vec<DVec3>, hidden: Hidden) -> LineLayer {
+pub(crate) fn line(points: Vec<DVec3>, hidden: Hidden) -> LineLayer {
     LineLayer {
         features: vec![LineFeature { name: String::new(), points }],
         color: Color::rgb(215, 48, 31),
@@ -95,7 +95,7 @@ pub fn line(points: Vec<DVec3>, hidden: Hidden) -> LineLayer {
 }
 
 /// Writes a picture as PPM into `$BELVEDERE_PICTURES`, if set: for looking at.
-pub fn show(name: &str, frame: &Frame) {
+pub(crate) fn show(name: &str, frame: &Frame) {
     let Some(dir) = std::env::var_os("BELVEDERE_PICTURES") else { return };
     let mut bytes = format!("P6 {} {} 255\n", frame.width, frame.height).into_bytes();
     bytes.extend(frame.color.iter().flatten());

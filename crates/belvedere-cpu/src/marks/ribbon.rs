@@ -1,0 +1,125 @@
+//! Anti-aliased ribbons: the union of strokes, never darker where they overlap.
+
+use crate::shade::color::{Packed, Rgb};
+use belvedere_core::DVec2;
+use glam::Vec2;
+
+/// Colour with opacity.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ink {
+    pub(crate) color: Rgb,
+    pub(crate) alpha: f32,
+}
+
+/// What a stroke contributes to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Lane {
+    /// Below: parts behind surfaces.
+    Hidden = 0,
+    /// Rim of the visible parts, below every fill of the layer, so that crossings look right.
+    Casing = 1,
+    /// Visible parts; they own the id buffer.
+    Fill = 2,
+    /// Hidden parts drawn like visible ones.
+    Shown = 3,
+}
+
+/// A straight piece with round ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stroke {
+    a: Vec2,
+    b: Vec2,
+    half: f32,
+    lane: Lane,
+}
+
+impl Stroke {
+    pub(crate) fn new(a: DVec2, b: DVec2, half: f64, lane: Lane) -> Self {
+        Self { a: a.as_vec2(), b: b.as_vec2(), half: half as f32, lane }
+    }
+}
+
+/// The strokes of a layer, sorted into bands.
+#[derive(Debug)]
+pub(crate) struct Sheet {
+    strokes: Vec<Stroke>,
+    bands: Vec<Vec<u32>>,
+    inks: [Ink; 3],
+    id: u32,
+    rows: usize,
+}
+
+/// Coverage of a band by lane.
+#[derive(Debug, Default)]
+pub(crate) struct Masks {
+    lanes: [Vec<f32>; 4],
+}
+
+impl Sheet {
+    /// * `rows`: height of a band, pixels.
+    pub(crate) fn new(strokes: Vec<Stroke>, inks: [Ink; 3], id: u32, height: usize, rows: usize) -> Self {
+        let mut bands = vec![Vec::new(); height.div_ceil(rows)];
+        for (i, s) in strokes.iter().enumerate() {
+            let reach = s.half + 1.0;
+            let (top, bottom) = (s.a.y.min(s.b.y) - reach, s.a.y.max(s.b.y) + reach);
+            if bottom < 0.0 || top >= height as f32 {
+                continue;
+            }
+            let last = (bottom as usize / rows).min(bands.len() - 1);
+            bands[top.max(0.0) as usize / rows..=last].iter_mut().for_each(|b| b.push(i as u32));
+        }
+        Self { strokes, bands, inks, id, rows }
+    }
+
+    /// Draws the band whose first row is `y0`.
+    pub(crate) fn draw(&self, masks: &mut Masks, y0: i32, width: i32, color: &mut [Packed], id: &mut [u32]) {
+        let Some(band) = self.bands.get(y0 as usize / self.rows).filter(|b| !b.is_empty()) else { return };
+        for lane in &mut masks.lanes {
+            lane.clear();
+            lane.resize(color.len(), 0.0);
+        }
+        let rows = color.len() as i32 / width.max(1);
+        for &i in band {
+            let s = &self.strokes[i as usize];
+            cover(s, &mut masks.lanes[s.lane as usize], y0, rows, width);
+        }
+        let [hidden, casing, fill, shown] = &masks.lanes;
+        for i in 0..color.len() {
+            let (h, c, f, s) = (hidden[i], casing[i], fill[i], shown[i]);
+            if h.max(c).max(f).max(s) <= 0.0 {
+                continue;
+            }
+            let mut rgb = color[i].rgb();
+            for (ink, cover) in self.inks.iter().zip([h, c, f.max(s)]) {
+                rgb = rgb.lerp(ink.color, ink.alpha * cover);
+            }
+            color[i] = Packed::new(rgb);
+            if f >= 0.5 {
+                id[i] = self.id;
+            }
+        }
+    }
+}
+
+/// Coverage by distance to the stroke, largest wins.
+fn cover(s: &Stroke, mask: &mut [f32], y0: i32, rows: i32, width: i32) {
+    let reach = s.half + 0.5;
+    let (lo, hi) = (s.a.min(s.b) - reach, s.a.max(s.b) + reach);
+    let x0 = ((lo.x - 0.5).ceil().max(0.0) as i32).min(width);
+    let x1 = (hi.x - 0.5).floor().min((width - 1) as f32) as i32;
+    let ya = ((lo.y - 0.5).ceil().max(y0 as f32) as i32).min(y0 + rows);
+    let yb = (hi.y - 0.5).floor().min((y0 + rows - 1) as f32) as i32;
+    let d = s.b - s.a;
+    let inv = if d.length_squared() > 0.0 { 1.0 / d.length_squared() } else { 0.0 };
+    // A line thinner than a pixel covers in proportion.
+    let most = (2.0 * s.half).min(1.0);
+    for y in ya..=yb {
+        for x in x0..=x1 {
+            let p = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) - s.a;
+            let t = (p.dot(d) * inv).clamp(0.0, 1.0);
+            let cover = (reach - (p - t * d).length()).clamp(0.0, most);
+            let m = &mut mask[((y - y0) * width + x) as usize];
+            *m = m.max(cover);
+        }
+    }
+}
