@@ -68,4 +68,7 @@ pub enum ConstructError {
     /// Stages could not be chained.
     #[error(transparent)]
     View(#[from] ViewError),
+    /// A spline could not be resolved.
+    #[error(transparent)]
+    Spline(#[from] belvedere_core::map::spline::SplineError),
 }

@@ -6,11 +6,13 @@
 mod error;
 mod ground;
 pub mod measure;
+pub mod reveal;
 mod samples;
 mod sight;
 
 pub use error::ConstructError;
 pub use ground::Ground;
 pub use measure::{MeasureOptions, Measures, measure};
+pub use reveal::{Goal, RevealMemory, RevealOptions, RevealReport, Revealed, reveal};
 pub use samples::{Amount, Sample, SampledFeature, default_spacing, sample_features};
 pub use sight::{Obstacles, SightOptions};

@@ -1,7 +1,7 @@
 //! What a picture shows: visible share of every feature of interest, straight and bent, by two independent methods;
 //! and how much the bend displaces, distorts and folds.
 
-mod bend;
+pub(crate) mod bend;
 mod buffer;
 mod report;
 

@@ -1,0 +1,185 @@
+//! How good a picture is: what it shows of the features, and whether it looks like a picture of mountains.
+
+use crate::measure::bend::{facing, median_height, nodes};
+use crate::samples::{SampledFeature, Sample};
+use crate::sight::{Obstacles, SightOptions};
+use belvedere_core::map::spline::ReferencePlane;
+use belvedere_core::{Camera, DVec2, DVec3, Stage, View};
+use belvedere_scene::{Heightfield, Scene};
+use serde::Serialize;
+
+/// What one candidate picture comes to.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Appraisal {
+    /// Share of the features' amount inside the image, 0..=1.
+    pub in_frame: f64,
+    /// Visible share of what is inside the image, 0..=1; 0 if nothing is.
+    pub visible: f64,
+    /// Vertical extent of the middle nine tenths of the features in the image, share of the image height.
+    pub spread: f64,
+    /// Length in the image of everything inside it, in image widths.
+    pub drawn: f64,
+    /// Share of the image below the horizon that ground of the data covers, judged by a grid of rays.
+    pub covered: f64,
+    /// Place of the ground's horizon from the top of the image, share of the height; negative = above it.
+    pub horizon: f64,
+}
+
+/// A scene prepared for judging many views.
+pub(crate) struct Judge<'a> {
+    pub(crate) obstacles: Obstacles<'a>,
+    pub(crate) heightfield: &'a Heightfield,
+    pub(crate) plane: ReferencePlane,
+    pub(crate) samples: Vec<Sample>,
+    pub(crate) ground: Vec<DVec3>,
+    cell: f64,
+}
+
+impl<'a> Judge<'a> {
+    pub(crate) fn new(scene: &'a Scene, heightfield: &'a Heightfield, features: &[SampledFeature], count: usize) -> Self {
+        Self {
+            obstacles: Obstacles::new(scene),
+            heightfield,
+            plane: ReferencePlane::level(median_height(heightfield)),
+            samples: thin(features, count),
+            ground: nodes(heightfield, 2_500),
+            cell: heightfield.spacing().max_element(),
+        }
+    }
+
+    /// Judges `view`; `stride` > 1 looks at every stride-th sample only.
+    pub(crate) fn appraise(&self, view: &View, stride: usize) -> Appraisal {
+        // Only whether a sample is seen counts, and a quarter of a cell is exact enough to choose by.
+        let sight = SightOptions { chord_m: 0.05 * self.cell, cap_m: 0.0, guard_m: 1.5 * self.cell };
+        let pinhole = view.pinhole();
+        let (mut all, mut framed, mut seen, mut drawn) = (0.0, 0.0, 0.0, 0.0);
+        let mut rows: Vec<f64> = Vec::new();
+        for sample in self.samples.iter().step_by(stride.max(1)) {
+            all += sample.amount;
+            let Ok(image) = view.project(sample.p_world) else { continue };
+            if image.depth < pinhole.near || !pinhole.contains(image.pixel) {
+                continue;
+            }
+            framed += sample.amount;
+            rows.push(image.pixel.y);
+            drawn += sample.amount / image.depth;
+            let at = (image.pixel, image.depth);
+            if !image.folded && self.obstacles.clearance(view, (sample.p_world, sample.lift), at, &sight) >= 0.0 {
+                seen += sample.amount;
+            }
+        }
+        rows.sort_by(f64::total_cmp);
+        let quantile = |q: f64| rows.get((q * (rows.len().max(1) - 1) as f64).round() as usize).copied().unwrap_or(0.0);
+        let horizon = self.horizon(view);
+        let [width, height] = pinhole.image.map(f64::from);
+        Appraisal {
+            in_frame: if all > 0.0 { framed / all } else { 0.0 },
+            visible: if framed > 0.0 { seen / framed } else { 0.0 },
+            spread: (quantile(0.95) - quantile(0.05)) / height,
+            drawn: drawn * pinhole.scale_px() / width,
+            covered: self.covered(view, horizon),
+            horizon,
+        }
+    }
+
+    /// Where the reference plane vanishes, share of the image height from the top.
+    fn horizon(&self, view: &View) -> f64 {
+        let pinhole = view.pinhole();
+        let bend = view.stages().iter().find_map(|s| if let Stage::SplineBend(b) = s { Some(b) } else { None });
+        let elevation = match bend {
+            Some(b) => b.curve().at(2.0 * b.curve().length()).1.to_angle(),
+            None => (-pinhole.forward.z).asin(),
+        };
+        let height = f64::from(pinhole.image[1]);
+        if elevation >= 1.5 { -1.0 } else { (0.5 * height - pinhole.scale_px() * elevation.tan()) / height }
+    }
+
+    /// Share of a grid of rays below the horizon that meet the reference plane over the data.
+    fn covered(&self, view: &View, horizon: f64) -> f64 {
+        let [width, height] = view.pinhole().image.map(f64::from);
+        let top = horizon.clamp(0.0, 0.9);
+        let (mut hit, mut all) = (0.0, 0.0);
+        // The lower the row, the nearer and the more conspicuous a missing corner of the ground.
+        for (part, weight) in [(0.3, 0.5), (0.5, 1.0), (0.75, 1.5), (0.985, 2.0)] {
+            for column in [0.01, 0.2, 0.4, 0.6, 0.8, 0.99] {
+                let pixel = DVec2::new(column * width, (top + (1.0 - top) * part) * height);
+                all += weight;
+                if self.meets_data(view, pixel) {
+                    hit += weight;
+                }
+            }
+        }
+        hit / all
+    }
+
+    fn meets_data(&self, view: &View, pixel: DVec2) -> bool {
+        let ray = view.ray(pixel);
+        let bounds = self.heightfield.bounds();
+        let reach = 4.0 * (bounds.max - bounds.min).length() + (view.pinhole().eye - bounds.center()).length();
+        let above = |w: f64| ray.at(w).ok().map(|p| (self.plane.height_of(p.point), p.point));
+        let mut before: Option<(f64, DVec3)> = None;
+        let mut depth = 1e-3 * reach;
+        while depth < reach {
+            let now = above(depth);
+            if let (Some((h0, p0)), Some((h1, p1))) = (before, now)
+                && h0 >= 0.0
+                && h1 < 0.0
+            {
+                let meeting = p0.lerp(p1, h0 / (h0 - h1));
+                return self.heightfield.surface_at(meeting.truncate()).is_some();
+            }
+            before = now;
+            depth *= 1.12;
+        }
+        false
+    }
+
+    /// Smallest factor by which the bend squeezes lengths over the terrain inside the image (0 = fold), and the
+    /// smallest sine of the angle at which the ground plane is seen there.
+    pub(crate) fn fold_and_facing(&self, view: &View) -> (f64, f64) {
+        let Some(bend) = view.stages().iter().find_map(|s| if let Stage::SplineBend(b) = s { Some(b) } else { None })
+        else {
+            return (1.0, 1.0);
+        };
+        let pinhole = view.pinhole();
+        let (mut squeeze, mut faced) = (f64::INFINITY, bend.facing());
+        for &p in &self.ground {
+            let Ok(image) = view.project(p) else { continue };
+            // A margin around the image: what folds just outside it reaches in with its neighbours.
+            let [w, h] = pinhole.image.map(f64::from);
+            if image.pixel.x < -0.1 * w || image.pixel.x > 1.1 * w || image.pixel.y < -0.1 * h || image.pixel.y > 1.2 * h {
+                continue;
+            }
+            squeeze = squeeze.min(bend.stretch(p));
+            faced = faced.min(facing(view, DVec3::new(p.x, p.y, self.plane.height())));
+        }
+        (if squeeze.is_finite() { squeeze } else { 1.0 }, faced)
+    }
+}
+
+/// About `count` samples that stand for all: runs of neighbours are merged into their middle one.
+fn thin(features: &[SampledFeature], count: usize) -> Vec<Sample> {
+    let total: f64 = features.iter().flat_map(|f| &f.samples).map(|s| s.amount).sum();
+    let share = total / count as f64;
+    let mut out = Vec::with_capacity(count + features.len());
+    for f in features {
+        let mut run: Vec<Sample> = Vec::new();
+        let mut amount = 0.0;
+        let mut close = |run: &mut Vec<Sample>, amount: &mut f64| {
+            if let Some(middle) = run.get(run.len() / 2) {
+                out.push(Sample { amount: *amount, ..*middle });
+            }
+            run.clear();
+            *amount = 0.0;
+        };
+        for &s in &f.samples {
+            run.push(s);
+            amount += s.amount;
+            if amount >= share {
+                close(&mut run, &mut amount);
+            }
+        }
+        close(&mut run, &mut amount);
+    }
+    out
+}

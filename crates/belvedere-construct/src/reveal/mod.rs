@@ -1,0 +1,321 @@
+//! Chooses a view and a bend that show more of the features than a straight picture can.
+//!
+//! The view: eyes all around the features, judged by line of sight alone. The bend: a B-spline over the mean ground
+//! that turns the ground with the features towards the eye and lets the background sink back to a horizon
+//! (Pasewaldt et al. 2011; their presets are drawn by hand, the choice by visible length is ours).
+
+mod eyes;
+mod judge;
+mod search;
+mod shape;
+
+pub use judge::Appraisal;
+pub use shape::BendShape;
+
+use crate::samples::{SampledFeature, default_spacing, sample_features};
+use crate::ConstructError;
+use belvedere_core::presets::PresetDocument;
+use belvedere_core::{DVec3, EarthCurvature, Stage, View};
+use belvedere_scene::{Progress, Scene};
+use eyes::Eye;
+use judge::Judge;
+use rayon::prelude::*;
+use search::{BendSearch, Tried, stride_for};
+use serde::Serialize;
+
+/// What to look for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RevealOptions {
+    /// Picture size, pixels; used when no view is given.
+    pub image: [u32; 2],
+    /// Widest vertical field of view to try, radians; used when no view is given.
+    pub fov_y: f64,
+    /// Earth's radius (scene units) if the ground is to fall away with the distance; used when no view is given.
+    pub earth_radius: Option<f64>,
+    /// Visible share of the in-frame length to reach, 0..=1.
+    pub goal_share: f64,
+    /// The bent picture is to show at least this many times the share of the straight one.
+    pub goal_gain: f64,
+    /// Samples of the features that each candidate is judged by.
+    pub samples_per_try: usize,
+}
+
+impl Default for RevealOptions {
+    fn default() -> Self {
+        Self {
+            image: [1280, 720],
+            fov_y: 45f64.to_radians(),
+            earth_radius: None,
+            goal_share: 0.75,
+            goal_gain: 1.5,
+            samples_per_try: 220,
+        }
+    }
+}
+
+/// What an earlier call found: the next search for the same scene starts there. Same inputs and same memory, same result.
+#[derive(Debug, Clone, Default)]
+pub struct RevealMemory {
+    start: Option<search::Start>,
+}
+
+/// Whether the goals were reached. Missing one is a result, not an error.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "result", content = "reasons", rename_all = "snake_case")]
+pub enum Goal {
+    /// All of them.
+    Reached,
+    /// Not all; one sentence for each that was missed.
+    Missed(Vec<String>),
+}
+
+/// A view and a bend, and what they achieve.
+#[derive(Debug, Clone)]
+pub struct Revealed {
+    /// The bent view.
+    pub view: View,
+    /// The same camera without the bend.
+    pub straight: View,
+    /// The bend as a preset document, for scene files.
+    pub document: PresetDocument,
+    /// Pivot of the bend, scene coordinates, on the reference plane.
+    pub pivot: DVec3,
+    /// Height of the reference plane (median of the terrain), scene units.
+    pub plane_height: f64,
+    /// Figures.
+    pub report: RevealReport,
+}
+
+/// Figures of a [`Revealed`], ready for JSON.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RevealReport {
+    /// Length (areas: area, points: count) of all features.
+    pub total: f64,
+    /// The picture without the bend.
+    pub straight: Appraisal,
+    /// The picture with it.
+    pub bent: Appraisal,
+    /// Visible share bent over visible share straight; `None` if the straight picture shows nothing.
+    pub gain: Option<f64>,
+    /// Whether the goals were reached.
+    pub goal: Goal,
+    /// The bend, by its angles.
+    pub shape: BendShape,
+    /// Smallest sine of the angle at which the ground plane is seen; > 0 = from above everywhere.
+    pub facing: f64,
+    /// Smallest factor by which the bend squeezes lengths over the terrain in the picture; 0 = fold.
+    pub squeeze: f64,
+    /// Eyes judged; 0 if the view was given.
+    pub eyes_tried: usize,
+    /// Bends judged.
+    pub bends_tried: usize,
+    /// Oddities, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Chooses a view (unless `base` gives one) and a spline bend that show more of the layers that must be seen.
+///
+/// * `base`: a camera, with earth curvature at most; its other stages are left out.
+/// * `memory`: where the search of an earlier frame ended.
+///
+/// Everything is judged by line of sight along the rays, so no renderer is needed; [`crate::measure()`] with a renderer
+/// is the independent check. Deterministic, whatever the number of threads.
+///
+/// # Errors
+/// [`ConstructError::NoTerrain`], [`ConstructError::NothingToSee`], [`ConstructError::NoSamples`],
+/// [`ConstructError::EyeUnderGround`], [`ConstructError::OutOfFrame`], [`ConstructError::NoView`], [`ConstructError::Cancelled`].
+pub fn reveal(
+    scene: &Scene,
+    base: Option<&View>,
+    options: &RevealOptions,
+    memory: &mut RevealMemory,
+    progress: &Progress,
+) -> Result<Revealed, ConstructError> {
+    let heightfield = scene.terrain().ok_or(ConstructError::NoTerrain)?;
+    let features = usable_features(scene, heightfield)?;
+    progress.tick("preparing lines of sight", 0.0)?;
+    let judge = Judge::new(scene, heightfield, &features, 4 * options.samples_per_try);
+    let mut eyes_tried = 0;
+    let bases = match base {
+        Some(view) => vec![given_view(&judge, view)?],
+        None => {
+            let eyes = eyes::candidates(&judge, options);
+            eyes_tried = eyes.len();
+            promising_views(&judge, eyes, options, progress)?
+        }
+    };
+    let (chosen, mut bends_tried) = best_bend_of_all(&judge, &bases, options, memory, progress)?;
+    progress.tick("polishing the bend", 0.8)?;
+    let (base_view, straight) = &bases[chosen.view];
+    let mut search = BendSearch::new(&judge, base_view, *straight, stride_for(judge.samples.len(), options));
+    let (start, best) = search.refine(&chosen.start, 8).ok_or(ConstructError::NoView { tried: eyes_tried })?;
+    bends_tried += search.tried;
+    memory.start = Some(start);
+    progress.tick("polishing the bend", 1.0)?;
+    let total = features.iter().flat_map(|f| &f.samples).map(|s| s.amount).sum();
+    Ok(finish(&judge, base_view, best, options, Counts { total, eyes_tried, bends_tried }))
+}
+
+struct Counts {
+    total: f64,
+    eyes_tried: usize,
+    bends_tried: usize,
+}
+
+fn usable_features(scene: &Scene, hf: &belvedere_scene::Heightfield) -> Result<Vec<SampledFeature>, ConstructError> {
+    if scene.must_see().next().is_none() {
+        return Err(ConstructError::NothingToSee { layers: scene.layers.len() });
+    }
+    let mut features = sample_features(scene, default_spacing(scene));
+    for f in &mut features {
+        f.samples.retain(|s| s.amount > 0.0 && hf.surface_at(s.p_world.truncate()).is_some());
+    }
+    // Lines, areas and points cannot be added up: the picture is made for the first kind that is there.
+    let kinds = [crate::Amount::Length, crate::Amount::Area, crate::Amount::Count];
+    let first = kinds.into_iter().find(|k| features.iter().any(|f| f.amount == *k && !f.samples.is_empty()));
+    let Some(kind) = first else {
+        let layers: Vec<&str> = scene.must_see().map(|(_, l)| l.id.as_str()).collect();
+        return Err(ConstructError::NoSamples { layers: layers.join(", ") });
+    };
+    features.retain(|f| f.amount == kind);
+    Ok(features)
+}
+
+fn given_view(judge: &Judge<'_>, view: &View) -> Result<(View, Appraisal), ConstructError> {
+    let base = view.straightened();
+    if let Some(height) = judge.obstacles.above_ground(base.pinhole().eye)
+        && height <= 0.0
+    {
+        return Err(ConstructError::EyeUnderGround { below_m: -height, raise_m: 1.0 - height });
+    }
+    let straight = judge.appraise(&base, 1);
+    if straight.in_frame < 0.02 {
+        return Err(ConstructError::OutOfFrame { in_frame_share: 100.0 * straight.in_frame, needed: 2.0 });
+    }
+    Ok((base, straight))
+}
+
+/// Views kept for the search of a bend.
+const VIEWS_KEPT: usize = 8;
+
+/// Judges every eye by its straight picture and keeps the best, not two from nearly the same direction.
+fn promising_views(
+    judge: &Judge<'_>,
+    eyes: Vec<Eye>,
+    options: &RevealOptions,
+    progress: &Progress,
+) -> Result<Vec<(View, Appraisal)>, ConstructError> {
+    progress.tick("looking from all around", 0.1)?;
+    let tried = eyes.len();
+    let stride = 2 * stride_for(judge.samples.len(), options);
+    let mut judged: Vec<(f64, Eye, View, Appraisal)> = eyes
+        .into_par_iter()
+        .filter_map(|eye| {
+            let stages = options.earth_radius.map(|radius| {
+                let refraction = EarthCurvature::REFRACTION;
+                Stage::EarthCurvature(EarthCurvature { eye: eye.pinhole.eye, radius, refraction })
+            });
+            let view = View::new(eye.pinhole.clone(), stages.into_iter().collect()).ok()?;
+            let a = judge.appraise(&view, stride);
+            Some((straight_score(&a, eye.heading_deg, options), eye, view, a))
+        })
+        .collect();
+    judged.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut kept: Vec<(f64, View, Appraisal)> = Vec::new();
+    for (_, eye, view, a) in judged {
+        let crowd = kept.iter().filter(|k| (k.0 - eye.heading_deg).abs() < 20.0).count();
+        if a.in_frame > 0.05 && crowd < 2 && kept.len() < VIEWS_KEPT {
+            kept.push((eye.heading_deg, view, a));
+        }
+    }
+    if kept.is_empty() {
+        return Err(ConstructError::NoView { tried });
+    }
+    Ok(kept.into_iter().map(|(_, view, a)| (view, a)).collect())
+}
+
+/// How promising a straight picture is: it should look natural, hold the features, and hide a good deal of them.
+fn straight_score(a: &Appraisal, heading_deg: f64, options: &RevealOptions) -> f64 {
+    let most = (options.goal_share / options.goal_gain).min(0.55);
+    let hidden = 3.0 * (a.visible - most).max(0.0) + 2.0 * (0.25 - a.visible).max(0.0);
+    // Light comes from the north-west: looking north shows the shaded side of the relief as readers of maps know it.
+    let north = 0.06 * heading_deg.to_radians().cos();
+    a.in_frame + 0.25 * (a.drawn / 0.8).min(1.0) - 1.6 * (1.0 - a.covered) - hidden + north
+        - 0.8 * (0.10 - a.horizon).max(0.0)
+}
+
+struct Chosen {
+    view: usize,
+    start: search::Start,
+    score: f64,
+}
+
+fn best_bend_of_all(
+    judge: &Judge<'_>,
+    bases: &[(View, Appraisal)],
+    options: &RevealOptions,
+    memory: &RevealMemory,
+    progress: &Progress,
+) -> Result<(Chosen, usize), ConstructError> {
+    let stride = stride_for(judge.samples.len(), options);
+    let (mut best, mut tried): (Option<Chosen>, usize) = (None, 0);
+    for (i, (view, straight)) in bases.iter().enumerate() {
+        progress.tick("bending the picture", 0.3 + 0.5 * i as f64 / bases.len() as f64)?;
+        let mut search = BendSearch::new(judge, view, *straight, stride);
+        let remembered = memory.start.as_ref().and_then(|start| search.refine(start, 0));
+        for (start, found) in search.coarse().into_iter().chain(remembered) {
+            let looks = found.score + 0.4 * straight.in_frame + 0.3 * straight.covered;
+            if best.as_ref().is_none_or(|b| looks > b.score) {
+                best = Some(Chosen { view: i, start, score: looks });
+            }
+        }
+        tried += search.tried;
+    }
+    best.map(|b| (b, tried)).ok_or(ConstructError::NoView { tried: bases.len() })
+}
+
+fn finish(judge: &Judge<'_>, base: &View, best: Tried, options: &RevealOptions, counts: Counts) -> Revealed {
+    let straight = judge.appraise(base, 1);
+    let bent = judge.appraise(&best.built.view, 1);
+    let gain = (straight.visible > 0.0).then(|| bent.visible / straight.visible);
+    let mut missed = Vec::new();
+    if bent.visible < options.goal_share {
+        missed.push(format!(
+            "{:.0} % of what is in the picture is visible, {:.0} % were wanted",
+            100.0 * bent.visible,
+            100.0 * options.goal_share
+        ));
+    }
+    if gain.is_some_and(|g| g < options.goal_gain) {
+        let gain = gain.unwrap_or(0.0);
+        missed.push(format!("{gain:.2} times the share of the straight picture, {:.2} times were wanted", options.goal_gain));
+    }
+    if bent.in_frame < 0.9 * straight.in_frame {
+        missed.push(format!("only {:.0} % of what the straight picture holds stays in it", 100.0 * bent.in_frame / straight.in_frame));
+    }
+    let mut warnings = Vec::new();
+    if bent.covered < 0.8 {
+        warnings.push(format!("the ground of the data fills {:.0} % of the picture below the horizon", 100.0 * bent.covered));
+    }
+    let report = RevealReport {
+        total: counts.total,
+        straight,
+        bent,
+        gain,
+        goal: if missed.is_empty() { Goal::Reached } else { Goal::Missed(missed) },
+        shape: best.shape,
+        facing: best.facing,
+        squeeze: best.squeeze,
+        eyes_tried: counts.eyes_tried,
+        bends_tried: counts.bends_tried,
+        warnings,
+    };
+    Revealed {
+        view: best.built.view,
+        straight: base.clone(),
+        document: best.built.document,
+        pivot: best.built.pivot,
+        plane_height: judge.plane.height(),
+        report,
+    }
+}

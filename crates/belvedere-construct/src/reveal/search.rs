@@ -1,0 +1,188 @@
+//! Looks for the bend that shows most of the features without spoiling the picture.
+
+use super::RevealOptions;
+use super::judge::{Appraisal, Judge};
+use super::shape::{BendShape, Built};
+use belvedere_core::{Projection, View};
+use rayon::prelude::*;
+
+/// A bend that was judged.
+pub(crate) struct Tried {
+    pub(crate) shape: BendShape,
+    pub(crate) built: Built,
+    pub(crate) appraisal: Appraisal,
+    pub(crate) squeeze: f64,
+    pub(crate) facing: f64,
+    pub(crate) score: f64,
+}
+
+/// What the free parameters of a shape are measured in.
+struct Frame {
+    /// Distances along the heading of the near end, the middle and the far end of the features in the picture.
+    features: [f64; 3],
+    half_fov: f64,
+    pitch: f64,
+    straight_in_frame: f64,
+}
+
+/// The free parameters of a shape, each about 0..=1.
+#[derive(Debug, Clone, Copy)]
+struct Knobs {
+    middle: f64,
+    far: f64,
+    near: f64,
+    pivot: f64,
+    fall_from: f64,
+    fall_length: f64,
+}
+
+impl Knobs {
+    const fn get(&self) -> [f64; 6] {
+        [self.middle, self.far, self.near, self.pivot, self.fall_from, self.fall_length]
+    }
+
+    const fn of([middle, far, near, pivot, fall_from, fall_length]: [f64; 6]) -> Self {
+        Self { middle, far, near, pivot, fall_from, fall_length }
+    }
+
+    fn shape(&self, frame: &Frame) -> BendShape {
+        let lerp = |a: f64, b: f64, t: f64| a + (b - a) * t;
+        let [first, middle, last] = frame.features;
+        let depth = (last - first).max(0.1 * middle);
+        let angle = lerp(25f64.to_radians(), 70f64.to_radians(), self.middle);
+        // The horizon lies between the upper edge of the picture and its middle.
+        let far = (frame.half_fov.tan() * lerp(0.45, 0.9, self.far)).atan();
+        let near = lerp(frame.pitch, angle, self.near);
+        let start = lerp(first - 0.2 * depth, last + 0.3 * depth, self.fall_from).max(0.3 * middle);
+        let length = lerp(0.2, 1.5, self.fall_length) * depth;
+        let rise = [(first - 0.9 * depth).max(0.15 * middle), (first + 0.1 * depth).max(0.3 * middle).min(start)];
+        BendShape {
+            near,
+            middle: angle,
+            far,
+            pivot: lerp(first, last, self.pivot),
+            rise,
+            fall: [start, start + length],
+        }
+    }
+}
+
+/// The search for one camera.
+pub(crate) struct BendSearch<'a, 'b> {
+    judge: &'b Judge<'a>,
+    base: &'b View,
+    frame: Frame,
+    straight: Appraisal,
+    stride: usize,
+    /// Bends judged so far.
+    pub(crate) tried: usize,
+}
+
+impl<'a, 'b> BendSearch<'a, 'b> {
+    pub(crate) fn new(judge: &'b Judge<'a>, base: &'b View, straight: Appraisal, stride: usize) -> Self {
+        let pinhole = base.pinhole();
+        let heading = super::shape::heading(pinhole, &judge.plane);
+        let mut along: Vec<f64> = judge
+            .samples
+            .iter()
+            .filter(|s| base.pinhole().project(s.p_world).is_ok_and(|(px, _)| pinhole.contains(px)))
+            .map(|s| (s.p_world - pinhole.eye).dot(heading))
+            .collect();
+        along.sort_by(f64::total_cmp);
+        let at = |q: f64| along.get((q * (along.len().max(1) - 1) as f64).round() as usize).copied().unwrap_or(1.0);
+        let half_fov = match pinhole.projection {
+            Projection::Perspective { fov_y } => 0.5 * fov_y,
+            Projection::Orthographic { .. } => 0.4,
+        };
+        let pitch = (-pinhole.forward.z).asin();
+        let features = [at(0.03).max(1.0), at(0.5).max(1.0), at(0.97).max(1.0)];
+        let frame = Frame { features, half_fov, pitch, straight_in_frame: straight.in_frame };
+        Self { judge, base, frame, straight, stride, tried: 0 }
+    }
+
+    fn judge(&self, knobs: &Knobs, stride: usize) -> Option<Tried> {
+        let shape = knobs.shape(&self.frame);
+        let built = shape.build(self.base, &self.judge.plane).ok()?;
+        let (squeeze, facing) = self.judge.fold_and_facing(&built.view);
+        if squeeze < 0.25 || facing < 0.004 {
+            return None;
+        }
+        let appraisal = self.judge.appraise(&built.view, stride);
+        let score = self.score(&shape, &appraisal, squeeze, facing);
+        Some(Tried { shape, built, appraisal, squeeze, facing, score })
+    }
+
+    fn score(&self, shape: &BendShape, a: &Appraisal, squeeze: f64, facing: f64) -> f64 {
+        let lost = (self.frame.straight_in_frame * 0.97 - a.in_frame).max(0.0) / self.frame.straight_in_frame.max(1e-9);
+        let gain = a.visible / self.straight.visible.max(0.05);
+        // The goals first, then as much as possible, then looks.
+        let goals = 2.0 * (0.80 - a.visible).max(0.0) + 0.5 * (1.6 - gain).max(0.0) + 6.0 * lost;
+        let bend = (shape.middle - self.frame.pitch).abs() / 1.0 + 0.3 * (shape.middle - shape.near).abs();
+        let sky = (0.07 - a.horizon).max(0.0) + (a.horizon - 0.24).max(0.0);
+        let fill = (0.45 - a.spread).max(0.0) + 2.0 * (a.spread - 0.85).max(0.0);
+        a.visible - goals - 0.12 * bend - 1.2 * sky - 0.5 * fill - 1.0 * (1.0 - a.covered)
+            - 0.6 * (0.6 - squeeze).max(0.0)
+            - 4.0 * (0.03 - facing).max(0.0)
+    }
+
+    fn best_of(&mut self, knobs: &[Knobs], stride: usize) -> Option<(Knobs, Tried)> {
+        self.tried += knobs.len();
+        let judged: Vec<Option<Tried>> = knobs.par_iter().map(|k| self.judge(k, stride)).collect();
+        let pairs = knobs.iter().copied().zip(judged).filter_map(|(k, t)| Some((k, t?)));
+        // The first of equals, so that the answer does not depend on threads.
+        pairs.reduce(|best, next| if next.1.score > best.1.score { next } else { best })
+    }
+
+    /// A coarse look over the whole range of bends.
+    pub(crate) fn coarse(&mut self) -> Option<(Start, Tried)> {
+        let mut grid = Vec::new();
+        for middle in [0.3, 0.55, 0.8] {
+            for (pivot, fall_from) in [(0.35, 0.35), (0.55, 0.6), (0.7, 0.85)] {
+                for fall_length in [0.25, 0.7] {
+                    grid.push(Knobs { middle, far: 0.55, near: 0.8, pivot, fall_from, fall_length });
+                }
+            }
+        }
+        let stride = self.stride * 2;
+        self.best_of(&grid, stride).map(|(k, t)| (Start(k), t))
+    }
+
+    /// Improves a start by ever smaller steps of one or two knobs.
+    pub(crate) fn refine(&mut self, start: &Start, rounds: usize) -> Option<(Start, Tried)> {
+        let stride = self.stride;
+        let mut best = self.best_of(&[start.0], stride)?;
+        let mut step = 0.2;
+        for _ in 0..rounds {
+            let at = best.0.get();
+            let mut around = Vec::with_capacity(16);
+            for i in 0..at.len() {
+                for sign in [-1.0, 1.0] {
+                    let mut next = at;
+                    next[i] = (next[i] + sign * step).clamp(-0.2, 1.2);
+                    around.push(Knobs::of(next));
+                }
+            }
+            // Steeper ground needs an earlier fall to keep the horizon, and the other way round.
+            for sign in [-1.0, 1.0] {
+                let mut next = at;
+                next[0] += sign * step;
+                next[4] -= sign * step;
+                around.push(Knobs::of(next));
+            }
+            match self.best_of(&around, stride) {
+                Some(found) if found.1.score > best.1.score + 1e-6 => best = found,
+                _ => step *= 0.5,
+            }
+        }
+        Some((Start(best.0), best.1))
+    }
+}
+
+/// Where a search begins; opaque to its callers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Start(Knobs);
+
+/// Default options that the search and the choice of views share.
+pub(crate) fn stride_for(samples: usize, options: &RevealOptions) -> usize {
+    (samples / options.samples_per_try.max(1)).max(1)
+}
