@@ -1,7 +1,7 @@
 //! How good a picture is: what it shows of the features, and whether it looks like a picture of mountains.
 
 use crate::measure::bend::{facing, median_height, nodes};
-use crate::samples::{SampledFeature, Sample};
+use crate::samples::{Sample, SampledFeature};
 use crate::sight::{Obstacles, SightOptions};
 use belvedere_core::map::spline::ReferencePlane;
 use belvedere_core::{Camera, DVec2, DVec3, Stage, View};
@@ -36,7 +36,12 @@ pub(crate) struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
-    pub(crate) fn new(scene: &'a Scene, heightfield: &'a Heightfield, features: &[SampledFeature], count: usize) -> Self {
+    pub(crate) fn new(
+        scene: &'a Scene,
+        heightfield: &'a Heightfield,
+        features: &[SampledFeature],
+        count: usize,
+    ) -> Self {
         Self {
             obstacles: Obstacles::new(scene),
             heightfield,
@@ -147,7 +152,11 @@ impl<'a> Judge<'a> {
             let Ok(image) = view.project(p) else { continue };
             // A margin around the image: what folds just outside it reaches in with its neighbours.
             let [w, h] = pinhole.image.map(f64::from);
-            if image.pixel.x < -0.1 * w || image.pixel.x > 1.1 * w || image.pixel.y < -0.1 * h || image.pixel.y > 1.2 * h {
+            if image.pixel.x < -0.1 * w
+                || image.pixel.x > 1.1 * w
+                || image.pixel.y < -0.1 * h
+                || image.pixel.y > 1.2 * h
+            {
                 continue;
             }
             squeeze = squeeze.min(bend.stretch(p));

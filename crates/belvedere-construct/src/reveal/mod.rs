@@ -12,8 +12,8 @@ mod shape;
 pub use judge::Appraisal;
 pub use shape::BendShape;
 
-use crate::samples::{SampledFeature, default_spacing, sample_features};
 use crate::ConstructError;
+use crate::samples::{SampledFeature, default_spacing, sample_features};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{DVec3, EarthCurvature, Stage, View};
 use belvedere_scene::{Progress, Scene};
@@ -288,14 +288,23 @@ fn finish(judge: &Judge<'_>, base: &View, best: Tried, options: &RevealOptions, 
     }
     if gain.is_some_and(|g| g < options.goal_gain) {
         let gain = gain.unwrap_or(0.0);
-        missed.push(format!("{gain:.2} times the share of the straight picture, {:.2} times were wanted", options.goal_gain));
+        missed.push(format!(
+            "{gain:.2} times the share of the straight picture, {:.2} times were wanted",
+            options.goal_gain
+        ));
     }
     if bent.in_frame < 0.9 * straight.in_frame {
-        missed.push(format!("only {:.0} % of what the straight picture holds stays in it", 100.0 * bent.in_frame / straight.in_frame));
+        missed.push(format!(
+            "only {:.0} % of what the straight picture holds stays in it",
+            100.0 * bent.in_frame / straight.in_frame
+        ));
     }
     let mut warnings = Vec::new();
     if bent.covered < 0.8 {
-        warnings.push(format!("the ground of the data fills {:.0} % of the picture below the horizon", 100.0 * bent.covered));
+        warnings.push(format!(
+            "the ground of the data fills {:.0} % of the picture below the horizon",
+            100.0 * bent.covered
+        ));
     }
     let report = RevealReport {
         total: counts.total,

@@ -10,7 +10,6 @@ use rayon::prelude::*;
 pub(crate) struct Tried {
     pub(crate) shape: BendShape,
     pub(crate) built: Built,
-    pub(crate) appraisal: Appraisal,
     pub(crate) squeeze: f64,
     pub(crate) facing: f64,
     pub(crate) score: f64,
@@ -109,7 +108,7 @@ impl<'a, 'b> BendSearch<'a, 'b> {
         }
         let appraisal = self.judge.appraise(&built.view, stride);
         let score = self.score(&shape, &appraisal, squeeze, facing);
-        Some(Tried { shape, built, appraisal, squeeze, facing, score })
+        Some(Tried { shape, built, squeeze, facing, score })
     }
 
     fn score(&self, shape: &BendShape, a: &Appraisal, squeeze: f64, facing: f64) -> f64 {
@@ -120,7 +119,12 @@ impl<'a, 'b> BendSearch<'a, 'b> {
         let bend = (shape.middle - self.frame.pitch).abs() / 1.0 + 0.3 * (shape.middle - shape.near).abs();
         let sky = (0.07 - a.horizon).max(0.0) + (a.horizon - 0.24).max(0.0);
         let fill = (0.45 - a.spread).max(0.0) + 2.0 * (a.spread - 0.85).max(0.0);
-        a.visible - goals - 0.12 * bend - 1.2 * sky - 0.5 * fill - 1.0 * (1.0 - a.covered)
+        a.visible
+            - goals
+            - 0.12 * bend
+            - 1.2 * sky
+            - 0.5 * fill
+            - 1.0 * (1.0 - a.covered)
             - 0.6 * (0.6 - squeeze).max(0.0)
             - 4.0 * (0.03 - facing).max(0.0)
     }
