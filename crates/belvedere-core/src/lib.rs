@@ -11,6 +11,7 @@
 pub mod bounds;
 pub mod bspline;
 pub mod camera;
+pub mod conic;
 pub mod grid;
 pub mod map;
 pub mod presets;
@@ -19,7 +20,7 @@ pub mod sections;
 pub use bounds::Aabb;
 pub use camera::{Camera, ImageBox, Pinhole, PinholeError, Projected, Projection, RayPath, RayPoint, View, ViewError};
 pub use glam::{DMat3, DVec2, DVec3};
-pub use map::curved_rays::CurvedRays;
+pub use map::curved_rays::{CurvedRays, CurvedRaysError};
 pub use map::earth::EarthCurvature;
 pub use map::spline::SplineBend;
 pub use map::terrain::TerrainDisocclusion;

@@ -174,6 +174,9 @@ impl Pinhole {
     }
 
     /// Pixel and depth of `p`, undisplaced.
+    ///
+    /// # Errors
+    /// [`Miss::BehindEye`] unless the depth is positive; [`Miss::OutsideDomain`] if the pixel is not a finite number.
     pub fn project(&self, p: DVec3) -> Result<(DVec2, f64), Miss> {
         let v = p - self.eye;
         let depth = v.dot(self.forward);
@@ -182,10 +185,30 @@ impl Pinhole {
         }
         let lateral = DVec2::new(v.dot(self.right), v.dot(self.down)) * self.scale_px();
         let lateral = if self.is_orthographic() { lateral } else { lateral / depth };
-        Ok((self.center_px() + lateral, depth))
+        let pixel = self.center_px() + lateral;
+        if pixel.is_finite() && depth.is_finite() { Ok((pixel, depth)) } else { Err(Miss::OutsideDomain) }
     }
 
-    /// The point of `pixel`'s straight ray at `depth`, scene coordinates.
+    /// Derivative of the pixel with respect to `p`: rows d(pixel.x), d(pixel.y); pixels per scene unit.
+    ///
+    /// # Errors
+    /// As [`Pinhole::project`].
+    pub fn jacobian(&self, p: DVec3) -> Result<[DVec3; 2], Miss> {
+        let (pixel, depth) = self.project(p)?;
+        let (scale, offset) = (self.scale_px(), pixel - self.center_px());
+        let row = |axis: DVec3, offset: f64| {
+            if self.is_orthographic() { scale * axis } else { (scale * axis - offset * self.forward) / depth }
+        };
+        Ok([row(self.right, offset.x), row(self.down, offset.y)])
+    }
+
+    /// Whether two pinholes have the same rays: everything but `near` and `far` is equal.
+    pub fn has_same_rays(&self, other: &Self) -> bool {
+        let key = |p: &Self| (p.eye, p.right, p.down, p.forward, p.projection, p.image);
+        key(self) == key(other)
+    }
+
+    /// The point of `pixel`'s straight ray at `depth`, scene coordinates; not finite if the input is not.
     pub fn unproject(&self, pixel: DVec2, depth: f64) -> DVec3 {
         let lateral = (pixel - self.center_px()) / self.scale_px();
         let lateral = if self.is_orthographic() { lateral } else { lateral * depth };

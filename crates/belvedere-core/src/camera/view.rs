@@ -1,7 +1,7 @@
 //! A view: a pinhole behind a chain of displacements.
 
 use super::{Camera, Pinhole, Projected, RayPath};
-use crate::{Aabb, Displaced, Miss, Stage};
+use crate::{Aabb, CurvedRays, Displaced, Miss, SpaceMap, Stage};
 use glam::{DVec2, DVec3};
 
 /// A pinhole photograph of a displaced world: `pixel, depth = pinhole.project(D_n(...D_1(p)))`.
@@ -26,6 +26,16 @@ pub enum ViewError {
         first: &'static str,
         /// Name of the later stage.
         second: &'static str,
+    },
+    /// Curved rays that start in another camera.
+    #[error(
+        "the curved_rays stage was built for another camera (eye {built}, this view's is {here}); build it with this view's pinhole"
+    )]
+    OtherRoot {
+        /// Eye of the pinhole the stage was built for.
+        built: DVec3,
+        /// Eye of the view's pinhole.
+        here: DVec3,
     },
 }
 
@@ -62,12 +72,18 @@ impl View {
     /// Chains `stages`, in order of application, before `pinhole`.
     ///
     /// # Errors
-    /// [`ViewError::Order`] unless the stages are in the order earth, terrain, spline, curved rays, each at most once.
+    /// [`ViewError::Order`] unless the stages are in the order earth, terrain, spline, curved rays, each at most once;
+    /// [`ViewError::OtherRoot`] if curved rays were built for a pinhole with other rays.
     pub fn new(pinhole: Pinhole, stages: Vec<Stage>) -> Result<Self, ViewError> {
         for pair in stages.windows(2) {
             if pair[0].rank() >= pair[1].rank() {
                 return Err(ViewError::Order { first: pair[0].name(), second: pair[1].name() });
             }
+        }
+        if let Some(Stage::CurvedRays(rays)) = stages.last()
+            && !rays.root().has_same_rays(&pinhole)
+        {
+            return Err(ViewError::OtherRoot { built: rays.root().eye, here: pinhole.eye });
         }
         Ok(Self { pinhole, stages })
     }
@@ -113,28 +129,69 @@ impl View {
         let mut p = p_displaced;
         for stage in self.stages.iter().rev() {
             if let Stage::CurvedRays(rays) = stage {
-                segment = rays.segment_at(p);
+                (p, segment) = rays.undisplace(p)?;
+            } else {
+                p = stage.as_map().invert(p)?;
             }
-            p = stage.as_map().invert(p)?;
         }
         Ok((p, segment))
     }
 
+    /// The curved rays, if the chain ends with them.
+    pub fn curved_rays(&self) -> Option<&CurvedRays> {
+        match self.stages.last() {
+            Some(Stage::CurvedRays(rays)) => Some(rays),
+            _ => None,
+        }
+    }
+
+    /// The stages before the curved rays, all of them if there are none.
+    fn earlier_stages(&self) -> &[Stage] {
+        &self.stages[..self.stages.len() - usize::from(self.curved_rays().is_some())]
+    }
+
+    fn displace_earlier(&self, p_world: DVec3) -> Result<Displaced, Miss> {
+        let start = Displaced { point: p_world, segment: 0, folded: false };
+        self.earlier_stages().iter().try_fold(start, |d, stage| {
+            let next = stage.displace(d.point)?;
+            Ok(Displaced { folded: d.folded || next.folded, ..next })
+        })
+    }
+
+    /// How often a renderer draws what spans the whole chain: once per turn of the curved rays, once without them.
+    pub fn records(&self) -> usize {
+        self.curved_rays().map_or(1, CurvedRays::records)
+    }
+
+    /// `p_world` after all stages, the curved rays by the record of one turn alone ([`CurvedRays::displace_in`]).
+    ///
+    /// # Errors
+    /// Those of [`View::displace`]; [`Miss::OutsideDomain`] if `record` is not below [`View::records`].
+    pub fn displace_in(&self, record: usize, p_world: DVec3) -> Result<Displaced, Miss> {
+        let d = self.displace_earlier(p_world)?;
+        match self.curved_rays() {
+            Some(rays) => Ok(Displaced { folded: d.folded, ..rays.displace_in(record, d.point)? }),
+            None if record == 0 => Ok(d),
+            None => Err(Miss::OutsideDomain),
+        }
+    }
+
+    /// Signed distances to the planes that cut a record from its neighbours ([`CurvedRays::record_margins`]): a renderer
+    /// that draws once per record keeps what is positive for both. Negative infinity where earlier stages have no image.
+    pub fn record_margins(&self, record: usize, p_world: DVec3) -> [f64; 2] {
+        match (self.displace_earlier(p_world), self.curved_rays()) {
+            (Ok(d), Some(rays)) => rays.record_margins(record, d.point),
+            (Ok(_), None) => [f64::INFINITY; 2],
+            (Err(_), _) => [f64::NEG_INFINITY; 2],
+        }
+    }
+
     /// All images of a point, in ray order. More than one only where cells of a curved-ray chain overlap.
     pub fn project_all(&self, p_world: DVec3) -> Vec<Projected> {
-        let Some((Stage::CurvedRays(rays), earlier)) = self.stages.split_last() else {
-            return self.project(p_world).into_iter().collect();
-        };
-        let Ok(d) = earlier.iter().try_fold(Displaced { point: p_world, segment: 0, folded: false }, |d, s| {
-            let next = s.displace(d.point)?;
-            Ok::<_, Miss>(Displaced { folded: d.folded || next.folded, ..next })
-        }) else {
-            return Vec::new();
-        };
-        rays.displace_all(d.point)
-            .into_iter()
-            .filter_map(|image| self.photograph(Displaced { folded: d.folded, ..image }).ok())
-            .collect()
+        let Some(rays) = self.curved_rays() else { return self.project(p_world).into_iter().collect() };
+        let Ok(d) = self.displace_earlier(p_world) else { return Vec::new() };
+        let images = rays.displace_all(d.point).into_iter();
+        images.filter_map(|image| self.photograph(Displaced { folded: d.folded, ..image }).ok()).collect()
     }
 
     fn photograph(&self, d: Displaced) -> Result<Projected, Miss> {
@@ -150,49 +207,114 @@ impl View {
             chain = stage.as_map().jacobian(p)? * chain;
             p = stage.as_map().apply(p)?;
         }
-        let (pixel, depth) = self.pinhole.project(p)?;
-        let ph = &self.pinhole;
-        let offset = pixel - ph.center_px();
-        let rows = [(ph.right, offset.x), (ph.down, offset.y)].map(|(axis, off)| {
-            if ph.is_orthographic() { ph.scale_px() * axis } else { (ph.scale_px() * axis - off * ph.forward) / depth }
-        });
-        Ok(rows.map(|row| chain.transpose() * row))
+        let rows = self.pinhole.jacobian(p)?.map(|row| chain.transpose() * row);
+        if rows.iter().all(|r| r.is_finite()) { Ok(rows) } else { Err(Miss::OutsideDomain) }
     }
 
     /// Bound in pixels on the error of drawing the edge `p0 p1` as a straight image edge between its projected ends.
     /// Infinite if an end has no image or no bound is known.
     pub fn edge_error_px(&self, p0: DVec3, p1: DVec3) -> f64 {
+        self.edge_error(p0, p1, None)
+    }
+
+    /// The same when curved rays displace by the record of one turn alone, see [`View::displace_in`].
+    pub fn edge_error_px_in(&self, record: usize, p0: DVec3, p1: DVec3) -> f64 {
+        self.edge_error(p0, p1, Some(record))
+    }
+
+    fn edge_error(&self, p0: DVec3, p1: DVec3, record: Option<usize>) -> f64 {
+        let Some((a, b, mut error)) = self.earlier_error(p0, p1) else { return f64::INFINITY };
+        let Some(rays) = self.curved_rays() else { return self.image_error([a, b], error, &[]) };
+        if error > 0.0 {
+            error *= stretch(rays, a, b);
+        }
+        let displaced = |p| match record {
+            Some(record) => rays.displace_in(record, p),
+            None => rays.displace(p),
+        };
+        let (Ok(a1), Ok(b1)) = (displaced(a), displaced(b)) else { return f64::INFINITY };
+        let ends = [a1.point, b1.point];
+        match record {
+            Some(record) => match rays.record_edge_shift(record, a, b) {
+                Some(shift) => self.image_error(ends, error, &[shift]),
+                None => f64::INFINITY,
+            },
+            None => {
+                let mut shifts = Vec::new();
+                if !rays.edge_shifts(a, b, |shift| shifts.push(shift)) {
+                    return f64::INFINITY;
+                }
+                self.image_error(ends, error, &shifts)
+            }
+        }
+    }
+
+    /// Ends and error, in scene units, of an edge after the stages before the curved rays.
+    fn earlier_error(&self, p0: DVec3, p1: DVec3) -> Option<(DVec3, DVec3, f64)> {
         let (mut a, mut b, mut error) = (p0, p1, 0.0f64);
-        for stage in &self.stages {
+        for stage in self.earlier_stages() {
             let map = stage.as_map();
-            let (Ok(a1), Ok(b1)) = (map.apply(a), map.apply(b)) else { return f64::INFINITY };
-            // An earlier error is carried on by the stage; along a short edge its stretch is that of the ends.
-            let stretch = [a, b].map(|p| {
-                map.jacobian(p).map_or(f64::INFINITY, |j| j.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt())
-            });
-            let carried = if error > 0.0 { error * stretch[0].max(stretch[1]) } else { 0.0 };
+            let (a1, b1) = (map.apply(a).ok()?, map.apply(b).ok()?);
+            let carried = if error > 0.0 { error * stretch(map, a, b) } else { 0.0 };
             error = carried + stage.edge_bound(a, b);
             (a, b) = (a1, b1);
         }
-        if error == 0.0 {
-            return 0.0;
-        }
-        let depth =
-            [a, b].map(|p| (p - self.pinhole.eye).dot(self.pinhole.forward)).into_iter().fold(f64::INFINITY, f64::min);
-        if self.pinhole.is_orthographic() {
-            return error * self.pinhole.scale_px();
-        }
-        if depth <= error { f64::INFINITY } else { error * self.pinhole.scale_px() / (depth - error) }
+        Some((a, b, error))
     }
 
-    /// Conservative image of a box, or `None` if part of it has no image.
-    pub fn image_box(&self, bounds: &Aabb) -> Option<ImageBox> {
-        let mut b = *bounds;
-        for stage in &self.stages {
-            b = stage.displaced_bounds(&b)?;
+    /// Image of an error: a ball of radius `error` and shifts back along fixed vectors, around the edge between displaced ends.
+    ///
+    /// A shift by -d moves a pixel by at most |d_xy - pixel d_w| / (depth - d_w), in pixels and from the image centre;
+    /// the numerator is convex in the pixel, so the ends decide.
+    fn image_error(&self, ends: [DVec3; 2], error: f64, shifts: &[DVec3]) -> f64 {
+        let ph = &self.pinhole;
+        let (Ok((pixel0, depth0)), Ok((pixel1, depth1))) = (ph.project(ends[0]), ph.project(ends[1])) else {
+            return f64::INFINITY;
+        };
+        let scale = ph.scale_px();
+        let lateral = |d: DVec3| DVec2::new(d.dot(ph.right), d.dot(ph.down)) * scale;
+        if ph.is_orthographic() {
+            return error * scale + shifts.iter().map(|&d| lateral(d).length()).sum::<f64>();
         }
-        self.pinhole.image_box(&b)
+        let offsets = [pixel0, pixel1].map(|px| px - ph.center_px());
+        let across = |d: DVec3| {
+            offsets.map(|off| (lateral(d) - off * d.dot(ph.forward)).length()).into_iter().fold(0.0, f64::max)
+        };
+        let ball =
+            error * offsets.map(|off| (scale * scale + off.length_squared()).sqrt()).into_iter().fold(0.0, f64::max);
+        let nearer = error + shifts.iter().map(|d| d.dot(ph.forward).max(0.0)).sum::<f64>();
+        let depth = depth0.min(depth1) - nearer;
+        let px = ball + shifts.iter().map(|&d| across(d)).sum::<f64>();
+        if px == 0.0 {
+            0.0
+        } else if depth > 0.0 {
+            px / depth
+        } else {
+            f64::INFINITY
+        }
     }
+
+    /// Conservative image of a box, or `None` if part of it has no image or lies nearer than `near`.
+    pub fn image_box(&self, bounds: &Aabb) -> Option<ImageBox> {
+        let earlier = self.earlier_stages().iter().try_fold(*bounds, |b, stage| stage.displaced_bounds(&b))?;
+        let Some(rays) = self.curved_rays().filter(|rays| rays.turn_count() > 0) else {
+            return self.pinhole.image_box(&earlier);
+        };
+        // The pinhole carries hulls to hulls, so the image of the hull points bounds the image of the box.
+        let (mut out, mut whole) = (ImageBox::EMPTY, true);
+        rays.displaced_hull(&earlier, |v| match self.pinhole.project(self.pinhole.eye + v) {
+            Ok((pixel, depth)) if depth >= self.pinhole.near => out = out.including(pixel, depth),
+            _ => whole = false,
+        })?;
+        whole.then_some(out)
+    }
+}
+
+/// Largest factor by which the map lengthens a small difference at either end of an edge.
+fn stretch(map: &dyn SpaceMap, a: DVec3, b: DVec3) -> f64 {
+    let norm =
+        |p| map.jacobian(p).map_or(f64::INFINITY, |j| j.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt());
+    norm(a).max(norm(b))
 }
 
 impl Camera for View {

@@ -1,3 +1,4 @@
 //! Laws and references for the mathematics.
 
+mod curved_rays;
 mod spline_figures;

@@ -234,8 +234,8 @@ pub fn map_has_its_continuity<M: SpaceMap>(case: &MapCase<M>) {
                 panic!("{}: joint {joint:?} is not inside the domain", case.label())
             };
             let noise = 1e-14 * case.size() / (0.25 * h).powi(order as i32);
-            // A true jump stays when the step shrinks to a quarter; what is left of a smooth function shrinks at least threefold.
-            let vanishes = fine <= coarse / 3.0 + noise;
+            // A true jump stays when the step shrinks to a quarter; what is left of a smooth function shrinks about fourfold.
+            let vanishes = fine <= 0.5 * coarse + noise;
             if order <= case.continuity.order() {
                 assert!(
                     vanishes,

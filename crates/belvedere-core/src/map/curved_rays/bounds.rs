@@ -1,0 +1,186 @@
+//! Bounds for renderers: how far a straight edge is off, and where a box can go.
+//!
+//! phi is convex along every line that avoids the opposite wedge, so along an edge the truth is the straight edge between
+//! the displaced ends minus `delta d_j`, with `delta = lerp(phi) - phi >= 0`.
+
+use super::phi::Hinge;
+use super::{CurvedRays, Hit, Turn};
+use crate::map::curved_rays::turn::Cell;
+use crate::{Aabb, Miss};
+use glam::DVec3;
+
+/// Extra room for the original model, whose phi is convex only nearly (m varies from ray to ray).
+const BEZIER_ROOM: f64 = 1.25;
+
+impl Turn {
+    /// Largest `lerp(phi) - phi` along an edge; `None` if the edge has an end in the opposite wedge or passes through it.
+    ///
+    /// With end slopes `D0 = (phi1 - phi0) - phi'(X0) (X1 - X0)` and `D1` alike, both >= 0 for a convex function:
+    /// `delta <= D0 D1 / (D0 + D1)`, the height of the triangle that the end tangents leave.
+    pub(super) fn edge_delta(&self, p0: DVec3, p1: DVec3) -> Option<f64> {
+        let (a, b) = ([self.a.at(p0), self.a.at(p1)], [self.b.at(p0), self.b.at(p1)]);
+        if !separable(&[(a[0], b[0]), (a[1], b[1])]) {
+            return None;
+        }
+        let (cell0, cell1) = (self.cell(p0).ok()?, self.cell(p1).ok()?);
+        if cell0 == cell1 && cell0 != Cell::Wedge {
+            return Some(0.0);
+        }
+        let (phi0, phi1) = (self.phi(p0, cell0).ok()?, self.phi(p1, cell1).ok()?);
+        let (da, db) = (a[1] - a[0], b[1] - b[0]);
+        let rise = phi1.phi - phi0.phi;
+        let d0 = (rise - phi0.phi_a * da - phi0.phi_b * db).max(0.0);
+        let d1 = (phi1.phi_a * da + phi1.phi_b * db - rise).max(0.0);
+        let delta = if d0 + d1 > 0.0 { d0 * d1 / (d0 + d1) } else { 0.0 };
+        let room = if matches!(self.hinge, Hinge::Bezier { .. }) { BEZIER_ROOM } else { 1.0 };
+        let delta = room * delta;
+        delta.is_finite().then_some(delta)
+    }
+
+    /// Points whose hull contains the displaced box: its displaced corners, and those minus `delta d_j`.
+    fn hull(&self, corners: &[DVec3; 8], center: DVec3) -> Result<[DVec3; 16], Miss> {
+        let values = corners.map(|p| (self.a.at(p), self.b.at(p)));
+        if !separable(&values) {
+            return Err(Miss::OutsideDomain);
+        }
+        // phi lies above its tangent at the centre, so lerp(phi) - phi is at most the largest gap there is at a corner.
+        let middle = self.phi(center, self.cell(center)?)?;
+        let (a, b) = (self.a.at(center), self.b.at(center));
+        let mut delta = 0.0f64;
+        let mut hull = [DVec3::ZERO; 16];
+        for (i, &p) in corners.iter().enumerate() {
+            let cell = self.cell(p)?;
+            let tangent = middle.phi + middle.phi_a * (values[i].0 - a) + middle.phi_b * (values[i].1 - b);
+            delta = delta.max(self.phi(p, cell)?.phi - tangent);
+            hull[i] = self.displaced(p, cell)?;
+        }
+        if matches!(self.hinge, Hinge::Bezier { .. }) {
+            delta *= BEZIER_ROOM;
+        }
+        for i in 0..8 {
+            hull[8 + i] = hull[i] - delta * self.shift;
+        }
+        Ok(hull)
+    }
+}
+
+/// Whether the hull of points (a, b) keeps clear of the quadrant `a <= 0, b <= 0`: whether some `t a + (1 - t) b`, t in 0..=1, is positive at all of them.
+fn separable(points: &[(f64, f64)]) -> bool {
+    let (mut low, mut high) = (0.0f64, 1.0f64);
+    for &(a, b) in points {
+        // t (a - b) > -b
+        let slope = a - b;
+        if !(a > 0.0 || b > 0.0) {
+            return false;
+        }
+        if slope > 0.0 {
+            low = low.max(-b / slope);
+        } else if slope < 0.0 {
+            high = high.min(b / -slope);
+        }
+    }
+    low < high
+}
+
+impl CurvedRays {
+    /// See [`crate::Stage::edge_bound`]. Infinite if the edge leaves the domain, or joins cells between which phi alone does not tell the way.
+    pub fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
+        let mut bound = 0.0;
+        let known = self.edge_shifts(p0, p1, |shift| bound += shift.length());
+        if known { bound } else { f64::INFINITY }
+    }
+
+    /// Calls `visit(delta_j d_j)` for each turn that bends the edge `p0 p1`: the displaced edge is the straight one minus
+    /// a share in 0..=1 of each. `false` if no bound is known.
+    pub(crate) fn edge_shifts(&self, p0: DVec3, p1: DVec3, mut visit: impl FnMut(DVec3)) -> bool {
+        if self.turns().is_empty() {
+            return true;
+        }
+        let (Ok(hit0), Ok(hit1)) = (self.locate(p0), self.locate(p1)) else { return false };
+        if let Some(record) = shared_record(&hit0, &hit1) {
+            return self.record_edge_shift(record, p0, p1).map(&mut visit).is_some();
+        }
+        if !(self.is_sum(p0, &hit0) && self.is_sum(p1, &hit1)) {
+            return false;
+        }
+        let first = hit0.turn.min(hit1.turn);
+        let last = hit0.turn.max(hit1.turn);
+        (first..=last).all(|record| self.record_edge_shift(record, p0, p1).map(&mut visit).is_some())
+    }
+
+    /// `delta d` of the edge drawn with one record; `None` if it leaves the record's domain.
+    pub(crate) fn record_edge_shift(&self, record: usize, p0: DVec3, p1: DVec3) -> Option<DVec3> {
+        let Some(turn) = self.turns().get(record) else { return self.turns().is_empty().then_some(DVec3::ZERO) };
+        Some(turn.edge_delta(p0, p1)? * turn.shift)
+    }
+
+    /// Whether the point's displacement is the sum of all turns' phi: past each earlier turn, before each later one.
+    fn is_sum(&self, p: DVec3, hit: &Hit) -> bool {
+        self.turns().iter().enumerate().all(|(index, turn)| match turn.cell(p) {
+            Ok(Cell::After) => index <= hit.turn,
+            Ok(Cell::Before) => index >= hit.turn,
+            Ok(Cell::Wedge) => index == hit.turn,
+            Err(_) => false,
+        })
+    }
+
+    /// See [`crate::Stage::displaced_bounds`].
+    pub fn displaced_bounds(&self, bounds: &Aabb) -> Option<Aabb> {
+        if self.turns().is_empty() {
+            return Some(*bounds);
+        }
+        let mut out = Aabb::EMPTY;
+        self.displaced_hull(bounds, |v| out = out.including(self.root().eye + v))?;
+        let grow = DVec3::splat(1e-12 * (out.max - out.min).length());
+        Some(Aabb { min: out.min - grow, max: out.max + grow })
+    }
+
+    /// Visits points, relative to the eye, whose hull contains the displaced image of the box by every record that may
+    /// displace part of it; `None` if part of it may have no image.
+    pub(crate) fn displaced_hull(&self, bounds: &Aabb, mut visit: impl FnMut(DVec3)) -> Option<()> {
+        let (corners, center) = (bounds.corners(), bounds.center());
+        if bounds.is_empty() || !(bounds.min.is_finite() && bounds.max.is_finite()) {
+            return None;
+        }
+        let mut any = false;
+        for (record, turn) in self.turns().iter().enumerate() {
+            if !self.may_displace(record, &corners) {
+                continue;
+            }
+            turn.hull(&corners, center).ok()?.into_iter().for_each(&mut visit);
+            any = true;
+        }
+        any.then_some(())
+    }
+
+    /// Whether the record may displace a point of the box: its transition or the straight part after it, and before the
+    /// first turn also that.
+    fn may_displace(&self, record: usize, corners: &[DVec3; 8]) -> bool {
+        let turn = &self.turns()[record];
+        if record > 0 && corners.iter().all(|&p| turn.a.at(p) <= 0.0) {
+            return false;
+        }
+        let past = |turn: &Turn| corners.iter().all(|&p| matches!(turn.cell(p), Ok(Cell::After)));
+        match self.turns().get(record + 1) {
+            // Wholly past this turn and into the next one.
+            Some(next) => !(past(turn) && corners.iter().all(|&p| next.a.at(p) > 0.0)),
+            None => true,
+        }
+    }
+}
+
+/// The record that displaces both points, if there is one: a straight part belongs to the records on both its sides.
+fn shared_record(hit0: &Hit, hit1: &Hit) -> Option<usize> {
+    let (first, last) = if hit0.turn <= hit1.turn { (hit0, hit1) } else { (hit1, hit0) };
+    if first.turn == last.turn {
+        return Some(first.turn);
+    }
+    if first.turn + 1 != last.turn {
+        return None;
+    }
+    match (first.cell, last.cell) {
+        (Cell::After, _) => Some(last.turn),
+        (_, Cell::Before) => Some(first.turn),
+        _ => None,
+    }
+}

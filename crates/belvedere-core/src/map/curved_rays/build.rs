@@ -1,0 +1,95 @@
+//! From a specification to a chain.
+
+use super::check::{Earlier, Forms, Surroundings, check, corner_direction, corner_pixels};
+use super::form::LinearForm;
+use super::phi::Hinge;
+use super::spec::{CurvedRaysError, Model, Sharpness, TurnSpec};
+use super::turn::{Part, Turn};
+use super::{CurvedRays, Remedy};
+use crate::Pinhole;
+use glam::{DMat3, DVec2};
+
+pub(super) fn build(root: &Pinhole, model: Model, spec: &[TurnSpec]) -> Result<CurvedRays, CurvedRaysError> {
+    if root.is_orthographic() {
+        return Err(CurvedRaysError::Orthographic);
+    }
+    let mut part = Part { viewpoint: root.eye, linear: DMat3::IDENTITY, inverse: DMat3::IDENTITY };
+    let mut earlier: Option<Earlier<'_>> = None;
+    let mut turns: Vec<Turn> = Vec::with_capacity(spec.len());
+    for (index, turn_spec) in spec.iter().enumerate() {
+        let around = Surroundings { root, turn: index + 1, part, earlier };
+        let forms = check(turn_spec, &around)?;
+        let hinge = hinge(model, turn_spec, &forms, &around)?;
+        let ends = corner_pixels(root).map(|px| forms.end(corner_direction(px, root, &part)));
+        earlier = Some(Earlier { spec: turn_spec, part, ends });
+        let turn = Turn::new(&part, turn_spec, &forms, hinge);
+        part = turn.part_after();
+        turns.push(turn);
+    }
+    let separators = turns.windows(2).map(|pair| separator(&pair[0], &pair[1])).collect();
+    Ok(CurvedRays { root: root.clone(), model, spec: spec.to_vec(), turns, separators })
+}
+
+/// How the rays of a turn bend.
+fn hinge(model: Model, spec: &TurnSpec, forms: &Forms, around: &Surroundings<'_>) -> Result<Hinge, CurvedRaysError> {
+    if forms.kink {
+        return Ok(Hinge::Broken);
+    }
+    Ok(match model {
+        Model::C0 => Hinge::Broken,
+        Model::C2 => Hinge::C2,
+        // Only a first guess: m = 1 serves where the bend point's own ray has none.
+        Model::Original => Hinge::Bezier { start: forms.values.m_sigma(forms.sigma).unwrap_or(1.0) },
+        Model::Modified => Hinge::Conic { m: sharpness(spec, forms, around)? },
+        Model::Circular => {
+            // Our reading of beta: the angle between the planes t0 and t2, normals along the rays, by which a ray that
+            // crosses both at right angles turns. Parallel planes: m = 1.
+            let (n0, n2) = (forms.a.gradient.normalize(), -forms.b.gradient.normalize());
+            let half_square = 0.5 * (1.0 + n0.dot(n2).clamp(-1.0, 1.0));
+            if half_square < 1e-12 {
+                return Err(CurvedRaysError::SamePlanes { turn: around.turn, distance: 0.0 });
+            }
+            Hinge::Conic { m: 1.0 / half_square.sqrt() }
+        }
+    })
+}
+
+/// The one sharpness of a turn of the modified model. Computed values are not clamped.
+fn sharpness(spec: &TurnSpec, forms: &Forms, around: &Surroundings<'_>) -> Result<f64, CurvedRaysError> {
+    let root = around.root;
+    let at_pixel = |pixel: DVec2| {
+        let sigma = forms.sigma_on(corner_direction(pixel, root, &around.part));
+        forms.values.m_sigma(sigma).ok_or_else(|| end_not_reached(pixel, sigma, forms, around))
+    };
+    match spec.m {
+        Sharpness::Value(m) => Ok(m),
+        Sharpness::Left => at_pixel(DVec2::new(0.0, root.center_px().y)),
+        Sharpness::Mid => {
+            let [p, q, r, s] = corner_pixels(root).map(at_pixel);
+            let corners = [p?, q?, r?, s?];
+            let (low, high) =
+                corners.into_iter().fold((f64::INFINITY, 0.0f64), |(low, high), m| (low.min(m), high.max(m)));
+            Ok((low * high).sqrt())
+        }
+        Sharpness::Bend => forms.values.m_sigma(forms.sigma).ok_or_else(|| {
+            let v = around.part.linear * (spec.t1 - around.part.viewpoint);
+            let pixel = root.project(root.eye + v).map_or(DVec2::ZERO, |(pixel, _)| pixel);
+            end_not_reached(pixel, forms.sigma, forms, around)
+        }),
+    }
+}
+
+fn end_not_reached(pixel: DVec2, sigma: f64, forms: &Forms, around: &Surroundings<'_>) -> CurvedRaysError {
+    let turn = around.turn;
+    CurvedRaysError::EndNotReached { turn, pixel, sigma, limit: forms.values.b1, remedy: Remedy::BendInPicture }
+}
+
+/// The plane halfway, in 1/depth, between t2 of one turn and t0 of the next: 1/depth of a plane is affine in the pixel,
+/// so there is such a plane, and it lies in the straight part for every pixel.
+fn separator(turn: &Turn, next: &Turn) -> LinearForm {
+    let (t2, t0) = (turn.b.scaled(-1.0 / turn.values.b1), next.a.scaled(-1.0 / next.values.a0));
+    let gradient = t2.gradient + t0.gradient;
+    let origin = turn.viewpoint;
+    // Both forms are -1 at the viewpoint, by their scale.
+    LinearForm { origin, at_origin: -2.0, gradient }.scaled(1.0 / gradient.length())
+}

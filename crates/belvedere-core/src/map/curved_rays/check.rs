@@ -1,0 +1,314 @@
+//! Which turns are valid: the rows of the table of valid configurations, each with its own message.
+
+use super::form::LinearForm;
+use super::phi::ViewpointValues;
+use super::remedy::report;
+use super::spec::{CurvedRaysError, Pencil, Sharpness, TurnSpec};
+use super::turn::Part;
+use crate::Pinhole;
+use glam::{DVec2, DVec3};
+
+/// A turn narrower than this share of the distance to its bend point is a kink.
+const KINK: f64 = 1e-6;
+/// A plane nearer to the bend point than this share of the distance does not define a wedge.
+const TOUCHING: f64 = 1e-8;
+
+/// The forms of a turn, scaled: `h = a - b` is -1 at the viewpoint after the turn.
+#[derive(Debug, Clone)]
+pub(super) struct Forms {
+    pub(super) a: LinearForm,
+    pub(super) b: LinearForm,
+    pub(super) h: LinearForm,
+    pub(super) values: ViewpointValues,
+    /// sigma of the bend point.
+    pub(super) sigma: f64,
+    /// Whether the wedge has no width, so that the turn is a kink.
+    pub(super) kink: bool,
+    /// From the viewpoint before the turn to the one after it.
+    pub(super) baseline: DVec3,
+}
+
+/// What a turn is checked against.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Surroundings<'a> {
+    pub(super) root: &'a Pinhole,
+    /// Number of the turn, from 1.
+    pub(super) turn: usize,
+    /// The chain before the turn.
+    pub(super) part: Part,
+    /// The turn before.
+    pub(super) earlier: Option<Earlier<'a>>,
+}
+
+/// The turn before the one that is checked.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Earlier<'a> {
+    pub(super) spec: &'a TurnSpec,
+    /// The chain before that turn.
+    pub(super) part: Part,
+    /// Depth of its t2 on the rays of the image corners.
+    pub(super) ends: [f64; 4],
+}
+
+/// One broken row, measured. The order of the variants is the order of the checks.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Broken {
+    Order { depths: [f64; 3] },
+    PreviousPastBend { past: f64 },
+    ViewpointPastBend { past: f64 },
+    PreviousPastStart { past: f64 },
+    BendNotMet { pixel: DVec2, slope: f64 },
+    LineInPicture { pixel: DVec2, beyond: f64 },
+    EndNotReached { pixel: DVec2, sigma: f64, limit: f64 },
+    TurnsOverlap { pixel: DVec2, end: f64, start: f64 },
+    NearPastStart { pixel: DVec2, start: f64 },
+}
+
+impl Broken {
+    pub(super) fn row(self) -> u32 {
+        match self {
+            Self::Order { .. } => 0,
+            Self::PreviousPastBend { .. } => 1,
+            Self::ViewpointPastBend { .. } => 2,
+            Self::PreviousPastStart { .. } => 3,
+            Self::BendNotMet { .. } => 4,
+            Self::LineInPicture { .. } => 5,
+            Self::EndNotReached { .. } => 6,
+            Self::TurnsOverlap { .. } => 7,
+            Self::NearPastStart { .. } => 8,
+        }
+    }
+}
+
+/// Checks everything about a turn and returns its forms.
+pub(super) fn check(spec: &TurnSpec, around: &Surroundings<'_>) -> Result<Forms, CurvedRaysError> {
+    numbers(spec, around.turn)?;
+    let raw = Raw::new(spec, around.turn, &around.part)?;
+    raw.rows(spec, around).map_err(|broken| report(broken, spec, around))
+}
+
+fn numbers(spec: &TurnSpec, turn: usize) -> Result<(), CurvedRaysError> {
+    let (pencil_names, u, v) = match spec.pencil {
+        Pencil::Line { point, dir } => (["line.point", "line.dir"], point, dir),
+        Pencil::Parallel { normal } => (["normal", "normal"], normal, normal),
+    };
+    let named = [
+        ("viewpoint", spec.viewpoint),
+        ("t0", spec.t0),
+        ("t1", spec.t1),
+        ("t2", spec.t2),
+        (pencil_names[0], u),
+        (pencil_names[1], v),
+    ];
+    for (name, p) in named {
+        if let Some(value) = p.to_array().into_iter().find(|c| !c.is_finite()) {
+            return Err(CurvedRaysError::NotFinite { turn, name, value });
+        }
+    }
+    if v.normalize_or_zero() == DVec3::ZERO {
+        return Err(CurvedRaysError::ZeroDirection { turn, name: pencil_names[1] });
+    }
+    match spec.m {
+        Sharpness::Value(m) if !(0.2..=20.0).contains(&m) => Err(CurvedRaysError::Sharpness { turn, m }),
+        _ => Ok(()),
+    }
+}
+
+/// Unit normals of t0, t1, t2, either sign.
+fn normals(spec: &TurnSpec, turn: usize) -> Result<[DVec3; 3], CurvedRaysError> {
+    match spec.pencil {
+        Pencil::Parallel { normal } => Ok([normal.normalize(); 3]),
+        Pencil::Line { point, dir } => {
+            let dir = dir.normalize();
+            let arms = [spec.t0, spec.t1, spec.t2].map(|t| (t - point).cross(dir));
+            let limit = 1e-9 * arms.iter().map(|a| a.length()).fold(0.0, f64::max);
+            for (name, arm) in ["t0", "t1", "t2"].into_iter().zip(arms) {
+                let distance = arm.length();
+                if distance <= limit {
+                    return Err(CurvedRaysError::PointOnLine { turn, name, distance, limit });
+                }
+            }
+            Ok(arms.map(DVec3::normalize))
+        }
+    }
+}
+
+/// Unscaled geometry of a turn: everything is finite, nothing is known to be on the right side yet.
+pub(super) struct Raw {
+    /// Forms of t0 and t2 that are 1 at the bend point; t1's unit form, positive beyond.
+    a: LinearForm,
+    b: LinearForm,
+    t1: LinearForm,
+    kink: bool,
+}
+
+impl Raw {
+    pub(super) fn new(spec: &TurnSpec, turn: usize, part: &Part) -> Result<Self, CurvedRaysError> {
+        let [n0, n1, n2] = normals(spec, turn)?;
+        let bend = spec.t1;
+        let reach = (bend - part.viewpoint).length().max((bend - spec.viewpoint).length());
+        let form = |gradient: DVec3, through: DVec3| LinearForm {
+            origin: bend,
+            at_origin: gradient.dot(bend - through),
+            gradient,
+        };
+        let (t0, t1, t2) = (form(n0, spec.t0), form(n1, bend), form(n2, spec.t2));
+        for (viewpoint, p) in [(turn - 1, part.viewpoint), (turn, spec.viewpoint)] {
+            let (distance, limit) = (t1.at(p).abs(), 1e-9 * (p - bend).length());
+            if distance <= limit {
+                return Err(CurvedRaysError::ViewpointOnBend { turn, viewpoint, distance, limit });
+            }
+        }
+        let widths = [t0.at_origin.abs(), t2.at_origin.abs()];
+        if widths.iter().all(|w| *w <= KINK * reach) {
+            // No wedge: broken rays. Either normal of t1 will do, the viewpoints tell which side is which.
+            let side = -t1.at(spec.viewpoint).signum();
+            return Ok(Self { a: t1.scaled(side), b: t1.scaled(-side), t1: t1.scaled(side), kink: true });
+        }
+        let limit = TOUCHING * reach;
+        for (name, distance) in ["t0", "t2"].into_iter().zip(widths) {
+            if distance <= limit {
+                return Err(CurvedRaysError::BendOnPlane { turn, name, distance, limit });
+            }
+        }
+        let (a, b) = (t0.scaled(1.0 / t0.at_origin), t2.scaled(1.0 / t2.at_origin));
+        let across = a.gradient - b.gradient;
+        if across.length() <= 1e-9 * a.gradient.length().max(b.gradient.length()) {
+            return Err(CurvedRaysError::SamePlanes { turn, distance: widths[0] });
+        }
+        let side = across.dot(n1).signum();
+        Ok(Self { a, b, t1: t1.scaled(side), kink: false })
+    }
+
+    /// The rows of the table, in order.
+    pub(super) fn rows(&self, spec: &TurnSpec, around: &Surroundings<'_>) -> Result<Forms, Broken> {
+        let part = &around.part;
+        let (past0, past1) = (self.t1.at(part.viewpoint), self.t1.at(spec.viewpoint));
+        if past0 > 0.0 && past1 > 0.0 {
+            return Err(Broken::Order { depths: self.depths(spec, around) });
+        }
+        if past0 >= 0.0 {
+            return Err(Broken::PreviousPastBend { past: past0 });
+        }
+        if past1 >= 0.0 {
+            return Err(Broken::ViewpointPastBend { past: past1 });
+        }
+        let forms = self.forms(part, spec.viewpoint);
+        if !(forms.values.a0 < 0.0) {
+            return Err(Broken::PreviousPastStart { past: forms.values.a0 / forms.a.gradient.length() });
+        }
+        let pixels = corner_pixels(around.root);
+        for pixel in pixels {
+            forms.meets_bend(pixel, spec, around)?;
+        }
+        for pixel in pixels {
+            forms.reaches_end(pixel, around)?;
+        }
+        for (i, pixel) in pixels.into_iter().enumerate() {
+            let start = forms.start(corner_direction(pixel, around.root, part));
+            match around.earlier {
+                Some(Earlier { ends, .. }) if !(start >= ends[i]) => {
+                    return Err(Broken::TurnsOverlap { pixel, end: ends[i], start });
+                }
+                None if !(start > around.root.near) => return Err(Broken::NearPastStart { pixel, start }),
+                _ => {}
+            }
+        }
+        Ok(forms)
+    }
+
+    /// Scaled forms; the viewpoints must not lie on t1.
+    pub(super) fn forms(&self, part: &Part, after: DVec3) -> Forms {
+        let before = part.viewpoint;
+        let h = self.t1.scaled(-1.0 / self.t1.at(after));
+        let k0 = -h.at(before);
+        let baseline = after - before;
+        if self.kink {
+            let (a, b) = (h.scaled(0.5), h.scaled(-0.5));
+            let values = ViewpointValues { k0, a0: -0.5 * k0, b0: 0.5 * k0, a1: -0.5, b1: 0.5 };
+            return Forms { a, b, h, values, sigma: 0.0, kink: true, baseline };
+        }
+        let sigma = 1.0 / (self.b.at(after) - self.a.at(after));
+        let (a, b) = (self.a.scaled(sigma), self.b.scaled(sigma));
+        let values = ViewpointValues { k0, a0: a.at(before), b0: b.at(before), a1: a.at(after), b1: b.at(after) };
+        Forms { a, b, h, values, sigma, kink: false, baseline }
+    }
+
+    /// Where the planes lie along the axis of the part before the turn.
+    fn depths(&self, spec: &TurnSpec, around: &Surroundings<'_>) -> [f64; 3] {
+        let (eye, axis) = (around.part.viewpoint, axis(around));
+        [(&self.a, spec.t0), (&self.t1, spec.t1), (&self.b, spec.t2)].map(|(form, point)| {
+            let depth = -form.at(eye) / form.along(axis);
+            if depth.is_finite() { depth } else { (point - eye).dot(axis) }
+        })
+    }
+}
+
+impl Forms {
+    /// Row 3: a corner ray with `direction` per unit of depth meets t1 ahead, on the picture's side of the common line.
+    fn meets_bend(&self, pixel: DVec2, spec: &TurnSpec, around: &Surroundings<'_>) -> Result<(), Broken> {
+        let direction = corner_direction(pixel, around.root, &around.part);
+        let slope = self.h.along(direction) / (self.h.gradient.length() * direction.length());
+        if !(slope > 0.0) {
+            return Err(Broken::BendNotMet { pixel, slope });
+        }
+        if self.kink {
+            return Ok(());
+        }
+        // sigma > 0, multiplied by the positive slope: affine in the pixel.
+        let scaled = self.values.a0 * self.h.along(direction) + self.values.k0 * self.a.along(direction);
+        if scaled > 0.0 {
+            return Ok(());
+        }
+        let s = around.part.viewpoint + self.bend_depth(direction) * direction;
+        let beyond = match spec.pencil {
+            Pencil::Line { point, dir } => (s - point).reject_from(dir).length(),
+            Pencil::Parallel { .. } => -self.a.at(s) / self.a.gradient.length(),
+        };
+        Err(Broken::LineInPicture { pixel, beyond })
+    }
+
+    /// Row 4.
+    fn reaches_end(&self, pixel: DVec2, around: &Surroundings<'_>) -> Result<(), Broken> {
+        let sigma = self.sigma_on(corner_direction(pixel, around.root, &around.part));
+        let limit = self.values.b1;
+        if sigma < limit { Ok(()) } else { Err(Broken::EndNotReached { pixel, sigma, limit }) }
+    }
+
+    /// Depth of t1 along a ray of the part before the turn.
+    pub(super) fn bend_depth(&self, direction: DVec3) -> f64 {
+        self.values.k0 / self.h.along(direction)
+    }
+
+    /// sigma, the value of a and b where the ray meets t1.
+    pub(super) fn sigma_on(&self, direction: DVec3) -> f64 {
+        self.values.a0 + self.bend_depth(direction) * self.a.along(direction)
+    }
+
+    /// Depth of t0.
+    pub(super) fn start(&self, direction: DVec3) -> f64 {
+        -self.values.a0 / self.a.along(direction)
+    }
+
+    /// Depth of t2, along the direction that the ray has after the turn.
+    pub(super) fn end(&self, direction: DVec3) -> f64 {
+        let after = direction - self.baseline * (self.h.along(direction) / self.values.k0);
+        -self.values.b1 / self.b.along(after)
+    }
+}
+
+/// Unit direction of the central ray of the part before a turn.
+pub(super) fn axis(around: &Surroundings<'_>) -> DVec3 {
+    (around.part.inverse * around.root.forward).normalize()
+}
+
+/// The four image corners. All rows are affine in the pixel, so the corners decide for the whole picture.
+pub(super) fn corner_pixels(root: &Pinhole) -> [DVec2; 4] {
+    let [w, h] = root.image.map(f64::from);
+    [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(0.0, h), DVec2::new(w, h)]
+}
+
+/// Direction of a pixel's ray in a part of the chain, per unit of depth.
+pub(super) fn corner_direction(pixel: DVec2, root: &Pinhole, part: &Part) -> DVec3 {
+    part.inverse * (root.unproject(pixel, 1.0) - root.eye)
+}

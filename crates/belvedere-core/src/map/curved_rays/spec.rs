@@ -1,0 +1,333 @@
+//! What a user says about a curved ray camera, and what can be wrong with it.
+
+use glam::{DVec2, DVec3};
+
+/// Shape of the rays inside the transitions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Model {
+    /// Conic arcs of constant sharpness m per turn (Cui et al. 2010, modified model).
+    #[default]
+    Modified,
+    /// Quadratic Bezier arcs (Cui et al. 2010, original model).
+    Original,
+    /// Broken rays that bend at t1: the general linear ("graph") camera that the paper compares with.
+    C0,
+    /// Curvature-continuous rays; ours, beyond the paper.
+    C2,
+    /// Conic arcs with `m = 1 / cos(beta / 2)`: circles about the common line for far viewpoints; ours.
+    Circular,
+}
+
+/// How the three planes of a turn belong together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Pencil {
+    /// They share a line, outside the picture.
+    Line {
+        /// A point of the line, scene coordinates.
+        point: DVec3,
+        /// Its direction, any length but 0.
+        dir: DVec3,
+    },
+    /// They are parallel.
+    Parallel {
+        /// Common normal, any length but 0, either sign.
+        normal: DVec3,
+    },
+}
+
+/// Sharpness m of a turn in the modified model: small = wide arc, large = nearly a kink.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Sharpness {
+    /// A number in 0.2..=20.
+    Value(f64),
+    /// The ray through the bend point (the point given for t1) is exactly the paper's Bezier arc.
+    #[default]
+    Bend,
+    /// The ray through the left image edge at half height is: nearest to the paper's own choice.
+    Left,
+    /// Geometric mean of the extremes over the four image corners.
+    Mid,
+}
+
+/// One turn: from viewpoint `j - 1` to viewpoint `j` through planes t0, t1, t2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TurnSpec {
+    /// Viewpoint after the turn, scene coordinates.
+    pub viewpoint: DVec3,
+    /// A point of plane t0, where rays begin to bend.
+    pub t0: DVec3,
+    /// A point of plane t1: the bend point.
+    pub t1: DVec3,
+    /// A point of plane t2, where rays are straight again.
+    pub t2: DVec3,
+    /// Common line or common normal of the planes.
+    pub pencil: Pencil,
+    /// Sharpness; used by [`Model::Modified`] only.
+    pub m: Sharpness,
+}
+
+/// The nearest valid value for a parameter that is not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// Move one point.
+    MovePoint {
+        /// Its name in the scene file.
+        name: &'static str,
+        /// Nearest valid place found, scene coordinates.
+        to: DVec3,
+    },
+    /// Move t0, t1 and t2 together.
+    MovePlanes {
+        /// Smallest shift found, scene units.
+        by: DVec3,
+    },
+    /// Give the planes another normal.
+    Normal {
+        /// Nearest valid normal found.
+        normal: DVec3,
+    },
+    /// Bring t0 and t2 of both turns nearer to their t1.
+    Shrink {
+        /// Largest factor found for the distances from t1, in 0..1.
+        factor: f64,
+    },
+    /// Lower the near distance.
+    Near {
+        /// Largest valid value, scene units.
+        near: f64,
+    },
+    /// Exchange t0 and t2.
+    SwapPlanes,
+    /// Choose a bend point that the picture's rays bend around.
+    BendInPicture,
+    /// No single parameter heals it.
+    Rebuild,
+}
+
+impl std::fmt::Display for Remedy {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let place = |p: DVec3| format!("[{:.6}, {:.6}, {:.6}]", p.x, p.y, p.z);
+        match self {
+            Self::MovePoint { name, to } => write!(f, "the nearest valid {name} is {}", place(*to)),
+            Self::MovePlanes { by } => write!(f, "move t0, t1 and t2 by at least {}", place(*by)),
+            Self::Normal { normal } => write!(f, "the nearest valid plane normal is {}", place(*normal)),
+            Self::Shrink { factor } => {
+                write!(f, "multiply the distances of t0 and t2 from t1 by at most {factor:.6} in both turns")
+            }
+            Self::Near { near } => write!(f, "near may be at most {near:.6}, or move t0 away from the eye"),
+            Self::SwapPlanes => write!(f, "exchange t0 and t2"),
+            Self::BendInPicture => write!(f, "move t1 into the picture, or give m as a number"),
+            Self::Rebuild => {
+                write!(f, "place t0, t1, t2 in this order ahead of both viewpoints, or use parallel planes")
+            }
+        }
+    }
+}
+
+/// A curved ray camera that cannot be. Turns and viewpoints are counted from 1; viewpoint 0 is the eye.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CurvedRaysError {
+    /// Curved rays start at an eye.
+    #[error("curved rays need a perspective camera, the root camera is orthographic; set projection = \"perspective\"")]
+    Orthographic,
+    /// A parameter is NaN or infinite.
+    #[error("turn {turn}: {name} is not a finite number ({value}); give finite values")]
+    NotFinite {
+        /// Turn, from 1.
+        turn: usize,
+        /// Which parameter.
+        name: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// A direction of length 0.
+    #[error("turn {turn}: {name} has length 0; give a direction")]
+    ZeroDirection {
+        /// Turn, from 1.
+        turn: usize,
+        /// Which parameter.
+        name: &'static str,
+    },
+    /// Sharpness out of range.
+    #[error(
+        "turn {turn}: m is {m}, it must lie in 0.2..=20; use a number in that range or \"bend\", \"left\", \"mid\""
+    )]
+    Sharpness {
+        /// Turn, from 1.
+        turn: usize,
+        /// The value.
+        m: f64,
+    },
+    /// A plane's point lies on the common line.
+    #[error(
+        "turn {turn}: {name} is {distance:e} from the common line, which leaves its plane undefined (more than {limit:e} needed); move it away from the line"
+    )]
+    PointOnLine {
+        /// Turn, from 1.
+        turn: usize,
+        /// Which point.
+        name: &'static str,
+        /// Distance, scene units.
+        distance: f64,
+        /// Limit, scene units.
+        limit: f64,
+    },
+    /// The bend point lies on t0 or t2 (but not on both, which is a turn of width 0 and allowed).
+    #[error(
+        "turn {turn}: the bend point t1 is {distance:e} from plane {name}, more than {limit:e} needed; move {name} away from t1, or put both t0 and t2 onto it for a sharp bend"
+    )]
+    BendOnPlane {
+        /// Turn, from 1.
+        turn: usize,
+        /// Which plane.
+        name: &'static str,
+        /// Distance, scene units.
+        distance: f64,
+        /// Limit, scene units.
+        limit: f64,
+    },
+    /// t0 and t2 are one plane, apart from t1.
+    #[error(
+        "turn {turn}: t0 and t2 are the same plane, {distance:.6} from the bend point t1; put them on either side of t1"
+    )]
+    SamePlanes {
+        /// Turn, from 1.
+        turn: usize,
+        /// Distance of the bend point, scene units.
+        distance: f64,
+    },
+    /// A viewpoint lies on t1.
+    #[error(
+        "turn {turn}: viewpoint {viewpoint} is {distance:e} from plane t1, more than {limit:e} needed; move it back from the plane"
+    )]
+    ViewpointOnBend {
+        /// Turn, from 1.
+        turn: usize,
+        /// Viewpoint, from 0.
+        viewpoint: usize,
+        /// Distance, scene units.
+        distance: f64,
+        /// Limit, scene units.
+        limit: f64,
+    },
+    /// Planes in the wrong order or behind both viewpoints.
+    #[error(
+        "turn {turn}: rays must meet t0, t1, t2 in this order, they lie {t0:.6}, {t1:.6}, {t2:.6} ahead of viewpoint {viewpoint} along its axis; {remedy}"
+    )]
+    PlaneOrder {
+        /// Turn, from 1.
+        turn: usize,
+        /// Viewpoint before the turn, from 0.
+        viewpoint: usize,
+        /// Signed distance of plane t0 along the axis, scene units.
+        t0: f64,
+        /// Same for t1.
+        t1: f64,
+        /// Same for t2.
+        t2: f64,
+        /// Nearest valid value.
+        remedy: Remedy,
+    },
+    /// Section 7, row 1: the viewpoint before the turn is past t1.
+    #[error("turn {turn}: viewpoint {viewpoint} is {past:.6} past plane t1, it must lie before it; {remedy}")]
+    PreviousPastBend {
+        /// Turn, from 1.
+        turn: usize,
+        /// Viewpoint before the turn, from 0.
+        viewpoint: usize,
+        /// Distance past the plane, scene units.
+        past: f64,
+        /// Nearest valid value.
+        remedy: Remedy,
+    },
+    /// Row 1: the viewpoint before the turn is past t0.
+    #[error("turn {turn}: viewpoint {viewpoint} is {past:.6} past plane t0, it must lie before it; {remedy}")]
+    PreviousPastStart {
+        /// Turn, from 1.
+        turn: usize,
+        /// Viewpoint before the turn, from 0.
+        viewpoint: usize,
+        /// Distance past the plane, scene units.
+        past: f64,
+        /// Nearest valid value.
+        remedy: Remedy,
+    },
+    /// Row 2: the viewpoint after the turn is past t1, the picture would be mirrored.
+    #[error("turn {turn}: viewpoint {turn} is {past:.6} past plane t1, which would mirror the picture; {remedy}")]
+    ViewpointPastBend {
+        /// Turn, from 1.
+        turn: usize,
+        /// Distance past the plane, scene units.
+        past: f64,
+        /// Nearest valid value.
+        remedy: Remedy,
+    },
+    /// Row 3: rays of the picture do not meet t1.
+    #[error("turn {turn}: the ray of pixel ({}, {}) does not meet plane t1 ahead of viewpoint {viewpoint} (slope towards it {slope:e}, more than 0 needed); {remedy}", pixel.x, pixel.y)]
+    BendNotMet {
+        /// Turn, from 1.
+        turn: usize,
+        /// Viewpoint before the turn, from 0.
+        viewpoint: usize,
+        /// Image corner.
+        pixel: DVec2,
+        /// Cosine between the ray and the plane's normal.
+        slope: f64,
+        /// Nearest valid value.
+        remedy: Remedy,
+    },
+    /// Row 3: the common line cuts the picture.
+    #[error("turn {turn}: the common line lies inside the picture, the ray of pixel ({}, {}) passes it on the far side by {beyond:.6}; {remedy}", pixel.x, pixel.y)]
+    LineInPicture {
+        /// Turn, from 1.
+        turn: usize,
+        /// Image corner.
+        pixel: DVec2,
+        /// Distance beyond the line within t1, scene units.
+        beyond: f64,
+        /// Nearest valid value.
+        remedy: Remedy,
+    },
+    /// Row 4: a ray never reaches t2.
+    #[error("turn {turn}: the ray of pixel ({}, {}) never reaches plane t2 (sigma = {sigma:.6}, it must be below {limit:.6}); {remedy}, or move the viewpoint back", pixel.x, pixel.y)]
+    EndNotReached {
+        /// Turn, from 1.
+        turn: usize,
+        /// Image corner, or the pixel of the bend point.
+        pixel: DVec2,
+        /// Value of both plane forms where the ray meets t1.
+        sigma: f64,
+        /// Value of t2's form at the viewpoint.
+        limit: f64,
+        /// Nearest valid value.
+        remedy: Remedy,
+    },
+    /// Row 5: a turn begins before the one before has ended.
+    #[error("turn {turn} begins at depth {start:.6} before turn {} has ended at depth {end:.6} on the ray of pixel ({}, {}); {remedy}", turn - 1, pixel.x, pixel.y)]
+    TurnsOverlap {
+        /// The later turn, from 1.
+        turn: usize,
+        /// Image corner.
+        pixel: DVec2,
+        /// Depth of t2 of the earlier turn.
+        end: f64,
+        /// Depth of t0 of the later turn.
+        start: f64,
+        /// Nearest valid value.
+        remedy: Remedy,
+    },
+    /// Row 6: rays bend nearer than the near plane.
+    #[error("turn 1 begins at depth {start:.6} on the ray of pixel ({}, {}), not beyond near = {near}; {remedy}", pixel.x, pixel.y)]
+    NearPastStart {
+        /// Image corner.
+        pixel: DVec2,
+        /// Near distance of the camera, scene units.
+        near: f64,
+        /// Depth of t0.
+        start: f64,
+        /// Nearest valid value.
+        remedy: Remedy,
+    },
+}
