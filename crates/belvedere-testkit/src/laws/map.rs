@@ -14,13 +14,14 @@ pub struct Joint {
 }
 
 type Maker<M> = Box<dyn Fn(&Similarity) -> M>;
+type Inside<M> = Box<dyn Fn(&M, DVec3) -> bool>;
 
 /// A map under test and what it promises.
 pub struct MapCase<M> {
     name: String,
     make: Maker<M>,
     zero: Option<Box<dyn Fn() -> M>>,
-    domain: Box<dyn Fn(&M, DVec3) -> bool>,
+    domain: Inside<M>,
     region: Aabb,
     joints: Vec<Joint>,
     continuity: Continuity,
@@ -227,13 +228,16 @@ pub fn map_has_its_continuity<M: SpaceMap>(case: &MapCase<M>) {
     let mut next_jumps = false;
     for joint in &case.joints {
         let across = joint.across.normalize();
+        // Rounding of the point, carried on by the map, and of its image.
+        let carried = map.jacobian(joint.point).map_or(1.0, norm) * joint.point.length();
+        let coordinates = case.size() + carried + map.apply(joint.point).map_or(0.0, DVec3::length);
         for order in 0..=2 {
             let jump = |h: f64| one_sided_jump(&map, joint.point, across, h, order);
             let h = 1e-3 * case.diagonal();
             let (Some(coarse), Some(fine)) = (jump(h), jump(0.25 * h)) else {
                 panic!("{}: joint {joint:?} is not inside the domain", case.label())
             };
-            let noise = 1e-14 * case.size() / (0.25 * h).powi(order as i32);
+            let noise = 4e-14 * coordinates / (0.25 * h).powi(order as i32);
             // A true jump stays when the step shrinks to a quarter; what is left of a smooth function shrinks about fourfold.
             let vanishes = fine <= 0.5 * coarse + noise;
             if order <= case.continuity.order() {
@@ -255,7 +259,8 @@ pub fn map_has_its_continuity<M: SpaceMap>(case: &MapCase<M>) {
 fn one_sided_jump<M: SpaceMap>(map: &M, p: DVec3, d: DVec3, h: f64, order: usize) -> Option<f64> {
     let side = |sign: f64| {
         let f = |k: f64| map.apply(p + sign * k * h * d).ok();
-        let (f0, f1, f2, f3) = (f(1e-9)?, f(1.0)?, f(2.0)?, f(3.0)?);
+        // Either side for the value itself, the joint for derivatives of what is continuous.
+        let (f0, f1, f2, f3) = (f(if order == 0 { 1e-9 } else { 0.0 })?, f(1.0)?, f(2.0)?, f(3.0)?);
         Some(match order {
             0 => f0,
             1 => sign * (-1.5 * f0 + 2.0 * f1 - 0.5 * f2) / h,

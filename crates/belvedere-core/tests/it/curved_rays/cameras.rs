@@ -7,7 +7,7 @@ use belvedere_testkit::laws::Similarity;
 
 pub(super) const MODELS: [Model; 5] = [Model::Modified, Model::Original, Model::C0, Model::C2, Model::Circular];
 
-pub(super) fn pinhole(s: &Similarity, eye: DVec3, look_at: DVec3) -> Pinhole {
+pub(crate) fn pinhole(s: &Similarity, eye: DVec3, look_at: DVec3) -> Pinhole {
     let projection = Projection::Perspective { fov_y: 40f64.to_radians() };
     Pinhole::look_at(
         s.point(eye),
@@ -21,7 +21,7 @@ pub(super) fn pinhole(s: &Similarity, eye: DVec3, look_at: DVec3) -> Pinhole {
     .unwrap()
 }
 
-pub(super) fn moved(turn: &TurnSpec, s: &Similarity) -> TurnSpec {
+pub(crate) fn moved(turn: &TurnSpec, s: &Similarity) -> TurnSpec {
     let pencil = match turn.pencil {
         Pencil::Line { point, dir } => Pencil::Line { point: s.point(point), dir: s.direction(dir) },
         Pencil::Parallel { normal } => Pencil::Parallel { normal: s.direction(normal) },
@@ -32,18 +32,17 @@ pub(super) fn moved(turn: &TurnSpec, s: &Similarity) -> TurnSpec {
 
 /// A root eye at the origin looking along +y, and turns.
 #[derive(Debug, Clone)]
-pub(super) struct Spec {
-    pub(super) turns: Vec<TurnSpec>,
+pub(crate) struct Spec {
+    pub(crate) turns: Vec<TurnSpec>,
 }
 
 impl Spec {
-    pub(super) fn rays(&self, model: Model, s: &Similarity) -> CurvedRays {
+    pub(crate) fn rays(&self, model: Model, s: &Similarity) -> CurvedRays {
         let turns: Vec<TurnSpec> = self.turns.iter().map(|t| moved(t, s)).collect();
-        CurvedRays::new(&pinhole(s, DVec3::ZERO, DVec3::Y), model, &turns)
-            .unwrap_or_else(|e| panic!("{model:?}: {e}"))
+        CurvedRays::new(&pinhole(s, DVec3::ZERO, DVec3::Y), model, &turns).unwrap_or_else(|e| panic!("{model:?}: {e}"))
     }
 
-    pub(super) fn view(&self, model: Model, s: &Similarity) -> View {
+    pub(crate) fn view(&self, model: Model, s: &Similarity) -> View {
         View::new(pinhole(s, DVec3::ZERO, DVec3::Y), vec![Stage::CurvedRays(self.rays(model, s))]).unwrap()
     }
 }
@@ -53,7 +52,7 @@ fn vec(x: f64, y: f64, z: f64) -> DVec3 {
 }
 
 /// A street corner: rays turn left by 45 degrees about a vertical line on the left.
-pub(super) fn street_corner() -> Spec {
+pub(crate) fn street_corner() -> Spec {
     let line = vec(-70.0, 100.0, 0.0);
     let arm = |angle: f64, length: f64| line + length * vec(angle.to_radians().cos(), angle.to_radians().sin(), 0.0);
     let turn = TurnSpec {
@@ -68,7 +67,7 @@ pub(super) fn street_corner() -> Spec {
 }
 
 /// Parallel planes, viewpoint moved to the right and up.
-pub(super) fn sideways() -> Spec {
+pub(crate) fn sideways() -> Spec {
     let turn = TurnSpec {
         viewpoint: vec(30.0, -5.0, 12.0),
         t0: vec(0.0, 60.0, 0.0),
@@ -81,12 +80,12 @@ pub(super) fn sideways() -> Spec {
 }
 
 /// Three turns that zigzag along a path, the second one about a slanted line.
-pub(super) fn zigzag() -> Spec {
+pub(crate) fn zigzag() -> Spec {
     chain(&[vec(0.0, 100.0, 0.0), vec(40.0, 190.0, 5.0), vec(10.0, 290.0, 0.0), vec(40.0, 390.0, 10.0)], 150.0, 0.15)
 }
 
 /// Five gentle turns to one side.
-pub(super) fn long_bend() -> Spec {
+pub(crate) fn long_bend() -> Spec {
     let knots: Vec<DVec3> = (1..=6)
         .map(|i| {
             let t = f64::from(i) * 0.16;
@@ -97,7 +96,7 @@ pub(super) fn long_bend() -> Spec {
 }
 
 /// A turn at every knot but the last: planes across the path, viewpoints `back` behind the knots.
-pub(super) fn chain(knots: &[DVec3], back: f64, share: f64) -> Spec {
+pub(crate) fn chain(knots: &[DVec3], back: f64, share: f64) -> Spec {
     let mut turns = Vec::new();
     let mut from = DVec3::ZERO;
     let mut viewpoint = DVec3::ZERO;
@@ -126,7 +125,7 @@ pub(super) fn chain(knots: &[DVec3], back: f64, share: f64) -> Spec {
 }
 
 /// A random valid chain of `turns` turns; `None` if the dice give an invalid one.
-pub(super) fn random_chain(random: &mut Random, turns: usize, model: Model) -> Option<Spec> {
+pub(crate) fn random_chain(random: &mut Random, turns: usize, model: Model) -> Option<Spec> {
     let mut knots = vec![vec(random.range(-5.0, 5.0), random.range(90.0, 120.0), random.range(-5.0, 5.0))];
     let mut direction = DVec3::Y;
     for _ in 0..turns {

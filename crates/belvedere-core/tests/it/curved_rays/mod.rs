@@ -1,5 +1,5 @@
 //! Curved rays: laws, and agreement with references that share no formula with the library.
 
-mod cameras;
+pub(crate) mod cameras;
 mod laws;
 mod scene_example;
