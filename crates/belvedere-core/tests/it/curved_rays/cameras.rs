@@ -5,8 +5,6 @@ use belvedere_core::{DVec3, Pinhole, Projection, Stage, View};
 use belvedere_testkit::Random;
 use belvedere_testkit::laws::Similarity;
 
-pub(super) const MODELS: [Model; 5] = [Model::Modified, Model::Original, Model::C0, Model::C2, Model::Circular];
-
 pub(crate) fn pinhole(s: &Similarity, eye: DVec3, look_at: DVec3) -> Pinhole {
     let projection = Projection::Perspective { fov_y: 40f64.to_radians() };
     Pinhole::look_at(
