@@ -1,8 +1,8 @@
 //! One chunk: decompression, predictor, byte order, unpacking.
 
 use super::layout::{Compression, Layout, Stored};
+use super::lzw::Lzw;
 use flate2::{Decompress, FlushDecompress};
-use weezl::{BitOrder, decode::Decoder as Lzw};
 use zune_jpeg::zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
 
 /// Decoders and buffers that are kept from chunk to chunk by one thread.
@@ -13,7 +13,7 @@ pub(super) struct Scratch {
     /// Decoded samples of the current chunk in the byte order of this machine.
     pub(super) out: Vec<u8>,
     turn: Vec<u8>,
-    lzw: Option<Lzw>,
+    lzw: Lzw,
     inflate: Option<Decompress>,
     zstd: Option<ruzstd::decoding::FrameDecoder>,
 }
@@ -88,21 +88,8 @@ impl Scratch {
         {
             return Err("is compressed by the LZW variant of before 1993, which is not supported".to_owned());
         }
-        let lzw = self.lzw.get_or_insert_with(|| Lzw::with_tiff_size_switch(BitOrder::Msb, 8));
-        lzw.reset();
-        let (mut read, mut wrote) = (0, 0);
-        while let (Some(input), Some(output)) = (self.raw.get(read..), self.out.get_mut(wrote..)) {
-            let result = lzw.decode_bytes(input, output);
-            read += result.consumed_in;
-            wrote += result.consumed_out;
-            match result.status {
-                Ok(_) if wrote >= self.out.len() || (result.consumed_in == 0 && result.consumed_out == 0) => break,
-                Ok(weezl::LzwStatus::Ok) => {}
-                Ok(_) => break,
-                Err(e) => return Err(format!("is not valid LZW ({e}); the file is damaged")),
-            }
-        }
-        Ok(wrote)
+        let result = self.lzw.decode(&self.raw, &mut self.out);
+        result.map_err(|e| format!("is not valid LZW ({e}); the file is damaged"))
     }
 
     fn inflate(&mut self) -> Result<usize, String> {

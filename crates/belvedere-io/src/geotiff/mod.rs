@@ -7,6 +7,7 @@ mod codec;
 mod geokeys;
 mod ifd;
 mod layout;
+mod lzw;
 mod meta;
 mod read;
 mod source;

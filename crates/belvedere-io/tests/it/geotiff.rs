@@ -60,7 +60,7 @@ const LOSSLESS: [Row; 26] = [
     ("odd/rotated.tif", 10, 15, 1, U8, 0x1070_9edd, 0, None),
     ("odd/test_esri_wkt.tif", 2, 2, 1, U16, 0x9299_1416, 0, None),
     ("odd/world.byte.tif", 2880, 1200, 1, U8, 0xb9bc_7d3f, 4326, None),
-    ("odd/float_raster_with_nodata.tif", 13, 12, 1, F32, 0x8cdd_a8a3, 0, Some(-3.399_999_999_999_999_96e38)),
+    ("odd/float_raster_with_nodata.tif", 13, 12, 1, F32, 0x8cdd_a8a3, 0, Some(-3.4e38)),
     ("rmnp/rmnp_dem.tif", 152, 187, 1, U16, 0xa28a_6e67, 4326, Some(65535.0)),
     ("rmnp/rmnp_rgb.tif", 485, 373, 3, U8, 0xc373_3573, 4326, Some(255.0)),
     ("swellendam/aerial_3320D_2010_315_RGB.tif", 1089, 1093, 4, U8, 0x6d90_b508, 4326, None),
