@@ -359,13 +359,28 @@ impl Raster {
         {
             return Err(format!("colour is said to be in band {}, there are {}", band + 1, info.bands));
         }
+        const PART: usize = 1 << 14;
         let bytes = self.picture_bytes()?;
         let bands = info.bands.max(1);
-        let pixels = bytes.par_chunks_exact(bands).enumerate();
-        Ok(pixels
-            .with_min_len(1 << 14)
-            .map(|(i, pixel)| if self.is_absent(i) { [0; 4] } else { self.rgba(pixel) })
-            .collect())
+        let mut out = vec![[0; 4]; bytes.len() / bands];
+        let parts = out.par_chunks_mut(PART).zip(bytes.par_chunks(PART * bands)).enumerate();
+        parts.for_each(|(k, (out, bytes))| self.rgba_part(k * PART, bytes, out));
+        Ok(out)
+    }
+
+    /// Pixels from `first` on.
+    fn rgba_part(&self, first: usize, bytes: &[u8], out: &mut [[u8; 4]]) {
+        let bands = self.info.bands.max(1);
+        let all_there = self.info.nodata.is_none() && self.mask.is_none();
+        if let (Photometric::Palette(colors), true, 1) = (&self.info.photometric, all_there, bands) {
+            let table: [[u8; 4]; 256] =
+                std::array::from_fn(|i| colors.get(i).map_or([0; 4], |&[r, g, b]| [r, g, b, 255]));
+            out.iter_mut().zip(bytes).for_each(|(out, &index)| *out = table[usize::from(index)]);
+            return;
+        }
+        for (i, (out, pixel)) in out.iter_mut().zip(bytes.chunks_exact(bands)).enumerate() {
+            *out = if !all_there && self.is_absent(first + i) { [0; 4] } else { self.rgba(pixel) };
+        }
     }
 
     /// Samples scaled to 8 bits, but for palette indices.
@@ -452,5 +467,47 @@ impl Limits {
             mib(bytes),
             self.max_bytes >> 20
         ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_affine_map_and_its_inverse() {
+        let map = Affine([17.0, 5.0, 100.0, 10.0, -8.0, 200.0]);
+        let back = map.inverse().unwrap();
+        let [x, y] = map.apply(3.0, -4.0);
+        let [c, r] = back.apply(x, y);
+        assert!((c - 3.0).abs() < 1e-12 && (r + 4.0).abs() < 1e-12);
+        assert_eq!(map.after_scale_and_shift(2.0, 3.0, 0.5, 7.0).apply(1.0, 1.0), map.apply(2.5, 10.0));
+        assert_eq!(Affine([1.0, 2.0, 0.0, 2.0, 4.0, 0.0]).inverse(), None);
+        assert_eq!(Affine([f64::NAN; 6]).inverse(), None);
+    }
+
+    #[test]
+    fn absent_samples() {
+        let mut info = RasterInfo::new("x", 3, 1, SampleType::U8);
+        (info.bands, info.alpha, info.nodata) = (2, Alpha::Straight(1), Some(7.0));
+        let samples = Samples::U8(vec![7, 255, 8, 0, 9, 1]);
+        let mut raster = Raster { info, samples, mask: None };
+        let values = |r: &Raster| [0, 1, 2, 3].map(|c| r.sample_f64(0, c, 0));
+        assert_eq!(values(&raster), [None, None, Some(9.0), None]);
+        assert_eq!(raster.sample_f64(1, 1, 0), Some(0.0), "alpha itself is there");
+        raster.info.scaling = vec![[2.0, 0.5], [1.0, 0.0]];
+        assert_eq!(values(&raster)[2], Some(18.5));
+        raster.mask = Some(vec![true, true, false]);
+        assert_eq!(values(&raster), [None; 4]);
+    }
+
+    #[test]
+    fn colours_multiplied_by_alpha_are_restored() {
+        let mut info = RasterInfo::new("x", 2, 1, SampleType::U8);
+        (info.bands, info.alpha) = (4, Alpha::Premultiplied(3));
+        info.photometric = Photometric::Rgb([0, 1, 2]);
+        let samples = Samples::U8(vec![100, 50, 0, 128, 9, 9, 9, 0]);
+        let raster = Raster { info, samples, mask: None };
+        assert_eq!(raster.to_rgba().unwrap(), [[199, 100, 0, 128], [9, 9, 9, 0]]);
     }
 }

@@ -168,6 +168,16 @@ fn jpeg_tiles_masks_and_overviews() {
         assert_eq!(raster.info.photometric, Photometric::Rgb([0, 1, 2]), "{name}");
         assert_eq!(raster.mask.is_some(), name != "odd/alpha.tif", "{name}");
     }
+    if let Some(path) = data("odd/goes.tif") {
+        let file = GeoTiff::open(&path, Limits::default()).unwrap().value;
+        for (level, masked) in [(0, 63_712), (1, 15_103)] {
+            let raster = file.read(level, &progress).unwrap();
+            let mask = raster.mask.as_ref().unwrap();
+            assert_eq!(mask.iter().filter(|&&valid| !valid).count(), masked);
+            assert_eq!(raster.to_rgba().unwrap().iter().filter(|p| p[3] == 0).count(), masked);
+            assert_eq!(raster.sample_f64(0, 0, 0), None);
+        }
+    }
     let Some(path) = data("odd/cogeo.tif") else { return };
     let file = GeoTiff::open(&path, Limits::default()).unwrap().value;
     assert_eq!(file.info().overviews, [[512, 512], [256, 256], [128, 128], [64, 64], [32, 32], [16, 16]]);
