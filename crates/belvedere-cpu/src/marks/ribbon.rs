@@ -90,6 +90,8 @@ impl Sheet {
                 continue;
             }
             let mut rgb = color[i].rgb();
+            // What is hidden does not shine through what is visible.
+            let h = h * (1.0 - c.max(f).max(s));
             for (ink, cover) in self.inks.iter().zip([h, c, f.max(s)]) {
                 rgb = rgb.lerp(ink.color, ink.alpha * cover);
             }

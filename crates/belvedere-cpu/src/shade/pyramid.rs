@@ -69,10 +69,10 @@ impl Pyramid {
         }
     }
 
-    /// Openness: how far the ground stands above its wider surroundings, at two scales. Our stand-in for sky visibility.
+    /// Openness: how far the ground stands above its wider surroundings, at three scales. Our stand-in for sky visibility.
     fn set_openness(&mut self, spacing: f32) {
         let top = self.levels.len() - 1;
-        let scales = [(3usize, 0.5f32), (5, 0.5)].map(|(k, share)| (k.min(top), share));
+        let scales = [(1usize, 0.3f32), (3, 0.5), (5, 0.5)].map(|(k, share)| (k.min(top), share));
         let mean: Vec<Vec<f32>> = scales.iter().map(|&(k, _)| self.smooth_heights(k)).collect();
         for level in 0..=top {
             let (cols, coarse) = (self.levels[level].cols, level > 0);

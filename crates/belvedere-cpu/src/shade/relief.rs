@@ -4,6 +4,9 @@ use super::color::{Rgb, linear};
 use belvedere_scene::{Light, Relief};
 use glam::Vec3A;
 
+/// Highest main light of the Swiss blend, radians: lower light models gentle slopes better.
+const SWISS_ALTITUDE: f64 = 0.68;
+
 /// Light model of a terrain layer.
 #[derive(Debug)]
 pub(crate) struct ReliefLight {
@@ -21,7 +24,10 @@ impl ReliefLight {
             let d = Light { azimuth, altitude, shadows: false }.direction();
             Vec3A::new(d.x as f32, d.y as f32, d.z as f32)
         };
-        let altitude = light.altitude.clamp(0.05, 1.5);
+        let mut altitude = light.altitude.clamp(0.05, 1.5);
+        if relief == Relief::Swiss {
+            altitude = altitude.min(SWISS_ALTITUDE);
+        }
         let sides = [-90f64, -45.0, 0.0, 45.0].map(|turn| {
             let azimuth = light.azimuth + turn.to_radians();
             (towards(azimuth, altitude.min(0.6)), [azimuth.sin() as f32, azimuth.cos() as f32])
@@ -66,9 +72,9 @@ impl ReliefLight {
             }
         };
         // 1 on level ground; softly limited above, lifted below so that shadows keep their drawing.
-        let tone = if bright > 1.0 { 1.0 + 0.55 * (1.0 - (-(bright - 1.0) / 0.55).exp()) } else { bright };
+        let tone = if bright > 1.0 { 1.0 + 0.55 * (1.0 - (-(bright - 1.0) / 0.55).exp()) } else { bright.powf(1.15) };
         let direct = self.warm * (0.80 * tone);
-        let ambient = self.cool * (0.62 * (0.55 + 0.45 * n.z) * open);
+        let ambient = self.cool * (0.56 * (0.5 + 0.5 * n.z) * open);
         direct * (0.7 + 0.3 * open) + ambient
     }
 }

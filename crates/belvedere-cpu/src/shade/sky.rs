@@ -20,12 +20,12 @@ impl Sky {
     pub(crate) fn new(bounds: &Aabb) -> Self {
         let diagonal = if bounds.is_empty() { 1.0 } else { (bounds.max - bounds.min).truncate().length() };
         Self {
-            zenith: linear([86, 136, 190]),
+            zenith: linear([92, 138, 186]),
             middle: linear([142, 182, 215]),
             horizon: linear([222, 231, 236]),
             below: linear([203, 213, 220]),
-            haze: linear([196, 212, 227]),
-            haze_length: (0.62 * diagonal).max(1e-6) as f32,
+            haze: linear([190, 208, 226]),
+            haze_length: (0.42 * diagonal).max(1e-6) as f32,
         }
     }
 

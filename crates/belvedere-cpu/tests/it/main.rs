@@ -1,5 +1,9 @@
 //! Tests of the processor renderer against slow, independent references.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
 
+mod lines;
 mod real_data;
+mod reference;
+mod robust;
+mod subdivision;
 mod support;
+mod support_views;
