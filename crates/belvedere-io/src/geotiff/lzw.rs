@@ -93,3 +93,48 @@ fn copy(out: &mut [u8], from: usize, to: usize, length: usize) -> usize {
     out.copy_within(from..from + length, to);
     length
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_testkit::Random;
+
+    fn encode(bytes: &[u8]) -> Vec<u8> {
+        weezl::encode::Encoder::with_tiff_size_switch(weezl::BitOrder::Msb, 8).encode(bytes).unwrap()
+    }
+
+    #[test]
+    fn what_another_encoder_wrote() {
+        let mut random = Random::new(3);
+        for colors in [1, 2, 5, 256] {
+            for len in [0, 1, 2, 15, 16, 17, 40, 1000, 70_000] {
+                let bytes: Vec<u8> = (0..len).map(|_| random.below(colors) as u8).collect();
+                let mut out = vec![0; len];
+                assert_eq!(Lzw::default().decode(&encode(&bytes), &mut out), Ok(len));
+                assert!(out == bytes, "{colors} {len}");
+                let mut part = vec![0; len / 2];
+                assert_eq!(Lzw::default().decode(&encode(&bytes), &mut part), Ok(len / 2), "stops when full");
+                assert!(part[..] == bytes[..len / 2]);
+            }
+        }
+    }
+
+    #[test]
+    fn rubbish_is_survived() {
+        let mut random = Random::new(4);
+        let mut lzw = Lzw::default();
+        for _ in 0..20_000 {
+            let start = if random.below(2) == 0 { vec![0x80, 0] } else { Vec::new() };
+            let mut bytes: Vec<u8> =
+                start.into_iter().chain((0..random.below(60)).map(|_| random.below(256) as u8)).collect();
+            if random.below(2) == 0 {
+                bytes = encode(&bytes.repeat(3));
+                let at = random.below(bytes.len());
+                bytes[at] ^= 1 << random.below(8);
+            }
+            let mut out = vec![0; random.below(300)];
+            let room = out.len();
+            assert!(lzw.decode(&bytes, &mut out).is_ok_and(|n| n <= room) || room > 0);
+        }
+    }
+}
