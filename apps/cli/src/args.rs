@@ -45,6 +45,8 @@ pub(crate) struct Common {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
+    /// One picture and its record
+    Render(RenderArgs),
     /// Points to pixels: [[x,y,z],...] in scene coordinates
     Project(ProjectArgs),
     /// Pixels to sampled (curved) rays: [[x,y],...]
@@ -64,6 +66,47 @@ pub(crate) enum Verb {
 pub(crate) struct SceneArgs {
     /// Scene file, TOML or JSON
     pub(crate) scene: PathBuf,
+}
+
+/// A picture.
+#[derive(Debug, Args)]
+pub(crate) struct RenderArgs {
+    /// Scene file, TOML or JSON
+    pub(crate) scene: PathBuf,
+    /// Output; the record is written beside it as OUT.png.json
+    #[arg(short, long, value_name = "OUT.png")]
+    pub(crate) out: PathBuf,
+    /// Size of the picture instead of the scene's, such as 1920x1080
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub(crate) size: Option<[u32; 2]>,
+    /// Renderer
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) renderer: RendererKind,
+    /// Without the bends
+    #[arg(long)]
+    pub(crate) straight: bool,
+    /// Straight beside bent
+    #[arg(long, conflicts_with = "straight")]
+    pub(crate) compare: bool,
+    /// Buffers to write beside the picture as NPY
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
+    pub(crate) aux: Vec<AuxKind>,
+    /// Coverage samples per pixel: 1, 4 or 16
+    #[arg(long, default_value_t = 4, value_name = "N")]
+    pub(crate) samples: u32,
+}
+
+/// Buffers beside a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum AuxKind {
+    /// Forward distance, f32
+    Depth,
+    /// 1 + index of the layer, u32
+    Id,
+    /// World position, 3 x f64
+    World,
+    /// Displaced minus world position, 3 x f64
+    Displacement,
 }
 
 /// A scene and points.
@@ -119,10 +162,19 @@ pub(crate) struct SchemaArgs {
 /// Renderers of this version.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum RendererKind {
-    /// The best there is.
+    /// The best there is: today the cpu
     Auto,
-    /// Without a GPU.
+    /// On the processor, without a GPU
     Cpu,
+}
+
+/// Width and height of `1280x720`.
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X']).map(|(w, h)| [w.trim().parse(), h.trim().parse()]);
+    match sides {
+        Some([Ok(w), Ok(h)]) => Ok([w, h]),
+        _ => Err("give width and height in pixels, such as 1280x720".into()),
+    }
 }
 
 /// Bytes of `512MiB`, `2GB`, `100000`.

@@ -1,7 +1,8 @@
 //! One function per verb: open, call the library, deliver.
 
-use crate::args::{ProjectArgs, RaysArgs, SceneArgs, SchemaArgs, ShowArgs, Verb};
-use crate::report::{Context, print};
+use crate::args::{AuxKind, ProjectArgs, RaysArgs, RenderArgs, RendererKind, SceneArgs, SchemaArgs, ShowArgs, Verb};
+use crate::report::{Context, done, print};
+use belvedere::verbs::render::{self, AuxBuffer, RenderRequest};
 use belvedere::verbs::{check, output, points};
 use belvedere::{Needs, Session};
 use std::path::{Path, PathBuf};
@@ -23,6 +24,7 @@ impl Goal {
 /// Runs a verb.
 pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
     match verb {
+        Verb::Render(args) => render(&args, context),
         Verb::Project(args) => project(&args, context),
         Verb::Rays(args) => rays(&args, context),
         Verb::Displace(args) => displace(&args, context),
@@ -41,6 +43,42 @@ fn ready(out: Option<&PathBuf>, inputs: &[&Path], context: &Context) -> anyhow::
 fn answer(verb: &str, session: &Session, out: Option<&PathBuf>, text: &str, context: &Context) -> anyhow::Result<Goal> {
     ready(out, &session.inputs().iter().map(PathBuf::as_path).collect::<Vec<_>>(), context)?;
     context.deliver(verb, out.map(PathBuf::as_path), text, session.warnings())?;
+    Ok(Goal::Reached)
+}
+
+fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
+    let (RendererKind::Auto | RendererKind::Cpu) = args.renderer;
+    let mut request = RenderRequest { straight: args.straight, compare: args.compare, ..RenderRequest::default() };
+    request.options.threads = context.common.threads;
+    request.options.samples = args.samples;
+    request.options.max_bytes = context.common.max_mem.unwrap_or(request.options.max_bytes);
+    request.aux = args
+        .aux
+        .iter()
+        .map(|kind| match kind {
+            AuxKind::Depth => AuxBuffer::Depth,
+            AuxKind::Id => AuxBuffer::Id,
+            AuxKind::World => AuxBuffer::World,
+            AuxKind::Displacement => AuxBuffer::Displacement,
+        })
+        .collect();
+    let outputs = render::outputs(&args.out, &request);
+    for path in &outputs {
+        ready(Some(path), &[&args.scene], context)?;
+    }
+    let session = context.open(&args.scene, Needs::Everything, args.size)?;
+    for path in &outputs {
+        output::check(path, session.inputs(), context.common.overwrite)?;
+    }
+    let picture = render::render(&session, &request, &context.progress)?;
+    let written = picture.write(&args.out, context.common.overwrite)?;
+    if context.common.json {
+        let mut result = done("render", &written, session.warnings());
+        result["displacement"] = serde_json::json!(picture.sidecar.displacement);
+        result["render_ms"] = serde_json::json!(picture.sidecar.render_ms);
+        context.print(&result)?;
+    }
+    context.warn(session.warnings());
     Ok(Goal::Reached)
 }
 
@@ -84,7 +122,7 @@ fn check_scene(args: &SceneArgs, context: &Context) -> anyhow::Result<Goal> {
 
 fn show(args: &ShowArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene], context)?;
-    let session = context.open(&args.scene, Needs::View, None)?;
+    let session = context.open(&args.scene, Needs::Ground, None)?;
     let named_json = args.out.as_ref().is_some_and(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")));
     let json = if args.out.is_some() { named_json } else { context.common.json };
     let text = if json { check::document_json(session.resolved())? } else { check::document_toml(session.resolved())? };

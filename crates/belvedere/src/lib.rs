@@ -9,6 +9,7 @@
 //! ```
 
 mod error;
+pub mod provenance;
 mod resolve;
 pub mod scene_file;
 mod session;

@@ -13,6 +13,8 @@ use std::path::{Path, PathBuf};
 pub enum Needs {
     /// The view alone: of the layers only the terrain is read, and only if the camera or a stage stands on it.
     View,
+    /// The view and the terrain.
+    Ground,
     /// Every layer.
     #[default]
     Everything,

@@ -11,7 +11,6 @@ pub(crate) struct ResolvedCamera {
     /// The pinhole.
     pub(crate) pinhole: Pinhole,
     /// The given or implied point on the optical axis.
-    #[expect(dead_code, reason = "stages come next")]
     pub(crate) look_at: Option<DVec3>,
     /// The document with every place as `[x, y, z]`.
     pub(crate) document: CameraDoc,

@@ -1,45 +1,109 @@
 //! From a document to a scene and a view.
 
+mod boxes;
+pub(crate) mod builtin;
 mod camera;
+mod delta;
+mod dem;
+mod layers;
 mod light;
+mod rays;
 mod stages;
 mod validate;
+mod vectors;
 
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{EarthDoc, MapPointDoc, PointDoc, SourceDocument, UnitDoc};
-use crate::{BelvedereError, OpenOptions, Session};
+use crate::scene_file::{EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc, UnitDoc};
+use crate::{BelvedereError, Needs, OpenOptions, Session};
 use belvedere_core::{DVec2, EarthCurvature, Stage, View};
 use belvedere_io::crs::{CoordinateSystem, Transform, gaussian_radius_m, utm_epsg};
-use belvedere_scene::{Crs, Heightfield, Scene, Unit};
+use belvedere_scene::{Crs, Heightfield, Layer, LayerKind, Scene, Unit};
 
 /// Mean radius of the earth for scenes without georeference, metres.
 const MEAN_EARTH_RADIUS_M: f64 = 6_371_008.8;
 
 /// Resolves everything.
-pub(crate) fn session(
-    source: SourceDocument,
-    roots: &Roots,
-    _options: &OpenOptions,
-) -> Result<Session, BelvedereError> {
+pub(crate) fn session(source: SourceDocument, roots: &Roots, options: &OpenOptions) -> Result<Session, BelvedereError> {
     validate::document(&source)?;
-    let mut warnings = Vec::new();
-    let mut inputs = vec![source.path().to_owned()];
-    let wanted = crs_wanted(&source)?;
-    let crs = wanted.or_else(|| crs_of_eye(&source)).unwrap_or_default();
-    let scene =
-        Scene { title: source.document.title.clone(), crs, unit: unit(source.document.unit), layers: Vec::new() };
-    let ground = Ground { crs, terrain: scene.terrain() };
+    let mut loader = layers::Loader {
+        source: &source,
+        roots,
+        options,
+        builtins: builtin::Builtins::default(),
+        inputs: vec![source.path().to_owned()],
+        warnings: Vec::new(),
+    };
+    let scene = load(&mut loader)?;
+    let layers::Loader { mut inputs, mut warnings, .. } = loader;
+    let ground = Ground { crs: scene.crs, terrain: scene.terrain() };
     let camera = camera::resolve(&source, &ground, stages::plane_normal(&source))?;
     let mut chain = earth(&source, &ground, camera.pinhole.eye, &mut warnings);
     let mut document = source.document.clone();
-    let (stages, stage_docs) = stages::resolve(&source, roots, &ground, &camera, &mut inputs, &mut warnings)?;
-    chain.extend(stages);
-    let view = View::new(camera.pinhole, chain).map_err(|e| source.error(&["stage"], e))?;
+    let context = stages::StageContext { source: &source, roots, ground: &ground, camera: &camera };
+    let resolved = stages::resolve(&context, &mut inputs, &mut warnings)?;
+    chain.extend(resolved.stages);
+    let view = View::new(resolved.pinhole, chain).map_err(|e| source.error(&["stage"], e))?;
     let light = light::resolve(&source, &ground, view.pinhole().eye, &mut warnings)?;
-    document.crs = crs.to_string();
+    document.crs = scene.crs.to_string();
     document.camera = camera.document;
-    document.stage = stage_docs;
+    document.stage = resolved.documents;
     Ok(Session { document, path: source.path().to_owned(), scene, view, light, warnings, inputs })
+}
+
+/// The layers that are needed, in file order.
+fn load(loader: &mut layers::Loader<'_>) -> Result<Scene, BelvedereError> {
+    let source = loader.source;
+    let doc = &source.document;
+    let mut crs = crs_wanted(source)?;
+    let mut layers: Vec<Option<Layer>> = doc.layer.iter().map(|_| None).collect();
+    let with_ground = loader.options.needs != Needs::View || ground_is_needed(source, crs);
+    for (i, layer) in doc.layer.iter().enumerate().filter(|_| with_ground) {
+        if let LayerDoc::Terrain(terrain) = layer {
+            let (terrain, found) = loader.terrain(i, terrain, crs)?;
+            crs.get_or_insert(found);
+            layers[i] = Some(Layer { id: layer.id().to_owned(), must_see: false, kind: LayerKind::Terrain(terrain) });
+        }
+    }
+    let crs = crs.or_else(|| crs_of_eye(source)).unwrap_or_default();
+    if loader.options.needs == Needs::Everything {
+        for (i, layer) in doc.layer.iter().enumerate() {
+            let ground = Ground { crs, terrain: first_terrain(&layers) };
+            if let LayerDoc::Terrain(terrain) = layer {
+                let drapes = loader.drapes(i, terrain, &ground)?;
+                if let Some(Layer { kind: LayerKind::Terrain(t), .. }) = &mut layers[i] {
+                    t.drapes = drapes;
+                }
+            } else {
+                layers[i] = loader.layer(i, layer, &ground)?;
+            }
+        }
+    }
+    let layers = layers.into_iter().flatten().collect();
+    Ok(Scene { title: doc.title.clone(), crs, unit: unit(doc.unit), layers })
+}
+
+fn first_terrain(layers: &[Option<Layer>]) -> Option<&Heightfield> {
+    layers.iter().flatten().find_map(|l| match &l.kind {
+        LayerKind::Terrain(t) => Some(&t.heightfield),
+        _ => None,
+    })
+}
+
+/// Whether the view cannot be resolved without the terrain.
+fn ground_is_needed(source: &SourceDocument, crs: Option<Crs>) -> bool {
+    let doc = &source.document;
+    let places = [Some(&doc.camera.eye), doc.camera.look_at.as_ref()];
+    let stands = |p: &PointDoc| matches!(p, PointDoc::Map(m) if m.above_ground_m.is_some());
+    let geographic = |p: &PointDoc| matches!(p, PointDoc::Map(m) if m.lon.is_some());
+    let spline_floats = doc.stage.iter().any(|s| match s {
+        StageDoc::SplineBend(spline) => spline.plane.as_ref().is_none_or(|p| p.height_m.is_none()),
+        StageDoc::TerrainDisocclusion(_) => true,
+        StageDoc::CurvedRays(_) => false,
+    });
+    let needs_place = places.into_iter().flatten().any(geographic)
+        || doc.earth == EarthDoc::Curved
+        || doc.light.as_ref().is_some_and(|l| l.time.is_some());
+    places.into_iter().flatten().any(stands) || spline_floats || (crs.is_none() && needs_place)
 }
 
 fn unit(doc: UnitDoc) -> Unit {

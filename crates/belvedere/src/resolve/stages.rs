@@ -4,8 +4,10 @@ use super::Ground;
 use super::camera::ResolvedCamera;
 use crate::BelvedereError;
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{SourceDocument, StageDoc};
-use belvedere_core::{DVec3, Stage};
+use crate::scene_file::{self, PlaneDoc, PresetsDoc, SourceDocument, SplineStageDoc, StageDoc, TerrainStageDoc};
+use belvedere_core::map::spline::{ReferencePlane, default_pivot};
+use belvedere_core::presets::{BUILTIN_NAMES, PresetDocument};
+use belvedere_core::{DVec3, Pinhole, SplineBend, Stage, TerrainDisocclusion};
 use std::path::PathBuf;
 
 /// Normal of the reference plane of the first spline stage.
@@ -16,20 +18,177 @@ pub(super) fn plane_normal(source: &SourceDocument) -> Option<DVec3> {
     })
 }
 
-/// The stages and their documents with every rule replaced by its value.
+/// What the stages came to.
+pub(super) struct ResolvedStages {
+    /// In order of application.
+    pub(super) stages: Vec<Stage>,
+    /// The camera behind them: a preset may ask for another field of view.
+    pub(super) pinhole: Pinhole,
+    /// The documents with every rule replaced by its value.
+    pub(super) documents: Vec<StageDoc>,
+}
+
+/// What stages are resolved with.
+pub(super) struct StageContext<'a> {
+    pub(super) source: &'a SourceDocument,
+    pub(super) roots: &'a Roots,
+    pub(super) ground: &'a Ground<'a>,
+    pub(super) camera: &'a ResolvedCamera,
+}
+
+/// The stages and their documents.
 pub(super) fn resolve(
-    source: &SourceDocument,
-    _roots: &Roots,
-    _ground: &Ground<'_>,
-    _camera: &ResolvedCamera,
-    _inputs: &mut [PathBuf],
-    _warnings: &mut [String],
-) -> Result<(Vec<Stage>, Vec<StageDoc>), BelvedereError> {
-    if let Some((i, stage)) = source.document.stage.iter().enumerate().next() {
-        return Err(source.error(
-            &["stage", &i.to_string()],
-            format!("stage {} cannot be resolved by this version yet; remove it", stage.kind()),
-        ));
+    context: &StageContext<'_>,
+    inputs: &mut Vec<PathBuf>,
+    warnings: &mut Vec<String>,
+) -> Result<ResolvedStages, BelvedereError> {
+    let mut out = ResolvedStages { stages: Vec::new(), pinhole: context.camera.pinhole.clone(), documents: Vec::new() };
+    for (i, stage) in context.source.document.stage.iter().enumerate() {
+        let at = i.to_string();
+        let fail = |keys: &[&str], reason: String| {
+            let path: Vec<&str> = ["stage", &at].into_iter().chain(keys.iter().copied()).collect();
+            context.source.error(&path, reason)
+        };
+        let (stage, document) = match stage {
+            StageDoc::TerrainDisocclusion(doc) => terrain(context, doc, inputs, &fail)?,
+            StageDoc::SplineBend(doc) => {
+                let (bend, document) = spline(context, doc, inputs, warnings, &fail)?;
+                out.pinhole = bend.adapted_pinhole(&out.pinhole);
+                (Stage::SplineBend(bend), document)
+            }
+            StageDoc::CurvedRays(doc) => super::rays::resolve(&out.pinhole, doc, &fail)?,
+        };
+        out.stages.push(stage);
+        out.documents.push(document);
     }
-    Ok((Vec::new(), Vec::new()))
+    Ok(out)
+}
+
+/// Makes an error at a key of the stage.
+pub(super) type Fail<'a> = dyn Fn(&[&str], String) -> BelvedereError + 'a;
+
+fn terrain(
+    context: &StageContext<'_>,
+    doc: &TerrainStageDoc,
+    inputs: &mut Vec<PathBuf>,
+    fail: &Fail<'_>,
+) -> Result<(Stage, StageDoc), BelvedereError> {
+    let Some(name) = &doc.delta else {
+        return Err(fail(
+            &["kind"],
+            "terrain_disocclusion from an intent needs its solver, which this version does not have; give the solved grid as delta = \"delta.tif\", or remove the stage"
+                .into(),
+        ));
+    };
+    let path = context.roots.resolve(name).map_err(|e| fail(&["delta"], e.to_string()))?;
+    if let Some(expected) = &doc.delta_sha256 {
+        let found = crate::provenance::sha256(&path)?;
+        if !found.eq_ignore_ascii_case(expected) {
+            return Err(fail(
+                &["delta_sha256"],
+                format!(
+                    "delta {name} has sha256 {found}, the scene says {expected}; solve it again, or correct the scene"
+                ),
+            ));
+        }
+    }
+    let grid = super::delta::read(&path, context.ground.crs).map_err(|reason| fail(&["delta"], reason))?;
+    inputs.push(path);
+    Ok((Stage::TerrainDisocclusion(TerrainDisocclusion::new(grid)), StageDoc::TerrainDisocclusion(doc.clone())))
+}
+
+fn spline(
+    context: &StageContext<'_>,
+    doc: &SplineStageDoc,
+    inputs: &mut Vec<PathBuf>,
+    warnings: &mut Vec<String>,
+    fail: &Fail<'_>,
+) -> Result<(SplineBend, StageDoc), BelvedereError> {
+    let presets = presets(context, &doc.presets, inputs, fail)?;
+    let pinhole = &context.camera.pinhole;
+    let normal = doc.plane.as_ref().map_or(DVec3::Z, |p| DVec3::from_array(p.normal));
+    let unit = normal.try_normalize().ok_or_else(|| {
+        fail(&["plane", "normal"], "plane normal is [0, 0, 0], it needs a direction; [0, 0, 1] is level ground".into())
+    })?;
+    let height = match doc.plane.as_ref().and_then(|p| p.height_m) {
+        Some(height) => height,
+        None => plane_point(context, fail)?.dot(unit),
+    };
+    let plane = ReferencePlane::new(normal, height)
+        .ok_or_else(|| fail(&["plane"], "the reference plane is not finite; give a normal and a height".into()))?;
+    let pivot = doc.pivot.map_or_else(|| default_pivot(pinhole, &plane), DVec3::from_array);
+    let bend = SplineBend::new(pinhole, &presets, &plane, pivot).map_err(|e| fail(&["presets"], e.to_string()))?;
+    let heights = context.ground.terrain.map(|t| t.z_range().map(|z| z - height)).filter(|_| unit == DVec3::Z);
+    let distance = bend.resolved().distance;
+    warnings
+        .extend(belvedere_core::map::spline::check_presets(&presets, distance, heights).iter().map(|w| w.to_string()));
+    let document = StageDoc::SplineBend(SplineStageDoc {
+        presets: PresetsDoc::Inline(Box::new(convert(&presets).map_err(|e| fail(&["presets"], e))?)),
+        pivot: Some(pivot.to_array()),
+        plane: Some(PlaneDoc { normal: normal.to_array(), height_m: Some(height) }),
+    });
+    Ok((bend, document))
+}
+
+/// A point of the default plane: at the median height of the terrain, or at look_at.
+fn plane_point(context: &StageContext<'_>, fail: &Fail<'_>) -> Result<DVec3, BelvedereError> {
+    let look_at = context.camera.look_at;
+    if let Some(terrain) = context.ground.terrain {
+        let over = look_at.unwrap_or(context.camera.pinhole.eye);
+        return Ok(over.truncate().extend(median_height(terrain)));
+    }
+    look_at.ok_or_else(|| {
+        fail(&["plane"], "nothing says where the reference plane lies: there is no terrain and no look_at; give plane = { height_m = ... }".into())
+    })
+}
+
+/// Median height of the nodes that have one.
+fn median_height(terrain: &belvedere_scene::Heightfield) -> f64 {
+    let with_data =
+        |(h, s): (&f32, &belvedere_scene::NodeState)| (*s != belvedere_scene::NodeState::Void).then_some(*h);
+    let mut heights: Vec<f32> = terrain.heights().iter().zip(terrain.states()).filter_map(with_data).collect();
+    let middle = heights.len() / 2;
+    if heights.is_empty() {
+        return 0.0;
+    }
+    let (below, upper, _) = heights.select_nth_unstable_by(middle, f32::total_cmp);
+    let upper = f64::from(*upper);
+    match below.iter().copied().reduce(f32::max).filter(|_| heights.len() % 2 == 0) {
+        Some(lower) => 0.5 * (f64::from(lower) + upper),
+        None => upper,
+    }
+}
+
+fn presets(
+    context: &StageContext<'_>,
+    doc: &PresetsDoc,
+    inputs: &mut Vec<PathBuf>,
+    fail: &Fail<'_>,
+) -> Result<PresetDocument, BelvedereError> {
+    let document = match doc {
+        PresetsDoc::Inline(document) => (**document).clone(),
+        PresetsDoc::Named(name) => {
+            let looks_like_path = name.contains(['/', '\\'])
+                || name.to_lowercase().ends_with(".toml")
+                || name.to_lowercase().ends_with(".json");
+            if !looks_like_path {
+                return PresetDocument::builtin(name).map_err(|e| {
+                    let hint = scene_file::suggestion(name, &BUILTIN_NAMES);
+                    fail(&["presets"], format!("{e} ({hint})"))
+                });
+            }
+            let path = context.roots.resolve(name).map_err(|e| fail(&["presets"], e.to_string()))?;
+            let document = scene_file::parse_presets(&path, &scene_file::read_text(&path)?)?;
+            inputs.push(path);
+            document
+        }
+    };
+    let converted: PresetDocument = convert(&document).map_err(|e| fail(&["presets"], e))?;
+    converted.validate().map_err(|e| fail(&["presets"], e.to_string()))?;
+    Ok(converted)
+}
+
+/// The same document in the other crate's words; both have the same fields.
+fn convert<A: serde::Serialize, B: serde::de::DeserializeOwned>(document: &A) -> Result<B, String> {
+    serde_json::to_value(document).and_then(serde_json::from_value).map_err(|e| format!("presets: {e}"))
 }

@@ -229,14 +229,16 @@ pub struct LineDoc {
     pub style: LineStyleDoc,
 }
 
-/// A generated route: the cheapest way over the terrain, preferring valleys.
+/// A generated route: the cheapest way over the terrain, preferring valleys; without ends along a valley of its own choice.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RouteDoc {
     /// Start.
-    pub from: PlaceDoc,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from: Option<PlaceDoc>,
     /// End.
-    pub to: PlaceDoc,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to: Option<PlaceDoc>,
     /// Seed of its small random windings.
     #[serde(default)]
     pub seed: u64,

@@ -131,7 +131,6 @@ pub(crate) fn json_points(text: &str) -> Result<Node, DocError> {
 }
 
 /// Reads a `T` out of a tree.
-#[cfg(test)]
 pub(crate) fn decode<'a, T: serde::Deserialize<'a>>(node: &'a Node) -> Result<T, DocError> {
     de::from_node(node)
 }

@@ -44,11 +44,30 @@ impl std::fmt::Display for CheckReport {
     }
 }
 
+/// Refuses views that cannot be drawn.
+///
+/// # Errors
+/// [`BelvedereError::Usage`] if the eye is under ground.
+pub fn drawable(session: &Session) -> Result<(), BelvedereError> {
+    let eye = session.view().pinhole().eye;
+    let lowered = session.view().stages().iter().any(|s| matches!(s, belvedere_core::Stage::TerrainDisocclusion(_)));
+    let ground = session.scene().terrain().and_then(|t| t.surface_at(eye.truncate()));
+    match ground {
+        Some(height) if eye.z < height && !lowered => Err(BelvedereError::Usage(format!(
+            "camera eye at height {:.1} is {:.1} under the ground ({height:.1}); raise it, or give above_ground_m",
+            eye.z,
+            height - eye.z
+        ))),
+        _ => Ok(()),
+    }
+}
+
 /// What an opened scene holds; that it opened is the check.
 ///
 /// # Errors
 /// [`BelvedereError`] if it could be opened but not drawn.
 pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
+    drawable(session)?;
     let layers = session.scene().layers.iter().map(|layer| {
         let (kind, count) = match &layer.kind {
             LayerKind::Terrain(t) => ("terrain", t.heightfield.heights().len()),
@@ -92,7 +111,7 @@ pub fn schema_json() -> Result<String, BelvedereError> {
     pretty(&schemars::schema_for!(Document))
 }
 
-fn pretty<T: Serialize>(value: &T) -> Result<String, BelvedereError> {
+pub(crate) fn pretty<T: Serialize>(value: &T) -> Result<String, BelvedereError> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|e| BelvedereError::Usage(format!("the document cannot be written as JSON: {e}")))?;
     Ok(text + "\n")

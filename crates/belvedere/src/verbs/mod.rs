@@ -3,3 +3,4 @@
 pub mod check;
 pub mod output;
 pub mod points;
+pub mod render;

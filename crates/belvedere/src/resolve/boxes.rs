@@ -1,0 +1,99 @@
+//! Layers of boxes: inline, from JSON or CSV, or built in.
+
+use super::builtin;
+use super::layers::Loader;
+use super::validate::color;
+use crate::BelvedereError;
+use crate::scene_file::{self, BoxDoc, BoxesDoc, Paths, TransformDoc};
+use belvedere_core::DVec3;
+use belvedere_scene::{BoxLayer, BoxShape, Color, LayerKind};
+use std::path::Path;
+
+/// The layer.
+pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &BoxesDoc) -> Result<LayerKind, BelvedereError> {
+    let default = loader.color(index, &doc.style.color)?;
+    let mut boxes = match (&doc.source, &doc.boxes) {
+        (Some(name), _) if builtin::is_name(name) => {
+            let seed = loader.options.seed;
+            let kind = loader.builtins.find(name, seed, |k| matches!(k, LayerKind::Boxes(_)));
+            match kind.map_err(|e| loader.fail(index, "source", e))? {
+                LayerKind::Boxes(b) => b.boxes,
+                _ => Vec::new(),
+            }
+        }
+        (Some(name), _) => {
+            let path = loader.files(index, "source", &Paths::One(name.clone()))?.remove(0);
+            let docs = read(&path)?;
+            shapes(&docs, default).map_err(|reason| belvedere_io::IoError::format(path, reason))?
+        }
+        (None, Some(docs)) => shapes(docs, default).map_err(|reason| loader.fail(index, "boxes", reason))?,
+        (None, None) => Vec::new(),
+    };
+    if let Some(transform) = &doc.transform {
+        check(transform).map_err(|reason| loader.fail(index, "transform", reason))?;
+        boxes.iter_mut().for_each(|b| place(b, transform));
+    }
+    Ok(LayerKind::Boxes(BoxLayer { boxes }))
+}
+
+fn shapes(docs: &[BoxDoc], default: Color) -> Result<Vec<BoxShape>, String> {
+    docs.iter().enumerate().map(|(i, doc)| shape(doc, default).map_err(|e| format!("box {i}: {e}"))).collect()
+}
+
+fn shape(doc: &BoxDoc, default: Color) -> Result<BoxShape, String> {
+    let size = DVec3::from_array(doc.size);
+    if !(size.min_element() > 0.0) {
+        return Err(format!("size is {:?}, every extent must be greater than 0", doc.size));
+    }
+    let color = doc.color.as_ref().map_or(Ok(default), |text| color("color", text).map_err(|(_, reason)| reason))?;
+    Ok(BoxShape { base: DVec3::from_array(doc.base), size, yaw: doc.yaw_deg.to_radians(), color })
+}
+
+fn check(transform: &TransformDoc) -> Result<(), String> {
+    if transform.rotate_deg[0] != 0.0 || transform.rotate_deg[1] != 0.0 {
+        return Err(format!("boxes stay upright, rotate_deg is {:?}; rotate about z only", transform.rotate_deg));
+    }
+    if !(transform.scale > 0.0) {
+        return Err(format!("scale is {}, it must be greater than 0", transform.scale));
+    }
+    Ok(())
+}
+
+fn place(shape: &mut BoxShape, transform: &TransformDoc) {
+    let yaw = transform.rotate_deg[2].to_radians();
+    let (sin, cos) = yaw.sin_cos();
+    let p = transform.scale * shape.base;
+    shape.base = DVec3::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y, p.z) + DVec3::from_array(transform.translate);
+    shape.size *= transform.scale;
+    shape.yaw += yaw;
+}
+
+fn read(path: &Path) -> Result<Vec<BoxDoc>, BelvedereError> {
+    let text = scene_file::read_text(path)?;
+    let fail = |line: Option<usize>, reason: String| BelvedereError::Scene { path: path.to_owned(), line, reason };
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
+        return csv(&text).map_err(|(line, reason)| fail(Some(line), reason));
+    }
+    let root = scene_file::tree(path, &text).map_err(|e| fail(e.line, e.to_string()))?;
+    scene_file::decode(&root).map_err(|e| fail(e.line, e.to_string()))
+}
+
+/// `x,y,z,size_x,size_y,size_z[,yaw_deg[,color]]`; a first line of names is skipped.
+fn csv(text: &str) -> Result<Vec<BoxDoc>, (usize, String)> {
+    let mut boxes = Vec::new();
+    for (i, row) in text.lines().enumerate() {
+        let cells: Vec<&str> = row.split(',').map(str::trim).collect();
+        if row.trim().is_empty() || (i == 0 && cells[0].parse::<f64>().is_err()) {
+            continue;
+        }
+        let number = |k: usize| cells.get(k).and_then(|c| c.parse::<f64>().ok()).filter(|v| v.is_finite());
+        let numbers: Option<Vec<f64>> = (0..6).map(number).collect();
+        let bad =
+            || (i + 1, "x,y,z,size_x,size_y,size_z[,yaw_deg[,color]] was expected; give finite numbers".to_owned());
+        let n = numbers.filter(|_| cells.len() <= 8).ok_or_else(bad)?;
+        let yaw_deg = if cells.get(6).is_some_and(|c| !c.is_empty()) { number(6).ok_or_else(bad)? } else { 0.0 };
+        let color = cells.get(7).filter(|c| !c.is_empty()).map(|c| (*c).to_owned());
+        boxes.push(BoxDoc { base: [n[0], n[1], n[2]], size: [n[3], n[4], n[5]], yaw_deg, color });
+    }
+    Ok(boxes)
+}

@@ -1,0 +1,84 @@
+//! Built-in scenes as sources: `builtin:massif?seed=7&size=513`, `builtin:street?layer=route`.
+
+use crate::scene_file::suggestion;
+use belvedere_scene::{LayerKind, Scene, builtin};
+
+/// Seed of a built-in scene that names none.
+pub(crate) const DEFAULT_SEED: u64 = 7;
+/// Nodes per side of a massif that names none.
+pub(crate) const DEFAULT_SIZE: usize = 513;
+
+const NAMES: &[&str] = &["massif", "street"];
+
+/// Whether a source means a built-in scene.
+pub(super) fn is_name(source: &str) -> bool {
+    source.starts_with("builtin:")
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Request {
+    name: String,
+    seed: u64,
+    size: usize,
+}
+
+/// Built-in scenes made so far: layers of one scene come from one making.
+#[derive(Debug, Default)]
+pub(super) struct Builtins(Vec<(Request, Scene)>);
+
+impl Builtins {
+    /// The first layer of `source`'s scene that `wanted` accepts (and that has the id given as `layer=`).
+    pub(super) fn find(
+        &mut self,
+        source: &str,
+        seed: Option<u64>,
+        wanted: impl Fn(&LayerKind) -> bool,
+    ) -> Result<LayerKind, String> {
+        let (mut request, id) = parse(source)?;
+        request.seed = seed.unwrap_or(request.seed);
+        let at = match self.0.iter().position(|(r, _)| *r == request) {
+            Some(at) => at,
+            None => {
+                let scene = make(&request)?;
+                self.0.push((request, scene));
+                self.0.len() - 1
+            }
+        };
+        let layers = &self.0[at].1.layers;
+        let named = |l: &&belvedere_scene::Layer| id.as_ref().is_none_or(|id| *id == l.id);
+        layers.iter().filter(named).find(|l| wanted(&l.kind)).map(|l| l.kind.clone()).ok_or_else(|| {
+            let ids: Vec<&str> = layers.iter().filter(|l| wanted(&l.kind)).map(|l| l.id.as_str()).collect();
+            format!("{source} has no such layer of this kind; layers of this kind are: {}", ids.join(", "))
+        })
+    }
+}
+
+fn make(request: &Request) -> Result<Scene, String> {
+    let made = if request.name == "massif" {
+        builtin::massif(request.seed, request.size)
+    } else {
+        builtin::street(request.seed)
+    };
+    made.map(|(scene, _)| scene).map_err(|e| e.to_string())
+}
+
+fn parse(source: &str) -> Result<(Request, Option<String>), String> {
+    let text = source.trim_start_matches("builtin:");
+    let (name, query) = text.split_once('?').unwrap_or((text, ""));
+    if !NAMES.contains(&name) {
+        return Err(format!("built-in scene \"{name}\" does not exist; {}", suggestion(name, NAMES)));
+    }
+    let mut request = Request { name: name.to_owned(), seed: DEFAULT_SEED, size: DEFAULT_SIZE };
+    let mut layer = None;
+    for pair in query.split('&').filter(|p| !p.is_empty()) {
+        let (key, value) = pair.split_once('=').unwrap_or((pair, ""));
+        let bad = || format!("{source}: \"{pair}\" is not understood; possible: seed=N, size=N (massif), layer=ID");
+        match key {
+            "seed" => request.seed = value.parse().map_err(|_| bad())?,
+            "size" if name == "massif" => request.size = value.parse().map_err(|_| bad())?,
+            "layer" if !value.is_empty() => layer = Some(value.to_owned()),
+            _ => return Err(bad()),
+        }
+    }
+    Ok((request, layer))
+}

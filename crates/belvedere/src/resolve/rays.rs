@@ -1,0 +1,62 @@
+//! From the turns of a document to curved rays.
+
+use super::stages::Fail;
+use crate::BelvedereError;
+use crate::scene_file::{AxisDoc, BendDoc, BendRule, RayModelDoc, RaysStageDoc, StageDoc, TurnDoc};
+use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
+use belvedere_core::{CurvedRays, DVec3, Pinhole, Stage};
+
+/// The stage behind `root`, and its document with every rule for m replaced by the number it came to.
+pub(super) fn resolve(root: &Pinhole, doc: &RaysStageDoc, fail: &Fail<'_>) -> Result<(Stage, StageDoc), BelvedereError> {
+    if doc.turn.is_empty() {
+        return Err(fail(&["turn"], "curved_rays has no turn; give at least one [[stage.turn]]".into()));
+    }
+    let specs: Vec<TurnSpec> = doc
+        .turn
+        .iter()
+        .enumerate()
+        .map(|(j, turn)| turn_spec(turn).map_err(|(key, reason)| fail(&["turn", &j.to_string(), key], format!("turn {}: {reason}", j + 1))))
+        .collect::<Result<_, _>>()?;
+    let model = match doc.model {
+        RayModelDoc::Modified => Model::Modified,
+        RayModelDoc::Original => Model::Original,
+        RayModelDoc::C0 => Model::C0,
+        RayModelDoc::C2 => Model::C2,
+        RayModelDoc::Circular => Model::Circular,
+    };
+    let rays = CurvedRays::new(root, model, &specs).map_err(|e| fail(&["turn"], e.to_string()))?;
+    let mut resolved = doc.clone();
+    for (turn, computed) in resolved.turn.iter_mut().zip(rays.turns()) {
+        // A rule may come to a number that a file may not state; then the rule stays.
+        if let Some(m) = computed.m.filter(|m| model == Model::Modified && (0.2..=20.0).contains(m)) {
+            turn.m = BendDoc::Number(m);
+        }
+    }
+    Ok((Stage::CurvedRays(rays), StageDoc::CurvedRays(resolved)))
+}
+
+fn turn_spec(doc: &TurnDoc) -> Result<TurnSpec, (&'static str, String)> {
+    let pencil = match (doc.line, doc.normal) {
+        (Some(AxisDoc { point, dir }), None) => Pencil::Line { point: DVec3::from_array(point), dir: DVec3::from_array(dir) },
+        (None, Some(normal)) => Pencil::Parallel { normal: DVec3::from_array(normal) },
+        (Some(_), Some(_)) => return Err(("normal", "both line and normal are given; give exactly one".into())),
+        (None, None) => return Err(("t0", "neither line nor normal is given; give the common line of the planes, or the normal of parallel planes".into())),
+    };
+    let m = match doc.m {
+        BendDoc::Number(m) if !(0.2..=20.0).contains(&m) => {
+            return Err(("m", format!("m is {m}, it must lie in 0.2..=20; or give \"bend\", \"left\" or \"mid\"")));
+        }
+        BendDoc::Number(m) => Sharpness::Value(m),
+        BendDoc::Rule(BendRule::Bend) => Sharpness::Bend,
+        BendDoc::Rule(BendRule::Left) => Sharpness::Left,
+        BendDoc::Rule(BendRule::Mid) => Sharpness::Mid,
+    };
+    Ok(TurnSpec {
+        viewpoint: DVec3::from_array(doc.viewpoint),
+        t0: DVec3::from_array(doc.t0),
+        t1: DVec3::from_array(doc.t1),
+        t2: DVec3::from_array(doc.t2),
+        pencil,
+        m,
+    })
+}
