@@ -7,7 +7,11 @@ use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::{CurvedRays, DVec3, Pinhole, Stage};
 
 /// The stage behind `root`, and its document with every rule for m replaced by the number it came to.
-pub(super) fn resolve(root: &Pinhole, doc: &RaysStageDoc, fail: &Fail<'_>) -> Result<(Stage, StageDoc), BelvedereError> {
+pub(super) fn resolve(
+    root: &Pinhole,
+    doc: &RaysStageDoc,
+    fail: &Fail<'_>,
+) -> Result<(Stage, StageDoc), BelvedereError> {
     if doc.turn.is_empty() {
         return Err(fail(&["turn"], "curved_rays has no turn; give at least one [[stage.turn]]".into()));
     }
@@ -15,7 +19,10 @@ pub(super) fn resolve(root: &Pinhole, doc: &RaysStageDoc, fail: &Fail<'_>) -> Re
         .turn
         .iter()
         .enumerate()
-        .map(|(j, turn)| turn_spec(turn).map_err(|(key, reason)| fail(&["turn", &j.to_string(), key], format!("turn {}: {reason}", j + 1))))
+        .map(|(j, turn)| {
+            turn_spec(turn)
+                .map_err(|(key, reason)| fail(&["turn", &j.to_string(), key], format!("turn {}: {reason}", j + 1)))
+        })
         .collect::<Result<_, _>>()?;
     let model = match doc.model {
         RayModelDoc::Modified => Model::Modified,
@@ -37,10 +44,16 @@ pub(super) fn resolve(root: &Pinhole, doc: &RaysStageDoc, fail: &Fail<'_>) -> Re
 
 fn turn_spec(doc: &TurnDoc) -> Result<TurnSpec, (&'static str, String)> {
     let pencil = match (doc.line, doc.normal) {
-        (Some(AxisDoc { point, dir }), None) => Pencil::Line { point: DVec3::from_array(point), dir: DVec3::from_array(dir) },
+        (Some(AxisDoc { point, dir }), None) => {
+            Pencil::Line { point: DVec3::from_array(point), dir: DVec3::from_array(dir) }
+        }
         (None, Some(normal)) => Pencil::Parallel { normal: DVec3::from_array(normal) },
         (Some(_), Some(_)) => return Err(("normal", "both line and normal are given; give exactly one".into())),
-        (None, None) => return Err(("t0", "neither line nor normal is given; give the common line of the planes, or the normal of parallel planes".into())),
+        (None, None) => return Err((
+            "t0",
+            "neither line nor normal is given; give the common line of the planes, or the normal of parallel planes"
+                .into(),
+        )),
     };
     let m = match doc.m {
         BendDoc::Number(m) if !(0.2..=20.0).contains(&m) => {
