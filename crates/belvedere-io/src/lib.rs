@@ -3,10 +3,14 @@
 pub mod atomic;
 pub mod crs;
 mod error;
+pub mod esri_ascii;
 pub mod geotiff;
+pub mod hgt;
 pub mod png;
 pub mod raster;
+pub mod terrain;
 
 pub use error::{IoError, Loaded};
 pub use geotiff::GeoTiff;
 pub use raster::{Affine, Alpha, CrsKind, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, SourceCrs};
+pub use terrain::{CrsChoice, LoadedTerrain, ResampleError, TerrainRequest, load_terrain};

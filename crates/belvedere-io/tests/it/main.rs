@@ -5,4 +5,6 @@ mod crs;
 mod geotiff;
 mod geotiff_made;
 mod png;
+mod rasters;
+mod terrain;
 mod tiff_writer;

@@ -1,0 +1,141 @@
+//! Closing holes by a smooth membrane.
+
+use crate::IoError;
+use belvedere_scene::Progress;
+
+/// Relaxation sweeps per level. The pyramid brings the smooth part, sweeps only the detail.
+const SWEEPS: usize = 40;
+/// Over-relaxation, 1..2.
+const OMEGA: f32 = 1.5;
+
+/// One level of the pyramid: NaN = to be filled, infinite = outside, never filled.
+struct Level {
+    cols: usize,
+    rows: usize,
+    heights: Vec<f32>,
+}
+
+impl Level {
+    /// Height at a node of the next finer level: bilinear between the middles of the coarse cells, of those that are known.
+    fn at_fine(&self, c: usize, r: usize) -> f32 {
+        let beside = |fine: usize, n: usize| {
+            let near = fine / 2;
+            let other = if fine % 2 == 0 { near.checked_sub(1) } else { Some(near + 1).filter(|&k| k < n) };
+            (near, other)
+        };
+        let ((c0, c1), (r0, r1)) = (beside(c, self.cols), beside(r, self.rows));
+        let (mut sum, mut weights) = (0.0f32, 0.0f32);
+        for (row, wr) in [(Some(r0), 0.75f32), (r1, 0.25)] {
+            for (col, wc) in [(Some(c0), 0.75f32), (c1, 0.25)] {
+                if let (Some(col), Some(row)) = (col, row)
+                    && self.heights[row * self.cols + col].is_finite()
+                {
+                    sum += wr * wc * self.heights[row * self.cols + col];
+                    weights += wr * wc;
+                }
+            }
+        }
+        sum / weights
+    }
+}
+
+/// Replaces NaN by the solution of Laplace's equation with the known heights as boundary values and no flow through the
+/// outside (infinite) and the border: multigrid from coarse to fine, each level relaxed by Gauss-Seidel with
+/// over-relaxation (any textbook). Known heights are not touched; the same input gives the same bits.
+pub(super) fn fill(cols: usize, rows: usize, heights: &mut Vec<f32>, progress: &Progress) -> Result<(), IoError> {
+    if !heights.iter().any(|h| h.is_nan()) || !heights.iter().any(|h| h.is_finite()) {
+        return Ok(());
+    }
+    let mut pyramid = vec![Level { cols, rows, heights: std::mem::take(heights) }];
+    while let Some(finest) = pyramid.last()
+        && finest.heights.iter().any(|h| h.is_nan())
+    {
+        pyramid.push(coarser(finest));
+    }
+    let levels = pyramid.len();
+    let mut coarse: Option<Level> = None;
+    while let Some(mut level) = pyramid.pop() {
+        progress.tick("filling voids", 1.0 - (pyramid.len() + 1) as f64 / levels as f64)?;
+        if let Some(coarse) = &coarse {
+            let unknown: Vec<usize> = (0..level.heights.len()).filter(|&i| level.heights[i].is_nan()).collect();
+            for &i in &unknown {
+                let (c, r) = (i % level.cols, i / level.cols);
+                level.heights[i] = coarse.at_fine(c, r);
+            }
+            relax(&mut level, &unknown);
+        }
+        coarse = Some(level);
+    }
+    if let Some(finest) = coarse {
+        *heights = finest.heights;
+    }
+    Ok(())
+}
+
+/// Half the size: means of what is known; unknown where nothing is known but something is wanted.
+fn coarser(fine: &Level) -> Level {
+    let (cols, rows) = (fine.cols.div_ceil(2), fine.rows.div_ceil(2));
+    let mut heights = Vec::with_capacity(cols * rows);
+    for r in 0..rows {
+        for c in 0..cols {
+            let (mut sum, mut count, mut wanted) = (0.0f64, 0u32, false);
+            for (rr, cc) in [(2 * r, 2 * c), (2 * r, 2 * c + 1), (2 * r + 1, 2 * c), (2 * r + 1, 2 * c + 1)] {
+                if rr >= fine.rows || cc >= fine.cols {
+                    continue;
+                }
+                let h = fine.heights[rr * fine.cols + cc];
+                if h.is_finite() {
+                    sum += f64::from(h);
+                    count += 1;
+                }
+                wanted |= h.is_nan();
+            }
+            heights.push(match (count, wanted) {
+                (0, true) => f32::NAN,
+                (0, false) => f32::INFINITY,
+                _ => (sum / f64::from(count)) as f32,
+            });
+        }
+    }
+    Level { cols, rows, heights }
+}
+
+fn relax(level: &mut Level, unknown: &[usize]) {
+    let (cols, rows) = (level.cols, level.rows);
+    let heights = &mut level.heights;
+    for sweep in 0..SWEEPS {
+        let mut update = |i: usize| {
+            let (c, r) = (i % cols, i / cols);
+            let (mut sum, mut count) = (0.0f32, 0.0f32);
+            let mut add = |h: f32| {
+                if h.is_finite() {
+                    sum += h;
+                    count += 1.0;
+                }
+            };
+            if c > 0 {
+                add(heights[i - 1]);
+            }
+            if c + 1 < cols {
+                add(heights[i + 1]);
+            }
+            if r > 0 {
+                add(heights[i - cols]);
+            }
+            if r + 1 < rows {
+                add(heights[i + cols]);
+            }
+            if count > 0.0 {
+                // the last sweeps settle without overshoot
+                let omega = if sweep + 4 < SWEEPS { OMEGA } else { 1.0 };
+                let mean = sum / count;
+                heights[i] = if heights[i].is_finite() { heights[i] + omega * (mean - heights[i]) } else { mean };
+            }
+        };
+        if sweep % 2 == 0 {
+            unknown.iter().copied().for_each(&mut update);
+        } else {
+            unknown.iter().rev().copied().for_each(&mut update);
+        }
+    }
+}

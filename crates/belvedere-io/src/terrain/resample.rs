@@ -1,0 +1,375 @@
+//! Sources onto the axis-aligned grid of a scene.
+
+use super::place::{Geometry, GridMap, Link};
+use super::source::{SourceGrid, bilinear};
+use super::{ResampleError, TerrainRequest};
+use crate::IoError;
+use crate::crs::CoordinateSystem;
+use belvedere_scene::Progress;
+use glam::DVec2;
+use rayon::prelude::*;
+
+/// Accuracy of the interpolated map between grids, cells.
+const MAP_TOLERANCE: f64 = 1e-3;
+/// Slack at the border for that inaccuracy, cells.
+const EDGE_MARGIN: f64 = 2e-3;
+/// Rounds of correction.
+const CORRECTIONS: usize = 2;
+/// Finest spacing, relative to the source's.
+const FINEST: f64 = 0.5;
+/// Bins of the error histogram per metre and in all.
+const BINS_PER_M: f32 = 64.0;
+const BINS: usize = 1 << 16;
+
+/// The grid of a scene before it becomes a heightfield: NaN = void, infinite = outside every source.
+#[derive(Debug, Clone)]
+pub(crate) struct SceneGrid {
+    pub(crate) geometry: Geometry,
+    pub(crate) cols: usize,
+    pub(crate) rows: usize,
+    pub(crate) heights: Vec<f32>,
+}
+
+impl SceneGrid {
+    /// Cuts rows and columns off the border that hold no height at all.
+    pub(super) fn trim(&mut self) {
+        let (cols, rows) = (self.cols, self.rows);
+        let has = |c: usize, r: usize| self.heights[r * cols + c].is_finite();
+        let full_row = |r: &usize| (0..cols).any(|c| has(c, *r));
+        let Some(top) = (0..rows).find(full_row) else { return };
+        let bottom = (0..rows).rev().find(full_row).unwrap_or(top);
+        let full_col = |c: &usize| (top..=bottom).any(|r| has(*c, r));
+        let left = (0..cols).find(full_col).unwrap_or(0);
+        let right = (0..cols).rev().find(full_col).unwrap_or(left);
+        // a heightfield needs two nodes each way
+        let widen = |a: usize, b: usize, n: usize| {
+            if b > a {
+                (a, b)
+            } else if b + 1 < n {
+                (a, b + 1)
+            } else {
+                (a.saturating_sub(1), b)
+            }
+        };
+        let ((left, right), (top, bottom)) = (widen(left, right, cols), widen(top, bottom, rows));
+        if (left, top, right + 1, bottom + 1) == (0, 0, cols, rows) {
+            return;
+        }
+        let kept = |r: usize| self.heights[r * cols + left..=r * cols + right].iter().copied();
+        self.heights = (top..=bottom).flat_map(kept).collect();
+        self.geometry.north_west = self.geometry.scene_from_index(DVec2::new(left as f64, top as f64));
+        (self.cols, self.rows) = (right - left + 1, bottom - top + 1);
+    }
+}
+
+/// The source as it is, if it is axis-aligned in the system of the scene.
+pub(super) fn exact(source: &SourceGrid, target: Option<&CoordinateSystem>) -> Option<SceneGrid> {
+    if target.is_some() && source.system.as_ref() != target {
+        return None;
+    }
+    let scale = match target {
+        None => source.system.as_ref().and_then(CoordinateSystem::metres_per_unit).unwrap_or(1.0),
+        Some(_) => 1.0,
+    };
+    let [a, b, c, d, e, f] = source.model_from_index.0.map(|v| v * scale);
+    let (cols, rows) = (source.cols, source.rows);
+    let skew = (b * rows as f64).abs().max((d * cols as f64).abs());
+    // a skew of less than a millionth of a cell over the whole raster is rounding
+    if skew > 1e-6 * a.abs().min(e.abs()) {
+        return None;
+    }
+    let x = if a > 0.0 { c } else { c + a * (cols - 1) as f64 };
+    let y = if e < 0.0 { f } else { f + e * (rows - 1) as f64 };
+    let mut heights = source.heights.clone();
+    if a < 0.0 {
+        heights.par_chunks_exact_mut(cols).for_each(<[f32]>::reverse);
+    }
+    if e > 0.0 {
+        heights = heights.chunks_exact(cols).rev().flatten().copied().collect();
+    }
+    let geometry = Geometry { north_west: DVec2::new(x, y), spacing: DVec2::new(a.abs(), e.abs()) };
+    Some(SceneGrid { geometry, cols, rows, heights })
+}
+
+/// Resamples to a grid about as fine as the source, or finer (at most twice, and only up to the request's
+/// `refine_to_nodes`) where the relief is too rough for the bound on the error at the source's samples.
+///
+/// Heights are bilinear in the source. Where a single source misses the bound, the residuals at its samples are added
+/// back, again bilinearly, within the range of the four samples around each node (iterated back-projection: what the
+/// scene's own bilinear surface loses at the samples is given to the nodes around them; ours). With several sources the
+/// grid is as fine as the finest.
+pub(super) fn resample(
+    sources: &[SourceGrid],
+    links: &[Link],
+    request: &TerrainRequest,
+    progress: &Progress,
+) -> Result<(SceneGrid, Option<ResampleError>), IoError> {
+    let mut planned = plan(sources, links, 1.0)?;
+    let nodes = planned.cols as f64 * planned.rows as f64;
+    if nodes > request.max_nodes as f64 {
+        planned = shrink(planned, sources, request.max_nodes)?;
+    } else if sources.len() == 1 && roughness_p99(&sources[0]) > request.max_error_p99_m {
+        let allowed = request.refine_to_nodes.min(request.max_nodes) as f64;
+        let factor = (1.001 * (nodes / allowed).sqrt()).clamp(FINEST, 1.0);
+        if factor < 1.0 {
+            planned = plan(sources, links, factor)?;
+        }
+    }
+    progress.tick("resampling terrain", 0.0)?;
+    Ok(at_spacing(planned, sources, links, request.max_error_p99_m))
+}
+
+/// 99th percentile of what resampling to the same spacing can cost at a sample, metres, from second differences `d`:
+/// a bilinear surface is off by up to `(|d_x| + |d_y|) / 8` between its nodes, and two of them are used.
+fn roughness_p99(source: &SourceGrid) -> f64 {
+    let (cols, rows) = (source.cols, source.rows);
+    let h = &source.heights;
+    let mut histogram = Histogram::new();
+    // a sixteenth of the samples tells enough
+    for r in (1..rows - 1).step_by(4) {
+        for c in (1..cols - 1).step_by(4) {
+            let i = r * cols + c;
+            let along = (h[i - 1] - 2.0 * h[i] + h[i + 1]).abs();
+            let across = (h[i - cols] - 2.0 * h[i] + h[i + cols]).abs();
+            histogram.add(0.25 * (along + across));
+        }
+    }
+    histogram.percentile(0.99)
+}
+
+/// Counts of magnitudes, for percentiles without sorting.
+struct Histogram {
+    bins: Vec<u32>,
+    count: u64,
+}
+
+impl Histogram {
+    fn new() -> Self {
+        Self { bins: vec![0; BINS], count: 0 }
+    }
+
+    /// Counts a value unless it is NaN or infinite.
+    fn add(&mut self, v: f32) {
+        if v.is_finite() {
+            self.bins[((v.abs() * BINS_PER_M) as usize).min(BINS - 1)] += 1;
+            self.count += 1;
+        }
+    }
+
+    /// Upper end of the bin where the share is reached; 0 if nothing was counted.
+    fn percentile(&self, share: f64) -> f64 {
+        let wanted = (self.count as f64 * share).ceil() as u64;
+        let mut seen = 0u64;
+        let bin = self.bins.iter().position(|&n| {
+            seen += u64::from(n);
+            self.count > 0 && seen >= wanted
+        });
+        bin.map_or(0.0, |b| (b + 1) as f64 / f64::from(BINS_PER_M))
+    }
+}
+
+/// Heights and error on a planned grid.
+fn at_spacing(
+    mut grid: SceneGrid,
+    sources: &[SourceGrid],
+    links: &[Link],
+    bound_m: f64,
+) -> (SceneGrid, Option<ResampleError>) {
+    let geometry = grid.geometry;
+    let mut maps_inputs = Vec::new();
+    for link in links {
+        maps_inputs.push(move |index: DVec2| link.index_from_scene(geometry.scene_from_index(index)));
+    }
+    let margin = if sources.len() > 1 { 0.5 } else { EDGE_MARGIN };
+    for (k, (source, exact)) in sources.iter().zip(&maps_inputs).enumerate() {
+        let map = GridMap::new(grid.cols, grid.rows, MAP_TOLERANCE, exact);
+        draw(&mut grid, source, &map, margin, k == 0);
+    }
+    let ([source], [link], [back]) = (sources, links, maps_inputs.as_slice()) else {
+        return (grid, None);
+    };
+    let forth = |index: DVec2| link.scene_from_index(index).map(|p| geometry.index_from_scene(p));
+    let to_scene = GridMap::new(source.cols, source.rows, MAP_TOLERANCE, &forth);
+    let mut residual = vec![0.0f32; source.heights.len()];
+    let mut error = residuals(&grid, source, &to_scene, &mut residual);
+    let to_source = GridMap::new(grid.cols, grid.rows, MAP_TOLERANCE, back);
+    for _ in 0..CORRECTIONS {
+        if error.p99_m <= bound_m {
+            break;
+        }
+        add_back(&mut grid, source, &to_source, &residual);
+        error = residuals(&grid, source, &to_scene, &mut residual);
+    }
+    (grid, Some(error))
+}
+
+/// Geometry of a grid that covers every source, about as fine as the finest, times `factor`.
+fn plan(sources: &[SourceGrid], links: &[Link], factor: f64) -> Result<SceneGrid, IoError> {
+    let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    let mut spacing = DVec2::INFINITY;
+    for (source, link) in sources.iter().zip(links) {
+        for p in boundary(source).into_iter().filter_map(|i| link.scene_from_index(i)) {
+            min = min.min(p);
+            max = max.max(p);
+        }
+        if let Some(s) = middle_spacing(source, link) {
+            spacing = spacing.min(s);
+        }
+    }
+    let placed = min.is_finite() && max.is_finite() && spacing.is_finite() && spacing.min_element() > 0.0;
+    if !placed {
+        let reason =
+            "no part of it can be placed in the CRS of the scene; check its georeference or choose another crs";
+        return Err(IoError::format(&sources[0].path, reason));
+    }
+    let spacing = (spacing * factor).map(round_down);
+    let size = ((max - min) / spacing).ceil() + 1.0;
+    if size.max_element() > 1e6 {
+        let reason = format!(
+            "its scene grid would have {} x {} nodes; the sources lie too far apart or the projection is unfit there, load fewer or choose another crs",
+            size.x, size.y
+        );
+        return Err(IoError::format(&sources[0].path, reason));
+    }
+    // the overhang is shared by both sides
+    let overhang = 0.5 * ((size - 1.0) * spacing - (max - min));
+    let north_west = DVec2::new(min.x - overhang.x, max.y + overhang.y);
+    let (cols, rows) = ((size.x as usize).max(2), (size.y as usize).max(2));
+    Ok(SceneGrid { geometry: Geometry { north_west, spacing }, cols, rows, heights: Vec::new() })
+}
+
+/// A coarser plan with at most `max_nodes`.
+fn shrink(grid: SceneGrid, sources: &[SourceGrid], max_nodes: usize) -> Result<SceneGrid, IoError> {
+    let nodes = grid.cols as f64 * grid.rows as f64;
+    let samples: usize = sources.iter().map(|s| s.heights.len()).sum();
+    // mostly empty grids are tiles far apart, not detail
+    if nodes > 16.0 * samples as f64 {
+        let reason = format!(
+            "its scene grid would have {} x {} nodes for {samples} samples, the limit is {max_nodes}; the sources lie too far apart, load fewer",
+            grid.cols, grid.rows
+        );
+        return Err(IoError::format(&sources[0].path, reason));
+    }
+    let k = (nodes / max_nodes as f64).sqrt() * 1.001;
+    let fewer = |n: usize| ((((n - 1) as f64) / k).floor() as usize + 1).max(2);
+    let (cols, rows) = (fewer(grid.cols), fewer(grid.rows));
+    let span = DVec2::new((grid.cols - 1) as f64, (grid.rows - 1) as f64) * grid.geometry.spacing;
+    let spacing = span / DVec2::new((cols - 1) as f64, (rows - 1) as f64);
+    Ok(SceneGrid { geometry: Geometry { spacing, ..grid.geometry }, cols, rows, heights: Vec::new() })
+}
+
+/// Node indices around the source and on a coarse lattice inside.
+fn boundary(source: &SourceGrid) -> Vec<DVec2> {
+    const N: usize = 128;
+    let (w, h) = ((source.cols - 1) as f64, (source.rows - 1) as f64);
+    let mut out = Vec::with_capacity(4 * N + 4 + N * N / 16);
+    for i in 0..=N {
+        let t = i as f64 / N as f64;
+        out.extend([(t * w, 0.0), (t * w, h), (0.0, t * h), (w, t * h)].map(DVec2::from));
+        if i % 8 == 0 {
+            out.extend((0..=N / 8).map(|j| DVec2::new(t * w, 8.0 * j as f64 / N as f64 * h)));
+        }
+    }
+    out
+}
+
+/// Spacing of an axis-aligned grid as dense as the source, at the first of a few places that have an image.
+fn middle_spacing(source: &SourceGrid, link: &Link) -> Option<DVec2> {
+    let (w, h) = ((source.cols - 1) as f64, (source.rows - 1) as f64);
+    [(0.5, 0.5), (0.5, 0.25), (0.5, 0.75), (0.25, 0.5), (0.75, 0.5)].into_iter().find_map(|(u, v)| {
+        let [dc, dr] = link.jacobian(DVec2::new(u * w, v * h))?;
+        let det = dc.perp_dot(dr).abs();
+        // cells crossed per metre along x and along y, from the inverse of the jacobian
+        let spacing = DVec2::new(det / dr.y.hypot(dc.y), det / dr.x.hypot(dc.x));
+        (spacing.is_finite() && spacing.min_element() > 0.0).then_some(spacing)
+    })
+}
+
+/// Three significant digits, rounded down: a spacing that people can read.
+fn round_down(v: f64) -> f64 {
+    let digits = v.log10().floor() - 2.0;
+    // dividing by a power of ten gives the decimal number's own bits
+    let rounded = if digits < 0.0 {
+        (v * 10f64.powf(-digits)).floor() / 10f64.powf(-digits)
+    } else {
+        (v / 10f64.powf(digits)).floor() * 10f64.powf(digits)
+    };
+    if rounded > 0.0 && rounded.is_finite() { rounded } else { v }
+}
+
+/// Bilinear heights of one source on the nodes that have none yet.
+fn draw(grid: &mut SceneGrid, source: &SourceGrid, map: &GridMap<'_>, margin: f64, first: bool) {
+    let cols = grid.cols;
+    if first {
+        grid.heights = vec![f32::INFINITY; cols * grid.rows];
+    }
+    grid.heights.par_chunks_exact_mut(cols).enumerate().for_each_init(
+        || vec![DVec2::ZERO; cols],
+        |indices, (r, row)| {
+            map.row(r, indices);
+            for (h, &index) in row.iter_mut().zip(indices.iter()) {
+                if !h.is_finite() {
+                    let new = source.sample(index, margin);
+                    // a void inside an earlier source stays one where this source has nothing
+                    if new.is_finite() || h.is_infinite() {
+                        *h = new;
+                    }
+                }
+            }
+        },
+    );
+}
+
+/// Source minus scene at every sample of the source that has both; NaN elsewhere.
+fn residuals(grid: &SceneGrid, source: &SourceGrid, map: &GridMap<'_>, out: &mut [f32]) -> ResampleError {
+    let cols = source.cols;
+    let per_row: Vec<(f32, f64)> = out
+        .par_chunks_exact_mut(cols)
+        .zip(source.heights.par_chunks_exact(cols))
+        .enumerate()
+        .map_init(
+            || vec![DVec2::ZERO; cols],
+            |indices, (r, (out, heights))| {
+                map.row(r, indices);
+                let (mut max, mut squares) = (0.0f32, 0.0f64);
+                for ((out, &h), &index) in out.iter_mut().zip(heights).zip(indices.iter()) {
+                    let e = h - bilinear(&grid.heights, grid.cols, grid.rows, index, 0.0);
+                    *out = if e.is_finite() { e } else { f32::NAN };
+                    if e.is_finite() {
+                        max = max.max(e.abs());
+                        squares += f64::from(e) * f64::from(e);
+                    }
+                }
+                (max, squares)
+            },
+        )
+        .collect();
+    let max = per_row.iter().map(|r| r.0).fold(0.0, f32::max);
+    let squares: f64 = per_row.iter().map(|r| r.1).sum();
+    let mut histogram = Histogram::new();
+    out.iter().for_each(|&e| histogram.add(e));
+    let p99 = histogram.percentile(0.99).min(f64::from(max));
+    ResampleError { max_m: f64::from(max), p99_m: p99, rms_m: (squares / histogram.count.max(1) as f64).sqrt() }
+}
+
+/// Adds the residuals to the nodes around them.
+fn add_back(grid: &mut SceneGrid, source: &SourceGrid, map: &GridMap<'_>, residual: &[f32]) {
+    let cols = grid.cols;
+    grid.heights.par_chunks_exact_mut(cols).enumerate().for_each_init(
+        || vec![DVec2::ZERO; cols],
+        |indices, (r, row)| {
+            map.row(r, indices);
+            for (h, &index) in row.iter_mut().zip(indices.iter()) {
+                if !h.is_finite() {
+                    continue;
+                }
+                let e = bilinear(residual, source.cols, source.rows, index, EDGE_MARGIN);
+                if e.is_finite() {
+                    // within the samples around it: lakes stay flat, cliffs do not ring
+                    let [low, high] = source.range_around(index);
+                    *h = (*h + e).clamp(low, high);
+                }
+            }
+        },
+    );
+}

@@ -1,0 +1,479 @@
+//! Reading the sources of a terrain: samples as heights in metres, voids as NaN.
+
+use super::{CrsChoice, TerrainRequest};
+use crate::crs::CoordinateSystem;
+use crate::{Affine, GeoTiff, IoError, Photometric, Raster, RasterInfo, Samples, SourceCrs, esri_ascii, hgt};
+use belvedere_scene::Progress;
+use glam::DVec2;
+use rayon::prelude::*;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Beyond this a sample is no height of any planet, metres.
+const MAX_HEIGHT_M: f32 = 1.0e5;
+/// Share of the samples from which a frame of one value is worth a warning.
+const FRAME_SHARE: f64 = 0.01;
+
+/// Heights of one source (or of several that share a lattice).
+#[derive(Debug, Clone)]
+pub(crate) struct SourceGrid {
+    pub(crate) path: PathBuf,
+    pub(crate) cols: usize,
+    pub(crate) rows: usize,
+    /// Metres; NaN = void, infinite = no source covers it.
+    pub(crate) heights: Vec<f32>,
+    /// Model coordinates of a node, that is of a pixel centre.
+    pub(crate) model_from_index: Affine,
+    /// `None` = not known.
+    pub(crate) system: Option<CoordinateSystem>,
+    /// Samples in the file and how many of them hold no data.
+    pub(crate) samples: usize,
+    pub(crate) voids: usize,
+}
+
+impl SourceGrid {
+    pub(crate) fn describe(&self) -> String {
+        let name = self.path.file_name().unwrap_or_default().to_string_lossy();
+        let system = self.system.as_ref().map_or("no CRS", CoordinateSystem::name);
+        format!("{name}: {} x {} samples, {system}", self.cols, self.rows)
+    }
+
+    /// Model coordinates along the outline and on a lattice inside.
+    pub(crate) fn outline(&self) -> impl Iterator<Item = DVec2> + '_ {
+        const N: usize = 32;
+        let (w, h) = (self.cols as f64 - 1.0, self.rows as f64 - 1.0);
+        (0..(N + 1) * (N + 1)).map(move |i| {
+            let (u, v) = ((i % (N + 1)) as f64 / N as f64, (i / (N + 1)) as f64 / N as f64);
+            DVec2::from(self.model_from_index.apply(u * w, v * h))
+        })
+    }
+
+    /// Bilinear height at a fractional node: NaN if one of the four nodes is a void, infinite more than `margin` outside.
+    #[inline]
+    pub(crate) fn sample(&self, index: DVec2, margin: f64) -> f32 {
+        bilinear(&self.heights, self.cols, self.rows, index, margin)
+    }
+
+    /// Smallest and largest of the four heights around a fractional node.
+    #[inline]
+    pub(crate) fn range_around(&self, index: DVec2) -> [f32; 2] {
+        let (i, _, _) = cell(self.cols, self.rows, index);
+        let (top, bottom) = (&self.heights[i..i + 2], &self.heights[i + self.cols..i + self.cols + 2]);
+        let low = top[0].min(top[1]).min(bottom[0].min(bottom[1]));
+        [low, top[0].max(top[1]).max(bottom[0].max(bottom[1])).max(low)]
+    }
+}
+
+/// First of the four nodes around a fractional node that lies inside, and the fractions.
+#[inline]
+fn cell(cols: usize, rows: usize, index: DVec2) -> (usize, f32, f32) {
+    let (x, y) = (index.x.clamp(0.0, (cols - 1) as f64), index.y.clamp(0.0, (rows - 1) as f64));
+    let (c, r) = ((x as usize).min(cols - 2), (y as usize).min(rows - 2));
+    (r * cols + c, (x - c as f64) as f32, (y - r as f64) as f32)
+}
+
+/// See [`SourceGrid::sample`].
+#[inline]
+pub(super) fn bilinear(heights: &[f32], cols: usize, rows: usize, index: DVec2, margin: f64) -> f32 {
+    let (last_c, last_r) = ((cols - 1) as f64, (rows - 1) as f64);
+    let inside = index.x >= -margin && index.y >= -margin && index.x <= last_c + margin && index.y <= last_r + margin;
+    if !inside {
+        return f32::INFINITY; // NaN indices too
+    }
+    let (i, u, v) = cell(cols, rows, index);
+    let (top, bottom) = (&heights[i..i + 2], &heights[i + cols..i + cols + 2]);
+    let upper = top[0] + (top[1] - top[0]) * u;
+    let lower = bottom[0] + (bottom[1] - bottom[0]) * u;
+    let height = upper + (lower - upper) * v;
+    if height.is_finite() {
+        return height;
+    }
+    let nearest = heights[i + usize::from(u >= 0.5) + if v >= 0.5 { cols } else { 0 }];
+    if nearest.is_infinite() { f32::INFINITY } else { f32::NAN }
+}
+
+/// Reads every source.
+pub(super) fn read_all(
+    paths: &[PathBuf],
+    request: &TerrainRequest,
+    progress: &Progress,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<SourceGrid>, IoError> {
+    // several sources share the budget of nodes
+    let budget = (request.max_nodes / paths.len()).max(4);
+    let mut out = Vec::with_capacity(paths.len());
+    for (i, path) in paths.iter().enumerate() {
+        progress.tick("reading terrain", i as f64 / paths.len() as f64)?;
+        out.push(read_one(path, request, budget, progress, warnings)?);
+    }
+    Ok(out)
+}
+
+fn read_one(
+    path: &Path,
+    request: &TerrainRequest,
+    budget: usize,
+    progress: &Progress,
+    warnings: &mut Vec<String>,
+) -> Result<SourceGrid, IoError> {
+    let (mut raster, factor) = read_raster(path, request, budget, progress, warnings)?;
+    if let Some(nodata) = request.nodata {
+        raster.info.nodata = Some(nodata);
+    }
+    check_shape(&raster.info)?;
+    let bands = raster.info.bands - usize::from(raster.info.alpha.band().is_some());
+    if bands > 1 {
+        warnings.push(format!("{}: it has {bands} bands; the first is taken as height", path.display()));
+    }
+    let mut heights = heights(&raster);
+    let absurd = void_absurd(&mut heights);
+    if absurd > 0 {
+        warnings.push(format!(
+            "{}: {absurd} samples beyond +-{MAX_HEIGHT_M:.0} m are taken as voids; set nodata if the file does not declare them",
+            path.display()
+        ));
+    }
+    let (mut cols, mut rows) = (raster.info.width, raster.info.height);
+    let voids = heights.iter().filter(|h| h.is_nan()).count();
+    let samples = heights.len();
+    let system = system_of(&raster.info, request, warnings)?;
+    warn_about_frame(path, &heights, cols, rows, warnings);
+    let to_model = raster.info.pixel_to_model.unwrap_or(Affine([1.0, 0.0, 0.0, 0.0, -1.0, rows as f64]));
+    let mut model_from_index = to_model.after_scale_and_shift(1.0, 1.0, 0.5, 0.5);
+    if raster.info.pixel_to_model.is_none() {
+        warnings.push(format!("{}: it has no georeference; one pixel counts as one metre", path.display()));
+    }
+    let mut thinned = factor;
+    if let Some(k) = thinning(cols, rows, budget) {
+        (heights, cols, rows) = thin(&heights, cols, rows, k);
+        model_from_index = model_from_index.after_scale_and_shift(k as f64, k as f64, 0.0, 0.0);
+        thinned *= k as f64;
+    }
+    if thinned > 1.0 {
+        warnings.push(format!(
+            "{}: only about every {thinned:.0}th sample along each side is used, to keep at most {budget} nodes",
+            path.display()
+        ));
+    }
+    Ok(SourceGrid { path: path.to_owned(), cols, rows, heights, model_from_index, system, samples, voids })
+}
+
+/// The raster and by how much it is coarser than the file.
+fn read_raster(
+    path: &Path,
+    request: &TerrainRequest,
+    budget: usize,
+    progress: &Progress,
+    warnings: &mut Vec<String>,
+) -> Result<(Raster, f64), IoError> {
+    let mut magic = [0u8; 4];
+    let mut file = File::open(path).map_err(|e| IoError::os(path, e))?;
+    let got = file.read(&mut magic).map_err(|e| IoError::os(path, e))?;
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let magic = &magic[..got];
+    if matches!(magic, b"II*\0" | b"MM\0*" | b"II+\0" | b"MM\0+") {
+        return read_tiff(path, request, budget, progress, warnings);
+    }
+    let loaded = match extension.as_str() {
+        "hgt" => hgt::read(path, &request.limits)?,
+        "zip" => hgt::read(path, &request.limits)?,
+        "asc" | "grd" | "txt" => esri_ascii::read(path, &request.limits)?,
+        _ => {
+            let reason = "it is none of the known elevation formats: GeoTIFF, SRTM .hgt (also .zip), ESRI ASCII .asc";
+            return Err(IoError::format(path, reason));
+        }
+    };
+    warnings.extend(loaded.warnings);
+    Ok((loaded.value, 1.0))
+}
+
+fn read_tiff(
+    path: &Path,
+    request: &TerrainRequest,
+    budget: usize,
+    progress: &Progress,
+    warnings: &mut Vec<String>,
+) -> Result<(Raster, f64), IoError> {
+    let loaded = GeoTiff::open(path, request.limits)?;
+    warnings.extend(loaded.warnings);
+    let tiff = loaded.value;
+    check_shape(tiff.info())?;
+    let nodes = |level: usize| tiff.level_info(level).map_or(usize::MAX, |i| i.width.saturating_mul(i.height));
+    let levels = tiff.levels();
+    // the largest level within the budget, else the smallest there is
+    let level = (0..levels).find(|&l| nodes(l) <= budget).unwrap_or(levels - 1);
+    let raster = tiff.read(level, progress)?;
+    let factor = tiff.info().width as f64 / raster.info.width as f64;
+    Ok((raster, factor))
+}
+
+fn check_shape(info: &RasterInfo) -> Result<(), IoError> {
+    let picture = match info.photometric {
+        Photometric::Rgb(_) => Some("an RGB picture"),
+        Photometric::Palette(_) => Some("a picture with a colour table"),
+        _ => None,
+    };
+    if let Some(picture) = picture {
+        return Err(IoError::format(&info.path, format!("it is {picture}, not heights; use it as a drape")));
+    }
+    if info.width < 2 || info.height < 2 {
+        let reason = format!("it has {} x {} samples, terrain needs at least 2 x 2", info.width, info.height);
+        return Err(IoError::format(&info.path, reason));
+    }
+    Ok(())
+}
+
+/// Heights of the first band in metres, NaN = void.
+fn heights(raster: &Raster) -> Vec<f32> {
+    let info = &raster.info;
+    let unit = info.vertical_unit_m as f32;
+    let plain = info.bands == 1 && raster.mask.is_none() && info.scaling.is_empty() && info.alpha.band().is_none();
+    let nodata = info.nodata;
+    match &raster.samples {
+        Samples::I16(v) if plain => {
+            let nodata = nodata.filter(|n| n.fract() == 0.0 && (-32768.0..=32767.0).contains(n)).map(|n| n as i16);
+            v.par_iter().map(|&h| if Some(h) == nodata { f32::NAN } else { f32::from(h) * unit }).collect()
+        }
+        Samples::F32(v) if plain => {
+            let nodata = nodata.map(|n| n as f32);
+            v.par_iter().map(|&h| if Some(h) == nodata || !h.is_finite() { f32::NAN } else { h * unit }).collect()
+        }
+        _ => {
+            let width = info.width;
+            let height = |i: usize| raster.sample_f64(0, i % width, i / width).map_or(f32::NAN, |h| h as f32 * unit);
+            (0..width * info.height).into_par_iter().with_min_len(4096).map(height).collect()
+        }
+    }
+}
+
+/// Makes samples that are no heights void; their number.
+fn void_absurd(heights: &mut [f32]) -> usize {
+    heights
+        .par_iter_mut()
+        .with_min_len(1 << 16)
+        .map(|h| {
+            let absurd = h.abs() > MAX_HEIGHT_M;
+            if absurd {
+                *h = f32::NAN;
+            }
+            usize::from(absurd)
+        })
+        .sum()
+}
+
+fn system_of(
+    info: &RasterInfo,
+    request: &TerrainRequest,
+    warnings: &mut Vec<String>,
+) -> Result<Option<CoordinateSystem>, IoError> {
+    let failed = |e: crate::crs::CrsError| {
+        IoError::format(&info.path, format!("its coordinate system cannot be used: {e}; or set source_crs"))
+    };
+    let Some(to_model) = info.pixel_to_model else {
+        return Ok(None);
+    };
+    if let Some(code) = request.source_crs {
+        return CoordinateSystem::from_epsg(code).map(Some).map_err(failed);
+    }
+    match &info.crs {
+        SourceCrs::Epsg(code) => CoordinateSystem::from_epsg(*code).map(Some).map_err(failed),
+        SourceCrs::Wkt(text) => CoordinateSystem::from_wkt(text).map(Some).map_err(failed),
+        SourceCrs::UserDefined(_) if request.crs == CrsChoice::Local => Ok(None),
+        SourceCrs::UserDefined(text) => {
+            let reason = format!("its coordinate system cannot be used ({text}); set source_crs to an EPSG code");
+            Err(IoError::format(&info.path, reason))
+        }
+        SourceCrs::Unknown if request.crs != CrsChoice::Local && looks_geographic(info, &to_model) => {
+            warnings.push(format!(
+                "{}: no coordinate system is stated and the coordinates look like degrees, so EPSG:4326 is assumed; set source_crs if that is wrong",
+                info.path.display()
+            ));
+            CoordinateSystem::from_epsg(4326).map(Some).map_err(failed)
+        }
+        SourceCrs::Unknown => Ok(None),
+    }
+}
+
+/// Inside the range of longitude and latitude with steps as fine as no metric grid has.
+fn looks_geographic(info: &RasterInfo, to_model: &Affine) -> bool {
+    let corners = [[0.0, 0.0], [info.width as f64, info.height as f64]].map(|[c, r]| to_model.apply(c, r));
+    let [step_x, step_y] = [to_model.0[0].hypot(to_model.0[3]), to_model.0[1].hypot(to_model.0[4])];
+    corners.iter().all(|p| p[0].abs() <= 360.0 && p[1].abs() <= 90.0) && step_x < 0.1 && step_y < 0.1
+}
+
+/// A frame of one value around the data may be voids that nobody declared: said, never guessed.
+fn warn_about_frame(path: &Path, heights: &[f32], cols: usize, rows: usize, warnings: &mut Vec<String>) {
+    let border = |i: usize| {
+        let (c, r) = (i % cols, i / cols);
+        c == 0 || r == 0 || c == cols - 1 || r == rows - 1
+    };
+    let corners = [0, cols - 1, (rows - 1) * cols, rows * cols - 1].map(|i| heights[i]);
+    let Some(value) = corners.into_iter().find(|v| v.is_finite() && corners.iter().filter(|w| *w == v).count() >= 2)
+    else {
+        return;
+    };
+    // such values are the lowest or the highest there are
+    let known = || heights.iter().filter(|h| h.is_finite());
+    if known().any(|h| *h < value) && known().any(|h| *h > value) {
+        return;
+    }
+    let mut seen = vec![false; heights.len()];
+    let mut stack: Vec<usize> = (0..heights.len()).filter(|&i| border(i) && heights[i] == value).collect();
+    for &i in &stack {
+        seen[i] = true;
+    }
+    let mut count = 0usize;
+    while let Some(i) = stack.pop() {
+        count += 1;
+        let (c, r) = (i % cols, i / cols);
+        let around = [
+            (c > 0).then(|| i - 1),
+            (c + 1 < cols).then_some(i + 1),
+            (r > 0).then(|| i - cols),
+            (r + 1 < rows).then_some(i + cols),
+        ];
+        for k in around.into_iter().flatten() {
+            if !seen[k] && heights[k] == value {
+                seen[k] = true;
+                stack.push(k);
+            }
+        }
+    }
+    let share = count as f64 / heights.len() as f64;
+    if share >= FRAME_SHARE && count < heights.len() {
+        warnings.push(format!(
+            "{}: {count} samples ({:.1} %) at the edge are all exactly {value}: sea, or voids that the file does not declare; set nodata = {value} if they are voids",
+            path.display(),
+            100.0 * share
+        ));
+    }
+}
+
+/// By how much each side must shrink; `None` if it need not.
+fn thinning(cols: usize, rows: usize, budget: usize) -> Option<usize> {
+    let fits = |k: usize| ((cols - 1) / k + 1).saturating_mul((rows - 1) / k + 1) <= budget;
+    if fits(1) {
+        return None;
+    }
+    // a step that divides both sides keeps shared edges of tiles; a little coarser is no loss
+    let k = (2..cols.max(rows)).find(|&k| fits(k))?;
+    let even = (k..=k + k / 2 + 1).find(|&n| (cols - 1).is_multiple_of(n) && (rows - 1).is_multiple_of(n));
+    Some(even.unwrap_or(k))
+}
+
+/// Every k-th node, smoothed by a tent of that width over its valid neighbours; voids stay voids.
+fn thin(heights: &[f32], cols: usize, rows: usize, k: usize) -> (Vec<f32>, usize, usize) {
+    let (out_cols, out_rows) = ((cols - 1) / k + 1, (rows - 1) / k + 1);
+    let reach = k as isize - 1;
+    let node = |i: usize| {
+        let (c, r) = (i % out_cols * k, i / out_cols * k);
+        if !heights[r * cols + c].is_finite() {
+            return heights[r * cols + c];
+        }
+        let (mut sum, mut weights) = (0.0f64, 0.0f64);
+        for dr in -reach..=reach {
+            for dc in -reach..=reach {
+                let (Some(cc), Some(rr)) = (c.checked_add_signed(dc), r.checked_add_signed(dr)) else { continue };
+                if cc >= cols || rr >= rows || !heights[rr * cols + cc].is_finite() {
+                    continue;
+                }
+                let w = ((k as isize - dc.abs()) * (k as isize - dr.abs())) as f64;
+                sum += w * f64::from(heights[rr * cols + cc]);
+                weights += w;
+            }
+        }
+        (sum / weights) as f32
+    };
+    let out = (0..out_cols * out_rows).into_par_iter().with_min_len(1024).map(node).collect();
+    (out, out_cols, out_rows)
+}
+
+/// Joins sources that lie on one lattice (tiles with shared or touching edges) into one, so that no seam is left.
+/// The first source wins where several have data. Others are returned as they are.
+pub(super) fn merge_aligned(sources: Vec<SourceGrid>, max_nodes: usize, warnings: &mut Vec<String>) -> Vec<SourceGrid> {
+    if sources.len() < 2 {
+        return sources;
+    }
+    let Some(offsets) = sources.iter().map(|s| lattice_offset(&sources[0], s)).collect::<Option<Vec<_>>>() else {
+        return sources;
+    };
+    let min = |axis: usize| offsets.iter().map(|o| o[axis]).min().unwrap_or(0);
+    let (left, top) = (min(0), min(1));
+    let extent = |axis: usize, size: fn(&SourceGrid) -> usize| {
+        offsets.iter().zip(&sources).map(|(o, s)| o[axis] + size(s) as i64).max().unwrap_or(0)
+    };
+    let (cols, rows) = (extent(0, |s| s.cols) - left, extent(1, |s| s.rows) - top);
+    let (Ok(cols), Ok(rows)) = (usize::try_from(cols), usize::try_from(rows)) else { return sources };
+    if cols.checked_mul(rows).is_none_or(|n| n > max_nodes.saturating_mul(2)) {
+        return sources;
+    }
+    let mut heights = vec![f32::INFINITY; cols * rows];
+    let (mut differing, mut largest) = (0usize, 0.0f32);
+    for (source, [c0, r0]) in sources.iter().zip(&offsets) {
+        let (c0, r0) = ((c0 - left) as usize, (r0 - top) as usize);
+        for (r, row) in source.heights.chunks_exact(source.cols).enumerate() {
+            let start = (r0 + r) * cols + c0;
+            for (out, &new) in heights[start..start + row.len()].iter_mut().zip(row) {
+                if !out.is_finite() {
+                    *out = if new.is_nan() || out.is_infinite() {
+                        new
+                    } else if new.is_finite() {
+                        new
+                    } else {
+                        *out
+                    };
+                } else if new.is_finite() && new != *out {
+                    differing += 1;
+                    largest = largest.max((new - *out).abs());
+                }
+            }
+        }
+    }
+    let first = &sources[0];
+    if differing > 0 {
+        warnings.push(format!(
+            "{}: it differs from the sources after it at {differing} shared samples, by up to {largest:.1} m; the first source wins",
+            first.path.display()
+        ));
+    }
+    let merged = SourceGrid {
+        path: first.path.clone(),
+        cols,
+        rows,
+        heights,
+        model_from_index: first.model_from_index.after_scale_and_shift(1.0, 1.0, left as f64, top as f64),
+        system: first.system.clone(),
+        samples: sources.iter().map(|s| s.samples).sum(),
+        voids: sources.iter().map(|s| s.voids).sum(),
+    };
+    vec![merged]
+}
+
+/// Columns and rows from the first node of `a` to that of `b` if both lie on one lattice.
+fn lattice_offset(a: &SourceGrid, b: &SourceGrid) -> Option<[i64; 2]> {
+    if a.system != b.system {
+        return None;
+    }
+    let inverse = a.model_from_index.inverse()?;
+    let place = |c: f64, r: f64| {
+        let [x, y] = b.model_from_index.apply(c, r);
+        inverse.apply(x, y)
+    };
+    let (last_c, last_r) = ((b.cols - 1) as f64, (b.rows - 1) as f64);
+    let mut start = place(0.0, 0.0);
+    let mut turn = 0.0;
+    if a.system.as_ref().is_some_and(CoordinateSystem::is_geographic) {
+        // neighbours across the antimeridian are 360 degrees apart in the files
+        let around = 360.0 / a.model_from_index.0[0].abs();
+        turn = around * (start[0] / around).round();
+        start[0] -= turn;
+    }
+    let start = start.map(f64::round);
+    // every corner must fall on the node it should, to a hundredth of a cell
+    let on_lattice = [(0.0, 0.0), (last_c, 0.0), (0.0, last_r), (last_c, last_r)].iter().all(|&(c, r)| {
+        let p = place(c, r);
+        (p[0] - turn - start[0] - c).abs() < 0.01 && (p[1] - start[1] - r).abs() < 0.01
+    });
+    (on_lattice && start.iter().all(|v| v.abs() < 1e9)).then(|| [start[0] as i64, start[1] as i64])
+}
