@@ -111,7 +111,7 @@ fn corner(name: &str) -> Option<[f64; 2]> {
 /// Samples per side of a tile of so many bytes; `None` if it is no tile: its step must divide the degree evenly.
 fn side_of(bytes: usize) -> Option<usize> {
     let side = ((bytes / 2) as f64).sqrt().round() as usize;
-    (side >= 2 && side <= MAX_SIDE && 2 * side * side == bytes && 3600 % (side - 1) == 0).then_some(side)
+    ((2..=MAX_SIDE).contains(&side) && 2 * side * side == bytes && 3600usize.is_multiple_of(side - 1)).then_some(side)
 }
 
 #[cfg(test)]

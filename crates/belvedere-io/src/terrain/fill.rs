@@ -6,7 +6,7 @@ use belvedere_scene::Progress;
 /// Relaxation sweeps per level. The pyramid brings the smooth part, sweeps only the detail.
 const SWEEPS: usize = 40;
 /// Over-relaxation, 1..2.
-const OMEGA: f32 = 1.5;
+const OMEGA: f32 = 1.75;
 
 /// One level of the pyramid: NaN = to be filled, infinite = outside, never filled.
 struct Level {
@@ -20,7 +20,7 @@ impl Level {
     fn at_fine(&self, c: usize, r: usize) -> f32 {
         let beside = |fine: usize, n: usize| {
             let near = fine / 2;
-            let other = if fine % 2 == 0 { near.checked_sub(1) } else { Some(near + 1).filter(|&k| k < n) };
+            let other = if fine.is_multiple_of(2) { near.checked_sub(1) } else { Some(near + 1).filter(|&k| k < n) };
             (near, other)
         };
         let ((c0, c1), (r0, r1)) = (beside(c, self.cols), beside(r, self.rows));
@@ -132,7 +132,7 @@ fn relax(level: &mut Level, unknown: &[usize]) {
                 heights[i] = if heights[i].is_finite() { heights[i] + omega * (mean - heights[i]) } else { mean };
             }
         };
-        if sweep % 2 == 0 {
+        if sweep.is_multiple_of(2) {
             unknown.iter().copied().for_each(&mut update);
         } else {
             unknown.iter().rev().copied().for_each(&mut update);

@@ -416,13 +416,9 @@ pub(super) fn merge_aligned(sources: Vec<SourceGrid>, max_nodes: usize, warnings
             let start = (r0 + r) * cols + c0;
             for (out, &new) in heights[start..start + row.len()].iter_mut().zip(row) {
                 if !out.is_finite() {
-                    *out = if new.is_nan() || out.is_infinite() {
-                        new
-                    } else if new.is_finite() {
-                        new
-                    } else {
-                        *out
-                    };
+                    if out.is_infinite() || new.is_finite() {
+                        *out = new;
+                    }
                 } else if new.is_finite() && new != *out {
                     differing += 1;
                     largest = largest.max((new - *out).abs());

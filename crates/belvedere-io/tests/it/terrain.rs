@@ -278,7 +278,7 @@ fn a_hole_in_a_plane_is_filled_with_the_plane() {
             assert_eq!(h.states()[r * h.cols() + c], expected);
         }
     }
-    assert!(worst < 0.3, "off by {worst} m over a hole of 60 nodes and 180 m");
+    assert!(worst < 0.4, "off by {worst} m over a hole of 60 nodes and 180 m");
 }
 
 /// Law: a grid cut in two along a shared column is the grid, exact or resampled.
