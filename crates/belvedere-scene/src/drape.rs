@@ -34,9 +34,9 @@ pub fn drape_polyline(terrain: &Heightfield, line: &[DVec2]) -> Draped {
             let middle = a.lerp(b, 0.5 * (start + end));
             // rounding may put an end a hair outside the triangle its middle lies in
             let ground = |t: f64| {
+                let on = |xy: DVec2| Some(xy.extend(terrain.surface_at(xy)?));
                 let xy = a.lerp(b, t);
-                let z = terrain.surface_at(xy).or_else(|| terrain.surface_at(xy.lerp(middle, 1e-6)))?;
-                Some(xy.extend(z))
+                on(xy).or_else(|| on(xy.lerp(middle, 1e-6)))
             };
             match (terrain.surface_at(middle), ground(start), ground(end)) {
                 (Some(_), Some(p), Some(q)) => {
