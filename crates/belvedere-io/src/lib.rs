@@ -9,8 +9,12 @@ pub mod hgt;
 pub mod png;
 pub mod raster;
 pub mod terrain;
+pub mod vector;
 
 pub use error::{IoError, Loaded};
 pub use geotiff::GeoTiff;
 pub use raster::{Affine, Alpha, CrsKind, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, SourceCrs};
 pub use terrain::{CrsChoice, LoadedTerrain, ResampleError, TerrainRequest, load_terrain};
+pub use vector::{
+    Geometry, VectorFeature, Vectors, Vertex, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain,
+};

@@ -8,3 +8,4 @@ mod png;
 mod rasters;
 mod terrain;
 mod tiff_writer;
+mod vectors;

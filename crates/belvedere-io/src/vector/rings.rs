@@ -1,0 +1,104 @@
+//! Rings that come without saying which is a hole of which.
+
+use glam::DVec2;
+
+/// Most rings of one shape that are compared with each other; more are taken as separate areas.
+const MAX_NESTED: usize = 20_000;
+
+/// Twice the signed area of a ring; positive counter-clockwise.
+pub(super) fn doubled_area(ring: &[DVec2]) -> f64 {
+    let origin = ring.first().copied().unwrap_or_default();
+    (0..ring.len()).map(|k| (ring[k] - origin).perp_dot(ring[(k + 1) % ring.len()] - origin)).sum()
+}
+
+/// Whether a point lies inside a ring (even-odd rule).
+pub(super) fn contains(ring: &[DVec2], p: DVec2) -> bool {
+    (0..ring.len())
+        .filter(|&k| {
+            let (a, b) = (ring[k], ring[(k + 1) % ring.len()]);
+            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)
+        })
+        .count()
+        % 2
+        == 1
+}
+
+/// Sorts rings into polygons by which lies inside which, whatever their orientation: rings at even depth are outer rings, each
+/// ring at odd depth is a hole of the smallest ring around it. Returns indices, outer ring first.
+pub(super) fn nest(rings: &[Vec<DVec2>]) -> Vec<Vec<usize>> {
+    if rings.len() > MAX_NESTED {
+        return (0..rings.len()).map(|i| vec![i]).collect();
+    }
+    let boxes: Vec<[DVec2; 2]> = rings
+        .iter()
+        .map(|r| r.iter().fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[lo, hi], &p| [lo.min(p), hi.max(p)]))
+        .collect();
+    let areas: Vec<f64> = rings.iter().map(|r| doubled_area(r).abs()).collect();
+    let around = |i: usize| {
+        let (boxes, areas) = (&boxes, &areas);
+        // of all vertices most decide, so that touching rings do not
+        (0..rings.len()).filter(move |&k| {
+            let boxed = boxes[k][0].cmple(boxes[i][0]).all() && boxes[k][1].cmpge(boxes[i][1]).all();
+            if k == i || !boxed || areas[k] <= areas[i] {
+                return false;
+            }
+            let step = rings[i].len().div_ceil(9).max(1);
+            let votes = rings[i].iter().step_by(step).map(|&p| if contains(&rings[k], p) { 1i32 } else { -1 });
+            votes.sum::<i32>() > 0
+        })
+    };
+    let mut polygons: Vec<Vec<usize>> = Vec::new();
+    let mut holes = Vec::new();
+    for i in 0..rings.len() {
+        let parents: Vec<usize> = around(i).collect();
+        if parents.len().is_multiple_of(2) {
+            polygons.push(vec![i]);
+        } else if let Some(parent) = parents.into_iter().min_by(|&a, &b| areas[a].total_cmp(&areas[b])) {
+            holes.push((parent, i));
+        }
+    }
+    for (parent, hole) in holes {
+        if let Some(polygon) = polygons.iter_mut().find(|p| p.first() == Some(&parent)) {
+            polygon.push(hole);
+        }
+    }
+    polygons
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(x: f64, y: f64, half: f64, clockwise: bool) -> Vec<DVec2> {
+        let mut ring: Vec<DVec2> = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|(u, v)| DVec2::new(x + u * half, y + v * half))
+            .into();
+        if clockwise {
+            ring.reverse();
+        }
+        ring
+    }
+
+    #[test]
+    fn holes_and_islands_find_their_polygons_whatever_the_orientation() {
+        for turn in 0..16u32 {
+            let cw = |k: u32| turn >> k & 1 == 1;
+            let rings = vec![
+                square(0.0, 0.0, 5.0, cw(0)),  // hole of 1
+                square(0.0, 0.0, 10.0, cw(1)), // outer
+                square(0.0, 0.0, 2.0, cw(2)),  // island in 0
+                square(30.0, 0.0, 4.0, cw(3)), // beside
+            ];
+            let mut nested = nest(&rings);
+            nested.sort();
+            assert_eq!(nested, vec![vec![1, 0], vec![2], vec![3]], "orientation {turn:04b}");
+        }
+    }
+
+    #[test]
+    fn area_has_the_sign_of_the_orientation() {
+        assert_eq!(doubled_area(&square(1e7, 1e7, 1.0, false)), 8.0);
+        assert_eq!(doubled_area(&square(1e7, 1e7, 1.0, true)), -8.0);
+        assert_eq!(doubled_area(&[]), 0.0);
+    }
+}
