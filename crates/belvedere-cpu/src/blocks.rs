@@ -265,23 +265,10 @@ impl Job<'_> {
         let (nw, se) = (hf.node_xy(origin[0], origin[1]), hf.node_xy(origin[0] + cells[0], origin[1] + cells[1]));
         let bounds =
             Aabb { min: DVec3::new(nw.x, se.y, f64::from(z[0])), max: DVec3::new(se.x, nw.y, f64::from(z[1])) };
-        if self.is_outside(&bounds) {
+        if self.pass.leaves_out(self.lens, &bounds) {
             return Need::Nothing;
         }
         if self.bends_cells(&bounds, cells[0].max(cells[1])) { Need::Edges } else { Need::Plain }
-    }
-
-    /// Whether no part of the box can be on the image.
-    fn is_outside(&self, bounds: &Aabb) -> bool {
-        let stages = self.pass.view.stages();
-        let displaced = if self.pass.record.is_some() {
-            None
-        } else {
-            stages.iter().try_fold(*bounds, |b, stage| stage.displaced_bounds(&b))
-        };
-        displaced.is_some_and(|b| {
-            b.corners().iter().fold(u8::MAX, |code, &c| code & self.lens.outcode(self.lens.view_from(c), 2.0)) != 0
-        })
     }
 
     /// Whether an edge of a cell of a block of `n` cells may need splitting.
@@ -294,7 +281,7 @@ impl Job<'_> {
         }
         let c = bounds.corners();
         let pairs = [(0, 7), (1, 6), (2, 5), (3, 4), (0, 1), (2, 3), (0, 2), (1, 3), (4, 7), (5, 6)];
-        let worst = pairs.iter().map(|&(a, b)| self.pass.view.edge_error_px(c[a], c[b])).fold(0.0, f64::max);
+        let worst = pairs.iter().map(|&(a, b)| self.pass.edge_error_px(c[a], c[b])).fold(0.0, f64::max);
         !(worst * 2.0 / n as f64 <= self.tolerance_px)
     }
 
@@ -385,7 +372,7 @@ impl Job<'_> {
             .filter_map(|i| {
                 let boxes = &layer.boxes[i * BOXES..layer.boxes.len().min((i + 1) * BOXES)];
                 let bounds = Aabb::of(boxes.iter().flat_map(|b| b.corners()));
-                if self.is_outside(&bounds) {
+                if self.pass.leaves_out(self.lens, &bounds) {
                     return None;
                 }
                 let mut refiner = Refiner::new(self.pass, self.lens, self.tolerance_px);

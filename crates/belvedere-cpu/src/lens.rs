@@ -1,6 +1,6 @@
 //! The pinhole prepared for a frame: view space, fixed-point pixels, clipping planes.
 
-use belvedere_core::{DVec2, DVec3, Pinhole, Stage, View};
+use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, Stage, View};
 
 /// Fixed-point steps per pixel.
 pub(crate) const SUB: i32 = 256;
@@ -26,51 +26,62 @@ impl ScreenVertex {
     }
 }
 
-/// One pass over the scene: the view, or one record of a curved-ray chain of several turns.
+/// One pass over the scene: one record of a curved-ray chain, or the only one there is.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pass<'a> {
-    pub(crate) view: &'a View,
-    /// Turn drawn by this pass; `None` = the whole chain.
-    pub(crate) record: Option<usize>,
+    view: &'a View,
+    record: usize,
+    straight: bool,
 }
 
 impl<'a> Pass<'a> {
-    /// The passes that draw every image of every point once.
+    /// The passes that together draw every image of every point once.
     pub(crate) fn all(view: &'a View) -> Vec<Self> {
-        match view.stages().last() {
-            Some(Stage::CurvedRays(rays)) if rays.turn_count() > 1 => {
-                (0..rays.turn_count()).map(|k| Self { view, record: Some(k) }).collect()
-            }
-            _ => vec![Self { view, record: None }],
-        }
+        (0..view.records()).map(|record| Self { view, record, straight: view.stages().is_empty() }).collect()
     }
 
     /// Displaced position; `None` where the point has no image.
     pub(crate) fn displace(&self, p: DVec3) -> Option<DVec3> {
-        let Some(record) = self.record else {
-            return match self.view.stages() {
-                [] => Some(p),
-                _ => self.view.displace(p).ok().map(|d| d.point),
-            };
-        };
-        let (rays, p) = self.before_rays(p)?;
-        rays.displace_in(record, p).ok().map(|d| d.point)
+        if self.straight { Some(p) } else { self.view.displace_in(self.record, p).ok().map(|d| d.point) }
     }
 
     /// Signed distances that must be positive for the point to belong to this pass.
     pub(crate) fn margins(&self, p: DVec3) -> [f64; 2] {
-        let Some(record) = self.record else { return [f64::INFINITY; 2] };
-        self.before_rays(p).map_or([-1.0; 2], |(rays, p)| rays.record_margins(record, p))
+        if self.is_only() { [f64::INFINITY; 2] } else { self.view.record_margins(self.record, p) }
     }
 
-    fn before_rays(&self, p: DVec3) -> Option<(&'a belvedere_core::CurvedRays, DVec3)> {
-        let Some((Stage::CurvedRays(rays), earlier)) = self.view.stages().split_last() else { return None };
-        let p = earlier.iter().try_fold(p, |p, s| s.as_map().apply(p)).ok()?;
-        Some((rays, p))
+    /// See [`View::edge_error_px`].
+    pub(crate) fn edge_error_px(&self, a: DVec3, b: DVec3) -> f64 {
+        self.view.edge_error_px_in(self.record, a, b)
+    }
+
+    /// Whether no point of the box is drawn by this pass, or none of them on the image.
+    pub(crate) fn leaves_out(&self, lens: &Lens, bounds: &Aabb) -> bool {
+        let stages = self.view.stages();
+        let displaced = |stages: &[Stage]| stages.iter().try_fold(*bounds, |b, stage| stage.displaced_bounds(&b));
+        if self.is_only() {
+            let beyond =
+                |b: Aabb| b.corners().iter().fold(u8::MAX, |code, &c| code & lens.outcode(lens.view_from(c), 2.0));
+            return displaced(stages).is_some_and(|b| beyond(b) != 0);
+        }
+        let Some((Stage::CurvedRays(rays), earlier)) = stages.split_last() else { return false };
+        let beside = displaced(earlier).is_some_and(|b| {
+            let margins = b.corners().map(|c| rays.record_margins(self.record, c));
+            (0..2).any(|side| margins.iter().all(|m| m[side] <= 0.0))
+        });
+        beside
+            || self.view.image_box(bounds).is_some_and(|b| {
+                let size = 2.0 * lens.center;
+                b.max.x < -2.0 || b.max.y < -2.0 || b.min.x > size.x + 2.0 || b.min.y > size.y + 2.0
+            })
+    }
+
+    fn is_only(&self) -> bool {
+        self.view.records() == 1
     }
 
     pub(crate) fn is_straight(&self) -> bool {
-        self.view.stages().is_empty()
+        self.straight
     }
 }
 

@@ -84,7 +84,7 @@ impl<'a> Refiner<'a> {
                 // Always in the same direction: two triangles must judge their common edge alike to the last bit.
                 let swap = a.p.to_array().partial_cmp(&b.p.to_array()) == Some(std::cmp::Ordering::Greater);
                 let (a, b) = if swap { (b, a) } else { (a, b) };
-                self.pass.view.edge_error_px(a.p, b.p)
+                self.pass.edge_error_px(a.p, b.p)
             }
             // One end without image: halve towards the border of what can be seen.
             _ => f64::INFINITY,

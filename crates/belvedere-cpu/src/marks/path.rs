@@ -88,9 +88,7 @@ impl Tracer<'_> {
         let split = halvings > 0
             && match (a.v, b.v) {
                 (None, None) => false,
-                (Some(_), Some(_)) => {
-                    off(a.v) & off(b.v) == 0 && self.pass.view.edge_error_px(a.p, b.p) > self.tolerance_px
-                }
+                (Some(_), Some(_)) => off(a.v) & off(b.v) == 0 && self.pass.edge_error_px(a.p, b.p) > self.tolerance_px,
                 _ => true,
             };
         if split {

@@ -138,7 +138,9 @@ fn with_a_fine_tolerance_bent_depth_is_as_exact_as_straight_depth() {
         let fine = belvedere_scene::RenderOptions { tolerance_px: 0.01, ..options(1) };
         let coarse = render(&scene, &view, &options(1));
         let frame = render(&scene, &view, &fine);
-        assert!(frame.stats.edges_split > coarse.stats.edges_split, "{name}: nothing more was split");
+        // A sharp turn has no curve to follow more closely: both cut down to its plane.
+        let more = frame.stats.edges_split > coarse.stats.edges_split;
+        assert!(more || name == "a sharp turn", "{name}: nothing more was split");
         let mut off: Vec<f64> = frame
             .depth
             .iter()
