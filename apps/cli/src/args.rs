@@ -45,6 +45,8 @@ pub(crate) struct Common {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
+    /// Terrain and routes in, a picture in which the routes are visible out
+    Reveal(RevealArgs),
     /// One picture and its record
     Render(RenderArgs),
     /// Points to pixels: [[x,y,z],...] in scene coordinates
@@ -53,6 +55,8 @@ pub(crate) enum Verb {
     Rays(RaysArgs),
     /// Points after all stages, before the pinhole
     Displace(ProjectArgs),
+    /// Visible share of what must be seen, straight and bent, by two methods
+    Measure(MeasureArgs),
     /// Validate a scene
     Check(SceneArgs),
     /// The scene with every default and rule resolved
@@ -66,6 +70,53 @@ pub(crate) enum Verb {
 pub(crate) struct SceneArgs {
     /// Scene file, TOML or JSON
     pub(crate) scene: PathBuf,
+}
+
+/// Terrain and features.
+#[derive(Debug, Args)]
+pub(crate) struct RevealArgs {
+    /// Terrain: GeoTIFF, .hgt, ESRI ASCII, or builtin:massif?seed=7
+    pub(crate) dem: String,
+    /// Routes, areas or points: GPX, GeoJSON, shapefiles, or builtin:massif?seed=7
+    #[arg(required = true)]
+    pub(crate) features: Vec<String>,
+    /// Output; the record goes to OUT.png.json, straight beside bent to OUT.pair.png
+    #[arg(short, long, value_name = "OUT.png")]
+    pub(crate) out: PathBuf,
+    /// Eye: scene x,y (or lon,lat degrees) and height in metres; chosen if left out
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_eye)]
+    pub(crate) eye: Option<[f64; 3]>,
+    /// Point to look at; on the ground without Z
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, value_delimiter = ',')]
+    pub(crate) look: Option<Vec<f64>>,
+    /// Full vertical field of view, degrees
+    #[arg(long, value_name = "DEG")]
+    pub(crate) fov: Option<f64>,
+    /// Size of the picture, such as 1920x1080
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub(crate) size: Option<[u32; 2]>,
+    /// Let the ground fall away with the distance
+    #[arg(long)]
+    pub(crate) curved_earth: bool,
+    /// Straight picture
+    #[arg(long, value_name = "OUT.png")]
+    pub(crate) before: Option<PathBuf>,
+    /// Figures
+    #[arg(long, value_name = "OUT.json")]
+    pub(crate) report: Option<PathBuf>,
+    /// Scene file that shows the same
+    #[arg(long, value_name = "OUT.toml")]
+    pub(crate) scene: Option<PathBuf>,
+}
+
+/// A scene to measure.
+#[derive(Debug, Args)]
+pub(crate) struct MeasureArgs {
+    /// Scene file, TOML or JSON
+    pub(crate) scene: PathBuf,
+    /// Output; standard output if left out
+    #[arg(short, long, value_name = "OUT.json")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 /// A picture.
@@ -175,6 +226,13 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
         Some([Ok(w), Ok(h)]) => Ok([w, h]),
         _ => Err("give width and height in pixels, such as 1280x720".into()),
     }
+}
+
+/// Three numbers of `1.5,42.5,2400`.
+fn parse_eye(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Vec<f64> =
+        text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
+    numbers.try_into().map_err(|_| "give X,Y,Z".into())
 }
 
 /// Bytes of `512MiB`, `2GB`, `100000`.

@@ -82,14 +82,18 @@ impl Context {
 
     /// Opens a scene with the options of the run.
     pub(crate) fn open(&self, scene: &Path, needs: Needs, image: Option<[u32; 2]>) -> anyhow::Result<Session> {
-        let options = OpenOptions {
+        Ok(Session::open(scene, &self.options(needs, image))?)
+    }
+
+    /// The options of the run.
+    pub(crate) fn options(&self, needs: Needs, image: Option<[u32; 2]>) -> OpenOptions {
+        OpenOptions {
             allow_roots: self.common.allow_root.clone(),
             needs,
             image,
             seed: self.common.seed,
             progress: self.progress.clone(),
-        };
-        Ok(Session::open(scene, &options)?)
+        }
     }
 
     /// Prints warnings.

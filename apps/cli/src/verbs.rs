@@ -1,9 +1,13 @@
 //! One function per verb: open, call the library, deliver.
 
-use crate::args::{AuxKind, ProjectArgs, RaysArgs, RenderArgs, RendererKind, SceneArgs, SchemaArgs, ShowArgs, Verb};
+use crate::args::{
+    AuxKind, MeasureArgs, ProjectArgs, RaysArgs, RenderArgs, RendererKind, RevealArgs, SceneArgs, SchemaArgs, ShowArgs,
+    Verb,
+};
 use crate::report::{Context, done, print};
 use belvedere::verbs::render::{self, AuxBuffer, RenderRequest};
-use belvedere::verbs::{check, output, points};
+use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
+use belvedere::verbs::{check, measure, output, points};
 use belvedere::{Needs, Session};
 use std::path::{Path, PathBuf};
 
@@ -12,6 +16,8 @@ use std::path::{Path, PathBuf};
 pub(crate) enum Goal {
     /// It did, or has none.
     Reached,
+    /// It did not; the reasons are in its report.
+    Missed,
 }
 
 impl Goal {
@@ -28,6 +34,8 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::Project(args) => project(&args, context),
         Verb::Rays(args) => rays(&args, context),
         Verb::Displace(args) => displace(&args, context),
+        Verb::Reveal(args) => reveal_features(args, context),
+        Verb::Measure(args) => measure_scene(&args, context),
         Verb::Check(args) => check_scene(&args, context),
         Verb::Show(args) => show(&args, context),
         Verb::Schema(args) => schema(&args, context),
@@ -80,6 +88,46 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     }
     context.warn(session.warnings());
     Ok(Goal::Reached)
+}
+
+fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> {
+    let files = RevealFiles { out: args.out, before: args.before, report: args.report, scene: args.scene };
+    let inputs: Vec<PathBuf> = args.features.iter().chain([&args.dem]).map(PathBuf::from).collect();
+    for path in files.all() {
+        output::check(&path, &inputs, context.common.overwrite)?;
+    }
+    let mut request = RevealRequest {
+        dem: args.dem,
+        features: args.features,
+        eye: args.eye,
+        look: args.look,
+        fov_y_deg: args.fov,
+        image: args.size,
+        curved_earth: args.curved_earth,
+        ..RevealRequest::default()
+    };
+    request.render.options.threads = context.common.threads;
+    request.render.options.max_bytes = context.common.max_mem.unwrap_or(request.render.options.max_bytes);
+    let answer = reveal::reveal(&request, &context.options(Needs::Everything, None))?;
+    let written = answer.write(&files, context.common.overwrite)?;
+    if context.common.json {
+        let mut result = done("reveal", &written, answer.session.warnings());
+        result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
+        context.print(&result)?;
+    } else if !context.common.quiet {
+        context.finish();
+        print(&format!("{}\n", answer.summary()))?;
+    }
+    context.warn(answer.session.warnings());
+    context.warn(answer.missed());
+    Ok(if answer.missed().is_empty() { Goal::Reached } else { Goal::Missed })
+}
+
+fn measure_scene(args: &MeasureArgs, context: &Context) -> anyhow::Result<Goal> {
+    ready(args.out.as_ref(), &[&args.scene], context)?;
+    let session = context.open(&args.scene, Needs::Everything, None)?;
+    let report = measure::measure(&session, &measure::MeasureOptions::default(), &context.progress)?;
+    answer("measure", &session, args.out.as_ref(), &output::json(&report)?, context)
 }
 
 fn project(args: &ProjectArgs, context: &Context) -> anyhow::Result<Goal> {

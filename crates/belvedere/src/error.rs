@@ -49,6 +49,9 @@ pub enum BelvedereError {
     /// A renderer failed.
     #[error(transparent)]
     Render(#[from] belvedere_scene::RenderError),
+    /// A constructor or measure failed.
+    #[error(transparent)]
+    Construct(#[from] belvedere_construct::ConstructError),
     /// Cancelled.
     #[error(transparent)]
     Cancelled(#[from] belvedere_scene::Cancelled),
@@ -60,6 +63,7 @@ impl BelvedereError {
         matches!(
             self,
             Self::Cancelled(_)
+                | Self::Construct(belvedere_construct::ConstructError::Cancelled(_))
                 | Self::Io(belvedere_io::IoError::Cancelled(_))
                 | Self::Render(belvedere_scene::RenderError::Cancelled(_))
         )

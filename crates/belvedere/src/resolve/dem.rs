@@ -3,6 +3,7 @@
 use super::layers::Loader;
 use crate::BelvedereError;
 use crate::scene_file::TerrainDoc;
+use belvedere_io::terrain::{CrsChoice, TerrainRequest, load_terrain};
 use belvedere_scene::{Crs, Heightfield};
 
 /// The heights and the coordinate system they bring.
@@ -10,8 +11,16 @@ pub(super) fn load(
     loader: &mut Loader<'_>,
     index: usize,
     doc: &TerrainDoc,
-    _wanted: Option<Crs>,
+    wanted: Option<Crs>,
 ) -> Result<(Heightfield, Crs), BelvedereError> {
-    loader.files(index, "source", &doc.source)?;
-    Err(loader.fail(index, "source", "terrain files cannot be read by this version yet"))
+    let files = loader.files(index, "source", &doc.source)?;
+    let crs = match wanted {
+        None => CrsChoice::Auto,
+        Some(Crs::Epsg(code)) => CrsChoice::Epsg(code),
+        Some(Crs::Local) => CrsChoice::Local,
+    };
+    let request = TerrainRequest { crs, fill_voids: doc.fill_voids, ..TerrainRequest::default() };
+    let loaded = load_terrain(&files, &request, &loader.options.progress)?;
+    loader.note(index, loaded.warnings);
+    Ok((loaded.value.heightfield, loaded.value.crs))
 }

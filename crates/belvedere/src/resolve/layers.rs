@@ -107,7 +107,10 @@ impl Loader<'_> {
         let bounds = ground.terrain.map(Heightfield::bounds);
         let mut drapes = Vec::new();
         for file in files {
-            drapes.push(vectors::drape(self, index, &file, ground.crs, bounds)?);
+            let loaded = super::drape::load(&file, ground.crs, bounds, &self.options.progress);
+            let loaded = loaded.map_err(|e| self.fail(index, "drape", e))?;
+            self.note(index, loaded.warnings);
+            drapes.push(loaded.value);
         }
         Ok(drapes)
     }

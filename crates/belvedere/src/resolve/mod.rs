@@ -5,12 +5,13 @@ pub(crate) mod builtin;
 mod camera;
 mod delta;
 mod dem;
+mod drape;
 mod layers;
 mod light;
 mod rays;
 mod stages;
 mod validate;
-mod vectors;
+pub(crate) mod vectors;
 
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc, UnitDoc};
@@ -144,6 +145,13 @@ fn crs_of_eye(source: &SourceDocument) -> Option<Crs> {
         PointDoc::Map(MapPointDoc { lon: Some(lon), lat: Some(lat), .. }) => utm_epsg(lon, lat).map(Crs::Epsg),
         _ => None,
     }
+}
+
+/// Radius of the earth at the middle of a scene, metres.
+pub(crate) fn earth_radius(scene: &Scene) -> f64 {
+    let ground = Ground { crs: scene.crs, terrain: scene.terrain() };
+    let middle = scene.bounds().center().truncate();
+    ground.lon_lat(middle).map_or(MEAN_EARTH_RADIUS_M, |place| gaussian_radius_m(place.y))
 }
 
 fn earth(

@@ -1,53 +1,84 @@
-//! Lines, areas, points and pictures from files, laid on the terrain.
+//! Lines, areas, points from files, laid on the terrain.
 
 use super::Ground;
 use super::layers::Loader;
 use crate::BelvedereError;
-use belvedere_core::Aabb;
-use belvedere_scene::{AreaFeature, Crs, Drape, LineFeature, PointFeature};
+use belvedere_io::vector::{Geometry, Vectors, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain};
+use belvedere_io::{IoError, Loaded};
+use belvedere_scene::{AreaFeature, Crs, Heightfield, LineFeature, PointFeature};
 use std::path::{Path, PathBuf};
 
-fn not_yet(loader: &Loader<'_>, index: usize) -> BelvedereError {
-    loader.fail(index, "source", "files of this kind cannot be read by this version yet")
+/// What a file of features is mostly about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FeatureKind {
+    /// It has lines.
+    Lines,
+    /// It has areas and no lines.
+    Areas,
+    /// It has points alone.
+    Points,
+}
+
+/// Looks into a file: lines if it has any, else areas, else points.
+pub(crate) fn kind_of(path: &Path) -> Result<FeatureKind, BelvedereError> {
+    let vectors = load_vectors(path)?.value;
+    let has = |wanted: fn(&Geometry) -> bool| vectors.features.iter().any(|f| wanted(&f.geometry));
+    Ok(if has(|g| matches!(g, Geometry::Lines(_))) {
+        FeatureKind::Lines
+    } else if has(|g| matches!(g, Geometry::Polygons(_))) {
+        FeatureKind::Areas
+    } else {
+        FeatureKind::Points
+    })
+}
+
+type OnTerrain<T> = fn(&Vectors, Crs, Option<&Heightfield>) -> Result<Loaded<Vec<T>>, IoError>;
+
+fn all<T>(
+    loader: &mut Loader<'_>,
+    index: usize,
+    files: &[PathBuf],
+    ground: &Ground<'_>,
+    on_terrain: OnTerrain<T>,
+) -> Result<Vec<T>, BelvedereError> {
+    let mut features = Vec::new();
+    for file in files {
+        loader.options.progress.tick("reading features", 0.0)?;
+        let vectors = load_vectors(file)?;
+        let found = on_terrain(&vectors.value, ground.crs, ground.terrain)?;
+        loader.note(index, vectors.warnings);
+        loader.note(index, found.warnings);
+        features.extend(found.value);
+    }
+    Ok(features)
 }
 
 /// Lines of files, draped.
 pub(super) fn lines(
     loader: &mut Loader<'_>,
     index: usize,
-    _files: &[PathBuf],
-    _ground: &Ground<'_>,
+    files: &[PathBuf],
+    ground: &Ground<'_>,
 ) -> Result<Vec<LineFeature>, BelvedereError> {
-    Err(not_yet(loader, index))
+    all(loader, index, files, ground, lines_on_terrain)
 }
 
-/// Areas of files, clipped.
+/// Areas of files.
 pub(super) fn areas(
     loader: &mut Loader<'_>,
     index: usize,
-    _files: &[PathBuf],
-    _ground: &Ground<'_>,
+    files: &[PathBuf],
+    ground: &Ground<'_>,
 ) -> Result<Vec<AreaFeature>, BelvedereError> {
-    Err(not_yet(loader, index))
+    all(loader, index, files, ground, areas_on_terrain)
 }
 
 /// Points of files, on the ground.
 pub(super) fn points(
     loader: &mut Loader<'_>,
     index: usize,
-    _files: &[PathBuf],
-    _ground: &Ground<'_>,
+    files: &[PathBuf],
+    ground: &Ground<'_>,
 ) -> Result<Vec<PointFeature>, BelvedereError> {
-    Err(not_yet(loader, index))
-}
-
-/// A georeferenced picture.
-pub(super) fn drape(
-    loader: &mut Loader<'_>,
-    index: usize,
-    _file: &Path,
-    _crs: Crs,
-    _bounds: Option<Aabb>,
-) -> Result<Drape, BelvedereError> {
-    Err(not_yet(loader, index))
+    all(loader, index, files, ground, points_on_terrain)
 }

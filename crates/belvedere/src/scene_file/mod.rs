@@ -41,6 +41,11 @@ pub struct SourceDocument {
 }
 
 impl SourceDocument {
+    /// A document that was made rather than read.
+    pub(crate) fn made(path: PathBuf, document: Document) -> Self {
+        Self { path, root: Node { line: 1, value: Value::Null }, document }
+    }
+
     /// File it came from.
     pub fn path(&self) -> &Path {
         &self.path

@@ -1,6 +1,8 @@
 //! The verbs of the command line as functions.
 
 pub mod check;
+pub mod measure;
 pub mod output;
 pub mod points;
 pub mod render;
+pub mod reveal;

@@ -106,8 +106,8 @@ pub struct Picture {
     pub straight: Option<Frame>,
     /// The record.
     pub sidecar: Sidecar,
-    aux: Vec<AuxBuffer>,
-    view: View,
+    pub(super) aux: Vec<AuxBuffer>,
+    pub(super) view: View,
 }
 
 /// Files that [`Picture::write`] makes for `out`.

@@ -1,10 +1,5 @@
 //! Curved rays: laws, and agreement with references that share no formula with the library.
 
-mod bounds;
-mod cameras;
-mod chains;
+pub(crate) mod cameras;
 mod laws;
-mod literal;
-mod pieces;
 mod scene_example;
-mod validity;

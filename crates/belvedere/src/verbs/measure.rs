@@ -1,0 +1,45 @@
+//! `measure`: what a scene's picture shows of what must be seen.
+
+use crate::{BelvedereError, Session};
+pub use belvedere_construct::MeasureOptions;
+use belvedere_construct::Measures;
+use belvedere_cpu::CpuRenderer;
+use belvedere_scene::Progress;
+use serde::Serialize;
+
+/// Answer of [`measure`].
+#[derive(Debug, Clone, Serialize)]
+pub struct MeasureReport {
+    /// The scene file.
+    pub scene: String,
+    /// Coordinate system.
+    pub crs: String,
+    /// Stages in order of application.
+    pub stages: Vec<&'static str>,
+    /// The figures.
+    #[serde(flatten)]
+    pub measures: Measures,
+    /// What was odd when the scene was opened.
+    pub scene_warnings: Vec<String>,
+}
+
+/// Visible share of every feature that must be seen, straight and bent, by line of sight and by depth buffer.
+///
+/// # Errors
+/// [`BelvedereError::Construct`] if nothing must be seen, [`BelvedereError::Usage`] if the view cannot be drawn.
+pub fn measure(
+    session: &Session,
+    options: &MeasureOptions,
+    progress: &Progress,
+) -> Result<MeasureReport, BelvedereError> {
+    super::check::drawable(session)?;
+    let measures =
+        belvedere_construct::measure(session.scene(), session.view(), Some(&CpuRenderer), options, progress)?;
+    Ok(MeasureReport {
+        scene: session.path().display().to_string(),
+        crs: session.scene().crs.to_string(),
+        stages: session.view().stages().iter().map(|s| s.name()).collect(),
+        measures,
+        scene_warnings: session.warnings().to_vec(),
+    })
+}
