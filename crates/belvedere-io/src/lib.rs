@@ -2,6 +2,7 @@
 
 pub mod atomic;
 pub mod crs;
+pub mod drape;
 mod error;
 pub mod esri_ascii;
 pub mod geotiff;
@@ -11,6 +12,7 @@ pub mod raster;
 pub mod terrain;
 pub mod vector;
 
+pub use drape::{DrapeRequest, load_drape};
 pub use error::{IoError, Loaded};
 pub use geotiff::GeoTiff;
 pub use raster::{Affine, Alpha, CrsKind, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, SourceCrs};

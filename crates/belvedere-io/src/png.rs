@@ -1,8 +1,9 @@
 //! PNG pictures with provenance in text chunks.
 
-use crate::{IoError, atomic};
+use crate::{Alpha, IoError, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, atomic};
 use png::{BitDepth, ColorType, Compression, Encoder, Filter, SrgbRenderingIntent};
-use std::io::{self, Write};
+use std::fs::File;
+use std::io::{self, BufReader, Write};
 use std::path::Path;
 
 /// Longest keyword that the format allows, bytes.
@@ -104,4 +105,37 @@ pub fn write(
     text: &[(&str, &str)],
 ) -> Result<(), IoError> {
     atomic::write_atomic(path, overwrite, |out| encode(out, width, height, channels, pixels, text))
+}
+
+/// Reads a PNG picture as 8-bit RGBA without georeference.
+///
+/// # Errors
+/// [`IoError::Os`]; [`IoError::Format`] if it is damaged or larger than the limit.
+pub fn read(path: &Path, limits: &Limits) -> Result<Raster, IoError> {
+    let bad = |e: png::DecodingError| match e {
+        png::DecodingError::IoError(e) if e.kind() != io::ErrorKind::UnexpectedEof => IoError::os(path, e),
+        e => IoError::format(path, format!("the PNG cannot be read ({e}); it is damaged, get it again")),
+    };
+    let file = File::open(path).map_err(|e| IoError::os(path, e))?;
+    let bytes = usize::try_from(limits.max_bytes).unwrap_or(usize::MAX);
+    let mut decoder = png::Decoder::new_with_limits(BufReader::new(file), png::Limits { bytes });
+    decoder.set_transformations(png::Transformations::normalize_to_color8() | png::Transformations::ALPHA);
+    let mut reader = decoder.read_info().map_err(bad)?;
+    let (width, height) = (reader.info().width as usize, reader.info().height as usize);
+    limits.check(4 * width as u64 * height as u64).map_err(|reason| IoError::format(path, reason))?;
+    let mut samples = vec![0; reader.output_buffer_size().unwrap_or(0)];
+    let frame = reader.next_frame(&mut samples).map_err(bad)?;
+    samples.truncate(frame.buffer_size());
+    let mut info = RasterInfo::new(path, width, height, SampleType::U8);
+    (info.bands, info.photometric, info.alpha) = match frame.color_type {
+        ColorType::GrayscaleAlpha => (2, Photometric::Gray, Alpha::Straight(1)),
+        _ => (4, Photometric::Rgb([0, 1, 2]), Alpha::Straight(3)),
+    };
+    if samples.len() != width * height * info.bands {
+        return Err(IoError::format(
+            path,
+            format!("the PNG holds {} bytes of pixels, not what its size says", samples.len()),
+        ));
+    }
+    Ok(Raster { info, samples: Samples::U8(samples), mask: None })
 }

@@ -13,7 +13,9 @@ use crate::crs::{CoordinateSystem, Transform, utm_epsg};
 use crate::{IoError, Limits, Loaded};
 use belvedere_scene::{Crs, Heightfield, HeightfieldError, NodeState, Progress};
 use glam::DVec2;
-use place::Link;
+pub(crate) use place::{Geometry, GridMap, Link};
+pub(crate) use source::stated_system;
+
 use resample::SceneGrid;
 use source::SourceGrid;
 use std::path::{Path, PathBuf};

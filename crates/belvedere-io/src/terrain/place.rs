@@ -98,6 +98,19 @@ impl Link {
         }
     }
 
+    /// Spacing of an axis-aligned grid in the scene as dense as the source, from the first of a few places that have an
+    /// image.
+    pub(crate) fn spacing_near(&self, size: [usize; 2]) -> Option<DVec2> {
+        let size = DVec2::new((size[0] - 1) as f64, (size[1] - 1) as f64);
+        [(0.5, 0.5), (0.5, 0.25), (0.5, 0.75), (0.25, 0.5), (0.75, 0.5)].into_iter().find_map(|place| {
+            let [dc, dr] = self.jacobian(DVec2::from(place) * size)?;
+            let det = dc.perp_dot(dr).abs();
+            // cells crossed per metre along x and along y, from the inverse of the jacobian
+            let spacing = DVec2::new(det / dr.y.hypot(dc.y), det / dr.x.hypot(dc.x));
+            (spacing.is_finite() && spacing.min_element() > 0.0).then_some(spacing)
+        })
+    }
+
     /// Scene vectors of one step along columns and along rows.
     pub(crate) fn jacobian(&self, index: DVec2) -> Option<[DVec2; 2]> {
         let at = |dx: f64, dy: f64| self.scene_from_index(index + DVec2::new(dx, dy));

@@ -212,7 +212,7 @@ fn plan(sources: &[SourceGrid], links: &[Link], factor: f64) -> Result<SceneGrid
             min = min.min(p);
             max = max.max(p);
         }
-        if let Some(s) = middle_spacing(source, link) {
+        if let Some(s) = link.spacing_near([source.cols, source.rows]) {
             spacing = spacing.min(s);
         }
     }
@@ -271,18 +271,6 @@ fn boundary(source: &SourceGrid) -> Vec<DVec2> {
         }
     }
     out
-}
-
-/// Spacing of an axis-aligned grid as dense as the source, at the first of a few places that have an image.
-fn middle_spacing(source: &SourceGrid, link: &Link) -> Option<DVec2> {
-    let (w, h) = ((source.cols - 1) as f64, (source.rows - 1) as f64);
-    [(0.5, 0.5), (0.5, 0.25), (0.5, 0.75), (0.25, 0.5), (0.75, 0.5)].into_iter().find_map(|(u, v)| {
-        let [dc, dr] = link.jacobian(DVec2::new(u * w, v * h))?;
-        let det = dc.perp_dot(dr).abs();
-        // cells crossed per metre along x and along y, from the inverse of the jacobian
-        let spacing = DVec2::new(det / dr.y.hypot(dc.y), det / dr.x.hypot(dc.x));
-        (spacing.is_finite() && spacing.min_element() > 0.0).then_some(spacing)
-    })
 }
 
 /// Three significant digits, rounded down: a spacing that people can read.

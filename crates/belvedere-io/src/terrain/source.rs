@@ -267,24 +267,35 @@ fn system_of(
     request: &TerrainRequest,
     warnings: &mut Vec<String>,
 ) -> Result<Option<CoordinateSystem>, IoError> {
+    stated_system(info, request.source_crs, request.crs == CrsChoice::Local, warnings)
+}
+
+/// System of a raster: the given code, else what the file says; `None` if neither tells. Coordinates that can only be
+/// degrees are taken as such, with a warning. A `local` scene does not need one.
+pub(crate) fn stated_system(
+    info: &RasterInfo,
+    source_crs: Option<u32>,
+    local: bool,
+    warnings: &mut Vec<String>,
+) -> Result<Option<CoordinateSystem>, IoError> {
     let failed = |e: crate::crs::CrsError| {
         IoError::format(&info.path, format!("its coordinate system cannot be used: {e}; or set source_crs"))
     };
     let Some(to_model) = info.pixel_to_model else {
         return Ok(None);
     };
-    if let Some(code) = request.source_crs {
+    if let Some(code) = source_crs {
         return CoordinateSystem::from_epsg(code).map(Some).map_err(failed);
     }
     match &info.crs {
         SourceCrs::Epsg(code) => CoordinateSystem::from_epsg(*code).map(Some).map_err(failed),
         SourceCrs::Wkt(text) => CoordinateSystem::from_wkt(text).map(Some).map_err(failed),
-        SourceCrs::UserDefined(_) if request.crs == CrsChoice::Local => Ok(None),
+        SourceCrs::UserDefined(_) if local => Ok(None),
         SourceCrs::UserDefined(text) => {
             let reason = format!("its coordinate system cannot be used ({text}); set source_crs to an EPSG code");
             Err(IoError::format(&info.path, reason))
         }
-        SourceCrs::Unknown if request.crs != CrsChoice::Local && looks_geographic(info, &to_model) => {
+        SourceCrs::Unknown if !local && looks_geographic(info, &to_model) => {
             warnings.push(format!(
                 "{}: no coordinate system is stated and the coordinates look like degrees, so EPSG:4326 is assumed; set source_crs if that is wrong",
                 info.path.display()

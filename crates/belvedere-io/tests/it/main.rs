@@ -2,6 +2,7 @@
 
 mod atomic;
 mod crs;
+mod drape;
 mod geotiff;
 mod geotiff_made;
 mod png;
