@@ -264,7 +264,7 @@ impl View {
 
     /// Image of an error: a ball of radius `error` and shifts back along fixed vectors, around the edge between displaced ends.
     ///
-    /// A shift by -d moves a pixel by at most |d_xy - pixel d_w| / (depth - d_w), in pixels and from the image centre;
+    /// A shift by -d moves a pixel by at most |d_xy - pixel d_w| / (depth - |d_w|), in pixels and from the image centre;
     /// the numerator is convex in the pixel, so the ends decide.
     fn image_error(&self, ends: [DVec3; 2], error: f64, shifts: &[DVec3]) -> f64 {
         let ph = &self.pinhole;
@@ -282,7 +282,7 @@ impl View {
         };
         let ball =
             error * offsets.map(|off| (scale * scale + off.length_squared()).sqrt()).into_iter().fold(0.0, f64::max);
-        let nearer = error + shifts.iter().map(|d| d.dot(ph.forward).max(0.0)).sum::<f64>();
+        let nearer = error + shifts.iter().map(|d| d.dot(ph.forward).abs()).sum::<f64>();
         let depth = depth0.min(depth1) - nearer;
         let px = ball + shifts.iter().map(|&d| across(d)).sum::<f64>();
         if px == 0.0 {

@@ -47,17 +47,21 @@ impl EarthCurvature {
     }
 }
 
+fn finite(p: DVec3) -> Result<DVec3, Miss> {
+    if p.is_finite() { Ok(p) } else { Err(Miss::OutsideDomain) }
+}
+
 impl SpaceMap for EarthCurvature {
     fn apply(&self, p: DVec3) -> Result<DVec3, Miss> {
-        Ok(DVec3::new(p.x, p.y, p.z - self.drop_at(p)))
+        finite(DVec3::new(p.x, p.y, p.z - self.drop_at(p)))
     }
 
     fn invert(&self, p_displaced: DVec3) -> Result<DVec3, Miss> {
-        Ok(DVec3::new(p_displaced.x, p_displaced.y, p_displaced.z + self.drop_at(p_displaced)))
+        finite(DVec3::new(p_displaced.x, p_displaced.y, p_displaced.z + self.drop_at(p_displaced)))
     }
 
     fn jacobian(&self, p: DVec3) -> Result<DMat3, Miss> {
-        let slope = -2.0 * self.factor() * (p - self.eye).truncate();
+        let slope = -2.0 * self.factor() * finite(p - self.eye)?.truncate();
         Ok(DMat3::from_cols(DVec3::new(1.0, 0.0, slope.x), DVec3::new(0.0, 1.0, slope.y), DVec3::Z))
     }
 }

@@ -2,3 +2,4 @@
 
 mod curved_rays;
 mod spline_figures;
+mod views;

@@ -4,12 +4,13 @@
 //! the displaced ends minus `delta d_j`, with `delta = lerp(phi) - phi >= 0`.
 
 use super::phi::Hinge;
+use super::turn::Cell;
 use super::{CurvedRays, Hit, Turn};
-use crate::map::curved_rays::turn::Cell;
 use crate::{Aabb, Miss};
 use glam::DVec3;
 
-/// Extra room for the original model, whose phi is convex only nearly (m varies from ray to ray).
+/// Extra room for the original model, whose phi is convex only nearly (m varies from ray to ray): there the bounds are
+/// estimates from the ends, the middle and this factor, tried on many cameras, not proven.
 const BEZIER_ROOM: f64 = 1.25;
 
 impl Turn {
@@ -19,7 +20,7 @@ impl Turn {
     /// `delta <= D0 D1 / (D0 + D1)`, the height of the triangle that the end tangents leave.
     pub(super) fn edge_delta(&self, p0: DVec3, p1: DVec3) -> Option<f64> {
         let (a, b) = ([self.a.at(p0), self.a.at(p1)], [self.b.at(p0), self.b.at(p1)]);
-        if !separable(&[(a[0], b[0]), (a[1], b[1])]) {
+        if self.hinge != Hinge::Broken && !separable(&[(a[0], b[0]), (a[1], b[1])]) {
             return None;
         }
         let (cell0, cell1) = (self.cell(p0).ok()?, self.cell(p1).ok()?);
@@ -29,36 +30,45 @@ impl Turn {
         let (phi0, phi1) = (self.phi(p0, cell0).ok()?, self.phi(p1, cell1).ok()?);
         let (da, db) = (a[1] - a[0], b[1] - b[0]);
         let rise = phi1.phi - phi0.phi;
-        let d0 = (rise - phi0.phi_a * da - phi0.phi_b * db).max(0.0);
-        let d1 = (phi1.phi_a * da + phi1.phi_b * db - rise).max(0.0);
-        let delta = if d0 + d1 > 0.0 { d0 * d1 / (d0 + d1) } else { 0.0 };
-        let room = if matches!(self.hinge, Hinge::Bezier { .. }) { BEZIER_ROOM } else { 1.0 };
-        let delta = room * delta;
+        let d0 = rise - phi0.phi_a * da - phi0.phi_b * db;
+        let d1 = phi1.phi_a * da + phi1.phi_b * db - rise;
+        let delta = if matches!(self.hinge, Hinge::Bezier { .. }) {
+            let middle = p0.midpoint(p1);
+            let sag = 0.5 * (phi0.phi + phi1.phi) - self.phi(middle, self.cell(middle).ok()?).ok()?.phi;
+            BEZIER_ROOM * sag.abs().max(0.5 * d0.abs().max(d1.abs()))
+        } else {
+            let (d0, d1) = (d0.max(0.0), d1.max(0.0));
+            if d0 + d1 > 0.0 { d0 * d1 / (d0 + d1) } else { 0.0 }
+        };
         delta.is_finite().then_some(delta)
     }
 
-    /// Points whose hull contains the displaced box: its displaced corners, and those minus `delta d_j`.
+    /// Points whose hull contains the displaced box: its displaced corners, and those moved back along `d_j`.
     fn hull(&self, corners: &[DVec3; 8], center: DVec3) -> Result<[DVec3; 16], Miss> {
         let values = corners.map(|p| (self.a.at(p), self.b.at(p)));
-        if !separable(&values) {
+        if self.hinge != Hinge::Broken && !separable(&values) {
             return Err(Miss::OutsideDomain);
         }
         // phi lies above its tangent at the centre, so lerp(phi) - phi is at most the largest gap there is at a corner.
         let middle = self.phi(center, self.cell(center)?)?;
         let (a, b) = (self.a.at(center), self.b.at(center));
-        let mut delta = 0.0f64;
+        let (mut above, mut below) = (0.0f64, 0.0f64);
         let mut hull = [DVec3::ZERO; 16];
         for (i, &p) in corners.iter().enumerate() {
             let cell = self.cell(p)?;
             let tangent = middle.phi + middle.phi_a * (values[i].0 - a) + middle.phi_b * (values[i].1 - b);
-            delta = delta.max(self.phi(p, cell)?.phi - tangent);
+            let gap = self.phi(p, cell)?.phi - tangent;
+            (above, below) = (above.max(gap), below.max(-gap));
             hull[i] = self.displaced(p, cell)?;
         }
-        if matches!(self.hinge, Hinge::Bezier { .. }) {
-            delta *= BEZIER_ROOM;
-        }
+        let (back, on) = if matches!(self.hinge, Hinge::Bezier { .. }) {
+            (BEZIER_ROOM * (above + below), BEZIER_ROOM * (2.0 * below + 0.1 * above))
+        } else {
+            (above, 0.0)
+        };
         for i in 0..8 {
-            hull[8 + i] = hull[i] - delta * self.shift;
+            hull[8 + i] = hull[i] - back * self.shift;
+            hull[i] += on * self.shift;
         }
         Ok(hull)
     }

@@ -29,9 +29,13 @@ pub(super) fn report(broken: Broken, spec: &TurnSpec, around: &Surroundings<'_>)
 fn remedy(broken: Broken, spec: &TurnSpec, around: &Surroundings<'_>) -> Remedy {
     let healed = |candidate: &TurnSpec| heals(broken, candidate, around);
     let found = match broken {
-        Broken::Order { .. } => {
+        Broken::Order { depths } => {
             let swapped = TurnSpec { t0: spec.t2, t2: spec.t0, ..*spec };
-            if healed(&swapped) { Some(Remedy::SwapPlanes) } else { shifted_planes(spec, around, &healed) }
+            if depths[0] > depths[2] && healed(&swapped) {
+                Some(Remedy::SwapPlanes)
+            } else {
+                shifted_planes(spec, around, &healed)
+            }
         }
         Broken::PreviousPastBend { .. } => shifted_planes(spec, around, &healed),
         Broken::ViewpointPastBend { past } => viewpoint_back(spec, around, past, &healed),

@@ -122,12 +122,12 @@ pub(crate) fn chain(knots: &[DVec3], back: f64, share: f64) -> Spec {
     Spec { turns }
 }
 
-/// A random valid chain of `turns` turns; `None` if the dice give an invalid one.
-pub(crate) fn random_chain(random: &mut Random, turns: usize, model: Model) -> Option<Spec> {
+/// A random chain of `turns` turns that bend more or less; `None` if the dice give an invalid one.
+pub(crate) fn random_chain(random: &mut Random, turns: usize, model: Model, bend: f64) -> Option<Spec> {
     let mut knots = vec![vec(random.range(-5.0, 5.0), random.range(90.0, 120.0), random.range(-5.0, 5.0))];
     let mut direction = DVec3::Y;
     for _ in 0..turns {
-        direction = (direction + 0.35 * random.direction()).normalize();
+        direction = (direction + bend * random.direction()).normalize();
         let last = knots[knots.len() - 1];
         knots.push(last + random.range(80.0, 130.0) * direction);
     }

@@ -1,5 +1,10 @@
 //! Curved rays: laws, and agreement with references that share no formula with the library.
 
-pub(crate) mod cameras;
+mod bounds;
+mod cameras;
+mod chains;
 mod laws;
+mod literal;
+mod pieces;
 mod scene_example;
+mod validity;
