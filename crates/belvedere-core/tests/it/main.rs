@@ -1,5 +1,8 @@
 //! Laws and references for the mathematics.
 
 mod curved_rays;
+mod spline_bend;
+mod spline_bounds;
+mod spline_curve;
 mod spline_figures;
 mod views;

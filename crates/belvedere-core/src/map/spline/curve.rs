@@ -188,14 +188,18 @@ impl DeformationCurve {
     /// Root of `(q - P(l)) . T(l)` in a cell at whose ends it changes sign from + to -.
     fn foot_in(&self, cell: &Cell, q: DVec2) -> Option<(f64, f64)> {
         let span = &self.spans[cell.span];
-        let (mut lo, mut hi) = (cell.l0, cell.l1);
-        let mut l = 0.5 * (lo + hi);
-        for _ in 0..80 {
+        // Along, across, and the derivative of -along.
+        let offsets = |l: f64| {
             let x = cell.parameter(l);
             let t = self.tangent_in(cell, x);
             let v = q - span.point(x);
-            let (g, d) = (v.dot(t), v.dot(t.perp()));
-            let j = 1.0 - curvature_in(span, x, cell.x_mid, self.scale) * d;
+            let d = v.dot(t.perp());
+            (v.dot(t), d, 1.0 - curvature_in(span, x, cell.x_mid, self.scale) * d)
+        };
+        let (mut lo, mut hi) = (cell.l0, cell.l1);
+        let mut l = 0.5 * (lo + hi);
+        for _ in 0..80 {
+            let (g, _, j) = offsets(l);
             if g > 0.0 {
                 lo = l
             } else {
@@ -203,14 +207,15 @@ impl DeformationCurve {
             }
             let newton = l + g / j;
             let next = if j > 0.0 && newton >= lo && newton <= hi { newton } else { 0.5 * (lo + hi) };
-            if (next - l).abs() <= 2e-16 * self.length || g == 0.0 {
-                return (j > 1e-9).then_some((next, d));
-            }
+            let step = (next - l).abs();
             l = next;
+            if step <= 1e-8 * self.length {
+                break;
+            }
         }
-        let (p, t) = self.at(l);
-        let d = (q - p).dot(t.perp());
-        (1.0 - self.curvature_at(l) * d > 1e-9).then_some((l, d))
+        // Quadratic convergence: one more step from here is exact.
+        let (g, d, j) = offsets(l);
+        (j > 1e-9).then(|| (l + g / j, d))
     }
 
     /// Smallest sine of the angle between the curve and the ray from `eye`, for `l` between `l0 <= l1`; negative where the eye lies
