@@ -1,8 +1,10 @@
 //! Laws and references for the mathematics.
 
 mod curved_rays;
+mod presets;
 mod spline_bend;
 mod spline_bounds;
 mod spline_curve;
 mod spline_figures;
+mod terrain;
 mod views;

@@ -143,8 +143,9 @@ fn arc_length_agrees_with_a_hundred_thousand_samples() {
         let samples = 99_990; // so that every knot is a sample
         let lengths = dense_lengths(&spline, samples);
         let curve = DeformationCurve::new(&spline).unwrap();
-        // Simpson's rule is of low order where the speed vanishes.
-        let tolerance = if name.contains("tripled") || name.contains("doubled first") { 1e-9 } else { 2e-13 };
+        // Simpson's rule is of low order where the speed (almost) vanishes.
+        let slow = ["tripled", "doubled first", "cusp"].iter().any(|n| name.contains(n));
+        let tolerance = if slow { 1e-9 } else { 2e-13 };
         let length = lengths[samples];
         assert!((curve.length() - length).abs() < tolerance, "{name}: length {}, dense {length}", curve.length());
         for i in (0..=samples).step_by(37) {
