@@ -210,8 +210,8 @@ fn presets_with_different_numbers_of_points_and_tags_interpolate() {
     document.presets[1].sections = vec!["loa0".to_owned(), "loa2".to_owned()];
     document.validate().unwrap();
     let mut last = None;
-    for i in 0..=2000 {
-        let phi = 15.0 + 0.035 * f64::from(i);
+    for i in 0..=700 {
+        let phi = 15.0 + 0.1 * f64::from(i);
         let b = bend(&document, &camera_at(phi, 1000.0));
         let shape: Vec<f64> = (0..=20)
             .flat_map(|k| {
@@ -224,7 +224,7 @@ fn presets_with_different_numbers_of_points_and_tags_interpolate() {
         if let Some(before) = last.replace(shape.clone()) {
             let before: Vec<f64> = before;
             let step = shape.iter().zip(&before).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            assert!(step < 0.06, "step of {step} at {phi}");
+            assert!(step < 0.15, "step of {step} at {phi}");
         }
     }
     // At its own angle a preset shows exactly its own sections.

@@ -8,6 +8,8 @@ use glam::DVec2;
 const TOLERANCE: f64 = 1e-14;
 /// Tangent jumps above this are corners, radians. One-sided tangents at zero speed are good to about 1e-4.
 const CORNER: f64 = 1e-3;
+/// Keeps hostile curves from halving without end; ordinary ones need 1 to 100.
+const MAX_CELLS: usize = 4096;
 const LOBATTO: usize = 8;
 
 /// Positive nodes and weights of the 16-point Gauss-Legendre rule on -1..=1.
@@ -103,7 +105,7 @@ impl Builder {
         let mid = 0.5 * (x0 + x1);
         let whole = gauss_length(span, x0, x1);
         let halves = gauss_length(span, x0, mid) + gauss_length(span, mid, x1);
-        let last = depth >= 52 || !(mid > x0 && mid < x1);
+        let last = depth >= 52 || self.cells.len() >= MAX_CELLS || !(mid > x0 && mid < x1);
         if (whole - halves).abs() <= 0.1 * self.tolerance || last {
             let poly = fit_inverse(span, x0, x1, whole);
             if last || inverse_error(span, x0, x1, whole, &poly) <= self.tolerance {
@@ -150,8 +152,9 @@ fn solve(span: &CubicSpan, x0: f64, x1: f64, length: f64, l: f64) -> f64 {
             lo = x
         }
         let newton = x - error / span.d1(x).length();
-        let next = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
-        if (next - x).abs() <= 1e-16 * (x1 - x0) || next == x {
+        let next = if newton >= lo && newton <= hi { newton } else { 0.5 * (lo + hi) };
+        // Quadratic convergence: the step after this one would be below rounding.
+        if (next - x).abs() <= 1e-9 * (x1 - x0) {
             return next;
         }
         x = next;
