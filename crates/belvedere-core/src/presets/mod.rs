@@ -165,6 +165,9 @@ impl Preset {
         if let Some(&(field, value, min, max)) = ranges.iter().find(|r| !(r.2..=r.3).contains(&r.1)) {
             return Err(PresetError::Range { preset: preset(), field, value, min, max });
         }
+        if let Some(&value) = self.control.iter().flatten().find(|v| v.abs() > 1e6) {
+            return Err(PresetError::Range { preset: preset(), field: "control", value, min: -1e6, max: 1e6 });
+        }
         if self.e <= self.s {
             return Err(PresetError::EndBeforeStart { preset: preset(), s: self.s, e: self.e });
         }

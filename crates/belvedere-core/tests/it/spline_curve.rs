@@ -274,3 +274,28 @@ fn unusable_control_points_and_knots_are_refused() {
     let error = DeformationCurve::new(&point).unwrap_err();
     assert!(error.to_string().contains("1e-9"), "{error}");
 }
+
+#[test]
+fn hostile_control_points_end_in_a_finite_curve_or_an_error() {
+    let mut random = Random::new(99);
+    let values = [0.0, 1e-12, -1e-9, 1e-5, 0.3, 0.3, 1.0, -1.0, 1e6];
+    for round in 0..150 {
+        let count = 4 + random.below(5);
+        let control = (0..count).map(|_| DVec2::new(values[random.below(9)], values[random.below(9)])).collect();
+        let Ok(curve) = DeformationCurve::new(&BSpline::clamped_uniform(control).unwrap()) else { continue };
+        for i in -5..=105 {
+            let l = curve.length() * f64::from(i) / 100.0;
+            let frame = curve.frame_at(l);
+            assert!(frame.point.is_finite() && frame.kap.is_finite(), "round {round}: {frame:?}");
+            assert!((frame.tangent.length() - 1.0).abs() < 1e-12, "round {round}: {frame:?}");
+            assert!(curve.turning_to(l).is_finite() && curve.curvature_variation_to(l).is_finite());
+            if let Some((foot, d)) = curve.foot(frame.point) {
+                assert!(foot.is_finite() && d.is_finite(), "round {round}");
+            }
+        }
+    }
+    for huge in [1e160, 1e300] {
+        let control = points(&[[0.0, 0.0], [huge, 0.0], [huge, huge], [2.0 * huge, 0.0]]);
+        assert!(DeformationCurve::new(&BSpline::clamped_uniform(control).unwrap()).is_err());
+    }
+}

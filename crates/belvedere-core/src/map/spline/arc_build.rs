@@ -37,7 +37,7 @@ pub(super) fn build(spline: &BSpline) -> Result<DeformationCurve, CurveTooShort>
     let knots: Vec<Vec<f64>> = spans.iter().map(|s| split_points(s, scale)).collect();
     let rough = |(s, k): (&CubicSpan, &Vec<f64>)| k.windows(2).map(|w| gauss_length(s, w[0], w[1])).sum::<f64>();
     let length: f64 = spans.iter().zip(&knots).map(rough).sum();
-    if !(length >= DeformationCurve::MIN_LENGTH) {
+    if !(length >= DeformationCurve::MIN_LENGTH && length.is_finite()) {
         return Err(CurveTooShort { length });
     }
     let mut builder = Builder { tolerance: TOLERANCE * length, scale, cells: Vec::new(), end: 0.0 };

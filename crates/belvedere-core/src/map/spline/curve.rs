@@ -61,9 +61,11 @@ impl CurveFrame {
     }
 }
 
-/// A curve without extent.
+/// A curve without extent, or one too large for its length to be a number.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("the deformation curve is {length:e} curve units long, at least 1e-9 is needed; move its control points apart")]
+#[error(
+    "the deformation curve is {length:e} curve units long, a finite length of at least 1e-9 is needed; move its control points"
+)]
 pub struct CurveTooShort {
     /// Length found, curve units.
     pub length: f64,
