@@ -27,7 +27,7 @@ pub(super) fn build(root: &Pinhole, model: Model, spec: &[TurnSpec]) -> Result<C
         turns.push(turn);
     }
     let separators = turns.windows(2).map(|pair| separator(&pair[0], &pair[1])).collect();
-    Ok(CurvedRays { root: root.clone(), model, spec: spec.to_vec(), turns, separators })
+    Ok(CurvedRays { root: root.clone(), model, spec: spec.to_vec(), turns, separators, scale_px: root.scale_px() })
 }
 
 /// How the rays of a turn bend.

@@ -64,6 +64,8 @@ pub struct CurvedRays {
     turns: Vec<Turn>,
     /// `separators[k]` cuts record k from record k + 1; positive on the side of record k + 1; unit gradient.
     separators: Vec<LinearForm>,
+    /// `root.scale_px()`, which costs a tangent.
+    scale_px: f64,
 }
 
 /// A cell of the chain that holds a point.
@@ -255,8 +257,8 @@ impl CurvedRays {
 
     fn in_image(&self, v: DVec3) -> bool {
         let depth = v.dot(self.root.forward);
-        let pixel = self.root.center_px()
-            + DVec2::new(v.dot(self.root.right), v.dot(self.root.down)) * (self.root.scale_px() / depth);
+        let pixel =
+            self.root.center_px() + DVec2::new(v.dot(self.root.right), v.dot(self.root.down)) * (self.scale_px / depth);
         let [w, h] = self.root.image.map(f64::from);
         depth > 0.0
             && (-MARGIN_PX..=w + MARGIN_PX).contains(&pixel.x)

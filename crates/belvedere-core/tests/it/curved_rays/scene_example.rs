@@ -1,7 +1,8 @@
 //! The second example scene of the scene-file documentation.
 
 use belvedere_core::map::curved_rays::{CurvedRays, Model, Pencil, Sharpness, TurnSpec};
-use belvedere_core::{DVec3, Pinhole, Projection};
+use belvedere_core::{Camera, DVec2, DVec3, Pinhole, Projection, Stage, View};
+use belvedere_testkit::Random;
 
 pub(super) fn root() -> Pinhole {
     Pinhole::look_at(
@@ -41,5 +42,37 @@ fn other_sharpnesses_are_near_it() {
         let rays = CurvedRays::new(&root(), Model::Modified, &[TurnSpec { m, ..turn() }]).unwrap();
         let value = rays.turns()[0].m.unwrap();
         assert!((0.7..1.5).contains(&value), "{m:?} = {value}");
+    }
+}
+
+fn view(origin: DVec3, model: Model) -> View {
+    let root = Pinhole { eye: root().eye - origin, ..root() };
+    let t = turn();
+    let Pencil::Line { point, dir } = t.pencil else { panic!("a line") };
+    let [viewpoint, t0, t1, t2] = [t.viewpoint, t.t0, t.t1, t.t2].map(|p| p - origin);
+    let turn = TurnSpec { viewpoint, t0, t1, t2, pencil: Pencil::Line { point: point - origin, dir }, m: t.m };
+    let rays = CurvedRays::new(&root, model, &[turn]).unwrap();
+    View::new(root, vec![Stage::CurvedRays(rays)]).unwrap()
+}
+
+/// Coordinates of millions of metres cost no more than their own rounding: same pixels as with the eye at the origin.
+#[test]
+fn projected_coordinates_lose_nothing() {
+    let mut random = Random::new(1);
+    for model in [Model::Modified, Model::Original, Model::C0, Model::C2, Model::Circular] {
+        let (far_off, local) = (view(DVec3::ZERO, model), view(root().eye, model));
+        for _ in 0..2000 {
+            let pixel = DVec2::new(random.range(0.0, 1280.0), random.range(0.0, 720.0));
+            let depth = random.range(200.0, 40_000.0);
+            let seen = far_off.ray(pixel).at(depth).unwrap();
+            let again = far_off.project(seen.point).unwrap();
+            let shifted = local.project(seen.point - root().eye).unwrap();
+            let same_point = (local.ray(pixel).at(depth).unwrap().point + root().eye - seen.point).length();
+            let limit_px = 5e-9 * far_off.pinhole().scale_px() / depth;
+            assert!((again.pixel - pixel).length() < limit_px, "{model:?} {pixel} {depth}: {}", again.pixel);
+            assert!((shifted.pixel - pixel).length() < limit_px, "{model:?} {pixel} {depth}: {}", shifted.pixel);
+            assert!(same_point < 1e-8, "{model:?} {pixel} {depth}: {same_point} m");
+            assert_eq!(again.segment, seen.segment);
+        }
     }
 }
