@@ -37,7 +37,7 @@ use std::sync::Arc;
 /// let pivot = default_pivot(&camera, &ground);
 /// let bend = SplineBend::new(&camera, &PresetDocument::builtin("progressive")?, &ground, pivot)?;
 /// assert!(bend.apply(pivot).unwrap().distance(pivot) < 1e-9);
-/// assert!(bend.apply(DVec3::new(0.0, 3000.0, 0.0)).unwrap().z > 500.0); // the far ground rises towards the horizon
+/// assert!(bend.apply(DVec3::new(0.0, 3000.0, 0.0)).unwrap().z < -500.0); // the far ground sinks away until it is seen flat
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
