@@ -32,7 +32,7 @@ impl Default for RouteCost {
 pub enum RouteError {
     /// An end does not lie on ground.
     #[error(
-        "route {end} ({x:.0}, {y:.0}) lies outside the terrain or on a void (x {x_min:.0}..{x_max:.0}, y {y_min:.0}..{y_max:.0}); move it"
+        "route {end} ({x:.0}, {y:.0}) lies outside the terrain or among voids (x {x_min:.0}..{x_max:.0}, y {y_min:.0}..{y_max:.0}); move it"
     )]
     NoGround {
         /// "start" or "end".
@@ -81,7 +81,8 @@ pub enum RouteError {
 
 /// Cheapest way over the terrain between two scene positions (A* on the eight neighbours of each node, then smoothed a little).
 ///
-/// Never touches a void. Vertices lie about one grid spacing apart; the first and last are the nodes nearest to `from` and `to`.
+/// Keeps a node away from voids. Vertices lie about one grid spacing apart; the first and last are the nodes nearest to `from` and
+/// `to` that lie so, at most 3 spacings away.
 ///
 /// # Errors
 /// [`RouteError::NoGround`], [`RouteError::NoWay`], [`RouteError::Weights`].
@@ -108,14 +109,44 @@ pub(crate) struct Window {
 }
 
 impl Window {
+    /// Column and row in the terrain of node `i` of the window.
+    fn node(&self, i: usize) -> (usize, usize) {
+        (self.col + i % self.cols, self.row + i / self.cols)
+    }
+
     fn xy(&self, terrain: &Heightfield, i: usize) -> DVec2 {
-        terrain.node_xy(self.col + i % self.cols, self.row + i / self.cols)
+        let (col, row) = self.node(i);
+        terrain.node_xy(col, row)
     }
 
     /// Index in the terrain of node `i` of the window.
     fn global(&self, terrain: &Heightfield, i: usize) -> usize {
-        (self.row + i / self.cols) * terrain.cols() + self.col + i % self.cols
+        let (col, row) = self.node(i);
+        row * terrain.cols() + col
     }
+}
+
+/// Whether neither the node nor any of its neighbours is a void, so that the drawn surface is whole around it.
+fn solid(terrain: &Heightfield, (col, row): (usize, usize)) -> bool {
+    (row.saturating_sub(1)..(row + 2).min(terrain.rows())).all(|r| {
+        let from = r * terrain.cols();
+        let states = &terrain.states()[from + col.saturating_sub(1)..from + (col + 2).min(terrain.cols())];
+        states.iter().all(|s| *s != NodeState::Void)
+    })
+}
+
+/// The open node (height not NaN) nearest to fractional column and row `g` of the window, at most 3 nodes away.
+fn nearest_open(window: Window, heights: &[f32], g: DVec2) -> Option<usize> {
+    let (c, r) = (g.x.round(), g.y.round());
+    if !(c >= 0.0 && r >= 0.0 && c < window.cols as f64 && r < window.rows as f64) {
+        return None;
+    }
+    let (c, r) = (c as usize, r as usize);
+    let near = (r.saturating_sub(3)..(r + 4).min(window.rows))
+        .flat_map(|r| (c.saturating_sub(3)..(c + 4).min(window.cols)).map(move |c| (c, r)))
+        .filter(|&(c, r)| !heights[r * window.cols + c].is_nan());
+    let away = |(c, r): (usize, usize)| g.distance_squared(DVec2::new(c as f64, r as f64));
+    near.min_by(|&a, &b| away(a).total_cmp(&away(b))).map(|(c, r)| r * window.cols + c)
 }
 
 /// [`least_cost_route`] within a window and around obstacles (`blocked`, one flag per node of the window).
@@ -132,17 +163,13 @@ pub(crate) fn route_in(
     }
     let heights: Vec<f32> = (0..window.cols * window.rows)
         .map(|i| {
-            let g = window.global(terrain, i);
-            let open = terrain.states()[g] != NodeState::Void && !blocked.get(i).copied().unwrap_or(true);
-            if open { terrain.heights()[g] } else { f32::NAN }
+            let open = !blocked.get(i).copied().unwrap_or(true) && solid(terrain, window.node(i));
+            if open { terrain.heights()[window.global(terrain, i)] } else { f32::NAN }
         })
         .collect();
     let [start, end] = [("start", ends[0]), ("end", ends[1])].map(|(name, xy)| {
         let g = terrain.grid_from_scene(xy) - DVec2::new(window.col as f64, window.row as f64);
-        let (c, r) = (g.x.round(), g.y.round());
-        let inside = c >= 0.0 && r >= 0.0 && c < window.cols as f64 && r < window.rows as f64;
-        let node = if inside { r as usize * window.cols + c as usize } else { usize::MAX };
-        if heights.get(node).is_some_and(|h| !h.is_nan()) { Ok(node) } else { Err(no_ground(terrain, name, xy)) }
+        nearest_open(window, &heights, g).ok_or_else(|| no_ground(terrain, name, xy))
     });
     let (nodes, _) = search(terrain.spacing(), window, &heights, [start?, end?], cost).ok_or(RouteError::NoWay)?;
     Ok(smooth(terrain, nodes.into_iter().map(|i| window.xy(terrain, i)).collect(), |xy| {
@@ -308,6 +335,7 @@ fn low_ends(terrain: &Heightfield, window: Window, random: &mut Random) -> Vec<[
         for r in span(rows, window.rows) {
             for c in span(cols, window.cols) {
                 let node = terrain.node(window.col + c, window.row + r);
+                let node = node.filter(|_| solid(terrain, (window.col + c, window.row + r)));
                 best = node.filter(|p| best.is_none_or(|b| p.z < b.z)).or(best);
             }
         }

@@ -39,7 +39,7 @@ pub fn massif(seed: u64, size: usize) -> Result<(Scene, SuggestedCamera), Builti
     let route = trail_route(seed, &land, &terrain, &water, lake.as_ref())
         .map_err(|source| BuiltinError::Trail { seed, source })?;
     let points = drape_polyline(&terrain, &route).parts.into_iter().max_by_key(Vec::len).unwrap_or_default();
-    let Viewpoint { eye, look_at } = best_viewpoint(&terrain, &[], &points, &[0.02, 0.04, 0.065]);
+    let Viewpoint { eye, look_at } = best_viewpoint(&terrain, &[], &points, &[0.02, 0.04, 0.065], 0.28);
     let title = format!("Massif {seed}: a trail over the pass");
     let camera = SuggestedCamera { title: title.clone(), eye, look_at, fov_y: 45f64.to_radians() };
     let mut layers = vec![ground_layer(terrain, Palette::Alpine)];

@@ -68,8 +68,14 @@ fn crosses(b: &BoxShape, eye: DVec3, p: DVec3) -> bool {
 }
 
 /// The best of a fixed set of viewpoints around the line: all of it in the picture, [`WANTED_SHARE`] of it visible, seen from
-/// above at 10 to 25 degrees. `above`: heights over the ground to try, in sides of the terrain. Boxes must not be rotated.
-pub(crate) fn best_viewpoint(terrain: &Heightfield, boxes: &[BoxShape], line: &[DVec3], above: &[f64]) -> Viewpoint {
+/// above. `above`: heights over the ground to try, in sides of the terrain; `tilt`: fall over run of the line of sight wanted. Boxes must not be rotated.
+pub(crate) fn best_viewpoint(
+    terrain: &Heightfield,
+    boxes: &[BoxShape],
+    line: &[DVec3],
+    above: &[f64],
+    tilt: f64,
+) -> Viewpoint {
     let samples: Vec<DVec3> = line.iter().copied().step_by((line.len() / 120).max(1)).collect();
     let bounds = terrain.bounds();
     let side = bounds.max.x - bounds.min.x;
@@ -99,7 +105,7 @@ pub(crate) fn best_viewpoint(terrain: &Heightfield, boxes: &[BoxShape], line: &[
                 boxes.iter().any(|b| crosses(b, eye, eye + DVec3::Z) || crosses(b, eye, eye.lerp(look_at, 0.08)));
             let down = (eye.z - look_at.z) / eye.truncate().distance(look_at.truncate()).max(1.0);
             let (framed, visible) = shares(terrain, boxes, &samples, view);
-            let tilt = (down - 0.28).abs() + 0.2 * ((eye.z - bounds.min.z) / (relief + 0.05 * side) - 1.0).max(0.0);
+            let tilt = (down - tilt).abs() + 0.2 * ((eye.z - bounds.min.z) / (relief + 0.05 * side) - 1.0).max(0.0);
             let rating = framed - 2.5 * (visible - WANTED_SHARE).abs() - 1.2 * tilt - f64::from(u8::from(blocked));
             Some((rating, view))
         })

@@ -74,7 +74,7 @@ pub fn street(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
     }
     let line = route_line(&mut random, &street_middles(&xs), &street_middles(&ys));
     let points = drape_polyline(&terrain, &line).parts.into_iter().next().unwrap_or_default();
-    let Viewpoint { eye, look_at } = best_viewpoint(&terrain, &towers, &points, &[0.05, 0.08, 0.12, 0.17]);
+    let Viewpoint { eye, look_at } = best_viewpoint(&terrain, &towers, &points, &[0.12, 0.16, 0.2, 0.25], 0.42);
     let title = format!("Town {seed}: a route between the towers");
     let layers = vec![
         ground_layer(terrain, Palette::Plain),
