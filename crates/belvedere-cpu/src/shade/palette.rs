@@ -60,7 +60,7 @@ impl Tint {
             Palette::Auto => Palette::Alpine,
             p => p,
         };
-        let none = [f32::INFINITY; 2];
+        let none = [1e30, 2e30]; // finite: a step between infinities is NaN
         let (stops, rock, rock_slope, snow_m) = match palette {
             Palette::Desert => (DESERT, [148, 98, 72], [0.7, 1.6], none),
             Palette::Glacial => (GLACIAL, [112, 106, 102], [0.6, 1.15], [bottom + 0.42 * span, bottom + 0.62 * span]),
@@ -87,4 +87,21 @@ fn ramp_at(stops: Stops, t: f32) -> Rgb {
     let i = stops.partition_point(|s| s.0 <= t).clamp(1, stops.len() - 1);
     let ((t0, a), (t1, b)) = (stops[i - 1], stops[i]);
     linear(a).lerp(linear(b), ((t - t0) / (t1 - t0)).clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shade::color::smoothstep;
+
+    #[test]
+    fn every_palette_tells_snow_from_ground_even_where_there_is_none() {
+        for palette in [Palette::Auto, Palette::Alpine, Palette::Desert, Palette::Glacial, Palette::Plain] {
+            for range in [[0.0, 4000.0], [12.0, 12.0]] {
+                let tint = Tint::new(palette, range);
+                let snow = smoothstep(tint.snow_m[0], tint.snow_m[1], range[0] as f32);
+                assert!(snow == 0.0, "{palette:?}: {snow} of the lowest ground is snow");
+            }
+        }
+    }
 }
