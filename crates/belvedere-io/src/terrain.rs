@@ -141,6 +141,14 @@ pub fn load_terrain(
     if grid.heights.iter().all(|h| !h.is_finite()) {
         return Err(IoError::format(first, "it holds no data at all: every sample is a void; check the no-data value"));
     }
+    let reach = grid.geometry.north_west.abs().max_element();
+    if grid.geometry.spacing.min_element() < 1e-9 * reach {
+        let reason = format!(
+            "its samples are {:e} apart at coordinates of {reach:e}, finer than numbers can tell; correct its georeference",
+            grid.geometry.spacing.min_element()
+        );
+        return Err(IoError::format(first, reason));
+    }
     let states = states(&mut grid, request.fill_voids, progress)?;
     let heightfield =
         Heightfield::new(grid.geometry.north_west, grid.geometry.spacing, grid.cols, grid.rows, grid.heights, states)

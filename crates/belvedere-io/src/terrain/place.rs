@@ -169,7 +169,7 @@ impl<'a> GridMap<'a> {
             let corners = [k, k + right, k + below, k + below + right].map(|k| self.lattice.get(k).copied().flatten());
             // where the map jumps (at the antimeridian of a projection) the corners do not belong together
             if let [Some(a), Some(b), Some(c), Some(d)] = corners
-                && (a + d - b - c).length() <= 0.25 * self.step as f64 * self.unit
+                && regular([a, b, c, d], self.step as f64 * self.unit)
             {
                 let (left, end) = (a + (c - a) * v, b + (d - b) * v);
                 let delta = (end - left) / self.step as f64;
@@ -184,6 +184,13 @@ impl<'a> GridMap<'a> {
             }
         }
     }
+}
+
+/// Whether the images of a cell's corners belong together: nearly a parallelogram and not many times larger than the
+/// cell, `size` in the target. They do not where a projection jumps, at its antimeridian.
+fn regular([a, b, c, d]: [DVec2; 4], size: f64) -> bool {
+    let longest = [b - a, c - a, d - b, d - c].iter().map(|v| v.length()).fold(0.0, f64::max);
+    (a + d - b - c).length() <= 0.25 * size && longest <= 16.0 * size
 }
 
 /// Whether cells of `step` nodes are linear enough, at their middles and at the middles of their sides.
@@ -209,6 +216,9 @@ fn good_enough(
             let (Some(a), Some(b), Some(c), Some(d)) = (at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0), at(1.0, 1.0)) else {
                 return true; // such cells are computed exactly
             };
+            if !regular([a, b, c, d], size * 1000.0 * tolerance) {
+                return true; // and such ones
+            }
             let near = |u: f64, v: f64, guess: DVec2| at(u, v).is_none_or(|p| (p - guess).length() <= 0.5 * tolerance);
             near(0.5, 0.0, 0.5 * (a + b)) && near(0.0, 0.5, 0.5 * (a + c)) && near(0.5, 0.5, 0.25 * (a + b + c + d))
         })

@@ -484,3 +484,35 @@ fn lattice_offset(a: &SourceGrid, b: &SourceGrid) -> Option<[i64; 2]> {
     });
     (on_lattice && start.iter().all(|v| v.abs() < 1e9)).then(|| [start[0] as i64, start[1] as i64])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SampleType;
+
+    #[test]
+    fn heights_in_feet_become_metres() {
+        let mut info = RasterInfo::new("x", 2, 1, SampleType::I16);
+        (info.vertical_unit_m, info.nodata) = (0.3048, Some(-1.0));
+        let raster = Raster { info: info.clone(), samples: Samples::I16(vec![1000, -1]), mask: None };
+        let h = heights(&raster);
+        assert!((h[0] - 304.8).abs() < 1e-3 && h[1].is_nan());
+        info.sample_type = SampleType::F64;
+        let raster = Raster { info, samples: Samples::F64(vec![1000.0, -1.0]), mask: None };
+        assert_eq!(heights(&raster)[0], h[0]);
+        assert!(heights(&raster)[1].is_nan());
+    }
+
+    #[test]
+    fn thinning_keeps_shared_edges_and_voids() {
+        assert_eq!(thinning(1201, 1201, 2_000_000), None);
+        assert_eq!(thinning(1201, 1201, 400_000), Some(2));
+        assert_eq!(thinning(3601, 3601, 1_000_000), Some(4));
+        let mut h = vec![10.0f32; 49];
+        h[0] = f32::NAN;
+        h[1] = 14.0;
+        let (out, cols, rows) = thin(&h, 7, 7, 3);
+        assert_eq!((cols, rows), (3, 3));
+        assert!(out[0].is_nan() && out[1] > 10.0 && out[8] == 10.0);
+    }
+}

@@ -1,6 +1,9 @@
 //! PNG: what is written is what is read, with its text, the same bytes every time.
 
-use belvedere_io::png::{Channels, encode};
+use crate::atomic::Folder;
+use belvedere_io::png::{Channels, encode, read, write};
+use belvedere_io::{IoError, Limits};
+use std::fs;
 use std::io::Cursor;
 
 fn picture(width: usize, height: usize, channels: usize) -> Vec<u8> {
@@ -55,4 +58,32 @@ fn wrong_sizes_and_keywords_are_refused() {
         assert!(error.to_string().contains("keyword"), "{error}");
     }
     assert!(out.is_empty());
+}
+
+#[test]
+fn pictures_are_read_as_colours_or_refused() {
+    let folder = Folder::new("png-read");
+    let path = folder.0.join("p.png");
+    for (channels, n) in [(Channels::Gray, 1), (Channels::Rgb, 3), (Channels::Rgba, 4)] {
+        let pixels = picture(31, 17, n);
+        write(&path, true, 31, 17, channels, &pixels, &[]).unwrap();
+        let colors = read(&path, &Limits::default()).unwrap().to_rgba().unwrap();
+        for (i, color) in colors.iter().enumerate() {
+            let p = &pixels[i * n..(i + 1) * n];
+            let expected = match *p {
+                [g] => [g, g, g, 255],
+                [r, g, b] => [r, g, b, 255],
+                _ => [p[0], p[1], p[2], p[3]],
+            };
+            assert_eq!(*color, expected, "pixel {i}");
+        }
+    }
+    let error = read(&path, &Limits { max_bytes: 1000 }).unwrap_err().to_string();
+    assert!(error.contains("p.png") && !error.contains('\n'), "{error}");
+    let bytes = fs::read(&path).unwrap();
+    for keep in [0, 8, 20, 40, bytes.len() / 2] {
+        fs::write(&path, &bytes[..keep]).unwrap();
+        let error = read(&path, &Limits::default()).unwrap_err();
+        assert!(matches!(error, IoError::Format { .. }), "{keep} bytes: {error}");
+    }
 }

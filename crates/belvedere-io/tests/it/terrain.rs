@@ -354,6 +354,52 @@ fn an_undeclared_frame_is_told_not_guessed() {
     assert!(told.heightfield.z_range()[0] > 0.0);
 }
 
+#[test]
+fn feet_and_rotation_become_metres_and_axes() {
+    let folder = Folder::new("terrain-feet");
+    let path = folder.0.join("feet.asc");
+    // California zone 6, US survey feet: EPSG:2230
+    write_asc(&path, 20, 20, 6_331_000.0, 1_944_000.0, 100.0, &|c, r| (c + r) as f64);
+    let (terrain, _) =
+        load(std::slice::from_ref(&path), &TerrainRequest { source_crs: Some(2230), ..Default::default() }).unwrap();
+    assert_eq!(terrain.crs, Crs::Epsg(32611));
+    let foot = 1200.0 / 3937.0;
+    assert!((terrain.source_spacing_m - 100.0 * foot).abs().max_element() < 0.02, "{}", terrain.source_spacing_m);
+    let request = TerrainRequest { source_crs: Some(2230), crs: CrsChoice::Local, ..Default::default() };
+    let (local, _) = load(&[path], &request).unwrap();
+    assert!((local.heightfield.spacing() - 100.0 * foot).abs().max_element() < 1e-9);
+    assert_eq!(local.heightfield.node(3, 4).unwrap().z, 7.0);
+    // a raster turned by 30 degrees: a linear field must come out as it is
+    let Some(rotated) = data("odd/rotated.tif") else { return };
+    let (terrain, _) = load(&[rotated], &TerrainRequest::default()).unwrap();
+    assert!(terrain.resample_error.unwrap().max_m < 1e-3, "{:?}", terrain.resample_error);
+    assert!((terrain.source_spacing_m - DVec2::new(20.0, 10.0)).abs().max_element() < 1e-6);
+}
+
+#[test]
+fn absurd_grids_are_refused_or_cleaned() {
+    let folder = Folder::new("terrain-absurd");
+    let path = folder.0.join("a.asc");
+    let z = |c: usize, r: usize| (c * r) as f64;
+    for (x, cell, code) in
+        [(1e300, 30.0, None), (5e5, 1e-12, None), (1e12, 30.0, Some(32631)), (400.0, 1.0, Some(4326))]
+    {
+        write_asc(&path, 5, 5, x, x, cell, &z);
+        let request = TerrainRequest { source_crs: code, ..Default::default() };
+        let error = load(std::slice::from_ref(&path), &request).unwrap_err().to_string();
+        assert!(error.contains("a.asc") && !error.contains('\n') && error.len() < 600, "{x} {cell}: {error}");
+    }
+    let wild = |c: usize, r: usize| if c == r { 3.4e38 } else { 5.0 };
+    write_asc(&path, 5, 5, 5e5, 5e6, 30.0, &wild);
+    let (terrain, warnings) =
+        load(std::slice::from_ref(&path), &TerrainRequest { source_crs: Some(32631), ..Default::default() }).unwrap();
+    assert_eq!((terrain.void_samples, terrain.heightfield.z_range()), (5, [5.0, 5.0]));
+    assert!(warnings.iter().any(|w| w.contains("5 samples beyond")), "{warnings:?}");
+    write_asc(&path, 5, 5, 5e5, 5e6, 30.0, &|_, _| -9999.0);
+    let error = load(&[path], &TerrainRequest::default()).unwrap_err().to_string();
+    assert!(error.contains("no data at all"), "{error}");
+}
+
 fn write_hgt(path: &Path, side: usize, z: impl Fn(usize, usize) -> i16) {
     let bytes: Vec<u8> = (0..side * side).flat_map(|i| z(i % side, i / side).to_be_bytes()).collect();
     fs::write(path, bytes).unwrap();
