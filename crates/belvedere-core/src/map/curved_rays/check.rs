@@ -12,6 +12,8 @@ use glam::{DVec2, DVec3};
 const KINK: f64 = 1e-6;
 /// A plane nearer to the bend point than this share of the distance does not define a wedge.
 const TOUCHING: f64 = 1e-8;
+/// Largest coordinate of a parameter; products of a few of them stay far from overflow.
+const LARGEST: f64 = 1e15;
 
 /// The forms of a turn, scaled: `h = a - b` is -1 at the viewpoint after the turn.
 #[derive(Debug, Clone)]
@@ -103,6 +105,9 @@ fn numbers(spec: &TurnSpec, turn: usize) -> Result<(), CurvedRaysError> {
     for (name, p) in named {
         if let Some(value) = p.to_array().into_iter().find(|c| !c.is_finite()) {
             return Err(CurvedRaysError::NotFinite { turn, name, value });
+        }
+        if let Some(value) = p.to_array().into_iter().find(|c| c.abs() > LARGEST) {
+            return Err(CurvedRaysError::TooLarge { turn, name, value, limit: LARGEST });
         }
     }
     if v.normalize_or_zero() == DVec3::ZERO {

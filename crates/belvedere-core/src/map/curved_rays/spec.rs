@@ -142,6 +142,18 @@ pub enum CurvedRaysError {
         /// The value.
         value: f64,
     },
+    /// A coordinate so large that geometry drowns in rounding.
+    #[error("turn {turn}: {name} has the coordinate {value:e}, beyond +-{limit:e}; give scene coordinates")]
+    TooLarge {
+        /// Turn, from 1.
+        turn: usize,
+        /// Which parameter.
+        name: &'static str,
+        /// The value.
+        value: f64,
+        /// Limit, scene units.
+        limit: f64,
+    },
     /// A direction of length 0.
     #[error("turn {turn}: {name} has length 0; give a direction")]
     ZeroDirection {

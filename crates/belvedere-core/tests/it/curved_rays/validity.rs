@@ -68,6 +68,12 @@ fn numbers_that_are_none() {
 }
 
 #[test]
+fn numbers_beyond_all_scenes() {
+    let e = error(&[TurnSpec { viewpoint: -1e16 * DVec3::Z, ..side() }]);
+    assert_eq!(e, E::TooLarge { turn: 1, name: "viewpoint", value: -1e16, limit: 1e15 });
+}
+
+#[test]
 fn directions_of_length_zero() {
     let e = error(&[TurnSpec { pencil: Pencil::Parallel { normal: DVec3::ZERO }, ..side() }]);
     assert_eq!(e, E::ZeroDirection { turn: 1, name: "normal" });
@@ -296,4 +302,43 @@ fn unusual_but_valid() {
             }
         }
     }
+}
+
+/// Any numbers whatever: an error of one readable sentence, or a camera without NaN.
+#[test]
+fn hostile_specifications_never_panic() {
+    let mut random = belvedere_testkit::Random::new(0x405);
+    let values = [0.0, 1.0, -1.0, 50.0, 75.0, 100.0, 1e-300, 1e-9, 1e9, 1e160, 1e300, f64::MAX];
+    let mut accepted = 0;
+    for _ in 0..20_000 {
+        let mut point = || {
+            DVec3::from_array([0; 3].map(|_: i32| {
+                if random.unit() < 0.2 { values[random.below(values.len())] } else { random.range(-120.0, 120.0) }
+            }))
+        };
+        let (viewpoint, t0, t1, t2, u, v) = (point(), point(), point(), point(), point(), point());
+        let pencil =
+            if random.unit() < 0.5 { Pencil::Line { point: u, dir: v } } else { Pencil::Parallel { normal: u } };
+        let m = [Sharpness::Bend, Sharpness::Left, Sharpness::Mid, Sharpness::Value(2.0)][random.below(4)];
+        let turn = TurnSpec { viewpoint, t0, t1, t2, pencil, m };
+        let model = [Model::Modified, Model::Original, Model::C0, Model::C2, Model::Circular][random.below(5)];
+        match CurvedRays::new(&root(), model, &[turn]) {
+            Err(e) => assert!(!e.to_string().contains("NaN"), "{turn:?}: {e}"),
+            Ok(rays) => {
+                accepted += 1;
+                let view = View::new(root(), vec![Stage::CurvedRays(rays)]).unwrap();
+                for pixel in [DVec2::ZERO, DVec2::new(640.0, 360.0), DVec2::new(1e7, -3.0)] {
+                    for depth in [1.0, 30.0, 80.0, 1e4, 1e200] {
+                        let Ok(at) = view.ray(pixel).at(depth) else { continue };
+                        assert!(at.point.is_finite(), "{turn:?} {pixel} {depth}");
+                        if let Ok(image) = view.project(at.point) {
+                            assert!(image.pixel.is_finite() && image.depth > 0.0, "{turn:?}: {image:?}");
+                        }
+                    }
+                    assert!(view.ray(pixel).path_length(100.0).map_or(true, f64::is_finite), "{turn:?}");
+                }
+            }
+        }
+    }
+    assert!(accepted > 50, "only {accepted} valid cameras");
 }
