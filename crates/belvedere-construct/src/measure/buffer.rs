@@ -3,13 +3,14 @@
 use super::Judged;
 use crate::ConstructError;
 use crate::samples::{Sample, SampledFeature};
-use belvedere_core::{Camera, DVec2, DVec3, View};
+use belvedere_core::{Camera, DVec2, DVec3, Pinhole, View};
 use belvedere_scene::{Frame, Heightfield, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
 
 pub(super) struct Job<'a> {
     pub(super) scene: &'a Scene,
     pub(super) renderer: &'a dyn Renderer,
     pub(super) light: &'a Light,
+    pub(super) scale: Option<u32>,
     pub(super) progress: &'a Progress,
 }
 
@@ -32,6 +33,24 @@ struct Footprint {
 }
 
 impl Job<'_> {
+    /// The same view on a finer image.
+    fn enlarged(&self, view: &View, judged: &[Vec<Judged>]) -> Result<View, ConstructError> {
+        let pinhole = view.pinhole();
+        let mut depths: Vec<f64> = judged.iter().flatten().filter(|j| j.in_frame).map(|j| j.depth).collect();
+        depths.sort_by(f64::total_cmp);
+        let scale = self.scale.unwrap_or_else(|| {
+            let cell = self.scene.terrain().map_or(f64::INFINITY, |hf| hf.spacing().min_element());
+            let depth =
+                if pinhole.is_orthographic() { 1.0 } else { depths.get(depths.len() / 2).copied().unwrap_or(0.0) };
+            let wanted = (4.0 * depth / (pinhole.scale_px() * cell)).ceil().clamp(1.0, 3.0);
+            let pixels = f64::from(pinhole.image[0]) * f64::from(pinhole.image[1]);
+            wanted.min((8e6 / pixels).sqrt().floor().max(1.0)) as u32
+        });
+        let scale = scale.clamp(1, 8).min(65_535 / pinhole.image[0].max(pinhole.image[1])).max(1);
+        let larger = Pinhole { image: pinhole.image.map(|n| n * scale), ..pinhole.clone() };
+        Ok(View::new(larger, view.stages().to_vec())?)
+    }
+
     /// Fills in [`Judged::in_buffer`].
     pub(super) fn judge(
         &self,
@@ -39,6 +58,9 @@ impl Job<'_> {
         features: &[SampledFeature],
         judged: &mut [Vec<Judged>],
     ) -> Result<(), ConstructError> {
+        let original = view.pinhole().image[0];
+        let enlarged = self.enlarged(view, judged)?;
+        let view = &enlarged;
         let options = RenderOptions { samples: 1, ..RenderOptions::default() };
         let job = RenderJob { scene: self.scene, view, light: self.light, options: &options, progress: self.progress };
         let frame = self.renderer.render(&job)?;
@@ -52,9 +74,11 @@ impl Job<'_> {
             });
         }
         let terrain = self.scene.terrain();
+        let finer = width as f64 / f64::from(original);
         for (feature, row) in features.iter().zip(judged) {
             for (sample, j) in feature.samples.iter().zip(row.iter_mut()).filter(|(_, j)| j.in_frame) {
-                j.in_buffer = Some(in_buffer(view, terrain, sample, j, &frame));
+                let finer = Judged { pixel: finer * j.pixel, ..*j };
+                j.in_buffer = Some(in_buffer(view, terrain, sample, &finer, &frame));
             }
         }
         Ok(())

@@ -29,11 +29,14 @@ pub struct MeasureOptions {
     pub guard_m: Option<f64>,
     /// See [`SightOptions::chord_m`].
     pub chord_m: f64,
+    /// The picture for the depth test is drawn this many times larger, 1..=8, so that its pixels resolve the ground;
+    /// `None` = a quarter of a grid cell per pixel, at most 3 times and 8 million pixels.
+    pub buffer_scale: Option<u32>,
 }
 
 impl Default for MeasureOptions {
     fn default() -> Self {
-        Self { spacing_m: None, near_miss_m: 2.0, cap_m: 50.0, guard_m: None, chord_m: 0.05 }
+        Self { spacing_m: None, near_miss_m: 2.0, cap_m: 50.0, guard_m: None, chord_m: 0.05, buffer_scale: None }
     }
 }
 
@@ -97,7 +100,7 @@ pub fn measure(
     if let Some(renderer) = renderer {
         progress.tick("pictures for the depth test", 0.6)?;
         let light = Light::default();
-        let job = buffer::Job { scene, renderer, light: &light, progress };
+        let job = buffer::Job { scene, renderer, light: &light, scale: options.buffer_scale, progress };
         job.judge(&straight_view, &features, &mut straight)?;
         if view.is_bent() {
             job.judge(view, &features, &mut bent)?;

@@ -7,7 +7,7 @@ use belvedere_core::{DVec2, DVec3, Pinhole, Projection};
 /// Eyes are tried in this many directions.
 const DIRECTIONS: usize = 24;
 /// Pitches as shares of half the field of view: the horizon stays in the upper part of the picture.
-const PITCHES: [f64; 3] = [0.42, 0.56, 0.70];
+const PITCHES: [f64; 4] = [0.5, 0.65, 0.8, 1.0];
 /// Distances as shares of the one from which all features fit in the width.
 const DISTANCES: [f64; 4] = [1.12, 0.85, 0.62, 0.45];
 /// Middle shares of the features that the picture is centred on: all of them, or the denser half.

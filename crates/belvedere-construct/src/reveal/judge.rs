@@ -13,16 +13,18 @@ use serde::Serialize;
 pub struct Appraisal {
     /// Share of the features' amount inside the image, 0..=1.
     pub in_frame: f64,
+    /// Share inside the image and at least 4 % of its width or height away from its border.
+    pub in_margin: f64,
     /// Visible share of what is inside the image, 0..=1; 0 if nothing is.
     pub visible: f64,
     /// Vertical extent of the middle nine tenths of the features in the image, share of the image height.
     pub spread: f64,
     /// Length in the image of everything inside it, in image widths.
     pub drawn: f64,
-    /// Share of the image below the horizon that ground of the data covers, judged by a grid of rays.
+    /// Share of the image below the skyline that ground of the data covers, judged by a grid of rays.
     pub covered: f64,
-    /// Place of the ground's horizon from the top of the image, share of the height; negative = above it.
-    pub horizon: f64,
+    /// Mean place of the upper edge of the ground, share of the image height from the top; 1 = no ground in the image.
+    pub skyline: f64,
 }
 
 /// A scene prepared for judging many views.
@@ -47,7 +49,7 @@ impl<'a> Judge<'a> {
             heightfield,
             plane: ReferencePlane::level(median_height(heightfield)),
             samples: thin(features, count),
-            ground: nodes(heightfield, 2_500),
+            ground: nodes(heightfield, 2_000),
             cell: heightfield.spacing().max_element(),
         }
     }
@@ -57,7 +59,8 @@ impl<'a> Judge<'a> {
         // Only whether a sample is seen counts, and a quarter of a cell is exact enough to choose by.
         let sight = SightOptions { chord_m: 0.05 * self.cell, cap_m: 0.0, guard_m: 1.5 * self.cell };
         let pinhole = view.pinhole();
-        let (mut all, mut framed, mut seen, mut drawn) = (0.0, 0.0, 0.0, 0.0);
+        let (mut all, mut framed, mut inner, mut seen, mut drawn) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        let centre = pinhole.center_px();
         let mut rows: Vec<f64> = Vec::new();
         for sample in self.samples.iter().step_by(stride.max(1)) {
             all += sample.amount;
@@ -66,6 +69,9 @@ impl<'a> Judge<'a> {
                 continue;
             }
             framed += sample.amount;
+            if ((image.pixel - centre) / centre).abs().max_element() < 0.92 {
+                inner += sample.amount;
+            }
             rows.push(image.pixel.y);
             drawn += sample.amount / image.depth;
             let at = (image.pixel, image.depth);
@@ -75,38 +81,43 @@ impl<'a> Judge<'a> {
         }
         rows.sort_by(f64::total_cmp);
         let quantile = |q: f64| rows.get((q * (rows.len().max(1) - 1) as f64).round() as usize).copied().unwrap_or(0.0);
-        let horizon = self.horizon(view);
+        let skyline = self.skyline(view);
         let [width, height] = pinhole.image.map(f64::from);
         Appraisal {
             in_frame: if all > 0.0 { framed / all } else { 0.0 },
+            in_margin: if all > 0.0 { inner / all } else { 0.0 },
             visible: if framed > 0.0 { seen / framed } else { 0.0 },
             spread: (quantile(0.95) - quantile(0.05)) / height,
             drawn: drawn * pinhole.scale_px() / width,
-            covered: self.covered(view, horizon),
-            horizon,
+            covered: self.covered(view, skyline),
+            skyline,
         }
     }
 
-    /// Where the reference plane vanishes, share of the image height from the top.
-    fn horizon(&self, view: &View) -> f64 {
-        let pinhole = view.pinhole();
-        let bend = view.stages().iter().find_map(|s| if let Stage::SplineBend(b) = s { Some(b) } else { None });
-        let elevation = match bend {
-            Some(b) => b.curve().at(2.0 * b.curve().length()).1.to_angle(),
-            None => (-pinhole.forward.z).asin(),
-        };
-        let height = f64::from(pinhole.image[1]);
-        if elevation >= 1.5 { -1.0 } else { (0.5 * height - pinhole.scale_px() * elevation.tan()) / height }
+    /// Mean over the columns of the image of the highest terrain node in each, share of the image height from the top.
+    fn skyline(&self, view: &View) -> f64 {
+        const COLUMNS: usize = 12;
+        let [width, height] = view.pinhole().image.map(f64::from);
+        let mut top = [height; COLUMNS];
+        for &p in &self.ground {
+            let Ok(image) = view.project(p) else { continue };
+            let column = image.pixel.x / width * COLUMNS as f64;
+            if (0.0..COLUMNS as f64).contains(&column) {
+                let highest = &mut top[column as usize];
+                *highest = highest.min(image.pixel.y.max(0.0));
+            }
+        }
+        top.iter().sum::<f64>() / (COLUMNS as f64 * height)
     }
 
-    /// Share of a grid of rays below the horizon that meet the reference plane over the data.
-    fn covered(&self, view: &View, horizon: f64) -> f64 {
+    /// Share of a grid of rays below the skyline that meet the reference plane over the data.
+    fn covered(&self, view: &View, skyline: f64) -> f64 {
         let [width, height] = view.pinhole().image.map(f64::from);
-        let top = horizon.clamp(0.0, 0.9);
+        let top = skyline.clamp(0.0, 0.9);
         let (mut hit, mut all) = (0.0, 0.0);
         // The lower the row, the nearer and the more conspicuous a missing corner of the ground.
-        for (part, weight) in [(0.3, 0.5), (0.5, 1.0), (0.75, 1.5), (0.985, 2.0)] {
-            for column in [0.01, 0.2, 0.4, 0.6, 0.8, 0.99] {
+        for (part, weight) in [(0.12, 0.5), (0.3, 1.0), (0.6, 1.5), (0.985, 2.0)] {
+            for column in [0.005, 0.1, 0.35, 0.65, 0.9, 0.995] {
                 let pixel = DVec2::new(column * width, (top + (1.0 - top) * part) * height);
                 all += weight;
                 if self.meets_data(view, pixel) {

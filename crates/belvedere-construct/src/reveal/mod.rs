@@ -197,6 +197,8 @@ fn given_view(judge: &Judge<'_>, view: &View) -> Result<(View, Appraisal), Const
 
 /// Views kept for the search of a bend.
 const VIEWS_KEPT: usize = 8;
+/// Views whose bend is improved before one is chosen.
+const VIEWS_REFINED: usize = 3;
 
 /// Judges every eye by its straight picture and keeps the best, not two from nearly the same direction.
 fn promising_views(
@@ -236,12 +238,13 @@ fn promising_views(
 
 /// How promising a straight picture is: it should look natural, hold the features, and hide a good deal of them.
 fn straight_score(a: &Appraisal, heading_deg: f64, options: &RevealOptions) -> f64 {
-    let most = (options.goal_share / options.goal_gain).min(0.55);
-    let hidden = 3.0 * (a.visible - most).max(0.0) + 2.0 * (0.25 - a.visible).max(0.0);
+    let most = 0.85 * (options.goal_share / options.goal_gain).min(0.6);
+    let hidden = 3.0 * (a.visible - most).max(0.0) + 1.5 * (0.25 - a.visible).max(0.0);
     // Light comes from the north-west: looking north shows the shaded side of the relief as readers of maps know it.
     let north = 0.06 * heading_deg.to_radians().cos();
-    a.in_frame + 0.25 * (a.drawn / 0.8).min(1.0) - 1.6 * (1.0 - a.covered) - hidden + north
-        - 0.8 * (0.10 - a.horizon).max(0.0)
+    let sky = (0.08 - a.skyline).max(0.0) + (a.skyline - 0.25).max(0.0);
+    0.6 * a.in_frame + 0.4 * a.in_margin + 0.25 * (a.drawn / 0.8).min(1.0) - 2.0 * (1.0 - a.covered) - hidden + north
+        - 1.5 * sky
 }
 
 struct Chosen {
@@ -258,19 +261,28 @@ fn best_bend_of_all(
     progress: &Progress,
 ) -> Result<(Chosen, usize), ConstructError> {
     let stride = stride_for(judge.samples.len(), options);
-    let (mut best, mut tried): (Option<Chosen>, usize) = (None, 0);
-    for (i, (view, straight)) in bases.iter().enumerate() {
-        progress.tick("bending the picture", 0.3 + 0.5 * i as f64 / bases.len() as f64)?;
-        let mut search = BendSearch::new(judge, view, *straight, stride);
+    let (mut found, mut tried): (Vec<Chosen>, usize) = (Vec::new(), 0);
+    for (view, (base, straight)) in bases.iter().enumerate() {
+        progress.tick("bending the picture", 0.3 + 0.3 * view as f64 / bases.len() as f64)?;
+        let mut search = BendSearch::new(judge, base, *straight, stride);
         let remembered = memory.start.as_ref().and_then(|start| search.refine(start, 0));
-        for (start, found) in search.coarse().into_iter().chain(remembered) {
-            let looks = found.score + 0.4 * straight.in_frame + 0.3 * straight.covered;
-            if best.as_ref().is_none_or(|b| looks > b.score) {
-                best = Some(Chosen { view: i, start, score: looks });
-            }
+        let view_score = straight_score(straight, 0.0, options);
+        let best = search.coarse().into_iter().chain(remembered).max_by(|a, b| a.1.score.total_cmp(&b.1.score));
+        found.extend(best.map(|(start, t)| Chosen { view, start, score: t.score + view_score }));
+        tried += search.tried;
+    }
+    found.sort_by(|a, b| b.score.total_cmp(&a.score));
+    found.truncate(VIEWS_REFINED);
+    for (i, chosen) in found.iter_mut().enumerate() {
+        progress.tick("bending the picture", 0.6 + 0.2 * i as f64 / VIEWS_REFINED as f64)?;
+        let (base, straight) = &bases[chosen.view];
+        let mut search = BendSearch::new(judge, base, *straight, stride);
+        if let Some((start, better)) = search.refine(&chosen.start, 3) {
+            *chosen = Chosen { start, score: better.score + straight_score(straight, 0.0, options), ..*chosen };
         }
         tried += search.tried;
     }
+    let best = found.into_iter().reduce(|best, next| if next.score > best.score { next } else { best });
     best.map(|b| (b, tried)).ok_or(ConstructError::NoView { tried: bases.len() })
 }
 
@@ -302,7 +314,7 @@ fn finish(judge: &Judge<'_>, base: &View, best: Tried, options: &RevealOptions, 
     let mut warnings = Vec::new();
     if bent.covered < 0.8 {
         warnings.push(format!(
-            "the ground of the data fills {:.0} % of the picture below the horizon",
+            "the ground of the data fills {:.0} % of the picture below the skyline",
             100.0 * bent.covered
         ));
     }

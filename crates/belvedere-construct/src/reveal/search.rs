@@ -50,10 +50,10 @@ impl Knobs {
         let depth = (last - first).max(0.1 * middle);
         let angle = lerp(25f64.to_radians(), 70f64.to_radians(), self.middle);
         // The horizon lies between the upper edge of the picture and its middle.
-        let far = (frame.half_fov.tan() * lerp(0.45, 0.9, self.far)).atan();
+        let far = (frame.half_fov.tan() * lerp(0.4, 1.1, self.far)).atan();
         let near = lerp(frame.pitch, angle, self.near);
         let start = lerp(first - 0.2 * depth, last + 0.3 * depth, self.fall_from).max(0.3 * middle);
-        let length = lerp(0.2, 1.5, self.fall_length) * depth;
+        let length = lerp(0.25, 2.0, self.fall_length).max(0.2) * depth;
         let rise = [(first - 0.9 * depth).max(0.15 * middle), (first + 0.1 * depth).max(0.3 * middle).min(start)];
         BendShape {
             near,
@@ -115,16 +115,24 @@ impl<'a, 'b> BendSearch<'a, 'b> {
         let lost = (self.frame.straight_in_frame * 0.97 - a.in_frame).max(0.0) / self.frame.straight_in_frame.max(1e-9);
         let gain = a.visible / self.straight.visible.max(0.05);
         // The goals first, then as much as possible, then looks.
-        let goals = 2.0 * (0.80 - a.visible).max(0.0) + 0.5 * (1.6 - gain).max(0.0) + 6.0 * lost;
-        let bend = (shape.middle - self.frame.pitch).abs() / 1.0 + 0.3 * (shape.middle - shape.near).abs();
-        let sky = (0.07 - a.horizon).max(0.0) + (a.horizon - 0.24).max(0.0);
+        let goals = 8.0 * (0.79 - a.visible).max(0.0)
+            + (0.88 - a.visible).max(0.0)
+            + 2.0 * (1.6 - gain).max(0.0)
+            + 6.0 * lost
+            + 30.0 * (lost - 0.04).max(0.0);
+        let bend = (shape.middle - self.frame.pitch).abs() + 0.3 * (shape.middle - shape.near).abs();
+        let sky = (0.10 - a.skyline).max(0.0) + (a.skyline - 0.20).max(0.0);
+        // Turning per distance: ground that tips over a kink looks broken.
+        let kink = (shape.middle - shape.far).abs() * self.frame.features[1] / (shape.fall[1] - shape.fall[0]);
         let fill = (0.45 - a.spread).max(0.0) + 2.0 * (a.spread - 0.85).max(0.0);
         a.visible
             - goals
             - 0.12 * bend
-            - 1.2 * sky
-            - 0.5 * fill
-            - 1.0 * (1.0 - a.covered)
+            - 3.0 * sky
+            - 0.3 * fill
+            - 2.0 * (1.0 - a.covered)
+            - 1.0 * (a.in_frame - a.in_margin)
+            - 0.04 * (kink - 1.0).max(0.0)
             - 0.6 * (0.6 - squeeze).max(0.0)
             - 4.0 * (0.03 - facing).max(0.0)
     }

@@ -4,7 +4,13 @@ use belvedere_core::{DVec3, View};
 use belvedere_scene::{Progress, Renderer, Scene};
 
 fn run(scene: &Scene, view: &View, renderer: Option<&dyn Renderer>) -> Result<Measures, ConstructError> {
-    measure(scene, view, renderer, &MeasureOptions::default(), &Progress::silent())
+    measure(
+        scene,
+        view,
+        renderer,
+        &MeasureOptions { buffer_scale: Some(1), ..MeasureOptions::default() },
+        &Progress::silent(),
+    )
 }
 
 #[test]
