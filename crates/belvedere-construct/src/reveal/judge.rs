@@ -17,6 +17,9 @@ pub struct Appraisal {
     pub in_margin: f64,
     /// Visible share of what is inside the image, 0..=1; 0 if nothing is.
     pub visible: f64,
+    /// Angle under which flat ground would be seen if the features in the image filled four fifths of its height, from
+    /// the nearest to the farthest, radians: what a bend can come to from this eye (a logarithmic spiral, ours).
+    pub attainable: f64,
     /// Vertical extent of the middle nine tenths of the features in the image, share of the image height.
     pub spread: f64,
     /// Length in the image of everything inside it, in image widths.
@@ -61,7 +64,7 @@ impl<'a> Judge<'a> {
         let pinhole = view.pinhole();
         let (mut all, mut framed, mut inner, mut seen, mut drawn) = (0.0, 0.0, 0.0, 0.0, 0.0);
         let centre = pinhole.center_px();
-        let mut rows: Vec<f64> = Vec::new();
+        let (mut rows, mut distances): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
         for sample in self.samples.iter().step_by(stride.max(1)) {
             all += sample.amount;
             let Ok(image) = view.project(sample.p_world) else { continue };
@@ -73,6 +76,7 @@ impl<'a> Judge<'a> {
                 inner += sample.amount;
             }
             rows.push(image.pixel.y);
+            distances.push((sample.p_world - pinhole.eye).length());
             drawn += sample.amount / image.depth;
             let at = (image.pixel, image.depth);
             if !image.folded && self.obstacles.clearance(view, (sample.p_world, sample.lift), at, &sight) >= 0.0 {
@@ -80,14 +84,17 @@ impl<'a> Judge<'a> {
             }
         }
         rows.sort_by(f64::total_cmp);
-        let quantile = |q: f64| rows.get((q * (rows.len().max(1) - 1) as f64).round() as usize).copied().unwrap_or(0.0);
+        distances.sort_by(f64::total_cmp);
+        let height_angle = 2.0 * (0.5 * f64::from(pinhole.image[1]) / pinhole.scale_px()).atan();
+        let depth_ratio = quantile(&distances, 0.97) / quantile(&distances, 0.03).max(1e-9);
         let skyline = self.skyline(view);
         let [width, height] = pinhole.image.map(f64::from);
         Appraisal {
             in_frame: if all > 0.0 { framed / all } else { 0.0 },
             in_margin: if all > 0.0 { inner / all } else { 0.0 },
             visible: if framed > 0.0 { seen / framed } else { 0.0 },
-            spread: (quantile(0.95) - quantile(0.05)) / height,
+            attainable: (0.8 * height_angle).atan2(depth_ratio.ln().max(0.0)),
+            spread: (quantile(&rows, 0.95) - quantile(&rows, 0.05)) / height,
             drawn: drawn * pinhole.scale_px() / width,
             covered: self.covered(view, skyline),
             skyline,
@@ -175,6 +182,11 @@ impl<'a> Judge<'a> {
         }
         (if squeeze.is_finite() { squeeze } else { 1.0 }, faced)
     }
+}
+
+/// Value below which the share `q` of sorted `values` lies; 0 if there are none.
+pub(crate) fn quantile(values: &[f64], q: f64) -> f64 {
+    values.get((q * (values.len().max(1) - 1) as f64).round() as usize).copied().unwrap_or(0.0)
 }
 
 /// About `count` samples that stand for all: runs of neighbours are merged into their middle one.

@@ -196,7 +196,7 @@ fn given_view(judge: &Judge<'_>, view: &View) -> Result<(View, Appraisal), Const
 }
 
 /// Views kept for the search of a bend.
-const VIEWS_KEPT: usize = 8;
+const VIEWS_KEPT: usize = 10;
 /// Views whose bend is improved before one is chosen.
 const VIEWS_REFINED: usize = 3;
 
@@ -245,6 +245,7 @@ fn straight_score(a: &Appraisal, heading_deg: f64, options: &RevealOptions) -> f
     let sky = (0.08 - a.skyline).max(0.0) + (a.skyline - 0.25).max(0.0);
     0.6 * a.in_frame + 0.4 * a.in_margin + 0.25 * (a.drawn / 0.8).min(1.0) - 2.0 * (1.0 - a.covered) - hidden + north
         - 1.5 * sky
+        - 1.2 * (0.8 - a.attainable).max(0.0)
 }
 
 struct Chosen {

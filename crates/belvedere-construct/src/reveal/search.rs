@@ -1,7 +1,7 @@
 //! Looks for the bend that shows most of the features without spoiling the picture.
 
 use super::RevealOptions;
-use super::judge::{Appraisal, Judge};
+use super::judge::{Appraisal, Judge, quantile};
 use super::shape::{BendShape, Built};
 use belvedere_core::{Projection, View};
 use rayon::prelude::*;
@@ -48,19 +48,19 @@ impl Knobs {
         let lerp = |a: f64, b: f64, t: f64| a + (b - a) * t;
         let [first, middle, last] = frame.features;
         let depth = (last - first).max(0.1 * middle);
-        let angle = lerp(25f64.to_radians(), 70f64.to_radians(), self.middle);
-        // The horizon lies between the upper edge of the picture and its middle.
-        let far = (frame.half_fov.tan() * lerp(0.4, 1.1, self.far)).atan();
-        let near = lerp(frame.pitch, angle, self.near);
+        // Equal steps are equal factors: 6 to 75 degrees.
+        let angle = 6f64.to_radians() * (75f64 / 6.0).powf(self.middle.clamp(0.0, 1.0));
+        let far = lerp(0.02, 0.25, self.far.clamp(0.0, 1.0)).min(angle);
+        let straight = (frame.pitch + frame.half_fov).clamp(0.1, 1.0);
         let start = lerp(first - 0.2 * depth, last + 0.3 * depth, self.fall_from).max(0.3 * middle);
-        let length = lerp(0.25, 2.0, self.fall_length).max(0.2) * depth;
-        let rise = [(first - 0.9 * depth).max(0.15 * middle), (first + 0.1 * depth).max(0.3 * middle).min(start)];
+        let length = (lerp(0.25, 2.0, self.fall_length) * depth).max(0.2 * depth);
+        let nearest = (first - 0.9 * depth).max(0.12 * middle).min(0.8 * first);
         BendShape {
-            near,
+            near: lerp(angle, straight, self.near.clamp(0.0, 1.0)),
             middle: angle,
             far,
-            pivot: lerp(first, last, self.pivot),
-            rise,
+            pivot: lerp(first, last, self.pivot).max(nearest),
+            rise: [nearest, (first + 0.1 * depth).min(start).max(1.05 * nearest)],
             fall: [start, start + length],
         }
     }
@@ -88,13 +88,13 @@ impl<'a, 'b> BendSearch<'a, 'b> {
             .map(|s| (s.p_world - pinhole.eye).dot(heading))
             .collect();
         along.sort_by(f64::total_cmp);
-        let at = |q: f64| along.get((q * (along.len().max(1) - 1) as f64).round() as usize).copied().unwrap_or(1.0);
+        let at = |q: f64| quantile(&along, q).max(1.0);
         let half_fov = match pinhole.projection {
             Projection::Perspective { fov_y } => 0.5 * fov_y,
             Projection::Orthographic { .. } => 0.4,
         };
         let pitch = (-pinhole.forward.z).asin();
-        let features = [at(0.03).max(1.0), at(0.5).max(1.0), at(0.97).max(1.0)];
+        let features = [at(0.03), at(0.5), at(0.97)];
         let frame = Frame { features, half_fov, pitch, straight_in_frame: straight.in_frame };
         Self { judge, base, frame, straight, stride, tried: 0 }
     }
@@ -148,10 +148,10 @@ impl<'a, 'b> BendSearch<'a, 'b> {
     /// A coarse look over the whole range of bends.
     pub(crate) fn coarse(&mut self) -> Option<(Start, Tried)> {
         let mut grid = Vec::new();
-        for middle in [0.3, 0.55, 0.8] {
+        for middle in [0.4, 0.6, 0.75, 0.9] {
             for (pivot, fall_from) in [(0.35, 0.35), (0.55, 0.6), (0.7, 0.85)] {
                 for fall_length in [0.25, 0.7] {
-                    grid.push(Knobs { middle, far: 0.55, near: 0.8, pivot, fall_from, fall_length });
+                    grid.push(Knobs { middle, far: 0.2, near: 0.2, pivot, fall_from, fall_length });
                 }
             }
         }

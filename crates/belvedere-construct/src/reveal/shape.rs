@@ -6,18 +6,19 @@ use belvedere_core::presets::{BendFrame, DepthUnits, Ease, Preset, PresetDocumen
 use belvedere_core::{DVec3, Pinhole, Stage, View};
 use serde::Serialize;
 
-/// A bend described by the angles at which the ground is seen from near to far.
+/// A bend described by the angles under which the eye sees the ground, from near to far.
 ///
-/// The ground before the features is seen at `near`, the features at `middle`, what lies behind at `far`, all
-/// against the optical axis (a horizon appears if `far` is less than half the field of view). Between these the
-/// angle changes smoothly. Source: the angle profile of spline section 11.7, drawn with an eight-point B-spline.
+/// The angle between the line of sight and the ground is `near` before the features, `middle` along them and `far`
+/// behind them, with smooth changes between. As long as all three are positive the ground faces the eye and rises in
+/// the picture with its distance. Source: ours; a curve that is seen under a constant angle is a logarithmic spiral
+/// around the eye. It is handed on as a B-spline (Pasewaldt et al. 2011).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BendShape {
-    /// Viewing angle of the foreground, radians.
+    /// Angle under which the foreground is seen, radians, > 0.
     pub near: f64,
-    /// Viewing angle of the features, radians.
+    /// Angle under which the ground of the features is seen, radians, > 0.
     pub middle: f64,
-    /// Viewing angle of the background, radians.
+    /// Angle under which the far end of the curve is seen, radians, > 0; behind it the ground goes on straight, to a horizon.
     pub far: f64,
     /// Distance along the heading, from the eye, of the point that keeps its place in the picture, scene units.
     pub pivot: f64,
@@ -28,7 +29,7 @@ pub struct BendShape {
 }
 
 /// Points of the control polygon of a shape.
-const CONTROL_POINTS: usize = 8;
+const CONTROL_POINTS: usize = 10;
 
 /// A bend built for one camera.
 pub(crate) struct Built {
@@ -38,7 +39,7 @@ pub(crate) struct Built {
 }
 
 impl BendShape {
-    /// Viewing angle at a distance along the heading.
+    /// Angle under which the ground at a distance along the heading is seen, radians.
     pub fn angle_at(&self, distance: f64) -> f64 {
         let step = |[from, to]: [f64; 2]| {
             let t = ((distance - from) / (to - from).max(1e-9)).clamp(0.0, 1.0);
@@ -58,28 +59,58 @@ impl BendShape {
         Ok(Built { document, pivot, view: View::new(pinhole.clone(), stages)? })
     }
 
-    /// Control points by walking the angle profile in equal legs, in units of `e - s`.
+    /// Slopes of the curve against the optical axis: (distance along the heading, slope), by rising distance.
+    fn slopes(&self, pinhole: &Pinhole, pivot: DVec3) -> Vec<(f64, f64)> {
+        let to_pivot = pivot - pinhole.eye;
+        let (along, up) = (to_pivot.dot(pinhole.forward), -to_pivot.dot(pinhole.down));
+        let walk = |sign: f64, end: f64| {
+            // Polar coordinates around the eye: distance and elevation over the optical axis.
+            let (mut r, mut elevation) = (along.hypot(up).max(1e-9), up.atan2(along));
+            let mut place = self.pivot;
+            let mut out = Vec::new();
+            while sign * (end - place) > 0.0 && elevation.abs() < 1.2 && out.len() < 2_000 {
+                let step = (0.01 * r).min((end - place).abs()).max(1e-9);
+                let seen = self.angle_at(place + 0.5 * sign * step);
+                out.push((place + 0.5 * sign * step, elevation + seen));
+                r += sign * step * seen.cos();
+                elevation += sign * step * seen.sin() / r.max(1e-9);
+                place += sign * step;
+            }
+            out
+        };
+        let mut slopes = walk(-1.0, self.rise[0]);
+        slopes.reverse();
+        slopes.extend(walk(1.0, self.fall[1]));
+        slopes
+    }
+
+    /// Control points by walking the slopes in legs that grow with the distance, in units of `e - s`.
     fn document(&self, pinhole: &Pinhole, plane: &ReferencePlane, pivot: DVec3) -> PresetDocument {
-        // Places along the ground, relative to the pivot. A straight stretch at either end keeps the end tangents.
-        let straight = 0.02 * (self.fall[1] - self.rise[0]).abs().max(1.0);
-        let first = self.rise[0].min(self.fall[0]) - straight - self.pivot;
-        let last = self.fall[1].max(self.rise[1]) + straight - self.pivot;
+        let slopes = self.slopes(pinhole, pivot);
+        let ends = slopes.first().zip(slopes.last());
+        let (first, last) = ends.map_or((self.rise[0], self.fall[1]), |(a, b)| (a.0, b.0.max(a.0 + 1.0)));
         let pivot_depth = (pivot - pinhole.eye).dot(pinhole.forward);
-        let (legs, scale) = ((CONTROL_POINTS - 1) as f64, last - first);
+        let (legs, scale) = (CONTROL_POINTS - 1, last - first);
+        let place = |i: usize| {
+            let t = i as f64 / legs as f64;
+            0.5 * (first + t * scale) + 0.5 * first * (last / first).powf(t)
+        };
         let mut point = [0.0, 0.0];
         let mut control = vec![point];
-        for leg in 0..CONTROL_POINTS - 1 {
-            let place = self.pivot + first + scale * (leg as f64 + 0.5) / legs;
+        for leg in 0..legs {
+            let (from, to) = (place(leg), place(leg + 1));
+            // The curve ends in the direction of its first and last leg.
             let angle = match leg {
-                0 => self.angle_at(self.pivot + first),
-                l if l + 2 == CONTROL_POINTS => self.angle_at(self.pivot + last),
-                _ => self.angle_at(place),
+                0 => slope_over(&slopes, from, from),
+                l if l + 1 == legs => slope_over(&slopes, to, to),
+                _ => slope_over(&slopes, from, to),
             };
-            point = [point[0] + angle.cos() / legs, point[1] + angle.sin() / legs];
+            let length = (to - from) / scale;
+            point = [point[0] + length * angle.cos(), point[1] + length * angle.sin()];
             control.push(point);
         }
         let tidy = |v: f64, digits: f64| (v * digits).round() / digits;
-        let s = tidy(pivot_depth + first, 10.0);
+        let s = tidy(pivot_depth + first - self.pivot, 10.0);
         let preset = Preset {
             name: "reveal".into(),
             phi: tidy(viewing_angle(pinhole, plane).to_degrees(), 1e3),
@@ -104,6 +135,16 @@ impl BendShape {
             presets: vec![preset],
         }
     }
+}
+
+/// Mean slope between two distances; the nearest one where there is none between.
+fn slope_over(slopes: &[(f64, f64)], from: f64, to: f64) -> f64 {
+    let between: Vec<f64> = slopes.iter().filter(|s| (from..=to).contains(&s.0)).map(|s| s.1).collect();
+    if between.is_empty() {
+        let nearest = slopes.iter().min_by(|a, b| (a.0 - from).abs().total_cmp(&(b.0 - from).abs()));
+        return nearest.map_or(0.0, |s| s.1);
+    }
+    between.iter().sum::<f64>() / between.len() as f64
 }
 
 /// The point of the plane at `distance` from the eye along the camera's heading.

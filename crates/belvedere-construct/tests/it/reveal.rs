@@ -44,7 +44,6 @@ fn a_given_camera_is_kept() {
     let pinhole =
         belvedere_core::Pinhole::look_at(suggested.eye, suggested.look_at, DVec3::Z, lens, [640, 360], 1.0, None)
             .unwrap();
-    println!("{suggested:?} {:?} {}", scene.bounds(), pinhole.forward);
     let base = View::straight(pinhole);
     let found = run(&scene, Some(&base)).unwrap();
     assert_eq!(found.view.pinhole(), base.pinhole());
