@@ -45,6 +45,8 @@ pub(crate) struct Common {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
+    /// The built-in scenes, straight and bent side by side, with an index.html; needs no files
+    Demo(DemoArgs),
     /// Terrain and routes in, a picture in which the routes are visible out
     Reveal(RevealArgs),
     /// One picture and its record
@@ -59,6 +61,8 @@ pub(crate) enum Verb {
     Measure(MeasureArgs),
     /// Validate a scene
     Check(SceneArgs),
+    /// Describe data: size, system, range, voids, features
+    Info(InfoArgs),
     /// The scene with every default and rule resolved
     Show(ShowArgs),
     /// JSON Schema of scene files
@@ -70,6 +74,28 @@ pub(crate) enum Verb {
 pub(crate) struct SceneArgs {
     /// Scene file, TOML or JSON
     pub(crate) scene: PathBuf,
+}
+
+/// The demo.
+#[derive(Debug, Args)]
+pub(crate) struct DemoArgs {
+    /// Folder for the pictures
+    #[arg(short, long, value_name = "DIR", default_value = "belvedere-demo")]
+    pub(crate) out: PathBuf,
+    /// Size of each picture instead of the scenes' own
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub(crate) size: Option<[u32; 2]>,
+}
+
+/// Files to describe.
+#[derive(Debug, Args)]
+pub(crate) struct InfoArgs {
+    /// Rasters, features, or builtin:NAME
+    #[arg(required_unless_present = "adapters")]
+    pub(crate) files: Vec<String>,
+    /// Describe what this machine can draw with
+    #[arg(long)]
+    pub(crate) adapters: bool,
 }
 
 /// Terrain and features.
@@ -98,6 +124,9 @@ pub(crate) struct RevealArgs {
     /// Let the ground fall away with the distance
     #[arg(long)]
     pub(crate) curved_earth: bool,
+    /// Coordinate system of the scene: auto, EPSG:n or local
+    #[arg(long, value_name = "CRS")]
+    pub(crate) crs: Option<String>,
     /// Straight picture
     #[arg(long, value_name = "OUT.png")]
     pub(crate) before: Option<PathBuf>,

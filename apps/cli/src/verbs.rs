@@ -1,13 +1,13 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AuxKind, MeasureArgs, ProjectArgs, RaysArgs, RenderArgs, RendererKind, RevealArgs, SceneArgs, SchemaArgs, ShowArgs,
-    Verb,
+    AuxKind, DemoArgs, InfoArgs, MeasureArgs, ProjectArgs, RaysArgs, RenderArgs, RendererKind, RevealArgs, SceneArgs,
+    SchemaArgs, ShowArgs, Verb,
 };
 use crate::report::{Context, done, print};
 use belvedere::verbs::render::{self, AuxBuffer, RenderRequest};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
-use belvedere::verbs::{check, measure, output, points};
+use belvedere::verbs::{check, demo, info, measure, output, points};
 use belvedere::{Needs, Session};
 use std::path::{Path, PathBuf};
 
@@ -36,6 +36,8 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::Displace(args) => displace(&args, context),
         Verb::Reveal(args) => reveal_features(args, context),
         Verb::Measure(args) => measure_scene(&args, context),
+        Verb::Demo(args) => demonstrate(&args, context),
+        Verb::Info(args) => describe(&args, context),
         Verb::Check(args) => check_scene(&args, context),
         Verb::Show(args) => show(&args, context),
         Verb::Schema(args) => schema(&args, context),
@@ -104,6 +106,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         fov_y_deg: args.fov,
         image: args.size,
         curved_earth: args.curved_earth,
+        crs: args.crs,
         ..RevealRequest::default()
     };
     request.render.options.threads = context.common.threads;
@@ -128,6 +131,41 @@ fn measure_scene(args: &MeasureArgs, context: &Context) -> anyhow::Result<Goal> 
     let session = context.open(&args.scene, Needs::Everything, None)?;
     let report = measure::measure(&session, &measure::MeasureOptions::default(), &context.progress)?;
     answer("measure", &session, args.out.as_ref(), &output::json(&report)?, context)
+}
+
+fn demonstrate(args: &DemoArgs, context: &Context) -> anyhow::Result<Goal> {
+    let mut request = RenderRequest::default();
+    request.options.threads = context.common.threads;
+    let options = context.options(Needs::Everything, args.size);
+    let written = demo::demo(&args.out, &options, &request, context.common.overwrite)?;
+    context.finish();
+    if context.common.json {
+        context.print(&done("demo", &written, &[]))?;
+    } else if !context.common.quiet {
+        print(&format!("open {}\n", args.out.join("index.html").display()))?;
+    }
+    Ok(Goal::Reached)
+}
+
+fn describe(args: &InfoArgs, context: &Context) -> anyhow::Result<Goal> {
+    let mut result = serde_json::json!({ "verb": "info" });
+    if args.adapters {
+        result["machine"] = serde_json::from_str(&output::json(&info::machine())?)?;
+    }
+    let mut files = Vec::new();
+    for file in &args.files {
+        files.push(serde_json::from_str(&output::json(&info::describe(file, &context.progress)?)?)?);
+    }
+    context.finish();
+    if !files.is_empty() {
+        result["files"] = serde_json::Value::Array(files);
+    }
+    if context.common.json {
+        context.print(&result)?;
+    } else {
+        print(&check::plain(&result))?;
+    }
+    Ok(Goal::Reached)
 }
 
 fn project(args: &ProjectArgs, context: &Context) -> anyhow::Result<Goal> {

@@ -39,7 +39,7 @@ impl Builtins {
         let at = match self.0.iter().position(|(r, _)| *r == request) {
             Some(at) => at,
             None => {
-                let scene = make(&request)?;
+                let (scene, _) = make(&request)?;
                 self.0.push((request, scene));
                 self.0.len() - 1
             }
@@ -53,13 +53,18 @@ impl Builtins {
     }
 }
 
-fn make(request: &Request) -> Result<Scene, String> {
+/// A whole built-in scene and its suggested camera.
+pub(crate) fn scene(source: &str) -> Result<(Scene, builtin::SuggestedCamera), String> {
+    make(&parse(source)?.0)
+}
+
+fn make(request: &Request) -> Result<(Scene, builtin::SuggestedCamera), String> {
     let made = if request.name == "massif" {
         builtin::massif(request.seed, request.size)
     } else {
         builtin::street(request.seed)
     };
-    made.map(|(scene, _)| scene).map_err(|e| e.to_string())
+    made.map_err(|e| e.to_string())
 }
 
 fn parse(source: &str) -> Result<(Request, Option<String>), String> {

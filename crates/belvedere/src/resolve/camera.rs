@@ -117,7 +117,7 @@ fn place(source: &SourceDocument, ground: &Ground<'_>, key: &str, point: &PointD
     };
     let xy = match map {
         MapPointDoc { lon: Some(lon), lat: Some(lat), x: None, y: None, .. } => {
-            ground.from_lon_lat(*lon, *lat).map_err(|e| fail(format!("camera {key}: {e}")))?
+            ground.place_of(*lon, *lat).map_err(|e| fail(format!("camera {key}: {e}")))?
         }
         MapPointDoc { lon: None, lat: None, x: Some(x), y: Some(y), height_m: None, .. } => DVec2::new(*x, *y),
         _ => {

@@ -274,7 +274,7 @@ impl Loader<'_> {
 fn place(ground: &Ground<'_>, place: PlaceDoc) -> Result<DVec2, String> {
     match place {
         PlaceDoc::Scene(xy) => Ok(DVec2::from_array(xy)),
-        PlaceDoc::Geographic(p) => ground.from_lon_lat(p.lon, p.lat),
+        PlaceDoc::Geographic(p) => ground.place_of(p.lon, p.lat),
     }
 }
 

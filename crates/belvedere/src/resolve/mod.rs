@@ -186,7 +186,7 @@ pub(crate) struct Ground<'a> {
 
 impl Ground<'_> {
     /// Scene position of a WGS84 position.
-    pub(crate) fn from_lon_lat(&self, lon: f64, lat: f64) -> Result<DVec2, String> {
+    pub(crate) fn place_of(&self, lon: f64, lat: f64) -> Result<DVec2, String> {
         if !((-180.0..=360.0).contains(&lon) && (-90.0..=90.0).contains(&lat)) {
             return Err(format!(
                 "lon {lon}, lat {lat} is no place on the earth; lon in -180..=360 and lat in -90..=90 are needed"

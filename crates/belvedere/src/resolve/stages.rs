@@ -153,7 +153,7 @@ fn median_height(terrain: &belvedere_scene::Heightfield) -> f64 {
     }
     let (below, upper, _) = heights.select_nth_unstable_by(middle, f32::total_cmp);
     let upper = f64::from(*upper);
-    match below.iter().copied().reduce(f32::max).filter(|_| heights.len() % 2 == 0) {
+    match below.iter().copied().reduce(f32::max).filter(|_| heights.len().is_multiple_of(2)) {
         Some(lower) => 0.5 * (f64::from(lower) + upper),
         None => upper,
     }

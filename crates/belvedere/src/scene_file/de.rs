@@ -102,7 +102,8 @@ pub(crate) fn suggestion(given: &str, valid: &[&str]) -> String {
         .iter()
         .map(|v| (strsim::damerau_levenshtein(&given, v), *v))
         .min_by_key(|(d, _)| *d)
-        .filter(|(d, v)| *d <= 1 + v.len().max(given.len()) / 3);
+        .filter(|(d, v)| *d <= 1 + v.len().max(given.len()) / 3)
+        .or_else(|| valid.iter().find(|v| given.len() >= 3 && v.starts_with(&given)).map(|v| (0, *v)));
     match best {
         Some((_, v)) => format!("did you mean \"{v}\"?"),
         None if valid.is_empty() => "none is possible here".into(),

@@ -116,3 +116,41 @@ pub(crate) fn pretty<T: Serialize>(value: &T) -> Result<String, BelvedereError> 
         .map_err(|e| BelvedereError::Usage(format!("the document cannot be written as JSON: {e}")))?;
     Ok(text + "\n")
 }
+
+/// A report as indented `key: value` lines for people.
+pub fn plain(value: &serde_json::Value) -> String {
+    let mut text = String::new();
+    plain_into(value, 0, &mut text);
+    text
+}
+
+fn plain_into(value: &serde_json::Value, depth: usize, text: &mut String) {
+    let indent = "  ".repeat(depth);
+    let simple = |v: &serde_json::Value| match v {
+        serde_json::Value::Object(_) => false,
+        serde_json::Value::Array(items) => items.iter().all(|i| !i.is_object() && !i.is_array() && !i.is_string()),
+        _ => true,
+    };
+    let word = |v: &serde_json::Value| v.as_str().map_or_else(|| v.to_string(), str::to_owned);
+    match value {
+        serde_json::Value::Object(entries) => {
+            for (key, v) in entries.iter().filter(|(k, _)| *k != "verb") {
+                if simple(v) {
+                    *text += &format!("{indent}{key}: {}\n", word(v));
+                } else {
+                    *text += &format!("{indent}{key}:\n");
+                    plain_into(v, depth + 1, text);
+                }
+            }
+        }
+        serde_json::Value::Array(items) => {
+            for (i, item) in items.iter().enumerate() {
+                if i > 0 && item.is_object() {
+                    text.push('\n');
+                }
+                plain_into(item, depth, text);
+            }
+        }
+        other => *text += &format!("{indent}{}\n", word(other)),
+    }
+}

@@ -1,6 +1,8 @@
 //! The verbs of the command line as functions.
 
 pub mod check;
+pub mod demo;
+pub mod info;
 pub mod measure;
 pub mod output;
 pub mod points;

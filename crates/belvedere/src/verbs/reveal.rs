@@ -35,6 +35,8 @@ pub struct RevealRequest {
     pub image: Option<[u32; 2]>,
     /// Earth shape.
     pub curved_earth: bool,
+    /// Coordinate system of the scene; automatic if left out.
+    pub crs: Option<String>,
     /// Quality of the pictures.
     pub render: RenderRequest,
 }
@@ -234,7 +236,7 @@ fn base_view(request: &RevealRequest, session: &Session) -> Result<Option<View>,
     let ground = crate::resolve::Ground { crs: session.scene.crs, terrain: session.scene.terrain() };
     let place = |x: f64, y: f64| {
         let degrees = matches!(session.scene.crs, Crs::Epsg(_)) && x.abs() <= 360.0 && y.abs() <= 90.0;
-        if degrees { ground.from_lon_lat(x, y).map_err(BelvedereError::Usage) } else { Ok(DVec2::new(x, y)) }
+        if degrees { ground.place_of(x, y).map_err(BelvedereError::Usage) } else { Ok(DVec2::new(x, y)) }
     };
     let eye = place(eye[0], eye[1])?.extend(eye[2]);
     let target = match look[..] {
@@ -278,7 +280,7 @@ fn document(request: &RevealRequest) -> Result<(Document, Roots), BelvedereError
     let document = Document {
         format: 1,
         title,
-        crs: "auto".into(),
+        crs: request.crs.clone().unwrap_or_else(|| "auto".into()),
         unit: UnitDoc::Metre,
         earth: if request.curved_earth { EarthDoc::Curved } else { EarthDoc::Flat },
         camera,

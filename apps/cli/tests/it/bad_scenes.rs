@@ -1,0 +1,149 @@
+//! Bad scenes: one line with place, measured value and remedy; exit 2.
+
+use super::{BARE, Place};
+
+/// `scene` fails, and says exactly `expected` after `belvedere: s.toml:`.
+fn refuses(scene: &str, expected: &str) {
+    let place = Place::new();
+    place.write("s.toml", scene);
+    let line = place.fails(&["check", "s.toml"]);
+    assert_eq!(line.strip_prefix("belvedere: s.toml:").unwrap_or(&line), expected);
+}
+
+fn with(key: &str) -> String {
+    format!("{BARE}{key}\n")
+}
+
+#[test]
+fn unknown_keys_name_the_nearest() {
+    refuses(&BARE.replace("look_at", "lookat"), "4: camera: unknown key \"lookat\"; did you mean \"look_at\"?");
+    refuses(&with("fov = 30"), "5: camera: unknown key \"fov\"; did you mean \"far\"?");
+    refuses(&format!("titel = 'x'\n{BARE}"), "1: unknown key \"titel\"; did you mean \"title\"?");
+    refuses(
+        &with("[[layer]]\nid = 'a'\nkind = 'terain'\nsource = 'x.tif'"),
+        "7: layer 1: \"terain\" is not a kind that exists here; did you mean \"terrain\"?",
+    );
+    refuses(
+        &with("[[layer]]\nid = 'a'\nkind = 'terrain'\nsorce = 'x.tif'"),
+        "8: layer 1: unknown key \"sorce\"; did you mean \"source\"?",
+    );
+    refuses(
+        &with("[[layer]]\nid = 'a'\nkind = 'line'\nsource = 'x'\nstyle = { colour = '#fff' }"),
+        "9: layer 1.style: unknown key \"colour\"; did you mean \"color\"?",
+    );
+    refuses(
+        &with("[[stage]]\nkind = 'spline'\npresets = 'map'"),
+        "6: stage 1: \"spline\" is not a kind that exists here; did you mean \"spline_bend\"?",
+    );
+}
+
+#[test]
+fn wrong_types_and_numbers_name_their_line() {
+    refuses(&with("near = 'x'"), "5: camera.near: f64 was expected, found the text \"x\"");
+    refuses(&with("near = nan"), "5: nan is not a finite number; give finite numbers");
+    refuses(&with("far = inf"), "5: inf is not a finite number; give finite numbers");
+    refuses(
+        "format = 1\n[camera]\neye = [0, 0]\nlook_at = [0, 1, 0]\n",
+        "3: camera.eye: an array of length 3 was expected, found a list of 2",
+    );
+    refuses("format = 1\n", "1: key \"camera\" is missing; add it");
+    refuses("format = 2\n", "1: format is the number 2, this program reads format 1; use a newer version");
+    refuses(&with("[[layer]]\nkind = 'terrain'\nsource = 'x'"), "5: layer 1: key \"id\" is missing; add it");
+}
+
+#[test]
+fn degenerate_cameras_say_what_is_wrong() {
+    refuses(
+        &BARE.replace("[0.0, 1.0, 0.0]", "[0.0, 0.0, 0.0]"),
+        "4: camera eye and look_at coincide (distance 0e0); move one of them apart",
+    );
+    refuses(&with("fov_y_deg = 0"), "5: camera fov_y_deg is 0, it must lie strictly between 0 and 180");
+    refuses(&with("fov_y_deg = 180"), "5: camera fov_y_deg is 180, it must lie strictly between 0 and 180");
+    refuses(&with("image = [0, 720]"), "5: camera image is 0 x 720 pixels, each side must be in 1..=65535");
+    refuses(&with("near = 0"), "5: camera near is 0 and far is inf; 0 < near < far is needed");
+    refuses(
+        &with("heading_deg = 10"),
+        "5: camera has look_at and heading_deg/pitch_deg; give either look_at or both angles",
+    );
+    refuses(&with("projection = 'orthographic'"), "5: an orthographic camera needs ortho_height_m; add it");
+    refuses(
+        "format = 1\n[camera]\neye = { x = 0, y = 0, above_ground_m = 2 }\nlook_at = [0, 1, 0]\n",
+        "3: camera eye: above_ground_m needs a terrain layer; add one, or give the height",
+    );
+    let nadir = BARE.replace("[0.0, 1.0, 0.0]", "[0.0, 0.0, -1.0]");
+    let place = Place::new();
+    place.write("s.toml", &nadir);
+    assert!(place.fails(&["check", "s.toml"]).contains("camera looks along its up direction"));
+}
+
+#[test]
+fn stages_are_checked_with_their_line() {
+    let turn = "[[stage]]\nkind = 'curved_rays'\nturn = []\n";
+    let spline = "[[stage]]\nkind = 'spline_bend'\npresets = 'map'\n";
+    refuses(
+        &with(&format!("{turn}{spline}")),
+        "9: stage spline_bend cannot follow stage curved_rays; the order is earth, terrain_disocclusion, spline_bend, curved_rays, each at most once",
+    );
+    refuses(&with(turn), "7: curved_rays has no turn; give at least one [[stage.turn]]");
+    refuses(
+        &with("[[stage]]\nkind = 'terrain_disocclusion'\nmode = 'qp'"),
+        "6: terrain_disocclusion from an intent needs its solver, which this version does not have; give the solved grid as delta = \"delta.tif\", or remove the stage",
+    );
+    let crossed = "[[stage]]\nkind = 'curved_rays'\n[[stage.turn]]\nviewpoint = [5, 0, 0]\nt0 = [0, 60, 0]\nt1 = [0, 50, 0]\nt2 = [0, 40, 0]\nnormal = [0, 1, 0]";
+    let place = Place::new();
+    place.write("s.toml", &with(crossed));
+    let line = place.fails(&["check", "s.toml"]);
+    assert!(line.starts_with("belvedere: s.toml:") && line.contains("t0"), "{line}");
+}
+
+#[test]
+fn files_stay_in_their_folder() {
+    let layer = |source: &str| with(&format!("[[layer]]\nid = 'g'\nkind = 'terrain'\nsource = '{source}'"));
+    refuses(
+        &layer("../x.tif"),
+        "8: layer \"g\": path \"../x.tif\" leaves the folder of the scene file; use a path below that folder, or allow a folder with --allow-root DIR",
+    );
+    refuses(
+        &layer("file:///etc/passwd"),
+        "8: layer \"g\": path \"file:///etc/passwd\" is a file: address; download it and give the path of the file",
+    );
+    refuses(&layer("CON"), "8: layer \"g\": path \"CON\" names the device CON; give the path of a file");
+    let place = Place::new();
+    place.write("s.toml", &layer("gone.tif"));
+    let line = place.fails(&["check", "s.toml"]);
+    assert!(line.contains("path \"gone.tif\" is not there (looked in "), "{line}");
+}
+
+#[test]
+fn layers_of_later_versions_are_said_to_be_so() {
+    refuses(
+        &with("[[layer]]\nid = 'm'\nkind = 'molecule'\nsource = 'x.pdb'"),
+        "7: layer \"m\": layers of kind molecule are not drawn by this version; remove the layer",
+    );
+}
+
+#[test]
+fn documents_have_limits() {
+    let place = Place::new();
+    place.write("deep.json", &format!("{}{}", "[".repeat(100_000), "]".repeat(100_000)));
+    assert!(place.fails(&["check", "deep.json"]).contains("nested more than 64 deep"));
+    place.write("twice.json", "{\"camera\": 1,\n\"camera\": 2}");
+    assert!(place.fails(&["check", "twice.json"]).ends_with("twice.json:2: key \"camera\" is given twice; keep one"));
+    std::fs::write(place.path("big.toml"), vec![b'#'; (16 << 20) + 1]).expect("written");
+    assert!(place.fails(&["check", "big.toml"]).contains("at most 16777216 are read"));
+    std::fs::write(place.path("latin.toml"), b"title = \"\xe9\"").expect("written");
+    assert!(place.fails(&["check", "latin.toml"]).contains("byte 9 is not UTF-8"));
+    assert!(place.fails(&["check", "gone.toml"]).contains("gone.toml"));
+}
+
+#[test]
+fn arguments_are_checked_in_one_line() {
+    let place = Place::new();
+    assert!(place.fails(&["fly"]).contains("unrecognized subcommand 'fly'"));
+    assert!(place.fails(&[]).contains("a verb is missing"));
+    assert!(place.fails(&["render", "s.toml", "-o", "x.png", "--size", "big"]).contains("1280x720"));
+    let help = place.ok(&["--help"]);
+    for later in ["animate", "disocclude", "migrate", "pick"] {
+        assert!(!help.contains(later), "{later} is in the help");
+    }
+}

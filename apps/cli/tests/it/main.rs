@@ -1,0 +1,65 @@
+//! The command line as a user meets it: the built program, its exit codes, its one line about failures.
+
+mod bad_scenes;
+mod numbers;
+mod pictures;
+mod scenes;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A folder of its own, and the program run in it.
+struct Place(tempfile::TempDir);
+
+impl Place {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("temporary folder"))
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn write(&self, name: &str, text: &str) -> PathBuf {
+        let path = self.path(name);
+        std::fs::write(&path, text).expect("file is written");
+        path
+    }
+
+    fn run(&self, args: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_belvedere"))
+            .current_dir(self.0.path())
+            .args(args)
+            .output()
+            .expect("the program starts")
+    }
+
+    /// Runs, expects success, returns standard output.
+    fn ok(&self, args: &[&str]) -> String {
+        let out = self.run(args);
+        let text = String::from_utf8(out.stdout).expect("UTF-8");
+        assert_eq!(out.status.code(), Some(0), "{args:?}: {}", String::from_utf8_lossy(&out.stderr));
+        text
+    }
+
+    /// Runs, expects failure with exactly one line on standard error, returns it.
+    fn fails(&self, args: &[&str]) -> String {
+        let out = self.run(args);
+        let text = String::from_utf8(out.stderr).expect("UTF-8");
+        assert_eq!(out.status.code(), Some(2), "{args:?}: {text}");
+        assert_eq!(text.lines().count(), 1, "{args:?}: {text}");
+        assert!(text.starts_with("belvedere: "), "{text}");
+        text.trim_end().to_owned()
+    }
+
+    fn json(&self, args: &[&str]) -> serde_json::Value {
+        serde_json::from_str(&self.ok(args)).expect("JSON on standard output")
+    }
+}
+
+/// A scene of nothing but a camera.
+const BARE: &str = "format = 1\n[camera]\neye = [0.0, 0.0, 0.0]\nlook_at = [0.0, 1.0, 0.0]\n";
+
+fn read(path: &Path) -> Vec<u8> {
+    std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}

@@ -1,0 +1,129 @@
+//! project, rays, displace against numbers worked out by hand.
+
+use super::{BARE, Place};
+
+fn bare() -> Place {
+    let place = Place::new();
+    place.write("s.toml", BARE);
+    place
+}
+
+fn near(value: &serde_json::Value, expected: f64) {
+    let value = value.as_f64().unwrap_or_else(|| panic!("{value} is no number"));
+    assert!((value - expected).abs() < 1e-9, "{value}, expected {expected}");
+}
+
+#[test]
+fn project_answers_in_input_order_with_nulls_for_misses() {
+    let place = bare();
+    place.write("p.json", "[[10, 100, 5], [0, -3, 0], [1000, 100, 0], [0.0, 0.5, 0.0]]");
+    let answer = place.json(&["project", "s.toml", "--points", "p.json"]);
+    let f = 360.0 / (22.5f64).to_radians().tan();
+    let points = &answer["points"];
+    near(&points[0]["pixel"][0], 640.0 + f * 0.1);
+    near(&points[0]["pixel"][1], 360.0 - f * 0.05);
+    near(&points[0]["depth"], 100.0);
+    assert_eq!(points[0]["segment"], 0);
+    assert_eq!(points[0]["inside"], true);
+    assert!(points[0]["miss"].is_null());
+    assert_eq!(
+        points[1],
+        serde_json::json!({"pixel": null, "depth": null, "segment": null, "inside": false, "miss": "behind_eye"})
+    );
+    near(&points[2]["pixel"][0], 640.0 + f * 10.0);
+    assert_eq!(points[2]["inside"], false);
+    assert_eq!(points[3]["inside"], true, "nearer than near is no miss");
+}
+
+#[test]
+fn rays_are_equidistant_in_depth_from_near_to_far() {
+    let place = bare();
+    place.write("q.json", "[[640, 360], [0, 720]]");
+    let answer = place.json(&["rays", "s.toml", "--pixels", "q.json", "--samples", "3", "--far", "101"]);
+    let tan = (22.5f64).to_radians().tan();
+    for (i, depth) in [1.0, 51.0, 101.0].into_iter().enumerate() {
+        near(&answer["rays"][0][i]["point"][1], depth);
+        near(&answer["rays"][1][i]["depth"], depth);
+        near(&answer["rays"][1][i]["point"][0], -depth * tan * 1280.0 / 720.0);
+        near(&answer["rays"][1][i]["point"][2], -depth * tan);
+    }
+    assert!(
+        place.fails(&["rays", "s.toml", "--pixels", "q.json", "--samples", "3"]).contains("give --far or camera.far")
+    );
+    assert!(
+        place.fails(&["rays", "s.toml", "--pixels", "q.json", "--samples", "0", "--far", "9"]).contains("at least 1")
+    );
+}
+
+#[test]
+fn a_straight_spline_preset_changes_nothing_and_curved_rays_bend_past_t0() {
+    let place = Place::new();
+    let camera = "format = 1\n[camera]\neye = [0, 0, 100]\nlook_at = [0, 100, 0]\n";
+    place.write(
+        "spline.toml",
+        &format!("{camera}[[stage]]\nkind = 'spline_bend'\npresets = 'identity(45)'\nplane = {{ height_m = 0 }}\n"),
+    );
+    place.write("p.json", "[[7, 90, 3], [-20, 150, 11]]");
+    let answer = place.json(&["displace", "spline.toml", "--points", "p.json"]);
+    for (i, p) in [[7.0, 90.0, 3.0], [-20.0, 150.0, 11.0]].iter().enumerate() {
+        for k in 0..3 {
+            let value = answer["points"][i]["displaced"][k].as_f64().expect("a number");
+            assert!((value - p[k]).abs() < 1e-6, "{value} is not {}", p[k]);
+        }
+        assert_eq!(answer["points"][i]["folded"], false);
+    }
+    // Parallel planes at 40, 50, 60 ahead; C = C' + 10 x. Past t2 the displacement is h d with h = (y - 50) / (50 - yC) scaled to -1 at C.
+    let turn = "[[stage]]\nkind = 'curved_rays'\n[[stage.turn]]\nviewpoint = [10, 0, 0]\nt0 = [0, 40, 0]\nt1 = [0, 50, 0]\nt2 = [0, 60, 0]\nnormal = [0, 1, 0]\n";
+    place.write("rays.toml", &format!("{BARE}{turn}"));
+    place.write("p.json", "[[1, 30, 2], [1, 100, 2], [1, 50, 0]]");
+    let answer = place.json(&["displace", "rays.toml", "--points", "p.json"]);
+    near(&answer["points"][0]["displaced"][0], 1.0);
+    near(&answer["points"][1]["displaced"][0], 1.0 + 10.0);
+    // On t1 half way: m = 1 for planes half way apart, phi = a^2 / (a + b) with a = b = 10 / 100.
+    near(&answer["points"][2]["displaced"][0], 1.0 + 10.0 * 0.05);
+    let answer = place.json(&["project", "rays.toml", "--points", "p.json"]);
+    let segments: Vec<_> = (0..3).map(|i| answer["points"][i]["segment"].as_u64()).collect();
+    assert_eq!(segments, [Some(0), Some(2), Some(1)]);
+}
+
+#[test]
+fn bad_points_name_their_index() {
+    let place = bare();
+    for (text, expected) in [
+        ("[[1, 2, 3], [1, 2]]", "element 1: [x, y, z] of finite numbers was expected, found a list of 2 on line 1"),
+        (
+            "[[1, 2, 3],\n[1, 2, \"x\"]]",
+            "element 1: [x, y, z] of finite numbers was expected, found the text \"x\" on line 2",
+        ),
+        ("{}", "a list of [x, y, z] was expected, found a table"),
+        ("[[1, 2, 1e999]]", "line 1: \"1e999\" is not a finite number; give finite numbers"),
+        ("[[1, 2, NaN]]", "line 1: a number is not finite; give finite numbers"),
+        ("[[1, 2", "line 1: not valid JSON: ',' or ']' was expected, found the end of the file"),
+    ] {
+        place.write("p.json", text);
+        assert_eq!(place.fails(&["project", "s.toml", "--points", "p.json"]), format!("belvedere: p.json: {expected}"));
+    }
+}
+
+#[test]
+fn huge_numbers_never_become_nan() {
+    let place = bare();
+    place.write("p.json", "[[1e308, 1e-300, 1e308], [1e308, 1e308, 1e308]]");
+    for verb in ["project", "displace"] {
+        let text = place.ok(&[verb, "s.toml", "--points", "p.json"]);
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+    }
+}
+
+#[test]
+fn outputs_are_not_overwritten_unasked_and_never_inputs() {
+    let place = bare();
+    place.write("p.json", "[]");
+    place.ok(&["project", "s.toml", "--points", "p.json", "-o", "o.json"]);
+    let args = ["project", "s.toml", "--points", "p.json", "-o", "o.json"];
+    assert!(place.fails(&args).contains("--overwrite"));
+    place.ok(&[&args[..], &["--overwrite"]].concat());
+    let over = ["project", "s.toml", "--points", "p.json", "-o", "p.json", "--overwrite"];
+    assert!(place.fails(&over).contains("is an input of this command"));
+    assert_eq!(super::read(&place.path("o.json")), b"{\"points\":[]}\n");
+}
