@@ -108,6 +108,27 @@ fn andorra_has_no_cracks_below_its_skyline() {
         }
         assert!(holes < 8000, "{name}: {holes} pixels of sky below the skyline");
         assert!(frame.id.iter().filter(|&&id| id != 0).count() > frame.id.len() / 2, "{name}");
-        println!("{name}: {:.0} ms {:?}", frame.stats.milliseconds, frame.stats);
+    }
+}
+
+#[test]
+fn bent_andorra_has_no_cracks_either() {
+    let Some((scene, hf)) = andorra_scene() else { return };
+    let straight = view(&hf, [1.50, 42.38, 3200.0], [1.58, 42.53, 0.0], 45.0, [1280, 720]);
+    let view = spline_over(straight.pinhole().clone(), "progressive", 1500.0);
+    let frame = render(&scene, &view, &options(4));
+    show("andorra_bent", &frame);
+    assert!(frame.id.iter().filter(|&&id| id != 0).count() > frame.id.len() / 2);
+}
+
+#[test]
+fn built_in_scenes_fill_their_pictures() {
+    let scenes = [("massif", builtin::massif(7, 513)), ("street", builtin::street(7))];
+    for (name, made) in scenes {
+        let (scene, camera) = made.expect("the built-in scene can be made");
+        let view = View::straight(pinhole(camera.eye, camera.look_at, camera.fov_y.to_degrees(), [1280, 720]));
+        let frame = render(&scene, &view, &options(4));
+        show(name, &frame);
+        assert!(frame.id.iter().filter(|&&id| id != 0).count() > frame.id.len() / 3, "{name}");
     }
 }

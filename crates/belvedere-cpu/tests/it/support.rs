@@ -6,6 +6,7 @@ use belvedere_scene::{
     Color, Frame, Heightfield, Hidden, Layer, LayerKind, Light, LineFeature, LineLayer, NodeState, Palette, Progress,
     Relief, RenderJob, RenderOptions, Renderer, Scene, TerrainLayer,
 };
+use std::f64::consts::TAU;
 
 /// Deterministic numbers in [0, 1).
 pub(crate) struct Random(u64);
@@ -54,14 +55,14 @@ pub(crate) fn hills(n: usize, spacing: f64, height: f64, seed: u64) -> Heightfie
     let waves: Vec<(DVec2, f64, f64)> = (0..8)
         .map(|i| {
             let k = 1.7f64.powi(i) * 3.0 / (n as f64 * spacing);
-            (DVec2::from_angle(random.range(0.0, 6.28)) * k, random.range(0.0, 6.28), 0.62f64.powi(i))
+            (DVec2::from_angle(random.range(0.0, TAU)) * k, random.range(0.0, TAU), 0.62f64.powi(i))
         })
         .collect();
     let half = 0.5 * (n - 1) as f64 * spacing;
     let heights = (0..n * n)
         .map(|i| {
             let p = DVec2::new((i % n) as f64 * spacing - half, half - (i / n) as f64 * spacing);
-            let z: f64 = waves.iter().map(|(k, phase, a)| a * (k.dot(p) * 6.28 + phase).sin()).sum();
+            let z: f64 = waves.iter().map(|(k, phase, a)| a * (k.dot(p) * TAU + phase).sin()).sum();
             (0.3 * height * z) as f32
         })
         .collect();
