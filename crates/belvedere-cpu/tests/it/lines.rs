@@ -67,7 +67,7 @@ fn visibility_agrees_with_lines_of_sight() {
                 wrong.push((pixel, clear));
             }
         }
-        assert!(judged > 80 && hidden > 8, "{name}: {judged} points judged, {hidden} hidden");
+        assert!(judged > 80 && hidden > 5, "{name}: {judged} points judged, {hidden} hidden");
         assert!(wrong.len() * 100 <= judged, "{name}: {} of {judged} points judged wrongly: {wrong:?}", wrong.len());
     }
 }

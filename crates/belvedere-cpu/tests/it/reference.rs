@@ -80,7 +80,9 @@ fn silhouettes(reference: &[(u32, f64)], w: usize, h: usize) -> Vec<bool> {
 
 fn compare(name: &str, scene: &Scene, view: &View, tolerance: f64) {
     let [w, h] = view.pinhole().image.map(|s| s as usize);
-    let frame = render(scene, view, &options(4));
+    // Half a pixel of bend would be seen in the depth of grazing ground: judge with a fiftieth.
+    let fine = belvedere_scene::RenderOptions { tolerance_px: 0.02, ..options(4) };
+    let frame = render(scene, view, &fine);
     let reference: Vec<(u32, f64)> = (0..w * h)
         .into_par_iter()
         .map(|i| cast(scene, view, DVec2::new((i % w) as f64 + 0.5, (i / w) as f64 + 0.5), 2600.0, 1300))
@@ -125,8 +127,8 @@ fn hilly_scene() -> Scene {
 fn every_pixel_agrees_with_a_ray_caster() {
     let scene = hilly_scene();
     for (name, view) in views([96, 72]) {
-        // A bent edge may be off by half a pixel, and the depth by what the ground gains on half a pixel.
-        let tolerance = if view.stages().is_empty() { 1e-4 } else { 2e-3 };
+        // A bent edge may be off by the tolerance, and the depth by what the ground (4 % per pixel at most) gains on it.
+        let tolerance = if view.stages().is_empty() { 1e-4 } else { 1e-3 };
         compare(name, &scene, &view, tolerance);
     }
 }
