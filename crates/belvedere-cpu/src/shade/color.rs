@@ -51,9 +51,9 @@ impl Packed {
     }
 }
 
-/// 0 below `a`, 1 above `b`, smooth between.
+/// 0 below `a`, 1 above `b`, smooth between; a step where they coincide.
 pub(crate) fn smoothstep(a: f32, b: f32, x: f32) -> f32 {
-    let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
+    let t = if b > a { ((x - a) / (b - a)).clamp(0.0, 1.0) } else { f32::from(u8::from(x >= a)) };
     t * t * (3.0 - 2.0 * t)
 }
 

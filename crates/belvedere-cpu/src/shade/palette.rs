@@ -15,7 +15,7 @@ pub(crate) struct Tint {
     /// Tangent of the slope at which rock begins and has taken over.
     pub(crate) rock_slope: [f32; 2],
     pub(crate) snow: Rgb,
-    /// Heights at which snow begins and has taken over on gentle slopes; infinite = none.
+    /// Heights at which snow begins and has taken over on gentle slopes, metres.
     pub(crate) snow_m: [f32; 2],
 }
 
@@ -67,7 +67,7 @@ impl Tint {
             Palette::Plain => (PLAIN, [205, 205, 202], [1e6, 2e6], none),
             Palette::Alpine | Palette::Auto => {
                 let line = (bottom + 0.80 * span).max(2450.0);
-                (ALPINE, [150, 141, 132], [0.62, 1.25], [line, line + 0.14 * span.max(300.0)])
+                (ALPINE, [160, 149, 136], [0.62, 1.25], [line, line + 0.14 * span.max(300.0)])
             }
         };
         let ramp = (0..STEPS).map(|i| ramp_at(stops, i as f32 / (STEPS - 1) as f32)).collect();
@@ -102,6 +102,29 @@ mod tests {
                 let snow = smoothstep(tint.snow_m[0], tint.snow_m[1], range[0] as f32);
                 assert!(snow == 0.0, "{palette:?}: {snow} of the lowest ground is snow");
             }
+        }
+    }
+
+    #[test]
+    fn every_palette_has_colours_at_every_height() {
+        for palette in [Palette::Auto, Palette::Alpine, Palette::Desert, Palette::Glacial, Palette::Plain] {
+            for range in [[0.0, 0.0], [-400.0, 9000.0], [300.0, 3100.0], [1e6, 1e6 + 1e-6]] {
+                let tint = Tint::new(palette, range);
+                for z in [range[0], 0.5 * (range[0] + range[1]), range[1], -1e9, 1e9] {
+                    let snow = smoothstep(tint.snow_m[0], tint.snow_m[1], z as f32);
+                    assert!((0.0..=1.0).contains(&snow), "{palette:?} {range:?}: {snow}");
+                    let c = tint.at(z as f32);
+                    assert!(c.min_element() > 0.02 && c.max_element() <= 1.0, "{palette:?} {range:?} at {z}: {c}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn tints_grow_lighter_with_height() {
+        for stops in [ALPINE, GLACIAL, DESERT] {
+            let light = |t: f32| ramp_at(stops, t).dot(Rgb::new(0.2126, 0.7152, 0.0722));
+            assert!(light(1.0) > 1.5 * light(0.0) && light(0.5) > light(0.0));
         }
     }
 }

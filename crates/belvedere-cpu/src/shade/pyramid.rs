@@ -87,7 +87,8 @@ impl Pyramid {
                         .zip(&mean)
                         .map(|(&(k, share), m)| share * (n.z - m[i]) / (spacing * (1u32 << k) as f32))
                         .sum();
-                    1.0 + 0.42 * (above / 0.16).tanh().clamp(-1.0, 0.45)
+                    let x = above / 0.16;
+                    1.0 + 0.42 * (x / (1.0 + x * x).sqrt()).min(0.45)
                 };
             });
         }

@@ -1,7 +1,9 @@
 //! Andorra, looked at.
 
 use crate::support::{layer, line, options, pinhole, render, scene, show, terrain};
+use crate::support_views::spline_over;
 use belvedere_core::{DVec2, DVec3, View};
+use belvedere_scene::builtin;
 use belvedere_scene::{AreaFeature, AreaLayer, Color, Heightfield, Hidden, LayerKind, LineFeature, NodeState, Scene};
 
 const LAT0: f64 = 42.5;

@@ -14,7 +14,12 @@ pub(crate) fn small_planet(pinhole: Pinhole) -> View {
 
 /// A built-in spline preset over level ground at height 0.
 pub(crate) fn spline(pinhole: Pinhole, preset: &str) -> View {
-    let ground = ReferencePlane::level(0.0);
+    spline_over(pinhole, preset, 0.0)
+}
+
+/// The same over level ground at a height.
+pub(crate) fn spline_over(pinhole: Pinhole, preset: &str, height: f64) -> View {
+    let ground = ReferencePlane::level(height);
     let pivot = default_pivot(&pinhole, &ground);
     let document = PresetDocument::builtin(preset).expect("the preset is built in");
     let bend = SplineBend::new(&pinhole, &document, &ground, pivot).expect("the preset fits the camera");
