@@ -123,6 +123,19 @@ fn layers_of_later_versions_are_said_to_be_so() {
 }
 
 #[test]
+fn constructors_are_read_and_refused() {
+    refuses(
+        &with("[constructor]\nkind = 'target_tracking'"),
+        "6: constructor: target_tracking needs target, the layer to keep in view",
+    );
+    refuses(
+        &with("[constructor]\nkind = 'auto_probe'"),
+        "6: this version has no constructors; give the stages themselves and remove [constructor], or set kind = \"manual\"",
+    );
+    refuses(&with("[animation]\nalong = 'x'\nframes = 0"), "7: animation: frames is 0, it must be at least 1");
+}
+
+#[test]
 fn documents_have_limits() {
     let place = Place::new();
     place.write("deep.json", &format!("{}{}", "[".repeat(100_000), "]".repeat(100_000)));

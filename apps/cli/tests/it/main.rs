@@ -2,6 +2,7 @@
 
 mod bad_scenes;
 mod numbers;
+mod odd_files;
 mod pictures;
 mod scenes;
 

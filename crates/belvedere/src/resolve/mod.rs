@@ -14,7 +14,9 @@ mod validate;
 pub(crate) mod vectors;
 
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc, UnitDoc};
+use crate::scene_file::{
+    ConstructorKind, EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc, UnitDoc,
+};
 use crate::{BelvedereError, Needs, OpenOptions, Session};
 use belvedere_core::{DVec2, EarthCurvature, Stage, View};
 use belvedere_io::crs::{CoordinateSystem, Transform, gaussian_radius_m, utm_epsg};
@@ -26,6 +28,7 @@ const MEAN_EARTH_RADIUS_M: f64 = 6_371_008.8;
 /// Resolves everything.
 pub(crate) fn session(source: SourceDocument, roots: &Roots, options: &OpenOptions) -> Result<Session, BelvedereError> {
     validate::document(&source)?;
+    refuse_constructor(&source)?;
     let mut loader = layers::Loader {
         source: &source,
         roots,
@@ -49,6 +52,17 @@ pub(crate) fn session(source: SourceDocument, roots: &Roots, options: &OpenOptio
     document.camera = camera.document;
     document.stage = resolved.documents;
     Ok(Session { document, path: source.path().to_owned(), scene, view, light, warnings, inputs })
+}
+
+/// A picture without what the scene asks for would mislead.
+fn refuse_constructor(source: &SourceDocument) -> Result<(), BelvedereError> {
+    match &source.document.constructor {
+        Some(doc) if doc.kind != ConstructorKind::Manual => Err(source.error(
+            &["constructor", "kind"],
+            "this version has no constructors; give the stages themselves and remove [constructor], or set kind = \"manual\"",
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// The layers that are needed, in file order.
