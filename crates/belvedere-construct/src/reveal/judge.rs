@@ -117,7 +117,7 @@ impl<'a> Judge<'a> {
         top.iter().sum::<f64>() / (COLUMNS as f64 * height)
     }
 
-    /// Share of a grid of rays below the skyline that meet the reference plane over the data.
+    /// Share of a grid of rays below the skyline that come down on the ground of the data from above.
     fn covered(&self, view: &View, skyline: f64) -> f64 {
         let [width, height] = view.pinhole().image.map(f64::from);
         let top = skyline.clamp(0.0, 0.9);
@@ -135,24 +135,20 @@ impl<'a> Judge<'a> {
         hit / all
     }
 
+    /// Whether the ray comes down on the terrain; one that passes its rim below the ground shows the void under it.
     fn meets_data(&self, view: &View, pixel: DVec2) -> bool {
         let ray = view.ray(pixel);
         let bounds = self.heightfield.bounds();
         let reach = 4.0 * (bounds.max - bounds.min).length() + (view.pinhole().eye - bounds.center()).length();
-        let above = |w: f64| ray.at(w).ok().map(|p| (self.plane.height_of(p.point), p.point));
-        let mut before: Option<(f64, DVec3)> = None;
-        let mut depth = 1e-3 * reach;
+        let (mut over_data, mut depth) = (false, 1e-3 * reach);
         while depth < reach {
-            let now = above(depth);
-            if let (Some((h0, p0)), Some((h1, p1))) = (before, now)
-                && h0 >= 0.0
-                && h1 < 0.0
-            {
-                let meeting = p0.lerp(p1, h0 / (h0 - h1));
-                return self.heightfield.surface_at(meeting.truncate()).is_some();
+            if let Ok(at) = ray.at(depth) {
+                match self.heightfield.surface_at(at.point.truncate()) {
+                    Some(ground) if at.point.z < ground => return over_data,
+                    ground => over_data = ground.is_some(),
+                }
             }
-            before = now;
-            depth *= 1.12;
+            depth *= 1.08;
         }
         false
     }

@@ -1,5 +1,6 @@
 //! Integration tests of belvedere-construct.
 
+mod bars;
 mod measure;
 mod reveal;
 mod sight;

@@ -15,9 +15,9 @@ fn run(scene: &Scene, view: &View, renderer: Option<&dyn Renderer>) -> Result<Me
 
 #[test]
 fn line_of_sight_and_depth_buffer_agree_within_one_percent() {
-    for (seed, height) in [(1, 500.0), (2, 900.0), (5, 300.0)] {
+    for (seed, height) in [(1, 500.0), (5, 300.0)] {
         let scene = scene(48, seed);
-        let pinhole = camera(&scene, height, [960, 540]);
+        let pinhole = camera(&scene, height, [800, 450]);
         for view in [View::straight(pinhole.clone()), on_a_small_planet(pinhole.clone(), 15_000.0)] {
             let m = run(&scene, &view, Some(&Marcher { fault: 1.0 })).unwrap();
             let lines = m.lines.unwrap();

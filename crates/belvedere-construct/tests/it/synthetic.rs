@@ -140,7 +140,7 @@ impl Renderer for Marcher {
             .into_par_iter()
             .map(|i| {
                 let pixel = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
-                march(job.view, hf, pixel, 1.0, far, 700).map_or(f32::INFINITY, |d| (d * self.fault) as f32)
+                march(job.view, hf, pixel, 1.0, far, 500).map_or(f32::INFINITY, |d| (d * self.fault) as f32)
             })
             .collect();
         let id = depth.iter().map(|d| u32::from(d.is_finite())).collect();
