@@ -28,8 +28,8 @@ struct Footprint {
     at: DVec2,
     depth: f64,
     gradient: DVec2,
-    /// Whether the plane turns its upper side to the eye.
-    facing: bool,
+    /// Steepest change of depth per pixel towards the ground one cell around.
+    roughness: f64,
 }
 
 impl Job<'_> {
@@ -93,15 +93,12 @@ fn in_buffer(view: &View, terrain: Option<&Heightfield>, sample: &Sample, j: &Ju
         at: j.pixel,
         depth: j.depth,
         gradient: DVec2::ZERO,
-        facing: true,
+        roughness: 0.0,
     });
-    if !plane.facing {
-        return Buffered { seen: false, missed: false };
-    }
     // The plane stands for the ground about one cell around; beyond that its slope says nothing.
     let reach = 1.5 * terrain.map_or(0.0, |hf| hf.spacing().max_element());
-    // Edges may be drawn up to half a pixel off, and the buffer holds f32.
-    let tolerance = (0.5 * plane.gradient.length()).min(reach) + 1e-6 * j.depth;
+    // A pixel centre is up to 0.7 px away, perhaps on a neighbouring slope; and the buffer holds f32.
+    let tolerance = (0.7 * plane.roughness).min(reach) + 1e-6 * j.depth;
     let corner = (j.pixel - 0.5).floor();
     let part = j.pixel - 0.5 - corner;
     let (mut seen, mut missed) = (0.0, true);
@@ -151,5 +148,12 @@ fn footprint(view: &View, hf: &Heightfield, sample: &Sample) -> Option<Footprint
     // East then north turns clockwise on an image whose y points down: negative area = seen from above.
     let facing = area < -1e-12;
     let gradient = if facing { DVec2::new(wx * py.y - wy * px.y, wy * px.x - wx * py.x) / area } else { DVec2::ZERO };
-    Some(Footprint { at: i0.pixel, depth: i0.depth, gradient, facing })
+    let around = (0..8).filter_map(|k| {
+        let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4).sin_cos();
+        let xy = ground.truncate() + hf.spacing() * DVec2::new(cos, sin);
+        let there = image(xy.extend(hf.surface_at(xy)?))?;
+        Some((there.depth - i0.depth).abs() / (there.pixel - i0.pixel).length().max(1.0))
+    });
+    let roughness = around.fold(gradient.length(), f64::max);
+    Some(Footprint { at: i0.pixel, depth: i0.depth, gradient, roughness })
 }

@@ -125,7 +125,8 @@ impl<'a, 'b> BendSearch<'a, 'b> {
         // Turning per distance: ground that tips over a kink looks broken.
         let kink = (shape.middle - shape.far).abs() * self.frame.features[1] / (shape.fall[1] - shape.fall[0]);
         let fill = (0.45 - a.spread).max(0.0) + 2.0 * (a.spread - 0.85).max(0.0);
-        a.visible
+        // Above nine tenths a gentler bend is worth more than the last bit.
+        0.5 * a.visible + 0.5 * a.visible.min(0.9)
             - goals
             - 0.12 * bend
             - 3.0 * sky
