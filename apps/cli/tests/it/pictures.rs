@@ -86,3 +86,13 @@ fn an_eye_under_ground_is_refused() {
     place.write("s.toml", &outside);
     place.ok(&["render", "s.toml", "-o", "outside.png"]);
 }
+
+#[test]
+fn both_methods_measure_curved_rays() {
+    let scene = belvedere_testkit::workspace_root().join("scenes/massif_curved_rays.toml");
+    let report = Place::new().json(&["measure", scene.to_str().expect("UTF-8")]);
+    let lines = &report["lines"];
+    let share = |which: &str| lines[which]["sight"]["share"].as_f64().expect("a share");
+    assert!(share("bent") > share("straight"), "{} and {}", share("bent"), share("straight"));
+    assert!(report["largest_difference"].as_f64().is_some_and(|d| d < 0.01), "{}", report["largest_difference"]);
+}

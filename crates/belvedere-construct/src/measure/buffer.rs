@@ -3,7 +3,7 @@
 use super::Judged;
 use crate::ConstructError;
 use crate::samples::{Sample, SampledFeature};
-use belvedere_core::{Camera, DVec2, DVec3, Pinhole, View};
+use belvedere_core::{Camera, CurvedRays, DVec2, DVec3, Pinhole, Stage, View};
 use belvedere_scene::{Frame, Heightfield, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
 
 pub(super) struct Job<'a> {
@@ -48,7 +48,15 @@ impl Job<'_> {
         });
         let scale = scale.clamp(1, 8).min(65_535 / pinhole.image[0].max(pinhole.image[1])).max(1);
         let larger = Pinhole { image: pinhole.image.map(|n| n * scale), ..pinhole.clone() };
-        Ok(View::new(larger, view.stages().to_vec())?)
+        let rebuilt = |stage: &Stage| match stage {
+            Stage::CurvedRays(rays) => CurvedRays::new(&larger, rays.model(), rays.spec()).map(Stage::CurvedRays),
+            other => Ok(other.clone()),
+        };
+        // Curved rays belong to the pixels of their image; should the finer ones not bend, the given image has to do.
+        match view.stages().iter().map(rebuilt).collect::<Result<Vec<_>, _>>() {
+            Ok(stages) => Ok(View::new(larger, stages)?),
+            Err(_) => Ok(view.clone()),
+        }
     }
 
     /// Fills in [`Judged::in_buffer`].
