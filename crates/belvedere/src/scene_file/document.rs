@@ -9,17 +9,22 @@ use serde::{Deserialize, Serialize};
 
 /// A whole scene file, version 1.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Document {
     /// Version of the format; 1.
+    #[schemars(default = "one")]
     pub format: u32,
     /// Title for pictures and reports.
-    #[serde(default)]
+    #[schemars(default)]
     pub title: String,
     /// `auto`, `EPSG:n` or `local`: the system of every coordinate that is read or written.
+    #[schemars(default = "auto")]
     pub crs: String,
     /// Unit of all lengths.
+    #[schemars(default)]
     pub unit: UnitDoc,
     /// `flat`, or `curved` for the drop of the ground with distance (refraction 0.13).
+    #[schemars(default)]
     pub earth: EarthDoc,
     /// The camera.
     pub camera: CameraDoc,
