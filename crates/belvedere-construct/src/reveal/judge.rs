@@ -123,7 +123,7 @@ impl<'a> Judge<'a> {
         let top = skyline.clamp(0.0, 0.9);
         let (mut hit, mut all) = (0.0, 0.0);
         // The lower the row, the nearer and the more conspicuous a missing corner of the ground.
-        for (part, weight) in [(0.12, 0.5), (0.3, 1.0), (0.6, 1.5), (0.985, 2.0)] {
+        for (part, weight) in [(0.05, 0.5), (0.15, 0.7), (0.3, 1.0), (0.6, 1.5), (0.985, 2.0)] {
             for column in [0.005, 0.12, 0.24, 0.38, 0.5, 0.62, 0.76, 0.88, 0.995] {
                 let pixel = DVec2::new(column * width, (top + (1.0 - top) * part) * height);
                 all += weight;

@@ -241,9 +241,9 @@ fn straight_score(a: &Appraisal, heading_deg: f64, options: &RevealOptions) -> f
     let most = 0.85 * (options.goal_share / options.goal_gain).min(0.6);
     let hidden = 3.0 * (a.visible - most).max(0.0) + 1.5 * (0.25 - a.visible).max(0.0);
     // Light comes from the north-west: looking north shows the shaded side of the relief as readers of maps know it.
-    let north = 0.06 * heading_deg.to_radians().cos();
+    let north = 0.15 * heading_deg.to_radians().cos();
     let sky = (0.08 - a.skyline).max(0.0) + (a.skyline - 0.25).max(0.0);
-    0.6 * a.in_frame + 0.4 * a.in_margin + 0.25 * (a.drawn / 0.8).min(1.0) - 2.0 * (1.0 - a.covered) - hidden + north
+    0.6 * a.in_frame + 0.4 * a.in_margin + 0.25 * (a.drawn / 0.8).min(1.0) - 3.0 * (1.0 - a.covered) - hidden + north
         - 1.5 * sky
         - 1.2 * (0.8 - a.attainable).max(0.0)
 }

@@ -131,7 +131,7 @@ impl<'a, 'b> BendSearch<'a, 'b> {
             - 0.12 * bend
             - 3.0 * sky
             - 0.3 * fill
-            - 2.0 * (1.0 - a.covered)
+            - 3.0 * (1.0 - a.covered)
             - 1.0 * (a.in_frame - a.in_margin)
             - 0.04 * (kink - 1.0).max(0.0)
             - 0.6 * (0.6 - squeeze).max(0.0)
