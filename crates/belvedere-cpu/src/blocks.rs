@@ -1,5 +1,6 @@
 //! Surfaces cut into blocks: culled, displaced and projected once per frame, ready to rasterise.
 
+use crate::displace::Points;
 use crate::lens::{Lens, Pass, SUB, ScreenVertex};
 use crate::raster::Band;
 use crate::refine::{Corner, Refiner};
@@ -320,20 +321,39 @@ impl Job<'_> {
     fn project_grid(&self, hf: &Heightfield, block: &mut Block) -> Option<Vec<ScreenVertex>> {
         let ([c0, r0], [cols, rows]) = (block.origin, block.cells);
         let mut nodes = Vec::with_capacity((cols + 1) * (rows + 1));
+        let [mut x, mut y, mut z] = [[0.0f64; SIDE + 1]; 3];
+        let n = cols + 1;
         for r in r0..=r0 + rows {
-            for c in c0..=c0 + cols {
-                let Some(p) = hf.node(c, r) else {
-                    nodes.push(ScreenVertex::NONE);
-                    continue;
-                };
-                let v = self.lens.view_from(self.pass.displace(p)?);
-                if !self.lens.is_drawable(v) || self.pass.margins(p).iter().any(|m| !(*m > 0.0)) {
-                    return None;
+            let first = r * hf.cols() + c0;
+            let (heights, states) = (&hf.heights()[first..first + n], &hf.states()[first..first + n]);
+            if states.contains(&NodeState::Void) {
+                for c in c0..=c0 + cols {
+                    nodes.push(match hf.node(c, r) {
+                        Some(p) => self.project(p)?,
+                        None => ScreenVertex::NONE,
+                    });
                 }
-                nodes.push(self.lens.snap(v));
+                continue;
+            }
+            for i in 0..n {
+                let xy = hf.node_xy(c0 + i, r);
+                (x[i], y[i], z[i]) = (xy.x, xy.y, f64::from(heights[i]));
+            }
+            let held = self.pass.is_only()
+                || (0..n).all(|i| self.pass.margins(DVec3::new(x[i], y[i], z[i])).iter().all(|m| *m > 0.0));
+            let mut points = Points { x: &mut x[..n], y: &mut y[..n], z: &mut z[..n] };
+            if !held || !self.pass.displace_row(&mut points) || !self.lens.snap_row(&points, &mut nodes) {
+                return None;
             }
         }
         Some(nodes)
+    }
+
+    /// A node on the image that needs no clipping.
+    fn project(&self, p: DVec3) -> Option<ScreenVertex> {
+        let v = self.lens.view_from(self.pass.displace(p)?);
+        let whole = self.lens.is_drawable(v) && self.pass.margins(p).iter().all(|m| *m > 0.0);
+        whole.then(|| self.lens.snap(v))
     }
 
     fn refine_grid(&self, hf: &Heightfield, block: &mut Block, judged: Judged) {

@@ -1,5 +1,6 @@
 //! The pinhole prepared for a frame: view space, fixed-point pixels, clipping planes.
 
+use crate::displace::{Displacer, Points};
 use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, Stage, View};
 
 /// Fixed-point steps per pixel.
@@ -27,22 +28,27 @@ impl ScreenVertex {
 }
 
 /// One pass over the scene: one record of a curved-ray chain, or the only one there is.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub(crate) struct Pass<'a> {
     view: &'a View,
     record: usize,
-    straight: bool,
+    displacer: Displacer<'a>,
 }
 
 impl<'a> Pass<'a> {
     /// The passes that together draw every image of every point once.
     pub(crate) fn all(view: &'a View) -> Vec<Self> {
-        (0..view.records()).map(|record| Self { view, record, straight: view.stages().is_empty() }).collect()
+        (0..view.records()).map(|record| Self { view, record, displacer: Displacer::new(view, record) }).collect()
     }
 
     /// Displaced position; `None` where the point has no image.
     pub(crate) fn displace(&self, p: DVec3) -> Option<DVec3> {
-        if self.straight { Some(p) } else { self.view.displace_in(self.record, p).ok().map(|d| d.point) }
+        if self.is_straight() { Some(p) } else { self.displacer.point(p) }
+    }
+
+    /// See [`Displacer::row`].
+    pub(crate) fn displace_row(&self, points: &mut Points<'_>) -> bool {
+        self.displacer.row(points)
     }
 
     /// Signed distances that must be positive for the point to belong to this pass.
@@ -76,12 +82,12 @@ impl<'a> Pass<'a> {
             })
     }
 
-    fn is_only(&self) -> bool {
+    pub(crate) fn is_only(&self) -> bool {
         self.view.records() == 1
     }
 
     pub(crate) fn is_straight(&self) -> bool {
-        self.straight
+        self.displacer.is_straight()
     }
 }
 
@@ -147,11 +153,24 @@ impl Lens {
         ScreenVertex { x: fixed(self.center.x + v.x * s), y: fixed(self.center.y + v.y * s), q: q as f32 }
     }
 
+    /// Images of displaced points; `false` if one of them needs clipping.
+    pub(crate) fn snap_row(&self, p: &Points<'_>, out: &mut Vec<ScreenVertex>) -> bool {
+        let (xs, ys, zs) = (&*p.x, &*p.y, &*p.z);
+        let mut whole = true;
+        out.extend(xs.iter().zip(ys).zip(zs).map(|((&x, &y), &z)| {
+            let v = self.view_from(DVec3::new(x, y, z));
+            whole &= self.is_drawable(v);
+            self.snap(v)
+        }));
+        whole
+    }
+
     /// Whether the point can be snapped without clipping.
     #[inline]
     pub(crate) fn is_drawable(&self, v: DVec3) -> bool {
         let reach = GUARD_PX / self.scale * if self.ortho { 1.0 } else { v.z };
-        v.z >= self.near && v.z <= self.far && v.x.abs() <= reach && v.y.abs() <= reach
+        // No short cuts: rows of points are tested together.
+        (v.z >= self.near) & (v.z <= self.far) & (v.x.abs() <= reach) & (v.y.abs() <= reach)
     }
 
     /// Signed distances to near, far and the four guard planes; inside = all >= 0.

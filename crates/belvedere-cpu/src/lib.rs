@@ -5,12 +5,14 @@
 //! coloured independently, so the picture is the same, byte for byte, for any number of threads.
 
 mod blocks;
+mod displace;
 mod lens;
 mod marks;
 mod raster;
 mod refine;
 mod resolve;
 mod shade;
+mod spline_table;
 
 use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
 use blocks::Blocks;

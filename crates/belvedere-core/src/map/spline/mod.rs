@@ -95,6 +95,16 @@ impl SplineBend {
         self.origin
     }
 
+    /// Unit directions in which `a` (to the right), the curve's depth and `d` (off the plane) are measured.
+    pub fn axes(&self) -> [DVec3; 3] {
+        [self.right, self.heading, self.normal]
+    }
+
+    /// Unit directions, orthogonal to [`SplineBend::axes`]`[0]`, of the plane in which the curve bends.
+    pub fn curve_axes(&self) -> [DVec3; 2] {
+        [self.out_u, self.out_v]
+    }
+
     /// Scene units per curve unit (`K = e - s`).
     pub fn scale(&self) -> f64 {
         self.scale
