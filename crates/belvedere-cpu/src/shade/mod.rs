@@ -13,7 +13,7 @@ use crate::lens::{Lens, SUB};
 use crate::raster::SKY;
 use area::AreaMap;
 use belvedere_core::{DVec2, DVec3, Stage};
-use belvedere_scene::{BoxLayer, Heightfield, LayerKind, RenderJob, Shading, TerrainLayer};
+use belvedere_scene::{BoxLayer, BoxShape, Heightfield, LayerKind, RenderJob, Shading, TerrainLayer};
 use color::{Rgb, linear, smoothstep};
 use drape::DrapeMap;
 use glam::Vec3A;
@@ -78,7 +78,7 @@ impl<'a> Shader<'a> {
                 _ => None,
             })
             .collect();
-        Self { sky: Sky::new(&job.scene.bounds()), lens, blocks, layers, areas }
+        Self { sky: Sky::new(&job.scene.bounds(), job.view.pinhole()), lens, blocks, layers, areas }
     }
 
     /// Whether both primitives (not sky) belong to one terrain layer, whose colours change smoothly.
@@ -105,7 +105,7 @@ impl<'a> Shader<'a> {
                 Shaded { color: self.sky.through_air(color, depth), id: id.unwrap_or(layer) + 1, world }
             }
             LayerShade::Boxes(b, light) => {
-                let (color, world) = shade_box(b, light, &found, &hit);
+                let (color, world) = shade_box(b, light, &found, &hit, self.lens.footprint(f64::from(depth)));
                 Shaded { color: self.sky.through_air(color, depth), id: layer + 1, world }
             }
             LayerShade::Other => Shaded { color: Rgb::ZERO, id: layer + 1, world: DVec3::NAN },
@@ -247,7 +247,9 @@ impl<'a> TerrainShade<'a> {
     }
 }
 
-fn shade_box(layer: &BoxLayer, light: &ReliefLight, found: &Found<'_>, hit: &Hit) -> (Rgb, DVec3) {
+/// Boxes look like an architect's model: matt, darker towards the foot, with drawn edges.
+/// * `footprint`: size of a pixel at the box, scene units.
+fn shade_box(layer: &BoxLayer, light: &ReliefLight, found: &Found<'_>, hit: &Hit, footprint: f64) -> (Rgb, DVec3) {
     let shape = &layer.boxes[found.block.origin[0] + (found.parent / 12) as usize];
     let corners = shape.corners();
     let p = BOX_TRIANGLES[(found.parent % 12) as usize].map(|k| corners[k]);
@@ -256,9 +258,22 @@ fn shade_box(layer: &BoxLayer, light: &ReliefLight, found: &Found<'_>, hit: &Hit
     let n = if n.dot(p[0] - centre) < 0.0 { -n } else { n }.normalize_or(DVec3::Z);
     let world = p[0] * hit.weights[0] + p[1] * hit.weights[1] + p[2] * hit.weights[2];
     let up = (((world.z - shape.base.z) / shape.size.z.max(1e-9)) as f32).clamp(0.0, 1.0);
-    // Streets are darker than roofs.
-    let open = 0.62 + 0.38 * smoothstep(0.0, 0.7, up);
+    let open = 0.60 + 0.40 * smoothstep(-0.1, 0.6, up);
     let n = Vec3A::new(n.x as f32, n.y as f32, n.z as f32);
     let c = shape.color;
-    (linear([c.r, c.g, c.b]) * light.at(n, open) * (0.82 + 0.18 * open), world)
+    let ink = 1.0 - 0.42 * edge_share(shape, world - centre, footprint);
+    // Streets return light that open ground does not.
+    let lit = light.at(n, open) * 0.82 + Rgb::new(0.19, 0.18, 0.18) * open;
+    (linear([c.r, c.g, c.b]) * lit * ((0.76 + 0.24 * open) * ink), world)
+}
+
+/// How much of a pixel the edge of a box covers, at a place on its surface relative to its centre.
+fn edge_share(shape: &BoxShape, from_centre: DVec3, footprint: f64) -> f32 {
+    let local = DVec2::from_angle(-shape.yaw).rotate(from_centre.truncate()).extend(from_centre.z);
+    let mut inside = (0.5 * shape.size - local.abs()).to_array();
+    inside.sort_by(f64::total_cmp);
+    // The smallest is the face itself, the next the way to the nearest edge.
+    let line = 1.0 - smoothstep(0.5, 1.6, (inside[1] / footprint) as f32);
+    // Small boxes would be nothing but edges.
+    line * smoothstep(5.0, 24.0, (shape.size.min_element() / footprint) as f32)
 }

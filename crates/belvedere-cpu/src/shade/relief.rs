@@ -74,7 +74,7 @@ impl ReliefLight {
         // 1 on level ground; softly limited above, lifted below so that shadows keep their drawing.
         let tone = if bright > 1.0 { 1.0 + 0.55 * (1.0 - (-(bright - 1.0) / 0.55).exp()) } else { bright.powf(1.15) };
         let direct = self.warm * (0.80 * tone);
-        let ambient = self.cool * (0.56 * (0.5 + 0.5 * n.z) * open);
+        let ambient = self.cool * (0.62 * (0.5 + 0.5 * n.z) * open);
         direct * (0.7 + 0.3 * open) + ambient
     }
 }

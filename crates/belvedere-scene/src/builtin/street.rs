@@ -48,7 +48,7 @@ fn street_middles(edges: &[[f64; 2]]) -> Vec<f64> {
 pub fn street(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
     let mut random = Random::new(seed ^ 0x7374_7265_6574);
     let (xs, ys) = (block_edges(&mut random), block_edges(&mut random));
-    let (nodes, spacing) = (97, 15.0);
+    let (nodes, spacing) = (145, 25.0);
     let corner = DVec2::new(-0.5, 0.5) * spacing * (nodes - 1) as f64;
     let heights = vec![GROUND_M as f32; nodes * nodes];
     let terrain = Heightfield::new(
