@@ -3,6 +3,7 @@
 use super::output;
 use super::render::{self, RenderRequest};
 use crate::{BelvedereError, OpenOptions, Session};
+use belvedere_construct::{MeasureOptions, Measures};
 use std::path::{Path, PathBuf};
 
 /// Name and text of every scene of the demo; they need no files.
@@ -35,36 +36,90 @@ pub fn demo(
             output::check(&path, &[], overwrite)?;
         }
     }
-    let (mut written, mut rows) = (Vec::new(), String::new());
+    let (mut written, mut sections) = (Vec::new(), String::new());
     for (name, text) in SCENES {
         output::write_text(&scene_of(name), text, overwrite)?;
         let mut session = Session::from_text(&scene_of(name), text, options)?;
         session.inputs = vec![scene_of(name)];
         let picture = render::render(&session, &request, &options.progress)?;
+        // Lines of sight alone: the page needs no second opinion.
+        let measures = belvedere_construct::measure(
+            session.scene(),
+            session.view(),
+            None,
+            &MeasureOptions::default(),
+            &options.progress,
+        )?;
         written.extend(picture.write(&picture_of(name), overwrite)?);
         written.push(scene_of(name));
-        let sidecar = &picture.sidecar;
-        rows += &format!(
-            "<h2>{title}</h2>\n<p>{stages}. {note}. <a href=\"{name}.toml\">Scene</a>, <a href=\"{name}.png.json\">record</a>.</p>\n<img src=\"{name}.png\" alt=\"straight and bent\">\n",
-            title = escape(&sidecar.scene.title),
-            stages = escape(&sidecar.stages.join(", ")),
-            note = escape(sidecar.note.as_deref().unwrap_or("straight view")),
-        );
+        sections += &section(name, &picture.sidecar, &measures);
     }
-    output::write_text(&index, &page(&rows), overwrite)?;
+    output::write_text(&index, &page(&sections), overwrite)?;
     written.push(index);
     Ok(written)
 }
 
-fn page(rows: &str) -> String {
+/// What a picture pair shows, in one sentence.
+fn sentence(name: &str) -> &'static str {
+    match name {
+        "massif" => {
+            "The whole valley tilts towards you along a smooth curve: the lake and the trail behind the ridges come into sight, and the summits keep their skyline."
+        }
+        "massif_curved_rays" => {
+            "The rays of sight run straight at first and then bend down over the ridge, into the valley behind it."
+        }
+        "street" => {
+            "The near streets are seen steeply from above, so that the way lies open between the towers; the far side of town stays a skyline."
+        }
+        _ => "The same camera, bent.",
+    }
+}
+
+fn section(name: &str, sidecar: &render::Sidecar, measures: &Measures) -> String {
+    let (mut straight, mut bent) = ("straight".to_owned(), "bent".to_owned());
+    if let Some(line) = &measures.lines {
+        let share = |s: Option<f64>| {
+            s.map_or(String::new(), |s| format!(": {:.0} % of the route in the picture is visible", 100.0 * s))
+        };
+        straight += &share(line.straight.sight.share);
+        bent += &share(line.bent.sight.share);
+    }
+    let moved = sidecar.displacement.map_or(String::new(), |d| {
+        format!(
+            "Nothing is cut away: what you see is moved by up to {:.0} m, {:.0} pixels in the picture. ",
+            d.max_m, d.max_px
+        )
+    });
     format!(
-        "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>Belvedere</title>\n\
-         <style>body{{font:16px sans-serif;max-width:84rem;margin:2rem auto;padding:0 1rem}}img{{width:100%}}</style>\n\
-         <h1>Belvedere {}</h1>\n<p>Left: an ordinary picture. Right: the same camera, with what matters no longer hidden.</p>\n{rows}</html>\n",
+        "<section>\n<h2>{title}</h2>\n<p>{sentence}</p>\n<figure>\n<a href=\"{name}.png\"><img src=\"{name}.png\" \
+         alt=\"{title}: two pictures from the same camera. Left, {straight}. Right, {bent}.\"></a>\n\
+         <figcaption><span>{straight}</span><span>{bent}</span></figcaption>\n</figure>\n\
+         <p class=\"small\">{moved}<a href=\"{name}.toml\">Scene</a> · <a href=\"{name}.png.json\">record</a></p>\n</section>\n",
+        title = escape(&sidecar.scene.title),
+        sentence = sentence(name),
+    )
+}
+
+const STYLE: &str = ":root{color-scheme:light dark}body{font:17px/1.5 system-ui,sans-serif;max-width:84rem;margin:0 auto;\
+padding:2.5rem 1.5rem;color:#222;background:#fafaf8}h1{font-size:2.1rem;margin:0}h2{font-size:1.35rem;margin:3rem 0 0}\
+p{max-width:46rem;margin:.4rem 0 1rem}figure{margin:0}img{display:block;width:100%;height:auto;border-radius:6px}\
+figcaption{display:grid;grid-template-columns:1fr 1fr;gap:.5rem;padding:.5rem 0;font-weight:600}\
+.small{font-size:.9rem;color:#666;max-width:none}a{color:#1f5fa8}code{font-size:.95em}\
+@media(prefers-color-scheme:dark){body{color:#e4e4e0;background:#191b1d}.small{color:#a0a4a8}a{color:#8bbdf0}}";
+
+fn page(sections: &str) -> String {
+    format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>Belvedere: straight and bent</title>\n\
+         <style>{STYLE}</style>\n</head>\n<body>\n<h1>Belvedere {}</h1>\n\
+         <p>Left, an ordinary picture. Right, the same camera with its view bent so that what matters is no longer hidden; \
+         dashes mark where the route runs behind something. Bent pictures are not to scale and not for navigation.</p>\n\
+         {sections}<p class=\"small\">Change a scene and draw it again: <code>belvedere render street.toml -o mine.png --compare</code></p>\n\
+         </body>\n</html>\n",
         crate::VERSION
     )
 }
 
 fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    text.replace('&', "&amp;").replace('"', "&quot;").replace('<', "&lt;").replace('>', "&gt;")
 }
