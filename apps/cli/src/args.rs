@@ -29,7 +29,7 @@ pub(crate) struct Common {
     #[arg(long, global = true)]
     pub(crate) strict: bool,
     /// Worker threads; 0 = all cores
-    #[arg(long, global = true, default_value_t = 0, value_name = "N")]
+    #[arg(long, global = true, default_value_t = 0, value_name = "N", allow_negative_numbers = true, value_parser = parse_threads)]
     pub(crate) threads: usize,
     /// Memory for one picture, such as 2GiB or 800MiB
     #[arg(long, global = true, value_name = "SIZE", value_parser = parse_bytes)]
@@ -83,7 +83,7 @@ pub(crate) struct DemoArgs {
     #[arg(short, long, value_name = "DIR", default_value = "belvedere-demo")]
     pub(crate) out: PathBuf,
     /// Size of each picture instead of the scenes' own
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,
 }
 
@@ -116,10 +116,10 @@ pub(crate) struct RevealArgs {
     #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, value_delimiter = ',')]
     pub(crate) look: Option<Vec<f64>>,
     /// Full vertical field of view, degrees
-    #[arg(long, value_name = "DEG")]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub(crate) fov: Option<f64>,
     /// Size of the picture, such as 1920x1080
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,
     /// Let the ground fall away with the distance
     #[arg(long)]
@@ -157,7 +157,7 @@ pub(crate) struct RenderArgs {
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
     /// Size of the picture instead of the scene's, such as 1920x1080
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,
     /// Renderer
     #[arg(long, value_enum, default_value = "auto")]
@@ -211,10 +211,10 @@ pub(crate) struct RaysArgs {
     #[arg(long, value_name = "P.json")]
     pub(crate) pixels: PathBuf,
     /// Samples per ray, equidistant in depth
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) samples: usize,
     /// Depth of the last sample; by default the camera's far, else the scene's largest depth
-    #[arg(long, value_name = "W")]
+    #[arg(long, value_name = "W", allow_negative_numbers = true)]
     pub(crate) far: Option<f64>,
     /// Output; standard output if left out
     #[arg(short, long, value_name = "OUT.json")]
@@ -246,6 +246,14 @@ pub(crate) enum RendererKind {
     Auto,
     /// On the processor, without a GPU
     Cpu,
+}
+
+/// Most worker threads: far above what helps, far below what a system refuses to start.
+const MAX_THREADS: usize = 1024;
+
+/// A number of threads.
+fn parse_threads(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|n| *n <= MAX_THREADS).ok_or_else(|| format!("give a whole number in 0..={MAX_THREADS}"))
 }
 
 /// Width and height of `1280x720`.

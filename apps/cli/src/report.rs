@@ -23,7 +23,13 @@ pub(crate) fn one_line(error: &anyhow::Error) -> String {
     if error.downcast_ref::<BelvedereError>().is_some_and(BelvedereError::is_cancelled) {
         return "cancelled; nothing was written".into();
     }
-    let text = format!("{error:#}");
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        // Errors that show their cause themselves also name it as their source.
+        if !text.contains(&cause) {
+            text = format!("{text}: {cause}");
+        }
+    }
     text.split('\n').map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ")
 }
 
@@ -34,7 +40,8 @@ pub(crate) fn usage(error: &clap::Error) -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let text = error.render().to_string();
-    let mut lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
+    let advice = |l: &&str| !l.is_empty() && !l.starts_with("For more information");
+    let mut lines = text.lines().map(str::trim).filter(advice);
     let first = lines.next().unwrap_or("bad arguments");
     let more: Vec<&str> =
         lines.take_while(|l| !l.starts_with("Usage")).map(|l| l.trim_start_matches("tip: ")).collect();
@@ -42,7 +49,7 @@ pub(crate) fn usage(error: &clap::Error) -> ExitCode {
     let what = if first.starts_with("Pictures in which") {
         "a verb is missing".to_owned()
     } else {
-        [&[first], &more[..]].concat().join("; ")
+        [&[first], &more[..]].concat().join("; ").replace(":; ", ": ")
     };
     complain(&format!("{what}; see belvedere --help"));
     ExitCode::from(2)

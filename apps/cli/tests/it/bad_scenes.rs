@@ -17,7 +17,7 @@ fn with(key: &str) -> String {
 #[test]
 fn unknown_keys_name_the_nearest() {
     refuses(&BARE.replace("look_at", "lookat"), "4: camera: unknown key \"lookat\"; did you mean \"look_at\"?");
-    refuses(&with("fov = 30"), "5: camera: unknown key \"fov\"; did you mean \"far\"?");
+    refuses(&with("fov = 30"), "5: camera: unknown key \"fov\"; did you mean \"fov_y_deg\"?");
     refuses(&format!("titel = 'x'\n{BARE}"), "1: unknown key \"titel\"; did you mean \"title\"?");
     refuses(
         &with("[[layer]]\nid = 'a'\nkind = 'terain'\nsource = 'x.tif'"),
@@ -39,12 +39,12 @@ fn unknown_keys_name_the_nearest() {
 
 #[test]
 fn wrong_types_and_numbers_name_their_line() {
-    refuses(&with("near = 'x'"), "5: camera.near: f64 was expected, found the text \"x\"");
+    refuses(&with("near = 'x'"), "5: camera.near: a number was expected, found the text \"x\"");
     refuses(&with("near = nan"), "5: nan is not a finite number; give finite numbers");
     refuses(&with("far = inf"), "5: inf is not a finite number; give finite numbers");
     refuses(
         "format = 1\n[camera]\neye = [0, 0]\nlook_at = [0, 1, 0]\n",
-        "3: camera.eye: an array of length 3 was expected, found a list of 2",
+        "3: camera.eye: a list of 3 was expected, found a list of 2",
     );
     refuses("format = 1\n", "1: key \"camera\" is missing; add it");
     refuses("format = 2\n", "1: format is the number 2, this program reads format 1; use a newer version");
@@ -60,6 +60,11 @@ fn degenerate_cameras_say_what_is_wrong() {
     refuses(&with("fov_y_deg = 0"), "5: camera fov_y_deg is 0, it must lie strictly between 0 and 180");
     refuses(&with("fov_y_deg = 180"), "5: camera fov_y_deg is 180, it must lie strictly between 0 and 180");
     refuses(&with("image = [0, 720]"), "5: camera image is 0 x 720 pixels, each side must be in 1..=65535");
+    refuses(&with("far = 0.5"), "5: camera near is 1 and far is 0.5; 0 < near < far is needed");
+    refuses(
+        &with("image = [1.5, 9]"),
+        "5: camera.image.0: a whole number of at least 0 was expected, found the number 1.5",
+    );
     refuses(&with("near = 0"), "5: camera near is 0 and far is inf; 0 < near < far is needed");
     refuses(
         &with("heading_deg = 10"),

@@ -127,3 +127,52 @@ fn outputs_are_not_overwritten_unasked_and_never_inputs() {
     assert!(place.fails(&over).contains("is an input of this command"));
     assert_eq!(super::read(&place.path("o.json")), b"{\"points\":[]}\n");
 }
+
+#[test]
+fn looking_straight_down_needs_a_heading_or_a_spline() {
+    let place = Place::new();
+    let nadir = "[camera]\neye = [0, 0, 1000]\nlook_at = [0, 0, 0]\n";
+    let spline = "[[stage]]\nkind = 'spline_bend'\npresets = 'progressive'\nplane = { height_m = 0 }\n";
+    place.write("p.json", "[[0, 0, 0], [0, 100, 0], [100, 0, 0]]");
+    let image = |scene: &str| {
+        place.write("s.toml", scene);
+        place.json(&["project", "s.toml", "--points", "p.json"])
+    };
+    place.write("s.toml", nadir);
+    assert!(place.fails(&["project", "s.toml", "--points", "p.json"]).contains("looks along its up direction"));
+    // North is up, as with the hint that says so.
+    let north = image(&format!("{nadir}{spline}"));
+    assert_eq!(north, image(&format!("{nadir}up = [0, 1, 0]\n{spline}")));
+    let y = |i: usize| north["points"][i]["pixel"][1].as_f64().expect("a number");
+    assert!(y(1) < y(0) && north["points"][2]["pixel"][0].as_f64() > Some(640.0));
+    assert_ne!(north, image(&format!("{nadir}up = [1, 0, 0]\n{spline}")), "up is the hint");
+}
+
+#[test]
+fn endless_and_marked_files_of_points() {
+    let place = bare();
+    if cfg!(unix) {
+        assert!(place.fails(&["project", "s.toml", "--points", "/dev/zero"]).contains("the most that is read"));
+    }
+    place.write("p.json", "\u{feff}[[0, 5, 0]]");
+    assert_eq!(place.json(&["project", "s.toml", "--points", "p.json"])["points"][0]["depth"].as_f64(), Some(5.0));
+}
+
+#[test]
+fn mistakes_in_arguments_are_one_sentence() {
+    let place = bare();
+    let line = place.fails(&["project", "s.toml", "--points", "none.json"]);
+    assert_eq!(line, "belvedere: none.json: No such file or directory (os error 2)");
+    let line = place.fails(&["render", "s.toml"]);
+    assert_eq!(
+        line,
+        "belvedere: the following required arguments were not provided: --out <OUT.png>; see belvedere --help"
+    );
+    let line = place.fails(&["render", "s.toml", "-o", "x.png", "--size", "-5x3"]);
+    assert!(line.ends_with("such as 1280x720; see belvedere --help"), "{line}");
+    let line = place.fails(&["render", "s.toml", "-o", "x.png", "--threads", "100000"]);
+    assert!(line.contains("give a whole number in 0..=1024"), "{line}");
+    place.write("q.json", "[]");
+    let line = place.fails(&["rays", "s.toml", "--pixels", "q.json", "--samples", "2", "--far", "-5"]);
+    assert!(line.contains("rays end at depth -5"), "{line}");
+}

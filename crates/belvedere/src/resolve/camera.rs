@@ -57,12 +57,15 @@ pub(crate) fn resolve(
     let make = |up: DVec3| Pinhole::look_at(eye, aim, up, projection, doc.image, doc.near, doc.far);
     let mut made = make(DVec3::from_array(doc.up));
     if let (Err(PinholeError::AlongUp { .. }), Some(normal)) = (&made, spline_normal) {
-        // The spline's plane supplies the heading; a nadir view given by angles still knows where it came from.
+        // The spline's plane supplies the heading. Straight down onto a level one, what is left is the heading of the
+        // angles, and without them north.
         let level = DVec3::new(heading.sin(), heading.cos(), 0.0);
-        let from_plane = make(normal);
-        made = if from_plane.is_err() && look_at.is_none() { make(level) } else { from_plane };
+        made = make(normal).or_else(|_| make(level));
     }
-    let pinhole = made.map_err(|e| source.error(&["camera", key_of(&e)], e))?;
+    let pinhole = made.map_err(|e| {
+        let key = if matches!(e, PinholeError::Range { .. }) && doc.far.is_some() { "far" } else { key_of(&e) };
+        source.error(&["camera", key], e)
+    })?;
     let mut document = doc.clone();
     document.eye = PointDoc::Scene(eye.to_array());
     document.look_at = look_at.map(|p| PointDoc::Scene(p.to_array()));

@@ -53,15 +53,15 @@ impl de::Error for DocError {
     }
 
     fn invalid_type(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
-        Self::custom(format!("{expected} was expected, found {}", words(found)))
+        Self::custom(format!("{} was expected, found {}", plain(expected), words(found)))
     }
 
     fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
-        Self::custom(format!("{expected} was expected, found {}", words(found)))
+        Self::custom(format!("{} was expected, found {}", plain(expected), words(found)))
     }
 
     fn invalid_length(len: usize, expected: &dyn Expected) -> Self {
-        Self::custom(format!("{expected} was expected, found a list of {len}"))
+        Self::custom(format!("{} was expected, found a list of {len}", plain(expected)))
     }
 
     fn unknown_field(field: &str, expected: &'static [&'static str]) -> Self {
@@ -78,6 +78,21 @@ impl de::Error for DocError {
 
     fn duplicate_field(field: &'static str) -> Self {
         Self::custom(format!("key \"{field}\" is given twice; keep one"))
+    }
+}
+
+/// What was expected, in words that need no knowledge of the program's types.
+fn plain(expected: &dyn Expected) -> String {
+    let text = expected.to_string();
+    match text.as_str() {
+        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number of at least 0".into(),
+        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number".into(),
+        "f32" | "f64" => "a number".into(),
+        "a string" => "a text".into(),
+        other => match other.strip_prefix("an array of length ") {
+            Some(length) => format!("a list of {length}"),
+            None => text,
+        },
     }
 }
 
@@ -102,8 +117,9 @@ pub(crate) fn suggestion(given: &str, valid: &[&str]) -> String {
         .iter()
         .map(|v| (strsim::damerau_levenshtein(&given, v), *v))
         .min_by_key(|(d, _)| *d)
-        .filter(|(d, v)| *d <= 1 + v.len().max(given.len()) / 3)
-        .or_else(|| valid.iter().find(|v| given.len() >= 3 && v.starts_with(&given)).map(|v| (0, *v)));
+        .filter(|(d, v)| *d <= 1 + v.len().max(given.len()) / 3);
+    let begun = valid.iter().find(|v| given.len() >= 3 && v.starts_with(&given)).map(|v| (0, *v));
+    let best = best.filter(|(d, _)| *d <= 1).or(begun).or(best);
     match best {
         Some((_, v)) => format!("did you mean \"{v}\"?"),
         None if valid.is_empty() => "none is possible here".into(),

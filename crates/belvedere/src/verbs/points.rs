@@ -4,10 +4,14 @@ use crate::scene_file::{Node, Value, json_points};
 use crate::{BelvedereError, Session};
 use belvedere_core::{Camera, DVec2, DVec3, Miss, View};
 use serde::Serialize;
+use std::io::Read;
 use std::path::Path;
 
 /// Most samples of all rays together.
 pub const MAX_SAMPLES: usize = 50_000_000;
+
+/// Largest file of points or pixels, bytes.
+pub const MAX_POINT_BYTES: u64 = 512 << 20;
 
 /// Answer of [`project`].
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -175,11 +179,18 @@ pub fn far_depth(session: &Session, far: Option<f64>) -> Result<f64, BelvedereEr
 /// [`BelvedereError::Points`] with the index of the first bad element.
 pub fn read_points<const N: usize>(path: &Path) -> Result<Vec<[f64; N]>, BelvedereError> {
     let fail = |reason: String| BelvedereError::Points { path: path.to_owned(), reason };
-    let text = std::fs::read(path).map_err(|e| belvedere_io::IoError::os(path, e))?;
+    let mut text = Vec::new();
+    std::fs::File::open(path)
+        .and_then(|f| f.take(MAX_POINT_BYTES + 1).read_to_end(&mut text))
+        .map_err(|e| belvedere_io::IoError::os(path, e))?;
+    if text.len() as u64 > MAX_POINT_BYTES {
+        return Err(fail(format!("it has more than {MAX_POINT_BYTES} bytes, the most that is read; split it")));
+    }
     let text = String::from_utf8(text)
         .map_err(|e| fail(format!("byte {} is not UTF-8 text; give JSON", e.utf8_error().valid_up_to())))?;
     let shape = if N == 3 { "[x, y, z]" } else { "[x, y]" };
-    let root = json_points(&text).map_err(|e| fail(format!("line {}: {e}", e.line.unwrap_or(1))))?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let root = json_points(text).map_err(|e| fail(format!("line {}: {e}", e.line.unwrap_or(1))))?;
     let items =
         root.list().ok_or_else(|| fail(format!("a list of {shape} was expected, found {}", root.describe())))?;
     items
