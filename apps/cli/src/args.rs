@@ -124,6 +124,9 @@ pub(crate) struct RevealArgs {
     /// Let the ground fall away with the distance
     #[arg(long)]
     pub(crate) curved_earth: bool,
+    /// Leave holes of the terrain open instead of filling them
+    #[arg(long)]
+    pub(crate) keep_voids: bool,
     /// Coordinate system of the scene: auto, EPSG:n or local
     #[arg(long, value_name = "CRS")]
     pub(crate) crs: Option<String>,

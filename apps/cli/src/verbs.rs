@@ -107,6 +107,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         image: args.size,
         curved_earth: args.curved_earth,
         crs: args.crs,
+        keep_voids: args.keep_voids,
         ..RevealRequest::default()
     };
     request.render.options.threads = context.common.threads;

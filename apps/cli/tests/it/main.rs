@@ -4,6 +4,7 @@ mod bad_scenes;
 mod numbers;
 mod odd_files;
 mod pictures;
+mod reveal;
 mod scenes;
 
 use std::path::{Path, PathBuf};

@@ -6,7 +6,7 @@ use crate::{BelvedereError, Session};
 use belvedere_core::{Camera, DVec2, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_io::png::{self, Channels};
-use belvedere_scene::{Aux, Frame, FrameStats, Progress, RenderJob, RenderOptions, Renderer};
+use belvedere_scene::{Aux, Frame, FrameStats, Heightfield, NodeState, Progress, RenderJob, RenderOptions, Renderer};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -69,6 +69,28 @@ pub struct DisplacementReport {
     pub samples: usize,
 }
 
+/// What of the ground is measured, and what is not.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TerrainRecord {
+    /// Nodes of the grid.
+    pub nodes: usize,
+    /// Nodes without a height: holes, and the rim outside the data.
+    pub void_nodes: usize,
+    /// Nodes whose height was made up to close a hole.
+    pub filled_nodes: usize,
+    /// Share of made-up nodes, 0..=1.
+    pub filled_share: f64,
+}
+
+impl TerrainRecord {
+    fn of(terrain: &Heightfield) -> Self {
+        let count = |state| terrain.states().iter().filter(|s| **s == state).count();
+        let filled_share = terrain.share_of(NodeState::Filled);
+        let [void_nodes, filled_nodes] = [NodeState::Void, NodeState::Filled].map(count);
+        Self { nodes: terrain.states().len(), void_nodes, filled_nodes, filled_share }
+    }
+}
+
 /// The record beside a picture.
 #[derive(Debug, Clone, Serialize)]
 pub struct Sidecar {
@@ -83,6 +105,8 @@ pub struct Sidecar {
     pub stages: Vec<&'static str>,
     /// How far things were moved; `None` for a straight picture.
     pub displacement: Option<DisplacementReport>,
+    /// What of the ground is made up; `None` without terrain.
+    pub terrain: Option<TerrainRecord>,
     /// The camera in numbers.
     pub view: provenance::ViewRecord,
     /// The resolved scene: opens to the same view.
@@ -146,6 +170,7 @@ pub fn render(session: &Session, request: &RenderRequest, progress: &Progress) -
         note: displacement.map(|d| note(&view, &d)),
         stages: view.stages().iter().map(|s| s.name()).collect(),
         displacement,
+        terrain: session.scene().terrain().map(TerrainRecord::of),
         view: provenance::ViewRecord::of(&view),
         scene: session.resolved().clone(),
         inputs: provenance::inputs(session.inputs())?,

@@ -14,7 +14,7 @@ use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::{Goal, RevealMemory, RevealOptions, RevealReport, Revealed};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_io::png::{self, Channels};
-use belvedere_scene::{Crs, Progress};
+use belvedere_scene::{Crs, NodeState, Progress};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -37,6 +37,8 @@ pub struct RevealRequest {
     pub curved_earth: bool,
     /// Coordinate system of the scene; automatic if left out.
     pub crs: Option<String>,
+    /// Leaves holes of the terrain open.
+    pub keep_voids: bool,
     /// Quality of the pictures.
     pub render: RenderRequest,
 }
@@ -61,6 +63,7 @@ struct ReportFile<'a> {
     displacement: Option<render::DisplacementReport>,
     view: &'a crate::provenance::ViewRecord,
     crs: String,
+    terrain: Option<render::TerrainRecord>,
     inputs: &'a [crate::provenance::InputFile],
     scene_warnings: &'a [String],
 }
@@ -70,10 +73,10 @@ struct ReportFile<'a> {
 /// # Errors
 /// [`BelvedereError::Construct`] if no view is possible, else as [`Session::open`] and [`render::render`].
 pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnswer, BelvedereError> {
-    let (document, roots) = document(request)?;
-    let source = SourceDocument::made(PathBuf::from("reveal.toml"), document);
-    let mut session = crate::resolve::session(source, &roots, options)?;
-    session.inputs.remove(0);
+    if let Some(fov) = request.fov_y_deg.filter(|fov| !(*fov > 0.0 && *fov < 180.0)) {
+        return Err(BelvedereError::Usage(format!("--fov is {fov}, it must lie strictly between 0 and 180 degrees")));
+    }
+    let mut session = open(request, options)?;
     let base = base_view(request, &session)?;
     let image = request.image.unwrap_or([1280, 720]);
     let search = RevealOptions {
@@ -87,6 +90,32 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     adopt(&mut session, &found)?;
     let picture = draw(&session, request, &options.progress)?;
     Ok(RevealAnswer { session, picture, report: found.report })
+}
+
+/// Most of the ground that may be made up, share of the nodes; above it holes stay open.
+pub const MAX_FILLED_SHARE: f64 = 0.15;
+
+/// The terrain and the features, holes filled unless they are to be kept or too much of the ground.
+fn open(request: &RevealRequest, options: &OpenOptions) -> Result<Session, BelvedereError> {
+    let load = |keep_voids: bool| {
+        let (document, roots) = document(request, keep_voids)?;
+        let source = SourceDocument::made(PathBuf::from("reveal.toml"), document);
+        let mut session = crate::resolve::session(source, &roots, options)?;
+        session.inputs.remove(0);
+        Ok::<_, BelvedereError>(session)
+    };
+    let session = load(request.keep_voids)?;
+    let filled = session.scene.terrain().map_or(0.0, |t| t.share_of(NodeState::Filled));
+    if filled <= MAX_FILLED_SHARE {
+        return Ok(session);
+    }
+    let mut session = load(true)?;
+    session.warnings.push(format!(
+        "holes are {:.1} % of the ground, more than the {:.0} % that are filled, so they stay open; take terrain with fewer holes",
+        100.0 * filled,
+        100.0 * MAX_FILLED_SHARE
+    ));
+    Ok(session)
 }
 
 impl RevealAnswer {
@@ -139,6 +168,7 @@ impl RevealAnswer {
                 displacement: sidecar.displacement,
                 view: &sidecar.view,
                 crs: self.session.scene.crs.to_string(),
+                terrain: sidecar.terrain,
                 inputs: &sidecar.inputs,
                 scene_warnings: self.session.warnings(),
             };
@@ -254,13 +284,13 @@ fn base_view(request: &RevealRequest, session: &Session) -> Result<Option<View>,
 }
 
 /// A document of the terrain and the features, and the folders they lie in.
-fn document(request: &RevealRequest) -> Result<(Document, Roots), BelvedereError> {
+fn document(request: &RevealRequest, keep_voids: bool) -> Result<(Document, Roots), BelvedereError> {
     let mut roots = Roots::default();
     let dem = locate(&request.dem, &mut roots)?;
     let mut layer = vec![LayerDoc::Terrain(TerrainDoc {
         id: "ground".into(),
         source: Paths::One(dem),
-        fill_voids: false,
+        fill_voids: !keep_voids,
         drape: None,
         style: TerrainStyleDoc::default(),
     })];

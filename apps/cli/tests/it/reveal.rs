@@ -1,0 +1,71 @@
+//! `reveal` on a small range of hills with a hole in it.
+
+use super::Place;
+
+const SIDE: usize = 64;
+
+/// Hills between lon 8.0 and 8.064, without data where `hole` says so.
+fn hills(hole: impl Fn(usize, usize) -> bool) -> String {
+    let mut text =
+        format!("ncols {SIDE}\nnrows {SIDE}\nxllcorner 8.0\nyllcorner 46.0\ncellsize 0.001\nNODATA_value -9999\n");
+    for row in 0..SIDE {
+        for col in 0..SIDE {
+            let height = 1000.0 + 250.0 * (0.35 * row as f64).sin() + 40.0 * (0.2 * col as f64).sin();
+            text += &if hole(row, col) { "-9999 ".to_owned() } else { format!("{height:.1} ") };
+        }
+        text += "\n";
+    }
+    text
+}
+
+fn place(hole: impl Fn(usize, usize) -> bool) -> Place {
+    let place = Place::new();
+    place.write("dem.asc", &hills(hole));
+    let line = "{\"type\":\"LineString\",\"coordinates\":[[8.02,46.02],[8.03,46.035],[8.04,46.05]]}";
+    place.write("way.geojson", line);
+    place
+}
+
+/// Reveals `place`'s way and returns the record of the terrain and all warnings.
+fn ground(place: &Place, more: &[&str]) -> (serde_json::Value, String) {
+    let args = ["reveal", "dem.asc", "way.geojson", "-o", "out.png", "--size", "64x48", "--overwrite", "--json"];
+    let view = ["--eye", "8.03,46.002,1900", "--look", "8.03,46.035", "--report", "report.json"];
+    let result = place.json(&[&args[..], &view, more].concat());
+    let json =
+        |name: &str| -> serde_json::Value { serde_json::from_slice(&super::read(&place.path(name))).expect("JSON") };
+    let record = json("out.png.json");
+    assert_eq!(record["terrain"], json("report.json")["terrain"]);
+    (record["terrain"].clone(), result["warnings"].to_string())
+}
+
+#[test]
+fn small_holes_are_filled_marked_and_said_or_kept() {
+    let place = place(|row, col| (20..26).contains(&row) && (30..40).contains(&col));
+    let count = |ground: &serde_json::Value, key: &str| ground[key].as_u64().expect("a count");
+    let (filled, warnings) = ground(&place, &[]);
+    assert!(count(&filled, "filled_nodes") >= 40, "{filled}");
+    let share = filled["filled_share"].as_f64().expect("a share");
+    assert!((share * count(&filled, "nodes") as f64 - count(&filled, "filled_nodes") as f64).abs() < 1e-6);
+    assert!(warnings.contains("holes were filled"), "{warnings}");
+    let (kept, warnings) = ground(&place, &["--keep-voids"]);
+    assert_eq!(count(&kept, "filled_nodes"), 0);
+    assert_eq!(count(&kept, "void_nodes"), count(&filled, "void_nodes") + count(&filled, "filled_nodes"));
+    assert!(warnings.contains("they stay holes"), "{warnings}");
+}
+
+#[test]
+fn ground_that_is_mostly_hole_is_not_made_up() {
+    let place = place(|row, col| (34..60).contains(&row) && (2..62).contains(&col) && col > 33);
+    let (open, warnings) = ground(&place, &[]);
+    assert_eq!(open["filled_nodes"].as_u64(), Some(0), "{open}");
+    assert!(warnings.contains("so they stay open"), "{warnings}");
+}
+
+#[test]
+fn impossible_fields_of_view_are_refused() {
+    let place = place(|_, _| false);
+    for fov in ["0", "180", "-5", "nan"] {
+        let line = place.fails(&["reveal", "dem.asc", "way.geojson", "-o", "out.png", "--fov", fov]);
+        assert!(line.contains("strictly between 0 and 180"), "{line}");
+    }
+}
