@@ -2,7 +2,7 @@
 //! disturbs all of them alike. Linux only, where the kernel counts each thread's time in nanoseconds.
 //!
 //! `cargo bench -p belvedere-cpu --bench cost -- [ROUNDS]`
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::print_stdout)]
 
 mod support;
 

@@ -53,6 +53,8 @@ pub(crate) struct Block {
     soup_base: u32,
     /// Rows of the image that the block may touch.
     rows: [i32; 2],
+    /// Smallest and largest y of each row of nodes of a grid, fixed point.
+    spans: Vec<[i32; 2]>,
     pub(crate) counts: Counts,
 }
 
@@ -133,7 +135,9 @@ impl Blocks {
         for (i, block) in self.list.iter().enumerate() {
             if block.rows[0] < band.y1 && block.rows[1] >= band.y0 {
                 match &block.geometry {
-                    Geometry::Grid(nodes) => draw_grid(block.cells, nodes, (i as u32) << CELL_BITS, band),
+                    Geometry::Grid(nodes) => {
+                        draw_grid(block.cells, nodes, &block.spans, (i as u32) << CELL_BITS, band);
+                    }
                     Geometry::Soup(soup) => {
                         for (k, t) in soup.iter().enumerate() {
                             band.draw(t.v.map(|v| v.screen), SOUP | (block.soup_base + k as u32));
@@ -189,20 +193,27 @@ impl Blocks {
     }
 }
 
-fn draw_grid([cols, rows]: [usize; 2], nodes: &[ScreenVertex], first_prim: u32, band: &mut Band) {
+fn draw_grid([cols, rows]: [usize; 2], nodes: &[ScreenVertex], spans: &[[i32; 2]], first_prim: u32, band: &mut Band) {
     let stride = cols + 1;
     let (top, bottom) = (band.y0 * SUB, band.y1 * SUB);
     for r in 0..rows {
-        let north = &nodes[r * stride..(r + 1) * stride];
-        let south = &nodes[(r + 1) * stride..(r + 2) * stride];
-        for c in 0..cols {
-            let v = [north[c], north[c + 1], south[c], south[c + 1]];
-            let (a, b) = (v[0].y.min(v[1].y), v[2].y.min(v[3].y));
-            let (s, t) = (v[0].y.max(v[1].y), v[2].y.max(v[3].y));
-            if a.min(b) >= bottom || s.max(t) < top {
+        if spans[r][0].min(spans[r + 1][0]) >= bottom || spans[r][1].max(spans[r + 1][1]) < top {
+            continue;
+        }
+        let north = &nodes[r * stride..][..stride];
+        let south = &nodes[(r + 1) * stride..][..stride];
+        for (c, (n, s)) in north.windows(2).zip(south.windows(2)).enumerate() {
+            let v = [n[0], n[1], s[0], s[1]];
+            let x = [v[0].x.min(v[1].x).min(v[2].x.min(v[3].x)), v[0].x.max(v[1].x).max(v[2].x.max(v[3].x))];
+            let y = [v[0].y.min(v[1].y).min(v[2].y.min(v[3].y)), v[0].y.max(v[1].y).max(v[2].y.max(v[3].y))];
+            let prim = first_prim | ((r * SIDE + c) as u32) << 1;
+            if x[0] != i32::MIN {
+                if !band.misses(x, y) {
+                    band.draw([v[0], v[1], v[3]], prim);
+                    band.draw([v[0], v[2], v[3]], prim | 1);
+                }
                 continue;
             }
-            let prim = first_prim | ((r * SIDE + c) as u32) << 1;
             for (k, t) in CELL_TRIANGLES.iter().enumerate() {
                 let tri = t.map(|i| v[i]);
                 if !tri.iter().any(|v| v.is_none()) {
@@ -295,6 +306,7 @@ impl Job<'_> {
             geometry: Geometry::Soup(Vec::new()),
             soup_base: 0,
             rows: [0, -1],
+            spans: Vec::new(),
             counts: Counts::default(),
         };
         let careful = judged.inside || judged.border.contains(&true);
@@ -306,6 +318,7 @@ impl Job<'_> {
                 return None;
             }
             out.rows = [y[0] >> 8, y[1] >> 8];
+            out.spans = nodes.chunks(cells[0] + 1).map(span_of).collect();
             out.counts.drawn = 2 * (cells[0] * cells[1]) as u64;
             out.geometry = Geometry::Grid(nodes);
             return Some(out);
@@ -415,6 +428,7 @@ impl Job<'_> {
                     geometry,
                     soup_base: 0,
                     rows,
+                    spans: Vec::new(),
                     counts,
                 })
             })
@@ -433,6 +447,12 @@ struct Judged {
 fn extent(hf: &Heightfield, block: [usize; 2]) -> ([usize; 2], [usize; 2]) {
     let origin = [block[0] * SIDE, block[1] * SIDE];
     (origin, [SIDE.min(hf.cols() - 1 - origin[0]), SIDE.min(hf.rows() - 1 - origin[1])])
+}
+
+/// Smallest and largest y of the nodes that there are.
+fn span_of(nodes: &[ScreenVertex]) -> [i32; 2] {
+    let on = nodes.iter().filter(|v| !v.is_none());
+    on.fold([i32::MAX, i32::MIN], |y, v| [y[0].min(v.y), y[1].max(v.y)])
 }
 
 fn rows_of(soup: &[SoupTriangle]) -> Option<[i32; 2]> {

@@ -88,10 +88,30 @@ pub(crate) fn each(points: &mut Points<'_>, map: impl Fn(DVec3) -> Option<DVec3>
 }
 
 /// `X' = eye + before (X - C') + phi(a, b) shift`, the first record `X' = X + phi shift`; phi is 0 before t0 and `a - b`
-/// after t2. Without branches, so that several points are computed at once.
+/// after t2. Without branches, so that several points are computed at once, unless all of them lie on one side.
 fn conic(turn: &Turn, m: f64, eye: DVec3, first: bool, points: &mut Points<'_>) -> bool {
     let n = points.x.len();
     let (xs, ys, zs) = (&mut points.x[..n], &mut points.y[..n], &mut points.z[..n]);
+    let [mut before, mut after] = [true; 2];
+    for i in 0..n {
+        let p = DVec3::new(xs[i], ys[i], zs[i]);
+        let (a, b) = (turn.a.at(p), turn.b.at(p));
+        before &= (a <= 0.0) & (b > 0.0);
+        after &= (a > 0.0) & (b <= 0.0);
+    }
+    if before && first {
+        return true;
+    }
+    if before || after {
+        for i in 0..n {
+            let p = DVec3::new(xs[i], ys[i], zs[i]);
+            let phi = if after { turn.h.at(p) } else { 0.0 };
+            let base = if first { p } else { eye + turn.before * (p - turn.viewpoint_before) };
+            let q = base + phi * turn.shift;
+            (xs[i], ys[i], zs[i]) = (q.x, q.y, q.z);
+        }
+        return true;
+    }
     let mut known = true;
     for i in 0..n {
         let p = DVec3::new(xs[i], ys[i], zs[i]);

@@ -22,7 +22,7 @@ use raster::{Band, sample_offsets};
 use rayon::prelude::*;
 use resolve::{Rows, resolve};
 use shade::Shader;
-use shade::color::{Packed, encode};
+use shade::color::Packed;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
@@ -158,7 +158,7 @@ fn finish(marks: &Marks, lens: &Lens, buffers: &mut Buffers) -> Vec<[u8; 3]> {
         .for_each(|(i, ((out, color), id))| {
             marks.draw((i * BAND) as i32, lens.width, color, id);
             for (o, c) in out.iter_mut().zip(color.iter()) {
-                *o = encode(c.rgb());
+                *o = c.encode();
             }
         });
     out

@@ -41,6 +41,8 @@ pub(crate) struct Band {
     pub(crate) y1: i32,
     pub(crate) width: i32,
     pub(crate) offsets: Vec<[i32; 2]>,
+    /// Smallest and largest offset along x and y.
+    reach: [[i32; 2]; 2],
     /// Larger = nearer, planes by sample.
     pub(crate) q: Vec<f32>,
     pub(crate) prim: Vec<u32>,
@@ -52,11 +54,16 @@ pub(crate) struct Band {
 impl Band {
     pub(crate) fn new(y0: i32, y1: i32, width: i32, offsets: Vec<[i32; 2]>) -> Self {
         let n = offsets.len() * (y1 - y0).max(0) as usize * width.max(0) as usize;
+        let reach = [0, 1].map(|axis| {
+            let along = offsets.iter().map(|o: &[i32; 2]| o[axis]);
+            [along.clone().min().unwrap_or(0), along.max().unwrap_or(0)]
+        });
         Self {
             y0,
             y1,
             width,
             offsets,
+            reach,
             q: vec![f32::NEG_INFINITY; n],
             prim: vec![SKY; n],
             #[cfg(test)]
@@ -71,88 +78,164 @@ impl Band {
         (sample * rows + (y - self.y0) as usize) * self.width as usize + x as usize
     }
 
+    /// Whether no sample of the band lies in a box of fixed-point positions: most cells far away.
+    #[inline]
+    pub(crate) fn misses(&self, x: [i32; 2], y: [i32; 2]) -> bool {
+        let [[left, right], [top, bottom]] = self.reach;
+        let (xa, xb) = ((x[0] - right + SUB - 1) >> 8, (x[1] - left) >> 8);
+        let (ya, yb) = ((y[0] - bottom + SUB - 1) >> 8, (y[1] - top) >> 8);
+        (xa > xb) | (ya > yb) | (xb < 0) | (xa >= self.width) | (yb < self.y0) | (ya >= self.y1)
+    }
+
     /// Draws a triangle, either orientation. Of two surfaces equally near the one drawn first stays.
     #[inline]
-    pub(crate) fn draw(&mut self, [a, b, c]: [ScreenVertex; 3], prim: u32) {
-        let (min_y, max_y) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
-        if max_y < self.y0 * SUB || min_y >= self.y1 * SUB {
+    pub(crate) fn draw(&mut self, tri: [ScreenVertex; 3], prim: u32) {
+        let [a, b, c] = tri;
+        let x = [a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x)];
+        let y = [a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y)];
+        if self.misses(x, y) {
             return;
         }
-        let (min_x, max_x) = (a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x));
-        if max_x < 0 || min_x >= self.width * SUB {
+        // No overflow: vertices are clipped to the guard planes.
+        if x[1] - x[0] < SMALL && y[1] - y[0] < SMALL {
+            self.draw_small(tri, x, y, prim);
+        } else {
+            self.draw_large(tri, x, y, prim);
+        }
+    }
+
+    /// First and last pixel whose sample lies in a triangle's bounding box.
+    #[inline]
+    fn pixels(&self, [ox, oy]: [i32; 2], x: [i32; 2], y: [i32; 2]) -> [i32; 4] {
+        [
+            ((x[0] - ox + SUB - 1) >> 8).max(0),
+            ((x[1] - ox) >> 8).min(self.width - 1),
+            ((y[0] - oy + SUB - 1) >> 8).max(self.y0),
+            ((y[1] - oy) >> 8).min(self.y1 - 1),
+        ]
+    }
+
+    /// A triangle of a few pixels: 32-bit edge functions, the plane of nearness only once a sample is hit.
+    #[inline]
+    fn draw_small(&mut self, [a, b, c]: [ScreenVertex; 3], x: [i32; 2], y: [i32; 2], prim: u32) {
+        let area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+        if area == 0 {
             return;
         }
-        let mut setup: Option<Setup> = None;
+        let v = if area < 0 { [a, c, b] } else { [a, b, c] };
+        let edge = |i: usize, xs: i32, ys: i32| {
+            let (p, r) = (v[i], v[(i + 1) % 3]);
+            let (dx, dy) = (r.x - p.x, r.y - p.y);
+            dx * (ys - p.y) - dy * (xs - p.x) - i32::from(!owns_edge(i64::from(dx), i64::from(dy)))
+        };
+        let mut plane: Option<Plane> = None;
         for s in 0..self.offsets.len() {
             let [ox, oy] = self.offsets[s];
-            // First and last pixel whose sample lies in the triangle's bounding box.
-            let xa = ((min_x - ox + SUB - 1) >> 8).max(0);
-            let xb = ((max_x - ox) >> 8).min(self.width - 1);
-            let ya = ((min_y - oy + SUB - 1) >> 8).max(self.y0);
-            let yb = ((max_y - oy) >> 8).min(self.y1 - 1);
-            if xa > xb || ya > yb {
+            let [xa, xb, ya, yb] = self.pixels([ox, oy], x, y);
+            for py in ya..=yb {
+                for px in xa..=xb {
+                    let (xs, ys) = (px * SUB + ox, py * SUB + oy);
+                    if (edge(0, xs, ys) | edge(1, xs, ys) | edge(2, xs, ys)) < 0 {
+                        continue;
+                    }
+                    let plane = plane.get_or_insert_with(|| Plane::new(v, area.unsigned_abs().into()));
+                    let q = plane.at(xs, ys);
+                    self.write(self.index(s, px, py), plane.clamp(q), prim);
+                }
+            }
+        }
+    }
+
+    fn draw_large(&mut self, [a, b, c]: [ScreenVertex; 3], x: [i32; 2], y: [i32; 2], prim: u32) {
+        let Some(t) = Setup::new(a, b, c) else { return };
+        for s in 0..self.offsets.len() {
+            let [ox, oy] = self.offsets[s];
+            let [xa, xb, ya, yb] = self.pixels([ox, oy], x, y);
+            if xa > xb {
                 continue;
             }
-            if setup.is_none() {
-                match Setup::new(a, b, c) {
-                    Some(new) => setup = Some(new),
-                    None => return,
-                }
-            }
-            let Some(t) = &setup else { return };
             for y in ya..=yb {
                 let ys = y * SUB + oy;
-                let (x0, x1) = if xb - xa < 4 { (xa, xb) } else { t.span(ys, ox, xa, xb) };
-                if x0 > x1 {
-                    continue;
-                }
+                let (x0, x1) = t.span(ys, ox, xa, xb);
                 let first = self.index(s, x0, y);
-                self.row(t, first, x0, x1, x0 * SUB + ox, ys, xb - xa < 4, prim);
+                let q0 = t.plane.at(x0 * SUB + ox, ys);
+                for k in 0..=x1 - x0 {
+                    let q = t.plane.clamp(q0 + t.plane.gx * f64::from(k * SUB));
+                    self.write(first + k as usize, q, prim);
+                }
             }
         }
     }
 
     #[inline]
-    #[allow(clippy::too_many_arguments)]
-    fn row(&mut self, t: &Setup, first: usize, x0: i32, x1: i32, xs: i32, ys: i32, test: bool, prim: u32) {
-        let mut e = t.edges_at(xs, ys);
-        let q0 = t.q_at(xs, ys);
-        for k in 0..=(x1 - x0) as usize {
-            if !test || (e[0] | e[1] | e[2]) >= 0 {
-                let q = ((q0 + t.q_dx * k as f64) as f32).clamp(t.q_min, t.q_max);
-                let i = first + k;
-                #[cfg(test)]
-                {
-                    self.hits[i] += 1;
-                }
-                if q > self.q[i] {
-                    self.q[i] = q;
-                    self.prim[i] = prim;
-                }
-            }
-            for (v, d) in e.iter_mut().zip(t.dx) {
-                *v += d;
-            }
+    fn write(&mut self, i: usize, q: f32, prim: u32) {
+        #[cfg(test)]
+        {
+            self.hits[i] += 1;
+        }
+        if q > self.q[i] {
+            self.q[i] = q;
+            self.prim[i] = prim;
         }
     }
 }
 
-/// Edge functions (inside = all >= 0) and the plane of nearness.
-struct Setup {
+/// Bounding boxes below this many fixed-point steps go with 32-bit edge functions.
+const SMALL: i32 = 6 * SUB;
+
+/// Top-left rule: a sample exactly on an edge belongs to the triangle below or to the right of it.
+#[inline]
+fn owns_edge(dx: i64, dy: i64) -> bool {
+    dy < 0 || (dy == 0 && dx > 0)
+}
+
+/// The plane of nearness, per fixed-point step, and its range on the triangle.
+struct Plane {
     origin: [i32; 2],
-    /// Edge functions at the origin, fill rule included.
+    q0: f64,
+    gx: f64,
+    gy: f64,
+    q_min: f32,
+    q_max: f32,
+}
+
+impl Plane {
+    /// * `area`: twice the area of the triangle, positive.
+    #[inline]
+    fn new([a, b, c]: [ScreenVertex; 3], area: i64) -> Self {
+        let d = |p: i32, q: i32| f64::from(p) - f64::from(q);
+        let (q1, q2) = (f64::from(b.q) - f64::from(a.q), f64::from(c.q) - f64::from(a.q));
+        let inv = 1.0 / area as f64;
+        Self {
+            origin: [a.x, a.y],
+            q0: f64::from(a.q),
+            gx: (q1 * d(c.y, a.y) - q2 * d(b.y, a.y)) * inv,
+            gy: (q2 * d(b.x, a.x) - q1 * d(c.x, a.x)) * inv,
+            q_min: a.q.min(b.q).min(c.q),
+            q_max: a.q.max(b.q).max(c.q),
+        }
+    }
+
+    #[inline]
+    fn at(&self, xs: i32, ys: i32) -> f64 {
+        self.q0 + self.gx * f64::from(xs - self.origin[0]) + self.gy * f64::from(ys - self.origin[1])
+    }
+
+    #[inline]
+    fn clamp(&self, q: f64) -> f32 {
+        (q as f32).clamp(self.q_min, self.q_max)
+    }
+}
+
+/// Edge functions (inside = all >= 0) and the plane of nearness of a triangle of any size.
+struct Setup {
+    /// Edge functions at the first vertex, fill rule included.
     e0: [i64; 3],
     /// Their change per pixel along x and per fixed-point step.
     dx: [i64; 3],
     ex: [i64; 3],
     ey: [i64; 3],
-    q0: f64,
-    /// Change of nearness per pixel along x, per fixed-point step along x and y.
-    q_dx: f64,
-    gx: f64,
-    gy: f64,
-    q_min: f32,
-    q_max: f32,
+    plane: Plane,
 }
 
 impl Setup {
@@ -172,38 +255,16 @@ impl Setup {
             let (dx, dy) = (d(r.x, p.x), d(r.y, p.y));
             ex[i] = -dy;
             ey[i] = dx;
-            // Top-left rule: a sample exactly on an edge belongs to the triangle below or to the right of it.
-            let owns = dy < 0 || (dy == 0 && dx > 0);
-            e0[i] = dx * d(a.y, p.y) - dy * d(a.x, p.x) - i64::from(!owns);
+            e0[i] = dx * d(a.y, p.y) - dy * d(a.x, p.x) - i64::from(!owns_edge(dx, dy));
         }
-        let (q1, q2) = (f64::from(b.q) - f64::from(a.q), f64::from(c.q) - f64::from(a.q));
-        let inv = 1.0 / area as f64;
-        let gx = (q1 * d(c.y, a.y) as f64 - q2 * d(b.y, a.y) as f64) * inv;
-        let gy = (q2 * d(b.x, a.x) as f64 - q1 * d(c.x, a.x) as f64) * inv;
-        Some(Self {
-            origin: [a.x, a.y],
-            e0,
-            dx: ex.map(|e| e * i64::from(SUB)),
-            ex,
-            ey,
-            q0: f64::from(a.q),
-            q_dx: gx * f64::from(SUB),
-            gx,
-            gy,
-            q_min: a.q.min(b.q).min(c.q),
-            q_max: a.q.max(b.q).max(c.q),
-        })
+        Some(Self { e0, dx: ex.map(|e| e * i64::from(SUB)), ex, ey, plane: Plane::new(v, area) })
     }
 
     #[inline]
     fn edges_at(&self, xs: i32, ys: i32) -> [i64; 3] {
-        let (x, y) = (i64::from(xs) - i64::from(self.origin[0]), i64::from(ys) - i64::from(self.origin[1]));
+        let [x0, y0] = self.plane.origin;
+        let (x, y) = (i64::from(xs) - i64::from(x0), i64::from(ys) - i64::from(y0));
         std::array::from_fn(|i| self.e0[i] + self.ex[i] * x + self.ey[i] * y)
-    }
-
-    #[inline]
-    fn q_at(&self, xs: i32, ys: i32) -> f64 {
-        self.q0 + self.gx * f64::from(xs - self.origin[0]) + self.gy * f64::from(ys - self.origin[1])
     }
 
     /// The pixels of `xa..=xb` whose sample in row `ys` is inside, exactly.

@@ -30,9 +30,13 @@ pub(crate) fn resolve(band: &Band, shader: &Shader<'_>, lens: &Lens, rows: &mut 
             if let Some(world) = &mut rows.world {
                 world[out] = centre.world.to_array();
             }
-            cache.clear();
-            cache.push((band.prim[i], q, centre.color));
-            rows.color[out] = Packed::new(coverage(band, shader, lens, x, y, &mut cache));
+            rows.color[out] = Packed::new(if band.offsets.len() == 1 {
+                centre.color
+            } else {
+                cache.clear();
+                cache.push((band.prim[i], q, centre.color));
+                coverage(band, shader, lens, x, y, &mut cache)
+            });
         }
     }
 }
@@ -40,9 +44,6 @@ pub(crate) fn resolve(band: &Band, shader: &Shader<'_>, lens: &Lens, rows: &mut 
 /// Mean colour of the coverage samples; samples on one surface share the colour of the first of them.
 fn coverage(band: &Band, shader: &Shader<'_>, lens: &Lens, x: i32, y: i32, seen: &mut Vec<(u32, f32, Rgb)>) -> Rgb {
     let n = band.offsets.len();
-    if n == 1 {
-        return seen[0].2;
-    }
     let mut sum = Rgb::ZERO;
     for s in 1..n {
         let i = band.index(s, x, y);

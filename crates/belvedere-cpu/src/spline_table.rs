@@ -20,8 +20,9 @@ pub(crate) struct SplineTable<'a> {
     origin: DVec3,
     axes: [DVec3; 3],
     curve_axes: [DVec3; 2],
-    /// Scene units of one piece, and pieces from the near end to the pivot.
+    /// Scene units of one piece and its inverse, and pieces from the near end to the pivot.
     piece_length: f64,
+    pieces_per_unit: f64,
     piece_of_origin: f64,
     /// Piece k at index k + 1; the straight extensions first and last.
     pieces: Vec<Piece>,
@@ -44,12 +45,14 @@ struct Knot {
 impl<'a> SplineTable<'a> {
     pub(crate) fn new(bend: &'a SplineBend) -> Self {
         let length = bend.curve().length();
+        let piece_length = bend.scale() * length / PIECES as f64;
         let mut table = Self {
             bend,
             origin: bend.pivot(),
             axes: bend.axes(),
             curve_axes: bend.curve_axes(),
-            piece_length: bend.scale() * length / PIECES as f64,
+            piece_length,
+            pieces_per_unit: 1.0 / piece_length,
             piece_of_origin: bend.coordinates(bend.pivot()).l / length * PIECES as f64,
             pieces: Vec::with_capacity(PIECES + 2),
         };
@@ -104,11 +107,14 @@ impl<'a> SplineTable<'a> {
     fn point(&self, p: DVec3) -> Option<DVec3> {
         let v = p - self.origin;
         let [right, heading, normal] = self.axes.map(|axis| v.dot(axis));
-        let x = heading / self.piece_length + self.piece_of_origin;
-        // NaN becomes the near extension, and stays NaN.
-        let k = x.floor().clamp(-1.0, PIECES as f64);
-        let k = if k < 0.0 { 0 } else { k as usize + 1 };
-        let from = if k == 0 { 0.0 } else { (k - 1) as f64 };
+        let x = heading * self.pieces_per_unit + self.piece_of_origin;
+        // NaN goes with the near extension, and stays NaN.
+        let (k, from) = if x >= 0.0 {
+            let k = (x as usize).min(PIECES);
+            (k + 1, k as f64)
+        } else {
+            (0, 0.0)
+        };
         match self.pieces.get(k) {
             Some(piece) if piece.good => {
                 let [u, v, nu, nv] = piece.at(x - from);

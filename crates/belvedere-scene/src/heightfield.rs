@@ -1,6 +1,8 @@
 //! Terrain heights on a regular metric grid with holes.
 
 use belvedere_core::{Aabb, DVec2, DVec3};
+use std::any::Any;
+use std::sync::{Arc, OnceLock};
 
 /// Whether a node carries a height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -81,9 +83,36 @@ pub struct Heightfield {
     heights: Vec<f32>,
     states: Vec<NodeState>,
     z_range: [f64; 2],
+    derived: Derived,
+}
+
+/// What a renderer derived from the ground and wants to find again with the next frame. No part of the value: equal
+/// grounds are equal whatever was derived from them, and clones share it.
+#[derive(Clone, Default)]
+struct Derived(Arc<OnceLock<Arc<dyn Any + Send + Sync>>>);
+
+impl PartialEq for Derived {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl std::fmt::Debug for Derived {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(if self.0.get().is_some() { "Derived(..)" } else { "Derived" })
+    }
 }
 
 impl Heightfield {
+    /// What `make` derives from this ground, made at the first call and kept with it (and with its clones) from then on.
+    ///
+    /// There is one place: the first type to be kept stays, values of other types are made anew at every call. `make` must
+    /// depend on nothing but the ground.
+    pub fn derived<T: Any + Send + Sync>(&self, make: impl Fn() -> T) -> Arc<T> {
+        let kept = self.derived.0.get_or_init(|| Arc::new(make()));
+        Arc::clone(kept).downcast().unwrap_or_else(|_| Arc::new(make()))
+    }
+
     /// * `north_west`: scene x, y of node (0, 0);
     /// * `spacing`: metres between columns (towards east) and between rows (towards south), both > 0;
     /// * `heights`, `states`: row-major, `cols * rows` each.
@@ -127,7 +156,7 @@ impl Heightfield {
         if z_range[0] > z_range[1] {
             return Err(HeightfieldError::AllVoid { cols, rows });
         }
-        Ok(Self { north_west, spacing, cols, rows, heights, states, z_range })
+        Ok(Self { north_west, spacing, cols, rows, heights, states, z_range, derived: Derived::default() })
     }
 
     /// Number of columns.
@@ -271,6 +300,18 @@ mod tests {
         }
         // North-west and south-east low, the other two 40 m higher: bilinear and triangles differ by 20 m in the middle.
         Heightfield::new(DVec2::new(0.0, 10.0), DVec2::splat(10.0), 2, 2, vec![0.0, 40.0, 40.0, 0.0], states).unwrap()
+    }
+
+    #[test]
+    fn what_is_derived_is_made_once_and_is_no_part_of_the_value() {
+        let (ground, other) = (saddle(None), saddle(None));
+        let copy = ground.clone();
+        assert_eq!(*ground.derived(|| 7u32), 7);
+        assert_eq!((*ground.derived(|| 8u32), *copy.derived(|| 9u32)), (7, 7), "kept, and shared with the clone");
+        assert_eq!(*ground.derived(|| "another type"), "another type");
+        assert_eq!(*ground.derived(|| 10u32), 7);
+        assert_eq!(*other.derived(|| 8u32), 8);
+        assert_eq!(ground, other);
     }
 
     #[test]

@@ -10,7 +10,7 @@ const NODES: usize = 1025;
 const SPACING_M: f64 = 10.0;
 
 /// 2.1 million triangles.
-pub fn ground() -> Scene {
+pub(crate) fn ground() -> Scene {
     let half = 0.5 * (NODES - 1) as f64 * SPACING_M;
     let heights = (0..NODES * NODES)
         .map(|i| {
@@ -38,7 +38,7 @@ pub fn ground() -> Scene {
 }
 
 /// The straight view and the bent ones, all of the ground in the picture.
-pub fn views() -> Vec<(&'static str, View)> {
+pub(crate) fn views() -> Vec<(&'static str, View)> {
     let eye = DVec3::new(0.0, -11_500.0, 6_000.0);
     let lens = Projection::Perspective { fov_y: 50f64.to_radians() };
     let camera = Pinhole::look_at(eye, DVec3::new(0.0, 0.0, -900.0), DVec3::Z, lens, [1280, 720], 1.0, None)

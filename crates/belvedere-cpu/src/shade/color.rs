@@ -45,6 +45,12 @@ impl Packed {
         Self(c.to_array().map(|v| (v.clamp(0.0, 1.0).sqrt() * 65535.0 + 0.5) as u16))
     }
 
+    /// sRGB, as [`encode`] gives it.
+    pub(crate) fn encode(self) -> [u8; 3] {
+        let t = &*ENCODED;
+        self.0.map(|v| t[(u32::from(v) * 4095 + 32_767) as usize / 65_535])
+    }
+
     pub(crate) fn rgb(self) -> Rgb {
         let [r, g, b] = self.0.map(|v| f32::from(v) / 65535.0);
         Rgb::new(r * r, g * g, b * b)
@@ -66,6 +72,7 @@ mod tests {
         for v in 0..=255u8 {
             assert_eq!(encode(linear([v; 3])), [v; 3]);
             assert_eq!(encode(Packed::new(linear([v; 3])).rgb()), [v; 3]);
+            assert_eq!(Packed::new(linear([v; 3])).encode(), [v; 3]);
         }
     }
 }

@@ -21,6 +21,7 @@ use palette::Tint;
 use pyramid::Pyramid;
 use relief::ReliefLight;
 use sky::Sky;
+use std::sync::Arc;
 
 /// Everything that colours need, made once per frame.
 pub(crate) struct Shader<'a> {
@@ -39,7 +40,7 @@ enum LayerShade<'a> {
 
 struct TerrainShade<'a> {
     hf: &'a Heightfield,
-    pyramid: Pyramid,
+    pyramid: Arc<Pyramid>,
     tint: Tint,
     light: ReliefLight,
     exaggeration: f32,
@@ -163,7 +164,11 @@ impl<'a> TerrainShade<'a> {
         let map: Option<&(dyn Fn(DVec3) -> Option<DVec3> + Sync)> = deformed.is_some().then_some(&move_point);
         Self {
             hf,
-            pyramid: Pyramid::new(hf, map),
+            // The map's own slopes stay the same from frame to frame.
+            pyramid: match map {
+                Some(_) => Arc::new(Pyramid::new(hf, map)),
+                None => hf.derived(|| Pyramid::new(hf, None)),
+            },
             tint: Tint::new(layer.palette, hf.z_range()),
             light: ReliefLight::new(layer.relief, job.light),
             exaggeration: layer.exaggeration as f32,
