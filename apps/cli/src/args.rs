@@ -1,5 +1,6 @@
 //! Arguments.
 
+use belvedere::scene_file::PaletteDoc;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -127,6 +128,9 @@ pub(crate) struct RevealArgs {
     /// Leave holes of the terrain open instead of filling them
     #[arg(long)]
     pub(crate) keep_voids: bool,
+    /// Tint of the terrain by height
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) palette: PaletteKind,
     /// Coordinate system of the scene: auto, EPSG:n or local
     #[arg(long, value_name = "CRS")]
     pub(crate) crs: Option<String>,
@@ -240,6 +244,33 @@ pub(crate) struct SchemaArgs {
     /// Output; standard output if left out
     #[arg(short, long, value_name = "OUT.json")]
     pub(crate) out: Option<PathBuf>,
+}
+
+/// Tints of terrain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PaletteKind {
+    /// Chosen by the range of heights
+    Auto,
+    /// Green valleys, brown slopes, white summits
+    Alpine,
+    /// Sand and rust
+    Desert,
+    /// Rock and ice
+    Glacial,
+    /// One light grey
+    Plain,
+}
+
+impl From<PaletteKind> for PaletteDoc {
+    fn from(kind: PaletteKind) -> Self {
+        match kind {
+            PaletteKind::Auto => Self::Auto,
+            PaletteKind::Alpine => Self::Alpine,
+            PaletteKind::Desert => Self::Desert,
+            PaletteKind::Glacial => Self::Glacial,
+            PaletteKind::Plain => Self::Plain,
+        }
+    }
 }
 
 /// Renderers of this version.

@@ -108,6 +108,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         curved_earth: args.curved_earth,
         crs: args.crs,
         keep_voids: args.keep_voids,
+        palette: args.palette.into(),
         ..RevealRequest::default()
     };
     request.render.options.threads = context.common.threads;

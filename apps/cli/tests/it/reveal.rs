@@ -69,3 +69,12 @@ fn impossible_fields_of_view_are_refused() {
         assert!(line.contains("strictly between 0 and 180"), "{line}");
     }
 }
+
+#[test]
+fn the_palette_is_that_of_the_written_scene() {
+    let place = place(|_, _| false);
+    let args = ["reveal", "dem.asc", "way.geojson", "-o", "out.png", "--size", "64x48", "--scene", "out.toml"];
+    place.ok(&[&args[..], &["--palette", "desert"]].concat());
+    let scene = String::from_utf8(super::read(&place.path("out.toml"))).expect("UTF-8");
+    assert!(scene.contains("palette = \"desert\""), "{scene}");
+}

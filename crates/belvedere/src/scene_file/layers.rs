@@ -179,10 +179,11 @@ pub enum ShadingDoc {
 }
 
 /// Tint by height.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PaletteDoc {
     /// Chosen by the range of heights.
+    #[default]
     Auto,
     /// Green valleys, brown slopes, white summits.
     Alpine,

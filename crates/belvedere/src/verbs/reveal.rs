@@ -6,9 +6,9 @@ use super::render::{self, Picture, RenderRequest};
 use crate::resolve::vectors::{FeatureKind, kind_of};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LineDoc, LineStyleDoc, Paths, PlaneDoc, PointDoc,
-    PointLayerDoc, PointStyleDoc, PresetsDoc, ProjectionDoc, SourceDocument, SplineStageDoc, StageDoc, TerrainDoc,
-    TerrainStyleDoc, UnitDoc,
+    AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LineDoc, LineStyleDoc, PaletteDoc, Paths, PlaneDoc,
+    PointDoc, PointLayerDoc, PointStyleDoc, PresetsDoc, ProjectionDoc, SourceDocument, SplineStageDoc, StageDoc,
+    TerrainDoc, TerrainStyleDoc, UnitDoc,
 };
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::{Goal, RevealMemory, RevealOptions, RevealReport, Revealed};
@@ -39,6 +39,8 @@ pub struct RevealRequest {
     pub crs: Option<String>,
     /// Leaves holes of the terrain open.
     pub keep_voids: bool,
+    /// Tint of the terrain by height.
+    pub palette: PaletteDoc,
     /// Quality of the pictures.
     pub render: RenderRequest,
 }
@@ -292,7 +294,7 @@ fn document(request: &RevealRequest, keep_voids: bool) -> Result<(Document, Root
         source: Paths::One(dem),
         fill_voids: !keep_voids,
         drape: None,
-        style: TerrainStyleDoc::default(),
+        style: TerrainStyleDoc { palette: request.palette, ..TerrainStyleDoc::default() },
     })];
     if request.features.is_empty() {
         return Err(BelvedereError::Usage(
