@@ -129,21 +129,21 @@ impl Hit {
         let cross =
             |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
         let area = cross(s[0], s[1], s[2]);
-        let mut w = [cross(p, s[1], s[2]), cross(s[0], p, s[2]), cross(s[0], s[1], p)].map(|e| (e / area).max(0.0));
+        let inverse = 1.0 / area;
+        let mut w = [cross(p, s[1], s[2]), cross(s[0], p, s[2]), cross(s[0], s[1], p)].map(|e| (e * inverse).max(0.0));
         if !lens.ortho {
             // Weights are linear on the image only after multiplication by nearness.
             w = std::array::from_fn(|i| w[i] * f64::from(found.v[i].screen.q));
         }
-        let sum: f64 = w.iter().sum();
+        let scale = 1.0 / w.iter().sum::<f64>();
         let mut b = [0.0; 3];
         let [b0, b1, b2] = found.v.map(|v| v.weights.map(f64::from));
         for k in 0..2 {
-            b[k + 1] = (w[0] * b0[k] + w[1] * b1[k] + w[2] * b2[k]) / sum;
+            b[k + 1] = (w[0] * b0[k] + w[1] * b1[k] + w[2] * b2[k]) * scale;
         }
         b[0] = 1.0 - b[1] - b[2];
         let part = (b1[0] - b0[0]) * (b2[1] - b0[1]) - (b2[0] - b0[0]) * (b1[1] - b0[1]);
-        let area_px = (0.5 * area / f64::from(SUB * SUB)).abs();
-        Self { weights: b, parent_per_px: part.abs() / area_px }
+        Self { weights: b, parent_per_px: (part * inverse).abs() * (2.0 * f64::from(SUB * SUB)) }
     }
 }
 
@@ -206,7 +206,7 @@ impl<'a> TerrainShade<'a> {
     }
 
     fn color(&self, shader: &Shader<'_>, xy: DVec2, node: glam::Vec4, fp: f64, pixel: DVec2) -> (Rgb, Option<u32>) {
-        let steep = node.x.hypot(node.y);
+        let steep = (node.x * node.x + node.y * node.y).sqrt();
         let mut albedo = self.tint.at(node.z);
         albedo =
             albedo.lerp(self.tint.rock, 0.85 * smoothstep(self.tint.rock_slope[0], self.tint.rock_slope[1], steep));
