@@ -50,6 +50,18 @@ fn ready(out: Option<&PathBuf>, inputs: &[&Path], context: &Context) -> anyhow::
     out.map_or(Ok(()), |path| Ok(output::check(path, &inputs, context.common.overwrite)?))
 }
 
+/// Refuses the endings of other formats: what would be written is PNG.
+fn png_named(path: &Path) -> anyhow::Result<()> {
+    let others = ["jpg", "jpeg", "tif", "tiff", "webp", "gif", "bmp", "svg", "pdf", "json", "toml"];
+    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    anyhow::ensure!(
+        !others.contains(&ending.as_str()),
+        "{}: pictures are written as PNG, not .{ending}; name the output .png",
+        path.display()
+    );
+    Ok(())
+}
+
 fn answer(verb: &str, session: &Session, out: Option<&PathBuf>, text: &str, context: &Context) -> anyhow::Result<Goal> {
     ready(out, &session.inputs().iter().map(PathBuf::as_path).collect::<Vec<_>>(), context)?;
     context.deliver(verb, out.map(PathBuf::as_path), text, session.warnings())?;
@@ -72,6 +84,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
             AuxKind::Displacement => AuxBuffer::Displacement,
         })
         .collect();
+    png_named(&args.out)?;
     let outputs = render::outputs(&args.out, &request);
     for path in &outputs {
         ready(Some(path), &[&args.scene], context)?;
@@ -95,6 +108,8 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
 fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> {
     let files = RevealFiles { out: args.out, before: args.before, report: args.report, scene: args.scene };
     let inputs: Vec<PathBuf> = args.features.iter().chain([&args.dem]).map(PathBuf::from).collect();
+    png_named(&files.out)?;
+    files.before.as_deref().map_or(Ok(()), png_named)?;
     for path in files.all() {
         output::check(&path, &inputs, context.common.overwrite)?;
     }

@@ -78,3 +78,29 @@ fn the_palette_is_that_of_the_written_scene() {
     let scene = String::from_utf8(super::read(&place.path("out.toml"))).expect("UTF-8");
     assert!(scene.contains("palette = \"desert\""), "{scene}");
 }
+
+#[test]
+fn what_files_leave_out_the_scene_may_say() {
+    let place = place(|row, _| row == 9);
+    place.write("dem.asc", &hills(|row, _| row == 9).replace("NODATA_value -9999\n", ""));
+    let terrain = |more: &str| {
+        let scene = format!("[[layer]]\nid = 'g'\nkind = 'terrain'\nsource = 'dem.asc'\n{more}\n");
+        place.write("s.toml", &format!("{scene}[camera]\neye = [0, 0, 9000]\nlook_at = [0, 1, 9000]\n"));
+    };
+    terrain("source_crs = 'EPSG:4326'\nnodata = -9999");
+    place.ok(&["render", "s.toml", "-o", "p.png", "--size", "8x8"]);
+    let record: serde_json::Value = serde_json::from_slice(&super::read(&place.path("p.png.json"))).expect("JSON");
+    assert!(record["terrain"]["void_nodes"].as_u64() >= Some(60), "{}", record["terrain"]);
+    let all = format!("{}", record["warnings"]);
+    assert!(!all.contains("source_crs"), "{all}");
+    terrain("source_crs = '4326'");
+    assert!(place.fails(&["check", "s.toml"]).contains("source_crs \"4326\" is not known; give \"EPSG:n\""));
+}
+
+#[test]
+fn info_says_what_it_reads() {
+    let place = Place::new();
+    place.write("x.obj", "v 0 0 0");
+    assert!(place.fails(&["info", "x.obj"]).contains("features as GPX, GeoJSON or shapefile"));
+    assert!(place.fails(&["info", "none.obj"]).contains("No such file"));
+}

@@ -19,7 +19,14 @@ pub(super) fn load(
         Some(Crs::Epsg(code)) => CrsChoice::Epsg(code),
         Some(Crs::Local) => CrsChoice::Local,
     };
-    let request = TerrainRequest { crs, fill_voids: doc.fill_voids, ..TerrainRequest::default() };
+    let source_crs = match &doc.source_crs {
+        None => None,
+        Some(text) => Some(super::epsg(text).ok_or_else(|| {
+            loader.fail(index, "source_crs", format!("source_crs \"{text}\" is not known; give \"EPSG:n\""))
+        })?),
+    };
+    let request =
+        TerrainRequest { crs, fill_voids: doc.fill_voids, source_crs, nodata: doc.nodata, ..TerrainRequest::default() };
     let loaded = load_terrain(&files, &request, &loader.options.progress)?;
     loader.note(index, loaded.warnings);
     Ok((loaded.value.heightfield, loaded.value.crs))

@@ -129,6 +129,12 @@ fn unit(doc: UnitDoc) -> Unit {
     }
 }
 
+/// The code of `EPSG:n`.
+fn epsg(text: &str) -> Option<u32> {
+    let text = text.trim();
+    text.get(..5).filter(|p| p.eq_ignore_ascii_case("epsg:")).and_then(|_| text[5..].trim().parse().ok())
+}
+
 /// The system that the document names; `None` = automatic.
 fn crs_wanted(source: &SourceDocument) -> Result<Option<Crs>, BelvedereError> {
     let text = source.document.crs.trim();
@@ -139,9 +145,7 @@ fn crs_wanted(source: &SourceDocument) -> Result<Option<Crs>, BelvedereError> {
         return Ok(Some(Crs::Local));
     }
     let fail = |reason: String| source.error(&["crs"], reason);
-    let code =
-        text.get(..5).filter(|p| p.eq_ignore_ascii_case("epsg:")).and_then(|_| text[5..].trim().parse::<u32>().ok());
-    let Some(code) = code else {
+    let Some(code) = epsg(text) else {
         return Err(fail(format!("crs \"{text}\" is not known; give \"auto\", \"local\" or \"EPSG:n\"")));
     };
     let system = CoordinateSystem::from_epsg(code).map_err(|e| fail(e.to_string()))?;

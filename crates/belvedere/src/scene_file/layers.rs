@@ -127,6 +127,12 @@ pub struct TerrainDoc {
     /// Whether holes are filled; filled parts are marked.
     #[serde(default)]
     pub fill_voids: bool,
+    /// `EPSG:n` of the files, instead of what they say.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub source_crs: Option<String>,
+    /// Stored value that means "no data", instead of what the files say.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nodata: Option<f64>,
     /// Georeferenced pictures laid over the ground, later ones on top.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub drape: Option<Paths>,

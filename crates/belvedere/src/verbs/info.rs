@@ -148,6 +148,14 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
     if ends(&["gpx", "geojson", "json", "shp"]) {
         return features(path);
     }
+    if !ends(&["tif", "tiff", "hgt", "zip", "asc", "grd", "txt"]) {
+        std::fs::metadata(path).map_err(|e| belvedere_io::IoError::os(path, e))?;
+        return Err(belvedere_io::IoError::format(
+            path,
+            "it is of no kind that this version reads: terrain and pictures as GeoTIFF, SRTM .hgt (also .zip) or ESRI ASCII, features as GPX, GeoJSON or shapefile (.shp)",
+        )
+        .into());
+    }
     if ends(&["tif", "tiff"]) {
         let opened = GeoTiff::open(path, Limits::default())?;
         let info = opened.value.info();

@@ -293,6 +293,8 @@ fn document(request: &RevealRequest, keep_voids: bool) -> Result<(Document, Root
         id: "ground".into(),
         source: Paths::One(dem),
         fill_voids: !keep_voids,
+        source_crs: None,
+        nodata: None,
         drape: None,
         style: TerrainStyleDoc { palette: request.palette, ..TerrainStyleDoc::default() },
     })];
