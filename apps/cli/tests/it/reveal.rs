@@ -104,3 +104,17 @@ fn info_says_what_it_reads() {
     assert!(place.fails(&["info", "x.obj"]).contains("features as GPX, GeoJSON or shapefile"));
     assert!(place.fails(&["info", "none.obj"]).contains("No such file"));
 }
+
+#[test]
+fn a_missed_goal_is_a_result_and_exit_1_only_when_strict() {
+    let place = place(|_, _| false);
+    // From straight above nothing is hidden, so there is nothing to gain.
+    let args = ["reveal", "dem.asc", "way.geojson", "-o", "out.png", "--size", "64x48", "--overwrite", "--json"];
+    let above = ["--eye", "8.03,46.04,9000", "--look", "8.03,46.041,1000"];
+    let relaxed = place.run(&[&args[..], &above].concat());
+    let strict = place.run(&[&args[..], &above, &["--strict"]].concat());
+    let code = |out: &std::process::Output| out.status.code();
+    assert_eq!((code(&relaxed), code(&strict)), (Some(0), Some(1)), "{}", String::from_utf8_lossy(&strict.stderr));
+    let result: serde_json::Value = serde_json::from_slice(&strict.stdout).expect("JSON on standard output");
+    assert_eq!(result["report"]["goal"]["result"], "missed", "{result}");
+}
