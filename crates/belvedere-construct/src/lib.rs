@@ -4,14 +4,13 @@
 //! show more of them.
 
 mod error;
-mod ground;
 pub mod measure;
 pub mod reveal;
 mod samples;
 mod sight;
 
+pub use belvedere_scene::Ground;
 pub use error::ConstructError;
-pub use ground::Ground;
 pub use measure::{MeasureOptions, Measures, measure};
 pub use reveal::{Goal, RevealMemory, RevealOptions, RevealReport, Revealed, reveal};
 pub use samples::{Amount, Sample, SampledFeature, default_spacing, sample_features};

@@ -1,8 +1,7 @@
 //! Lines of sight along straight and curved rays, past terrain and boxes.
 
-use crate::ground::Ground;
 use belvedere_core::{Camera, DVec2, DVec3, View};
-use belvedere_scene::{BoxShape, LayerKind, Scene};
+use belvedere_scene::{BoxShape, Ground, LayerKind, Scene};
 
 /// Everything of a scene that can stand in the way.
 pub struct Obstacles<'a> {

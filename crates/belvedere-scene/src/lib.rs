@@ -4,6 +4,7 @@
 pub mod builtin;
 pub mod drape;
 pub mod frame;
+pub mod ground;
 pub mod heightfield;
 pub mod layer;
 pub mod light;
@@ -13,6 +14,7 @@ pub mod scene;
 
 pub use drape::{Draped, drape_polyline};
 pub use frame::{Aux, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer};
+pub use ground::Ground;
 pub use heightfield::{Heightfield, HeightfieldError, NodeState};
 pub use layer::{
     AreaFeature, AreaLayer, BoxLayer, BoxShape, Color, Drape, Hidden, Layer, LayerKind, LineFeature, LineLayer,

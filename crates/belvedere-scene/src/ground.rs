@@ -1,7 +1,7 @@
 //! Lines of sight over terrain: the largest heights of ever larger blocks let a straight line skip what it clears.
 
+use crate::{Heightfield, NodeState};
 use belvedere_core::{DVec2, DVec3};
-use belvedere_scene::{Heightfield, NodeState};
 
 /// A heightfield with the largest height of every block of 2^k x 2^k cells (the "maximum mipmap" of Tevs et al. 2008).
 pub struct Ground<'a> {
