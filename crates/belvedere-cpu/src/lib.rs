@@ -6,6 +6,7 @@
 
 mod blocks;
 mod displace;
+mod exact;
 mod lens;
 mod marks;
 mod raster;
@@ -13,6 +14,8 @@ mod refine;
 mod resolve;
 mod shade;
 mod spline_table;
+
+pub use exact::{ExactRenderer, Seen, Tracer};
 
 use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
 use blocks::Blocks;
@@ -54,19 +57,27 @@ impl Renderer for CpuRenderer {
     }
 
     fn render(&self, job: &RenderJob<'_>) -> Result<Frame, RenderError> {
-        let options = job.options;
-        if ![1, 4, 16].contains(&options.samples) {
-            return Err(RenderError::Samples { samples: options.samples });
-        }
-        check_memory(job)?;
-        if options.threads == 0 {
-            return render(job);
-        }
-        match rayon::ThreadPoolBuilder::new().num_threads(options.threads).build() {
-            Ok(pool) => pool.install(|| render(job)),
-            // No threads to be had: the caller's serve as well.
-            Err(_) => render(job),
-        }
+        prepared(job, render)
+    }
+}
+
+/// Runs `render` with checked options on the threads asked for.
+fn prepared(
+    job: &RenderJob<'_>,
+    render: impl Fn(&RenderJob<'_>) -> Result<Frame, RenderError> + Sync,
+) -> Result<Frame, RenderError> {
+    let options = job.options;
+    if ![1, 4, 16].contains(&options.samples) {
+        return Err(RenderError::Samples { samples: options.samples });
+    }
+    check_memory(job)?;
+    if options.threads == 0 {
+        return render(job);
+    }
+    match rayon::ThreadPoolBuilder::new().num_threads(options.threads).build() {
+        Ok(pool) => pool.install(|| render(job)),
+        // No threads to be had: the caller's serve as well.
+        Err(_) => render(job),
     }
 }
 

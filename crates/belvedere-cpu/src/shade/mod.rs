@@ -6,6 +6,7 @@ mod drape;
 mod palette;
 mod pyramid;
 mod relief;
+mod seen;
 mod sky;
 
 use crate::blocks::{BOX_TRIANGLES, Blocks, CELL_TRIANGLES, Found, SIDE};
@@ -200,9 +201,15 @@ impl<'a> TerrainShade<'a> {
         let pitch = (spacing.x * spacing.y).sqrt();
         let fp = (0.5 * hit.parent_per_px).sqrt() * pitch;
         let fp = fp.clamp(footprint, 6.0 * footprint);
-        let node = self.pyramid.sample(col as f32, row as f32, (fp / pitch) as f32);
-        let (color, id) = self.color(shader, xy, node, fp, pixel);
+        let (color, id) = self.shade_at(shader, xy, fp, pixel);
         (color, id, xy.extend(z))
+    }
+
+    /// Colour of the ground at a place of which a pixel covers a square of side `fp`, and the area it lies in.
+    fn shade_at(&self, shader: &Shader<'_>, xy: DVec2, fp: f64, pixel: DVec2) -> (Rgb, Option<u32>) {
+        let (spacing, g) = (self.hf.spacing(), self.hf.grid_from_scene(xy));
+        let node = self.pyramid.sample(g.x as f32, g.y as f32, (fp / (spacing.x * spacing.y).sqrt()) as f32);
+        self.color(shader, xy, node, fp, pixel)
     }
 
     fn color(&self, shader: &Shader<'_>, xy: DVec2, node: glam::Vec4, fp: f64, pixel: DVec2) -> (Rgb, Option<u32>) {
@@ -252,8 +259,6 @@ impl<'a> TerrainShade<'a> {
     }
 }
 
-/// Boxes look like an architect's model: matt, darker towards the foot, with drawn edges.
-/// * `footprint`: size of a pixel at the box, scene units.
 fn shade_box(layer: &BoxLayer, light: &ReliefLight, found: &Found<'_>, hit: &Hit, footprint: f64) -> (Rgb, DVec3) {
     let shape = &layer.boxes[found.block.origin[0] + (found.parent / 12) as usize];
     let corners = shape.corners();
@@ -262,6 +267,13 @@ fn shade_box(layer: &BoxLayer, light: &ReliefLight, found: &Found<'_>, hit: &Hit
     let n = (p[1] - p[0]).cross(p[2] - p[0]);
     let n = if n.dot(p[0] - centre) < 0.0 { -n } else { n }.normalize_or(DVec3::Z);
     let world = p[0] * hit.weights[0] + p[1] * hit.weights[1] + p[2] * hit.weights[2];
+    (box_color(shape, light, n, world, footprint), world)
+}
+
+/// Boxes look like an architect's model: matt, darker towards the foot, with drawn edges.
+/// * `n`: outward unit normal of the face; `footprint`: size of a pixel at the box, scene units.
+fn box_color(shape: &BoxShape, light: &ReliefLight, n: DVec3, world: DVec3, footprint: f64) -> Rgb {
+    let centre = shape.base + DVec3::Z * 0.5 * shape.size.z;
     let up = (((world.z - shape.base.z) / shape.size.z.max(1e-9)) as f32).clamp(0.0, 1.0);
     let open = 0.60 + 0.40 * smoothstep(-0.1, 0.6, up);
     let n = Vec3A::new(n.x as f32, n.y as f32, n.z as f32);
@@ -269,7 +281,7 @@ fn shade_box(layer: &BoxLayer, light: &ReliefLight, found: &Found<'_>, hit: &Hit
     let ink = 1.0 - 0.42 * edge_share(shape, world - centre, footprint);
     // Streets return light that open ground does not.
     let lit = light.at(n, open) * 0.82 + Rgb::new(0.19, 0.18, 0.18) * open;
-    (linear([c.r, c.g, c.b]) * lit * ((0.76 + 0.24 * open) * ink), world)
+    linear([c.r, c.g, c.b]) * lit * ((0.76 + 0.24 * open) * ink)
 }
 
 /// How much of a pixel the edge of a box covers, at a place on its surface relative to its centre.
