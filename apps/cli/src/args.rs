@@ -58,6 +58,9 @@ pub(crate) enum Verb {
     Rays(RaysArgs),
     /// Points after all stages, before the pinhole
     Displace(ProjectArgs),
+    /// What is seen at pixels [[x,y],...]: world point, depth, ray segment, layer, feature; null for sky
+    #[command(after_help = PICK_HELP)]
+    Pick(PickArgs),
     /// Visible share of what must be seen, straight and bent, by two methods
     Measure(MeasureArgs),
     /// Validate a scene
@@ -228,6 +231,26 @@ pub(crate) struct RaysArgs {
     pub(crate) out: Option<PathBuf>,
 }
 
+/// Shape of the answer of `pick`.
+const PICK_HELP: &str = r#"Pixels: origin at the outer corner of the top-left pixel, centres at .5.
+Answer, in input order, numbers round-trip exactly:
+  {"pixels":[{"point":[x,y,z],"depth":w,"segment":k,"layer":"ID","feature":"NAME" or null}, null for sky, ...]}
+point is the true place in scene coordinates, depth the forward distance at which it is seen; segment 2k = straight part of viewpoint k,
+2j-1 = transition of turn j. Visible lines and points count before the ground (the last layer first), areas belong to the ground."#;
+
+/// A scene and pixels to look through.
+#[derive(Debug, Args)]
+pub(crate) struct PickArgs {
+    /// Scene file, TOML or JSON
+    pub(crate) scene: PathBuf,
+    /// JSON file of pixels [[x,y],...]
+    #[arg(long, value_name = "P.json")]
+    pub(crate) pixels: PathBuf,
+    /// Output; standard output if left out
+    #[arg(short, long, value_name = "OUT.json")]
+    pub(crate) out: Option<PathBuf>,
+}
+
 /// A scene to show.
 #[derive(Debug, Args)]
 pub(crate) struct ShowArgs {
@@ -280,6 +303,8 @@ pub(crate) enum RendererKind {
     Auto,
     /// On the processor, without a GPU
     Cpu,
+    /// Every sample along its own curved ray: slower, no subdivision error, the reference for the others
+    Exact,
 }
 
 /// Most worker threads: far above what helps, far below what a system refuses to start.

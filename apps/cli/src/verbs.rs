@@ -1,13 +1,13 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AuxKind, DemoArgs, InfoArgs, MeasureArgs, ProjectArgs, RaysArgs, RenderArgs, RendererKind, RevealArgs, SceneArgs,
-    SchemaArgs, ShowArgs, Verb,
+    AuxKind, DemoArgs, InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RendererKind, RevealArgs,
+    SceneArgs, SchemaArgs, ShowArgs, Verb,
 };
 use crate::report::{Context, done, print};
-use belvedere::verbs::render::{self, AuxBuffer, RenderRequest};
+use belvedere::verbs::render::{self, AuxBuffer, RenderRequest, RendererChoice};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
-use belvedere::verbs::{check, demo, info, measure, output, points};
+use belvedere::verbs::{check, demo, info, measure, output, pick, points};
 use belvedere::{Needs, Session};
 use std::path::{Path, PathBuf};
 
@@ -35,6 +35,7 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::Rays(args) => rays(&args, context),
         Verb::Displace(args) => displace(&args, context),
         Verb::Reveal(args) => reveal_features(args, context),
+        Verb::Pick(args) => pick_pixels(&args, context),
         Verb::Measure(args) => measure_scene(&args, context),
         Verb::Demo(args) => demonstrate(&args, context),
         Verb::Info(args) => describe(&args, context),
@@ -69,8 +70,11 @@ fn answer(verb: &str, session: &Session, out: Option<&PathBuf>, text: &str, cont
 }
 
 fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
-    let (RendererKind::Auto | RendererKind::Cpu) = args.renderer;
     let mut request = RenderRequest { straight: args.straight, compare: args.compare, ..RenderRequest::default() };
+    request.renderer = match args.renderer {
+        RendererKind::Auto | RendererKind::Cpu => RendererChoice::Cpu,
+        RendererKind::Exact => RendererChoice::Exact,
+    };
     request.options.threads = context.common.threads;
     request.options.samples = args.samples;
     request.options.max_bytes = context.common.max_mem.unwrap_or(request.options.max_bytes);
@@ -209,6 +213,14 @@ fn rays(args: &RaysArgs, context: &Context) -> anyhow::Result<Goal> {
     let far = points::far_depth(&session, args.far)?;
     let report = points::rays(session.view(), &pixels, args.samples, far)?;
     answer("rays", &session, args.out.as_ref(), &output::json(&report)?, context)
+}
+
+fn pick_pixels(args: &PickArgs, context: &Context) -> anyhow::Result<Goal> {
+    ready(args.out.as_ref(), &[&args.scene, &args.pixels], context)?;
+    let pixels = points::read_points::<2>(&args.pixels)?;
+    let session = context.open(&args.scene, Needs::Everything, None)?;
+    let report = pick::pick(&session, &pixels, &context.progress)?;
+    answer("pick", &session, args.out.as_ref(), &output::json(&report)?, context)
 }
 
 fn check_scene(args: &SceneArgs, context: &Context) -> anyhow::Result<Goal> {

@@ -37,15 +37,15 @@ impl<'a> Ground<'a> {
     /// displacement of the surface that the blocks must allow for.
     pub fn lifted(heightfield: &'a Heightfield, lift: Option<Lift<'_>>) -> Self {
         let mut out = Self::new(heightfield);
-        let (cols, rows) = (out.levels[0].cols, out.levels[0].rows);
+        let cols = out.levels[0].cols;
         let mut min = lowest(heightfield);
         if let Some(lift) = lift {
-            for i in 0..cols * rows {
+            for (i, (min, max)) in min.iter_mut().zip(&mut out.levels[0].max).enumerate() {
                 let (nw, se) =
                     (heightfield.node_xy(i % cols, i / cols), heightfield.node_xy(i % cols + 1, i / cols + 1));
                 let [lo, hi] = lift(DVec2::new(nw.x, se.y), DVec2::new(se.x, nw.y));
-                min[i] = ((f64::from(min[i]) + lo) as f32).next_down();
-                out.levels[0].max[i] = ((f64::from(out.levels[0].max[i]) + hi) as f32).next_up();
+                *min = ((f64::from(*min) + lo) as f32).next_down();
+                *max = ((f64::from(*max) + hi) as f32).next_up();
             }
         }
         out.levels[0].min = min;

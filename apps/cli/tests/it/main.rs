@@ -3,6 +3,7 @@
 mod bad_scenes;
 mod numbers;
 mod odd_files;
+mod pick;
 mod pictures;
 mod reveal;
 mod scenes;

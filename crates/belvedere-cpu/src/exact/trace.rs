@@ -129,16 +129,16 @@ fn deepest(scene: &Scene, view: &View) -> f64 {
         let mut above: Vec<Option<f64>> = vec![None; STEPS + 1];
         for j in 0..=STEPS {
             let mut before: Option<f64> = None;
-            for i in 0..=STEPS {
+            for (i, above) in above.iter_mut().enumerate() {
                 let p = bounds.min + (bounds.max - bounds.min) * DVec3::new(share(i), share(j), 0.5 * k as f64);
                 let depth = view.project(p).ok().map(|image| image.depth);
                 if let Some(d) = depth {
                     largest = largest.max(d);
-                    for other in [before, above[i]].into_iter().flatten() {
+                    for other in [before, *above].into_iter().flatten() {
                         step = step.max((d - other).abs());
                     }
                 }
-                (before, above[i]) = (depth, depth);
+                (before, *above) = (depth, depth);
             }
         }
     }
@@ -266,12 +266,21 @@ struct Plane {
     per_row: f64,
 }
 
+impl Plane {
+    /// Height of a place over the plane.
+    fn below(&self, hf: &Heightfield, p: DVec3) -> f64 {
+        let f = hf.grid_from_scene(p.truncate()) - self.corner;
+        p.z - (self.z + f.x * self.per_col + f.y * self.per_row)
+    }
+}
+
 impl Follow<'_, '_, '_> {
     /// Depth of a hit in the cell, and whether on its north-eastern triangle.
     fn cell(&mut self, [col, row]: [usize; 2], t0: f64, t1: f64) -> ControlFlow<(f64, bool)> {
+        let (hf, chord) = (self.hf, self.chord);
         let grid = |t: f64| {
-            let p = self.chord.0.lerp(self.chord.1, t);
-            self.hf.grid_from_scene(p.truncate()) - DVec2::new(col as f64, row as f64)
+            let p = chord.0.lerp(chord.1, t);
+            hf.grid_from_scene(p.truncate()) - DVec2::new(col as f64, row as f64)
         };
         let (f0, f1) = (grid(t0), grid(t1));
         let (d0, d1) = (f0.x - f0.y, f1.x - f1.y);
@@ -306,15 +315,10 @@ impl Follow<'_, '_, '_> {
         Some(Plane { corner: DVec2::new(col as f64, row as f64), z: h(nw), per_col, per_row })
     }
 
-    /// Height of a place over the plane.
-    fn above(&self, plane: &Plane, p: DVec3) -> f64 {
-        let f = self.hf.grid_from_scene(p.truncate()) - plane.corner;
-        p.z - (plane.z + f.x * plane.per_col + f.y * plane.per_row)
-    }
-
     fn triangle(&mut self, plane: &Plane, t0: f64, t1: f64) -> Option<f64> {
-        let depth = |t: f64| self.span.depth_at(t);
-        let gap = |w: f64| self.walk.true_point(w).map_or(f64::NAN, |p| self.above(plane, p));
+        let (walk, span, hf) = (self.walk, self.span, self.hf);
+        let depth = |t: f64| span.depth_at(t);
+        let gap = |w: f64| walk.true_point(w).map_or(f64::NAN, |p| plane.below(hf, p));
         let (w0, w1) = (depth(t0), depth(t1));
         let (start, end) = ((w0, gap(w0)), (w1, gap(w1)));
         if start.1.is_nan() || end.1.is_nan() {

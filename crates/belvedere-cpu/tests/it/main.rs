@@ -1,5 +1,6 @@
 //! Tests of the processor renderer against slow, independent references.
 
+mod exact;
 mod lines;
 mod real_data;
 mod reference;

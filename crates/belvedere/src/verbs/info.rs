@@ -129,7 +129,7 @@ pub struct MachineInfo {
 pub fn machine() -> MachineInfo {
     MachineInfo {
         threads: std::thread::available_parallelism().map_or(1, usize::from),
-        renderers: vec!["cpu"],
+        renderers: vec!["cpu", "exact"],
         adapters: Vec::new(),
         note: "no GPU renderer in this version",
     }

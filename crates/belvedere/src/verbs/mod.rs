@@ -5,6 +5,7 @@ pub mod demo;
 pub mod info;
 pub mod measure;
 pub mod output;
+pub mod pick;
 pub mod points;
 pub mod render;
 pub mod reveal;

@@ -4,7 +4,7 @@ use super::output;
 use crate::provenance::{self, InputFile};
 use crate::{BelvedereError, Session};
 use belvedere_core::{Camera, DVec2, View};
-use belvedere_cpu::CpuRenderer;
+use belvedere_cpu::{CpuRenderer, ExactRenderer};
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::{Aux, Frame, FrameStats, Heightfield, NodeState, Progress, RenderJob, RenderOptions, Renderer};
 use serde::Serialize;
@@ -25,6 +25,28 @@ pub struct RenderRequest {
     pub compare: bool,
     /// Buffers to write beside the picture.
     pub aux: Vec<AuxBuffer>,
+    /// Who draws.
+    pub renderer: RendererChoice,
+}
+
+/// Who draws.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum RendererChoice {
+    /// The rasteriser.
+    #[default]
+    Cpu,
+    /// The tracer of curved rays: slower, without subdivision.
+    Exact,
+}
+
+impl RendererChoice {
+    /// The renderer itself.
+    pub fn renderer(self) -> &'static dyn Renderer {
+        match self {
+            Self::Cpu => &CpuRenderer,
+            Self::Exact => &ExactRenderer,
+        }
+    }
 }
 
 /// A buffer beside the picture, as NPY.
@@ -152,7 +174,7 @@ pub fn render(session: &Session, request: &RenderRequest, progress: &Progress) -
     let world = request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
     let options = RenderOptions { aux: Aux { world }, ..request.options.clone() };
     let draw = |view: &View| {
-        CpuRenderer.render(&RenderJob {
+        request.renderer.renderer().render(&RenderJob {
             scene: session.scene(),
             view,
             light: session.light(),
@@ -166,7 +188,7 @@ pub fn render(session: &Session, request: &RenderRequest, progress: &Progress) -
     let displacement = view.is_bent().then(|| measure_displacement(&view, &frame));
     let sidecar = Sidecar {
         program: format!("belvedere {}", crate::VERSION),
-        renderer: CpuRenderer.name(),
+        renderer: request.renderer.renderer().name(),
         note: displacement.map(|d| note(&view, &d)),
         stages: view.stages().iter().map(|s| s.name()).collect(),
         displacement,

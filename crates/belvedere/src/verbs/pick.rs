@@ -1,0 +1,169 @@
+//! `pick`: what is seen at a pixel.
+
+use crate::{BelvedereError, Session};
+use belvedere_core::{Camera, DVec2, DVec3, View};
+use belvedere_cpu::{Seen, Tracer};
+use belvedere_scene::{AreaLayer, Layer, LayerKind, LineLayer, PointLayer, Progress, Scene};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Answer of [`pick`].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PickReport {
+    /// One per input pixel, in input order; null where only sky is seen.
+    pub pixels: Vec<Option<Picked>>,
+}
+
+/// What is seen at one pixel.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Picked {
+    /// True (undisplaced) world point: of the surface, of the line at the place nearest to the pixel, or of the point; scene coordinates.
+    pub point: [f64; 3],
+    /// Depth at which it is seen, scene units.
+    pub depth: f64,
+    /// Segment of the curved ray: `2k` straight part of viewpoint `k`, `2j-1` transition of turn `j`.
+    pub segment: u32,
+    /// Id of the layer.
+    pub layer: String,
+    /// Name of the feature of a line, area or point layer; null for surfaces and features without a name.
+    pub feature: Option<String>,
+}
+
+/// What each pixel (origin at the outer corner of the top-left pixel, centres at .5) shows, by the exact tracer.
+///
+/// A visible line or point within half its width of the pixel counts before the surface, the last layer first; areas belong to the ground
+/// they are painted on. Pixels outside the image are answered as far as the camera has rays there.
+///
+/// # Errors
+/// [`BelvedereError::Usage`] if the eye is under ground, [`BelvedereError::Cancelled`].
+pub fn pick(session: &Session, pixels: &[[f64; 2]], progress: &Progress) -> Result<PickReport, BelvedereError> {
+    super::check::drawable(session)?;
+    let (scene, view) = (session.scene(), session.view());
+    progress.tick("prepare", 0.0)?;
+    let tracer = Tracer::new(scene, view);
+    let marks = Marks::new(scene, view);
+    let done = AtomicUsize::new(0);
+    let one = |pixel: &[f64; 2]| -> Result<Option<Picked>, BelvedereError> {
+        let at = DVec2::from_array(*pixel);
+        let picked = marks.at(&tracer, at).or_else(|| tracer.first_hit(at).and_then(|seen| surface(scene, &seen)));
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        progress.tick("pick", done as f64 / pixels.len() as f64)?;
+        Ok(picked)
+    };
+    Ok(PickReport { pixels: pixels.par_iter().map(one).collect::<Result<_, _>>()? })
+}
+
+fn named(name: &str) -> Option<String> {
+    (!name.is_empty()).then(|| name.to_owned())
+}
+
+/// The surface itself, or the last area painted there.
+fn surface(scene: &Scene, seen: &Seen) -> Option<Picked> {
+    let layer = scene.layers.get(seen.layer)?;
+    let (mut id, mut feature) = (&layer.id, None);
+    if let LayerKind::Terrain(_) = layer.kind {
+        for (other, area) in scene.layers.iter().filter_map(area_of) {
+            let hit = area.features.iter().find(|f| contains(&f.rings, seen.point.truncate()));
+            if let Some(hit) = hit {
+                (id, feature) = (&other.id, named(&hit.name));
+            }
+        }
+    }
+    Some(Picked { point: seen.point.to_array(), depth: seen.depth, segment: seen.segment, layer: id.clone(), feature })
+}
+
+fn area_of(layer: &Layer) -> Option<(&Layer, &AreaLayer)> {
+    match &layer.kind {
+        LayerKind::Area(a) => Some((layer, a)),
+        _ => None,
+    }
+}
+
+/// Whether a point lies inside an odd number of rings.
+fn contains(rings: &[Vec<DVec2>], p: DVec2) -> bool {
+    let crossed = |ring: &Vec<DVec2>| {
+        let edges = ring.iter().zip(ring.iter().cycle().skip(1));
+        edges.filter(|(a, b)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)).count()
+    };
+    rings.iter().map(crossed).sum::<usize>() % 2 == 1
+}
+
+/// Images of lines and points, in the order of the layers.
+struct Marks<'a> {
+    view: &'a View,
+    layers: Vec<(&'a Layer, f64, Vec<Path<'a>>)>,
+}
+
+/// A feature: its name and the images of its vertices, lifted.
+struct Path<'a> {
+    name: &'a str,
+    places: Vec<(DVec3, Option<(DVec2, f64)>)>,
+}
+
+impl<'a> Marks<'a> {
+    fn new(scene: &'a Scene, view: &'a View) -> Self {
+        let path = |name: &'a str, points: &[DVec3], lift: f64| {
+            let image = |p: DVec3| view.project(p).ok().map(|i| (i.pixel, i.depth));
+            let places = points.iter().map(|p| *p + lift * DVec3::Z).map(|p| (p, image(p))).collect();
+            Path { name, places }
+        };
+        let lines = |l: &'a LineLayer| l.features.iter().map(|f| path(&f.name, &f.points, l.lift_m)).collect();
+        let points = |l: &'a PointLayer| l.features.iter().map(|f| path(&f.name, &[f.position], l.lift_m)).collect();
+        let layers = scene.layers.iter().filter_map(|layer| match &layer.kind {
+            LayerKind::Line(l) => Some((layer, 0.5 * l.width_px, lines(l))),
+            LayerKind::Point(l) => Some((layer, 0.5 * l.size_px, points(l))),
+            _ => None,
+        });
+        Self { view, layers: layers.collect() }
+    }
+
+    /// The topmost visible line or point at a pixel.
+    fn at(&self, tracer: &Tracer<'_>, pixel: DVec2) -> Option<Picked> {
+        self.layers.iter().rev().find_map(|(layer, half_px, paths)| {
+            let near = paths.iter().filter_map(|path| Some((path, path.nearest(pixel, *half_px)?)));
+            let mut near: Vec<_> = near.collect();
+            near.sort_by(|a, b| a.1.1.total_cmp(&b.1.1));
+            near.into_iter().find_map(|(path, (p, _))| {
+                let image = self.view.project(p).ok()?;
+                let first = tracer.first_hit(image.pixel);
+                // Half a thousandth of the depth is less than the lift of a line seen across its own ground.
+                if first.is_some_and(|seen| seen.depth < image.depth * (1.0 - 5e-4)) {
+                    return None;
+                }
+                Some(Picked {
+                    point: p.to_array(),
+                    depth: image.depth,
+                    segment: image.segment,
+                    layer: layer.id.clone(),
+                    feature: named(path.name),
+                })
+            })
+        })
+    }
+}
+
+impl Path<'_> {
+    /// World point of the path nearest to a pixel on the image, and its distance there; `None` if farther than `reach` pixels.
+    fn nearest(&self, pixel: DVec2, reach: f64) -> Option<(DVec3, f64)> {
+        let mut best: Option<(DVec3, f64)> = None;
+        let mut take = |p: DVec3, distance: f64| {
+            if distance <= reach && best.is_none_or(|b| distance < b.1) {
+                best = Some((p, distance));
+            }
+        };
+        if let [(p, Some((at, _)))] = self.places.as_slice() {
+            take(*p, at.distance(pixel));
+        }
+        for pair in self.places.windows(2) {
+            let [(p, Some((a, near))), (q, Some((b, far)))] = [pair[0], pair[1]] else { continue };
+            let along = b - a;
+            let length = along.length_squared();
+            let t = if length > 0.0 { ((pixel - a).dot(along) / length).clamp(0.0, 1.0) } else { 0.0 };
+            // Shares on the image become shares in space by the depths.
+            let share = t * near / (t * near + (1.0 - t) * far);
+            take(p.lerp(q, share), (a + t * along).distance(pixel));
+        }
+        best
+    }
+}
