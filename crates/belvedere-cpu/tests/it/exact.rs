@@ -51,7 +51,7 @@ impl Difference {
 
 /// Compares off the silhouettes: a pixel lies on one if a neighbour of the traced picture has another id, or its depth jumps by more than 4 %.
 ///
-/// Depths must agree within 1e-4 of themselves, and what the surface gains in depth over the two hundredth of a pixel that the
+/// Depths must agree within 1e-4 of themselves, and what the surface gains in depth over the two hundredths of a pixel that the
 /// rasteriser may be off.
 fn compare(reference: &Frame, other: &Frame) -> Difference {
     let (w, h) = (reference.width, reference.height);
