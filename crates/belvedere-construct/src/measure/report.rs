@@ -154,7 +154,8 @@ fn summarise_group(
 }
 
 fn ratio(part: f64, whole: f64) -> Option<f64> {
-    (whole > 0.0).then(|| part / whole)
+    // The sum of nothing is -0.0.
+    (whole > 0.0).then(|| (part + 0.0) / whole)
 }
 
 fn visibility(rows: &[(f64, Judged)], near_miss: f64) -> Visibility {
