@@ -174,3 +174,16 @@ fn views_without_curved_rays_have_one_record() {
     assert_eq!(view.record_margins(0, p), [f64::INFINITY; 2]);
     assert_eq!(view.edge_error_px(p, p + 100.0), 0.0);
 }
+
+#[test]
+fn the_ground_falls_away_as_on_a_sphere_of_the_refracted_radius() {
+    let (radius, refraction) = (6_371_000.0, EarthCurvature::REFRACTION);
+    let earth = EarthCurvature { eye: DVec3::new(500.0, -200.0, 3000.0), radius, refraction };
+    let refracted = radius / (1.0 - refraction);
+    for (distance, within) in [(1_000.0, 1e-6), (10_000.0, 1e-5), (100_000.0, 0.1)] {
+        let p = earth.eye + DVec3::new(0.6 * distance, -0.8 * distance, -1000.0);
+        let drop = p.z - belvedere_core::SpaceMap::apply(&earth, p).unwrap().z;
+        let sphere = refracted - (refracted * refracted - distance * distance).sqrt();
+        assert!((drop - sphere).abs() < within, "{distance} m: {drop} m, sphere {sphere} m");
+    }
+}
