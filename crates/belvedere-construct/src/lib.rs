@@ -8,6 +8,7 @@ pub mod measure;
 pub mod reveal;
 mod samples;
 mod sight;
+pub mod terrain;
 
 pub use belvedere_scene::Ground;
 pub use error::ConstructError;

@@ -1,0 +1,126 @@
+//! The ground in the solver's coordinates.
+
+use belvedere_core::DVec2;
+use belvedere_scene::{Heightfield, NodeState};
+
+/// Terrain that cannot be solved on.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FieldError {
+    /// No node holds data.
+    #[error("terrain of {cols} x {rows} nodes holds no data at all; give a DEM with heights, or fill its voids")]
+    Empty {
+        /// Columns.
+        cols: usize,
+        /// Rows.
+        rows: usize,
+    },
+}
+
+/// Heights at the nodes of a grid. Grid coordinates: x = column (east), y = row (south); heights are scene units above
+/// the scene's datum.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Field {
+    cols: usize,
+    rows: usize,
+    north_west: DVec2,
+    spacing: DVec2,
+    heights: Vec<f64>,
+    void: Vec<bool>,
+    range: [f64; 2],
+}
+
+impl Field {
+    /// * `drop`: how far a node at scene x, y lies lower than the data says (curvature of the earth); 0 if flat.
+    ///
+    /// Void nodes take the lowest height of the data, so that they never hide anything, and are marked.
+    ///
+    /// # Errors
+    /// [`FieldError::Empty`].
+    pub fn new(hf: &Heightfield, drop: impl Fn(DVec2) -> f64) -> Result<Self, FieldError> {
+        let (cols, rows) = (hf.cols(), hf.rows());
+        let place = |i: usize| hf.node_xy(i % cols, i / cols);
+        let void: Vec<bool> = hf.states().iter().map(|s| *s == NodeState::Void).collect();
+        let mut heights: Vec<f64> =
+            hf.heights().iter().enumerate().map(|(i, h)| f64::from(*h) - drop(place(i))).collect();
+        let solid = heights.iter().zip(&void).filter(|(_, v)| !**v).map(|(h, _)| *h);
+        let range = solid.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], h| [lo.min(h), hi.max(h)]);
+        if range[0] > range[1] {
+            return Err(FieldError::Empty { cols, rows });
+        }
+        for (h, v) in heights.iter_mut().zip(&void) {
+            if *v {
+                *h = range[0];
+            }
+        }
+        Ok(Self { cols, rows, north_west: hf.north_west(), spacing: hf.spacing(), heights, void, range })
+    }
+
+    /// Columns.
+    pub fn cols(&self) -> usize {
+        self.cols
+    }
+
+    /// Rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Scene x, y of node (0, 0).
+    pub fn north_west(&self) -> DVec2 {
+        self.north_west
+    }
+
+    /// Scene units between columns and rows, both > 0.
+    pub fn spacing(&self) -> DVec2 {
+        self.spacing
+    }
+
+    /// Heights, row-major, row 0 north.
+    pub fn heights(&self) -> &[f64] {
+        &self.heights
+    }
+
+    /// Nodes without data.
+    pub fn void(&self) -> &[bool] {
+        &self.void
+    }
+
+    /// Lowest height of the data: the datum of the greedy pass.
+    pub fn datum(&self) -> f64 {
+        self.range[0]
+    }
+
+    /// Highest minus lowest height of the data.
+    pub fn relief(&self) -> f64 {
+        self.range[1] - self.range[0]
+    }
+
+    /// Grid coordinates of scene x, y.
+    pub fn grid_from_scene(&self, p: DVec2) -> DVec2 {
+        DVec2::new((p.x - self.north_west.x) / self.spacing.x, (self.north_west.y - p.y) / self.spacing.y)
+    }
+
+    /// Scene x, y of grid coordinates.
+    pub fn scene_from_grid(&self, g: DVec2) -> DVec2 {
+        DVec2::new(self.north_west.x + g.x * self.spacing.x, self.north_west.y - g.y * self.spacing.y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coordinates_go_there_and_back_and_voids_lie_low() {
+        let heights = vec![5.0, 7.0, -9999.0, 6.0, 4.0, 8.0];
+        let states = (0..6).map(|i| if i == 2 { NodeState::Void } else { NodeState::Measured }).collect();
+        let hf = Heightfield::new(DVec2::new(100.0, 900.0), DVec2::new(10.0, 20.0), 3, 2, heights, states).unwrap();
+        let field = Field::new(&hf, |p| if p.x > 115.0 { 1.0 } else { 0.0 }).unwrap();
+        assert_eq!(field.heights(), [5.0, 7.0, 4.0, 6.0, 4.0, 7.0]);
+        assert_eq!((field.datum(), field.relief()), (4.0, 3.0));
+        let g = DVec2::new(1.25, 0.5);
+        assert_eq!(field.scene_from_grid(g), DVec2::new(112.5, 890.0));
+        assert_eq!(field.grid_from_scene(field.scene_from_grid(g)), g);
+    }
+}
