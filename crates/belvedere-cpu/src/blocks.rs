@@ -28,7 +28,7 @@ pub(crate) struct SoupVertex {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SoupTriangle {
     pub(crate) v: [SoupVertex; 3],
-    /// `2 * cell + triangle` in a terrain block, `12 * box + triangle` in a block of boxes.
+    /// `2 * (SIDE * r + c) + triangle` of drawn cell (c, r) in a terrain block, `12 * box + triangle` in a block of boxes.
     pub(crate) parent: u32,
 }
 
@@ -46,8 +46,11 @@ pub(crate) struct Block {
     pub(crate) layer: u32,
     /// First column and row (terrain) or first box.
     pub(crate) origin: [usize; 2],
-    /// Cells of a terrain block.
+    /// Drawn cells of a terrain block.
     pub(crate) cells: [usize; 2],
+    /// Cells of the ground along the side of a drawn cell: node (c, r) of the block is node `origin + step * (c, r)` of
+    /// the ground. 1 = full detail.
+    pub(crate) step: usize,
     pub(crate) geometry: Geometry,
     /// Number of the first soup triangle.
     soup_base: u32,
@@ -303,6 +306,7 @@ impl Job<'_> {
             layer: self.layer,
             origin,
             cells,
+            step: 1,
             geometry: Geometry::Soup(Vec::new()),
             soup_base: 0,
             rows: [0, -1],
@@ -425,6 +429,7 @@ impl Job<'_> {
                     layer: self.layer,
                     origin: [i * BOXES, 0],
                     cells: [0; 2],
+                    step: 1,
                     geometry,
                     soup_base: 0,
                     rows,

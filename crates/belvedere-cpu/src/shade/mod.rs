@@ -9,7 +9,7 @@ mod relief;
 mod seen;
 mod sky;
 
-use crate::blocks::{BOX_TRIANGLES, Blocks, CELL_TRIANGLES, Found, SIDE};
+use crate::blocks::{BOX_TRIANGLES, Block, Blocks, CELL_TRIANGLES, Found, SIDE};
 use crate::lens::{Lens, SUB};
 use crate::raster::SKY;
 use area::AreaMap;
@@ -186,20 +186,21 @@ impl<'a> TerrainShade<'a> {
         pixel: DVec2,
     ) -> (Rgb, Option<u32>, DVec3) {
         let cell = (found.parent >> 1) as usize;
-        let [c, r] = [found.block.origin[0] + cell % SIDE, found.block.origin[1] + cell / SIDE];
+        let Block { origin, step, .. } = *found.block;
+        let [c, r] = [origin[0] + step * (cell % SIDE), origin[1] + step * (cell / SIDE)];
         let nodes = CELL_TRIANGLES[(found.parent & 1) as usize];
         let (mut u, mut v, mut z) = (0.0, 0.0, 0.0);
         for (n, w) in nodes.into_iter().zip(hit.weights) {
-            u += w * (n & 1) as f64;
-            v += w * (n >> 1) as f64;
-            z += w * f64::from(self.hf.heights()[(r + (n >> 1)) * self.hf.cols() + c + (n & 1)]);
+            u += w * (step * (n & 1)) as f64;
+            v += w * (step * (n >> 1)) as f64;
+            z += w * f64::from(self.hf.heights()[(r + step * (n >> 1)) * self.hf.cols() + c + step * (n & 1)]);
         }
         let (col, row) = (c as f64 + u, r as f64 + v);
         let spacing = self.hf.spacing();
         let xy = self.hf.north_west() + DVec2::new(col * spacing.x, -row * spacing.y);
         // Side of the square on the ground that the pixel covers; the triangle tells slant and bend, the depth keeps it sane.
         let pitch = (spacing.x * spacing.y).sqrt();
-        let fp = (0.5 * hit.parent_per_px).sqrt() * pitch;
+        let fp = (0.5 * hit.parent_per_px).sqrt() * pitch * step as f64;
         let fp = fp.clamp(footprint, 6.0 * footprint);
         let (color, id) = self.shade_at(shader, xy, fp, pixel);
         (color, id, xy.extend(z))
