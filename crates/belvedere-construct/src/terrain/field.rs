@@ -101,6 +101,36 @@ impl Field {
         DVec2::new((p.x - self.north_west.x) / self.spacing.x, (self.north_west.y - p.y) / self.spacing.y)
     }
 
+    /// Whether grid coordinates lie on the grid, rim included.
+    pub fn contains(&self, g: DVec2) -> bool {
+        g.x >= 0.0 && g.y >= 0.0 && g.x <= (self.cols - 1) as f64 && g.y <= (self.rows - 1) as f64
+    }
+
+    /// Height of the drawn surface (two triangles per cell, split from north-west to south-east) at grid coordinates;
+    /// `None` outside the grid and in triangles with a void among their nodes.
+    pub fn surface_at(&self, g: DVec2) -> Option<f64> {
+        if !self.contains(g) {
+            return None;
+        }
+        let (col, row) = ((g.x as usize).min(self.cols - 2), (g.y as usize).min(self.rows - 2));
+        let (u, v) = (g.x - col as f64, g.y - row as f64);
+        let nw = row * self.cols + col;
+        let (ne, sw, se) = (nw + 1, nw + self.cols, nw + self.cols + 1);
+        let triangle = |nodes: [usize; 3], weights: [f64; 3]| {
+            let solid = nodes.iter().all(|&n| !self.void[n]);
+            solid.then(|| nodes.iter().zip(weights).map(|(&n, w)| w * self.heights[n]).sum())
+        };
+        let upper = || triangle([nw, ne, se], [1.0 - u, u - v, v]);
+        let lower = || triangle([nw, sw, se], [1.0 - v, v - u, u]);
+        if u > v {
+            upper()
+        } else if v > u {
+            lower()
+        } else {
+            upper().or_else(lower)
+        }
+    }
+
     /// Scene x, y of grid coordinates.
     pub fn scene_from_grid(&self, g: DVec2) -> DVec2 {
         DVec2::new(self.north_west.x + g.x * self.spacing.x, self.north_west.y - g.y * self.spacing.y)
@@ -122,5 +152,27 @@ mod tests {
         let g = DVec2::new(1.25, 0.5);
         assert_eq!(field.scene_from_grid(g), DVec2::new(112.5, 890.0));
         assert_eq!(field.grid_from_scene(field.scene_from_grid(g)), g);
+    }
+
+    #[test]
+    fn the_surface_is_that_of_the_heightfield() {
+        let heights: Vec<f32> = (0..20).map(|i| (i * i % 17) as f32).collect();
+        let states = (0..20).map(|i| if i == 7 { NodeState::Void } else { NodeState::Measured }).collect();
+        let hf = Heightfield::new(DVec2::new(0.0, 30.0), DVec2::splat(10.0), 5, 4, heights, states).unwrap();
+        let field = Field::new(&hf, |_| 0.0).unwrap();
+        for i in 0..45 * 35 {
+            let g = 0.1 * DVec2::new(f64::from(i % 45), f64::from(i / 45)) - 0.1;
+            let (ours, theirs) = (field.surface_at(g), hf.surface_at(field.scene_from_grid(g)));
+            if let (Some(a), Some(b)) = (ours, theirs) {
+                assert!((a - b).abs() < 1e-9, "{g}: {a} {b}");
+            } else {
+                // On the border of a hole rounding decides.
+                assert!(ours.is_some() == theirs.is_some() || on_an_edge(g), "{g}: {ours:?} {theirs:?}");
+            }
+        }
+    }
+
+    fn on_an_edge(g: DVec2) -> bool {
+        [g.x, g.y, g.x - g.y].iter().any(|x| (x - x.round()).abs() < 1e-9)
     }
 }

@@ -4,7 +4,11 @@
 //! that guarantees what those two only try.
 
 mod field;
+mod line_of_sight;
+mod points;
 mod settings;
 
 pub use field::{Field, FieldError};
+pub use line_of_sight::{SightSample, guard_tau, sight_samples};
+pub use points::{PointKind, ReferencePoint, Unusable, UnusableReason, reference_points};
 pub use settings::{Detail, SolverMode, TerrainSettings};

@@ -1,0 +1,356 @@
+//! Points that stand for the features that must be seen.
+
+use super::{Field, TerrainSettings};
+use belvedere_core::DVec2;
+use belvedere_scene::{LayerKind, Scene};
+
+/// Points along one line or rim, and inside one area, at most; a longer feature gets wider spacing.
+const MOST_POINTS: f64 = 50_000.0;
+
+/// What part of a feature a reference point stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PointKind {
+    /// On a line.
+    Line,
+    /// On the rim of an area.
+    Rim,
+    /// Inside an area.
+    Inside,
+    /// A point feature.
+    Landmark,
+}
+
+/// A point that must be seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReferencePoint {
+    /// Index of the layer in the scene.
+    pub layer: usize,
+    /// Index of the feature in its layer.
+    pub feature: usize,
+    /// Length in plan along the line, or along the rings of the area one after the other, scene units; 0 elsewhere.
+    pub along_m: f64,
+    /// Grid coordinates.
+    pub grid: DVec2,
+    /// Height of the drawn surface there, scene units.
+    pub ground: f64,
+    /// Height over the ground at which it must be seen, scene units.
+    pub lift: f64,
+    /// What it stands for.
+    pub kind: PointKind,
+}
+
+/// Why nothing can be done for a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum UnusableReason {
+    /// Beside the terrain.
+    OutsideDem,
+    /// Where the terrain holds no data.
+    NoData,
+}
+
+/// A point of a feature that cannot be a reference point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unusable {
+    /// Index of the layer in the scene.
+    pub layer: usize,
+    /// Index of the feature in its layer.
+    pub feature: usize,
+    /// As in [`ReferencePoint::along_m`].
+    pub along_m: f64,
+    /// Grid coordinates.
+    pub grid: DVec2,
+    /// What it would have stood for.
+    pub kind: PointKind,
+    /// Why not.
+    pub reason: UnusableReason,
+}
+
+/// Reference points of every feature of the layers that must be seen, in the order of layers and features, along each.
+///
+/// * Lines: equal arc length in plan, both ends included, `spacing` cells at most; a line of one point is that point.
+/// * Areas: each ring likewise, and a square lattice of 4 x `spacing` inside (even-odd rule).
+/// * Points: themselves.
+///
+/// Lengths in cells are measured in grid coordinates. `spacing` is `settings.spacing` for the points that stand for the
+/// features, and `settings.candidates` for the dense ones that the quadratic program looks after.
+pub fn reference_points(
+    scene: &Scene,
+    field: &Field,
+    settings: &TerrainSettings,
+    spacing: f64,
+) -> (Vec<ReferencePoint>, Vec<Unusable>) {
+    let mut out = Sorter { field, layer: 0, feature: 0, lift: 0.0, usable: Vec::new(), unusable: Vec::new() };
+    for (layer, content) in scene.must_see() {
+        out.layer = layer;
+        match &content.kind {
+            LayerKind::Line(l) => {
+                out.lift = settings.lift_m.unwrap_or(l.lift_m);
+                for (feature, f) in l.features.iter().enumerate() {
+                    out.feature = feature;
+                    let path = to_grid(field, f.points.iter().map(|p| p.truncate()));
+                    out.along(&path, spacing, 0.0, PointKind::Line);
+                }
+            }
+            LayerKind::Area(a) => {
+                out.lift = settings.lift_m.unwrap_or(a.lift_m);
+                for (feature, f) in a.features.iter().enumerate() {
+                    out.feature = feature;
+                    let rings: Vec<Vec<DVec2>> = f.rings.iter().map(|r| to_grid(field, r.iter().copied())).collect();
+                    out.area(&rings, spacing);
+                }
+            }
+            LayerKind::Point(p) => {
+                out.lift = settings.lift_m.unwrap_or(p.lift_m);
+                for (feature, f) in p.features.iter().enumerate() {
+                    out.feature = feature;
+                    out.put(field.grid_from_scene(f.position.truncate()), 0.0, PointKind::Landmark);
+                }
+            }
+            LayerKind::Terrain(_) | LayerKind::Boxes(_) => {}
+        }
+    }
+    (out.usable, out.unusable)
+}
+
+fn to_grid(field: &Field, points: impl Iterator<Item = DVec2>) -> Vec<DVec2> {
+    points.filter(|p| p.is_finite()).map(|p| field.grid_from_scene(p)).collect()
+}
+
+/// Puts points where they belong.
+struct Sorter<'a> {
+    field: &'a Field,
+    layer: usize,
+    feature: usize,
+    lift: f64,
+    usable: Vec<ReferencePoint>,
+    unusable: Vec<Unusable>,
+}
+
+impl Sorter<'_> {
+    fn put(&mut self, grid: DVec2, along_m: f64, kind: PointKind) {
+        let (layer, feature) = (self.layer, self.feature);
+        match self.field.surface_at(grid) {
+            Some(ground) => {
+                self.usable.push(ReferencePoint { layer, feature, along_m, grid, ground, lift: self.lift, kind });
+            }
+            None => {
+                let reason =
+                    if self.field.contains(grid) { UnusableReason::NoData } else { UnusableReason::OutsideDem };
+                self.unusable.push(Unusable { layer, feature, along_m, grid, kind, reason });
+            }
+        }
+    }
+
+    /// Points along a path, which starts at `start_m`; returns where it ends. A closed path has its first point once.
+    fn along(&mut self, path: &[DVec2], spacing: f64, start_m: f64, kind: PointKind) -> f64 {
+        let Some(&first) = path.first() else { return start_m };
+        let cells: f64 = path.windows(2).map(|w| (w[1] - w[0]).length()).sum();
+        let parts = (cells / spacing).ceil().clamp(0.0, MOST_POINTS) as usize;
+        let closed = path.len() > 2 && path.last() == Some(&first);
+        let spacing_m = self.field.spacing();
+        self.put(first, start_m, kind);
+        let (mut placed, mut before, mut before_m) = (1, 0.0, start_m);
+        for pair in path.windows(2) {
+            let step = pair[1] - pair[0];
+            let (length, length_m) = (step.length(), (step * spacing_m).length());
+            while placed < parts {
+                let share = (cells * placed as f64 / parts as f64 - before) / length;
+                if share.is_nan() || share > 1.0 {
+                    break;
+                }
+                self.put(pair[0] + share.max(0.0) * step, before_m + share.max(0.0) * length_m, kind);
+                placed += 1;
+            }
+            before += length;
+            before_m += length_m;
+        }
+        if !closed && parts > 0 {
+            self.put(path[path.len() - 1], before_m, kind);
+        }
+        before_m
+    }
+
+    fn area(&mut self, rings: &[Vec<DVec2>], spacing: f64) {
+        let mut start_m = 0.0;
+        for ring in rings {
+            let mut closed = ring.clone();
+            if closed.last() != ring.first() {
+                closed.extend(ring.first());
+            }
+            start_m = self.along(&closed, spacing, start_m, PointKind::Rim);
+        }
+        let corners = rings.iter().flatten();
+        let [low, high] = corners.fold([DVec2::MAX, DVec2::MIN], |[lo, hi], &p| [lo.min(p), hi.max(p)]);
+        let extent = high - low;
+        if !(extent.x > 0.0 && extent.y > 0.0) {
+            return;
+        }
+        // Neither finer than the data nor beside it.
+        let last = DVec2::new((self.field.cols() - 1) as f64, (self.field.rows() - 1) as f64);
+        let step = (4.0 * spacing).max((extent.x * extent.y / MOST_POINTS).sqrt());
+        let count = (extent / step).ceil();
+        let origin = low + 0.5 * (extent - (count - 1.0) * step);
+        let (from, to) = (((-origin) / step).ceil().max(DVec2::ZERO), ((last - origin) / step).floor() + 1.0);
+        let to = to.min(count);
+        for row in from.y as usize..to.y.max(0.0) as usize {
+            for col in from.x as usize..to.x.max(0.0) as usize {
+                let p = origin + step * DVec2::new(col as f64, row as f64);
+                if inside(rings, p) {
+                    self.put(p, 0.0, PointKind::Inside);
+                }
+            }
+        }
+    }
+}
+
+/// Even-odd rule.
+fn inside(rings: &[Vec<DVec2>], p: DVec2) -> bool {
+    let crosses =
+        |a: DVec2, b: DVec2| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
+    let count = |r: &Vec<DVec2>| (0..r.len()).filter(|&i| crosses(r[i], r[(i + 1) % r.len()])).count();
+    rings.iter().map(count).sum::<usize>() % 2 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_scene::{
+        AreaFeature, AreaLayer, Color, Heightfield, Hidden, Layer, LineFeature, LineLayer, NodeState, PointFeature,
+        PointLayer,
+    };
+
+    /// A plane rising eastwards, 40 x 30 nodes 10 m x 20 m apart, with a void at (20, 10).
+    fn field() -> Field {
+        let (cols, rows) = (40, 30);
+        let heights = (0..cols * rows).map(|i| (i % cols) as f32).collect();
+        let mut states = vec![NodeState::Measured; cols * rows];
+        states[10 * cols + 20] = NodeState::Void;
+        let hf = Heightfield::new(DVec2::new(1000.0, 900.0), DVec2::new(10.0, 20.0), cols, rows, heights, states);
+        Field::new(&hf.unwrap(), |_| 0.0).unwrap()
+    }
+
+    fn scene_point(field: &Field, g: [f64; 2]) -> DVec2 {
+        field.scene_from_grid(DVec2::from(g))
+    }
+
+    fn lines(field: &Field, features: &[&[[f64; 2]]]) -> Scene {
+        let path = |f: &[[f64; 2]]| f.iter().map(|&g| scene_point(field, g).extend(0.0)).collect();
+        let features = features.iter().map(|f| LineFeature { name: String::new(), points: path(f) }).collect();
+        let color = Color::rgb(0, 0, 0);
+        let kind = LayerKind::Line(LineLayer {
+            features,
+            color,
+            width_px: 1.0,
+            casing: None,
+            hidden: Hidden::Dash,
+            lift_m: 1.5,
+        });
+        Scene { layers: vec![Layer { id: "line".into(), must_see: true, kind }], ..Scene::default() }
+    }
+
+    fn area(field: &Field, rings: &[&[[f64; 2]]]) -> Scene {
+        let ring = |r: &[[f64; 2]]| r.iter().map(|&g| scene_point(field, g)).collect();
+        let features = vec![AreaFeature { name: String::new(), rings: rings.iter().map(|r| ring(r)).collect() }];
+        let kind = LayerKind::Area(AreaLayer {
+            features,
+            fill: Color::rgb(0, 0, 0),
+            outline: None,
+            width_px: 1.0,
+            water: false,
+            hidden: Hidden::Cut,
+            lift_m: 0.5,
+        });
+        Scene { layers: vec![Layer { id: "area".into(), must_see: true, kind }], ..Scene::default() }
+    }
+
+    fn points(scene: &Scene, field: &Field, spacing: f64) -> (Vec<ReferencePoint>, Vec<Unusable>) {
+        reference_points(scene, field, &TerrainSettings::default(), spacing)
+    }
+
+    #[test]
+    fn a_line_is_divided_into_equal_lengths_and_both_ends_count() {
+        let field = field();
+        let scene = lines(&field, &[&[[2.0, 3.0], [5.0, 7.0], [5.0, 7.0], [11.0, 7.0]], &[[1.0, 1.0], [1.0, 2.0]]]);
+        let (found, unusable) = points(&scene, &field, 2.0);
+        assert!(unusable.is_empty());
+        let first: Vec<_> = found.iter().filter(|p| p.feature == 0).collect();
+        assert_eq!(first.len(), 7, "11 cells in 6 parts");
+        assert!((first[1].grid - DVec2::new(3.1, 3.0 + 11.0 / 6.0 * 0.8)).length() < 1e-12);
+        assert!((first[3].grid - DVec2::new(5.5, 7.0)).length() < 1e-12);
+        assert_eq!((first[6].grid, first[0].grid), (DVec2::new(11.0, 7.0), DVec2::new(2.0, 3.0)));
+        // 3 cells of 10 m east and 4 of 20 m south, then 6 east.
+        assert!((first[6].along_m - (30f64.hypot(80.0) + 60.0)).abs() < 1e-9);
+        assert!(first.windows(2).all(|w| w[0].along_m < w[1].along_m));
+        assert!(first.iter().all(|p| (p.ground - p.grid.x).abs() < 1e-9 && p.lift == 1.5 && p.kind == PointKind::Line));
+        assert_eq!(found.len() - first.len(), 2, "a short line is its ends");
+        let lifted = TerrainSettings { lift_m: Some(9.0), ..TerrainSettings::default() };
+        assert!(reference_points(&scene, &field, &lifted, 2.0).0.iter().all(|p| p.lift == 9.0));
+        assert_eq!(points(&scene, &field, 0.25).0.len(), 45 + 5, "dense");
+    }
+
+    #[test]
+    fn short_and_broken_lines_have_a_defined_result() {
+        let field = field();
+        let one = points(&lines(&field, &[&[[4.0, 4.0]], &[], &[[6.0, 6.0], [6.0, 6.0]]]), &field, 2.0).0;
+        let places: Vec<DVec2> = one.iter().map(|p| p.grid).collect();
+        assert_eq!(places, [DVec2::splat(4.0), DVec2::splat(6.0)]);
+        let broken = lines(&field, &[&[[4.0, 4.0], [f64::NAN, 2.0], [8.0, 4.0]], &[[f64::INFINITY, 1.0]]]);
+        assert_eq!(points(&broken, &field, 2.0).0.len(), 3);
+    }
+
+    #[test]
+    fn points_beside_the_terrain_or_without_data_are_named_with_the_reason() {
+        let field = field();
+        let scene = lines(&field, &[&[[36.0, 10.0], [44.0, 10.0]], &[[20.0, 6.0], [20.0, 14.0]]]);
+        let (found, unusable) = points(&scene, &field, 1.0);
+        let of = |reason| unusable.iter().filter(|u| u.reason == reason).map(|u| u.grid).collect::<Vec<_>>();
+        assert_eq!(
+            of(UnusableReason::OutsideDem),
+            (40..=44).map(|x| DVec2::new(f64::from(x), 10.0)).collect::<Vec<_>>()
+        );
+        assert_eq!(of(UnusableReason::NoData), [DVec2::new(20.0, 10.0)]);
+        assert_eq!(found.len() + unusable.len(), 18);
+        assert!(found.iter().all(|p| p.ground.is_finite()));
+    }
+
+    #[test]
+    fn an_area_has_rims_and_a_lattice_inside_that_leaves_out_holes() {
+        let field = field();
+        let outer: &[[f64; 2]] = &[[2.0, 2.0], [18.0, 2.0], [18.0, 18.0], [2.0, 18.0]];
+        let hole: &[[f64; 2]] = &[[6.5, 6.5], [13.5, 6.5], [13.5, 13.5], [6.5, 13.5], [6.5, 6.5]];
+        let (found, _) = points(&area(&field, &[outer, hole]), &field, 1.0);
+        let of = |kind| found.iter().filter(|p| p.kind == kind).collect::<Vec<_>>();
+        assert_eq!(of(PointKind::Rim).len(), 64 + 28);
+        // Lattice at 4, 8, 12, 16; the four in the middle lie in the hole.
+        let inside: Vec<DVec2> = of(PointKind::Inside).iter().map(|p| p.grid).collect();
+        assert_eq!(inside.len(), 12);
+        assert!(inside.contains(&DVec2::new(4.0, 8.0)) && !inside.contains(&DVec2::new(8.0, 8.0)));
+        let rim = of(PointKind::Rim);
+        assert!(rim.windows(2).all(|w| w[0].along_m < w[1].along_m), "rings follow one another");
+        // A pond smaller than the lattice still has its middle; one far beyond the terrain costs nothing.
+        let pond: &[[f64; 2]] = &[[5.0, 5.0], [6.0, 5.0], [6.0, 6.0], [5.0, 6.0]];
+        assert_eq!(points(&area(&field, &[pond]), &field, 2.0).0.last().unwrap().grid, DVec2::splat(5.5));
+        let huge: &[[f64; 2]] = &[[-1e9, -1e9], [1e9, -1e9], [1e9, 1e9], [-1e9, 1e9]];
+        assert!(points(&area(&field, &[huge]), &field, 2.0).0.is_empty());
+    }
+
+    #[test]
+    fn landmarks_are_themselves_and_layers_that_need_not_be_seen_have_no_points() {
+        let field = field();
+        let position = scene_point(&field, [7.25, 3.5]).extend(0.0);
+        let kind = LayerKind::Point(PointLayer {
+            features: vec![PointFeature { name: "hut".into(), position }],
+            color: Color::rgb(0, 0, 0),
+            size_px: 3.0,
+            hidden: Hidden::Fade,
+            lift_m: 4.0,
+        });
+        let mut scene = Scene { layers: vec![Layer { id: "huts".into(), must_see: true, kind }], ..Scene::default() };
+        let found = points(&scene, &field, 2.0).0;
+        assert_eq!((found.len(), found[0].grid, found[0].ground, found[0].lift), (1, DVec2::new(7.25, 3.5), 7.25, 4.0));
+        scene.layers[0].must_see = false;
+        assert!(points(&scene, &field, 2.0).0.is_empty());
+    }
+}
