@@ -3,11 +3,13 @@
 //! After Deng et al. 2013 (*Occlusion-free mountain navigation*): a greedy pass and a smooth one; and a quadratic program
 //! that guarantees what those two only try.
 
+mod cells;
 mod field;
 mod line_of_sight;
 mod points;
 mod settings;
 
+pub use cells::{Cells, NO_CELL};
 pub use field::{Field, FieldError};
 pub use line_of_sight::{SightSample, guard_tau, sight_samples};
 pub use points::{PointKind, ReferencePoint, Unusable, UnusableReason, reference_points};

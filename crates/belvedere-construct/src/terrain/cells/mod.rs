@@ -1,0 +1,98 @@
+//! Cells: the ground divided into one piece per significant summit.
+
+mod neighbours;
+mod pairs;
+mod persistence;
+#[cfg(test)]
+mod reference;
+mod regions;
+mod tables;
+
+use super::Field;
+use neighbours::Neighbours;
+use persistence::Persistence;
+use regions::Regions;
+use tables::Tables;
+
+/// Label of void nodes, which belong to no cell.
+pub const NO_CELL: u32 = u32::MAX;
+
+/// One piece of the ground per significant summit: everything from which steepest ascent leads there, or to a lesser
+/// summit that gives way to it.
+///
+/// Cells are numbered by the index of their summit. Nodes are ordered by height and, where heights are equal, by index:
+/// there are no plateaus and no ties.
+///
+/// Source: the partition by mountains of Deng et al. 2011, 2013; by steepest ascent and persistence (Edelsbrunner et al. 2002): ours.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cells {
+    labels: Vec<u32>,
+    summits: Vec<u32>,
+    persistence: Vec<f64>,
+    tables: Tables,
+    neighbours: Neighbours,
+}
+
+impl Cells {
+    /// * `keep`: cells wanted; fewer if the ground has fewer summits, more if it has more unconnected parts.
+    pub fn new(field: &Field, keep: usize) -> Self {
+        let regions = Regions::new(field);
+        let persistence = Persistence::new(field, &regions);
+        let kept = persistence.keep(field, &regions, keep);
+        let labels: Vec<u32> =
+            regions.of_node.iter().map(|&r| kept.cell_of.get(r as usize).copied().unwrap_or(NO_CELL)).collect();
+        let tables = Tables::new(field, &labels, kept.summits.len());
+        let neighbours = Neighbours::new(field.cols(), &labels, kept.summits.len());
+        Self { labels, summits: kept.summits, persistence: kept.persistence, tables, neighbours }
+    }
+
+    /// Cells wanted by default: one for 1600 nodes, at least one.
+    pub fn default_count(field: &Field) -> usize {
+        (field.heights().len() / 1600).max(1)
+    }
+
+    /// Number of cells, at least 1.
+    #[allow(clippy::len_without_is_empty)]
+    pub fn len(&self) -> usize {
+        self.summits.len()
+    }
+
+    /// Cell of every node, row-major; [`NO_CELL`] at voids.
+    pub fn labels(&self) -> &[u32] {
+        &self.labels
+    }
+
+    /// Node of each cell's summit, ascending.
+    pub fn summits(&self) -> &[u32] {
+        &self.summits
+    }
+
+    /// Height of each summit over the highest saddle that leads to a higher one, scene units; infinite where there is none.
+    pub fn persistence(&self) -> &[f64] {
+        &self.persistence
+    }
+
+    /// Cells that share edges of the grid with `cell`, ascending, and for each the share of the cell's border (adding up to 1).
+    pub fn neighbours(&self, cell: usize) -> (&[u32], &[f64]) {
+        self.neighbours.of(cell)
+    }
+
+    /// Mean height of a cell over the field's datum, scene units.
+    pub fn mean_height(&self, cell: usize) -> f64 {
+        self.tables.mean(cell)
+    }
+
+    /// Share of a cell's nodes strictly higher than `h` (scene units over the field's datum), and their mean height over
+    /// the datum; (0, the highest) if there is none.
+    pub fn higher(&self, cell: usize, h: f64) -> (f64, f64) {
+        self.tables.higher(cell, h)
+    }
+
+    /// Number of nodes of a cell, at least 1.
+    pub fn size(&self, cell: usize) -> usize {
+        self.tables.sorted(cell).len()
+    }
+}
+
+#[cfg(test)]
+mod tests;
