@@ -52,111 +52,151 @@ pub fn guard_tau(from: DVec2, eye: DVec2, guard: f64) -> f64 {
 /// Where an end of an edge is void there is no ground and no sample. A point under the eye has no samples.
 pub fn sight_samples(field: &Field, from: DVec2, eye: DVec2, diagonals: bool, out: &mut Vec<SightSample>) {
     out.clear();
-    let line = Line { from, dir: eye - from, plan_m: ((eye - from) * field.spacing()).length() };
-    let Some((t0, t1)) = line.over(field) else { return };
-    let mut families = [
-        Crossings::new(from.x, line.dir.x, t0, t1),
-        Crossings::new(from.y, line.dir.y, t0, t1),
-        if diagonals { Crossings::new(from.x - from.y, line.dir.x - line.dir.y, t0, t1) } else { Crossings::NONE },
-    ];
-    loop {
-        let next = families.each_ref().map(|f| f.tau);
-        let first = (0..3).fold(0, |best, i| if next[i] < next[best] { i } else { best });
-        let tau = next[first];
-        if tau == f64::INFINITY {
-            return;
-        }
-        let k = families[first].advance();
-        if !(tau > 0.0 && tau < 1.0) {
-            continue;
-        }
-        let (nodes, weight) = line.edge(field, first, k, tau);
-        let again = weight == 0.0 && out.last().is_some_and(|s| s.nodes == nodes && s.weight == 0.0);
-        let void = nodes.iter().any(|&n| field.void()[n as usize]);
-        if !again && !void {
-            out.push(SightSample { tau, nodes, weight, rho: (1.0 - tau) * line.plan_m });
-        }
+    if let Some(mut walk) = SightWalk::new(field, from, eye, diagonals) {
+        let (_, end) = walk.span();
+        walk.samples_to(end, out);
     }
 }
 
-struct Line {
+/// A line of sight on its way from the point to the eye.
+pub(super) struct SightWalk<'a> {
+    field: &'a Field,
     from: DVec2,
     dir: DVec2,
     plan_m: f64,
+    span: (f64, f64),
+    crossings: [Crossings; 3],
 }
 
-impl Line {
+impl<'a> SightWalk<'a> {
+    /// `None` if the line does not meet the grid.
+    pub(super) fn new(field: &'a Field, from: DVec2, eye: DVec2, diagonals: bool) -> Option<Self> {
+        let dir = eye - from;
+        let span = over(field, from, dir)?;
+        let diagonal = if diagonals { dir.x - dir.y } else { 0.0 };
+        let crossings = [
+            Crossings::new(from.x, dir.x, span),
+            Crossings::new(from.y, dir.y, span),
+            Crossings::new(from.x - from.y, diagonal, span),
+        ];
+        Some(Self { field, from, dir, plan_m: (dir * field.spacing()).length(), span, crossings })
+    }
+
     /// The part of the line over the grid.
-    fn over(&self, field: &Field) -> Option<(f64, f64)> {
-        if !(self.from.is_finite() && self.dir.is_finite()) {
-            return None;
-        }
-        let (mut t0, mut t1) = (0.0f64, 1.0f64);
-        for (axis, last) in [field.cols() - 1, field.rows() - 1].into_iter().enumerate() {
-            let (p, d) = (self.from[axis], self.dir[axis]);
-            if d == 0.0 {
-                if !(0.0..=last as f64).contains(&p) {
-                    return None;
-                }
+    pub(super) fn span(&self) -> (f64, f64) {
+        self.span
+    }
+
+    /// From the point to the eye, cells.
+    pub(super) fn dir(&self) -> DVec2 {
+        self.dir
+    }
+
+    /// Leaves out the crossings before `tau` (some just before it may still come).
+    pub(super) fn skip_to(&mut self, tau: f64) {
+        self.crossings.iter_mut().for_each(|c| c.skip_to(tau));
+    }
+
+    /// Appends the crossings from where the walk is up to `tau`.
+    pub(super) fn samples_to(&mut self, end: f64, out: &mut Vec<SightSample>) {
+        loop {
+            let next = self.crossings.each_ref().map(|c| c.tau);
+            let family = if next[1] < next[0] { 1 } else { 0 };
+            let family = if next[2] < next[family] { 2 } else { family };
+            let tau = next[family];
+            // Beside the span there are none, so the last may lie beyond its end by rounding.
+            if tau == f64::INFINITY || (tau > end && end < self.span.1) {
+                return;
+            }
+            let k = self.crossings[family].advance();
+            if !(tau > 0.0 && tau < 1.0) {
                 continue;
             }
-            let (s0, s1) = (-p / d, (last as f64 - p) / d);
-            t0 = t0.max(s0.min(s1));
-            t1 = t1.min(s0.max(s1));
+            let (nodes, weight) = self.edge(family, k, tau);
+            let again = weight == 0.0 && out.last().is_some_and(|s| s.nodes == nodes && s.weight == 0.0);
+            let void = nodes.iter().any(|&n| self.field.void()[n as usize]);
+            if !again && !void {
+                out.push(SightSample { tau, nodes, weight, rho: (1.0 - tau) * self.plan_m });
+            }
         }
-        (t0 <= t1).then_some((t0, t1))
     }
 
     /// The edge crossed at `tau` on line `k` of a family (x, y, x - y), and the share of its second node.
-    fn edge(&self, field: &Field, family: usize, k: f64, tau: f64) -> ([u32; 2], f64) {
-        let last = DVec2::new((field.cols() - 1) as f64, (field.rows() - 1) as f64);
-        let p = self.from + tau * self.dir;
+    fn edge(&self, family: usize, k: f64, tau: f64) -> ([u32; 2], f64) {
+        let cols = self.field.cols();
+        let last = DVec2::new((cols - 1) as f64, (self.field.rows() - 1) as f64);
         // What runs along the edge: y on a line x = k, else x.
-        let (along, axis) = if family == 0 { (p.y, 1) } else { (p.x, 0) };
-        let along = along.clamp(0.0, last[axis]);
+        let axis = usize::from(family == 0);
+        let along = (self.from[axis] + tau * self.dir[axis]).clamp(0.0, last[axis]);
         let near = along.round();
         let at_node = (along - near).abs() <= AT_NODE;
         let start = if at_node { near } else { along.floor() };
         let (corner, step) = match family {
-            0 => (DVec2::new(k, start), field.cols()),
+            0 => (DVec2::new(k, start), cols),
             1 => (DVec2::new(start, k), 1),
-            _ => (DVec2::new(start, start - k), field.cols() + 1),
+            _ => (DVec2::new(start, start - k), cols + 1),
         };
         let corner = corner.clamp(DVec2::ZERO, last);
-        let node = corner.y as usize * field.cols() + corner.x as usize;
-        if at_node || corner[axis] >= last[axis] {
-            ([node as u32; 2], 0.0)
-        } else {
-            ([node as u32, (node + step) as u32], along - start)
-        }
+        let node = corner.y as usize * cols + corner.x as usize;
+        if at_node { ([node as u32; 2], 0.0) } else { ([node as u32, (node + step) as u32], along - start) }
     }
+}
+
+/// The part of a line over the grid.
+fn over(field: &Field, from: DVec2, dir: DVec2) -> Option<(f64, f64)> {
+    if !(from.is_finite() && dir.is_finite()) {
+        return None;
+    }
+    let (mut t0, mut t1) = (0.0f64, 1.0f64);
+    for (axis, last) in [field.cols() - 1, field.rows() - 1].into_iter().enumerate() {
+        let (p, d) = (from[axis], dir[axis]);
+        if d == 0.0 {
+            if !(0.0..=last as f64).contains(&p) {
+                return None;
+            }
+            continue;
+        }
+        let (s0, s1) = (-p / d, (last as f64 - p) / d);
+        t0 = t0.max(s0.min(s1));
+        t1 = t1.min(s0.max(s1));
+    }
+    (t0 <= t1).then_some((t0, t1))
 }
 
 /// Crossings with one family of parallel lines, by rising tau.
 struct Crossings {
     start: f64,
     step: f64,
+    /// The next line and the last one, and the next one's tau (infinite after the last).
     k: f64,
     last: f64,
     tau: f64,
 }
 
 impl Crossings {
-    const NONE: Self = Self { start: 0.0, step: 0.0, k: 0.0, last: 0.0, tau: f64::INFINITY };
-
-    fn new(start: f64, step: f64, t0: f64, t1: f64) -> Self {
+    fn new(start: f64, step: f64, (t0, t1): (f64, f64)) -> Self {
         if step == 0.0 {
-            return Self::NONE;
+            return Self { start, step, k: 0.0, last: 0.0, tau: f64::INFINITY };
         }
-        let (a, b) = (start + t0 * step, start + t1 * step);
-        let (k, last) = if step > 0.0 {
-            ((a - AT_NODE).ceil(), (b + AT_NODE).floor())
-        } else {
-            ((a + AT_NODE).floor(), (b - AT_NODE).ceil())
-        };
-        let mut out = Self { start, step, k, last, tau: 0.0 };
+        let end = start + t1 * step;
+        let last = if step > 0.0 { (end + AT_NODE).floor() } else { (end - AT_NODE).ceil() };
+        let mut out = Self { start, step, k: 0.0, last, tau: 0.0 };
+        out.k = out.first_from(t0);
         out.set();
         out
+    }
+
+    fn first_from(&self, tau: f64) -> f64 {
+        let at = self.start + tau * self.step;
+        if self.step > 0.0 { (at - AT_NODE).ceil() } else { (at + AT_NODE).floor() }
+    }
+
+    fn skip_to(&mut self, tau: f64) {
+        if tau > self.tau {
+            let k = self.first_from(tau);
+            self.k = if self.step > 0.0 { self.k.max(k) } else { self.k.min(k) };
+            self.set();
+        }
     }
 
     fn set(&mut self) {

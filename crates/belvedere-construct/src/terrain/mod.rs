@@ -5,12 +5,17 @@
 
 mod cells;
 mod field;
+mod greedy;
 mod line_of_sight;
 mod points;
 mod settings;
 
 pub use cells::{Cells, NO_CELL};
 pub use field::{Field, FieldError};
+pub use greedy::{
+    Affine, EyeError, GreedyCounters, LeftOut, Naive, Pieces, Price, Pyramid, Wedge, blended, check_eye, in_view,
+    scale_to_clear, shift_to_clear,
+};
 pub use line_of_sight::{SightSample, guard_tau, sight_samples};
 pub use points::{PointKind, ReferencePoint, Unusable, UnusableReason, reference_points};
 pub use settings::{Detail, SolverMode, TerrainSettings};

@@ -95,4 +95,4 @@ impl Cells {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -1,0 +1,75 @@
+//! Transforms of parts of a cell.
+
+use super::equations::Affine;
+
+/// What is done to a cell, by distance to the eye in plan: rings around the eye, the nearest first.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Pieces {
+    /// Outer radii of all rings but the last, ascending, scene units.
+    radii: Vec<f64>,
+    /// One per ring; none at all = nothing is done.
+    affine: Vec<Affine>,
+}
+
+impl Pieces {
+    /// What is done at distance `rho`.
+    pub fn at(&self, rho: f64) -> Affine {
+        match self.affine.len() {
+            0 => Affine::IDENTITY,
+            1 => self.affine[0],
+            _ => self.affine[self.radii.partition_point(|&r| r <= rho)],
+        }
+    }
+
+    /// Whether anything is done.
+    pub fn changed(&self) -> bool {
+        !self.affine.is_empty()
+    }
+
+    /// Outer radii of the rings (the last infinite) and what is done in them.
+    pub fn rings(&self) -> impl Iterator<Item = (f64, Affine)> {
+        self.radii.iter().copied().chain([f64::INFINITY]).zip(self.affine.iter().copied())
+    }
+
+    /// Changes everything nearer than `below` (infinite = the whole cell). Says whether a ring had to be divided.
+    pub(super) fn change(&mut self, below: f64, mut change: impl FnMut(Affine) -> Affine) -> bool {
+        if self.affine.is_empty() {
+            self.affine.push(Affine::IDENTITY);
+        }
+        let ring = self.radii.partition_point(|&r| r < below);
+        let divide = below < f64::INFINITY && self.radii.get(ring) != Some(&below);
+        if divide {
+            self.radii.insert(ring, below);
+            self.affine.insert(ring, self.affine[ring]);
+        }
+        let last = if below < f64::INFINITY { ring } else { self.radii.len() };
+        self.affine[..=last].iter_mut().for_each(|a| *a = change(*a));
+        divide
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rings_are_divided_once_and_changed_below_the_radius() {
+        let lower = |by: f64| move |a: Affine| Affine { shift: a.shift - by, ..a };
+        let mut pieces = Pieces::default();
+        assert!(!pieces.changed() && pieces.at(5.0) == Affine::IDENTITY);
+        assert!(pieces.change(100.0, lower(1.0)));
+        assert!(pieces.change(50.0, lower(10.0)));
+        assert!(!pieces.change(100.0, lower(2.0)), "that radius is there already");
+        assert!(!pieces.change(f64::INFINITY, lower(100.0)));
+        let at = |rho: f64| pieces.at(rho).shift;
+        assert_eq!(
+            (at(0.0), at(49.9), at(50.0), at(99.9), at(100.0), at(1e9)),
+            (-113.0, -113.0, -103.0, -103.0, -100.0, -100.0)
+        );
+        let rings: Vec<(f64, f64)> = pieces.rings().map(|(r, a)| (r, a.shift)).collect();
+        assert_eq!(rings, [(50.0, -113.0), (100.0, -103.0), (f64::INFINITY, -100.0)]);
+        let mut whole = Pieces::default();
+        assert!(!whole.change(f64::INFINITY, lower(7.0)));
+        assert_eq!((whole.at(3.0).shift, whole.rings().count()), (-7.0, 1));
+    }
+}

@@ -1,0 +1,222 @@
+//! The order in which points are followed, and what each of them does to the ground.
+
+use super::super::line_of_sight::SightSample;
+use super::super::{Cells, Field, ReferencePoint, TerrainSettings};
+use super::equations::{Affine, Price, blended, scale_to_clear, shift_to_clear};
+use super::trace::{Hit, Sampler, Target, hits};
+use super::{BACKWARD, CLEARANCE, GreedyCounters, NEAR, Naive, Pieces};
+use belvedere_core::{DVec2, DVec3};
+use std::collections::BinaryHeap;
+
+/// Heights that differ by less than this share of the relief are equal.
+const EQUAL: f64 = 1e-12;
+
+/// A line of sight to follow, or the part of it nearer to the eye than `below`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Entry {
+    /// Distance to the eye at which it starts; farthest first.
+    rho: f64,
+    point: usize,
+    below: f64,
+    whole: bool,
+}
+
+impl Eq for Entry {}
+
+impl Ord for Entry {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        let whole = self.whole.cmp(&other.whole);
+        self.rho.total_cmp(&other.rho).then(other.point.cmp(&self.point)).then(whole)
+    }
+}
+
+impl PartialOrd for Entry {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+pub(super) struct Pass<'a> {
+    field: &'a Field,
+    cells: &'a Cells,
+    settings: &'a TerrainSettings,
+    eye: (DVec2, f64),
+    /// Smallest height difference that counts.
+    slack: f64,
+    targets: Vec<Target>,
+    /// Points of each cell, and where each cell's begin.
+    of_cell: Vec<usize>,
+    first: Vec<usize>,
+    pieces: Vec<Pieces>,
+    /// Whether the whole line of a point waits in the heap.
+    waiting: Vec<bool>,
+    unresolved: Vec<bool>,
+    /// Backward events of each cell.
+    backward: Vec<u32>,
+    heap: BinaryHeap<Entry>,
+    pub(super) counters: GreedyCounters,
+}
+
+impl<'a> Pass<'a> {
+    pub(super) fn new(
+        field: &'a Field,
+        cells: &'a Cells,
+        settings: &'a TerrainSettings,
+        eye: DVec3,
+        points: &[ReferencePoint],
+    ) -> Self {
+        let (grid, z) = (field.grid_from_scene(eye.truncate()), eye.z - field.datum());
+        let targets: Vec<Target> = points.iter().map(|p| Target::new(field, cells, p, grid, settings.guard)).collect();
+        let mut of_cell: Vec<usize> = (0..targets.len()).collect();
+        of_cell.sort_by_key(|&i| targets[i].cell);
+        let first = (0..=cells.len()).map(|c| of_cell.partition_point(|&i| targets[i].cell < c)).collect();
+        Self {
+            field,
+            cells,
+            settings,
+            eye: (grid, z),
+            slack: EQUAL * (field.relief() + z.abs()),
+            of_cell,
+            first,
+            pieces: vec![Pieces::default(); cells.len()],
+            waiting: vec![false; targets.len()],
+            unresolved: vec![false; targets.len()],
+            backward: vec![0; cells.len()],
+            heap: BinaryHeap::with_capacity(2 * targets.len()),
+            counters: GreedyCounters::default(),
+            targets,
+        }
+    }
+
+    pub(super) fn run(&mut self, sampler: &dyn Sampler) {
+        (0..self.targets.len()).for_each(|point| self.enqueue(point));
+        let (mut samples, mut found) = (Vec::new(), Vec::new());
+        while let Some(entry) = self.heap.pop() {
+            self.counters.traces += 1;
+            self.trace(entry, sampler, &mut samples, &mut found);
+        }
+    }
+
+    pub(super) fn finish(mut self) -> Naive {
+        let unresolved: Vec<usize> = (0..self.targets.len()).filter(|&i| self.unresolved[i]).collect();
+        self.counters.unresolved = unresolved.len();
+        self.counters.cells_changed = self.pieces.iter().filter(|p| p.changed()).count();
+        Naive { eye: self.eye.0, pieces: self.pieces, unresolved, counters: self.counters }
+    }
+
+    fn enqueue(&mut self, point: usize) {
+        if !std::mem::replace(&mut self.waiting[point], true) {
+            let target = &self.targets[point];
+            self.heap.push(Entry { rho: target.rho, point, below: target.below(), whole: true });
+        }
+    }
+
+    /// Follows a line of sight and clears it, cell by cell.
+    fn trace(&mut self, entry: Entry, sampler: &dyn Sampler, samples: &mut Vec<SightSample>, found: &mut Vec<Hit>) {
+        let target = self.targets[entry.point];
+        if entry.whole {
+            self.waiting[entry.point] = false;
+            self.unresolved[entry.point] = false;
+        }
+        let sight = target.sight(self.field, &self.pieces, self.eye);
+        sampler.samples(&sight, samples);
+        hits(samples, self.field, self.cells, &self.pieces, &sight, (entry.below, self.slack), found);
+        // Clearing a cell changes nothing in the others.
+        while let Some(&first) = found.first() {
+            let below = if first.cell == target.cell {
+                if entry.below - first.rho > NEAR * target.per_cell {
+                    self.counters.aux += 1;
+                    let (rho, below) = (first.rho, first.rho.next_up());
+                    self.heap.push(Entry { rho, point: entry.point, below, whole: false });
+                    return;
+                }
+                self.counters.backfacing += 1;
+                entry.below
+            } else {
+                self.counters.regular += 1;
+                self.reach(&entry, first.cell)
+            };
+            self.counters.hits += 1;
+            self.clear(first.cell, below, found);
+            self.put_back(&entry, first.cell, below);
+            if !self.cleared(first.cell, found) {
+                self.unresolved[entry.point] = true;
+                return;
+            }
+        }
+    }
+
+    /// How far from the eye another point's cell may be changed: without bounds, unless that lowers points farther away
+    /// that were finished, and did so before.
+    fn reach(&mut self, entry: &Entry, cell: usize) -> f64 {
+        let lowers_finished = self.of_cell[self.first[cell]..self.first[cell + 1]]
+            .iter()
+            .any(|&i| !self.waiting[i] && self.whole(i) > *entry);
+        if !lowers_finished {
+            return f64::INFINITY;
+        }
+        if self.backward[cell] < BACKWARD {
+            self.backward[cell] += 1;
+            self.counters.backward += 1;
+            return f64::INFINITY;
+        }
+        entry.below
+    }
+
+    /// The entry that a point has if all of its line is to be followed.
+    fn whole(&self, point: usize) -> Entry {
+        let target = &self.targets[point];
+        Entry { rho: target.rho, point, below: target.below(), whole: true }
+    }
+
+    /// Lowers a cell, nearer to the eye than `below`, so far that none of its hits is left.
+    fn clear(&mut self, cell: usize, below: f64, found: &[Hit]) {
+        let mine = || found.iter().filter(|h| h.cell == cell);
+        let shift = mine().map(|h| shift_to_clear(h.limit, h.z)).fold(f64::INFINITY, f64::min);
+        let Some(worst) = mine().max_by(|a, b| (a.z - a.limit).total_cmp(&(b.z - b.limit))) else { return };
+        // Scaling means nothing below the datum.
+        let low = mine().any(|h| h.z <= CLEARANCE * self.field.relief() || h.limit <= 0.0);
+        let scale = mine().map(|h| scale_to_clear(h.limit, h.z)).fold(1.0, f64::min);
+        let (scale, lambda) = if low { (1.0, 0.0) } else { (scale, self.best_lambda(cell, worst, scale, shift)) };
+        let deepest = -self.field.relief();
+        let divided = self.pieces[cell].change(below, |now| {
+            let new = blended(now, scale, shift, lambda);
+            Affine { shift: new.shift.max(deepest), ..new }
+        });
+        self.counters.splits += usize::from(divided);
+    }
+
+    fn best_lambda(&self, cell: usize, worst: &Hit, scale: f64, shift: f64) -> f64 {
+        let now = self.pieces[cell].at(worst.rho);
+        let (higher_share, higher_mean) = self.cells.higher(cell, (worst.limit - now.shift) / now.scale);
+        let (ids, shares) = self.cells.neighbours(cell);
+        let neighbours: Vec<(f64, Affine)> =
+            ids.iter().zip(shares).map(|(&n, &w)| (w, self.pieces[n as usize].at(worst.rho))).collect();
+        let &TerrainSettings { eta, mu, mu_dev, .. } = self.settings;
+        let mean = self.cells.mean_height(cell);
+        Price { now, scale, shift, higher_share, higher_mean, mean, neighbours: &neighbours, eta, mu, mu_dev }
+            .best_lambda()
+    }
+
+    /// Points on the lowered ground that were followed before are followed again.
+    fn put_back(&mut self, entry: &Entry, cell: usize, below: f64) {
+        for k in self.first[cell]..self.first[cell + 1] {
+            let i = self.of_cell[k];
+            if i != entry.point && self.targets[i].rho < below {
+                self.enqueue(i);
+            }
+        }
+    }
+
+    /// Drops the hits of a cell that are hits no more; whether all of them are.
+    fn cleared(&self, cell: usize, found: &mut Vec<Hit>) -> bool {
+        let slack = 2.0 * self.slack;
+        found.retain_mut(|h| {
+            if h.cell == cell {
+                h.z = self.pieces[cell].at(h.rho).of(h.original);
+            }
+            h.cell != cell || h.z > h.limit + slack
+        });
+        found.iter().all(|h| h.cell != cell)
+    }
+}
