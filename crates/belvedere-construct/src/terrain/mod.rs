@@ -8,6 +8,7 @@ mod field;
 mod greedy;
 mod line_of_sight;
 mod points;
+pub mod qp;
 mod settings;
 
 pub use cells::{Cells, NO_CELL};

@@ -2,6 +2,7 @@
 
 mod bars;
 mod measure;
+mod qp;
 mod reveal;
 mod sight;
 mod synthetic;

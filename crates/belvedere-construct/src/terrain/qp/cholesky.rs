@@ -1,0 +1,100 @@
+//! Cholesky factor of a growing and shrinking set of rows.
+
+/// Lower factor of a symmetric positive definite matrix, packed by rows: row i holds i + 1 entries.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Cholesky {
+    packed: Vec<f64>,
+    size: usize,
+}
+
+/// Sum of products in eight lanes, always in the same order.
+#[inline]
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut lanes = [0.0f64; 8];
+    let (wide_a, rest_a) = a.as_chunks::<8>();
+    let (wide_b, rest_b) = b[..a.len()].as_chunks::<8>();
+    for (x, y) in wide_a.iter().zip(wide_b) {
+        for k in 0..8 {
+            lanes[k] += x[k] * y[k];
+        }
+    }
+    let tail: f64 = rest_a.iter().zip(rest_b).map(|(x, y)| x * y).sum();
+    let [a, b, c, d, e, f, g, h] = lanes;
+    ((a + e) + (b + f)) + ((c + g) + (d + h)) + tail
+}
+
+fn start(row: usize) -> usize {
+    row * (row + 1) / 2
+}
+
+impl Cholesky {
+    pub(super) fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Keeps the factor of the first `size` rows.
+    pub(super) fn truncate(&mut self, size: usize) {
+        if size < self.size {
+            self.size = size;
+            self.packed.truncate(start(size));
+        }
+    }
+
+    /// Appends a row: its products with the rows already there, then its own square. A pivot at or below `floor` times
+    /// that square (the row depends on the others) is set to it.
+    pub(super) fn push(&mut self, products: impl Iterator<Item = f64>, square: f64, floor: f64) {
+        let (n, first) = (self.size, self.packed.len());
+        self.packed.extend(products);
+        self.packed.push(square);
+        let (done, row) = self.packed.split_at_mut(first);
+        for j in 0..n {
+            let above = &done[start(j)..start(j + 1)];
+            row[j] = (row[j] - dot(&above[..j], &row[..j])) / above[j];
+        }
+        let pivot = square - dot(&row[..n], &row[..n]);
+        row[n] = pivot.max(floor * square).sqrt();
+        self.size += 1;
+    }
+
+    /// Solves `L L^T x = b` in place.
+    pub(super) fn solve(&self, b: &mut [f64]) {
+        for i in 0..self.size {
+            let row = &self.packed[start(i)..start(i + 1)];
+            b[i] = (b[i] - dot(&row[..i], &b[..i])) / row[i];
+        }
+        for i in (0..self.size).rev() {
+            let row = &self.packed[start(i)..start(i + 1)];
+            let x = b[i] / row[i];
+            b[i] = x;
+            for (b, l) in b[..i].iter_mut().zip(row) {
+                *b -= l * x;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn solves_and_regrows() {
+        let n = 21;
+        let a = |i: usize, j: usize| 1.0 / (1.0 + i.abs_diff(j) as f64) + f64::from(u8::from(i == j));
+        let mut factor = Cholesky::default();
+        for i in 0..n {
+            factor.push((0..i).map(|j| a(i, j)), a(i, i), 0.0);
+        }
+        factor.truncate(9);
+        for i in 9..n {
+            factor.push((0..i).map(|j| a(i, j)), a(i, i), 0.0);
+        }
+        let x: Vec<f64> = (0..n).map(|i| (i as f64 * 0.7).sin()).collect();
+        let mut b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| a(i, j) * x[j]).sum()).collect();
+        factor.solve(&mut b);
+        for (x, b) in x.iter().zip(&b) {
+            assert!((x - b).abs() < 1e-12, "{x} and {b}");
+        }
+        assert_eq!(factor.size(), n);
+    }
+}

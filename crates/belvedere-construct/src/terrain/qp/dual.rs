@@ -1,0 +1,235 @@
+//! The dual program: `min 1/2 m^T K m - c^T m` over `m >= 0`.
+
+use super::cholesky::{Cholesky, dot};
+
+/// A pivot below this share of its diagonal counts as dependent.
+const DEPENDENT: f64 = 1e-10;
+/// Added to the diagonal, relative to it: near-duplicate rows share their multiplier.
+const RIDGE: f64 = 1e-9;
+
+/// Rows of the dual with their multipliers. Rows are scaled to unit diagonal inside.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Dual {
+    packed: Vec<f64>,
+    scale: Vec<f64>,
+    soft: Vec<f64>,
+    excess: Vec<f64>,
+    m: Vec<f64>,
+    order: Vec<usize>,
+    active: Vec<bool>,
+    factor: Cholesky,
+}
+
+fn start(row: usize) -> usize {
+    row * (row + 1) / 2
+}
+
+impl Dual {
+    fn len(&self) -> usize {
+        self.m.len()
+    }
+
+    /// Adds a row: its products with the rows already there, its square, its diagonal addition (inverse weight of its
+    /// slack, 0 = hard), its excess at zero multipliers, and the multiplier to begin with.
+    pub(super) fn push(
+        &mut self,
+        products: impl Iterator<Item = f64>,
+        square: f64,
+        soft: f64,
+        excess: f64,
+        begin: f64,
+    ) {
+        let scale = 1.0 / square.max(f64::MIN_POSITIVE).sqrt();
+        let scales = &self.scale;
+        self.packed.extend(products.zip(scales).map(|(k, s)| k * s * scale));
+        self.packed.push(1.0);
+        self.scale.push(scale);
+        self.soft.push(soft * scale * scale);
+        self.excess.push(excess * scale);
+        self.m.push(begin / scale);
+        self.active.push(false);
+        if begin > 0.0 {
+            self.set_active(self.m.len() - 1);
+        }
+    }
+
+    fn set_active(&mut self, row: usize) {
+        self.active[row] = true;
+        self.order.push(row);
+    }
+
+    fn entry(&self, i: usize, j: usize) -> f64 {
+        self.packed[start(i.max(j)) + i.min(j)]
+    }
+
+    /// Multiplier of a row, per unit of the row as it was given.
+    pub(super) fn multiplier(&self, row: usize) -> f64 {
+        self.m[row] * self.scale[row]
+    }
+
+    /// Slack of a soft row, >= 0, in units of the row.
+    pub(super) fn slack(&self, row: usize) -> f64 {
+        self.m[row] * self.soft[row] / self.scale[row]
+    }
+
+    /// Block principal pivoting while it makes progress, which it mostly does; else the primal active-set method, which
+    /// never leaves the feasible multipliers and ends.
+    ///
+    /// Rows are met to within `tolerance`, in units of the rows.
+    pub(super) fn solve(&mut self, tolerance: f64) {
+        let begin: Vec<f64> = self.m.iter().map(|m| m.max(0.0)).collect();
+        if !self.pivot_blocks(tolerance) {
+            self.descend(begin, tolerance);
+        }
+    }
+
+    fn pivot_blocks(&mut self, tolerance: f64) -> bool {
+        let (mut fewest, mut patience) = (usize::MAX, 4);
+        let mut gradient = Vec::new();
+        while patience > 0 {
+            self.m = self.solution();
+            self.gradient(&mut gradient);
+            let wrong: Vec<usize> = (0..self.len())
+                .filter(|&i| match self.active[i] {
+                    true => self.m[i] < 0.0,
+                    false => gradient[i] < -tolerance * self.scale[i],
+                })
+                .collect();
+            if wrong.is_empty() {
+                return true;
+            }
+            if wrong.len() < fewest {
+                (fewest, patience) = (wrong.len(), 4);
+            } else {
+                patience -= 1;
+            }
+            self.exchange(&wrong);
+        }
+        false
+    }
+
+    /// From the feasible multipliers `m`: add rows that are missed, walk to the solution on the active rows, and drop on
+    /// the way what reaches zero. The objective never rises.
+    fn descend(&mut self, m: Vec<f64>, tolerance: f64) {
+        let now: Vec<usize> = (0..self.len()).filter(|&i| self.active[i] != (m[i] > 0.0)).collect();
+        self.exchange(&now);
+        self.m = m;
+        let mut gradient = Vec::new();
+        let mut block = 16usize;
+        for _ in 0..40 * (self.len() + 10) {
+            let target = self.solution();
+            let mut step = 1.0f64;
+            for &i in &self.order {
+                if target[i] < 0.0 {
+                    step = step.min(self.m[i] / (self.m[i] - target[i]));
+                }
+            }
+            for &i in &self.order {
+                self.m[i] += step * (target[i] - self.m[i]);
+            }
+            if step < 1.0 {
+                let gone: Vec<usize> = self
+                    .order
+                    .iter()
+                    .copied()
+                    .filter(|&i| target[i] < 0.0 && self.m[i] <= 1e-14 * target[i].abs())
+                    .collect();
+                for &i in &gone {
+                    self.m[i] = 0.0;
+                }
+                self.exchange(&gone);
+                if step == 0.0 {
+                    block = 1;
+                }
+                continue;
+            }
+            self.gradient(&mut gradient);
+            let mut wrong: Vec<usize> =
+                (0..self.len()).filter(|&i| !self.active[i] && gradient[i] < -tolerance * self.scale[i]).collect();
+            if wrong.is_empty() {
+                break;
+            }
+            wrong.sort_by(|&a, &b| gradient[a].total_cmp(&gradient[b]));
+            wrong.truncate(block);
+            wrong.sort_unstable();
+            self.exchange(&wrong);
+        }
+    }
+
+    fn exchange(&mut self, rows: &[usize]) {
+        for &i in rows {
+            self.active[i] = !self.active[i];
+        }
+        let first = self.order.iter().position(|&i| !self.active[i]).unwrap_or(self.order.len());
+        self.factor.truncate(first);
+        self.order.retain(|&i| self.active[i]);
+        self.order.extend(rows.iter().filter(|&&i| self.active[i]));
+    }
+
+    /// Multipliers that meet the active rows exactly.
+    fn solution(&mut self) -> Vec<f64> {
+        let mut factor = std::mem::take(&mut self.factor);
+        for k in factor.size()..self.order.len() {
+            let row = self.order[k];
+            let square = 1.0 + RIDGE + self.soft[row];
+            factor.push(self.order[..k].iter().map(|&j| self.entry(row, j)), square, DEPENDENT);
+        }
+        let mut x: Vec<f64> = self.order.iter().map(|&i| self.excess[i]).collect();
+        factor.solve(&mut x);
+        self.factor = factor;
+        let mut m = vec![0.0; self.len()];
+        for (&i, x) in self.order.iter().zip(&x) {
+            m[i] = *x;
+        }
+        m
+    }
+
+    /// `K m - c`.
+    fn gradient(&self, out: &mut Vec<f64>) {
+        out.clear();
+        out.extend(self.excess.iter().map(|c| -c));
+        for i in 0..self.len() {
+            let row = &self.packed[start(i)..start(i + 1)];
+            let m = self.m[i];
+            out[i] += dot(&row[..i], &self.m[..i]) + m * (1.0 + self.soft[i]);
+            if m != 0.0 {
+                for (o, k) in out[..i].iter_mut().zip(row) {
+                    *o += k * m;
+                }
+            }
+        }
+    }
+
+    /// `1/2 m^T K m`, slack included.
+    pub(super) fn energy(&self) -> f64 {
+        let mut g = Vec::new();
+        self.gradient(&mut g);
+        0.5 * self.m.iter().zip(g.iter().zip(&self.excess)).map(|(m, (g, c))| m * (g + c)).sum::<f64>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn multipliers_and_gradients_are_complementary() {
+        let n = 30;
+        let k = |i: usize, j: usize| (-(i.abs_diff(j) as f64) * 0.05).exp() * (1.0 + 0.1 * (i * j % 3) as f64).sqrt();
+        let k = |i: usize, j: usize| if i == j { 1.2 } else { k(i.min(j), i.max(j)) * 0.9 };
+        let c = |i: usize| ((i * 7919) % 13) as f64 - 6.0;
+        let mut dual = Dual::default();
+        for i in 0..n {
+            dual.push((0..i).map(|j| k(i, j)), k(i, i), 0.0, c(i), 0.0);
+        }
+        dual.solve(1e-9);
+        let mut active = 0;
+        for i in 0..n {
+            let m = dual.multiplier(i);
+            let g: f64 = (0..n).map(|j| k(i, j) * dual.multiplier(j)).sum::<f64>() - c(i);
+            active += usize::from(m > 0.0);
+            assert!(m >= 0.0 && g > -1e-6 && (m * g).abs() < 1e-6, "row {i}: m {m}, gradient {g}");
+        }
+        assert!(active > 2 && active < n, "{active}");
+    }
+}

@@ -1,0 +1,133 @@
+//! The rows in play with their multipliers.
+
+use super::dual::Dual;
+use super::metric::Metric;
+use super::problem::{Certificate, SolvedRow};
+use super::row::{Asks, Row};
+use belvedere_core::DVec2;
+
+/// A row remembered between frames.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Kept {
+    pub(super) place: Place,
+    pub(super) multiplier: f64,
+    /// Frames without a multiplier.
+    pub(super) idle: u32,
+}
+
+/// Where to find a row again.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Place {
+    Ceiling(u32),
+    Sight { id: u32, at: DVec2 },
+}
+
+/// A row without a multiplier is forgotten after so many frames.
+const IDLE: u32 = 3;
+
+#[derive(Debug, Default)]
+pub(super) struct Pool {
+    pub(super) rows: Vec<Row>,
+    dual: Dual,
+    idle: Vec<u32>,
+}
+
+impl Pool {
+    /// Adds a row that `target` exceeds by `excess`; `soft` = inverse price of its slack, 0 = none.
+    pub(super) fn push(&mut self, row: Row, metric: &Metric, excess: f64, soft: f64, begin: (f64, u32)) {
+        let products = self.rows.iter().map(|r| row.product(r, metric));
+        let square = row.product(&row, metric);
+        self.dual.push(products, square, soft, excess, begin.0);
+        self.rows.push(row);
+        self.idle.push(begin.1);
+    }
+
+    pub(super) fn solve(&mut self, tolerance: f64) {
+        self.dual.solve(tolerance);
+    }
+
+    /// `u = target - H^-1 A^T m`.
+    pub(super) fn displacement(&self, metric: &mut Metric, target: &[f64], u: &mut [f64]) {
+        u.fill(0.0);
+        for (i, row) in self.rows.iter().enumerate() {
+            let m = self.dual.multiplier(i);
+            if m > 0.0 {
+                for (node, w) in row.entries() {
+                    u[node as usize] -= w * m;
+                }
+            }
+        }
+        metric.solve(u);
+        for (u, t) in u.iter_mut().zip(target) {
+            *u += t;
+        }
+    }
+
+    pub(super) fn energy(&self) -> f64 {
+        self.dual.energy()
+    }
+
+    pub(super) fn slack(&self, row: usize) -> f64 {
+        self.dual.slack(row)
+    }
+
+    /// What to remember for the next frame.
+    pub(super) fn kept(&self, id: impl Fn(usize) -> u32) -> Vec<Kept> {
+        let mut out = Vec::new();
+        for (i, row) in self.rows.iter().enumerate() {
+            let multiplier = self.dual.multiplier(i);
+            let idle = if multiplier > 0.0 { 0 } else { self.idle[i] + 1 };
+            if idle < IDLE {
+                let place = match row.asks {
+                    Asks::Ceiling(node) => Place::Ceiling(node),
+                    Asks::Sight { candidate, at, .. } => Place::Sight { id: id(candidate), at },
+                };
+                out.push(Kept { place, multiplier, idle });
+            }
+        }
+        out
+    }
+
+    /// Rows with a multiplier.
+    pub(super) fn active(&self, id: impl Fn(usize) -> u32) -> Vec<SolvedRow> {
+        let held = (0..self.rows.len()).filter(|&i| self.dual.multiplier(i) > 0.0);
+        held.map(|i| {
+            let Row { nodes, weights, bound, asks, .. } = self.rows[i];
+            let (candidate, at, tau) = match asks {
+                Asks::Ceiling(_) => (None, DVec2::ZERO, 0.0),
+                Asks::Sight { candidate, at, tau } => (Some(id(candidate)), at, tau),
+            };
+            let (multiplier, slack) = (self.dual.multiplier(i), self.dual.slack(i));
+            SolvedRow { candidate, at, tau, nodes, weights, bound, multiplier, slack }
+        })
+        .collect()
+    }
+
+    /// Whether the multipliers prove that no displacement between `-depth` and `ceilings` meets the rows.
+    pub(super) fn certificate(
+        &self,
+        depth: f64,
+        ceiling: impl Fn(usize) -> f64,
+        id: impl Fn(usize) -> u32,
+    ) -> Option<Certificate> {
+        let mut sum = std::collections::BTreeMap::<u32, f64>::new();
+        let (mut bound, mut total, mut rows) = (0.0, 0.0, Vec::new());
+        for (i, row) in self.rows.iter().enumerate() {
+            let m = self.dual.multiplier(i);
+            if m > 0.0 {
+                for (node, w) in row.entries() {
+                    *sum.entry(node).or_default() += m * w;
+                }
+                bound += m * row.bound;
+                total += m;
+                if let Asks::Sight { candidate, .. } = row.asks {
+                    rows.push((id(candidate), m));
+                }
+            }
+        }
+        let least: f64 =
+            sum.iter().map(|(&node, &g)| if g > 0.0 { -g * depth } else { g * ceiling(node as usize) }).sum();
+        let gap = (least - bound) / total;
+        (gap > 0.0).then(|| Certificate { depth, gap, rows: rows.iter().map(|(i, m)| (*i, m / total)).collect() })
+    }
+}

@@ -1,0 +1,111 @@
+//! The candidates of one frame with their lines of sight, and the rows that follow from them.
+
+use super::problem::QpProblem;
+use super::row::{Asks, Row};
+use super::surface::Surface;
+use super::walk::{Chord, Clearance, Touch, fade};
+use belvedere_core::DVec2;
+
+/// How far along a line of sight a row of the frame before is looked for, cells.
+const FOLLOW: f64 = 2.5;
+
+/// A candidate with its line of sight.
+#[derive(Debug, Clone)]
+pub(super) struct Seen {
+    /// Index among the candidates.
+    pub(super) index: usize,
+    pub(super) grid: DVec2,
+    pub(super) chords: Vec<Chord>,
+    /// Displacement of the candidate for which the chords hold.
+    reference: f64,
+    nodes: [u32; 4],
+    weights: [f64; 4],
+}
+
+impl Seen {
+    /// Lines of sight of all candidates, which are displaced as the surface is unless lines are straight. A candidate
+    /// without a line has no chords.
+    pub(super) fn all(problem: &QpProblem, surface: &Surface) -> Vec<Self> {
+        let mut line = Vec::new();
+        let all = problem.candidates.iter().enumerate();
+        all.map(|(index, c)| {
+            let (nodes, weights) = surface.lattice.weights(c.grid);
+            let mut seen = Self { index, grid: c.grid, chords: Vec::new(), reference: 0.0, nodes, weights };
+            if problem.sight.straight().is_none() {
+                seen.reference = seen.displacement(&surface.u);
+            }
+            line.clear();
+            problem.sight.trace(c.grid, surface.ground(c.grid) + c.lift + seen.reference, &mut line);
+            seen.chords = chords(&line);
+            seen
+        })
+        .collect()
+    }
+
+    pub(super) fn displacement(&self, u: &[f64]) -> f64 {
+        (0..4).map(|k| self.weights[k] * u[self.nodes[k] as usize]).sum()
+    }
+
+    /// Plan distance to the eye, cells.
+    pub(super) fn distance(&self) -> f64 {
+        self.chords.last().map_or(0.0, |c| (c.ends[1] - self.grid).length())
+    }
+
+    /// The line of sight when the candidate is displaced by `d`.
+    pub(super) fn line(&self, d: f64) -> impl Iterator<Item = Chord> {
+        let shift = d - self.reference;
+        self.chords
+            .iter()
+            .map(move |c| Chord { z: [c.z[0] + (1.0 - c.tau[0]) * shift, c.z[1] + (1.0 - c.tau[1]) * shift], ..*c })
+    }
+
+    /// `f(x) + B_x u - (1 - tau) B_P u <= z(x) - margin`, z(x) of the line of the undisplaced candidate.
+    pub(super) fn row(&self, surface: &Surface, touch: &Touch, margin: f64) -> Row {
+        let (x_nodes, x_weights) = surface.lattice.weights(touch.at);
+        let rest = 1.0 - touch.tau;
+        let (mut nodes, mut weights) = ([0; 8], [0.0; 8]);
+        for k in 0..4 {
+            (nodes[k], weights[k]) = (x_nodes[k], x_weights[k]);
+            (nodes[k + 4], weights[k + 4]) = (self.nodes[k], -rest * self.weights[k]);
+        }
+        let bound = touch.z - rest * self.displacement(&surface.u) - touch.ground - margin * fade(touch.tau);
+        Row { nodes, weights, len: 8, bound, asks: Asks::Sight { candidate: self.index, at: touch.at, tau: touch.tau } }
+    }
+
+    /// The row of this candidate where the ground comes nearest to its line around `at`.
+    pub(super) fn follow(&self, surface: &Surface, at: DVec2, clearance: &Clearance) -> Option<Row> {
+        let mut best: Option<Touch> = None;
+        for chord in self.line(self.displacement(&surface.u)) {
+            let way = chord.ends[1] - chord.ends[0];
+            let square = way.length_squared();
+            let Some([from, to]) = chord.part(surface, self.grid, clearance.guard) else { continue };
+            let (t, reach) = ((at - chord.ends[0]).dot(way) / square, FOLLOW / square.sqrt());
+            let part = [(t - reach).max(from), (t + reach).min(to)];
+            if part[0] < part[1] {
+                chord.kinks(surface, part, clearance, &mut |touch| {
+                    if best.is_none_or(|b| touch.excess > b.excess) {
+                        best = Some(touch);
+                    }
+                });
+            }
+        }
+        best.map(|touch| self.row(surface, &touch, clearance.margin))
+    }
+}
+
+/// Chords of a polyline; its share of the way is measured in plan.
+fn chords(line: &[(DVec2, f64)]) -> Vec<Chord> {
+    let length = |p: &[(DVec2, f64)]| (p[1].0 - p[0].0).length();
+    let total: f64 = line.windows(2).map(length).sum();
+    if !(total > 0.0 && line.iter().all(|(g, z)| g.is_finite() && z.is_finite())) {
+        return Vec::new();
+    }
+    let mut way = 0.0;
+    line.windows(2)
+        .map(|p| {
+            let from = way / total;
+            way += length(p);
+            Chord { ends: [p[0].0, p[1].0], z: [p[0].1, p[1].1], tau: [from, way / total] }
+        })
+        .collect()
+}

@@ -1,0 +1,269 @@
+//! Where the ground comes too close to a line of sight.
+
+use super::surface::Surface;
+use belvedere_core::DVec2;
+
+/// A straight part of a line of sight, from the point that must be seen towards the eye.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Chord {
+    /// Ends in grid coordinates.
+    pub(super) ends: [DVec2; 2],
+    /// Heights of the line there.
+    pub(super) z: [f64; 2],
+    /// Share of the way to the eye there: 0 at the point, 1 at the eye.
+    pub(super) tau: [f64; 2],
+}
+
+/// Clearance asked of lines of sight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Clearance {
+    /// Asked far from the point, metres.
+    pub(super) margin: f64,
+    /// What may lack of it, metres far from the point.
+    pub(super) tolerance: f64,
+    /// Ground nearer than this to the point does not count, cells.
+    pub(super) guard: f64,
+}
+
+/// Share of the margin that counts at `tau`.
+pub(super) fn fade(tau: f64) -> f64 {
+    (5.0 * tau).clamp(0.0, 1.0)
+}
+
+/// A place where the ground comes too close.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Touch {
+    /// Grid position.
+    pub(super) at: DVec2,
+    /// Share of the way to the eye.
+    pub(super) tau: f64,
+    /// Ground without its displacement.
+    pub(super) ground: f64,
+    /// Height of the line.
+    pub(super) z: f64,
+    /// How far the asked clearance is missed, metres.
+    pub(super) excess: f64,
+}
+
+/// Longest part that is walked without asking the bounds again, cells.
+const LEAF: f64 = 8.0;
+/// Longest part whose crossings are visited without asking the finest bounds, cells.
+const FINE: f64 = 3.0;
+
+impl Chord {
+    fn at(&self, t: f64) -> DVec2 {
+        self.ends[0] + t * (self.ends[1] - self.ends[0])
+    }
+
+    fn mix(v: [f64; 2], t: f64) -> f64 {
+        v[0] + t * (v[1] - v[0])
+    }
+
+    /// Part of the chord over the grid of `surface` and at least `guard` away from `point`.
+    pub(super) fn part(&self, surface: &Surface, point: DVec2, guard: f64) -> Option<[f64; 2]> {
+        let (mut from, mut to) = (0.0f64, 1.0f64);
+        let d = self.ends[1] - self.ends[0];
+        let last = [(surface.cols - 1) as f64, (surface.rows - 1) as f64];
+        for (axis, last) in last.into_iter().enumerate() {
+            let (p, d) = (self.ends[0][axis], d[axis]);
+            if d == 0.0 {
+                if !(0.0..=last).contains(&p) {
+                    return None;
+                }
+                continue;
+            }
+            let (a, b) = ((0.0 - p) / d, (last - p) / d);
+            from = from.max(a.min(b));
+            to = to.min(a.max(b));
+        }
+        let to_point = self.ends[0] - point;
+        let (square, half) = (d.length_squared(), to_point.dot(d));
+        if square > 0.0 {
+            let root = half * half - square * (to_point.length_squared() - guard * guard);
+            if root > 0.0 {
+                from = from.max((root.sqrt() - half) / square);
+            }
+        }
+        (from < to).then_some([from, to])
+    }
+
+    /// Calls `touch` with the worst place of each short part where the asked clearance is missed by more than the tolerance.
+    pub(super) fn walk(&self, surface: &Surface, point: DVec2, clearance: &Clearance, touch: &mut impl FnMut(Touch)) {
+        let Some(part) = self.part(surface, point, clearance.guard) else { return };
+        let mut stack = [[0.0f64; 2]; 64];
+        stack[0] = part;
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let [a, b] = stack[depth];
+            let (ga, gb) = (self.at(a), self.at(b));
+            let lowest = Self::mix(self.z, a).min(Self::mix(self.z, b))
+                - clearance.margin * fade(Self::mix(self.tau, a).max(Self::mix(self.tau, b)));
+            if surface.bound(ga, gb) <= lowest {
+                continue;
+            }
+            if (gb - ga).abs().max_element() <= LEAF || depth + 2 > stack.len() {
+                let mut best = None;
+                self.by_cells(surface, [a, b], clearance, &mut best);
+                if let Some(worst) = best {
+                    touch(worst);
+                }
+                continue;
+            }
+            let middle = 0.5 * (a + b);
+            stack[depth] = [middle, b];
+            stack[depth + 1] = [a, middle];
+            depth += 2;
+        }
+    }
+
+    /// Cuts a part at the lines of the solver's grid and takes the worst place of all pieces.
+    fn by_cells(&self, surface: &Surface, [a, b]: [f64; 2], clearance: &Clearance, best: &mut Option<Touch>) {
+        let step = surface.lattice.step;
+        let (p, d) = (self.ends[0] / step, (self.ends[1] - self.ends[0]) / step);
+        let mut from = a;
+        while from < b {
+            let mut to = b;
+            for axis in 0..2 {
+                if d[axis] != 0.0 {
+                    // The next line strictly ahead; the nudge steps over the one that `from` lies on.
+                    let v = p[axis] + from * d[axis];
+                    let line = if d[axis] > 0.0 { (v + 1e-9).floor() + 1.0 } else { (v - 1e-9).ceil() - 1.0 };
+                    to = to.min((line - p[axis]) / d[axis]);
+                }
+            }
+            let to = if to > from { to } else { b };
+            let gap = Gap::new(self, surface, 0.5 * (from + to), clearance);
+            self.in_cell(surface, [from, to], &gap, best);
+            if (step.x.fract() != 0.0 || step.y.fract() != 0.0) && to < b {
+                gap.judge(self, to, self.at(to), surface.ground(self.at(to)), best);
+            }
+            from = to;
+        }
+    }
+
+    /// Within one cell of the solver's grid.
+    fn in_cell(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap, best: &mut Option<Touch>) {
+        let (ga, gb) = (self.at(a), self.at(b));
+        if surface.still_bound(ga, gb) + gap.most(self, [a, b]) <= 0.0 {
+            return;
+        }
+        if (gb - ga).abs().max_element() > FINE {
+            let middle = 0.5 * (a + b);
+            self.in_cell(surface, [a, middle], gap, best);
+            self.in_cell(surface, [middle, b], gap, best);
+            return;
+        }
+        self.crossings(surface, [a, b], &mut |t, at, ground| gap.judge(self, t, at, ground, best));
+    }
+
+    /// Calls `visit` for every crossing of a part with the lines of the drawn mesh.
+    pub(super) fn kinks(
+        &self,
+        surface: &Surface,
+        part: [f64; 2],
+        clearance: &Clearance,
+        visit: &mut impl FnMut(Touch),
+    ) {
+        self.crossings(surface, part, &mut |t, at, ground| {
+            let (z, tau) = (Self::mix(self.z, t), Self::mix(self.tau, t));
+            let excess = ground + surface.lattice.at(&surface.u, at) - z + clearance.margin * fade(tau);
+            visit(Touch { at, tau, ground, z, excess });
+        });
+    }
+
+    /// Calls `visit` with parameter, position and undisplaced ground of every kink of the drawn ground along a part.
+    fn crossings(&self, surface: &Surface, [a, b]: [f64; 2], visit: &mut impl FnMut(f64, DVec2, f64)) {
+        let (p, d) = (self.ends[0], self.ends[1] - self.ends[0]);
+        let (ga, gb) = (self.at(a), self.at(b));
+        let (cols, rows) = (surface.cols, surface.rows);
+        let heights = &surface.heights;
+        let lines = |from: f64, to: f64| {
+            let (lo, hi) = (from.min(to).ceil(), from.max(to).floor());
+            (0..(hi - lo + 1.0).max(0.0) as usize).map(move |k| lo + k as f64)
+        };
+        if d.x != 0.0 {
+            for x in lines(ga.x, gb.x) {
+                let t = (x - p.x) / d.x;
+                let y = (p.y + t * d.y).clamp(0.0, (rows - 1) as f64);
+                let (col, row) = ((x.max(0.0) as usize).min(cols - 1), (y as usize).min(rows.saturating_sub(2)));
+                let (f, i) = (y - row as f64, row * cols + col);
+                visit(t, DVec2::new(x, y), heights[i] + f * (heights[i + cols] - heights[i]));
+            }
+        }
+        if d.y != 0.0 {
+            for y in lines(ga.y, gb.y) {
+                let t = (y - p.y) / d.y;
+                let x = (p.x + t * d.x).clamp(0.0, (cols - 1) as f64);
+                let (col, row) = ((x as usize).min(cols.saturating_sub(2)), (y.max(0.0) as usize).min(rows - 1));
+                let (f, i) = (x - col as f64, row * cols + col);
+                visit(t, DVec2::new(x, y), heights[i] + f * (heights[i + 1] - heights[i]));
+            }
+        }
+        if d.x != d.y {
+            for k in lines(ga.x - ga.y, gb.x - gb.y) {
+                let t = (k - (p.x - p.y)) / (d.x - d.y);
+                let g = p + t * d;
+                let col = (g.x.max(k.max(0.0)) as usize).min(cols.saturating_sub(2));
+                let row = (col as f64 - k).clamp(0.0, (rows - 2) as f64) as usize;
+                let f = (g.x - col as f64).clamp(0.0, 1.0);
+                let i = row * cols + col;
+                visit(t, g, heights[i] + f * (heights[i + cols + 1] - heights[i]));
+            }
+        }
+    }
+}
+
+/// Displacement minus line of sight along a chord within one cell of the solver's grid, a quadratic of the parameter.
+struct Gap {
+    c: [f64; 3],
+    clearance: Clearance,
+}
+
+impl Gap {
+    /// For the cell at parameter `inside`.
+    fn new(chord: &Chord, surface: &Surface, inside: f64, clearance: &Clearance) -> Self {
+        let step = surface.lattice.step;
+        let (nodes, _) = surface.lattice.weights(chord.at(inside));
+        let [nw, ne, sw, se] = nodes.map(|n| surface.u[n as usize]);
+        let corner = DVec2::new(
+            (nodes[0] as usize % surface.lattice.cols) as f64,
+            (nodes[0] as usize / surface.lattice.cols) as f64,
+        );
+        let (p, d) = (chord.ends[0] / step - corner, (chord.ends[1] - chord.ends[0]) / step);
+        let [x, y, xy] = [ne - nw, sw - nw, se - sw - ne + nw];
+        let z = chord.z;
+        let c = [
+            nw + x * p.x + y * p.y + xy * p.x * p.y - z[0],
+            x * d.x + y * d.y + xy * (p.x * d.y + p.y * d.x) - (z[1] - z[0]),
+            xy * d.x * d.y,
+        ];
+        Self { c, clearance: *clearance }
+    }
+
+    fn at(&self, t: f64) -> f64 {
+        self.c[0] + t * (self.c[1] + t * self.c[2])
+    }
+
+    /// Largest value with the margin over a part.
+    fn most(&self, chord: &Chord, [a, b]: [f64; 2]) -> f64 {
+        let mut most = self.at(a).max(self.at(b));
+        let top = -0.5 * self.c[1] / self.c[2];
+        if self.c[2] < 0.0 && top > a && top < b {
+            most = most.max(self.at(top));
+        }
+        let tau = Chord::mix(chord.tau, a).max(Chord::mix(chord.tau, b));
+        most + self.clearance.margin * fade(tau)
+    }
+
+    /// Takes a place into account.
+    #[inline]
+    fn judge(&self, chord: &Chord, t: f64, at: DVec2, ground: f64, best: &mut Option<Touch>) {
+        let tau = Chord::mix(chord.tau, t);
+        let share = fade(tau);
+        let excess = ground + self.at(t) + self.clearance.margin * share;
+        if excess > self.clearance.tolerance * share && best.is_none_or(|b| excess > b.excess) {
+            *best = Some(Touch { at, tau, ground, z: Chord::mix(chord.z, t), excess });
+        }
+    }
+}

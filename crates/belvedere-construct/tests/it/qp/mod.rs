@@ -1,0 +1,5 @@
+//! The quadratic program of terrain disocclusion.
+
+mod cases;
+mod reference;
+mod small;
