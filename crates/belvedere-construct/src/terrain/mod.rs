@@ -10,6 +10,7 @@ mod line_of_sight;
 mod points;
 pub mod qp;
 mod settings;
+mod smooth;
 
 pub use cells::{Cells, NO_CELL};
 pub use field::{Field, FieldError};
@@ -20,3 +21,4 @@ pub use greedy::{
 pub use line_of_sight::{SightSample, guard_tau, sight_samples};
 pub use points::{PointKind, ReferencePoint, Unusable, UnusableReason, reference_points};
 pub use settings::{Detail, SolverMode, TerrainSettings};
+pub use smooth::{Dct, Green, Hierarchy, Real, SmoothError, Smoother, grid_weight, laplacian};

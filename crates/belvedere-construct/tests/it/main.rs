@@ -5,4 +5,5 @@ mod measure;
 mod qp;
 mod reveal;
 mod sight;
+mod smooth;
 mod synthetic;

@@ -38,7 +38,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     (
         "belvedere-construct",
         &["belvedere-core", "belvedere-scene"],
-        &["glam", "rayon", "serde", "thiserror", "tracing"],
+        &["glam", "rayon", "rustfft", "serde", "thiserror", "tracing"],
     ),
     ("belvedere-cpu", &["belvedere-core", "belvedere-scene"], &["glam", "rayon", "thiserror", "tracing"]),
     (

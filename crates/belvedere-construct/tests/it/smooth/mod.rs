@@ -1,0 +1,5 @@
+//! The smooth pass against dense matrices.
+
+mod hierarchy;
+mod support;
+mod transform;
