@@ -1,6 +1,6 @@
 //! Layers and their styles.
 
-use crate::Heightfield;
+use crate::{Heightfield, MeshLayer};
 use belvedere_core::{Aabb, DVec2, DVec3};
 
 /// sRGB colour with straight alpha, 8 bits per channel.
@@ -228,6 +228,8 @@ pub enum LayerKind {
     Terrain(TerrainLayer),
     /// Upright boxes.
     Boxes(BoxLayer),
+    /// Triangles.
+    Mesh(MeshLayer),
     /// Polylines on the ground.
     Line(LineLayer),
     /// Polygons on the ground.
@@ -253,6 +255,7 @@ impl Layer {
         match &self.kind {
             LayerKind::Terrain(t) => t.heightfield.bounds(),
             LayerKind::Boxes(b) => Aabb::of(b.boxes.iter().flat_map(BoxShape::corners)),
+            LayerKind::Mesh(m) => m.mesh.bounds(),
             LayerKind::Line(l) => Aabb::of(l.features.iter().flat_map(|f| f.points.iter().copied())),
             LayerKind::Area(_) => Aabb::EMPTY,
             LayerKind::Point(p) => Aabb::of(p.features.iter().map(|f| f.position)),

@@ -1,4 +1,4 @@
-//! What is looked at: terrain, lines, areas, points and boxes as plain data, never view-dependent;
+//! What is looked at: terrain, lines, areas, points, boxes and meshes as plain data, never view-dependent;
 //! and the contract between pictures and whoever needs them ([`Renderer`], [`RenderJob`], [`Frame`]).
 
 pub mod builtin;
@@ -8,6 +8,8 @@ pub mod ground;
 pub mod heightfield;
 pub mod layer;
 pub mod light;
+pub mod mesh;
+pub mod mesh_tree;
 pub mod progress;
 pub mod route;
 pub mod scene;
@@ -21,6 +23,8 @@ pub use layer::{
     Palette, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
 };
 pub use light::Light;
+pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer};
+pub use mesh_tree::MeshTree;
 pub use progress::{Cancelled, Progress};
 pub use route::{RouteCost, RouteError, least_cost_route, valley_route};
 pub use scene::{Crs, Scene, Unit};

@@ -6,7 +6,7 @@ use std::process::Command;
 /// Which workspace crates and which external crates each crate may depend on (dev-dependencies are free).
 const RULES: &[(&str, &[&str], &[&str])] = &[
     ("belvedere-core", &[], &["glam", "serde", "thiserror"]),
-    ("belvedere-scene", &["belvedere-core"], &["glam", "rayon", "serde", "thiserror"]),
+    ("belvedere-scene", &["belvedere-core"], &["glam", "obvhs", "rayon", "serde", "thiserror"]),
     (
         "belvedere-io",
         &["belvedere-core", "belvedere-scene"],

@@ -1,0 +1,283 @@
+//! Triangle meshes.
+
+use belvedere_core::{Aabb, DVec3};
+use glam::Vec3;
+
+use crate::Color;
+
+/// Colours of a mesh.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum MeshColors {
+    /// None of its own: the layer's.
+    #[default]
+    Layer,
+    /// One per vertex.
+    PerVertex(Vec<Color>),
+    /// One per triangle.
+    PerTriangle(Vec<Color>),
+}
+
+/// Triangles over shared vertices. Plain data: finite, and every index has its vertex.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mesh {
+    origin: DVec3,
+    positions: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+    normals: Option<Vec<Vec3>>,
+    colors: MeshColors,
+}
+
+/// Vertices and triangles that make no mesh.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// A coordinate that is no number.
+    #[error("vertex {vertex} lies at {position}, which is not finite; repair the mesh")]
+    NotFinite {
+        /// Number of the vertex.
+        vertex: usize,
+        /// Where it lies.
+        position: DVec3,
+    },
+    /// A triangle of a vertex that there is not.
+    #[error("triangle {triangle} names vertex {vertex} of {vertices}; repair the mesh")]
+    Index {
+        /// Number of the triangle.
+        triangle: usize,
+        /// The vertex it names.
+        vertex: u32,
+        /// Vertices there are.
+        vertices: usize,
+    },
+    /// Colours or normals of another number than what they belong to.
+    #[error("the mesh has {found} {what} for {expected}; give one for each or none")]
+    Count {
+        /// What.
+        what: &'static str,
+        /// How many.
+        found: usize,
+        /// How many are needed.
+        expected: usize,
+    },
+    /// More than 32-bit numbers can count.
+    #[error("the mesh has {count} {what}, at most {limit} are possible; split it", limit = Mesh::MAX)]
+    TooMany {
+        /// What.
+        what: &'static str,
+        /// How many.
+        count: usize,
+    },
+}
+
+impl Mesh {
+    /// Most vertices and most triangles.
+    pub const MAX: usize = 1 << 28;
+
+    /// A mesh of vertices (scene coordinates), triangles (counter-clockwise from outside where that is known) and colours.
+    ///
+    /// Positions are kept to 24 bits of the mesh's extent, relative to its middle. Triangles without area are left out.
+    ///
+    /// # Errors
+    /// [`MeshError`].
+    pub fn new(positions: &[DVec3], triangles: Vec<[u32; 3]>, colors: MeshColors) -> Result<Self, MeshError> {
+        for (what, count) in [("vertices", positions.len()), ("triangles", triangles.len())] {
+            if count > Self::MAX {
+                return Err(MeshError::TooMany { what, count });
+            }
+        }
+        if let Some(vertex) = positions.iter().position(|p| !p.as_vec3().is_finite()) {
+            return Err(MeshError::NotFinite { vertex, position: positions[vertex] });
+        }
+        let beyond = |t: &[u32; 3]| t.iter().copied().find(|&v| v as usize >= positions.len());
+        if let Some((triangle, vertex)) = triangles.iter().enumerate().find_map(|(i, t)| Some((i, beyond(t)?))) {
+            return Err(MeshError::Index { triangle, vertex, vertices: positions.len() });
+        }
+        let (found, expected) = match &colors {
+            MeshColors::Layer => (0, 0),
+            MeshColors::PerVertex(c) => (c.len(), positions.len()),
+            MeshColors::PerTriangle(c) => (c.len(), triangles.len()),
+        };
+        if found != expected {
+            return Err(MeshError::Count { what: "colours", found, expected });
+        }
+        let bounds = Aabb::of(positions.iter().copied());
+        let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.center().round() };
+        let positions = positions.iter().map(|&p| (p - origin).as_vec3()).collect();
+        let mut mesh = Self { origin, positions, triangles, normals: None, colors };
+        mesh.drop_degenerate();
+        Ok(mesh)
+    }
+
+    /// This mesh with a unit normal per vertex, for smooth shading; zero = none known there.
+    ///
+    /// # Errors
+    /// [`MeshError::Count`].
+    pub fn with_normals(mut self, normals: &[DVec3]) -> Result<Self, MeshError> {
+        if normals.len() != self.positions.len() {
+            let (found, expected) = (normals.len(), self.positions.len());
+            return Err(MeshError::Count { what: "normals", found, expected });
+        }
+        self.normals = Some(normals.iter().map(|n| n.normalize_or_zero().as_vec3()).collect());
+        Ok(self)
+    }
+
+    fn drop_degenerate(&mut self) {
+        let at = |v: u32| self.positions[v as usize].as_dvec3();
+        let has_area = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(at);
+            (b - a).cross(c - a) != DVec3::ZERO
+        };
+        let kept: Vec<bool> = self.triangles.iter().map(has_area).collect();
+        let mut keep = kept.iter();
+        self.triangles.retain(|_| keep.next() == Some(&true));
+        if let MeshColors::PerTriangle(colors) = &mut self.colors {
+            let mut keep = kept.iter();
+            colors.retain(|_| keep.next() == Some(&true));
+        }
+    }
+
+    /// Number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Vertex numbers of every triangle.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Middle of the mesh that its vertices are kept relative to, scene coordinates.
+    pub fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    /// Vertices relative to [`Mesh::origin`].
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    /// Position of a vertex, scene coordinates.
+    pub fn vertex(&self, index: u32) -> DVec3 {
+        self.origin + self.positions[index as usize].as_dvec3()
+    }
+
+    /// Corners of a triangle, scene coordinates.
+    pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|v| self.vertex(v))
+    }
+
+    /// Unit normal of a triangle, to the side from which its corners run counter-clockwise.
+    pub fn face_normal(&self, triangle: usize) -> DVec3 {
+        let [a, b, c] = self.triangles[triangle].map(|v| self.positions[v as usize].as_dvec3());
+        (b - a).cross(c - a).normalize_or(DVec3::Z)
+    }
+
+    /// Unit normal at a place of a triangle given by the weights of its corners, on the side of [`Mesh::face_normal`].
+    pub fn normal_at(&self, triangle: usize, weights: [f64; 3]) -> DVec3 {
+        let face = self.face_normal(triangle);
+        let Some(normals) = &self.normals else { return face };
+        let corners = self.triangles[triangle].map(|v| normals[v as usize].as_dvec3());
+        let smooth = corners.iter().zip(weights).fold(DVec3::ZERO, |sum, (&n, w)| {
+            // A file may turn normals and corners against each other.
+            sum + w * if n.dot(face) < 0.0 { -n } else { n }
+        });
+        smooth.normalize_or(face)
+    }
+
+    /// Colour at a place of a triangle given by the weights of its corners; `None` = the layer's.
+    pub fn color_at(&self, triangle: usize, weights: [f64; 3]) -> Option<Color> {
+        match &self.colors {
+            MeshColors::Layer => None,
+            MeshColors::PerTriangle(colors) => colors.get(triangle).copied(),
+            MeshColors::PerVertex(colors) => {
+                let c = self.triangles[triangle].map(|v| colors[v as usize]);
+                let mix = |part: fn(&Color) -> u8| {
+                    let sum: f64 = c.iter().zip(weights).map(|(c, w)| w * f64::from(part(c))).sum();
+                    sum.round().clamp(0.0, 255.0) as u8
+                };
+                Some(Color { r: mix(|c| c.r), g: mix(|c| c.g), b: mix(|c| c.b), a: mix(|c| c.a) })
+            }
+        }
+    }
+
+    /// Weights of a triangle's corners at a point of its plane; they sum to 1.
+    pub fn weights_at(&self, triangle: usize, p: DVec3) -> [f64; 3] {
+        let [a, b, c] = self.corners(triangle);
+        let n = (b - a).cross(c - a);
+        let per = 1.0 / n.length_squared();
+        let v = (p - a).cross(c - a).dot(n) * per;
+        let w = (b - a).cross(p - a).dot(n) * per;
+        [1.0 - v - w, v, w]
+    }
+
+    /// Smallest box around all vertices.
+    pub fn bounds(&self) -> Aabb {
+        let used = self.triangles.iter().flatten().map(|&v| self.vertex(v));
+        Aabb::of(used)
+    }
+}
+
+/// A layer of triangles.
+#[derive(Debug, Clone)]
+pub struct MeshLayer {
+    /// The triangles.
+    pub mesh: Mesh,
+    /// Colour where the mesh has none of its own.
+    pub color: Color,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corners() -> Vec<DVec3> {
+        [[5e5, 4.7e6, 100.0], [5e5 + 10.0, 4.7e6, 100.0], [5e5, 4.7e6 + 10.0, 100.0], [5e5, 4.7e6, 110.5]]
+            .map(DVec3::from_array)
+            .to_vec()
+    }
+
+    #[test]
+    fn a_mesh_keeps_its_places_far_from_the_origin() {
+        let mesh = Mesh::new(&corners(), vec![[0, 1, 2], [0, 1, 3]], MeshColors::Layer).unwrap();
+        for (i, p) in corners().iter().enumerate() {
+            assert!(mesh.vertex(i as u32).distance(*p) < 1e-6);
+        }
+        assert_eq!(mesh.face_normal(0), DVec3::Z);
+        assert_eq!(mesh.face_normal(1), -DVec3::Y);
+        let p = mesh.corners(0)[0] * 0.2 + mesh.corners(0)[1] * 0.5 + mesh.corners(0)[2] * 0.3;
+        let weights = mesh.weights_at(0, p);
+        assert!(weights.iter().zip([0.2, 0.5, 0.3]).all(|(a, b)| (a - b).abs() < 1e-7), "{weights:?}");
+    }
+
+    #[test]
+    fn faulty_meshes_are_refused_and_flat_triangles_left_out() {
+        let index = Mesh::new(&corners(), vec![[0, 1, 4]], MeshColors::Layer).unwrap_err();
+        assert_eq!(index.to_string(), "triangle 0 names vertex 4 of 4; repair the mesh");
+        let mut bad = corners();
+        bad[2].y = f64::NAN;
+        assert!(matches!(
+            Mesh::new(&bad, vec![], MeshColors::Layer),
+            Err(MeshError::NotFinite { vertex: 2, .. })
+        ));
+        let huge = [DVec3::splat(1e300)];
+        assert!(matches!(Mesh::new(&huge, vec![], MeshColors::Layer), Err(MeshError::NotFinite { .. })));
+        let one = MeshColors::PerTriangle(vec![Color::rgb(1, 2, 3)]);
+        assert!(matches!(
+            Mesh::new(&corners(), vec![[0, 1, 2], [0, 1, 3]], one),
+            Err(MeshError::Count { found: 1, expected: 2, .. })
+        ));
+        let colors = MeshColors::PerTriangle(vec![Color::rgb(1, 2, 3), Color::rgb(4, 5, 6)]);
+        let flat = Mesh::new(&corners(), vec![[0, 1, 1], [0, 1, 3]], colors).unwrap();
+        assert_eq!(flat.triangles(), [[0, 1, 3]]);
+        assert_eq!(flat.color_at(0, [1.0, 0.0, 0.0]), Some(Color::rgb(4, 5, 6)));
+    }
+
+    #[test]
+    fn normals_follow_the_corners_and_colours_blend() {
+        let colors = MeshColors::PerVertex([0, 100, 200, 0].map(|g| Color::rgb(g, g, g)).to_vec());
+        let mesh = Mesh::new(&corners(), vec![[0, 1, 2]], colors).unwrap();
+        let turned = mesh.with_normals(&[-DVec3::Z, DVec3::Z, DVec3::ZERO, DVec3::X]).unwrap();
+        assert!(turned.normal_at(0, [0.5, 0.25, 0.25]).distance(DVec3::Z) < 1e-12);
+        assert_eq!(turned.color_at(0, [0.5, 0.25, 0.25]), Some(Color::rgb(75, 75, 75)));
+    }
+}
