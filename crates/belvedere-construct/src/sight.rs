@@ -1,12 +1,13 @@
-//! Lines of sight along straight and curved rays, past terrain and boxes.
+//! Lines of sight along straight and curved rays, past terrain, boxes and meshes.
 
 use belvedere_core::{Camera, DVec2, DVec3, View};
-use belvedere_scene::{BoxShape, Ground, LayerKind, Scene};
+use belvedere_scene::{BoxShape, Ground, LayerKind, MeshTree, Scene};
 
 /// Everything of a scene that can stand in the way.
 pub struct Obstacles<'a> {
     grounds: Vec<Ground<'a>>,
     boxes: Vec<Block>,
+    meshes: Vec<MeshTree<'a>>,
 }
 
 /// How lines of sight are walked.
@@ -71,13 +72,14 @@ impl Block {
 }
 
 impl<'a> Obstacles<'a> {
-    /// Collects terrain and boxes of `scene`.
+    /// Collects terrain, boxes and meshes of `scene`.
     pub fn new(scene: &'a Scene) -> Self {
-        let mut out = Self { grounds: Vec::new(), boxes: Vec::new() };
+        let mut out = Self { grounds: Vec::new(), boxes: Vec::new(), meshes: Vec::new() };
         for layer in &scene.layers {
             match &layer.kind {
                 LayerKind::Terrain(t) => out.grounds.push(Ground::new(&t.heightfield)),
                 LayerKind::Boxes(b) => out.boxes.extend(b.boxes.iter().map(Block::new)),
+                LayerKind::Mesh(m) => out.meshes.push(MeshTree::new(&m.mesh)),
                 LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) => {}
             }
         }
@@ -95,7 +97,8 @@ impl<'a> Obstacles<'a> {
         heights.map(|h| p.z - h).min_by(f64::total_cmp)
     }
 
-    /// [`Ground::min_gap`] over all obstacles; a segment through a box has a negative gap.
+    /// [`Ground::min_gap`] over all obstacles; a segment through a box has a negative gap, and so has one through a mesh: but just,
+    /// for a surface has no depth.
     pub fn min_gap(&self, a: DVec3, b: DVec3, cap: f64, floor: f64) -> f64 {
         let mut best = cap;
         for ground in &self.grounds {
@@ -117,6 +120,9 @@ impl<'a> Obstacles<'a> {
                     return best;
                 }
             }
+        }
+        if best > -f64::MIN_POSITIVE && self.meshes.iter().any(|m| m.first_crossing(a, b).is_some()) {
+            best = -f64::MIN_POSITIVE;
         }
         best
     }

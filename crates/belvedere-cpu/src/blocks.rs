@@ -28,7 +28,8 @@ pub(crate) struct SoupVertex {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SoupTriangle {
     pub(crate) v: [SoupVertex; 3],
-    /// `2 * (SIDE * r + c) + triangle` of drawn cell (c, r) in a terrain block, `12 * box + triangle` in a block of boxes.
+    /// `2 * (SIDE * r + c) + triangle` of drawn cell (c, r) in a terrain block, `12 * box + triangle` in a block of boxes,
+    /// the triangle in a block of a mesh; counted from the block's first.
     pub(crate) parent: u32,
 }
 
@@ -44,7 +45,7 @@ pub(crate) enum Geometry {
 #[derive(Debug)]
 pub(crate) struct Block {
     pub(crate) layer: u32,
-    /// First column and row (terrain) or first box.
+    /// First column and row (terrain), first box or first triangle (mesh).
     pub(crate) origin: [usize; 2],
     /// Drawn cells of a terrain block.
     pub(crate) cells: [usize; 2],
@@ -103,6 +104,16 @@ pub(crate) struct Blocks {
     pub(crate) triangles_in: u64,
 }
 
+impl Block {
+    /// Explicit triangles of the boxes or triangles from number `first` on; `None` if there are none.
+    pub(crate) fn soup(layer: u32, first: usize, soup: Vec<SoupTriangle>, counts: Counts) -> Option<Self> {
+        let rows = rows_of(&soup)?;
+        let geometry = Geometry::Soup(soup);
+        let (origin, spans) = ([first, 0], Vec::new());
+        Some(Self { layer, origin, cells: [0; 2], step: 1, geometry, soup_base: 0, rows, spans, counts })
+    }
+}
+
 impl Blocks {
     /// Displaces, projects, subdivides and clips every surface of the scene.
     pub(crate) fn build(scene: &Scene, passes: &[Pass<'_>], lens: &Lens, tolerance_px: f64) -> Self {
@@ -113,12 +124,14 @@ impl Blocks {
                 match &layer.kind {
                     LayerKind::Terrain(t) => out.list.extend(job.terrain(&t.heightfield)),
                     LayerKind::Boxes(b) => out.list.extend(job.boxes(b)),
+                    LayerKind::Mesh(m) => out.list.extend(job.mesh(&m.mesh)),
                     _ => {}
                 }
             }
             out.triangles_in += match &layer.kind {
                 LayerKind::Terrain(t) => 2 * ((t.heightfield.cols() - 1) * (t.heightfield.rows() - 1)) as u64,
                 LayerKind::Boxes(b) => 12 * b.boxes.len() as u64,
+                LayerKind::Mesh(m) => m.mesh.triangles().len() as u64,
                 _ => 0,
             };
         }
@@ -227,11 +240,11 @@ fn draw_grid([cols, rows]: [usize; 2], nodes: &[ScreenVertex], spans: &[[i32; 2]
     }
 }
 
-struct Job<'a> {
-    layer: u32,
-    pass: &'a Pass<'a>,
-    lens: &'a Lens,
-    tolerance_px: f64,
+pub(crate) struct Job<'a> {
+    pub(crate) layer: u32,
+    pub(crate) pass: &'a Pass<'a>,
+    pub(crate) lens: &'a Lens,
+    pub(crate) tolerance_px: f64,
 }
 
 /// What is known of a terrain block before its nodes are displaced.
@@ -423,19 +436,7 @@ impl Job<'_> {
                     }
                 }
                 let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };
-                let rows = rows_of(&refiner.out)?;
-                let geometry = Geometry::Soup(refiner.out);
-                Some(Block {
-                    layer: self.layer,
-                    origin: [i * BOXES, 0],
-                    cells: [0; 2],
-                    step: 1,
-                    geometry,
-                    soup_base: 0,
-                    rows,
-                    spans: Vec::new(),
-                    counts,
-                })
+                Block::soup(self.layer, i * BOXES, refiner.out, counts)
             })
             .collect()
     }

@@ -9,6 +9,7 @@ mod displace;
 mod exact;
 mod lens;
 mod marks;
+mod mesh_blocks;
 mod raster;
 mod refine;
 mod resolve;
@@ -191,6 +192,8 @@ fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
             // Nearness, pixel and the shading pyramid; twice for subdivision.
             belvedere_scene::LayerKind::Terrain(t) => (t.heightfield.cols() * t.heightfield.rows()) as u64 * 64,
             belvedere_scene::LayerKind::Boxes(b) => b.boxes.len() as u64 * 12 * 64,
+            // A triangle on the image and, for the tracer, its share of a tree.
+            belvedere_scene::LayerKind::Mesh(m) => m.mesh.triangles().len() as u64 * 160,
             _ => 0,
         })
         .sum();

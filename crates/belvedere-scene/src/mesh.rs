@@ -255,10 +255,7 @@ mod tests {
         assert_eq!(index.to_string(), "triangle 0 names vertex 4 of 4; repair the mesh");
         let mut bad = corners();
         bad[2].y = f64::NAN;
-        assert!(matches!(
-            Mesh::new(&bad, vec![], MeshColors::Layer),
-            Err(MeshError::NotFinite { vertex: 2, .. })
-        ));
+        assert!(matches!(Mesh::new(&bad, vec![], MeshColors::Layer), Err(MeshError::NotFinite { vertex: 2, .. })));
         let huge = [DVec3::splat(1e300)];
         assert!(matches!(Mesh::new(&huge, vec![], MeshColors::Layer), Err(MeshError::NotFinite { .. })));
         let one = MeshColors::PerTriangle(vec![Color::rgb(1, 2, 3)]);

@@ -218,7 +218,8 @@ mod tests {
                     for (t, seen) in seen.iter().enumerate() {
                         let corners = mesh.corners(t);
                         let lo = corners.iter().fold(DVec3::INFINITY, |m, c| m.min(*c)) - reach + lift[0] * DVec3::Z;
-                        let hi = corners.iter().fold(DVec3::NEG_INFINITY, |m, c| m.max(*c)) + reach + lift[1] * DVec3::Z;
+                        let hi =
+                            corners.iter().fold(DVec3::NEG_INFINITY, |m, c| m.max(*c)) + reach + lift[1] * DVec3::Z;
                         let inside = p.cmpge(lo).all() && p.cmple(hi).all();
                         assert!(*seen || !inside, "triangle {t} at {p}");
                     }

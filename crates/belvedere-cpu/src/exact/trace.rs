@@ -5,7 +5,7 @@ use super::curve::{Span, Split};
 use super::root::root;
 use crate::lens::Lens;
 use belvedere_core::{Aabb, Camera, DVec2, DVec3, View};
-use belvedere_scene::{Ground, Heightfield, LayerKind, NodeState, Scene};
+use belvedere_scene::{Ground, Heightfield, LayerKind, MeshTree, NodeState, Scene};
 use std::ops::ControlFlow;
 
 /// Largest distance of a ray from the chord that tells where to look for its hits, pixels.
@@ -35,6 +35,8 @@ pub(crate) enum Part {
     Cell([usize; 2], bool),
     /// Number of a box and the outward normal of its face.
     Face(usize, DVec3),
+    /// Number of a triangle of a mesh and whether it is seen from the side where its corners run counter-clockwise.
+    Triangle(usize, bool),
 }
 
 /// A scene made ready for rays of one view.
@@ -44,15 +46,16 @@ pub(crate) enum Part {
 /// ([`Heightfield::surface_in_cell`]), or of the distance from a box, is followed from cell to cell and its change bracketed to
 /// about 1e-12 of the depth. The maximum mipmap is that of Tevs et al. 2008; curved rays through it are ours.
 pub struct Tracer<'a> {
-    split: Split<'a>,
+    pub(super) split: Split<'a>,
     lens: Lens,
     grounds: Vec<(usize, Ground<'a>)>,
     boxes: Boxes,
+    pub(super) meshes: Vec<(usize, MeshTree<'a>)>,
     range: [f64; 2],
 }
 
 impl<'a> Tracer<'a> {
-    /// Prepares terrain and boxes of `scene`: one pass over the nodes.
+    /// Prepares terrain, boxes and meshes of `scene`: one pass over the nodes and the triangles.
     pub fn new(scene: &'a Scene, view: &'a View) -> Self {
         let split = Split::new(view);
         let lift = |min: DVec2, max: DVec2| {
@@ -62,7 +65,7 @@ impl<'a> Tracer<'a> {
             if inside { [lo, hi] } else { [lo.min(0.0), hi.max(0.0)] }
         };
         let mut grounds = Vec::new();
-        let mut solids = Vec::new();
+        let (mut solids, mut meshes) = (Vec::new(), Vec::new());
         for (i, layer) in scene.layers.iter().enumerate() {
             match &layer.kind {
                 LayerKind::Terrain(t) => {
@@ -75,12 +78,18 @@ impl<'a> Tracer<'a> {
                         .enumerate()
                         .map(|(k, shape)| Solid::new(i, k, shape, |b: &Aabb| lift(b.min.truncate(), b.max.truncate()))),
                 ),
+                LayerKind::Mesh(m) => {
+                    let bounds = m.mesh.bounds();
+                    let lift =
+                        if bounds.is_empty() { [0.0; 2] } else { lift(bounds.min.truncate(), bounds.max.truncate()) };
+                    meshes.push((i, MeshTree::lifted(&m.mesh, lift)));
+                }
                 _ => {}
             }
         }
         let lens = Lens::new(view.pinhole());
         let range = [view.pinhole().near, deepest(scene, view)];
-        Self { split, lens, grounds, boxes: Boxes::new(solids), range }
+        Self { split, lens, grounds, boxes: Boxes::new(solids), meshes, range }
     }
 
     /// What the ray of `pixel` meets first between the near and far depth of the camera; `None` for the sky.
@@ -95,9 +104,20 @@ impl<'a> Tracer<'a> {
         let seen = self.split.view.ray(pixel).at(depth).ok()?;
         let part = match part {
             Part::Face(index, _) => Part::Face(index, self.face(layer, index, seen.point)),
+            Part::Triangle(index, _) => Part::Triangle(index, self.is_front(layer, index, &at, depth)),
             cell => cell,
         };
         Some(Seen { layer, depth, point: seen.point, segment: seen.segment, part })
+    }
+
+    /// Whether a ray meets the side of a triangle from which its corners run counter-clockwise.
+    fn is_front(&self, layer: usize, triangle: usize, at: &impl Fn(f64) -> Option<DVec3>, depth: f64) -> bool {
+        let Some((_, tree)) = self.meshes.iter().find(|(i, _)| *i == layer) else { return true };
+        let step = 1e-6 * depth;
+        match (at(depth - step), at(depth)) {
+            (Some(before), Some(here)) => tree.mesh().face_normal(triangle).dot(here - before) <= 0.0,
+            _ => true,
+        }
     }
 
     fn face(&self, layer: usize, index: usize, p: DVec3) -> DVec3 {
@@ -145,10 +165,11 @@ fn deepest(scene: &Scene, view: &View) -> f64 {
     (largest + step + 1e-6 * largest).min(far).max(near * (1.0 + 1e-9))
 }
 
-type Found = (f64, usize, Part);
+/// Depth, layer and part of a hit.
+pub(super) type Found = (f64, usize, Part);
 
-struct Walk<'t, 'a> {
-    tracer: &'t Tracer<'a>,
+pub(super) struct Walk<'t, 'a> {
+    pub(super) tracer: &'t Tracer<'a>,
     at: &'t dyn Fn(f64) -> Option<DVec3>,
 }
 
@@ -187,7 +208,7 @@ impl Walk<'_, '_> {
                 false
             });
         }
-        clear
+        clear && !self.near_mesh(a, b, reach)
     }
 
     /// First hit within a span that is all but straight.
@@ -214,11 +235,24 @@ impl Walk<'_, '_> {
             }
             true
         });
+        self.meet_meshes(span, chord, reach, &mut take);
         best
     }
 
+    /// How far the distance from a plane may be from linear between two depths.
+    pub(super) fn sway(&self, span: &Span, reach: f64, w0: f64, w1: f64) -> f64 {
+        let share = (w1 - w0) / (span.depth[1] - span.depth[0]);
+        // The bow of part of a curve goes with the square of its length.
+        let bend = 4.0 * reach * share * share;
+        let Some(ground) = self.tracer.split.ground else { return bend };
+        match ((self.at)(w0), (self.at)(w1)) {
+            (Some(a), Some(b)) => bend + ground.edge_bound(a, b),
+            _ => bend,
+        }
+    }
+
     /// True point at a depth, and the point before the ground is displaced.
-    fn true_point(&self, depth: f64) -> Option<DVec3> {
+    pub(super) fn true_point(&self, depth: f64) -> Option<DVec3> {
         let p = (self.at)(depth)?;
         Some(p - self.tracer.split.lift(p) * DVec3::Z)
     }
@@ -339,7 +373,7 @@ impl Follow<'_, '_, '_> {
     /// A part whose ends lie on one side of the surface may touch it between them if it bends, or the ground does.
     fn graze(&self, start: (f64, f64), end: (f64, f64), gap: &dyn Fn(f64) -> f64, halvings: u32) -> Option<f64> {
         let least = start.1.abs().min(end.1.abs());
-        let sway = self.sway(start.0, end.0);
+        let sway = self.walk.sway(self.span, self.reach, start.0, end.0);
         if sway == 0.0 || least > sway || halvings > 12 {
             return None;
         }
@@ -352,17 +386,5 @@ impl Follow<'_, '_, '_> {
             return Some(root(start, here, gap));
         }
         self.graze(start, here, gap, halvings + 1).or_else(|| self.graze(here, end, gap, halvings + 1))
-    }
-
-    /// How far the height over a plane may be from linear between two depths.
-    fn sway(&self, w0: f64, w1: f64) -> f64 {
-        let share = (w1 - w0) / (self.span.depth[1] - self.span.depth[0]);
-        // The bow of part of a curve goes with the square of its length.
-        let bend = 4.0 * self.reach * share * share;
-        let Some(ground) = self.walk.tracer.split.ground else { return bend };
-        match ((self.walk.at)(w0), (self.walk.at)(w1)) {
-            (Some(a), Some(b)) => bend + ground.edge_bound(a, b),
-            _ => bend,
-        }
     }
 }

@@ -3,6 +3,7 @@
 pub(crate) mod area;
 pub(crate) mod color;
 mod drape;
+mod mesh;
 mod palette;
 mod pyramid;
 mod relief;
@@ -36,6 +37,7 @@ pub(crate) struct Shader<'a> {
 enum LayerShade<'a> {
     Terrain(Box<TerrainShade<'a>>),
     Boxes(&'a BoxLayer, ReliefLight),
+    Mesh(mesh::MeshShade<'a>),
     Other,
 }
 
@@ -67,6 +69,7 @@ impl<'a> Shader<'a> {
             .map(|l| match &l.kind {
                 LayerKind::Terrain(t) => LayerShade::Terrain(Box::new(TerrainShade::new(t, job))),
                 LayerKind::Boxes(b) => LayerShade::Boxes(b, ReliefLight::new(belvedere_scene::Relief::Sun, job.light)),
+                LayerKind::Mesh(m) => LayerShade::Mesh(mesh::MeshShade::new(m, job.light)),
                 _ => LayerShade::Other,
             })
             .collect();
@@ -108,6 +111,10 @@ impl<'a> Shader<'a> {
             }
             LayerShade::Boxes(b, light) => {
                 let (color, world) = shade_box(b, light, &found, &hit, self.lens.footprint(f64::from(depth)));
+                Shaded { color: self.sky.through_air(color, depth), id: layer + 1, world }
+            }
+            LayerShade::Mesh(m) => {
+                let (color, world) = m.shade(&found, hit.weights);
                 Shaded { color: self.sky.through_air(color, depth), id: layer + 1, world }
             }
             LayerShade::Other => Shaded { color: Rgb::ZERO, id: layer + 1, world: DVec3::NAN },

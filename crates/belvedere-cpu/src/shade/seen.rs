@@ -22,6 +22,7 @@ impl Shader<'_> {
                 Some(shape) => (box_color(shape, light, normal, seen.point, footprint), None),
                 None => (super::Rgb::ZERO, None),
             },
+            (LayerShade::Mesh(m), Part::Triangle(index, front)) => (m.color_at(index, front, seen.point), None),
             _ => (super::Rgb::ZERO, None),
         };
         let color = self.sky.through_air(color, seen.depth as f32);

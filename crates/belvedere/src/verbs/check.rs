@@ -75,6 +75,7 @@ pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
             LayerKind::Area(l) => ("area", l.features.len()),
             LayerKind::Point(l) => ("point", l.features.len()),
             LayerKind::Boxes(l) => ("boxes", l.boxes.len()),
+            LayerKind::Mesh(l) => ("mesh", l.mesh.triangles().len()),
         };
         CheckedLayer { id: layer.id.clone(), kind, count, must_see: layer.must_see }
     });
