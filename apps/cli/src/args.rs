@@ -1,6 +1,7 @@
 //! Arguments.
 
 use belvedere::scene_file::PaletteDoc;
+use belvedere::verbs::render::RendererChoice;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -156,6 +157,18 @@ pub(crate) struct MeasureArgs {
     /// Output; standard output if left out
     #[arg(short, long, value_name = "OUT.json")]
     pub(crate) out: Option<PathBuf>,
+    /// Renderer of the depth buffers
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) renderer: RendererKind,
+}
+
+impl From<RendererKind> for RendererChoice {
+    fn from(kind: RendererKind) -> Self {
+        match kind {
+            RendererKind::Auto | RendererKind::Cpu => Self::Cpu,
+            RendererKind::Exact => Self::Exact,
+        }
+    }
 }
 
 /// A picture.

@@ -1,11 +1,11 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AuxKind, DemoArgs, InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RendererKind, RevealArgs,
-    SceneArgs, SchemaArgs, ShowArgs, Verb,
+    AuxKind, DemoArgs, InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs,
+    SchemaArgs, ShowArgs, Verb,
 };
 use crate::report::{Context, done, print};
-use belvedere::verbs::render::{self, AuxBuffer, RenderRequest, RendererChoice};
+use belvedere::verbs::render::{self, AuxBuffer, RenderRequest};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
 use belvedere::verbs::{check, demo, info, measure, output, pick, points};
 use belvedere::{Needs, Session};
@@ -71,10 +71,7 @@ fn answer(verb: &str, session: &Session, out: Option<&PathBuf>, text: &str, cont
 
 fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     let mut request = RenderRequest { straight: args.straight, compare: args.compare, ..RenderRequest::default() };
-    request.renderer = match args.renderer {
-        RendererKind::Auto | RendererKind::Cpu => RendererChoice::Cpu,
-        RendererKind::Exact => RendererChoice::Exact,
-    };
+    request.renderer = args.renderer.into();
     request.options.threads = context.common.threads;
     request.options.samples = args.samples;
     request.options.max_bytes = context.common.max_mem.unwrap_or(request.options.max_bytes);
@@ -150,7 +147,8 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
 fn measure_scene(args: &MeasureArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene], context)?;
     let session = context.open(&args.scene, Needs::Everything, None)?;
-    let report = measure::measure(&session, &measure::MeasureOptions::default(), &context.progress)?;
+    let report =
+        measure::measure(&session, &measure::MeasureOptions::default(), args.renderer.into(), &context.progress)?;
     answer("measure", &session, args.out.as_ref(), &output::json(&report)?, context)
 }
 

@@ -10,6 +10,7 @@ mod exact;
 mod lens;
 mod marks;
 mod mesh_blocks;
+mod polish;
 mod raster;
 mod refine;
 mod resolve;
@@ -22,6 +23,7 @@ use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
 use blocks::Blocks;
 use lens::{Lens, Pass};
 use marks::Marks;
+use polish::Polish;
 use raster::{Band, sample_offsets};
 use rayon::prelude::*;
 use resolve::{Rows, resolve};
@@ -93,7 +95,8 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     job.progress.tick("project", 1.0)?;
     let shader = Shader::new(job, &lens, &blocks);
     let mut buffers = Buffers::new(job);
-    draw_surfaces(job, &lens, &blocks, &shader, &mut buffers)?;
+    let polish = job.options.aux.exact.then(|| Polish::new(job.scene, &passes, &lens));
+    draw_surfaces(job, &lens, &blocks, (&shader, polish.as_ref()), &mut buffers)?;
     let marks = Marks::new(job, &passes, &lens, tolerance_px, &buffers.depth);
     job.progress.tick("lines", 0.0)?;
     let color = finish(&marks, &lens, &mut buffers);
@@ -133,7 +136,7 @@ fn draw_surfaces(
     job: &RenderJob<'_>,
     lens: &Lens,
     blocks: &Blocks,
-    shader: &Shader<'_>,
+    (shader, polish): (&Shader<'_>, Option<&Polish<'_>>),
     buffers: &mut Buffers,
 ) -> Result<(), RenderError> {
     let chunk = BAND * lens.width as usize;
@@ -152,7 +155,7 @@ fn draw_surfaces(
             let y0 = (i * BAND) as i32;
             let mut band = Band::new(y0, (y0 + BAND as i32).min(lens.height), lens.width, offsets.clone());
             blocks.draw(&mut band);
-            resolve(&band, shader, lens, &mut Rows { color, depth, id, world: world.as_deref_mut() });
+            resolve(&band, shader, lens, &mut Rows { color, depth, id, world: world.as_deref_mut(), polish });
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             Ok(job.progress.tick("draw", done as f64 / bands as f64)?)
         },

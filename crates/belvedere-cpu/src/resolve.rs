@@ -1,6 +1,7 @@
 //! From samples to pixels.
 
 use crate::lens::{Lens, SUB};
+use crate::polish::Polish;
 use crate::raster::{Band, SKY};
 use crate::shade::color::{Packed, Rgb};
 use crate::shade::{Shaded, Shader};
@@ -11,6 +12,8 @@ pub(crate) struct Rows<'a> {
     pub(crate) depth: &'a mut [f32],
     pub(crate) id: &'a mut [u32],
     pub(crate) world: Option<&'a mut [[f64; 3]]>,
+    /// Makes depth and place exact, if asked for.
+    pub(crate) polish: Option<&'a Polish<'a>>,
 }
 
 /// Two samples farther apart than this share of their depth are coloured separately.
@@ -22,10 +25,15 @@ pub(crate) fn resolve(band: &Band, shader: &Shader<'_>, lens: &Lens, rows: &mut 
     for y in band.y0..band.y1 {
         for x in 0..band.width {
             let out = ((y - band.y0) * band.width + x) as usize;
-            let centre = sample(band, shader, 0, x, y);
+            let mut centre = sample(band, shader, 0, x, y);
             let i = band.index(0, x, y);
             let q = band.q[i];
             rows.depth[out] = if band.prim[i] == SKY { f32::INFINITY } else { lens.depth_of(q) };
+            if let Some(polish) = rows.polish
+                && let Some((place, depth)) = shader.exact_place(polish, band.prim[i], centre.world, x, y)
+            {
+                (centre.world, rows.depth[out]) = (place, depth);
+            }
             rows.id[out] = centre.id;
             if let Some(world) = &mut rows.world {
                 world[out] = centre.world.to_array();

@@ -7,6 +7,7 @@ mod error;
 pub mod esri_ascii;
 pub mod geotiff;
 pub mod hgt;
+pub mod mesh;
 pub mod png;
 pub mod raster;
 pub mod terrain;
@@ -15,6 +16,7 @@ pub mod vector;
 pub use drape::{DrapeRequest, load_drape};
 pub use error::{IoError, Loaded};
 pub use geotiff::GeoTiff;
+pub use mesh::{MeshFile, load_mesh};
 pub use raster::{Affine, Alpha, CrsKind, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, SourceCrs};
 pub use terrain::{CrsChoice, LoadedTerrain, ResampleError, TerrainRequest, load_terrain};
 pub use vector::{

@@ -8,6 +8,9 @@ use belvedere_core::View;
 pub struct Aux {
     /// True (undisplaced) world position per pixel.
     pub world: bool,
+    /// Depth, and the world position if wanted, of the very centre of each pixel by the true map, to 1e-4 of the depth where the surface is
+    /// smooth; else as exact as [`RenderOptions::tolerance_px`] makes them, which at grazing ground is less.
+    pub exact: bool,
 }
 
 /// How to draw.

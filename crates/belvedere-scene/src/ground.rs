@@ -1,7 +1,7 @@
 //! Lines of sight over terrain: the largest heights of ever larger blocks let a straight line skip what it clears.
 
 use crate::{Heightfield, NodeState};
-use belvedere_core::{DVec2, DVec3};
+use belvedere_core::{Aabb, DVec2, DVec3};
 
 /// A heightfield with the largest height of every block of 2^k x 2^k cells (the "maximum mipmap" of Tevs et al. 2008).
 pub struct Ground<'a> {
@@ -113,6 +113,31 @@ impl<'a> Ground<'a> {
             clear = false;
             false
         });
+        clear
+    }
+
+    /// Whether a box lies beside the surface of [`Ground::lifted`], above all of it or below all of it. Never wrongly true.
+    pub fn is_off(&self, bounds: &Aabb) -> bool {
+        let hf = self.heightfield;
+        let (g, h) = (hf.grid_from_scene(bounds.min.truncate()), hf.grid_from_scene(bounds.max.truncate()));
+        let (lo, hi) = (g.min(h), g.max(h));
+        let last = DVec2::new((hf.cols() - 1) as f64, (hf.rows() - 1) as f64);
+        if hi.cmplt(DVec2::ZERO).any() || lo.cmpgt(last).any() {
+            return true;
+        }
+        let (lo, hi) = (lo.max(DVec2::ZERO), hi.min(last));
+        let extent = (hi - lo).max_element();
+        let level =
+            (0..self.levels.len()).find(|&k| (1usize << k) as f64 * 2.0 >= extent).unwrap_or(self.levels.len() - 1);
+        let of = &self.levels[level];
+        let index = |x: f64, n: usize| ((x as usize) >> level).min(n - 1);
+        let mut clear = true;
+        for row in index(lo.y, of.rows)..=index(hi.y, of.rows) {
+            for col in index(lo.x, of.cols)..=index(hi.x, of.cols) {
+                let [low, high] = of.range((col, row), false);
+                clear &= bounds.min.z > f64::from(high) || bounds.max.z < f64::from(low);
+            }
+        }
         clear
     }
 

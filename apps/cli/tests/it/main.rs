@@ -1,6 +1,8 @@
 //! The command line as a user meets it: the built program, its exit codes, its one line about failures.
 
 mod bad_scenes;
+mod exact;
+mod meshes;
 mod numbers;
 mod odd_files;
 mod pick;

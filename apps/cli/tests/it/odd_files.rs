@@ -9,7 +9,7 @@ const SOON: Duration = Duration::from_secs(2);
 #[test]
 fn odd_files_give_a_description_or_one_line() {
     let Some(folder) = belvedere_testkit::data("odd") else { return };
-    let known = ["tif", "hgt", "gpx", "shp", "geojson"];
+    let known = ["tif", "hgt", "gpx", "shp", "geojson", "obj", "ply", "stl", "STL", "gltf", "glb"];
     let mut seen = 0;
     for entry in std::fs::read_dir(folder).expect("folder") {
         let path = entry.expect("entry").path();

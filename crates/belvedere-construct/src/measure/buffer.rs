@@ -4,7 +4,7 @@ use super::Judged;
 use crate::ConstructError;
 use crate::samples::{Sample, SampledFeature};
 use belvedere_core::{Camera, CurvedRays, DVec2, DVec3, Pinhole, Stage, View};
-use belvedere_scene::{Frame, Heightfield, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
+use belvedere_scene::{Aux, Frame, Heightfield, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
 
 pub(super) struct Job<'a> {
     pub(super) scene: &'a Scene,
@@ -69,7 +69,8 @@ impl Job<'_> {
         let original = view.pinhole().image[0];
         let enlarged = self.enlarged(view, judged)?;
         let view = &enlarged;
-        let options = RenderOptions { samples: 1, ..RenderOptions::default() };
+        let aux = Aux { exact: true, ..Aux::default() };
+        let options = RenderOptions { samples: 1, aux, ..RenderOptions::default() };
         let job = RenderJob { scene: self.scene, view, light: self.light, options: &options, progress: self.progress };
         let frame = self.renderer.render(&job)?;
         let expected = frame.width * frame.height;

@@ -108,7 +108,7 @@ pub fn reference_points(
                     out.put(field.grid_from_scene(f.position.truncate()), 0.0, PointKind::Landmark);
                 }
             }
-            LayerKind::Terrain(_) | LayerKind::Boxes(_) => {}
+            LayerKind::Terrain(_) | LayerKind::Boxes(_) | LayerKind::Mesh(_) => {}
         }
     }
     (out.usable, out.unusable)

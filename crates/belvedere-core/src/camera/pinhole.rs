@@ -208,6 +208,13 @@ impl Pinhole {
         key(self) == key(other)
     }
 
+    /// The straight ray of `pixel`: its point at depth 0, scene coordinates, and its change per unit of depth.
+    pub fn line(&self, pixel: DVec2) -> (DVec3, DVec3) {
+        let lateral = (pixel - self.center_px()) / self.scale_px();
+        let across = lateral.x * self.right + lateral.y * self.down;
+        if self.is_orthographic() { (self.eye + across, self.forward) } else { (self.eye, self.forward + across) }
+    }
+
     /// The point of `pixel`'s straight ray at `depth`, scene coordinates; not finite if the input is not.
     pub fn unproject(&self, pixel: DVec2, depth: f64) -> DVec3 {
         let lateral = (pixel - self.center_px()) / self.scale_px();

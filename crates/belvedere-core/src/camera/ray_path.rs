@@ -64,8 +64,7 @@ impl<'a> RayPath<'a> {
     /// [`Miss::OutsideDomain`] if the pixel lies so far outside the image that its ray does not pass all turns.
     pub fn pieces(&self) -> Result<Vec<RayPiece>, Miss> {
         let pinhole = self.view.pinhole();
-        let from = pinhole.unproject(self.pixel, 0.0);
-        let per_depth = pinhole.unproject(self.pixel, 1.0) - from;
+        let (from, per_depth) = pinhole.line(self.pixel);
         if !(from.is_finite() && per_depth.is_finite()) {
             return Err(Miss::OutsideDomain);
         }

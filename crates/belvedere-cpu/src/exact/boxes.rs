@@ -129,6 +129,11 @@ impl Boxes {
         at
     }
 
+    /// Around all boxes, wherever the ground has moved them to.
+    pub(crate) fn bounds(&self) -> Aabb {
+        self.nodes.first().map_or(Aabb::EMPTY, |(bounds, _)| *bounds)
+    }
+
     /// Visits the boxes that come within `reach` of the segment, in no order, until `visit` says false.
     pub(crate) fn near(&self, a: DVec3, b: DVec3, reach: f64, visit: &mut dyn FnMut(&Solid, [f64; 2]) -> bool) {
         let mut stack = if self.nodes.is_empty() { Vec::new() } else { vec![0] };

@@ -28,7 +28,7 @@ impl Walk<'_, '_> {
     /// Offers `take` the first hit of every mesh within a span that is all but straight.
     pub(super) fn meet_meshes(&self, span: &Span, (a, b): (DVec3, DVec3), reach: f64, take: &mut dyn FnMut(Found)) {
         for (layer, tree) in &self.tracer.meshes {
-            let straight = span.straight && tree.lift() == [0.0; 2];
+            let straight = span.is_straight() && tree.lift() == [0.0; 2];
             let mut best: Option<(f64, usize)> = None;
             if straight {
                 best = tree.first_crossing(a, b).map(|(t, triangle)| (span.depth_at(t), triangle));

@@ -3,10 +3,12 @@
 //! It shares with the rasteriser the colours ([`crate::shade`]) and the lines and points drawn over the surfaces
 //! ([`crate::marks`]), and nothing that decides what is seen where: the reference that other renderers are judged by.
 
+mod beam;
 mod boxes;
 mod curve;
 mod meshes;
 mod root;
+mod row;
 mod trace;
 
 pub(crate) use trace::Part;
@@ -19,9 +21,11 @@ use crate::raster::sample_offsets;
 use crate::shade::Shader;
 use crate::shade::color::{Packed, Rgb};
 use crate::{BAND, Buffers, finish};
+use beam::RowRays;
 use belvedere_core::DVec2;
 use belvedere_scene::{Frame, FrameStats, LayerKind, RenderError, RenderJob, Renderer};
 use rayon::prelude::*;
+use std::cell::OnceCell;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
@@ -95,6 +99,9 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     Ok(Frame { width, height, color, depth: buffers.depth, id: buffers.id, world: buffers.world, stats })
 }
 
+/// Colour, depth, id and place.
+type Pixel = (Packed, f32, u32, [f64; 3]);
+
 struct Picture<'a> {
     job: &'a RenderJob<'a>,
     lens: &'a Lens,
@@ -109,9 +116,8 @@ impl Picture<'_> {
         let mut seen = vec![None; width * height];
         let done = AtomicUsize::new(0);
         seen.par_chunks_mut(ROWS * width).enumerate().try_for_each(|(i, rows)| {
-            for (k, out) in rows.iter_mut().enumerate() {
-                let (x, y) = (k % width, i * ROWS + k / width);
-                *out = self.tracer.first_hit(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+            for (k, row) in rows.chunks_mut(width).enumerate() {
+                RowRays::new(self.tracer, (i * ROWS + k) as f64 + 0.5).first_hits(row);
             }
             let done = (done.fetch_add(1, Ordering::Relaxed) + 1) * ROWS;
             self.job.progress.tick("trace", (done as f64 / height as f64).min(1.0))
@@ -124,11 +130,11 @@ impl Picture<'_> {
         let offsets = sample_offsets(self.job.options.samples);
         let bands = (self.lens.height as usize).div_ceil(BAND);
         let done = AtomicUsize::new(0);
-        let shaded: Vec<(Packed, f32, u32, [f64; 3])> = (0..bands)
+        let shaded: Vec<Pixel> = (0..bands)
             .into_par_iter()
             .map(|band| {
-                let last = ((band + 1) * BAND * width).min(seen.len());
-                let row = (band * BAND * width..last).map(|i| self.pixel(seen, i, &offsets)).collect::<Vec<_>>();
+                let rows = band * BAND..((band + 1) * BAND).min(seen.len() / width);
+                let row = rows.flat_map(|y| self.row(seen, y, &offsets)).collect::<Vec<_>>();
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 self.job.progress.tick("draw", done as f64 / bands as f64)?;
                 Ok(row)
@@ -144,17 +150,33 @@ impl Picture<'_> {
         Ok(())
     }
 
-    fn pixel(&self, seen: &[Option<Seen>], i: usize, offsets: &[[i32; 2]]) -> (Packed, f32, u32, [f64; 3]) {
+    fn row(&self, seen: &[Option<Seen>], y: usize, offsets: &[[i32; 2]]) -> Vec<Pixel> {
+        let width = self.lens.width as usize;
+        // Samples of a row of pixels lie in as many rows of their own; only edges need them.
+        let place = |oy: i32| y as f64 + f64::from(oy) / f64::from(SUB);
+        let rows: Vec<OnceCell<RowRays<'_, '_>>> = offsets.iter().map(|_| OnceCell::new()).collect();
+        let trace =
+            |s: usize, x: f64| rows[s].get_or_init(|| RowRays::new(self.tracer, place(offsets[s][1]))).first_hit(x);
+        (y * width..(y + 1) * width).map(|i| self.pixel(seen, i, offsets, &trace)).collect()
+    }
+
+    /// * `trace`: first hit of the ray of a sample number at an `x` in pixels.
+    fn pixel(
+        &self,
+        seen: &[Option<Seen>],
+        i: usize,
+        offsets: &[[i32; 2]],
+        trace: &dyn Fn(usize, f64) -> Option<Seen>,
+    ) -> Pixel {
         let width = self.lens.width as usize;
         let corner = DVec2::new((i % width) as f64, (i / width) as f64);
         let centre = self.shader.shade_seen(self.job.view, seen[i].as_ref(), corner + 0.5);
         let mut color = centre.color;
         if offsets.len() > 1 && self.is_edge(seen, i) {
-            let sum: Rgb = offsets[1..]
-                .iter()
-                .map(|&[ox, oy]| {
-                    let at = corner + DVec2::new(f64::from(ox), f64::from(oy)) / f64::from(SUB);
-                    self.shader.shade_seen(self.job.view, self.tracer.first_hit(at).as_ref(), at).color
+            let sum: Rgb = (1..offsets.len())
+                .map(|s| {
+                    let at = corner + DVec2::from_array(offsets[s].map(f64::from)) / f64::from(SUB);
+                    self.shader.shade_seen(self.job.view, trace(s, at.x).as_ref(), at).color
                 })
                 .fold(Rgb::ZERO, |a, b| a + b);
             color = sum / (offsets.len() - 1) as f32;

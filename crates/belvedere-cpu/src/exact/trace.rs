@@ -1,7 +1,7 @@
 //! First hits of curved rays.
 
 use super::boxes::{Boxes, Solid};
-use super::curve::{Span, Split};
+use super::curve::{Curve, Span, Split};
 use super::root::root;
 use crate::lens::Lens;
 use belvedere_core::{Aabb, Camera, DVec2, DVec3, View};
@@ -51,7 +51,9 @@ pub struct Tracer<'a> {
     grounds: Vec<(usize, Ground<'a>)>,
     boxes: Boxes,
     pub(super) meshes: Vec<(usize, MeshTree<'a>)>,
-    range: [f64; 2],
+    /// Around all boxes and meshes, wherever the ground has moved them to.
+    solid: Aabb,
+    pub(super) range: [f64; 2],
 }
 
 impl<'a> Tracer<'a> {
@@ -89,25 +91,47 @@ impl<'a> Tracer<'a> {
         }
         let lens = Lens::new(view.pinhole());
         let range = [view.pinhole().near, deepest(scene, view)];
-        Self { split, lens, grounds, boxes: Boxes::new(solids), meshes, range }
+        let boxes = Boxes::new(solids);
+        let raised = |tree: &MeshTree<'_>| {
+            let (b, lift) = (tree.mesh().bounds(), tree.lift());
+            Aabb { min: b.min + lift[0] * DVec3::Z, max: b.max + lift[1] * DVec3::Z }
+        };
+        let solid = meshes.iter().fold(boxes.bounds(), |b, (_, tree)| b.union(raised(tree)));
+        Self { split, lens, grounds, boxes, meshes, solid, range }
     }
 
     /// What the ray of `pixel` meets first between the near and far depth of the camera; `None` for the sky.
     ///
     /// Of surfaces seen at the same depth the layer listed first counts.
     pub fn first_hit(&self, pixel: DVec2) -> Option<Seen> {
-        let ray = self.split.ray(pixel);
-        let at = |w: f64| ray.at(w).ok().map(|p| p.point);
-        let walk = Walk { tracer: self, at: &at };
-        let spans = self.split.spans(&ray, self.range);
-        let (depth, layer, part) = spans.into_iter().find_map(|span| walk.span(span.filled(&at), 0))?;
-        let seen = self.split.view.ray(pixel).at(depth).ok()?;
+        let row = self.split.row(pixel.y, self.range);
+        self.hit_on(&self.split.curve(pixel, row.as_ref()), self.range[0])
+    }
+
+    /// First hit of a curve that is known to meet nothing before depth `start`.
+    pub(super) fn hit_on(&self, curve: &Curve<'_, '_>, start: f64) -> Option<Seen> {
+        let walk = Walk { tracer: self, curve, start };
+        let spans = curve.spans([start, self.range[1]]);
+        let (depth, layer, part) = spans.into_iter().find_map(|span| walk.span(span, 0))?;
+        let point = walk.true_point(depth)?;
         let part = match part {
-            Part::Face(index, _) => Part::Face(index, self.face(layer, index, seen.point)),
-            Part::Triangle(index, _) => Part::Triangle(index, self.is_front(layer, index, &at, depth)),
+            Part::Face(index, _) => Part::Face(index, self.face(layer, index, point)),
+            Part::Triangle(index, _) => Part::Triangle(index, self.is_front(layer, index, &|w| curve.at(w), depth)),
             cell => cell,
         };
-        Some(Seen { layer, depth, point: seen.point, segment: seen.segment, part })
+        Some(Seen { layer, depth, point, segment: curve.segment(depth), part })
+    }
+
+    /// Whether nothing of the scene lies in a box.
+    pub(super) fn is_empty(&self, bounds: &Aabb) -> bool {
+        let apart = bounds.min.cmpgt(self.solid.max).any() || bounds.max.cmplt(self.solid.min).any();
+        apart && self.grounds.iter().all(|(_, g)| g.is_off(bounds))
+    }
+
+    /// Finest spacing of the ground, scene units; infinite without ground.
+    pub(super) fn cell(&self) -> f64 {
+        let spacing = self.grounds.iter().map(|(_, g)| g.heightfield().spacing().min_element());
+        spacing.fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a ray meets the side of a triangle from which its corners run counter-clockwise.
@@ -170,34 +194,35 @@ pub(super) type Found = (f64, usize, Part);
 
 pub(super) struct Walk<'t, 'a> {
     pub(super) tracer: &'t Tracer<'a>,
-    at: &'t dyn Fn(f64) -> Option<DVec3>,
+    curve: &'t Curve<'t, 'a>,
+    /// Depth up to which nothing is met.
+    start: f64,
 }
 
 impl Walk<'_, '_> {
     /// First hit within a span.
     fn span(&self, span: Span, halvings: u32) -> Option<Found> {
-        let at = |w: f64| (self.at)(w);
-        match span.chord() {
-            Some((a, b, reach)) => {
-                // Rounding of the points themselves.
-                let reach = reach + if span.straight { 0.0 } else { 1e-12 * a.abs().max(b.abs()).max_element() };
-                if self.is_clear(a, b, reach) {
+        if span.depth[1] <= self.start {
+            return None;
+        }
+        match span.chord().filter(|_| span.reach.is_finite()) {
+            Some((a, b)) => {
+                // What begins before the start need not be tried as a whole.
+                if span.depth[0] >= self.start && self.is_clear(a, b, span.reach) {
                     return None;
                 }
                 let fine = CHORD_PX * self.tracer.lens.footprint(span.depth[0]);
-                if reach <= fine || halvings >= MAX_HALVINGS {
-                    return self.search(&span, (a, b), reach);
+                if span.reach <= fine || halvings >= MAX_HALVINGS {
+                    return self.search(&span, (a, b), span.reach);
                 }
             }
             None => {
-                let some = span.points.iter().any(Option::is_some);
-                if halvings >= if some { MAX_HALVINGS } else { MAX_HALVINGS_OF_NOTHING } || span.straight {
+                if halvings >= if span.has_point() { MAX_HALVINGS } else { MAX_HALVINGS_OF_NOTHING } {
                     return None;
                 }
             }
         }
-        let [first, second] = span.halves(&at);
-        self.span(first, halvings + 1).or_else(|| self.span(second, halvings + 1))
+        self.curve.halves(&span).into_iter().find_map(|half| self.span(half, halvings + 1))
     }
 
     fn is_clear(&self, a: DVec3, b: DVec3, reach: f64) -> bool {
@@ -245,7 +270,7 @@ impl Walk<'_, '_> {
         // The bow of part of a curve goes with the square of its length.
         let bend = 4.0 * reach * share * share;
         let Some(ground) = self.tracer.split.ground else { return bend };
-        match ((self.at)(w0), (self.at)(w1)) {
+        match (self.curve.at(w0), self.curve.at(w1)) {
             (Some(a), Some(b)) => bend + ground.edge_bound(a, b),
             _ => bend,
         }
@@ -253,7 +278,7 @@ impl Walk<'_, '_> {
 
     /// True point at a depth, and the point before the ground is displaced.
     pub(super) fn true_point(&self, depth: f64) -> Option<DVec3> {
-        let p = (self.at)(depth)?;
+        let p = self.curve.at(depth)?;
         Some(p - self.tracer.split.lift(p) * DVec3::Z)
     }
 
@@ -301,6 +326,12 @@ struct Plane {
 }
 
 impl Plane {
+    /// Change of height per unit of way, along the grid's lines and summed.
+    fn steepness(&self, hf: &Heightfield) -> f64 {
+        let s = hf.spacing();
+        (self.per_col / s.x).abs() + (self.per_row / s.y).abs()
+    }
+
     /// Height of a place over the plane.
     fn below(&self, hf: &Heightfield, p: DVec3) -> f64 {
         let f = hf.grid_from_scene(p.truncate()) - self.corner;
@@ -351,6 +382,20 @@ impl Follow<'_, '_, '_> {
 
     fn triangle(&mut self, plane: &Plane, t0: f64, t1: f64) -> Option<f64> {
         let (walk, span, hf) = (self.walk, self.span, self.hf);
+        // The chord tells where the curve within reach of it is clearly above or below.
+        if walk.tracer.split.ground.is_none() {
+            let over = |t: f64| plane.below(hf, self.chord.0.lerp(self.chord.1, t));
+            let (a, b) = (over(t0), over(t1));
+            let near = 1e-9 * self.chord.0.z.abs().max(1.0) + 1.001 * self.reach * (1.0 + plane.steepness(hf));
+            if a.abs() > near
+                && b.abs() > near
+                && (a > 0.0) == (b > 0.0)
+                && self.last.is_none_or(|(t, above)| t != t0 || above == (a > 0.0))
+            {
+                self.last = Some((t1, b > 0.0));
+                return None;
+            }
+        }
         let depth = |t: f64| span.depth_at(t);
         let gap = |w: f64| walk.true_point(w).map_or(f64::NAN, |p| plane.below(hf, p));
         let (w0, w1) = (depth(t0), depth(t1));

@@ -12,6 +12,7 @@ mod sky;
 
 use crate::blocks::{BOX_TRIANGLES, Block, Blocks, CELL_TRIANGLES, Found, SIDE};
 use crate::lens::{Lens, SUB};
+use crate::polish::Polish;
 use crate::raster::SKY;
 use area::AreaMap;
 use belvedere_core::{DVec2, DVec3, Stage};
@@ -91,6 +92,19 @@ impl<'a> Shader<'a> {
         let layer = self.blocks.layer_of(a);
         layer == self.blocks.layer_of(b)
             && layer.is_some_and(|l| matches!(self.layers[l as usize], LayerShade::Terrain(_)))
+    }
+
+    /// Place and depth of the surface at a pixel's centre by the true map, see [`Polish::place`].
+    pub(crate) fn exact_place(
+        &self,
+        polish: &Polish<'_>,
+        prim: u32,
+        near: DVec3,
+        x: i32,
+        y: i32,
+    ) -> Option<(DVec3, f32)> {
+        let found = if prim == SKY { None } else { self.blocks.find(prim) };
+        polish.place(&found?, near, DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5))
     }
 
     /// What the sample at fixed-point position (`xs`, `ys`) sees.

@@ -11,13 +11,20 @@ use belvedere_core::{
 };
 use belvedere_cpu::{ExactRenderer, Tracer};
 use belvedere_scene::{
-    Aux, BoxLayer, BoxShape, Color, Frame, Heightfield, LayerKind, Light, NodeState, Progress, RenderJob,
-    RenderOptions, Renderer, Scene, builtin,
+    Aux, BoxLayer, BoxShape, Color, Frame, Heightfield, LayerKind, Light, Mesh, MeshColors, MeshLayer, NodeState,
+    Progress, RenderJob, RenderOptions, Renderer, Scene, builtin,
 };
 use std::f64::consts::TAU;
 
-/// Tolerance of the rasteriser in the comparisons: half a pixel of bend would be seen in the depth of grazing ground.
-const FINE_PX: f64 = 0.02;
+/// Largest difference in depth, as a share of it.
+const DEPTH: f64 = 1e-4;
+
+/// Default tolerance, and depths by the true map: what `--aux depth` asks for.
+fn exactly() -> RenderOptions {
+    let options = options(1);
+    assert_eq!(options.tolerance_px, RenderOptions::default().tolerance_px);
+    RenderOptions { aux: Aux { exact: true, ..Aux::default() }, ..options }
+}
 
 fn trace(scene: &Scene, view: &View, options: &RenderOptions) -> Frame {
     let job = RenderJob { scene, view, light: &Light::default(), options, progress: &Progress::silent() };
@@ -43,47 +50,49 @@ impl Difference {
         self.depths += other.depths;
     }
 
-    /// At most one in a thousand pixels off the silhouettes.
+    /// At most one in a thousand pixels off the silhouettes differs in id, and one in a thousand in depth.
     fn is_small(&self) -> bool {
-        (self.ids + self.depths) as f64 <= 1e-3 * self.pixels as f64
+        let few = |n: usize| n as f64 <= 1e-3 * self.judged as f64;
+        few(self.ids) && few(self.depths)
     }
 }
 
-/// Compares off the silhouettes: a pixel lies on one if a neighbour of the traced picture has another id, or its depth jumps by more than 4 %.
-///
-/// Depths must agree within 1e-4 of themselves, and what the surface gains in depth over the two hundredths of a pixel that the
-/// rasteriser may be off.
+/// Compares off the silhouettes: a pixel lies on one if a neighbour of the traced picture has another id, or its depth jumps by more
+/// than [`STEP`].
 fn compare(reference: &Frame, other: &Frame) -> Difference {
     let (w, h) = (reference.width, reference.height);
     let mut out = Difference { pixels: w * h, ..Difference::default() };
     for i in 0..w * h {
-        let (x, y, id, depth) = (i % w, i / w, reference.id[i], f64::from(reference.depth[i]));
-        let mut gain = 0.0f64;
-        let mut edge = false;
-        for v in y.saturating_sub(1)..(y + 2).min(h) {
-            for u in x.saturating_sub(1)..(x + 2).min(w) {
-                let k = v * w + u;
-                let step = if id == 0 { 0.0 } else { (f64::from(reference.depth[k]) / depth - 1.0).abs() };
-                edge |= reference.id[k] != id || step > 0.04;
-                gain = gain.max(step);
-            }
-        }
-        if edge {
+        if on_silhouette(reference, i) {
             continue;
         }
         out.judged += 1;
+        let (id, depth) = (reference.id[i], f64::from(reference.depth[i]));
         if other.id[i] != id {
             out.ids += 1;
-        } else if id != 0 && !((f64::from(other.depth[i]) / depth - 1.0).abs() <= 1e-4 + FINE_PX * gain) {
+        } else if id != 0 && !((f64::from(other.depth[i]) / depth - 1.0).abs() <= DEPTH) {
             out.depths += 1;
         }
     }
     out
 }
 
+/// Largest step of depth between neighbours on one surface, as a share of it.
+const STEP: f64 = 0.04;
+
+fn on_silhouette(frame: &Frame, i: usize) -> bool {
+    let (w, h) = (frame.width, frame.height);
+    let (x, y, id, depth) = (i % w, i / w, frame.id[i], frame.depth[i]);
+    (y.saturating_sub(1)..(y + 2).min(h)).any(|v| {
+        (x.saturating_sub(1)..(x + 2).min(w)).any(|u| {
+            let k = v * w + u;
+            frame.id[k] != id || (id != 0 && f64::from((frame.depth[k] / depth - 1.0).abs()) > STEP)
+        })
+    })
+}
+
 fn difference(scene: &Scene, view: &View) -> Difference {
-    let fine = RenderOptions { tolerance_px: FINE_PX, ..options(1) };
-    compare(&trace(scene, view, &fine), &render(scene, view, &fine))
+    compare(&trace(scene, view, &exactly()), &render(scene, view, &exactly()))
 }
 
 fn tower(hf: &Heightfield, x: f64, y: f64, yaw: f64) -> BoxShape {
@@ -91,11 +100,28 @@ fn tower(hf: &Heightfield, x: f64, y: f64, yaw: f64) -> BoxShape {
     BoxShape { base: DVec3::new(x, y, z), size: DVec3::new(60.0, 40.0, 150.0), yaw, color: Color::rgb(190, 180, 170) }
 }
 
+/// The built-in church twice as large; with a fault, two of its corners are taken for each other.
+fn church(at: DVec3, faulty: bool) -> LayerKind {
+    let (scene, _) = builtin::church().expect("the church can be built");
+    let LayerKind::Mesh(made) = &scene.layers[0].kind else { panic!("a mesh") };
+    let swapped = |v: u32| match v {
+        4 if faulty => 40,
+        40 if faulty => 4,
+        v => v,
+    };
+    let places: Vec<DVec3> = (0..made.mesh.vertex_count() as u32).map(|v| at + 2.0 * made.mesh.vertex(v)).collect();
+    let triangles = made.mesh.triangles().iter().map(|t| t.map(swapped)).collect();
+    let mesh = Mesh::new(&places, triangles, MeshColors::Layer).expect("well formed");
+    LayerKind::Mesh(MeshLayer { mesh, color: Color::rgb(220, 210, 190) })
+}
+
 fn with_towers(hf: Heightfield) -> Scene {
+    let z = hf.surface_at(DVec2::new(-150.0, -160.0)).expect("on the hills");
     let boxes = [(-120.0, 60.0, 0.3), (140.0, -80.0, 1.1), (20.0, 260.0, 0.0)].map(|(x, y, yaw)| tower(&hf, x, y, yaw));
     scene(vec![
         layer("ground", LayerKind::Terrain(terrain(hf))),
         layer("towers", LayerKind::Boxes(BoxLayer { boxes: boxes.to_vec() })),
+        layer("church", church(DVec3::new(-150.0, -160.0, z - 10.0), false)),
     ])
 }
 
@@ -181,12 +207,23 @@ fn random_view(random: &mut Random, kind: usize, image: [u32; 2]) -> Option<View
             return View::new(bent.pinhole().clone(), [&[earth, ground], bent.stages()].concat()).ok();
         }
         kind => {
-            let model = [Model::Modified, Model::Original, Model::C0, Model::C2][kind % 4];
+            let model = [Model::Modified, Model::Original, Model::C0, Model::C2, Model::Circular][kind % 5];
             let rays = random_turn(random, &ph, model)?;
-            if kind < 9 { vec![rays] } else { vec![earth, ground, rays] }
+            match kind {
+                5..10 => vec![rays],
+                10 => vec![earth, ground, rays],
+                _ => return under_spline(random, &ph, ground, model),
+            }
         }
     };
     View::new(ph, stages).ok()
+}
+
+/// Ground that gives way, under a spline, seen along curved rays.
+fn under_spline(random: &mut Random, ph: &Pinhole, ground: Stage, model: Model) -> Option<View> {
+    let bent = spline(ph.clone(), "progressive");
+    let rays = random_turn(random, bent.pinhole(), model)?;
+    View::new(bent.pinhole().clone(), [&[ground], bent.stages(), &[rays]].concat()).ok()
 }
 
 fn random_turn(random: &mut Random, ph: &Pinhole, model: Model) -> Option<Stage> {
@@ -205,14 +242,15 @@ fn random_turn(random: &mut Random, ph: &Pinhole, model: Model) -> Option<Stage>
 }
 
 #[test]
-fn rasteriser_and_tracer_agree_on_200_random_views() {
-    const VIEWS: usize = 200;
+fn rasteriser_and_tracer_agree_on_204_random_views() {
+    const VIEWS: usize = 204;
+    const KINDS: usize = 12;
     let scenes: Vec<Scene> = (0..4).map(|i| with_towers(hills(24, 50.0, 120.0 + 20.0 * i as f64, 70 + i))).collect();
     let mut random = Random::new(20_100_726);
     let (mut total, mut judged_views, mut worst) = (Difference::default(), 0, Vec::new());
     for i in 0.. {
         assert!(i < 3 * VIEWS, "only {judged_views} of {i} random views are possible");
-        let Some(view) = random_view(&mut random, judged_views % 10, [64, 36]) else { continue };
+        let Some(view) = random_view(&mut random, judged_views % KINDS, [64, 36]) else { continue };
         let d = difference(&scenes[judged_views % scenes.len()], &view);
         total.add(d);
         if (d.ids + d.depths) as f64 > 2e-3 * d.pixels as f64 {
@@ -240,11 +278,10 @@ fn ground_only(hf: Heightfield) -> Scene {
 
 /// The rasteriser draws `right`, the tracer is given `wrong`: must be noticed; the same with `right` for both must not.
 fn must_notice(name: &str, right: (&Scene, &View), wrong: (&Scene, &View)) {
-    let fine = RenderOptions { tolerance_px: FINE_PX, ..options(1) };
-    let drawn = render(right.0, right.1, &fine);
-    let clean = compare(&trace(right.0, right.1, &fine), &drawn);
+    let drawn = render(right.0, right.1, &exactly());
+    let clean = compare(&trace(right.0, right.1, &exactly()), &drawn);
     assert!(clean.is_small(), "{name}: without the fault {clean:?}");
-    let faulty = compare(&trace(wrong.0, wrong.1, &fine), &drawn);
+    let faulty = compare(&trace(wrong.0, wrong.1, &exactly()), &drawn);
     assert!(!faulty.is_small(), "{name} passes unnoticed: {faulty:?}");
     assert!((faulty.ids + faulty.depths) * 20 > faulty.judged, "{name} is hardly noticed: {faulty:?}");
 }
@@ -261,13 +298,12 @@ fn a_bend_wrong_by_one_percent_is_noticed() {
     must_notice("a turn", (&scene, &right), (&scene, &wrong));
     let [right, wrong] = [90.0, 90.0 * 1.01]
         .map(|depth| View::new(high(), vec![Stage::TerrainDisocclusion(trench(depth))]).expect("in order"));
-    let fine = RenderOptions { tolerance_px: FINE_PX, ..options(1) };
-    let faulty = compare(&trace(&scene, &wrong, &fine), &render(&scene, &right, &fine));
+    let faulty = compare(&trace(&scene, &wrong, &exactly()), &render(&scene, &right, &exactly()));
     assert!(!faulty.is_small(), "a trench passes unnoticed: {faulty:?}");
 }
 
 #[test]
-fn swapped_weights_are_noticed() {
+fn the_other_diagonal_is_noticed() {
     // The weights of a cell's corners: the picture of the mirrored ground, mirrored, has the other diagonal.
     let hf = hills(24, 50.0, 160.0, 7);
     let n = hf.cols();
@@ -275,15 +311,61 @@ fn swapped_weights_are_noticed() {
     let states = vec![NodeState::Measured; n * n];
     let mirrored = Heightfield::new(hf.north_west(), hf.spacing(), n, n, flip(hf.heights()), states);
     let view = View::straight(high());
-    let fine = RenderOptions { tolerance_px: FINE_PX, ..options(1) };
-    let drawn = render(&ground_only(hf), &view, &fine);
-    let mut traced = trace(&ground_only(mirrored.expect("well formed")), &view, &fine);
+    let drawn = render(&ground_only(hf), &view, &exactly());
+    let mut traced = trace(&ground_only(mirrored.expect("well formed")), &view, &exactly());
     for row in traced.depth.chunks_mut(160) {
         row.reverse();
     }
     traced.id.chunks_mut(160).for_each(<[u32]>::reverse);
     let faulty = compare(&traced, &drawn);
     assert!(!faulty.is_small(), "the other diagonal passes unnoticed: {faulty:?}");
+}
+
+#[test]
+fn swapped_conic_weights_are_noticed() {
+    // The arc's weights (1, w, 1) taken for (w, 1, w): a conic of weight 1 / w, that is m_sigma^2 / m.
+    let scene = hilly();
+    let turn = |m: Sharpness| {
+        let ph = high();
+        let forward = ph.forward.with_z(0.0).normalize();
+        let plane = |d: f64| ph.eye + forward * d;
+        let spec = TurnSpec {
+            viewpoint: ph.eye + DVec3::Z * 220.0,
+            t0: plane(480.0),
+            t1: plane(600.0),
+            t2: plane(720.0),
+            pencil: Pencil::Parallel { normal: -forward },
+            m,
+        };
+        CurvedRays::new(&ph, Model::Modified, &[spec])
+            .map(|rays| View::new(ph, vec![Stage::CurvedRays(rays)]).expect("in order"))
+    };
+    let bend = turn(Sharpness::Bend).expect("possible");
+    let m = bend.curved_rays().and_then(|r| r.turns()[0].m).expect("the modified model has one");
+    let [right, wrong] = [1.8, 1.0 / 1.8].map(|w| turn(Sharpness::Value(w * m)).expect("possible"));
+    must_notice("swapped weights", (&scene, &right), (&scene, &wrong));
+}
+
+#[test]
+fn refraction_left_out_is_noticed() {
+    let scene = hilly();
+    let [right, wrong] = [0.13, 0.0].map(|refraction| {
+        let earth = EarthCurvature { eye: high().eye, radius: 20_000.0, refraction };
+        View::new(high(), vec![Stage::EarthCurvature(earth)]).expect("in order")
+    });
+    must_notice("no refraction", (&scene, &right), (&scene, &wrong));
+}
+
+#[test]
+fn two_vertices_taken_for_each_other_are_noticed() {
+    let place = DVec3::new(0.0, 0.0, -40.0);
+    let [right, wrong] = [false, true].map(|faulty| scene(vec![layer("church", church(place, faulty))]));
+    let near = pinhole(DVec3::new(60.0, -190.0, 60.0), DVec3::new(0.0, 0.0, 5.0), 40.0, [160, 120]);
+    let view = View::straight(near);
+    let drawn = render(&right, &view, &exactly());
+    assert!(compare(&trace(&right, &view, &exactly()), &drawn).is_small());
+    let faulty = compare(&trace(&wrong, &view, &exactly()), &drawn);
+    assert!(!faulty.is_small(), "{faulty:?}");
 }
 
 #[test]
@@ -320,7 +402,8 @@ fn a_hit_is_the_point_of_the_ray_on_the_surface() {
             let Some(seen) = tracer.first_hit(pixel) else { continue };
             hits += 1;
             let on_ray = view.ray(pixel).at(seen.depth).expect("the ray has the point");
-            assert_eq!((on_ray.point, on_ray.segment), (seen.point, seen.segment));
+            assert!(on_ray.point.distance(seen.point) < 1e-6, "{name}: {} from {}", seen.point, on_ray.point);
+            assert_eq!(on_ray.segment, seen.segment);
             if seen.layer == 0 {
                 let z = hf.surface_at(seen.point.truncate()).expect("on the hills");
                 assert!((seen.point.z - z).abs() < 1e-7, "{name}: {} m over the ground", seen.point.z - z);
@@ -358,7 +441,9 @@ fn nothing_lies_before_a_hit() {
 fn pictures_do_not_depend_on_threads_and_stop_when_asked() {
     let scene = hilly();
     let (_, view) = all_views([80, 60]).swap_remove(4);
-    let draw = |threads| trace(&scene, &view, &RenderOptions { threads, aux: Aux { world: true }, ..options(4) });
+    let draw = |threads| {
+        trace(&scene, &view, &RenderOptions { threads, aux: Aux { world: true, ..Aux::default() }, ..options(4) })
+    };
     let (one, three) = (draw(1), draw(3));
     assert!(one.color == three.color && one.depth == three.depth && one.id == three.id);
     let world = one.world.expect("asked for");

@@ -42,7 +42,8 @@ fn any_number_of_threads_gives_the_same_bytes() {
     let scene = full_scene();
     for (name, view) in views([333, 217]) {
         for samples in [1, 4, 16] {
-            let with = |threads| RenderOptions { threads, aux: Aux { world: true }, ..options(samples) };
+            let with =
+                |threads| RenderOptions { threads, aux: Aux { world: true, ..Aux::default() }, ..options(samples) };
             let one = render(&scene, &view, &with(1));
             assert_sane(name, &one, 4);
             for threads in [2, 3, 7] {

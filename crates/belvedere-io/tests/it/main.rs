@@ -5,6 +5,7 @@ mod crs;
 mod drape;
 mod geotiff;
 mod geotiff_made;
+mod meshes;
 mod png;
 mod rasters;
 mod terrain;

@@ -8,7 +8,7 @@ pub(crate) const DEFAULT_SEED: u64 = 7;
 /// Nodes per side of a massif that names none.
 pub(crate) const DEFAULT_SIZE: usize = 513;
 
-const NAMES: &[&str] = &["massif", "street"];
+const NAMES: &[&str] = &["massif", "street", "church"];
 
 /// Whether a source means a built-in scene.
 pub(super) fn is_name(source: &str) -> bool {
@@ -59,10 +59,10 @@ pub(crate) fn scene(source: &str) -> Result<(Scene, builtin::SuggestedCamera), S
 }
 
 fn make(request: &Request) -> Result<(Scene, builtin::SuggestedCamera), String> {
-    let made = if request.name == "massif" {
-        builtin::massif(request.seed, request.size)
-    } else {
-        builtin::street(request.seed)
+    let made = match request.name.as_str() {
+        "massif" => builtin::massif(request.seed, request.size),
+        "church" => builtin::church(),
+        _ => builtin::street(request.seed),
     };
     made.map_err(|e| e.to_string())
 }

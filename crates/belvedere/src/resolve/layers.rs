@@ -251,7 +251,8 @@ impl Loader<'_> {
             LayerDoc::Area(area) => self.area(index, area, ground)?,
             LayerDoc::Point(point) => self.point(index, point, ground)?,
             LayerDoc::Boxes(boxes) => super::boxes::layer(self, index, boxes)?,
-            LayerDoc::Mesh(_) | LayerDoc::City(_) | LayerDoc::Molecule(_) | LayerDoc::Volume(_) => {
+            LayerDoc::Mesh(mesh) => super::mesh::layer(self, index, mesh, ground)?,
+            LayerDoc::City(_) | LayerDoc::Molecule(_) | LayerDoc::Volume(_) => {
                 return Err(self.fail(
                     index,
                     "kind",

@@ -8,6 +8,7 @@ mod dem;
 mod drape;
 mod layers;
 mod light;
+mod mesh;
 mod rays;
 mod stages;
 mod validate;

@@ -68,7 +68,8 @@ fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
             lift(l.style.lift_m)
         }
         LayerDoc::Boxes(l) => color("color", &l.style.color).map(|_| ()),
-        LayerDoc::Mesh(_) | LayerDoc::City(_) | LayerDoc::Molecule(_) | LayerDoc::Volume(_) => Ok(()),
+        LayerDoc::Mesh(l) => color("color", &l.style.color).map(|_| ()),
+        LayerDoc::City(_) | LayerDoc::Molecule(_) | LayerDoc::Volume(_) => Ok(()),
     }
 }
 

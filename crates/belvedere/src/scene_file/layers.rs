@@ -19,8 +19,8 @@ pub enum LayerDoc {
     Point(PointLayerDoc),
     /// Upright boxes.
     Boxes(BoxesDoc),
-    /// Triangles. Not drawn by this version.
-    Mesh(ModelDoc),
+    /// Triangles.
+    Mesh(MeshDoc),
     /// A city model. Not drawn by this version.
     City(ModelDoc),
     /// Atoms. Not drawn by this version.
@@ -42,7 +42,8 @@ impl LayerDoc {
             Self::Area(l) => &l.id,
             Self::Point(l) => &l.id,
             Self::Boxes(l) => &l.id,
-            Self::Mesh(l) | Self::City(l) | Self::Molecule(l) | Self::Volume(l) => &l.id,
+            Self::Mesh(l) => &l.id,
+            Self::City(l) | Self::Molecule(l) | Self::Volume(l) => &l.id,
         }
     }
 
@@ -54,7 +55,8 @@ impl LayerDoc {
             Self::Area(l) => l.must_see,
             Self::Point(l) => l.must_see,
             Self::Boxes(l) => l.must_see,
-            Self::Mesh(l) | Self::City(l) | Self::Molecule(l) | Self::Volume(l) => l.must_see,
+            Self::Mesh(l) => l.must_see,
+            Self::City(l) | Self::Molecule(l) | Self::Volume(l) => l.must_see,
         }
     }
 
@@ -466,6 +468,47 @@ pub struct TransformDoc {
 impl Default for TransformDoc {
     fn default() -> Self {
         Self { translate: [0.0; 3], rotate_deg: [0.0; 3], scale: 1.0 }
+    }
+}
+
+/// Triangles from a file: OBJ, PLY, STL, glTF or GLB.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshDoc {
+    /// Unique id within the scene.
+    pub id: String,
+    /// A file, several, or `builtin:church`.
+    pub source: Paths,
+    /// Whether constructors and measures work for it.
+    #[serde(default)]
+    pub must_see: bool,
+    /// How it is drawn.
+    #[serde(default)]
+    pub style: MeshStyleDoc,
+    /// Placement; either this or `crs`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transform: Option<TransformDoc>,
+    /// `EPSG:n` of the file's x and y.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crs: Option<String>,
+    /// Movement: a CSV file with columns t, x, y, z, yaw_deg. Not played by this version.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<String>,
+}
+
+/// How a mesh is drawn.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct MeshStyleDoc {
+    /// Colour of meshes that have none of their own.
+    pub color: String,
+    /// Whether normals of the file smooth the shading.
+    pub smooth: bool,
+}
+
+impl Default for MeshStyleDoc {
+    fn default() -> Self {
+        Self { color: "#c9c2b8".into(), smooth: true }
     }
 }
 

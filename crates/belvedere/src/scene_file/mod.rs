@@ -15,8 +15,8 @@ pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDo
 pub use intent::{AnimationDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
 pub use layers::{
     AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, HiddenDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc,
-    ModelDoc, PaletteDoc, Paths, PlaceDoc, PointLayerDoc, PointStyleDoc, ReliefDoc, RouteDoc, ShadingDoc, TerrainDoc,
-    TerrainStyleDoc, TransformDoc,
+    MeshDoc, MeshStyleDoc, ModelDoc, PaletteDoc, Paths, PlaceDoc, PointLayerDoc, PointStyleDoc, ReliefDoc, RouteDoc,
+    ShadingDoc, TerrainDoc, TerrainStyleDoc, TransformDoc,
 };
 pub(crate) use node::{Node, Value};
 pub use stages::{

@@ -20,8 +20,33 @@ pub enum FileInfo {
     Picture(PictureInfo),
     /// Lines, areas, points.
     Features(FeatureInfo),
+    /// Triangles.
+    Mesh(MeshInfo),
     /// A built-in scene.
     Builtin(BuiltinInfo),
+}
+
+/// Triangles.
+#[derive(Debug, Clone, Serialize)]
+pub struct MeshInfo {
+    /// The file.
+    pub path: String,
+    /// Format.
+    pub format: &'static str,
+    /// Vertices.
+    pub vertices: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// Whether vertices have normals.
+    pub normals: bool,
+    /// Whether it has colours of its own.
+    pub colors: bool,
+    /// Smallest coordinates, the file's own.
+    pub min: [f64; 3],
+    /// Largest coordinates.
+    pub max: [f64; 3],
+    /// What was odd.
+    pub warnings: Vec<String>,
 }
 
 /// Heights.
@@ -148,11 +173,14 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
     if ends(&["gpx", "geojson", "json", "shp"]) {
         return features(path);
     }
+    if ends(belvedere_io::mesh::ENDINGS) {
+        return mesh(path);
+    }
     if !ends(&["tif", "tiff", "hgt", "zip", "asc", "grd", "txt"]) {
         std::fs::metadata(path).map_err(|e| belvedere_io::IoError::os(path, e))?;
         return Err(belvedere_io::IoError::format(
             path,
-            "it is of no kind that this version reads: terrain and pictures as GeoTIFF, SRTM .hgt (also .zip) or ESRI ASCII, features as GPX, GeoJSON or shapefile (.shp)",
+            "it is of no kind that this version reads: terrain and pictures as GeoTIFF, SRTM .hgt (also .zip) or ESRI ASCII, features as GPX, GeoJSON or shapefile (.shp), meshes as OBJ, PLY, STL, glTF or GLB",
         )
         .into());
     }
@@ -210,6 +238,23 @@ fn features(path: &Path) -> Result<FileInfo, BelvedereError> {
         vertices: vectors.vertex_count(),
         extent: vectors.extent(),
         warnings: loaded.warnings.clone(),
+    }))
+}
+
+fn mesh(path: &Path) -> Result<FileInfo, BelvedereError> {
+    let loaded = belvedere_io::load_mesh(path, &Limits::default())?;
+    let mesh = &loaded.value;
+    let bounds = belvedere_core::Aabb::of(mesh.positions.iter().copied());
+    Ok(FileInfo::Mesh(MeshInfo {
+        path: path.display().to_string(),
+        format: mesh.format,
+        vertices: mesh.positions.len(),
+        triangles: mesh.triangles.len(),
+        normals: mesh.normals.is_some(),
+        colors: mesh.colors != belvedere_scene::MeshColors::Layer,
+        min: bounds.min.to_array(),
+        max: bounds.max.to_array(),
+        warnings: loaded.warnings,
     }))
 }
 

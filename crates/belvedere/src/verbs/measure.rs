@@ -1,9 +1,9 @@
 //! `measure`: what a scene's picture shows of what must be seen.
 
+use super::render::RendererChoice;
 use crate::{BelvedereError, Session};
 pub use belvedere_construct::MeasureOptions;
 use belvedere_construct::Measures;
-use belvedere_cpu::CpuRenderer;
 use belvedere_scene::Progress;
 use serde::Serialize;
 
@@ -16,6 +16,8 @@ pub struct MeasureReport {
     pub crs: String,
     /// Stages in order of application.
     pub stages: Vec<&'static str>,
+    /// Who drew the depth buffers.
+    pub renderer: &'static str,
     /// The figures.
     #[serde(flatten)]
     pub measures: Measures,
@@ -23,22 +25,24 @@ pub struct MeasureReport {
     pub scene_warnings: Vec<String>,
 }
 
-/// Visible share of every feature that must be seen, straight and bent, by line of sight and by depth buffer.
+/// Visible share of every feature that must be seen, straight and bent, by line of sight and by depth buffer drawn by `renderer`.
 ///
 /// # Errors
 /// [`BelvedereError::Construct`] if nothing must be seen, [`BelvedereError::Usage`] if the view cannot be drawn.
 pub fn measure(
     session: &Session,
     options: &MeasureOptions,
+    renderer: RendererChoice,
     progress: &Progress,
 ) -> Result<MeasureReport, BelvedereError> {
     super::check::drawable(session)?;
-    let measures =
-        belvedere_construct::measure(session.scene(), session.view(), Some(&CpuRenderer), options, progress)?;
+    let renderer = renderer.renderer();
+    let measures = belvedere_construct::measure(session.scene(), session.view(), Some(renderer), options, progress)?;
     Ok(MeasureReport {
         scene: session.path().display().to_string(),
         crs: session.scene().crs.to_string(),
         stages: session.view().stages().iter().map(|s| s.name()).collect(),
+        renderer: renderer.name(),
         measures,
         scene_warnings: session.warnings().to_vec(),
     })

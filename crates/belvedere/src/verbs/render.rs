@@ -172,7 +172,8 @@ pub fn render(session: &Session, request: &RenderRequest, progress: &Progress) -
     let started = Instant::now();
     let view = if request.straight { session.view().straightened() } else { session.view().clone() };
     let world = request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
-    let options = RenderOptions { aux: Aux { world }, ..request.options.clone() };
+    let exact = !request.aux.is_empty();
+    let options = RenderOptions { aux: Aux { world, exact }, ..request.options.clone() };
     let draw = |view: &View| {
         request.renderer.renderer().render(&RenderJob {
             scene: session.scene(),

@@ -187,6 +187,27 @@ impl DeformationCurve {
         best
     }
 
+    /// The foot that Newton's method finds from arc length `near`, which should be close to it; that of [`DeformationCurve::foot`] where it
+    /// finds none. `near` must be finite.
+    pub fn foot_near(&self, q: DVec2, near: f64) -> Option<(f64, f64)> {
+        let mut l = near;
+        for _ in 0..6 {
+            let frame = self.frame_at(l);
+            let v = q - frame.point;
+            let (along, d) = (v.dot(frame.tangent), v.dot(frame.normal()));
+            let stretch = 1.0 - frame.kap * d;
+            if !(stretch > 0.05) {
+                break;
+            }
+            l += along / stretch;
+            // Quadratic convergence: the next step would be below rounding, and d is least here.
+            if (along / stretch).abs() <= 1e-8 * self.length {
+                return Some((l, d));
+            }
+        }
+        self.foot(q)
+    }
+
     /// Root of `(q - P(l)) . T(l)` in a cell at whose ends it changes sign from + to -.
     fn foot_in(&self, cell: &Cell, q: DVec2) -> Option<(f64, f64)> {
         let span = &self.spans[cell.span];

@@ -163,6 +163,18 @@ impl SplineBend {
         self.curve.at(self.coordinates(p).l).1.to_angle()
     }
 
+    /// Place of a bent point in the plane of [`SplineBend::curve`], curve units.
+    pub fn curve_place(&self, p_displaced: DVec3) -> DVec2 {
+        let v = p_displaced - self.origin;
+        DVec2::new(v.dot(self.out_u), v.dot(self.out_v)) / self.scale - self.shift
+    }
+
+    /// The point that the bend carries to height `d` (curve units) over arc length `l` of the curve and `a` scene units to the right.
+    pub fn unbent(&self, l: f64, d: f64, a: f64) -> DVec3 {
+        let along = self.scale * (l - self.l_origin);
+        self.origin + a * self.right + along * self.heading + self.scale * d * self.normal
+    }
+
     /// Scene point of shifted curve coordinates `q` and right offset `a`.
     fn scene_from_curve(&self, a: f64, q: DVec2) -> DVec3 {
         self.origin + a * self.right + self.scale * (q.x * self.out_u + q.y * self.out_v)
@@ -186,11 +198,8 @@ impl SpaceMap for SplineBend {
     /// # Errors
     /// [`Miss::OutsideDomain`] where no perpendicular from the curve arrives before its centre of curvature.
     fn invert(&self, p_displaced: DVec3) -> Result<DVec3, Miss> {
-        let v = finite(p_displaced)? - self.origin;
-        let q = DVec2::new(v.dot(self.out_u), v.dot(self.out_v)) / self.scale - self.shift;
-        let (l, d) = self.curve.foot(q).ok_or(Miss::OutsideDomain)?;
-        let along = self.scale * (l - self.l_origin);
-        finite(self.origin + v.dot(self.right) * self.right + along * self.heading + self.scale * d * self.normal)
+        let (l, d) = self.curve.foot(self.curve_place(finite(p_displaced)?)).ok_or(Miss::OutsideDomain)?;
+        finite(self.unbent(l, d, (p_displaced - self.origin).dot(self.right)))
     }
 
     /// Its determinant is [`SplineBend::stretch`], negative beyond the fold limit.

@@ -1,0 +1,79 @@
+//! The rasteriser against the exact tracer on every ready scene, at the default tolerance.
+
+use super::Place;
+use std::path::Path;
+
+/// Depth and id of every pixel.
+struct Buffers {
+    width: usize,
+    depth: Vec<f32>,
+    id: Vec<u32>,
+}
+
+fn values(path: &Path) -> Vec<[u8; 4]> {
+    let bytes = super::read(path);
+    let header = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+    bytes[header..].chunks_exact(4).map(|b| [b[0], b[1], b[2], b[3]]).collect()
+}
+
+fn draw(place: &Place, scene: &str, root: Option<&str>, renderer: &str, size: [usize; 2]) -> Buffers {
+    let (out, text) = (format!("{renderer}.png"), format!("{}x{}", size[0], size[1]));
+    let mut args = vec!["render", scene, "-o", &out, "--renderer", renderer, "--size", &text, "--samples", "1"];
+    args.extend(["--aux", "depth,id", "--overwrite"]);
+    args.extend(root.iter().flat_map(|root| ["--allow-root", root]));
+    place.ok(&args);
+    Buffers {
+        width: size[0],
+        depth: values(&place.path(&format!("{renderer}.depth.npy"))).into_iter().map(f32::from_le_bytes).collect(),
+        id: values(&place.path(&format!("{renderer}.id.npy"))).into_iter().map(u32::from_le_bytes).collect(),
+    }
+}
+
+/// Pixels off the silhouettes, and of those how many differ in id, and in depth by more than 1e-4 of it.
+///
+/// A pixel lies on a silhouette if a neighbour has another id, or its depth jumps by more than 4 %.
+fn compare(exact: &Buffers, other: &Buffers) -> [usize; 3] {
+    let (w, h) = (exact.width, exact.id.len() / exact.width);
+    let [mut judged, mut ids, mut depths] = [0; 3];
+    for i in 0..w * h {
+        let (x, y, id, depth) = (i % w, i / w, exact.id[i], f64::from(exact.depth[i]));
+        let around = (y.saturating_sub(1)..(y + 2).min(h))
+            .flat_map(|v| (x.saturating_sub(1)..(x + 2).min(w)).map(move |u| v * w + u));
+        let mut around = around.filter(|&k| depth.is_finite() || exact.depth[k].is_finite() || exact.id[k] != id);
+        if around.any(|k| exact.id[k] != id || !((f64::from(exact.depth[k]) / depth - 1.0).abs() <= 0.04)) {
+            continue;
+        }
+        judged += 1;
+        ids += usize::from(other.id[i] != id);
+        depths += usize::from(depth.is_finite() && !((f64::from(other.depth[i]) / depth - 1.0).abs() <= 1e-4));
+    }
+    [judged, ids, depths]
+}
+
+#[test]
+fn every_ready_scene_is_drawn_as_the_tracer_sees_it() {
+    let root = belvedere_testkit::data("README.md").and_then(|p| Some(p.parent()?.to_str()?.to_owned()));
+    let folder = belvedere_testkit::workspace_root().join("scenes");
+    let mut faults = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("folder of scenes") {
+        let path = entry.expect("entry").path();
+        if path.extension().is_none_or(|e| e != "toml") {
+            continue;
+        }
+        let name = path.file_stem().and_then(|n| n.to_str()).expect("UTF-8").to_owned();
+        let text = std::fs::read_to_string(&path).expect("scene");
+        if !text.contains("builtin:") && root.is_none() {
+            continue;
+        }
+        let size = if name == "massif_curved_rays" { [1280, 720] } else { [320, 180] };
+        let place = Place::new();
+        let [exact, drawn] =
+            ["exact", "cpu"].map(|r| draw(&place, path.to_str().expect("UTF-8"), root.as_deref(), r, size));
+        let [judged, ids, depths] = compare(&exact, &drawn);
+        let few = |n: usize| n as f64 <= 1e-3 * judged as f64;
+        if judged < size[0] * size[1] / 3 || !few(ids) || !few(depths) {
+            faults.push(format!("{name}: of {judged} pixels {ids} differ in id, {depths} in depth"));
+        }
+    }
+    assert!(faults.is_empty(), "{faults:#?}");
+}

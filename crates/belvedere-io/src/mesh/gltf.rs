@@ -1,0 +1,259 @@
+//! glTF 2.0 and GLB: the triangles of the default scene with their nodes' transforms, vertex colours, and base colours of materials.
+//!
+//! Buffers lie in the file or below its folder; nothing is fetched. Every reading of a buffer is checked against its size.
+
+use super::{MeshFile, beside, color};
+use crate::{IoError, Limits, Loaded};
+use belvedere_scene::{Color, MeshColors};
+use glam::{DMat4, DVec3};
+use gltf::accessor::{DataType, Dimensions};
+use gltf::mesh::Mode;
+use gltf::{Accessor, Document, Node, Primitive, Semantic};
+use std::path::Path;
+
+pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<MeshFile>, IoError> {
+    let bad = |reason: String| IoError::format(path, reason);
+    let gltf = gltf::Gltf::from_slice(bytes).map_err(|e| {
+        let said: String = e.to_string().chars().take(160).collect();
+        bad(format!("{said}; it is damaged or no glTF 2.0"))
+    })?;
+    let buffers = buffers(path, &gltf.document, gltf.blob, limits)?;
+    let mut builder =
+        Builder { buffers, out: MeshFile { format: "glTF", ..MeshFile::default() }, ..Builder::default() };
+    // Every node has one place in the tree: more visits than nodes are a circle.
+    builder.visits_left = gltf.document.nodes().count();
+    let scene = gltf.document.default_scene().or_else(|| gltf.document.scenes().next());
+    let nodes: Vec<Node<'_>> = match &scene {
+        Some(scene) => scene.nodes().collect(),
+        None => Vec::new(),
+    };
+    for node in nodes {
+        builder.node(&node, DMat4::IDENTITY, 0).map_err(bad)?;
+    }
+    let Builder { mut out, normals, vertex_colors, base, painted, smooth, skipped, .. } = builder;
+    out.normals = smooth.then_some(normals);
+    out.colors = if painted {
+        MeshColors::PerVertex(vertex_colors)
+    } else if base.iter().any(|c| *c != Color::rgb(255, 255, 255)) {
+        MeshColors::PerTriangle(base)
+    } else {
+        MeshColors::Layer
+    };
+    let mut warnings = Vec::new();
+    if skipped > 0 {
+        warnings.push(format!("{}: {skipped} parts that are no plain triangles are left out", path.display()));
+    }
+    Ok(Loaded { value: out, warnings })
+}
+
+fn buffers(
+    path: &Path,
+    document: &Document,
+    mut blob: Option<Vec<u8>>,
+    limits: &Limits,
+) -> Result<Vec<Vec<u8>>, IoError> {
+    let bad = |reason: String| IoError::format(path, reason);
+    let mut out = Vec::new();
+    for buffer in document.buffers() {
+        let bytes = match buffer.source() {
+            gltf::buffer::Source::Bin => {
+                blob.take().ok_or_else(|| bad("its binary part is missing; it is damaged".into()))?
+            }
+            gltf::buffer::Source::Uri(uri) => match uri.strip_prefix("data:") {
+                Some(data) => {
+                    let text = data.split_once(";base64,").map(|(_, text)| text);
+                    text.and_then(base64)
+                        .ok_or_else(|| bad("it holds a buffer that is no base64; it is damaged".into()))?
+                }
+                None => super::read_bytes(&beside(path, &uri.replace("%20", " ")).map_err(bad)?, limits)?,
+            },
+        };
+        out.push(bytes);
+    }
+    Ok(out)
+}
+
+/// Bytes of base64 text (RFC 4648).
+fn base64(text: &str) -> Option<Vec<u8>> {
+    let mut out = Vec::with_capacity(text.len() / 4 * 3);
+    let (mut bits, mut held) = (0u32, 0);
+    for c in text.trim_end_matches('=').bytes() {
+        let value = match c {
+            b'A'..=b'Z' => c - b'A',
+            b'a'..=b'z' => c - b'a' + 26,
+            b'0'..=b'9' => c - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            _ => return None,
+        };
+        bits = bits << 6 | u32::from(value);
+        held += 6;
+        if held >= 8 {
+            held -= 8;
+            out.push((bits >> held) as u8);
+        }
+    }
+    Some(out)
+}
+
+#[derive(Default)]
+struct Builder {
+    buffers: Vec<Vec<u8>>,
+    out: MeshFile,
+    normals: Vec<DVec3>,
+    vertex_colors: Vec<Color>,
+    /// Base colour per triangle.
+    base: Vec<Color>,
+    painted: bool,
+    smooth: bool,
+    skipped: usize,
+    visits_left: usize,
+}
+
+/// Deepest nesting of nodes that is followed.
+const MAX_DEPTH: usize = 200;
+
+impl Builder {
+    fn node(&mut self, node: &Node<'_>, parent: DMat4, depth: usize) -> Result<(), String> {
+        if self.visits_left == 0 || depth > MAX_DEPTH {
+            return Err("its nodes run in a circle or are nested too deeply; repair it".into());
+        }
+        self.visits_left -= 1;
+        let columns = node.transform().matrix().map(|c| c.map(f64::from));
+        let place = parent * DMat4::from_cols_array_2d(&columns);
+        if let Some(mesh) = node.mesh() {
+            for primitive in mesh.primitives() {
+                self.primitive(&primitive, place)?;
+            }
+        }
+        for child in node.children() {
+            self.node(&child, place, depth + 1)?;
+        }
+        Ok(())
+    }
+
+    fn primitive(&mut self, primitive: &Primitive<'_>, place: DMat4) -> Result<(), String> {
+        let (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) = primitive.mode() else {
+            self.skipped += 1;
+            return Ok(());
+        };
+        let Some(positions) = primitive.get(&Semantic::Positions) else {
+            self.skipped += 1;
+            return Ok(());
+        };
+        let positions = self.values(&positions)?;
+        let (first, count) = (self.out.positions.len(), positions.len());
+        self.out.positions.extend(positions.iter().map(|p| z_up(place.transform_point3(triple(p)))));
+        let normals = primitive.get(&Semantic::Normals).map(|a| self.values(&a)).transpose()?;
+        let turn = place.inverse().transpose();
+        self.smooth |= normals.is_some();
+        self.normals.extend((0..count).map(|i| {
+            let n = normals.as_ref().and_then(|n| n.get(i)).map_or(DVec3::ZERO, |n| triple(n));
+            z_up(turn.transform_vector3(n)).normalize_or_zero()
+        }));
+        let base = primitive.material().pbr_metallic_roughness().base_color_factor().map(f64::from);
+        let colors = primitive.get(&Semantic::Colors(0)).map(|a| self.values(&a)).transpose()?;
+        self.painted |= colors.is_some();
+        self.vertex_colors.extend((0..count).map(|i| {
+            let c = colors.as_ref().and_then(|c| c.get(i)).map_or(DVec3::ONE, |c| triple(c));
+            srgb([c.x * base[0], c.y * base[1], c.z * base[2]])
+        }));
+        let corners: Vec<u32> = match primitive.indices() {
+            Some(indices) => self.values(&indices)?.iter().map(|v| v[0] as u32).collect(),
+            None => (0..count as u32).collect(),
+        };
+        if let Some(v) = corners.iter().find(|v| **v as usize >= count) {
+            return Err(format!("a triangle names vertex {v} of {count}; it is damaged"));
+        }
+        if self.out.positions.len() > u32::MAX as usize {
+            return Err("it has more than 4 billion vertices; split it".into());
+        }
+        // A mirrored node turns its triangles inside out.
+        let mirrored = place.determinant() < 0.0;
+        for [a, b, c] in triangles(primitive.mode(), &corners) {
+            let [a, b, c] = if mirrored { [a, c, b] } else { [a, b, c] };
+            self.out.triangles.push([a, b, c].map(|v| v + first as u32));
+            self.base.push(srgb([base[0], base[1], base[2]]));
+        }
+        Ok(())
+    }
+
+    /// Elements of an accessor, each with its numbers; normalized integers as shares.
+    fn values(&self, accessor: &Accessor<'_>) -> Result<Vec<[f64; 4]>, String> {
+        let damaged = || "a part of it lies outside its buffer; it is truncated or damaged, get it again".to_owned();
+        if accessor.sparse().is_some() {
+            return Err("it has sparse accessors, which are not read; store them in full".into());
+        }
+        let per = match accessor.dimensions() {
+            Dimensions::Scalar => 1,
+            Dimensions::Vec2 => 2,
+            Dimensions::Vec3 => 3,
+            Dimensions::Vec4 => 4,
+            _ => return Err("it has matrices where vectors are expected; it is damaged".into()),
+        };
+        let view = accessor.view().ok_or_else(damaged)?;
+        let bytes = self.buffers.get(view.buffer().index()).ok_or_else(damaged)?;
+        let end = view.offset().checked_add(view.length()).ok_or_else(damaged)?;
+        let bytes = bytes.get(view.offset()..end).ok_or_else(damaged)?;
+        let stride = view.stride().unwrap_or(accessor.size()).max(1);
+        let needed = match accessor.count() {
+            0 => 0,
+            n => (n - 1)
+                .checked_mul(stride)
+                .and_then(|b| b.checked_add(accessor.offset())?.checked_add(accessor.size()))
+                .ok_or_else(damaged)?,
+        };
+        if needed > bytes.len() {
+            return Err(damaged());
+        }
+        let part = accessor.size() / per;
+        let element = |i: usize| {
+            let mut out = [0.0, 0.0, 0.0, 1.0];
+            for (k, out) in out.iter_mut().enumerate().take(per) {
+                let at = accessor.offset() + i * stride + k * part;
+                *out = number(accessor.data_type(), accessor.normalized(), &bytes[at..at + part]);
+            }
+            out
+        };
+        Ok((0..accessor.count()).map(element).collect())
+    }
+}
+
+fn number(kind: DataType, normalized: bool, b: &[u8]) -> f64 {
+    let share = |v: f64, largest: f64| if normalized { (v / largest).max(-1.0) } else { v };
+    match kind {
+        DataType::I8 => share((b[0] as i8).into(), 127.0),
+        DataType::U8 => share(b[0].into(), 255.0),
+        DataType::I16 => share(i16::from_le_bytes([b[0], b[1]]).into(), 32_767.0),
+        DataType::U16 => share(u16::from_le_bytes([b[0], b[1]]).into(), 65_535.0),
+        DataType::U32 => u32::from_le_bytes([b[0], b[1], b[2], b[3]]).into(),
+        DataType::F32 => f32::from_le_bytes([b[0], b[1], b[2], b[3]]).into(),
+    }
+}
+
+fn triple(v: &[f64; 4]) -> DVec3 {
+    DVec3::new(v[0], v[1], v[2])
+}
+
+/// glTF's y axis points up, its z axis towards the viewer.
+fn z_up(p: DVec3) -> DVec3 {
+    DVec3::new(p.x, -p.z, p.y)
+}
+
+/// A linear colour as it is stored.
+fn srgb(linear: [f64; 3]) -> Color {
+    color(linear.map(|v| if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }))
+}
+
+/// Corners of lists, strips and fans of triangles.
+fn triangles(mode: Mode, corners: &[u32]) -> Vec<[u32; 3]> {
+    match mode {
+        Mode::TriangleStrip => corners
+            .windows(3)
+            .enumerate()
+            .map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] })
+            .collect(),
+        Mode::TriangleFan => corners.windows(2).skip(1).map(|p| [corners[0], p[0], p[1]]).collect(),
+        _ => corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+    }
+}

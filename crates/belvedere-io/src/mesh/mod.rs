@@ -1,0 +1,105 @@
+//! Triangle meshes: OBJ, PLY, STL, glTF and GLB.
+
+mod gltf;
+mod obj;
+mod ply;
+mod stl;
+
+use crate::{IoError, Limits, Loaded};
+use belvedere_scene::{Color, MeshColors};
+use glam::DVec3;
+use std::path::{Path, PathBuf};
+
+/// Endings of the files that [`load_mesh`] reads.
+pub const ENDINGS: &[&str] = &["obj", "ply", "stl", "gltf", "glb"];
+
+/// What a file holds, in the file's own coordinates.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MeshFile {
+    /// Name of the format.
+    pub format: &'static str,
+    /// Vertices.
+    pub positions: Vec<DVec3>,
+    /// Vertex numbers of the triangles; each below the number of vertices.
+    pub triangles: Vec<[u32; 3]>,
+    /// Directions for smooth shading, one per vertex; zero = none. `None` if no vertex has one.
+    pub normals: Option<Vec<DVec3>>,
+    /// Colours.
+    pub colors: MeshColors,
+}
+
+/// Reads a mesh. Faces of more corners become fans, lines and points are left out; the file's own axes are kept, but for glTF, whose y axis
+/// points up and becomes z.
+///
+/// # Errors
+/// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, too large for `limits`, or has no triangle.
+pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoError> {
+    let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let read: fn(&Path, &[u8], &Limits) -> Result<Loaded<MeshFile>, IoError> = match ending.as_str() {
+        "obj" => obj::read,
+        "ply" => ply::read,
+        "stl" => stl::read,
+        "gltf" | "glb" => gltf::read,
+        _ => return Err(IoError::format(path, "it is no mesh that this version reads: OBJ, PLY, STL, glTF or GLB")),
+    };
+    let bytes = read_bytes(path, limits)?;
+    let mut loaded = read(path, &bytes, limits)?;
+    let mesh = &mut loaded.value;
+    if mesh.triangles.is_empty() {
+        return Err(IoError::format(
+            path,
+            "the mesh has no triangles; a surface is needed, points and lines are not drawn",
+        ));
+    }
+    let odd = drop_not_finite(mesh);
+    if mesh.triangles.is_empty() {
+        return Err(IoError::format(path, "no triangle of the mesh lies at finite places; repair it"));
+    }
+    if odd > 0 {
+        loaded
+            .warnings
+            .push(format!("{}: {odd} triangles with a vertex that is not finite are left out", path.display()));
+    }
+    Ok(loaded)
+}
+
+/// The whole file, if the limits allow for what becomes of it.
+fn read_bytes(path: &Path, limits: &Limits) -> Result<Vec<u8>, IoError> {
+    let length = std::fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
+    // Vertices and triangles take at most a few times the bytes that a file spends on them.
+    limits.check(length.saturating_mul(6)).map_err(|reason| IoError::format(path, reason.replace("raster", "mesh")))?;
+    std::fs::read(path).map_err(|e| IoError::os(path, e))
+}
+
+/// A file beside `path` that it names; refused if it is remote, absolute or leads out of the folder.
+fn beside(path: &Path, name: &str) -> Result<PathBuf, String> {
+    let relative = Path::new(name);
+    let stays =
+        relative.components().all(|c| matches!(c, std::path::Component::Normal(_) | std::path::Component::CurDir));
+    if name.is_empty() || name.contains(':') || name.contains('\\') || !stays {
+        let shown: String = name.chars().take(60).collect();
+        return Err(format!("it names {shown:?}, which is not a file below its own folder; put the file beside it"));
+    }
+    Ok(path.parent().unwrap_or(Path::new("")).join(relative))
+}
+
+/// Leaves out triangles with a vertex that is not finite, and sets such vertices to zero. Answers how many.
+fn drop_not_finite(mesh: &mut MeshFile) -> usize {
+    let fine: Vec<bool> = mesh.positions.iter().map(|p| p.as_vec3().is_finite()).collect();
+    let before = mesh.triangles.len();
+    let keep: Vec<bool> = mesh.triangles.iter().map(|t| t.iter().all(|&v| fine[v as usize])).collect();
+    let mut kept = keep.iter();
+    mesh.triangles.retain(|_| kept.next() == Some(&true));
+    if let MeshColors::PerTriangle(colors) = &mut mesh.colors {
+        let mut kept = keep.iter();
+        colors.retain(|_| kept.next() == Some(&true));
+    }
+    mesh.positions.iter_mut().zip(fine).filter(|(_, fine)| !fine).for_each(|(p, _)| *p = DVec3::ZERO);
+    before - mesh.triangles.len()
+}
+
+/// An sRGB colour of shares 0..=1; black where they are no numbers.
+fn color(shares: [f64; 3]) -> Color {
+    let [r, g, b] = shares.map(|s| (255.0 * s.clamp(0.0, 1.0)).round() as u8);
+    Color::rgb(r, g, b)
+}

@@ -1,0 +1,147 @@
+//! PLY, text and binary, with colours and normals of its vertices or colours of its faces.
+
+use super::MeshFile;
+use crate::{IoError, Limits, Loaded};
+use belvedere_scene::{Color, MeshColors};
+use glam::DVec3;
+use ply_rs_bw::parser::{Parser, Reader};
+use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
+use std::path::Path;
+
+/// A line of any element: what of it matters to us.
+#[derive(Debug, Clone, Default)]
+struct Item {
+    position: [Option<f64>; 3],
+    normal: [f64; 3],
+    color: [Option<u8>; 3],
+    corners: Vec<i64>,
+}
+
+impl PropertyAccess for Item {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        let axis = |names: [&str; 3]| names.iter().position(|n| *n == name);
+        if let Some(i) = axis(["x", "y", "z"]) {
+            self.position[i] = number(&value);
+        } else if let Some(i) = axis(["nx", "ny", "nz"]) {
+            self.normal[i] = number(&value).unwrap_or(0.0);
+        } else if let Some(i) = axis(["red", "green", "blue"]).or(axis(["r", "g", "b"])) {
+            self.color[i] = share(&value);
+        } else if matches!(name, "vertex_indices" | "vertex_index") {
+            self.corners = list(value).unwrap_or_default();
+        } else {
+            return PropertyAccessResult::Ignored;
+        }
+        PropertyAccessResult::Set
+    }
+}
+
+fn number(value: &Property) -> Option<f64> {
+    Some(match *value {
+        Property::Char(v) => v.into(),
+        Property::UChar(v) => v.into(),
+        Property::Short(v) => v.into(),
+        Property::UShort(v) => v.into(),
+        Property::Int(v) => v.into(),
+        Property::UInt(v) => v.into(),
+        Property::Float(v) => v.into(),
+        Property::Double(v) => v,
+        _ => return None,
+    })
+}
+
+/// A part of a colour: bytes as they are, floating point as a share of 1.
+fn share(value: &Property) -> Option<u8> {
+    match *value {
+        Property::UChar(v) => Some(v),
+        Property::Float(_) | Property::Double(_) => number(value).map(|v| (255.0 * v.clamp(0.0, 1.0)).round() as u8),
+        _ => number(value).map(|v| v.clamp(0.0, 255.0) as u8),
+    }
+}
+
+fn list(value: Property) -> Option<Vec<i64>> {
+    Some(match value {
+        Property::ListChar(v) => v.into_iter().map(Into::into).collect(),
+        Property::ListUChar(v) => v.into_iter().map(Into::into).collect(),
+        Property::ListShort(v) => v.into_iter().map(Into::into).collect(),
+        Property::ListUShort(v) => v.into_iter().map(Into::into).collect(),
+        Property::ListInt(v) => v.into_iter().map(Into::into).collect(),
+        Property::ListUInt(v) => v.into_iter().map(Into::into).collect(),
+        _ => return None,
+    })
+}
+
+pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshFile>, IoError> {
+    let bad = |reason: String| IoError::format(path, reason);
+    let damaged = |e: &dyn std::fmt::Display| {
+        let said: String = e.to_string().split_whitespace().collect::<Vec<_>>().join(" ").chars().take(160).collect();
+        bad(format!("{said}; it is damaged or no PLY file"))
+    };
+    let parser = Parser::<Item>::new();
+    let mut reader = Reader::new(bytes);
+    let header = parser.read_header(&mut reader).map_err(|e| damaged(&e))?;
+    let mut out = MeshFile { format: "PLY", ..MeshFile::default() };
+    let (mut normals, mut per_vertex, mut per_triangle) = (Vec::new(), Vec::new(), Vec::new());
+    for element in header.elements.values() {
+        // An element takes a byte at least: more of them than bytes are a lie.
+        if element.count > bytes.len() {
+            return Err(bad(format!(
+                "it declares {} x {:?} in {} bytes; it is damaged",
+                element.count,
+                element.name,
+                bytes.len()
+            )));
+        }
+        let items = parser.read_payload_for_element(&mut reader, element, &header).map_err(|e| damaged(&e))?;
+        match element.name.as_str() {
+            "vertex" => {
+                for item in &items {
+                    let [Some(x), Some(y), Some(z)] = item.position else {
+                        return Err(bad("its vertices lack x, y or z; it is no mesh".into()));
+                    };
+                    out.positions.push(DVec3::new(x, y, z));
+                    normals.push(DVec3::from_array(item.normal).normalize_or_zero());
+                    per_vertex.push(colored(item));
+                }
+            }
+            "face" => {
+                for item in &items {
+                    let Some((&first, rest)) = item.corners.split_first() else { continue };
+                    for pair in rest.windows(2) {
+                        out.triangles.push(triangle([first, pair[0], pair[1]]).map_err(bad)?);
+                        per_triangle.push(colored(item));
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    let beyond = out.triangles.iter().flatten().find(|v| **v as usize >= out.positions.len());
+    if let Some(v) = beyond {
+        return Err(bad(format!("a face names vertex {v} of {}; it is damaged", out.positions.len())));
+    }
+    out.normals = normals.iter().any(|n| *n != DVec3::ZERO).then_some(normals);
+    let all = |colors: Vec<Option<Color>>| colors.into_iter().collect::<Option<Vec<Color>>>().filter(|c| !c.is_empty());
+    out.colors = match (all(per_vertex), all(per_triangle)) {
+        (Some(colors), _) => MeshColors::PerVertex(colors),
+        (None, Some(colors)) => MeshColors::PerTriangle(colors),
+        _ => MeshColors::Layer,
+    };
+    Ok(Loaded::clean(out))
+}
+
+fn colored(item: &Item) -> Option<Color> {
+    let [Some(r), Some(g), Some(b)] = item.color else { return None };
+    Some(Color::rgb(r, g, b))
+}
+
+fn triangle(corners: [i64; 3]) -> Result<[u32; 3], String> {
+    let mut out = [0; 3];
+    for (out, v) in out.iter_mut().zip(corners) {
+        *out = u32::try_from(v).map_err(|_| format!("a face names vertex {v}; it is damaged"))?;
+    }
+    Ok(out)
+}
