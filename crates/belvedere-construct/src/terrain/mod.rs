@@ -11,6 +11,7 @@ mod points;
 pub mod qp;
 mod settings;
 mod smooth;
+mod viewpoint;
 
 pub use cells::{Cells, NO_CELL};
 pub use field::{Field, FieldError};
@@ -21,4 +22,10 @@ pub use greedy::{
 pub use line_of_sight::{SightSample, guard_tau, sight_samples};
 pub use points::{PointKind, ReferencePoint, Unusable, UnusableReason, reference_points};
 pub use settings::{Detail, SolverMode, TerrainSettings};
-pub use smooth::{Dct, Green, Hierarchy, Real, SmoothError, Smoother, grid_weight, laplacian};
+pub use smooth::{
+    ConjugateGradients, Convergence, Dct, ElevationRows, Green, Hierarchy, Real, SmoothError, SmoothMemory, SmoothPass,
+    Smoothed, Smoother, grid_weight, laplacian, row_weight, temporal_weight,
+};
+pub use viewpoint::{
+    AdjustedViewpoint, ViewpointEnergy, ViewpointOptions, adjust_viewpoint, ghost_alpha, height_slope,
+};

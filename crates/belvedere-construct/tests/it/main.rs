@@ -7,3 +7,4 @@ mod reveal;
 mod sight;
 mod smooth;
 mod synthetic;
+mod viewpoint;

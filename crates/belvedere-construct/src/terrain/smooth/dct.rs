@@ -5,8 +5,8 @@ use rustfft::num_complex::Complex;
 
 use super::line::{Line, Real};
 
-/// Sequences that are handled together: a cache line of f64, four pairs.
-const BLOCK: usize = 8;
+/// Sequences that are handled together: two cache lines of f64, eight pairs.
+const BLOCK: usize = 16;
 
 /// What happens to the samples or spectra of a sequence.
 #[derive(Clone, Copy)]
@@ -123,10 +123,13 @@ fn rows_forward<T: Real>(line: &Line<T>, data: &mut [T], slots: &mut [Slot<T>]) 
         for pair in chunk.chunks_mut(2 * n) {
             let (a, b) = pair.split_at_mut(n);
             let z = &mut slot.z[..n];
-            for (j, x) in a.iter().enumerate() {
-                z[line.place(j)] = Complex::new(*x, b.get(j).copied().unwrap_or(T::zero()));
-            }
-            let b = if b.is_empty() { &mut slot.spare[..n] } else { b };
+            let b = if b.is_empty() {
+                slot.spare[..n].fill(T::zero());
+                &mut slot.spare[..n]
+            } else {
+                b
+            };
+            line.load(a, b, z);
             line.forward(z, &mut slot.scratch, a, b);
         }
     });
@@ -184,10 +187,7 @@ fn columns_forward<T: Real>(
                 change(first + 2 * pair + 1, b);
             }
             line.inverse(a, b, z, &mut slot.scratch);
-            for j in 0..n {
-                let v = z[line.place(j)];
-                (a[j], b[j]) = (v.re, v.im);
-            }
+            line.unload(z, a, b);
         }
     }
 }
@@ -211,9 +211,6 @@ fn columns_inverse<T: Real>(line: &Line<T>, from: &[T], width: usize, first: usi
             b
         };
         line.inverse(a, b, z, &mut slot.scratch);
-        for j in 0..n {
-            let v = z[line.place(j)];
-            (a[j], b[j]) = (v.re, v.im);
-        }
+        line.unload(z, a, b);
     }
 }

@@ -70,6 +70,15 @@ impl Hierarchy {
         nodes.iter().zip(weights).map(|(n, w)| coarse[*n as usize] * w).sum()
     }
 
+    /// Bilinear value of fine values at fine grid coordinates, clamped to the grid.
+    pub fn fine_at(&self, fine: &[f64], g: DVec2) -> f64 {
+        let [cols, rows] = self.fine;
+        let (c, a) = cell(g.x, cols);
+        let (r, b) = cell(g.y, rows);
+        let at = |c: u32, r: u32| fine[(r as usize).min(rows - 1) * cols + (c as usize).min(cols - 1)];
+        (1.0 - b) * ((1.0 - a) * at(c, r) + a * at(c + 1, r)) + b * ((1.0 - a) * at(c, r + 1) + a * at(c + 1, r + 1))
+    }
+
     /// R = diag(1 / B^T 1) B^T: fine values averaged onto the coarse nodes (Deng et al. 2013 sample; averaging does not
     /// alias the borders of cells).
     ///

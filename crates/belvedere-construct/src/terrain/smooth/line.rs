@@ -64,6 +64,30 @@ impl<T: Real> Line<T> {
         if j & 1 == 0 { j / 2 } else { self.n - j.div_ceil(2) }
     }
 
+    /// Two sequences into reordered pairs.
+    pub(super) fn load(&self, a: &[T], b: &[T], z: &mut [Complex<T>]) {
+        let n = self.n;
+        let (even, odd) = z[..n].split_at_mut(n.div_ceil(2));
+        for ((z, a), b) in even.iter_mut().zip(a.iter().step_by(2)).zip(b.iter().step_by(2)) {
+            *z = Complex::new(*a, *b);
+        }
+        for ((z, a), b) in odd.iter_mut().rev().zip(a[1..].iter().step_by(2)).zip(b[1..].iter().step_by(2)) {
+            *z = Complex::new(*a, *b);
+        }
+    }
+
+    /// Reordered pairs back into two sequences.
+    pub(super) fn unload(&self, z: &[Complex<T>], a: &mut [T], b: &mut [T]) {
+        let n = self.n;
+        let (even, odd) = z[..n].split_at(n.div_ceil(2));
+        for ((z, a), b) in even.iter().zip(a.iter_mut().step_by(2)).zip(b.iter_mut().step_by(2)) {
+            (*a, *b) = (z.re, z.im);
+        }
+        for ((z, a), b) in odd.iter().rev().zip(a[1..].iter_mut().step_by(2)).zip(b[1..].iter_mut().step_by(2)) {
+            (*a, *b) = (z.re, z.im);
+        }
+    }
+
     /// Reordered samples of two sequences -> their spectra. `z` is used up.
     pub(super) fn forward(&self, z: &mut [Complex<T>], scratch: &mut [Complex<T>], a: &mut [T], b: &mut [T]) {
         let n = self.n;
@@ -72,15 +96,21 @@ impl<T: Real> Line<T> {
         let (z, a, b, turn) = (&z[..n], &mut a[..n], &mut b[..n], &self.turn[..n]);
         a[0] = turn[0].re * z[0].re;
         b[0] = turn[0].re * z[0].im;
-        for k in 1..=n / 2 {
+        for k in 1..n.div_ceil(2) {
             let m = n - k;
-            let (p, q, t, s) = (z[k], z[m], turn[k], turn[m]);
+            let (p, q, t) = (z[k], z[m], turn[k]);
             let va = Complex::new((p.re + q.re) * half, (p.im - q.im) * half);
             let vb = Complex::new((p.im + q.im) * half, (q.re - p.re) * half);
             a[k] = t.re * va.re - t.im * va.im;
             b[k] = t.re * vb.re - t.im * vb.im;
-            a[m] = s.re * va.re + s.im * va.im;
-            b[m] = s.re * vb.re + s.im * vb.im;
+            // turn[n - k] is turn[k] mirrored on the diagonal.
+            a[m] = -t.im * va.re - t.re * va.im;
+            b[m] = -t.im * vb.re - t.re * vb.im;
+        }
+        if n.is_multiple_of(2) {
+            let m = n / 2;
+            a[m] = turn[m].re * z[m].re;
+            b[m] = turn[m].re * z[m].im;
         }
     }
 

@@ -77,6 +77,11 @@ impl<T: Real> Smoother<T> {
         self.g
     }
 
+    /// Another temporal weight, clamped to what is possible. The transforms stay.
+    pub fn set_g(&mut self, g: f64) {
+        self.g = if g.is_finite() { g.clamp(0.0, 1e9) } else { 0.0 };
+    }
+
     /// w^2 + g^2.
     pub fn shift(&self) -> f64 {
         self.w * self.w + self.g * self.g
