@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 pub(super) struct Metric {
     cols: usize,
     rows: usize,
-    basis: [Vec<f64>; 2],
+    basis: [Cosines; 2],
     inverse: Vec<f64>,
     green: Vec<f64>,
     scratch: Vec<f64>,
@@ -19,26 +19,32 @@ pub(super) struct Metric {
 impl Metric {
     /// * `weight`: w^2 + g^2 > 0.
     pub(super) fn new(cols: usize, rows: usize, weight: f64) -> Self {
-        let basis = [cosines(cols), cosines(rows)];
-        let eigen = |n: usize| -> Vec<f64> { (0..n).map(|k| 2.0 * (PI * k as f64 / n as f64).cos() - 2.0).collect() };
+        let basis = [Cosines::new(cols), Cosines::new(rows)];
+        // Even frequencies first, as the transforms leave them; columns slow.
+        let eigen = |n: usize| -> Vec<f64> {
+            let order = (0..n).step_by(2).chain((1..n).step_by(2));
+            order.map(|k| 2.0 * (PI * k as f64 / n as f64).cos() - 2.0).collect()
+        };
         let (ex, ey) = (eigen(cols), eigen(rows));
         let inverse =
-            ey.iter().flat_map(|y| ex.iter().map(move |x| 1.0 / ((x + y) * (x + y) + weight))).collect::<Vec<_>>();
+            ex.iter().flat_map(|x| ey.iter().map(move |y| 1.0 / ((x + y) * (x + y) + weight))).collect::<Vec<_>>();
         let green = green(cols, rows, weight);
         Self { cols, rows, basis, inverse, green, scratch: vec![0.0; cols * rows] }
     }
 
     /// `H^-1 v` in place.
     pub(super) fn solve(&mut self, v: &mut [f64]) {
-        let [bx, by] = &self.basis;
+        let [across, down] = &self.basis;
         let (c, r) = (self.cols, self.rows);
-        multiply(by, v, &mut self.scratch, [r, r, c]);
-        multiply_transposed(&self.scratch, bx, v, [r, c, c]);
-        for (v, g) in v.iter_mut().zip(&self.inverse) {
+        down.forward(v, &mut self.scratch, c);
+        transpose(&self.scratch, v, [r, c]);
+        across.forward(v, &mut self.scratch, r);
+        for (v, g) in self.scratch.iter_mut().zip(&self.inverse) {
             *v *= g;
         }
-        multiply_left_transposed(by, v, &mut self.scratch, [r, r, c]);
-        multiply(&self.scratch, bx, v, [r, c, c]);
+        across.back(&mut self.scratch, v, r);
+        transpose(v, &mut self.scratch, [c, r]);
+        down.back(&mut self.scratch, v, c);
     }
 
     /// Entry (a, b) of the inverse of H; `a` and `b` are node indices.
@@ -54,13 +60,78 @@ impl Metric {
     }
 }
 
-/// Orthonormal DCT-II, row-major: row = frequency.
-fn cosines(n: usize) -> Vec<f64> {
-    let entry = |k: usize, i: usize| {
-        let scale = if k == 0 { (1.0 / n as f64).sqrt() } else { (2.0 / n as f64).sqrt() };
-        scale * (PI * k as f64 * (i as f64 + 0.5) / n as f64).cos()
-    };
-    (0..n).flat_map(|k| (0..n).map(move |i| entry(k, i))).collect()
+/// Orthonormal DCT-II of the columns of n x p matrices. Even frequencies see the sum of mirrored rows, odd ones the
+/// difference: two products of half the size.
+#[derive(Debug, Clone)]
+struct Cosines {
+    n: usize,
+    /// Even, odd: frequencies x rows, and its transpose.
+    parts: [Vec<f64>; 2],
+    back: [Vec<f64>; 2],
+}
+
+impl Cosines {
+    fn new(n: usize) -> Self {
+        let half = n.div_ceil(2);
+        let entry = |k: usize, i: usize| {
+            let scale = if k == 0 { (1.0 / n as f64).sqrt() } else { (2.0 / n as f64).sqrt() };
+            scale * (PI * k as f64 * (i as f64 + 0.5) / n as f64).cos()
+        };
+        let count = [half, n / 2];
+        let parts = [0, 1].map(|odd| {
+            (0..count[odd]).flat_map(|k| (0..half).map(move |i| entry(2 * k + odd, i))).collect::<Vec<f64>>()
+        });
+        let back = [0, 1].map(|odd| {
+            (0..half).flat_map(|i| (0..count[odd]).map(move |k| entry(2 * k + odd, i))).collect::<Vec<f64>>()
+        });
+        Self { n, parts, back }
+    }
+
+    /// Spectrum of `v` into `out`, even frequencies first; `v` is used up.
+    fn forward(&self, v: &mut [f64], out: &mut [f64], p: usize) {
+        let (n, half, pairs) = (self.n, self.n.div_ceil(2), self.n / 2);
+        let (top, bottom) = v.split_at_mut(half * p);
+        let even = &mut out[..half * p];
+        // The sums replace the upper rows, the differences the lower ones, nearest pair last.
+        for i in 0..pairs {
+            let a = &mut top[i * p..(i + 1) * p];
+            let b = &mut bottom[(pairs - 1 - i) * p..(pairs - i) * p];
+            for (a, b) in a.iter_mut().zip(b) {
+                (*a, *b) = (*a + *b, *a - *b);
+            }
+        }
+        multiply(&self.parts[0], top, even, [half, half, p]);
+        let differences = &bottom[..pairs * p];
+        for k in 0..pairs {
+            let weights: Vec<f64> = (0..pairs).rev().map(|i| self.parts[1][k * half + i]).collect();
+            combine(&weights, differences, &mut out[(half + k) * p..(half + k + 1) * p], [pairs, p]);
+        }
+        debug_assert_eq!(half + pairs, n);
+    }
+
+    /// Inverse of [`Self::forward`]; `spectrum` is used up.
+    fn back(&self, spectrum: &mut [f64], out: &mut [f64], p: usize) {
+        let (half, pairs) = (self.n.div_ceil(2), self.n / 2);
+        let (even, odd) = spectrum.split_at(half * p);
+        let (top, bottom) = out.split_at_mut(half * p);
+        multiply(&self.back[0], even, top, [half, half, p]);
+        for i in 0..pairs {
+            let b = &mut bottom[(pairs - 1 - i) * p..(pairs - i) * p];
+            combine(&self.back[1][i * pairs..(i + 1) * pairs], odd, b, [pairs, p]);
+            for (a, b) in top[i * p..(i + 1) * p].iter_mut().zip(b) {
+                (*a, *b) = (*a + *b, *a - *b);
+            }
+        }
+    }
+}
+
+/// `out = a^T` with a: n x m.
+fn transpose(a: &[f64], out: &mut [f64], [n, m]: [usize; 2]) {
+    for i in 0..n {
+        for j in 0..m {
+            out[j * n + i] = a[i * m + j];
+        }
+    }
 }
 
 /// Green's function of the periodic grid of 2 cols x 2 rows nodes at offsets 0..=cols, 0..=rows.
@@ -87,26 +158,27 @@ fn green(cols: usize, rows: usize, weight: f64) -> Vec<f64> {
 /// `out = a b` with a: n x m, b: m x p.
 fn multiply(a: &[f64], b: &[f64], out: &mut [f64], [n, m, p]: [usize; 3]) {
     for i in 0..n {
-        let row = &mut out[i * p..(i + 1) * p];
-        row.fill(0.0);
-        for (k, &f) in a[i * m..(i + 1) * m].iter().enumerate() {
-            for (o, v) in row.iter_mut().zip(&b[k * p..(k + 1) * p]) {
-                *o += f * v;
-            }
-        }
+        combine(&a[i * m..(i + 1) * m], b, &mut out[i * p..(i + 1) * p], [m, p]);
     }
 }
 
-/// `out = a^T b` with a: m x n, b: m x p.
-fn multiply_left_transposed(a: &[f64], b: &[f64], out: &mut [f64], [n, m, p]: [usize; 3]) {
-    for i in 0..n {
-        let row = &mut out[i * p..(i + 1) * p];
-        row.fill(0.0);
-        for k in 0..m {
-            let f = a[k * n + i];
-            for (o, v) in row.iter_mut().zip(&b[k * p..(k + 1) * p]) {
-                *o += f * v;
-            }
+/// `out = sum over k of weights[k] b[k]` with b: m x p, four rows at a time.
+#[inline]
+fn combine(weights: &[f64], b: &[f64], out: &mut [f64], [m, p]: [usize; 2]) {
+    out.fill(0.0);
+    let fours = m / 4 * 4;
+    for k in (0..fours).step_by(4) {
+        let [w0, w1, w2, w3] = [weights[k], weights[k + 1], weights[k + 2], weights[k + 3]];
+        let (b0, rest) = b[k * p..(k + 4) * p].split_at(p);
+        let (b1, rest) = rest.split_at(p);
+        let (b2, b3) = rest.split_at(p);
+        for ((((o, x0), x1), x2), x3) in out.iter_mut().zip(b0).zip(b1).zip(b2).zip(b3) {
+            *o += (w0 * x0 + w1 * x1) + (w2 * x2 + w3 * x3);
+        }
+    }
+    for k in fours..m {
+        for (o, x) in out.iter_mut().zip(&b[k * p..(k + 1) * p]) {
+            *o += weights[k] * x;
         }
     }
 }

@@ -4,6 +4,7 @@
 //! would come too close to a line of sight, and to a ceiling for every node. That a point is seen is linear in u, so the
 //! program is convex and its solution is the only one. Not in the paper.
 
+mod bent;
 mod cholesky;
 mod dual;
 mod metric;
@@ -15,6 +16,7 @@ mod solver;
 mod surface;
 mod walk;
 
+pub use bent::ViewSight;
 pub use problem::{
     Candidate, Certificate, LinesOfSight, QpError, QpOptions, QpProblem, QpResult, Reason, SolvedRow, StraightSight,
     Unresolved,

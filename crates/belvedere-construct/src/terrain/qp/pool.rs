@@ -22,8 +22,8 @@ pub(super) enum Place {
     Sight { id: u32, at: DVec2 },
 }
 
-/// A row without a multiplier is forgotten after so many frames.
-const IDLE: u32 = 3;
+/// A row without a multiplier is forgotten after so many frames; at once if it never had one at the end of a frame.
+pub(super) const IDLE: u32 = 3;
 
 #[derive(Debug, Default)]
 pub(super) struct Pool {

@@ -1,7 +1,7 @@
 //! Rows are found where they are missed, a few per round, until none is missed.
 
 use super::metric::Metric;
-use super::pool::{Kept, Place, Pool};
+use super::pool::{IDLE, Kept, Place, Pool};
 use super::problem::{QpError, QpOptions, QpProblem, QpResult, Reason, Unresolved};
 use super::row::Row;
 use super::seen::Seen;
@@ -95,7 +95,7 @@ impl QpSolver {
                 let (rounds, added) = (out.rounds + next.rounds, out.added + next.added);
                 out = QpResult { rounds, added, kept: out.kept, ..next };
                 let moved = before.iter().zip(&self.surface.u).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-                if moved < 0.5 * self.options.tolerance {
+                if moved < 0.1 * self.options.tolerance {
                     break;
                 }
             }
@@ -152,7 +152,7 @@ impl QpSolver {
                 break;
             }
             for row in new {
-                self.push(&mut frame, row, (0.0, 0));
+                self.push(&mut frame, row, (0.0, IDLE));
             }
         }
         self.report(&frame, &missed, depth, &mut out);
@@ -206,7 +206,7 @@ impl QpSolver {
     fn soften(&self, frame: &mut Frame) {
         frame.soft = 1.0 / LAST_PRICE;
         for row in std::mem::take(&mut frame.pool).rows {
-            self.push(frame, row, (0.0, 0));
+            self.push(frame, row, (0.0, IDLE));
         }
     }
 
@@ -222,7 +222,7 @@ impl QpSolver {
             }
             for node in risen {
                 let row = self.ceiling_row(frame, node);
-                self.push(frame, row, (0.0, 0));
+                self.push(frame, row, (0.0, IDLE));
             }
         }
         self.surface.displace(&u);

@@ -90,6 +90,13 @@ impl Chord {
     /// Calls `touch` with the worst place of each short part where the asked clearance is missed by more than the tolerance.
     pub(super) fn walk(&self, surface: &Surface, point: DVec2, clearance: &Clearance, touch: &mut impl FnMut(Touch)) {
         let Some(part) = self.part(surface, point, clearance.guard) else { return };
+        // Where counting begins and ends no kink need lie.
+        for t in part {
+            let end = self.place(surface, t, clearance);
+            if end.excess > clearance.tolerance * fade(end.tau) {
+                touch(end);
+            }
+        }
         let mut stack = [[0.0f64; 2]; 64];
         stack[0] = part;
         let mut depth = 1;
@@ -154,10 +161,45 @@ impl Chord {
             self.in_cell(surface, [middle, b], gap, best);
             return;
         }
-        self.crossings(surface, [a, b], &mut |t, at, ground| gap.judge(self, t, at, ground, best));
+        let mut nearest = f64::NEG_INFINITY;
+        self.crossings(surface, [a, b], &mut |t, at, ground| {
+            nearest = nearest.max(gap.judge(self, t, at, ground, best));
+        });
+        // Between two kinks the displaced ground may bulge.
+        let span = 1.0 / (self.ends[1] - self.ends[0]).abs().max_element();
+        let bulge = -0.25 * gap.c[2] * span * span;
+        if bulge > 0.0 && nearest.max(gap.missing(self, surface, a)).max(gap.missing(self, surface, b)) + bulge > 0.0 {
+            self.between(surface, [a, b], gap, best);
+        }
     }
 
-    /// Calls `visit` for every crossing of a part with the lines of the drawn mesh.
+    /// The top of the displaced ground between neighbouring kinks of a part.
+    fn between(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap, best: &mut Option<Touch>) {
+        let mut kinks = vec![(a, surface.ground(self.at(a))), (b, surface.ground(self.at(b)))];
+        self.crossings(surface, [a, b], &mut |t, _, ground| kinks.push((t, ground)));
+        kinks.sort_by(|x, y| x.0.total_cmp(&y.0));
+        for pair in kinks.windows(2) {
+            let [(t0, h0), (t1, h1)] = [pair[0], pair[1]];
+            let slope = (h1 - h0) / (t1 - t0);
+            let top = -0.5 * (slope + gap.c[1]) / gap.c[2];
+            if top > t0 && top < t1 {
+                gap.judge(self, top, self.at(top), h0 + slope * (top - t0), best);
+            }
+        }
+    }
+
+    /// The place at a parameter.
+    fn place(&self, surface: &Surface, t: f64, clearance: &Clearance) -> Touch {
+        self.touch(surface, t, self.at(t), surface.ground(self.at(t)), clearance)
+    }
+
+    fn touch(&self, surface: &Surface, t: f64, at: DVec2, ground: f64, clearance: &Clearance) -> Touch {
+        let (z, tau) = (Self::mix(self.z, t), Self::mix(self.tau, t));
+        let excess = ground + surface.lattice.at(&surface.u, at) - z + clearance.margin * fade(tau);
+        Touch { at, tau, ground, z, excess }
+    }
+
+    /// Calls `visit` for the ends of a part and every crossing with the lines of the drawn mesh.
     pub(super) fn kinks(
         &self,
         surface: &Surface,
@@ -165,11 +207,8 @@ impl Chord {
         clearance: &Clearance,
         visit: &mut impl FnMut(Touch),
     ) {
-        self.crossings(surface, part, &mut |t, at, ground| {
-            let (z, tau) = (Self::mix(self.z, t), Self::mix(self.tau, t));
-            let excess = ground + surface.lattice.at(&surface.u, at) - z + clearance.margin * fade(tau);
-            visit(Touch { at, tau, ground, z, excess });
-        });
+        part.iter().for_each(|&t| visit(self.place(surface, t, clearance)));
+        self.crossings(surface, part, &mut |t, at, ground| visit(self.touch(surface, t, at, ground, clearance)));
     }
 
     /// Calls `visit` with parameter, position and undisplaced ground of every kink of the drawn ground along a part.
@@ -256,14 +295,21 @@ impl Gap {
         most + self.clearance.margin * fade(tau)
     }
 
-    /// Takes a place into account.
+    /// Excess beyond the tolerance at `t`.
+    fn missing(&self, chord: &Chord, surface: &Surface, t: f64) -> f64 {
+        self.judge(chord, t, chord.at(t), surface.ground(chord.at(t)), &mut None)
+    }
+
+    /// Takes a place into account; returns its excess beyond the tolerance.
     #[inline]
-    fn judge(&self, chord: &Chord, t: f64, at: DVec2, ground: f64, best: &mut Option<Touch>) {
+    fn judge(&self, chord: &Chord, t: f64, at: DVec2, ground: f64, best: &mut Option<Touch>) -> f64 {
         let tau = Chord::mix(chord.tau, t);
         let share = fade(tau);
         let excess = ground + self.at(t) + self.clearance.margin * share;
-        if excess > self.clearance.tolerance * share && best.is_none_or(|b| excess > b.excess) {
+        let missing = excess - self.clearance.tolerance * share;
+        if missing > 0.0 && best.is_none_or(|b| excess > b.excess) {
             *best = Some(Touch { at, tau, ground, z: Chord::mix(chord.z, t), excess });
         }
+        missing
     }
 }

@@ -1,5 +1,7 @@
 //! The quadratic program of terrain disocclusion.
 
+mod bars;
+mod bent;
 mod cases;
 mod reference;
 mod small;

@@ -57,18 +57,20 @@ impl Small {
         (0..n * n).map(|i| (0..n * n).map(|j| product(i, j) + unit(i, j)).collect()).collect()
     }
 
-    /// Rows of every crossing of every line of sight with a line of the mesh or of the solver's grid.
+    /// Rows of every crossing of every line of sight with a line of the mesh or of the solver's grid, and of `parts - 1`
+    /// places between neighbours.
     pub(crate) fn sight_rows(
         &self,
         points: &[(DVec2, f64)],
         (eye, z): (DVec2, f64),
         guard: f64,
         margin: f64,
+        parts: usize,
     ) -> Vec<DenseRow> {
         let mut out = Vec::new();
         for &(p, lift) in points {
             let d = eye - p;
-            let mut cuts = Vec::new();
+            let mut cuts = vec![0.0, 1.0];
             let lines = |from: f64, to: f64, step: f64| {
                 let limit = (2.0 * self.n as f64 / step) as i64;
                 (-limit..=limit).map(move |k| (k as f64 * step - from) / (to - from)).filter(|t| *t > 0.0 && *t < 1.0)
@@ -78,16 +80,21 @@ impl Small {
                 cuts.extend(lines(p.y, eye.y, step));
             }
             cuts.extend(lines(p.x - p.y, eye.x - eye.y, 1.0));
-            for tau in cuts {
-                let x = p + tau * d;
-                let last = (self.n - 1) as f64;
-                if x.min_element() < 0.0 || x.max_element() > last || (x - p).length() < guard {
-                    continue;
+            cuts.push(guard / d.length());
+            cuts.sort_by(f64::total_cmp);
+            for pair in cuts.windows(2) {
+                for k in 0..parts {
+                    let tau = pair[0] + (pair[1] - pair[0]) * k as f64 / parts as f64;
+                    let x = p + tau * d;
+                    let last = (self.n - 1) as f64;
+                    if x.min_element() < 0.0 || x.max_element() > last || (x - p).length() < guard - 1e-9 {
+                        continue;
+                    }
+                    let (here, there) = (self.bilinear(x), self.bilinear(p));
+                    let row = here.iter().zip(&there).map(|(a, b)| a - (1.0 - tau) * b).collect();
+                    let line = (1.0 - tau) * (self.height(p) + lift) + tau * z;
+                    out.push(DenseRow { row, bound: line - self.height(x) - margin * (5.0 * tau).min(1.0) });
                 }
-                let (here, there) = (self.bilinear(x), self.bilinear(p));
-                let row = here.iter().zip(&there).map(|(a, b)| a - (1.0 - tau) * b).collect();
-                let line = (1.0 - tau) * (self.height(p) + lift) + tau * z;
-                out.push(DenseRow { row, bound: line - self.height(x) - margin * (5.0 * tau).min(1.0) });
             }
         }
         out
