@@ -191,12 +191,48 @@ pub(crate) struct RenderArgs {
     /// Straight beside bent
     #[arg(long, conflicts_with = "straight")]
     pub(crate) compare: bool,
-    /// Buffers to write beside the picture as NPY
+    /// Buffers to write beside the picture
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     pub(crate) aux: Vec<AuxKind>,
+    /// Format of the buffers: one NPY each (OUT.NAME.npy), or one OpenEXR (OUT.exr)
+    #[arg(long, value_enum, default_value = "npy")]
+    pub(crate) aux_format: AuxFormatKind,
+    /// Lines of the coordinate system on the ground, so that one sees what the bend moved; round spacing unless given
+    #[arg(long, value_name = "M", num_args = 0..=1, require_equals = true, value_parser = parse_spacing)]
+    pub(crate) grid: Option<Option<f64>>,
+    /// Colours for how far the bend moves what is seen
+    #[arg(long, conflicts_with = "straight")]
+    pub(crate) heatmap: bool,
+    /// The straight picture's ridges and routes, faintly over the bent one
+    #[arg(long, conflicts_with = "straight")]
+    pub(crate) ghost: bool,
+    /// Without the words "bent view" in the corner
+    #[arg(long)]
+    pub(crate) no_mark: bool,
+    /// Picture of the camera itself from above: rays, planes, viewpoints, curve
+    #[arg(long, conflicts_with_all = CAMERA_CONFLICTS)]
+    pub(crate) overhead: bool,
+    /// The same from a place of its own: eye and point to look at, or auto
+    #[arg(long, value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true, conflicts_with_all = CAMERA_CONFLICTS, conflicts_with = "overhead", value_parser = parse_outside)]
+    pub(crate) outside: Option<Outside>,
     /// Coverage samples per pixel: 1, 4 or 16
     #[arg(long, default_value_t = 4, value_name = "N")]
     pub(crate) samples: u32,
+}
+
+/// What makes no sense for pictures of the camera.
+const CAMERA_CONFLICTS: [&str; 6] = ["straight", "compare", "aux", "grid", "heatmap", "ghost"];
+
+/// Eye and target of a picture of the camera; `None` = chosen.
+pub(crate) type Outside = Option<[[f64; 3]; 2]>;
+
+/// Format of buffers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum AuxFormatKind {
+    /// NumPy arrays
+    Npy,
+    /// OpenEXR; 32-bit, world positions relative to the attribute worldOrigin
+    Exr,
 }
 
 /// Buffers beside a picture.
@@ -342,6 +378,23 @@ fn parse_eye(text: &str) -> Result<[f64; 3], String> {
     let numbers: Vec<f64> =
         text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
     numbers.try_into().map_err(|_| "give X,Y,Z".into())
+}
+
+/// A length in scene units.
+fn parse_spacing(text: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(|v: &f64| *v > 0.0 && v.is_finite()).ok_or("give a length greater than 0".into())
+}
+
+/// `auto`, or six numbers.
+fn parse_outside(text: &str) -> Result<Outside, String> {
+    if text.trim() == "auto" {
+        return Ok(None);
+    }
+    let v: Vec<f64> = text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
+    match v[..] {
+        [a, b, c, d, e, f] => Ok(Some([[a, b, c], [d, e, f]])),
+        _ => Err("give auto, or eye and target as X,Y,Z,X,Y,Z".into()),
+    }
 }
 
 /// Bytes of `512MiB`, `2GB`, `100000`.

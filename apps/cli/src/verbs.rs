@@ -1,14 +1,14 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AuxKind, DemoArgs, InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs,
+    AuxFormatKind, AuxKind, DemoArgs, InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs,
     SchemaArgs, ShowArgs, Verb,
 };
 use crate::report::{Context, done, print};
-use belvedere::verbs::render::{self, AuxBuffer, RenderRequest};
+use belvedere::verbs::render::{self, AuxBuffer, AuxFormat, RenderRequest};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
 use belvedere::verbs::{check, demo, info, measure, output, pick, points};
-use belvedere::{Needs, Session};
+use belvedere::{CameraPicture, Needs, Session};
 use std::path::{Path, PathBuf};
 
 /// Whether a verb reached its stated goal.
@@ -85,6 +85,14 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
             AuxKind::Displacement => AuxBuffer::Displacement,
         })
         .collect();
+    request.aux_format = match args.aux_format {
+        AuxFormatKind::Npy => AuxFormat::Npy,
+        AuxFormatKind::Exr => AuxFormat::Exr,
+    };
+    (request.grid, request.heatmap, request.ghost, request.no_mark) =
+        (args.grid, args.heatmap, args.ghost, args.no_mark);
+    let overhead = args.overhead.then_some(CameraPicture::Overhead);
+    request.camera = overhead.or(args.outside.map(CameraPicture::Outside));
     png_named(&args.out)?;
     let outputs = render::outputs(&args.out, &request);
     for path in &outputs {

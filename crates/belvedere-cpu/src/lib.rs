@@ -5,6 +5,7 @@
 //! coloured independently, so the picture is the same, byte for byte, for any number of threads.
 
 mod blocks;
+pub mod canvas;
 mod displace;
 mod exact;
 mod lens;
@@ -165,17 +166,19 @@ fn draw_surfaces(
 /// Lines and points over the surfaces, and the stored colours.
 fn finish(marks: &Marks, lens: &Lens, buffers: &mut Buffers) -> Vec<[u8; 3]> {
     let chunk = BAND * lens.width as usize;
+    let depth = &buffers.depth;
     let mut out = vec![[0u8; 3]; buffers.color.len()];
     out.par_chunks_mut(chunk)
         .zip(buffers.color.par_chunks_mut(chunk))
         .zip(buffers.id.par_chunks_mut(chunk))
         .enumerate()
         .for_each(|(i, ((out, color), id))| {
-            marks.draw((i * BAND) as i32, lens.width, color, id);
+            marks.draw((i * BAND) as i32, lens, depth, color, id);
             for (o, c) in out.iter_mut().zip(color.iter()) {
                 *o = c.encode();
             }
         });
+    marks.write_names(&mut out, lens.width as usize);
     out
 }
 

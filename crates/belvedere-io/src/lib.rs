@@ -8,6 +8,7 @@ pub mod esri_ascii;
 pub mod geotiff;
 pub mod hgt;
 pub mod mesh;
+pub mod open_exr;
 pub mod png;
 pub mod raster;
 pub mod terrain;

@@ -1,6 +1,6 @@
 //! Pictures and who makes them.
 
-use crate::{Cancelled, Light, Progress, Scene};
+use crate::{Cancelled, Light, Overlay, Progress, Scene};
 use belvedere_core::View;
 
 /// Buffers wanted beside colour, depth and id.
@@ -24,13 +24,22 @@ pub struct RenderOptions {
     pub threads: usize,
     /// Extra buffers.
     pub aux: Aux,
+    /// Marks that belong to no layer.
+    pub overlay: Overlay,
     /// Memory the renderer may use for one picture, bytes; more is [`RenderError::TooLarge`].
     pub max_bytes: u64,
 }
 
 impl Default for RenderOptions {
     fn default() -> Self {
-        Self { samples: 4, tolerance_px: 0.5, threads: 0, aux: Aux::default(), max_bytes: 4 << 30 }
+        Self {
+            samples: 4,
+            tolerance_px: 0.5,
+            threads: 0,
+            aux: Aux::default(),
+            overlay: Overlay::default(),
+            max_bytes: 4 << 30,
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Layers and their styles.
 
-use crate::{Heightfield, MeshLayer};
+use crate::{DistanceMarkers, Heightfield, MeshLayer, PointLook};
 use belvedere_core::{Aabb, DVec2, DVec3};
 
 /// sRGB colour with straight alpha, 8 bits per channel.
@@ -134,6 +134,8 @@ pub struct LineLayer {
     pub hidden: Hidden,
     /// Height above ground at which the line is drawn and judged visible, metres.
     pub lift_m: f64,
+    /// Marks along each line at equal distances; `None` = none.
+    pub markers: Option<DistanceMarkers>,
 }
 
 /// One polygon of an area layer.
@@ -182,6 +184,8 @@ pub struct PointLayer {
     pub color: Color,
     /// Diameter on screen, pixels.
     pub size_px: f64,
+    /// Symbol, casing and names.
+    pub look: PointLook,
     /// Style of hidden points.
     pub hidden: Hidden,
     /// Height above ground, metres.

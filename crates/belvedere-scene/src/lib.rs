@@ -10,6 +10,7 @@ pub mod layer;
 pub mod light;
 pub mod mesh;
 pub mod mesh_tree;
+pub mod overlay;
 pub mod progress;
 pub mod route;
 pub mod scene;
@@ -25,6 +26,7 @@ pub use layer::{
 pub use light::Light;
 pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer};
 pub use mesh_tree::MeshTree;
+pub use overlay::{DistanceMarkers, Overlay, OverlayFace, OverlayLine, OverlayPoint, PointLook, Symbol};
 pub use progress::{Cancelled, Progress};
 pub use route::{RouteCost, RouteError, least_cost_route, valley_route};
 pub use scene::{Crs, Scene, Unit};

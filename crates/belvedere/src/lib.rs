@@ -9,6 +9,7 @@
 //! ```
 
 mod error;
+mod figures;
 pub mod provenance;
 mod resolve;
 pub mod scene_file;
@@ -18,6 +19,7 @@ pub mod verbs;
 pub use belvedere_core as core;
 pub use belvedere_scene as scene;
 pub use error::BelvedereError;
+pub use figures::camera::CameraPicture;
 pub use session::{Needs, OpenOptions, Session};
 
 /// Version of the program.

@@ -3,6 +3,7 @@
 mod bad_scenes;
 mod exact;
 mod meshes;
+mod marks;
 mod numbers;
 mod odd_files;
 mod pick;

@@ -48,6 +48,7 @@ pub(crate) fn line_layer(id: &str, points: Vec<DVec3>) -> Layer {
         casing: None,
         hidden: Hidden::Dash,
         lift_m: 1.0,
+        markers: None,
     });
     Layer { id: id.into(), must_see: true, kind }
 }
@@ -59,6 +60,7 @@ pub(crate) fn point_layer(id: &str, position: DVec3) -> Layer {
         size_px: 8.0,
         hidden: Hidden::Fade,
         lift_m: 1.0,
+        look: belvedere_scene::PointLook::default(),
     });
     Layer { id: id.into(), must_see: true, kind }
 }

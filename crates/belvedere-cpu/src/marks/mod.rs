@@ -1,51 +1,90 @@
-//! Lines, outlines and points, drawn over the surfaces.
+//! Lines, outlines, points and names, drawn over the surfaces.
 
+mod dash;
+mod distance;
+mod face;
+mod label;
 mod path;
 mod ribbon;
+mod sight;
+mod symbol;
 mod visibility;
 
 use crate::BAND;
+use crate::canvas::Canvas;
 use crate::lens::{Lens, Pass};
 use crate::shade::color::{Packed, linear};
 use belvedere_core::{DVec2, DVec3};
-use belvedere_scene::{AreaLayer, Color, Hidden, LayerKind, LineLayer, PointLayer, RenderJob, Scene};
-use path::PathPoint;
+use belvedere_scene::{
+    AreaLayer, Color, Hidden, LayerKind, LineLayer, OverlayLine, OverlayPoint, PointLayer, PointLook, RenderJob, Scene,
+    Symbol,
+};
+use face::Face;
+use label::{Labels, Wish};
+use path::Place;
 use rayon::prelude::*;
 use ribbon::{Ink, Lane, Sheet, Stroke};
-use visibility::{DepthMap, Station, stations};
+use sight::Sight;
+use visibility::{DepthMap, Judge, Run};
 
-/// Lengths of dash and gap in widths of the line, and the width of a hidden line in widths of the visible one.
-const DASH: [f64; 2] = [2.4, 2.0];
+/// Width of a hidden line in widths of the visible one.
 const HIDDEN_WIDTH: f64 = 0.6;
+/// Height of the letters at distance marks and at the rim of a grid, pixels.
+const SMALL_PX: f64 = 11.0;
 
 /// All marks of a frame, in the order of the layers.
 pub(crate) struct Marks {
+    under: Vec<Sheet>,
+    faces: Vec<Face>,
     sheets: Vec<Sheet>,
+    labels: Labels,
 }
 
 impl Marks {
-    /// * `depth`: surfaces at the pixel centres, to judge visibility by.
+    /// * `depth`: surfaces at the pixel centres.
     pub(crate) fn new(job: &RenderJob<'_>, passes: &[Pass<'_>], lens: &Lens, tolerance_px: f64, depth: &[f32]) -> Self {
         let map = DepthMap { depth, width: lens.width, height: lens.height };
-        let maker = Maker { scene: job.scene, passes, lens, tolerance_px, map };
-        let sheets = job.scene.layers.iter().enumerate().filter_map(|(i, layer)| {
+        let sight = Sight::new(job.scene, job.view);
+        let maker = Maker { scene: job.scene, passes, lens, tolerance_px, map, sight: &sight };
+        let overlay = &job.options.overlay;
+        let mut wishes: Vec<Wish> = Vec::new();
+        let mut sheets: Vec<Sheet> = Vec::new();
+        for (i, layer) in job.scene.layers.iter().enumerate() {
             let id = i as u32 + 1;
             match &layer.kind {
-                LayerKind::Line(l) => Some(maker.line_layer(l, id)),
-                LayerKind::Area(a) => maker.outlines(a, id),
-                LayerKind::Point(p) => Some(maker.points(p, id)),
-                _ => None,
+                LayerKind::Line(l) => {
+                    sheets.push(maker.line_layer(l, id));
+                    sheets.extend(maker.distances(l, id, &mut wishes));
+                }
+                LayerKind::Area(a) => sheets.extend(maker.outlines(a, id)),
+                LayerKind::Point(p) => sheets.push(maker.points(p, id, &mut wishes)),
+                _ => {}
             }
-        });
-        Self { sheets: sheets.collect() }
+        }
+        sheets.extend(overlay.over.iter().map(|l| maker.overlay_line(l, &mut wishes)));
+        sheets.extend(overlay.points.iter().map(|p| maker.overlay_point(p, &mut wishes)));
+        let under = overlay.under.iter().map(|l| maker.overlay_line(l, &mut wishes)).collect();
+        let faces = overlay.faces.iter().flat_map(|f| passes.iter().filter_map(|p| Face::new(f, p, lens)));
+        Self { under, faces: faces.collect(), sheets, labels: Labels::place(wishes, 2.0 * lens.center) }
     }
 
-    /// Draws the rows from `y0` on, one band.
-    pub(crate) fn draw(&self, y0: i32, width: i32, color: &mut [Packed], id: &mut [u32]) {
+    /// Draws the rows from `y0` on, one band; `depth` as in [`Marks::new`].
+    pub(crate) fn draw(&self, y0: i32, lens: &Lens, depth: &[f32], color: &mut [Packed], id: &mut [u32]) {
         let mut masks = ribbon::Masks::default();
-        for sheet in &self.sheets {
-            sheet.draw(&mut masks, y0, width, color, id);
+        for sheet in &self.under {
+            sheet.draw(&mut masks, y0, lens.width, color, id);
         }
+        for face in &self.faces {
+            face.draw(lens, y0, color, depth);
+        }
+        for sheet in &self.sheets {
+            sheet.draw(&mut masks, y0, lens.width, color, id);
+        }
+    }
+
+    /// Writes the names over the finished picture.
+    pub(crate) fn write_names(&self, pixels: &mut [[u8; 3]], width: usize) {
+        self.labels.draw(&mut Canvas::new(pixels, width));
     }
 }
 
@@ -55,6 +94,7 @@ struct Maker<'a> {
     lens: &'a Lens,
     tolerance_px: f64,
     map: DepthMap<'a>,
+    sight: &'a Sight<'a>,
 }
 
 /// Width and treatment of hidden parts of a line.
@@ -63,52 +103,77 @@ struct Style {
     half_px: f64,
     casing_px: Option<f64>,
     hidden: Hidden,
+    lift_m: f64,
+}
+
+/// Symbol of a point and treatment of hidden ones.
+#[derive(Clone, Copy)]
+struct Marker {
+    symbol: Symbol,
+    half_px: f64,
+    casing: bool,
+    hidden: Hidden,
 }
 
 impl Maker<'_> {
     fn line_layer(&self, layer: &LineLayer, id: u32) -> Sheet {
         let half_px = 0.5 * width_or_none(layer.width_px);
         let casing_px = layer.casing.map(|_| casing_of(half_px));
-        let style = Style { half_px, casing_px, hidden: layer.hidden };
-        let paths = layer.features.iter().map(|f| f.points.as_slice()).collect::<Vec<_>>();
-        self.sheet(&paths, layer.lift_m, style, inks(layer.color, layer.casing, layer.hidden), id)
+        let style = Style { half_px, casing_px, hidden: layer.hidden, lift_m: layer.lift_m };
+        let paths = layer.features.par_iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m)).collect();
+        self.sheet(paths, style, inks(layer.color, layer.casing, layer.hidden), id)
     }
 
     fn outlines(&self, layer: &AreaLayer, id: u32) -> Option<Sheet> {
         let color = layer.outline?;
-        let hf = self.scene.terrain()?;
-        let step = 0.9 * hf.spacing().min_element();
-        let mut paths: Vec<Vec<DVec3>> = Vec::new();
+        let mut paths: Vec<Vec<Place>> = Vec::new();
         for ring in layer.features.iter().flat_map(|f| &f.rings) {
-            let mut path = Vec::new();
-            for (i, &a) in ring.iter().enumerate() {
-                let b = ring[(i + 1) % ring.len()];
-                let n = ((b - a).length() / step).ceil().clamp(1.0, 4096.0) as usize;
-                for k in usize::from(i > 0)..=n {
-                    let xy = a.lerp(b, k as f64 / n as f64);
-                    match hf.surface_at(xy) {
-                        Some(z) => path.push(xy.extend(z)),
-                        None => paths.push(std::mem::take(&mut path)),
-                    }
-                }
-            }
-            paths.push(path);
+            let closed = ring.iter().chain(ring.first()).map(|xy| xy.extend(0.0));
+            paths.extend(path::lay(self.scene, &closed.collect::<Vec<_>>(), layer.lift_m));
         }
-        let style = Style { half_px: 0.5 * width_or_none(layer.width_px), casing_px: None, hidden: layer.hidden };
-        let paths: Vec<&[DVec3]> = paths.iter().map(Vec::as_slice).collect();
-        Some(self.sheet(&paths, layer.lift_m, style, inks(color, None, layer.hidden), id))
+        let half_px = 0.5 * width_or_none(layer.width_px);
+        let style = Style { half_px, casing_px: None, hidden: layer.hidden, lift_m: layer.lift_m };
+        Some(self.sheet(paths, style, inks(color, None, layer.hidden), id))
     }
 
-    fn sheet(&self, paths: &[&[DVec3]], lift_m: f64, style: Style, inks: [Ink; 3], id: u32) -> Sheet {
+    fn overlay_line(&self, line: &OverlayLine, wishes: &mut Vec<Wish>) -> Sheet {
+        let half_px = 0.5 * width_or_none(line.width_px);
+        let casing_px = line.casing.map(|_| casing_of(half_px));
+        let style = Style { half_px, casing_px, hidden: line.hidden, lift_m: 0.0 };
+        let paths = match line.on_ground {
+            true => path::lay(self.scene, &line.points, 0.0),
+            false => vec![path::as_given(&line.points)],
+        };
+        if !line.label.is_empty() {
+            wishes.extend(self.rim_label(line, &paths, style));
+        }
+        self.sheet(paths, style, inks(line.color, line.casing, line.hidden), 0)
+    }
+
+    /// The text of a line at its visible end nearest to the bottom of the picture.
+    fn rim_label(&self, line: &OverlayLine, paths: &[Vec<Place>], style: Style) -> Option<Wish> {
+        let size = 2.0 * self.lens.center;
+        let margin = DVec2::splat(1.5 * SMALL_PX);
+        let inside = |p: DVec2| p.cmpge(margin).all() && p.cmple(size - margin).all();
+        let runs = paths.iter().flat_map(|p| self.runs(p, style));
+        let parts = runs.flat_map(|r| r.1.parts()).filter(|(visible, _)| *visible);
+        let ends = parts.filter_map(|(_, part)| {
+            let mut seen = part.iter().map(|s| s.pixel).filter(|p| inside(*p));
+            let first = seen.next()?;
+            Some([first, seen.next_back().unwrap_or(first)])
+        });
+        let at = ends.flatten().max_by(|a, b| a.y.total_cmp(&b.y))?;
+        let (text, color) = (line.label.clone(), line.color.with_alpha(255));
+        Some(Wish { text, at, marker: [2.0, 2.0], size_px: SMALL_PX, color, leader: false })
+    }
+
+    fn sheet(&self, paths: Vec<Vec<Place>>, style: Style, inks: [Ink; 3], id: u32) -> Sheet {
         let strokes: Vec<Vec<Stroke>> = paths
             .par_iter()
-            .map(|points| {
+            .map(|places| {
                 let mut strokes = Vec::new();
-                let ground = path::drape(self.scene, points, lift_m);
-                for pass in self.passes {
-                    for piece in path::project(pass, self.lens, &ground, self.tolerance_px) {
-                        self.strokes(&piece, style, &mut strokes);
-                    }
+                for (_, run) in self.runs(places, style) {
+                    self.strokes(&run, style, &mut strokes);
                 }
                 strokes
             })
@@ -116,58 +181,152 @@ impl Maker<'_> {
         Sheet::new(strokes.concat(), inks, id, self.lens.height as usize, BAND)
     }
 
-    fn strokes(&self, piece: &[PathPoint], style: Style, out: &mut Vec<Stroke>) {
+    /// Images of a line in every pass, with the number of the pass.
+    fn runs(&self, places: &[Place], style: Style) -> Vec<(usize, Run)> {
         let reach = style.half_px + 4.0;
-        for run in stations(piece, self.lens, self.map, reach) {
-            for (visible, part) in parts_of(&run) {
-                if visible || style.hidden == Hidden::Show {
-                    if let Some(casing) = style.casing_px {
-                        trace(part, casing, Lane::Casing, out);
-                    }
-                    trace(part, style.half_px, if visible { Lane::Fill } else { Lane::Shown }, out);
-                } else {
-                    let half = style.half_px * HIDDEN_WIDTH;
-                    match style.hidden {
-                        Hidden::Fade => trace(part, half, Lane::Hidden, out),
-                        Hidden::Dash => dashes(part, style.half_px * 2.0, half, out),
-                        Hidden::Show | Hidden::Cut => {}
-                    }
+        let mut runs = Vec::new();
+        for (i, pass) in self.passes.iter().enumerate() {
+            let judge = Judge { pass, lens: self.lens, map: self.map, sight: self.sight, lift_m: style.lift_m };
+            for piece in path::project(pass, self.lens, places, self.tolerance_px) {
+                runs.extend(judge.runs(&piece, reach).into_iter().map(|run| (i, run)));
+            }
+        }
+        runs
+    }
+
+    fn strokes(&self, run: &Run, style: Style, out: &mut Vec<Stroke>) {
+        for (visible, part) in run.parts() {
+            if visible || style.hidden == Hidden::Show {
+                if let Some(casing) = style.casing_px {
+                    dash::trace(&part, casing, Lane::Casing, out);
+                }
+                dash::trace(&part, style.half_px, if visible { Lane::Fill } else { Lane::Shown }, out);
+            } else {
+                let half = style.half_px * HIDDEN_WIDTH;
+                match style.hidden {
+                    Hidden::Fade => dash::trace(&part, half, Lane::Hidden, out),
+                    Hidden::Dash => dash::dashes(&part, style.half_px * 2.0, half, out),
+                    Hidden::Show | Hidden::Cut => {}
                 }
             }
         }
     }
 
-    fn points(&self, layer: &PointLayer, id: u32) -> Sheet {
-        let half = 0.5 * width_or_none(layer.size_px);
+    /// Marks at equal distances along the lines of a layer.
+    fn distances(&self, layer: &LineLayer, id: u32, wishes: &mut Vec<Wish>) -> Option<Sheet> {
+        let markers = layer.markers?;
+        let lines: Vec<_> = layer.features.iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m)).collect();
+        let lengths = lines.iter().filter_map(|l| l.last().map(|p| p.along));
+        let every = distance::spacing(markers, lengths)?;
+        let half_px = (0.5 * width_or_none(layer.width_px)).max(1.0) + 1.2;
+        // A hidden mark would drown among the dashes.
+        let hidden = if layer.hidden == Hidden::Show { Hidden::Show } else { Hidden::Cut };
+        let marker = Marker { symbol: Symbol::Dot, half_px, casing: true, hidden };
         let mut strokes = Vec::new();
-        for feature in &layer.features {
-            let p = feature.position + DVec3::Z * layer.lift_m;
-            for pass in self.passes {
-                let Some(v) = pass.displace(p).map(|d| self.lens.view_from(d)) else { continue };
-                if !v.is_finite() || !self.lens.is_drawable(v) || pass.margins(p).iter().any(|m| !(*m >= 0.0)) {
-                    continue;
-                }
-                let pixel = self.lens.pixel(v);
-                let visible = self.map.behind(self.lens, pixel, v.z).is_none_or(|b| b <= 1.5);
-                self.disc(pixel, half, visible, layer.hidden, &mut strokes);
+        for (place, text) in lines.iter().flat_map(|l| distance::places(l, every)) {
+            for at in self.mark(&place, layer.lift_m, marker, &mut strokes) {
+                let color = darker(layer.color);
+                let side = half_px + 2.0;
+                wishes.push(Wish {
+                    text: text.clone(),
+                    at,
+                    marker: [side, side],
+                    size_px: SMALL_PX,
+                    color,
+                    leader: false,
+                });
             }
         }
-        let casing = Color::rgb(255, 255, 255);
-        Sheet::new(strokes, inks(layer.color, Some(casing), layer.hidden), id, self.lens.height as usize, BAND)
+        let white = Color::rgb(255, 255, 255);
+        let inks = inks(white, Some(layer.color), hidden);
+        Some(Sheet::new(strokes, inks, id, self.lens.height as usize, BAND))
     }
 
-    fn disc(&self, pixel: DVec2, half: f64, visible: bool, hidden: Hidden, out: &mut Vec<Stroke>) {
-        let mut dot = |half: f64, lane: Lane| out.push(Stroke::new(pixel, pixel, half, lane));
-        match (visible, hidden) {
-            (true, _) | (false, Hidden::Show) => {
-                dot(casing_of(half), Lane::Casing);
-                dot(half, if visible { Lane::Fill } else { Lane::Shown });
-            }
-            (false, Hidden::Fade) => dot(half, Lane::Hidden),
-            (false, Hidden::Dash) => dot(half * HIDDEN_WIDTH, Lane::Hidden),
-            (false, Hidden::Cut) => {}
+    fn points(&self, layer: &PointLayer, id: u32, wishes: &mut Vec<Wish>) -> Sheet {
+        let half_px = 0.5 * width_or_none(layer.size_px);
+        let PointLook { symbol, casing, label_px } = layer.look;
+        let marker = Marker { symbol, half_px, casing: casing.is_some(), hidden: layer.hidden };
+        let found: Vec<(Vec<Stroke>, Vec<DVec2>)> = layer
+            .features
+            .par_iter()
+            .map(|feature| {
+                let p = feature.position + DVec3::Z * layer.lift_m;
+                let mut strokes = Vec::new();
+                let place = Place { p, along: 0.0, on_ground: false };
+                let named = self.mark(&place, layer.lift_m, marker, &mut strokes);
+                (strokes, named)
+            })
+            .collect();
+        let mut strokes = Vec::new();
+        for (feature, (s, named)) in layer.features.iter().zip(found) {
+            strokes.extend(s);
+            let Some(size_px) = label_px.filter(|_| !feature.name.trim().is_empty()) else { continue };
+            wishes.extend(named.into_iter().map(|at| wish(feature.name.trim(), at, marker, size_px, layer.color)));
         }
+        Sheet::new(strokes, inks(layer.color, casing, layer.hidden), id, self.lens.height as usize, BAND)
     }
+
+    fn overlay_point(&self, point: &OverlayPoint, wishes: &mut Vec<Wish>) -> Sheet {
+        let half_px = 0.5 * width_or_none(point.size_px);
+        let marker = Marker { symbol: point.symbol, half_px, casing: true, hidden: point.hidden };
+        let place = Place { p: point.position, along: 0.0, on_ground: false };
+        let mut strokes = Vec::new();
+        let named = self.mark(&place, 0.0, marker, &mut strokes);
+        if !point.label.is_empty() {
+            wishes.extend(named.into_iter().map(|at| wish(&point.label, at, marker, 13.0, point.color)));
+        }
+        let casing = Some(Color::rgb(255, 255, 255));
+        Sheet::new(strokes, inks(point.color, casing, point.hidden), 0, self.lens.height as usize, BAND)
+    }
+
+    /// Draws a marker at every image of a place; returns where a name belongs.
+    fn mark(&self, place: &Place, lift_m: f64, marker: Marker, out: &mut Vec<Stroke>) -> Vec<DVec2> {
+        let mut named = Vec::new();
+        for pass in self.passes {
+            let p = self.sight.on_surface(place, lift_m);
+            let Some(v) = pass.displace(p).map(|d| self.lens.view_from(d)) else { continue };
+            if !v.is_finite() || !self.lens.is_drawable(v) || pass.margins(p).iter().any(|m| !(*m >= 0.0)) {
+                continue;
+            }
+            let pixel = self.lens.pixel(v);
+            let Some(behind) = self.map.behind(self.lens, pixel, v.z) else { continue };
+            let visible = self.sight.sees(self.lens, pixel, v.z).unwrap_or(behind <= 1.5);
+            stamp(pixel, marker, visible, out);
+            if visible || marker.hidden == Hidden::Show {
+                named.push(pixel);
+            }
+        }
+        named
+    }
+}
+
+/// Strokes of a marker.
+fn stamp(at: DVec2, marker: Marker, visible: bool, out: &mut Vec<Stroke>) {
+    let Marker { symbol, half_px: half, casing, hidden } = marker;
+    let mut put = |half: f64, grow: f64, lane: Lane| out.push(Stroke::symbol(symbol, at, half, grow, lane));
+    match (visible, hidden) {
+        (true, _) | (false, Hidden::Show) => {
+            if casing {
+                put(half, casing_of(half) - half, Lane::Casing);
+            }
+            put(half, 0.0, if visible { Lane::Fill } else { Lane::Shown });
+        }
+        (false, Hidden::Fade) => put(half, 0.0, Lane::Hidden),
+        (false, Hidden::Dash) => put(half * HIDDEN_WIDTH, 0.0, Lane::Hidden),
+        (false, Hidden::Cut) => {}
+    }
+}
+
+fn wish(text: &str, at: DVec2, marker: Marker, size_px: f64, color: Color) -> Wish {
+    let side = marker.half_px + 2.0;
+    let above = symbol::top(marker.symbol) * marker.half_px + 2.5;
+    Wish { text: text.to_owned(), at, marker: [side, above], size_px, color: darker(color), leader: true }
+}
+
+/// A colour that reads as text.
+fn darker(c: Color) -> Color {
+    let [r, g, b] = [c.r, c.g, c.b].map(|v| (f32::from(v) * 0.6) as u8);
+    Color::rgb(r, g, b)
 }
 
 /// A width that cannot be drawn is none.
@@ -184,58 +343,4 @@ fn inks(color: Color, casing: Option<Color>, hidden: Hidden) -> [Ink; 3] {
     let ink = |c: Color, share: f32| Ink { color: linear([c.r, c.g, c.b]), alpha: share * f32::from(c.a) / 255.0 };
     let faint = if hidden == Hidden::Fade { 0.45 } else { 0.75 };
     [ink(color, faint), ink(casing.unwrap_or(color), if casing.is_some() { 0.9 } else { 0.0 }), ink(color, 1.0)]
-}
-
-/// Maximal parts of one visibility. A hidden part reaches to the visible stations beside it, so that no gap opens.
-fn parts_of(run: &[Station]) -> Vec<(bool, &[Station])> {
-    let mut parts = Vec::new();
-    let mut start = 0;
-    while start < run.len() {
-        let visible = run[start].visible;
-        let end = start + run[start..].iter().take_while(|s| s.visible == visible).count();
-        let grow = usize::from(!visible);
-        parts.push((visible, &run[start.saturating_sub(grow)..(end + grow).min(run.len())]));
-        start = end;
-    }
-    parts
-}
-
-/// Strokes along stations, as few as straightness allows.
-fn trace(part: &[Station], half: f64, lane: Lane, out: &mut Vec<Stroke>) {
-    if half <= 0.0 {
-        return;
-    }
-    if let [only] = part {
-        out.push(Stroke::new(only.pixel, only.pixel, half, lane));
-    }
-    let mut from = 0;
-    while from + 1 < part.len() {
-        let mut to = from + 1;
-        while to + 1 < part.len() && to - from < 24 {
-            let (a, b) = (part[from].pixel, part[to + 1].pixel);
-            let straight = part[from + 1..=to].iter().all(|s| crate::shade::area::distance(s.pixel, a, b) < 0.06);
-            if !straight {
-                break;
-            }
-            to += 1;
-        }
-        out.push(Stroke::new(part[from].pixel, part[to].pixel, half, lane));
-        from = to;
-    }
-}
-
-/// Dashes at fixed places of the whole line, so that they do not jump where the line comes out of hiding.
-fn dashes(part: &[Station], width: f64, half: f64, out: &mut Vec<Stroke>) {
-    let [on, off] = DASH.map(|d| d * width.max(1.5));
-    let period = on + off;
-    let mut dash: Vec<Station> = Vec::new();
-    for s in part {
-        if s.arc_px.rem_euclid(period) < on {
-            dash.push(*s);
-        } else {
-            trace(&dash, half, Lane::Hidden, out);
-            dash.clear();
-        }
-    }
-    trace(&dash, half, Lane::Hidden, out);
 }

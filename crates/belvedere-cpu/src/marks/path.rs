@@ -14,14 +14,45 @@ const MAX_HALVINGS: u32 = 8;
 pub(crate) struct PathPoint {
     pub(crate) pixel: DVec2,
     pub(crate) depth: f64,
+    /// Where it is.
+    pub(crate) place: Place,
+}
+
+/// A point of a line in the world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Place {
+    /// Scene coordinates, lifted.
+    pub(crate) p: DVec3,
+    /// Length of the line from its beginning, scene units.
+    pub(crate) along: f64,
+    /// Whether the line lies on the ground here.
+    pub(crate) on_ground: bool,
+}
+
+impl Place {
+    pub(crate) fn lerp(self, other: Self, t: f64) -> Self {
+        Self {
+            p: self.p.lerp(other.p, t),
+            along: self.along + t * (other.along - self.along),
+            on_ground: self.on_ground && other.on_ground,
+        }
+    }
 }
 
 /// The line laid on the drawn surface: vertices and enough points between them to follow its triangles, lifted.
-pub(crate) fn drape(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<DVec3> {
+pub(crate) fn drape(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<Place> {
     let lift = DVec3::Z * lift_m;
-    let mut out = Vec::with_capacity(points.len() * 3);
-    let Some(hf) = scene.terrain() else { return points.iter().map(|&p| p + lift).collect() };
+    let mut out: Vec<Place> = Vec::with_capacity(points.len() * 3);
+    let mut push = |p: DVec3, on_ground: bool| {
+        let along = out.last().map_or(0.0, |l| l.along + l.p.distance(p));
+        out.push(Place { p, along, on_ground });
+    };
+    let Some(hf) = scene.terrain() else {
+        points.iter().for_each(|&p| push(p + lift, false));
+        return out;
+    };
     let step = 0.4 * hf.spacing().min_element();
+    let mut first = true;
     for pair in points.windows(2) {
         let (a, b) = (pair[0], pair[1]);
         if !(a.is_finite() && b.is_finite()) {
@@ -29,16 +60,58 @@ pub(crate) fn drape(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<DVec3> 
         }
         let ground = is_on_ground(hf, a) && is_on_ground(hf, b);
         let n = if ground { ((b - a).truncate().length() / step).ceil().clamp(1.0, 4096.0) as usize } else { 1 };
-        for i in 0..=n {
-            if i == 0 && !out.is_empty() {
-                continue; // end of the piece before
-            }
+        for i in usize::from(!first)..=n {
             let p = a.lerp(b, i as f64 / n as f64);
-            let z = if ground { hf.surface_at(p.truncate()).unwrap_or(p.z) } else { p.z };
-            out.push(p.with_z(z) + lift);
+            let height = if ground { hf.surface_at(p.truncate()) } else { None };
+            push(p.with_z(height.unwrap_or(p.z)) + lift, height.is_some());
         }
+        first = false;
     }
     out
+}
+
+/// The points as they are.
+pub(crate) fn as_given(points: &[DVec3]) -> Vec<Place> {
+    let mut along = 0.0;
+    let mut last: Option<DVec3> = None;
+    let finite = points.iter().filter(|p| p.is_finite());
+    finite
+        .map(|&p| {
+            along += last.replace(p).map_or(0.0, |l| l.distance(p));
+            Place { p, along, on_ground: false }
+        })
+        .collect()
+}
+
+/// The line laid on the drawn surface whatever its heights, lifted: pieces without holes.
+pub(crate) fn lay(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<Vec<Place>> {
+    let Some(hf) = scene.terrain() else { return Vec::new() };
+    let step = 0.9 * hf.spacing().min_element();
+    let (mut pieces, mut along) = (vec![Vec::new()], 0.0);
+    for (i, pair) in points.windows(2).enumerate() {
+        let (a, b) = (pair[0].truncate(), pair[1].truncate());
+        let length = a.distance(b);
+        if !length.is_finite() {
+            continue;
+        }
+        let n = (length / step).ceil().clamp(1.0, 65_536.0) as usize;
+        for k in usize::from(i > 0)..=n {
+            let xy = a.lerp(b, k as f64 / n as f64);
+            match (hf.surface_at(xy), pieces.last_mut()) {
+                (Some(z), Some(piece)) => {
+                    let p = xy.extend(z + lift_m);
+                    along += piece.last().map_or(0.0, |l: &Place| l.p.distance(p));
+                    piece.push(Place { p, along, on_ground: true });
+                }
+                (_, last) => {
+                    if last.is_some_and(|l| !l.is_empty()) {
+                        pieces.push(Vec::new());
+                    }
+                }
+            }
+        }
+    }
+    pieces
 }
 
 fn is_on_ground(hf: &Heightfield, p: DVec3) -> bool {
@@ -49,13 +122,13 @@ fn is_on_ground(hf: &Heightfield, p: DVec3) -> bool {
 /// Vertex of a line with everything that clipping needs.
 #[derive(Clone, Copy)]
 struct Vertex {
-    p: DVec3,
+    place: Place,
     v: Option<DVec3>,
     margins: [f64; 2],
 }
 
 /// Images of a polyline in one pass: pieces without a gap, each of at least two points, straight to the tolerance.
-pub(crate) fn project(pass: &Pass<'_>, lens: &Lens, points: &[DVec3], tolerance_px: f64) -> Vec<Vec<PathPoint>> {
+pub(crate) fn project(pass: &Pass<'_>, lens: &Lens, points: &[Place], tolerance_px: f64) -> Vec<Vec<PathPoint>> {
     let mut tracer = Tracer { pass, lens, tolerance_px, pieces: Vec::new(), open: false };
     let mut last: Option<Vertex> = None;
     for &p in points {
@@ -78,9 +151,10 @@ struct Tracer<'a> {
 }
 
 impl Tracer<'_> {
-    fn vertex(&self, p: DVec3) -> Vertex {
+    fn vertex(&self, place: Place) -> Vertex {
+        let p = place.p;
         let v = self.pass.displace(p).map(|d| self.lens.view_from(d)).filter(|v| v.is_finite());
-        Vertex { p, v, margins: self.pass.margins(p) }
+        Vertex { place, v, margins: self.pass.margins(p) }
     }
 
     fn segment(&mut self, a: Vertex, b: Vertex, halvings: u32) {
@@ -88,11 +162,13 @@ impl Tracer<'_> {
         let split = halvings > 0
             && match (a.v, b.v) {
                 (None, None) => false,
-                (Some(_), Some(_)) => off(a.v) & off(b.v) == 0 && self.pass.edge_error_px(a.p, b.p) > self.tolerance_px,
+                (Some(_), Some(_)) => {
+                    off(a.v) & off(b.v) == 0 && self.pass.edge_error_px(a.place.p, b.place.p) > self.tolerance_px
+                }
                 _ => true,
             };
         if split {
-            let m = self.vertex(0.5 * (a.p + b.p));
+            let m = self.vertex(a.place.lerp(b.place, 0.5));
             self.segment(a, m, halvings - 1);
             self.segment(m, b, halvings - 1);
             return;
@@ -106,9 +182,9 @@ impl Tracer<'_> {
             return;
         };
         if !self.open || s > 0.0 {
-            self.pieces.push(vec![self.point(va.lerp(vb, s))]);
+            self.pieces.push(vec![self.point(va.lerp(vb, s), a.place.lerp(b.place, s))]);
         }
-        let end = self.point(va.lerp(vb, t));
+        let end = self.point(va.lerp(vb, t), a.place.lerp(b.place, t));
         if let Some(piece) = self.pieces.last_mut() {
             piece.push(end);
         }
@@ -131,7 +207,7 @@ impl Tracer<'_> {
         (s < t).then_some([s, t])
     }
 
-    fn point(&self, v: DVec3) -> PathPoint {
-        PathPoint { pixel: self.lens.pixel(v), depth: v.z }
+    fn point(&self, v: DVec3, place: Place) -> PathPoint {
+        PathPoint { pixel: self.lens.pixel(v), depth: v.z, place }
     }
 }

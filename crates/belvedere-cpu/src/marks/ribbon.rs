@@ -1,7 +1,9 @@
-//! Anti-aliased ribbons: the union of strokes, never darker where they overlap.
+//! Anti-aliased ribbons and symbols: the union of strokes, never darker where they overlap.
 
+use super::symbol;
 use crate::shade::color::{Packed, Rgb};
 use belvedere_core::DVec2;
+use belvedere_scene::Symbol;
 use glam::Vec2;
 
 /// Colour with opacity.
@@ -24,18 +26,48 @@ pub(crate) enum Lane {
     Shown = 3,
 }
 
-/// A straight piece with round ends.
+/// A straight piece with round ends, or a symbol.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stroke {
     a: Vec2,
     b: Vec2,
     half: f32,
+    /// Rim added to a symbol.
+    grow: f32,
+    symbol: Option<Symbol>,
     lane: Lane,
 }
 
 impl Stroke {
     pub(crate) fn new(a: DVec2, b: DVec2, half: f64, lane: Lane) -> Self {
-        Self { a: a.as_vec2(), b: b.as_vec2(), half: half as f32, lane }
+        Self { a: a.as_vec2(), b: b.as_vec2(), half: half as f32, grow: 0.0, symbol: None, lane }
+    }
+
+    /// A symbol of half size `half` at `at`, widened by `grow`.
+    pub(crate) fn symbol(symbol: Symbol, at: DVec2, half: f64, grow: f64, lane: Lane) -> Self {
+        let at = at.as_vec2();
+        Self { a: at, b: at, half: half as f32, grow: grow as f32, symbol: Some(symbol), lane }
+    }
+
+    #[cfg(test)]
+    pub(crate) fn ends(&self) -> [Vec2; 2] {
+        [self.a, self.b]
+    }
+
+    /// Farthest ink from the axis, pixels.
+    fn reach(&self) -> f32 {
+        self.symbol.map_or(self.half, |s| symbol::reach(s) * self.half + 2.0 * self.grow)
+    }
+
+    /// Signed distance to the outline, negative inside.
+    fn distance(&self, p: Vec2) -> f32 {
+        if let Some(symbol) = self.symbol {
+            return symbol::distance(symbol, p - self.a, self.half) - self.grow;
+        }
+        let (p, d) = (p - self.a, self.b - self.a);
+        let length = d.length_squared();
+        let t = if length > 0.0 { (p.dot(d) / length).clamp(0.0, 1.0) } else { 0.0 };
+        (p - t * d).length() - self.half
     }
 }
 
@@ -45,6 +77,7 @@ pub(crate) struct Sheet {
     strokes: Vec<Stroke>,
     bands: Vec<Vec<u32>>,
     inks: [Ink; 3],
+    /// 0 leaves the id buffer alone.
     id: u32,
     rows: usize,
 }
@@ -60,7 +93,7 @@ impl Sheet {
     pub(crate) fn new(strokes: Vec<Stroke>, inks: [Ink; 3], id: u32, height: usize, rows: usize) -> Self {
         let mut bands = vec![Vec::new(); height.div_ceil(rows)];
         for (i, s) in strokes.iter().enumerate() {
-            let reach = s.half + 1.0;
+            let reach = s.reach() + 1.0;
             let (top, bottom) = (s.a.y.min(s.b.y) - reach, s.a.y.max(s.b.y) + reach);
             if bottom < 0.0 || top >= height as f32 {
                 continue;
@@ -96,7 +129,7 @@ impl Sheet {
                 rgb = rgb.lerp(ink.color, ink.alpha * cover);
             }
             color[i] = Packed::new(rgb);
-            if f >= 0.5 {
+            if f >= 0.5 && self.id != 0 {
                 id[i] = self.id;
             }
         }
@@ -105,21 +138,17 @@ impl Sheet {
 
 /// Coverage by distance to the stroke, largest wins.
 fn cover(s: &Stroke, mask: &mut [f32], y0: i32, rows: i32, width: i32) {
-    let reach = s.half + 0.5;
+    let reach = s.reach() + 0.5;
     let (lo, hi) = (s.a.min(s.b) - reach, s.a.max(s.b) + reach);
     let x0 = ((lo.x - 0.5).ceil().max(0.0) as i32).min(width);
     let x1 = (hi.x - 0.5).floor().min((width - 1) as f32) as i32;
     let ya = ((lo.y - 0.5).ceil().max(y0 as f32) as i32).min(y0 + rows);
     let yb = (hi.y - 0.5).floor().min((y0 + rows - 1) as f32) as i32;
-    let d = s.b - s.a;
-    let inv = if d.length_squared() > 0.0 { 1.0 / d.length_squared() } else { 0.0 };
     // A line thinner than a pixel covers in proportion.
     let most = (2.0 * s.half).min(1.0);
     for y in ya..=yb {
         for x in x0..=x1 {
-            let p = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) - s.a;
-            let t = (p.dot(d) * inv).clamp(0.0, 1.0);
-            let cover = (reach - (p - t * d).length()).clamp(0.0, most);
+            let cover = (0.5 - s.distance(Vec2::new(x as f32 + 0.5, y as f32 + 0.5))).clamp(0.0, most);
             let m = &mut mask[((y - y0) * width + x) as usize];
             *m = m.max(cover);
         }

@@ -1,11 +1,15 @@
 //! Which parts of a line the surfaces hide, steadily.
 
-use super::path::PathPoint;
-use crate::lens::Lens;
+use super::path::{PathPoint, Place};
+use super::sight::Sight;
+use crate::lens::{Lens, Pass};
 use belvedere_core::DVec2;
 
-/// Hidden gaps shorter than this are closed, then visible specks shorter than this are dropped, pixels.
+/// Hidden gaps shorter than this are closed, then visible specks shorter than this are dropped, pixels; up to twice that length
+/// they are drawn shorter than they are, so that none springs up.
 const SHORTEST_RUN_PX: f64 = 4.0;
+/// Halvings of the stretch between two stations in which a line goes into hiding: a few thousandths of a pixel.
+const HALVINGS: u32 = 8;
 /// How much farther than the surface a point must be to count as hidden at once, in units of the tolerance.
 const HYSTERESIS: f64 = 2.5;
 
@@ -49,80 +53,233 @@ pub(crate) struct Station {
     pub(crate) pixel: DVec2,
     /// Length of the line on the image from its beginning, pixels.
     pub(crate) arc_px: f64,
-    pub(crate) visible: bool,
+    pub(crate) place: Place,
 }
 
-/// The parts of a piece on the image (`margin_px` around it included) as runs of stations with settled visibility.
-pub(crate) fn stations(piece: &[PathPoint], lens: &Lens, map: DepthMap<'_>, margin_px: f64) -> Vec<Vec<Station>> {
-    let mut runs = Vec::new();
-    let mut run: Vec<Station> = Vec::new();
-    let mut verdicts: Vec<Option<bool>> = Vec::new();
-    let mut arc = 0.0;
-    for pair in piece.windows(2) {
-        let (a, b) = (pair[0], pair[1]);
-        let length = (b.pixel - a.pixel).length();
-        let Some([s, t]) = on_image(a.pixel, b.pixel, map, margin_px) else {
-            settle(&mut run, &mut verdicts, &mut runs);
-            arc += length;
-            continue;
-        };
-        if s > 0.0 {
-            settle(&mut run, &mut verdicts, &mut runs);
+impl Station {
+    pub(crate) fn lerp(&self, other: &Self, t: f64) -> Self {
+        Self {
+            pixel: self.pixel.lerp(other.pixel, t),
+            arc_px: self.arc_px + t * (other.arc_px - self.arc_px),
+            place: self.place.lerp(other.place, t),
         }
-        let n = ((t - s) * length).ceil().clamp(1.0, 1e6) as usize;
-        for i in usize::from(!run.is_empty())..=n {
-            let k = s + (t - s) * i as f64 / n as f64;
-            let (pixel, depth) = (a.pixel.lerp(b.pixel, k), between(lens, a.depth, b.depth, k));
-            run.push(Station { pixel, arc_px: arc + k * length, visible: true });
-            verdicts.push(match map.behind(lens, pixel, depth) {
-                Some(behind) if behind <= 1.0 => Some(true),
-                Some(behind) if behind > HYSTERESIS => Some(false),
-                _ => None,
-            });
-        }
-        if t < 1.0 {
-            settle(&mut run, &mut verdicts, &mut runs);
-        }
-        arc += length;
     }
-    settle(&mut run, &mut verdicts, &mut runs);
-    runs
+}
+
+/// A stretch of line on the image and where it is hidden.
+#[derive(Debug, Default)]
+pub(crate) struct Run {
+    pub(crate) stations: Vec<Station>,
+    /// Hidden stretches by `arc_px`, ascending, disjoint.
+    pub(crate) hidden: Vec<[f64; 2]>,
+}
+
+impl Run {
+    /// Stretches of one visibility, in order, with exact ends.
+    pub(crate) fn parts(&self) -> Vec<(bool, Vec<Station>)> {
+        let [Some(first), Some(last)] = [self.stations.first(), self.stations.last()] else { return Vec::new() };
+        let mut parts = Vec::new();
+        let mut from = first.arc_px;
+        for &[a, b] in &self.hidden {
+            parts.push((true, self.cut(from, a)));
+            parts.push((false, self.cut(a, b)));
+            from = b;
+        }
+        parts.push((true, self.cut(from, last.arc_px)));
+        parts.retain(|(_, part)| part.len() > 1);
+        parts
+    }
+
+    fn cut(&self, from: f64, to: f64) -> Vec<Station> {
+        let mut part = Vec::new();
+        for pair in self.stations.windows(2) {
+            let (a, b) = (&pair[0], &pair[1]);
+            let length = b.arc_px - a.arc_px;
+            if b.arc_px <= from || a.arc_px >= to || !(length > 0.0) {
+                continue;
+            }
+            let share = |arc: f64| ((arc - a.arc_px) / length).clamp(0.0, 1.0);
+            if part.is_empty() {
+                part.push(a.lerp(b, share(from)));
+            }
+            part.push(a.lerp(b, share(to)));
+        }
+        part
+    }
+}
+
+/// Judges the stations of a line: by the depth buffer where that is beyond doubt, else by the line of sight itself.
+#[derive(Clone, Copy)]
+pub(crate) struct Judge<'a> {
+    pub(crate) pass: &'a Pass<'a>,
+    pub(crate) lens: &'a Lens,
+    pub(crate) map: DepthMap<'a>,
+    pub(crate) sight: &'a Sight<'a>,
+    pub(crate) lift_m: f64,
+}
+
+impl Judge<'_> {
+    /// The parts of a piece on the image (`margin_px` around it included).
+    pub(crate) fn runs(&self, piece: &[PathPoint], margin_px: f64) -> Vec<Run> {
+        let mut runs = Vec::new();
+        let (mut run, mut verdicts): (Vec<Station>, Vec<Option<bool>>) = Default::default();
+        let mut arc = 0.0;
+        for pair in piece.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
+            let length = (b.pixel - a.pixel).length();
+            let Some([s, t]) = on_image(a.pixel, b.pixel, self.map, margin_px) else {
+                self.settle(&mut run, &mut verdicts, &mut runs);
+                arc += length;
+                continue;
+            };
+            if s > 0.0 {
+                self.settle(&mut run, &mut verdicts, &mut runs);
+            }
+            let n = ((t - s) * length).ceil().clamp(1.0, 1e6) as usize;
+            for i in usize::from(!run.is_empty())..=n {
+                let k = s + (t - s) * i as f64 / n as f64;
+                let (pixel, depth) = (a.pixel.lerp(b.pixel, k), between(self.lens, a.depth, b.depth, k));
+                // Share of the way in the world; on the image the far half is shorter.
+                let w = if self.lens.ortho { k } else { k * a.depth / (b.depth + k * (a.depth - b.depth)) };
+                run.push(Station { pixel, arc_px: arc + k * length, place: a.place.lerp(b.place, w) });
+                verdicts.push(match self.map.behind(self.lens, pixel, depth) {
+                    Some(behind) if behind <= 1.0 => Some(true),
+                    Some(behind) if behind > HYSTERESIS => Some(false),
+                    _ => None,
+                });
+            }
+            if t < 1.0 {
+                self.settle(&mut run, &mut verdicts, &mut runs);
+            }
+            arc += length;
+        }
+        self.settle(&mut run, &mut verdicts, &mut runs);
+        runs
+    }
+
+    fn settle(&self, run: &mut Vec<Station>, verdicts: &mut Vec<Option<bool>>, runs: &mut Vec<Run>) {
+        let stations = std::mem::take(run);
+        let verdicts = std::mem::take(verdicts);
+        if stations.len() < 2 {
+            return;
+        }
+        let states = self.states(&stations, &verdicts);
+        let hidden = steady(self.hidden(&stations, &states), &stations);
+        runs.push(Run { stations, hidden });
+    }
+
+    /// Whether each station is visible. The line of sight decides where the buffer is in doubt, on both sides of every change, and on from
+    /// there until both agree.
+    fn states(&self, stations: &[Station], verdicts: &[Option<bool>]) -> Vec<bool> {
+        let n = stations.len();
+        let mut states: Vec<bool> = Vec::with_capacity(n);
+        let mut state = verdicts.iter().flatten().next().copied().unwrap_or(true);
+        for verdict in verdicts {
+            state = verdict.unwrap_or(state);
+            states.push(state);
+        }
+        let differs = |i: usize, j: usize| verdicts[i].is_none() || verdicts[i] != verdicts[j];
+        let mut asked = vec![false; n];
+        let mut open: Vec<usize> =
+            (0..n).filter(|&i| differs(i, i.saturating_sub(1)) || differs(i, (i + 1).min(n - 1))).collect();
+        while let Some(i) = open.pop() {
+            if std::mem::replace(&mut asked[i], true) {
+                continue;
+            }
+            let Some(visible) = self.sees(&stations[i].place) else { continue };
+            states[i] = visible;
+            if verdicts[i] != Some(visible) {
+                open.extend([i.checked_sub(1), Some(i + 1).filter(|&j| j < n)].into_iter().flatten());
+            }
+        }
+        states
+    }
+
+    /// Whether the eye sees a place of the line; `None` if the line of sight cannot tell.
+    fn sees(&self, place: &Place) -> Option<bool> {
+        let p = self.sight.on_surface(place, self.lift_m);
+        let v = self.lens.view_from(self.pass.displace(p)?);
+        if !v.is_finite() || !self.lens.is_drawable(v) {
+            return None;
+        }
+        self.sight.sees(self.lens, self.lens.pixel(v), v.z)
+    }
+
+    /// Hidden stretches, their ends found by halving.
+    fn hidden(&self, stations: &[Station], states: &[bool]) -> Vec<[f64; 2]> {
+        let mut hidden = Vec::new();
+        let mut from = (!states[0]).then_some(stations[0].arc_px);
+        for (pair, state) in stations.windows(2).zip(states.windows(2)) {
+            if state[0] == state[1] {
+                continue;
+            }
+            let at = self.crossing(&pair[0], &pair[1], state[0]);
+            match from.take() {
+                Some(start) => hidden.push([start, at]),
+                None => from = Some(at),
+            }
+        }
+        if let (Some(start), Some(last)) = (from, stations.last()) {
+            hidden.push([start, last.arc_px]);
+        }
+        hidden
+    }
+
+    fn crossing(&self, a: &Station, b: &Station, visible_at_a: bool) -> f64 {
+        let (mut lo, mut hi) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (lo + hi);
+            match self.sees(&a.place.lerp(b.place, middle)) {
+                Some(visible) if visible == visible_at_a => lo = middle,
+                Some(_) => hi = middle,
+                None => break,
+            }
+        }
+        a.arc_px + 0.5 * (lo + hi) * (b.arc_px - a.arc_px)
+    }
+}
+
+/// Short hidden gaps are closed, then short visible specks dropped. What is a little longer shrinks towards that, so that it grows from
+/// nothing as the camera moves.
+fn steady(hidden: Vec<[f64; 2]>, stations: &[Station]) -> Vec<[f64; 2]> {
+    let (Some(first), Some(last)) = (stations.first(), stations.last()) else { return hidden };
+    let ends = [first.arc_px, last.arc_px];
+    let mut gaps: Vec<[f64; 2]> = Vec::new();
+    for gap in hidden {
+        if gap[0] <= ends[0] || gap[1] >= ends[1] {
+            gaps.push(gap);
+        } else if let Some(less) = shrunk(gap) {
+            gaps.push(less);
+        }
+    }
+    // The visible specks are the gaps of the hidden stretches.
+    let mut out: Vec<[f64; 2]> = Vec::new();
+    for gap in gaps {
+        match out.last_mut() {
+            None => out.push(gap),
+            Some(before) => match shrunk([before[1], gap[0]]) {
+                None => before[1] = gap[1],
+                Some([a, b]) => {
+                    before[1] = a;
+                    out.push([b, gap[1]]);
+                }
+            },
+        }
+    }
+    out
+}
+
+/// A stretch as it is drawn: not at all up to [`SHORTEST_RUN_PX`], whole from twice that on, continuously between.
+fn shrunk([a, b]: [f64; 2]) -> Option<[f64; 2]> {
+    let length = b - a;
+    let drawn = if length >= 2.0 * SHORTEST_RUN_PX { length } else { 2.0 * (length - SHORTEST_RUN_PX) };
+    let off = 0.5 * (length - drawn);
+    (drawn > 0.0).then_some([a + off, b - off])
 }
 
 /// Depth along a segment that is straight on the image.
 fn between(lens: &Lens, a: f64, b: f64, k: f64) -> f64 {
     if lens.ortho { a + k * (b - a) } else { a * b / (b + k * (a - b)) }
-}
-
-/// Undecided stations follow the one before; then short runs go.
-fn settle(run: &mut Vec<Station>, verdicts: &mut Vec<Option<bool>>, runs: &mut Vec<Vec<Station>>) {
-    let mut state = verdicts.iter().flatten().next().copied().unwrap_or(true);
-    for (station, verdict) in run.iter_mut().zip(verdicts.iter()) {
-        state = verdict.unwrap_or(state);
-        station.visible = state;
-    }
-    drop_short(run, false);
-    drop_short(run, true);
-    verdicts.clear();
-    if run.len() > 1 {
-        runs.push(std::mem::take(run));
-    } else {
-        run.clear();
-    }
-}
-
-/// Turns runs of `visible` stations that are short and lie between two others into their opposite.
-fn drop_short(run: &mut [Station], visible: bool) {
-    let mut start = 0;
-    while start < run.len() {
-        let state = run[start].visible;
-        let end = start + run[start..].iter().take_while(|s| s.visible == state).count();
-        let inner = start > 0 && end < run.len();
-        if state == visible && inner && run[end].arc_px - run[start - 1].arc_px < SHORTEST_RUN_PX {
-            run[start..end].iter_mut().for_each(|s| s.visible = !visible);
-        }
-        start = end;
-    }
 }
 
 /// Parameters of the part of a segment on the image.

@@ -2,6 +2,7 @@
 
 mod exact;
 mod lines;
+mod marks;
 mod real_data;
 mod reference;
 mod robust;

@@ -92,6 +92,7 @@ pub(crate) fn line(points: Vec<DVec3>, hidden: Hidden) -> LineLayer {
         casing: Some(Color::rgb(255, 255, 255)),
         hidden,
         lift_m: 2.0,
+        markers: None,
     }
 }
 

@@ -83,6 +83,7 @@ fn line_layer(id: &str, feature: LineFeature) -> Layer {
             casing: Some(Color::rgb(255, 255, 255)),
             hidden: Hidden::Dash,
             lift_m: 2.0,
+            markers: None,
         }),
     }
 }

@@ -4,14 +4,15 @@ use super::validate::{color, optional_color};
 use super::{Ground, builtin, vectors};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    AreaDoc, HiddenDoc, LayerDoc, LineDoc, PaletteDoc, Paths, PlaceDoc, PointLayerDoc, ReliefDoc, RouteDoc, ShadingDoc,
-    SourceDocument, TerrainDoc,
+    AreaDoc, AutoOrLength, HiddenDoc, LayerDoc, LineDoc, PaletteDoc, Paths, PlaceDoc, PointLayerDoc, ReliefDoc,
+    RouteDoc, ShadingDoc, SourceDocument, SymbolDoc, TerrainDoc,
 };
 use crate::{BelvedereError, OpenOptions};
 use belvedere_core::DVec2;
 use belvedere_scene::{
-    AreaLayer, Color, Crs, Drape, Heightfield, Hidden, Layer, LayerKind, LineFeature, LineLayer, Palette, PointLayer,
-    Relief, RouteCost, Shading, TerrainLayer, drape_polyline, least_cost_route, valley_route,
+    AreaLayer, Color, Crs, DistanceMarkers, Drape, Heightfield, Hidden, Layer, LayerKind, LineFeature, LineLayer,
+    Palette, PointLayer, PointLook, Relief, RouteCost, Shading, Symbol, TerrainLayer, drape_polyline, least_cost_route,
+    valley_route,
 };
 use std::path::PathBuf;
 
@@ -149,6 +150,10 @@ impl Loader<'_> {
             casing: self.optional_color(index, &style.casing)?,
             hidden: hidden(style.hidden),
             lift_m: style.lift_m,
+            markers: style.distance_markers_m.map(|m| match m {
+                AutoOrLength::Auto(_) => DistanceMarkers::Auto,
+                AutoOrLength::Length(every) => DistanceMarkers::Every(every),
+            }),
         }))
     }
 
@@ -233,6 +238,17 @@ impl Loader<'_> {
             features,
             color: self.color(index, &style.color)?,
             size_px: style.size_px,
+            look: PointLook {
+                symbol: match style.symbol {
+                    SymbolDoc::Dot => Symbol::Dot,
+                    SymbolDoc::Triangle => Symbol::Triangle,
+                    SymbolDoc::Square => Symbol::Square,
+                    SymbolDoc::Pin => Symbol::Pin,
+                    SymbolDoc::Cross => Symbol::Cross,
+                },
+                casing: self.optional_color(index, &style.casing)?,
+                label_px: style.labels.then_some(style.label_px),
+            },
             hidden: hidden(style.hidden),
             lift_m: style.lift_m,
         }))

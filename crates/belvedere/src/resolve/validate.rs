@@ -1,7 +1,9 @@
 //! Checks of a document that need nothing but the document.
 
 use crate::BelvedereError;
-use crate::scene_file::{AnimationDoc, ConstructorDoc, ConstructorKind, LayerDoc, SourceDocument, StageDoc};
+use crate::scene_file::{
+    AnimationDoc, AutoOrLength, ConstructorDoc, ConstructorKind, LayerDoc, SourceDocument, StageDoc, SwitchOrLength,
+};
 use std::collections::HashSet;
 
 /// Ids, ranges and combinations of keys.
@@ -22,6 +24,9 @@ pub(super) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
         })?;
     }
     stage_order(source)?;
+    if let Some(SwitchOrLength::Length(spacing)) = source.document.overlay.as_ref().and_then(|o| o.grid) {
+        within("grid", spacing, 0.0, 1e9).map_err(|(key, reason)| source.error(&["overlay", key], reason))?;
+    }
     if let Some(doc) = &source.document.constructor {
         constructor(doc)
             .map_err(|(key, reason)| source.error(&["constructor", key], format!("constructor: {reason}")))?;
@@ -54,6 +59,9 @@ fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
             color("color", &l.style.color)?;
             optional_color("casing", &l.style.casing)?;
             width(l.style.width_px)?;
+            if let Some(AutoOrLength::Length(every)) = l.style.distance_markers_m {
+                within("distance_markers_m", every, 0.0, 1e9)?;
+            }
             lift(l.style.lift_m)
         }
         LayerDoc::Area(l) => {
@@ -64,7 +72,9 @@ fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
         }
         LayerDoc::Point(l) => {
             color("color", &l.style.color)?;
+            optional_color("casing", &l.style.casing)?;
             within("size_px", l.style.size_px, 0.0, 200.0)?;
+            within("label_px", l.style.label_px, 0.0, 200.0)?;
             lift(l.style.lift_m)
         }
         LayerDoc::Boxes(l) => color("color", &l.style.color).map(|_| ()),

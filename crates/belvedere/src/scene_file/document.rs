@@ -31,6 +31,9 @@ pub struct Document {
     /// The sun.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light: Option<LightDoc>,
+    /// Marks over the picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub overlay: Option<super::overlay::OverlayDoc>,
     /// Layers, a flat list; terrain first in drawing order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layer: Vec<LayerDoc>,
@@ -61,6 +64,7 @@ pub(super) struct Head {
     pub(super) earth: EarthDoc,
     pub(super) camera: CameraDoc,
     pub(super) light: Option<LightDoc>,
+    pub(super) overlay: Option<super::overlay::OverlayDoc>,
     #[serde(default)]
     #[serde(rename = "layer")]
     pub(super) _layer: serde::de::IgnoredAny,

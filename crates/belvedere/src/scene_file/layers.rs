@@ -1,5 +1,6 @@
 //! Layers of the scene document.
 
+use super::overlay::AutoOrLength;
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
@@ -309,11 +310,21 @@ pub struct LineStyleDoc {
     pub hidden: HiddenDoc,
     /// Height above ground at which the line is drawn and judged visible, metres, in [0, 1000].
     pub lift_m: f64,
+    /// Marks along each line at this distance over the ground, metres, > 0, or `auto`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub distance_markers_m: Option<AutoOrLength>,
 }
 
 impl Default for LineStyleDoc {
     fn default() -> Self {
-        Self { color: "#d7301f".into(), width_px: 3.0, casing: "#ffffff".into(), hidden: HiddenDoc::Dash, lift_m: 1.0 }
+        Self {
+            color: "#d7301f".into(),
+            width_px: 3.0,
+            casing: "#ffffff".into(),
+            hidden: HiddenDoc::Dash,
+            lift_m: 1.0,
+            distance_markers_m: None,
+        }
     }
 }
 
@@ -380,12 +391,38 @@ pub struct PointLayerDoc {
     pub style: PointStyleDoc,
 }
 
+/// Shape of a point marker.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SymbolDoc {
+    /// A disc.
+    #[default]
+    Dot,
+    /// A triangle: a summit.
+    #[serde(alias = "peak")]
+    Triangle,
+    /// A square.
+    Square,
+    /// A drop that stands on its tip.
+    Pin,
+    /// A diagonal cross.
+    Cross,
+}
+
 /// How points are drawn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PointStyleDoc {
     /// `#rrggbb` or `#rrggbbaa`.
     pub color: String,
+    /// Shape.
+    pub symbol: SymbolDoc,
+    /// Colour of the rim, or `none`.
+    pub casing: String,
+    /// Whether names are written, as far as they do not overlap; earlier points first.
+    pub labels: bool,
+    /// Height of the letters, pixels, in (0, 200].
+    pub label_px: f64,
     /// Diameter on screen, pixels, in (0, 200].
     pub size_px: f64,
     /// What happens to hidden points.
@@ -396,7 +433,16 @@ pub struct PointStyleDoc {
 
 impl Default for PointStyleDoc {
     fn default() -> Self {
-        Self { color: "#6a3d9a".into(), size_px: 8.0, hidden: HiddenDoc::Fade, lift_m: 1.0 }
+        Self {
+            color: "#6a3d9a".into(),
+            symbol: SymbolDoc::Dot,
+            casing: "#ffffff".into(),
+            labels: false,
+            label_px: 13.0,
+            size_px: 8.0,
+            hidden: HiddenDoc::Fade,
+            lift_m: 1.0,
+        }
     }
 }
 

@@ -6,6 +6,7 @@ mod intent;
 mod json;
 mod layers;
 mod node;
+mod overlay;
 pub mod paths;
 mod stages;
 mod toml_tree;
@@ -16,9 +17,10 @@ pub use intent::{AnimationDoc, ConstructorDoc, ConstructorKind, SweepDoc, Turnta
 pub use layers::{
     AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, HiddenDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc,
     MeshDoc, MeshStyleDoc, ModelDoc, PaletteDoc, Paths, PlaceDoc, PointLayerDoc, PointStyleDoc, ReliefDoc, RouteDoc,
-    ShadingDoc, TerrainDoc, TerrainStyleDoc, TransformDoc,
+    ShadingDoc, SymbolDoc, TerrainDoc, TerrainStyleDoc, TransformDoc,
 };
 pub(crate) use node::{Node, Value};
+pub use overlay::{AutoOrLength, AutoWord, OverlayDoc, SwitchOrLength};
 pub use stages::{
     AxisDoc, BendDoc, BendRule, CurveFrameDoc, CurveUnitsDoc, DetailDoc, EaseDoc, PlaneDoc, PresetDoc,
     PresetDocumentDoc, PresetsDoc, RayModelDoc, RaysStageDoc, SolverMode, SplineStageDoc, StageDoc, TagDoc,
@@ -159,6 +161,7 @@ fn document(root: &Node) -> Result<Document, DocError> {
         earth: head.earth,
         camera: head.camera,
         light: head.light,
+        overlay: head.overlay,
         layer: each(root, "layer", layers::LAYER_KINDS, layer)?,
         stage: each(root, "stage", stages::STAGE_KINDS, stage)?,
         constructor: head.constructor,

@@ -1,8 +1,8 @@
-//! `demo`: the built-in scenes, straight and bent side by side, with a page that shows them.
+//! `demo`: the built-in scenes, straight and bent side by side, and their cameras, with a page that shows them.
 
 use super::output;
 use super::render::{self, RenderRequest};
-use crate::{BelvedereError, OpenOptions, Session};
+use crate::{BelvedereError, CameraPicture, OpenOptions, Session};
 use belvedere_construct::{MeasureOptions, Measures};
 use std::path::{Path, PathBuf};
 
@@ -13,8 +13,12 @@ pub const SCENES: &[(&str, &str)] = &[
     ("street", include_str!("../../../../scenes/street.toml")),
 ];
 
+/// Pictures of the camera of every scene: ending of the name and place.
+const CAMERAS: [(&str, CameraPicture); 2] =
+    [("_camera", CameraPicture::Outside(None)), ("_overhead", CameraPicture::Overhead)];
+
 /// Draws every scene of [`SCENES`] into `folder`, which is made if need be: `NAME.png` (straight beside bent) with its
-/// record, `NAME.toml`, and `index.html`. Returns the files.
+/// record, `NAME_camera.png` (the camera from outside) and `NAME_overhead.png` with theirs, `NAME.toml`, and `index.html`. Returns the files.
 ///
 /// # Errors
 /// [`BelvedereError::Io`] if a file exists and `overwrite` is false, else as [`render::render`].
@@ -32,7 +36,8 @@ pub fn demo(
     output::check(&index, &[], overwrite)?;
     for (name, _) in SCENES {
         output::check(&scene_of(name), &[], overwrite)?;
-        for path in render::outputs(&picture_of(name), &request) {
+        let pictures = [(*name).to_owned()].into_iter().chain(CAMERAS.map(|(ending, _)| format!("{name}{ending}")));
+        for path in pictures.flat_map(|name| render::outputs(&picture_of(&name), &request)) {
             output::check(&path, &[], overwrite)?;
         }
     }
@@ -51,6 +56,11 @@ pub fn demo(
             &options.progress,
         )?;
         written.extend(picture.write(&picture_of(name), overwrite)?);
+        for (ending, camera) in CAMERAS {
+            let request = RenderRequest { compare: false, camera: Some(camera), ..request.clone() };
+            let picture = render::render(&session, &request, &options.progress)?;
+            written.extend(picture.write(&picture_of(&format!("{name}{ending}")), overwrite)?);
+        }
         written.push(scene_of(name));
         sections += &section(name, &picture.sidecar, &measures);
     }
@@ -94,6 +104,9 @@ fn section(name: &str, sidecar: &render::Sidecar, measures: &Measures) -> String
         "<section>\n<h2>{title}</h2>\n<p>{sentence}</p>\n<figure>\n<a href=\"{name}.png\"><img src=\"{name}.png\" \
          alt=\"{title}: two pictures from the same camera. Left, {straight}. Right, {bent}.\"></a>\n\
          <figcaption><span>{straight}</span><span>{bent}</span></figcaption>\n</figure>\n\
+         <figure class=\"pair\">\n<a href=\"{name}_camera.png\"><img src=\"{name}_camera.png\" alt=\"The camera of {title} from outside: its rays on the terrain\"></a>\n\
+         <a href=\"{name}_overhead.png\"><img src=\"{name}_overhead.png\" alt=\"The same from above\"></a>\n\
+         <figcaption><span>the camera that sees this, from beside</span><span>and from above</span></figcaption>\n</figure>\n\
          <p class=\"small\">{moved}<a href=\"{name}.toml\">Scene</a> · <a href=\"{name}.png.json\">record</a></p>\n</section>\n",
         title = escape(&sidecar.scene.title),
         sentence = sentence(name),
@@ -104,6 +117,7 @@ const STYLE: &str = ":root{color-scheme:light dark}body{font:17px/1.5 system-ui,
 padding:2.5rem 1.5rem;color:#222;background:#fafaf8}h1{font-size:2.1rem;margin:0}h2{font-size:1.35rem;margin:3rem 0 0}\
 p{max-width:46rem;margin:.4rem 0 1rem}figure{margin:0}img{display:block;width:100%;height:auto;border-radius:6px}\
 figcaption{display:grid;grid-template-columns:1fr 1fr;gap:.5rem;padding:.5rem 0;font-weight:600}\
+.pair{display:grid;grid-template-columns:1fr 1fr;gap:.5rem;margin-top:.5rem}.pair figcaption{grid-column:1/3}\
 .small{font-size:.9rem;color:#666;max-width:none}a{color:#1f5fa8}code{font-size:.95em}\
 @media(prefers-color-scheme:dark){body{color:#e4e4e0;background:#191b1d}.small{color:#a0a4a8}a{color:#8bbdf0}}";
 

@@ -1,9 +1,13 @@
 //! `render`: pictures with a record of where they come from.
 
+use super::buffers;
 use super::output;
+use crate::figures::{badge, camera, ghost, grid, heat};
 use crate::provenance::{self, InputFile};
-use crate::{BelvedereError, Session};
+use crate::scene_file::SwitchOrLength;
+use crate::{BelvedereError, CameraPicture, Session};
 use belvedere_core::{Camera, DVec2, View};
+use belvedere_cpu::canvas::Canvas;
 use belvedere_cpu::{CpuRenderer, ExactRenderer};
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::{Aux, Frame, FrameStats, Heightfield, NodeState, Progress, RenderJob, RenderOptions, Renderer};
@@ -25,8 +29,30 @@ pub struct RenderRequest {
     pub compare: bool,
     /// Buffers to write beside the picture.
     pub aux: Vec<AuxBuffer>,
+    /// Format of the buffers.
+    pub aux_format: AuxFormat,
     /// Who draws.
     pub renderer: RendererChoice,
+    /// Grid on the ground, whatever the scene says: spacing in scene units, or `Some(None)` for a round one.
+    pub grid: Option<Option<f64>>,
+    /// Colours for how far the bend moves what is seen, also if the scene does not ask for them.
+    pub heatmap: bool,
+    /// The straight picture faintly over the bent one, also if the scene does not ask for it.
+    pub ghost: bool,
+    /// No mark on bent pictures, also if the scene does not say so.
+    pub no_mark: bool,
+    /// A picture of the camera instead of one by it.
+    pub camera: Option<CameraPicture>,
+}
+
+/// Format of buffers beside a picture.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum AuxFormat {
+    /// One NPY file per buffer, `OUT.NAME.npy`.
+    #[default]
+    Npy,
+    /// One OpenEXR file of all buffers, `OUT.exr`.
+    Exr,
 }
 
 /// Who draws.
@@ -49,7 +75,7 @@ impl RendererChoice {
     }
 }
 
-/// A buffer beside the picture, as NPY.
+/// A buffer beside the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AuxBuffer {
     /// Depth, f32, infinite where sky.
@@ -113,6 +139,21 @@ impl TerrainRecord {
     }
 }
 
+/// What was drawn over the layers of a picture.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct OverlayRecord {
+    /// Whether the words "bent view" stand in the picture.
+    pub mark: bool,
+    /// Spacing of the grid, scene units.
+    pub grid: Option<f64>,
+    /// Displacement at the upper end of the colours, scene units.
+    pub heatmap_max: Option<f64>,
+    /// Whether the straight picture shows through.
+    pub ghost: bool,
+    /// If this is a picture of the camera: from where.
+    pub camera: Option<&'static str>,
+}
+
 /// The record beside a picture.
 #[derive(Debug, Clone, Serialize)]
 pub struct Sidecar {
@@ -125,6 +166,8 @@ pub struct Sidecar {
     pub note: Option<String>,
     /// Stages in order of application.
     pub stages: Vec<&'static str>,
+    /// What was drawn over the layers.
+    pub overlay: OverlayRecord,
     /// How far things were moved; `None` for a straight picture.
     pub displacement: Option<DisplacementReport>,
     /// What of the ground is made up; `None` without terrain.
@@ -153,38 +196,32 @@ pub struct Picture {
     /// The record.
     pub sidecar: Sidecar,
     pub(super) aux: Vec<AuxBuffer>,
+    pub(super) aux_format: AuxFormat,
     pub(super) view: View,
 }
 
 /// Files that [`Picture::write`] makes for `out`.
 pub fn outputs(out: &Path, request: &RenderRequest) -> Vec<PathBuf> {
     let sidecar = sibling(out, ".json");
-    let aux = request.aux.iter().map(|a| aux_path(out, *a));
+    let aux: Vec<PathBuf> = match request.aux_format {
+        AuxFormat::Npy => request.aux.iter().map(|a| aux_path(out, *a)).collect(),
+        AuxFormat::Exr => request.aux.first().map(|_| out.with_extension("exr")).into_iter().collect(),
+    };
     [out.to_owned(), sidecar].into_iter().chain(aux).collect()
 }
 
-/// Draws the session's view.
+/// Draws the session's view, or its camera.
 ///
 /// # Errors
 /// [`BelvedereError::Usage`] if the eye is under ground, [`BelvedereError::Render`], [`BelvedereError::Cancelled`].
 pub fn render(session: &Session, request: &RenderRequest, progress: &Progress) -> Result<Picture, BelvedereError> {
     super::check::drawable(session)?;
     let started = Instant::now();
-    let view = if request.straight { session.view().straightened() } else { session.view().clone() };
-    let world = request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
-    let exact = !request.aux.is_empty();
-    let options = RenderOptions { aux: Aux { world, exact }, ..request.options.clone() };
-    let draw = |view: &View| {
-        request.renderer.renderer().render(&RenderJob {
-            scene: session.scene(),
-            view,
-            light: session.light(),
-            options: &options,
-            progress,
-        })
+    let drawn = match request.camera {
+        Some(picture) => draw_camera(session, request, picture, progress)?,
+        None => draw_view(session, request, progress)?,
     };
-    let frame = draw(&view)?;
-    let straight = if request.compare { Some(draw(&view.straightened())?) } else { None };
+    let Drawn { view, frame, straight, overlay } = drawn;
     let render_ms = started.elapsed().as_secs_f64() * 1e3;
     let displacement = view.is_bent().then(|| measure_displacement(&view, &frame));
     let sidecar = Sidecar {
@@ -192,6 +229,7 @@ pub fn render(session: &Session, request: &RenderRequest, progress: &Progress) -
         renderer: request.renderer.renderer().name(),
         note: displacement.map(|d| note(&view, &d)),
         stages: view.stages().iter().map(|s| s.name()).collect(),
+        overlay,
         displacement,
         terrain: session.scene().terrain().map(TerrainRecord::of),
         view: provenance::ViewRecord::of(&view),
@@ -201,7 +239,69 @@ pub fn render(session: &Session, request: &RenderRequest, progress: &Progress) -
         stats: frame.stats.clone(),
         render_ms,
     };
-    Ok(Picture { frame, straight, sidecar, aux: request.aux.clone(), view })
+    Ok(Picture { frame, straight, sidecar, aux: request.aux.clone(), aux_format: request.aux_format, view })
+}
+
+/// Pictures with everything over them.
+struct Drawn {
+    view: View,
+    frame: Frame,
+    straight: Option<Frame>,
+    overlay: OverlayRecord,
+}
+
+fn draw_view(session: &Session, request: &RenderRequest, progress: &Progress) -> Result<Drawn, BelvedereError> {
+    let scene = session.scene();
+    let view = if request.straight { session.view().straightened() } else { session.view().clone() };
+    let wanted = session.resolved().overlay.clone().unwrap_or_default();
+    let (heatmap, ghost) = (request.heatmap || wanted.heatmap, (request.ghost || wanted.ghost) && view.is_bent());
+    let asked = request.grid.or(match wanted.grid {
+        Some(SwitchOrLength::Length(spacing)) => Some(Some(spacing)),
+        Some(SwitchOrLength::Switch(true)) => Some(None),
+        Some(SwitchOrLength::Switch(false)) | None => None,
+    });
+    let grid_spacing = asked.and_then(|spacing| grid::spacing(scene, spacing));
+    let world = heatmap || request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
+    let exact = !request.aux.is_empty();
+    let mut options = RenderOptions { aux: Aux { world, exact }, ..request.options.clone() };
+    options.overlay.under.extend(grid_spacing.map(|spacing| grid::lines(scene, spacing)).into_iter().flatten());
+    let draw = |view: &View| {
+        let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
+        request.renderer.renderer().render(&job)
+    };
+    let mut frame = draw(&view)?;
+    let straight = if request.compare || ghost { Some(draw(&view.straightened())?) } else { None };
+    let heatmap_max = heatmap.then(|| heat::paint(&mut frame, scene, &view));
+    if let Some(straight) = straight.as_ref().filter(|_| ghost) {
+        ghost::draw(&mut frame, straight, scene);
+    }
+    let mark = view.is_bent() && wanted.mark && !request.no_mark && badge::fits(frame.width, frame.height);
+    let mut canvas = Canvas::new(&mut frame.color, frame.width);
+    if let Some(most) = heatmap_max {
+        heat::legend(&mut canvas, most);
+    }
+    if mark {
+        badge::draw(&mut canvas);
+    }
+    let overlay = OverlayRecord { mark, grid: grid_spacing, heatmap_max, ghost, camera: None };
+    Ok(Drawn { view, frame, straight: straight.filter(|_| request.compare), overlay })
+}
+
+fn draw_camera(
+    session: &Session,
+    request: &RenderRequest,
+    picture: CameraPicture,
+    progress: &Progress,
+) -> Result<Drawn, BelvedereError> {
+    let figure = camera::figure(session, picture)?;
+    let options = RenderOptions { overlay: figure.overlay.clone(), ..request.options.clone() };
+    let (scene, view, light) = (session.scene(), &figure.view, session.light());
+    let job = RenderJob { scene, view, light, options: &options, progress };
+    let mut frame = request.renderer.renderer().render(&job)?;
+    let title = if scene.title.is_empty() { "The camera" } else { &scene.title };
+    camera::draw_legend(&mut Canvas::new(&mut frame.color, frame.width), &figure, title);
+    let overlay = OverlayRecord { camera: Some(picture.name()), ..OverlayRecord::default() };
+    Ok(Drawn { view: figure.view, frame, straight: None, overlay })
 }
 
 fn note(view: &View, d: &DisplacementReport) -> String {
@@ -227,6 +327,12 @@ impl Picture {
         let sidecar = sibling(out, ".json");
         output::write_text(&sidecar, &super::check::pretty(&self.sidecar)?, overwrite)?;
         let mut written = vec![out.to_owned(), sidecar];
+        if self.aux_format == AuxFormat::Exr && !self.aux.is_empty() {
+            let path = out.with_extension("exr");
+            buffers::write(&self.frame, &self.view, &self.aux, &path, overwrite)?;
+            written.push(path);
+            return Ok(written);
+        }
         for aux in &self.aux {
             let path = aux_path(out, *aux);
             self.write_aux(*aux, &path, overwrite)?;
@@ -240,7 +346,16 @@ impl Picture {
         let Some(straight) = &self.straight else {
             return (self.frame.width, self.frame.height, self.frame.color.clone());
         };
-        side_by_side(straight, &self.frame)
+        let titles = ["straight".to_owned(), self.bent_title()];
+        let right = straight.width + GAP;
+        badge::titled(side_by_side(straight, &self.frame), &[(&titles[0], 0), (&titles[1], right)])
+    }
+
+    fn bent_title(&self) -> String {
+        match self.sidecar.displacement {
+            Some(d) => format!("bent: moved by up to {:.0} m, {:.0} px", d.max_m, d.max_px),
+            None => "the same camera".into(),
+        }
     }
 
     /// Keywords and texts that go into the picture: the record without what differs from run to run.
@@ -268,11 +383,7 @@ impl Picture {
                 npy(path, overwrite, "<f8", &[h, w, 3], world.iter().flatten().map(|v| v.to_le_bytes()))
             }
             AuxBuffer::Displacement => {
-                let moved = world.iter().flat_map(|p| {
-                    let p = belvedere_core::DVec3::from_array(*p);
-                    let to = if p.is_finite() { self.view.displace(p).ok() } else { None };
-                    to.map_or([f64::NAN; 3], |d| (d.point - p).to_array())
-                });
+                let moved = world.iter().flat_map(|p| buffers::displacement(&self.view, *p));
                 npy(path, overwrite, "<f8", &[h, w, 3], moved.map(|v| v.to_le_bytes()))
             }
         }

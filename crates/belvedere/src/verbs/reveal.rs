@@ -318,6 +318,7 @@ fn document(request: &RevealRequest, keep_voids: bool) -> Result<(Document, Root
         unit: UnitDoc::Metre,
         earth: if request.curved_earth { EarthDoc::Curved } else { EarthDoc::Flat },
         camera,
+        overlay: None,
         light: None,
         layer,
         stage: Vec::new(),

@@ -1,0 +1,95 @@
+//! Drawing over a finished picture: rectangles, lines and letters, anti-aliased in linear light.
+
+mod text;
+
+pub use text::{TextSize, text_size};
+
+use crate::shade::color::{encode, linear};
+use belvedere_core::DVec2;
+use belvedere_scene::Color;
+
+/// A finished picture to draw on. Coordinates are pixels, (0, 0) the outer corner of the top-left one; what lies outside is left out.
+///
+/// ```
+/// use belvedere_core::DVec2;
+/// use belvedere_cpu::canvas::Canvas;
+/// use belvedere_scene::Color;
+/// let mut pixels = vec![[255u8; 3]; 60 * 20];
+/// let mut canvas = Canvas::new(&mut pixels, 60);
+/// canvas.text(DVec2::new(2.0, 15.0), 13.0, "bent", Color::rgb(0, 0, 0), None);
+/// assert!(pixels.iter().any(|p| p[0] < 64));
+/// ```
+#[derive(Debug)]
+pub struct Canvas<'a> {
+    pixels: &'a mut [[u8; 3]],
+    width: usize,
+    height: usize,
+}
+
+impl<'a> Canvas<'a> {
+    /// A picture of `width` columns, row-major, row 0 on top.
+    pub fn new(pixels: &'a mut [[u8; 3]], width: usize) -> Self {
+        let height = if width == 0 { 0 } else { pixels.len() / width };
+        Self { pixels, width, height }
+    }
+
+    /// Width and height, pixels.
+    pub fn size(&self) -> DVec2 {
+        DVec2::new(self.width as f64, self.height as f64)
+    }
+
+    /// Blends `color` over a pixel; `coverage` in 0..=1 scales its opacity.
+    pub fn blend(&mut self, x: i64, y: i64, color: Color, coverage: f32) {
+        if x < 0 || y < 0 || x >= self.width as i64 || y >= self.height as i64 {
+            return;
+        }
+        let alpha = coverage.clamp(0.0, 1.0) * f32::from(color.a) / 255.0;
+        if !(alpha > 0.0) {
+            return;
+        }
+        let pixel = &mut self.pixels[y as usize * self.width + x as usize];
+        *pixel = encode(linear(*pixel).lerp(linear([color.r, color.g, color.b]), alpha));
+    }
+
+    /// Fills a shape given by its signed distance, negative inside, within the box `lo..hi`.
+    fn shape(&mut self, lo: DVec2, hi: DVec2, color: Color, distance: impl Fn(DVec2) -> f64) {
+        let size = self.size();
+        let (lo, hi) = ((lo - 1.0).floor().clamp(DVec2::ZERO, size), (hi + 1.0).ceil().clamp(DVec2::ZERO, size));
+        for y in lo.y as i64..hi.y as i64 {
+            for x in lo.x as i64..hi.x as i64 {
+                let d = distance(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+                self.blend(x, y, color, (0.5 - d) as f32);
+            }
+        }
+    }
+
+    /// Fills the rectangle between two corners, with corners rounded by `radius`.
+    pub fn rect(&mut self, lo: DVec2, hi: DVec2, radius: f64, color: Color) {
+        let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo) - radius);
+        self.shape(lo, hi, color, |p| {
+            let q = (p - middle).abs() - half;
+            q.max(DVec2::ZERO).length() + q.max_element().min(0.0) - radius
+        });
+    }
+
+    /// Draws a polyline with round ends and joints, `width` pixels wide.
+    pub fn line(&mut self, points: &[DVec2], width: f64, color: Color) {
+        let Some(&first) = points.first() else { return };
+        let (lo, hi) = points.iter().fold((first, first), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
+        let half = 0.5 * width;
+        self.shape(lo - half, hi + half, color, |p| {
+            let nearest = points.windows(2).map(|w| crate::shade::area::distance(p, w[0], w[1]));
+            nearest.fold(p.distance(first), f64::min) - half
+        });
+    }
+
+    /// Fills a disc.
+    pub fn disc(&mut self, at: DVec2, radius: f64, color: Color) {
+        self.shape(at - radius, at + radius, color, |p| p.distance(at) - radius);
+    }
+
+    /// Writes a line of text: `at` is the left end of its baseline, `size_px` the height of the letters' em square; `halo` a rim and its width.
+    pub fn text(&mut self, at: DVec2, size_px: f64, text: &str, color: Color, halo: Option<(Color, f64)>) {
+        text::draw(self, at, size_px, text, color, halo);
+    }
+}

@@ -1,0 +1,147 @@
+//! Strokes along a line, whole or in dashes.
+
+use super::ribbon::{Lane, Stroke};
+use super::visibility::Station;
+
+/// Share of a period that is ink, and its shortest length in widths of the line.
+const INK: f64 = 0.55;
+const PERIOD: f64 = 4.4;
+/// Stretch of line on the image that says how many pixels a scene unit has, pixels to either side.
+const WINDOW_PX: f64 = 60.0;
+
+/// Strokes along stations, as few as straightness allows.
+pub(crate) fn trace(part: &[Station], half: f64, lane: Lane, out: &mut Vec<Stroke>) {
+    if half <= 0.0 {
+        return;
+    }
+    if let [only] = part {
+        out.push(Stroke::new(only.pixel, only.pixel, half, lane));
+    }
+    let mut from = 0;
+    while from + 1 < part.len() {
+        let mut to = from + 1;
+        while to + 1 < part.len() && to - from < 24 {
+            let (a, b) = (part[from].pixel, part[to + 1].pixel);
+            let straight = part[from + 1..=to].iter().all(|s| crate::shade::area::distance(s.pixel, a, b) < 0.06);
+            if !straight {
+                break;
+            }
+            to += 1;
+        }
+        out.push(Stroke::new(part[from].pixel, part[to].pixel, half, lane));
+        from = to;
+    }
+}
+
+/// Dashes that lie still on the ground: they begin at multiples of a period along the line, which is a power of two of the scene unit
+/// and, on the image, once to twice as long as the width asks for.
+pub(crate) fn dashes(part: &[Station], width: f64, half: f64, out: &mut Vec<Stroke>) {
+    let wanted_px = PERIOD * width.max(1.5);
+    let periods = periods(part, wanted_px);
+    let mut dash: Vec<Station> = Vec::new();
+    for (pair, &period) in part.windows(2).zip(&periods) {
+        let (a, b) = (pair[0], pair[1]);
+        for (on, [s, t]) in pieces([a.place.along, b.place.along], period) {
+            if !on {
+                trace(&dash, half, Lane::Hidden, out);
+                dash.clear();
+                continue;
+            }
+            if dash.is_empty() {
+                dash.push(a.lerp(&b, s));
+            }
+            dash.push(a.lerp(&b, t));
+        }
+    }
+    trace(&dash, half, Lane::Hidden, out);
+}
+
+/// Length of a period along the line at every station, scene units.
+fn periods(part: &[Station], wanted_px: f64) -> Vec<f64> {
+    let (mut lo, mut hi) = (0, 0);
+    part.iter()
+        .map(|s| {
+            while lo + 1 < part.len() && part[lo].arc_px < s.arc_px - WINDOW_PX {
+                lo += 1;
+            }
+            while hi + 1 < part.len() && part[hi].arc_px < s.arc_px + WINDOW_PX {
+                hi += 1;
+            }
+            let px = (part[hi].arc_px - part[lo].arc_px).max(1e-6);
+            let units = (part[hi].place.along - part[lo].place.along).max(1e-9);
+            (wanted_px * units / px).log2().ceil().clamp(-60.0, 60.0).exp2()
+        })
+        .collect()
+}
+
+/// Ink and gaps between two lengths along a line: shares of the way between them.
+fn pieces([g0, g1]: [f64; 2], period: f64) -> Vec<(bool, [f64; 2])> {
+    let length = g1 - g0;
+    if !(length > 0.0) {
+        return Vec::new();
+    }
+    // Finer than the eye: as good as ink.
+    if length > 8.0 * period {
+        return vec![(true, [0.0, 1.0])];
+    }
+    let mut out = Vec::new();
+    let mut k = (g0 / period).floor();
+    loop {
+        for (on, from, to) in [(true, k, k + INK), (false, k + INK, k + 1.0)] {
+            let [s, t] = [from, to].map(|u| ((u * period - g0) / length).clamp(0.0, 1.0));
+            if t > s {
+                out.push((on, [s, t]));
+            }
+        }
+        k += 1.0;
+        if k * period >= g1 {
+            return out;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::marks::path::Place;
+    use belvedere_core::{DVec2, DVec3};
+
+    /// Beginnings of the dashes along a straight line of 1000 units seen at `px_per_unit` from unit `from` on, scene units.
+    fn beginnings(from: f64, px_per_unit: f64) -> Vec<f64> {
+        let n = ((1000.0 - from) * px_per_unit) as usize;
+        let part: Vec<Station> = (0..=n)
+            .map(|i| {
+                let along = from + i as f64 / px_per_unit;
+                let place = Place { p: DVec3::X * along, along, on_ground: false };
+                Station { pixel: DVec2::new(along * px_per_unit, 10.0), arc_px: i as f64, place }
+            })
+            .collect();
+        let mut strokes = Vec::new();
+        dashes(&part, 3.0, 1.0, &mut strokes);
+        let mut starts: Vec<f64> = Vec::new();
+        let mut end = f64::NEG_INFINITY;
+        for s in &strokes {
+            let [a, b] = s.ends().map(|p| f64::from(p.x) / px_per_unit);
+            if a > end + 1e-3 {
+                starts.push(a);
+            }
+            end = b;
+        }
+        starts
+    }
+
+    #[test]
+    fn dashes_lie_still_on_the_ground() {
+        // Whether a line comes out of hiding earlier, or is seen a little nearer, its dashes stay where they are.
+        let seen = beginnings(0.0, 1.0);
+        assert!(seen.len() > 40, "{} dashes", seen.len());
+        let period = seen[1] - seen[0];
+        assert!((13.2..=26.4).contains(&period), "period {period} px");
+        for other in [beginnings(3.7, 1.0), beginnings(101.3, 1.0), beginnings(0.0, 1.04), beginnings(57.0, 0.97)] {
+            for start in &other[1..other.len() - 1] {
+                let off = (start / period).round() * period - start;
+                assert!(off.abs() < 1e-2, "a dash begins at {start}, {off} off the multiples of {period}");
+            }
+        }
+    }
+}

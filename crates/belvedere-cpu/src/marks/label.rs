@@ -1,0 +1,170 @@
+//! Names: placed one after the other where nothing is yet, with a leader up from the point if need be, as in panoramas.
+
+use crate::canvas::{Canvas, text_size};
+use belvedere_core::DVec2;
+use belvedere_scene::Color;
+
+/// Lengths of leaders tried, pixels.
+const LEADERS: [f64; 14] = [0.0, 10.0, 18.0, 26.0, 36.0, 48.0, 60.0, 74.0, 90.0, 108.0, 128.0, 150.0, 175.0, 200.0];
+/// Room between texts, pixels.
+const ROOM: f64 = 2.0;
+/// Most texts of a picture.
+const MOST: usize = 400;
+
+/// A text that wants a place.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Wish {
+    pub(crate) text: String,
+    /// The point it belongs to, pixels.
+    pub(crate) at: DVec2,
+    /// Reach of the marker: to the sides and below, and above, pixels.
+    pub(crate) marker: [f64; 2],
+    /// Height of the letters, pixels.
+    pub(crate) size_px: f64,
+    pub(crate) color: Color,
+    /// Whether it may stand away from its point.
+    pub(crate) leader: bool,
+}
+
+/// A text in its place.
+#[derive(Debug, Clone, PartialEq)]
+struct Placed {
+    wish: Wish,
+    baseline: DVec2,
+    leader: Option<[DVec2; 2]>,
+}
+
+/// The texts of a picture.
+#[derive(Debug, Default)]
+pub(crate) struct Labels {
+    placed: Vec<Placed>,
+}
+
+type Rect = [DVec2; 2];
+
+fn overlap(a: &Rect, b: &Rect) -> bool {
+    a[0].x < b[1].x && b[0].x < a[1].x && a[0].y < b[1].y && b[0].y < a[1].y
+}
+
+impl Labels {
+    /// Places what fits into a picture of `size`; earlier wishes first.
+    pub(crate) fn place(wishes: Vec<Wish>, size: DVec2) -> Self {
+        let markers: Vec<Rect> = wishes.iter().map(marker).collect();
+        let mut taken: Vec<Rect> = Vec::new();
+        let mut placed: Vec<Placed> = Vec::new();
+        for (i, wish) in wishes.into_iter().enumerate() {
+            if placed.len() >= MOST {
+                break;
+            }
+            let free = |r: &Rect| {
+                let inside = r[0].x >= 0.0 && r[0].y >= 0.0 && r[1].x <= size.x && r[1].y <= size.y;
+                inside
+                    && !taken.iter().any(|t| overlap(t, r))
+                    && !markers.iter().enumerate().any(|(k, m)| k != i && overlap(m, r))
+            };
+            let found = candidates(&wish).into_iter().find(|(text, leader, _)| {
+                free(text) && leader.as_ref().is_none_or(|l| !taken.iter().any(|t| overlap(t, &line_box(l))))
+            });
+            if let Some((text, leader, baseline)) = found {
+                taken.push(text);
+                taken.extend(leader.as_ref().map(line_box));
+                placed.push(Placed { wish, baseline, leader });
+            }
+        }
+        Self { placed }
+    }
+
+    /// Writes them.
+    pub(crate) fn draw(&self, canvas: &mut Canvas<'_>) {
+        for p in &self.placed {
+            let ink = p.wish.color;
+            if let Some(leader) = &p.leader {
+                canvas.line(leader, 2.6, rim(ink).with_alpha(150));
+                canvas.line(leader, 1.0, ink);
+            }
+        }
+        for Placed { wish, baseline, .. } in &self.placed {
+            let halo = (rim(wish.color).with_alpha(225), (wish.size_px / 7.0).clamp(1.2, 3.0));
+            canvas.text(*baseline, wish.size_px, &wish.text, wish.color, Some(halo));
+        }
+    }
+}
+
+/// White around dark letters, dark around light ones.
+fn rim(ink: Color) -> Color {
+    let light = 2 * u32::from(ink.r) + 5 * u32::from(ink.g) + u32::from(ink.b) > 8 * 140;
+    if light { Color::rgb(30, 34, 40) } else { Color::rgb(255, 255, 255) }
+}
+
+fn marker(wish: &Wish) -> Rect {
+    let [side, above] = wish.marker;
+    [wish.at - DVec2::new(side, above), wish.at + side]
+}
+
+fn line_box(line: &[DVec2; 2]) -> Rect {
+    [line[0].min(line[1]) - 1.5, line[0].max(line[1]) + 1.5]
+}
+
+/// Boxes of text to try, best first, with leader and baseline.
+fn candidates(wish: &Wish) -> Vec<(Rect, Option<[DVec2; 2]>, DVec2)> {
+    let size = text_size(wish.size_px, &wish.text);
+    let [side, above] = wish.marker;
+    let rect = |baseline: DVec2| {
+        let (lo, hi) = (DVec2::new(0.0, -size.ascent), DVec2::new(size.width, size.descent));
+        [baseline + lo - ROOM, baseline + hi + ROOM]
+    };
+    let level = wish.at.y + 0.36 * wish.size_px;
+    let beside = [
+        DVec2::new(wish.at.x + side + 4.0, level),
+        DVec2::new(wish.at.x - side - 4.0 - size.width, level),
+        DVec2::new(wish.at.x - 0.5 * size.width, wish.at.y + side + 3.0 + size.ascent),
+    ];
+    let mut out = Vec::new();
+    for length in LEADERS.into_iter().take(if wish.leader { LEADERS.len() } else { 1 }) {
+        let foot = wish.at - DVec2::Y * above;
+        let top = foot - DVec2::Y * (length + 2.0);
+        for shift in [0.5, 0.15, 0.85] {
+            let baseline = DVec2::new(top.x - shift * size.width, top.y - size.descent - 1.0);
+            out.push((rect(baseline), (length > 0.0).then_some([foot, top]), baseline));
+        }
+        if length == 0.0 {
+            out.extend(beside.into_iter().map(|b| (rect(b), None, b)));
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wish(i: usize, at: DVec2) -> Wish {
+        let color = Color::rgb(0, 0, 0);
+        Wish { text: format!("Summit {i}"), at, marker: [5.0, 6.0], size_px: 13.0, color, leader: true }
+    }
+
+    #[test]
+    fn names_do_not_overlap_and_the_first_come_first() {
+        // Fifty summits in a tight row: not all names fit.
+        let wishes: Vec<Wish> = (0..50).map(|i| wish(i, DVec2::new(100.0 + 4.0 * i as f64, 230.0))).collect();
+        let labels = Labels::place(wishes.clone(), DVec2::new(400.0, 300.0));
+        let n = labels.placed.len();
+        assert!((8..50).contains(&n), "{n} names of 50");
+        assert_eq!(labels.placed[0].wish, wishes[0]);
+        let rects: Vec<Rect> = labels
+            .placed
+            .iter()
+            .map(|p| {
+                let size = text_size(13.0, &p.wish.text);
+                [p.baseline - DVec2::Y * size.ascent, p.baseline + DVec2::new(size.width, size.descent)]
+            })
+            .collect();
+        for (i, a) in rects.iter().enumerate() {
+            assert!(
+                a[0].min_element() >= 0.0 && a[1].x <= 400.0 && a[1].y <= 300.0,
+                "a name leaves the picture: {a:?}"
+            );
+            assert!(rects[..i].iter().all(|b| !overlap(a, b)), "name {i} lies over another");
+        }
+    }
+}

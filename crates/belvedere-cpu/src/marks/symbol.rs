@@ -1,0 +1,105 @@
+//! Outlines of point markers as signed distances, y down.
+
+use belvedere_scene::Symbol;
+use glam::Vec2;
+
+/// Centre of a pin's head over its tip, and radius of the head, in half sizes.
+const PIN: [f32; 2] = [1.9, 0.95];
+/// Half width of the arms of a cross, in half sizes.
+const ARM: f32 = 0.3;
+
+/// Farthest point of the outline, in half sizes.
+pub(crate) fn reach(symbol: Symbol) -> f32 {
+    match symbol {
+        Symbol::Dot => 1.0,
+        Symbol::Triangle | Symbol::Square | Symbol::Cross => 1.5,
+        Symbol::Pin => PIN[0] + PIN[1],
+    }
+}
+
+/// How far the ink goes above the point, in half sizes.
+pub(crate) fn top(symbol: Symbol) -> f64 {
+    match symbol {
+        Symbol::Triangle => 1.15,
+        Symbol::Pin => f64::from(PIN[0] + PIN[1]),
+        _ => 1.0,
+    }
+}
+
+/// Signed distance from `p`, relative to the point, to the outline of half size `half`; negative inside.
+pub(crate) fn distance(symbol: Symbol, p: Vec2, half: f32) -> f32 {
+    match symbol {
+        Symbol::Dot => p.length() - half,
+        Symbol::Triangle => {
+            // Centroid on the point; sides by their normals.
+            let (sin, cos) = (0.5, 0.866_025_4);
+            let side = 0.577 * half;
+            (p.x.abs() * cos - p.y * sin).max(p.y) - side
+        }
+        Symbol::Square => {
+            let q = p.abs() - 0.85 * half;
+            q.max(Vec2::ZERO).length() + q.max_element().min(0.0)
+        }
+        Symbol::Cross => {
+            let q = Vec2::new(p.x + p.y, p.y - p.x) * std::f32::consts::FRAC_1_SQRT_2;
+            let arm = |v: Vec2| {
+                let d = v.abs() - Vec2::new(1.2 * half, ARM * half);
+                d.max(Vec2::ZERO).length() + d.max_element().min(0.0)
+            };
+            arm(q).min(arm(q.perp()))
+        }
+        Symbol::Pin => {
+            // The convex hull of the tip and the head.
+            let [centre, radius] = PIN.map(|v| v * half);
+            let q = Vec2::new(p.x.abs(), -p.y);
+            let slant = -radius / centre;
+            let cos = (1.0 - slant * slant).sqrt();
+            let along = q.dot(Vec2::new(-slant, cos));
+            if along < 0.0 {
+                q.length()
+            } else if along > cos * centre {
+                q.distance(Vec2::new(0.0, centre)) - radius
+            } else {
+                q.dot(Vec2::new(cos, slant))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outlines_have_the_size_they_say_and_no_jumps() {
+        for symbol in [Symbol::Dot, Symbol::Triangle, Symbol::Square, Symbol::Pin, Symbol::Cross] {
+            let half = 10.0;
+            let (mut ink, mut farthest) = (0, 0.0f32);
+            for y in -400..400 {
+                for x in -400..400 {
+                    let p = Vec2::new(x as f32, y as f32) * 0.1;
+                    let d = distance(symbol, p, half);
+                    let right = distance(symbol, p + Vec2::new(0.1, 0.0), half);
+                    assert!(
+                        d.is_finite() && (right - d).abs() < 0.11 + 0.05,
+                        "{symbol:?} jumps at {p}: {d} and {right}"
+                    );
+                    if d < 0.0 {
+                        ink += 1;
+                        farthest = farthest.max(p.length());
+                    }
+                }
+            }
+            let area = ink as f32 * 0.01;
+            assert!((90.0..700.0).contains(&area), "{symbol:?}: {area} square pixels");
+            assert!(
+                farthest <= reach(symbol) * half && farthest > 0.6 * reach(symbol) * half,
+                "{symbol:?}: {farthest}"
+            );
+            assert!(
+                symbol != Symbol::Pin || distance(symbol, Vec2::new(0.0, 0.5), half) > 0.0,
+                "the pin stands on its tip"
+            );
+        }
+    }
+}

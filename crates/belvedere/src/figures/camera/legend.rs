@@ -1,0 +1,52 @@
+//! What the colours of a picture of the camera mean, and how long things are.
+
+use super::super::{INK, PAPER, length, round_below};
+use super::CameraFigure;
+use belvedere_core::DVec2;
+use belvedere_cpu::canvas::{Canvas, text_size};
+
+const LETTERS_PX: f64 = 12.0;
+const ROW: f64 = 17.0;
+
+/// Draws legend, and from above also scale bar and north.
+pub(crate) fn draw(canvas: &mut Canvas<'_>, figure: &CameraFigure, title: &str) {
+    let size = canvas.size();
+    let widest = figure.legend.iter().map(|(_, text)| text_size(LETTERS_PX, text).width + 34.0);
+    let width = widest.fold(text_size(14.0, title).width + 20.0, f64::max);
+    let height = 30.0 + ROW * figure.legend.len() as f64;
+    if size.x < width + 20.0 || size.y < height + 20.0 {
+        return;
+    }
+    let lo = DVec2::splat(10.0);
+    canvas.rect(lo, lo + DVec2::new(width, height), 5.0, PAPER);
+    canvas.text(lo + DVec2::new(10.0, 18.0), 14.0, title, INK, None);
+    for (i, (color, text)) in figure.legend.iter().enumerate() {
+        let row = lo + DVec2::new(10.0, 33.0 + ROW * i as f64);
+        canvas.line(&[row, row + DVec2::new(14.0, 0.0)], 3.0, *color);
+        canvas.text(row + DVec2::new(20.0, 0.36 * LETTERS_PX), LETTERS_PX, text, INK, None);
+    }
+    let pinhole = figure.view.pinhole();
+    if pinhole.is_orthographic() {
+        scale_bar(canvas, size, pinhole.scale_px());
+    }
+}
+
+fn scale_bar(canvas: &mut Canvas<'_>, size: DVec2, px_per_unit: f64) {
+    let units = round_below(0.2 * size.x / px_per_unit);
+    let bar = units * px_per_unit;
+    if !(bar > 20.0) {
+        return;
+    }
+    let lo = DVec2::new(10.0, size.y - 44.0);
+    canvas.rect(lo, lo + DVec2::new(bar + 52.0, 34.0), 5.0, PAPER);
+    let [a, b] = [lo + DVec2::new(12.0, 24.0), lo + DVec2::new(12.0 + bar, 24.0)];
+    let tick = DVec2::new(0.0, 5.0);
+    canvas.line(&[a - tick, a, b, b - tick], 1.6, INK);
+    let text = length(units);
+    let middle = a.x + 0.5 * (bar - text_size(11.0, &text).width);
+    canvas.text(DVec2::new(middle, a.y - 5.0), 11.0, &text, INK, None);
+    let north = lo + DVec2::new(bar + 34.0, 8.0);
+    canvas.line(&[north + DVec2::new(0.0, 20.0), north, north + DVec2::new(-4.0, 7.0)], 1.6, INK);
+    canvas.line(&[north, north + DVec2::new(4.0, 7.0)], 1.6, INK);
+    canvas.text(north + DVec2::new(6.0, 20.0), 11.0, "N", INK, None);
+}

@@ -1,0 +1,43 @@
+//! Lines of the coordinate system on the ground.
+
+use super::round_below;
+use belvedere_core::DVec3;
+use belvedere_scene::{Color, Hidden, OverlayLine, Scene};
+
+/// Lines across the shorter side of the terrain when the spacing is left to us, and most lines in one direction.
+const WANTED: f64 = 8.0;
+const MOST: f64 = 500.0;
+
+/// Spacing of the grid, scene units: as asked, or round; `None` without terrain or with more than 500 lines.
+pub(crate) fn spacing(scene: &Scene, asked: Option<f64>) -> Option<f64> {
+    let bounds = scene.terrain()?.bounds();
+    let size = (bounds.max - bounds.min).truncate();
+    let spacing = asked.unwrap_or_else(|| round_below(size.min_element() / WANTED));
+    (spacing > 0.0 && size.max_element() / spacing <= MOST).then_some(spacing)
+}
+
+/// The lines at multiples of `spacing`, with their coordinates.
+pub(crate) fn lines(scene: &Scene, spacing: f64) -> Vec<OverlayLine> {
+    let Some(bounds) = scene.terrain().map(|t| t.bounds()) else { return Vec::new() };
+    let (lo, hi) = (bounds.min, bounds.max);
+    let multiples = |lo: f64, hi: f64| {
+        let first = (lo / spacing).ceil() as i64;
+        (first..=(hi / spacing).floor() as i64).map(move |k| k as f64 * spacing)
+    };
+    let line = |a: DVec3, b: DVec3, label: String| OverlayLine {
+        points: vec![a, b],
+        on_ground: true,
+        color: Color { r: 30, g: 44, b: 66, a: 150 },
+        width_px: 1.1,
+        casing: None,
+        hidden: Hidden::Cut,
+        label,
+    };
+    let name = |axis: &str, v: f64| match spacing >= 1000.0 && spacing % 500.0 == 0.0 {
+        true => format!("{axis} {}", v / 1000.0),
+        false => format!("{axis} {v}"),
+    };
+    let north = multiples(lo.x, hi.x).map(|x| line(DVec3::new(x, lo.y, 0.0), DVec3::new(x, hi.y, 0.0), name("E", x)));
+    let east = multiples(lo.y, hi.y).map(|y| line(DVec3::new(lo.x, y, 0.0), DVec3::new(hi.x, y, 0.0), name("N", y)));
+    north.chain(east).collect()
+}

@@ -1,0 +1,44 @@
+//! Drawings beside the scene itself: what tells that, where and how far a picture is bent, and pictures of the camera.
+
+pub(crate) mod badge;
+pub(crate) mod camera;
+pub(crate) mod ghost;
+pub(crate) mod grid;
+pub(crate) mod heat;
+
+use belvedere_scene::Color;
+
+/// Ink of texts and of the lines of legends.
+const INK: Color = Color::rgb(38, 44, 54);
+/// Ground of legends.
+const PAPER: Color = Color { r: 255, g: 255, b: 255, a: 224 };
+
+/// The round number (1, 2, 5 times a power of ten) nearest below `value`; 0 if there is none.
+fn round_below(value: f64) -> f64 {
+    if !(value > 0.0 && value.is_finite()) {
+        return 0.0;
+    }
+    let power = 10f64.powf(value.log10().floor());
+    [5.0, 2.0, 1.0, 0.5].map(|k| k * power).into_iter().find(|v| *v <= value * 1.000_001).unwrap_or(power)
+}
+
+/// A length with its unit.
+fn length(value: f64) -> String {
+    match value {
+        v if v >= 1000.0 => format!("{} km", (v / 100.0).round() / 10.0),
+        v if v >= 10.0 => format!("{v:.0} m"),
+        v => format!("{} m", (v * 100.0).round() / 100.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_round_and_readable() {
+        assert_eq!([0.7, 1.0, 4.9, 5.0, 99.0, 1234.0].map(round_below), [0.5, 1.0, 2.0, 5.0, 50.0, 1000.0]);
+        assert_eq!([round_below(0.0), round_below(f64::NAN), round_below(f64::INFINITY)], [0.0; 3]);
+        assert_eq!([0.25, 37.4, 2500.0, 30_000.0].map(length), ["0.25 m", "37 m", "2.5 km", "30 km"]);
+    }
+}

@@ -1,0 +1,53 @@
+//! Marks over a picture in scene files.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What is drawn over the picture beside the layers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct OverlayDoc {
+    /// Lines of the coordinate system on the ground: `true` for a round spacing, or the spacing in scene units, > 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grid: Option<SwitchOrLength>,
+    /// The words "bent view" in a corner of pictures that anything but the earth's curvature bends.
+    pub mark: bool,
+    /// Colours for how far the bend moves what is seen.
+    pub heatmap: bool,
+    /// The straight picture's ridges and routes, faintly over the bent one.
+    pub ghost: bool,
+}
+
+impl Default for OverlayDoc {
+    fn default() -> Self {
+        Self { grid: None, mark: true, heatmap: false, ghost: false }
+    }
+}
+
+/// On or off, or a length in scene units.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "true, false or a length was expected")]
+pub enum SwitchOrLength {
+    /// On or off.
+    Switch(bool),
+    /// A length.
+    Length(f64),
+}
+
+/// A length in scene units, or `auto`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a length or \"auto\" was expected")]
+pub enum AutoOrLength {
+    /// A length.
+    Length(f64),
+    /// The word `auto`.
+    Auto(AutoWord),
+}
+
+/// The word `auto`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AutoWord {
+    /// A value chosen by the program.
+    Auto,
+}
