@@ -93,7 +93,10 @@ fn the_camera_itself_is_drawn_from_above_and_from_outside() {
     place.write("s.toml", SCENE);
     let (above, a) = drawn(&place, "above.png", &["--overhead"]);
     assert_eq!(above["overlay"]["camera"], "overhead");
-    assert!(above["view"]["fov_y_deg"].is_null() && above["view"]["down"][1].as_f64().is_some_and(|y| y < -0.99), "north is up");
+    assert!(
+        above["view"]["fov_y_deg"].is_null() && above["view"]["down"][1].as_f64().is_some_and(|y| y < -0.99),
+        "north is up"
+    );
     let (outside, b) = drawn(&place, "o.png", &["--outside", "20000,-20000,9000,0,0,2000"]);
     assert_eq!(outside["view"]["eye"], serde_json::json!([20000.0, -20000.0, 9000.0]));
     let (_, c) = drawn(&place, "auto.png", &["--outside", "auto"]);
@@ -109,13 +112,16 @@ fn the_camera_itself_is_drawn_from_above_and_from_outside() {
 fn named_points_are_drawn_and_bad_styles_refused() {
     let place = Place::new();
     let feature = |name: &str, x: f64, y: f64| {
-        format!(r#"{{"type":"Feature","properties":{{"name":"{name}"}},"geometry":{{"type":"Point","coordinates":[{x},{y}]}}}}"#)
+        format!(
+            r#"{{"type":"Feature","properties":{{"name":"{name}"}},"geometry":{{"type":"Point","coordinates":[{x},{y}]}}}}"#
+        )
     };
     let points = [feature("Nordgipfel", 300.0, 900.0), feature("Südgipfel", -800.0, -1200.0)].join(",");
-    place.write("p.geojson", &format!(r#"{{"type":"FeatureCollection","features":[{points}]}}"#));
+    place.write("p.geojson", &format!(r#"{{"type":"FeatureCollection","crs":{{"type":"name","properties":{{"name":"EPSG:32631"}}}},"features":[{points}]}}"#));
     let layer = "[[layer]]\nid = 'summits'\nkind = 'point'\nsource = 'p.geojson'\nstyle = { symbol = 'peak', labels = true, hidden = 'show' }\n";
-    let scene = SCENE.replace("[camera]", &format!("{layer}[camera]"));
-    place.write("s.toml", SCENE);
+    let bare = SCENE.replace("'local'", "'EPSG:32631'");
+    let scene = bare.replace("[camera]", &format!("{layer}[camera]"));
+    place.write("s.toml", &bare);
     let (_, without) = drawn(&place, "without.png", &["--straight"]);
     place.write("s.toml", &scene);
     let (_, named) = drawn(&place, "named.png", &["--straight"]);
@@ -141,7 +147,15 @@ fn buffers_are_written_as_open_exr_too() {
     let place = Place::new();
     place.write("s.toml", SCENE);
     let result = place.json(&[
-        "render", "s.toml", "-o", "p.png", "--aux", "depth,id,world,displacement", "--aux-format", "exr", "--json",
+        "render",
+        "s.toml",
+        "-o",
+        "p.png",
+        "--aux",
+        "depth,id,world,displacement",
+        "--aux-format",
+        "exr",
+        "--json",
     ]);
     assert_eq!(result["outputs"].as_array().map(Vec::len), Some(3));
     let exr = super::read(&place.path("p.exr"));

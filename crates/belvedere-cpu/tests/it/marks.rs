@@ -75,7 +75,10 @@ fn visible_px(hf: &Heightfield, view: &View) -> f64 {
     };
     let pixel = |t: f64| view.project(place(t)).expect("in front").pixel;
     let length = |a: f64, b: f64| {
-        (0..500).map(|i| [i, i + 1].map(|k| pixel(a + (b - a) * f64::from(k) / 500.0))).map(|[p, q]| p.distance(q)).sum::<f64>()
+        (0..500)
+            .map(|i| [i, i + 1].map(|k| pixel(a + (b - a) * f64::from(k) / 500.0)))
+            .map(|[p, q]| p.distance(q))
+            .sum::<f64>()
     };
     length(0.0, crossing(0.2, 0.4)) + length(crossing(0.95, 0.4), 1.0)
 }
@@ -104,7 +107,8 @@ fn lines_end_where_the_line_of_sight_says_and_move_with_the_camera() {
 }
 
 fn summits() -> PointLayer {
-    let feature = |name: &str, x: f64, y: f64, z: f64| PointFeature { name: name.into(), position: DVec3::new(x, y, z) };
+    let feature =
+        |name: &str, x: f64, y: f64, z: f64| PointFeature { name: name.into(), position: DVec3::new(x, y, z) };
     PointLayer {
         features: vec![feature("Crest", 0.0, 0.0, 60.0), feature("Behind", 120.0, 150.0, 0.2)],
         color: Color::rgb(90, 20, 140),
@@ -125,7 +129,11 @@ fn points_in_sight_have_symbol_and_name_and_hidden_ones_have_neither() {
     let view = camera(150.0);
     let bare = render(&scene(vec![layer("ground", ground(&hf))]), &view, &options(4));
     let draw = |points: PointLayer| {
-        render(&scene(vec![layer("ground", ground(&hf)), layer("summits", LayerKind::Point(points))]), &view, &options(4))
+        render(
+            &scene(vec![layer("ground", ground(&hf)), layer("summits", LayerKind::Point(points))]),
+            &view,
+            &options(4),
+        )
     };
     let frame = draw(summits());
     let near = |p: DVec3, i: usize| {
@@ -222,9 +230,8 @@ fn marks_do_not_depend_on_threads() {
     }
     all.layers.push(layer("summits", LayerKind::Point(summits())));
     for samples in [1, 4, 16] {
-        let frame = |threads| {
-            render(&all, &camera(150.0), &RenderOptions { overlay: overlay(), threads, ..options(samples) })
-        };
+        let frame =
+            |threads| render(&all, &camera(150.0), &RenderOptions { overlay: overlay(), threads, ..options(samples) });
         let one = frame(1);
         assert!([2, 5].into_iter().all(|threads| frame(threads).color == one.color), "{samples} samples");
     }

@@ -108,6 +108,12 @@ impl Subject<'_> {
         }
         overlay.over.push(line([&corners[..], &corners[..1]].concat(), DARK, 1.6));
         overlay.points.push(point(p.eye, Symbol::Dot, 9.0, DARK, "eye"));
+        // A bend that begins at the eye moves it as well: rays over the true ground start where it came from.
+        if let Ok((origin, _)) = self.view.undisplace(p.unproject(p.center_px(), 1e-4 * self.far))
+            && origin.distance(p.eye) > 0.01 * self.far
+        {
+            overlay.points.push(point(origin, Symbol::Dot, 7.0, segment_color(0), "eye, for the true ground"));
+        }
     }
 }
 

@@ -2,51 +2,65 @@
 
 use super::CameraPicture;
 use crate::{BelvedereError, Session};
-use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, Projection, View};
+use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, PinholeError, Projection, View};
 use belvedere_scene::Overlay;
 
-/// Room around what is shown, as a share.
+/// Room around what is shown from above, as a share.
 const MARGIN: f64 = 1.12;
+/// Vertical field of view from outside, radians.
+const FOV_Y: f64 = 0.7;
 
 pub(super) fn view(session: &Session, picture: CameraPicture, overlay: &Overlay) -> Result<View, BelvedereError> {
     let subject = session.view().pinhole();
-    let points =
-        overlay.over.iter().flat_map(|l| l.points.iter().copied()).chain(overlay.points.iter().map(|p| p.position));
-    let shown = Aabb::of(points).union(session.scene().bounds());
-    let image = subject.image;
+    // What is drawn in full: hulls and continuations may leave the picture.
+    let lines = overlay.over.iter().filter(|l| l.color.a == 255).flat_map(|l| l.points.iter().copied());
+    let points: Vec<DVec3> = lines.chain(overlay.points.iter().map(|p| p.position)).collect();
+    let shown = Aabb::of(points.iter().copied());
     let pinhole = match picture {
-        CameraPicture::Overhead => overhead(&shown, image),
-        CameraPicture::Outside(places) => {
-            let [eye, look] = match places {
-                Some(places) => places.map(DVec3::from_array),
-                None => beside(&shown, subject),
-            };
-            let fov_y = 40f64.to_radians();
-            let near = (1e-4 * eye.distance(look)).max(1e-3);
-            Pinhole::look_at(eye, look, DVec3::Z, Projection::Perspective { fov_y }, image, near, None)
-        }
+        CameraPicture::Overhead => overhead(&shown, subject.image),
+        CameraPicture::Outside(Some(places)) => outside(places.map(DVec3::from_array), subject.image),
+        CameraPicture::Outside(None) => outside(beside(&shown, &points, subject), subject.image),
     };
     let pinhole = pinhole.map_err(|e| BelvedereError::Usage(format!("picture of the camera: {e}")))?;
     Ok(View::straight(pinhole))
 }
 
-fn overhead(shown: &Aabb, image: [u32; 2]) -> Result<Pinhole, belvedere_core::PinholeError> {
+fn overhead(shown: &Aabb, image: [u32; 2]) -> Result<Pinhole, PinholeError> {
     let [w, h] = image.map(f64::from);
     let size = (shown.max - shown.min).truncate() * MARGIN;
     let height = size.y.max(size.x * h / w).max(1e-3);
     let middle = 0.5 * (shown.min + shown.max);
-    let above = shown.max.z + 0.1 * height + 1.0;
-    let eye = middle.with_z(above);
+    let above = shown.max.z + 0.01 * height;
     let projection = Projection::Orthographic { height };
-    Pinhole::look_at(eye, middle.with_z(above - 1.0), DVec3::Y, projection, image, 1e-3 * height, None)
+    let [eye, below] = [above, above - height].map(|z| middle.with_z(z));
+    Pinhole::look_at(eye, below, DVec3::Y, projection, image, 1e-3 * height, None)
 }
 
-/// From the right of the camera and above, far enough to see all of it.
-fn beside(shown: &Aabb, subject: &Pinhole) -> [DVec3; 2] {
+fn outside([eye, look]: [DVec3; 2], image: [u32; 2]) -> Result<Pinhole, PinholeError> {
+    let near = (1e-4 * eye.distance(look)).max(1e-3);
+    Pinhole::look_at(eye, look, DVec3::Z, Projection::Perspective { fov_y: FOV_Y }, image, near, None)
+}
+
+/// From the right of the camera and above, as near as lets everything be seen.
+fn beside(shown: &Aabb, points: &[DVec3], subject: &Pinhole) -> [DVec3; 2] {
     let middle = 0.5 * (shown.min + shown.max);
-    let reach = 0.5 * (shown.max - shown.min).length();
+    let reach = (0.5 * (shown.max - shown.min).length()).max(1e-3);
     let heading = subject.forward.truncate().try_normalize().unwrap_or(DVec2::Y);
     let right = DVec2::new(heading.y, -heading.x);
-    let from = (0.9 * right - 0.35 * heading).extend(0.42).normalize();
-    [middle + from * reach * 2.5, middle]
+    let from = (0.9 * right - 0.3 * heading).extend(0.4).normalize();
+    let size = DVec2::from(subject.image.map(f64::from));
+    let mut best = [middle + from * reach * 4.0, middle];
+    for i in 0..60 {
+        let places = [middle + from * reach * 4.0 * 0.96f64.powi(i), middle];
+        let Ok(camera) = outside(places, subject.image) else { break };
+        let fits = |p: &DVec3| {
+            let seen = camera.project(*p).ok().map(|(pixel, _)| pixel / size);
+            seen.is_some_and(|s| (0.04..=0.96).contains(&s.x) && (0.08..=0.95).contains(&s.y))
+        };
+        if !points.iter().all(fits) {
+            break;
+        }
+        best = places;
+    }
+    best
 }

@@ -12,7 +12,7 @@ const UP: usize = 9;
 const POINTS: usize = 240;
 
 /// Pixels of the fan: a row somewhat below the middle, and the middle column.
-fn pixels(view: &View) -> Vec<DVec2> {
+pub(super) fn pixels(view: &View) -> Vec<DVec2> {
     let [w, h] = view.pinhole().image.map(f64::from);
     let row = (0..ACROSS).map(|i| DVec2::new(w * (i as f64 + 0.5) / ACROSS as f64, 0.6 * h));
     let column = (0..UP).map(|i| DVec2::new(0.5 * w, h * (i as f64 + 0.5) / UP as f64));

@@ -1,9 +1,9 @@
 //! The deformation curve with its control points, the reference plane and the pivot.
 
-use super::{CURVE, DARK, PLANE, Subject, line, point};
+use super::{CURVE, DARK, PLANE, Subject, line, point, rays};
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::{DVec2, DVec3, SpaceMap};
-use belvedere_scene::{Color, Overlay, OverlayFace, Symbol};
+use belvedere_scene::{Color, Hidden, Overlay, OverlayFace, OverlayLine, Symbol};
 
 /// Points of the curve, and rungs of the bent plane.
 const POINTS: usize = 120;
@@ -38,13 +38,19 @@ pub(super) fn draw(subject: &Subject<'_>, bend: &SplineBend, overlay: &mut Overl
     let plane = vec![flat(near, -half), flat(near, half), flat(far, half), flat(far, -half)];
     overlay.over.push(line([&plane[..], &plane[..1]].concat(), PLANE.with_alpha(200), 1.4));
     overlay.faces.push(OverlayFace { corners: plane, color: PLANE.with_alpha(40) });
-    overlay.over.push(line(curve, CURVE, 3.0));
+    // The eye's own straight rays, to where what they see is bent to.
+    for hit in rays::pixels(subject.view).into_iter().filter_map(|p| subject.tracer.first_hit(p)) {
+        if let Ok(seen) = subject.view.displace(hit.point) {
+            overlay.over.push(line(vec![subject.view.pinhole().eye, seen.point], CURVE.with_alpha(120), 1.0));
+        }
+    }
+    overlay.over.push(OverlayLine { hidden: Hidden::Show, ..line(curve, CURVE, 3.0) });
     let controls = controls(bend);
-    overlay.over.push(line(controls.clone(), DARK.with_alpha(150), 1.0));
+    overlay.over.push(OverlayLine { hidden: Hidden::Show, ..line(controls.clone(), DARK.with_alpha(150), 1.0) });
     overlay.points.extend(controls.iter().map(|p| point(*p, Symbol::Square, 6.0, CURVE, "")));
     overlay.points.push(point(pivot, Symbol::Cross, 11.0, DARK, "pivot"));
     legend.push((PLANE, "reference plane".into()));
-    legend.push((CURVE, "where it is bent to, curve and control points".into()));
+    legend.push((CURVE, "where it is bent to; the eye sees it straight".into()));
 }
 
 /// The control points in the plane of the curve. The curve itself tells where its coordinates begin.
