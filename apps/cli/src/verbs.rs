@@ -1,8 +1,8 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AuxFormatKind, AuxKind, DemoArgs, InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs,
-    SchemaArgs, ShowArgs, Verb,
+    AuxFormatKind, AuxKind, DemoArgs, InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs,
+    SceneArgs, SchemaArgs, ShowArgs, Verb,
 };
 use crate::report::{Context, done, print};
 use belvedere::verbs::render::{self, AuxBuffer, AuxFormat, RenderRequest};

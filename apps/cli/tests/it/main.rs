@@ -2,8 +2,8 @@
 
 mod bad_scenes;
 mod exact;
-mod meshes;
 mod marks;
+mod meshes;
 mod numbers;
 mod odd_files;
 mod pick;

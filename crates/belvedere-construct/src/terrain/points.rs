@@ -246,6 +246,7 @@ mod tests {
             casing: None,
             hidden: Hidden::Dash,
             lift_m: 1.5,
+            markers: None,
         });
         Scene { layers: vec![Layer { id: "line".into(), must_see: true, kind }], ..Scene::default() }
     }
@@ -344,6 +345,7 @@ mod tests {
             features: vec![PointFeature { name: "hut".into(), position }],
             color: Color::rgb(0, 0, 0),
             size_px: 3.0,
+            look: belvedere_scene::PointLook::default(),
             hidden: Hidden::Fade,
             lift_m: 4.0,
         });
