@@ -7,6 +7,7 @@ mod cells;
 mod field;
 mod greedy;
 mod line_of_sight;
+mod metrics;
 mod points;
 pub mod qp;
 mod settings;
@@ -20,6 +21,7 @@ pub use greedy::{
     scale_to_clear, shift_to_clear,
 };
 pub use line_of_sight::{SightSample, guard_tau, sight_samples};
+pub use metrics::{Deformation, FrameChange, TerrainMetrics, terrain_metrics};
 pub use points::{PointKind, ReferencePoint, Unusable, UnusableReason, reference_points};
 pub use settings::{Detail, SolverMode, TerrainSettings};
 pub use smooth::{
