@@ -355,8 +355,8 @@ impl Job<'_> {
         let n = cols + 1;
         for r in r0..=r0 + rows {
             let first = r * hf.cols() + c0;
-            let (heights, states) = (&hf.heights()[first..first + n], &hf.states()[first..first + n]);
-            if states.contains(&NodeState::Void) {
+            let (heights, states) = (&hf.heights()[first..first + n], hf.states());
+            if (first..first + n).any(|i| states[i] == NodeState::Void) {
                 for c in c0..=c0 + cols {
                     nodes.push(match hf.node(c, r) {
                         Some(p) => self.project(p)?,

@@ -1,8 +1,9 @@
 //! Terrain heights on a regular metric grid with holes.
 
 use belvedere_core::{Aabb, DVec2, DVec3};
-use std::any::Any;
-use std::sync::{Arc, OnceLock};
+use std::any::{Any, TypeId};
+use std::ops::Index;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Whether a node carries a height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -81,15 +82,77 @@ pub struct Heightfield {
     cols: usize,
     rows: usize,
     heights: Vec<f32>,
-    states: Vec<NodeState>,
+    /// Nothing where every node is measured: a byte per node matters for large grounds.
+    states: Option<Vec<NodeState>>,
     z_range: [f64; 2],
     derived: Derived,
+}
+
+/// States of all nodes, row-major. Takes no memory where every node is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct States<'a> {
+    each: Option<&'a [NodeState]>,
+    len: usize,
+}
+
+impl<'a> States<'a> {
+    /// Number of nodes.
+    pub fn len(self) -> usize {
+        self.len
+    }
+
+    /// Whether there is no node; never true of a ground.
+    pub fn is_empty(self) -> bool {
+        self.len == 0
+    }
+
+    /// State of node `i`; `None` past the last.
+    pub fn get(self, i: usize) -> Option<&'a NodeState> {
+        self.each.map_or((i < self.len).then_some(&NodeState::Measured), |each| each.get(i))
+    }
+
+    /// The states in order.
+    pub fn iter(self) -> impl ExactSizeIterator<Item = &'a NodeState> + Clone {
+        (0..self.len).map(move |i| self.each.map_or(&NodeState::Measured, |each| &each[i]))
+    }
+
+    /// A copy.
+    pub fn to_vec(self) -> Vec<NodeState> {
+        self.each.map_or_else(|| vec![NodeState::Measured; self.len], <[_]>::to_vec)
+    }
+
+    /// The states node by node; `None` where every node is measured.
+    pub fn each(self) -> Option<&'a [NodeState]> {
+        self.each
+    }
+}
+
+impl Index<usize> for States<'_> {
+    type Output = NodeState;
+
+    fn index(&self, i: usize) -> &NodeState {
+        self.each.map_or(&NodeState::Measured, |each| &each[i])
+    }
 }
 
 /// What a renderer derived from the ground and wants to find again with the next frame. No part of the value: equal
 /// grounds are equal whatever was derived from them, and clones share it.
 #[derive(Clone, Default)]
-struct Derived(Arc<OnceLock<Arc<dyn Any + Send + Sync>>>);
+struct Derived(Arc<Mutex<Vec<(TypeId, Kept)>>>);
+
+type Kept = Arc<OnceLock<Arc<dyn Any + Send + Sync>>>;
+
+impl Derived {
+    fn of(&self, kind: TypeId) -> Kept {
+        let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, kept)) = all.iter().find(|(k, _)| *k == kind) {
+            return Arc::clone(kept);
+        }
+        let kept = Kept::default();
+        all.push((kind, Arc::clone(&kept)));
+        kept
+    }
+}
 
 impl PartialEq for Derived {
     fn eq(&self, _: &Self) -> bool {
@@ -99,17 +162,17 @@ impl PartialEq for Derived {
 
 impl std::fmt::Debug for Derived {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(if self.0.get().is_some() { "Derived(..)" } else { "Derived" })
+        f.write_str("Derived")
     }
 }
 
 impl Heightfield {
     /// What `make` derives from this ground, made at the first call and kept with it (and with its clones) from then on.
     ///
-    /// There is one place: the first type to be kept stays, values of other types are made anew at every call. `make` must
-    /// depend on nothing but the ground.
+    /// There is one place per type. `make` must depend on nothing but the ground.
     pub fn derived<T: Any + Send + Sync>(&self, make: impl Fn() -> T) -> Arc<T> {
-        let kept = self.derived.0.get_or_init(|| Arc::new(make()));
+        let place = self.derived.of(TypeId::of::<T>());
+        let kept = place.get_or_init(|| Arc::new(make()));
         Arc::clone(kept).downcast().unwrap_or_else(|_| Arc::new(make()))
     }
 
@@ -124,27 +187,48 @@ impl Heightfield {
         spacing: DVec2,
         cols: usize,
         rows: usize,
-        mut heights: Vec<f32>,
+        heights: Vec<f32>,
         states: Vec<NodeState>,
+    ) -> Result<Self, HeightfieldError> {
+        let every = states.iter().all(|s| *s == NodeState::Measured) && states.len() == heights.len();
+        Self::with_states(north_west, spacing, [cols, rows], heights, (!every).then_some(states))
+    }
+
+    /// [`Heightfield::new`] with a measured height at every node.
+    ///
+    /// # Errors
+    /// Every [`HeightfieldError`].
+    pub fn measured(
+        north_west: DVec2,
+        spacing: DVec2,
+        cols: usize,
+        rows: usize,
+        heights: Vec<f32>,
+    ) -> Result<Self, HeightfieldError> {
+        Self::with_states(north_west, spacing, [cols, rows], heights, None)
+    }
+
+    fn with_states(
+        north_west: DVec2,
+        spacing: DVec2,
+        [cols, rows]: [usize; 2],
+        mut heights: Vec<f32>,
+        states: Option<Vec<NodeState>>,
     ) -> Result<Self, HeightfieldError> {
         if cols < 2 || rows < 2 {
             return Err(HeightfieldError::TooSmall { cols, rows });
         }
-        if heights.len() != cols * rows || states.len() != cols * rows {
-            return Err(HeightfieldError::Length {
-                cols,
-                rows,
-                expected: cols * rows,
-                heights: heights.len(),
-                states: states.len(),
-            });
+        let given = states.as_ref().map_or(heights.len(), Vec::len);
+        if heights.len() != cols * rows || given != cols * rows {
+            let (expected, heights) = (cols * rows, heights.len());
+            return Err(HeightfieldError::Length { cols, rows, expected, heights, states: given });
         }
         if !(spacing.x > 0.0 && spacing.y > 0.0 && spacing.is_finite() && north_west.is_finite()) {
             return Err(HeightfieldError::Spacing { x: spacing.x, y: spacing.y });
         }
         let mut z_range = [f64::INFINITY, f64::NEG_INFINITY];
-        for (i, (h, state)) in heights.iter_mut().zip(&states).enumerate() {
-            if *state == NodeState::Void {
+        for (i, h) in heights.iter_mut().enumerate() {
+            if states.as_ref().is_some_and(|states| states[i] == NodeState::Void) {
                 *h = 0.0;
                 continue;
             }
@@ -185,8 +269,12 @@ impl Heightfield {
     }
 
     /// States, row-major.
-    pub fn states(&self) -> &[NodeState] {
-        &self.states
+    pub fn states(&self) -> States<'_> {
+        States { each: self.states.as_deref(), len: self.heights.len() }
+    }
+
+    fn is_void(&self, i: usize) -> bool {
+        self.states.as_ref().is_some_and(|states| states[i] == NodeState::Void)
     }
 
     /// Smallest and largest height.
@@ -197,7 +285,7 @@ impl Heightfield {
     /// Scene position of a node; `None` at a void.
     pub fn node(&self, col: usize, row: usize) -> Option<DVec3> {
         let i = row * self.cols + col;
-        (self.states[i] != NodeState::Void).then(|| self.node_xy(col, row).extend(f64::from(self.heights[i])))
+        (!self.is_void(i)).then(|| self.node_xy(col, row).extend(f64::from(self.heights[i])))
     }
 
     /// Scene x, y of a node.
@@ -227,7 +315,7 @@ impl Heightfield {
             if w == 0.0 {
                 continue; // on a grid line the nodes beside it do not matter
             }
-            if self.states[k] == NodeState::Void {
+            if self.is_void(k) {
                 return None;
             }
             height += w * f64::from(self.heights[k]);
@@ -270,13 +358,13 @@ impl Heightfield {
     }
 
     fn triangle_height(&self, nodes: [usize; 3], weights: [f64; 3]) -> Option<f64> {
-        let solid = nodes.iter().all(|&n| self.states[n] != NodeState::Void);
+        let solid = nodes.iter().all(|&n| !self.is_void(n));
         solid.then(|| nodes.iter().zip(weights).map(|(&n, w)| w * f64::from(self.heights[n])).sum())
     }
 
     /// Share of nodes in `state`, 0..=1.
     pub fn share_of(&self, state: NodeState) -> f64 {
-        self.states.iter().filter(|&&s| s == state).count() as f64 / self.states.len() as f64
+        self.states().iter().filter(|&&s| s == state).count() as f64 / self.heights.len() as f64
     }
 
     /// Smallest box around all nodes.
@@ -312,6 +400,22 @@ mod tests {
         assert_eq!(*ground.derived(|| 10u32), 7);
         assert_eq!(*other.derived(|| 8u32), 8);
         assert_eq!(ground, other);
+    }
+
+    #[test]
+    fn states_take_memory_only_where_nodes_differ() {
+        let (solid, holed) = (saddle(None), saddle(Some(1)));
+        assert!(solid.states().each().is_none() && holed.states().each().is_some());
+        for (hf, first) in [(&solid, NodeState::Measured), (&holed, NodeState::Void)] {
+            let all = hf.states();
+            assert_eq!((all.len(), all[1], all.get(1), all.get(4)), (4, first, Some(&first), None));
+            assert_eq!(all.iter().copied().collect::<Vec<_>>(), all.to_vec());
+        }
+        let (nw, step) = (solid.north_west(), solid.spacing());
+        let heights = solid.heights().to_vec();
+        assert_eq!(Heightfield::measured(nw, step, 2, 2, heights).unwrap(), solid);
+        let short = Heightfield::measured(nw, step, 2, 2, vec![0.0; 3]);
+        assert!(matches!(short, Err(HeightfieldError::Length { expected: 4, heights: 3, .. })), "{short:?}");
     }
 
     #[test]

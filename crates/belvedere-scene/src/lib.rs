@@ -18,7 +18,7 @@ pub mod scene;
 pub use drape::{Draped, drape_polyline};
 pub use frame::{Aux, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer};
 pub use ground::Ground;
-pub use heightfield::{Heightfield, HeightfieldError, NodeState};
+pub use heightfield::{Heightfield, HeightfieldError, NodeState, States};
 pub use layer::{
     AreaFeature, AreaLayer, BoxLayer, BoxShape, Color, Drape, Hidden, Layer, LayerKind, LineFeature, LineLayer,
     Palette, PointFeature, PointLayer, Relief, Shading, TerrainLayer,

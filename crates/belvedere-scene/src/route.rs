@@ -130,8 +130,8 @@ impl Window {
 fn solid(terrain: &Heightfield, (col, row): (usize, usize)) -> bool {
     (row.saturating_sub(1)..(row + 2).min(terrain.rows())).all(|r| {
         let from = r * terrain.cols();
-        let states = &terrain.states()[from + col.saturating_sub(1)..from + (col + 2).min(terrain.cols())];
-        states.iter().all(|s| *s != NodeState::Void)
+        let states = terrain.states();
+        (from + col.saturating_sub(1)..from + (col + 2).min(terrain.cols())).all(|i| states[i] != NodeState::Void)
     })
 }
 

@@ -39,7 +39,7 @@ impl Pyramid {
             }
         });
         // Holes count for nothing in the averages; w carries the weight until openness is known.
-        for (n, s) in nodes.iter_mut().zip(hf.states()) {
+        for (n, s) in nodes.iter_mut().zip(hf.states().iter()) {
             if *s == NodeState::Void {
                 *n = NodeShade::ZERO;
             }

@@ -146,7 +146,7 @@ fn plane_point(context: &StageContext<'_>, fail: &Fail<'_>) -> Result<DVec3, Bel
 fn median_height(terrain: &belvedere_scene::Heightfield) -> f64 {
     let with_data =
         |(h, s): (&f32, &belvedere_scene::NodeState)| (*s != belvedere_scene::NodeState::Void).then_some(*h);
-    let mut heights: Vec<f32> = terrain.heights().iter().zip(terrain.states()).filter_map(with_data).collect();
+    let mut heights: Vec<f32> = terrain.heights().iter().zip(terrain.states().iter()).filter_map(with_data).collect();
     let middle = heights.len() / 2;
     if heights.is_empty() {
         return 0.0;
