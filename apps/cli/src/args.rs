@@ -72,6 +72,25 @@ pub(crate) enum Verb {
     Show(ShowArgs),
     /// JSON Schema of scene files
     Schema(SchemaArgs),
+    /// What bends, anti-aliasing and level of detail cost on this machine
+    Bench(BenchArgs),
+}
+
+/// A measurement.
+#[derive(Debug, Args)]
+pub(crate) struct BenchArgs {
+    /// Times that every case is drawn
+    #[arg(long, default_value_t = 7, value_name = "N")]
+    pub(crate) rounds: usize,
+    /// Nodes along a side of the ground
+    #[arg(long, default_value_t = 1025, value_name = "N")]
+    pub(crate) nodes: usize,
+    /// Size of the picture
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
+    pub(crate) size: [u32; 2],
+    /// Output of the report as JSON
+    #[arg(short, long, value_name = "OUT.json")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 /// A scene.
@@ -218,6 +237,9 @@ pub(crate) struct RenderArgs {
     /// Coverage samples per pixel: 1, 4 or 16
     #[arg(long, default_value_t = 4, value_name = "N")]
     pub(crate) samples: u32,
+    /// Largest error of terrain drawn in less detail far away, pixels; 0 draws every cell
+    #[arg(long, default_value_t = 0.5, value_name = "PX", allow_hyphen_values = true, value_parser = parse_lod)]
+    pub(crate) lod: f64,
 }
 
 /// What makes no sense for pictures of the camera.
@@ -362,6 +384,12 @@ const MAX_THREADS: usize = 1024;
 /// A number of threads.
 fn parse_threads(text: &str) -> Result<usize, String> {
     text.parse().ok().filter(|n| *n <= MAX_THREADS).ok_or_else(|| format!("give a whole number in 0..={MAX_THREADS}"))
+}
+
+/// An error in pixels.
+fn parse_lod(text: &str) -> Result<f64, String> {
+    let px = text.parse().ok().filter(|px| (0.0..=64.0).contains(px));
+    px.ok_or_else(|| "give an error in pixels in 0..=64; 0 draws every cell".into())
 }
 
 /// Width and height of `1280x720`.

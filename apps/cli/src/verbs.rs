@@ -1,13 +1,13 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AuxFormatKind, AuxKind, DemoArgs, InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs,
-    SceneArgs, SchemaArgs, ShowArgs, Verb,
+    AuxFormatKind, AuxKind, BenchArgs, DemoArgs, InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs,
+    RevealArgs, SceneArgs, SchemaArgs, ShowArgs, Verb,
 };
 use crate::report::{Context, done, print};
 use belvedere::verbs::render::{self, AuxBuffer, AuxFormat, RenderRequest};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
-use belvedere::verbs::{check, demo, info, measure, output, pick, points};
+use belvedere::verbs::{bench, check, demo, info, measure, output, pick, points};
 use belvedere::{CameraPicture, Needs, Session};
 use std::path::{Path, PathBuf};
 
@@ -42,6 +42,7 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::Check(args) => check_scene(&args, context),
         Verb::Show(args) => show(&args, context),
         Verb::Schema(args) => schema(&args, context),
+        Verb::Bench(args) => measure_machine(&args, context),
     }
 }
 
@@ -74,6 +75,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     request.renderer = args.renderer.into();
     request.options.threads = context.common.threads;
     request.options.samples = args.samples;
+    request.options.lod_px = args.lod;
     request.options.max_bytes = context.common.max_mem.unwrap_or(request.options.max_bytes);
     request.aux = args
         .aux
@@ -254,5 +256,23 @@ fn show(args: &ShowArgs, context: &Context) -> anyhow::Result<Goal> {
 fn schema(args: &SchemaArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[], context)?;
     context.deliver("schema", args.out.as_deref(), &check::schema_json()?, &[])?;
+    Ok(Goal::Reached)
+}
+
+fn measure_machine(args: &BenchArgs, context: &Context) -> anyhow::Result<Goal> {
+    ready(args.out.as_ref(), &[], context)?;
+    let threads = context.common.threads;
+    let request = bench::BenchRequest { rounds: args.rounds, nodes: args.nodes, image: args.size, threads };
+    let report = bench::bench(&request, &context.progress)?;
+    context.finish();
+    let text = output::json(&report)?;
+    match &args.out {
+        Some(_) => context.deliver("bench", args.out.as_deref(), &text, &[])?,
+        None if context.common.json => print(&text)?,
+        None => {}
+    }
+    if !context.common.json && !context.common.quiet {
+        print(&report.to_string())?;
+    }
     Ok(Goal::Reached)
 }

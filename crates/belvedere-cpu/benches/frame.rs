@@ -6,15 +6,15 @@ mod support;
 use belvedere_cpu::CpuRenderer;
 use belvedere_scene::{Light, Progress, RenderJob, RenderOptions, Renderer};
 use criterion::{Criterion, criterion_group, criterion_main};
-use support::{ground, views};
+use support::{NODES, ground, views};
 
 fn frames(c: &mut Criterion) {
-    let scene = ground();
+    let scene = ground(NODES);
     let (light, progress) = (Light::default(), Progress::silent());
     for samples in [1, 4] {
         let mut group = c.benchmark_group(format!("frame, {samples} samples"));
         group.sample_size(10);
-        for (name, view) in views() {
+        for (name, view) in views([1280, 720]) {
             let options = RenderOptions { samples, ..RenderOptions::default() };
             let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
             group.bench_function(name, |b| b.iter(|| CpuRenderer.render(&job).expect("drawn")));

@@ -1,15 +1,19 @@
 //! Surfaces cut into blocks: culled, displaced and projected once per frame, ready to rasterise.
 
-use crate::displace::Points;
-use crate::lens::{Lens, Pass, SUB, ScreenVertex};
+use crate::choose::{Choice, Chooser, Chosen};
+use crate::grid::{CELL_TRIANGLES, Cover, Nodes, cell_weights, kept_node};
+use crate::lens::{Lens, SUB, ScreenVertex};
+pub(crate) use crate::lod::SIDE;
+use crate::lod::{self, Tree};
+use crate::pass::{Look, Pass};
+use crate::project::Row;
 use crate::raster::Band;
 use crate::refine::{Corner, Refiner};
-use belvedere_core::{Aabb, DVec3};
-use belvedere_scene::{BoxLayer, Heightfield, LayerKind, NodeState, Scene};
+use belvedere_core::Aabb;
+use belvedere_scene::{BoxLayer, Heightfield, LayerKind, NodeState, RenderOptions, Scene};
 use rayon::prelude::*;
+use std::sync::{Mutex, PoisonError};
 
-/// Cells along a side of a terrain block.
-pub(crate) const SIDE: usize = 32;
 /// Boxes to a block.
 const BOXES: usize = 64;
 /// A primitive number with this bit counts soup triangles; without it, cells of grid blocks.
@@ -36,7 +40,7 @@ pub(crate) struct SoupTriangle {
 #[derive(Debug)]
 pub(crate) enum Geometry {
     /// Nodes of the block row by row; every cell without void nodes draws two triangles.
-    Grid(Vec<ScreenVertex>),
+    Grid(Nodes),
     /// Explicit triangles.
     Soup(Vec<SoupTriangle>),
 }
@@ -53,12 +57,12 @@ pub(crate) struct Block {
     /// the ground. 1 = full detail.
     pub(crate) step: usize,
     pub(crate) geometry: Geometry,
+    /// Sides along which every second node is left out, see [`crate::lod::Span::seam`].
+    seam: [bool; 4],
     /// Number of the first soup triangle.
     soup_base: u32,
-    /// Rows of the image that the block may touch.
-    rows: [i32; 2],
-    /// Smallest and largest y of each row of nodes of a grid, fixed point.
-    spans: Vec<[i32; 2]>,
+    /// What the block may touch of the image.
+    cover: Cover,
     pub(crate) counts: Counts,
 }
 
@@ -69,9 +73,6 @@ pub(crate) struct Counts {
     pub(crate) split: u64,
     pub(crate) missed: u64,
 }
-
-/// The node numbers (bit 0 east, bit 1 south) of the two triangles of a cell, split north-west to south-east.
-pub(crate) const CELL_TRIANGLES: [[usize; 3]; 2] = [[0, 1, 3], [0, 2, 3]];
 
 /// Corner numbers (see [`belvedere_scene::BoxShape::corners`]) of the twelve triangles of a box, two per face.
 pub(crate) const BOX_TRIANGLES: [[usize; 3]; 12] = [
@@ -96,72 +97,125 @@ pub(crate) struct Found<'a> {
     pub(crate) v: [SoupVertex; 3],
 }
 
-/// All blocks of a frame.
+/// All blocks of a frame; kept between frames for its memory.
 #[derive(Debug, Default)]
 pub(crate) struct Blocks {
     pub(crate) list: Vec<Block>,
+    /// Numbers of the blocks, nearest first.
+    order: Vec<u32>,
     soups: Vec<(u32, u32)>,
     pub(crate) triangles_in: u64,
+    choice: Choice,
+    spare: Spare,
+}
+
+/// Memory of blocks that are no longer needed.
+#[derive(Debug, Default)]
+pub(crate) struct Spare {
+    nodes: Mutex<Vec<Nodes>>,
+    soup: Mutex<Vec<Vec<SoupTriangle>>>,
+}
+
+impl Spare {
+    fn nodes(&self) -> Nodes {
+        self.nodes.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
+    }
+
+    pub(crate) fn soup(&self) -> Vec<SoupTriangle> {
+        self.soup.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
+    }
+
+    fn keep(&self, geometry: Geometry) {
+        match geometry {
+            Geometry::Grid(nodes) => self.nodes.lock().unwrap_or_else(PoisonError::into_inner).push(nodes),
+            Geometry::Soup(soup) => self.soup.lock().unwrap_or_else(PoisonError::into_inner).push(soup),
+        }
+    }
 }
 
 impl Block {
     /// Explicit triangles of the boxes or triangles from number `first` on; `None` if there are none.
     pub(crate) fn soup(layer: u32, first: usize, soup: Vec<SoupTriangle>, counts: Counts) -> Option<Self> {
-        let rows = rows_of(&soup)?;
-        let geometry = Geometry::Soup(soup);
-        let (origin, spans) = ([first, 0], Vec::new());
-        Some(Self { layer, origin, cells: [0; 2], step: 1, geometry, soup_base: 0, rows, spans, counts })
+        if soup.is_empty() {
+            return None;
+        }
+        let (cover, geometry) = (cover_of(&soup), Geometry::Soup(soup));
+        let (origin, seam) = ([first, 0], [false; 4]);
+        Some(Self { layer, origin, cells: [0; 2], step: 1, geometry, seam, soup_base: 0, cover, counts })
     }
 }
 
 impl Blocks {
     /// Displaces, projects, subdivides and clips every surface of the scene.
-    pub(crate) fn build(scene: &Scene, passes: &[Pass<'_>], lens: &Lens, tolerance_px: f64) -> Self {
-        let mut out = Self::default();
+    pub(crate) fn build(&mut self, scene: &Scene, passes: &[Pass<'_>], lens: &Lens, options: &RenderOptions) {
+        // A tolerance of zero or less would split without end.
+        let tolerance_px = if options.tolerance_px > 0.01 { options.tolerance_px } else { 0.01 };
+        self.list.drain(..).for_each(|b| self.spare.keep(b.geometry));
+        self.triangles_in = 0;
         for (i, layer) in scene.layers.iter().enumerate() {
             for pass in passes {
-                let job = Job { layer: i as u32, pass, lens, tolerance_px };
+                let job = Job { layer: i as u32, pass, lens, tolerance_px, spare: &self.spare };
                 match &layer.kind {
-                    LayerKind::Terrain(t) => out.list.extend(job.terrain(&t.heightfield)),
-                    LayerKind::Boxes(b) => out.list.extend(job.boxes(b)),
-                    LayerKind::Mesh(m) => out.list.extend(job.mesh(&m.mesh)),
+                    LayerKind::Terrain(t) => {
+                        let hf = &t.heightfield;
+                        let tree = hf.derived(|| Tree::new(hf));
+                        let chooser = Chooser { hf, tree: &tree, pass, lens, tolerance_px, lod_px: options.lod_px };
+                        chooser.choose(&mut self.choice);
+                        let blocks = self.choice.list.par_iter().filter_map(|c| job.terrain_block(hf, c));
+                        self.list.par_extend(blocks);
+                    }
+                    LayerKind::Boxes(b) => self.list.extend(job.boxes(b)),
+                    LayerKind::Mesh(m) => self.list.extend(job.mesh(&m.mesh)),
                     _ => {}
                 }
             }
-            out.triangles_in += match &layer.kind {
+            self.triangles_in += match &layer.kind {
                 LayerKind::Terrain(t) => 2 * ((t.heightfield.cols() - 1) * (t.heightfield.rows() - 1)) as u64,
                 LayerKind::Boxes(b) => 12 * b.boxes.len() as u64,
                 LayerKind::Mesh(m) => m.mesh.triangles().len() as u64,
                 _ => 0,
             };
         }
+        self.number();
+    }
+
+    /// Numbers the soup triangles and sorts the blocks by nearness.
+    fn number(&mut self) {
         let mut base = 0;
-        for (i, block) in out.list.iter_mut().enumerate() {
+        self.soups.clear();
+        for (i, block) in self.list.iter_mut().enumerate() {
             block.soup_base = base;
             if let Geometry::Soup(soup) = &block.geometry {
-                out.soups.push((base, i as u32));
+                self.soups.push((base, i as u32));
                 base += soup.len() as u32;
             }
         }
-        out
+        self.order.clear();
+        self.order.extend(0..self.list.len() as u32);
+        let list = &self.list;
+        self.order
+            .sort_unstable_by(|&a, &b| list[b as usize].cover.q.total_cmp(&list[a as usize].cover.q).then(a.cmp(&b)));
     }
 
-    /// Draws everything that touches the band, in the order of the layers.
+    /// Draws everything that touches the band and is not hidden, nearest first.
     pub(crate) fn draw(&self, band: &mut Band) {
-        for (i, block) in self.list.iter().enumerate() {
-            if block.rows[0] < band.y1 && block.rows[1] >= band.y0 {
-                match &block.geometry {
-                    Geometry::Grid(nodes) => {
-                        draw_grid(block.cells, nodes, &block.spans, (i as u32) << CELL_BITS, band);
-                    }
-                    Geometry::Soup(soup) => {
-                        for (k, t) in soup.iter().enumerate() {
-                            band.draw(t.v.map(|v| v.screen), SOUP | (block.soup_base + k as u32));
-                        }
+        for &i in &self.order {
+            let block = &self.list[i as usize];
+            let [y0, y1] = block.cover.y;
+            if y0 >> 8 >= band.y1 || y1 >> 8 < band.y0 || band.hides(block.cover.x, block.cover.q) {
+                continue;
+            }
+            match &block.geometry {
+                Geometry::Grid(nodes) => nodes.draw(i << CELL_BITS, band),
+                Geometry::Soup(soup) => {
+                    for (k, t) in soup.iter().enumerate() {
+                        band.draw(t.v.map(|v| v.screen), SOUP | (block.soup_base + k as u32));
                     }
                 }
             }
+            band.drew(block.cover.x);
         }
+        band.flush();
     }
 
     /// Layer of a primitive number (not sky).
@@ -187,15 +241,11 @@ impl Blocks {
         let block = self.list.get((prim >> CELL_BITS) as usize)?;
         let Geometry::Grid(nodes) = &block.geometry else { return None };
         let parent = prim & ((1 << CELL_BITS) - 1);
-        let cell = (parent >> 1) as usize;
-        let stride = block.cells[0] + 1;
-        let nw = cell / SIDE * stride + cell % SIDE;
-        let corner = |k: usize| nodes.get(nw + (k & 1) + (k >> 1) * stride).copied();
-        let weights = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-        let mut v = [SoupVertex { screen: ScreenVertex::NONE, weights: [0.0; 2] }; 3];
-        for (i, k) in CELL_TRIANGLES[(parent & 1) as usize].into_iter().enumerate() {
-            v[i] = SoupVertex { screen: corner(k)?, weights: weights[i] };
-        }
+        let (cell, triangle) = ((parent >> 1) as usize, (parent & 1) as usize);
+        let [c, r] = [cell % SIDE, cell / SIDE];
+        let weights = cell_weights(block.seam, block.cells, [c, r], triangle);
+        let corners = CELL_TRIANGLES[triangle].map(|n| nodes.at(c + (n & 1), r + (n >> 1)));
+        let v = std::array::from_fn(|i| SoupVertex { screen: corners[i], weights: weights[i] });
         Some(Found { block, parent, v })
     }
 
@@ -209,188 +259,94 @@ impl Blocks {
     }
 }
 
-fn draw_grid([cols, rows]: [usize; 2], nodes: &[ScreenVertex], spans: &[[i32; 2]], first_prim: u32, band: &mut Band) {
-    let stride = cols + 1;
-    let (top, bottom) = (band.y0 * SUB, band.y1 * SUB);
-    for r in 0..rows {
-        if spans[r][0].min(spans[r + 1][0]) >= bottom || spans[r][1].max(spans[r + 1][1]) < top {
-            continue;
-        }
-        let north = &nodes[r * stride..][..stride];
-        let south = &nodes[(r + 1) * stride..][..stride];
-        for (c, (n, s)) in north.windows(2).zip(south.windows(2)).enumerate() {
-            let v = [n[0], n[1], s[0], s[1]];
-            let x = [v[0].x.min(v[1].x).min(v[2].x.min(v[3].x)), v[0].x.max(v[1].x).max(v[2].x.max(v[3].x))];
-            let y = [v[0].y.min(v[1].y).min(v[2].y.min(v[3].y)), v[0].y.max(v[1].y).max(v[2].y.max(v[3].y))];
-            let prim = first_prim | ((r * SIDE + c) as u32) << 1;
-            if x[0] != i32::MIN {
-                if !band.misses(x, y) {
-                    band.draw([v[0], v[1], v[3]], prim);
-                    band.draw([v[0], v[2], v[3]], prim | 1);
-                }
-                continue;
-            }
-            for (k, t) in CELL_TRIANGLES.iter().enumerate() {
-                let tri = t.map(|i| v[i]);
-                if !tri.iter().any(|v| v.is_none()) {
-                    band.draw(tri, prim | k as u32);
-                }
-            }
-        }
-    }
-}
-
 pub(crate) struct Job<'a> {
     pub(crate) layer: u32,
     pub(crate) pass: &'a Pass<'a>,
     pub(crate) lens: &'a Lens,
     pub(crate) tolerance_px: f64,
-}
-
-/// What is known of a terrain block before its nodes are displaced.
-#[derive(Clone, Copy, PartialEq)]
-enum Need {
-    /// Outside the image.
-    Nothing,
-    /// Straight cell edges are good enough.
-    Plain,
-    /// Cell edges must be looked at one by one.
-    Edges,
+    pub(crate) spare: &'a Spare,
 }
 
 impl Job<'_> {
-    fn terrain(&self, hf: &Heightfield) -> Vec<Block> {
-        let (nx, ny) = ((hf.cols() - 1).div_ceil(SIDE), (hf.rows() - 1).div_ceil(SIDE));
-        let needs: Vec<Need> = (0..nx * ny).into_par_iter().map(|i| self.need(hf, [i % nx, i / nx])).collect();
-        let edges = |x: usize, y: usize| x < nx && y < ny && needs[y * nx + x] == Need::Edges;
-        (0..nx * ny)
-            .into_par_iter()
-            .filter(|&i| needs[i] != Need::Nothing)
-            .filter_map(|i| {
-                let (x, y) = (i % nx, i / nx);
-                // An edge between two blocks is judged alike by both.
-                let around = [(x, y.wrapping_sub(1)), (x + 1, y), (x, y + 1), (x.wrapping_sub(1), y)];
-                let judged = Judged { inside: edges(x, y), border: around.map(|(x, y)| edges(x, y)) };
-                self.terrain_block(hf, [x, y], judged)
-            })
-            .collect()
-    }
-
-    fn need(&self, hf: &Heightfield, block: [usize; 2]) -> Need {
-        let (origin, cells) = extent(hf, block);
-        let mut z = [f32::INFINITY, f32::NEG_INFINITY];
-        for r in origin[1]..=origin[1] + cells[1] {
-            let row = r * hf.cols() + origin[0];
-            for i in row..=row + cells[0] {
-                if hf.states()[i] != NodeState::Void {
-                    z = [z[0].min(hf.heights()[i]), z[1].max(hf.heights()[i])];
-                }
-            }
-        }
-        if z[0] > z[1] {
-            return Need::Nothing;
-        }
-        let (nw, se) = (hf.node_xy(origin[0], origin[1]), hf.node_xy(origin[0] + cells[0], origin[1] + cells[1]));
-        let bounds =
-            Aabb { min: DVec3::new(nw.x, se.y, f64::from(z[0])), max: DVec3::new(se.x, nw.y, f64::from(z[1])) };
-        if self.pass.leaves_out(self.lens, &bounds) {
-            return Need::Nothing;
-        }
-        if self.bends_cells(&bounds, cells[0].max(cells[1])) { Need::Edges } else { Need::Plain }
-    }
-
-    /// Whether an edge of a cell of a block of `n` cells may need splitting.
-    ///
-    /// The chord of a curve that turns by a given angle deviates in proportion to its length, so the bound of the block's
-    /// long edges, shared out over its cells with a factor 2 in hand, covers the cells' edges.
-    fn bends_cells(&self, bounds: &Aabb, n: usize) -> bool {
-        if self.pass.is_straight() {
-            return false;
-        }
-        let c = bounds.corners();
-        let pairs = [(0, 7), (1, 6), (2, 5), (3, 4), (0, 1), (2, 3), (0, 2), (1, 3), (4, 7), (5, 6)];
-        let worst = pairs.iter().map(|&(a, b)| self.pass.edge_error_px(c[a], c[b])).fold(0.0, f64::max);
-        !(worst * 2.0 / n as f64 <= self.tolerance_px)
-    }
-
-    fn terrain_block(&self, hf: &Heightfield, block: [usize; 2], judged: Judged) -> Option<Block> {
-        let (origin, cells) = extent(hf, block);
+    fn terrain_block(&self, hf: &Heightfield, chosen: &Chosen) -> Option<Block> {
+        let (origin, last) = lod::nodes(hf, chosen.level, chosen.block);
+        let step = 1 << chosen.level;
         let mut out = Block {
             layer: self.layer,
             origin,
-            cells,
-            step: 1,
+            cells: [0, 1].map(|axis| (last[axis] - origin[axis]) / step),
+            step,
             geometry: Geometry::Soup(Vec::new()),
+            seam: chosen.seam,
             soup_base: 0,
-            rows: [0, -1],
-            spans: Vec::new(),
+            cover: Cover::EMPTY,
             counts: Counts::default(),
         };
-        let careful = judged.inside || judged.border.contains(&true);
-        if !careful && let Some(nodes) = self.project_grid(hf, &mut out) {
-            let on = nodes.iter().filter(|v| !v.is_none());
-            let x = on.clone().fold([i32::MAX, i32::MIN], |x, v| [x[0].min(v.x), x[1].max(v.x)]);
-            let y = on.fold([i32::MAX, i32::MIN], |y, v| [y[0].min(v.y), y[1].max(v.y)]);
-            if x[0] > x[1] || x[1] < 0 || x[0] > self.lens.width * SUB || y[1] < 0 || y[0] > self.lens.height * SUB {
-                return None;
-            }
-            out.rows = [y[0] >> 8, y[1] >> 8];
-            out.spans = nodes.chunks(cells[0] + 1).map(span_of).collect();
-            out.counts.drawn = 2 * (cells[0] * cells[1]) as u64;
+        let careful = chosen.edges || !chosen.whole || chosen.judged.contains(&true);
+        if !careful && let Some(mut nodes) = self.project_grid(hf, &out) {
+            nodes.close_seams(chosen.seam);
+            out.cover = nodes.cover();
+            out.counts.drawn = 2 * (out.cells[0] * out.cells[1]) as u64;
             out.geometry = Geometry::Grid(nodes);
-            return Some(out);
+        } else {
+            self.refine_grid(hf, &mut out, chosen);
         }
-        self.refine_grid(hf, &mut out, judged);
-        let Geometry::Soup(soup) = &out.geometry else { return None };
-        out.rows = rows_of(soup)?;
-        out.counts.drawn = soup.len() as u64;
+        let Cover { x, y, .. } = out.cover;
+        let size = [self.lens.width * SUB, self.lens.height * SUB];
+        if x[0] > x[1] || x[1] < 0 || x[0] > size[0] || y[1] < 0 || y[0] > size[1] {
+            self.spare.keep(out.geometry);
+            return None;
+        }
         Some(out)
     }
 
     /// Nodes of the block on the image, if none needs clipping.
-    fn project_grid(&self, hf: &Heightfield, block: &mut Block) -> Option<Vec<ScreenVertex>> {
-        let ([c0, r0], [cols, rows]) = (block.origin, block.cells);
-        let mut nodes = Vec::with_capacity((cols + 1) * (rows + 1));
-        let [mut x, mut y, mut z] = [[0.0f64; SIDE + 1]; 3];
-        let n = cols + 1;
-        for r in r0..=r0 + rows {
-            let first = r * hf.cols() + c0;
-            let (heights, states) = (&hf.heights()[first..first + n], hf.states());
-            if (first..first + n).any(|i| states[i] == NodeState::Void) {
-                for c in c0..=c0 + cols {
-                    nodes.push(match hf.node(c, r) {
-                        Some(p) => self.project(p)?,
-                        None => ScreenVertex::NONE,
-                    });
+    fn project_grid(&self, hf: &Heightfield, block: &Block) -> Option<Nodes> {
+        let ([cols, rows], step) = (block.cells, block.step);
+        let mut nodes = self.spare.nodes();
+        nodes.reset(block.cells);
+        let count = cols + 1;
+        let columns = self.pass.columns(hf, block.origin[0], step, count);
+        let mut whole = true;
+        for r in 0..=rows {
+            let (col, row) = (block.origin[0], block.origin[1] + step * r);
+            let first = row * hf.cols() + col;
+            let states = hf.states();
+            if states.each().is_some_and(|s| s[first..=first + step * cols].contains(&NodeState::Void)) {
+                for c in 0..=cols {
+                    let at = [col + step * c, row];
+                    if hf.node(at[0], at[1]).is_none() {
+                        nodes.set(c, r, ScreenVertex::NONE);
+                    } else if let Some(image) = self.pass.ground_node(self.lens, hf, at) {
+                        nodes.set(c, r, image);
+                    } else {
+                        whole = false;
+                    }
                 }
-                continue;
+            } else {
+                let part = r * count..(r + 1) * count;
+                let (x, y) = (&mut nodes.x[part.clone()], &mut nodes.y[part.clone()]);
+                let mut out = Row { x, y, q: &mut nodes.q[part] };
+                whole = self.pass.ground_row(self.lens, hf, &columns, row, &mut out);
             }
-            for i in 0..n {
-                let xy = hf.node_xy(c0 + i, r);
-                (x[i], y[i], z[i]) = (xy.x, xy.y, f64::from(heights[i]));
-            }
-            let held = self.pass.is_only()
-                || (0..n).all(|i| self.pass.margins(DVec3::new(x[i], y[i], z[i])).iter().all(|m| *m > 0.0));
-            let mut points = Points { x: &mut x[..n], y: &mut y[..n], z: &mut z[..n] };
-            if !held || !self.pass.displace_row(&mut points) || !self.lens.snap_row(&points, &mut nodes) {
+            if !whole {
+                self.spare.keep(Geometry::Grid(nodes));
                 return None;
             }
         }
         Some(nodes)
     }
 
-    /// A node on the image that needs no clipping.
-    fn project(&self, p: DVec3) -> Option<ScreenVertex> {
-        let v = self.lens.view_from(self.pass.displace(p)?);
-        let whole = self.lens.is_drawable(v) && self.pass.margins(p).iter().all(|m| *m > 0.0);
-        whole.then(|| self.lens.snap(v))
-    }
-
-    fn refine_grid(&self, hf: &Heightfield, block: &mut Block, judged: Judged) {
-        let mut refiner = Refiner::new(self.pass, self.lens, self.tolerance_px);
-        let ([c0, r0], [cols, rows]) = (block.origin, block.cells);
+    fn refine_grid(&self, hf: &Heightfield, block: &mut Block, chosen: &Chosen) {
+        let mut refiner = Refiner::new(self.pass, self.lens, self.tolerance_px, self.spare.soup());
+        let (cells, seam) = (block.cells, block.seam);
+        let [cols, rows] = cells;
         let corners: Vec<Option<Corner>> = (0..(cols + 1) * (rows + 1))
-            .map(|i| hf.node(c0 + i % (cols + 1), r0 + i / (cols + 1)).map(|p| refiner.corner(p)))
+            .map(|i| {
+                let kept = kept_node(seam, cells, [i % (cols + 1), i / (cols + 1)]);
+                let at = [0, 1].map(|axis| block.origin[axis] + block.step * kept[axis]);
+                hf.node(at[0], at[1]).map(|p| refiner.node(p, self.pass.ground_node(self.lens, hf, at)))
+            })
             .collect();
         block.counts.missed = corners.iter().flatten().filter(|c| c.is_missing()).count() as u64;
         for r in 0..rows {
@@ -401,67 +357,50 @@ impl Job<'_> {
                         continue;
                     };
                     // Edges 0-1, 1-2, 2-0 of the triangle: north, east or west, south; the diagonal is the last.
-                    let [north, east, south, west] = judged.border;
-                    let border = if k == 0 {
-                        [north && r == 0, east && c + 1 == cols, false]
+                    let [north, east, south, west] = chosen.judged;
+                    let side = |on_side: bool, judged: bool| if on_side { judged } else { chosen.edges };
+                    let split = if k == 0 {
+                        [side(r == 0, north), side(c + 1 == cols, east), chosen.edges]
                     } else {
-                        [west && c == 0, south && r + 1 == rows, false]
+                        [side(c == 0, west), side(r + 1 == rows, south), chosen.edges]
                     };
-                    let split = border.map(|b| b || judged.inside);
-                    refiner.triangle([a, b, d], split, ((r * SIDE + c) as u32) << 1 | k as u32);
+                    let weights = cell_weights(seam, cells, [c, r], k);
+                    refiner.triangle([a, b, d], weights, split, ((r * SIDE + c) as u32) << 1 | k as u32);
                 }
             }
         }
         block.counts.split = refiner.splits;
+        block.counts.drawn = refiner.out.len() as u64;
+        block.cover = cover_of(&refiner.out);
         block.geometry = Geometry::Soup(refiner.out);
     }
 
     fn boxes(&self, layer: &BoxLayer) -> Vec<Block> {
-        (0..layer.boxes.len().div_ceil(BOXES))
-            .into_par_iter()
-            .filter_map(|i| {
-                let boxes = &layer.boxes[i * BOXES..layer.boxes.len().min((i + 1) * BOXES)];
-                let bounds = Aabb::of(boxes.iter().flat_map(|b| b.corners()));
-                if self.pass.leaves_out(self.lens, &bounds) {
-                    return None;
-                }
-                let mut refiner = Refiner::new(self.pass, self.lens, self.tolerance_px);
-                let judge = !self.pass.is_straight();
-                let mut missed = 0;
-                for (k, shape) in boxes.iter().enumerate() {
-                    let corners = shape.corners().map(|p| refiner.corner(p));
-                    missed += corners.iter().filter(|c| c.is_missing()).count() as u64;
-                    for (t, tri) in BOX_TRIANGLES.iter().enumerate() {
-                        refiner.triangle(tri.map(|n| corners[n]), [judge; 3], (12 * k + t) as u32);
-                    }
-                }
-                let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };
-                Block::soup(self.layer, i * BOXES, refiner.out, counts)
-            })
-            .collect()
+        (0..layer.boxes.len().div_ceil(BOXES)).into_par_iter().filter_map(|i| self.box_block(layer, i)).collect()
+    }
+
+    fn box_block(&self, layer: &BoxLayer, i: usize) -> Option<Block> {
+        let boxes = &layer.boxes[i * BOXES..layer.boxes.len().min((i + 1) * BOXES)];
+        let bounds = Aabb::of(boxes.iter().flat_map(|b| b.corners()));
+        if self.pass.look(self.lens, &bounds) == Look::Out {
+            return None;
+        }
+        let mut refiner = Refiner::new(self.pass, self.lens, self.tolerance_px, self.spare.soup());
+        let judge = !self.pass.is_straight();
+        let mut missed = 0;
+        for (k, shape) in boxes.iter().enumerate() {
+            let corners = shape.corners().map(|p| refiner.corner(p));
+            missed += corners.iter().filter(|c| c.is_missing()).count() as u64;
+            for (t, tri) in BOX_TRIANGLES.iter().enumerate() {
+                let weights = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+                refiner.triangle(tri.map(|n| corners[n]), weights, [judge; 3], (12 * k + t) as u32);
+            }
+        }
+        let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };
+        Block::soup(self.layer, i * BOXES, refiner.out, counts)
     }
 }
 
-/// Which edges of a block may be split.
-#[derive(Debug, Clone, Copy)]
-struct Judged {
-    inside: bool,
-    /// North, east, south, west.
-    border: [bool; 4],
-}
-
-fn extent(hf: &Heightfield, block: [usize; 2]) -> ([usize; 2], [usize; 2]) {
-    let origin = [block[0] * SIDE, block[1] * SIDE];
-    (origin, [SIDE.min(hf.cols() - 1 - origin[0]), SIDE.min(hf.rows() - 1 - origin[1])])
-}
-
-/// Smallest and largest y of the nodes that there are.
-fn span_of(nodes: &[ScreenVertex]) -> [i32; 2] {
-    let on = nodes.iter().filter(|v| !v.is_none());
-    on.fold([i32::MAX, i32::MIN], |y, v| [y[0].min(v.y), y[1].max(v.y)])
-}
-
-fn rows_of(soup: &[SoupTriangle]) -> Option<[i32; 2]> {
-    let y = soup.iter().flat_map(|t| t.v).map(|v| v.screen.y);
-    Some([y.clone().min()? >> 8, y.max()? >> 8])
+fn cover_of(soup: &[SoupTriangle]) -> Cover {
+    soup.iter().flat_map(|t| t.v).fold(Cover::EMPTY, |cover, v| cover.including(v.screen))
 }

@@ -1,7 +1,8 @@
 //! The pinhole prepared for a frame: view space, fixed-point pixels, clipping planes.
 
-use crate::displace::{Displacer, Points};
-use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, Stage, View};
+use crate::displace::Points;
+use crate::project::Row;
+use belvedere_core::{DVec2, DVec3, Pinhole};
 
 /// Fixed-point steps per pixel.
 pub(crate) const SUB: i32 = 256;
@@ -24,70 +25,6 @@ impl ScreenVertex {
 
     pub(crate) fn is_none(self) -> bool {
         self.x == i32::MIN
-    }
-}
-
-/// One pass over the scene: one record of a curved-ray chain, or the only one there is.
-#[derive(Debug)]
-pub(crate) struct Pass<'a> {
-    view: &'a View,
-    record: usize,
-    displacer: Displacer<'a>,
-}
-
-impl<'a> Pass<'a> {
-    /// The passes that together draw every image of every point once.
-    pub(crate) fn all(view: &'a View) -> Vec<Self> {
-        (0..view.records()).map(|record| Self { view, record, displacer: Displacer::new(view, record) }).collect()
-    }
-
-    /// Displaced position; `None` where the point has no image.
-    pub(crate) fn displace(&self, p: DVec3) -> Option<DVec3> {
-        if self.is_straight() { Some(p) } else { self.displacer.point(p) }
-    }
-
-    /// See [`Displacer::row`].
-    pub(crate) fn displace_row(&self, points: &mut Points<'_>) -> bool {
-        self.displacer.row(points)
-    }
-
-    /// Signed distances that must be positive for the point to belong to this pass.
-    pub(crate) fn margins(&self, p: DVec3) -> [f64; 2] {
-        if self.is_only() { [f64::INFINITY; 2] } else { self.view.record_margins(self.record, p) }
-    }
-
-    /// See [`View::edge_error_px`].
-    pub(crate) fn edge_error_px(&self, a: DVec3, b: DVec3) -> f64 {
-        self.view.edge_error_px_in(self.record, a, b)
-    }
-
-    /// Whether no point of the box is drawn by this pass, or none of them on the image.
-    pub(crate) fn leaves_out(&self, lens: &Lens, bounds: &Aabb) -> bool {
-        let stages = self.view.stages();
-        let displaced = |stages: &[Stage]| stages.iter().try_fold(*bounds, |b, stage| stage.displaced_bounds(&b));
-        if self.is_only() {
-            let beyond =
-                |b: Aabb| b.corners().iter().fold(u8::MAX, |code, &c| code & lens.outcode(lens.view_from(c), 2.0));
-            return displaced(stages).is_some_and(|b| beyond(b) != 0);
-        }
-        let Some((Stage::CurvedRays(rays), earlier)) = stages.split_last() else { return false };
-        let beside = displaced(earlier).is_some_and(|b| {
-            let margins = b.corners().map(|c| rays.record_margins(self.record, c));
-            (0..2).any(|side| margins.iter().all(|m| m[side] <= 0.0))
-        });
-        beside
-            || self.view.image_box(bounds).is_some_and(|b| {
-                let size = 2.0 * lens.center;
-                b.max.x < -2.0 || b.max.y < -2.0 || b.min.x > size.x + 2.0 || b.min.y > size.y + 2.0
-            })
-    }
-
-    pub(crate) fn is_only(&self) -> bool {
-        self.view.records() == 1
-    }
-
-    pub(crate) fn is_straight(&self) -> bool {
-        self.displacer.is_straight()
     }
 }
 
@@ -154,14 +91,14 @@ impl Lens {
     }
 
     /// Images of displaced points; `false` if one of them needs clipping.
-    pub(crate) fn snap_row(&self, p: &Points<'_>, out: &mut Vec<ScreenVertex>) -> bool {
-        let (xs, ys, zs) = (&*p.x, &*p.y, &*p.z);
+    pub(crate) fn snap_row(&self, p: &Points<'_>, out: &mut Row<'_>) -> bool {
         let mut whole = true;
-        out.extend(xs.iter().zip(ys).zip(zs).map(|((&x, &y), &z)| {
-            let v = self.view_from(DVec3::new(x, y, z));
+        for i in 0..p.x.len() {
+            let v = self.view_from(DVec3::new(p.x[i], p.y[i], p.z[i]));
             whole &= self.is_drawable(v);
-            self.snap(v)
-        }));
+            let image = self.snap(v);
+            (out.x[i], out.y[i], out.q[i]) = (image.x, image.y, image.q);
+        }
         whole
     }
 

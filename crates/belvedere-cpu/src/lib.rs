@@ -6,12 +6,18 @@
 
 mod blocks;
 pub mod canvas;
+mod cells;
+mod choose;
 mod displace;
 mod exact;
+mod grid;
 mod lens;
+mod lod;
 mod marks;
 mod mesh_blocks;
+mod pass;
 mod polish;
+mod project;
 mod raster;
 mod refine;
 mod resolve;
@@ -19,11 +25,13 @@ mod shade;
 mod spline_table;
 
 pub use exact::{ExactRenderer, Seen, Tracer};
+pub use project::GroundImage;
 
 use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
 use blocks::Blocks;
-use lens::{Lens, Pass};
+use lens::Lens;
 use marks::Marks;
+use pass::Pass;
 use polish::Polish;
 use raster::{Band, sample_offsets};
 use rayon::prelude::*;
@@ -31,6 +39,7 @@ use resolve::{Rows, resolve};
 use shade::Shader;
 use shade::color::Packed;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Rows of a band.
@@ -61,8 +70,33 @@ impl Renderer for CpuRenderer {
     }
 
     fn render(&self, job: &RenderJob<'_>) -> Result<Frame, RenderError> {
-        prepared(job, render)
+        let mut frame = Frame::default();
+        self.render_into(job, &mut frame)?;
+        Ok(frame)
     }
+
+    fn render_into(&self, job: &RenderJob<'_>, frame: &mut Frame) -> Result<(), RenderError> {
+        let old = Mutex::new(std::mem::take(frame));
+        *frame = prepared(job, |job| render(job, std::mem::take(&mut *lock(&old))))?;
+        Ok(())
+    }
+}
+
+/// Memory of frames, kept for the next one.
+#[derive(Debug, Default)]
+struct Scratch {
+    blocks: Blocks,
+    color: Vec<Packed>,
+    bands: Mutex<Vec<Band>>,
+}
+
+/// Scratch memory that no frame uses now; nothing in it but capacity survives.
+static SPARE: Mutex<Vec<Scratch>> = Mutex::new(Vec::new());
+/// Frames drawn at the same time whose memory is kept.
+const SPARE_FRAMES: usize = 2;
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Runs `render` with checked options on the threads asked for.
@@ -85,22 +119,33 @@ fn prepared(
     }
 }
 
-fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
+fn render(job: &RenderJob<'_>, frame: Frame) -> Result<Frame, RenderError> {
+    let mut scratch = lock(&SPARE).pop().unwrap_or_default();
+    let result = render_with(job, frame, &mut scratch);
+    let mut spare = lock(&SPARE);
+    if spare.len() < SPARE_FRAMES {
+        spare.push(scratch);
+    }
+    result
+}
+
+fn render_with(job: &RenderJob<'_>, frame: Frame, scratch: &mut Scratch) -> Result<Frame, RenderError> {
     let start = Instant::now();
     job.progress.tick("project", 0.0)?;
     let lens = Lens::new(job.view.pinhole());
     let passes = Pass::all(job.view);
-    // A tolerance of zero or less would split without end.
-    let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
-    let blocks = Blocks::build(job.scene, &passes, &lens, tolerance_px);
+    let Scratch { blocks, color, bands } = scratch;
+    blocks.build(job.scene, &passes, &lens, job.options);
     job.progress.tick("project", 1.0)?;
-    let shader = Shader::new(job, &lens, &blocks);
-    let mut buffers = Buffers::new(job);
+    let shader = Shader::new(job, &lens, blocks);
+    let mut buffers = Buffers::reuse(job, std::mem::take(color), frame);
+    let out = std::mem::take(&mut buffers.out);
     let polish = job.options.aux.exact.then(|| Polish::new(job.scene, &passes, &lens));
-    draw_surfaces(job, &lens, &blocks, (&shader, polish.as_ref()), &mut buffers)?;
+    draw_surfaces(job, &lens, blocks, (&shader, polish.as_ref()), bands, &mut buffers)?;
+    let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
     let marks = Marks::new(job, &passes, &lens, tolerance_px, &buffers.depth);
     job.progress.tick("lines", 0.0)?;
-    let color = finish(&marks, &lens, &mut buffers);
+    let pixels = finish_into(&marks, &lens, &mut buffers, out);
     job.progress.tick("lines", 1.0)?;
     let counts = blocks.counts();
     let stats = FrameStats {
@@ -110,8 +155,9 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
         vertices_missed: counts.missed,
         milliseconds: start.elapsed().as_secs_f64() * 1e3,
     };
+    *color = buffers.color;
     let (width, height) = (lens.width as usize, lens.height as usize);
-    Ok(Frame { width, height, color, depth: buffers.depth, id: buffers.id, world: buffers.world, stats })
+    Ok(Frame { width, height, color: pixels, depth: buffers.depth, id: buffers.id, world: buffers.world, stats })
 }
 
 struct Buffers {
@@ -119,17 +165,24 @@ struct Buffers {
     depth: Vec<f32>,
     id: Vec<u32>,
     world: Option<Vec<[f64; 3]>>,
+    /// Memory for the stored colours.
+    out: Vec<[u8; 3]>,
 }
 
 impl Buffers {
     fn new(job: &RenderJob<'_>) -> Self {
+        Self::reuse(job, Vec::new(), Frame::default())
+    }
+
+    /// Buffers of the size of the picture in the memory of older ones; every pixel is yet to be written.
+    fn reuse(job: &RenderJob<'_>, mut color: Vec<Packed>, old: Frame) -> Self {
         let n = job.view.pinhole().image.map(|s| s as usize).iter().product();
-        Self {
-            color: vec![Packed::default(); n],
-            depth: vec![f32::INFINITY; n],
-            id: vec![0; n],
-            world: job.options.aux.world.then(|| vec![[f64::NAN; 3]; n]),
-        }
+        let Frame { color: out, mut depth, mut id, .. } = old;
+        color.resize(n, Packed::default());
+        depth.resize(n, f32::INFINITY);
+        id.resize(n, 0);
+        let world = job.options.aux.world.then(|| vec![[f64::NAN; 3]; n]);
+        Self { color, depth, id, world, out }
     }
 }
 
@@ -138,6 +191,7 @@ fn draw_surfaces(
     lens: &Lens,
     blocks: &Blocks,
     (shader, polish): (&Shader<'_>, Option<&Polish<'_>>),
+    spare: &Mutex<Vec<Band>>,
     buffers: &mut Buffers,
 ) -> Result<(), RenderError> {
     let chunk = BAND * lens.width as usize;
@@ -154,9 +208,11 @@ fn draw_surfaces(
     color.zip(depth).zip(id).zip(worlds.par_iter_mut()).enumerate().try_for_each(
         |(i, (((color, depth), id), world))| {
             let y0 = (i * BAND) as i32;
-            let mut band = Band::new(y0, (y0 + BAND as i32).min(lens.height), lens.width, offsets.clone());
+            let mut band = lock(spare).pop().unwrap_or_default();
+            band.clear(y0, (y0 + BAND as i32).min(lens.height), lens.width, &offsets);
             blocks.draw(&mut band);
             resolve(&band, shader, lens, &mut Rows { color, depth, id, world: world.as_deref_mut(), polish });
+            lock(spare).push(band);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             Ok(job.progress.tick("draw", done as f64 / bands as f64)?)
         },
@@ -165,9 +221,13 @@ fn draw_surfaces(
 
 /// Lines and points over the surfaces, and the stored colours.
 fn finish(marks: &Marks, lens: &Lens, buffers: &mut Buffers) -> Vec<[u8; 3]> {
+    finish_into(marks, lens, buffers, Vec::new())
+}
+
+fn finish_into(marks: &Marks, lens: &Lens, buffers: &mut Buffers, mut out: Vec<[u8; 3]>) -> Vec<[u8; 3]> {
     let chunk = BAND * lens.width as usize;
     let depth = &buffers.depth;
-    let mut out = vec![[0u8; 3]; buffers.color.len()];
+    out.resize(buffers.color.len(), [0; 3]);
     out.par_chunks_mut(chunk)
         .zip(buffers.color.par_chunks_mut(chunk))
         .zip(buffers.id.par_chunks_mut(chunk))
@@ -182,6 +242,12 @@ fn finish(marks: &Marks, lens: &Lens, buffers: &mut Buffers) -> Vec<[u8; 3]> {
     out
 }
 
+/// Image of a node of the ground; four times that where cells are subdivided.
+const NODE_BYTES: u64 = 4 * 12;
+/// Slopes and openness of a node with their averages, for as many nodes as are kept.
+const SHADE_BYTES: u64 = 32;
+const SHADED_NODES: u64 = 17 << 20;
+
 /// Bytes that a picture takes: the frame, the bands in work and the projected vertices.
 fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
     let [width, height] = job.view.pinhole().image;
@@ -190,13 +256,21 @@ fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
     let per_pixel = 3 + 4 + 4 + 6 + if job.options.aux.world { 24 } else { 0 };
     let threads = if job.options.threads == 0 { rayon::current_num_threads() } else { job.options.threads } as u64;
     let bands = threads * (BAND as u64) * u64::from(width) * (u64::from(samples) + 1) * 8;
+    let passes = job.view.records() as u64;
+    let drawn = |nodes: u64| {
+        // With less detail far away the picture bounds the nodes: a few per pixel, near the eye more.
+        let nodes = if job.options.lod_px > 0.0 { nodes.min(8 * pixels + (1 << 20)) } else { nodes };
+        nodes * NODE_BYTES * passes
+    };
     let nodes: u64 = job
         .scene
         .layers
         .iter()
         .map(|l| match &l.kind {
-            // Nearness, pixel and the shading pyramid; twice for subdivision.
-            belvedere_scene::LayerKind::Terrain(t) => (t.heightfield.cols() * t.heightfield.rows()) as u64 * 64,
+            belvedere_scene::LayerKind::Terrain(t) => {
+                let nodes = (t.heightfield.cols() * t.heightfield.rows()) as u64;
+                drawn(nodes) + nodes.min(SHADED_NODES) * SHADE_BYTES
+            }
             belvedere_scene::LayerKind::Boxes(b) => b.boxes.len() as u64 * 12 * 64,
             // A triangle on the image and, for the tracer, its share of a tree.
             belvedere_scene::LayerKind::Mesh(m) => m.mesh.triangles().len() as u64 * 160,

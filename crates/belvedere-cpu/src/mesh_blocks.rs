@@ -1,6 +1,7 @@
 //! Meshes as blocks of triangles.
 
 use crate::blocks::{Block, Counts, Job};
+use crate::pass::Look;
 use crate::refine::{Corner, Refiner};
 use belvedere_core::Aabb;
 use belvedere_scene::Mesh;
@@ -21,17 +22,17 @@ impl Job<'_> {
         vertices.sort_unstable();
         vertices.dedup();
         let bounds = Aabb::of(vertices.iter().map(|&v| mesh.vertex(v)));
-        if self.pass.leaves_out(self.lens, &bounds) {
+        if self.pass.look(self.lens, &bounds) == Look::Out {
             return None;
         }
-        let mut refiner = Refiner::new(self.pass, self.lens, self.tolerance_px);
+        let mut refiner = Refiner::new(self.pass, self.lens, self.tolerance_px, self.spare.soup());
         let corners: Vec<Corner> = vertices.iter().map(|&v| refiner.corner(mesh.vertex(v))).collect();
         let missed = corners.iter().filter(|c| c.is_missing()).count() as u64;
         let corner = |v: u32| vertices.binary_search(&v).ok().map(|at| corners[at]);
         let judge = !self.pass.is_straight();
         for (k, triangle) in triangles.iter().enumerate() {
             if let [Some(a), Some(b), Some(c)] = triangle.map(corner) {
-                refiner.triangle([a, b, c], [judge; 3], k as u32);
+                refiner.triangle([a, b, c], [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], [judge; 3], k as u32);
             }
         }
         let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };

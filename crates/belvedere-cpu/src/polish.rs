@@ -5,7 +5,8 @@
 //! true map, until its image is the centre of the pixel.
 
 use crate::blocks::{BOX_TRIANGLES, Found};
-use crate::lens::{Lens, Pass};
+use crate::lens::Lens;
+use crate::pass::Pass;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, LayerKind, Scene};
 

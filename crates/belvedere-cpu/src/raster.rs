@@ -1,6 +1,9 @@
 //! Watertight rasterisation of triangles into a band of image rows.
 
+use crate::cells::Cells;
+use crate::grid::NODES;
 use crate::lens::{SUB, ScreenVertex};
+use crate::lod::SIDE;
 
 /// No surface.
 pub(crate) const SKY: u32 = u32::MAX;
@@ -36,6 +39,9 @@ pub(crate) fn sample_offsets(samples: u32) -> Vec<[i32; 2]> {
 }
 
 /// Nearness and primitive of every sample of the rows `y0..y1`.
+///
+/// The nearer surface wins; of two equally near ones that with the smaller number. So the order of drawing does not matter.
+#[derive(Debug, Default)]
 pub(crate) struct Band {
     pub(crate) y0: i32,
     pub(crate) y1: i32,
@@ -46,28 +52,42 @@ pub(crate) struct Band {
     /// Larger = nearer, planes by sample.
     pub(crate) q: Vec<f32>,
     pub(crate) prim: Vec<u32>,
-    /// Fragments written, for tests of coverage.
+    /// Samples from one row to the next: a few more than there are pixels, so that whole lanes fit.
+    stride: usize,
+    pub(crate) cells: Cells,
+    tiles: Tiles,
+    /// Fragments inside a triangle, for tests of coverage.
     #[cfg(test)]
     pub(crate) hits: Vec<u32>,
 }
 
 impl Band {
+    #[cfg(test)]
     pub(crate) fn new(y0: i32, y1: i32, width: i32, offsets: Vec<[i32; 2]>) -> Self {
-        let n = offsets.len() * (y1 - y0).max(0) as usize * width.max(0) as usize;
-        let reach = [0, 1].map(|axis| {
+        let mut band = Self::default();
+        band.clear(y0, y1, width, &offsets);
+        band
+    }
+
+    /// Makes the band one of sky, for other rows; memory is kept.
+    pub(crate) fn clear(&mut self, y0: i32, y1: i32, width: i32, offsets: &[[i32; 2]]) {
+        (self.y0, self.y1, self.width) = (y0, y1, width);
+        self.offsets.clear();
+        self.offsets.extend_from_slice(offsets);
+        self.reach = [0, 1].map(|axis| {
             let along = offsets.iter().map(|o: &[i32; 2]| o[axis]);
             [along.clone().min().unwrap_or(0), along.max().unwrap_or(0)]
         });
-        Self {
-            y0,
-            y1,
-            width,
-            offsets,
-            reach,
-            q: vec![f32::NEG_INFINITY; n],
-            prim: vec![SKY; n],
-            #[cfg(test)]
-            hits: vec![0; n],
+        self.stride = (width.max(0) as usize).next_multiple_of(LANES) + LANES;
+        let n = offsets.len() * (y1 - y0).max(0) as usize * self.stride;
+        self.q.clear();
+        self.q.resize(n, f32::NEG_INFINITY);
+        self.prim.clear();
+        self.prim.resize(n, SKY);
+        self.tiles.clear(self.stride);
+        #[cfg(test)]
+        {
+            self.hits = vec![0; n];
         }
     }
 
@@ -75,19 +95,109 @@ impl Band {
     #[inline]
     pub(crate) fn index(&self, sample: usize, x: i32, y: i32) -> usize {
         let rows = (self.y1 - self.y0) as usize;
-        (sample * rows + (y - self.y0) as usize) * self.width as usize + x as usize
+        (sample * rows + (y - self.y0) as usize) * self.stride + x as usize
     }
 
-    /// Whether no sample of the band lies in a box of fixed-point positions: most cells far away.
+    /// Whether no sample of the band lies in a box of fixed-point positions.
     #[inline]
-    pub(crate) fn misses(&self, x: [i32; 2], y: [i32; 2]) -> bool {
+    fn misses(&self, x: [i32; 2], y: [i32; 2]) -> bool {
         let [[left, right], [top, bottom]] = self.reach;
         let (xa, xb) = ((x[0] - right + SUB - 1) >> 8, (x[1] - left) >> 8);
         let (ya, yb) = ((y[0] - bottom + SUB - 1) >> 8, (y[1] - top) >> 8);
         (xa > xb) | (ya > yb) | (xb < 0) | (xa >= self.width) | (yb < self.y0) | (ya >= self.y1)
     }
 
-    /// Draws a triangle, either orientation. Of two surfaces equally near the one drawn first stays.
+    /// Which cells between two rows of nodes may hold a sample of the band.
+    #[inline(never)]
+    pub(crate) fn touched(
+        &self,
+        xn: &[i32; NODES],
+        yn: &[i32; NODES],
+        xs: &[i32; NODES],
+        ys: &[i32; NODES],
+        hits: &mut [bool; SIDE],
+    ) {
+        let span = |n: &[i32; NODES], s: &[i32; NODES]| {
+            let lo: [i32; NODES] = std::array::from_fn(|c| n[c].min(s[c]));
+            let hi: [i32; NODES] = std::array::from_fn(|c| n[c].max(s[c]));
+            (lo, hi)
+        };
+        let ((x0, x1), (y0, y1)) = (span(xn, xs), span(yn, ys));
+        for c in 0..SIDE {
+            let x = [x0[c].min(x0[c + 1]), x1[c].max(x1[c + 1])];
+            let y = [y0[c].min(y0[c + 1]), y1[c].max(y1[c + 1])];
+            hits[c] = !self.misses(x, y);
+        }
+    }
+
+    /// Whether everything in these columns of the image, whose nearness is at most `q`, is hidden by what was drawn.
+    pub(crate) fn hides(&mut self, x: [i32; 2], q: f32) -> bool {
+        let (from, to) = ((x[0] >> 8).max(0) as usize / TILE, (x[1] >> 8).clamp(0, self.width - 1) as usize / TILE);
+        (from..=to).all(|tile| {
+            if self.tiles.stale[tile] {
+                let columns = tile * TILE..((tile + 1) * TILE).min(self.width as usize);
+                let least =
+                    |row: &[f32]| row[columns.clone()].iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
+                self.tiles.least[tile] =
+                    self.q.chunks(self.stride).map(least).fold(f32::INFINITY, |a, b| if b < a { b } else { a });
+                self.tiles.stale[tile] = false;
+            }
+            self.tiles.least[tile] > q
+        })
+    }
+
+    /// Tells that something was drawn in these columns.
+    pub(crate) fn drew(&mut self, x: [i32; 2]) {
+        let (from, to) = ((x[0] >> 8).max(0) as usize / TILE, (x[1] >> 8).clamp(0, self.width - 1) as usize / TILE);
+        if let Some(stale) = self.tiles.stale.get_mut(from..=to) {
+            stale.fill(true);
+        }
+    }
+
+    /// Draws a cell of four nodes (bit 0 east, bit 1 south): the triangles numbered `prim` and `prim + 1`.
+    #[inline]
+    pub(crate) fn draw_cell(&mut self, x: [i32; 4], y: [i32; 4], q: [f32; 4], prim: u32) {
+        let bx = [x[0].min(x[1]).min(x[2].min(x[3])), x[0].max(x[1]).max(x[2].max(x[3]))];
+        let by = [y[0].min(y[1]).min(y[2].min(y[3])), y[0].max(y[1]).max(y[2].max(y[3]))];
+        // No overflow: vertices are clipped to the guard planes.
+        if bx[1] - bx[0] >= TINY || by[1] - by[0] >= TINY {
+            let v: [ScreenVertex; 4] = std::array::from_fn(|k| ScreenVertex { x: x[k], y: y[k], q: q[k] });
+            self.draw([v[0], v[1], v[3]], prim);
+            self.draw([v[0], v[2], v[3]], prim | 1);
+            return;
+        }
+        for s in 0..self.offsets.len() {
+            let [ox, oy] = self.offsets[s];
+            let [xa, xb, ya, yb] = self.pixels([ox, oy], bx, by);
+            for py in ya..=yb {
+                for px in xa..=xb {
+                    let at = self.index(s, px, py);
+                    if self.cells.push([px * SUB + ox, py * SUB + oy], x, y, q, at, prim) {
+                        self.flush();
+                    }
+                }
+            }
+        }
+    }
+
+    /// Draws the cells that were collected.
+    pub(crate) fn flush(&mut self) {
+        let mut cells = std::mem::take(&mut self.cells);
+        cells.judge();
+        for i in 0..cells.len {
+            let (code, at, prim) = (cells.code[i], cells.at[i] as usize, cells.prim[i]);
+            if code & Cells::UPPER != 0 {
+                self.write(at, cells.upper[i], prim);
+            }
+            if code & Cells::LOWER != 0 {
+                self.write(at, cells.lower[i], prim | 1);
+            }
+        }
+        cells.len = 0;
+        self.cells = cells;
+    }
+
+    /// Draws a triangle, either orientation.
     #[inline]
     pub(crate) fn draw(&mut self, tri: [ScreenVertex; 3], prim: u32) {
         let [a, b, c] = tri;
@@ -96,7 +206,6 @@ impl Band {
         if self.misses(x, y) {
             return;
         }
-        // No overflow: vertices are clipped to the guard planes.
         if x[1] - x[0] < SMALL && y[1] - y[0] < SMALL {
             self.draw_small(tri, x, y, prim);
         } else {
@@ -115,7 +224,7 @@ impl Band {
         ]
     }
 
-    /// A triangle of a few pixels: 32-bit edge functions, the plane of nearness only once a sample is hit.
+    /// A triangle of a few pixels: 32-bit edge functions, a row of samples at once.
     #[inline]
     fn draw_small(&mut self, [a, b, c]: [ScreenVertex; 3], x: [i32; 2], y: [i32; 2], prim: u32) {
         let area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
@@ -123,31 +232,44 @@ impl Band {
             return;
         }
         let v = if area < 0 { [a, c, b] } else { [a, b, c] };
-        let edge = |i: usize, xs: i32, ys: i32| {
+        let plane = Plane::new(v, area.unsigned_abs().into());
+        let (mut dx, mut dy, mut own) = ([0; 3], [0; 3], [0; 3]);
+        for i in 0..3 {
             let (p, r) = (v[i], v[(i + 1) % 3]);
-            let (dx, dy) = (r.x - p.x, r.y - p.y);
-            dx * (ys - p.y) - dy * (xs - p.x) - i32::from(!owns_edge(i64::from(dx), i64::from(dy)))
-        };
-        let mut plane: Option<Plane> = None;
+            (dx[i], dy[i]) = (r.x - p.x, r.y - p.y);
+            own[i] = i32::from(!owns_edge(i64::from(dx[i]), i64::from(dy[i])));
+        }
+        let slope = plane.gx as f32 * SUB as f32;
         for s in 0..self.offsets.len() {
             let [ox, oy] = self.offsets[s];
             let [xa, xb, ya, yb] = self.pixels([ox, oy], x, y);
-            for py in ya..=yb {
-                for px in xa..=xb {
-                    let (xs, ys) = (px * SUB + ox, py * SUB + oy);
-                    if (edge(0, xs, ys) | edge(1, xs, ys) | edge(2, xs, ys)) < 0 {
-                        continue;
-                    }
-                    let plane = plane.get_or_insert_with(|| Plane::new(v, area.unsigned_abs().into()));
-                    let q = plane.at(xs, ys);
-                    self.write(self.index(s, px, py), plane.clamp(q), prim);
-                }
+            if xa > xb {
+                continue;
             }
+            for py in ya..=yb {
+                let (xs, ys) = (xa * SUB + ox, py * SUB + oy);
+                let e: [i32; 3] = std::array::from_fn(|i| dx[i] * (ys - v[i].y) - dy[i] * (xs - v[i].x) - own[i]);
+                let first = self.index(s, xa, py);
+                let lane = Lane { q: plane.at(xs, ys) as f32, slope, range: [plane.q_min, plane.q_max], prim };
+                #[cfg(test)]
+                self.count(first, &e, &dy);
+                let (q, prim) = (&mut self.q[first..first + LANES], &mut self.prim[first..first + LANES]);
+                lane.inside(q, prim, e, dy);
+            }
+        }
+    }
+
+    #[cfg(test)]
+    fn count(&mut self, first: usize, e: &[i32; 3], dy: &[i32; 3]) {
+        for k in 0..LANES {
+            let inside = (0..3).all(|i| e[i] - dy[i] * SUB * k as i32 >= 0);
+            self.hits[first + k] += u32::from(inside);
         }
     }
 
     fn draw_large(&mut self, [a, b, c]: [ScreenVertex; 3], x: [i32; 2], y: [i32; 2], prim: u32) {
         let Some(t) = Setup::new(a, b, c) else { return };
+        let slope = t.plane.gx as f32 * SUB as f32;
         for s in 0..self.offsets.len() {
             let [ox, oy] = self.offsets[s];
             let [xa, xb, ya, yb] = self.pixels([ox, oy], x, y);
@@ -157,12 +279,16 @@ impl Band {
             for y in ya..=yb {
                 let ys = y * SUB + oy;
                 let (x0, x1) = t.span(ys, ox, xa, xb);
-                let first = self.index(s, x0, y);
-                let q0 = t.plane.at(x0 * SUB + ox, ys);
-                for k in 0..=x1 - x0 {
-                    let q = t.plane.clamp(q0 + t.plane.gx * f64::from(k * SUB));
-                    self.write(first + k as usize, q, prim);
+                if x0 > x1 {
+                    continue;
                 }
+                let first = self.index(s, x0, y);
+                let samples = first..first + (x1 - x0 + 1) as usize;
+                let q = t.plane.at(x0 * SUB + ox, ys) as f32;
+                let lane = Lane { q, slope, range: [t.plane.q_min, t.plane.q_max], prim };
+                #[cfg(test)]
+                self.hits[samples.clone()].iter_mut().for_each(|n| *n += 1);
+                lane.span(&mut self.q[samples.clone()], &mut self.prim[samples]);
             }
         }
     }
@@ -173,19 +299,84 @@ impl Band {
         {
             self.hits[i] += 1;
         }
-        if q > self.q[i] {
+        if q > self.q[i] || (q == self.q[i] && prim < self.prim[i]) {
             self.q[i] = q;
             self.prim[i] = prim;
         }
     }
 }
 
-/// Bounding boxes below this many fixed-point steps go with 32-bit edge functions.
-const SMALL: i32 = 6 * SUB;
+/// Samples of a row that are looked at together.
+const LANES: usize = 8;
+/// Bounding boxes below this many fixed-point steps fit the lanes, and go with 32-bit edge functions.
+const SMALL: i32 = 7 * SUB;
+/// Cells below this are collected and judged many at a time; at most 2 x 2 samples of a kind lie in one.
+const TINY: i32 = 2 * SUB;
+/// Pixels along a tile, whose least nearness is known.
+const TILE: usize = 32;
+
+/// Least nearness of all samples per tile: what is farther is hidden there.
+#[derive(Debug, Default)]
+struct Tiles {
+    least: Vec<f32>,
+    stale: Vec<bool>,
+}
+
+impl Tiles {
+    fn clear(&mut self, width: usize) {
+        self.least.clear();
+        self.least.resize(width.div_ceil(TILE), f32::NEG_INFINITY);
+        self.stale.clear();
+        self.stale.resize(width.div_ceil(TILE), false);
+    }
+}
+
+/// Nearness along a row of samples.
+#[derive(Clone, Copy)]
+struct Lane {
+    q: f32,
+    slope: f32,
+    range: [f32; 2],
+    prim: u32,
+}
+
+impl Lane {
+    #[inline]
+    fn at(self, k: usize) -> f32 {
+        let q = self.q + self.slope * k as f32;
+        let q = if q < self.range[0] { self.range[0] } else { q };
+        if q > self.range[1] { self.range[1] } else { q }
+    }
+
+    /// Eight samples, those where all edge functions (`e` at the first, falling by `dy` per step) are not negative.
+    #[inline]
+    fn inside(self, q: &mut [f32], prim: &mut [u32], e: [i32; 3], dy: [i32; 3]) {
+        let (q, prim) = (&mut q[..LANES], &mut prim[..LANES]);
+        for k in 0..LANES {
+            let step = SUB * k as i32;
+            let outside = (e[0] - dy[0] * step) | (e[1] - dy[1] * step) | (e[2] - dy[2] * step);
+            let new = self.at(k);
+            let wins = (outside >= 0) & ((new > q[k]) | ((new == q[k]) & (self.prim < prim[k])));
+            q[k] = if wins { new } else { q[k] };
+            prim[k] = if wins { self.prim } else { prim[k] };
+        }
+    }
+
+    /// Every sample of the slices.
+    #[inline]
+    fn span(self, q: &mut [f32], prim: &mut [u32]) {
+        for (k, (q, prim)) in q.iter_mut().zip(prim).enumerate() {
+            let new = self.at(k);
+            let wins = (new > *q) | ((new == *q) & (self.prim < *prim));
+            *q = if wins { new } else { *q };
+            *prim = if wins { self.prim } else { *prim };
+        }
+    }
+}
 
 /// Top-left rule: a sample exactly on an edge belongs to the triangle below or to the right of it.
 #[inline]
-fn owns_edge(dx: i64, dy: i64) -> bool {
+pub(crate) fn owns_edge(dx: i64, dy: i64) -> bool {
     dy < 0 || (dy == 0 && dx > 0)
 }
 
@@ -219,11 +410,6 @@ impl Plane {
     #[inline]
     fn at(&self, xs: i32, ys: i32) -> f64 {
         self.q0 + self.gx * f64::from(xs - self.origin[0]) + self.gy * f64::from(ys - self.origin[1])
-    }
-
-    #[inline]
-    fn clamp(&self, q: f64) -> f32 {
-        (q as f32).clamp(self.q_min, self.q_max)
     }
 }
 

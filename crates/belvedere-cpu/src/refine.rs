@@ -1,7 +1,8 @@
 //! Subdivision of triangles until their bent image is straight enough, and clipping.
 
 use crate::blocks::{SoupTriangle, SoupVertex};
-use crate::lens::{Lens, PLANES, Pass};
+use crate::lens::{Lens, PLANES, ScreenVertex};
+use crate::pass::Pass;
 use belvedere_core::DVec3;
 
 /// An edge is halved at most this often.
@@ -19,6 +20,8 @@ pub(crate) struct Corner {
     p: DVec3,
     /// View space after displacement; `None` without image.
     v: Option<DVec3>,
+    /// Image, if another piece of the surface places it.
+    image: Option<ScreenVertex>,
     margins: [f64; 2],
     weights: [f64; 2],
 }
@@ -40,19 +43,28 @@ pub(crate) struct Refiner<'a> {
 }
 
 impl<'a> Refiner<'a> {
-    pub(crate) fn new(pass: &'a Pass<'a>, lens: &'a Lens, tolerance_px: f64) -> Self {
-        Self { pass, lens, tolerance_px, out: Vec::new(), splits: 0 }
+    /// * `out`: memory to use.
+    pub(crate) fn new(pass: &'a Pass<'a>, lens: &'a Lens, tolerance_px: f64, mut out: Vec<SoupTriangle>) -> Self {
+        out.clear();
+        Self { pass, lens, tolerance_px, out, splits: 0 }
     }
 
     pub(crate) fn corner(&self, p: DVec3) -> Corner {
         let v = self.pass.displace(p).map(|d| self.lens.view_from(d)).filter(|v| v.is_finite());
-        Corner { p, v, margins: self.pass.margins(p), weights: [0.0; 2] }
+        Corner { p, v, image: None, margins: self.pass.margins(p), weights: [0.0; 2] }
+    }
+
+    /// A corner whose image grid blocks share.
+    pub(crate) fn node(&self, p: DVec3, image: Option<ScreenVertex>) -> Corner {
+        Corner { image, ..self.corner(p) }
     }
 
     /// Draws a parent triangle; `split[i]` allows splitting the edge from corner `i` to the next.
-    pub(crate) fn triangle(&mut self, mut corners: [Corner; 3], split: [bool; 3], parent: u32) {
-        corners[1].weights = [1.0, 0.0];
-        corners[2].weights = [0.0, 1.0];
+    /// * `weights`: of vertices 1 and 2 of the parent, per corner.
+    pub(crate) fn triangle(&mut self, mut corners: [Corner; 3], weights: [[f32; 2]; 3], split: [bool; 3], parent: u32) {
+        for (corner, weights) in corners.iter_mut().zip(weights) {
+            corner.weights = weights.map(f64::from);
+        }
         self.refine(corners, split.map(|s| if s { 0 } else { FROZEN }), parent);
     }
 
@@ -139,12 +151,16 @@ impl<'a> Refiner<'a> {
         let [Some(v0), Some(v1), Some(v2)] = c.map(|c| c.v) else { return };
         let v = [v0, v1, v2];
         if v.iter().all(|&v| self.lens.is_drawable(v)) && c.iter().all(|c| c.margins.iter().all(|&m| m >= 0.0)) {
-            let vertex =
-                |i: usize| SoupVertex { screen: self.lens.snap(v[i]), weights: c[i].weights.map(|w| w as f32) };
+            let vertex = |i: usize| SoupVertex {
+                screen: c[i].image.unwrap_or_else(|| self.lens.snap(v[i])),
+                weights: c[i].weights.map(|w| w as f32),
+            };
             self.out.push(SoupTriangle { v: [vertex(0), vertex(1), vertex(2)], parent });
             return;
         }
-        let mut polygon: Vec<ClipVertex> = (0..3).map(|i| self.clip_vertex(v[i], c[i].weights, c[i].margins)).collect();
+        let mut polygon: Vec<ClipVertex> = (0..3)
+            .map(|i| ClipVertex { image: c[i].image, ..self.clip_vertex(v[i], c[i].weights, c[i].margins) })
+            .collect();
         for plane in 0..PLANES + 2 {
             if polygon.iter().all(|p| p.distance[plane] >= 0.0) {
                 continue;
@@ -156,7 +172,10 @@ impl<'a> Refiner<'a> {
         }
         let screen: Vec<SoupVertex> = polygon
             .iter()
-            .map(|p| SoupVertex { screen: self.lens.snap(p.v), weights: p.weights.map(|w| w as f32) })
+            .map(|p| SoupVertex {
+                screen: p.image.unwrap_or_else(|| self.lens.snap(p.v)),
+                weights: p.weights.map(|w| w as f32),
+            })
             .collect();
         for k in 1..screen.len() - 1 {
             self.out.push(SoupTriangle { v: [screen[0], screen[k], screen[k + 1]], parent });
@@ -167,7 +186,7 @@ impl<'a> Refiner<'a> {
         let mut distance = [0.0; PLANES + 2];
         distance[..PLANES].copy_from_slice(&self.lens.clip_distances(v));
         distance[PLANES..].copy_from_slice(&margins.map(|m| m.min(1e30)));
-        ClipVertex { v, weights, margins, distance }
+        ClipVertex { v, image: None, weights, margins, distance }
     }
 
     /// The part of a polygon on the positive side of a plane. New vertices are computed from the inner end towards the
@@ -199,6 +218,7 @@ impl<'a> Refiner<'a> {
 #[derive(Debug, Clone, Copy)]
 struct ClipVertex {
     v: DVec3,
+    image: Option<ScreenVertex>,
     weights: [f64; 2],
     margins: [f64; 2],
     distance: [f64; PLANES + 2],

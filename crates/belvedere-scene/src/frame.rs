@@ -20,6 +20,8 @@ pub struct RenderOptions {
     pub samples: u32,
     /// Worst error of the bent image by straight edges, pixels.
     pub tolerance_px: f64,
+    /// Worst error of terrain drawn in less detail far away, pixels; 0 draws every cell. Renderers of single rays need none.
+    pub lod_px: f64,
     /// Worker threads; 0 = all cores. The picture does not depend on it.
     pub threads: usize,
     /// Extra buffers.
@@ -35,6 +37,7 @@ impl Default for RenderOptions {
         Self {
             samples: 4,
             tolerance_px: 0.5,
+            lod_px: 0.5,
             threads: 0,
             aux: Aux::default(),
             overlay: Overlay::default(),
@@ -74,7 +77,7 @@ pub struct FrameStats {
 }
 
 /// A finished picture. Row-major, row 0 on top.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Frame {
     /// Width in pixels.
     pub width: usize,
@@ -129,4 +132,9 @@ pub trait Renderer {
     fn name(&self) -> &'static str;
     /// Draws one picture.
     fn render(&self, job: &RenderJob<'_>) -> Result<Frame, RenderError>;
+    /// The same into the memory of an earlier frame, which is gone afterwards, also after an error.
+    fn render_into(&self, job: &RenderJob<'_>, frame: &mut Frame) -> Result<(), RenderError> {
+        *frame = self.render(job)?;
+        Ok(())
+    }
 }

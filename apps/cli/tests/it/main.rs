@@ -10,6 +10,7 @@ mod pick;
 mod pictures;
 mod reveal;
 mod scenes;
+mod speed;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

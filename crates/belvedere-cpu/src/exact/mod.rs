@@ -15,8 +15,9 @@ pub(crate) use trace::Part;
 pub use trace::{Seen, Tracer};
 
 use crate::blocks::Blocks;
-use crate::lens::{Lens, Pass, SUB};
+use crate::lens::{Lens, SUB};
 use crate::marks::Marks;
+use crate::pass::Pass;
 use crate::raster::sample_offsets;
 use crate::shade::Shader;
 use crate::shade::color::{Packed, Rgb};

@@ -1,6 +1,7 @@
 //! Translucent, flat, convex faces, in front of surfaces or faintly behind them.
 
-use crate::lens::{Lens, Pass};
+use crate::lens::Lens;
+use crate::pass::Pass;
 use crate::shade::color::{Packed, Rgb, linear};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::OverlayFace;

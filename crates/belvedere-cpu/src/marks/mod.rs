@@ -12,7 +12,8 @@ mod visibility;
 
 use crate::BAND;
 use crate::canvas::Canvas;
-use crate::lens::{Lens, Pass};
+use crate::lens::Lens;
+use crate::pass::Pass;
 use crate::shade::color::{Packed, linear};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{

@@ -1,6 +1,7 @@
 //! Lines from the ground to the image.
 
-use crate::lens::{Lens, Pass};
+use crate::lens::Lens;
+use crate::pass::Pass;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, Scene};
 

@@ -2,7 +2,8 @@
 
 use super::path::{PathPoint, Place};
 use super::sight::Sight;
-use crate::lens::{Lens, Pass};
+use crate::lens::Lens;
+use crate::pass::Pass;
 use belvedere_core::DVec2;
 
 /// Hidden gaps shorter than this are closed, then visible specks shorter than this are dropped, pixels; up to twice that length

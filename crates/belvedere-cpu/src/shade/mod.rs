@@ -10,7 +10,8 @@ mod relief;
 mod seen;
 mod sky;
 
-use crate::blocks::{BOX_TRIANGLES, Block, Blocks, CELL_TRIANGLES, Found, SIDE};
+use crate::blocks::{BOX_TRIANGLES, Block, Blocks, Found, SIDE};
+use crate::grid::CELL_TRIANGLES;
 use crate::lens::{Lens, SUB};
 use crate::polish::Polish;
 use crate::raster::SKY;

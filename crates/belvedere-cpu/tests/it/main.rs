@@ -2,6 +2,7 @@
 
 mod exact;
 mod lines;
+mod lod;
 mod marks;
 mod real_data;
 mod reference;

@@ -14,7 +14,7 @@ fn metric(lon: f64, lat: f64) -> DVec2 {
     DVec2::new((lon - LON0) * 111_320.0 * LAT0.to_radians().cos(), (lat - LAT0) * 111_132.0)
 }
 
-fn andorra() -> Option<Heightfield> {
+pub(crate) fn andorra() -> Option<Heightfield> {
     let bytes = std::fs::read(belvedere_testkit::data("andorra/N42E001.hgt")?).expect("readable");
     let n = 1201;
     let raw: Vec<i16> = bytes.chunks_exact(2).map(|b| i16::from_be_bytes([b[0], b[1]])).collect();

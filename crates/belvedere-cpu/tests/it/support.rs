@@ -81,7 +81,7 @@ pub(crate) fn render(scene: &Scene, view: &View, options: &RenderOptions) -> Fra
 }
 
 pub(crate) fn options(samples: u32) -> RenderOptions {
-    RenderOptions { samples, ..RenderOptions::default() }
+    RenderOptions { samples, lod_px: 0.0, ..RenderOptions::default() }
 }
 
 pub(crate) fn line(points: Vec<DVec3>, hidden: Hidden) -> LineLayer {

@@ -1,0 +1,262 @@
+//! Nodes of a block of ground on the image, and drawing the cells between them.
+
+use crate::lens::{SUB, ScreenVertex};
+use crate::lod::SIDE;
+use crate::raster::Band;
+
+/// Nodes along a side of a block at most.
+pub(crate) const NODES: usize = SIDE + 1;
+
+/// The node numbers (bit 0 east, bit 1 south) of the two triangles of a cell, split north-west to south-east.
+pub(crate) const CELL_TRIANGLES: [[usize; 3]; 2] = [[0, 1, 3], [0, 2, 3]];
+
+/// Images of the nodes of a block, row by row, coordinate by coordinate.
+#[derive(Debug, Default)]
+pub(crate) struct Nodes {
+    pub(crate) x: Vec<i32>,
+    pub(crate) y: Vec<i32>,
+    pub(crate) q: Vec<f32>,
+    /// Smallest and largest y of each row.
+    spans: Vec<[i32; 2]>,
+    /// Cells along both axes.
+    cells: [usize; 2],
+    /// Whether some nodes have no image.
+    holes: bool,
+}
+
+/// What a block covers at most: fixed-point positions and the largest nearness.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cover {
+    pub(crate) x: [i32; 2],
+    pub(crate) y: [i32; 2],
+    pub(crate) q: f32,
+}
+
+impl Cover {
+    pub(crate) const EMPTY: Self = Self { x: [i32::MAX, i32::MIN], y: [i32::MAX, i32::MIN], q: f32::NEG_INFINITY };
+
+    pub(crate) fn including(self, v: ScreenVertex) -> Self {
+        Self {
+            x: [self.x[0].min(v.x), self.x[1].max(v.x)],
+            y: [self.y[0].min(v.y), self.y[1].max(v.y)],
+            q: if v.q > self.q { v.q } else { self.q },
+        }
+    }
+}
+
+impl Nodes {
+    /// Room for the nodes of `cells`; what they were before does not matter.
+    pub(crate) fn reset(&mut self, cells: [usize; 2]) {
+        let n = (cells[0] + 1) * (cells[1] + 1);
+        self.x.resize(n, 0);
+        self.y.resize(n, 0);
+        self.q.resize(n, 0.0);
+        (self.cells, self.holes) = (cells, false);
+    }
+
+    pub(crate) fn at(&self, c: usize, r: usize) -> ScreenVertex {
+        let i = r * (self.cells[0] + 1) + c;
+        ScreenVertex { x: self.x[i], y: self.y[i], q: self.q[i] }
+    }
+
+    pub(crate) fn set(&mut self, c: usize, r: usize, v: ScreenVertex) {
+        let i = r * (self.cells[0] + 1) + c;
+        (self.x[i], self.y[i], self.q[i]) = (v.x, v.y, v.q);
+        self.holes |= v.is_none();
+    }
+
+    /// Moves the odd nodes of a side onto the even ones before them, see [`crate::lod::Span::seam`].
+    pub(crate) fn close_seams(&mut self, seam: [bool; 4]) {
+        let [cols, rows] = self.cells;
+        if seam == [false; 4] {
+            return;
+        }
+        for r in 0..=rows {
+            for c in 0..=cols {
+                let [to_c, to_r] = kept_node(seam, self.cells, [c, r]);
+                if [to_c, to_r] != [c, r] {
+                    self.set(c, r, self.at(to_c, to_r));
+                }
+            }
+        }
+    }
+
+    /// What the nodes cover; to be called once all are set.
+    pub(crate) fn cover(&mut self) -> Cover {
+        let stride = self.cells[0] + 1;
+        self.spans.clear();
+        let mut all = Cover::EMPTY;
+        for r in 0..=self.cells[1] {
+            let row = r * stride..(r + 1) * stride;
+            let mut cover = Cover::EMPTY;
+            if self.holes {
+                let on = (0..stride).map(|c| self.at(c, r)).filter(|v| !v.is_none());
+                cover = on.fold(cover, Cover::including);
+            } else {
+                for ((&x, &y), &q) in self.x[row.clone()].iter().zip(&self.y[row.clone()]).zip(&self.q[row]) {
+                    cover = cover.including(ScreenVertex { x, y, q });
+                }
+            }
+            self.spans.push(cover.y);
+            all.x = [all.x[0].min(cover.x[0]), all.x[1].max(cover.x[1])];
+            all.y = [all.y[0].min(cover.y[0]), all.y[1].max(cover.y[1])];
+            all.q = all.q.max(cover.q);
+        }
+        all
+    }
+
+    /// Draws the cells that touch the band, numbered from `first_prim`.
+    pub(crate) fn draw(&self, first_prim: u32, band: &mut Band) {
+        let [cols, rows] = self.cells;
+        let (top, bottom) = (band.y0 * SUB, band.y1 * SUB);
+        let mut hits = [false; SIDE];
+        for r in 0..rows {
+            let (n, s) = (self.spans[r], self.spans[r + 1]);
+            if n[0].min(s[0]) >= bottom || n[1].max(s[1]) < top {
+                continue;
+            }
+            let prim = first_prim | ((r * SIDE) as u32) << 1;
+            if self.holes {
+                (0..cols).for_each(|c| self.draw_torn([c, r], prim | (c as u32) << 1, band));
+                continue;
+            }
+            let (north, south) = (r * (cols + 1), (r + 1) * (cols + 1));
+            let row = |values: &'_ [i32], at: usize| -> [i32; NODES] {
+                let mut out = [0; NODES];
+                out[..=cols].copy_from_slice(&values[at..=at + cols]);
+                out
+            };
+            let (xn, yn) = (row(&self.x, north), row(&self.y, north));
+            let (xs, ys) = (row(&self.x, south), row(&self.y, south));
+            band.touched(&xn, &yn, &xs, &ys, &mut hits);
+            for (c, _) in hits[..cols].iter().enumerate().filter(|(_, hit)| **hit) {
+                let x = [xn[c], xn[c + 1], xs[c], xs[c + 1]];
+                let y = [yn[c], yn[c + 1], ys[c], ys[c + 1]];
+                let q = [self.q[north + c], self.q[north + c + 1], self.q[south + c], self.q[south + c + 1]];
+                band.draw_cell(x, y, q, prim | (c as u32) << 1);
+            }
+        }
+    }
+
+    /// A cell some of whose nodes may have no image.
+    fn draw_torn(&self, [c, r]: [usize; 2], prim: u32, band: &mut Band) {
+        let v: [ScreenVertex; 4] = std::array::from_fn(|k| self.at(c + (k & 1), r + (k >> 1)));
+        for (k, t) in CELL_TRIANGLES.iter().enumerate() {
+            let tri = t.map(|i| v[i]);
+            if !tri.iter().any(|v| v.is_none()) {
+                band.draw(tri, prim | k as u32);
+            }
+        }
+    }
+}
+
+/// The node that stands in for node (c, r) of a block with seams: itself, or the even one before it on a seam.
+pub(crate) fn kept_node(seam: [bool; 4], cells: [usize; 2], [c, r]: [usize; 2]) -> [usize; 2] {
+    let [north, east, south, west] = seam;
+    if (north && r == 0) || (south && r == cells[1]) {
+        [c & !1, r]
+    } else if (west && c == 0) || (east && c == cells[0]) {
+        [c, r & !1]
+    } else {
+        [c, r]
+    }
+}
+
+/// Weights of vertices 1 and 2 of triangle `k` of cell (c, r), for its vertices where they are drawn. On a seam they may lie
+/// beside the cell, on the plane of the triangle.
+pub(crate) fn cell_weights(seam: [bool; 4], cells: [usize; 2], [c, r]: [usize; 2], k: usize) -> [[f32; 2]; 3] {
+    CELL_TRIANGLES[k].map(|n| {
+        let at = kept_node(seam, cells, [c + (n & 1), r + (n >> 1)]);
+        let (u, v) = (at[0] as f32 - c as f32, at[1] as f32 - r as f32);
+        if k == 0 { [u - v, v] } else { [v - u, u] }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raster::{Band, sample_offsets};
+
+    /// Images of nodes (c, r) every `pitch` fixed-point steps, inner ones shaken by up to a quarter of that.
+    fn image([c, r]: [usize; 2], pitch: i32) -> ScreenVertex {
+        let mix = |k: u64| {
+            let x = (c as u64 * 7919 + r as u64 * 104_729 + k).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            ((x >> 40) as i32 % (pitch / 4 + 1)) - pitch / 8
+        };
+        let inner = c > 0 && r > 0 && c < 64 && r < 32;
+        let shake = |k: u64| if inner { mix(k) } else { 0 };
+        let q = 1.0 + 0.001 * mix(3) as f32 / pitch as f32;
+        ScreenVertex { x: c as i32 * pitch + shake(1) - 300, y: r as i32 * pitch + shake(2) - 300, q }
+    }
+
+    /// A block of full detail beside one of half the detail: 64 x 32 cells together.
+    fn sheet(pitch: i32, fine_first: bool) -> [Nodes; 2] {
+        let block = |from: usize, step: usize, seam: [bool; 4]| {
+            let cells = [32 / step, 32 / step];
+            let mut nodes = Nodes::default();
+            nodes.reset(cells);
+            for r in 0..=cells[1] {
+                for c in 0..=cells[0] {
+                    nodes.set(c, r, image([from + step * c, step * r], pitch));
+                }
+            }
+            nodes.close_seams(seam);
+            nodes.cover();
+            nodes
+        };
+        let fine = block(if fine_first { 0 } else { 32 }, 1, [false, fine_first, false, !fine_first]);
+        [fine, block(if fine_first { 32 } else { 0 }, 2, [false; 4])]
+    }
+
+    const PITCHES: [i32; 7] = [37, 64, 128, 200, 256, 700, 3000];
+
+    #[test]
+    fn sheets_of_different_detail_cover_every_sample_once() {
+        for (pitch, fine_first, samples) in
+            PITCHES.into_iter().flat_map(|p| [(p, true, 1), (p, false, 1), (p, true, 4), (p, false, 16)])
+        {
+            let size = [(64 * pitch - 300) / SUB + 2, (32 * pitch - 300) / SUB + 2];
+            let mut band = Band::new(0, size[1], size[0], sample_offsets(samples));
+            for (i, nodes) in sheet(pitch, fine_first).iter().enumerate() {
+                nodes.draw((i as u32) << 11, &mut band);
+            }
+            band.flush();
+            for (s, [ox, oy]) in band.offsets.iter().enumerate() {
+                for (x, y) in (0..size[0]).flat_map(|x| (0..size[1]).map(move |y| (x, y))) {
+                    let inside = x * SUB + ox < 64 * pitch - 300 && y * SUB + oy < 32 * pitch - 300;
+                    let hits = band.hits[band.index(s, x, y)];
+                    assert_eq!(hits, u32::from(inside), "pitch {pitch}, {fine_first}: ({x}, {y}) sample {s}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn bands_of_any_height_and_blocks_in_any_order_give_the_same_samples() {
+        for (pitch, samples) in PITCHES.into_iter().flat_map(|p| [(p, 1), (p, 4)]) {
+            let (width, height) = ((64 * pitch - 300) / SUB + 2, (32 * pitch - 300) / SUB + 2);
+            // Two sheets through each other.
+            let sheets = [sheet(pitch, true), sheet(pitch, false)];
+            let draw = |y0: i32, y1: i32, reverse: bool| {
+                let mut band = Band::new(y0, y1, width, sample_offsets(samples));
+                let all: Vec<(usize, &Nodes)> = sheets.iter().flatten().enumerate().collect();
+                let order: Vec<_> = if reverse { all.into_iter().rev().collect() } else { all };
+                order.into_iter().for_each(|(i, nodes)| nodes.draw((i as u32) << 11, &mut band));
+                band.flush();
+                band
+            };
+            let whole = draw(0, height, false);
+            for rows in [1, 5, 16] {
+                for y0 in (0..height).step_by(rows as usize) {
+                    let band = draw(y0, (y0 + rows).min(height), true);
+                    for s in 0..band.offsets.len() {
+                        for (x, y) in (0..width).flat_map(|x| (band.y0..band.y1).map(move |y| (x, y))) {
+                            let (a, b) = (whole.index(s, x, y), band.index(s, x, y));
+                            assert_eq!((whole.q[a].to_bits(), whole.prim[a]), (band.q[b].to_bits(), band.prim[b]));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
