@@ -25,6 +25,6 @@ fn bench_reports_as_a_table_and_as_json() {
     assert!(table.contains("curved rays") && table.contains("growth with pixels"), "{table}");
     let report = place.json(&[&args[..], &["--json"]].concat());
     assert_eq!(report["frames"].as_array().map(Vec::len), Some(12));
-    assert!(report["projection"][1]["mpts_per_s"].as_f64().is_some_and(|v| v > 0.0));
+    assert!(report["projection"][1]["mpts_per_core_s"].as_f64().is_some_and(|v| v > 0.0));
     assert!(place.fails(&["bench", "--nodes", "1"]).contains("33..=8193"));
 }
