@@ -14,7 +14,7 @@ fn ground(hf: &Heightfield) -> Scene {
 }
 
 fn coarse() -> RenderOptions {
-    RenderOptions { lod_px: LOD_PX, aux: Aux { world: true }, ..options(1) }
+    RenderOptions { lod_px: LOD_PX, aux: Aux { world: true, ..Aux::default() }, ..options(1) }
 }
 
 /// How far the true ground at the place that a pixel sees lies from the pixel, at worst, and how many pixels were judged.
