@@ -53,6 +53,8 @@ pub(crate) enum Verb {
     Reveal(RevealArgs),
     /// One picture and its record
     Render(RenderArgs),
+    /// A film or numbered frames: along a route, through viewing angles, or once around
+    Animate(AnimateArgs),
     /// Points to pixels: [[x,y,z],...] in scene coordinates
     Project(ProjectArgs),
     /// Pixels to sampled (curved) rays: [[x,y],...]
@@ -257,6 +259,52 @@ pub(crate) enum AuxFormatKind {
     Exr,
 }
 
+/// A moving camera.
+#[derive(Debug, Args)]
+pub(crate) struct AnimateArgs {
+    /// Scene file, TOML or JSON
+    pub(crate) scene: PathBuf,
+    /// Film, made by the ffmpeg program, with its frames in the folder OUT.frames; or a folder for the frames alone
+    #[arg(short, long, value_name = "OUT.mp4|DIR")]
+    pub(crate) out: PathBuf,
+    /// Number of frames; by default the scene's, else 250 or as many as the way needs
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) frames: Option<u32>,
+    /// Frames per second; by default the scene's, else 25
+    #[arg(long, value_name = "F", allow_negative_numbers = true)]
+    pub(crate) fps: Option<f64>,
+    /// Follow the route of this line layer, behind and above a walker
+    #[arg(long, value_name = "LAYER", group = "way")]
+    pub(crate) along: Option<String>,
+    /// Ground speed along the route, metres per second of film; by default the whole route in all frames
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub(crate) speed: Option<f64>,
+    /// Move through the viewing angles of the spline's presets: phi, or phi=FIRST:LAST[:STEP] in degrees
+    #[arg(long, value_name = "phi[=A:B]", group = "way", value_parser = parse_sweep)]
+    pub(crate) sweep: Option<[f64; 3]>,
+    /// Turn once around what is looked at, or as the scene says
+    #[arg(long, group = "way")]
+    pub(crate) turntable: bool,
+    /// Go on with the frames that are there
+    #[arg(long)]
+    pub(crate) resume: bool,
+    /// Size of the frames instead of the scene's, such as 1920x1080
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = parse_size)]
+    pub(crate) size: Option<[u32; 2]>,
+    /// Renderer
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) renderer: RendererKind,
+    /// Without the bends
+    #[arg(long)]
+    pub(crate) straight: bool,
+    /// Straight beside bent
+    #[arg(long, conflicts_with = "straight")]
+    pub(crate) compare: bool,
+    /// Coverage samples per pixel: 1, 4 or 16
+    #[arg(long, default_value_t = 4, value_name = "N")]
+    pub(crate) samples: u32,
+}
+
 /// Buffers beside a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum AuxKind {
@@ -398,6 +446,22 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
     match sides {
         Some([Ok(w), Ok(h)]) => Ok([w, h]),
         _ => Err("give width and height in pixels, such as 1280x720".into()),
+    }
+}
+
+/// `phi`, `phi=25:80` or `phi=25:80:0.5`; zeros stand for what is not given.
+fn parse_sweep(text: &str) -> Result<[f64; 3], String> {
+    let wrong = || "give phi, or phi=FIRST:LAST[:STEP] in degrees, such as phi=25:80".to_owned();
+    if text == "phi" {
+        return Ok([0.0; 3]);
+    }
+    let range = text.strip_prefix("phi=").ok_or_else(wrong)?;
+    let numbers: Option<Vec<f64>> =
+        range.split(':').map(|t| t.trim().parse().ok().filter(|v: &f64| v.is_finite())).collect();
+    match numbers.as_deref() {
+        Some([first, last]) if first != last => Ok([*first, *last, 0.0]),
+        Some([first, last, step]) if first != last && *step > 0.0 => Ok([*first, *last, *step]),
+        _ => Err(wrong()),
     }
 }
 

@@ -1,10 +1,12 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AuxFormatKind, AuxKind, BenchArgs, DemoArgs, InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs,
-    RevealArgs, SceneArgs, SchemaArgs, ShowArgs, Verb,
+    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs,
+    RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs, Verb,
 };
 use crate::report::{Context, done, print};
+use belvedere::scene_file::{AnimationDoc, SweepDoc, TurntableDoc};
+use belvedere::verbs::animate::{self, AnimateRequest, Film};
 use belvedere::verbs::render::{self, AuxBuffer, AuxFormat, RenderRequest};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
 use belvedere::verbs::{bench, check, demo, info, measure, output, pick, points};
@@ -31,6 +33,7 @@ impl Goal {
 pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
     match verb {
         Verb::Render(args) => render(&args, context),
+        Verb::Animate(args) => animate_scene(args, context),
         Verb::Project(args) => project(&args, context),
         Verb::Rays(args) => rays(&args, context),
         Verb::Displace(args) => displace(&args, context),
@@ -114,6 +117,48 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     }
     context.warn(session.warnings());
     Ok(Goal::Reached)
+}
+
+fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
+    animate::places(&args.out)?;
+    let mut render = RenderRequest { straight: args.straight, compare: args.compare, ..RenderRequest::default() };
+    render.renderer = args.renderer.into();
+    render.options.threads = context.common.threads;
+    render.options.samples = args.samples;
+    render.options.max_bytes = context.common.max_mem.unwrap_or(render.options.max_bytes);
+    let animation = AnimationDoc {
+        along: args.along,
+        sweep: args.sweep.map(|phi_deg| SweepDoc { phi_deg }),
+        turntable: args.turntable.then_some(TurntableDoc { deg_per_s: 0.0 }),
+        frames: args.frames,
+        fps: args.fps,
+        speed_mps: args.speed,
+        ..AnimationDoc::default()
+    };
+    let request =
+        AnimateRequest { animation, render, out: args.out, resume: args.resume, overwrite: context.common.overwrite };
+    let mut session = context.open(&args.scene, Needs::Everything, args.size)?;
+    let made = animate::animate(&mut session, &request, &context.progress)?;
+    context.finish();
+    let mut outputs = vec![made.folder.clone()];
+    let missing = match &made.film {
+        Film::Made(path) => {
+            outputs.insert(0, path.clone());
+            None
+        }
+        Film::Missing(reason) => Some(reason.clone()),
+        Film::NotAsked => None,
+    };
+    if context.common.json {
+        let mut result = done("animate", &outputs, session.warnings());
+        result["frames"] = serde_json::json!(made.manifest.frames.len());
+        result["drawn"] = serde_json::json!(made.drawn);
+        result["fps"] = serde_json::json!(made.manifest.settings.fps);
+        context.print(&result)?;
+    }
+    context.warn(session.warnings());
+    context.warn(missing.as_slice());
+    Ok(if missing.is_some() { Goal::Missed } else { Goal::Reached })
 }
 
 fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> {

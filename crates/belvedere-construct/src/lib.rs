@@ -4,6 +4,7 @@
 //! show more of them.
 
 mod error;
+pub mod flight;
 pub mod measure;
 pub mod reveal;
 mod samples;
@@ -12,6 +13,7 @@ pub mod terrain;
 
 pub use belvedere_scene::Ground;
 pub use error::ConstructError;
+pub use flight::{Flight, FlightError, FlightOptions};
 pub use measure::{MeasureOptions, Measures, measure};
 pub use reveal::{Goal, RevealMemory, RevealOptions, RevealReport, Revealed, reveal};
 pub use samples::{Amount, Sample, SampledFeature, default_spacing, sample_features};

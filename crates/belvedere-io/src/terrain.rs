@@ -5,6 +5,7 @@
 //! measured and bounded (see [`ResampleError`]). Voids stay voids unless they are filled, and filled nodes are marked.
 
 mod fill;
+mod original;
 mod place;
 mod resample;
 mod source;
@@ -13,6 +14,7 @@ use crate::crs::{CoordinateSystem, Transform, utm_epsg};
 use crate::{IoError, Limits, Loaded};
 use belvedere_scene::{Crs, Heightfield, HeightfieldError, NodeState, Progress};
 use glam::DVec2;
+pub use original::{OriginalTerrain, load_original};
 pub(crate) use place::{Geometry, GridMap, Link};
 pub(crate) use source::stated_system;
 

@@ -34,6 +34,11 @@ impl Progress {
         Self { report: Some(Arc::new(report)), cancelled: Arc::default() }
     }
 
+    /// Progress that nobody listens to but that is cancelled together with this one: for a part of the work.
+    pub fn unheard(&self) -> Self {
+        Self { report: None, cancelled: Arc::clone(&self.cancelled) }
+    }
+
     /// Flag to set from elsewhere (a signal handler, a button) to cancel.
     pub fn cancel_flag(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.cancelled)

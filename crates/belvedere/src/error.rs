@@ -43,6 +43,24 @@ pub enum BelvedereError {
     /// A request that makes no sense.
     #[error("{0}")]
     Usage(String),
+    /// An animation was cancelled between frames or in one.
+    #[error("cancelled after {done} of {frames} frames in {}; the same command with --resume goes on from there", folder.display())]
+    Interrupted {
+        /// Frames that are there.
+        done: usize,
+        /// Frames of the whole animation.
+        frames: usize,
+        /// Their folder.
+        folder: PathBuf,
+    },
+    /// One frame of an animation cannot be drawn.
+    #[error("frame {frame}: {source}")]
+    Frame {
+        /// Its number, from 0.
+        frame: usize,
+        /// Why not.
+        source: Box<BelvedereError>,
+    },
     /// A loader or writer failed.
     #[error(transparent)]
     Io(#[from] belvedere_io::IoError),

@@ -2,7 +2,7 @@
 
 use crate::BelvedereError;
 use belvedere_core::{Projection, View};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -25,8 +25,13 @@ pub(crate) fn sha256(path: &Path) -> Result<String, BelvedereError> {
     }
 }
 
+/// sha256 of bytes, lower-case hexadecimal.
+pub(crate) fn sha256_of(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// One file that was read.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct InputFile {
     /// Its path, as found.
     pub path: String,
@@ -53,7 +58,7 @@ pub(crate) fn inputs(paths: &[PathBuf]) -> Result<Vec<InputFile>, BelvedereError
 }
 
 /// The pinhole in numbers.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ViewRecord {
     /// Eye, scene coordinates.
     pub eye: [f64; 3],

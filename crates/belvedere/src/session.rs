@@ -40,6 +40,8 @@ pub struct OpenOptions {
 pub struct Session {
     pub(crate) document: Document,
     pub(crate) path: PathBuf,
+    pub(crate) source: SourceDocument,
+    pub(crate) roots: Roots,
     pub(crate) scene: Scene,
     pub(crate) view: View,
     pub(crate) light: Light,

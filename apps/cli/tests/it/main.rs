@@ -1,5 +1,6 @@
 //! The command line as a user meets it: the built program, its exit codes, its one line about failures.
 
+mod animate;
 mod bad_scenes;
 mod exact;
 mod marks;

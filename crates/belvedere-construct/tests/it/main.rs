@@ -1,6 +1,7 @@
 //! Integration tests of belvedere-construct.
 
 mod bars;
+mod flight;
 mod measure;
 mod qp;
 mod reveal;

@@ -10,18 +10,19 @@ mod layers;
 mod light;
 mod mesh;
 mod rays;
-mod stages;
-mod validate;
+pub(crate) mod stages;
+pub(crate) mod validate;
 pub(crate) mod vectors;
 
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    ConstructorKind, EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc, UnitDoc,
+    ConstructorKind, Document, EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc, UnitDoc,
 };
 use crate::{BelvedereError, Needs, OpenOptions, Session};
 use belvedere_core::{DVec2, EarthCurvature, Stage, View};
 use belvedere_io::crs::{CoordinateSystem, Transform, gaussian_radius_m, utm_epsg};
-use belvedere_scene::{Crs, Heightfield, Layer, LayerKind, Scene, Unit};
+use belvedere_scene::{Crs, Heightfield, Layer, LayerKind, Light, Scene, Unit};
+use std::path::PathBuf;
 
 /// Mean radius of the earth for scenes without georeference, metres.
 const MEAN_EARTH_RADIUS_M: f64 = 6_371_008.8;
@@ -39,20 +40,54 @@ pub(crate) fn session(source: SourceDocument, roots: &Roots, options: &OpenOptio
         warnings: Vec::new(),
     };
     let scene = load(&mut loader)?;
-    let layers::Loader { mut inputs, mut warnings, .. } = loader;
+    let layers::Loader { inputs, warnings, .. } = loader;
+    let looked = look(&source, roots, &scene)?;
+    Ok(Session {
+        document: looked.document,
+        path: source.path().to_owned(),
+        source,
+        roots: roots.clone(),
+        scene,
+        view: looked.view,
+        light: looked.light,
+        warnings: warnings.into_iter().chain(looked.warnings).collect(),
+        inputs: inputs.into_iter().chain(looked.inputs).collect(),
+    })
+}
+
+/// The session's scene by another document of the same layers: everything that depends on camera and stages is resolved again.
+pub(crate) fn look_again(session: &mut Session, document: Document) -> Result<(), BelvedereError> {
+    let mut source = session.source.clone();
+    source.document = document;
+    let looked = look(&source, &session.roots, &session.scene)?;
+    (session.document, session.view, session.light) = (looked.document, looked.view, looked.light);
+    Ok(())
+}
+
+/// What depends on camera and stages.
+struct Looked {
+    document: Document,
+    view: View,
+    light: Light,
+    inputs: Vec<PathBuf>,
+    warnings: Vec<String>,
+}
+
+fn look(source: &SourceDocument, roots: &Roots, scene: &Scene) -> Result<Looked, BelvedereError> {
+    let (mut inputs, mut warnings) = (Vec::new(), Vec::new());
     let ground = Ground { crs: scene.crs, terrain: scene.terrain() };
-    let camera = camera::resolve(&source, &ground, stages::plane_normal(&source))?;
-    let mut chain = earth(&source, &ground, camera.pinhole.eye, &mut warnings);
+    let camera = camera::resolve(source, &ground, stages::plane_normal(&source.document))?;
+    let mut chain = earth(source, &ground, camera.pinhole.eye, &mut warnings);
     let mut document = source.document.clone();
-    let context = stages::StageContext { source: &source, roots, ground: &ground, camera: &camera };
+    let context = stages::StageContext { source, roots, ground: &ground, camera: &camera };
     let resolved = stages::resolve(&context, &mut inputs, &mut warnings)?;
     chain.extend(resolved.stages);
     let view = View::new(resolved.pinhole, chain).map_err(|e| source.error(&["stage"], e))?;
-    let light = light::resolve(&source, &ground, view.pinhole().eye, &mut warnings)?;
+    let light = light::resolve(source, &ground, view.pinhole().eye, &mut warnings)?;
     document.crs = scene.crs.to_string();
     document.camera = camera.document;
     document.stage = resolved.documents;
-    Ok(Session { document, path: source.path().to_owned(), scene, view, light, warnings, inputs })
+    Ok(Looked { document, view, light, inputs, warnings })
 }
 
 /// A picture without what the scene asks for would mislead.

@@ -4,15 +4,17 @@ use super::Ground;
 use super::camera::ResolvedCamera;
 use crate::BelvedereError;
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{self, PlaneDoc, PresetsDoc, SourceDocument, SplineStageDoc, StageDoc, TerrainStageDoc};
+use crate::scene_file::{
+    self, Document, PlaneDoc, PresetsDoc, SourceDocument, SplineStageDoc, StageDoc, TerrainStageDoc,
+};
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
 use belvedere_core::presets::{BUILTIN_NAMES, PresetDocument};
 use belvedere_core::{DVec3, Pinhole, SplineBend, Stage, TerrainDisocclusion};
 use std::path::PathBuf;
 
 /// Normal of the reference plane of the first spline stage.
-pub(super) fn plane_normal(source: &SourceDocument) -> Option<DVec3> {
-    source.document.stage.iter().find_map(|stage| match stage {
+pub(crate) fn plane_normal(document: &Document) -> Option<DVec3> {
+    document.stage.iter().find_map(|stage| match stage {
         StageDoc::SplineBend(spline) => Some(spline.plane.as_ref().map_or(DVec3::Z, |p| DVec3::from_array(p.normal))),
         _ => None,
     })

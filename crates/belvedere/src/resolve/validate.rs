@@ -37,7 +37,7 @@ pub(super) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
     Ok(())
 }
 
-type Complaint = (&'static str, String);
+pub(crate) type Complaint = (&'static str, String);
 
 fn layer_sources(layer: &LayerDoc) -> Result<(), Complaint> {
     match layer {
@@ -155,16 +155,45 @@ fn constructor(doc: &ConstructorDoc) -> Result<(), Complaint> {
     }
 }
 
-fn animation(doc: &AnimationDoc) -> Result<(), Complaint> {
+/// Ranges and combinations of keys of an animation.
+pub(crate) fn animation(doc: &AnimationDoc) -> Result<(), Complaint> {
     let ways = [doc.along.is_some(), doc.camera.is_some(), doc.sweep.is_some(), doc.turntable.is_some()];
     if ways.iter().filter(|w| **w).count() != 1 {
         return Err(("", "exactly one of along, camera, sweep and turntable is needed".into()));
     }
-    if doc.frames == Some(0) {
-        return Err(("frames", "frames is 0, it must be at least 1".into()));
+    if !doc.frames.is_none_or(|n| (1..=MAX_FRAMES).contains(&n)) {
+        return Err((
+            "frames",
+            format!("frames is {}, it must lie in 1..={MAX_FRAMES}", doc.frames.unwrap_or_default()),
+        ));
     }
-    if doc.fps.is_some_and(|f| f <= 0.0) {
-        return Err(("fps", format!("fps is {}, it must be greater than 0", doc.fps.unwrap_or_default())));
+    let positive =
+        [("fps", doc.fps), ("speed_mps", doc.speed_mps), ("behind_m", doc.behind_m), ("above_m", doc.above_m)];
+    for (key, value) in positive.into_iter().chain([("ahead_m", doc.ahead_m)]) {
+        if let Some(v) = value.filter(|v| !(*v > 0.0 && *v <= 1e9)) {
+            return Err((key, format!("{key} is {v}, it must be greater than 0")));
+        }
     }
-    Ok(())
+    if let Some(v) = doc.start_m.filter(|v| !(*v >= 0.0 && v.is_finite())) {
+        return Err(("start_m", format!("start_m is {v}, it must be 0 or more")));
+    }
+    if let Some(t) = doc.turntable.as_ref().filter(|t| t.deg_per_s == 0.0 || !t.deg_per_s.is_finite()) {
+        return Err(("turntable", format!("deg_per_s is {}, it must not be 0", t.deg_per_s)));
+    }
+    match doc.sweep.as_ref().map(|s| s.phi_deg) {
+        Some([first, last, step])
+            if !([first, last].iter().all(|v| (0.0..=90.0).contains(v)) && step > 0.0 && first != last) =>
+        {
+            Err((
+                "sweep",
+                format!(
+                    "phi_deg is [{first}, {last}, {step}]; give first and last in 0..=90, apart, and a step above 0"
+                ),
+            ))
+        }
+        _ => Ok(()),
+    }
 }
+
+/// Most frames of an animation.
+pub(crate) const MAX_FRAMES: u32 = 100_000;

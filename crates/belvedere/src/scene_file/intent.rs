@@ -1,4 +1,4 @@
-//! Constructors and animations of the scene document: read and validated, built by later versions.
+//! Constructors and animations of the scene document. Constructors are read and validated, built by later versions.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -56,13 +56,13 @@ pub struct ConstructorDoc {
 }
 
 /// A fly-through: exactly one of `along`, `camera`, `sweep`, `turntable`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AnimationDoc {
     /// Line layer to follow.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub along: Option<String>,
-    /// File of cameras.
+    /// JSON file of cameras to pass through: a list of `{ "eye": [x,y,z], "look_at": [x,y,z] }`, each with `up` and `fov_y_deg` if wanted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<String>,
     /// Sweep of the viewing angle.
@@ -71,12 +71,27 @@ pub struct AnimationDoc {
     /// Turn about the pivot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub turntable: Option<TurntableDoc>,
-    /// Number of frames, > 0.
+    /// Number of frames, > 0; by default 250, or as many as speed, sweep or turn need.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frames: Option<u32>,
-    /// Frames per second, > 0.
+    /// Frames per second, > 0; 25 by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fps: Option<f64>,
+    /// Along a route: ground speed, metres per second of film; by default the whole route in all frames.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_mps: Option<f64>,
+    /// Along a route: distance from its start at which the film begins, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start_m: Option<f64>,
+    /// Along a route: distance of the eye behind the walker, metres; 800 by default, less for routes below 10 km.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub behind_m: Option<f64>,
+    /// Along a route: height of the eye over the ground below it and under the walker, metres; 500 by default, less for routes below 10 km.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub above_m: Option<f64>,
+    /// Along a route: distance of the place looked at ahead of the walker, metres; 1500 by default, less for routes below 10 km.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ahead_m: Option<f64>,
 }
 
 /// Sweep of the viewing angle.
@@ -91,6 +106,6 @@ pub struct SweepDoc {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TurntableDoc {
-    /// Degrees per second.
+    /// Degrees per second, counter-clockwise seen from above.
     pub deg_per_s: f64,
 }

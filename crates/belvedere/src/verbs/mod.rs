@@ -1,5 +1,6 @@
 //! The verbs of the command line as functions.
 
+pub mod animate;
 pub mod bench;
 mod buffers;
 pub mod check;

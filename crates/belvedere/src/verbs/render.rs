@@ -11,7 +11,7 @@ use belvedere_cpu::canvas::Canvas;
 use belvedere_cpu::{CpuRenderer, ExactRenderer};
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::{Aux, Frame, FrameStats, Heightfield, NodeState, Progress, RenderJob, RenderOptions, Renderer};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -101,7 +101,7 @@ impl AuxBuffer {
 }
 
 /// How far a picture moves what it shows, against the same camera without bends; sampled every few pixels.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct DisplacementReport {
     /// Largest, scene units.
     pub max_m: f64,
@@ -215,6 +215,16 @@ pub fn outputs(out: &Path, request: &RenderRequest) -> Vec<PathBuf> {
 /// # Errors
 /// [`BelvedereError::Usage`] if the eye is under ground, [`BelvedereError::Render`], [`BelvedereError::Cancelled`].
 pub fn render(session: &Session, request: &RenderRequest, progress: &Progress) -> Result<Picture, BelvedereError> {
+    draw(session, request, provenance::inputs(session.inputs())?, progress)
+}
+
+/// As [`render`], with the record of the inputs at hand.
+pub(super) fn draw(
+    session: &Session,
+    request: &RenderRequest,
+    inputs: Vec<InputFile>,
+    progress: &Progress,
+) -> Result<Picture, BelvedereError> {
     super::check::drawable(session)?;
     let started = Instant::now();
     let drawn = match request.camera {
@@ -234,7 +244,7 @@ pub fn render(session: &Session, request: &RenderRequest, progress: &Progress) -
         terrain: session.scene().terrain().map(TerrainRecord::of),
         view: provenance::ViewRecord::of(&view),
         scene: session.resolved().clone(),
-        inputs: provenance::inputs(session.inputs())?,
+        inputs,
         warnings: session.warnings().to_vec(),
         stats: frame.stats.clone(),
         render_ms,
@@ -320,10 +330,7 @@ impl Picture {
     /// # Errors
     /// [`BelvedereError::Io`].
     pub fn write(&self, out: &Path, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
-        let (width, height, pixels) = self.pixels();
-        let text = self.text()?;
-        let text: Vec<(&str, &str)> = text.iter().map(|(k, v)| (*k, v.as_str())).collect();
-        png::write(out, overwrite, width, height, Channels::Rgb, pixels.as_flattened(), &text)?;
+        self.write_png(out, overwrite)?;
         let sidecar = sibling(out, ".json");
         output::write_text(&sidecar, &super::check::pretty(&self.sidecar)?, overwrite)?;
         let mut written = vec![out.to_owned(), sidecar];
@@ -339,6 +346,17 @@ impl Picture {
             written.push(path);
         }
         Ok(written)
+    }
+
+    /// Writes the picture alone. Its bytes depend on scene, request and inputs only, not on threads or time.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`].
+    pub fn write_png(&self, out: &Path, overwrite: bool) -> Result<(), BelvedereError> {
+        let (width, height, pixels) = self.pixels();
+        let text = self.text()?;
+        let text: Vec<(&str, &str)> = text.iter().map(|(k, v)| (*k, v.as_str())).collect();
+        Ok(png::write(out, overwrite, width, height, Channels::Rgb, pixels.as_flattened(), &text)?)
     }
 
     /// Width, height and colours; a pair stands side by side.

@@ -1,0 +1,142 @@
+//! The heights of one file on their own grid, to be written back changed.
+
+use super::TerrainRequest;
+use super::source::{self, SourceGrid};
+use crate::crs::{CoordinateSystem, Transform};
+use crate::raster::{CrsKind, Raster, RasterInfo, SampleType, Samples, SourceCrs};
+use crate::{IoError, Loaded};
+use belvedere_scene::{Crs, Progress};
+use glam::DVec2;
+use rayon::prelude::*;
+use std::path::Path;
+
+/// Value written where there is no data.
+const NODATA: f32 = -9999.0;
+
+/// A file's own samples: grid, coordinate system and heights as they are, never resampled, thinned or filled.
+#[derive(Debug, Clone)]
+pub struct OriginalTerrain {
+    source: SourceGrid,
+}
+
+/// Reads the samples of one raster (GeoTIFF, `.hgt`, zipped `.hgt`, ESRI ASCII); of `request` limits, CRS of the source
+/// and no-data value count.
+///
+/// # Errors
+/// As [`super::load_terrain`].
+pub fn load_original(
+    path: &Path,
+    request: &TerrainRequest,
+    progress: &Progress,
+) -> Result<Loaded<OriginalTerrain>, IoError> {
+    let mut warnings = Vec::new();
+    let whole = TerrainRequest { max_nodes: usize::MAX, ..request.clone() };
+    let mut sources = source::read_all(&[path.to_owned()], &whole, progress, &mut warnings)?;
+    let source = sources.pop().ok_or_else(|| IoError::format(path, "holds no raster; give an elevation model"))?;
+    Ok(Loaded { value: OriginalTerrain { source }, warnings })
+}
+
+impl OriginalTerrain {
+    /// Columns and rows.
+    pub fn size(&self) -> [usize; 2] {
+        [self.source.cols, self.source.rows]
+    }
+
+    /// Heights in metres, row-major; `None` where there is no data.
+    pub fn heights(&self) -> impl Iterator<Item = Option<f32>> + '_ {
+        self.source.heights.iter().map(|h| h.is_finite().then_some(*h))
+    }
+
+    /// The heights moved by `delta` (metres, at scene x, y), and the moves themselves, as rasters on the file's own grid: 32-bit
+    /// floats in metres, no-data where the file has none or a sample lies outside the domain of the scene's system.
+    ///
+    /// # Errors
+    /// [`IoError`] if the file's coordinate system cannot be joined with that of the scene.
+    pub fn moved(&self, scene: Crs, delta: impl Fn(DVec2) -> f64 + Sync) -> Result<[Raster; 2], IoError> {
+        let source = &self.source;
+        let failed = |e: crate::crs::CrsError| IoError::format(&source.path, e.to_string());
+        let transform = match (&source.system, scene) {
+            (Some(system), Crs::Epsg(_)) => {
+                let to = CoordinateSystem::from_scene(scene).map_err(failed)?;
+                Some(Transform::new(system, &to).map_err(failed)?)
+            }
+            _ => None,
+        };
+        let pairs: Vec<[f32; 2]> = (0..source.heights.len())
+            .into_par_iter()
+            .with_min_len(4096)
+            .map(|i| {
+                let at = source.model_from_index.apply((i % source.cols) as f64, (i / source.cols) as f64);
+                let place = match &transform {
+                    Some(t) => t.forward_one(DVec2::from(at)),
+                    None => Some(DVec2::from(at)),
+                };
+                let moved = place.map(&delta).filter(|d| d.is_finite() && source.heights[i].is_finite());
+                moved.map_or([NODATA; 2], |d| [(f64::from(source.heights[i]) + d) as f32, d as f32])
+            })
+            .collect();
+        Ok([0, 1].map(|k| self.raster(pairs.iter().map(|p| p[k]).collect())))
+    }
+
+    fn raster(&self, values: Vec<f32>) -> Raster {
+        let source = &self.source;
+        let mut info = RasterInfo::new(&source.path, source.cols, source.rows, SampleType::F32);
+        info.pixel_to_model = Some(source.model_from_index.after_scale_and_shift(1.0, 1.0, -0.5, -0.5));
+        info.nodata = Some(f64::from(NODATA));
+        if let Some(system) = &source.system
+            && let Some(code) = system.epsg()
+        {
+            info.crs = SourceCrs::Epsg(code);
+            info.crs_kind = if system.is_geographic() { CrsKind::Geographic } else { CrsKind::Projected };
+        }
+        Raster { info, samples: Samples::F32(values), mask: None }
+    }
+
+    /// What of the georeference cannot be written, if anything: one sentence.
+    pub fn georeference_note(&self) -> Option<String> {
+        let system = self.source.system.as_ref()?;
+        system.epsg().is_none().then(|| {
+            format!(
+                "{}: its coordinate system {system} has no EPSG code, so written rasters carry none",
+                self.source.path.display()
+            )
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geotiff::write_geotiff as write;
+
+    #[test]
+    fn moved_heights_keep_grid_system_and_voids() {
+        let folder = std::env::temp_dir().join(format!("belvedere-original-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let asc = folder.join("dem.asc");
+        std::fs::write(
+            &asc,
+            "ncols 3\nnrows 2\nxllcorner 8.0\nyllcorner 46.0\ncellsize 0.01\nNODATA_value -1\n1 2 3\n4 -1 6\n",
+        )
+        .unwrap();
+        let request = TerrainRequest { source_crs: Some(4326), ..TerrainRequest::default() };
+        let original = load_original(&asc, &request, &Progress::silent()).unwrap().value;
+        assert_eq!(original.size(), [3, 2]);
+        // 10 m down west of 454 km east (the middle of the grid lies near 8.015 E), 5 m up east of it.
+        let middle = CoordinateSystem::from_epsg(32632).unwrap();
+        let middle = Transform::new(&CoordinateSystem::wgs84().unwrap(), &middle).unwrap();
+        let edge = middle.forward_one(DVec2::new(8.012, 46.01)).unwrap().x;
+        let rasters = original.moved(Crs::Epsg(32632), |p| if p.x < edge { -10.0 } else { 5.0 }).unwrap();
+        let [dem, delta] = rasters;
+        assert_eq!(dem.samples, Samples::F32(vec![-9.0, 7.0, 8.0, -6.0, -9999.0, 11.0]));
+        assert_eq!(delta.samples, Samples::F32(vec![-10.0, 5.0, 5.0, -10.0, -9999.0, 5.0]));
+        let out = folder.join("out.tif");
+        write(&out, &dem, true).unwrap();
+        let again = load_original(&out, &TerrainRequest::default(), &Progress::silent()).unwrap().value;
+        assert_eq!(again.heights().collect::<Vec<_>>()[3..5], [Some(-6.0), None]);
+        assert_eq!(again.source.system, original.source.system);
+        let corner = |o: &OriginalTerrain| o.source.model_from_index.apply(2.0, 1.0);
+        assert!((corner(&again)[0] - 8.025).abs() < 1e-12 && (corner(&again)[1] - 46.005).abs() < 1e-12);
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}

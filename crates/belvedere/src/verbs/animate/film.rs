@@ -1,0 +1,108 @@
+//! Frames into a film, by an ffmpeg program if there is one.
+
+use super::manifest::frame_name;
+use crate::BelvedereError;
+use belvedere_scene::{Cancelled, Progress};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+/// How the film was made, or why it was not.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Film {
+    /// None was asked for.
+    NotAsked,
+    /// It is there.
+    Made(PathBuf),
+    /// Why there is none, and what to do; the frames are there.
+    Missing(String),
+}
+
+/// Encoders in order of preference; the second is in every build of the program.
+const ENCODERS: [&[&str]; 2] =
+    [&["-c:v", "libx264", "-crf", "18", "-preset", "medium"], &["-c:v", "mpeg4", "-q:v", "2"]];
+
+/// Makes `out` from the frames of `folder`.
+pub(super) fn make(
+    out: &Path,
+    folder: &Path,
+    frames: usize,
+    fps: f64,
+    progress: &Progress,
+) -> Result<Film, BelvedereError> {
+    let pattern = folder.join(frame_name(0).replace("00000", "%05d"));
+    let by_hand = format!("ffmpeg -framerate {fps} -i {} -pix_fmt yuv420p {}", pattern.display(), out.display());
+    let temporary = out.with_extension(format!("{}.tmp.mp4", std::process::id()));
+    let mut complaint = String::new();
+    for encoder in ENCODERS {
+        let mut command = Command::new("ffmpeg");
+        command.args(["-nostdin", "-hide_banner", "-loglevel", "error", "-y", "-framerate", &fps.to_string()]);
+        command.args(["-start_number", "0", "-i"]).arg(&pattern).args(["-frames:v", &frames.to_string()]);
+        // Encoders want even sides.
+        command.args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2"]).args(encoder);
+        command.args(["-pix_fmt", "yuv420p", "-movflags", "+faststart", "-map_metadata", "-1"]);
+        command.args(["-fflags", "+bitexact", "-flags:v", "+bitexact"]).arg(&temporary);
+        let ran = run(&mut command, progress);
+        match ran {
+            Ok((true, _)) => {
+                std::fs::rename(&temporary, out).map_err(|e| belvedere_io::IoError::os(out, e))?;
+                return Ok(Film::Made(out.to_owned()));
+            }
+            Ok((false, said)) => complaint = said,
+            Err(Failure::Absent) => {
+                return Ok(Film::Missing(format!(
+                    "there is no ffmpeg program on the PATH, so {} was not made; the frames are in {}; install ffmpeg and go on with --resume, or run: {by_hand}",
+                    out.display(),
+                    folder.display()
+                )));
+            }
+            Err(Failure::Cancelled) => {
+                let _ = std::fs::remove_file(&temporary);
+                return Err(Cancelled.into());
+            }
+            Err(Failure::Other(said)) => complaint = said,
+        }
+        let _ = std::fs::remove_file(&temporary);
+    }
+    let last = complaint.lines().rfind(|l| !l.trim().is_empty()).unwrap_or("it gave no reason").trim();
+    Ok(Film::Missing(format!(
+        "ffmpeg could not make {} ({last}); the frames are in {}",
+        out.display(),
+        folder.display()
+    )))
+}
+
+enum Failure {
+    Absent,
+    Cancelled,
+    Other(String),
+}
+
+/// Whether the program succeeded, and what it complained of.
+fn run(command: &mut Command, progress: &Progress) -> Result<(bool, String), Failure> {
+    let started = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
+    let mut child = started.map_err(|e| match e.kind() {
+        ErrorKind::NotFound => Failure::Absent,
+        _ => Failure::Other(e.to_string()),
+    })?;
+    let stderr = child.stderr.take();
+    let reader = std::thread::spawn(move || {
+        let mut said = Vec::new();
+        stderr.map(|mut pipe| std::io::Read::read_to_end(&mut pipe, &mut said));
+        String::from_utf8_lossy(&said).into_owned()
+    });
+    let status = loop {
+        if progress.tick("making the film", 1.0).is_err() {
+            let _ = child.kill();
+            let _ = child.wait();
+            return Err(Failure::Cancelled);
+        }
+        match child.try_wait() {
+            Ok(Some(status)) => break status,
+            Ok(None) => std::thread::sleep(Duration::from_millis(20)),
+            Err(e) => return Err(Failure::Other(e.to_string())),
+        }
+    };
+    Ok((status.success(), reader.join().unwrap_or_default()))
+}

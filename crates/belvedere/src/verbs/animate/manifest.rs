@@ -1,0 +1,164 @@
+//! What a folder of frames holds, so that an interrupted animation can go on.
+
+use super::plan::Plan;
+use crate::provenance::{self, InputFile, ViewRecord};
+use crate::scene_file::AnimationDoc;
+use crate::verbs::render::{DisplacementReport, RenderRequest};
+use crate::verbs::{check, output};
+use crate::{BelvedereError, Session};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Name of the manifest in a folder of frames.
+const NAME: &str = "animation.json";
+
+/// The record of a folder of frames. Same scene and request, same bytes, whether drawn at once or in parts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Program and version.
+    pub program: String,
+    /// sha256 of the resolved scene without its animation, hexadecimal.
+    pub scene_sha256: String,
+    /// Files that were read.
+    pub inputs: Vec<InputFile>,
+    /// How the frames are drawn.
+    pub settings: Settings,
+    /// Number of frames that are there.
+    pub done: usize,
+    /// One entry per frame, `None` where it is not there yet.
+    pub frames: Vec<Option<FrameRecord>>,
+}
+
+/// Everything that the bytes of the frames depend on, beside the scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// The animation with every default filled in.
+    pub animation: AnimationDoc,
+    /// Frames per second.
+    pub fps: f64,
+    /// Width and height, pixels.
+    pub image: [u32; 2],
+    /// Coverage samples per pixel.
+    pub samples: u32,
+    /// Worst error of bent edges, pixels.
+    pub tolerance_px: f64,
+    /// Who draws.
+    pub renderer: String,
+    /// Without the bends.
+    pub straight: bool,
+    /// Straight beside bent.
+    pub compare: bool,
+}
+
+/// One frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FrameRecord {
+    /// File in the folder.
+    pub file: String,
+    /// sha256 of the file, hexadecimal.
+    pub sha256: String,
+    /// The camera in numbers.
+    pub view: ViewRecord,
+    /// How far things were moved; `None` for a straight picture.
+    pub displacement: Option<DisplacementReport>,
+}
+
+/// Name of the file of a frame.
+pub fn frame_name(frame: usize) -> String {
+    format!("frame_{frame:05}.png")
+}
+
+impl Manifest {
+    /// The manifest of an animation of which no frame is there.
+    pub(super) fn new(session: &Session, plan: &Plan, request: &RenderRequest) -> Result<Self, BelvedereError> {
+        let mut document = session.resolved().clone();
+        document.animation = None;
+        Ok(Self {
+            program: format!("belvedere {}", crate::VERSION),
+            scene_sha256: provenance::sha256_of(output::json(&document)?.as_bytes()),
+            inputs: provenance::inputs(session.inputs())?,
+            settings: Settings {
+                animation: plan.animation.clone(),
+                fps: plan.fps,
+                image: session.view().pinhole().image,
+                samples: request.options.samples,
+                tolerance_px: request.options.tolerance_px,
+                renderer: request.renderer.renderer().name().to_owned(),
+                straight: request.straight,
+                compare: request.compare,
+            },
+            done: 0,
+            frames: vec![None; plan.len()],
+        })
+    }
+
+    /// Reads the manifest of a folder; `None` if there is none.
+    pub(super) fn read(folder: &Path) -> Result<Option<Self>, BelvedereError> {
+        let path = folder.join(NAME);
+        let refuse = |reason: String| BelvedereError::Output { path: path.clone(), reason };
+        match std::fs::read_to_string(&path) {
+            Ok(text) => serde_json::from_str(&text).map(Some).map_err(|e| {
+                refuse(format!("is no record of an animation ({e}); remove the folder, or choose another"))
+            }),
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
+            Err(e) => Err(belvedere_io::IoError::os(&path, e).into()),
+        }
+    }
+
+    /// Why frames of `earlier` do not belong to this animation; `None` if they do.
+    pub(super) fn differs_from(&self, earlier: &Self) -> Option<String> {
+        if self.program != earlier.program {
+            return Some(format!("it was begun by {}, this is {}", earlier.program, self.program));
+        }
+        let (now, then) = (&self.settings, &earlier.settings);
+        if self.frames.len() != earlier.frames.len() {
+            return Some(format!("it has {} frames, {} were asked for", earlier.frames.len(), self.frames.len()));
+        }
+        if now.image != then.image {
+            return Some(format!(
+                "its frames are {} x {} pixels, {} x {} were asked for",
+                then.image[0], then.image[1], now.image[0], now.image[1]
+            ));
+        }
+        if now != then {
+            return Some("the camera's way or the way of drawing is another".into());
+        }
+        // The scene file itself counts by what it means, not by its comments.
+        let read = |m: &Self| m.inputs.iter().skip(1).map(|i| (i.path.clone(), i.sha256.clone())).collect::<Vec<_>>();
+        if let Some((_, (path, _))) = read(earlier).into_iter().zip(read(self)).find(|(a, b)| a.1 != b.1) {
+            return Some(format!("{path} has changed since"));
+        }
+        (self.scene_sha256 != earlier.scene_sha256).then(|| "the scene has changed since".into())
+    }
+
+    /// Takes over the frames of `earlier` whose files are still what they were.
+    pub(super) fn keep(&mut self, earlier: &Self, folder: &Path) {
+        for (mine, theirs) in self.frames.iter_mut().zip(&earlier.frames) {
+            *mine = theirs.clone().filter(|frame| frame.is_whole(folder));
+        }
+        self.count();
+    }
+
+    /// Notes a frame that was written.
+    pub(super) fn put(&mut self, frame: usize, record: FrameRecord) {
+        self.frames[frame] = Some(record);
+        self.count();
+    }
+
+    fn count(&mut self) {
+        self.done = self.frames.iter().flatten().count();
+    }
+
+    /// Writes the manifest into its folder.
+    pub(super) fn write(&self, folder: &Path) -> Result<PathBuf, BelvedereError> {
+        let path = folder.join(NAME);
+        output::write_text(&path, &check::pretty(self)?, true)?;
+        Ok(path)
+    }
+}
+
+impl FrameRecord {
+    fn is_whole(&self, folder: &Path) -> bool {
+        provenance::sha256(&folder.join(&self.file)).is_ok_and(|found| found == self.sha256)
+    }
+}

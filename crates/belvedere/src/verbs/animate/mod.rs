@@ -1,0 +1,202 @@
+//! `animate`: numbered frames of a moving camera, and a film of them.
+
+mod film;
+mod manifest;
+mod plan;
+
+pub use film::Film;
+pub use manifest::{FrameRecord, Manifest, Settings, frame_name};
+
+use super::render::{self, RenderRequest};
+use super::{check, output};
+use crate::provenance::{self, ViewRecord};
+use crate::scene_file::AnimationDoc;
+use crate::{BelvedereError, Session};
+use belvedere_scene::Progress;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// What to draw, and where to.
+#[derive(Debug, Clone, Default)]
+pub struct AnimateRequest {
+    /// How the camera moves, where this differs from the scene's own `[animation]`. A sweep of zeros and a turntable
+    /// at 0 degrees per second stand for the scene's own or the default; so does a step of 0.
+    pub animation: AnimationDoc,
+    /// How each frame is drawn; buffers are not written.
+    pub render: RenderRequest,
+    /// A film (`.mp4`), with its frames in the folder beside it, or a folder of frames.
+    pub out: PathBuf,
+    /// Goes on with the frames that are there.
+    pub resume: bool,
+    /// Replaces frames and film that are there.
+    pub overwrite: bool,
+}
+
+/// What was made.
+#[derive(Debug, Clone)]
+pub struct Animation {
+    /// The record of the frames.
+    pub manifest: Manifest,
+    /// Folder of the frames.
+    pub folder: PathBuf,
+    /// Frames drawn by this call; the others were there.
+    pub drawn: usize,
+    /// The film.
+    pub film: Film,
+}
+
+/// The folder of the frames of an output, and the film if it names one.
+///
+/// # Errors
+/// [`BelvedereError::Output`] for films of other kinds.
+pub fn places(out: &Path) -> Result<(PathBuf, Option<PathBuf>), BelvedereError> {
+    let ending = out.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    match ending.as_str() {
+        "mp4" => Ok((out.with_extension("frames"), Some(out.to_owned()))),
+        "mov" | "mkv" | "avi" | "webm" | "gif" | "m4v" | "mpg" | "mpeg" | "png" | "jpg" | "jpeg" => {
+            Err(BelvedereError::Output {
+                path: out.to_owned(),
+                reason: format!(
+                    "films are written as .mp4, not .{ending}; name the output .mp4, or give a folder for the frames"
+                ),
+            })
+        }
+        _ => Ok((out.to_owned(), None)),
+    }
+}
+
+/// Draws every frame that is not there yet, then the film.
+///
+/// All views are resolved before the first frame is drawn, so that one that is impossible is known at once. Frames are written
+/// whole, the manifest after each of them; a cancelled animation is gone on with by `resume`, to the same bytes as an unbroken one.
+///
+/// # Errors
+/// [`BelvedereError::Interrupted`] if cancelled, [`BelvedereError::Frame`] for a frame that cannot be drawn,
+/// [`BelvedereError::Output`] if the folder holds another animation.
+pub fn animate(
+    session: &mut Session,
+    request: &AnimateRequest,
+    progress: &Progress,
+) -> Result<Animation, BelvedereError> {
+    let (folder, film) = places(&request.out)?;
+    if let Some(film) = &film {
+        output::check(film, session.inputs(), request.overwrite || request.resume)?;
+    }
+    let plan = plan::plan(session, &request.animation)?;
+    let mut manifest = Manifest::new(session, &plan, &request.render)?;
+    claim(&mut manifest, &folder, request)?;
+    rehearse(session, &plan, progress)?;
+    std::fs::create_dir_all(&folder).map_err(|e| belvedere_io::IoError::os(&folder, e))?;
+    let interrupted = |manifest: &Manifest| BelvedereError::Interrupted {
+        done: manifest.done,
+        frames: manifest.frames.len(),
+        folder: folder.clone(),
+    };
+    manifest.write(&folder)?;
+    let drawn = match draw_missing(session, &plan, &mut manifest, &folder, request, progress) {
+        Err(e) if e.is_cancelled() => return Err(interrupted(&manifest)),
+        drawn => drawn?,
+    };
+    let film = match film {
+        None => Film::NotAsked,
+        Some(out) => match film::make(&out, &folder, plan.len(), plan.fps, progress) {
+            Err(e) if e.is_cancelled() => return Err(interrupted(&manifest)),
+            film => film?,
+        },
+    };
+    Ok(Animation { manifest, folder, drawn, film })
+}
+
+/// Decides what becomes of what the folder holds.
+fn claim(manifest: &mut Manifest, folder: &Path, request: &AnimateRequest) -> Result<(), BelvedereError> {
+    let refuse = |reason: String| Err(BelvedereError::Output { path: folder.to_owned(), reason });
+    if std::fs::metadata(folder).is_ok_and(|m| !m.is_dir()) {
+        return refuse("is a file; give a folder for the frames, or a film named .mp4".into());
+    }
+    if request.overwrite && !request.resume {
+        // Frames of a longer animation before this one would end up in its film.
+        let earlier = Manifest::read(folder).ok().flatten().map_or(0, |m| m.frames.len());
+        for frame in manifest.frames.len()..earlier {
+            let _ = std::fs::remove_file(folder.join(frame_name(frame)));
+        }
+        return Ok(());
+    }
+    match (Manifest::read(folder)?, request.resume) {
+        (Some(earlier), true) => match manifest.differs_from(&earlier) {
+            Some(reason) => refuse(format!(
+                "cannot be gone on with: {reason}; start anew with --overwrite, or choose another output"
+            )),
+            None => {
+                manifest.keep(&earlier, folder);
+                Ok(())
+            }
+        },
+        (Some(earlier), false) => refuse(format!(
+            "holds {} of {} frames of an animation; go on with --resume, or replace them with --overwrite",
+            earlier.done,
+            earlier.frames.len()
+        )),
+        (None, _) if folder.join(frame_name(0)).exists() => {
+            refuse("holds frames without their record; replace them with --overwrite, or choose another output".into())
+        }
+        (None, _) => Ok(()),
+    }
+}
+
+/// Resolves the view of every frame.
+fn rehearse(session: &mut Session, plan: &plan::Plan, progress: &Progress) -> Result<(), BelvedereError> {
+    for frame in 0..plan.len() {
+        progress.tick("looking along the way", frame as f64 / plan.len() as f64)?;
+        look(session, plan, frame)?;
+    }
+    Ok(())
+}
+
+fn look(session: &mut Session, plan: &plan::Plan, frame: usize) -> Result<(), BelvedereError> {
+    let failed = |e: BelvedereError| BelvedereError::Frame { frame, source: Box::new(e) };
+    crate::resolve::look_again(session, plan.document(frame)).map_err(failed)?;
+    check::drawable(session).map_err(failed)
+}
+
+/// Draws what the manifest lacks, in order; the number of frames drawn.
+fn draw_missing(
+    session: &mut Session,
+    plan: &plan::Plan,
+    manifest: &mut Manifest,
+    folder: &Path,
+    request: &AnimateRequest,
+    progress: &Progress,
+) -> Result<usize, BelvedereError> {
+    let missing: Vec<usize> = (0..plan.len()).filter(|&f| manifest.frames[f].is_none()).collect();
+    let started = Instant::now();
+    for (drawn, &frame) in missing.iter().enumerate() {
+        let share = manifest.done as f64 / plan.len() as f64;
+        progress.tick(&remaining(frame, plan.len(), drawn, missing.len(), started), share)?;
+        look(session, plan, frame)?;
+        let picture = render::draw(session, &request.render, manifest.inputs.clone(), &progress.unheard())?;
+        let file = frame_name(frame);
+        let path = folder.join(&file);
+        picture.write_png(&path, true)?;
+        let record = FrameRecord {
+            sha256: provenance::sha256(&path)?,
+            file,
+            view: ViewRecord::of(session.view()),
+            displacement: picture.sidecar.displacement,
+        };
+        manifest.put(frame, record);
+        manifest.write(folder)?;
+    }
+    Ok(missing.len())
+}
+
+/// `frame 12 of 250, 3 min left`.
+fn remaining(frame: usize, frames: usize, drawn: usize, missing: usize, started: Instant) -> String {
+    let left = started.elapsed().as_secs_f64() * (missing - drawn) as f64 / drawn.max(1) as f64;
+    let left = match left {
+        _ if drawn == 0 => String::new(),
+        s if s < 90.0 => format!(", {s:.0} s left"),
+        s if s < 5400.0 => format!(", {:.0} min left", s / 60.0),
+        s => format!(", {:.1} h left", s / 3600.0),
+    };
+    format!("frame {} of {frames}{left}", frame + 1)
+}

@@ -1,0 +1,397 @@
+//! Where the camera is in every frame.
+
+use crate::resolve::{stages, validate};
+use crate::scene_file::{
+    self, AnimationDoc, CameraDoc, Document, PointDoc, PresetsDoc, RaysStageDoc, StageDoc, SweepDoc, TurntableDoc,
+};
+use crate::{BelvedereError, Session};
+use belvedere_construct::{Flight, FlightOptions};
+use belvedere_core::{DVec2, DVec3, Stage};
+use belvedere_scene::{LayerKind, LineFeature};
+use glam::DQuat;
+use serde::Deserialize;
+
+/// Frames per second unless stated.
+const FPS: f64 = 25.0;
+/// Frames unless something says how many are needed.
+const FRAMES: u32 = 250;
+
+/// Where the camera is in one frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Pose {
+    eye: DVec3,
+    look_at: DVec3,
+    up: DVec3,
+    fov_y_deg: f64,
+    /// Turn of the whole view about the vertical through the pivot, radians.
+    turn: f64,
+}
+
+/// The cameras of all frames.
+#[derive(Debug, Clone)]
+pub(super) struct Plan {
+    /// The resolved scene.
+    base: Document,
+    poses: Vec<Pose>,
+    /// What the camera turns about; `None` where the pivot of a spline travels with the camera.
+    pivot: Option<DVec3>,
+    /// Frames per second.
+    pub(super) fps: f64,
+    /// The animation with every default filled in.
+    pub(super) animation: AnimationDoc,
+}
+
+/// The scene's own animation, replaced in part or whole by what was asked for.
+pub(super) fn merged(session: &Session, asked: &AnimationDoc) -> Result<AnimationDoc, BelvedereError> {
+    let mut doc = session.resolved().animation.clone().unwrap_or_default();
+    if asked.along.is_some() || asked.camera.is_some() || asked.sweep.is_some() || asked.turntable.is_some() {
+        let (sweep, turntable) = (doc.sweep.take(), doc.turntable.take());
+        (doc.along, doc.camera) = (asked.along.clone(), asked.camera.clone());
+        // A bare --sweep or --turntable asks for the scene's own, else for the default.
+        doc.sweep = asked.sweep.clone().map(|s| if s.phi_deg[0] != s.phi_deg[1] { s } else { sweep.unwrap_or(s) });
+        doc.turntable = asked.turntable.clone().map(|t| if t.deg_per_s != 0.0 { t } else { turntable.unwrap_or(t) });
+    }
+    doc.frames = asked.frames.or(doc.frames);
+    doc.fps = asked.fps.or(doc.fps);
+    doc.speed_mps = asked.speed_mps.or(doc.speed_mps);
+    Ok(doc)
+}
+
+/// The frames of an animation, and its document with every default filled in.
+pub(super) fn plan(session: &Session, asked: &AnimationDoc) -> Result<Plan, BelvedereError> {
+    let mut animation = merged(session, asked)?;
+    let fps = animation.fps.unwrap_or(FPS);
+    animation.fps = Some(fps);
+    if [&animation.along, &animation.camera].into_iter().all(Option::is_none)
+        && animation.sweep.is_none()
+        && animation.turntable.is_none()
+    {
+        return Err(BelvedereError::Usage(
+            "nothing says how the camera moves: give --along LAYER, --sweep phi or --turntable, or add [animation] to the scene".into(),
+        ));
+    }
+    defaults(session, &mut animation)?;
+    validate::animation(&animation).map_err(|(_, reason)| BelvedereError::Usage(format!("animation: {reason}")))?;
+    let (poses, pivot) = if let Some(layer) = animation.along.clone() {
+        (along(session, &layer, &mut animation)?, None)
+    } else if let Some(file) = animation.camera.clone() {
+        (through_cameras(session, &file, &mut animation)?, Some(DVec3::ZERO))
+    } else {
+        let pivot = pivot(session)?;
+        let poses = match animation.sweep.clone() {
+            Some(sweep) => sweep_phi(session, pivot, sweep, &mut animation)?,
+            None => turntable(session, pivot, &mut animation)?,
+        };
+        (poses, Some(pivot))
+    };
+    Ok(Plan { base: session.resolved().clone(), poses, pivot, fps, animation })
+}
+
+/// Ranges that a bare `--sweep` or `--turntable` leaves open.
+fn defaults(session: &Session, animation: &mut AnimationDoc) -> Result<(), BelvedereError> {
+    if let Some(SweepDoc { phi_deg: [first, last, step] }) = &mut animation.sweep {
+        if *first == 0.0 && *last == 0.0 {
+            [*first, *last] = preset_range(session.resolved()).ok_or_else(|| {
+                BelvedereError::Usage("--sweep phi needs a spline_bend stage, whose presets say the range; add one, or give phi=FIRST:LAST".into())
+            })?;
+        }
+        if *step == 0.0 {
+            *step = (*last - *first).abs() / f64::from(animation.frames.unwrap_or(FRAMES).max(2) - 1);
+        }
+    }
+    if let Some(TurntableDoc { deg_per_s }) = &mut animation.turntable
+        && *deg_per_s == 0.0
+    {
+        *deg_per_s = 360.0 * animation.fps.unwrap_or(FPS) / f64::from(animation.frames.unwrap_or(FRAMES));
+    }
+    Ok(())
+}
+
+/// Smallest and largest viewing angle that the presets of a document are made for, degrees.
+fn preset_range(document: &Document) -> Option<[f64; 2]> {
+    let spline = document.stage.iter().find_map(|s| match s {
+        StageDoc::SplineBend(spline) => Some(spline),
+        _ => None,
+    })?;
+    let PresetsDoc::Inline(presets) = &spline.presets else { return None };
+    let low = presets.presets.iter().map(|p| p.phi - p.tau).fold(90.0, f64::min);
+    let high = presets.presets.iter().map(|p| p.phi + p.tau).fold(0.0, f64::max);
+    (low < high).then(|| [low.max(0.0), high.min(90.0)])
+}
+
+impl Plan {
+    /// Number of frames.
+    pub(super) fn len(&self) -> usize {
+        self.poses.len()
+    }
+
+    /// The resolved scene of a frame.
+    pub(super) fn document(&self, frame: usize) -> Document {
+        let pose = &self.poses[frame];
+        let mut document = self.base.clone();
+        document.camera = CameraDoc {
+            eye: PointDoc::Scene(pose.eye.to_array()),
+            look_at: Some(PointDoc::Scene(pose.look_at.to_array())),
+            heading_deg: None,
+            pitch_deg: None,
+            up: pose.up.to_array(),
+            fov_y_deg: pose.fov_y_deg,
+            ..document.camera
+        };
+        for stage in &mut document.stage {
+            match (stage, self.pivot) {
+                (StageDoc::SplineBend(spline), None) => spline.pivot = None,
+                (StageDoc::CurvedRays(rays), Some(pivot)) if pose.turn != 0.0 => {
+                    turn_rays(rays, pivot, DQuat::from_rotation_z(pose.turn));
+                }
+                _ => {}
+            }
+        }
+        document
+    }
+}
+
+fn along(session: &Session, id: &str, animation: &mut AnimationDoc) -> Result<Vec<Pose>, BelvedereError> {
+    let usage = |reason: String| BelvedereError::Usage(format!("along \"{id}\": {reason}"));
+    let route = route(session, id)?;
+    let length = route.windows(2).map(|w| w[0].distance(w[1])).sum();
+    let usual = FlightOptions::for_length(length);
+    let options = FlightOptions {
+        behind_m: *animation.behind_m.get_or_insert(usual.behind_m),
+        above_m: *animation.above_m.get_or_insert(usual.above_m),
+        ahead_m: *animation.ahead_m.get_or_insert(usual.ahead_m),
+    };
+    let flight = Flight::along(&route, session.scene().terrain(), &options).map_err(|e| usage(e.to_string()))?;
+    let start = *animation.start_m.get_or_insert(0.0);
+    let left = flight.length_m() - start;
+    if !(left > 0.0) {
+        return Err(usage(format!("start_m is {start}, the route is {:.1} long; begin earlier", flight.length_m())));
+    }
+    let fps = animation.fps.unwrap_or(FPS);
+    let per_frame = match animation.speed_mps {
+        Some(speed) => speed / fps,
+        None => left / f64::from(animation.frames.unwrap_or(FRAMES).max(2) - 1),
+    };
+    let possible = (left / per_frame * (1.0 + 1e-12)).floor() as u32 + 1;
+    let frames = match (animation.frames, animation.speed_mps) {
+        (Some(n), Some(speed)) if n > possible => {
+            return Err(usage(format!(
+                "{n} frames at {speed} metres per second need more than the {left:.1} left of the route; give at most {possible}"
+            )));
+        }
+        (Some(n), _) => n,
+        (None, _) => possible,
+    };
+    animation.frames = Some(checked(frames)?);
+    animation.speed_mps = Some(per_frame * fps);
+    let fov_y_deg = session.resolved().camera.fov_y_deg;
+    let pose = |i: u32| {
+        let (eye, look_at) = flight.at(start + f64::from(i) * per_frame);
+        Pose { eye, look_at, up: DVec3::Z, fov_y_deg, turn: 0.0 }
+    };
+    Ok((0..frames).map(pose).collect())
+}
+
+fn checked(frames: u32) -> Result<u32, BelvedereError> {
+    let most = validate::MAX_FRAMES;
+    if frames <= most {
+        return Ok(frames);
+    }
+    Err(BelvedereError::Usage(format!(
+        "the animation would have {frames} frames, at most {most} are drawn; make it faster or shorter"
+    )))
+}
+
+/// The longest line of a layer, with the others that go on where it ends.
+fn route(session: &Session, id: &str) -> Result<Vec<DVec2>, BelvedereError> {
+    let scene = session.scene();
+    let lines = |kind: &LayerKind| matches!(kind, LayerKind::Line(_));
+    let known: Vec<&str> = scene.layers.iter().filter(|l| lines(&l.kind)).map(|l| l.id.as_str()).collect();
+    let layer = scene.layers.iter().find(|l| l.id == id);
+    let Some(LayerKind::Line(layer)) = layer.map(|l| &l.kind) else {
+        let hint = if known.is_empty() { "the scene has none".to_owned() } else { scene_file::suggestion(id, &known) };
+        return Err(BelvedereError::Usage(format!("along: \"{id}\" is no line layer of the scene; {hint}")));
+    };
+    let gap = scene.terrain().map_or(1.0, |t| 20.0 * t.spacing().max_element());
+    Ok(chain(&layer.features, gap))
+}
+
+/// Joins lines end to end, from the longest one on, across gaps of at most `gap`.
+fn chain(features: &[LineFeature], gap: f64) -> Vec<DVec2> {
+    let mut rest: Vec<Vec<DVec2>> = features
+        .iter()
+        .map(|f| f.points.iter().map(|p| p.truncate()).collect())
+        .filter(|p: &Vec<_>| p.len() > 1)
+        .collect();
+    let length = |line: &[DVec2]| line.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
+    let Some(longest) = (0..rest.len()).max_by(|a, b| length(&rest[*a]).total_cmp(&length(&rest[*b]))) else {
+        return Vec::new();
+    };
+    let mut way = rest.swap_remove(longest);
+    loop {
+        let (head, tail) = (way[0], way[way.len() - 1]);
+        // Distance, line, whether it goes to the tail, whether it is turned round.
+        let mut best: Option<(f64, usize, bool, bool)> = None;
+        for (i, line) in rest.iter().enumerate() {
+            let (a, b) = (line[0], line[line.len() - 1]);
+            for (d, to_tail, turned) in [
+                (a.distance(tail), true, false),
+                (b.distance(tail), true, true),
+                (b.distance(head), false, false),
+                (a.distance(head), false, true),
+            ] {
+                if d <= gap && best.is_none_or(|b| d < b.0) {
+                    best = Some((d, i, to_tail, turned));
+                }
+            }
+        }
+        let Some((_, i, to_tail, turned)) = best else { return way };
+        let mut line = rest.swap_remove(i);
+        if turned {
+            line.reverse();
+        }
+        let (mut first, second) = if to_tail { (way, line) } else { (line, way) };
+        first.extend(second);
+        way = first;
+    }
+}
+
+/// One camera of a file.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedCamera {
+    eye: [f64; 3],
+    look_at: [f64; 3],
+    #[serde(default = "z_up")]
+    up: [f64; 3],
+    fov_y_deg: Option<f64>,
+}
+
+fn z_up() -> [f64; 3] {
+    [0.0, 0.0, 1.0]
+}
+
+/// Eye, look_at, up and field of view of a saved camera, as one vector of numbers.
+type Numbers = [f64; 10];
+
+fn through_cameras(session: &Session, file: &str, animation: &mut AnimationDoc) -> Result<Vec<Pose>, BelvedereError> {
+    let path = session.roots.resolve(file)?;
+    let fail = |reason: String| BelvedereError::Points { path: path.clone(), reason };
+    let tree = scene_file::json_points(&scene_file::read_text(&path)?).map_err(|e| fail(e.to_string()))?;
+    let saved: Vec<SavedCamera> = scene_file::decode(&tree).map_err(|e| fail(e.to_string()))?;
+    if saved.is_empty() {
+        return Err(fail("holds no camera; give a list of { eye, look_at }".into()));
+    }
+    let own = session.resolved().camera.fov_y_deg;
+    let keys: Vec<Numbers> = saved
+        .iter()
+        .map(|c| {
+            let numbers = c.eye.into_iter().chain(c.look_at).chain(c.up).chain([c.fov_y_deg.unwrap_or(own)]);
+            let mut out = [0.0; 10];
+            out.iter_mut().zip(numbers).for_each(|(o, v)| *o = v);
+            out
+        })
+        .collect();
+    let frames = *animation.frames.get_or_insert(checked(keys.len() as u32)?);
+    let span = (keys.len() - 1) as f64;
+    let pose = |i: u32| {
+        let k = at(&keys, span * f64::from(i) / f64::from(frames.max(2) - 1));
+        let point = |j: usize| DVec3::new(k[j], k[j + 1], k[j + 2]);
+        Pose { eye: point(0), look_at: point(3), up: point(6), fov_y_deg: k[9], turn: 0.0 }
+    };
+    Ok((0..frames).map(pose).collect())
+}
+
+/// Catmull-Rom through the keys: C1, and each key itself at whole numbers.
+fn at(keys: &[Numbers], t: f64) -> Numbers {
+    let i = (t.floor() as usize).min(keys.len() - 1);
+    let f = t - i as f64;
+    if f <= 0.0 {
+        return keys[i];
+    }
+    let key = |j: isize| &keys[j.clamp(0, keys.len() as isize - 1) as usize];
+    let i = i as isize;
+    let [a, p, q, b] = [key(i - 1), key(i), key(i + 1), key(i + 2)];
+    let (f2, f3) = (f * f, f * f * f);
+    std::array::from_fn(|k| {
+        let (dp, dq) = (0.5 * (q[k] - a[k]), 0.5 * (b[k] - p[k]));
+        (2.0 * f3 - 3.0 * f2 + 1.0) * p[k] + (f3 - 2.0 * f2 + f) * dp + (3.0 * f2 - 2.0 * f3) * q[k] + (f3 - f2) * dq
+    })
+}
+
+/// The point about which the camera turns: the pivot of a spline, else the place looked at.
+fn pivot(session: &Session) -> Result<DVec3, BelvedereError> {
+    let of_spline = session.view().stages().iter().find_map(|s| match s {
+        Stage::SplineBend(bend) => Some(bend.pivot()),
+        _ => None,
+    });
+    let looked_at = match session.resolved().camera.look_at {
+        Some(PointDoc::Scene(p)) => Some(DVec3::from_array(p)),
+        _ => None,
+    };
+    of_spline.or(looked_at).ok_or_else(|| {
+        BelvedereError::Usage("nothing says what the camera turns about: give the scene's camera a look_at".into())
+    })
+}
+
+fn sweep_phi(
+    session: &Session,
+    pivot: DVec3,
+    sweep: SweepDoc,
+    animation: &mut AnimationDoc,
+) -> Result<Vec<Pose>, BelvedereError> {
+    let [first, last, step] = sweep.phi_deg;
+    let needed = ((last - first).abs() / step * (1.0 + 1e-12)).floor() + 1.0;
+    let frames = *animation.frames.get_or_insert(checked(needed.min(1e9) as u32)?);
+    let step = if frames > 1 { (last - first) / f64::from(frames - 1) } else { 0.0 };
+    // The scene's own step unless the number of frames says otherwise.
+    let step = if f64::from(frames) == needed { sweep.phi_deg[2].copysign(last - first) } else { step };
+    let pinhole = session.view().pinhole();
+    let normal = stages::plane_normal(session.resolved()).and_then(DVec3::try_normalize).unwrap_or(DVec3::Z);
+    let level = |v: DVec3| (v - v.dot(normal) * normal).try_normalize();
+    // Looking straight down, what is up in the picture is ahead.
+    let ahead = level(pinhole.forward).filter(|_| pinhole.forward.dot(normal).abs() < 0.999_999);
+    let ahead = ahead.or_else(|| level(-pinhole.down)).unwrap_or(DVec3::Y);
+    let distance = pinhole.eye.distance(pivot);
+    if !(distance > 0.0) {
+        return Err(BelvedereError::Usage("the eye is the pivot itself; move it away".into()));
+    }
+    let fov_y_deg = session.resolved().camera.fov_y_deg;
+    let pose = |i: u32| {
+        let (sin, cos) = (first + f64::from(i) * step).clamp(0.0, 90.0).to_radians().sin_cos();
+        let (eye, up) = (pivot + distance * (sin * normal - cos * ahead), sin * ahead + cos * normal);
+        Pose { eye, look_at: pivot, up, fov_y_deg, turn: 0.0 }
+    };
+    Ok((0..frames).map(pose).collect())
+}
+
+fn turntable(session: &Session, pivot: DVec3, animation: &mut AnimationDoc) -> Result<Vec<Pose>, BelvedereError> {
+    let rate = animation.turntable.as_ref().map_or(0.0, |t| t.deg_per_s);
+    let fps = animation.fps.unwrap_or(FPS);
+    let once = (360.0 / rate.abs() * fps).round().clamp(1.0, 1e9) as u32;
+    let frames = checked(animation.frames.unwrap_or(once))?;
+    animation.frames = Some(frames);
+    let (camera, pinhole) = (&session.resolved().camera, session.view().pinhole());
+    let ahead = pinhole.eye + pinhole.eye.distance(pivot).max(1.0) * pinhole.forward;
+    let pose = |i: u32| {
+        let turn = (rate * f64::from(i) / fps).to_radians();
+        let rotation = DQuat::from_rotation_z(turn);
+        let [eye, look_at] = [pinhole.eye, ahead].map(|p| pivot + rotation * (p - pivot));
+        Pose { eye, look_at, up: rotation * DVec3::from_array(camera.up), fov_y_deg: camera.fov_y_deg, turn }
+    };
+    Ok((0..frames).map(pose).collect())
+}
+
+/// Curved rays turn with the camera.
+fn turn_rays(rays: &mut RaysStageDoc, pivot: DVec3, turn: DQuat) {
+    let place = |p: &mut [f64; 3]| *p = (pivot + turn * (DVec3::from_array(*p) - pivot)).to_array();
+    let direction = |v: &mut [f64; 3]| *v = (turn * DVec3::from_array(*v)).to_array();
+    for t in &mut rays.turn {
+        [&mut t.viewpoint, &mut t.t0, &mut t.t1, &mut t.t2].into_iter().for_each(place);
+        if let Some(line) = &mut t.line {
+            place(&mut line.point);
+            direction(&mut line.dir);
+        }
+        t.normal.iter_mut().for_each(direction);
+    }
+}
