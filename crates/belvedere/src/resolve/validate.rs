@@ -161,11 +161,10 @@ pub(crate) fn animation(doc: &AnimationDoc) -> Result<(), Complaint> {
     if ways.iter().filter(|w| **w).count() != 1 {
         return Err(("", "exactly one of along, camera, sweep and turntable is needed".into()));
     }
-    if !doc.frames.is_none_or(|n| (1..=MAX_FRAMES).contains(&n)) {
-        return Err((
-            "frames",
-            format!("frames is {}, it must lie in 1..={MAX_FRAMES}", doc.frames.unwrap_or_default()),
-        ));
+    match doc.frames {
+        Some(0) => return Err(("frames", "frames is 0, it must be at least 1".into())),
+        Some(n) if n > MAX_FRAMES => return Err(("frames", format!("frames is {n}, at most {MAX_FRAMES} are drawn"))),
+        _ => {}
     }
     let positive =
         [("fps", doc.fps), ("speed_mps", doc.speed_mps), ("behind_m", doc.behind_m), ("above_m", doc.above_m)];
