@@ -72,7 +72,7 @@ impl Cells {
                 let corner = |k: usize| [self.x[k][i] as i32, self.y[k][i] as i32];
                 let [nw, ne, sw, se] = [0, 1, 2, 3].map(corner);
                 self.code[i] =
-                    u32::from(holds_origin([nw, ne, se])) | u32::from(holds_origin([nw, sw, se])) * Self::LOWER;
+                    u32::from(holds_origin([nw, ne, se])) | (u32::from(holds_origin([nw, sw, se])) * Self::LOWER);
             }
         }
     }

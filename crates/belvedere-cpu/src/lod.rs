@@ -169,7 +169,7 @@ fn seams(hf: &Heightfield, step: usize, from: [usize; 2], to: [usize; 2]) -> [f3
         (0.5 * (a + b) - m).abs().max(0.5 * kink.abs())
     };
     let along = |n: usize, at: &dyn Fn(usize, bool) -> f32, forward: bool| {
-        if n % (2 * step) != 0 {
+        if !n.is_multiple_of(2 * step) {
             return f32::INFINITY;
         }
         let three = |i: usize, inner: bool| [at(i, inner), at(i + step, inner), at(i + 2 * step, inner)];

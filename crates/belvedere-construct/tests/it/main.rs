@@ -8,4 +8,5 @@ mod reveal;
 mod sight;
 mod smooth;
 mod synthetic;
+mod trends;
 mod viewpoint;

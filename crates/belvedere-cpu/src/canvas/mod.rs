@@ -29,7 +29,7 @@ pub struct Canvas<'a> {
 impl<'a> Canvas<'a> {
     /// A picture of `width` columns, row-major, row 0 on top.
     pub fn new(pixels: &'a mut [[u8; 3]], width: usize) -> Self {
-        let height = if width == 0 { 0 } else { pixels.len() / width };
+        let height = pixels.len().checked_div(width).unwrap_or(0);
         Self { pixels, width, height }
     }
 

@@ -148,14 +148,14 @@ impl Builder {
         let turn = place.inverse().transpose();
         self.smooth |= normals.is_some();
         self.normals.extend((0..count).map(|i| {
-            let n = normals.as_ref().and_then(|n| n.get(i)).map_or(DVec3::ZERO, |n| triple(n));
+            let n = normals.as_ref().and_then(|n| n.get(i)).map_or(DVec3::ZERO, triple);
             z_up(turn.transform_vector3(n)).normalize_or_zero()
         }));
         let base = primitive.material().pbr_metallic_roughness().base_color_factor().map(f64::from);
         let colors = primitive.get(&Semantic::Colors(0)).map(|a| self.values(&a)).transpose()?;
         self.painted |= colors.is_some();
         self.vertex_colors.extend((0..count).map(|i| {
-            let c = colors.as_ref().and_then(|c| c.get(i)).map_or(DVec3::ONE, |c| triple(c));
+            let c = colors.as_ref().and_then(|c| c.get(i)).map_or(DVec3::ONE, triple);
             srgb([c.x * base[0], c.y * base[1], c.z * base[2]])
         }));
         let corners: Vec<u32> = match primitive.indices() {

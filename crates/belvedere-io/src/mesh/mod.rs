@@ -28,6 +28,8 @@ pub struct MeshFile {
     pub colors: MeshColors,
 }
 
+type Reader = fn(&Path, &[u8], &Limits) -> Result<Loaded<MeshFile>, IoError>;
+
 /// Reads a mesh. Faces of more corners become fans, lines and points are left out; the file's own axes are kept, but for glTF, whose y axis
 /// points up and becomes z.
 ///
@@ -35,7 +37,7 @@ pub struct MeshFile {
 /// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, too large for `limits`, or has no triangle.
 pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoError> {
     let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    let read: fn(&Path, &[u8], &Limits) -> Result<Loaded<MeshFile>, IoError> = match ending.as_str() {
+    let read: Reader = match ending.as_str() {
         "obj" => obj::read,
         "ply" => ply::read,
         "stl" => stl::read,

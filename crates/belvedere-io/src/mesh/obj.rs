@@ -10,13 +10,7 @@ use std::path::Path;
 const PLAIN: Color = Color::rgb(200, 196, 190);
 
 pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<MeshFile>, IoError> {
-    let options = tobj::LoadOptions {
-        triangulate: true,
-        ignore_points: true,
-        ignore_lines: true,
-        single_index: false,
-        ..tobj::LoadOptions::default()
-    };
+    let options = tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, single_index: false };
     let materials = |name: &Path| {
         let file = name.to_str().ok_or(tobj::LoadError::OpenFileFailed)?;
         let file = beside(path, file).map_err(|_| tobj::LoadError::OpenFileFailed)?;

@@ -12,6 +12,7 @@ fn line(field: &Field, path: &[[f64; 2]]) -> Scene {
         casing: None,
         hidden: Hidden::Dash,
         lift_m: 1.0,
+        markers: None,
     });
     Scene { layers: vec![Layer { id: "line".into(), must_see: true, kind }], ..Scene::default() }
 }

@@ -322,10 +322,8 @@ impl Frame<'_> {
         for (k, touch) in missed {
             let key = key(touch.at, self.seen[*k].grid);
             let slack = bought.get(&key).copied().unwrap_or(0.0);
-            if touch.excess <= 1.1 * slack + self.clearance.tolerance {
-                if self.soft > 0.0 {
-                    continue;
-                }
+            if self.soft > 0.0 && touch.excess <= 1.1 * slack + self.clearance.tolerance {
+                continue;
             }
             let slot = best.entry(key).or_insert((*k, *touch));
             if touch.excess > slot.1.excess {
