@@ -2,8 +2,8 @@
 
 use crate::synthetic::{camera, scene};
 use belvedere_construct::terrain::{
-    Cells, Deformation, Field, Hierarchy, Naive, Pyramid, ReferencePoint, Smoother, TerrainMetrics, TerrainSettings, Wedge,
-    check_eye, grid_weight, in_view, reference_points, terrain_metrics,
+    Cells, Deformation, Field, Hierarchy, Naive, Pyramid, ReferencePoint, Smoother, TerrainMetrics, TerrainSettings,
+    Wedge, check_eye, grid_weight, in_view, reference_points, terrain_metrics,
 };
 use belvedere_core::DVec3;
 use belvedere_core::grid::Grid;
@@ -73,8 +73,7 @@ fn visibility_and_steps_rise_with_w() {
     let naive: Vec<Vec<f64>> = cases.iter().map(|c| c.naive(&TerrainSettings::default())).collect();
     let mut before = [0.0f64; 2];
     for w in [0.1, 0.6, 1.0, 10.0] {
-        let all: Vec<TerrainMetrics> =
-            cases.iter().zip(&naive).map(|(c, u)| c.smooth(&settings(w), u)).collect();
+        let all: Vec<TerrainMetrics> = cases.iter().zip(&naive).map(|(c, u)| c.smooth(&settings(w), u)).collect();
         let mean = |f: &dyn Fn(&TerrainMetrics) -> f64| all.iter().map(f).sum::<f64>() / all.len() as f64;
         let now = [mean(&|m| m.visible.unwrap()), mean(&|m| m.step_p999_m)];
         assert!(now[0] >= before[0] && now[1] > before[1], "w = {w}: {before:?}, then {now:?}");
