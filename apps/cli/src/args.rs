@@ -1,6 +1,5 @@
 //! Arguments.
 
-use belvedere::scene_file::PaletteDoc;
 use belvedere::verbs::render::RendererChoice;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -153,9 +152,10 @@ pub(crate) struct RevealArgs {
     /// Leave holes of the terrain open instead of filling them
     #[arg(long)]
     pub(crate) keep_voids: bool,
-    /// Tint of the terrain by height
-    #[arg(long, value_enum, default_value = "auto")]
-    pub(crate) palette: PaletteKind,
+    /// Tint of the terrain by height: auto, alpine, desert, glacial, clear, plain, or a file of colours by height
+    /// (GDAL colour-relief text, GMT .cpt)
+    #[arg(long, value_name = "NAME|FILE", default_value = "auto")]
+    pub(crate) palette: String,
     /// Coordinate system of the scene: auto, EPSG:n or local
     #[arg(long, value_name = "CRS")]
     pub(crate) crs: Option<String>,
@@ -236,6 +236,10 @@ pub(crate) struct RenderArgs {
     /// The same from a place of its own: eye and point to look at, or auto
     #[arg(long, value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true, conflicts_with_all = CAMERA_CONFLICTS, conflicts_with = "overhead", value_parser = parse_outside)]
     pub(crate) outside: Option<Outside>,
+    /// Tint of the terrain by height instead of the scene's: auto, alpine, desert, glacial, clear, plain, or a file of
+    /// colours by height (GDAL colour-relief text, GMT .cpt)
+    #[arg(long, value_name = "NAME|FILE")]
+    pub(crate) palette: Option<String>,
     /// Coverage samples per pixel: 1, 4 or 16
     #[arg(long, default_value_t = 4, value_name = "N")]
     pub(crate) samples: u32,
@@ -386,33 +390,6 @@ pub(crate) struct SchemaArgs {
     /// Output; standard output if left out
     #[arg(short, long, value_name = "OUT.json")]
     pub(crate) out: Option<PathBuf>,
-}
-
-/// Tints of terrain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PaletteKind {
-    /// Chosen by the range of heights
-    Auto,
-    /// Green valleys, brown slopes, white summits
-    Alpine,
-    /// Sand and rust
-    Desert,
-    /// Rock and ice
-    Glacial,
-    /// One light grey
-    Plain,
-}
-
-impl From<PaletteKind> for PaletteDoc {
-    fn from(kind: PaletteKind) -> Self {
-        match kind {
-            PaletteKind::Auto => Self::Auto,
-            PaletteKind::Alpine => Self::Alpine,
-            PaletteKind::Desert => Self::Desert,
-            PaletteKind::Glacial => Self::Glacial,
-            PaletteKind::Plain => Self::Plain,
-        }
-    }
 }
 
 /// Renderers of this version.

@@ -99,6 +99,7 @@ impl Context {
             needs,
             image,
             seed: self.common.seed,
+            palette: None,
             progress: self.progress.clone(),
         }
     }

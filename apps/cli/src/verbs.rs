@@ -5,12 +5,12 @@ use crate::args::{
     RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs, Verb,
 };
 use crate::report::{Context, done, print};
-use belvedere::scene_file::{AnimationDoc, SweepDoc, TurntableDoc};
+use belvedere::scene_file::{AnimationDoc, PaletteDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{self, AnimateRequest, Film};
 use belvedere::verbs::render::{self, AuxBuffer, AuxFormat, RenderRequest};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
 use belvedere::verbs::{bench, check, demo, info, measure, output, pick, points};
-use belvedere::{CameraPicture, Needs, Session};
+use belvedere::{CameraPicture, Needs, OpenOptions, Session};
 use std::path::{Path, PathBuf};
 
 /// Whether a verb reached its stated goal.
@@ -103,7 +103,9 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     for path in &outputs {
         ready(Some(path), &[&args.scene], context)?;
     }
-    let session = context.open(&args.scene, Needs::Everything, args.size)?;
+    let palette = args.palette.as_deref().map(PaletteDoc::of);
+    let options = OpenOptions { palette, ..context.options(Needs::Everything, args.size) };
+    let session = Session::open(&args.scene, &options)?;
     for path in &outputs {
         output::check(path, session.inputs(), context.common.overwrite)?;
     }
@@ -179,7 +181,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         curved_earth: args.curved_earth,
         crs: args.crs,
         keep_voids: args.keep_voids,
-        palette: args.palette.into(),
+        palette: PaletteDoc::of(&args.palette),
         ..RevealRequest::default()
     };
     request.render.options.threads = context.common.threads;

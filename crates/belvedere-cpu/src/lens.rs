@@ -126,15 +126,6 @@ impl Lens {
         tests.iter().enumerate().fold(0, |code, (i, &out)| code | (u8::from(out) << i))
     }
 
-    /// Unit direction of a pixel's straight ray, scene coordinates.
-    pub(crate) fn direction(&self, pixel: DVec2) -> DVec3 {
-        if self.ortho {
-            return self.forward;
-        }
-        let t = (pixel - self.center) / self.scale;
-        (self.forward + t.x * self.right + t.y * self.down).normalize()
-    }
-
     /// Scene units across one pixel at `depth`.
     pub(crate) fn footprint(&self, depth: f64) -> f64 {
         if self.ortho { 1.0 / self.scale } else { depth / self.scale }

@@ -10,6 +10,7 @@ pub mod hgt;
 pub mod mesh;
 pub mod open_exr;
 pub mod png;
+pub mod ramp;
 pub mod raster;
 pub mod terrain;
 pub mod vector;
@@ -18,6 +19,7 @@ pub use drape::{DrapeRequest, load_drape};
 pub use error::{IoError, Loaded};
 pub use geotiff::GeoTiff;
 pub use mesh::{MeshFile, load_mesh};
+pub use ramp::load_ramp;
 pub use raster::{Affine, Alpha, CrsKind, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, SourceCrs};
 pub use terrain::{CrsChoice, LoadedTerrain, ResampleError, TerrainRequest, load_terrain};
 pub use vector::{

@@ -1,7 +1,8 @@
 //! Layers and their styles.
 
-use crate::{DistanceMarkers, Heightfield, MeshLayer, PointLook};
+use crate::{DistanceMarkers, Heightfield, MeshLayer, PointLook, Ramp};
 use belvedere_core::{Aabb, DVec2, DVec3};
+use std::sync::Arc;
 
 /// sRGB colour with straight alpha, 8 bits per channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,8 +65,8 @@ pub enum Shading {
     Deformed,
 }
 
-/// Hypsometric tint by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// Hypsometric tint.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub enum Palette {
     /// Chosen by the height range of the terrain.
     #[default]
@@ -76,8 +77,12 @@ pub enum Palette {
     Desert,
     /// Rock and ice, for high mountains.
     Glacial,
+    /// Blue to yellow in even steps of lightness: the one that is read most safely.
+    Clear,
     /// One light grey.
     Plain,
+    /// Colours of its own.
+    Ramp(Arc<Ramp>),
 }
 
 /// A georeferenced picture draped over terrain.
@@ -147,6 +152,32 @@ pub struct AreaFeature {
     pub rings: Vec<Vec<DVec2>>,
 }
 
+/// What covers an area.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AreaSurface {
+    /// Nothing but its colour; the relief shows through.
+    Plain,
+    /// Water: flat, without relief shading, with a shore line.
+    #[default]
+    Water,
+    /// Forest: the relief with a quiet stipple.
+    Forest,
+    /// Ice: bright, the relief softened, with a blue rim.
+    Glacier,
+}
+
+impl AreaSurface {
+    /// Fill where none is given.
+    pub fn color(self) -> Color {
+        match self {
+            Self::Plain => Color::rgb(205, 205, 202).with_alpha(128),
+            Self::Water => Color::rgb(74, 144, 200),
+            Self::Forest => Color::rgb(78, 112, 78).with_alpha(150),
+            Self::Glacier => Color::rgb(226, 238, 247).with_alpha(225),
+        }
+    }
+}
+
 /// A layer of areas painted on the terrain.
 #[derive(Debug, Clone)]
 pub struct AreaLayer {
@@ -158,8 +189,8 @@ pub struct AreaLayer {
     pub outline: Option<Color>,
     /// Outline width on screen, pixels.
     pub width_px: f64,
-    /// Whether it is water: flat, without relief shading.
-    pub water: bool,
+    /// What covers it.
+    pub surface: AreaSurface,
     /// Style of hidden parts of the outline.
     pub hidden: Hidden,
     /// Height above ground for visibility, metres.

@@ -3,7 +3,7 @@
 use crate::BelvedereError;
 use crate::resolve;
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{self, Document, SourceDocument};
+use crate::scene_file::{self, Document, LayerDoc, PaletteDoc, PaletteName, SourceDocument};
 use belvedere_core::View;
 use belvedere_scene::{Light, Progress, Scene};
 use std::path::{Path, PathBuf};
@@ -31,6 +31,8 @@ pub struct OpenOptions {
     pub image: Option<[u32; 2]>,
     /// Another seed than the scene's for whatever is generated.
     pub seed: Option<u64>,
+    /// Another tint of terrain than the scene's.
+    pub palette: Option<PaletteDoc>,
     /// Progress and cancellation.
     pub progress: Progress,
 }
@@ -70,8 +72,17 @@ impl Session {
         if let Some(image) = options.image {
             source.document.camera.image = image;
         }
+        let mut allowed = options.allow_roots.clone();
+        if let Some(palette) = &options.palette {
+            let palette = located(palette, &mut allowed)?;
+            for layer in &mut source.document.layer {
+                if let LayerDoc::Terrain(terrain) = layer {
+                    terrain.style.palette = palette.clone();
+                }
+            }
+        }
         let scene_dir = source.path().parent().map(Path::to_owned).unwrap_or_default();
-        let roots = Roots { scene_dir, allowed: options.allow_roots.clone() };
+        let roots = Roots { scene_dir, allowed };
         resolve::session(source, &roots, options)
     }
 
@@ -109,4 +120,18 @@ impl Session {
     pub fn resolved(&self) -> &Document {
         &self.document
     }
+}
+
+/// The palette with the full path of its file, whose folder is allowed from now on.
+pub(crate) fn located(palette: &PaletteDoc, allowed: &mut Vec<PathBuf>) -> Result<PaletteDoc, BelvedereError> {
+    let PaletteDoc::File(name) = palette else { return Ok(palette.clone()) };
+    let names = PaletteName::ALL.map(|(name, _)| name).join(", ");
+    let path = Path::new(name).canonicalize().map_err(|e| BelvedereError::Path {
+        name: name.clone(),
+        reason: format!("is no palette ({names}) and no file of colours by height: {e}"),
+    })?;
+    allowed.extend(path.parent().map(Path::to_owned));
+    let text = path.to_str().map(str::to_owned);
+    let reason = || "is not UTF-8; rename it".to_owned();
+    text.map(PaletteDoc::File).ok_or_else(|| BelvedereError::Path { name: name.clone(), reason: reason() })
 }

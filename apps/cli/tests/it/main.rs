@@ -8,6 +8,7 @@ mod meshes;
 mod numbers;
 mod odd_files;
 mod pick;
+mod looks;
 mod pictures;
 mod reveal;
 mod scenes;

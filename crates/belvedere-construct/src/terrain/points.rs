@@ -259,7 +259,7 @@ mod tests {
             fill: Color::rgb(0, 0, 0),
             outline: None,
             width_px: 1.0,
-            water: false,
+            surface: belvedere_scene::AreaSurface::Plain,
             hidden: Hidden::Cut,
             lift_m: 0.5,
         });

@@ -2,7 +2,7 @@
 
 use super::color::{Rgb, linear};
 use belvedere_core::DVec2;
-use belvedere_scene::AreaLayer;
+use belvedere_scene::{AreaLayer, AreaSurface};
 
 /// An area layer ready for look-up per pixel.
 #[derive(Debug)]
@@ -11,10 +11,11 @@ pub(crate) struct AreaMap {
     pub(crate) layer: u32,
     pub(crate) fill: Rgb,
     pub(crate) alpha: f32,
-    pub(crate) water: bool,
+    pub(crate) surface: AreaSurface,
     pub(crate) has_outline: bool,
     min: DVec2,
     cell: DVec2,
+    per_cell: DVec2,
     size: [usize; 2],
     /// Features that contain the centre of a cell, and edges near the cell; ranges into the two lists.
     cells: Vec<Cell>,
@@ -53,10 +54,11 @@ impl AreaMap {
             layer,
             fill: linear([area.fill.r, area.fill.g, area.fill.b]),
             alpha: f32::from(area.fill.a) / 255.0,
-            water: area.water,
+            surface: area.surface,
             has_outline: area.outline.is_some(),
             min,
             cell,
+            per_cell: 1.0 / cell,
             size,
             cells: vec![Cell::default(); size[0] * size[1]],
             features: Vec::new(),
@@ -114,7 +116,7 @@ impl AreaMap {
 
     /// Signed distance to the border in scene units, positive inside; capped where no border is near.
     pub(crate) fn depth_inside(&self, p: DVec2) -> f64 {
-        let g = (p - self.min) / self.cell;
+        let g = (p - self.min) * self.per_cell;
         let reach = 0.3;
         let [w, h] = self.size.map(|n| n as f64);
         if !(g.x >= -reach && g.y >= -reach && g.x <= w + reach && g.y <= h + reach) {
@@ -178,7 +180,7 @@ mod tests {
             fill: Color::rgb(1, 2, 3),
             outline: None,
             width_px: 1.0,
-            water: true,
+            surface: AreaSurface::Water,
             hidden: Hidden::Cut,
             lift_m: 0.0,
         }

@@ -36,6 +36,11 @@ pub(crate) fn encode(c: Rgb) -> [u8; 3] {
     c.to_array().map(|v| t[(v.clamp(0.0, 1.0).sqrt() * 4095.0 + 0.5) as usize])
 }
 
+/// Square roots of linear light in 8 bits, which interpolate nearly evenly to the eye.
+pub(crate) fn encode_root(c: Rgb) -> [u8; 3] {
+    c.to_array().map(|v| (v.clamp(0.0, 1.0).sqrt() * 255.0 + 0.5) as u8)
+}
+
 /// Linear light kept in 16 bits per channel, by square root so that dark tones keep their steps.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Packed([u16; 3]);

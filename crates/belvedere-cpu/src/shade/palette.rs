@@ -1,9 +1,13 @@
-//! Hypsometric tints. Ours: muted, rising in lightness with height, so that they also read without colour.
+//! Hypsometric tints. The built-in ramps are ours: muted, lighter the higher for every kind of colour vision, so that they
+//! also read without colour.
 
-use super::color::{Rgb, linear};
-use belvedere_scene::Palette;
+use super::color::{Rgb, linear, smoothstep};
+use belvedere_scene::{Palette, Ramp};
 
-const STEPS: usize = 256;
+/// Steps of the table by height.
+const STEPS: usize = 1024;
+/// Ground under a ramp that lets it through.
+const GREY: [u8; 3] = [205, 205, 202];
 
 /// Tint by height, and the colours that steepness and height add.
 #[derive(Debug)]
@@ -11,33 +15,36 @@ pub(crate) struct Tint {
     ramp: Vec<Rgb>,
     bottom_m: f32,
     per_m: f32,
-    pub(crate) rock: Rgb,
+    rock: Rgb,
     /// Tangent of the slope at which rock begins and has taken over.
-    pub(crate) rock_slope: [f32; 2],
-    pub(crate) snow: Rgb,
+    rock_slope: [f32; 2],
+    snow: Rgb,
     /// Heights at which snow begins and has taken over on gentle slopes, metres.
-    pub(crate) snow_m: [f32; 2],
+    snow_m: [f32; 2],
 }
 
 type Stops = &'static [(f32, [u8; 3])];
 
+/// A step that never comes; finite: a step between infinities is NaN.
+const NEVER: [f32; 2] = [1e30, 2e30];
+
 const ALPINE: Stops = &[
-    (0.0, [104, 138, 103]),
-    (0.15, [122, 152, 107]),
-    (0.32, [147, 168, 114]),
-    (0.48, [176, 178, 126]),
-    (0.62, [190, 176, 133]),
-    (0.76, [184, 165, 138]),
-    (0.88, [190, 181, 170]),
-    (1.0, [224, 222, 220]),
+    (0.0, [92, 128, 98]),
+    (0.15, [111, 146, 105]),
+    (0.32, [139, 165, 114]),
+    (0.48, [170, 178, 124]),
+    (0.62, [192, 182, 139]),
+    (0.76, [202, 187, 156]),
+    (0.88, [211, 200, 185]),
+    (1.0, [230, 228, 226]),
 ];
 const DESERT: Stops = &[
     (0.0, [150, 112, 88]),
     (0.2, [178, 126, 92]),
     (0.4, [199, 150, 108]),
     (0.6, [212, 174, 130]),
-    (0.8, [217, 196, 158]),
-    (1.0, [206, 204, 178]),
+    (0.8, [219, 197, 160]),
+    (1.0, [226, 221, 197]),
 ];
 const GLACIAL: Stops = &[
     (0.0, [128, 130, 120]),
@@ -47,36 +54,56 @@ const GLACIAL: Stops = &[
     (0.82, [218, 224, 230]),
     (1.0, [240, 244, 248]),
 ];
-const PLAIN: Stops = &[(0.0, [205, 205, 202]), (1.0, [205, 205, 202])];
+/// Blue to yellow, which every kind of colour vision tells apart, in even steps of lightness.
+const CLEAR: Stops = &[
+    (0.0, [70, 92, 128]),
+    (0.2, [97, 119, 142]),
+    (0.4, [133, 144, 145]),
+    (0.6, [172, 170, 142]),
+    (0.8, [212, 199, 142]),
+    (1.0, [245, 233, 168]),
+];
+const PLAIN: Stops = &[(0.0, GREY), (1.0, GREY)];
 
 impl Tint {
     /// * `z_range_m`: heights that the ramp spans.
-    pub(crate) fn new(palette: Palette, z_range_m: [f64; 2]) -> Self {
+    pub(crate) fn new(palette: &Palette, z_range_m: [f64; 2]) -> Self {
         let [bottom, top] = z_range_m.map(|z| z as f32);
         let span = (top - bottom).max(1e-3);
         let palette = match palette {
             // High ground that never comes down to the valleys is rock and ice; the rest is green below.
-            Palette::Auto if top > 5000.0 => Palette::Glacial,
-            Palette::Auto => Palette::Alpine,
+            Palette::Auto if top > 5000.0 => &Palette::Glacial,
+            Palette::Auto => &Palette::Alpine,
             p => p,
         };
-        let none = [1e30, 2e30]; // finite: a step between infinities is NaN
-        let (stops, rock, rock_slope, snow_m) = match palette {
-            Palette::Desert => (DESERT, [148, 98, 72], [0.7, 1.6], none),
-            Palette::Glacial => (GLACIAL, [112, 106, 102], [0.6, 1.15], [bottom + 0.42 * span, bottom + 0.62 * span]),
-            Palette::Plain => (PLAIN, [205, 205, 202], [1e6, 2e6], none),
+        let built_in = |stops: Stops| (0..STEPS).map(|i| ramp_at(stops, i as f32 / (STEPS - 1) as f32)).collect();
+        let (ramp, rock, rock_slope, snow_m): (Vec<Rgb>, _, _, _) = match palette {
+            Palette::Desert => (built_in(DESERT), [148, 98, 72], [0.7, 1.6], NEVER),
+            Palette::Glacial => {
+                (built_in(GLACIAL), [112, 106, 102], [0.6, 1.15], [bottom + 0.42 * span, bottom + 0.62 * span])
+            }
+            Palette::Clear => (built_in(CLEAR), GREY, NEVER, NEVER),
+            Palette::Plain => (built_in(PLAIN), GREY, NEVER, NEVER),
+            Palette::Ramp(ramp) => (from_ramp(ramp, z_range_m), GREY, NEVER, NEVER),
             Palette::Alpine | Palette::Auto => {
                 let line = (bottom + 0.80 * span).max(2450.0);
-                (ALPINE, [160, 149, 136], [0.62, 1.25], [line, line + 0.14 * span.max(300.0)])
+                (built_in(ALPINE), [160, 149, 136], [0.62, 1.25], [line, line + 0.14 * span.max(300.0)])
             }
         };
-        let ramp = (0..STEPS).map(|i| ramp_at(stops, i as f32 / (STEPS - 1) as f32)).collect();
         let per_m = (STEPS - 1) as f32 / span;
         Self { ramp, bottom_m: bottom, per_m, rock: linear(rock), rock_slope, snow: linear([244, 247, 250]), snow_m }
     }
 
+    /// Colour of ground at a height, with the tangent of its slope: the tint, rock where it is steep, snow where it is
+    /// high and not steep.
+    pub(crate) fn color(&self, height_m: f32, steep: f32) -> Rgb {
+        let rock = 0.85 * smoothstep(self.rock_slope[0], self.rock_slope[1], steep);
+        let snow = smoothstep(self.snow_m[0], self.snow_m[1], height_m) * (1.0 - smoothstep(0.7, 1.3, steep));
+        self.at(height_m).lerp(self.rock, rock).lerp(self.snow, snow)
+    }
+
     /// Tint at a height.
-    pub(crate) fn at(&self, height_m: f32) -> Rgb {
+    fn at(&self, height_m: f32) -> Rgb {
         let t = ((height_m - self.bottom_m) * self.per_m).clamp(0.0, (STEPS - 1) as f32);
         let i = (t as usize).min(STEPS - 2);
         self.ramp[i].lerp(self.ramp[i + 1], t - i as f32)
@@ -89,14 +116,66 @@ fn ramp_at(stops: Stops, t: f32) -> Rgb {
     linear(a).lerp(linear(b), ((t - t0) / (t1 - t0)).clamp(0.0, 1.0))
 }
 
+/// The table of a ramp with colours of its own.
+fn from_ramp(ramp: &Ramp, [bottom, top]: [f64; 2]) -> Vec<Rgb> {
+    let stops = ramp.resolved([bottom, top]);
+    let color = |i: usize| {
+        let c = ramp.color_at(&stops, bottom + (top - bottom) * i as f64 / (STEPS - 1) as f64);
+        linear(GREY).lerp(linear([c.r, c.g, c.b]), f32::from(c.a) / 255.0)
+    };
+    (0..STEPS).map(color).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shade::color::smoothstep;
+    use belvedere_scene::{Color, RampHeight, RampStop};
+    use std::sync::Arc;
+
+    const BUILT_IN: [Palette; 6] =
+        [Palette::Auto, Palette::Alpine, Palette::Desert, Palette::Glacial, Palette::Clear, Palette::Plain];
+
+    /// Simulations of dichromatic vision in linear RGB (Machado, Oliveira, Fernandes 2009, severity 1).
+    const PROTAN: [[f32; 3]; 3] =
+        [[0.152_286, 1.052_583, -0.204_868], [0.114_503, 0.786_281, 0.099_216], [-0.003_882, -0.048_116, 1.051_998]];
+    const DEUTAN: [[f32; 3]; 3] =
+        [[0.367_322, 0.860_646, -0.227_968], [0.280_085, 0.672_501, 0.047_413], [-0.011_82, 0.042_94, 0.968_881]];
+    const TRITAN: [[f32; 3]; 3] =
+        [[1.255_528, -0.076_749, -0.178_779], [-0.078_411, 0.930_809, 0.147_602], [0.004_733, 0.691_367, 0.303_9]];
+    const NORMAL: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+    /// CIELAB under D65 of a linear colour as seen by an eye.
+    fn lab(c: Rgb, eye: [[f32; 3]; 3]) -> Rgb {
+        let c = eye.map(|row| Rgb::from_array(row).dot(c).clamp(0.0, 1.0));
+        let xyz = [
+            (0.4124 * c[0] + 0.3576 * c[1] + 0.1805 * c[2]) / 0.9505,
+            0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2],
+            (0.0193 * c[0] + 0.1192 * c[1] + 0.9505 * c[2]) / 1.089,
+        ];
+        let [x, y, z] = xyz.map(|t: f32| if t > 0.008_856 { t.cbrt() } else { 7.787 * t + 16.0 / 116.0 });
+        Rgb::new(116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z))
+    }
+
+    #[test]
+    fn built_in_ramps_are_told_apart_by_every_kind_of_colour_vision() {
+        for (stops, least) in [(ALPINE, 3.0), (DESERT, 3.0), (GLACIAL, 3.0), (CLEAR, 8.0)] {
+            for eye in [NORMAL, PROTAN, DEUTAN, TRITAN] {
+                let classes: Vec<Rgb> = (0..=8).map(|i| lab(ramp_at(stops, i as f32 / 8.0), eye)).collect();
+                for (i, a) in classes.iter().enumerate() {
+                    for (j, b) in classes.iter().enumerate().skip(i + 1) {
+                        let far = (*a - *b).length();
+                        assert!(far >= least * (j - i) as f32 * 0.8, "classes {i} and {j}: {far} apart");
+                    }
+                }
+                let light: Vec<f32> = (0..=200).map(|i| lab(ramp_at(stops, i as f32 / 200.0), eye).x).collect();
+                assert!(light.windows(2).all(|w| w[1] > w[0] - 0.02), "lightness falls: {light:?}");
+            }
+        }
+    }
 
     #[test]
     fn every_palette_tells_snow_from_ground_even_where_there_is_none() {
-        for palette in [Palette::Auto, Palette::Alpine, Palette::Desert, Palette::Glacial, Palette::Plain] {
+        for palette in &BUILT_IN {
             for range in [[0.0, 4000.0], [12.0, 12.0]] {
                 let tint = Tint::new(palette, range);
                 let snow = smoothstep(tint.snow_m[0], tint.snow_m[1], range[0] as f32);
@@ -107,24 +186,29 @@ mod tests {
 
     #[test]
     fn every_palette_has_colours_at_every_height() {
-        for palette in [Palette::Auto, Palette::Alpine, Palette::Desert, Palette::Glacial, Palette::Plain] {
+        for palette in &BUILT_IN {
             for range in [[0.0, 0.0], [-400.0, 9000.0], [300.0, 3100.0], [1e6, 1e6 + 1e-6]] {
                 let tint = Tint::new(palette, range);
                 for z in [range[0], 0.5 * (range[0] + range[1]), range[1], -1e9, 1e9] {
-                    let snow = smoothstep(tint.snow_m[0], tint.snow_m[1], z as f32);
-                    assert!((0.0..=1.0).contains(&snow), "{palette:?} {range:?}: {snow}");
-                    let c = tint.at(z as f32);
-                    assert!(c.min_element() > 0.02 && c.max_element() <= 1.0, "{palette:?} {range:?} at {z}: {c}");
+                    for steep in [0.0, 0.9, 50.0] {
+                        let c = tint.color(z as f32, steep);
+                        assert!(c.min_element() > 0.02 && c.max_element() <= 1.0, "{palette:?} {range:?} at {z}: {c}");
+                    }
                 }
             }
         }
     }
 
     #[test]
-    fn tints_grow_lighter_with_height() {
-        for stops in [ALPINE, GLACIAL, DESERT] {
-            let light = |t: f32| ramp_at(stops, t).dot(Rgb::new(0.2126, 0.7152, 0.0722));
-            assert!(light(1.0) > 1.5 * light(0.0) && light(0.5) > light(0.0));
-        }
+    fn a_ramp_of_its_own_colours_the_ground_as_it_says() {
+        let stop = |z: f64, c: Color| RampStop { height: RampHeight::Metres(z), color: c };
+        let (low, high) = (Color::rgb(10, 200, 30), Color::rgb(250, 20, 100));
+        let ramp = Ramp { stops: vec![stop(0.0, low), stop(1000.0, high)], ..Ramp::default() };
+        let tint = Tint::new(&Palette::Ramp(Arc::new(ramp)), [0.0, 1000.0]);
+        let near = |z: f32, c: [u8; 3]| (tint.color(z, 9.0) - linear(c)).abs().max_element() < 0.01;
+        assert!(near(0.0, [10, 200, 30]) && near(500.0, [130, 110, 65]) && near(1000.0, [250, 20, 100]));
+        let clear = Ramp { stops: vec![stop(0.0, low.with_alpha(0))], ..Ramp::default() };
+        let tint = Tint::new(&Palette::Ramp(Arc::new(clear)), [0.0, 1000.0]);
+        assert!((tint.color(5.0, 0.0) - linear(GREY)).abs().max_element() < 1e-3);
     }
 }

@@ -1,6 +1,7 @@
 //! Colour of what a traced ray meets.
 
-use super::{LayerShade, Shaded, Shader, TerrainShade, box_color};
+use super::terrain::TerrainShade;
+use super::{LayerShade, Shaded, Shader, box_color};
 use crate::exact::{Part, Seen};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::NodeState;
@@ -9,14 +10,16 @@ impl Shader<'_> {
     /// What the ray of `pixel` sees: `seen`, or the sky.
     pub(crate) fn shade_seen(&self, view: &View, seen: Option<&Seen>, pixel: DVec2) -> Shaded {
         let Some(seen) = seen else {
-            return Shaded { color: self.sky.at(self.lens, pixel), id: 0, world: DVec3::NAN };
+            return Shaded { color: self.sky.at(pixel.as_vec2().to_array()), id: 0, world: DVec3::NAN };
         };
         let layer = seen.layer as u32;
         let footprint = self.lens.footprint(seen.depth);
         let (color, id) = match (&self.layers[seen.layer], seen.part) {
             (LayerShade::Terrain(t), Part::Cell(cell, upper)) => {
-                let fp = t.ground_per_px(view, seen.point, cell, upper).unwrap_or(footprint);
-                t.shade_at(self, seen.point.truncate(), fp.clamp(footprint, 6.0 * footprint), pixel)
+                let facing = [DVec2::X * footprint, DVec2::Y * footprint];
+                let axes = t.ground_per_px(view, seen.point, cell, upper).unwrap_or(facing);
+                let fp = axes[0].perp_dot(axes[1]).abs().sqrt().clamp(footprint, 6.0 * footprint);
+                t.shade_at(self, seen.point.truncate(), fp, axes, seen.depth, pixel)
             }
             (LayerShade::Boxes(b, light), Part::Face(index, normal)) => match b.boxes.get(index) {
                 Some(shape) => (box_color(shape, light, normal, seen.point, footprint), None),
@@ -31,8 +34,9 @@ impl Shader<'_> {
 }
 
 impl TerrainShade<'_> {
-    /// Side of the square on the ground that a pixel covers, scene units: the derivative of the image along the triangle.
-    fn ground_per_px(&self, view: &View, p: DVec3, [col, row]: [usize; 2], upper: bool) -> Option<f64> {
+    /// Way on the map per pixel to the right and per pixel down, scene units: the derivative of the image along the triangle,
+    /// turned round.
+    fn ground_per_px(&self, view: &View, p: DVec3, [col, row]: [usize; 2], upper: bool) -> Option<[DVec2; 2]> {
         let node = |c: usize, r: usize| {
             let i = r * self.hf.cols() + c;
             (self.hf.states().get(i)? != &NodeState::Void).then(|| f64::from(self.hf.heights()[i]))
@@ -47,7 +51,8 @@ impl TerrainShade<'_> {
         };
         let slope = DVec2::new(east, -south) / self.hf.spacing();
         let along = view.jacobian(p).ok()?.map(|g| g.truncate() + slope * g.z);
-        let px_per_unit = along[0].perp_dot(along[1]).abs();
-        (px_per_unit > 0.0 && px_per_unit.is_finite()).then(|| (1.0 / px_per_unit).sqrt())
+        let area = along[0].perp_dot(along[1]);
+        let axes = [DVec2::new(along[1].y, -along[0].y) / area, DVec2::new(-along[1].x, along[0].x) / area];
+        (area != 0.0 && axes.iter().all(|a| a.is_finite())).then_some(axes)
     }
 }

@@ -1,8 +1,7 @@
 //! Sky and haze.
 
 use super::color::{Rgb, linear, smoothstep};
-use crate::lens::Lens;
-use belvedere_core::{Aabb, DVec2, DVec3, Pinhole};
+use belvedere_core::{Aabb, DVec3, Pinhole};
 
 /// Thresholds of ordered dithering, 8 x 8 (Bayer 1973), each 0..64 once.
 const BAYER: [[u8; 8]; 8] = [
@@ -19,14 +18,19 @@ const BAYER: [[u8; 8]; 8] = [
 /// Largest share of a colour that haze takes.
 const THICKEST: f32 = 0.62;
 
+/// Steps of the table of sky colours per unit of the sine of the elevation.
+const STEPS: f32 = 512.0;
+
 /// Colours of the air.
 #[derive(Debug)]
 pub(crate) struct Sky {
-    zenith: Rgb,
-    middle: Rgb,
-    horizon: Rgb,
-    below: Rgb,
+    /// Square roots of linear colours, by the sine of the elevation from -1 to 1.
+    roots: Vec<Rgb>,
     haze: Rgb,
+    /// Upward parts of the ray of a pixel: sine = (a + b x + c y) / |(1, d (x - cx), d (y - cy))|.
+    up: [f32; 3],
+    center: [f32; 2],
+    per_px: f32,
     /// Depths of the nearest and the farthest point that the scene can have, scene units.
     depths: [f32; 2],
 }
@@ -42,39 +46,103 @@ impl Sky {
             let far = bounds.corners().into_iter().map(depth).fold(near, f64::max);
             [near as f32, far as f32]
         };
+        let (center, scale) = (pinhole.center_px(), pinhole.scale_px());
+        let per_px = if pinhole.is_orthographic() { 0.0 } else { 1.0 / scale };
         Self {
-            zenith: linear([88, 136, 188]),
-            middle: linear([140, 181, 216]),
-            horizon: linear([224, 232, 236]),
-            below: linear([203, 213, 220]),
+            roots: (0..=2 * STEPS as usize).map(|i| roots(towards(i as f32 / STEPS - 1.0))).collect(),
             haze: linear([186, 205, 224]),
+            up: [pinhole.forward.z, pinhole.right.z, pinhole.down.z].map(|v| v as f32),
+            center: [center.x as f32, center.y as f32],
+            per_px: per_px as f32,
             depths,
         }
     }
 
+    /// Sine of the elevation that the straight ray of a pixel looks at.
+    #[inline]
+    pub(crate) fn sine(&self, [x, y]: [f32; 2]) -> f32 {
+        let (x, y) = ((x - self.center[0]) * self.per_px, (y - self.center[1]) * self.per_px);
+        (self.up[0] + self.up[1] * x + self.up[2] * y) / (1.0 + x * x + y * y).sqrt()
+    }
+
     /// Sky in the direction of a pixel, dithered by one step of an 8-bit picture so that its slow changes show no bands.
-    pub(crate) fn at(&self, lens: &Lens, pixel: DVec2) -> Rgb {
-        let [x, y] = [pixel.x, pixel.y].map(|v| v.max(0.0) as usize % 8);
+    #[inline]
+    pub(crate) fn at(&self, pixel: [f32; 2]) -> Rgb {
+        let [x, y] = pixel.map(|v| v.max(0.0) as usize % 8);
         let threshold = (f32::from(BAYER[y][x]) + 0.5) / 64.0 - 0.5;
         // Square roots of linear light are nearly even in 8-bit steps.
-        let root = self.towards(lens.direction(pixel).z as f32).to_array().map(|v| v.sqrt() + threshold / 255.0);
-        Rgb::from_array(root.map(|v| v * v))
+        let root = self.root(self.sine(pixel)) + Rgb::splat(threshold / 255.0);
+        root * root
     }
 
     /// Sky at an elevation, given its sine.
     pub(crate) fn towards(&self, sine: f32) -> Rgb {
-        if sine < 0.0 {
-            return self.horizon.lerp(self.below, smoothstep(0.0, 0.25, -sine));
-        }
-        let low = 1.0 - (-sine / 0.10).exp();
-        let high = smoothstep(0.0, 0.7, sine);
-        self.horizon.lerp(self.middle, low).lerp(self.zenith, high)
+        let root = self.root(sine);
+        root * root
     }
 
-    /// `color` seen through the air at `depth`: full contrast over the nearer part of the scene, then slowly paler.
-    pub(crate) fn through_air(&self, color: Rgb, depth: f32) -> Rgb {
+    #[inline]
+    fn root(&self, sine: f32) -> Rgb {
+        let at = ((sine + 1.0) * STEPS).clamp(0.0, 2.0 * STEPS - 0.01);
+        let (i, share) = (at as usize, at.fract());
+        self.roots[i].lerp(self.roots[i + 1], share)
+    }
+
+    /// Share of a colour that haze takes at `depth`: full contrast over the nearer part of the scene, then slowly paler.
+    #[inline]
+    pub(crate) fn haze_at(&self, depth: f32) -> f32 {
         let [near, far] = self.depths;
         let t = (depth - near) / (far - near).max(1e-6);
-        color.lerp(self.haze, THICKEST * smoothstep(0.22, 1.15, t))
+        let t = ((t - 0.22) / (1.15 - 0.22)).clamp(0.0, 1.0);
+        THICKEST * t * t * (3.0 - 2.0 * t)
+    }
+
+    /// Linear colour of the haze.
+    pub(crate) fn haze(&self) -> Rgb {
+        self.haze
+    }
+
+    /// `color` seen through the air at `depth`.
+    pub(crate) fn through_air(&self, color: Rgb, depth: f32) -> Rgb {
+        color.lerp(self.haze, self.haze_at(depth))
+    }
+}
+
+fn roots(c: Rgb) -> Rgb {
+    Rgb::from_array(c.to_array().map(f32::sqrt))
+}
+
+/// The clear sky at an elevation, given its sine, linear.
+fn towards(sine: f32) -> Rgb {
+    let [zenith, middle, horizon, below] =
+        [[88, 136, 188], [140, 181, 216], [224, 232, 236], [203, 213, 220]].map(linear);
+    if sine < 0.0 {
+        return horizon.lerp(below, smoothstep(0.0, 0.25, -sine));
+    }
+    let low = 1.0 - (-sine / 0.10).exp();
+    let high = smoothstep(0.0, 0.7, sine);
+    horizon.lerp(middle, low).lerp(zenith, high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::{DVec2, Projection};
+
+    #[test]
+    fn pixels_see_the_sky_that_their_rays_point_at() {
+        let lens = Projection::Perspective { fov_y: 0.9 };
+        let up = DVec3::new(0.2, 0.1, 1.0);
+        let p = Pinhole::look_at(DVec3::ZERO, DVec3::new(3.0, 8.0, 1.0), up, lens, [80, 60], 1.0, None).unwrap();
+        let sky = Sky::new(&Aabb::EMPTY, &p);
+        for i in 0..4800 {
+            let pixel = DVec2::new(f64::from(i % 80) + 0.5, f64::from(i / 80) + 0.5);
+            let t = (pixel - p.center_px()) / p.scale_px();
+            let want = (p.forward + t.x * p.right + t.y * p.down).normalize().z;
+            let pixel = [pixel.x as f32, pixel.y as f32];
+            assert!((f64::from(sky.sine(pixel)) - want).abs() < 1e-6);
+            let step = (roots(sky.at(pixel)) - roots(towards(want as f32))).abs().max_element() * 255.0;
+            assert!(step < 0.8, "{step} steps");
+        }
     }
 }

@@ -5,8 +5,10 @@ mod gpx;
 mod on_terrain;
 mod rings;
 mod shapefile;
+mod surface;
 
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
+pub use surface::surface_of;
 
 use crate::crs::CoordinateSystem;
 use crate::{IoError, Loaded};

@@ -7,7 +7,7 @@ use super::sight::{Viewpoint, best_viewpoint};
 use super::{BuiltinError, SuggestedCamera, ground_layer, line_layer};
 use crate::route::{Window, route_in};
 use crate::{
-    AreaFeature, AreaLayer, Color, Crs, Heightfield, HeightfieldError, Hidden, Layer, LayerKind, LineFeature,
+    AreaFeature, AreaLayer, AreaSurface, Color, Crs, Heightfield, HeightfieldError, Hidden, Layer, LayerKind, LineFeature,
     NodeState, Palette, RouteCost, RouteError, Scene, Unit, drape_polyline,
 };
 use belvedere_core::DVec2;
@@ -68,7 +68,7 @@ fn lake_layer(lake: Lake) -> Layer {
             fill: Color::rgb(74, 133, 168),
             outline: Some(Color::rgb(42, 88, 120)),
             width_px: 1.0,
-            water: true,
+            surface: AreaSurface::Water,
             hidden: Hidden::Cut,
             lift_m: 0.5,
         }),

@@ -4,7 +4,7 @@ use super::noise::Random;
 use super::sight::{Viewpoint, best_viewpoint};
 use super::{BuiltinError, SuggestedCamera, ground_layer, line_layer};
 use crate::{
-    AreaFeature, AreaLayer, BoxLayer, BoxShape, Color, Crs, Heightfield, Hidden, Layer, LayerKind, LineFeature,
+    AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Color, Crs, Heightfield, Hidden, Layer, LayerKind, LineFeature,
     NodeState, Palette, Scene, Unit, drape_polyline,
 };
 use belvedere_core::{DVec2, DVec3};
@@ -96,7 +96,7 @@ fn area_layer(id: &str, features: Vec<AreaFeature>, fill: Color) -> Layer {
             fill,
             outline: None,
             width_px: 1.0,
-            water: false,
+            surface: AreaSurface::Plain,
             hidden: Hidden::Cut,
             lift_m: 0.1,
         }),

@@ -127,7 +127,7 @@ fn massif_has_a_flat_lake_and_the_trail_keeps_out_of_it() {
         .layers
         .iter()
         .find_map(|l| match &l.kind {
-            LayerKind::Area(a) if a.water => Some(&a.features[0].rings),
+            LayerKind::Area(a) if a.surface == belvedere_scene::AreaSurface::Water => Some(&a.features[0].rings),
             _ => None,
         })
         .unwrap();

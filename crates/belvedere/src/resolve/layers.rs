@@ -4,17 +4,18 @@ use super::validate::{color, optional_color};
 use super::{Ground, builtin, vectors};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    AreaDoc, AutoOrLength, HiddenDoc, LayerDoc, LineDoc, PaletteDoc, Paths, PlaceDoc, PointLayerDoc, ReliefDoc,
-    RouteDoc, ShadingDoc, SourceDocument, SymbolDoc, TerrainDoc,
+    AreaDoc, AutoOrLength, HiddenDoc, LayerDoc, LineDoc, PaletteDoc, PaletteName, Paths, PlaceDoc, PointLayerDoc,
+    ReliefDoc, RouteDoc, ShadingDoc, SourceDocument, SurfaceDoc, SymbolDoc, TerrainDoc,
 };
 use crate::{BelvedereError, OpenOptions};
 use belvedere_core::DVec2;
 use belvedere_scene::{
-    AreaLayer, Color, Crs, DistanceMarkers, Drape, Heightfield, Hidden, Layer, LayerKind, LineFeature, LineLayer,
+    AreaLayer, AreaSurface, Color, Crs, DistanceMarkers, Drape, Heightfield, Hidden, Layer, LayerKind, LineFeature, LineLayer,
     Palette, PointLayer, PointLook, Relief, RouteCost, Shading, Symbol, TerrainLayer, drape_polyline, least_cost_route,
     valley_route,
 };
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// What layers are loaded with, and what is found out on the way.
 pub(super) struct Loader<'a> {
@@ -85,15 +86,37 @@ impl Loader<'_> {
                 ShadingDoc::Deformed => Shading::Deformed,
             }),
             exaggeration: style.exaggeration,
-            palette: match style.palette {
-                PaletteDoc::Auto => Palette::Auto,
-                PaletteDoc::Alpine => Palette::Alpine,
-                PaletteDoc::Desert => Palette::Desert,
-                PaletteDoc::Glacial => Palette::Glacial,
-                PaletteDoc::Plain => Palette::Plain,
-            },
+            palette: self.palette(index, &style.palette)?,
         };
         Ok((layer, crs))
+    }
+
+    /// A palette by name or from its file.
+    fn palette(&mut self, index: usize, doc: &PaletteDoc) -> Result<Palette, BelvedereError> {
+        let name = match doc {
+            PaletteDoc::Named(name) => {
+                return Ok(match name {
+                    PaletteName::Auto => Palette::Auto,
+                    PaletteName::Alpine => Palette::Alpine,
+                    PaletteName::Desert => Palette::Desert,
+                    PaletteName::Glacial => Palette::Glacial,
+                    PaletteName::Clear => Palette::Clear,
+                    PaletteName::Plain => Palette::Plain,
+                });
+            }
+            PaletteDoc::File(name) => name,
+        };
+        let fail = |e: String| {
+            let names = PaletteName::ALL.map(|(name, _)| name).join(", ");
+            let id = self.source.document.layer.get(index).map_or("", LayerDoc::id);
+            let reason = format!("layer \"{id}\": palette: {e}; give one of {names}, or a file of colours by height");
+            self.source.error(&["layer", &index.to_string(), "style", "palette"], reason)
+        };
+        let file = self.roots.resolve(name).map_err(|e| fail(e.to_string()))?;
+        let loaded = belvedere_io::load_ramp(&file).map_err(|e| fail(e.to_string()))?;
+        self.inputs.push(file);
+        self.note(index, loaded.warnings);
+        Ok(Palette::Ramp(Arc::new(loaded.value)))
     }
 
     /// Pictures for a terrain that is already there.
@@ -192,13 +215,13 @@ impl Loader<'_> {
         doc: &AreaDoc,
         ground: &Ground<'_>,
     ) -> Result<LayerKind, BelvedereError> {
-        let features = match &doc.source {
+        let (features, tagged) = match &doc.source {
             Paths::One(name) if builtin::is_name(name) => {
                 let seed = self.options.seed;
                 let kind = self.builtins.find(name, seed, |k| matches!(k, LayerKind::Area(_)));
                 match kind.map_err(|e| self.fail(index, "source", e))? {
-                    LayerKind::Area(a) => a.features,
-                    _ => Vec::new(),
+                    LayerKind::Area(a) => (a.features, Some(a.surface)),
+                    _ => (Vec::new(), None),
                 }
             }
             paths => {
@@ -210,12 +233,18 @@ impl Loader<'_> {
             return Err(self.fail(index, "source", "no area lies on the terrain; check that the source covers it"));
         }
         let style = &doc.style;
+        let asked = style.surface.map(surface);
+        let asked = asked.or(style.water.map(|water| if water { AreaSurface::Water } else { AreaSurface::Plain }));
+        let surface = asked.or(tagged).unwrap_or_default();
         Ok(LayerKind::Area(AreaLayer {
             features,
-            fill: self.color(index, &style.color)?,
+            fill: match &style.color {
+                Some(color) => self.color(index, color)?,
+                None => surface.color(),
+            },
             outline: self.optional_color(index, &style.outline)?,
             width_px: style.width_px,
-            water: style.water,
+            surface,
             hidden: hidden(style.hidden),
             lift_m: style.lift_m,
         }))
@@ -292,6 +321,15 @@ fn place(ground: &Ground<'_>, place: PlaceDoc) -> Result<DVec2, String> {
     match place {
         PlaceDoc::Scene(xy) => Ok(DVec2::from_array(xy)),
         PlaceDoc::Geographic(p) => ground.place_of(p.lon, p.lat),
+    }
+}
+
+fn surface(doc: SurfaceDoc) -> AreaSurface {
+    match doc {
+        SurfaceDoc::Plain => AreaSurface::Plain,
+        SurfaceDoc::Water => AreaSurface::Water,
+        SurfaceDoc::Forest => AreaSurface::Forest,
+        SurfaceDoc::Glacier => AreaSurface::Glacier,
     }
 }
 

@@ -146,6 +146,11 @@ mod tests {
         // June solstice, true noon at 46 N: 90 - 46 + 23.44 degrees, due south.
         let [az, alt] = sun_position_deg(days_since_j2000("2024-06-20T12:01:50Z").unwrap(), 0.0, 46.0);
         assert!((alt - 67.44).abs() < 0.03 && (az - 180.0).abs() < 0.5, "{az} {alt}");
+        // The worked example of NREL's solar position algorithm (Reda, Andreas 2004), without its refraction: Golden,
+        // Colorado, 2003-10-17 12:30:30 at UTC-7.
+        let days = days_since_j2000("2003-10-17T12:30:30-07:00").unwrap();
+        let [az, alt] = sun_position_deg(days, -105.1786, 39.742_476);
+        assert!((az - 194.340_24).abs() < 0.02 && (alt - 39.872_05).abs() < 0.02, "{az} {alt}");
         // A morning sun stands in the east, an evening sun in the west.
         assert!(sun_position_deg(days_since_j2000("2024-06-20T06:00:00Z").unwrap(), 0.0, 46.0)[0] < 90.0);
         assert!(sun_position_deg(days_since_j2000("2024-06-20T18:00:00Z").unwrap(), 0.0, 46.0)[0] > 270.0);

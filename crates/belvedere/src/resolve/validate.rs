@@ -65,7 +65,10 @@ fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
             lift(l.style.lift_m)
         }
         LayerDoc::Area(l) => {
-            color("color", &l.style.color)?;
+            l.style.color.as_deref().map_or(Ok(()), |c| color("color", c).map(|_| ()))?;
+            if l.style.surface.is_some() && l.style.water.is_some() {
+                return Err(("surface", "surface and water are both given; surface says all, remove water".into()));
+            }
             optional_color("outline", &l.style.outline)?;
             width(l.style.width_px)?;
             lift(l.style.lift_m)

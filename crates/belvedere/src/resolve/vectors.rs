@@ -3,9 +3,9 @@
 use super::Ground;
 use super::layers::Loader;
 use crate::BelvedereError;
-use belvedere_io::vector::{Geometry, Vectors, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain};
+use belvedere_io::vector::{Geometry, Vectors, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain, surface_of};
 use belvedere_io::{IoError, Loaded};
-use belvedere_scene::{AreaFeature, Crs, Heightfield, LineFeature, PointFeature};
+use belvedere_scene::{AreaFeature, AreaSurface, Crs, Heightfield, LineFeature, PointFeature};
 use std::path::{Path, PathBuf};
 
 /// What a file of features is mostly about.
@@ -40,11 +40,13 @@ fn all<T>(
     files: &[PathBuf],
     ground: &Ground<'_>,
     on_terrain: OnTerrain<T>,
+    mut look: impl FnMut(&Vectors),
 ) -> Result<Vec<T>, BelvedereError> {
     let mut features = Vec::new();
     for file in files {
         loader.options.progress.tick("reading features", 0.0)?;
         let vectors = load_vectors(file)?;
+        look(&vectors.value);
         let found = on_terrain(&vectors.value, ground.crs, ground.terrain)?;
         loader.note(index, vectors.warnings);
         loader.note(index, found.warnings);
@@ -60,17 +62,19 @@ pub(super) fn lines(
     files: &[PathBuf],
     ground: &Ground<'_>,
 ) -> Result<Vec<LineFeature>, BelvedereError> {
-    all(loader, index, files, ground, lines_on_terrain)
+    all(loader, index, files, ground, lines_on_terrain, |_| ())
 }
 
-/// Areas of files.
+/// Areas of files, and what most of them are by their tags.
 pub(super) fn areas(
     loader: &mut Loader<'_>,
     index: usize,
     files: &[PathBuf],
     ground: &Ground<'_>,
-) -> Result<Vec<AreaFeature>, BelvedereError> {
-    all(loader, index, files, ground, areas_on_terrain)
+) -> Result<(Vec<AreaFeature>, Option<AreaSurface>), BelvedereError> {
+    let mut tagged = None;
+    let features = all(loader, index, files, ground, areas_on_terrain, |v| tagged = tagged.or(surface_of(v)))?;
+    Ok((features, tagged))
 }
 
 /// Points of files, on the ground.
@@ -80,5 +84,5 @@ pub(super) fn points(
     files: &[PathBuf],
     ground: &Ground<'_>,
 ) -> Result<Vec<PointFeature>, BelvedereError> {
-    all(loader, index, files, ground, points_on_terrain)
+    all(loader, index, files, ground, points_on_terrain, |_| ())
 }

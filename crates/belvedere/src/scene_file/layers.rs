@@ -161,7 +161,7 @@ pub struct TerrainStyleDoc {
 
 impl Default for TerrainStyleDoc {
     fn default() -> Self {
-        Self { relief: ReliefDoc::Swiss, exaggeration: 1.0, shading: None, palette: PaletteDoc::Auto }
+        Self { relief: ReliefDoc::Swiss, exaggeration: 1.0, shading: None, palette: PaletteDoc::default() }
     }
 }
 
@@ -187,10 +187,40 @@ pub enum ShadingDoc {
     Deformed,
 }
 
-/// Tint by height.
+/// Tint by height: a name, or a file of colours by height (GDAL colour-relief text, or GMT `.cpt`).
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum PaletteDoc {
+    /// A built-in one.
+    Named(PaletteName),
+    /// A file.
+    File(String),
+}
+
+impl Default for PaletteDoc {
+    fn default() -> Self {
+        Self::Named(PaletteName::Auto)
+    }
+}
+
+impl PaletteDoc {
+    /// The built-in one of that name, else a file.
+    pub fn of(text: &str) -> Self {
+        let named = PaletteName::ALL.iter().find(|(name, _)| *name == text);
+        named.map_or_else(|| Self::File(text.to_owned()), |(_, palette)| Self::Named(*palette))
+    }
+}
+
+impl<'de> Deserialize<'de> for PaletteDoc {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer).map(|text| Self::of(&text))
+    }
+}
+
+/// Built-in tints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum PaletteDoc {
+pub enum PaletteName {
     /// Chosen by the range of heights.
     #[default]
     Auto,
@@ -200,8 +230,22 @@ pub enum PaletteDoc {
     Desert,
     /// Rock and ice.
     Glacial,
+    /// Blue to yellow in even steps of lightness: the one that is read most safely.
+    Clear,
     /// One light grey.
     Plain,
+}
+
+impl PaletteName {
+    /// All of them, as files write them.
+    pub const ALL: [(&'static str, Self); 6] = [
+        ("auto", Self::Auto),
+        ("alpine", Self::Alpine),
+        ("desert", Self::Desert),
+        ("glacial", Self::Glacial),
+        ("clear", Self::Clear),
+        ("plain", Self::Plain),
+    ];
 }
 
 /// What happens to the parts that the terrain hides.
@@ -344,18 +388,38 @@ pub struct AreaDoc {
     pub style: AreaStyleDoc,
 }
 
+/// What covers an area.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SurfaceDoc {
+    /// Nothing but its colour.
+    Plain,
+    /// Water: flat, with a shore line.
+    Water,
+    /// Forest.
+    Forest,
+    /// Ice.
+    Glacier,
+}
+
 /// How areas are drawn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct AreaStyleDoc {
-    /// Fill, `#rrggbb` or `#rrggbbaa`.
-    pub color: String,
+    /// Fill, `#rrggbb` or `#rrggbbaa`; by default that of the surface.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color: Option<String>,
     /// Outline colour, or `none`.
     pub outline: String,
     /// Outline width on screen, pixels, in (0, 100].
     pub width_px: f64,
-    /// Whether it is water: flat, without relief shading.
-    pub water: bool,
+    /// Whether it is water: flat, without relief shading. `surface` says more.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub water: Option<bool>,
+    /// What covers the ground; by default what the tags of the source say (as OpenStreetMap and Natural Earth write
+    /// them), else water.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface: Option<SurfaceDoc>,
     /// What happens to hidden parts of the outline.
     pub hidden: HiddenDoc,
     /// Height above ground at which it is judged visible, metres, in [0, 1000].
@@ -365,10 +429,11 @@ pub struct AreaStyleDoc {
 impl Default for AreaStyleDoc {
     fn default() -> Self {
         Self {
-            color: "#4a90c8".into(),
+            color: None,
             outline: "none".into(),
             width_px: 1.5,
-            water: true,
+            water: None,
+            surface: None,
             hidden: HiddenDoc::Cut,
             lift_m: 1.0,
         }

@@ -289,6 +289,7 @@ fn base_view(request: &RevealRequest, session: &Session) -> Result<Option<View>,
 fn document(request: &RevealRequest, keep_voids: bool) -> Result<(Document, Roots), BelvedereError> {
     let mut roots = Roots::default();
     let dem = locate(&request.dem, &mut roots)?;
+    let palette = crate::session::located(&request.palette, &mut roots.allowed)?;
     let mut layer = vec![LayerDoc::Terrain(TerrainDoc {
         id: "ground".into(),
         source: Paths::One(dem),
@@ -296,7 +297,7 @@ fn document(request: &RevealRequest, keep_voids: bool) -> Result<(Document, Root
         source_crs: None,
         nodata: None,
         drape: None,
-        style: TerrainStyleDoc { palette: request.palette, ..TerrainStyleDoc::default() },
+        style: TerrainStyleDoc { palette, ..TerrainStyleDoc::default() },
     })];
     if request.features.is_empty() {
         return Err(BelvedereError::Usage(
@@ -386,18 +387,25 @@ fn feature_layer(id: String, source: String) -> Result<LayerDoc, BelvedereError>
 fn beside(document: &Document, path: &Path) -> Document {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-    let short = |source: &mut Paths| {
-        if let Paths::One(name) = source
-            && let Ok(below) = Path::new(name.as_str()).strip_prefix(&folder)
-            && let Some(below) = below.to_str()
-        {
+    let below = |name: &mut String| {
+        if let Some(below) = Path::new(name.as_str()).strip_prefix(&folder).ok().and_then(Path::to_str) {
             *name = below.to_owned();
+        }
+    };
+    let short = |source: &mut Paths| {
+        if let Paths::One(name) = source {
+            below(name);
         }
     };
     let mut document = document.clone();
     for layer in &mut document.layer {
         match layer {
-            LayerDoc::Terrain(l) => short(&mut l.source),
+            LayerDoc::Terrain(l) => {
+                short(&mut l.source);
+                if let PaletteDoc::File(name) = &mut l.style.palette {
+                    below(name);
+                }
+            }
             LayerDoc::Line(l) => l.source.iter_mut().for_each(short),
             LayerDoc::Area(l) => short(&mut l.source),
             LayerDoc::Point(l) => short(&mut l.source),

@@ -1,0 +1,105 @@
+//! Light, tints and surfaces, as the command line reaches them.
+
+use super::Place;
+
+/// A scene of a mountain with a lake, with more keys.
+fn scene(light: &str, terrain: &str, lake: &str) -> String {
+    format!(
+        "format = 1
+crs = 'local'
+[camera]
+eye = [0, -9000, 6000]
+look_at = [0, 0, 800]
+image = [96, 64]
+{light}
+[[layer]]
+id = 'ground'
+kind = 'terrain'
+source = 'builtin:massif?size=129'
+[layer.style]
+{terrain}
+[[layer]]
+id = 'lake'
+kind = 'area'
+source = 'builtin:massif?size=129'
+[layer.style]
+{lake}
+"
+    )
+}
+
+/// The bytes of the picture of a scene.
+fn picture(place: &Place, scene: &str, more: &[&str]) -> Vec<u8> {
+    place.write("s.toml", scene);
+    place.ok(&[&["render", "s.toml", "-o", "p.png", "--samples", "1", "--overwrite"], more].concat());
+    pixels(&super::read(&place.path("p.png")))
+}
+
+/// The compressed pixels of a PNG, without the record of the scene that it carries.
+fn pixels(png: &[u8]) -> Vec<u8> {
+    let (mut at, mut out) = (8, Vec::new());
+    while at + 8 <= png.len() {
+        let length = u32::from_be_bytes([png[at], png[at + 1], png[at + 2], png[at + 3]]) as usize;
+        if &png[at + 4..at + 8] == b"IDAT" {
+            out.extend_from_slice(&png[at + 8..at + 8 + length]);
+        }
+        at += 12 + length;
+    }
+    assert!(!out.is_empty(), "no pixels");
+    out
+}
+
+#[test]
+fn shadows_and_the_time_of_day_change_the_picture() {
+    let place = Place::new();
+    let of = |light: &str| picture(&place, &scene(light, "relief = 'sun'", ""), &[]);
+    let low = "[light]\nazimuth_deg = 250\naltitude_deg = 12\n";
+    let (bright, shadows) = (of(low), of(&format!("{low}shadows = true")));
+    assert!(bright != shadows && shadows == of(&format!("{low}shadows = true")));
+    place.write("s.toml", &scene("[light]\ntime = '2026-07-01T15:00:00Z'\nshadows = true", "", ""));
+    assert!(place.fails(&["check", "s.toml"]).contains("georeferenced"));
+    let georeferenced = scene("[light]\ntime = '2026-07-01T23:30:00Z'\nshadows = true", "", "")
+        .replace("crs = 'local'", "crs = 'EPSG:32632'")
+        .replace("eye = [0, -9000, 6000]", "eye = [500000, 5100000, 6000]")
+        .replace("look_at = [0, 0, 800]", "look_at = [500000, 5110000, 6000]");
+    let without_layers = georeferenced.split("[[layer]]").next().expect("text").to_owned();
+    place.write("s.toml", &without_layers);
+    let result = place.json(&["render", "s.toml", "-o", "night.png", "--json"]);
+    assert!(result["warnings"].to_string().contains("below the horizon"), "{result}");
+}
+
+#[test]
+fn a_palette_is_a_name_or_a_file_in_the_scene_and_on_the_command_line() {
+    let place = Place::new();
+    place.write("ramp.txt", "# red low, white high\n0% 200 20 20\n100% white\nnv 0 0 0\n");
+    place.write("ramp.cpt", "# COLOR_MODEL = RGB\n0 200/20/20 1 255/255/255\n");
+    let auto = picture(&place, &scene("", "", ""), &[]);
+    let text = picture(&place, &scene("", "palette = 'ramp.txt'", ""), &[]);
+    assert!(auto != text && auto != picture(&place, &scene("", "palette = 'clear'", ""), &[]));
+    assert_eq!(text, picture(&place, &scene("", "palette = 'ramp.cpt'", ""), &[]), "the same colours from both formats");
+    assert_eq!(text, picture(&place, &scene("", "", ""), &["--palette", "ramp.txt"]));
+    let line = place.fails(&["render", "s.toml", "-o", "x.png", "--palette", "alpin"]);
+    assert!(line.contains("alpin") && line.contains("alpine"), "{line}");
+    place.write("ramp.txt", "0 1 2 3\n100 1 2 red\n");
+    place.write("s.toml", &scene("", "palette = 'ramp.txt'", ""));
+    let line = place.fails(&["render", "s.toml", "-o", "x.png"]);
+    assert!(line.contains("ramp.txt") && line.contains("line 2") && line.contains("s.toml:"), "{line}");
+}
+
+#[test]
+fn surfaces_are_chosen_by_key_and_look_their_own() {
+    let place = Place::new();
+    let of = |lake: &str| picture(&place, &scene("", "", lake), &[]);
+    let looks = ["", "surface = 'plain'", "surface = 'forest'", "surface = 'glacier'"].map(of);
+    for (i, a) in looks.iter().enumerate() {
+        for b in &looks[i + 1..] {
+            assert!(a != b, "two surfaces look alike");
+        }
+    }
+    assert_eq!(looks[0], of("surface = 'water'"));
+    assert_eq!(looks[0], of("water = true"), "the built-in lake has its own colour of water");
+    place.write("s.toml", &scene("", "", "surface = 'water'\nwater = true"));
+    assert!(place.fails(&["check", "s.toml"]).contains("remove water"));
+    place.write("s.toml", &scene("", "", "surface = 'swamp'"));
+    assert!(place.fails(&["check", "s.toml"]).contains("swamp"));
+}

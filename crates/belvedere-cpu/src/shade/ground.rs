@@ -1,0 +1,389 @@
+//! The shape of the ground as shading sees it: slopes and heights, and their averages over ever larger cells.
+//!
+//! Only averages are kept: full detail is always at hand in the heights themselves.
+
+use belvedere_core::{DVec2, DVec3};
+use belvedere_scene::{Heightfield, NodeState};
+use glam::Vec4;
+use rayon::prelude::*;
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// Most nodes that the finest stored level may have, unless it is the first one.
+const MOST_NODES: usize = 1 << 23;
+/// Grounds up to this many nodes store averages from level 1 up.
+const SMALL_GROUND: usize = 17 << 20;
+
+/// Levels over which the surroundings of a place are averaged, and their share in its openness.
+const SURROUNDINGS: [(usize, f32); 2] = [(3, 0.5), (5, 0.5)];
+/// Share of the nearest surroundings, those of the finest stored level.
+const NEAR_SHARE: f32 = 0.3;
+
+/// Moves points before their slopes are taken.
+pub(crate) type Moved<'a> = dyn Fn(DVec3) -> Option<DVec3> + Send + Sync + 'a;
+
+/// The ground that light falls on: that of the map, or a displaced one.
+pub(crate) struct Surface<'a> {
+    pub(crate) hf: &'a Heightfield,
+    /// Heights row by row; differ from the heightfield's where the ground was moved up or down.
+    heights: Cow<'a, [f32]>,
+    /// Displacement that also moves sideways: slopes are taken between displaced neighbours.
+    bent: Option<Arc<Moved<'a>>>,
+}
+
+impl<'a> Surface<'a> {
+    /// The undisplaced ground.
+    pub(crate) fn of_map(hf: &'a Heightfield) -> Self {
+        Self { hf, heights: Cow::Borrowed(hf.heights()), bent: None }
+    }
+
+    /// Ground that `lift` moves along z alone.
+    pub(crate) fn lifted(hf: &'a Heightfield, lift: &Moved<'_>) -> Self {
+        let mut heights = hf.heights().to_vec();
+        heights.par_chunks_mut(hf.cols()).enumerate().for_each(|(r, row)| {
+            for (c, h) in row.iter_mut().enumerate() {
+                if let Some(p) = hf.node(c, r).and_then(lift) {
+                    *h = p.z as f32;
+                }
+            }
+        });
+        Self { hf, heights: Cow::Owned(heights), bent: None }
+    }
+
+    /// Ground displaced in any direction.
+    pub(crate) fn bent(hf: &'a Heightfield, bent: Arc<Moved<'a>>) -> Self {
+        Self { hf, heights: Cow::Borrowed(hf.heights()), bent: Some(bent) }
+    }
+
+    /// Whether nothing was displaced.
+    pub(crate) fn is_map(&self) -> bool {
+        self.bent.is_none() && matches!(self.heights, Cow::Borrowed(_))
+    }
+
+    /// Heights row by row; those of voids mean nothing.
+    pub(crate) fn heights(&self) -> &[f32] {
+        &self.heights
+    }
+
+    /// dz/dx, dz/dy, height, 1 of the nodes of a row from column `first`; zeros at voids.
+    pub(crate) fn row(&self, row: usize, first: usize, out: &mut [Vec4]) {
+        let (cols, rows) = (self.hf.cols(), self.hf.rows());
+        let states = self.hf.states();
+        let inner = row > 0 && row + 1 < rows && self.bent.is_none();
+        let per = (0.5 / self.hf.spacing()).as_vec2();
+        for (k, out) in out.iter_mut().enumerate() {
+            let (c, i) = (first + k, row * cols + first + k);
+            if inner && c > 0 && c + 1 < cols {
+                let around = [i - 1, i, i + 1, i - cols, i + cols];
+                if around.iter().all(|&n| states[n] != NodeState::Void) {
+                    let [west, here, east, north, south] = around.map(|n| self.heights[n]);
+                    *out = Vec4::new((east - west) * per.x, (north - south) * per.y, here, 1.0);
+                    continue;
+                }
+            }
+            *out = self.node(c, row);
+        }
+    }
+
+    /// One node of [`Surface::row`].
+    fn node(&self, c: usize, r: usize) -> Vec4 {
+        let i = r * self.hf.cols() + c;
+        if self.hf.states()[i] == NodeState::Void {
+            return Vec4::ZERO;
+        }
+        let slope = match &self.bent {
+            Some(bent) => bent_slope(self.hf, c, r, bent.as_ref()).unwrap_or_else(|| self.slope(c, r)),
+            None => self.slope(c, r),
+        };
+        Vec4::new(slope.x as f32, slope.y as f32, self.heights[i], 1.0)
+    }
+
+    /// Slope by central differences; one-sided beside holes and the border.
+    fn slope(&self, c: usize, r: usize) -> DVec2 {
+        let hf = self.hf;
+        let here = self.heights[r * hf.cols() + c];
+        let at = |c: usize, r: usize| {
+            let i = r * hf.cols() + c;
+            (hf.states()[i] != NodeState::Void).then(|| self.heights[i])
+        };
+        let along = |before: Option<f32>, after: Option<f32>, step: f64| {
+            let span = f64::from(u8::from(before.is_some()) + u8::from(after.is_some())) * step;
+            if span == 0.0 { 0.0 } else { f64::from(after.unwrap_or(here) - before.unwrap_or(here)) / span }
+        };
+        let west = c.checked_sub(1).and_then(|c| at(c, r));
+        let east = (c + 1 < hf.cols()).then(|| at(c + 1, r)).flatten();
+        let north = r.checked_sub(1).and_then(|r| at(c, r));
+        let south = (r + 1 < hf.rows()).then(|| at(c, r + 1)).flatten();
+        DVec2::new(along(west, east, hf.spacing().x), along(south, north, hf.spacing().y))
+    }
+
+    /// Mean of the `2^k x 2^k` nodes of each node of a row of level `k`, from column `first`; zeros where all are void.
+    pub(crate) fn mean_row(&self, k: usize, row: usize, first: usize, out: &mut [Vec4]) {
+        if k == 0 {
+            return self.row(row, first, out);
+        }
+        let (cols, rows, side) = (self.hf.cols(), self.hf.rows(), 1 << k);
+        let (from, to) = (first * side, ((first + out.len()) * side).min(cols));
+        let mut fine = vec![Vec4::ZERO; to.saturating_sub(from)];
+        out.fill(Vec4::ZERO);
+        for r in row * side..((row + 1) * side).min(rows) {
+            self.row(r, from, &mut fine);
+            for (sum, part) in out.iter_mut().zip(fine.chunks(side)) {
+                *sum += part.iter().copied().sum::<Vec4>();
+            }
+        }
+        out.iter_mut().filter(|n| n.w > 0.0).for_each(|n| *n /= n.w);
+    }
+}
+
+/// Slope of a displaced surface; `None` where the node itself cannot be displaced.
+fn bent_slope(hf: &Heightfield, c: usize, r: usize, bent: &Moved<'_>) -> Option<DVec2> {
+    let at = |c: usize, r: usize| hf.node(c, r).and_then(bent);
+    let here = at(c, r)?;
+    let difference = |before: Option<DVec3>, after: Option<DVec3>| after.unwrap_or(here) - before.unwrap_or(here);
+    let east = difference(c.checked_sub(1).and_then(|c| at(c, r)), (c + 1 < hf.cols()).then(|| at(c + 1, r)).flatten());
+    let north =
+        difference((r + 1 < hf.rows()).then(|| at(c, r + 1)).flatten(), r.checked_sub(1).and_then(|r| at(c, r)));
+    let n = east.cross(north);
+    let n = if n.z < 0.0 { -n } else { n };
+    // Walls steeper than about 87 degrees shade like that.
+    let z = n.z.max(0.05 * n.length());
+    Some(if z > 0.0 { DVec2::new(-n.x / z, -n.y / z) } else { DVec2::ZERO })
+}
+
+/// Averages over `2^k x 2^k` nodes: dz/dx, dz/dy, height, and the height that the wider surroundings ask for (see
+/// [`Means::openness`]).
+#[derive(Debug)]
+struct Level {
+    cols: usize,
+    rows: usize,
+    nodes: Vec<Vec4>,
+}
+
+/// The averages of a ground, from level [`Means::first`] up.
+#[derive(Debug)]
+pub(crate) struct Means {
+    pub(crate) first: usize,
+    levels: Vec<Level>,
+    spacing: f32,
+}
+
+/// The finest level of averages that is stored: 16 bytes a node of it, so less than the ground itself where that is huge.
+pub(crate) fn first_level(nodes: usize) -> usize {
+    if nodes <= SMALL_GROUND { 1 } else { (1..).find(|k| nodes >> (2 * k) <= MOST_NODES).unwrap_or(1) }
+}
+
+impl Means {
+    /// Averages of the ground.
+    pub(crate) fn new(surface: &Surface<'_>) -> Self {
+        let hf = surface.hf;
+        let first = first_level(hf.cols() * hf.rows());
+        let [cols, rows] = [hf.cols(), hf.rows()].map(|n| n.div_ceil(1 << first));
+        let mut nodes = vec![Vec4::ZERO; cols * rows];
+        nodes.par_chunks_mut(cols).enumerate().for_each(|(r, row)| surface.mean_row(first, r, 0, row));
+        let mut levels = vec![Level { cols, rows, nodes }];
+        while let Some(last) = levels.last()
+            && last.cols.max(last.rows) > 1
+        {
+            levels.push(last.halved());
+        }
+        let mut out = Self { first, levels, spacing: hf.spacing().min_element() as f32 };
+        out.fill_holes();
+        out.set_surroundings();
+        out
+    }
+
+    /// Number of the coarsest level.
+    pub(crate) fn top(&self) -> usize {
+        self.first + self.levels.len() - 1
+    }
+
+    /// Gives holes the average around them, so that interpolation beside them sees no height of 0.
+    fn fill_holes(&mut self) {
+        for k in (0..self.levels.len() - 1).rev() {
+            let (fine, coarse) = self.levels.split_at_mut(k + 1);
+            let (to, from) = (&mut fine[k], &coarse[0]);
+            let cols = to.cols;
+            to.nodes.par_iter_mut().enumerate().filter(|(_, n)| n.w == 0.0).for_each(|(i, n)| {
+                *n = from.nodes[i / cols / 2 * from.cols + i % cols / 2];
+            });
+        }
+    }
+
+    /// Stores the weighted mean heights of the surroundings, see [`Means::openness`].
+    fn set_surroundings(&mut self) {
+        let scales = SURROUNDINGS.map(|(level, share)| {
+            let k = level.clamp(self.first, self.top());
+            (k - self.first, share / (self.spacing * (1u32 << k) as f32))
+        });
+        let means = scales.map(|(k, _)| self.smooth_heights(k));
+        for (i, n) in self.levels[0].nodes.iter_mut().enumerate() {
+            n.w = scales.iter().zip(&means).map(|((_, per_m), m)| per_m * m[i]).sum();
+        }
+        for k in 1..self.levels.len() {
+            let (fine, rest) = self.levels.split_at_mut(k);
+            let (from, to) = (&fine[k - 1], &mut rest[0]);
+            let cols = to.cols;
+            to.nodes.par_iter_mut().enumerate().for_each(|(i, n)| n.w = from.mean_w(i % cols, i / cols));
+        }
+    }
+
+    /// Heights of stored level `k` brought to the finest one step by step, which makes them smooth.
+    fn smooth_heights(&self, k: usize) -> Vec<f32> {
+        let mut values: Vec<f32> = self.levels[k].nodes.iter().map(|n| n.z).collect();
+        for level in (0..k).rev() {
+            let (from, to) = (&self.levels[level + 1], &self.levels[level]);
+            let mut next = vec![0.0; to.cols * to.rows];
+            next.par_chunks_mut(to.cols).enumerate().for_each(|(r, row)| {
+                let (r0, r1, v) = tap(0.5 * (r as f32 - 0.5), from.rows);
+                for (c, out) in row.iter_mut().enumerate() {
+                    let (c0, c1, u) = tap(0.5 * (c as f32 - 0.5), from.cols);
+                    let at = |c: usize, r: usize| values[r * from.cols + c];
+                    let (n, s) =
+                        (at(c0, r0) + u * (at(c1, r0) - at(c0, r0)), at(c0, r1) + u * (at(c1, r1) - at(c0, r1)));
+                    *out = n + v * (s - n);
+                }
+            });
+            values = next;
+        }
+        values
+    }
+
+    /// Averages of level `k` (stored) at fractional column and row of the ground.
+    #[inline]
+    pub(crate) fn at(&self, k: usize, col: f32, row: f32) -> Vec4 {
+        let level = &self.levels[(k - self.first).min(self.levels.len() - 1)];
+        // Node i of level k lies at (i + 0.5) 2^k - 0.5 of the ground.
+        let step = 1.0 / (1u32 << k.min(self.top())) as f32;
+        let (c0, c1, u) = tap((col + 0.5) * step - 0.5, level.cols);
+        let (r0, r1, v) = tap((row + 0.5) * step - 0.5, level.rows);
+        let (n, s) = (&level.nodes[r0 * level.cols..], &level.nodes[r1 * level.cols..]);
+        let (a, b) = (n[c0] + u * (n[c1] - n[c0]), s[c0] + u * (s[c1] - s[c0]));
+        a + v * (b - a)
+    }
+
+    /// A node of a stored level.
+    pub(crate) fn node(&self, k: usize, col: usize, row: usize) -> Vec4 {
+        let level = &self.levels[k - self.first];
+        level.nodes[row * level.cols + col]
+    }
+
+    /// Columns and rows of a level that is stored.
+    pub(crate) fn size(&self, k: usize) -> [usize; 2] {
+        let level = &self.levels[k - self.first];
+        [level.cols, level.rows]
+    }
+
+    /// How far a place at `height` stands above its surroundings at three scales, as the share of the sky that they leave:
+    /// about 0.8..=1.2, 1 on level ground. Our stand-in for sky visibility.
+    /// * `near`: the averages of the finest stored level there.
+    #[inline]
+    pub(crate) fn openness(&self, height: f32, near: Vec4) -> f32 {
+        let per_m = |level: usize, share: f32| share / (self.spacing * (1u32 << level.clamp(self.first, self.top())) as f32);
+        let wide: f32 = SURROUNDINGS.iter().map(|&(level, share)| per_m(level, share)).sum();
+        let above = per_m(self.first, NEAR_SHARE) * (height - near.z) + wide * height - near.w;
+        let x = above / 0.16;
+        1.0 + 0.42 * (x / (1.0 + x * x).sqrt()).min(0.45)
+    }
+}
+
+impl Level {
+    fn halved(&self) -> Self {
+        let (cols, rows) = (self.cols.div_ceil(2), self.rows.div_ceil(2));
+        let mut nodes = vec![Vec4::ZERO; cols * rows];
+        nodes.par_chunks_mut(cols).enumerate().for_each(|(r, row)| {
+            for (c, n) in row.iter_mut().enumerate() {
+                let solid = self.under(c, r).filter(|v| v.w > 0.0);
+                let sum: Vec4 = solid.map(|v| v.with_w(1.0)).sum();
+                *n = if sum.w > 0.0 { (sum / sum.w).with_w(1.0) } else { Vec4::ZERO };
+            }
+        });
+        Self { cols, rows, nodes }
+    }
+
+    fn mean_w(&self, col: usize, row: usize) -> f32 {
+        let (sum, n) = self.under(col, row).fold((0.0, 0.0), |(sum, n), v| (sum + v.w, n + 1.0));
+        sum / n
+    }
+
+    /// The nodes under a node of the next level.
+    fn under(&self, col: usize, row: usize) -> impl Iterator<Item = &Vec4> {
+        let inside = move |i: usize, j: usize| 2 * col + i < self.cols && 2 * row + j < self.rows;
+        [(0, 0), (1, 0), (0, 1), (1, 1)]
+            .into_iter()
+            .filter(move |&(i, j)| inside(i, j))
+            .map(move |(i, j)| &self.nodes[(2 * row + j) * self.cols + 2 * col + i])
+    }
+}
+
+#[inline]
+fn tap(x: f32, n: usize) -> (usize, usize, f32) {
+    let x = x.clamp(0.0, (n - 1) as f32);
+    let i = x as usize;
+    (i, (i + 1).min(n - 1), x - i as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tilted(cols: usize, rows: usize, void: impl Fn(usize, usize) -> bool) -> Heightfield {
+        let heights = (0..cols * rows).map(|i| 100.0 + 3.0 * (i % cols) as f32 - 5.0 * (i / cols) as f32).collect();
+        let state = |i: usize| if void(i % cols, i / cols) { NodeState::Void } else { NodeState::Measured };
+        let states = (0..cols * rows).map(state).collect();
+        Heightfield::new(DVec2::ZERO, DVec2::new(10.0, 20.0), cols, rows, heights, states).unwrap()
+    }
+
+    #[test]
+    fn a_tilted_plane_has_its_slope_at_every_level_beside_holes_too() {
+        let hf = tilted(67, 41, |c, r| (c > 20 && c < 31 && r > 9 && r < 17) || (c == 3 && r == 3));
+        let (surface, want) = (Surface::of_map(&hf), DVec2::new(0.3, 0.25).as_vec2());
+        let means = Means::new(&surface);
+        for k in 1..=means.top() {
+            let [cols, rows] = means.size(k);
+            for i in 0..cols * rows {
+                let n = means.node(k, i % cols, i / cols);
+                assert!((n.truncate().truncate() - want).length() < 1e-4, "level {k}, node {i}: {n}");
+            }
+        }
+        let mut row = vec![Vec4::ZERO; 67];
+        for r in 0..41 {
+            surface.row(r, 0, &mut row);
+            for (c, n) in row.iter().enumerate() {
+                let void = hf.states()[r * 67 + c] == NodeState::Void;
+                assert!(if void { *n == Vec4::ZERO } else { (n.truncate().truncate() - want).length() < 1e-4 });
+            }
+        }
+    }
+
+    #[test]
+    fn averages_of_a_row_are_those_of_the_nodes() {
+        let hf = tilted(37, 23, |c, r| (c * 7 + r * 3) % 11 == 0);
+        let surface = Surface::of_map(&hf);
+        for k in [1usize, 2, 3] {
+            let cols = 37usize.div_ceil(1 << k);
+            let mut got = vec![Vec4::ZERO; cols - 1];
+            surface.mean_row(k, 1, 1, &mut got);
+            for (i, got) in got.iter().enumerate() {
+                let (mut sum, mut n) = (0.0, 0.0);
+                for r in 1 << k..(2 << k).min(23) {
+                    for c in (i + 1) << k..((i + 2) << k).min(37) {
+                        if hf.states()[r * 37 + c] != NodeState::Void {
+                            (sum, n) = (sum + hf.heights()[r * 37 + c], n + 1.0);
+                        }
+                    }
+                }
+                assert!((got.z - sum / n).abs() < 1e-3, "level {k} node {i}: {got} {}", sum / n);
+            }
+        }
+    }
+
+    #[test]
+    fn huge_grounds_store_a_small_part_of_themselves() {
+        for side in [1025usize, 4097, 16_385, 40_000] {
+            let nodes = side * side;
+            let stored = (nodes >> (2 * first_level(nodes))) * 16 * 4 / 3;
+            assert!(nodes <= SMALL_GROUND || stored < nodes, "{side}: {stored} bytes");
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! Terrain: its light, and what is laid over it.
+
+use super::area::AreaMap;
+use super::color::{Rgb, linear, smoothstep};
+use super::drape::DrapeMap;
+use super::ground::{Means, Surface};
+use super::lit::{CELL, Lit, LitGround, Making};
+use super::palette::Tint;
+use super::print::Print;
+use super::relief::ReliefLight;
+use super::shadow::Shadows;
+use super::texture::stipple;
+use super::{Shader, lod};
+use belvedere_core::{DVec2, DVec3, Stage};
+use belvedere_scene::{AreaSurface, Heightfield, Light, Palette, Relief, RenderJob, Shading, TerrainLayer};
+use std::sync::Arc;
+
+/// A terrain layer ready for shading.
+pub(super) struct TerrainShade<'a> {
+    pub(super) hf: &'a Heightfield,
+    pub(super) lit: Arc<LitGround>,
+    pub(super) light: ReliefLight,
+    /// Side of a cell, scene units.
+    pub(super) pitch: f64,
+    means: Arc<Means>,
+    surface: Surface<'a>,
+    shadows: Option<Arc<Shadows>>,
+    tint: Tint,
+    exaggeration: f32,
+    drapes: Vec<DrapeMap>,
+}
+
+/// What averages of a ground are kept under.
+#[derive(Clone, PartialEq)]
+struct MeansKey;
+
+/// What cast shadows are kept under.
+#[derive(Clone, PartialEq)]
+struct ShadowKey(Light);
+
+/// What lit ground is kept under: all that it is made from, besides the heights.
+#[derive(Clone, PartialEq)]
+struct LitKey {
+    relief: Relief,
+    light: Light,
+    palette: Palette,
+    exaggeration: f64,
+}
+
+impl<'a> TerrainShade<'a> {
+    pub(super) fn new(layer: &'a TerrainLayer, job: &RenderJob<'a>) -> Self {
+        let hf = &layer.heightfield;
+        let surface = lit_surface(layer, job);
+        let light = *job.light;
+        let top = |means: &Means| LitGround::new(hf.cols(), hf.rows(), means.top());
+        let make_shadows = |means: &Means| Shadows::new(&surface, means, &light);
+        let (means, shadows, lit) = if surface.is_map() {
+            // The map's own light stays the same from frame to frame.
+            let means = hf.derived_for(&MeansKey, || Means::new(&surface));
+            let shadows = light.shadows.then(|| hf.derived_for(&ShadowKey(light), || make_shadows(&means)));
+            let (relief, palette) = (layer.relief, layer.palette.clone());
+            let key = LitKey { relief, light, palette, exaggeration: layer.exaggeration };
+            let mut lit = hf.derived_for(&key, || top(&means));
+            if lit.is_full() {
+                hf.forget(&key);
+                lit = hf.derived_for(&key, || top(&means));
+            }
+            (means, shadows, lit)
+        } else {
+            let means = Arc::new(Means::new(&surface));
+            let shadows = light.shadows.then(|| Arc::new(make_shadows(&means)));
+            let lit = Arc::new(top(&means));
+            (means, shadows, lit)
+        };
+        let spacing = hf.spacing();
+        Self {
+            hf,
+            lit,
+            light: ReliefLight::new(layer.relief, job.light),
+            pitch: (spacing.x * spacing.y).sqrt(),
+            means,
+            surface,
+            shadows,
+            tint: Tint::new(&layer.palette, hf.z_range()),
+            exaggeration: layer.exaggeration as f32,
+            drapes: layer.drapes.iter().filter_map(DrapeMap::new).collect(),
+        }
+    }
+
+    /// What tiles of lit ground are made from.
+    pub(super) fn making(&self) -> Making<'_> {
+        Making {
+            surface: &self.surface,
+            means: &self.means,
+            shadows: self.shadows.as_deref(),
+            tint: &self.tint,
+            light: &self.light,
+            exaggeration: self.exaggeration,
+        }
+    }
+
+    /// Whether anything lies over the ground.
+    pub(super) fn is_covered(&self, shader: &Shader<'_>) -> bool {
+        !self.drapes.is_empty() || !shader.areas.is_empty()
+    }
+
+    /// Colour of the ground at a place of which a pixel covers a square of side `fp`, and the area it lies in.
+    /// * `axes`: see [`Print::new`].
+    pub(super) fn shade_at(
+        &self,
+        shader: &Shader<'_>,
+        xy: DVec2,
+        fp: f64,
+        axes: [DVec2; 2],
+        depth: f64,
+        pixel: DVec2,
+    ) -> (Rgb, Option<u32>) {
+        let g = self.hf.grid_from_scene(xy);
+        let side = fp / self.pitch;
+        let at = (g * f64::from(CELL)).as_ivec2();
+        let lit = Lit::of(self.lit.sample([at.x, at.y], lod((side * side) as f32), &self.making()));
+        let print = Print::new(axes, shader.lens.footprint(depth));
+        let covered = self.covered(shader, g, side, &print, &lit, pixel.as_vec2().to_array());
+        covered.unwrap_or_else(|| (lit.albedo() * self.light_of(&lit), None))
+    }
+
+    fn light_of(&self, lit: &Lit) -> Rgb {
+        self.light.warm * lit.direct + self.light.cool * lit.sky
+    }
+
+    /// Colour and area where a picture or an area covers the ground; `None` where nothing does.
+    /// * `g`: column and row;
+    /// * `cells`: side of the square that the pixel covers, cells;
+    /// * `print`: the patch itself;
+    /// * `lit`: the ground there.
+    pub(super) fn covered(
+        &self,
+        shader: &Shader<'_>,
+        g: DVec2,
+        cells: f64,
+        print: &Print,
+        lit: &Lit,
+        pixel: [f32; 2],
+    ) -> Option<(Rgb, Option<u32>)> {
+        let spacing = self.hf.spacing();
+        let (xy, fp) = (self.hf.north_west() + DVec2::new(g.x, -g.y) * spacing, cells * self.pitch);
+        let mut albedo = lit.albedo();
+        let mut draped = 0.0f32;
+        for d in &self.drapes {
+            let (c, a) = d.at(xy, print);
+            albedo = albedo.lerp(c, a);
+            draped = draped.max(a);
+        }
+        // A photograph has its own light: model it only half.
+        let mut light = self.light_of(lit).lerp(Rgb::splat(0.95), 0.5 * draped);
+        let (mut id, mut water, mut touched) = (None, 0.0f32, draped > 0.0);
+        for a in &shader.areas {
+            let inside = a.depth_inside(xy) / fp;
+            let cover = (0.5 + inside).clamp(0.0, 1.0) as f32;
+            if cover <= 0.0 {
+                continue;
+            }
+            touched = true;
+            if inside >= 0.0 {
+                id = Some(a.layer);
+            }
+            let share = cover * a.alpha;
+            albedo = albedo.lerp(fill(a, xy, inside as f32, print), share);
+            match a.surface {
+                AreaSurface::Water => water += share * (1.0 - water),
+                AreaSurface::Glacier => {
+                    // Snow throws light into its own shadows.
+                    light = light.lerp(Rgb::splat(1.02), 0.35 * share);
+                    water *= 1.0 - share;
+                }
+                _ => water *= 1.0 - share,
+            }
+        }
+        if !touched {
+            return None;
+        }
+        if water > 0.0 {
+            let down = -shader.sky.sine(pixel);
+            let mirror = 0.03 + 0.55 * (1.0 - down.clamp(0.0, 1.0)).powi(5);
+            let reflected = shader.sky.towards(0.15 + 0.5 * down.clamp(0.0, 1.0));
+            light = light.lerp(Rgb::ONE, water);
+            return Some(((albedo * light).lerp(reflected, water * mirror), id));
+        }
+        Some((albedo * light, id))
+    }
+}
+
+/// Colour of an area at a place.
+/// * `inside`: pixels from its border.
+fn fill(area: &AreaMap, xy: DVec2, inside: f32, print: &Print) -> Rgb {
+    // Over the first pixel and a half.
+    let rim = if area.has_outline { 0.0 } else { 1.0 - smoothstep(0.6, 2.2, inside) };
+    match area.surface {
+        AreaSurface::Plain => area.fill,
+        // Shore line.
+        AreaSurface::Water => area.fill * (1.0 - 0.45 * rim),
+        AreaSurface::Forest => area.fill * (1.0 + 0.22 * stipple(xy, print.length())),
+        AreaSurface::Glacier => {
+            let ice = area.fill * (1.0 + 0.035 * stipple(xy, print.length()));
+            ice.lerp(linear([96, 156, 205]), 0.7 * rim)
+        }
+    }
+}
+
+/// The ground that light falls on. Light stays fixed to the map unless the ground itself was changed, else a lowered
+/// ridge keeps its old shadow.
+fn lit_surface<'a>(layer: &'a TerrainLayer, job: &RenderJob<'a>) -> Surface<'a> {
+    let (hf, stages) = (&layer.heightfield, job.view.stages());
+    let ground = stages.iter().position(|s| matches!(s, Stage::TerrainDisocclusion(_)));
+    let deformed = match layer.shading {
+        Some(Shading::Map) => return Surface::of_map(hf),
+        Some(Shading::Deformed) => stages,
+        None => match ground {
+            Some(i) => &stages[..=i],
+            None => return Surface::of_map(hf),
+        },
+    };
+    let upright = |s: &Stage| matches!(s, Stage::EarthCurvature(_) | Stage::TerrainDisocclusion(_));
+    let moved =
+        move |p: DVec3| deformed.iter().try_fold(p, |p, s| s.as_map().apply(p)).ok().filter(|p| p.is_finite());
+    if deformed.iter().all(upright) { Surface::lifted(hf, &moved) } else { Surface::bent(hf, Arc::new(moved)) }
+}
