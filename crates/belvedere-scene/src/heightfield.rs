@@ -301,7 +301,17 @@ impl Heightfield {
         if z_range[0] > z_range[1] {
             return Err(HeightfieldError::AllVoid { cols, rows });
         }
-        Ok(Self { north_west, spacing, cols, rows, heights, states, z_range, derived: Derived::default(), looks: Looks::default() })
+        Ok(Self {
+            north_west,
+            spacing,
+            cols,
+            rows,
+            heights,
+            states,
+            z_range,
+            derived: Derived::default(),
+            looks: Looks::default(),
+        })
     }
 
     /// Number of columns.

@@ -21,14 +21,14 @@ pub use frame::{Aux, Frame, FrameStats, RenderError, RenderJob, RenderOptions, R
 pub use ground::Ground;
 pub use heightfield::{Heightfield, HeightfieldError, NodeState, States};
 pub use layer::{
-    AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Color, Drape, Hidden, Layer, LayerKind, LineFeature, LineLayer,
-    Palette, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
+    AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Color, Drape, Hidden, Layer, LayerKind, LineFeature,
+    LineLayer, Palette, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
 };
 pub use light::Light;
 pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer};
 pub use mesh_tree::MeshTree;
 pub use overlay::{DistanceMarkers, Overlay, OverlayFace, OverlayLine, OverlayPoint, PointLook, Symbol};
-pub use ramp::{Ramp, RampHeight, RampStop};
 pub use progress::{Cancelled, Progress};
+pub use ramp::{Ramp, RampHeight, RampStop};
 pub use route::{RouteCost, RouteError, least_cost_route, valley_route};
 pub use scene::{Crs, Scene, Unit};

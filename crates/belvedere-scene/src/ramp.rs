@@ -84,7 +84,12 @@ mod tests {
     fn colours_lie_between_their_stops_and_jump_at_steps() {
         use RampHeight::{Hinged, Metres, Share};
         let ramp = Ramp {
-            stops: vec![stop(Metres(100.0), 50), stop(Metres(0.0), 0), stop(Metres(100.0), 200), stop(Metres(200.0), 250)],
+            stops: vec![
+                stop(Metres(100.0), 50),
+                stop(Metres(0.0), 0),
+                stop(Metres(100.0), 200),
+                stop(Metres(200.0), 250),
+            ],
             below: Some(Color::rgb(1, 2, 3)),
             above: None,
         };

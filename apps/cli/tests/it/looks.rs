@@ -76,7 +76,11 @@ fn a_palette_is_a_name_or_a_file_in_the_scene_and_on_the_command_line() {
     let auto = picture(&place, &scene("", "", ""), &[]);
     let text = picture(&place, &scene("", "palette = 'ramp.txt'", ""), &[]);
     assert!(auto != text && auto != picture(&place, &scene("", "palette = 'clear'", ""), &[]));
-    assert_eq!(text, picture(&place, &scene("", "palette = 'ramp.cpt'", ""), &[]), "the same colours from both formats");
+    assert_eq!(
+        text,
+        picture(&place, &scene("", "palette = 'ramp.cpt'", ""), &[]),
+        "the same colours from both formats"
+    );
     assert_eq!(text, picture(&place, &scene("", "", ""), &["--palette", "ramp.txt"]));
     let line = place.fails(&["render", "s.toml", "-o", "x.png", "--palette", "alpin"]);
     assert!(line.contains("alpin") && line.contains("alpine"), "{line}");

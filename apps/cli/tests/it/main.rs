@@ -3,12 +3,12 @@
 mod animate;
 mod bad_scenes;
 mod exact;
+mod looks;
 mod marks;
 mod meshes;
 mod numbers;
 mod odd_files;
 mod pick;
-mod looks;
 mod pictures;
 mod reveal;
 mod scenes;

@@ -2,8 +2,8 @@
 
 use super::color::{Rgb, encode, linear};
 use super::print::Print;
-use belvedere_scene::Drape;
 use belvedere_core::DVec2;
+use belvedere_scene::Drape;
 use glam::Vec4;
 
 /// Most samples for one pixel; what is longer still is averaged over wider squares.
@@ -125,7 +125,10 @@ mod tests {
         }
         // Up close it is sharp.
         let print = Print::new([DVec2::X * 0.1, DVec2::Y * 0.1], 0.1);
-        assert!(board.at(DVec2::new(100.5, 155.5), &print).0.x < 0.01 || board.at(DVec2::new(101.5, 155.5), &print).0.x < 0.01);
+        assert!(
+            board.at(DVec2::new(100.5, 155.5), &print).0.x < 0.01
+                || board.at(DVec2::new(101.5, 155.5), &print).0.x < 0.01
+        );
         assert!(board.at(DVec2::new(-40.0, 10.0), &print).1 == 0.0, "nothing outside");
     }
 

@@ -279,7 +279,8 @@ impl Means {
     /// * `near`: the averages of the finest stored level there.
     #[inline]
     pub(crate) fn openness(&self, height: f32, near: Vec4) -> f32 {
-        let per_m = |level: usize, share: f32| share / (self.spacing * (1u32 << level.clamp(self.first, self.top())) as f32);
+        let per_m =
+            |level: usize, share: f32| share / (self.spacing * (1u32 << level.clamp(self.first, self.top())) as f32);
         let wide: f32 = SURROUNDINGS.iter().map(|&(level, share)| per_m(level, share)).sum();
         let above = per_m(self.first, NEAR_SHARE) * (height - near.z) + wide * height - near.w;
         let x = above / 0.16;

@@ -187,8 +187,7 @@ impl Row {
         let side = (1u32 << k) as f32;
         let place = |i: usize| (i as f32 + 0.5) * side - 0.5;
         for (i, (out, shape)) in self.lit.iter_mut().zip(&self.shape).enumerate() {
-            let near =
-                if stored { *shape } else { m.means.at(m.means.first, place(first + i), place(row)) };
+            let near = if stored { *shape } else { m.means.at(m.means.first, place(first + i), place(row)) };
             // A hole looks like the ground around it.
             let shape = if stored || shape.w > 0.0 { *shape } else { near };
             *out = lit_node(m, shape, m.means.openness(shape.z, near), self.shares[i]);

@@ -149,8 +149,7 @@ impl<'a> Shader<'a> {
                 }
                 LayerShade::Mesh(m) => {
                     let (color, _) = m.shade(&found, Hit::new(&found, self.lens, at).weights);
-                    painted[i] =
-                        Painted { color: self.sky.through_air(color, depth), id: found.block.layer + 1 };
+                    painted[i] = Painted { color: self.sky.through_air(color, depth), id: found.block.layer + 1 };
                 }
                 LayerShade::Other => painted[i] = Painted { color: Rgb::ZERO, id: found.block.layer + 1 },
             }

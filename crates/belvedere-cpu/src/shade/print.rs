@@ -28,10 +28,7 @@ impl Print {
         }
         let direction = if p > q { DVec2::new(long - q, r) } else { DVec2::new(r, long - p) };
         let length = long.sqrt().clamp(facing, LONGEST * facing);
-        Self {
-            major: direction.normalize_or(DVec2::X) * length,
-            minor: short.max(0.0).sqrt().clamp(facing, length),
-        }
+        Self { major: direction.normalize_or(DVec2::X) * length, minor: short.max(0.0).sqrt().clamp(facing, length) }
     }
 
     /// Length of the longer axis.
@@ -54,7 +51,8 @@ mod tests {
     fn axes_are_those_of_the_ellipse() {
         // A circle squeezed to 2 by 10 and turned, whatever the turn of the image.
         for turn in 0..20 {
-            let (on_map, on_image) = (DVec2::from_angle(f64::from(turn) * 0.3), DVec2::from_angle(f64::from(turn) * 1.1));
+            let (on_map, on_image) =
+                (DVec2::from_angle(f64::from(turn) * 0.3), DVec2::from_angle(f64::from(turn) * 1.1));
             let to_map = |v: DVec2| on_map.rotate(v * DVec2::new(10.0, 2.0));
             let print = Print::new([to_map(on_image.rotate(DVec2::X)), to_map(on_image.rotate(DVec2::Y))], 1.0);
             assert!((print.length() - 10.0).abs() < 1e-9 && (print.minor - 2.0).abs() < 1e-9, "{print:?}");

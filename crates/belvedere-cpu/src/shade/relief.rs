@@ -129,7 +129,10 @@ mod tests {
         for relief in [Relief::Sun, Relief::Swiss] {
             let light = ReliefLight::new(relief, &Light::default());
             let ([lit, sky], [dark, same]) = (light.parts(n, 1.0, 1.0), light.parts(n, 1.0, 0.0));
-            assert!(dark < 0.5 * lit && sky == same && (relief == Relief::Swiss) == (dark > 0.0), "{relief:?} {lit} {dark}");
+            assert!(
+                dark < 0.5 * lit && sky == same && (relief == Relief::Swiss) == (dark > 0.0),
+                "{relief:?} {lit} {dark}"
+            );
         }
     }
 }

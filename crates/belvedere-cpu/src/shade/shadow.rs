@@ -147,7 +147,13 @@ impl Lines {
                 let share = y - j as f64;
                 let [a, b] = [j, (j + 1).min(self.size[1] - 1)].map(|j| f64::from(height(self.index(t, j))));
                 // A void beside the line counts only where the line meets it.
-                let z = if share == 0.0 { a } else if share == 1.0 { b } else { a + share * (b - a) };
+                let z = if share == 0.0 {
+                    a
+                } else if share == 1.0 {
+                    b
+                } else {
+                    a + share * (b - a)
+                };
                 if z > f64::NEG_INFINITY {
                     let light = |e: Edge| {
                         // The border of a shadow is as wide as the sun, and as a cell at least.
@@ -214,8 +220,15 @@ mod tests {
             240.0 * (x.sin() * (0.7 * y).cos() + 0.4 * (2.3 * x + y).sin() + 0.2 * (5.1 * y - 3.0 * x).cos())
         };
         let heights = (0..cols * rows).map(h).collect();
-        Heightfield::new(DVec2::ZERO, DVec2::new(30.0, 20.0), cols, rows, heights, vec![NodeState::Measured; cols * rows])
-            .unwrap()
+        Heightfield::new(
+            DVec2::ZERO,
+            DVec2::new(30.0, 20.0),
+            cols,
+            rows,
+            heights,
+            vec![NodeState::Measured; cols * rows],
+        )
+        .unwrap()
     }
 
     /// Least height of the sun's ray over the ground, by short steps: as share of the way gone, and in metres.
@@ -245,7 +258,9 @@ mod tests {
         let surface = Surface::of_map(&hf);
         let means = Means::new(&surface);
         let (mut dark, mut bright, mut wrong) = (0, 0, [0; 2]);
-        for (azimuth, altitude) in [(315f64, 20f64), (10.0, 12.0), (93.0, 16.0), (200.0, 25.0), (260.0, 8.0), (45.0, 30.0)] {
+        for (azimuth, altitude) in
+            [(315f64, 20f64), (10.0, 12.0), (93.0, 16.0), (200.0, 25.0), (260.0, 8.0), (45.0, 30.0)]
+        {
             let light = Light { azimuth: azimuth.to_radians(), altitude: altitude.to_radians(), shadows: true };
             let shadows = Shadows::new(&surface, &means, &light);
             let lit = &shadows.levels[0].2;
@@ -280,7 +295,11 @@ mod tests {
             }
         }
         assert!((100..156).contains(&lit[4 * cols + 30]), "the border lies halfway: {}", lit[4 * cols + 30]);
-        assert!(sweep([cols, rows], DVec2::splat(10.0), &Light { altitude: -0.01, ..light }, &|i| heights[i]).iter().all(|&l| l == 0));
+        assert!(
+            sweep([cols, rows], DVec2::splat(10.0), &Light { altitude: -0.01, ..light }, &|i| heights[i])
+                .iter()
+                .all(|&l| l == 0)
+        );
     }
 
     #[test]

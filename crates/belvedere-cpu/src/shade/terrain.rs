@@ -221,7 +221,6 @@ fn lit_surface<'a>(layer: &'a TerrainLayer, job: &RenderJob<'a>) -> Surface<'a> 
         },
     };
     let upright = |s: &Stage| matches!(s, Stage::EarthCurvature(_) | Stage::TerrainDisocclusion(_));
-    let moved =
-        move |p: DVec3| deformed.iter().try_fold(p, |p, s| s.as_map().apply(p)).ok().filter(|p| p.is_finite());
+    let moved = move |p: DVec3| deformed.iter().try_fold(p, |p, s| s.as_map().apply(p)).ok().filter(|p| p.is_finite());
     if deformed.iter().all(upright) { Surface::lifted(hf, &moved) } else { Surface::bent(hf, Arc::new(moved)) }
 }

@@ -86,7 +86,15 @@ fn lakes() -> Option<AreaLayer> {
         }
     }
     let fill = Color::rgb(96, 150, 190);
-    Some(AreaLayer { features, fill, outline: None, width_px: 1.0, surface: belvedere_scene::AreaSurface::Water, hidden: Hidden::Cut, lift_m: 1.0 })
+    Some(AreaLayer {
+        features,
+        fill,
+        outline: None,
+        width_px: 1.0,
+        surface: belvedere_scene::AreaSurface::Water,
+        hidden: Hidden::Cut,
+        lift_m: 1.0,
+    })
 }
 
 #[test]

@@ -89,7 +89,8 @@ impl Header {
                 [a, b] if a < b && a.is_finite() && b.is_finite() => self.range = Some([a, b]),
                 _ => return Err(format!("the range \"{}\" is not of the form low/high", shown(range))),
             }
-        } else if comment.starts_with("HARD_HINGE") || comment.starts_with("SOFT_HINGE") || comment.starts_with("HINGE") {
+        } else if comment.starts_with("HARD_HINGE") || comment.starts_with("SOFT_HINGE") || comment.starts_with("HINGE")
+        {
             self.hinge = true;
         }
         Ok(())

@@ -52,7 +52,24 @@ mod tests {
 
     #[test]
     fn no_text_is_ever_a_panic() {
-        let pieces = ["0 ", "nv", "50%", "B ", "1/2/3", "# RANGE = ", "#", "\n", "-", "255 ", "NaN ", "é", "hsv-", ";", "1e400 ", "L"];
+        let pieces = [
+            "0 ",
+            "nv",
+            "50%",
+            "B ",
+            "1/2/3",
+            "# RANGE = ",
+            "#",
+            "\n",
+            "-",
+            "255 ",
+            "NaN ",
+            "é",
+            "hsv-",
+            ";",
+            "1e400 ",
+            "L",
+        ];
         let mut seed = 9u64;
         for _ in 0..3000 {
             let mut text = String::new();

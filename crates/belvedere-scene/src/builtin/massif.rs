@@ -7,8 +7,8 @@ use super::sight::{Viewpoint, best_viewpoint};
 use super::{BuiltinError, SuggestedCamera, ground_layer, line_layer};
 use crate::route::{Window, route_in};
 use crate::{
-    AreaFeature, AreaLayer, AreaSurface, Color, Crs, Heightfield, HeightfieldError, Hidden, Layer, LayerKind, LineFeature,
-    NodeState, Palette, RouteCost, RouteError, Scene, Unit, drape_polyline,
+    AreaFeature, AreaLayer, AreaSurface, Color, Crs, Heightfield, HeightfieldError, Hidden, Layer, LayerKind,
+    LineFeature, NodeState, Palette, RouteCost, RouteError, Scene, Unit, drape_polyline,
 };
 use belvedere_core::DVec2;
 

@@ -4,8 +4,8 @@ use super::noise::Random;
 use super::sight::{Viewpoint, best_viewpoint};
 use super::{BuiltinError, SuggestedCamera, ground_layer, line_layer};
 use crate::{
-    AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Color, Crs, Heightfield, Hidden, Layer, LayerKind, LineFeature,
-    NodeState, Palette, Scene, Unit, drape_polyline,
+    AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Color, Crs, Heightfield, Hidden, Layer, LayerKind,
+    LineFeature, NodeState, Palette, Scene, Unit, drape_polyline,
 };
 use belvedere_core::{DVec2, DVec3};
 

@@ -10,9 +10,9 @@ use crate::scene_file::{
 use crate::{BelvedereError, OpenOptions};
 use belvedere_core::DVec2;
 use belvedere_scene::{
-    AreaLayer, AreaSurface, Color, Crs, DistanceMarkers, Drape, Heightfield, Hidden, Layer, LayerKind, LineFeature, LineLayer,
-    Palette, PointLayer, PointLook, Relief, RouteCost, Shading, Symbol, TerrainLayer, drape_polyline, least_cost_route,
-    valley_route,
+    AreaLayer, AreaSurface, Color, Crs, DistanceMarkers, Drape, Heightfield, Hidden, Layer, LayerKind, LineFeature,
+    LineLayer, Palette, PointLayer, PointLook, Relief, RouteCost, Shading, Symbol, TerrainLayer, drape_polyline,
+    least_cost_route, valley_route,
 };
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -3,7 +3,9 @@
 use super::Ground;
 use super::layers::Loader;
 use crate::BelvedereError;
-use belvedere_io::vector::{Geometry, Vectors, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain, surface_of};
+use belvedere_io::vector::{
+    Geometry, Vectors, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain, surface_of,
+};
 use belvedere_io::{IoError, Loaded};
 use belvedere_scene::{AreaFeature, AreaSurface, Crs, Heightfield, LineFeature, PointFeature};
 use std::path::{Path, PathBuf};

@@ -16,8 +16,8 @@ pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDo
 pub use intent::{AnimationDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
 pub use layers::{
     AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, HiddenDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc,
-    MeshDoc, MeshStyleDoc, ModelDoc, PaletteDoc, PaletteName, Paths, PlaceDoc, PointLayerDoc, PointStyleDoc, ReliefDoc, RouteDoc,
-    ShadingDoc, SurfaceDoc, SymbolDoc, TerrainDoc, TerrainStyleDoc, TransformDoc,
+    MeshDoc, MeshStyleDoc, ModelDoc, PaletteDoc, PaletteName, Paths, PlaceDoc, PointLayerDoc, PointStyleDoc, ReliefDoc,
+    RouteDoc, ShadingDoc, SurfaceDoc, SymbolDoc, TerrainDoc, TerrainStyleDoc, TransformDoc,
 };
 pub(crate) use node::{Node, Value};
 pub use overlay::{AutoOrLength, AutoWord, OverlayDoc, SwitchOrLength};
