@@ -106,7 +106,7 @@ mod tests {
 
     /// Black and white squares of one pixel, one scene unit each.
     fn board(side: usize) -> DrapeMap {
-        let pixel = |i: usize| if (i % side + i / side) % 2 == 0 { [255u8; 4] } else { [0, 0, 0, 255] };
+        let pixel = |i: usize| if (i % side + i / side).is_multiple_of(2) { [255u8; 4] } else { [0, 0, 0, 255] };
         let pixels = (0..side * side).map(pixel).collect();
         let a = [1.0, 0.0, 0.0, 0.0, -1.0, side as f64];
         DrapeMap::new(&Drape { pixels, width: side, height: side, pixel_from_scene: a }).unwrap()
@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn stripes_along_the_line_of_sight_stay_sharp_at_a_grazing_angle() {
         let side = 128;
-        let pixel = |i: usize| if i % side / 4 % 2 == 0 { [255u8; 4] } else { [0, 0, 0, 255] };
+        let pixel = |i: usize| if (i % side / 4).is_multiple_of(2) { [255u8; 4] } else { [0, 0, 0, 255] };
         let a = [1.0, 0.0, 0.0, 0.0, -1.0, side as f64];
         let pixels = (0..side * side).map(pixel).collect();
         let stripes = DrapeMap::new(&Drape { pixels, width: side, height: side, pixel_from_scene: a }).unwrap();
