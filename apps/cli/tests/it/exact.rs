@@ -19,6 +19,9 @@ fn values(path: &Path) -> Vec<[u8; 4]> {
 fn draw(place: &Place, scene: &str, root: Option<&str>, renderer: &str, size: [usize; 2]) -> Buffers {
     let (out, text) = (format!("{renderer}.png"), format!("{}x{}", size[0], size[1]));
     let mut args = vec!["render", scene, "-o", &out, "--renderer", renderer, "--size", &text, "--samples", "1"];
+    if renderer == "cpu" {
+        args.extend(["--lod", "0"]);
+    }
     args.extend(["--aux", "depth,id", "--overwrite"]);
     args.extend(root.iter().flat_map(|root| ["--allow-root", root]));
     place.ok(&args);

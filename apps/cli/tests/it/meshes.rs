@@ -7,7 +7,7 @@ const PYRAMID: &str =
     "v -20 80 -20\nv 20 80 -20\nv 20 120 -20\nv -20 120 -20\nv 0 100 20\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
 
 const SCENE: &str = "format = 1
-crs = 'local'
+crs = 'EPSG:32631'
 [[layer]]
 id = 'pyramid'
 kind = 'mesh'
@@ -24,7 +24,7 @@ look_at = [0, 100, 0]
 image = [64, 48]
 ";
 
-const TRAIL: &str = r#"{"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":{"type":"LineString","coordinates":[[-60,150,0],[60,150,0]]}}]}"#;
+const TRAIL: &str = r#"{"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"EPSG:32631"}},"features":[{"type":"Feature","properties":{},"geometry":{"type":"LineString","coordinates":[[-60,150,0],[60,150,0]]}}]}"#;
 
 fn place() -> Place {
     let place = Place::new();

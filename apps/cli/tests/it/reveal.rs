@@ -100,9 +100,9 @@ fn what_files_leave_out_the_scene_may_say() {
 #[test]
 fn info_says_what_it_reads() {
     let place = Place::new();
-    place.write("x.obj", "v 0 0 0");
-    assert!(place.fails(&["info", "x.obj"]).contains("features as GPX, GeoJSON or shapefile"));
-    assert!(place.fails(&["info", "none.obj"]).contains("No such file"));
+    place.write("x.docx", "v 0 0 0");
+    assert!(place.fails(&["info", "x.docx"]).contains("features as GPX, GeoJSON or shapefile"));
+    assert!(place.fails(&["info", "none.docx"]).contains("No such file"));
 }
 
 #[test]

@@ -110,18 +110,27 @@ pub struct BenchReport {
 /// # Errors
 /// [`BelvedereError::Render`], [`BelvedereError::Cancelled`]; [`BelvedereError::Usage`] if the request is out of range.
 pub fn bench(request: &BenchRequest, progress: &Progress) -> Result<BenchReport, BelvedereError> {
-    let BenchRequest { rounds, nodes, image, threads } = *request;
+    let BenchRequest { rounds, nodes, threads, .. } = *request;
     if !(33..=8193).contains(&nodes) || !(1..=1000).contains(&rounds) {
         return Err(BelvedereError::Usage(format!(
             "a ground of {nodes} x {nodes} nodes and {rounds} rounds: give 33..=8193 nodes and 1..=1000 rounds"
         )));
     }
+    // One pool for all frames: the processor time of threads that have ended is lost.
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(|| report(request, progress)),
+        Err(_) => report(request, progress),
+    }
+}
+
+fn report(request: &BenchRequest, progress: &Progress) -> Result<BenchReport, BelvedereError> {
+    let BenchRequest { rounds, nodes, image, threads } = *request;
     let before = load();
     let scene = ground(nodes)?;
     let views = views(image)?;
     let mut cases = Vec::new();
     for (lod_px, samples) in [(0.0, 1), (0.0, 4), (0.5, 1), (0.5, 4)] {
-        cases.extend(views.iter().map(|(name, view)| Case { name, scene: &scene, view, samples, lod_px, threads }));
+        cases.extend(views.iter().map(|(name, view)| Case { name, scene: &scene, view, samples, lod_px }));
     }
     let frames = measure(&cases, rounds, progress)?;
     let growth = vec![
@@ -150,7 +159,6 @@ struct Case<'a> {
     view: &'a View,
     samples: u32,
     lod_px: f64,
-    threads: usize,
 }
 
 fn measure(cases: &[Case<'_>], rounds: usize, progress: &Progress) -> Result<Vec<FrameCost>, BelvedereError> {
@@ -161,8 +169,8 @@ fn measure(cases: &[Case<'_>], rounds: usize, progress: &Progress) -> Result<Vec
     for round in 0..=rounds {
         for k in 0..cases.len() {
             let k = if round % 2 == 0 { k } else { cases.len() - 1 - k };
-            let Case { scene, view, samples, lod_px, threads, .. } = cases[k];
-            let options = RenderOptions { samples, lod_px, threads, ..RenderOptions::default() };
+            let Case { scene, view, samples, lod_px, .. } = cases[k];
+            let options = RenderOptions { samples, lod_px, ..RenderOptions::default() };
             let (wall, cpu) = (Instant::now(), cpu_ms());
             let job = RenderJob { scene, view, light: &light, options: &options, progress };
             CpuRenderer.render_into(&job, &mut frame)?;
@@ -195,7 +203,7 @@ fn grow_triangles(
     let cells = request.nodes - 1;
     let sizes: Vec<usize> = [cells / 4, cells / 2, cells, 2 * cells].map(|n| n + 1).into_iter().collect();
     let scenes = sizes.iter().map(|&n| ground(n)).collect::<Result<Vec<_>, _>>()?;
-    let case = |scene| Case { name: "curved rays", scene, view, samples: 1, lod_px, threads: request.threads };
+    let case = |scene| Case { name: "curved rays", scene, view, samples: 1, lod_px };
     let costs = measure(&scenes.iter().map(case).collect::<Vec<_>>(), request.rounds.min(5), progress)?;
     let of = if lod_px > 0.0 { "triangles of the ground, level of detail" } else { "triangles of the ground" };
     Ok(Growth::new(of, sizes.iter().map(|n| (2 * (n - 1) * (n - 1)) as f64).collect(), &costs))
@@ -207,7 +215,7 @@ fn grow_pixels(request: &BenchRequest, scene: &Scene, progress: &Progress) -> Re
     let views = sizes.into_iter().map(views).collect::<Result<Vec<_>, _>>()?;
     let case = |v: &'_ [(&'static str, View); 3]| (v[1].0, v[1].1.clone());
     let views: Vec<(&'static str, View)> = views.iter().map(case).collect();
-    let case = |(name, view)| Case { name, scene, view, samples: 1, lod_px: 0.5, threads: request.threads };
+    let case = |(name, view)| Case { name, scene, view, samples: 1, lod_px: 0.5 };
     let cases: Vec<Case<'_>> = views.iter().map(|(name, view)| case((*name, view))).collect();
     let costs = measure(&cases, request.rounds.min(5), progress)?;
     Ok(Growth::new("pixels", sizes.map(|[w, h]| f64::from(w) * f64::from(h)).to_vec(), &costs))
