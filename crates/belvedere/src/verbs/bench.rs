@@ -175,7 +175,7 @@ fn measure(cases: &[Case<'_>], rounds: usize, progress: &Progress) -> Result<Vec
             let job = RenderJob { scene, view, light: &light, options: &options, progress };
             CpuRenderer.render_into(&job, &mut frame)?;
             let wall = wall.elapsed().as_secs_f64() * 1e3;
-            let cpu = cpu.zip(cpu_ms()).map_or(wall, |(a, b)| b - a);
+            let cpu = cpu.zip(cpu_ms()).map_or(wall, |(a, b)| (b - a).max(LEAST_MS));
             triangles[k] = frame.stats.triangles_drawn;
             if round > 0 {
                 times[k].iter_mut().zip([cpu, wall]).for_each(|(t, v)| t.push(v));
@@ -247,7 +247,8 @@ fn project(views: &[(&'static str, View); 3], rounds: usize) -> Result<Vec<Proje
             let (wall, cpu) = (Instant::now(), cpu_ms());
             let whole = image.project(hf, view, 0);
             let threads = super::info::machine().threads as f64;
-            let cpu = cpu.zip(cpu_ms()).map_or(wall.elapsed().as_secs_f64() * 1e3 * threads, |(a, b)| b - a);
+            let cpu =
+                cpu.zip(cpu_ms()).map_or(wall.elapsed().as_secs_f64() * 1e3 * threads, |(a, b)| (b - a).max(LEAST_MS));
             if round > 0 && whole {
                 rates.push(points as f64 / cpu * 1e-3);
             }
@@ -318,6 +319,9 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
+
+/// Running threads are counted at the system's ticks: shorter times may come out as none at all.
+const LEAST_MS: f64 = 1e-3;
 
 /// Processor time of all threads so far, milliseconds; the kernel of Linux counts it in nanoseconds.
 fn cpu_ms() -> Option<f64> {
