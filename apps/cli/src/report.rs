@@ -100,7 +100,6 @@ impl Context {
             image,
             seed: self.common.seed,
             palette: None,
-            unsolved: false,
             progress: self.progress.clone(),
         }
     }

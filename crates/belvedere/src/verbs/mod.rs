@@ -5,7 +5,6 @@ pub mod bench;
 mod buffers;
 pub mod check;
 pub mod demo;
-pub mod disocclude;
 pub mod info;
 pub mod measure;
 pub mod output;
