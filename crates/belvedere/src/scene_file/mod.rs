@@ -5,6 +5,7 @@ mod document;
 mod intent;
 mod json;
 mod layers;
+mod mesh;
 mod node;
 mod overlay;
 pub mod paths;
@@ -16,9 +17,10 @@ pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDo
 pub use intent::{AnimationDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
 pub use layers::{
     AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, HiddenDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc,
-    MeshDoc, MeshStyleDoc, ModelDoc, PaletteDoc, PaletteName, Paths, PlaceDoc, PointLayerDoc, PointStyleDoc, ReliefDoc,
-    RouteDoc, ShadingDoc, SurfaceDoc, SymbolDoc, TerrainDoc, TerrainStyleDoc, TransformDoc,
+    ModelDoc, PaletteDoc, PaletteName, Paths, PlaceDoc, PointLayerDoc, PointStyleDoc, ReliefDoc, RouteDoc, ShadingDoc,
+    SurfaceDoc, SymbolDoc, TerrainDoc, TerrainStyleDoc,
 };
+pub use mesh::{MeshDoc, MeshStyleDoc, TransformDoc};
 pub(crate) use node::{Node, Value};
 pub use overlay::{AutoOrLength, AutoWord, OverlayDoc, SwitchOrLength};
 pub use stages::{

@@ -158,10 +158,3 @@ fn the_gotthard_shows_a_valley_route() {
 fn the_baltoro_shows_a_valley_route() {
     keeps_its_promise(place("Baltoro", "baltoro/baltoro_srtm.tif", &[]), 500.0);
 }
-
-/// Thousands of points close together, in every direction of the ground.
-#[test]
-#[ignore = "minutes; run with --release"]
-fn andorra_shows_its_roads() {
-    keeps_its_promise(place("Andorra, roads", "andorra/N42E001.hgt", &["andorra/roads.geojson"]), 150.0);
-}

@@ -1,0 +1,64 @@
+//! Layers of triangles in the scene document.
+
+use super::layers::Paths;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Placement of a model: scaled, then rotated about z (and x, y), then moved.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct TransformDoc {
+    /// Added last, scene units.
+    pub translate: [f64; 3],
+    /// Rotations about x, y and z, degrees; boxes take z only.
+    pub rotate_deg: [f64; 3],
+    /// Scale, > 0.
+    pub scale: f64,
+}
+
+impl Default for TransformDoc {
+    fn default() -> Self {
+        Self { translate: [0.0; 3], rotate_deg: [0.0; 3], scale: 1.0 }
+    }
+}
+
+/// Triangles from a file: OBJ, PLY, STL, glTF or GLB.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshDoc {
+    /// Unique id within the scene.
+    pub id: String,
+    /// A file, several, or `builtin:church`.
+    pub source: Paths,
+    /// Whether constructors and measures work for it.
+    #[serde(default)]
+    pub must_see: bool,
+    /// How it is drawn.
+    #[serde(default)]
+    pub style: MeshStyleDoc,
+    /// Placement; either this or `crs`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transform: Option<TransformDoc>,
+    /// `EPSG:n` of the file's x and y.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crs: Option<String>,
+    /// Movement: a CSV file with columns t, x, y, z, yaw_deg. Not played by this version.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<String>,
+}
+
+/// How a mesh is drawn.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct MeshStyleDoc {
+    /// Colour of meshes that have none of their own.
+    pub color: String,
+    /// Whether normals of the file smooth the shading.
+    pub smooth: bool,
+}
+
+impl Default for MeshStyleDoc {
+    fn default() -> Self {
+        Self { color: "#c9c2b8".into(), smooth: true }
+    }
+}
