@@ -8,6 +8,7 @@ use super::seen::Seen;
 use super::surface::{Lattice, Surface};
 use super::walk::{Clearance, Touch, fade};
 use crate::terrain::Field;
+use crate::terrain::smooth::{Hierarchy, Smoother};
 use belvedere_core::DVec2;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -44,12 +45,12 @@ struct Frame<'a> {
 
 impl QpSolver {
     /// * `field`: the ground;
-    /// * `nodes`: columns and rows of the solver's grid, `step`: field cells per cell of it;
-    /// * `weight`: w^2 + g^2 > 0 of the norm, w and g for that grid.
-    pub fn new(field: &Field, nodes: [usize; 2], step: DVec2, weight: f64, options: QpOptions) -> Self {
-        let [cols, rows] = nodes;
-        let surface = Surface::new(field.heights(), field.cols(), field.rows(), Lattice { cols, rows, step });
-        Self { metric: Metric::new(cols, rows, weight), surface, options, kept: Vec::new() }
+    /// * `hierarchy`: the solver's grid over it;
+    /// * `smoother`: H on that grid, without elevation rows.
+    pub fn new(field: &Field, hierarchy: &Hierarchy, smoother: Smoother, options: QpOptions) -> Self {
+        let lattice = Lattice { cols: hierarchy.cols(), rows: hierarchy.rows(), step: hierarchy.step() };
+        let surface = Surface::new(field.heights(), field.cols(), field.rows(), lattice);
+        Self { metric: Metric::new(smoother), surface, options, kept: Vec::new() }
     }
 
     /// Other ground on the same grid (in mode `paper+qp` detail may be scaled).

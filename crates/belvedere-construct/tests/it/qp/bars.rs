@@ -3,7 +3,7 @@
 //! A few eyes each; `BELVEDERE_EYES=20` judges as many (minutes).
 
 use belvedere_construct::terrain::qp::{Candidate, QpOptions, QpProblem, QpSolver, StraightSight};
-use belvedere_construct::terrain::{Field, TerrainSettings};
+use belvedere_construct::terrain::{Field, Hierarchy, Smoother, TerrainSettings, grid_weight};
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
 use belvedere_io::vector::{lines_on_terrain, load_vectors};
@@ -72,7 +72,7 @@ impl Place {
         let last = DVec2::new((self.field.cols() - 1) as f64, (self.field.rows() - 1) as f64);
         let at = (middle - direction * (60.0 + 37.0 * (k % 6) as f64)).clamp(DVec2::splat(1.0), last - 1.0);
         let above = 200.0 * 7.5f64.powf((k * 7 % 20) as f64 / 19.0);
-        (at, self.ground_at(at).unwrap() + above, (middle - at).normalize())
+        (at, self.ground_at(at).unwrap_or(self.field.datum() + self.field.relief()) + above, (middle - at).normalize())
     }
 
     /// Whether a point is seen, by marching: 0.2 cell a step, ground within the guard of the point left out.
@@ -94,19 +94,18 @@ impl Place {
     }
 }
 
-fn solver(place: &Place) -> (QpSolver, DVec2, [usize; 2]) {
-    let (cols, rows) = (place.field.cols(), place.field.rows());
-    let step = (cols.max(rows) - 1).div_ceil(128).max(1);
-    let nodes = [cols, rows].map(|n| (n - 1).div_ceil(step) + 1);
-    let w = 0.3 * (128.0 * step as f64 / (cols.max(rows) - 1) as f64).powi(2);
-    let options = QpOptions::of(&TerrainSettings::default());
-    (QpSolver::new(&place.field, nodes, DVec2::splat(step as f64), w * w, options), DVec2::splat(step as f64), nodes)
+fn solver(place: &Place) -> (QpSolver, Hierarchy) {
+    let settings = TerrainSettings::default();
+    let hierarchy = Hierarchy::new(place.field.cols(), place.field.rows(), settings.solver_nodes);
+    let (cols, rows) = (hierarchy.cols(), hierarchy.rows());
+    let smoother = Smoother::new(cols, rows, grid_weight(settings.smoothness(), cols.max(rows)), 0.0).unwrap();
+    (QpSolver::new(&place.field, &hierarchy, smoother, QpOptions::of(&settings)), hierarchy)
 }
 
 fn keeps_its_promise(place: Option<Place>, far: f64) {
     let Some(place) = place else { return };
     let eyes = std::env::var("BELVEDERE_EYES").ok().and_then(|v| v.parse().ok()).unwrap_or(3);
-    let (mut solver, step, nodes) = solver(&place);
+    let (mut solver, hierarchy) = solver(&place);
     let dense = place.points(0.25);
     let middle = dense[dense.len() / 2];
     for k in 0..eyes {
@@ -129,8 +128,9 @@ fn keeps_its_promise(place: Option<Place>, far: f64) {
         assert!(got.unresolved.is_empty(), "{view}: {:?}", got.unresolved);
         let highest = got.u.iter().copied().fold(0.0, f64::max);
         assert!(highest <= 0.5, "{view}: the ground rises by {highest}");
-        let delta = Grid::new(place.field.north_west(), place.field.spacing() * step, nodes[0], nodes[1], got.u);
-        let delta = delta.unwrap();
+        let (cols, rows) = (hierarchy.cols(), hierarchy.rows());
+        let spacing = place.field.spacing() * hierarchy.step();
+        let delta = Grid::new(place.field.north_west(), spacing, cols, rows, got.u).unwrap();
         let share = |points: Vec<DVec2>| {
             let seen = points.par_iter().filter(|p| place.sees(&delta, **p, (at, z))).count();
             seen as f64 / points.len().max(1) as f64

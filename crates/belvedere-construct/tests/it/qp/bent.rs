@@ -2,7 +2,7 @@
 
 use crate::synthetic::mountains;
 use belvedere_construct::terrain::qp::{Candidate, LinesOfSight, QpOptions, QpProblem, QpSolver, ViewSight};
-use belvedere_construct::terrain::{Field, TerrainSettings};
+use belvedere_construct::terrain::{Field, Hierarchy, Smoother, TerrainSettings};
 use belvedere_core::grid::Grid;
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
 use belvedere_core::presets::PresetDocument;
@@ -34,8 +34,9 @@ fn points_are_seen_along_the_rays_of_a_spline() {
         .collect();
     let sight = ViewSight::new(&view, &field);
     assert!(sight.straight().is_none());
-    let mut solver =
-        QpSolver::new(&field, [33, 33], DVec2::splat(4.0), 0.09 * 256.0, QpOptions::of(&TerrainSettings::default()));
+    let smoother = Smoother::new(33, 33, 4.8, 0.0).unwrap();
+    let options = QpOptions::of(&TerrainSettings::default());
+    let mut solver = QpSolver::new(&field, &Hierarchy::new(129, 129, 33), smoother, options);
     let got =
         solver.solve(&QpProblem { candidates: &candidates, sight: &sight, target: None, ceilings: None }).unwrap();
     assert!(got.unresolved.is_empty(), "{:?}", got.unresolved);

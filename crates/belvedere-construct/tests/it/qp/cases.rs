@@ -1,10 +1,10 @@
 //! Odd views and odd ground.
 
-use belvedere_construct::terrain::Field;
 use belvedere_construct::terrain::TerrainSettings;
 use belvedere_construct::terrain::qp::{
     Candidate, QpError, QpOptions, QpProblem, QpResult, QpSolver, Reason, StraightSight,
 };
+use belvedere_construct::terrain::{Field, Hierarchy, Smoother};
 use belvedere_core::DVec2;
 use belvedere_scene::{Heightfield, NodeState};
 
@@ -16,9 +16,9 @@ fn field(cols: usize, rows: usize, height: impl Fn(usize, usize) -> f64) -> Fiel
 }
 
 fn solver(field: &Field, nodes: [usize; 2], options: QpOptions) -> QpSolver {
-    let step = DVec2::new((field.cols() - 1) as f64, (field.rows() - 1) as f64)
-        / DVec2::new((nodes[0] - 1) as f64, (nodes[1] - 1) as f64);
-    QpSolver::new(field, nodes, step, 0.09, options)
+    let hierarchy = Hierarchy::new(field.cols(), field.rows(), nodes[0]);
+    let smoother = Smoother::new(nodes[0], nodes[1], 0.3, 0.0).unwrap();
+    QpSolver::new(field, &hierarchy, smoother, options)
 }
 
 fn ask(solver: &mut QpSolver, points: &[DVec2], eye: DVec2, z: f64) -> Result<QpResult, QpError> {

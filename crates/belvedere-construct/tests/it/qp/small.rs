@@ -1,8 +1,8 @@
 //! Against the slow solution, on small ground.
 
 use super::reference::{DenseRow, Small};
-use belvedere_construct::terrain::Field;
 use belvedere_construct::terrain::qp::{Candidate, QpOptions, QpProblem, QpResult, QpSolver, StraightSight};
+use belvedere_construct::terrain::{Field, Hierarchy, Smoother};
 use belvedere_core::DVec2;
 use belvedere_scene::{Heightfield, NodeState};
 
@@ -44,7 +44,9 @@ fn exact() -> QpOptions {
 }
 
 fn solver(small: &Small, options: QpOptions) -> QpSolver {
-    QpSolver::new(&field(small), [small.nodes; 2], DVec2::splat(small.step), small.weight, options)
+    let hierarchy = Hierarchy::new(small.n, small.n, small.nodes);
+    let smoother = Smoother::new(small.nodes, small.nodes, small.weight.sqrt(), 0.0).unwrap();
+    QpSolver::new(&field(small), &hierarchy, smoother, options)
 }
 
 fn solve(solver: &mut QpSolver, eye: DVec2, target: Option<&[f64]>) -> QpResult {
