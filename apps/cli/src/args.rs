@@ -1,6 +1,7 @@
 //! Arguments.
 
 use belvedere::verbs::render::RendererChoice;
+use belvedere::verbs::reveal::Technique;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -50,6 +51,8 @@ pub(crate) enum Verb {
     Demo(DemoArgs),
     /// Terrain and routes in, a picture in which the routes are visible out
     Reveal(RevealArgs),
+    /// Elevation model and features in, an elevation model in which the features can be seen from an eye out
+    Disocclude(DisoccludeArgs),
     /// One picture and its record
     Render(RenderArgs),
     /// A film or numbered frames: along a route, through viewing angles, or once around
@@ -156,6 +159,9 @@ pub(crate) struct RevealArgs {
     /// (GDAL colour-relief text, GMT .cpt)
     #[arg(long, value_name = "NAME|FILE", default_value = "auto")]
     pub(crate) palette: String,
+    /// What bends the picture
+    #[arg(long, value_enum, default_value = "spline")]
+    pub(crate) technique: TechniqueKind,
     /// Coordinate system of the scene: auto, EPSG:n or local
     #[arg(long, value_name = "CRS")]
     pub(crate) crs: Option<String>,
@@ -168,6 +174,49 @@ pub(crate) struct RevealArgs {
     /// Scene file that shows the same
     #[arg(long, value_name = "OUT.toml")]
     pub(crate) scene: Option<PathBuf>,
+}
+
+/// Terrain, features and an eye.
+#[derive(Debug, Args)]
+pub(crate) struct DisoccludeArgs {
+    /// Elevation model: GeoTIFF, .hgt, ESRI ASCII
+    pub(crate) dem: PathBuf,
+    /// Routes, areas or points: GPX, GeoJSON, shapefiles
+    #[arg(required = true)]
+    pub(crate) features: Vec<PathBuf>,
+    /// Eye: x,y in the system of the elevation model (degrees if geographic), z in metres over its datum
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_eye)]
+    pub(crate) eye: [f64; 3],
+    /// Place looked at: x,y in the system of the elevation model
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = parse_place)]
+    pub(crate) look: [f64; 2],
+    /// Full horizontal field of view, degrees
+    #[arg(long, value_name = "DEG", default_value_t = 70.0, allow_negative_numbers = true)]
+    pub(crate) fov: f64,
+    /// Passes of the solver; qp guarantees, paper is as published
+    #[arg(long, value_name = "MODE", value_parser = ["paper", "paper+qp", "qp"])]
+    pub(crate) mode: Option<String>,
+    /// Any other key of a terrain_disocclusion stage, such as w=0.6; may be given several times
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Displaced elevation model: GeoTIFF, 32-bit floats in metres, on the grid and in the system of the input
+    #[arg(short, long, value_name = "OUT.tif")]
+    pub(crate) out: PathBuf,
+    /// Figures, parameters, and what cannot be shown and why
+    #[arg(long, value_name = "OUT.json")]
+    pub(crate) report: Option<PathBuf>,
+    /// Displacement, on the same grid
+    #[arg(long, value_name = "D.tif")]
+    pub(crate) displacement: Option<PathBuf>,
+    /// Features on the displaced ground, their true places as properties
+    #[arg(long, value_name = "OUT.geojson")]
+    pub(crate) features_out: Option<PathBuf>,
+    /// Let the ground fall away with the distance
+    #[arg(long)]
+    pub(crate) curved_earth: bool,
+    /// Coordinate system to solve in: auto, EPSG:n or local
+    #[arg(long, value_name = "CRS")]
+    pub(crate) crs: Option<String>,
 }
 
 /// A scene to measure.
@@ -392,6 +441,30 @@ pub(crate) struct SchemaArgs {
     pub(crate) out: Option<PathBuf>,
 }
 
+/// What bends a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TechniqueKind {
+    /// A spline, and terrain that makes way where that leaves something hidden
+    Auto,
+    /// A spline over the mean ground
+    Spline,
+    /// Terrain that makes way
+    Terrain,
+    /// Spline and terrain
+    Both,
+}
+
+impl From<TechniqueKind> for Technique {
+    fn from(kind: TechniqueKind) -> Self {
+        match kind {
+            TechniqueKind::Auto => Self::Auto,
+            TechniqueKind::Spline => Self::Spline,
+            TechniqueKind::Terrain => Self::Terrain,
+            TechniqueKind::Both => Self::Both,
+        }
+    }
+}
+
 /// Renderers of this version.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum RendererKind {
@@ -464,6 +537,13 @@ fn parse_outside(text: &str) -> Result<Outside, String> {
         [a, b, c, d, e, f] => Ok(Some([[a, b, c], [d, e, f]])),
         _ => Err("give auto, or eye and target as X,Y,Z,X,Y,Z".into()),
     }
+}
+
+/// Two numbers of `1.5,42.5`.
+fn parse_place(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Vec<f64> =
+        text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
+    numbers.try_into().map_err(|_| "give X,Y".into())
 }
 
 /// Bytes of `512MiB`, `2GB`, `100000`.

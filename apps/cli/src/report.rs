@@ -100,6 +100,7 @@ impl Context {
             image,
             seed: self.common.seed,
             palette: None,
+            unsolved: false,
             progress: self.progress.clone(),
         }
     }

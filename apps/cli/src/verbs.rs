@@ -1,12 +1,13 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs,
-    RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs, Verb,
+    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, InfoArgs, MeasureArgs, PickArgs,
+    ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs, TechniqueKind, Verb,
 };
 use crate::report::{Context, done, print};
 use belvedere::scene_file::{AnimationDoc, PaletteDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{self, AnimateRequest, Film};
+use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest};
 use belvedere::verbs::render::{self, AuxBuffer, AuxFormat, RenderRequest};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
 use belvedere::verbs::{bench, check, demo, info, measure, output, pick, points};
@@ -33,6 +34,7 @@ impl Goal {
 pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
     match verb {
         Verb::Render(args) => render(&args, context),
+        Verb::Disocclude(args) => disocclude_terrain(args, context),
         Verb::Animate(args) => animate_scene(args, context),
         Verb::Project(args) => project(&args, context),
         Verb::Rays(args) => rays(&args, context),
@@ -106,7 +108,8 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     let palette = args.palette.as_deref().map(PaletteDoc::of);
     let options = OpenOptions { palette, ..context.options(Needs::Everything, args.size) };
     let session = Session::open(&args.scene, &options)?;
-    for path in &outputs {
+    let delta = session.terrain_report().filter(|_| !request.straight).map(|_| render::delta_path(&args.out));
+    for path in outputs.iter().chain(&delta) {
         output::check(path, session.inputs(), context.common.overwrite)?;
     }
     let picture = render::render(&session, &request, &context.progress)?;
@@ -119,6 +122,44 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     }
     context.warn(session.warnings());
     Ok(Goal::Reached)
+}
+
+fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result<Goal> {
+    let files = DisoccludeFiles {
+        out: args.out,
+        report: args.report,
+        displacement: args.displacement,
+        features: args.features_out,
+    };
+    let inputs: Vec<PathBuf> = args.features.iter().chain([&args.dem]).cloned().collect();
+    for path in files.all() {
+        output::check(&path, &inputs, context.common.overwrite)?;
+    }
+    let mode = args.mode.map(|mode| format!("mode=\"{mode}\""));
+    let set: Vec<String> = args.set.into_iter().chain(mode).collect();
+    let request = DisoccludeRequest {
+        dem: args.dem,
+        features: args.features,
+        eye: args.eye,
+        look: args.look,
+        fov_x_deg: args.fov,
+        parameters: disocclude::parameters(&set)?,
+        curved_earth: args.curved_earth,
+        crs: args.crs,
+    };
+    let found = disocclude::disocclude(&request, &context.options(Needs::Everything, None))?;
+    let written = found.write(&files, context.common.overwrite)?;
+    context.finish();
+    if context.common.json {
+        let mut result = done("disocclude", &written, found.session.warnings());
+        result["report"] = serde_json::from_str(&output::json(found.report())?)?;
+        context.print(&result)?;
+    } else if !context.common.quiet {
+        print(&format!("{}\n", found.summary()))?;
+    }
+    context.warn(found.session.warnings());
+    context.warn(&found.missed());
+    Ok(if found.missed().is_empty() { Goal::Reached } else { Goal::Missed })
 }
 
 fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
@@ -168,7 +209,9 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
     let inputs: Vec<PathBuf> = args.features.iter().chain([&args.dem]).map(PathBuf::from).collect();
     png_named(&files.out)?;
     files.before.as_deref().map_or(Ok(()), png_named)?;
-    for path in files.all() {
+    let moves = args.technique != TechniqueKind::Spline;
+    let delta = moves.then(|| render::delta_path(&files.out));
+    for path in files.all().into_iter().chain(delta) {
         output::check(&path, &inputs, context.common.overwrite)?;
     }
     let mut request = RevealRequest {
@@ -182,6 +225,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         crs: args.crs,
         keep_voids: args.keep_voids,
         palette: PaletteDoc::of(&args.palette),
+        technique: args.technique.into(),
         ..RevealRequest::default()
     };
     request.render.options.threads = context.common.threads;
@@ -191,6 +235,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
     if context.common.json {
         let mut result = done("reveal", &written, answer.session.warnings());
         result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
+        result["shares"] = serde_json::from_str(&output::json(&answer.shares)?)?;
         context.print(&result)?;
     } else if !context.common.quiet {
         context.finish();
@@ -292,7 +337,8 @@ fn check_scene(args: &SceneArgs, context: &Context) -> anyhow::Result<Goal> {
 
 fn show(args: &ShowArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene], context)?;
-    let session = context.open(&args.scene, Needs::Ground, None)?;
+    let options = OpenOptions { unsolved: true, ..context.options(Needs::Ground, None) };
+    let session = Session::open(&args.scene, &options)?;
     let named_json = args.out.as_ref().is_some_and(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")));
     let json = if args.out.is_some() { named_json } else { context.common.json };
     let text = if json { check::document_json(session.resolved())? } else { check::document_toml(session.resolved())? };

@@ -3,6 +3,7 @@
 //! [`measure()`] says what a picture shows of the features it is made for; [`reveal()`] chooses a view and a bend that
 //! show more of them.
 
+mod constructor;
 mod error;
 pub mod flight;
 pub mod measure;
@@ -12,6 +13,7 @@ mod sight;
 pub mod terrain;
 
 pub use belvedere_scene::Ground;
+pub use constructor::{Constructed, Constructor};
 pub use error::ConstructError;
 pub use flight::{Flight, FlightError, FlightOptions};
 pub use measure::{MeasureOptions, Measures, measure};

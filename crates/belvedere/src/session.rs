@@ -4,6 +4,7 @@ use crate::BelvedereError;
 use crate::resolve;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, Document, LayerDoc, PaletteDoc, PaletteName, SourceDocument};
+use belvedere_construct::terrain::TerrainReport;
 use belvedere_core::View;
 use belvedere_scene::{Light, Progress, Scene};
 use std::path::{Path, PathBuf};
@@ -33,6 +34,8 @@ pub struct OpenOptions {
     pub seed: Option<u64>,
     /// Another tint of terrain than the scene's.
     pub palette: Option<PaletteDoc>,
+    /// Leaves stages that a solver would have to make out of the view: for those who want the document alone.
+    pub unsolved: bool,
     /// Progress and cancellation.
     pub progress: Progress,
 }
@@ -47,6 +50,7 @@ pub struct Session {
     pub(crate) scene: Scene,
     pub(crate) view: View,
     pub(crate) light: Light,
+    pub(crate) terrain: Option<TerrainReport>,
     pub(crate) warnings: Vec<String>,
     pub(crate) inputs: Vec<PathBuf>,
 }
@@ -99,6 +103,11 @@ impl Session {
     /// The light.
     pub fn light(&self) -> &Light {
         &self.light
+    }
+
+    /// What the solver of terrain disocclusion came to; `None` if none ran.
+    pub fn terrain_report(&self) -> Option<&TerrainReport> {
+        self.terrain.as_ref()
     }
 
     /// What was odd: one sentence each.

@@ -13,6 +13,7 @@ mod pictures;
 mod reveal;
 mod scenes;
 mod speed;
+mod terrain;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

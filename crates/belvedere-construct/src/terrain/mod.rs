@@ -12,6 +12,7 @@ mod points;
 pub mod qp;
 mod settings;
 mod smooth;
+mod solve;
 mod viewpoint;
 
 pub use cells::{Cells, NO_CELL};
@@ -27,6 +28,9 @@ pub use settings::{Detail, SolverMode, TerrainSettings};
 pub use smooth::{
     ConjugateGradients, Convergence, Dct, ElevationRows, Green, Hierarchy, Real, SmoothError, SmoothMemory, SmoothPass,
     Smoothed, Smoother, grid_weight, laplacian, row_weight, temporal_weight,
+};
+pub use solve::{
+    QpReport, Solved, TerrainMemory, TerrainReport, TerrainSolver, TerrainTimes, UnresolvedReason, UnresolvedRun,
 };
 pub use viewpoint::{
     AdjustedViewpoint, ViewpointEnergy, ViewpointOptions, adjust_viewpoint, ghost_alpha, height_slope,

@@ -92,6 +92,21 @@ impl OriginalTerrain {
         Raster { info, samples: Samples::F32(values), mask: None }
     }
 
+    /// Scene x, y of a place in the file's own system (degrees if that is geographic); `None` outside the domain of either system.
+    pub fn scene_from_model(&self, scene: Crs, model: DVec2) -> Option<DVec2> {
+        match (&self.source.system, scene) {
+            (Some(system), Crs::Epsg(_)) => {
+                Transform::new(system, &CoordinateSystem::from_scene(scene).ok()?).ok()?.forward_one(model)
+            }
+            _ => model.is_finite().then_some(model),
+        }
+    }
+
+    /// Name of the file's own system for messages.
+    pub fn system_name(&self) -> &str {
+        self.source.system.as_ref().map_or("no coordinate system", CoordinateSystem::name)
+    }
+
     /// What of the georeference cannot be written, if anything: one sentence.
     pub fn georeference_note(&self) -> Option<String> {
         let system = self.source.system.as_ref()?;

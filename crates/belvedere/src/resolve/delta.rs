@@ -1,9 +1,10 @@
-//! Solved grids of terrain disocclusion from GeoTIFF files.
+//! Solved grids of terrain disocclusion from and to GeoTIFF files.
 
+use crate::BelvedereError;
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
-use belvedere_io::geotiff::GeoTiff;
-use belvedere_io::{Limits, SourceCrs};
+use belvedere_io::geotiff::{GeoTiff, write_geotiff};
+use belvedere_io::{Affine, CrsKind, Limits, Raster, RasterInfo, SampleType, Samples, SourceCrs};
 use belvedere_scene::{Crs, Progress};
 use std::path::Path;
 
@@ -36,4 +37,18 @@ pub(super) fn read(path: &Path, crs: Crs) -> Result<Grid, String> {
     let [x, y] = map.apply(0.5, 0.5);
     let spacing = DVec2::new(map.0[0], -map.0[4]);
     Grid::new(DVec2::new(x, y), spacing, cols, rows, values).map_err(|e| format!("{shown}: {e}"))
+}
+
+/// Writes a grid of height changes so that [`read`] finds the same values.
+pub(crate) fn write(path: &Path, grid: &Grid, crs: Crs, overwrite: bool) -> Result<(), BelvedereError> {
+    let mut info = RasterInfo::new(path, grid.cols(), grid.rows(), SampleType::F64);
+    let (start, step) = (grid.north_west(), grid.spacing());
+    // A node is the centre of a pixel.
+    let corner = Affine([step.x, 0.0, start.x, 0.0, -step.y, start.y]).after_scale_and_shift(1.0, 1.0, -0.5, -0.5);
+    info.pixel_to_model = Some(corner);
+    if let Crs::Epsg(code) = crs {
+        (info.crs, info.crs_kind) = (SourceCrs::Epsg(code), CrsKind::Projected);
+    }
+    let raster = Raster { info, samples: Samples::F64(grid.values().to_vec()), mask: None };
+    Ok(write_geotiff(path, &raster, overwrite)?)
 }

@@ -3,7 +3,7 @@
 mod boxes;
 pub(crate) mod builtin;
 mod camera;
-mod delta;
+pub(crate) mod delta;
 mod dem;
 mod drape;
 mod layers;
@@ -11,6 +11,7 @@ mod light;
 mod mesh;
 mod rays;
 pub(crate) mod stages;
+pub(crate) mod terrain;
 pub(crate) mod validate;
 pub(crate) mod vectors;
 
@@ -19,10 +20,12 @@ use crate::scene_file::{
     ConstructorKind, Document, EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc, UnitDoc,
 };
 use crate::{BelvedereError, Needs, OpenOptions, Session};
+use belvedere_construct::terrain::{TerrainMemory, TerrainReport};
 use belvedere_core::{DVec2, EarthCurvature, Stage, View};
 use belvedere_io::crs::{CoordinateSystem, Transform, gaussian_radius_m, utm_epsg};
 use belvedere_scene::{Crs, Heightfield, Layer, LayerKind, Light, Scene, Unit};
 use std::path::PathBuf;
+use terrain::Solving;
 
 /// Mean radius of the earth for scenes without georeference, metres.
 const MEAN_EARTH_RADIUS_M: f64 = 6_371_008.8;
@@ -41,7 +44,9 @@ pub(crate) fn session(source: SourceDocument, roots: &Roots, options: &OpenOptio
     };
     let scene = load(&mut loader)?;
     let layers::Loader { inputs, warnings, .. } = loader;
-    let looked = look(&source, roots, &scene)?;
+    let mut memory = TerrainMemory::default();
+    let mut solving = Solving { memory: &mut memory, time_step_s: None, progress: &options.progress };
+    let looked = look(&source, roots, &scene, (!options.unsolved).then_some(&mut solving))?;
     Ok(Session {
         document: looked.document,
         path: source.path().to_owned(),
@@ -50,17 +55,24 @@ pub(crate) fn session(source: SourceDocument, roots: &Roots, options: &OpenOptio
         scene,
         view: looked.view,
         light: looked.light,
+        terrain: looked.terrain,
         warnings: warnings.into_iter().chain(looked.warnings).collect(),
         inputs: inputs.into_iter().chain(looked.inputs).collect(),
     })
 }
 
 /// The session's scene by another document of the same layers: everything that depends on camera and stages is resolved again.
-pub(crate) fn look_again(session: &mut Session, document: Document) -> Result<(), BelvedereError> {
+/// Without `solving` an intent of terrain disocclusion is left out.
+pub(crate) fn look_again(
+    session: &mut Session,
+    document: Document,
+    solving: Option<&mut Solving<'_>>,
+) -> Result<(), BelvedereError> {
     let mut source = session.source.clone();
     source.document = document;
-    let looked = look(&source, &session.roots, &session.scene)?;
+    let looked = look(&source, &session.roots, &session.scene, solving)?;
     (session.document, session.view, session.light) = (looked.document, looked.view, looked.light);
+    session.terrain = looked.terrain;
     Ok(())
 }
 
@@ -69,25 +81,31 @@ struct Looked {
     document: Document,
     view: View,
     light: Light,
+    terrain: Option<TerrainReport>,
     inputs: Vec<PathBuf>,
     warnings: Vec<String>,
 }
 
-fn look(source: &SourceDocument, roots: &Roots, scene: &Scene) -> Result<Looked, BelvedereError> {
+fn look(
+    source: &SourceDocument,
+    roots: &Roots,
+    scene: &Scene,
+    solving: Option<&mut Solving<'_>>,
+) -> Result<Looked, BelvedereError> {
     let (mut inputs, mut warnings) = (Vec::new(), Vec::new());
     let ground = Ground { crs: scene.crs, terrain: scene.terrain() };
     let camera = camera::resolve(source, &ground, stages::plane_normal(&source.document))?;
     let mut chain = earth(source, &ground, camera.pinhole.eye, &mut warnings);
     let mut document = source.document.clone();
-    let context = stages::StageContext { source, roots, ground: &ground, camera: &camera };
-    let resolved = stages::resolve(&context, &mut inputs, &mut warnings)?;
+    let context = stages::StageContext { source, roots, scene, ground: &ground, camera: &camera, earth: &chain };
+    let resolved = stages::resolve(&context, solving, &mut inputs, &mut warnings)?;
     chain.extend(resolved.stages);
     let view = View::new(resolved.pinhole, chain).map_err(|e| source.error(&["stage"], e))?;
     let light = light::resolve(source, &ground, view.pinhole().eye, &mut warnings)?;
     document.crs = scene.crs.to_string();
     document.camera = camera.document;
     document.stage = resolved.documents;
-    Ok(Looked { document, view, light, inputs, warnings })
+    Ok(Looked { document, view, light, terrain: resolved.terrain, inputs, warnings })
 }
 
 /// A picture without what the scene asks for would mislead.
@@ -107,7 +125,9 @@ fn load(loader: &mut layers::Loader<'_>) -> Result<Scene, BelvedereError> {
     let doc = &source.document;
     let mut crs = crs_wanted(source)?;
     let mut layers: Vec<Option<Layer>> = doc.layer.iter().map(|_| None).collect();
-    let with_ground = loader.options.needs != Needs::View || ground_is_needed(source, crs);
+    let solves = !loader.options.unsolved && doc.stage.iter().any(StageDoc::is_terrain_intent);
+    let needs = if solves { Needs::Everything } else { loader.options.needs };
+    let with_ground = needs != Needs::View || ground_is_needed(source, crs);
     for (i, layer) in doc.layer.iter().enumerate().filter(|_| with_ground) {
         if let LayerDoc::Terrain(terrain) = layer {
             let (terrain, found) = loader.terrain(i, terrain, crs)?;
@@ -116,7 +136,7 @@ fn load(loader: &mut layers::Loader<'_>) -> Result<Scene, BelvedereError> {
         }
     }
     let crs = crs.or_else(|| crs_of_eye(source)).unwrap_or_default();
-    if loader.options.needs == Needs::Everything {
+    if needs == Needs::Everything {
         for (i, layer) in doc.layer.iter().enumerate() {
             let ground = Ground { crs, terrain: first_terrain(&layers) };
             if let LayerDoc::Terrain(terrain) = layer {

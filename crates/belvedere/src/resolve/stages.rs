@@ -1,15 +1,18 @@
 //! From the stages of a document to displacements.
 
-use super::Ground;
 use super::camera::ResolvedCamera;
+use super::terrain::Solving;
+use super::{Ground, terrain};
 use crate::BelvedereError;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
     self, Document, PlaneDoc, PresetsDoc, SourceDocument, SplineStageDoc, StageDoc, TerrainStageDoc,
 };
+use belvedere_construct::terrain::TerrainReport;
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
 use belvedere_core::presets::{BUILTIN_NAMES, PresetDocument};
-use belvedere_core::{DVec3, Pinhole, SplineBend, Stage, TerrainDisocclusion};
+use belvedere_core::{DVec3, Pinhole, SplineBend, Stage, TerrainDisocclusion, View};
+use belvedere_scene::Scene;
 use std::path::PathBuf;
 
 /// Normal of the reference plane of the first spline stage.
@@ -28,31 +31,42 @@ pub(super) struct ResolvedStages {
     pub(super) pinhole: Pinhole,
     /// The documents with every rule replaced by its value.
     pub(super) documents: Vec<StageDoc>,
+    /// What the terrain solver came to, if it ran.
+    pub(super) terrain: Option<TerrainReport>,
 }
 
 /// What stages are resolved with.
 pub(super) struct StageContext<'a> {
     pub(super) source: &'a SourceDocument,
     pub(super) roots: &'a Roots,
+    pub(super) scene: &'a Scene,
     pub(super) ground: &'a Ground<'a>,
     pub(super) camera: &'a ResolvedCamera,
+    /// Stages before those of the document.
+    pub(super) earth: &'a [Stage],
 }
 
-/// The stages and their documents.
+/// The stages and their documents. Without `solving` an intent of terrain disocclusion gives no stage.
 pub(super) fn resolve(
     context: &StageContext<'_>,
+    solving: Option<&mut Solving<'_>>,
     inputs: &mut Vec<PathBuf>,
     warnings: &mut Vec<String>,
 ) -> Result<ResolvedStages, BelvedereError> {
-    let mut out = ResolvedStages { stages: Vec::new(), pinhole: context.camera.pinhole.clone(), documents: Vec::new() };
+    let pinhole = context.camera.pinhole.clone();
+    let mut out = ResolvedStages { stages: Vec::new(), pinhole, documents: Vec::new(), terrain: None };
+    let mut intent = None;
     for (i, stage) in context.source.document.stage.iter().enumerate() {
         let at = i.to_string();
-        let fail = |keys: &[&str], reason: String| {
-            let path: Vec<&str> = ["stage", &at].into_iter().chain(keys.iter().copied()).collect();
-            context.source.error(&path, reason)
-        };
+        let fail = failing(context, &at);
         let (stage, document) = match stage {
-            StageDoc::TerrainDisocclusion(doc) => terrain(context, doc, inputs, &fail)?,
+            StageDoc::TerrainDisocclusion(doc) if doc.delta.is_none() => {
+                let settings = terrain::settings(doc).map_err(|(key, reason)| fail(&[key], reason))?;
+                out.documents.push(StageDoc::TerrainDisocclusion(terrain::document(&settings, context.scene)));
+                intent = Some((i, settings));
+                continue;
+            }
+            StageDoc::TerrainDisocclusion(doc) => solved_terrain(context, doc, inputs, &fail)?,
             StageDoc::SplineBend(doc) => {
                 let (bend, document) = spline(context, doc, inputs, warnings, &fail)?;
                 out.pinhole = bend.adapted_pinhole(&out.pinhole);
@@ -63,25 +77,37 @@ pub(super) fn resolve(
         out.stages.push(stage);
         out.documents.push(document);
     }
+    // The terrain comes first and is solved last: what it promises has to hold behind the stages that follow it.
+    if let (Some((i, settings)), Some(solving)) = (intent, solving) {
+        let at = i.to_string();
+        let chain = context.earth.iter().chain(&out.stages).cloned().collect();
+        let base = View::new(out.pinhole.clone(), chain).map_err(|e| context.source.error(&["stage"], e))?;
+        let solved = terrain::solve(settings, context.scene, &base, solving, &failing(context, &at))?;
+        warnings.extend(terrain::remarks(&solved));
+        out.stages.insert(0, Stage::TerrainDisocclusion(solved.stage));
+        out.terrain = Some(solved.report);
+    }
     Ok(out)
+}
+
+fn failing<'a>(context: &'a StageContext<'_>, at: &'a str) -> impl Fn(&[&str], String) -> BelvedereError + 'a {
+    move |keys, reason| {
+        let path: Vec<&str> = ["stage", at].into_iter().chain(keys.iter().copied()).collect();
+        context.source.error(&path, reason)
+    }
 }
 
 /// Makes an error at a key of the stage.
 pub(super) type Fail<'a> = dyn Fn(&[&str], String) -> BelvedereError + 'a;
 
-fn terrain(
+/// A solved grid.
+fn solved_terrain(
     context: &StageContext<'_>,
     doc: &TerrainStageDoc,
     inputs: &mut Vec<PathBuf>,
     fail: &Fail<'_>,
 ) -> Result<(Stage, StageDoc), BelvedereError> {
-    let Some(name) = &doc.delta else {
-        return Err(fail(
-            &["kind"],
-            "terrain_disocclusion from an intent needs its solver, which this version does not have; give the solved grid as delta = \"delta.tif\", or remove the stage"
-                .into(),
-        ));
-    };
+    let name = doc.delta.as_deref().unwrap_or_default();
     let path = context.roots.resolve(name).map_err(|e| fail(&["delta"], e.to_string()))?;
     if let Some(expected) = &doc.delta_sha256 {
         let found = crate::provenance::sha256(&path)?;

@@ -29,6 +29,11 @@ impl StageDoc {
             Self::CurvedRays(_) => "curved_rays",
         }
     }
+
+    /// Whether the stage has to be solved before anything can be drawn.
+    pub(crate) fn is_terrain_intent(&self) -> bool {
+        matches!(self, Self::TerrainDisocclusion(doc) if doc.delta.is_none())
+    }
 }
 
 /// How the terrain solver works.
@@ -68,7 +73,7 @@ pub struct TerrainStageDoc {
     /// Solver.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mode: Option<SolverMode>,
-    /// Cells along the longer side.
+    /// Cells (mountains) to keep, a whole number; by default the nodes of the terrain / 1600.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cells: Option<f64>,
     /// Spacing of reference points, cells.

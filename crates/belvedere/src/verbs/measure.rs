@@ -4,6 +4,7 @@ use super::render::RendererChoice;
 use crate::{BelvedereError, Session};
 pub use belvedere_construct::MeasureOptions;
 use belvedere_construct::Measures;
+use belvedere_construct::terrain::TerrainReport;
 use belvedere_scene::Progress;
 use serde::Serialize;
 
@@ -18,6 +19,9 @@ pub struct MeasureReport {
     pub stages: Vec<&'static str>,
     /// Who drew the depth buffers.
     pub renderer: &'static str,
+    /// What the solver of terrain disocclusion came to; `None` if none ran.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub terrain: Option<TerrainReport>,
     /// The figures.
     #[serde(flatten)]
     pub measures: Measures,
@@ -43,6 +47,7 @@ pub fn measure(
         crs: session.scene().crs.to_string(),
         stages: session.view().stages().iter().map(|s| s.name()).collect(),
         renderer: renderer.name(),
+        terrain: session.terrain_report().cloned(),
         measures,
         scene_warnings: session.warnings().to_vec(),
     })

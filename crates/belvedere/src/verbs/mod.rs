@@ -5,6 +5,7 @@ pub mod bench;
 mod buffers;
 pub mod check;
 pub mod demo;
+pub mod disocclude;
 pub mod info;
 pub mod measure;
 pub mod output;

@@ -4,13 +4,16 @@ use super::buffers;
 use super::output;
 use crate::figures::{badge, camera, ghost, grid, heat};
 use crate::provenance::{self, InputFile};
-use crate::scene_file::SwitchOrLength;
+use crate::scene_file::{StageDoc, SwitchOrLength};
 use crate::{BelvedereError, CameraPicture, Session};
-use belvedere_core::{Camera, DVec2, View};
+use belvedere_construct::terrain::TerrainReport;
+use belvedere_core::{Camera, DVec2, Stage, View};
 use belvedere_cpu::canvas::Canvas;
 use belvedere_cpu::{CpuRenderer, ExactRenderer};
 use belvedere_io::png::{self, Channels};
-use belvedere_scene::{Aux, Frame, FrameStats, Heightfield, NodeState, Progress, RenderJob, RenderOptions, Renderer};
+use belvedere_scene::{
+    Aux, Crs, Frame, FrameStats, Heightfield, NodeState, Progress, RenderJob, RenderOptions, Renderer,
+};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -172,6 +175,9 @@ pub struct Sidecar {
     pub displacement: Option<DisplacementReport>,
     /// What of the ground is made up; `None` without terrain.
     pub terrain: Option<TerrainRecord>,
+    /// What the solver of terrain disocclusion came to; `None` if none ran.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub disocclusion: Option<TerrainReport>,
     /// The camera in numbers.
     pub view: provenance::ViewRecord,
     /// The resolved scene: opens to the same view.
@@ -198,6 +204,12 @@ pub struct Picture {
     pub(super) aux: Vec<AuxBuffer>,
     pub(super) aux_format: AuxFormat,
     pub(super) view: View,
+    pub(super) crs: Crs,
+}
+
+/// File of the solved displacement of the ground, written beside a picture whose scene asks for it by an intent.
+pub fn delta_path(out: &Path) -> PathBuf {
+    out.with_extension("delta.tif")
 }
 
 /// Files that [`Picture::write`] makes for `out`.
@@ -242,6 +254,7 @@ pub(super) fn draw(
         overlay,
         displacement,
         terrain: session.scene().terrain().map(TerrainRecord::of),
+        disocclusion: session.terrain_report().filter(|_| !request.straight).cloned(),
         view: provenance::ViewRecord::of(&view),
         scene: session.resolved().clone(),
         inputs,
@@ -249,7 +262,8 @@ pub(super) fn draw(
         stats: frame.stats.clone(),
         render_ms,
     };
-    Ok(Picture { frame, straight, sidecar, aux: request.aux.clone(), aux_format: request.aux_format, view })
+    let (aux, aux_format, crs) = (request.aux.clone(), request.aux_format, session.scene().crs);
+    Ok(Picture { frame, straight, sidecar, aux, aux_format, view, crs })
 }
 
 /// Pictures with everything over them.
@@ -330,10 +344,11 @@ impl Picture {
     /// # Errors
     /// [`BelvedereError::Io`].
     pub fn write(&self, out: &Path, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
-        self.write_png(out, overwrite)?;
-        let sidecar = sibling(out, ".json");
-        output::write_text(&sidecar, &super::check::pretty(&self.sidecar)?, overwrite)?;
-        let mut written = vec![out.to_owned(), sidecar];
+        let mut written = vec![out.to_owned(), sibling(out, ".json")];
+        let solved = self.with_delta(out, overwrite, &mut written)?;
+        let this = solved.as_ref().unwrap_or(self);
+        this.write_png(out, overwrite)?;
+        output::write_text(&written[1], &super::check::pretty(&this.sidecar)?, overwrite)?;
         if self.aux_format == AuxFormat::Exr && !self.aux.is_empty() {
             let path = out.with_extension("exr");
             buffers::write(&self.frame, &self.view, &self.aux, &path, overwrite)?;
@@ -346,6 +361,31 @@ impl Picture {
             written.push(path);
         }
         Ok(written)
+    }
+
+    /// Writes the solved displacement of the ground beside the picture; the record then names it in place of the intent.
+    fn with_delta(
+        &self,
+        out: &Path,
+        overwrite: bool,
+        written: &mut Vec<PathBuf>,
+    ) -> Result<Option<Self>, BelvedereError> {
+        let solved = self.view.stages().iter().find_map(|s| match s {
+            Stage::TerrainDisocclusion(terrain) => Some(terrain),
+            _ => None,
+        });
+        let (Some(solved), Some(_)) = (solved, &self.sidecar.disocclusion) else { return Ok(None) };
+        let path = delta_path(out);
+        crate::resolve::delta::write(&path, solved.grid(), self.crs, overwrite)?;
+        let mut this = self.clone();
+        for stage in &mut this.sidecar.scene.stage {
+            if let StageDoc::TerrainDisocclusion(doc) = stage {
+                doc.delta = path.file_name().and_then(|n| n.to_str()).map(str::to_owned);
+                doc.delta_sha256 = Some(provenance::sha256(&path)?);
+            }
+        }
+        written.push(path);
+        Ok(Some(this))
     }
 
     /// Writes the picture alone. Its bytes depend on scene, request and inputs only, not on threads or time.

@@ -3,7 +3,9 @@
 use super::check::{document_toml, pretty};
 use super::output;
 use super::render::{self, Picture, RenderRequest};
+use crate::resolve::terrain::Solving;
 use crate::resolve::vectors::{FeatureKind, kind_of};
+use crate::scene_file::TerrainStageDoc;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
     AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LineDoc, LineStyleDoc, PaletteDoc, Paths, PlaneDoc,
@@ -11,7 +13,8 @@ use crate::scene_file::{
     TerrainDoc, TerrainStyleDoc, UnitDoc,
 };
 use crate::{BelvedereError, OpenOptions, Session};
-use belvedere_construct::{Goal, RevealMemory, RevealOptions, RevealReport, Revealed};
+use belvedere_construct::terrain::{TerrainMemory, TerrainReport};
+use belvedere_construct::{Goal, MeasureOptions, RevealMemory, RevealOptions, RevealReport, Revealed};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::{Crs, NodeState, Progress};
@@ -41,8 +44,39 @@ pub struct RevealRequest {
     pub keep_voids: bool,
     /// Tint of the terrain by height.
     pub palette: PaletteDoc,
+    /// What bends the picture.
+    pub technique: Technique,
     /// Quality of the pictures.
     pub render: RenderRequest,
+}
+
+/// What bends the picture.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Technique {
+    /// A spline, and terrain that makes way as well where that leaves something hidden.
+    Auto,
+    /// A spline.
+    #[default]
+    Spline,
+    /// Terrain that makes way.
+    Terrain,
+    /// Both.
+    Both,
+}
+
+/// Visible share from which nothing is worth moving the ground for.
+const ENOUGH: f64 = 0.99;
+
+/// What the finished picture shows, by lines of sight through its whole chain of stages.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct FinalShares {
+    /// What bends the picture in the end.
+    pub technique: Technique,
+    /// Visible share of the in-frame amount in the straight picture.
+    pub visible_straight: Option<f64>,
+    /// The same in the bent one.
+    pub visible_bent: Option<f64>,
 }
 
 /// What was found: a session that shows it, its picture beside the straight one, and the figures.
@@ -52,16 +86,24 @@ pub struct RevealAnswer {
     pub session: Session,
     /// Both pictures.
     pub picture: Picture,
-    /// Figures.
+    /// Figures of the search for a view and a spline.
     pub report: RevealReport,
+    /// What the picture shows where the ground makes way.
+    pub shares: Option<FinalShares>,
+    missed: Vec<String>,
 }
 
 /// The report file.
 #[derive(Debug, Clone, Serialize)]
 struct ReportFile<'a> {
     program: String,
+    /// The spline; left out where only the ground makes way.
     #[serde(flatten)]
-    report: &'a RevealReport,
+    report: Option<&'a RevealReport>,
+    #[serde(flatten)]
+    shares: Option<FinalShares>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    disocclusion: Option<&'a TerrainReport>,
     displacement: Option<render::DisplacementReport>,
     view: &'a crate::provenance::ViewRecord,
     crs: String,
@@ -90,8 +132,48 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     let mut memory = RevealMemory::default();
     let found = belvedere_construct::reveal(&session.scene, base.as_ref(), &search, &mut memory, &options.progress)?;
     adopt(&mut session, &found)?;
+    let with_terrain = match request.technique {
+        Technique::Spline => None,
+        Technique::Auto if found.report.bent.visible >= ENOUGH => None,
+        Technique::Auto | Technique::Both => Some(Technique::Both),
+        Technique::Terrain => Some(Technique::Terrain),
+    };
+    let mut missed = match &found.report.goal {
+        Goal::Reached => Vec::new(),
+        Goal::Missed(reasons) => reasons.clone(),
+    };
+    let mut shares = None;
+    if let Some(technique) = with_terrain {
+        let found = make_way(&mut session, technique, &options.progress)?;
+        missed = found.visible_bent.filter(|v| *v < ENOUGH).map(shortfall).into_iter().collect();
+        shares = Some(found);
+    }
     let picture = draw(&session, request, &options.progress)?;
-    Ok(RevealAnswer { session, picture, report: found.report })
+    Ok(RevealAnswer { session, picture, report: found.report, shares, missed })
+}
+
+fn shortfall(visible: f64) -> String {
+    format!("{:.1} % of what is in the picture is visible, {:.0} % were wanted", 100.0 * visible, 100.0 * ENOUGH)
+}
+
+/// Lets the ground make way in the picture that was found, and judges the whole.
+fn make_way(session: &mut Session, technique: Technique, progress: &Progress) -> Result<FinalShares, BelvedereError> {
+    let mut document = session.document.clone();
+    if technique == Technique::Terrain {
+        document.stage.clear();
+    }
+    document.stage.insert(0, StageDoc::TerrainDisocclusion(TerrainStageDoc::default()));
+    let mut memory = TerrainMemory::default();
+    let mut solving = Solving { memory: &mut memory, time_step_s: None, progress };
+    crate::resolve::look_again(session, document, Some(&mut solving))?;
+    let measures =
+        belvedere_construct::measure(&session.scene, &session.view, None, &MeasureOptions::default(), progress)?;
+    let all = measures.lines.as_ref().or(measures.areas.as_ref()).or(measures.points.as_ref());
+    Ok(FinalShares {
+        technique,
+        visible_straight: all.and_then(|m| m.straight.sight.share),
+        visible_bent: all.and_then(|m| m.bent.sight.share),
+    })
 }
 
 /// Most of the ground that may be made up, share of the nodes; above it holes stay open.
@@ -99,19 +181,12 @@ pub const MAX_FILLED_SHARE: f64 = 0.15;
 
 /// The terrain and the features, holes filled unless they are to be kept or too much of the ground.
 fn open(request: &RevealRequest, options: &OpenOptions) -> Result<Session, BelvedereError> {
-    let load = |keep_voids: bool| {
-        let (document, roots) = document(request, keep_voids)?;
-        let source = SourceDocument::made(PathBuf::from("reveal.toml"), document);
-        let mut session = crate::resolve::session(source, &roots, options)?;
-        session.inputs.remove(0);
-        Ok::<_, BelvedereError>(session)
-    };
-    let session = load(request.keep_voids)?;
+    let session = load(request, request.keep_voids, options)?;
     let filled = session.scene.terrain().map_or(0.0, |t| t.share_of(NodeState::Filled));
     if filled <= MAX_FILLED_SHARE {
         return Ok(session);
     }
-    let mut session = load(true)?;
+    let mut session = load(request, true, options)?;
     session.warnings.push(format!(
         "holes are {:.1} % of the ground, more than the {:.0} % that are filled, so they stay open; take terrain with fewer holes",
         100.0 * filled,
@@ -120,17 +195,34 @@ fn open(request: &RevealRequest, options: &OpenOptions) -> Result<Session, Belve
     Ok(session)
 }
 
+/// The terrain and the features as a session.
+pub(super) fn load(
+    request: &RevealRequest,
+    keep_voids: bool,
+    options: &OpenOptions,
+) -> Result<Session, BelvedereError> {
+    let (document, roots) = document(request, keep_voids)?;
+    let source = SourceDocument::made(PathBuf::from("reveal.toml"), document);
+    let mut session = crate::resolve::session(source, &roots, options)?;
+    session.inputs.remove(0);
+    Ok(session)
+}
+
 impl RevealAnswer {
     /// Goals that were missed, one sentence each.
     pub fn missed(&self) -> &[String] {
-        match &self.report.goal {
-            Goal::Reached => &[],
-            Goal::Missed(reasons) => reasons,
-        }
+        &self.missed
     }
 
     /// One sentence: visible share straight and bent.
     pub fn summary(&self) -> String {
+        if let Some(FinalShares { visible_straight: Some(straight), visible_bent: Some(bent), .. }) = self.shares {
+            return format!(
+                "visible in the straight picture: {:.1} %, in the bent one: {:.1} %",
+                100.0 * straight,
+                100.0 * bent
+            );
+        }
         let percent = |a: &belvedere_construct::reveal::Appraisal| 100.0 * a.visible;
         format!(
             "visible in the straight picture: {:.1} %, in the bent one: {:.1} %",
@@ -166,7 +258,9 @@ impl RevealAnswer {
             let sidecar = &self.picture.sidecar;
             let report = ReportFile {
                 program: sidecar.program.clone(),
-                report: &self.report,
+                report: Some(&self.report).filter(|_| !self.shares.is_some_and(|s| s.technique == Technique::Terrain)),
+                shares: self.shares,
+                disocclusion: self.session.terrain_report(),
                 displacement: sidecar.displacement,
                 view: &sidecar.view,
                 crs: self.session.scene.crs.to_string(),

@@ -6,6 +6,7 @@ use crate::scene_file::AnimationDoc;
 use crate::verbs::render::{DisplacementReport, RenderRequest};
 use crate::verbs::{check, output};
 use crate::{BelvedereError, Session};
+use belvedere_construct::terrain::TerrainReport;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -61,6 +62,46 @@ pub struct FrameRecord {
     pub view: ViewRecord,
     /// How far things were moved; `None` for a straight picture.
     pub displacement: Option<DisplacementReport>,
+    /// What the terrain solver came to, if it ran.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub terrain: Option<FrameTerrain>,
+}
+
+/// The terrain of one frame.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FrameTerrain {
+    /// Reference points in view.
+    pub points: usize,
+    /// Visible share of them.
+    pub visible: f64,
+    /// Visible share of the features in view.
+    pub visible_dense: f64,
+    /// Points that cannot be shown.
+    pub unresolved: usize,
+    /// Root mean square displacement, metres.
+    pub rms_m: f64,
+    /// Largest displacement, metres.
+    pub max_m: f64,
+    /// Root mean square change against the frame before, metres.
+    pub frame_rms_m: f64,
+    /// Largest change against the frame before, metres.
+    pub frame_max_m: f64,
+}
+
+impl FrameTerrain {
+    /// The figures of a report that do not differ from run to run.
+    pub(super) fn of(report: &TerrainReport) -> Self {
+        Self {
+            points: report.points,
+            visible: report.visible,
+            visible_dense: report.visible_dense,
+            unresolved: report.unresolved.iter().map(|r| r.points).sum(),
+            rms_m: report.rms_m,
+            max_m: report.max_m,
+            frame_rms_m: report.frame.map_or(0.0, |f| f.rms_m),
+            frame_max_m: report.frame.map_or(0.0, |f| f.max_m),
+        }
+    }
 }
 
 /// Name of the file of a frame.

@@ -5,13 +5,15 @@ mod manifest;
 mod plan;
 
 pub use film::Film;
-pub use manifest::{FrameRecord, Manifest, Settings, frame_name};
+pub use manifest::{FrameRecord, FrameTerrain, Manifest, Settings, frame_name};
 
 use super::render::{self, RenderRequest};
 use super::{check, output};
 use crate::provenance::{self, ViewRecord};
-use crate::scene_file::AnimationDoc;
+use crate::resolve::terrain::Solving;
+use crate::scene_file::{AnimationDoc, StageDoc};
 use crate::{BelvedereError, Session};
+use belvedere_construct::terrain::TerrainMemory;
 use belvedere_scene::Progress;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -147,14 +149,22 @@ fn claim(manifest: &mut Manifest, folder: &Path, request: &AnimateRequest) -> Re
 fn rehearse(session: &mut Session, plan: &plan::Plan, progress: &Progress) -> Result<(), BelvedereError> {
     for frame in 0..plan.len() {
         progress.tick("looking along the way", frame as f64 / plan.len() as f64)?;
-        look(session, plan, frame)?;
+        look(session, plan, frame, None)?;
     }
     Ok(())
 }
 
-fn look(session: &mut Session, plan: &plan::Plan, frame: usize) -> Result<(), BelvedereError> {
-    let failed = |e: BelvedereError| BelvedereError::Frame { frame, source: Box::new(e) };
-    crate::resolve::look_again(session, plan.document(frame)).map_err(failed)?;
+fn look(
+    session: &mut Session,
+    plan: &plan::Plan,
+    frame: usize,
+    solving: Option<&mut Solving<'_>>,
+) -> Result<(), BelvedereError> {
+    let failed = |e: BelvedereError| match e.is_cancelled() {
+        true => e,
+        false => BelvedereError::Frame { frame, source: Box::new(e) },
+    };
+    crate::resolve::look_again(session, plan.document(frame), solving).map_err(failed)?;
     check::drawable(session).map_err(failed)
 }
 
@@ -168,12 +178,22 @@ fn draw_missing(
     progress: &Progress,
 ) -> Result<usize, BelvedereError> {
     let missing: Vec<usize> = (0..plan.len()).filter(|&f| manifest.frames[f].is_none()).collect();
+    // What a solver remembers depends on every frame before: those that are there are solved again, not drawn.
+    let solves = session.resolved().stage.iter().any(StageDoc::is_terrain_intent);
+    let last = missing.last().map_or(0, |f| f + 1);
+    let work: Vec<usize> = if solves { (0..last).collect() } else { missing.clone() };
+    let quiet = progress.unheard();
+    let mut memory = TerrainMemory::default();
     let started = Instant::now();
-    for (drawn, &frame) in missing.iter().enumerate() {
+    for (step, &frame) in work.iter().enumerate() {
         let share = manifest.done as f64 / plan.len() as f64;
-        progress.tick(&remaining(frame, plan.len(), drawn, missing.len(), started), share)?;
-        look(session, plan, frame)?;
-        let picture = render::draw(session, &request.render, manifest.inputs.clone(), &progress.unheard())?;
+        progress.tick(&remaining(frame, plan.len(), step, work.len(), started), share)?;
+        let mut solving = Solving { memory: &mut memory, time_step_s: Some(1.0 / plan.fps), progress: &quiet };
+        look(session, plan, frame, Some(&mut solving))?;
+        if manifest.frames[frame].is_some() {
+            continue;
+        }
+        let picture = render::draw(session, &request.render, manifest.inputs.clone(), &quiet)?;
         let file = frame_name(frame);
         let path = folder.join(&file);
         picture.write_png(&path, true)?;
@@ -182,6 +202,7 @@ fn draw_missing(
             file,
             view: ViewRecord::of(session.view()),
             displacement: picture.sidecar.displacement,
+            terrain: session.terrain_report().map(FrameTerrain::of),
         };
         manifest.put(frame, record);
         manifest.write(folder)?;

@@ -1,0 +1,226 @@
+//! Terrain disocclusion as a user meets it: `disocclude`, intents in scene files, films of them, and bad input.
+
+use super::Place;
+use belvedere_testkit::data;
+
+const SIDE: usize = 48;
+
+/// Rows of hills between lon 8.0 and 8.048; `height` may say none.
+fn dem(height: impl Fn(usize, usize) -> Option<f64>) -> String {
+    let mut text =
+        format!("ncols {SIDE}\nnrows {SIDE}\nxllcorner 8.0\nyllcorner 46.0\ncellsize 0.001\nNODATA_value -9999\n");
+    for row in 0..SIDE {
+        let cells: Vec<String> =
+            (0..SIDE).map(|col| height(row, col).map_or("-9999".into(), |h| format!("{h:.1}"))).collect();
+        text += &(cells.join(" ") + "\n");
+    }
+    text
+}
+
+fn hills(row: usize, col: usize) -> f64 {
+    1000.0 + 180.0 * (0.45 * row as f64).sin() + 40.0 * (0.3 * col as f64).sin()
+}
+
+fn place(height: impl Fn(usize, usize) -> Option<f64>) -> Place {
+    let place = Place::new();
+    place.write("dem.asc", &dem(height));
+    let line = "{\"type\":\"LineString\",\"coordinates\":[[8.012,46.014],[8.024,46.028],[8.034,46.036]]}";
+    place.write("way.geojson", line);
+    place
+}
+
+/// A view over the hills from the south.
+const VIEW: [&str; 4] = ["--eye", "8.022,46.002,1500", "--look", "8.024,46.03"];
+
+fn report(place: &Place, more: &[&str]) -> serde_json::Value {
+    let args = ["disocclude", "dem.asc", "way.geojson", "-o", "out.tif", "--report", "r.json", "--overwrite"];
+    place.ok(&[&args[..], &VIEW, more].concat());
+    serde_json::from_slice(&super::read(&place.path("r.json"))).expect("JSON")
+}
+
+fn number(value: &serde_json::Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+/// Heights of a raster that was written, with its no-data value, through `info`'s own reader.
+fn described(place: &Place, file: &str) -> String {
+    place.ok(&["info", file])
+}
+
+#[test]
+fn everything_asked_for_is_visible_on_the_grid_of_the_input() {
+    let place = place(|r, c| Some(hills(r, c)).filter(|_| !(r < 4 && c < 4)));
+    let r = report(&place, &["--displacement", "d.tif", "--features-out", "moved.geojson"]);
+    assert!(number(&r["visible_before"]) < 0.8, "the hills hide much: {r}");
+    assert_eq!(number(&r["visible"]), 1.0, "{r}");
+    assert!(number(&r["visible_dense"]) >= 0.99, "{r}");
+    assert_eq!(r["guaranteed"], true);
+    assert!(number(&r["raised_max_m"]) <= 0.5, "{r}");
+    assert!(number(&r["rms_m"]) > 0.5);
+    for key in ["hidden_worst_m", "max_m", "normal_mean_deg", "normal_p95_deg", "step_p999_m", "smoothing_length_m"] {
+        assert!(number(&r[key]) >= 0.0, "{key}");
+    }
+    for key in ["unresolved", "parameters", "qp", "times", "inputs", "eye"] {
+        assert!(!r[key].is_null(), "{key} is missing");
+    }
+    for file in ["out.tif", "d.tif"] {
+        let info = described(&place, file);
+        assert!(info.contains("EPSG:4326") && info.contains("48"), "{file}: {info}");
+        assert!(!info.to_lowercase().contains("nan"), "{info}");
+    }
+    let moved: serde_json::Value = serde_json::from_slice(&super::read(&place.path("moved.geojson"))).expect("JSON");
+    let feature = &moved["features"][0];
+    let (now, before) = (&feature["geometry"]["coordinates"], &feature["properties"]["true_coordinates"]);
+    let count = now.as_array().expect("vertices").len();
+    assert!(count > 10 && before.as_array().map(Vec::len) == Some(count));
+    for k in 0..count {
+        assert_eq!((&now[k][0], &now[k][1]), (&before[k][0], &before[k][1]), "the way moves up and down only");
+        assert!(number(&now[k][2]) <= number(&before[k][2]) + 0.5);
+    }
+}
+
+#[test]
+fn the_paper_hides_what_the_guarantee_shows() {
+    let place = place(|r, c| Some(hills(r, c)));
+    let paper = report(&place, &["--mode", "paper"]);
+    assert_eq!(paper["guaranteed"], false);
+    assert!(paper["qp"].is_null() && number(&paper["greedy"]["hits"]) > 0.0, "{paper}");
+    assert!(number(&paper["visible"]) > number(&paper["visible_before"]));
+    let both = report(&place, &["--mode", "paper+qp"]);
+    assert_eq!(number(&both["visible"]), 1.0, "{both}");
+    let qp = report(&place, &[]);
+    assert!(number(&qp["rms_m"]) < number(&paper["rms_m"]), "{} and {}", qp["rms_m"], paper["rms_m"]);
+    let wide = report(&place, &["--set", "w=0.05"]);
+    assert!(number(&wide["smoothing_length_m"]) > number(&qp["smoothing_length_m"]));
+}
+
+#[test]
+fn odd_ground_has_a_defined_result() {
+    // Nothing hides anything on flat ground, so it stays as it is.
+    let flat = report(&place(|_, _| Some(700.0)), &[]);
+    assert_eq!((number(&flat["visible"]), number(&flat["max_m"])), (1.0, 0.0), "{flat}");
+    // Four nodes are a terrain.
+    let tiny = Place::new();
+    tiny.write("dem.asc", "ncols 2\nnrows 2\nxllcorner 8\nyllcorner 46\ncellsize 0.01\n100 200\n300 400\n");
+    tiny.write("way.geojson", "{\"type\":\"LineString\",\"coordinates\":[[8.006,46.006],[8.014,46.014]]}");
+    let args =
+        ["disocclude", "dem.asc", "way.geojson", "-o", "out.tif", "--eye", "8.01,46.0,2000", "--look", "8.01,46.01"];
+    tiny.ok(&args);
+    assert!(tiny.path("out.tif").exists());
+    // A way over a hole: what lies on the hole is cut off and said.
+    let holed = place(|r, c| Some(hills(r, c)).filter(|_| !(18..24).contains(&r)));
+    let out = holed.json(&[&["disocclude", "dem.asc", "way.geojson", "-o", "o.tif", "--json"][..], &VIEW].concat());
+    assert!(out["warnings"].to_string().contains("cut off"), "{out}");
+}
+
+#[test]
+fn bad_input_is_one_clear_line() {
+    let place = place(|r, c| Some(hills(r, c)));
+    let fails = |features: &str, eye: &str, look: &str, more: &[&str]| {
+        let args = ["disocclude", "dem.asc", features, "-o", "out.tif", "--eye", eye, "--look", look];
+        let line = place.fails(&[&args[..], more].concat());
+        assert!(!place.path("out.tif").exists(), "{line}");
+        line
+    };
+    let (eye, look) = ("8.022,46.002,1500", "8.024,46.03");
+    assert!(fails("way.geojson", "8.022,46.002,900", look, &[]).contains("below the ground"));
+    assert!(fails("way.geojson", "800,46.002,900", look, &[]).contains("no place in the system"));
+    assert!(fails("way.geojson", eye, "8.022,46.002", &[]).contains("same place"));
+    assert!(fails("way.geojson", eye, look, &["--fov", "180"]).contains("strictly between 0 and 180"));
+    assert!(fails("way.geojson", eye, look, &["--set", "margn_m=2"]).contains("margin_m"));
+    assert!(fails("way.geojson", eye, look, &["--set", "w"]).contains("key=value"));
+    assert!(fails("way.geojson", eye, look, &["--set", "w=-1"]).contains("w is -1"));
+    assert!(fails("way.geojson", eye, look, &["--set", "cells=2.5"]).contains("whole number"));
+    assert!(fails("way.geojson", eye, look, &["--mode", "magic"]).contains("paper+qp"));
+    place.write("far.geojson", "{\"type\":\"LineString\",\"coordinates\":[[9.0,47.0],[9.1,47.1]]}");
+    assert!(fails("far.geojson", eye, look, &[]).contains("outside"));
+    place.write("dot.geojson", "{\"type\":\"LineString\",\"coordinates\":[[8.02,46.02]]}");
+    let dot = fails("dot.geojson", eye, look, &[]);
+    assert!(dot.contains("dot.geojson"), "{dot}");
+}
+
+/// A scene of the hills in a system of metres.
+fn scene(more: &str) -> String {
+    format!(
+        "format = 1\n[[layer]]\nid = 'ground'\nkind = 'terrain'\nsource = 'dem.asc'\nsource_crs = 'EPSG:4326'\n\
+         [[layer]]\nid = 'way'\nkind = 'line'\nsource = 'way.geojson'\nmust_see = true\n\
+         [camera]\neye = {{ lon = 8.022, lat = 46.002, height_m = 1500 }}\nlook_at = {{ lon = 8.024, lat = 46.03, above_ground_m = 0 }}\nimage = [64, 36]\n\
+         [[stage]]\nkind = 'terrain_disocclusion'\n{more}\n"
+    )
+}
+
+#[test]
+fn an_intent_is_solved_and_its_picture_says_what_moved() {
+    let place = place(|r, c| Some(hills(r, c)));
+    place.write("s.toml", &scene(""));
+    let made = place.json(&["render", "s.toml", "-o", "p.png", "--compare", "--json"]);
+    assert!(made["outputs"].to_string().contains("p.delta.tif"), "{made}");
+    let record: serde_json::Value = serde_json::from_slice(&super::read(&place.path("p.png.json"))).expect("JSON");
+    assert!(record["note"].as_str().is_some_and(|n| n.contains("terrain_disocclusion")), "{record}");
+    let stage = &record["scene"]["stage"][0];
+    assert_eq!(stage["delta"], "p.delta.tif");
+    assert_eq!(stage["delta_sha256"].as_str().map(str::len), Some(64));
+    assert_eq!(number(&record["disocclusion"]["visible"]), 1.0);
+    // The record is a scene without solver that shows the same.
+    place.write("again.json", &record["scene"].to_string());
+    let [x, y] = [0, 1].map(|k| number(&record["view"]["eye"][k]));
+    place.write("q.json", &format!("[[{x}, {}, 1000], [{}, {}, 900]]", y + 2500.0, x + 300.0, y + 3100.0));
+    let project = |scene: &str| place.json(&["project", scene, "--points", "q.json"]);
+    let (first, second) = (project("s.toml"), project("again.json"));
+    for k in 0..2 {
+        for axis in 0..2 {
+            let [a, b] = [&first, &second].map(|r| number(&r["points"][k]["pixel"][axis]));
+            assert!((a - b).abs() < 1e-6, "{first} {second}");
+        }
+    }
+    let measure = place.json(&["measure", "s.toml"]);
+    let share = |which: &str| number(&measure["lines"][which]["sight"]["share"]);
+    assert!(share("bent") >= 0.99 && share("straight") < 0.9, "{} and {}", share("straight"), share("bent"));
+    assert_eq!(number(&measure["terrain"]["visible"]), 1.0);
+    place.ok(&["check", "s.toml"]);
+    let shown = place.ok(&["show", "s.toml"]);
+    assert!(
+        shown.contains("mode = \"qp\"") && shown.contains("solver_nodes = 129") && shown.contains("w = 0.3"),
+        "{shown}"
+    );
+    place.ok(&["render", "s.toml", "-o", "straight.png", "--straight"]);
+    assert!(!place.path("straight.delta.tif").exists());
+    place.write("bad.toml", &scene("rise_limit_m = -1"));
+    let line = place.fails(&["check", "bad.toml"]);
+    assert!(line.contains("bad.toml:") && line.contains("rise_limit_m is -1"), "{line}");
+}
+
+#[test]
+fn a_film_of_giving_ground_goes_on_to_the_same_bytes() {
+    let place = place(|r, c| Some(hills(r, c)));
+    let animation = "[animation]\nalong = 'way'\nbehind_m = 900\nabove_m = 300\nahead_m = 900\nspeed_mps = 400\nfps = 10\nframes = 4\n";
+    place.write("s.toml", &(scene("gamma_time_s = 0.15") + animation));
+    place.ok(&["animate", "s.toml", "-o", "whole"]);
+    place.ok(&["animate", "s.toml", "-o", "part"]);
+    // Frame 2 depends on what frames 0 and 1 left in the solver's memory.
+    std::fs::remove_file(place.path("part/frame_00002.png")).expect("removed");
+    let made = place.json(&["animate", "s.toml", "-o", "part", "--resume", "--json"]);
+    assert_eq!(made["drawn"], 1);
+    for file in ["animation.json", "frame_00001.png", "frame_00002.png", "frame_00003.png"] {
+        assert_eq!(
+            super::read(&place.path(&format!("whole/{file}"))),
+            super::read(&place.path(&format!("part/{file}"))),
+            "{file}"
+        );
+    }
+    let record: serde_json::Value =
+        serde_json::from_slice(&super::read(&place.path("whole/animation.json"))).expect("JSON");
+    for frame in 0..4 {
+        assert_eq!(number(&record["frames"][frame]["terrain"]["visible"]), 1.0, "frame {frame}: {record}");
+    }
+}
+
+#[test]
+fn andorra_is_shown_with_a_progressive_bend_and_terrain() {
+    let Some(readme) = data("README.md") else { return };
+    let root = readme.parent().and_then(|p| p.to_str()).expect("folder");
+    let scene = belvedere_testkit::workspace_root().join("scenes/andorra_terrain.toml");
+    let report = Place::new().json(&["measure", scene.to_str().expect("UTF-8"), "--allow-root", root]);
+    let share = number(&report["lines"]["bent"]["sight"]["share"]);
+    assert!(share >= 0.99, "{share} of the in-frame length is visible: {}", report["terrain"]);
+}

@@ -1,0 +1,145 @@
+//! The passes of one frame, in the order of the mode.
+
+use super::super::qp::QpProblem;
+use super::super::{Field, Naive, Pyramid, ReferencePoint, Smoother, SolverMode, TerrainSettings};
+use super::memory::{Pace, Prepared};
+use super::{Done, QpReport, Seen, TerrainTimes, scales, since};
+use crate::ConstructError;
+use belvedere_core::DVec3;
+use belvedere_scene::Progress;
+use std::time::Instant;
+
+pub(super) struct Passes<'a> {
+    pub(super) settings: &'a TerrainSettings,
+    /// The ground as the eye sees it.
+    pub(super) field: &'a Field,
+    /// Whether that lies lower than the data say, for the earth is curved.
+    pub(super) lowered: bool,
+    pub(super) pace: Pace,
+    /// Seconds between frames and time constant of coherence; `None` for single pictures.
+    pub(super) frame: Option<[f64; 2]>,
+    pub(super) eye: DVec3,
+    /// Displacement of the frame before.
+    pub(super) last: Option<&'a [f64]>,
+    pub(super) progress: &'a Progress,
+}
+
+impl Passes<'_> {
+    pub(super) fn run(
+        &self,
+        prepared: &mut Prepared,
+        seen: &Seen<'_>,
+        times: &mut TerrainTimes,
+    ) -> Result<Done, ConstructError> {
+        let mut done = Done {
+            coarse: vec![0.0; prepared.grid.nodes()],
+            full: None,
+            greedy: None,
+            greedy_unresolved: Vec::new(),
+            qp: None,
+            qp_unresolved: Vec::new(),
+        };
+        let mut detail = None;
+        if prepared.cells.is_some() {
+            detail = self.paper(prepared, seen, &mut done, times)?;
+        }
+        if prepared.qp.is_some() {
+            self.guarantee(prepared, seen, detail.as_deref(), &mut done, times)?;
+        }
+        if let Some(detail) = detail {
+            let smooth = prepared.grid.prolong(&done.coarse);
+            done.full = Some(smooth.iter().zip(detail).map(|(a, b)| a + b).collect());
+        }
+        Ok(done)
+    }
+
+    /// Greedy and smooth pass; answers the change of detail at every node, if detail is scaled.
+    fn paper(
+        &self,
+        prepared: &mut Prepared,
+        seen: &Seen<'_>,
+        done: &mut Done,
+        times: &mut TerrainTimes,
+    ) -> Result<Option<Vec<f64>>, ConstructError> {
+        let Some(parts) = prepared.cells.clone() else { return Ok(None) };
+        let (cells, pyramid) = &*parts;
+        self.progress.tick("greedy pass", 0.2)?;
+        let began = Instant::now();
+        let field = self.field;
+        // On a curved earth the ground under the points, and what bounds it, differs with the eye.
+        let own = self.lowered.then(|| Pyramid::new(field));
+        let point = |&i: &usize| {
+            let p = prepared.points[i];
+            ReferencePoint { ground: field.surface_at(p.grid).unwrap_or(p.ground), ..p }
+        };
+        let points: Vec<ReferencePoint> = seen.points.iter().map(point).collect();
+        let naive = Naive::new(field, cells, own.as_ref().unwrap_or(pyramid), self.settings, self.eye, &points);
+        done.greedy = Some(*naive.counters());
+        done.greedy_unresolved = naive.unresolved().iter().map(|&k| seen.points[k]).collect();
+        times.greedy_ms = since(began);
+        self.progress.tick("smooth pass", 0.4)?;
+        let began = Instant::now();
+        let Some(pass) = &mut prepared.smooth else { return Ok(None) };
+        let u = pass.run(&naive.displacement(field, cells), self.frame, self.last).u;
+        // A still after a jump has no frame before: the pass takes the naive displacement in its place.
+        let detail = (scales(self.settings) && !pass.hierarchy().is_full()).then(|| {
+            let whole = pass.scaled(&u, field.heights(), &naive.scale(field, cells));
+            let smooth = pass.plain(&u);
+            let parts = whole.iter().zip(smooth).zip(field.void());
+            parts.map(|((w, s), void)| if *void { 0.0 } else { w - s }).collect()
+        });
+        done.coarse = u;
+        times.smooth_ms = since(began);
+        Ok(detail)
+    }
+
+    /// The quadratic program.
+    fn guarantee(
+        &self,
+        prepared: &mut Prepared,
+        seen: &Seen<'_>,
+        detail: Option<&[f64]>,
+        done: &mut Done,
+        times: &mut TerrainTimes,
+    ) -> Result<(), ConstructError> {
+        self.progress.tick("quadratic program", 0.5)?;
+        let began = Instant::now();
+        let (Pace { w, g }, nodes) = (prepared.weights(), prepared.grid.nodes());
+        let target = match (self.settings.mode, self.last) {
+            (SolverMode::PaperQp, _) => Some(done.coarse.clone()),
+            (_, Some(last)) if self.pace.g > 0.0 => {
+                let mut u: Vec<f64> = last.iter().map(|u| g * g * u).collect();
+                let mut smoother: Smoother = Smoother::new(prepared.grid.cols(), prepared.grid.rows(), w, g)?;
+                smoother.solve(&mut u);
+                Some(u)
+            }
+            _ => None,
+        };
+        let Some(qp) = &mut prepared.qp else { return Ok(()) };
+        let ground: Vec<f64> = match detail {
+            Some(detail) => self.field.heights().iter().zip(detail).map(|(h, d)| h + d).collect(),
+            None => self.field.heights().to_vec(),
+        };
+        qp.set_heights(&ground)?;
+        let result = qp.solve(&QpProblem {
+            candidates: &seen.candidates,
+            sight: &*seen.sight,
+            target: target.as_deref(),
+            ceilings: None,
+        })?;
+        debug_assert_eq!(result.u.len(), nodes);
+        done.qp = Some(QpReport {
+            rounds: result.rounds,
+            rows: result.rows,
+            active: result.active.len(),
+            added: result.added,
+            kept: result.kept,
+            candidates: seen.candidates.len(),
+            energy: result.energy,
+        });
+        done.qp_unresolved = result.unresolved;
+        done.coarse = result.u;
+        times.qp_ms = since(began);
+        Ok(())
+    }
+}

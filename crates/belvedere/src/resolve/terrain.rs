@@ -1,0 +1,133 @@
+//! Terrain disocclusion from an intent: parameters, solver, and the document with its defaults.
+
+use super::stages::Fail;
+use crate::BelvedereError;
+use crate::scene_file::{DetailDoc, SolverMode as ModeDoc, TerrainStageDoc};
+use belvedere_construct::ConstructError;
+use belvedere_construct::terrain::{
+    Cells, Detail, Field, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver,
+};
+use belvedere_core::View;
+use belvedere_scene::{Progress, Scene};
+
+/// What a solver needs beside the document.
+pub(crate) struct Solving<'a> {
+    pub(crate) memory: &'a mut TerrainMemory,
+    /// Seconds between frames of a film.
+    pub(crate) time_step_s: Option<f64>,
+    pub(crate) progress: &'a Progress,
+}
+
+/// The parameters of a document.
+pub(crate) fn settings(doc: &TerrainStageDoc) -> Result<TerrainSettings, (&'static str, String)> {
+    let usual = TerrainSettings::default();
+    let cells = match doc.cells {
+        Some(n) if !(n >= 1.0 && n.fract() == 0.0 && n <= 1e9) => {
+            return Err(("cells", format!("cells is {n}, it must be a whole number of at least 1")));
+        }
+        other => other.map(|n| n as usize),
+    };
+    Ok(TerrainSettings {
+        mode: match doc.mode {
+            Some(ModeDoc::Paper) => SolverMode::Paper,
+            Some(ModeDoc::PaperQp) => SolverMode::PaperQp,
+            Some(ModeDoc::Qp) | None => SolverMode::Qp,
+        },
+        cells,
+        spacing: doc.spacing.unwrap_or(usual.spacing),
+        lift_m: doc.lift_m,
+        guard: doc.guard.unwrap_or(usual.guard),
+        eta: doc.eta.unwrap_or(usual.eta),
+        mu: doc.mu.unwrap_or(usual.mu),
+        mu_dev: doc.mu_dev.unwrap_or(usual.mu_dev),
+        w: doc.w,
+        rows_weight: doc.rows_weight.unwrap_or(usual.rows_weight),
+        gamma_time_s: doc.gamma_time_s.unwrap_or(usual.gamma_time_s),
+        solver_nodes: doc.solver_nodes.map_or(usual.solver_nodes, |n| n as usize),
+        detail: doc.detail.map(|d| match d {
+            DetailDoc::Scaled => Detail::Scaled,
+            DetailDoc::Plain => Detail::Plain,
+        }),
+        rise_limit_m: doc.rise_limit_m.unwrap_or(usual.rise_limit_m),
+        margin_m: doc.margin_m.unwrap_or(usual.margin_m),
+        candidates: doc.candidates.unwrap_or(usual.candidates),
+        ahead_m: doc.ahead_m,
+    })
+}
+
+/// The document with every default filled in.
+pub(crate) fn document(settings: &TerrainSettings, scene: &Scene) -> TerrainStageDoc {
+    let nodes = || scene.terrain().and_then(|t| Field::new(t, |_| 0.0).ok()).map(|f| Cells::default_count(&f));
+    TerrainStageDoc {
+        delta: None,
+        delta_sha256: None,
+        mode: Some(match settings.mode {
+            SolverMode::Paper => ModeDoc::Paper,
+            SolverMode::PaperQp => ModeDoc::PaperQp,
+            SolverMode::Qp => ModeDoc::Qp,
+        }),
+        cells: settings.cells.or_else(nodes).map(|n| n as f64),
+        spacing: Some(settings.spacing),
+        lift_m: settings.lift_m,
+        guard: Some(settings.guard),
+        eta: Some(settings.eta),
+        mu: Some(settings.mu),
+        mu_dev: Some(settings.mu_dev),
+        w: Some(settings.smoothness()),
+        rows_weight: Some(settings.rows_weight),
+        gamma_time_s: Some(settings.gamma_time_s),
+        solver_nodes: Some(settings.solver_nodes as u32),
+        detail: Some(match settings.detail() {
+            Detail::Scaled => DetailDoc::Scaled,
+            Detail::Plain => DetailDoc::Plain,
+        }),
+        rise_limit_m: Some(settings.rise_limit_m),
+        margin_m: Some(settings.margin_m),
+        candidates: Some(settings.candidates),
+        ahead_m: settings.ahead_m,
+    }
+}
+
+/// Solves the intent for the picture of `base` (earth and later stages).
+pub(super) fn solve(
+    settings: TerrainSettings,
+    scene: &Scene,
+    base: &View,
+    solving: &mut Solving<'_>,
+    fail: &Fail<'_>,
+) -> Result<Solved, BelvedereError> {
+    let mut solver = TerrainSolver::new(settings).map_err(|e| match &e {
+        ConstructError::Setting { key, .. } => fail(&[*key], e.to_string()),
+        _ => fail(&[], e.to_string()),
+    })?;
+    if let Some(seconds) = solving.time_step_s {
+        solver = solver.with_time_step(seconds);
+    }
+    Ok(solver.solve(scene, base, solving.memory, solving.progress)?)
+}
+
+/// What a user should know of a solution: one sentence each.
+pub(crate) fn remarks(solved: &Solved) -> Vec<String> {
+    let report = &solved.report;
+    let mut out = Vec::new();
+    let points: usize = report.unresolved.iter().map(|r| r.points).sum();
+    if points > 0 {
+        let mut why: Vec<String> = report
+            .unresolved
+            .iter()
+            .filter_map(|r| serde_json::to_value(r).ok()?.get("reason")?.as_str().map(|s| s.replace('_', " ")))
+            .collect();
+        why.sort();
+        why.dedup();
+        out.push(format!(
+            "terrain_disocclusion: {points} points cannot be shown ({}); the report names them",
+            why.join(", ")
+        ));
+    }
+    if report.points == 0 {
+        out.push(
+            "terrain_disocclusion: no part of the features lies in the picture, so the ground stays as it is".into(),
+        );
+    }
+    out
+}
