@@ -211,6 +211,9 @@ pub(crate) struct DisoccludeArgs {
     /// Features on the displaced ground, their true places as properties
     #[arg(long, value_name = "OUT.geojson")]
     pub(crate) features_out: Option<PathBuf>,
+    /// The ground before and after from the eye, side by side; its record lies beside it
+    #[arg(long, value_name = "OUT.png")]
+    pub(crate) picture: Option<PathBuf>,
     /// Let the ground fall away with the distance
     #[arg(long)]
     pub(crate) curved_earth: bool,

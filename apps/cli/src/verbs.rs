@@ -130,7 +130,9 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
         report: args.report,
         displacement: args.displacement,
         features: args.features_out,
+        picture: args.picture,
     };
+    files.picture.as_deref().map_or(Ok(()), png_named)?;
     let inputs: Vec<PathBuf> = args.features.iter().chain([&args.dem]).cloned().collect();
     for path in files.all() {
         output::check(&path, &inputs, context.common.overwrite)?;
@@ -148,7 +150,7 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
         crs: args.crs,
     };
     let found = disocclude::disocclude(&request, &context.options(Needs::Everything, None))?;
-    let written = found.write(&files, context.common.overwrite)?;
+    let written = found.write(&files, context.common.overwrite, &context.progress)?;
     context.finish();
     if context.common.json {
         let mut result = done("disocclude", &written, found.session.warnings());

@@ -5,6 +5,12 @@ use belvedere_testkit::data;
 
 const SIDE: usize = 48;
 
+const UTM_32: &str = "PROJCS[\"WGS_1984_UTM_Zone_32N\",GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",\
+    SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]],\
+    PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"False_Easting\",500000.0],PARAMETER[\"False_Northing\",0.0],\
+    PARAMETER[\"Central_Meridian\",9.0],PARAMETER[\"Scale_Factor\",0.9996],PARAMETER[\"Latitude_Of_Origin\",0.0],\
+    UNIT[\"Meter\",1.0]]";
+
 /// Rows of hills between lon 8.0 and 8.048; `height` may say none.
 fn dem(height: impl Fn(usize, usize) -> Option<f64>) -> String {
     let mut text =
@@ -50,7 +56,8 @@ fn described(place: &Place, file: &str) -> String {
 #[test]
 fn everything_asked_for_is_visible_on_the_grid_of_the_input() {
     let place = place(|r, c| Some(hills(r, c)).filter(|_| !(r < 4 && c < 4)));
-    let r = report(&place, &["--displacement", "d.tif", "--features-out", "moved.geojson"]);
+    let r = report(&place, &["--displacement", "d.tif", "--features-out", "moved.geojson", "--picture", "p.png"]);
+    assert!(super::read(&place.path("p.png")).starts_with(b"\x89PNG") && place.path("p.png.json").exists());
     assert!(number(&r["visible_before"]) < 0.8, "the hills hide much: {r}");
     assert_eq!(number(&r["visible"]), 1.0, "{r}");
     assert!(number(&r["visible_dense"]) >= 0.99, "{r}");
@@ -101,12 +108,12 @@ fn odd_ground_has_a_defined_result() {
     assert_eq!((number(&flat["visible"]), number(&flat["max_m"])), (1.0, 0.0), "{flat}");
     // Four nodes are a terrain.
     let tiny = Place::new();
-    tiny.write("dem.asc", "ncols 2\nnrows 2\nxllcorner 8\nyllcorner 46\ncellsize 0.01\n100 200\n300 400\n");
-    tiny.write("way.geojson", "{\"type\":\"LineString\",\"coordinates\":[[8.006,46.006],[8.014,46.014]]}");
-    let args =
-        ["disocclude", "dem.asc", "way.geojson", "-o", "out.tif", "--eye", "8.01,46.0,2000", "--look", "8.01,46.01"];
-    tiny.ok(&args);
-    assert!(tiny.path("out.tif").exists());
+    tiny.write("dem.asc", "ncols 2\nnrows 2\nxllcenter 430000\nyllcenter 5100000\ncellsize 1000\n100 200\n300 400\n");
+    tiny.write("dem.prj", UTM_32);
+    tiny.write("way.geojson", "{\"type\":\"LineString\",\"coordinates\":[[8.0977,46.0518],[8.1054,46.0563]]}");
+    let (eye, look) = ("430500,5099000,2000", "430500,5100500");
+    tiny.ok(&["disocclude", "dem.asc", "way.geojson", "-o", "out.tif", "--eye", eye, "--look", look]);
+    assert!(described(&tiny, "out.tif").contains("EPSG:32632"));
     // A way over a hole: what lies on the hole is cut off and said.
     let holed = place(|r, c| Some(hills(r, c)).filter(|_| !(18..24).contains(&r)));
     let out = holed.json(&[&["disocclude", "dem.asc", "way.geojson", "-o", "o.tif", "--json"][..], &VIEW].concat());

@@ -62,6 +62,8 @@ pub struct TerrainSettings {
     pub candidates: f64,
     /// Only features up to this distance along the path from the eye, metres; `None` = all.
     pub ahead_m: Option<f64>,
+    /// Price of a metre of occlusion squared, > 0: what costs more to clear stays covered; `None` = everything is cleared.
+    pub slack_price: Option<f64>,
 }
 
 impl Default for TerrainSettings {
@@ -84,6 +86,7 @@ impl Default for TerrainSettings {
             margin_m: 1.0,
             candidates: 0.25,
             ahead_m: None,
+            slack_price: None,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The published trends of the two-pass method: what smoothness and the price of steps do.
 
 use crate::synthetic::{camera, scene};
+use belvedere_construct::terrain::qp::StraightSight;
 use belvedere_construct::terrain::{
     Cells, Deformation, Field, Hierarchy, Naive, Pyramid, ReferencePoint, Smoother, TerrainMetrics, TerrainSettings,
     Wedge, check_eye, grid_weight, in_view, reference_points, terrain_metrics,
@@ -43,16 +44,19 @@ impl Case {
         let last = [self.field.cols() - 1, self.field.rows() - 1].map(|n| n as f64);
         let step = belvedere_core::DVec2::new(last[0] / (cols - 1) as f64, last[1] / (rows - 1) as f64);
         let delta = Grid::new(self.field.north_west(), step * self.field.spacing(), cols, rows, u).unwrap();
+        let all = reference_points(&self.scene, &self.field, settings, 0.2).0;
+        let dense = in_view(&self.field, &all, &self.wedge, settings.guard).0;
+        let dense: Vec<ReferencePoint> = dense.into_iter().map(|i| all[i]).collect();
+        let sight = StraightSight { eye: self.field.grid_from_scene(self.eye.truncate()), z: self.eye.z };
         terrain_metrics(&Deformation {
-            scene: &self.scene,
             field: &self.field,
             delta: &delta,
             previous: None,
             cells: Some(&self.cells),
             points: &self.points,
-            eye: self.eye,
-            wedge: &self.wedge,
-            settings,
+            dense: &dense,
+            sight: &sight,
+            guard: settings.guard,
         })
     }
 

@@ -90,11 +90,15 @@ fn look(
     source: &SourceDocument,
     roots: &Roots,
     scene: &Scene,
-    solving: Option<&mut Solving<'_>>,
+    mut solving: Option<&mut Solving<'_>>,
 ) -> Result<Looked, BelvedereError> {
     let (mut inputs, mut warnings) = (Vec::new(), Vec::new());
     let ground = Ground { crs: scene.crs, terrain: scene.terrain() };
-    let camera = camera::resolve(source, &ground, stages::plane_normal(&source.document))?;
+    let mut camera = camera::resolve(source, &ground, stages::plane_normal(&source.document))?;
+    if let Some(solving) = solving.as_deref_mut() {
+        let before = earth(source, &ground, camera.pinhole.eye, &mut Vec::new());
+        terrain::adjust(source, scene, &mut camera, before, solving, &mut warnings)?;
+    }
     let mut chain = earth(source, &ground, camera.pinhole.eye, &mut warnings);
     let mut document = source.document.clone();
     let context = stages::StageContext { source, roots, scene, ground: &ground, camera: &camera, earth: &chain };

@@ -1,13 +1,14 @@
 //! Terrain disocclusion from an intent: parameters, solver, and the document with its defaults.
 
+use super::camera::ResolvedCamera;
 use super::stages::Fail;
 use crate::BelvedereError;
-use crate::scene_file::{DetailDoc, SolverMode as ModeDoc, TerrainStageDoc};
+use crate::scene_file::{DetailDoc, PointDoc, SolverMode as ModeDoc, SourceDocument, StageDoc, TerrainStageDoc};
 use belvedere_construct::ConstructError;
 use belvedere_construct::terrain::{
-    Cells, Detail, Field, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver,
+    Cells, Detail, Field, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver, ViewpointOptions,
 };
-use belvedere_core::View;
+use belvedere_core::{DVec3, Pinhole, Stage, View};
 use belvedere_scene::{Progress, Scene};
 
 /// What a solver needs beside the document.
@@ -52,6 +53,7 @@ pub(crate) fn settings(doc: &TerrainStageDoc) -> Result<TerrainSettings, (&'stat
         margin_m: doc.margin_m.unwrap_or(usual.margin_m),
         candidates: doc.candidates.unwrap_or(usual.candidates),
         ahead_m: doc.ahead_m,
+        slack_price: doc.slack_price,
     })
 }
 
@@ -85,6 +87,8 @@ pub(crate) fn document(settings: &TerrainSettings, scene: &Scene) -> TerrainStag
         margin_m: Some(settings.margin_m),
         candidates: Some(settings.candidates),
         ahead_m: settings.ahead_m,
+        slack_price: settings.slack_price,
+        adjust_viewpoint: None,
     }
 }
 
@@ -104,6 +108,46 @@ pub(super) fn solve(
         solver = solver.with_time_step(seconds);
     }
     Ok(solver.solve(scene, base, solving.memory, solving.progress)?)
+}
+
+/// Moves the camera where the scene allows it and that saves ground; films keep theirs.
+pub(super) fn adjust(
+    source: &SourceDocument,
+    scene: &Scene,
+    camera: &mut ResolvedCamera,
+    earth: Vec<Stage>,
+    solving: &mut Solving<'_>,
+    warnings: &mut Vec<String>,
+) -> Result<(), BelvedereError> {
+    let wanted = source.document.stage.iter().enumerate().find_map(|(i, stage)| match stage {
+        StageDoc::TerrainDisocclusion(doc) if doc.delta.is_none() => Some((i.to_string(), doc, doc.adjust_viewpoint?)),
+        _ => None,
+    });
+    let Some((at, doc, slider)) = wanted.filter(|_| solving.time_step_s.is_none()) else { return Ok(()) };
+    let fail = |key: &str, reason: String| source.error(&["stage", &at, key], reason);
+    if !(0.0..=1.0).contains(&slider) {
+        return Err(fail("adjust_viewpoint", format!("adjust_viewpoint is {slider}, it must lie in 0..=1")));
+    }
+    let Some(target) = camera.look_at else {
+        let reason = "adjust_viewpoint needs a place that the camera keeps looking at; give look_at in place of the angles";
+        return Err(fail("adjust_viewpoint", reason.into()));
+    };
+    let settings = settings(doc).map_err(|(key, reason)| fail(key, reason))?;
+    let solver = TerrainSolver::new(settings)?;
+    let view = View::new(camera.pinhole.clone(), earth).map_err(|e| source.error(&["stage"], e))?;
+    let options = ViewpointOptions { slider, ..ViewpointOptions::default() };
+    let found = solver.adjust(scene, &view, target, &options, solving.progress)?;
+    let Some(found) = found.filter(|f| f.moved_m > 0.0) else { return Ok(()) };
+    let from = &camera.pinhole;
+    let up = DVec3::from_array(source.document.camera.up);
+    camera.pinhole = Pinhole::look_at(found.eye, target, up, from.projection, from.image, from.near, from.far)
+        .map_err(|e| fail("adjust_viewpoint", e.to_string()))?;
+    camera.document.eye = PointDoc::Scene(found.eye.to_array());
+    warnings.push(format!(
+        "terrain_disocclusion: adjust_viewpoint moved the eye by {:.0} m; the energy of the ground's displacement falls from {:.3e} to {:.3e}",
+        found.moved_m, found.energy[0], found.energy[1]
+    ));
+    Ok(())
 }
 
 /// What a user should know of a solution: one sentence each.

@@ -121,6 +121,14 @@ pub struct TerrainStageDoc {
     /// Only features within this path distance, metres.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ahead_m: Option<f64>,
+    /// Price of a metre of occlusion squared, > 0: what costs more to clear stays covered by ground that is drawn see-through;
+    /// by default everything is cleared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slack_price: Option<f64>,
+    /// From 0, move the camera a little where that saves ground, to 1, only the ground moves; by default the camera stays.
+    /// Stills only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub adjust_viewpoint: Option<f64>,
 }
 
 /// Spline bend.

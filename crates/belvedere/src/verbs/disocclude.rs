@@ -2,17 +2,18 @@
 
 use super::check::pretty;
 use super::output;
+use super::render::{self, RenderRequest};
 use super::reveal::{self, RevealRequest};
 use crate::provenance::{self, InputFile};
 use crate::resolve::terrain::{self as intent, Solving};
-use crate::scene_file::{self, TerrainStageDoc};
+use crate::scene_file::{self, StageDoc, TerrainStageDoc};
 use crate::{BelvedereError, OpenOptions, Session};
-use belvedere_construct::terrain::{Solved, TerrainMemory, TerrainReport, TerrainSolver};
+use belvedere_construct::terrain::{Solved, TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver};
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, TerrainDisocclusion, View};
 use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::geotiff::write_geotiff;
 use belvedere_io::terrain::{OriginalTerrain, TerrainRequest, load_original};
-use belvedere_scene::{Crs, Layer, LayerKind};
+use belvedere_scene::{Crs, Layer, LayerKind, Progress};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -100,13 +101,18 @@ pub struct DisoccludeFiles {
     pub displacement: Option<PathBuf>,
     /// Features on the displaced ground, GeoJSON.
     pub features: Option<PathBuf>,
+    /// The ground before and after from the eye, PNG, with its record and displacement beside it.
+    pub picture: Option<PathBuf>,
 }
 
 impl DisoccludeFiles {
     /// Every file that will be written.
     pub fn all(&self) -> Vec<PathBuf> {
         let asked = [&self.report, &self.displacement, &self.features].into_iter().flatten().cloned();
-        std::iter::once(self.out.clone()).chain(asked).collect()
+        let pictures = self.picture.iter().flat_map(|p| {
+            render::outputs(p, &RenderRequest::default()).into_iter().chain([render::delta_path(p)])
+        });
+        std::iter::once(self.out.clone()).chain(asked).chain(pictures).collect()
     }
 }
 
@@ -121,12 +127,13 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
     let original = load_original(&request.dem, &TerrainRequest::default(), progress)?;
     let mut session = open(request, options)?;
     session.warnings.extend(original.value.georeference_note());
-    let view = camera(request, &original.value, &session)?;
+    let asked = Asked::new(request, &original.value, &session)?;
+    let view = asked.view(asked.target.extend(asked.eye.z), None)?;
     let mut memory = TerrainMemory::default();
     let solving = Solving { memory: &mut memory, time_step_s: None, progress };
     let solved = solver.solve(&session.scene, &view, solving.memory, solving.progress)?;
     session.warnings.extend(intent::remarks(&solved));
-    session.view = view;
+    show(&mut session, &asked, &solved, solver.settings())?;
     let record = Record {
         program: format!("belvedere {}", crate::VERSION),
         crs: session.scene.crs.to_string(),
@@ -139,6 +146,18 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
         warnings: session.warnings.clone(),
     };
     Ok(Disoccluded { session, solved, original: original.value, record })
+}
+
+/// Puts the solution into the session: its picture looks down on the place looked at.
+fn show(session: &mut Session, asked: &Asked, solved: &Solved, settings: &TerrainSettings) -> Result<(), BelvedereError> {
+    let ground = session.scene.terrain().and_then(|t| t.surface_at(asked.target));
+    let look_at = asked.target.extend(ground.unwrap_or(asked.eye.z));
+    let stage = Stage::TerrainDisocclusion(solved.stage.clone());
+    session.view = asked.view(look_at, Some(stage))?;
+    session.document.camera = reveal::camera_document(session.view.pinhole(), look_at);
+    session.document.stage = vec![StageDoc::TerrainDisocclusion(intent::document(settings, &session.scene))];
+    session.terrain = Some(solved.report.clone());
+    Ok(())
 }
 
 /// Terrain and features; holes stay holes.
@@ -154,38 +173,54 @@ fn open(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Session, B
     reveal::load(&request, true, options)
 }
 
-/// A level camera from the eye towards the place looked at: what lies above or below the picture is asked for as well,
-/// for the ground moves up and down.
-fn camera(request: &DisoccludeRequest, original: &OriginalTerrain, session: &Session) -> Result<View, BelvedereError> {
-    let usage = |reason: String| Err(BelvedereError::Usage(reason));
-    let fov = request.fov_x_deg;
-    if !(fov > 0.0 && fov < 180.0) {
-        return usage(format!("--fov is {fov}, it must lie strictly between 0 and 180 degrees"));
+/// Eye and place looked at in the scene.
+struct Asked {
+    eye: DVec3,
+    target: DVec2,
+    fov_x: f64,
+    earth: Option<Stage>,
+}
+
+impl Asked {
+    fn new(request: &DisoccludeRequest, original: &OriginalTerrain, session: &Session) -> Result<Self, BelvedereError> {
+        let fov = request.fov_x_deg;
+        if !(fov > 0.0 && fov < 180.0) {
+            return Err(BelvedereError::Usage(format!(
+                "--fov is {fov}, it must lie strictly between 0 and 180 degrees"
+            )));
+        }
+        let place = |what: &str, [x, y]: [f64; 2]| {
+            original.scene_from_model(session.scene.crs, DVec2::new(x, y)).ok_or_else(|| {
+                BelvedereError::Usage(format!(
+                    "--{what} {x},{y} is no place in the system of the elevation model ({}); give x,y in that system",
+                    original.system_name()
+                ))
+            })
+        };
+        let [x, y, z] = request.eye;
+        let eye = place("eye", [x, y])?.extend(z);
+        let target = place("look", request.look)?;
+        if eye.truncate().distance(target) < 1e-6 {
+            return Err(BelvedereError::Usage("--eye and --look are the same place; look somewhere else".into()));
+        }
+        let earth = request.curved_earth.then(|| {
+            let radius = crate::resolve::earth_radius(&session.scene);
+            Stage::EarthCurvature(EarthCurvature { eye, radius, refraction: EarthCurvature::REFRACTION })
+        });
+        Ok(Self { eye, target, fov_x: fov.to_radians(), earth })
     }
-    let place = |what: &str, [x, y]: [f64; 2]| {
-        original.scene_from_model(session.scene.crs, DVec2::new(x, y)).ok_or_else(|| {
-            BelvedereError::Usage(format!(
-                "--{what} {x},{y} is no place in the system of the elevation model ({}); give x,y in that system",
-                original.system_name()
-            ))
-        })
-    };
-    let [x, y, z] = request.eye;
-    let eye = place("eye", [x, y])?.extend(z);
-    let target = place("look", request.look)?;
-    if eye.truncate().distance(target) < 1e-6 {
-        return usage("--eye and --look are the same place; look somewhere else".into());
+
+    /// What the eye sees towards `look_at`. Level, it asks for what lies above or below the picture as well, for the ground
+    /// moves up and down.
+    fn view(&self, look_at: DVec3, ground: Option<Stage>) -> Result<View, BelvedereError> {
+        let usage = |e: &dyn std::fmt::Display| BelvedereError::Usage(e.to_string());
+        let [width, height] = IMAGE.map(f64::from);
+        let fov_y = 2.0 * ((0.5 * self.fov_x).tan() * height / width).atan();
+        let lens = Projection::Perspective { fov_y };
+        let pinhole =
+            Pinhole::look_at(self.eye, look_at, DVec3::Z, lens, IMAGE, 1.0, None).map_err(|e| usage(&e))?;
+        View::new(pinhole, self.earth.iter().cloned().chain(ground).collect()).map_err(|e| usage(&e))
     }
-    let [width, height] = IMAGE.map(f64::from);
-    let fov_y = 2.0 * ((0.5 * fov.to_radians()).tan() * height / width).atan();
-    let lens = Projection::Perspective { fov_y };
-    let pinhole = Pinhole::look_at(eye, target.extend(z), DVec3::Z, lens, IMAGE, 1.0, None)
-        .map_err(|e| BelvedereError::Usage(e.to_string()))?;
-    let earth = request.curved_earth.then(|| {
-        let radius = crate::resolve::earth_radius(&session.scene);
-        Stage::EarthCurvature(EarthCurvature { eye, radius, refraction: EarthCurvature::REFRACTION })
-    });
-    View::new(pinhole, earth.into_iter().collect()).map_err(|e| BelvedereError::Usage(e.to_string()))
 }
 
 impl Disoccluded {
@@ -223,8 +258,13 @@ impl Disoccluded {
     /// Writes the displaced elevation model and whatever else is asked for.
     ///
     /// # Errors
-    /// [`BelvedereError::Io`].
-    pub fn write(&self, files: &DisoccludeFiles, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
+    /// [`BelvedereError::Io`]; those of [`render::render`] for the picture.
+    pub fn write(
+        &self,
+        files: &DisoccludeFiles,
+        overwrite: bool,
+        progress: &Progress,
+    ) -> Result<Vec<PathBuf>, BelvedereError> {
         let stage = &self.solved.stage;
         let [dem, delta] = self.original.moved(self.session.scene.crs, |p| stage.delta_at(p.extend(0.0)))?;
         write_geotiff(&files.out, &dem, overwrite)?;
@@ -236,6 +276,10 @@ impl Disoccluded {
         if let Some(path) = &files.features {
             output::write_text(path, &output::json(&moved_features(&self.session, stage)?)?, overwrite)?;
             written.push(path.clone());
+        }
+        if let Some(path) = &files.picture {
+            let request = RenderRequest { compare: true, ..RenderRequest::default() };
+            written.extend(render::render(&self.session, &request, progress)?.write(path, overwrite)?);
         }
         if let Some(path) = &files.report {
             let mut report = serde_json::to_value(self.report()).unwrap_or_default();

@@ -2,7 +2,7 @@
 
 use super::buffers;
 use super::output;
-use crate::figures::{badge, camera, ghost, grid, heat};
+use crate::figures::{badge, camera, ghost, grid, heat, thin};
 use crate::provenance::{self, InputFile};
 use crate::scene_file::{StageDoc, SwitchOrLength};
 use crate::{BelvedereError, CameraPicture, Session};
@@ -294,6 +294,13 @@ fn draw_view(session: &Session, request: &RenderRequest, progress: &Progress) ->
         request.renderer.renderer().render(&job)
     };
     let mut frame = draw(&view)?;
+    if let Some(covered) = session.terrain_report().map(|r| &r.covered[..]).filter(|c| !c.is_empty() && !request.straight)
+        && let Some(cut) = thin::cut(scene, &view, covered)?
+    {
+        let job = RenderJob { scene: &cut, view: &view, light: session.light(), options: &options, progress };
+        let behind = request.renderer.renderer().render(&job)?;
+        thin::draw(&mut frame, &behind, scene, &view, covered);
+    }
     let straight = if request.compare || ghost { Some(draw(&view.straightened())?) } else { None };
     let heatmap_max = heatmap.then(|| heat::paint(&mut frame, scene, &view));
     if let Some(straight) = straight.as_ref().filter(|_| ghost) {

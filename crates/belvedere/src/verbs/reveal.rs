@@ -332,7 +332,7 @@ fn adopt(session: &mut Session, found: &Revealed) -> Result<(), BelvedereError> 
     Ok(())
 }
 
-fn camera_document(pinhole: &Pinhole, look_at: DVec3) -> CameraDoc {
+pub(super) fn camera_document(pinhole: &Pinhole, look_at: DVec3) -> CameraDoc {
     let (projection, fov_y_deg, ortho_height_m) = match pinhole.projection {
         Projection::Perspective { fov_y } => (ProjectionDoc::Perspective, fov_y.to_degrees(), None),
         Projection::Orthographic { height } => (ProjectionDoc::Orthographic, 45.0, Some(height)),

@@ -3,25 +3,19 @@
 mod change;
 mod ray;
 
-use super::{Cells, Field, ReferencePoint, TerrainSettings, Wedge};
-use crate::samples::{Amount, sample_features};
+use super::qp::LinesOfSight;
+use super::{Cells, Field, ReferencePoint};
 use belvedere_core::grid::Grid;
-use belvedere_core::{DVec2, DVec3};
-use belvedere_scene::Scene;
 use ray::Drawn;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Spacing of the dense samples along features, cells.
-const DENSE: f64 = 0.2;
 /// Rays that run this far under the ground are still clear: rounding. Scene units.
 const TOUCH: f64 = 1e-6;
 
 /// A displacement of the ground, and what it was made for.
 #[derive(Clone, Copy)]
 pub struct Deformation<'a> {
-    /// The features that must be seen.
-    pub scene: &'a Scene,
     /// The ground as it was.
     pub field: &'a Field,
     /// Displacement, scene units.
@@ -32,12 +26,12 @@ pub struct Deformation<'a> {
     pub cells: Option<&'a Cells>,
     /// Reference points in view.
     pub points: &'a [ReferencePoint],
-    /// Eye, scene coordinates.
-    pub eye: DVec3,
-    /// What is in view.
-    pub wedge: &'a Wedge,
-    /// Of these only `guard` and `lift_m` matter.
-    pub settings: &'a TerrainSettings,
+    /// Points in view that stand for equal parts of the features, such as [`super::reference_points`] every fifth of a cell.
+    pub dense: &'a [ReferencePoint],
+    /// How points are seen.
+    pub sight: &'a dyn LinesOfSight,
+    /// Ground nearer than this to a point does not hide it, cells.
+    pub guard: f64,
 }
 
 /// How well the ground makes way and how much it is changed. Lengths in scene units.
@@ -45,8 +39,7 @@ pub struct Deformation<'a> {
 pub struct TerrainMetrics {
     /// Share of the reference points that are seen, 0..=1; `None` without points in view.
     pub visible: Option<f64>,
-    /// Share of the length of lines in view that is seen, by rays every fifth of a cell; of area, or points, if there are no
-    /// lines; `None` if nothing is in view.
+    /// Share of the dense points that are seen, 0..=1; `None` if nothing is in view.
     pub visible_dense: Option<f64>,
     /// How far the ground rises over the line of sight that it hides most; 0 if nothing is hidden.
     pub hidden_worst_m: f64,
@@ -77,19 +70,48 @@ pub struct FrameChange {
     pub max_m: f64,
 }
 
-/// Judges a displacement by straight rays against the drawn surface, two triangles per cell plus the displacement, and by
-/// what it does to the nodes. Shares no sampling with the solvers.
-///
-/// Points nearer to the eye than three guards and parts of features without ground are not judged.
+/// Share of points that the displaced ground shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shown {
+    /// 0..=1; `None` without points on the ground.
+    pub(super) share: Option<f64>,
+    /// As [`TerrainMetrics::hidden_worst_m`].
+    pub(super) worst_m: f64,
+}
+
+/// Largest height of the ground over the line of sight of each point, negative where it is seen; `None` beside the ground.
+pub(super) fn excesses(
+    field: &Field,
+    delta: &Grid,
+    guard: f64,
+    sight: &dyn LinesOfSight,
+    points: &[ReferencePoint],
+) -> Vec<Option<f64>> {
+    let drawn = Drawn::new(field, delta, guard);
+    let over = |p: &ReferencePoint| drawn.excess(p.grid, p.lift, sight).map(|o| if o > TOUCH { o } else { -1.0 });
+    points.par_iter().map(over).collect()
+}
+
+/// Judges points by lines of sight against the drawn surface, two triangles per cell plus the displacement.
+pub(super) fn shown(
+    field: &Field,
+    delta: &Grid,
+    guard: f64,
+    sight: &dyn LinesOfSight,
+    points: &[ReferencePoint],
+) -> Shown {
+    let over: Vec<f64> = excesses(field, delta, guard, sight, points).into_iter().flatten().collect();
+    let hidden = over.iter().filter(|over| **over > 0.0).count();
+    let share = (!over.is_empty()).then(|| 1.0 - hidden as f64 / over.len() as f64);
+    let worst_m = over.into_iter().filter(|over| over.is_finite()).fold(0.0, f64::max);
+    Shown { share, worst_m }
+}
+
+/// Judges a displacement by lines of sight against the drawn surface, and by what it does to the nodes. Shares no sampling
+/// with the solvers.
 pub fn terrain_metrics(of: &Deformation<'_>) -> TerrainMetrics {
-    let drawn = Drawn::new(of.field, of.delta, of.eye, of.settings.guard);
-    let points: Vec<Judged> = of
-        .points
-        .par_iter()
-        .filter_map(|p| drawn.excess(p.grid, p.lift).map(|over| Judged { over, amount: 1.0 }))
-        .collect();
-    let dense = dense(of, &drawn);
-    let worst = points.iter().chain(&dense).map(|j| j.over).filter(|&over| over > TOUCH).fold(0.0, f64::max);
+    let judge = |points: &[ReferencePoint]| shown(of.field, of.delta, of.guard, of.sight, points);
+    let (points, dense) = (judge(of.points), judge(of.dense));
     let u = change::at_nodes(of.field, of.delta);
     let steps = change::steps(of.field, of.cells, &u);
     let normals = change::normals(of.field, &u);
@@ -101,9 +123,9 @@ pub fn terrain_metrics(of: &Deformation<'_>) -> TerrainMetrics {
         FrameChange { rms_m: change.rms, max_m: change.max }
     });
     TerrainMetrics {
-        visible: share(&points),
-        visible_dense: share(&dense),
-        hidden_worst_m: worst,
+        visible: points.share,
+        visible_dense: dense.share,
+        hidden_worst_m: points.worst_m.max(dense.worst_m),
         rms_m: size.rms,
         max_m: size.max,
         raised_max_m: size.raised,
@@ -113,41 +135,6 @@ pub fn terrain_metrics(of: &Deformation<'_>) -> TerrainMetrics {
         step_p999_m: steps.p999,
         frame,
     }
-}
-
-/// What a ray found.
-#[derive(Debug, Clone, Copy)]
-struct Judged {
-    /// Largest height of the ground over the ray.
-    over: f64,
-    /// What the sample stands for.
-    amount: f64,
-}
-
-fn share(judged: &[Judged]) -> Option<f64> {
-    let sum = |seen: bool| judged.iter().filter(|j| !seen || j.over <= TOUCH).map(|j| j.amount).sum::<f64>();
-    let all = sum(false);
-    (all > 0.0).then(|| (sum(true) + 0.0) / all)
-}
-
-fn dense(of: &Deformation<'_>, drawn: &Drawn<'_>) -> Vec<Judged> {
-    let features = sample_features(of.scene, DENSE * of.field.spacing().min_element());
-    let near = 3.0 * of.settings.guard;
-    let eye = of.field.grid_from_scene(of.eye.truncate());
-    let counted = |xy: DVec2| of.wedge.contains(xy) && (of.field.grid_from_scene(xy) - eye).length() >= near;
-    for unit in [Amount::Length, Amount::Area, Amount::Count] {
-        let samples: Vec<_> = features.iter().filter(|f| f.amount == unit).flat_map(|f| &f.samples).collect();
-        let judge = |s: &&crate::samples::Sample| {
-            let xy = s.p_world.truncate();
-            let over = drawn.excess(of.field.grid_from_scene(xy), of.settings.lift_m.unwrap_or(s.lift));
-            over.filter(|_| counted(xy)).map(|over| Judged { over, amount: s.amount })
-        };
-        let judged: Vec<Judged> = samples.par_iter().filter_map(judge).collect();
-        if !judged.is_empty() {
-            return judged;
-        }
-    }
-    Vec::new()
 }
 
 #[cfg(test)]

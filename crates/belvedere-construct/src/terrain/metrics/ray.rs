@@ -1,91 +1,105 @@
-//! Straight rays against the drawn surface, cell by cell.
+//! Lines of sight against the drawn surface, cell by cell.
 
 use super::super::Field;
+use super::super::qp::LinesOfSight;
+use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
-use belvedere_core::{DVec2, DVec3};
 
-/// Steps along a ray inside a cell are at most this long, cells; the surface is bent only by the displacement.
+/// Steps along a line inside a cell are at most this long, cells; the surface is bent only by the displacement.
 const STEP: f64 = 0.25;
 
-/// The displaced ground as it is drawn, seen from the eye.
+/// The displaced ground as it is drawn: two triangles per cell plus the bilinear displacement.
 pub(super) struct Drawn<'a> {
     field: &'a Field,
     delta: &'a Grid,
-    eye: DVec2,
-    eye_z: f64,
     guard: f64,
     /// Nothing is higher than this.
     highest: f64,
 }
 
-/// Part of a ray over one cell.
+/// Part of a chord over one cell.
 struct Part {
     col: usize,
     row: usize,
     t: [f64; 2],
 }
 
+/// A place on a line of sight: grid coordinates and height.
+type Place = (DVec2, f64);
+
 impl<'a> Drawn<'a> {
-    pub(super) fn new(field: &'a Field, delta: &'a Grid, eye: DVec3, guard: f64) -> Self {
+    pub(super) fn new(field: &'a Field, delta: &'a Grid, guard: f64) -> Self {
         let highest = field.datum() + field.relief() + delta.range()[1].max(0.0);
-        Self { field, delta, eye: field.grid_from_scene(eye.truncate()), eye_z: eye.z, guard, highest }
+        Self { field, delta, guard, highest }
     }
 
     fn delta_at(&self, g: DVec2) -> f64 {
         self.delta.sample(self.field.scene_from_grid(g)).unwrap_or(0.0)
     }
 
-    /// Largest height of the ground over the ray from a point `lift` above it to the eye, beyond the guard; any negative
-    /// number if it is below the ray everywhere; `None` where there is no ground.
-    pub(super) fn excess(&self, g: DVec2, lift: f64) -> Option<f64> {
+    /// Largest height of the ground over the line of sight of a point `lift` above it, beyond the guard; any negative
+    /// number if it is below the line everywhere, infinite if there is no line; `None` where there is no ground.
+    pub(super) fn excess(&self, g: DVec2, lift: f64, sight: &dyn LinesOfSight) -> Option<f64> {
         let z = self.field.surface_at(g)? + self.delta_at(g) + lift;
-        let (dir, dz) = (self.eye - g, self.eye_z - z);
-        let length = dir.length();
-        let mut worst = -1.0f64;
-        if length <= self.guard {
-            return Some(worst);
+        let mut line: Vec<Place> = Vec::new();
+        sight.trace(g, z, &mut line);
+        if line.len() < 2 {
+            return Some(f64::INFINITY);
         }
-        let mut t = self.guard / length;
+        let mut worst = -1.0f64;
+        for pair in line.windows(2) {
+            if let Some(from) = beyond(g, self.guard, pair[0], pair[1]) {
+                worst = self.excess_of(from, pair[1], worst);
+            }
+        }
+        Some(worst)
+    }
+
+    /// The same over one chord; anything not above `least` comes back as that.
+    fn excess_of(&self, from: Place, to: Place, least: f64) -> f64 {
+        let (g, dir) = (from.0, to.0 - from.0);
+        let (z, dz) = (from.1, to.1 - from.1);
+        let Some([mut t, last]) = self.clip(g, dir) else { return least };
         let steps = [dir.x, dir.y].map(|d| if d == 0.0 { f64::INFINITY } else { 1.0 / d.abs() });
-        while t < 1.0 {
+        // Enough to step over a border in spite of rounding.
+        let nudge = 1e-9 * steps[0].min(steps[1]).min(1e9);
+        let mut worst = least;
+        while t < last {
             // Above everything, and rising from here.
             if dz >= 0.0 && z + t * dz > self.highest {
                 break;
             }
-            // The cell just ahead.
-            let ahead = g + (t + 1e-9 * steps[0].min(steps[1])) * dir;
-            let Some((col, row)) = self.cell(ahead) else {
-                t = self.enter(g, dir, t);
-                continue;
-            };
+            let ahead = g + (t + nudge) * dir;
+            let col = (ahead.x.max(0.0) as usize).min(self.field.cols() - 2);
+            let row = (ahead.y.max(0.0) as usize).min(self.field.rows() - 2);
             let border = |p: f64, d: f64, i: usize| match d {
                 d if d > 0.0 => ((i + 1) as f64 - p) / d,
                 d if d < 0.0 => (i as f64 - p) / d,
                 _ => f64::INFINITY,
             };
-            let leave = border(g.x, dir.x, col).min(border(g.y, dir.y, row)).min(1.0);
-            let leave = leave.max(t + 1e-9 * steps[0].min(steps[1]));
-            let part = Part { col, row, t: [t, leave.min(1.0)] };
-            worst = worst.max(self.excess_in(&part, g, dir, (z, dz), worst));
-            t = leave;
+            let leave = border(g.x, dir.x, col).min(border(g.y, dir.y, row)).max(t + nudge).min(last);
+            worst = self.excess_in(&Part { col, row, t: [t, leave] }, g, dir, (z, dz), worst);
+            t = if leave > t { leave } else { last };
         }
-        Some(worst)
+        worst
     }
 
-    fn cell(&self, g: DVec2) -> Option<(usize, usize)> {
-        let inside =
-            g.x >= 0.0 && g.y >= 0.0 && g.x <= (self.field.cols() - 1) as f64 && g.y <= (self.field.rows() - 1) as f64;
-        inside.then(|| ((g.x as usize).min(self.field.cols() - 2), (g.y as usize).min(self.field.rows() - 2)))
-    }
-
-    /// The ray has left the grid, which is convex: it does not come back, unless it only started beside it.
-    fn enter(&self, g: DVec2, dir: DVec2, t: f64) -> f64 {
-        let last = DVec2::new((self.field.cols() - 1) as f64, (self.field.rows() - 1) as f64);
-        let p = g + t * dir;
-        let slack = 1e-6;
-        let outside = p.x < -slack || p.y < -slack || p.x > last.x + slack || p.y > last.y + slack;
-        // On the rim by rounding: a little further.
-        if outside { 1.0 } else { t + 1e-6 / dir.length() }
+    /// Part of a chord over the grid.
+    fn clip(&self, g: DVec2, dir: DVec2) -> Option<[f64; 2]> {
+        let (mut from, mut to) = (0.0f64, 1.0f64);
+        for (axis, nodes) in [self.field.cols(), self.field.rows()].into_iter().enumerate() {
+            let (p, d, limit) = (g[axis], dir[axis], (nodes - 1) as f64);
+            if d == 0.0 {
+                if !(0.0..=limit).contains(&p) {
+                    return None;
+                }
+                continue;
+            }
+            let (a, b) = (-p / d, (limit - p) / d);
+            from = from.max(a.min(b));
+            to = to.min(a.max(b));
+        }
+        (from < to).then_some([from, to])
     }
 
     /// The same over one cell; anything not above `least` may come back as that.
@@ -131,4 +145,16 @@ impl<'a> Drawn<'a> {
         }
         worst
     }
+}
+
+/// The start of the part of a chord that lies beyond `guard` cells of `p`.
+fn beyond(p: DVec2, guard: f64, a: Place, b: Place) -> Option<Place> {
+    if a.0.distance(p) >= guard {
+        return Some(a);
+    }
+    let (d, f) = (b.0 - a.0, a.0 - p);
+    // |f + t d| = guard, the crossing outwards.
+    let (aa, bb, cc) = (d.length_squared(), f.dot(d), f.length_squared() - guard * guard);
+    let t = (-bb + (bb * bb - aa * cc).max(0.0).sqrt()) / aa;
+    (t.is_finite() && t <= 1.0).then(|| (a.0 + t * d, a.1 + t * (b.1 - a.1)))
 }

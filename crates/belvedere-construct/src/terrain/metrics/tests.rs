@@ -1,7 +1,9 @@
 use super::super::cells::tests::{field_of, noise};
-use super::super::reference_points;
+use super::super::qp::StraightSight;
+use super::super::{TerrainSettings, Wedge, in_view, reference_points};
 use super::*;
-use belvedere_scene::{Color, Hidden, Layer, LayerKind, LineFeature, LineLayer};
+use belvedere_core::{DVec2, DVec3};
+use belvedere_scene::{Color, Hidden, Layer, LayerKind, LineFeature, LineLayer, Scene};
 
 fn line(field: &Field, path: &[[f64; 2]]) -> Scene {
     let points = path.iter().map(|&g| field.scene_from_grid(DVec2::from(g)).extend(0.0)).collect();
@@ -31,23 +33,30 @@ fn rough(cols: usize, rows: usize, seed: u64) -> Field {
     })
 }
 
+fn sight(field: &Field, eye: DVec3) -> StraightSight {
+    StraightSight { eye: field.grid_from_scene(eye.truncate()), z: eye.z }
+}
+
 fn judge(scene: &Scene, field: &Field, delta: &Grid, eye: DVec3) -> TerrainMetrics {
     let settings = TerrainSettings::default();
-    let points = reference_points(scene, field, &settings, settings.spacing).0;
     let wedge = Wedge::all_around(eye.truncate());
+    let [points, dense] = [settings.spacing, 0.2].map(|spacing| {
+        let all = reference_points(scene, field, &settings, spacing).0;
+        in_view(field, &all, &wedge, settings.guard).0.into_iter().map(|i| all[i]).collect::<Vec<_>>()
+    });
     let cells = Cells::new(field, 4);
-    let of = Deformation {
-        scene,
+    let sight = sight(field, eye);
+    let (cells, guard) = (Some(&cells), settings.guard);
+    terrain_metrics(&Deformation {
         field,
         delta,
         previous: None,
-        cells: Some(&cells),
+        cells,
         points: &points,
-        eye,
-        wedge: &wedge,
-        settings: &settings,
-    };
-    terrain_metrics(&of)
+        dense: &dense,
+        sight: &sight,
+        guard,
+    })
 }
 
 #[test]
@@ -63,7 +72,7 @@ fn rays_find_what_a_hundred_thousand_steps_find() {
             // On grid lines and nodes, too.
             let p = if k % 4 == 0 { p.round() } else { p };
             let eye = field.scene_from_grid(eye_grid).extend(1250.0 + r(4, 100.0));
-            let ours = Drawn::new(&field, &delta, eye, 1.5).excess(p, 1.0).unwrap();
+            let ours = Drawn::new(&field, &delta, 1.5).excess(p, 1.0, &sight(&field, eye)).unwrap();
             let height = |g: DVec2| field.surface_at(g).map(|h| h + delta.sample(field.scene_from_grid(g)).unwrap());
             let (z, guard) = (height(p).unwrap() + 1.0, 1.5 / (eye_grid - p).length());
             let steps = 100_000;
@@ -129,20 +138,16 @@ fn steps_between_cells_and_frames_are_those_of_the_displacement() {
     assert!((0..12).all(|r| (0..31).all(|c| (c < cut) == (cells.labels()[r * 31 + c] == cells.labels()[0]))));
     let delta = delta_of(&field, 61, |x, _| if x < cut as f64 - 0.5 { -30.0 } else { 0.0 });
     let before = delta_of(&field, 61, |_, _| -10.0);
-    let settings = TerrainSettings::default();
-    let scene = Scene::default();
-    let eye = DVec3::new(0.0, 0.0, 5000.0);
-    let wedge = Wedge::all_around(eye.truncate());
+    let sight = sight(&field, DVec3::new(0.0, 0.0, 5000.0));
     let of = Deformation {
-        scene: &scene,
         field: &field,
         delta: &delta,
         previous: Some(&before),
         cells: Some(&cells),
         points: &[],
-        eye,
-        wedge: &wedge,
-        settings: &settings,
+        dense: &[],
+        sight: &sight,
+        guard: 1.5,
     };
     let metrics = terrain_metrics(&of);
     assert_eq!((metrics.border_step_m, metrics.step_p999_m), (Some(30.0), 30.0));

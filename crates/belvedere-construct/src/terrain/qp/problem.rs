@@ -75,7 +75,7 @@ impl QpOptions {
             tolerance: (0.2 * settings.margin_m).max(1e-3),
             ceiling: settings.rise_limit_m + 0.25,
             ceiling_tolerance: 0.24,
-            slack_price: None,
+            slack_price: settings.slack_price,
             rounds: 80,
         }
     }

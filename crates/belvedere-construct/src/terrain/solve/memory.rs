@@ -78,6 +78,11 @@ const JUMP_SHARE: f64 = 0.05;
 const JUMP_COS: f64 = 0.939_692_620_785_908_4;
 
 impl TerrainMemory {
+    /// A memory of preparations alone.
+    pub(super) fn holding(prepared: Prepared) -> Self {
+        Self { prepared: Some(prepared), last: None }
+    }
+
     /// What was prepared before, or now.
     pub(super) fn prepared_for(
         &mut self,
@@ -109,6 +114,11 @@ impl TerrainMemory {
         let near = last.eye.distance(view.pinhole().eye) <= JUMP_SHARE * size.length();
         let turned = last.forward.dot(view.pinhole().forward) < JUMP_COS;
         (near && !turned).then(|| last.coarse.clone())
+    }
+
+    /// Displacement of the frame before on the same grid, whatever happened to the view since.
+    pub(super) fn before(&self, prepared: &Prepared) -> Option<&[f64]> {
+        self.last.as_ref().map(|last| last.coarse.as_slice()).filter(|u| u.len() == prepared.grid.nodes())
     }
 
     pub(super) fn keep(&mut self, prepared: Prepared, view: &View, coarse: Vec<f64>) {
@@ -144,11 +154,7 @@ impl Prepared {
             }
             None => None,
         };
-        let on = pace.on(&grid);
-        let qp = with_qp.then(|| {
-            let weight = on.w * on.w + on.g * on.g;
-            QpSolver::new(&level, [grid.cols(), grid.rows()], grid.step(), weight, QpOptions::of(settings))
-        });
+        let qp = with_qp.then(|| program(&level, &grid, pace, settings));
         Ok(Self {
             settings: settings.clone(),
             pace,
@@ -173,6 +179,13 @@ impl Prepared {
     pub(super) fn weights(&self) -> Pace {
         self.pace.on(&self.grid)
     }
+}
+
+/// The quadratic program on a solver's grid.
+pub(super) fn program(field: &Field, grid: &Hierarchy, pace: Pace, settings: &TerrainSettings) -> QpSolver {
+    let on = pace.on(grid);
+    let weight = on.w * on.w + on.g * on.g;
+    QpSolver::new(field, [grid.cols(), grid.rows()], grid.step(), weight, QpOptions::of(settings))
 }
 
 /// Which points count when only features up to `ahead_m` along their path from the eye do: the plan distance to the feature's
@@ -230,6 +243,9 @@ pub(super) fn check(settings: &TerrainSettings) -> Result<(), ConstructError> {
     }
     if !(s.rise_limit_m >= 0.0) {
         return bad("rise_limit_m", s.rise_limit_m, "0 or more");
+    }
+    if let Some(price) = s.slack_price.filter(|p| !in_range(*p, 1e-9, 1e9)) {
+        return bad("slack_price", price, "0.000000001..=1000000000");
     }
     match s.ahead_m {
         Some(v) if !(v > 0.0) => bad("ahead_m", v, "above 0"),

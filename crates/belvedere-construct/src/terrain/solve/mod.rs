@@ -1,22 +1,28 @@
 //! Settings and memory to a stage and its report.
 
+mod adjust;
 mod bent;
+mod fallback;
 mod memory;
 mod passes;
 mod report;
-mod shown;
+mod seen;
 
+pub use fallback::Fallback;
 pub use memory::TerrainMemory;
-pub use report::{QpReport, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
+pub use report::{Covered, QpReport, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
 
-use super::qp::{Candidate, LinesOfSight, StraightSight, Unresolved, ViewSight};
-use super::{Detail, Field, LeftOut, ReferencePoint, SolverMode, TerrainSettings, Wedge, check_eye, in_view};
+use super::qp::{SolvedRow, Unresolved};
+use super::{Detail, Field, SolverMode, TerrainSettings, check_eye};
 use crate::ConstructError;
-use belvedere_core::grid::Grid;
+use adjust::Asked;
+use belvedere_core::grid::{Grid, GridError};
 use belvedere_core::{DVec2, EarthCurvature, SpaceMap, Stage, TerrainDisocclusion, View};
 use belvedere_scene::{Progress, Scene};
 use memory::{Pace, Prepared};
 use passes::Passes;
+use seen::Seen;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Terrain disocclusion as a constructor: the ground of a scene makes way for what must be seen.
@@ -74,6 +80,37 @@ impl TerrainSolver {
         memory: &mut TerrainMemory,
         progress: &Progress,
     ) -> Result<Solved, ConstructError> {
+        let Ran { prepared, field, done, times } = self.run(scene, base, memory, None, progress)?;
+        let field: &Field = &field;
+        progress.tick("figures of the displaced terrain", 0.95)?;
+        let began = Instant::now();
+        let delta = match &done.full {
+            Some(full) => spread(field, [field.cols(), field.rows()], DVec2::ONE, full)?,
+            None => on_solver_grid(field, &prepared, &done.coarse)?,
+        };
+        let previous = memory.before(&prepared).map(|u| on_solver_grid(field, &prepared, u)).transpose()?;
+        let context = report::Context {
+            settings: &self.settings,
+            field,
+            prepared: &prepared,
+            seen: &Seen::new(field, &prepared, base, &self.settings),
+            delta: &delta,
+            previous: previous.as_ref(),
+        };
+        let report = report::report(&context, &done, times, began);
+        memory.keep(prepared, base, done.coarse);
+        Ok(Solved { stage: TerrainDisocclusion::new(delta), report })
+    }
+
+    /// The passes of one frame, without figures; the memory lends what it has prepared. `asked` stands for what `base` shows.
+    fn run(
+        &self,
+        scene: &Scene,
+        base: &View,
+        memory: &mut TerrainMemory,
+        asked: Option<&Asked>,
+        progress: &Progress,
+    ) -> Result<Ran, ConstructError> {
         let heightfield = scene.terrain().ok_or(ConstructError::NoTerrain)?;
         if scene.must_see().next().is_none() {
             return Err(ConstructError::NothingToSee { layers: scene.layers.len() });
@@ -86,22 +123,25 @@ impl TerrainSolver {
             Stage::EarthCurvature(earth) => Some(*earth),
             _ => None,
         });
-        let fallen = match &earth {
-            Some(earth) => Some(Field::new(heightfield, |p| drop_at(earth, p))?),
-            None => None,
+        let field = match &earth {
+            Some(earth) => Arc::new(Field::new(heightfield, |p| drop_at(earth, p))?),
+            None => prepared.level.clone(),
         };
-        let level = prepared.level.clone();
-        let field: &Field = fallen.as_ref().unwrap_or(&level);
         let eye = base.pinhole().eye;
-        check_eye(field, eye)?;
-        let seen = Seen::new(field, &prepared, base, &self.settings);
+        if let Err(e) = check_eye(&field, eye) {
+            *memory = TerrainMemory::holding(prepared);
+            return Err(e.into());
+        }
+        let mut seen = Seen::new(&field, &prepared, base, &self.settings);
+        if let Some(asked) = asked {
+            (seen.points, seen.candidates) = (asked.points.clone(), asked.candidates.clone());
+        }
         let mut times = TerrainTimes { prepare_ms: since(began), ..TerrainTimes::default() };
         let last = memory.last_for(base, &prepared);
-        let lowered = fallen.is_some();
         let passes = Passes {
             settings: &self.settings,
-            field,
-            lowered,
+            field: &field,
+            lowered: earth.is_some(),
             pace,
             frame: self.frame(),
             eye,
@@ -109,29 +149,39 @@ impl TerrainSolver {
             progress,
         };
         let done = passes.run(&mut prepared, &seen, &mut times)?;
-        progress.tick("figures of the displaced terrain", 0.95)?;
-        let began = Instant::now();
-        let report = report::report(
-            &report::Context {
-                settings: &self.settings,
-                field,
-                prepared: &prepared,
-                seen: &seen,
-                last: last.as_deref(),
-            },
-            &done,
-            times,
-            began,
-        );
-        let (cols, rows, spacing) = match &done.full {
-            Some(_) => (field.cols(), field.rows(), field.spacing()),
-            None => (prepared.grid.cols(), prepared.grid.rows(), prepared.grid.step() * field.spacing()),
-        };
-        let values = done.full.clone().unwrap_or_else(|| done.coarse.clone());
-        let grid = Grid::new(field.north_west(), spacing, cols, rows, values)?;
-        memory.keep(prepared, base, done.coarse);
-        Ok(Solved { stage: TerrainDisocclusion::new(grid), report })
+        drop(seen);
+        Ok(Ran { prepared, field, done, times })
     }
+}
+
+/// A frame before its figures.
+struct Ran {
+    prepared: Prepared,
+    /// The ground as the eye sees it.
+    field: Arc<Field>,
+    done: Done,
+    times: TerrainTimes,
+}
+
+fn on_solver_grid(field: &Field, prepared: &Prepared, u: &[f64]) -> Result<Grid, GridError> {
+    spread(field, [prepared.grid.cols(), prepared.grid.rows()], prepared.grid.step(), u)
+}
+
+/// Values at nodes `step` cells apart over the field as a grid of the scene. The rim is repeated one node farther out, so
+/// that rounding leaves no place of the ground beside the grid.
+fn spread(field: &Field, [cols, rows]: [usize; 2], step: DVec2, values: &[f64]) -> Result<Grid, GridError> {
+    let inner = |i: usize, n: usize| i.saturating_sub(1).min(n - 1);
+    let padded = (0..(cols + 2) * (rows + 2)).map(|i| {
+        let (col, row) = (inner(i % (cols + 2), cols), inner(i / (cols + 2), rows));
+        values[row * cols + col]
+    });
+    Grid::new(field.scene_from_grid(-step), step * field.spacing(), cols + 2, rows + 2, padded.collect())
+}
+
+/// No displacement at all.
+fn level(field: &Field) -> Option<Grid> {
+    let step = DVec2::new((field.cols() - 1) as f64, (field.rows() - 1) as f64);
+    spread(field, [2, 2], step, &[0.0; 4]).ok()
 }
 
 fn since(began: Instant) -> f64 {
@@ -143,76 +193,22 @@ fn drop_at(earth: &EarthCurvature, p: DVec2) -> f64 {
     earth.apply(p.extend(0.0)).map_or(0.0, |q| -q.z)
 }
 
-/// What of the features the picture is asked to show.
-struct Seen<'a> {
-    field: &'a Field,
-    base: &'a View,
-    wedge: Wedge,
-    guard: f64,
-    ahead_m: Option<f64>,
-    /// Indices of reference points.
-    points: Vec<usize>,
-    /// Reference points in view that are too near to the eye.
-    too_near: Vec<usize>,
-    /// Dense points and, after them, the reference points.
-    candidates: Vec<Candidate>,
-    sight: Box<dyn LinesOfSight + 'a>,
-    /// Whether later stages bend the lines of sight.
-    bent: bool,
-}
-
-impl<'a> Seen<'a> {
-    fn new(field: &'a Field, prepared: &Prepared, base: &'a View, settings: &TerrainSettings) -> Self {
-        let bent = base.stages().iter().any(|s| matches!(s, Stage::SplineBend(_) | Stage::CurvedRays(_)));
-        let eye = base.pinhole().eye;
-        let wedge = if bent { Wedge::all_around(eye.truncate()) } else { Wedge::of_pinhole(base.pinhole()) };
-        let sight: Box<dyn LinesOfSight + 'a> = match bent {
-            true => Box::new(ViewSight::new(base, field)),
-            false => Box::new(StraightSight { eye: field.grid_from_scene(eye.truncate()), z: eye.z }),
-        };
-        let (guard, ahead_m) = (settings.guard, settings.ahead_m);
-        let (points, too_near, candidates) = (Vec::new(), Vec::new(), Vec::new());
-        let mut seen = Self { field, base, wedge, guard, ahead_m, points, too_near, candidates, sight, bent };
-        (seen.points, seen.too_near) = seen.indices(&prepared.points);
-        let offset = prepared.dense.len();
-        let candidate = |id: usize, p: &ReferencePoint| Candidate { id: id as u32, grid: p.grid, lift: p.lift };
-        let (dense, _) = seen.indices(&prepared.dense);
-        let dense = dense.iter().map(|&i| candidate(i, &prepared.dense[i]));
-        let points = seen.points.iter().map(|&i| candidate(offset + i, &prepared.points[i]));
-        seen.candidates = dense.chain(points).collect();
-        seen
-    }
-
-    /// Which of the points are asked for, and which would be if they were not too near.
-    fn indices(&self, points: &[ReferencePoint]) -> (Vec<usize>, Vec<usize>) {
-        let near = memory::ahead(self.field, points, self.wedge.eye, self.ahead_m);
-        let in_frame = |p: &ReferencePoint| {
-            !self.bent || bent::shows(self.base, self.field.scene_from_grid(p.grid).extend(p.ground + p.lift))
-        };
-        let (inside, outside) = in_view(self.field, points, &self.wedge, self.guard);
-        let inside = inside.into_iter().filter(|&i| near[i] && in_frame(&points[i])).collect();
-        let too_near = |&(i, why): &(usize, LeftOut)| (why == LeftOut::TooNear && near[i]).then_some(i);
-        (inside, outside.iter().filter_map(too_near).collect())
-    }
-}
-
 /// What the passes came to.
 struct Done {
     /// Displacement at the nodes of the solver's grid.
     coarse: Vec<f64>,
-    /// Displacement at every node of the terrain, where detail was scaled.
+    /// Displacement at every node of the terrain, where that is more than the solver's grid can hold.
     full: Option<Vec<f64>>,
+    /// Displacement at every node of the terrain, where the solver's grid was too coarse.
+    fine: Option<Vec<f64>>,
+    /// Ways out of contradicting rows that were taken.
+    fallbacks: Vec<Fallback>,
     greedy: Option<super::GreedyCounters>,
     greedy_unresolved: Vec<usize>,
     qp: Option<QpReport>,
     qp_unresolved: Vec<Unresolved>,
-}
-
-impl Done {
-    /// Displacement at every node of the terrain.
-    fn fine(&self, prepared: &Prepared) -> Vec<f64> {
-        self.full.clone().unwrap_or_else(|| prepared.grid.prolong(&self.coarse))
-    }
+    /// Rows of the quadratic program with a multiplier.
+    rows: Vec<SolvedRow>,
 }
 
 /// Whether detail is scaled with the ground under it.

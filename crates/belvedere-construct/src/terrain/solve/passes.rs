@@ -1,8 +1,9 @@
 //! The passes of one frame, in the order of the mode.
 
 use super::super::qp::QpProblem;
-use super::super::{Field, Naive, Pyramid, ReferencePoint, Smoother, SolverMode, TerrainSettings};
-use super::memory::{Pace, Prepared};
+use super::super::{Field, Hierarchy, Naive, Pyramid, ReferencePoint, Smoother, SolverMode, TerrainSettings};
+use super::fallback::{self, Fallback};
+use super::memory::{Pace, Prepared, program};
 use super::{Done, QpReport, Seen, TerrainTimes, scales, since};
 use crate::ConstructError;
 use belvedere_core::DVec3;
@@ -34,22 +35,29 @@ impl Passes<'_> {
         let mut done = Done {
             coarse: vec![0.0; prepared.grid.nodes()],
             full: None,
+            fine: None,
+            fallbacks: Vec::new(),
             greedy: None,
             greedy_unresolved: Vec::new(),
             qp: None,
             qp_unresolved: Vec::new(),
+            rows: Vec::new(),
         };
         let mut detail = None;
         if prepared.cells.is_some() {
             detail = self.paper(prepared, seen, &mut done, times)?;
         }
         if prepared.qp.is_some() {
-            self.guarantee(prepared, seen, detail.as_deref(), &mut done, times)?;
+            self.guarantee(prepared, seen, &mut detail, &mut done, times)?;
         }
-        if let Some(detail) = detail {
-            let smooth = prepared.grid.prolong(&done.coarse);
-            done.full = Some(smooth.iter().zip(detail).map(|(a, b)| a + b).collect());
-        }
+        let fine = done.fine.take();
+        done.full = match (fine, detail) {
+            (fine, Some(detail)) => {
+                let smooth = fine.unwrap_or_else(|| prepared.grid.prolong(&done.coarse));
+                Some(smooth.iter().zip(detail).map(|(a, b)| a + b).collect())
+            }
+            (fine, None) => fine,
+        };
         Ok(done)
     }
 
@@ -98,13 +106,13 @@ impl Passes<'_> {
         &self,
         prepared: &mut Prepared,
         seen: &Seen<'_>,
-        detail: Option<&[f64]>,
+        detail: &mut Option<Vec<f64>>,
         done: &mut Done,
         times: &mut TerrainTimes,
     ) -> Result<(), ConstructError> {
         self.progress.tick("quadratic program", 0.5)?;
         let began = Instant::now();
-        let (Pace { w, g }, nodes) = (prepared.weights(), prepared.grid.nodes());
+        let Pace { w, g } = prepared.weights();
         let target = match (self.settings.mode, self.last) {
             (SolverMode::PaperQp, _) => Some(done.coarse.clone()),
             (_, Some(last)) if self.pace.g > 0.0 => {
@@ -116,18 +124,43 @@ impl Passes<'_> {
             _ => None,
         };
         let Some(qp) = &mut prepared.qp else { return Ok(()) };
-        let ground: Vec<f64> = match detail {
+        let mut ground: Vec<f64> = match &detail {
             Some(detail) => self.field.heights().iter().zip(detail).map(|(h, d)| h + d).collect(),
             None => self.field.heights().to_vec(),
         };
         qp.set_heights(&ground)?;
-        let result = qp.solve(&QpProblem {
-            candidates: &seen.candidates,
-            sight: &*seen.sight,
-            target: target.as_deref(),
-            ceilings: None,
-        })?;
-        debug_assert_eq!(result.u.len(), nodes);
+        let (candidates, sight) = (&seen.candidates[..], &*seen.sight);
+        let problem = QpProblem { candidates, sight, target: target.as_deref(), ceilings: None };
+        let mut result = qp.solve(&problem)?;
+        if fallback::stuck(&result) > 0 {
+            let cut = fallback::cut_detail(self.field, &ground, &prepared.grid, &result.active);
+            let lower: Vec<f64> = ground.iter().zip(&cut).map(|(h, c)| h + c).collect();
+            qp.set_heights(&lower)?;
+            let next = qp.solve(&problem)?;
+            if fallback::stuck(&next) < fallback::stuck(&result) {
+                (result, ground) = (next, lower);
+                let before = detail.take().unwrap_or_else(|| vec![0.0; cut.len()]);
+                *detail = Some(before.iter().zip(cut).map(|(d, c)| d + c).collect());
+                done.fallbacks.push(Fallback::Detail);
+            }
+        }
+        done.coarse.clone_from(&result.u);
+        for nodes in fallback::finer(&prepared.grid, self.field) {
+            if fallback::stuck(&result) == 0 {
+                break;
+            }
+            self.progress.tick("quadratic program on a finer grid", 0.7)?;
+            let grid = Hierarchy::new(self.field.cols(), self.field.rows(), nodes);
+            let start = target.as_ref().map(|t| fallback::resampled(&prepared.grid, t, &grid));
+            let mut finer = program(self.field, &grid, self.pace, self.settings);
+            finer.set_heights(&ground)?;
+            let next = finer.solve(&QpProblem { target: start.as_deref(), ..problem })?;
+            if fallback::stuck(&next) < fallback::stuck(&result) {
+                done.fine = Some(grid.prolong(&next.u));
+                result = next;
+                done.fallbacks.push(Fallback::FinerGrid { nodes });
+            }
+        }
         done.qp = Some(QpReport {
             rounds: result.rounds,
             rows: result.rows,
@@ -138,7 +171,7 @@ impl Passes<'_> {
             energy: result.energy,
         });
         done.qp_unresolved = result.unresolved;
-        done.coarse = result.u;
+        done.rows = result.active;
         times.qp_ms = since(began);
         Ok(())
     }

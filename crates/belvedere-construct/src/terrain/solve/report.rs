@@ -1,13 +1,15 @@
 //! What a displacement achieves and what it costs, ready for JSON.
 
+use super::super::metrics::{excesses, shown};
 use super::super::qp::{Reason, Unresolved};
 use super::super::{
-    Cells, Field, FrameChange, GreedyCounters, PointKind, ReferencePoint, SolverMode, TerrainSettings, UnusableReason,
+    Deformation, Field, FrameChange, GreedyCounters, PointKind, ReferencePoint, SolverMode, TerrainSettings,
+    UnusableReason, terrain_metrics,
 };
 use super::memory::Prepared;
-use super::shown::{Shown, displaced, shown};
-use super::{Done, Seen, since};
+use super::{Done, Fallback, Seen, since};
 use belvedere_core::DVec2;
+use belvedere_core::grid::Grid;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -24,7 +26,7 @@ pub struct TerrainReport {
     pub solver_grid: [usize; 2],
     /// Reference points in view.
     pub points: usize,
-    /// Visible share of them, by a tracer that knows nothing of the solver.
+    /// Visible share of them, by a tracer that knows nothing of the solver; 1 without points.
     pub visible: f64,
     /// The same before the ground gave way.
     pub visible_before: f64,
@@ -54,12 +56,28 @@ pub struct TerrainReport {
     pub greedy: Option<GreedyCounters>,
     /// The quadratic program; `None` in mode paper.
     pub qp: Option<QpReport>,
+    /// Ways out of contradicting rows that were taken, in their order; empty as a rule.
+    pub fallbacks: Vec<Fallback>,
     /// Whether every reference point and candidate in view is guaranteed to be seen in this picture.
     pub guaranteed: bool,
     /// What cannot be seen, and why.
     pub unresolved: Vec<UnresolvedRun>,
+    /// Places that stay covered at the slack price.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub covered: Vec<Covered>,
     /// Times.
     pub times: TerrainTimes,
+}
+
+/// A place that stays covered because clearing it costs more than the slack price allows.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Covered {
+    /// Scene x, y.
+    pub at: [f64; 2],
+    /// Height over the ground at which it is wanted.
+    pub lift_m: f64,
+    /// How far the ground rises over its line of sight.
+    pub over_m: f64,
 }
 
 /// Figures of the quadratic program.
@@ -153,127 +171,80 @@ pub(super) struct Context<'a> {
     pub(super) field: &'a Field,
     pub(super) prepared: &'a Prepared,
     pub(super) seen: &'a Seen<'a>,
-    pub(super) last: Option<&'a [f64]>,
+    /// The solution.
+    pub(super) delta: &'a Grid,
+    /// That of the frame before.
+    pub(super) previous: Option<&'a Grid>,
 }
 
 pub(super) fn report(c: &Context<'_>, done: &Done, mut times: TerrainTimes, began: Instant) -> TerrainReport {
-    let (field, prepared, seen) = (c.field, c.prepared, c.seen);
-    let delta = done.fine(prepared);
+    let (field, prepared, seen, guard) = (c.field, c.prepared, c.seen, c.settings.guard);
     let points: Vec<ReferencePoint> = seen.points.iter().map(|&i| prepared.points[i]).collect();
     let dense = prepared.dense_in_view(seen);
-    let judge = |delta: Option<&[f64]>| -> [Shown; 2] {
-        let nothing = Shown { share: 1.0, hidden: 0, worst: 0.0 };
-        displaced(field, delta).map_or([nothing; 2], |ground| {
-            [&points, &dense].map(|p| shown(&ground, field, p, &*seen.sight, c.settings.guard))
-        })
+    let of = Deformation {
+        field,
+        delta: c.delta,
+        previous: c.previous,
+        cells: prepared.cells.as_ref().map(|parts| &parts.0),
+        points: &points,
+        dense: &dense,
+        sight: &*seen.sight,
+        guard,
     };
-    let ([before, dense_before], [after, dense_after]) = (judge(None), judge(Some(&delta)));
-    let shape = Shape::of(field, &delta);
+    let metrics = terrain_metrics(&of);
+    let before = |points: &[ReferencePoint]| {
+        super::level(field).map_or(1.0, |level| shown(field, &level, guard, &*seen.sight, points).share.unwrap_or(1.0))
+    };
     let unresolved = unresolved(c, done);
     let (guards, qp_met) = (c.settings.mode != SolverMode::Paper, done.qp_unresolved.is_empty());
     let spacing = (prepared.grid.step() * field.spacing()).max_element();
-    let w = prepared.weights().w;
-    times.report_ms = since(began);
-    TerrainReport {
+    let (visible, visible_dense) = (metrics.visible.unwrap_or(1.0), metrics.visible_dense.unwrap_or(1.0));
+    let mut out = TerrainReport {
         parameters: TerrainSettings {
             w: Some(c.settings.smoothness()),
             detail: Some(c.settings.detail()),
             ..c.settings.clone()
         },
         w: c.settings.smoothness(),
-        smoothing_length_m: spacing / w.sqrt(),
+        smoothing_length_m: spacing / prepared.weights().w.sqrt(),
         solver_grid: [prepared.grid.cols(), prepared.grid.rows()],
         points: points.len(),
-        visible: after.share,
-        visible_before: before.share,
-        visible_dense: dense_after.share,
-        visible_dense_before: dense_before.share,
-        hidden_worst_m: after.worst.max(dense_after.worst),
-        rms_m: shape.rms,
-        max_m: shape.max,
-        raised_max_m: shape.raised,
-        normal_mean_deg: shape.normal_mean_deg,
-        normal_p95_deg: shape.normal_p95_deg,
-        border_step_m: prepared.cells.as_ref().map(|parts| border_step(field, &parts.0, &delta)),
-        step_p999_m: shape.step_p999,
-        frame: c.last.map(|last| change(last, &done.coarse)),
+        visible,
+        visible_before: before(&points),
+        visible_dense,
+        visible_dense_before: before(&dense),
+        hidden_worst_m: metrics.hidden_worst_m,
+        rms_m: metrics.rms_m,
+        max_m: metrics.max_m,
+        raised_max_m: metrics.raised_max_m,
+        normal_mean_deg: metrics.normal_mean_deg,
+        normal_p95_deg: metrics.normal_p95_deg,
+        border_step_m: metrics.border_step_m,
+        step_p999_m: metrics.step_p999_m,
+        frame: metrics.frame,
         greedy: done.greedy,
         qp: done.qp,
-        guaranteed: guards && qp_met && after.hidden == 0,
+        fallbacks: done.fallbacks.clone(),
+        guaranteed: guards && qp_met && visible == 1.0,
         unresolved,
+        covered: covered(c, &dense),
         times,
+    };
+    times.report_ms = since(began);
+    out.times = times;
+    out
+}
+
+fn covered(c: &Context<'_>, dense: &[ReferencePoint]) -> Vec<Covered> {
+    if c.settings.slack_price.is_none() {
+        return Vec::new();
     }
-}
-
-fn change(last: &[f64], now: &[f64]) -> FrameChange {
-    let steps = last.iter().zip(now).map(|(a, b)| (a - b).abs());
-    let (sum, max) = steps.fold((0.0, 0.0f64), |(s, m), d| (s + d * d, m.max(d)));
-    FrameChange { rms_m: (sum / now.len().max(1) as f64).sqrt(), max_m: max }
-}
-
-struct Shape {
-    rms: f64,
-    max: f64,
-    raised: f64,
-    normal_mean_deg: f64,
-    normal_p95_deg: f64,
-    step_p999: f64,
-}
-
-impl Shape {
-    fn of(field: &Field, delta: &[f64]) -> Self {
-        let (cols, spacing) = (field.cols(), field.spacing());
-        let solid = |i: usize| !field.void()[i];
-        let (mut sum, mut count, mut max, mut raised) = (0.0, 0usize, 0.0f64, 0.0f64);
-        let (mut angles, mut steps) = (Vec::new(), Vec::new());
-        for i in (0..delta.len()).filter(|&i| solid(i)) {
-            let d = delta[i];
-            (sum, count) = (sum + d * d, count + 1);
-            (max, raised) = (max.max(d.abs()), raised.max(d));
-            let (col, row) = (i % cols, i / cols);
-            let east = (col + 1 < cols && solid(i + 1)).then_some(i + 1);
-            let south = (row + 1 < field.rows() && solid(i + cols)).then_some(i + cols);
-            steps.extend([east, south].into_iter().flatten().map(|k| (delta[k] - d).abs()));
-            if let (Some(e), Some(s)) = (east, south) {
-                let slope = |h: &dyn Fn(usize) -> f64| DVec2::new(h(e) - h(i), h(s) - h(i)) / spacing;
-                let before = slope(&|k| field.heights()[k]);
-                let after = slope(&|k| field.heights()[k] + delta[k]);
-                let (n, m) = (before.extend(1.0), after.extend(1.0));
-                angles.push(n.cross(m).length().atan2(n.dot(m)).to_degrees());
-            }
-        }
-        let mean = angles.iter().sum::<f64>() / angles.len().max(1) as f64;
-        Self {
-            rms: (sum / count.max(1) as f64).sqrt(),
-            max,
-            raised,
-            normal_mean_deg: mean,
-            normal_p95_deg: quantile(&mut angles, 0.95),
-            step_p999: quantile(&mut steps, 0.999),
-        }
-    }
-}
-
-fn quantile(values: &mut [f64], q: f64) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let k = ((values.len() - 1) as f64 * q).round() as usize;
-    *values.select_nth_unstable_by(k, f64::total_cmp).1
-}
-
-/// Mean step of the displacement between neighbouring nodes of different cells.
-fn border_step(field: &Field, cells: &Cells, delta: &[f64]) -> f64 {
-    let (cols, labels) = (field.cols(), cells.labels());
-    let (mut sum, mut count) = (0.0, 0usize);
-    for i in (0..delta.len()).filter(|&i| !field.void()[i]) {
-        let east = (i % cols + 1 < cols).then_some(i + 1);
-        let south = (i + cols < delta.len()).then_some(i + cols);
-        for k in [east, south].into_iter().flatten().filter(|&k| !field.void()[k] && labels[k] != labels[i]) {
-            (sum, count) = (sum + (delta[k] - delta[i]).abs(), count + 1);
-        }
-    }
-    sum / count.max(1) as f64
+    let over = excesses(c.field, c.delta, c.settings.guard, &*c.seen.sight, dense);
+    let place = |(p, over): (&ReferencePoint, Option<f64>)| {
+        let over_m = over.filter(|o| *o > 0.0 && o.is_finite())?;
+        Some(Covered { at: c.field.scene_from_grid(p.grid).to_array(), lift_m: p.lift, over_m })
+    };
+    dense.iter().zip(over).filter_map(place).collect()
 }
 
 fn unresolved(c: &Context<'_>, done: &Done) -> Vec<UnresolvedRun> {
