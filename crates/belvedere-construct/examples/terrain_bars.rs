@@ -4,6 +4,8 @@
 //! and a summary per range: visible and densely visible share before and after, points left out, rise, and the displacement of
 //! mode qp against that of mode paper (w = 0.6) for the same eye and points.
 
+#![expect(clippy::print_stdout, reason = "it prints figures")]
+
 use belvedere_construct::terrain::{SolverMode, TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver};
 use belvedere_construct::{Flight, FlightOptions};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};

@@ -2,7 +2,7 @@
 
 use super::super::qp::{QpOptions, QpSolver};
 use super::super::{
-    Cells, Field, Hierarchy, Pyramid, ReferencePoint, SmoothPass, SolverMode, TerrainSettings, Unusable, grid_weight,
+    Cells, Field, Hierarchy, Pyramid, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings, Unusable, grid_weight,
     reference_points, temporal_weight,
 };
 use crate::ConstructError;
@@ -47,6 +47,8 @@ pub(super) struct Prepared {
     pub(super) smooth: Option<SmoothPass>,
     /// Of modes with a quadratic program.
     pub(super) qp: Option<QpSolver>,
+    /// Whether the program holds other ground than `level`.
+    pub(super) foreign: bool,
 }
 
 /// Smoothness and temporal weight on the solver's grid.
@@ -154,7 +156,7 @@ impl Prepared {
             }
             None => None,
         };
-        let qp = with_qp.then(|| program(&level, &grid, pace, settings));
+        let qp = with_qp.then(|| program(&level, &grid, pace, settings)).transpose()?;
         Ok(Self {
             settings: settings.clone(),
             pace,
@@ -167,6 +169,7 @@ impl Prepared {
             cells,
             smooth,
             qp,
+            foreign: false,
         })
     }
 
@@ -182,10 +185,15 @@ impl Prepared {
 }
 
 /// The quadratic program on a solver's grid.
-pub(super) fn program(field: &Field, grid: &Hierarchy, pace: Pace, settings: &TerrainSettings) -> QpSolver {
-    let on = pace.on(grid);
-    let weight = on.w * on.w + on.g * on.g;
-    QpSolver::new(field, [grid.cols(), grid.rows()], grid.step(), weight, QpOptions::of(settings))
+pub(super) fn program(
+    field: &Field,
+    grid: &Hierarchy,
+    pace: Pace,
+    settings: &TerrainSettings,
+) -> Result<QpSolver, ConstructError> {
+    let Pace { w, g } = pace.on(grid);
+    let smoother = Smoother::new(grid.cols(), grid.rows(), w, g)?;
+    Ok(QpSolver::new(field, grid, smoother, QpOptions::of(settings)))
 }
 
 /// Which points count when only features up to `ahead_m` along their path from the eye do: the plan distance to the feature's

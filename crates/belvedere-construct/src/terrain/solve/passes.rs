@@ -8,6 +8,7 @@ use super::{Done, QpReport, Seen, TerrainTimes, scales, since};
 use crate::ConstructError;
 use belvedere_core::DVec3;
 use belvedere_scene::Progress;
+use std::borrow::Cow;
 use std::time::Instant;
 
 pub(super) struct Passes<'a> {
@@ -124,11 +125,15 @@ impl Passes<'_> {
             _ => None,
         };
         let Some(qp) = &mut prepared.qp else { return Ok(()) };
-        let mut ground: Vec<f64> = match &detail {
+        let mut ground: Cow<'_, [f64]> = match &detail {
             Some(detail) => self.field.heights().iter().zip(detail).map(|(h, d)| h + d).collect(),
-            None => self.field.heights().to_vec(),
+            None => self.field.heights().into(),
         };
-        qp.set_heights(&ground)?;
+        // The program was made with the ground itself; bounds over other ground take time.
+        let mut foreign = self.lowered || detail.is_some();
+        if foreign || prepared.foreign {
+            qp.set_heights(&ground)?;
+        }
         let (candidates, sight) = (&seen.candidates[..], &*seen.sight);
         let problem = QpProblem { candidates, sight, target: target.as_deref(), ceilings: None };
         let mut result = qp.solve(&problem)?;
@@ -136,14 +141,16 @@ impl Passes<'_> {
             let cut = fallback::cut_detail(self.field, &ground, &prepared.grid, &result.active);
             let lower: Vec<f64> = ground.iter().zip(&cut).map(|(h, c)| h + c).collect();
             qp.set_heights(&lower)?;
+            foreign = true;
             let next = qp.solve(&problem)?;
             if fallback::stuck(&next) < fallback::stuck(&result) {
-                (result, ground) = (next, lower);
+                (result, ground) = (next, lower.into());
                 let before = detail.take().unwrap_or_else(|| vec![0.0; cut.len()]);
                 *detail = Some(before.iter().zip(cut).map(|(d, c)| d + c).collect());
                 done.fallbacks.push(Fallback::Detail);
             }
         }
+        prepared.foreign = foreign;
         done.coarse.clone_from(&result.u);
         for nodes in fallback::finer(&prepared.grid, self.field) {
             if fallback::stuck(&result) == 0 {
@@ -152,7 +159,7 @@ impl Passes<'_> {
             self.progress.tick("quadratic program on a finer grid", 0.7)?;
             let grid = Hierarchy::new(self.field.cols(), self.field.rows(), nodes);
             let start = target.as_ref().map(|t| fallback::resampled(&prepared.grid, t, &grid));
-            let mut finer = program(self.field, &grid, self.pace, self.settings);
+            let mut finer = program(self.field, &grid, self.pace, self.settings)?;
             finer.set_heights(&ground)?;
             let next = finer.solve(&QpProblem { target: start.as_deref(), ..problem })?;
             if fallback::stuck(&next) < fallback::stuck(&result) {
