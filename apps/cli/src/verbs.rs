@@ -182,7 +182,9 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
     };
     let request =
         AnimateRequest { animation, render, out: args.out, resume: args.resume, overwrite: context.common.overwrite };
-    let mut session = context.open(&args.scene, Needs::Everything, args.size)?;
+    // Every frame is solved by itself.
+    let options = OpenOptions { unsolved: true, ..context.options(Needs::Everything, args.size) };
+    let mut session = Session::open(&args.scene, &options)?;
     let made = animate::animate(&mut session, &request, &context.progress)?;
     context.finish();
     let mut outputs = vec![made.folder.clone()];
@@ -326,7 +328,8 @@ fn pick_pixels(args: &PickArgs, context: &Context) -> anyhow::Result<Goal> {
 }
 
 fn check_scene(args: &SceneArgs, context: &Context) -> anyhow::Result<Goal> {
-    let session = context.open(&args.scene, Needs::Everything, None)?;
+    let options = OpenOptions { unsolved: true, ..context.options(Needs::Everything, None) };
+    let session = Session::open(&args.scene, &options)?;
     let report = check::check(&session)?;
     if context.common.json {
         print(&output::json(&report)?)?;

@@ -11,8 +11,8 @@ use belvedere_construct::{Flight, FlightOptions};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_io::{TerrainRequest, areas_on_terrain, lines_on_terrain, load_terrain, load_vectors};
 use belvedere_scene::{
-    AreaLayer, AreaSurface, Color, Heightfield, Hidden, Layer, LayerKind, LineFeature, LineLayer, Progress, Relief, Scene,
-    TerrainLayer, drape_polyline, valley_route,
+    AreaLayer, AreaSurface, Color, Heightfield, Hidden, Layer, LayerKind, LineFeature, LineLayer, Progress, Relief,
+    Scene, TerrainLayer, drape_polyline, valley_route,
 };
 use belvedere_testkit::{Random, data};
 use std::time::Instant;
@@ -70,7 +70,15 @@ fn main() -> Result<(), Failure> {
 
 fn line(features: Vec<LineFeature>) -> LayerKind {
     let color = Color::rgb(215, 48, 31);
-    LayerKind::Line(LineLayer { features, color, width_px: 3.0, casing: None, hidden: Hidden::Dash, lift_m: 1.0, markers: None })
+    LayerKind::Line(LineLayer {
+        features,
+        color,
+        width_px: 3.0,
+        casing: None,
+        hidden: Hidden::Dash,
+        lift_m: 1.0,
+        markers: None,
+    })
 }
 
 fn scene(heightfield: Heightfield, crs: belvedere_scene::Crs, features: Vec<(&str, LayerKind)>) -> Scene {

@@ -92,7 +92,7 @@ fn stages_are_checked_with_their_line() {
     refuses(&with(turn), "7: curved_rays has no turn; give at least one [[stage.turn]]");
     refuses(
         &with("[[stage]]\nkind = 'terrain_disocclusion'\nmode = 'qp'"),
-        "6: terrain_disocclusion from an intent needs its solver, which this version does not have; give the solved grid as delta = \"delta.tif\", or remove the stage",
+        "6: terrain_disocclusion needs a layer of kind terrain; add one, or remove the stage",
     );
     let crossed = "[[stage]]\nkind = 'curved_rays'\n[[stage.turn]]\nviewpoint = [5, 0, 0]\nt0 = [0, 60, 0]\nt1 = [0, 50, 0]\nt2 = [0, 40, 0]\nnormal = [0, 1, 0]";
     let place = Place::new();

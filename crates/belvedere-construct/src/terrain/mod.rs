@@ -30,7 +30,8 @@ pub use smooth::{
     Smoothed, Smoother, grid_weight, laplacian, row_weight, temporal_weight,
 };
 pub use solve::{
-    Covered, Fallback, QpReport, Solved, TerrainMemory, TerrainReport, TerrainSolver, TerrainTimes, UnresolvedReason, UnresolvedRun,
+    Covered, Fallback, QpReport, Solved, TerrainMemory, TerrainReport, TerrainSolver, TerrainTimes, UnresolvedReason,
+    UnresolvedRun,
 };
 pub use viewpoint::{
     AdjustedViewpoint, ViewpointEnergy, ViewpointOptions, adjust_viewpoint, ghost_alpha, height_slope,

@@ -19,6 +19,22 @@ pub(crate) struct Solving<'a> {
     pub(crate) progress: &'a Progress,
 }
 
+/// Ranges of the parameters of a document.
+pub(super) fn check(doc: &TerrainStageDoc) -> Result<(), (&'static str, String)> {
+    match TerrainSolver::new(settings(doc)?) {
+        Err(ConstructError::Setting { key, value, range }) => {
+            return Err((key, ConstructError::Setting { key, value, range }.to_string()));
+        }
+        Err(_) | Ok(_) => {}
+    }
+    match doc.adjust_viewpoint {
+        Some(slider) if !(0.0..=1.0).contains(&slider) => {
+            Err(("adjust_viewpoint", format!("adjust_viewpoint is {slider}, it must lie in: 0..=1")))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// The parameters of a document.
 pub(crate) fn settings(doc: &TerrainStageDoc) -> Result<TerrainSettings, (&'static str, String)> {
     let usual = TerrainSettings::default();
@@ -125,11 +141,9 @@ pub(super) fn adjust(
     });
     let Some((at, doc, slider)) = wanted.filter(|_| solving.time_step_s.is_none()) else { return Ok(()) };
     let fail = |key: &str, reason: String| source.error(&["stage", &at, key], reason);
-    if !(0.0..=1.0).contains(&slider) {
-        return Err(fail("adjust_viewpoint", format!("adjust_viewpoint is {slider}, it must lie in 0..=1")));
-    }
     let Some(target) = camera.look_at else {
-        let reason = "adjust_viewpoint needs a place that the camera keeps looking at; give look_at in place of the angles";
+        let reason =
+            "adjust_viewpoint needs a place that the camera keeps looking at; give look_at in place of the angles";
         return Err(fail("adjust_viewpoint", reason.into()));
     };
     let settings = settings(doc).map_err(|(key, reason)| fail(key, reason))?;

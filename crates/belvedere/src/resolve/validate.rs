@@ -24,6 +24,7 @@ pub(super) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
         })?;
     }
     stage_order(source)?;
+    terrain_intent(source)?;
     if let Some(SwitchOrLength::Length(spacing)) = source.document.overlay.as_ref().and_then(|o| o.grid) {
         within("grid", spacing, 0.0, 1e9).map_err(|(key, reason)| source.error(&["overlay", key], reason))?;
     }
@@ -33,6 +34,33 @@ pub(super) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
     }
     if let Some(doc) = &source.document.animation {
         animation(doc).map_err(|(key, reason)| source.error(&["animation", key], format!("animation: {reason}")))?;
+    }
+    Ok(())
+}
+
+/// What a solver of terrain needs beside its parameters.
+fn terrain_intent(source: &SourceDocument) -> Result<(), BelvedereError> {
+    let layers = &source.document.layer;
+    for (i, stage) in source.document.stage.iter().enumerate() {
+        let StageDoc::TerrainDisocclusion(doc) = stage else { continue };
+        if doc.delta.is_some() {
+            continue;
+        }
+        let at = i.to_string();
+        let fail = |key: &[&str], reason: &str| source.error(&[&["stage", &at[..]], key].concat(), reason);
+        if !layers.iter().any(|l| matches!(l, LayerDoc::Terrain(_))) {
+            return Err(fail(
+                &["kind"],
+                "terrain_disocclusion needs a layer of kind terrain; add one, or remove the stage",
+            ));
+        }
+        if !layers.iter().any(LayerDoc::must_see) {
+            return Err(fail(
+                &["kind"],
+                "terrain_disocclusion needs features to make way for; set must_see = true for at least one layer",
+            ));
+        }
+        super::terrain::check(doc).map_err(|(key, reason)| fail(&[key], &reason))?;
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! `check`, `show` and `schema`.
 
-use crate::scene_file::Document;
+use crate::scene_file::{Document, StageDoc};
 use crate::{BelvedereError, Session};
 use belvedere_scene::LayerKind;
 use serde::Serialize;
@@ -83,9 +83,19 @@ pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
         scene: session.path().display().to_string(),
         crs: session.scene().crs.to_string(),
         layers: layers.collect(),
-        stages: session.view().stages().iter().map(|s| s.name()).collect(),
+        stages: stages(session),
         warnings: session.warnings().to_vec(),
     })
+}
+
+/// Names of the stages, those that are still to be solved for included.
+fn stages(session: &Session) -> Vec<&'static str> {
+    let mut names: Vec<&'static str> = session.view().stages().iter().map(|s| s.name()).collect();
+    let intent = session.resolved().stage.iter().find(|s| s.is_terrain_intent()).map(StageDoc::kind);
+    if let Some(kind) = intent.filter(|kind| !names.contains(kind)) {
+        names.insert(usize::from(names.first() == Some(&"earth")), kind);
+    }
+    names
 }
 
 /// A document as TOML.

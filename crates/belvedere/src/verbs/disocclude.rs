@@ -109,9 +109,10 @@ impl DisoccludeFiles {
     /// Every file that will be written.
     pub fn all(&self) -> Vec<PathBuf> {
         let asked = [&self.report, &self.displacement, &self.features].into_iter().flatten().cloned();
-        let pictures = self.picture.iter().flat_map(|p| {
-            render::outputs(p, &RenderRequest::default()).into_iter().chain([render::delta_path(p)])
-        });
+        let pictures = self
+            .picture
+            .iter()
+            .flat_map(|p| render::outputs(p, &RenderRequest::default()).into_iter().chain([render::delta_path(p)]));
         std::iter::once(self.out.clone()).chain(asked).chain(pictures).collect()
     }
 }
@@ -149,7 +150,12 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
 }
 
 /// Puts the solution into the session: its picture looks down on the place looked at.
-fn show(session: &mut Session, asked: &Asked, solved: &Solved, settings: &TerrainSettings) -> Result<(), BelvedereError> {
+fn show(
+    session: &mut Session,
+    asked: &Asked,
+    solved: &Solved,
+    settings: &TerrainSettings,
+) -> Result<(), BelvedereError> {
     let ground = session.scene.terrain().and_then(|t| t.surface_at(asked.target));
     let look_at = asked.target.extend(ground.unwrap_or(asked.eye.z));
     let stage = Stage::TerrainDisocclusion(solved.stage.clone());
@@ -217,8 +223,7 @@ impl Asked {
         let [width, height] = IMAGE.map(f64::from);
         let fov_y = 2.0 * ((0.5 * self.fov_x).tan() * height / width).atan();
         let lens = Projection::Perspective { fov_y };
-        let pinhole =
-            Pinhole::look_at(self.eye, look_at, DVec3::Z, lens, IMAGE, 1.0, None).map_err(|e| usage(&e))?;
+        let pinhole = Pinhole::look_at(self.eye, look_at, DVec3::Z, lens, IMAGE, 1.0, None).map_err(|e| usage(&e))?;
         View::new(pinhole, self.earth.iter().cloned().chain(ground).collect()).map_err(|e| usage(&e))
     }
 }

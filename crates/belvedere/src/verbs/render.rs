@@ -294,7 +294,8 @@ fn draw_view(session: &Session, request: &RenderRequest, progress: &Progress) ->
         request.renderer.renderer().render(&job)
     };
     let mut frame = draw(&view)?;
-    if let Some(covered) = session.terrain_report().map(|r| &r.covered[..]).filter(|c| !c.is_empty() && !request.straight)
+    if let Some(covered) =
+        session.terrain_report().map(|r| &r.covered[..]).filter(|c| !c.is_empty() && !request.straight)
         && let Some(cut) = thin::cut(scene, &view, covered)?
     {
         let job = RenderJob { scene: &cut, view: &view, light: session.light(), options: &options, progress };

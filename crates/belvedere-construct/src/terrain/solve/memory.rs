@@ -2,8 +2,8 @@
 
 use super::super::qp::{QpOptions, QpSolver};
 use super::super::{
-    Cells, Field, Hierarchy, Pyramid, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings, Unusable, grid_weight,
-    reference_points, temporal_weight,
+    Cells, Field, Hierarchy, Pyramid, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings, Unusable,
+    grid_weight, reference_points, temporal_weight,
 };
 use crate::ConstructError;
 use belvedere_core::{DVec2, DVec3, View};
