@@ -78,6 +78,39 @@ pub(crate) enum Verb {
     Schema(SchemaArgs),
     /// What bends, anti-aliasing and level of detail cost on this machine
     Bench(BenchArgs),
+    /// The figures and tables of the papers on open data, with an index.html; needs no files
+    Figures(FiguresArgs),
+}
+
+/// The figures.
+#[derive(Debug, Args)]
+pub(crate) struct FiguresArgs {
+    /// Which figures, separated by commas: terrain
+    #[arg(value_parser = parse_figures)]
+    pub(crate) what: FigureKinds,
+    /// Scene files with a camera and features that must be seen, in place of the built-in areas
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Folder for the pictures
+    #[arg(short, long, value_name = "DIR", default_value = "belvedere-figures")]
+    pub(crate) out: PathBuf,
+}
+
+/// Figures of one paper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FigureKind {
+    /// Terrain disocclusion: Deng et al. 2013
+    Terrain,
+}
+
+/// Figures of one paper or several.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct FigureKinds(pub(crate) Vec<FigureKind>);
+
+fn parse_figures(text: &str) -> Result<FigureKinds, String> {
+    let kind = |name: &str| {
+        FigureKind::from_str(name.trim(), false).map_err(|_| format!("\"{name}\" is none; possible: terrain"))
+    };
+    Ok(FigureKinds(text.split(',').map(kind).collect::<Result<_, _>>()?))
 }
 
 /// A measurement.

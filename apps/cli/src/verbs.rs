@@ -1,8 +1,9 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, InfoArgs, MeasureArgs, PickArgs,
-    ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs, TechniqueKind, Verb,
+    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, FigureKind, FiguresArgs, InfoArgs,
+    MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs,
+    TechniqueKind, Verb,
 };
 use crate::report::{Context, done, print};
 use belvedere::scene_file::{AnimationDoc, PaletteDoc, SweepDoc, TurntableDoc};
@@ -10,7 +11,7 @@ use belvedere::verbs::animate::{self, AnimateRequest, Film};
 use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest};
 use belvedere::verbs::render::{self, AuxBuffer, AuxFormat, RenderRequest};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
-use belvedere::verbs::{bench, check, demo, info, measure, output, pick, points};
+use belvedere::verbs::{bench, check, demo, figures, info, measure, output, pick, points};
 use belvedere::{CameraPicture, Needs, OpenOptions, Session};
 use std::path::{Path, PathBuf};
 
@@ -48,6 +49,7 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::Show(args) => show(&args, context),
         Verb::Schema(args) => schema(&args, context),
         Verb::Bench(args) => measure_machine(&args, context),
+        Verb::Figures(args) => draw_figures(&args, context),
     }
 }
 
@@ -256,6 +258,21 @@ fn measure_scene(args: &MeasureArgs, context: &Context) -> anyhow::Result<Goal> 
     let report =
         measure::measure(&session, &measure::MeasureOptions::default(), args.renderer.into(), &context.progress)?;
     answer("measure", &session, args.out.as_ref(), &output::json(&report)?, context)
+}
+
+fn draw_figures(args: &FiguresArgs, context: &Context) -> anyhow::Result<Goal> {
+    let mut written = Vec::new();
+    if args.what.0.contains(&FigureKind::Terrain) {
+        let options = context.options(Needs::Everything, None);
+        written.extend(figures::terrain(&args.out, &args.scenes, &options, context.common.overwrite)?);
+    }
+    context.finish();
+    if context.common.json {
+        context.print(&done("figures", &written, &[]))?;
+    } else if !context.common.quiet {
+        print(&format!("open {}\n", args.out.join("index.html").display()))?;
+    }
+    Ok(Goal::Reached)
 }
 
 fn demonstrate(args: &DemoArgs, context: &Context) -> anyhow::Result<Goal> {

@@ -2,7 +2,7 @@
 
 mod text;
 
-pub use text::{TextSize, text_size};
+pub use text::{FONT_BYTES, TextSize, text_size};
 
 use crate::shade::color::{encode, linear};
 use belvedere_core::DVec2;

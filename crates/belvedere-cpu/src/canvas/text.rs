@@ -7,9 +7,9 @@ use belvedere_scene::Color;
 use std::sync::LazyLock;
 
 /// DejaVu Sans Condensed: Latin, Greek, Cyrillic; licence beside it.
-const BYTES: &[u8] = include_bytes!("../../assets/DejaVuSansCondensed-subset.ttf");
+pub const FONT_BYTES: &[u8] = include_bytes!("../../assets/DejaVuSansCondensed-subset.ttf");
 
-static FONT: LazyLock<Option<FontRef<'static>>> = LazyLock::new(|| FontRef::try_from_slice(BYTES).ok());
+static FONT: LazyLock<Option<FontRef<'static>>> = LazyLock::new(|| FontRef::try_from_slice(FONT_BYTES).ok());
 
 /// Longest text that is set, characters; longer ones end in an ellipsis.
 const MAX_CHARS: usize = 80;

@@ -49,7 +49,19 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     (
         "belvedere",
         &["belvedere-construct", "belvedere-core", "belvedere-cpu", "belvedere-io", "belvedere-scene"],
-        &["glam", "rayon", "schemars", "serde", "serde_json", "sha2", "strsim", "thiserror", "toml", "tracing"],
+        &[
+            "glam",
+            "plotters",
+            "rayon",
+            "schemars",
+            "serde",
+            "serde_json",
+            "sha2",
+            "strsim",
+            "thiserror",
+            "toml",
+            "tracing",
+        ],
     ),
     ("belvedere-testkit", &["belvedere-core", "belvedere-scene"], &["glam"]),
     (

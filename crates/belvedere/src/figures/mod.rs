@@ -10,7 +10,7 @@ pub(crate) mod thin;
 use belvedere_scene::Color;
 
 /// Ink of texts and of the lines of legends.
-const INK: Color = Color::rgb(38, 44, 54);
+pub(crate) const INK: Color = Color::rgb(38, 44, 54);
 /// Ground of legends.
 const PAPER: Color = Color { r: 255, g: 255, b: 255, a: 224 };
 

@@ -6,6 +6,8 @@ mod buffers;
 pub mod check;
 pub mod demo;
 pub mod disocclude;
+pub mod figures;
+mod html;
 pub mod info;
 pub mod measure;
 pub mod output;

@@ -1,0 +1,113 @@
+//! A mountain area of the figures: a scene, its camera, and everything of the solver that is made once.
+
+use crate::resolve::terrain as intent;
+use crate::scene_file::StageDoc;
+use crate::{BelvedereError, OpenOptions, Session};
+use belvedere_construct::ConstructError;
+use belvedere_construct::terrain::{
+    Cells, Field, Naive, Pyramid, ReferencePoint, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver,
+    Wedge, in_view, reference_points,
+};
+use belvedere_core::grid::Grid;
+use belvedere_core::{DVec3, Pinhole, Stage, TerrainDisocclusion, View};
+use belvedere_cpu::CpuRenderer;
+use belvedere_scene::{Frame, Progress, RenderJob, RenderOptions, Renderer, Scene};
+use std::path::{Path, PathBuf};
+
+/// An area and what is known of it before anything is solved.
+pub(super) struct Area {
+    /// Start of the names of its files.
+    pub(super) name: String,
+    pub(super) session: Session,
+    /// The camera, without any bend.
+    pub(super) view: View,
+    /// Parameters of the scene's stage, else the usual ones.
+    pub(super) settings: TerrainSettings,
+    pub(super) field: Field,
+    pub(super) cells: Cells,
+    pub(super) pyramid: Pyramid,
+    /// Reference points in view.
+    pub(super) points: Vec<ReferencePoint>,
+    pub(super) progress: Progress,
+}
+
+impl Area {
+    /// Opens a scene; of its stages only the parameters of terrain disocclusion count.
+    pub(super) fn open(path: &Path, text: Option<&str>, options: &OpenOptions) -> Result<Self, BelvedereError> {
+        let options = OpenOptions { unsolved: true, ..options.clone() };
+        let session = match text {
+            Some(text) => Session { inputs: Vec::new(), ..Session::from_text(path, text, &options)? },
+            None => Session::open(path, &options)?,
+        };
+        let asked = session.resolved().stage.iter().find_map(|stage| match stage {
+            StageDoc::TerrainDisocclusion(doc) => Some(doc.clone()),
+            _ => None,
+        });
+        let settings = intent::settings(&asked.unwrap_or_default());
+        let settings = settings.map_err(|(_, reason)| BelvedereError::Usage(reason))?;
+        let terrain = session.scene().terrain().ok_or(ConstructError::NoTerrain)?;
+        let field = Field::new(terrain, |_| 0.0).map_err(ConstructError::from)?;
+        let cells = Cells::new(&field, settings.cells.unwrap_or_else(|| Cells::default_count(&field)));
+        let view = View::straight(session.view().pinhole().clone());
+        let name = path.file_stem().map_or_else(|| "area".into(), |s| s.to_string_lossy().into_owned());
+        let pyramid = Pyramid::new(&field);
+        let points = in_frame(session.scene(), &field, &settings, view.pinhole());
+        let progress = options.progress.clone();
+        Ok(Self { name, session, view, settings, field, cells, pyramid, points, progress })
+    }
+
+    /// The settings of the area in another mode.
+    pub(super) fn in_mode(&self, mode: SolverMode) -> TerrainSettings {
+        TerrainSettings { mode, ..self.settings.clone() }
+    }
+
+    /// Solves for a still from the camera, or from another eye with the same direction of view.
+    pub(super) fn solve(&self, settings: &TerrainSettings, view: &View) -> Result<Solved, BelvedereError> {
+        let solver = TerrainSolver::new(settings.clone())?;
+        Ok(solver.solve(self.session.scene(), view, &mut TerrainMemory::default(), &self.progress)?)
+    }
+
+    /// The greedy pass alone, on the points in view.
+    pub(super) fn naive(&self, settings: &TerrainSettings) -> Naive {
+        Naive::new(&self.field, &self.cells, &self.pyramid, settings, self.eye(), &self.points)
+    }
+
+    /// The ground as the greedy pass leaves it.
+    pub(super) fn naive_stage(&self, naive: &Naive) -> Result<TerrainDisocclusion, BelvedereError> {
+        let f = &self.field;
+        let values = naive.displacement(f, &self.cells);
+        let grid = Grid::new(f.north_west(), f.spacing(), f.cols(), f.rows(), values).map_err(ConstructError::from)?;
+        Ok(TerrainDisocclusion::new(grid))
+    }
+
+    pub(super) fn eye(&self) -> DVec3 {
+        self.view.pinhole().eye
+    }
+
+    /// Draws the scene, or another version of it, with the ground displaced.
+    pub(super) fn draw(
+        &self,
+        scene: &Scene,
+        stage: Option<&TerrainDisocclusion>,
+        size: [u32; 2],
+    ) -> Result<Frame, BelvedereError> {
+        let pinhole = Pinhole { image: size, ..self.view.pinhole().clone() };
+        let stages = stage.map(|s| Stage::TerrainDisocclusion(s.clone())).into_iter().collect();
+        let view = View::new(pinhole, stages).map_err(|e| BelvedereError::Usage(e.to_string()))?;
+        let options = RenderOptions::default();
+        let (light, progress) = (self.session.light(), &self.progress);
+        Ok(CpuRenderer.render(&RenderJob { scene, view: &view, light, options: &options, progress })?)
+    }
+
+    /// Path of a picture of this area.
+    pub(super) fn picture(&self, folder: &Path, what: &str) -> PathBuf {
+        folder.join(format!("{}_{what}.png", self.name))
+    }
+}
+
+/// Reference points of a picture.
+fn in_frame(scene: &Scene, field: &Field, settings: &TerrainSettings, camera: &Pinhole) -> Vec<ReferencePoint> {
+    let (points, _) = reference_points(scene, field, settings, settings.spacing);
+    let (inside, _) = in_view(field, &points, &Wedge::of_pinhole(camera), settings.guard);
+    inside.into_iter().map(|i| points[i]).collect()
+}

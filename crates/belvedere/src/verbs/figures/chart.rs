@@ -1,0 +1,127 @@
+//! Charts with axes and a legend.
+
+use super::sheet::Pixels;
+use crate::BelvedereError;
+use belvedere_cpu::canvas;
+use plotters::prelude::*;
+use plotters::style::{FontStyle, register_font};
+use std::sync::Once;
+
+const WIDTH: u32 = 1280;
+const HEIGHT: u32 = 560;
+const LETTERS: &str = "sans-serif";
+
+/// How a curve is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Look {
+    /// Filled down to the axis.
+    Ground,
+    Line,
+    Dashes,
+    Dots,
+}
+
+/// An upper corner.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Corner {
+    Left,
+    Right,
+}
+
+/// Values of one kind.
+pub(super) struct Curve {
+    name: String,
+    points: Vec<(f64, f64)>,
+    color: RGBColor,
+    look: Look,
+}
+
+impl Curve {
+    pub(super) fn new(name: &str, points: Vec<(f64, f64)>, [r, g, b]: [u8; 3], look: Look) -> Self {
+        Self { name: name.into(), points, color: RGBColor(r, g, b), look }
+    }
+}
+
+/// A chart.
+pub(super) struct Chart {
+    pub(super) title: String,
+    pub(super) x: String,
+    pub(super) y: String,
+    /// Where the names of the curves stand.
+    pub(super) names: Corner,
+    pub(super) curves: Vec<Curve>,
+}
+
+/// The chart as a picture.
+pub(super) fn draw(chart: &Chart) -> Result<Pixels, BelvedereError> {
+    static FONT: Once = Once::new();
+    FONT.call_once(|| {
+        // Charts without letters would still show their curves.
+        let _ = register_font(LETTERS, FontStyle::Normal, canvas::FONT_BYTES);
+    });
+    let mut bytes = vec![255u8; (WIDTH * HEIGHT * 3) as usize];
+    plot(chart, &mut bytes)
+        .map_err(|e| BelvedereError::Usage(format!("the chart \"{}\" cannot be drawn: {e}", chart.title)))?;
+    Ok((WIDTH as usize, HEIGHT as usize, bytes.as_chunks::<3>().0.to_vec()))
+}
+
+fn plot(chart: &Chart, bytes: &mut [u8]) -> Result<(), Box<dyn std::error::Error>> {
+    let area = BitMapBackend::with_buffer(bytes, (WIDTH, HEIGHT)).into_drawing_area();
+    area.fill(&WHITE)?;
+    let all = || chart.curves.iter().flat_map(|c| &c.points).filter(|p| p.0.is_finite() && p.1.is_finite());
+    let (mut x, mut y) = ([f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]);
+    for (px, py) in all() {
+        (x, y) = ([x[0].min(*px), x[1].max(*px)], [y[0].min(*py), y[1].max(*py)]);
+    }
+    let [x, y] = [x, y].map(|[lo, hi]| if lo < hi { [lo, hi] } else { [0.0, 1.0] });
+    let room = 0.04 * (y[1] - y[0]);
+    let low = if y[0] >= 0.0 && y[0] < 0.2 * y[1] { 0.0 } else { y[0] - room };
+    let mut axes = ChartBuilder::on(&area)
+        .caption(&chart.title, (LETTERS, 20))
+        .margin(14)
+        .x_label_area_size(44)
+        .y_label_area_size(64)
+        .build_cartesian_2d(x[0]..x[1] * 1.0001, low..y[1] + room)?;
+    axes.configure_mesh()
+        .x_desc(&chart.x)
+        .y_desc(&chart.y)
+        .label_style((LETTERS, 15))
+        .axis_desc_style((LETTERS, 16))
+        .x_label_formatter(&|v| format!("{v}"))
+        .y_label_formatter(&|v| format!("{v}"))
+        .light_line_style(WHITE)
+        .bold_line_style(RGBColor(226, 226, 222))
+        .draw()?;
+    for curve in &chart.curves {
+        let (color, points) = (curve.color, curve.points.clone());
+        let drawn = match curve.look {
+            Look::Ground => {
+                axes.draw_series(AreaSeries::new(points, low, color.mix(0.75)).border_style(color.stroke_width(2)))?
+            }
+            Look::Line => axes.draw_series(LineSeries::new(points, color.stroke_width(3)))?,
+            Look::Dashes => axes.draw_series(DashedLineSeries::new(points, 10, 7, color.stroke_width(2)))?,
+            Look::Dots => axes.draw_series(points.iter().map(|p| Circle::new(*p, 6, color.filled())))?,
+        };
+        let dots = curve.look == Look::Dots;
+        drawn.label(&curve.name).legend(move |(x, y)| {
+            let box_of = |half: i32| {
+                Rectangle::new(
+                    [(x + if dots { 6 } else { 0 }, y - half), (x + if dots { 14 } else { 20 }, y + half)],
+                    color.filled(),
+                )
+            };
+            box_of(if dots { 4 } else { 3 })
+        });
+    }
+    axes.configure_series_labels()
+        .label_font((LETTERS, 15))
+        .background_style(WHITE.mix(0.85))
+        .border_style(RGBColor(200, 200, 196))
+        .position(match chart.names {
+            Corner::Left => SeriesLabelPosition::UpperLeft,
+            Corner::Right => SeriesLabelPosition::UpperRight,
+        })
+        .draw()?;
+    area.present()?;
+    Ok(())
+}

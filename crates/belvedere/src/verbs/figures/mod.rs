@@ -1,0 +1,141 @@
+//! `figures`: the figures and tables of the papers, drawn again on open data.
+
+mod area;
+mod cells;
+mod chart;
+mod eyes;
+mod page;
+mod pictures;
+mod profile;
+mod sheet;
+mod sweeps;
+mod timing;
+
+use super::check::pretty;
+use super::output;
+use crate::{BelvedereError, OpenOptions};
+use area::Area;
+use belvedere_construct::terrain::TerrainReport;
+use belvedere_io::png::{self, Channels};
+use pictures::Solutions;
+use serde::Serialize;
+use sheet::Pixels;
+use std::path::{Path, PathBuf};
+
+/// Size of the two pictures side by side, pixels.
+const PAIR: [u32; 2] = [960, 540];
+/// Size of a picture of a sheet, pixels.
+const TILE: [u32; 2] = [640, 360];
+
+/// Areas that are drawn if no scene is given; they need no files.
+const BUILTIN: [(&str, &str); 2] = [
+    ("massif_terrain", include_str!("../../../../../scenes/massif_terrain.toml")),
+    ("massif_lake_terrain", include_str!("../../../../../scenes/massif_lake_terrain.toml")),
+];
+
+/// What one area comes to.
+#[derive(Debug, Clone, Serialize)]
+struct AreaRecord {
+    name: String,
+    title: String,
+    pictures: Vec<String>,
+    modes: Vec<TerrainReport>,
+    w: Vec<sweeps::Trial>,
+    eta: Vec<sweeps::Trial>,
+    eyes: Vec<eyes::EyeRow>,
+    timing: timing::Timing,
+    warnings: Vec<String>,
+}
+
+/// Draws the figures of terrain disocclusion into `folder`, which is made if need be, for the areas of `scenes` (two built-in ones
+/// if there are none): pictures, `figures.json` with every report, and `index.html`. Returns the files.
+///
+/// # Errors
+/// [`BelvedereError::Io`] if a file exists and `overwrite` is false; those of opening, solving and drawing a scene.
+pub fn terrain(
+    folder: &Path,
+    scenes: &[PathBuf],
+    options: &OpenOptions,
+    overwrite: bool,
+) -> Result<Vec<PathBuf>, BelvedereError> {
+    std::fs::create_dir_all(folder).map_err(|e| belvedere_io::IoError::os(folder, e))?;
+    let (page, record) = (folder.join("index.html"), folder.join("figures.json"));
+    output::check(&page, scenes, overwrite)?;
+    output::check(&record, scenes, overwrite)?;
+    let builtin = BUILTIN.iter().map(|(name, text)| (PathBuf::from(format!("{name}.toml")), Some(*text)));
+    let given = scenes.iter().map(|path| (path.clone(), None));
+    let areas: Vec<_> = if scenes.is_empty() { builtin.collect() } else { given.collect() };
+    let mut names: Vec<_> = areas.iter().filter_map(|(path, _)| path.file_stem()).collect();
+    names.sort();
+    if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+        let name = twice[0].to_string_lossy();
+        return Err(BelvedereError::Usage(format!(
+            "two scenes are called {name}, and so would their pictures; rename one"
+        )));
+    }
+    let (mut records, mut written) = (Vec::new(), Vec::new());
+    for (path, text) in &areas {
+        let area = Area::open(path, *text, options)?;
+        records.push(figures_of(&area, folder, overwrite, &mut written)?);
+    }
+    output::write_text(&record, &pretty(&records)?, overwrite)?;
+    output::write_text(&page, &page::page(&records), overwrite)?;
+    written.extend([record, page]);
+    Ok(written)
+}
+
+fn figures_of(
+    area: &Area,
+    folder: &Path,
+    overwrite: bool,
+    written: &mut Vec<PathBuf>,
+) -> Result<AreaRecord, BelvedereError> {
+    let mut pictures = Vec::new();
+    let mut keep = |what: &str, pixels: Pixels| -> Result<(), BelvedereError> {
+        let path = area.picture(folder, what);
+        let (width, height, pixels) = pixels;
+        let text = [("Software", format!("belvedere {}", crate::VERSION)), ("Comment", NOTE.to_owned())];
+        let text = text.each_ref().map(|(k, v)| (*k, v.as_str()));
+        png::write(&path, overwrite, width, height, Channels::Rgb, pixels.as_flattened(), &text)?;
+        pictures.extend(path.file_name().map(|n| n.to_string_lossy().into_owned()));
+        written.push(path);
+        Ok(())
+    };
+    let tick = |done: f64| area.progress.tick(&format!("figures of {}", area.name), done);
+    tick(0.0)?;
+    let solutions = Solutions::of(area)?;
+    keep("pair", pictures::pair(area, &solutions)?)?;
+    tick(0.2)?;
+    keep("steps", pictures::steps(area, &solutions)?)?;
+    if let Some(profile) = profile::profile(area, &solutions.qp)? {
+        keep("profile", profile)?;
+    }
+    tick(0.35)?;
+    let (sheet, w) = sweeps::over_w(area)?;
+    keep("w", sheet)?;
+    tick(0.5)?;
+    let (sheet, eta) = sweeps::over_eta(area)?;
+    keep("eta", sheet)?;
+    tick(0.65)?;
+    let timing = timing::timing(area)?;
+    if let Some(plot) = timing::plot(&timing)? {
+        keep("times", plot)?;
+    }
+    tick(0.8)?;
+    let eyes = eyes::eyes(area)?;
+    let Solutions { paper, paper_qp, qp } = solutions;
+    Ok(AreaRecord {
+        name: area.name.clone(),
+        title: area.session.scene().title.clone(),
+        pictures,
+        modes: [paper, paper_qp, qp].map(|s| s.report).into(),
+        w,
+        eta,
+        eyes,
+        timing,
+        warnings: area.session.warnings().to_vec(),
+    })
+}
+
+/// Goes with every picture.
+const NOTE: &str = "displaced ground unless a panel says perspective; not to scale, not for navigation";

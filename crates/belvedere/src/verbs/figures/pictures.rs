@@ -1,0 +1,86 @@
+//! Perspective beside occlusion-free, and the way from one to the other: cells, naive ground, final ground.
+
+use super::area::Area;
+use super::sheet::{Panel, Pixels, sheet};
+use super::{PAIR, TILE};
+use crate::BelvedereError;
+use belvedere_construct::terrain::{Solved, SolverMode, TerrainReport};
+use belvedere_core::TerrainDisocclusion;
+use belvedere_scene::Scene;
+
+/// Solutions of the area's own parameters that several figures share.
+pub(super) struct Solutions {
+    pub(super) paper: Solved,
+    pub(super) paper_qp: Solved,
+    pub(super) qp: Solved,
+}
+
+impl Solutions {
+    pub(super) fn of(area: &Area) -> Result<Self, BelvedereError> {
+        let solve = |mode| area.solve(&area.in_mode(mode), &area.view);
+        Ok(Self { paper: solve(SolverMode::Paper)?, paper_qp: solve(SolverMode::PaperQp)?, qp: solve(SolverMode::Qp)? })
+    }
+}
+
+/// Perspective on the left, occlusion-free on the right.
+pub(super) fn pair(area: &Area, solutions: &Solutions) -> Result<Pixels, BelvedereError> {
+    let (scene, solved) = (area.session.scene(), &solutions.qp);
+    let r = &solved.report;
+    let before = Panel {
+        title: "Perspective".into(),
+        note: format!("{} of the features in view can be seen", percent(r.visible_dense_before)),
+        frame: area.draw(scene, None, PAIR)?,
+    };
+    let after = Panel {
+        title: "The ground makes way".into(),
+        note: format!("{} can be seen; the ground moved {:.0} m at most", percent(r.visible_dense), r.max_m),
+        frame: area.draw(scene, Some(&solved.stage), PAIR)?,
+    };
+    Ok(sheet(&[before, after], 2))
+}
+
+/// Perspective, cells, naive ground, and what the three modes end with.
+pub(super) fn steps(area: &Area, solutions: &Solutions) -> Result<Pixels, BelvedereError> {
+    let scene = area.session.scene();
+    let settings = area.in_mode(SolverMode::Paper);
+    let naive = area.naive(&settings);
+    let counters = naive.counters();
+    let draw = |scene: &Scene, stage: Option<&TerrainDisocclusion>| area.draw(scene, stage, TILE);
+    let ending = |title: &str, solved: &Solved| -> Result<Panel, BelvedereError> {
+        Ok(Panel { title: title.into(), note: figures(&solved.report), frame: draw(scene, Some(&solved.stage))? })
+    };
+    let panels = [
+        Panel {
+            title: "Perspective".into(),
+            note: format!(
+                "{} of {} points can be seen",
+                percent(solutions.qp.report.visible_before),
+                area.points.len()
+            ),
+            frame: draw(scene, None)?,
+        },
+        Panel {
+            title: format!("{} cells", area.cells.len()),
+            note: "one per summit that stands out".into(),
+            frame: draw(&super::cells::painted(area), None)?,
+        },
+        Panel {
+            title: "Naive ground".into(),
+            note: format!("{} transforms of {} cells", counters.hits, counters.cells_changed),
+            frame: draw(scene, Some(&area.naive_stage(&naive)?))?,
+        },
+        ending("Mode paper: smoothed", &solutions.paper)?,
+        ending("Mode paper+qp: smoothed, then made sure of", &solutions.paper_qp)?,
+        ending("Mode qp: least bending that shows everything", &solutions.qp)?,
+    ];
+    Ok(sheet(&panels, 3))
+}
+
+/// The figures of a solution that fit under a picture.
+pub(super) fn figures(r: &TerrainReport) -> String {
+    format!("visible {}, moved {:.0} m rms, largest step {:.0} m", percent(r.visible), r.rms_m, r.step_p999_m)
+}
+
+pub(super) fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}

@@ -1,0 +1,46 @@
+//! Pictures of one size in rows, a caption of two lines under each.
+
+use crate::figures::INK;
+use belvedere_core::DVec2;
+use belvedere_cpu::canvas::Canvas;
+use belvedere_scene::{Color, Frame};
+
+/// Between pictures, pixels.
+const GAP: usize = 10;
+/// Height of a caption, pixels.
+const CAPTION: usize = 48;
+const GREY: Color = Color::rgb(96, 102, 112);
+
+/// Width, height, and pixels row by row.
+pub(super) type Pixels = (usize, usize, Vec<[u8; 3]>);
+
+/// A picture of a sheet.
+pub(super) struct Panel {
+    pub(super) title: String,
+    /// Second line of the caption.
+    pub(super) note: String,
+    pub(super) frame: Frame,
+}
+
+/// Lays out panels, `columns` to a row.
+pub(super) fn sheet(panels: &[Panel], columns: usize) -> Pixels {
+    let Some(first) = panels.first() else { return (0, 0, Vec::new()) };
+    let (w, h) = (first.frame.width, first.frame.height);
+    let columns = columns.clamp(1, panels.len());
+    let rows = panels.len().div_ceil(columns);
+    let (width, height) = (columns * (w + GAP) - GAP, rows * (h + CAPTION));
+    let mut pixels = vec![[255u8; 3]; width * height];
+    for (i, panel) in panels.iter().enumerate() {
+        let (left, top) = ((i % columns) * (w + GAP), (i / columns) * (h + CAPTION));
+        for (y, row) in panel.frame.color.chunks_exact(panel.frame.width.max(1)).take(h).enumerate() {
+            let at = (top + y) * width + left;
+            let n = row.len().min(w);
+            pixels[at..at + n].copy_from_slice(&row[..n]);
+        }
+        let mut canvas = Canvas::new(&mut pixels, width);
+        let at = |y: usize| DVec2::new(left as f64 + 4.0, (top + h + y) as f64);
+        canvas.text(at(18), 15.0, &panel.title, INK, None);
+        canvas.text(at(37), 13.0, &panel.note, GREY, None);
+    }
+    (width, height, pixels)
+}
