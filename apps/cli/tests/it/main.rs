@@ -3,6 +3,7 @@
 mod animate;
 mod bad_scenes;
 mod exact;
+mod figures;
 mod looks;
 mod marks;
 mod meshes;

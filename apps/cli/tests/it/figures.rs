@@ -1,0 +1,55 @@
+//! `figures terrain` as a reader of the paper meets it.
+
+use super::{Place, read};
+
+/// A small area: every figure, little work.
+fn area(name: &str, place: &Place) -> String {
+    let text = "format = 1\ncrs = \"local\"\n\
+        [camera]\neye = [-7000.0, -7000.0, 3000.0]\nlook_at = [1000.0, 1000.0, 900.0]\nfov_y_deg = 45.0\nimage = [1280, 720]\n\
+        [[layer]]\nkind = \"terrain\"\nid = \"ground\"\nsource = \"builtin:massif?seed=3&size=65\"\n\
+        [[layer]]\nkind = \"line\"\nid = \"trail\"\nsource = \"builtin:massif?seed=3&size=65\"\nmust_see = true\n\
+        [[stage]]\nkind = \"terrain_disocclusion\"\nspacing = 1.0\ncandidates = 0.5\nsolver_nodes = 33\n";
+    place.write(name, text);
+    name.to_owned()
+}
+
+#[test]
+fn pictures_tables_and_trends_of_an_area() {
+    let place = Place::new();
+    let scene = area("small.toml", &place);
+    place.ok(&["figures", "terrain", &scene, "-o", "figures"]);
+    let page = String::from_utf8(read(&place.path("figures/index.html"))).expect("UTF-8");
+    let record: serde_json::Value = serde_json::from_slice(&read(&place.path("figures/figures.json"))).expect("JSON");
+    let area = &record[0];
+    let pictures = area["pictures"].as_array().expect("pictures");
+    for what in ["pair", "steps", "profile", "w", "eta"] {
+        let name = format!("small_{what}.png");
+        assert!(pictures.iter().any(|p| p == name.as_str()) && page.contains(&name), "{name} is not shown");
+        assert!(read(&place.path(&format!("figures/{name}"))).starts_with(b"\x89PNG"), "{name}");
+    }
+    let number = |v: &serde_json::Value| v.as_f64().unwrap_or_else(|| panic!("{v} is no number"));
+    let [paper, _, qp] = [0, 1, 2].map(|i| &area["modes"][i]);
+    assert!(number(&qp["visible_before"]) < 0.9, "the area hides something");
+    assert!(number(&qp["visible"]) >= number(&paper["visible"]));
+    assert!(number(&qp["rms_m"]) < number(&paper["rms_m"]), "the program moves less ground than the paper's two passes");
+    // Between the ends of the sweep, what is seen and how rough the ground is both rise.
+    let over_w = area["w"].as_array().expect("w");
+    let ends = [&over_w[0]["report"], &over_w[over_w.len() - 1]["report"]];
+    for key in ["visible", "step_p999_m"] {
+        assert!(number(&ends[0][key]) <= number(&ends[1][key]), "{key}");
+    }
+    assert_eq!(area["eta"].as_array().map(Vec::len), Some(5));
+    let heights: Vec<f64> = area["eyes"].as_array().expect("eyes").iter().map(|e| number(&e["above_ground_m"])).collect();
+    assert!([2.0, 30.0, 100.0].iter().all(|h| heights.contains(h)), "{heights:?}");
+    assert!(number(&area["timing"]["cells_ms"]) > 0.0);
+}
+
+#[test]
+fn unknown_figures_and_scenes_of_one_name_are_refused() {
+    let place = Place::new();
+    assert!(place.fails(&["figures", "terrane", "-o", "figures"]).contains("terrain"));
+    std::fs::create_dir(place.path("other")).expect("folder");
+    let (one, two) = (area("small.toml", &place), area("other/small.toml", &place));
+    let error = place.fails(&["figures", "terrain", &one, &two, "-o", "figures"]);
+    assert!(error.contains("small") && error.contains("rename"), "{error}");
+}
