@@ -21,11 +21,8 @@ pub(crate) struct Solving<'a> {
 
 /// Ranges of the parameters of a document.
 pub(super) fn check(doc: &TerrainStageDoc) -> Result<(), (&'static str, String)> {
-    match TerrainSolver::new(settings(doc)?) {
-        Err(ConstructError::Setting { key, value, range }) => {
-            return Err((key, ConstructError::Setting { key, value, range }.to_string()));
-        }
-        Err(_) | Ok(_) => {}
+    if let Err(ConstructError::Setting { key, value, range }) = TerrainSolver::new(settings(doc)?) {
+        return Err((key, ConstructError::Setting { key, value, range }.to_string()));
     }
     match doc.adjust_viewpoint {
         Some(slider) if !(0.0..=1.0).contains(&slider) => {
