@@ -31,7 +31,10 @@ fn pictures_tables_and_trends_of_an_area() {
     let [paper, _, qp] = [0, 1, 2].map(|i| &area["modes"][i]);
     assert!(number(&qp["visible_before"]) < 0.9, "the area hides something");
     assert!(number(&qp["visible"]) >= number(&paper["visible"]));
-    assert!(number(&qp["rms_m"]) < number(&paper["rms_m"]), "the program moves less ground than the paper's two passes");
+    assert!(
+        number(&qp["rms_m"]) < number(&paper["rms_m"]),
+        "the program moves less ground than the paper's two passes"
+    );
     // Between the ends of the sweep, what is seen and how rough the ground is both rise.
     let over_w = area["w"].as_array().expect("w");
     let ends = [&over_w[0]["report"], &over_w[over_w.len() - 1]["report"]];
@@ -39,7 +42,8 @@ fn pictures_tables_and_trends_of_an_area() {
         assert!(number(&ends[0][key]) <= number(&ends[1][key]), "{key}");
     }
     assert_eq!(area["eta"].as_array().map(Vec::len), Some(5));
-    let heights: Vec<f64> = area["eyes"].as_array().expect("eyes").iter().map(|e| number(&e["above_ground_m"])).collect();
+    let heights: Vec<f64> =
+        area["eyes"].as_array().expect("eyes").iter().map(|e| number(&e["above_ground_m"])).collect();
     assert!([2.0, 30.0, 100.0].iter().all(|h| heights.contains(h)), "{heights:?}");
     assert!(number(&area["timing"]["cells_ms"]) > 0.0);
 }
