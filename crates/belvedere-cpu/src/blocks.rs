@@ -1,5 +1,6 @@
 //! Surfaces cut into blocks: culled, displaced and projected once per frame, ready to rasterise.
 
+use crate::band::Band;
 use crate::choose::{Choice, Chooser, Chosen};
 use crate::grid::{CELL_TRIANGLES, Cover, Nodes, cell_weights, kept_node};
 use crate::lens::{Lens, SUB, ScreenVertex};
@@ -7,7 +8,6 @@ pub(crate) use crate::lod::SIDE;
 use crate::lod::{self, Tree};
 use crate::pass::{Look, Pass};
 use crate::project::Row;
-use crate::raster::Band;
 use crate::refine::{Corner, Refiner};
 use belvedere_core::Aabb;
 use belvedere_scene::{BoxLayer, Heightfield, LayerKind, NodeState, RenderOptions, Scene};
@@ -17,9 +17,9 @@ use std::sync::{Mutex, PoisonError};
 /// Boxes to a block.
 const BOXES: usize = 64;
 /// A primitive number with this bit counts soup triangles; without it, cells of grid blocks.
-const SOUP: u32 = 1 << 31;
+pub(crate) const SOUP: u32 = 1 << 31;
 /// Bits of a grid primitive below the block number: 10 of the cell, 1 of the triangle.
-const CELL_BITS: u32 = 11;
+pub(crate) const CELL_BITS: u32 = 11;
 
 /// A vertex of a subdivided or clipped triangle: image, and weights of vertices 1 and 2 of the parent triangle.
 #[derive(Debug, Clone, Copy)]
@@ -134,6 +134,17 @@ impl Spare {
 }
 
 impl Block {
+    /// Whether nodes of any cell were moved to meet a coarser neighbour.
+    pub(crate) fn is_seamed(&self) -> bool {
+        self.seam.contains(&true)
+    }
+
+    /// Whether nodes of a cell may have been moved so.
+    pub(crate) fn is_odd(&self, [c, r]: [usize; 2]) -> bool {
+        let [north, east, south, west] = self.seam;
+        (north & (r == 0)) | (south & (r + 1 == self.cells[1])) | (west & (c == 0)) | (east & (c + 1 == self.cells[0]))
+    }
+
     /// Explicit triangles of the boxes or triangles from number `first` on; `None` if there are none.
     pub(crate) fn soup(layer: u32, first: usize, soup: Vec<SoupTriangle>, counts: Counts) -> Option<Self> {
         if soup.is_empty() {
@@ -215,7 +226,6 @@ impl Blocks {
             }
             band.drew(block.cover.x);
         }
-        band.flush();
     }
 
     /// Layer of a primitive number (not sky).

@@ -1,107 +1,257 @@
-//! Cells of about a pixel, judged many at a time.
+//! Rows of small cells, judged many at a time.
 
-use crate::lens::SUB;
+use crate::band::Band;
+use crate::grid::NODES;
+use crate::lens::{SUB, ScreenVertex};
+use crate::lod::SIDE;
 use crate::raster::owns_edge;
 
-/// Entries judged together.
-const N: usize = 32;
+/// Cells with bounding boxes below this go together: four pixels, or so. Differences of their corners have products whose sums
+/// stay below 2^24, so single precision decides exactly.
+const TINY: i32 = 4 * SUB;
+const _: () = assert!(TINY as i64 * TINY as i64 * 12 < 1 << 24, "sums of products fit the mantissa of f32");
 
-/// Pairs of a cell and a sample in its bounding box. Corners (bit 0 east, bit 1 south) are taken relative to the sample;
-/// in a box of two pixels their products are whole numbers below 2^24, so single precision decides exactly.
-#[derive(Debug)]
-pub(crate) struct Cells {
-    pub(crate) len: usize,
-    x: [[f32; N]; 4],
-    y: [[f32; N]; 4],
-    q: [[f32; N]; 4],
+/// In a cell's half with the north-east node.
+const UPPER: u32 = 1;
+/// In the half with the south-west node.
+const LOWER: u32 = 2;
+/// On the border of a half: the rule for edges decides.
+const EDGE: u32 = 4;
+
+type Whole = [i32; SIDE];
+type Lanes = [f32; SIDE];
+
+/// Nodes north and south of a row of cells; those past the last cell mean nothing.
+pub(crate) struct CellRow<'n> {
+    pub(crate) cells: usize,
+    pub(crate) x: [&'n [i32; NODES]; 2],
+    pub(crate) y: [&'n [i32; NODES]; 2],
+    pub(crate) q: [&'n [f32; NODES]; 2],
+}
+
+impl CellRow<'_> {
+    /// Node `k` of a cell (bit 0 east, bit 1 south).
+    #[inline(always)]
+    fn node(&self, c: usize, k: usize) -> ScreenVertex {
+        let (row, c) = (k >> 1, c + (k & 1));
+        ScreenVertex { x: self.x[row][c], y: self.y[row][c], q: self.q[row][c] }
+    }
+}
+
+/// Bounding boxes of the cells of a row.
+struct Boxes {
+    x: [Whole; 2],
+    y: [Whole; 2],
+}
+
+/// The cells of a row, made once for all samples.
+struct Corners {
+    /// Places from the first corner of the box: north-west, north-east, south-west, south-east.
+    x: [Lanes; 4],
+    y: [Lanes; 4],
+}
+
+/// What a sample of each cell sees of it.
+struct Judged {
+    code: [u32; SIDE],
     /// Index of the sample in its band.
-    pub(crate) at: [u32; N],
-    pub(crate) prim: [u32; N],
-    /// Triangles that the sample lies in, after [`Cells::judge`].
-    pub(crate) code: [u32; N],
-    /// Nearness of the sample in the two triangles.
-    pub(crate) upper: [f32; N],
-    pub(crate) lower: [f32; N],
+    at: [u32; SIDE],
+    /// Nearness there, of the lower half if only that is seen.
+    q: Lanes,
 }
 
-impl Default for Cells {
-    fn default() -> Self {
-        let corners = [[0.0; N]; 4];
-        Self {
-            len: 0,
-            x: corners,
-            y: corners,
-            q: corners,
-            at: [0; N],
-            prim: [0; N],
-            code: [0; N],
-            upper: [0.0; N],
-            lower: [0.0; N],
-        }
+/// Which samples are looked at: those of one kind, so many pixels from the first in each cell's box.
+#[derive(Clone, Copy)]
+struct Look {
+    kind: usize,
+    offset: [i32; 2],
+    from_first: [i32; 2],
+}
+
+impl Look {
+    /// Pixel of the sample along an axis, in a box that begins at `from`.
+    #[inline(always)]
+    fn pixel(self, axis: usize, from: i32) -> i32 {
+        ((from - self.offset[axis] + SUB - 1) >> 8) + self.from_first[axis]
     }
 }
 
-impl Cells {
-    /// North-west, north-east, south-east.
-    pub(crate) const UPPER: u32 = 1;
-    /// North-west, south-west, south-east.
-    pub(crate) const LOWER: u32 = 2;
-    /// On the line through two corners: the rule for edges decides.
-    const EDGE: u32 = 4;
+impl Boxes {
+    #[inline(always)]
+    fn of(row: &CellRow<'_>) -> Self {
+        let [x, y] = [row.x, row.y].map(|[n, s]| {
+            let (mut lo, mut hi) = ([0; SIDE], [0; SIDE]);
+            for c in 0..SIDE {
+                lo[c] = least(least(n[c], n[c + 1]), least(s[c], s[c + 1]));
+                hi[c] = most(most(n[c], n[c + 1]), most(s[c], s[c + 1]));
+            }
+            [lo, hi]
+        });
+        Self { x, y }
+    }
+}
 
-    /// Adds a sample and its cell; `true` once full.
-    #[inline]
-    pub(crate) fn push(&mut self, s: [i32; 2], x: [i32; 4], y: [i32; 4], q: [f32; 4], at: usize, prim: u32) -> bool {
-        let i = self.len & (N - 1);
+impl Corners {
+    #[inline(always)]
+    fn of(row: &CellRow<'_>, boxes: &Boxes) -> Self {
+        let mut out = Self { x: [[0.0; SIDE]; 4], y: [[0.0; SIDE]; 4] };
         for k in 0..4 {
-            self.x[k][i] = (x[k] - s[0]) as f32;
-            self.y[k][i] = (y[k] - s[1]) as f32;
-            self.q[k][i] = q[k];
+            for c in 0..SIDE {
+                out.x[k][c] = (row.x[k >> 1][c + (k & 1)] - boxes.x[0][c]) as f32;
+                out.y[k][c] = (row.y[k >> 1][c + (k & 1)] - boxes.y[0][c]) as f32;
+            }
         }
-        self.at[i] = at as u32;
-        self.prim[i] = prim;
-        self.len = i + 1;
-        self.len == N
+        out
     }
+}
 
-    /// Finds the triangles that each sample lies in, and its nearness there.
-    pub(crate) fn judge(&mut self) {
-        self.judge_all();
-        for i in 0..self.len {
-            if self.code[i] & Self::EDGE != 0 {
-                let corner = |k: usize| [self.x[k][i] as i32, self.y[k][i] as i32];
-                let [nw, ne, sw, se] = [0, 1, 2, 3].map(corner);
-                self.code[i] =
-                    u32::from(holds_origin([nw, ne, se])) | (u32::from(holds_origin([nw, sw, se])) * Self::LOWER);
+#[inline(always)]
+fn least<T: PartialOrd>(a: T, b: T) -> T {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn most<T: PartialOrd>(a: T, b: T) -> T {
+    if a > b { a } else { b }
+}
+
+impl Band {
+    /// Draws a row of cells: the halves of cell `c` are numbered `prim + 2 c` and the next.
+    #[inline(always)]
+    pub(crate) fn draw_cells(&mut self, row: &CellRow<'_>, prim: u32) {
+        let boxes = Boxes::of(row);
+        let [x, y] = [&boxes.x, &boxes.y];
+        // No overflow: vertices are clipped to the guard planes.
+        let (mut tiny, mut large) = ([0i32; SIDE], [0i32; SIDE]);
+        let (mut wide, mut high, mut any) = (0, 0, [0, 0]);
+        for c in 0..SIDE {
+            let seen = !self.misses([x[0][c], x[1][c]], [y[0][c], y[1][c]]) & (c < row.cells);
+            let (w, h) = (x[1][c] - x[0][c], y[1][c] - y[0][c]);
+            let small = (w < TINY) & (h < TINY);
+            tiny[c] = if seen & small { -1 } else { 0 };
+            large[c] = if seen & !small { -1 } else { 0 };
+            any = [any[0] | tiny[c], any[1] | large[c]];
+            wide = most(wide, w & tiny[c]);
+            high = most(high, h & tiny[c]);
+        }
+        if any[1] != 0 {
+            self.draw_large_cells(row, &large, prim);
+        }
+        if any[0] == 0 {
+            return;
+        }
+        let corners = Corners::of(row, &boxes);
+        for kind in 0..self.offsets.len() {
+            let offset = self.offsets[kind];
+            for i in 0..=(high >> 8) {
+                for j in 0..=(wide >> 8) {
+                    self.draw_tiny(row, (&boxes, &corners), &tiny, Look { kind, offset, from_first: [j, i] }, prim);
+                }
             }
         }
     }
 
+    #[inline(always)]
+    fn draw_large_cells(&mut self, row: &CellRow<'_>, large: &Whole, prim: u32) {
+        for c in (0..row.cells).filter(|c| large[*c] != 0) {
+            let [nw, ne, sw, se] = [0, 1, 2, 3].map(|k| row.node(c, k));
+            let prim = prim | (c as u32) << 1;
+            self.draw([nw, ne, se], prim);
+            self.draw([nw, sw, se], prim | 1);
+        }
+    }
+
+    /// Draws what one sample per cell sees.
+    #[inline(always)]
+    fn draw_tiny(
+        &mut self,
+        row: &CellRow<'_>,
+        (boxes, corners): (&Boxes, &Corners),
+        tiny: &Whole,
+        look: Look,
+        prim: u32,
+    ) {
+        let judged = self.judge(row, (boxes, corners), tiny, look);
+        for c in 0..SIDE {
+            let (code, at, prim) = (judged.code[c], judged.at[c] as usize, prim | (c as u32) << 1);
+            match code {
+                0 => {}
+                UPPER => self.write(at, judged.q[c], prim),
+                LOWER => self.write(at, judged.q[c], prim | 1),
+                _ => self.write_carefully(row, boxes, look, c, (at, code, prim)),
+            }
+        }
+    }
+
+    /// Finds the halves that each sample lies in, and its nearness there.
+    #[inline(always)]
+    fn judge(&self, row: &CellRow<'_>, (boxes, corners): (&Boxes, &Corners), tiny: &Whole, look: Look) -> Judged {
+        let mut out = Judged { code: [0; SIDE], at: [0; SIDE], q: [0.0; SIDE] };
+        let first = self.index(look.kind, 0, self.y0) as i32;
+        let (stride, [y0, y1], width) = (self.stride as i32, [self.y0, self.y1], self.width);
+        let (Corners { x: [xa, xb, xc, xd], y: [ya, yb, yc, yd] }, [qn, qs]) = (corners, row.q);
+        for c in 0..SIDE {
+            let from = [boxes.x[0][c], boxes.y[0][c]];
+            let (px, py) = (look.pixel(0, from[0]), look.pixel(1, from[1]));
+            let (sx, sy) = (px * SUB + look.offset[0], py * SUB + look.offset[1]);
+            let inside = (sx <= boxes.x[1][c]) & (sy <= boxes.y[1][c]);
+            let on_band = (px >= 0) & (px < width) & (py >= y0) & (py < y1) & (tiny[c] != 0);
+            let (tx, ty) = ((sx - from[0]) as f32, (sy - from[1]) as f32);
+            let edges =
+                edges([xa[c], xb[c], xc[c], xd[c]].map(|x| x - tx), [ya[c], yb[c], yc[c], yd[c]].map(|y| y - ty));
+            let [north, east, diagonal, west, south] = edges;
+            let lo = [least(least(north, east), diagonal), least(least(west, south), diagonal)];
+            let hi = [most(most(north, east), diagonal), most(most(west, south), diagonal)];
+            let [upper, lower] = [0, 1].map(|h| (lo[h] > 0.0) | (hi[h] < 0.0));
+            let edge = (lo[0] == 0.0) | (hi[0] == 0.0) | (lo[1] == 0.0) | (hi[1] == 0.0);
+            let code = (u32::from(upper) * UPPER) | (u32::from(lower) * LOWER) | (u32::from(edge) * EDGE);
+            out.code[c] = if inside & on_band { code } else { 0 };
+            out.at[c] = (first + (py - y0) * stride + px) as u32;
+            let between = if upper { qn[c + 1] } else { qs[c] };
+            let (first, second) = (if upper { east } else { south }, if upper { north } else { west });
+            out.q[c] = mean([first, diagonal, second], [qn[c], between, qs[c + 1]]);
+        }
+        out
+    }
+
+    /// Writes samples on the border of a half, by the top-left rule, and those in both halves of a folded cell.
+    #[cold]
     #[inline(never)]
-    fn judge_all(&mut self) {
-        let Self { x, y, q, code, upper, lower, .. } = self;
-        for i in 0..N {
-            let cross = |p: usize, r: usize| x[p][i] * y[r][i] - y[p][i] * x[r][i];
-            let (north, east, diagonal) = (cross(0, 1), cross(1, 3), cross(3, 0));
-            let (west, south) = (cross(0, 2), cross(2, 3));
-            let all =
-                |a: f32, b: f32, c: f32| ((a > 0.0) & (b > 0.0) & (c > 0.0)) | ((a < 0.0) & (b < 0.0) & (c < 0.0));
-            let edge = (north == 0.0) | (east == 0.0) | (diagonal == 0.0) | (west == 0.0) | (south == 0.0);
-            code[i] = (u32::from(all(north, east, diagonal)) * Self::UPPER)
-                | (u32::from(all(west, south, diagonal)) * Self::LOWER)
-                | (u32::from(edge) * Self::EDGE);
-            // Each corner weighs with the edge function of the edge opposite.
-            upper[i] = mean([east, diagonal, north], [q[0][i], q[1][i], q[3][i]]);
-            lower[i] = mean([south, diagonal, west], [q[0][i], q[2][i], q[3][i]]);
+    fn write_carefully(
+        &mut self,
+        row: &CellRow<'_>,
+        boxes: &Boxes,
+        look: Look,
+        c: usize,
+        (at, code, prim): (usize, u32, u32),
+    ) {
+        let from = [boxes.x[0][c], boxes.y[0][c]];
+        let s = [0, 1].map(|axis| look.pixel(axis, from[axis]) * SUB + look.offset[axis]);
+        let nodes = [0, 1, 2, 3].map(|k| row.node(c, k));
+        let [nw, ne, sw, se] = nodes.map(|v| [v.x - s[0], v.y - s[1]]);
+        let held = [[nw, ne, se], [nw, sw, se]].map(holds_origin);
+        let [upper, lower] = if code & EDGE != 0 { held } else { [true; 2] };
+        let [x, y] = [0, 1].map(|axis| [nw, ne, sw, se].map(|p| p[axis] as f32));
+        let ([north, east, diagonal, west, south], q) = (edges(x, y), nodes.map(|v| v.q));
+        if upper {
+            self.write(at, mean([east, diagonal, north], [q[0], q[1], q[3]]), prim);
+        }
+        if lower {
+            self.write(at, mean([south, diagonal, west], [q[0], q[2], q[3]]), prim | 1);
         }
     }
 }
 
-/// Weighted mean, not beyond its values.
-#[inline]
+/// Edge functions of a cell's north, east, diagonal, west and south side at the origin.
+#[inline(always)]
+fn edges(x: [f32; 4], y: [f32; 4]) -> [f32; 5] {
+    let cross = |p: usize, r: usize| x[p] * y[r] - y[p] * x[r];
+    [cross(0, 1), cross(1, 3), cross(3, 0), cross(0, 2), cross(2, 3)]
+}
+
+/// Mean, not beyond its values. Each corner weighs with the edge function of the edge opposite.
+#[inline(always)]
 fn mean(w: [f32; 3], q: [f32; 3]) -> f32 {
-    let least = |a: f32, b: f32| if a < b { a } else { b };
-    let most = |a: f32, b: f32| if a > b { a } else { b };
     let m = (w[0] * q[0] + w[1] * q[1] + w[2] * q[2]) / (w[0] + w[1] + w[2]);
     most(least(m, most(most(q[0], q[1]), q[2])), least(least(q[0], q[1]), q[2]))
 }
@@ -118,5 +268,3 @@ fn holds_origin([a, b, c]: [[i32; 2]; 3]) -> bool {
             cross(p, r) >= i32::from(!owns)
         })
 }
-
-const _: () = assert!(2 * SUB as i64 * 2 * SUB as i64 * 4 < 1 << 24, "products fit the mantissa of f32");

@@ -1,8 +1,10 @@
 //! Nodes of a block of ground on the image, and drawing the cells between them.
 
+use crate::band::Band;
+use crate::cells::CellRow;
 use crate::lens::{SUB, ScreenVertex};
 use crate::lod::SIDE;
-use crate::raster::Band;
+use crate::vector::{self, Kernel};
 
 /// Nodes along a side of a block at most.
 pub(crate) const NODES: usize = SIDE + 1;
@@ -93,9 +95,8 @@ impl Nodes {
                 let on = (0..stride).map(|c| self.at(c, r)).filter(|v| !v.is_none());
                 cover = on.fold(cover, Cover::including);
             } else {
-                for ((&x, &y), &q) in self.x[row.clone()].iter().zip(&self.y[row.clone()]).zip(&self.q[row]) {
-                    cover = cover.including(ScreenVertex { x, y, q });
-                }
+                let [x, y] = [&self.x, &self.y].map(|v| &v[row.clone()]);
+                cover = vector::run(Around { x, y, q: &self.q[row] });
             }
             self.spans.push(cover.y);
             all.x = [all.x[0].min(cover.x[0]), all.x[1].max(cover.x[1])];
@@ -107,38 +108,23 @@ impl Nodes {
 
     /// Draws the cells that touch the band, numbered from `first_prim`.
     pub(crate) fn draw(&self, first_prim: u32, band: &mut Band) {
-        let [cols, rows] = self.cells;
-        let (top, bottom) = (band.y0 * SUB, band.y1 * SUB);
-        let mut hits = [false; SIDE];
-        for r in 0..rows {
-            let (n, s) = (self.spans[r], self.spans[r + 1]);
-            if n[0].min(s[0]) >= bottom || n[1].max(s[1]) < top {
-                continue;
-            }
-            let prim = first_prim | ((r * SIDE) as u32) << 1;
-            if self.holes {
-                (0..cols).for_each(|c| self.draw_torn([c, r], prim | (c as u32) << 1, band));
-                continue;
-            }
-            let (north, south) = (r * (cols + 1), (r + 1) * (cols + 1));
-            let row = |values: &'_ [i32], at: usize| -> [i32; NODES] {
-                let mut out = [0; NODES];
-                out[..=cols].copy_from_slice(&values[at..=at + cols]);
-                out
-            };
-            let (xn, yn) = (row(&self.x, north), row(&self.y, north));
-            let (xs, ys) = (row(&self.x, south), row(&self.y, south));
-            band.touched(&xn, &yn, &xs, &ys, &mut hits);
-            for (c, _) in hits[..cols].iter().enumerate().filter(|(_, hit)| **hit) {
-                let x = [xn[c], xn[c + 1], xs[c], xs[c + 1]];
-                let y = [yn[c], yn[c + 1], ys[c], ys[c + 1]];
-                let q = [self.q[north + c], self.q[north + c + 1], self.q[south + c], self.q[south + c + 1]];
-                band.draw_cell(x, y, q, prim | (c as u32) << 1);
-            }
+        vector::run(Draw { nodes: self, first_prim, band });
+    }
+
+    /// Nodes of a row, and ends that mean nothing where there are fewer than most.
+    #[inline(always)]
+    fn row<'n, T: Copy>(&self, values: &'n [T], r: usize, spare: &'n mut [T; NODES]) -> &'n [T; NODES] {
+        let n = self.cells[0] + 1;
+        let row = &values[r * n..(r + 1) * n];
+        if let Ok(whole) = row.try_into() {
+            return whole;
         }
+        spare[..n].copy_from_slice(row);
+        spare
     }
 
     /// A cell some of whose nodes may have no image.
+    #[inline(never)]
     fn draw_torn(&self, [c, r]: [usize; 2], prim: u32, band: &mut Band) {
         let v: [ScreenVertex; 4] = std::array::from_fn(|k| self.at(c + (k & 1), r + (k >> 1)));
         for (k, t) in CELL_TRIANGLES.iter().enumerate() {
@@ -146,6 +132,64 @@ impl Nodes {
             if !tri.iter().any(|v| v.is_none()) {
                 band.draw(tri, prim | k as u32);
             }
+        }
+    }
+}
+
+/// The range of nodes of a row.
+struct Around<'a> {
+    x: &'a [i32],
+    y: &'a [i32],
+    q: &'a [f32],
+}
+
+impl Kernel for Around<'_> {
+    type Output = Cover;
+
+    #[inline(always)]
+    fn run(self) -> Cover {
+        let range = |v: &[i32]| v.iter().fold([i32::MAX, i32::MIN], |[lo, hi], v| [lo.min(*v), hi.max(*v)]);
+        // Whole numbers in the order of the bits' values, both signs.
+        let order = |bits: i32| bits ^ ((bits >> 31) as u32 >> 1) as i32;
+        let most = self.q.iter().fold(i32::MIN, |most, q| most.max(order(q.to_bits() as i32)));
+        Cover { x: range(self.x), y: range(self.y), q: f32::from_bits(order(most) as u32) }
+    }
+}
+
+struct Draw<'d> {
+    nodes: &'d Nodes,
+    first_prim: u32,
+    band: &'d mut Band,
+}
+
+impl Kernel for Draw<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { nodes, first_prim, band } = self;
+        let [cols, rows] = nodes.cells;
+        let (top, bottom) = (band.y0 * SUB, band.y1 * SUB);
+        for r in 0..rows {
+            let (n, s) = (nodes.spans[r], nodes.spans[r + 1]);
+            if n[0].min(s[0]) >= bottom || n[1].max(s[1]) < top {
+                continue;
+            }
+            let prim = first_prim | ((r * SIDE) as u32) << 1;
+            if nodes.holes {
+                (0..cols).for_each(|c| nodes.draw_torn([c, r], prim | (c as u32) << 1, band));
+                continue;
+            }
+            let [xs, ys] = &mut [[[0; NODES]; 2]; 2];
+            let [[xn, xs], [yn, ys]] = [xs, ys].map(|[n, s]| [n, s]);
+            let [qn, qs] = &mut [[0.0; NODES]; 2];
+            let row = CellRow {
+                cells: cols,
+                x: [nodes.row(&nodes.x, r, xn), nodes.row(&nodes.x, r + 1, xs)],
+                y: [nodes.row(&nodes.y, r, yn), nodes.row(&nodes.y, r + 1, ys)],
+                q: [nodes.row(&nodes.q, r, qn), nodes.row(&nodes.q, r + 1, qs)],
+            };
+            band.draw_cells(&row, prim);
         }
     }
 }
@@ -175,7 +219,7 @@ pub(crate) fn cell_weights(seam: [bool; 4], cells: [usize; 2], [c, r]: [usize; 2
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raster::{Band, sample_offsets};
+    use crate::band::sample_offsets;
 
     /// Images of nodes (c, r) every `pitch` fixed-point steps, inner ones shaken by up to a quarter of that.
     fn image([c, r]: [usize; 2], pitch: i32) -> ScreenVertex {
@@ -220,7 +264,6 @@ mod tests {
             for (i, nodes) in sheet(pitch, fine_first).iter().enumerate() {
                 nodes.draw((i as u32) << 11, &mut band);
             }
-            band.flush();
             for (s, [ox, oy]) in band.offsets.iter().enumerate() {
                 for (x, y) in (0..size[0]).flat_map(|x| (0..size[1]).map(move |y| (x, y))) {
                     let inside = x * SUB + ox < 64 * pitch - 300 && y * SUB + oy < 32 * pitch - 300;
@@ -242,7 +285,6 @@ mod tests {
                 let all: Vec<(usize, &Nodes)> = sheets.iter().flatten().enumerate().collect();
                 let order: Vec<_> = if reverse { all.into_iter().rev().collect() } else { all };
                 order.into_iter().for_each(|(i, nodes)| nodes.draw((i as u32) << 11, &mut band));
-                band.flush();
                 band
             };
             let whole = draw(0, height, false);

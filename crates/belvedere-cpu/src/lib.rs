@@ -4,6 +4,7 @@
 //! displaced bounds; cell edges that the bend would visibly curve are split. Bands of image rows are then drawn and
 //! coloured independently, so the picture is the same, byte for byte, for any number of threads.
 
+mod band;
 mod blocks;
 pub mod canvas;
 mod cells;
@@ -23,19 +24,20 @@ mod refine;
 mod resolve;
 mod shade;
 mod spline_table;
+mod vector;
 
 pub use exact::{ExactRenderer, Seen, Tracer};
 pub use project::GroundImage;
 
+use band::{Band, sample_offsets};
 use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
 use blocks::Blocks;
 use lens::Lens;
 use marks::Marks;
 use pass::Pass;
 use polish::Polish;
-use raster::{Band, sample_offsets};
 use rayon::prelude::*;
-use resolve::{Rows, resolve};
+use resolve::{Colors, Rows, resolve};
 use shade::Shader;
 use shade::color::Packed;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -139,14 +141,15 @@ fn render_with(job: &RenderJob<'_>, frame: Frame, scratch: &mut Scratch) -> Resu
     job.progress.tick("project", 1.0)?;
     let shader = Shader::new(job, &lens, blocks);
     let mut buffers = Buffers::reuse(job, std::mem::take(color), frame);
-    let out = std::mem::take(&mut buffers.out);
     let polish = job.options.aux.exact.then(|| Polish::new(job.scene, &passes, &lens));
     draw_surfaces(job, &lens, blocks, (&shader, polish.as_ref()), bands, &mut buffers)?;
-    let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
-    let marks = Marks::new(job, &passes, &lens, tolerance_px, &buffers.depth);
-    job.progress.tick("lines", 0.0)?;
-    let pixels = finish_into(&marks, &lens, &mut buffers, out);
-    job.progress.tick("lines", 1.0)?;
+    if buffers.open {
+        let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
+        let marks = Marks::new(job, &passes, &lens, tolerance_px, &buffers.depth);
+        job.progress.tick("lines", 0.0)?;
+        finish(&marks, &lens, &mut buffers);
+        job.progress.tick("lines", 1.0)?;
+    }
     let counts = blocks.counts();
     let stats = FrameStats {
         triangles_in: blocks.triangles_in,
@@ -157,32 +160,41 @@ fn render_with(job: &RenderJob<'_>, frame: Frame, scratch: &mut Scratch) -> Resu
     };
     *color = buffers.color;
     let (width, height) = (lens.width as usize, lens.height as usize);
-    Ok(Frame { width, height, color: pixels, depth: buffers.depth, id: buffers.id, world: buffers.world, stats })
+    Ok(Frame { width, height, color: buffers.out, depth: buffers.depth, id: buffers.id, world: buffers.world, stats })
 }
 
 struct Buffers {
+    /// Whether lines or points may be drawn over the surfaces.
+    open: bool,
+    /// Colours of the surfaces while they are open, else empty.
     color: Vec<Packed>,
     depth: Vec<f32>,
     id: Vec<u32>,
     world: Option<Vec<[f64; 3]>>,
-    /// Memory for the stored colours.
+    /// The stored colours.
     out: Vec<[u8; 3]>,
 }
 
 impl Buffers {
     fn new(job: &RenderJob<'_>) -> Self {
-        Self::reuse(job, Vec::new(), Frame::default())
+        let open = Self::reuse(job, Vec::new(), Frame::default());
+        let color = vec![Packed::default(); open.out.len()];
+        Self { open: true, color, ..open }
     }
 
     /// Buffers of the size of the picture in the memory of older ones; every pixel is yet to be written.
     fn reuse(job: &RenderJob<'_>, mut color: Vec<Packed>, old: Frame) -> Self {
         let n = job.view.pinhole().image.map(|s| s as usize).iter().product();
-        let Frame { color: out, mut depth, mut id, .. } = old;
-        color.resize(n, Packed::default());
+        let Frame { color: mut out, mut depth, mut id, .. } = old;
+        let open = Marks::are_in(job);
+        if open {
+            color.resize(n, Packed::default());
+        }
+        out.resize(n, [0; 3]);
         depth.resize(n, f32::INFINITY);
         id.resize(n, 0);
         let world = job.options.aux.world.then(|| vec![[f64::NAN; 3]; n]);
-        Self { color, depth, id, world, out }
+        Self { open, color, depth, id, world, out }
     }
 }
 
@@ -202,10 +214,14 @@ fn draw_surfaces(
         Some(w) => w.chunks_mut(chunk).map(Some).collect(),
         None => (0..bands).map(|_| None).collect(),
     };
-    let color = buffers.color.par_chunks_mut(chunk);
+    let mut colors: Vec<Colors<'_>> = if buffers.open {
+        buffers.color.chunks_mut(chunk).map(Colors::Open).collect()
+    } else {
+        buffers.out.chunks_mut(chunk).map(Colors::Stored).collect()
+    };
     let depth = buffers.depth.par_chunks_mut(chunk);
     let id = buffers.id.par_chunks_mut(chunk);
-    color.zip(depth).zip(id).zip(worlds.par_iter_mut()).enumerate().try_for_each(
+    colors.par_iter_mut().zip(depth).zip(id).zip(worlds.par_iter_mut()).enumerate().try_for_each(
         |(i, (((color, depth), id), world))| {
             let y0 = (i * BAND) as i32;
             let mut band = lock(spare).pop().unwrap_or_default();
@@ -220,26 +236,19 @@ fn draw_surfaces(
 }
 
 /// Lines and points over the surfaces, and the stored colours.
-fn finish(marks: &Marks, lens: &Lens, buffers: &mut Buffers) -> Vec<[u8; 3]> {
-    finish_into(marks, lens, buffers, Vec::new())
-}
-
-fn finish_into(marks: &Marks, lens: &Lens, buffers: &mut Buffers, mut out: Vec<[u8; 3]>) -> Vec<[u8; 3]> {
+fn finish(marks: &Marks, lens: &Lens, buffers: &mut Buffers) {
     let chunk = BAND * lens.width as usize;
-    let depth = &buffers.depth;
-    out.resize(buffers.color.len(), [0; 3]);
-    out.par_chunks_mut(chunk)
-        .zip(buffers.color.par_chunks_mut(chunk))
-        .zip(buffers.id.par_chunks_mut(chunk))
-        .enumerate()
-        .for_each(|(i, ((out, color), id))| {
+    let Buffers { depth, color, id, out, .. } = buffers;
+    let encoding = shade::color::encoding();
+    out.par_chunks_mut(chunk).zip(color.par_chunks_mut(chunk)).zip(id.par_chunks_mut(chunk)).enumerate().for_each(
+        |(i, ((out, color), id))| {
             marks.draw((i * BAND) as i32, lens, depth, color, id);
             for (o, c) in out.iter_mut().zip(color.iter()) {
-                *o = c.encode();
+                *o = c.encode(encoding);
             }
-        });
-    marks.write_names(&mut out, lens.width as usize);
-    out
+        },
+    );
+    marks.write_names(out, lens.width as usize);
 }
 
 /// Image of a node of the ground; four times that where cells are subdivided.

@@ -5,6 +5,7 @@
 //! rounds exactly, so that every machine and every vector width gives the same bits.
 
 use crate::lens::SUB;
+use crate::vector::{self, Kernel};
 use belvedere_core::map::terrain::TerrainDisocclusion;
 use belvedere_core::{DVec2, DVec3, Pinhole, Stage, View};
 use belvedere_scene::Heightfield;
@@ -15,6 +16,8 @@ use rayon::prelude::*;
 const REACH_PX: f32 = 16_000.0;
 /// Adding it leaves the rounded integer in the low bits of the mantissa.
 const ROUND: f32 = 12_582_912.0;
+/// Nodes projected at a time.
+const LANES: usize = 16;
 /// Nodes lifted at a time.
 const CHUNK: usize = 64;
 
@@ -39,12 +42,12 @@ impl Form {
     }
 
     /// What all points of a row share.
-    #[inline]
+    #[inline(always)]
     fn row(self, y: f32) -> f32 {
         self.at_eye + self.gradient[1] * y
     }
 
-    #[inline]
+    #[inline(always)]
     fn at(self, row: f32, x: f32, z: f32) -> f32 {
         (row + self.gradient[0] * x) + self.gradient[2] * z
     }
@@ -154,103 +157,156 @@ impl<'a> Projector<'a> {
     }
 
     fn run(&self, x: &[f32], y: f32, heights: &[f32], out: &mut Row<'_>) -> bool {
-        let (ox, oy, oq) = (&mut *out.x, &mut *out.y, &mut *out.q);
-        match (self.ortho, &self.bend) {
-            (false, None) => self.perspective(x, y, heights, ox, oy, oq),
-            (false, Some(bend)) => self.bent(bend, x, y, heights, ox, oy, oq),
-            (true, None) => self.parallel(x, y, heights, ox, oy, oq),
+        vector::run(Run { projector: self, x, y, heights, out })
+    }
+
+    /// Height over the eye after the earth's drop.
+    #[inline(always)]
+    fn z(&self, x: f32, y: f32, height: f32) -> f32 {
+        ((height - self.eye_z[0]) - self.eye_z[1]) - self.earth * (x * x + y * y)
+    }
+}
+
+/// Fixed-point pixel and nearness, and not 0 where they cannot be used.
+type Image = (i32, i32, f32, u32);
+
+/// A camera for the nodes of a row.
+trait Camera {
+    /// * `x`, `z`: relative to the eye.
+    fn image(&self, x: f32, z: f32) -> Image;
+}
+
+struct Perspective<'p, 'a> {
+    projector: &'p Projector<'a>,
+    rows: [f32; 3],
+}
+
+impl Perspective<'_, '_> {
+    /// View space before any turn.
+    #[inline(always)]
+    fn view(&self, x: f32, z: f32) -> [f32; 3] {
+        let [right, down, forward] = &self.projector.view;
+        [right.at(self.rows[0], x, z), down.at(self.rows[1], x, z), forward.at(self.rows[2], x, z)]
+    }
+
+    #[inline(always)]
+    fn photograph(&self, [vx, vy, vz]: [f32; 3], scale: f32, q: f32) -> Image {
+        let p = self.projector;
+        let (px, py) = (vx * scale, vy * scale);
+        let (x, y) = (p.center[0].wrapping_add(fixed(px)), p.center[1].wrapping_add(fixed(py)));
+        let seen = (vz >= p.near) & (vz <= p.far) & (px.abs() <= REACH_PX) & (py.abs() <= REACH_PX);
+        (x, y, q, u32::from(!seen))
+    }
+}
+
+impl Camera for Perspective<'_, '_> {
+    #[inline(always)]
+    fn image(&self, x: f32, z: f32) -> Image {
+        let v = self.view(x, z);
+        let q = 1.0 / v[2];
+        self.photograph(v, self.projector.scale * q, q)
+    }
+}
+
+struct Parallel<'p, 'a>(Perspective<'p, 'a>);
+
+impl Camera for Parallel<'_, '_> {
+    #[inline(always)]
+    fn image(&self, x: f32, z: f32) -> Image {
+        let v = self.0.view(x, z);
+        self.0.photograph(v, self.0.projector.scale, -v[2])
+    }
+}
+
+struct Bent<'p, 'a> {
+    straight: Perspective<'p, 'a>,
+    bend: &'p Bend,
+    rows: [f32; 2],
+}
+
+impl Camera for Bent<'_, '_> {
+    #[inline(always)]
+    fn image(&self, x: f32, z: f32) -> Image {
+        let (a, b) = (self.bend.a.at(self.rows[0], x, z), self.bend.b.at(self.rows[1], x, z));
+        let (phi, shift) = (phi(self.bend.m, a, b), self.bend.shift);
+        let [vx, vy, vz] = self.straight.view(x, z);
+        let v = [vx + phi * shift[0], vy + phi * shift[1], vz + phi * shift[2]];
+        let q = 1.0 / v[2];
+        let (px, py, q, missed) = self.straight.photograph(v, self.straight.projector.scale * q, q);
+        // Beyond the common line there is no image; NaN is not greater than anything.
+        (px, py, q, missed | u32::from(!((a > 0.0) | (b > 0.0))))
+    }
+}
+
+/// Images of nodes of a row, see [`Projector::row`].
+struct Run<'r, 'a, 'o> {
+    projector: &'r Projector<'a>,
+    x: &'r [f32],
+    y: f32,
+    heights: &'r [f32],
+    out: &'r mut Row<'o>,
+}
+
+impl Kernel for Run<'_, '_, '_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run(mut self) -> bool {
+        let projector = self.projector;
+        let straight = Perspective { projector, rows: projector.view.map(|f| f.row(self.y)) };
+        match (projector.ortho, &projector.bend) {
+            (false, None) => self.all(&straight),
+            (false, Some(bend)) => {
+                let rows = [bend.a.row(self.y), bend.b.row(self.y)];
+                self.all(&Bent { straight, bend, rows })
+            }
+            (true, None) => self.all(&Parallel(straight)),
             // Turns need viewpoints; a parallel projection has none.
             (true, Some(_)) => false,
         }
     }
+}
 
-    /// Height over the eye after the earth's drop.
-    #[inline]
-    fn z(&self, x: f32, y: f32, height: f32) -> f32 {
-        ((height - self.eye_z[0]) - self.eye_z[1]) - self.earth * (x * x + y * y)
-    }
-
-    #[inline(never)]
-    fn perspective(&self, xs: &[f32], y: f32, hs: &[f32], ox: &mut [i32], oy: &mut [i32], oq: &mut [f32]) -> bool {
-        let n = xs.len();
-        let (hs, ox, oy, oq) = (&hs[..n], &mut ox[..n], &mut oy[..n], &mut oq[..n]);
-        let [r0, r1, r2] = self.view.map(|f| f.row(y));
-        let mut missed = 0;
-        for i in 0..n {
-            let (x, z) = (xs[i], self.z(xs[i], y, hs[i]));
-            let v = [self.view[0].at(r0, x, z), self.view[1].at(r1, x, z), self.view[2].at(r2, x, z)];
-            missed |= self.photograph(v, &mut ox[i], &mut oy[i], &mut oq[i]);
+impl Run<'_, '_, '_> {
+    /// Many nodes at a time; the last ones with some before them, which come out the same again.
+    #[inline(always)]
+    fn all(&mut self, camera: &impl Camera) -> bool {
+        let n = self.x.len();
+        let mut missed = [0; LANES];
+        if n < LANES {
+            (0..n).for_each(|i| self.some::<1>(i, camera, &mut missed));
         }
-        missed == 0
-    }
-
-    #[expect(clippy::too_many_arguments, reason = "separate slices do not overlap, and compilers can tell")]
-    #[inline(never)]
-    fn bent(
-        &self,
-        bend: &Bend,
-        xs: &[f32],
-        y: f32,
-        hs: &[f32],
-        ox: &mut [i32],
-        oy: &mut [i32],
-        oq: &mut [f32],
-    ) -> bool {
-        let n = xs.len();
-        let (hs, ox, oy, oq) = (&hs[..n], &mut ox[..n], &mut oy[..n], &mut oq[..n]);
-        let [r0, r1, r2] = self.view.map(|f| f.row(y));
-        let (ra, rb) = (bend.a.row(y), bend.b.row(y));
-        let mut missed = 0;
-        for i in 0..n {
-            let (x, z) = (xs[i], self.z(xs[i], y, hs[i]));
-            let (a, b) = (bend.a.at(ra, x, z), bend.b.at(rb, x, z));
-            // Beyond the common line there is no image; NaN is not greater than anything.
-            missed |= u32::from(!((a > 0.0) | (b > 0.0)));
-            let phi = phi(bend.m, a, b);
-            let v = [
-                self.view[0].at(r0, x, z) + phi * bend.shift[0],
-                self.view[1].at(r1, x, z) + phi * bend.shift[1],
-                self.view[2].at(r2, x, z) + phi * bend.shift[2],
-            ];
-            missed |= self.photograph(v, &mut ox[i], &mut oy[i], &mut oq[i]);
+        let mut i = 0;
+        while n >= LANES && i < n {
+            self.some::<LANES>(i.min(n - LANES), camera, &mut missed);
+            i += LANES;
         }
-        missed == 0
+        missed.iter().fold(0, |a, b| a | b) == 0
     }
 
-    #[inline]
-    fn photograph(&self, [vx, vy, vz]: [f32; 3], ox: &mut i32, oy: &mut i32, oq: &mut f32) -> u32 {
-        let q = 1.0 / vz;
-        let s = self.scale * q;
-        let (px, py) = (vx * s, vy * s);
-        *ox = self.center[0].wrapping_add(fixed(px));
-        *oy = self.center[1].wrapping_add(fixed(py));
-        *oq = q;
-        u32::from(!((vz >= self.near) & (vz <= self.far) & (px.abs() <= REACH_PX) & (py.abs() <= REACH_PX)))
-    }
-
-    #[inline(never)]
-    fn parallel(&self, xs: &[f32], y: f32, hs: &[f32], ox: &mut [i32], oy: &mut [i32], oq: &mut [f32]) -> bool {
-        let n = xs.len();
-        let (hs, ox, oy, oq) = (&hs[..n], &mut ox[..n], &mut oy[..n], &mut oq[..n]);
-        let [r0, r1, r2] = self.view.map(|f| f.row(y));
-        let mut missed = 0;
-        for i in 0..n {
-            let (x, z) = (xs[i], self.z(xs[i], y, hs[i]));
-            let (px, py) = (self.view[0].at(r0, x, z) * self.scale, self.view[1].at(r1, x, z) * self.scale);
-            let vz = self.view[2].at(r2, x, z);
-            ox[i] = self.center[0].wrapping_add(fixed(px));
-            oy[i] = self.center[1].wrapping_add(fixed(py));
-            oq[i] = -vz;
-            missed |=
-                u32::from(!((vz >= self.near) & (vz <= self.far) & (px.abs() <= REACH_PX) & (py.abs() <= REACH_PX)));
+    /// `N` nodes from number `from` on.
+    #[inline(always)]
+    fn some<const N: usize>(&mut self, from: usize, camera: &impl Camera, missed: &mut [u32; LANES]) {
+        let Row { x, y, q } = &mut *self.out;
+        let (Some(xs), Some(hs)) = (self.x[from..].first_chunk::<N>(), self.heights[from..].first_chunk::<N>()) else {
+            return;
+        };
+        let ends = (x[from..].first_chunk_mut::<N>(), y[from..].first_chunk_mut::<N>());
+        let ((Some(px), Some(py)), Some(pq)) = (ends, q[from..].first_chunk_mut::<N>()) else { return };
+        // Of arrays of its own a compiler knows that they do not overlap.
+        let (mut ix, mut iy, mut iq, mut misses) = ([0; N], [0; N], [0.0; N], [0; N]);
+        for i in 0..N {
+            let z = self.projector.z(xs[i], self.y, hs[i]);
+            (ix[i], iy[i], iq[i], misses[i]) = camera.image(xs[i], z);
         }
-        missed == 0
+        (*px, *py, *pq) = (ix, iy, iq);
+        missed.iter_mut().zip(misses).for_each(|(all, miss)| *all |= miss);
     }
 }
 
 /// phi of the modified model in single precision: 0 before t0, `a - b` after t2, between them
 /// `a = phi + m q`, `b = psi + m q`, `q = sqrt(phi psi)`; sums of positive terms scaled by `a + b`, so that nothing cancels.
-#[inline]
+#[inline(always)]
 fn phi(m: f32, a: f32, b: f32) -> f32 {
     let c = a + b;
     let scale = 1.0 / c;
@@ -266,7 +322,7 @@ fn phi(m: f32, a: f32, b: f32) -> f32 {
 }
 
 /// Nearest 1/256 pixel of a length below [`REACH_PX`].
-#[inline]
+#[inline(always)]
 fn fixed(px: f32) -> i32 {
     ((px * SUB as f32 + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
 }

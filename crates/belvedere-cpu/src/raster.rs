@@ -1,204 +1,11 @@
 //! Watertight rasterisation of triangles into a band of image rows.
 
-use crate::cells::Cells;
-use crate::grid::NODES;
+use crate::band::{Band, SLACK};
 use crate::lens::{SUB, ScreenVertex};
-use crate::lod::SIDE;
-
-/// No surface.
-pub(crate) const SKY: u32 = u32::MAX;
-
-/// Sample positions inside a pixel, in 1/256 pixel. The first is the centre; the rest carry colour coverage.
-pub(crate) fn sample_offsets(samples: u32) -> Vec<[i32; 2]> {
-    let centre = [SUB / 2, SUB / 2];
-    // Rotated grids: no two samples share a row or a column. Steps of 1/16 pixel from the centre.
-    let pattern: &[[i32; 2]] = match samples {
-        4 => &[[-2, -6], [6, -2], [-6, 2], [2, 6]],
-        16 => &[
-            [1, 1],
-            [-1, -3],
-            [-3, 2],
-            [4, -1],
-            [-5, -2],
-            [2, 5],
-            [5, 3],
-            [3, -5],
-            [-2, 6],
-            [0, -7],
-            [-4, -6],
-            [-6, 4],
-            [-8, 0],
-            [7, -4],
-            [6, 7],
-            [-7, -8],
-        ],
-        _ => &[],
-    };
-    let step = SUB / 16;
-    std::iter::once(centre).chain(pattern.iter().map(|[x, y]| [centre[0] + step * x, centre[1] + step * y])).collect()
-}
-
-/// Nearness and primitive of every sample of the rows `y0..y1`.
-///
-/// The nearer surface wins; of two equally near ones that with the smaller number. So the order of drawing does not matter.
-#[derive(Debug, Default)]
-pub(crate) struct Band {
-    pub(crate) y0: i32,
-    pub(crate) y1: i32,
-    pub(crate) width: i32,
-    pub(crate) offsets: Vec<[i32; 2]>,
-    /// Smallest and largest offset along x and y.
-    reach: [[i32; 2]; 2],
-    /// Larger = nearer, planes by sample.
-    pub(crate) q: Vec<f32>,
-    pub(crate) prim: Vec<u32>,
-    /// Samples from one row to the next: a few more than there are pixels, so that whole lanes fit.
-    stride: usize,
-    pub(crate) cells: Cells,
-    tiles: Tiles,
-    /// Fragments inside a triangle, for tests of coverage.
-    #[cfg(test)]
-    pub(crate) hits: Vec<u32>,
-}
 
 impl Band {
-    #[cfg(test)]
-    pub(crate) fn new(y0: i32, y1: i32, width: i32, offsets: Vec<[i32; 2]>) -> Self {
-        let mut band = Self::default();
-        band.clear(y0, y1, width, &offsets);
-        band
-    }
-
-    /// Makes the band one of sky, for other rows; memory is kept.
-    pub(crate) fn clear(&mut self, y0: i32, y1: i32, width: i32, offsets: &[[i32; 2]]) {
-        (self.y0, self.y1, self.width) = (y0, y1, width);
-        self.offsets.clear();
-        self.offsets.extend_from_slice(offsets);
-        self.reach = [0, 1].map(|axis| {
-            let along = offsets.iter().map(|o: &[i32; 2]| o[axis]);
-            [along.clone().min().unwrap_or(0), along.max().unwrap_or(0)]
-        });
-        self.stride = (width.max(0) as usize).next_multiple_of(LANES) + LANES;
-        let n = offsets.len() * (y1 - y0).max(0) as usize * self.stride;
-        self.q.clear();
-        self.q.resize(n, f32::NEG_INFINITY);
-        self.prim.clear();
-        self.prim.resize(n, SKY);
-        self.tiles.clear(self.stride);
-        #[cfg(test)]
-        {
-            self.hits = vec![0; n];
-        }
-    }
-
-    /// Index of a sample.
-    #[inline]
-    pub(crate) fn index(&self, sample: usize, x: i32, y: i32) -> usize {
-        let rows = (self.y1 - self.y0) as usize;
-        (sample * rows + (y - self.y0) as usize) * self.stride + x as usize
-    }
-
-    /// Whether no sample of the band lies in a box of fixed-point positions.
-    #[inline]
-    fn misses(&self, x: [i32; 2], y: [i32; 2]) -> bool {
-        let [[left, right], [top, bottom]] = self.reach;
-        let (xa, xb) = ((x[0] - right + SUB - 1) >> 8, (x[1] - left) >> 8);
-        let (ya, yb) = ((y[0] - bottom + SUB - 1) >> 8, (y[1] - top) >> 8);
-        (xa > xb) | (ya > yb) | (xb < 0) | (xa >= self.width) | (yb < self.y0) | (ya >= self.y1)
-    }
-
-    /// Which cells between two rows of nodes may hold a sample of the band.
-    #[inline(never)]
-    pub(crate) fn touched(
-        &self,
-        xn: &[i32; NODES],
-        yn: &[i32; NODES],
-        xs: &[i32; NODES],
-        ys: &[i32; NODES],
-        hits: &mut [bool; SIDE],
-    ) {
-        let span = |n: &[i32; NODES], s: &[i32; NODES]| {
-            let lo: [i32; NODES] = std::array::from_fn(|c| n[c].min(s[c]));
-            let hi: [i32; NODES] = std::array::from_fn(|c| n[c].max(s[c]));
-            (lo, hi)
-        };
-        let ((x0, x1), (y0, y1)) = (span(xn, xs), span(yn, ys));
-        for c in 0..SIDE {
-            let x = [x0[c].min(x0[c + 1]), x1[c].max(x1[c + 1])];
-            let y = [y0[c].min(y0[c + 1]), y1[c].max(y1[c + 1])];
-            hits[c] = !self.misses(x, y);
-        }
-    }
-
-    /// Whether everything in these columns of the image, whose nearness is at most `q`, is hidden by what was drawn.
-    pub(crate) fn hides(&mut self, x: [i32; 2], q: f32) -> bool {
-        let (from, to) = ((x[0] >> 8).max(0) as usize / TILE, (x[1] >> 8).clamp(0, self.width - 1) as usize / TILE);
-        (from..=to).all(|tile| {
-            if self.tiles.stale[tile] {
-                let columns = tile * TILE..((tile + 1) * TILE).min(self.width as usize);
-                let least =
-                    |row: &[f32]| row[columns.clone()].iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
-                self.tiles.least[tile] =
-                    self.q.chunks(self.stride).map(least).fold(f32::INFINITY, |a, b| if b < a { b } else { a });
-                self.tiles.stale[tile] = false;
-            }
-            self.tiles.least[tile] > q
-        })
-    }
-
-    /// Tells that something was drawn in these columns.
-    pub(crate) fn drew(&mut self, x: [i32; 2]) {
-        let (from, to) = ((x[0] >> 8).max(0) as usize / TILE, (x[1] >> 8).clamp(0, self.width - 1) as usize / TILE);
-        if let Some(stale) = self.tiles.stale.get_mut(from..=to) {
-            stale.fill(true);
-        }
-    }
-
-    /// Draws a cell of four nodes (bit 0 east, bit 1 south): the triangles numbered `prim` and `prim + 1`.
-    #[inline]
-    pub(crate) fn draw_cell(&mut self, x: [i32; 4], y: [i32; 4], q: [f32; 4], prim: u32) {
-        let bx = [x[0].min(x[1]).min(x[2].min(x[3])), x[0].max(x[1]).max(x[2].max(x[3]))];
-        let by = [y[0].min(y[1]).min(y[2].min(y[3])), y[0].max(y[1]).max(y[2].max(y[3]))];
-        // No overflow: vertices are clipped to the guard planes.
-        if bx[1] - bx[0] >= TINY || by[1] - by[0] >= TINY {
-            let v: [ScreenVertex; 4] = std::array::from_fn(|k| ScreenVertex { x: x[k], y: y[k], q: q[k] });
-            self.draw([v[0], v[1], v[3]], prim);
-            self.draw([v[0], v[2], v[3]], prim | 1);
-            return;
-        }
-        for s in 0..self.offsets.len() {
-            let [ox, oy] = self.offsets[s];
-            let [xa, xb, ya, yb] = self.pixels([ox, oy], bx, by);
-            for py in ya..=yb {
-                for px in xa..=xb {
-                    let at = self.index(s, px, py);
-                    if self.cells.push([px * SUB + ox, py * SUB + oy], x, y, q, at, prim) {
-                        self.flush();
-                    }
-                }
-            }
-        }
-    }
-
-    /// Draws the cells that were collected.
-    pub(crate) fn flush(&mut self) {
-        let mut cells = std::mem::take(&mut self.cells);
-        cells.judge();
-        for i in 0..cells.len {
-            let (code, at, prim) = (cells.code[i], cells.at[i] as usize, cells.prim[i]);
-            if code & Cells::UPPER != 0 {
-                self.write(at, cells.upper[i], prim);
-            }
-            if code & Cells::LOWER != 0 {
-                self.write(at, cells.lower[i], prim | 1);
-            }
-        }
-        cells.len = 0;
-        self.cells = cells;
-    }
-
     /// Draws a triangle, either orientation.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn draw(&mut self, tri: [ScreenVertex; 3], prim: u32) {
         let [a, b, c] = tri;
         let x = [a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x)];
@@ -214,7 +21,7 @@ impl Band {
     }
 
     /// First and last pixel whose sample lies in a triangle's bounding box.
-    #[inline]
+    #[inline(always)]
     fn pixels(&self, [ox, oy]: [i32; 2], x: [i32; 2], y: [i32; 2]) -> [i32; 4] {
         [
             ((x[0] - ox + SUB - 1) >> 8).max(0),
@@ -225,7 +32,7 @@ impl Band {
     }
 
     /// A triangle of a few pixels: 32-bit edge functions, a row of samples at once.
-    #[inline]
+    #[inline(always)]
     fn draw_small(&mut self, [a, b, c]: [ScreenVertex; 3], x: [i32; 2], y: [i32; 2], prim: u32) {
         let area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
         if area == 0 {
@@ -267,6 +74,7 @@ impl Band {
         }
     }
 
+    #[inline(never)]
     fn draw_large(&mut self, [a, b, c]: [ScreenVertex; 3], x: [i32; 2], y: [i32; 2], prim: u32) {
         let Some(t) = Setup::new(a, b, c) else { return };
         let slope = t.plane.gx as f32 * SUB as f32;
@@ -292,44 +100,12 @@ impl Band {
             }
         }
     }
-
-    #[inline]
-    fn write(&mut self, i: usize, q: f32, prim: u32) {
-        #[cfg(test)]
-        {
-            self.hits[i] += 1;
-        }
-        if q > self.q[i] || (q == self.q[i] && prim < self.prim[i]) {
-            self.q[i] = q;
-            self.prim[i] = prim;
-        }
-    }
 }
 
 /// Samples of a row that are looked at together.
-const LANES: usize = 8;
+const LANES: usize = SLACK;
 /// Bounding boxes below this many fixed-point steps fit the lanes, and go with 32-bit edge functions.
 const SMALL: i32 = 7 * SUB;
-/// Cells below this are collected and judged many at a time; at most 2 x 2 samples of a kind lie in one.
-const TINY: i32 = 2 * SUB;
-/// Pixels along a tile, whose least nearness is known.
-const TILE: usize = 32;
-
-/// Least nearness of all samples per tile: what is farther is hidden there.
-#[derive(Debug, Default)]
-struct Tiles {
-    least: Vec<f32>,
-    stale: Vec<bool>,
-}
-
-impl Tiles {
-    fn clear(&mut self, width: usize) {
-        self.least.clear();
-        self.least.resize(width.div_ceil(TILE), f32::NEG_INFINITY);
-        self.stale.clear();
-        self.stale.resize(width.div_ceil(TILE), false);
-    }
-}
 
 /// Nearness along a row of samples.
 #[derive(Clone, Copy)]
@@ -341,7 +117,7 @@ struct Lane {
 }
 
 impl Lane {
-    #[inline]
+    #[inline(always)]
     fn at(self, k: usize) -> f32 {
         let q = self.q + self.slope * k as f32;
         let q = if q < self.range[0] { self.range[0] } else { q };
@@ -349,7 +125,7 @@ impl Lane {
     }
 
     /// Eight samples, those where all edge functions (`e` at the first, falling by `dy` per step) are not negative.
-    #[inline]
+    #[inline(always)]
     fn inside(self, q: &mut [f32], prim: &mut [u32], e: [i32; 3], dy: [i32; 3]) {
         let (q, prim) = (&mut q[..LANES], &mut prim[..LANES]);
         for k in 0..LANES {
@@ -363,7 +139,7 @@ impl Lane {
     }
 
     /// Every sample of the slices.
-    #[inline]
+    #[inline(always)]
     fn span(self, q: &mut [f32], prim: &mut [u32]) {
         for (k, (q, prim)) in q.iter_mut().zip(prim).enumerate() {
             let new = self.at(k);
@@ -375,7 +151,7 @@ impl Lane {
 }
 
 /// Top-left rule: a sample exactly on an edge belongs to the triangle below or to the right of it.
-#[inline]
+#[inline(always)]
 pub(crate) fn owns_edge(dx: i64, dy: i64) -> bool {
     dy < 0 || (dy == 0 && dx > 0)
 }
@@ -392,7 +168,7 @@ struct Plane {
 
 impl Plane {
     /// * `area`: twice the area of the triangle, positive.
-    #[inline]
+    #[inline(always)]
     fn new([a, b, c]: [ScreenVertex; 3], area: i64) -> Self {
         let d = |p: i32, q: i32| f64::from(p) - f64::from(q);
         let (q1, q2) = (f64::from(b.q) - f64::from(a.q), f64::from(c.q) - f64::from(a.q));
@@ -407,7 +183,7 @@ impl Plane {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn at(&self, xs: i32, ys: i32) -> f64 {
         self.q0 + self.gx * f64::from(xs - self.origin[0]) + self.gy * f64::from(ys - self.origin[1])
     }
@@ -426,7 +202,7 @@ struct Setup {
 
 impl Setup {
     /// `None` for a triangle without area.
-    #[inline]
+    #[inline(always)]
     fn new(a: ScreenVertex, b: ScreenVertex, c: ScreenVertex) -> Option<Self> {
         let d = |p: i32, q: i32| i64::from(p) - i64::from(q);
         let area = d(b.x, a.x) * d(c.y, a.y) - d(c.x, a.x) * d(b.y, a.y);
@@ -446,7 +222,7 @@ impl Setup {
         Some(Self { e0, dx: ex.map(|e| e * i64::from(SUB)), ex, ey, plane: Plane::new(v, area) })
     }
 
-    #[inline]
+    #[inline(always)]
     fn edges_at(&self, xs: i32, ys: i32) -> [i64; 3] {
         let [x0, y0] = self.plane.origin;
         let (x, y) = (i64::from(xs) - i64::from(x0), i64::from(ys) - i64::from(y0));
@@ -473,6 +249,7 @@ impl Setup {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::band::sample_offsets;
 
     fn random(seed: &mut u64) -> i32 {
         *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -1,14 +1,15 @@
 //! From samples to pixels.
 
+use crate::band::{Band, SKY};
 use crate::lens::{Lens, SUB};
 use crate::polish::Polish;
-use crate::raster::{Band, SKY};
 use crate::shade::color::Packed;
-use crate::shade::{Painted, Sample, Shader};
+use crate::shade::{Painted, Sample, Samples, Shader};
+use crate::vector::{self, Kernel};
 
 /// Rows of the picture that a band fills.
-pub(crate) struct Rows<'a> {
-    pub(crate) color: &'a mut [Packed],
+pub(crate) struct Rows<'a, 'c> {
+    pub(crate) color: &'a mut Colors<'c>,
     pub(crate) depth: &'a mut [f32],
     pub(crate) id: &'a mut [u32],
     pub(crate) world: Option<&'a mut [[f64; 3]]>,
@@ -16,24 +17,33 @@ pub(crate) struct Rows<'a> {
     pub(crate) polish: Option<&'a Polish<'a>>,
 }
 
+/// Where colours go.
+pub(crate) enum Colors<'a> {
+    /// To be drawn over.
+    Open(&'a mut [Packed]),
+    /// Finished.
+    Stored(&'a mut [[u8; 3]]),
+}
+
 /// Two samples farther apart than this share of their depth are coloured separately.
 const SAME_SURFACE: f32 = 0.02;
 
 /// Colours the band's pixels.
-pub(crate) fn resolve(band: &Band, shader: &Shader<'_>, lens: &Lens, rows: &mut Rows<'_>) {
+pub(crate) fn resolve(band: &Band, shader: &Shader<'_>, lens: &Lens, rows: &mut Rows<'_, '_>) {
     let width = band.width.max(0) as usize;
-    let mut painted = vec![Painted::default(); width];
+    let [ox, oy] = band.offsets[0];
+    let xs: Vec<i32> = (0..band.width).map(|x| x * SUB + ox).collect();
+    let mut ys = vec![0; width];
+    let mut painted = Painted::default();
     let mut edges = Edges::default();
     for y in band.y0..band.y1 {
         let first = band.index(0, 0, y);
         let out = (y - band.y0) as usize * width;
-        for ((depth, q), prim) in rows.depth[out..].iter_mut().zip(&band.q[first..][..width]).zip(&band.prim[first..]) {
-            *depth = if *prim == SKY { f32::INFINITY } else { lens.depth_of(*q) };
-        }
-        shader.paint((0..band.width).map(|x| sample(band, 0, x, y)), &mut painted);
-        for (id, p) in rows.id[out..].iter_mut().zip(&painted) {
-            *id = p.id;
-        }
+        let (prim, q) = (&band.prim[first..][..width], &band.q[first..][..width]);
+        vector::run(Depths { ortho: lens.ortho, q, prim, out: &mut rows.depth[out..] });
+        ys.fill(y * SUB + oy);
+        shader.paint(Samples { prim, q, x: &xs, y: &ys }, &mut painted);
+        rows.id[out..][..width].copy_from_slice(&painted.id);
         if rows.world.is_some() || rows.polish.is_some() {
             for x in 0..width {
                 place(band, shader, rows, out + x, [x as i32, y]);
@@ -42,14 +52,34 @@ pub(crate) fn resolve(band: &Band, shader: &Shader<'_>, lens: &Lens, rows: &mut 
         if band.offsets.len() > 1 {
             edges.mix(band, shader, y, &mut painted);
         }
-        for (color, p) in rows.color[out..].iter_mut().zip(&painted) {
-            *color = Packed::new(p.color);
+        match &mut *rows.color {
+            Colors::Open(color) => painted.pack(&mut color[out..][..width]),
+            Colors::Stored(color) => painted.encode(&mut color[out..][..width]),
+        }
+    }
+}
+
+struct Depths<'d> {
+    ortho: bool,
+    q: &'d [f32],
+    prim: &'d [u32],
+    out: &'d mut [f32],
+}
+
+impl Kernel for Depths<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for ((depth, q), prim) in self.out.iter_mut().zip(self.q).zip(self.prim) {
+            let here = if self.ortho { -*q } else { 1.0 / *q };
+            *depth = if *prim == SKY { f32::INFINITY } else { here };
         }
     }
 }
 
 /// Place, and depth where that is to be exact, of what a pixel's centre sees.
-fn place(band: &Band, shader: &Shader<'_>, rows: &mut Rows<'_>, out: usize, [x, y]: [i32; 2]) {
+fn place(band: &Band, shader: &Shader<'_>, rows: &mut Rows<'_, '_>, out: usize, [x, y]: [i32; 2]) {
     let centre = sample(band, 0, x, y);
     let mut world = shader.world(centre);
     if let Some(polish) = rows.polish
@@ -65,52 +95,73 @@ fn place(band: &Band, shader: &Shader<'_>, rows: &mut Rows<'_>, out: usize, [x, 
 /// Pixels whose samples see several surfaces, collected row by row and shaded together.
 #[derive(Default)]
 struct Edges {
-    samples: Vec<Sample>,
-    painted: Vec<Painted>,
-    /// Pixel, share of its centre, and number of its first sample in `samples`.
+    /// Samples apart from the centres, see [`Samples`].
+    prim: Vec<u32>,
+    q: Vec<f32>,
+    x: Vec<i32>,
+    y: Vec<i32>,
+    painted: Painted,
+    /// Not 0 for pixels of a row that may see several surfaces.
+    uneven: Vec<u32>,
+    /// Pixel, share of its centre, and number of its first sample.
     pixels: Vec<(u32, u32, usize)>,
-    /// Coverage samples of each of `samples`.
+    /// Coverage samples of each sample.
     shares: Vec<u32>,
 }
 
 impl Edges {
     /// Replaces the colours of pixels by the mean of their coverage samples, where these see more than one surface;
     /// samples on one surface share the colour of the first of them.
-    fn mix(&mut self, band: &Band, shader: &Shader<'_>, y: i32, painted: &mut [Painted]) {
-        self.samples.clear();
-        self.shares.clear();
-        self.pixels.clear();
-        for x in 0..band.width {
-            if !is_even(band, shader, x, y) {
-                self.take(band, shader, x, y);
+    fn mix(&mut self, band: &Band, shader: &Shader<'_>, y: i32, painted: &mut Painted) {
+        let Self { prim, q, x, y: ys, shares, pixels, .. } = self;
+        [prim, shares].into_iter().for_each(Vec::clear);
+        [x, ys].into_iter().for_each(Vec::clear);
+        q.clear();
+        pixels.clear();
+        self.uneven.clear();
+        self.uneven.resize(band.width.max(0) as usize, 0);
+        vector::run(Unevenness { band, y, terrain: shader.only_terrain(), out: &mut self.uneven });
+        for x in 0..self.uneven.len() {
+            if self.uneven[x] != 0 && (shader.only_terrain() || !is_even(band, shader, x as i32, y)) {
+                self.take(band, shader, x as i32, y);
             }
         }
-        self.painted.clear();
-        self.painted.resize(self.samples.len(), Painted::default());
-        shader.paint(self.samples.iter().copied(), &mut self.painted);
+        if self.pixels.is_empty() {
+            return;
+        }
+        shader.paint(Samples { prim: &self.prim, q: &self.q, x: &self.x, y: &self.y }, &mut self.painted);
         let n = (band.offsets.len() - 1) as f32;
         for (i, &(x, centre, first)) in self.pixels.iter().enumerate() {
-            let last = self.pixels.get(i + 1).map_or(self.samples.len(), |p| p.2);
-            let color = &mut painted[x as usize].color;
-            let mut sum = *color * centre as f32;
-            for (p, share) in self.painted[first..last].iter().zip(&self.shares[first..last]) {
-                sum += p.color * *share as f32;
+            let last = self.pixels.get(i + 1).map_or(self.prim.len(), |p| p.2);
+            for (root, from) in painted.root.iter_mut().zip(&self.painted.root) {
+                let root = &mut root[x as usize];
+                let others = from[first..last].iter().zip(&self.shares[first..last]);
+                let sum = others.fold(*root * *root * centre as f32, |sum, (c, share)| sum + c * c * *share as f32);
+                *root = (sum / n).sqrt();
             }
-            *color = sum / n;
         }
     }
 
     fn take(&mut self, band: &Band, shader: &Shader<'_>, x: i32, y: i32) {
-        let (middle, first) = (sample(band, 0, x, y), self.samples.len());
+        let seen = |s: usize| {
+            let i = band.index(s, x, y);
+            (band.prim[i], band.q[i])
+        };
+        let (middle, first) = (seen(0), self.prim.len());
         let mut centre = 0;
         for s in 1..band.offsets.len() {
-            let here = sample(band, s, x, y);
-            if is_same(shader, &middle, &here) {
+            let here = seen(s);
+            let is_here = |k: &usize| is_same(shader, (self.prim[*k], self.q[*k]), here);
+            if is_same(shader, middle, here) {
                 centre += 1;
-            } else if let Some(k) = self.samples[first..].iter().position(|other| is_same(shader, other, &here)) {
-                self.shares[first + k] += 1;
+            } else if let Some(k) = (first..self.prim.len()).find(is_here) {
+                self.shares[k] += 1;
             } else {
-                self.samples.push(here);
+                let Sample { prim, at } = sample(band, s, x, y);
+                self.prim.push(prim);
+                self.q.push(here.1);
+                self.x.push(at[0]);
+                self.y.push(at[1]);
                 self.shares.push(1);
             }
         }
@@ -118,30 +169,61 @@ impl Edges {
     }
 }
 
-/// Whether all samples of a pixel lie on one surface: a quick test for nearly all pixels.
+/// Finds the pixels of a row that may see several surfaces.
+struct Unevenness<'u> {
+    band: &'u Band,
+    y: i32,
+    /// Whether there is but one terrain to be seen, whose colours change smoothly.
+    terrain: bool,
+    out: &'u mut [u32],
+}
+
+impl Kernel for Unevenness<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let (band, width) = (self.band, self.out.len());
+        let row = |s: usize| {
+            let first = band.index(s, 0, self.y);
+            (&band.prim[first..][..width], &band.q[first..][..width])
+        };
+        let (prims, qs) = row(0);
+        for s in 1..band.offsets.len() {
+            let (prim, q) = row(s);
+            for x in 0..width {
+                let solid = (prims[x] != SKY) & (prim[x] != SKY) & self.terrain;
+                let same = (prims[x] == prim[x]) | (solid & is_near(qs[x], q[x]));
+                self.out[x] |= if same { 0 } else { 1 };
+            }
+        }
+    }
+}
+
+/// Whether all samples of a pixel lie on one surface.
 fn is_even(band: &Band, shader: &Shader<'_>, x: i32, y: i32) -> bool {
     let i = band.index(0, x, y);
-    let (prim, q) = (band.prim[i], band.q[i]);
+    let centre = (band.prim[i], band.q[i]);
     (1..band.offsets.len()).all(|s| {
         let k = band.index(s, x, y);
-        band.prim[k] == prim
-            || (prim != SKY && band.prim[k] != SKY && is_near(q, band.q[k]) && shader.is_terrain(prim, band.prim[k]))
+        is_same(shader, centre, (band.prim[k], band.q[k]))
     })
 }
 
-fn is_same(shader: &Shader<'_>, a: &Sample, b: &Sample) -> bool {
-    a.prim == b.prim || (a.prim != SKY && b.prim != SKY && is_near(a.q, b.q) && shader.is_terrain(a.prim, b.prim))
+/// Whether two samples, given by what they hit and its nearness, may share a colour.
+#[inline(always)]
+fn is_same(shader: &Shader<'_>, a: (u32, f32), b: (u32, f32)) -> bool {
+    a.0 == b.0 || (a.0 != SKY && b.0 != SKY && is_near(a.1, b.1) && shader.is_terrain(a.0, b.0))
 }
 
 /// Whether two samples are about equally far away: shares of depth and of nearness are the same thing.
-#[inline]
+#[inline(always)]
 fn is_near(a: f32, b: f32) -> bool {
     (a - b).abs() <= SAME_SURFACE * a.abs().min(b.abs())
 }
 
 #[inline]
 fn sample(band: &Band, s: usize, x: i32, y: i32) -> Sample {
-    let i = band.index(s, x, y);
     let [ox, oy] = band.offsets[s];
-    Sample { prim: band.prim[i], q: band.q[i], at: [x * SUB + ox, y * SUB + oy] }
+    Sample { prim: band.prim[band.index(s, x, y)], at: [x * SUB + ox, y * SUB + oy] }
 }

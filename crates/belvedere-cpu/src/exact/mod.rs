@@ -14,11 +14,11 @@ mod trace;
 pub(crate) use trace::Part;
 pub use trace::{Seen, Tracer};
 
+use crate::band::sample_offsets;
 use crate::blocks::Blocks;
 use crate::lens::{Lens, SUB};
 use crate::marks::Marks;
 use crate::pass::Pass;
-use crate::raster::sample_offsets;
 use crate::shade::Shader;
 use crate::shade::color::{Packed, Rgb};
 use crate::{BAND, Buffers, finish};
@@ -83,7 +83,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     let passes = Pass::all(job.view);
     let marks = Marks::new(job, &passes, &lens, tolerance_px, &buffers.depth);
     job.progress.tick("lines", 0.0)?;
-    let color = finish(&marks, &lens, &mut buffers);
+    finish(&marks, &lens, &mut buffers);
     job.progress.tick("lines", 1.0)?;
     let triangles_in = job.scene.layers.iter().map(|l| match &l.kind {
         LayerKind::Terrain(t) => 2 * ((t.heightfield.cols() - 1) * (t.heightfield.rows() - 1)) as u64,
@@ -97,7 +97,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
         ..FrameStats::default()
     };
     let (width, height) = (lens.width as usize, lens.height as usize);
-    Ok(Frame { width, height, color, depth: buffers.depth, id: buffers.id, world: buffers.world, stats })
+    Ok(Frame { width, height, color: buffers.out, depth: buffers.depth, id: buffers.id, world: buffers.world, stats })
 }
 
 /// Colour, depth, id and place.

@@ -17,8 +17,8 @@ use crate::pass::Pass;
 use crate::shade::color::{Packed, linear};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{
-    AreaLayer, Color, Hidden, LayerKind, LineLayer, OverlayLine, OverlayPoint, PointLayer, PointLook, RenderJob, Scene,
-    Symbol,
+    AreaLayer, Color, Hidden, LayerKind, LineLayer, Overlay, OverlayLine, OverlayPoint, PointLayer, PointLook,
+    RenderJob, Scene, Symbol,
 };
 use face::Face;
 use label::{Labels, Wish};
@@ -67,6 +67,12 @@ impl Marks {
         let under = overlay.under.iter().map(|l| maker.overlay_line(l, &mut wishes)).collect();
         let faces = overlay.faces.iter().flat_map(|f| passes.iter().filter_map(|p| Face::new(f, p, lens)));
         Self { under, faces: faces.collect(), sheets, labels: Labels::place(wishes, 2.0 * lens.center) }
+    }
+
+    /// Whether there may be any.
+    pub(crate) fn are_in(job: &RenderJob<'_>) -> bool {
+        let drawn = |kind: &LayerKind| matches!(kind, LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_));
+        job.scene.layers.iter().any(|l| drawn(&l.kind)) || job.options.overlay != Overlay::default()
     }
 
     /// Draws the rows from `y0` on, one band; `depth` as in [`Marks::new`].

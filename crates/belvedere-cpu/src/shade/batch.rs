@@ -1,212 +1,272 @@
 //! Samples of one terrain layer, shaded together: each step is a plain loop over short arrays, which compilers turn
 //! into vector instructions.
 
-use super::color::Rgb;
-use super::lit::{CELL, Lit};
+use super::lit::Halves;
 use super::print::Print;
+use super::spot::Spot;
 use super::terrain::TerrainShade;
-use super::{Painted, Shader};
-use crate::blocks::{Block, Found, SIDE};
-use crate::grid::CELL_TRIANGLES;
+use super::tiles::CELL;
+use super::{LayerShade, Painted, Samples, Shader, pixel_of};
+use crate::blocks::{Block, SIDE};
+use crate::grid::Nodes;
 use crate::lens::SUB;
 use belvedere_core::DVec2;
 
 /// Samples to a batch.
-const LANES: usize = 16;
+const LANES: usize = 32;
 type Lanes = [f32; LANES];
+type Whole = [i32; LANES];
 
-/// Samples waiting to be shaded.
+/// Samples waiting to be shaded, each on one half of a cell of the ground.
 pub(super) struct Batch {
     len: usize,
     layer: usize,
     /// Where each result goes.
     out: [u32; LANES],
-    /// Node that the vertices count from.
-    node: [[i32; 2]; LANES],
-    /// Vertices relative to the sample, fixed-point steps.
-    x: [Lanes; 3],
-    y: [Lanes; 3],
-    /// Their nearness (1 in parallel projection), and their columns and rows from the node.
+    /// Place of the sample, and the vertices of its triangle: north-west, south-east, and the one between; fixed-point steps.
+    at: [Whole; 2],
+    x: [Whole; 3],
+    y: [Whole; 3],
     q: [Lanes; 3],
-    u: [Lanes; 3],
-    v: [Lanes; 3],
-    /// Forward distance of the sample.
-    depth: Lanes,
-    pixel: [[f32; 2]; LANES],
+    /// The north-west node, the side of the cell, and 1 in the half of the south-west node, else 0.
+    node: [Whole; 2],
+    step: Lanes,
+    lower: Whole,
+    /// Lanes whose triangle is another one.
+    odd: usize,
+    odd_lanes: [(usize, OddPlace); LANES],
 }
 
-/// Where the samples of a batch lie on the ground, and what a pixel covers there.
+/// Where a sample lies that is not on half a cell.
+#[derive(Clone, Copy, Default)]
+struct OddPlace {
+    node: [i32; 2],
+    at: [f32; 2],
+    cells_per_px: f32,
+}
+
+/// Where the samples of a batch lie on the ground.
 struct Places {
     /// Columns and rows from the node.
     u: Lanes,
     v: Lanes,
     /// Squared side of the square that a pixel covers, in squares of a cell.
     cells_per_px: Lanes,
+    /// Forward distance.
+    depth: Lanes,
 }
 
 impl Batch {
     pub(super) fn new() -> Self {
-        let zero = [0.0; LANES];
+        let (zero, none) = ([0.0; LANES], [0; LANES]);
         Self {
             len: 0,
             layer: 0,
             out: [0; LANES],
-            node: [[0; 2]; LANES],
-            x: [zero; 3],
-            y: [zero; 3],
+            at: [none; 2],
+            x: [none; 3],
+            y: [none; 3],
             q: [zero; 3],
-            u: [zero; 3],
-            v: [zero; 3],
-            depth: zero,
-            pixel: [[0.0; 2]; LANES],
+            node: [none; 2],
+            step: zero,
+            lower: none,
+            odd: 0,
+            odd_lanes: [(0, OddPlace::default()); LANES],
         }
     }
 
-    /// Takes in a sample of a terrain layer; shades what is there when the batch is full or the layer another one.
-    #[inline]
-    pub(super) fn push(
+    /// Takes in samples of a block without odd triangles: those numbered `from..to`.
+    #[inline(always)]
+    pub(super) fn take(
         &mut self,
         shader: &Shader<'_>,
-        found: &Found<'_>,
-        [xs, ys]: [i32; 2],
-        depth: f32,
-        out: usize,
-        painted: &mut [Painted],
+        (block, nodes): (&Block, &Nodes),
+        samples: &Samples<'_>,
+        [from, to]: [usize; 2],
+        painted: &mut Painted,
     ) {
-        let layer = found.block.layer as usize;
-        if self.len == LANES || (self.len > 0 && layer != self.layer) {
-            self.flush(shader, painted);
+        self.turn_to(block.layer as usize, shader, samples, painted);
+        let (stride, step) = (block.cells[0] + 1, block.step as i32);
+        let origin = block.origin.map(|n| n as i32);
+        let (nx, ny, nq) = (&nodes.x[..], &nodes.y[..], &nodes.q[..]);
+        let seamed = block.is_seamed();
+        for k in from..to {
+            if self.len == LANES {
+                self.flush(shader, samples, painted);
+            }
+            let prim = samples.prim[k];
+            let (cell, lower) = ((prim >> 1) as usize & (SIDE * SIDE - 1), (prim & 1) as usize);
+            let (c, r) = (cell % SIDE, cell / SIDE);
+            let nw = r * stride + c;
+            let at = [nw, nw + stride + 1, if lower == 0 { nw + 1 } else { nw + stride }];
+            if (seamed && block.is_odd([c, r])) || at[1] >= nx.len() {
+                self.push_odd(shader, samples, k);
+                continue;
+            }
+            let i = self.len;
+            for (v, at) in at.into_iter().enumerate() {
+                (self.x[v][i], self.y[v][i], self.q[v][i]) = (nx[at], ny[at], nq[at]);
+            }
+            (self.at[0][i], self.at[1][i]) = (samples.x[k], samples.y[k]);
+            (self.node[0][i], self.node[1][i]) = (origin[0] + step * c as i32, origin[1] + step * r as i32);
+            (self.step[i], self.lower[i]) = (step as f32, lower as i32);
+            self.out[i] = k as u32;
+            self.len = i + 1;
         }
-        let i = self.len;
-        (self.len, self.layer) = (i + 1, layer);
-        let Block { origin, step, .. } = *found.block;
-        let cell = (found.parent >> 1) as usize;
-        self.node[i] = [(origin[0] + step * (cell % SIDE)) as i32, (origin[1] + step * (cell / SIDE)) as i32];
-        let nodes = CELL_TRIANGLES[(found.parent & 1) as usize].map(|n| [(n & 1) as f32, (n >> 1) as f32]);
-        let step = step as f32;
-        for (k, v) in found.v.iter().enumerate() {
-            self.x[k][i] = (v.screen.x - xs) as f32;
-            self.y[k][i] = (v.screen.y - ys) as f32;
-            self.q[k][i] = if shader.lens.ortho { 1.0 } else { v.screen.q };
-            let [a, b] = v.weights;
-            let along = |d: usize| nodes[0][d] + a * (nodes[1][d] - nodes[0][d]) + b * (nodes[2][d] - nodes[0][d]);
-            self.u[k][i] = step * along(0);
-            self.v[k][i] = step * along(1);
+    }
+
+    /// Takes in a sample of any triangle of ground.
+    pub(super) fn take_odd(
+        &mut self,
+        layer: usize,
+        shader: &Shader<'_>,
+        samples: &Samples<'_>,
+        k: usize,
+        painted: &mut Painted,
+    ) {
+        self.turn_to(layer, shader, samples, painted);
+        if self.len == LANES {
+            self.flush(shader, samples, painted);
         }
-        self.depth[i] = depth;
-        self.pixel[i] = [xs as f32 / SUB as f32, ys as f32 / SUB as f32];
-        self.out[i] = out as u32;
+        self.push_odd(shader, samples, k);
+    }
+
+    #[inline(always)]
+    fn turn_to(&mut self, layer: usize, shader: &Shader<'_>, samples: &Samples<'_>, painted: &mut Painted) {
+        if layer != self.layer {
+            self.flush(shader, samples, painted);
+            self.layer = layer;
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn push_odd(&mut self, shader: &Shader<'_>, samples: &Samples<'_>, k: usize) {
+        let Some(found) = shader.blocks.find(samples.prim[k]) else { return };
+        let spot = Spot::new(&found, shader.lens, samples.at(k));
+        let (at, cells_per_px) = (spot.at.map(|v| v as f32), spot.cells_per_px() as f32);
+        self.odd_lanes[self.odd] = (self.len, OddPlace { node: Spot::node(&found), at, cells_per_px });
+        self.odd += 1;
+        self.out[self.len] = k as u32;
+        self.len += 1;
     }
 
     /// Shades what is there.
-    pub(super) fn flush(&mut self, shader: &Shader<'_>, painted: &mut [Painted]) {
-        if self.len == 0 {
-            return;
+    #[inline(always)]
+    pub(super) fn flush(&mut self, shader: &Shader<'_>, samples: &Samples<'_>, painted: &mut Painted) {
+        if self.len > 0
+            && let LayerShade::Terrain(terrain) = &shader.layers[self.layer]
+        {
+            self.shade(shader, terrain, samples, painted);
         }
-        let super::LayerShade::Terrain(terrain) = &shader.layers[self.layer] else { return };
-        let places = self.places();
-        let lods = terrain.lods(shader, &self.depth, &places.cells_per_px);
-        let (mut root, mut direct, mut sky) = ([[0.0; LANES]; 3], [0.0; LANES], [0.0; LANES]);
-        let making = terrain.making();
-        for i in 0..self.len {
-            let sum = terrain.lit.sample(self.at(i, &places), lods[i], &making);
-            let lit = Lit::of(sum);
-            for (root, v) in root.iter_mut().zip(lit.root) {
-                root[i] = v;
-            }
-            (direct[i], sky[i]) = (lit.direct, lit.sky);
-        }
-        let mut color = terrain.colors(shader, &root, &direct, &sky, &self.depth);
-        let mut ids = [self.layer as u32 + 1; LANES];
-        if terrain.is_covered(shader) {
-            self.cover(shader, terrain, &places, [&root[0], &root[1], &root[2]], &direct, &sky, &mut color, &mut ids);
-        }
-        for i in 0..self.len {
-            let [r, g, b] = &color;
-            painted[self.out[i] as usize] = Painted { color: Rgb::new(r[i], g[i], b[i]), id: ids[i] };
-        }
-        self.len = 0;
+        (self.len, self.odd) = (0, 0);
     }
 
-    /// Barycentric weights on the image, made those of the ground by nearness.
-    fn places(&self) -> Places {
-        let mut out = Places { u: [0.0; LANES], v: [0.0; LANES], cells_per_px: [0.0; LANES] };
-        let ([x0, x1, x2], [y0, y1, y2], [q0, q1, q2]) = (&self.x, &self.y, &self.q);
-        let ([u0, u1, u2], [v0, v1, v2]) = (&self.u, &self.v);
-        for i in 0..LANES {
-            let w0 = x1[i] * y2[i] - x2[i] * y1[i];
-            let w1 = x2[i] * y0[i] - x0[i] * y2[i];
-            let w2 = x0[i] * y1[i] - x1[i] * y0[i];
-            let inverse = 1.0 / (w0 + w1 + w2);
-            let (w0, w1, w2) =
-                ((w0 * inverse).max(0.0) * q0[i], (w1 * inverse).max(0.0) * q1[i], (w2 * inverse).max(0.0) * q2[i]);
-            let scale = 1.0 / (w0 + w1 + w2);
-            out.u[i] = (w0 * u0[i] + w1 * u1[i] + w2 * u2[i]) * scale;
-            out.v[i] = (w0 * v0[i] + w1 * v1[i] + w2 * v2[i]) * scale;
-            let part = (u1[i] - u0[i]) * (v2[i] - v0[i]) - (u2[i] - u0[i]) * (v1[i] - v0[i]);
-            out.cells_per_px[i] = (part * inverse).abs() * (SUB * SUB) as f32;
+    #[inline(always)]
+    fn shade(&mut self, shader: &Shader<'_>, terrain: &TerrainShade<'_>, samples: &Samples<'_>, painted: &mut Painted) {
+        let places = self.places(shader, samples);
+        let lods = terrain.lods(shader, &places.depth, &places.cells_per_px);
+        let at = self.fixed(&places, terrain);
+        let making = terrain.making();
+        let mut halves = [Halves::default(); LANES];
+        for i in 0..self.len {
+            halves[i] = terrain.lit.colors([at[0][i], at[1][i]], (lods[i] >> 8) as usize, &making);
+        }
+        let color = terrain.colors(shader, &halves, &lods, &places.depth);
+        for (i, &k) in self.out[..self.len].iter().enumerate() {
+            painted.set_root(k as usize, [color[0][i], color[1][i], color[2][i]], self.layer as u32 + 1);
+        }
+        if terrain.is_covered(shader) {
+            self.cover(shader, terrain, &places, &at, samples, painted);
+        }
+    }
+
+    /// Where the samples lie.
+    #[inline(always)]
+    fn places(&mut self, shader: &Shader<'_>, samples: &Samples<'_>) -> Places {
+        let zero = [0.0; LANES];
+        let mut out = Places { u: zero, v: zero, cells_per_px: zero, depth: zero };
+        for (depth, &k) in out.depth.iter_mut().zip(&self.out[..self.len]) {
+            *depth = shader.lens.depth_of(samples.q[k as usize]);
+        }
+        if shader.lens.ortho {
+            self.q = [[1.0; LANES]; 3];
+        }
+        self.weigh(&mut out);
+        for &(lane, odd) in &self.odd_lanes[..self.odd] {
+            (self.node[0][lane], self.node[1][lane]) = (odd.node[0], odd.node[1]);
+            (out.u[lane], out.v[lane], out.cells_per_px[lane]) = (odd.at[0], odd.at[1], odd.cells_per_px);
         }
         out
     }
 
-    /// Column and row of lane `i` on the ground, [`CELL`] steps to a cell.
-    #[inline]
-    fn at(&self, i: usize, places: &Places) -> [i32; 2] {
-        let [c, r] = self.node[i];
-        [c * CELL + (places.u[i] * CELL as f32) as i32, r * CELL + (places.v[i] * CELL as f32) as i32]
+    /// Barycentric weights on the image, made those of the ground by nearness.
+    #[inline(always)]
+    fn weigh(&self, out: &mut Places) {
+        let Self { at: [xs, ys], x: [x0, x1, x2], y: [y0, y1, y2], q: [q0, q1, q2], step, lower, .. } = self;
+        for i in 0..LANES {
+            let x = [x0[i] - xs[i], x1[i] - xs[i], x2[i] - xs[i]].map(|v| v as f32);
+            let y = [y0[i] - ys[i], y1[i] - ys[i], y2[i] - ys[i]].map(|v| v as f32);
+            let (w0, w1, w2) = (x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]);
+            let inverse = 1.0 / (w0 + w1 + w2);
+            let weight = |w: f32, q: f32| {
+                let w = w * inverse;
+                (if w > 0.0 { w } else { 0.0 }) * q
+            };
+            let (w0, w1, w2) = (weight(w0, q0[i]), weight(w1, q1[i]), weight(w2, q2[i]));
+            let scale = step[i] / (w0 + w1 + w2);
+            // The vertex between lies beside the diagonal, where only one coordinate differs.
+            let (most, least) = ((w1 + w2) * scale, w1 * scale);
+            out.u[i] = if lower[i] == 0 { most } else { least };
+            out.v[i] = if lower[i] == 0 { least } else { most };
+            out.cells_per_px[i] = (step[i] * step[i] * inverse).abs() * (SUB * SUB) as f32;
+        }
     }
 
-    /// Columns and rows per pixel to the right and per pixel down at lane `i`.
-    fn axes(&self, i: usize, places: &Places) -> [DVec2; 2] {
-        let (x, y) = (self.x.map(|v| v[i]), self.y.map(|v| v[i]));
-        let (q, u, v) = (self.q.map(|v| v[i]), self.u.map(|v| v[i]), self.v.map(|v| v[i]));
-        let next = |k: usize| ((k + 1) % 3, (k + 2) % 3);
-        // Weight of vertex k, and how it changes when the sample moves.
-        let sum = |of: &dyn Fn(usize) -> f32| -> [f32; 3] {
-            let mut sums = [0.0; 3];
-            for k in 0..3 {
-                let w = of(k) * q[k];
-                sums.iter_mut().zip([w, w * u[k], w * v[k]]).for_each(|(s, v)| *s += v);
-            }
-            sums
-        };
-        let whole = sum(&|k| x[next(k).0] * y[next(k).1] - x[next(k).1] * y[next(k).0])[0];
-        let right = sum(&|k| y[next(k).0] - y[next(k).1]);
-        let down = sum(&|k| x[next(k).1] - x[next(k).0]);
-        [right, down].map(|[w, wu, wv]| {
-            let per_px = SUB as f32 / whole;
-            DVec2::new(f64::from((wu - places.u[i] * w) * per_px), f64::from((wv - places.v[i] * w) * per_px))
-        })
+    /// Columns and rows on the ground, [`CELL`] steps to a cell.
+    #[inline(always)]
+    fn fixed(&self, places: &Places, terrain: &TerrainShade<'_>) -> [Whole; 2] {
+        let [mut columns, mut rows] = [[0; LANES]; 2];
+        let last = [terrain.hf.cols(), terrain.hf.rows()].map(|n| (n - 1) as i32 * CELL);
+        for i in 0..LANES {
+            let [c, r] = [self.node[0][i] * CELL, self.node[1][i] * CELL];
+            columns[i] = c.saturating_add((places.u[i] * CELL as f32) as i32).clamp(0, last[0]);
+            rows[i] = r.saturating_add((places.v[i] * CELL as f32) as i32).clamp(0, last[1]);
+        }
+        [columns, rows]
     }
 
     /// Lays pictures and areas over the lanes that they cover.
-    #[allow(clippy::too_many_arguments)]
+    /// * `at`: see [`Batch::fixed`].
+    #[inline(never)]
     fn cover(
         &self,
         shader: &Shader<'_>,
         terrain: &TerrainShade<'_>,
         places: &Places,
-        root: [&Lanes; 3],
-        direct: &Lanes,
-        sky: &Lanes,
-        color: &mut [Lanes; 3],
-        ids: &mut [u32; LANES],
+        at: &[Whole; 2],
+        samples: &Samples<'_>,
+        painted: &mut Painted,
     ) {
-        let [near, far] = terrain.footprints(shader, &self.depth);
-        for i in 0..self.len {
-            let [c, r] = self.node[i];
-            let g = DVec2::new(f64::from(c) + f64::from(places.u[i]), f64::from(r) + f64::from(places.v[i]));
-            let side = places.cells_per_px[i].clamp(near[i], far[i]).sqrt();
-            let lit = Lit { root: root.map(|v| v[i]), direct: direct[i], sky: sky[i] };
-            let spacing = terrain.hf.spacing();
-            let axes = self.axes(i, places).map(|v| v * DVec2::new(spacing.x, -spacing.y));
-            let print = Print::new(axes, f64::from(near[i].sqrt()) * terrain.pitch);
-            if let Some((c, id)) = terrain.covered(shader, g, f64::from(side), &print, &lit, self.pixel[i]) {
-                let c = shader.sky.through_air(c, self.depth[i]);
-                color.iter_mut().zip(c.to_array()).for_each(|(lanes, v)| lanes[i] = v);
-                if let Some(id) = id {
-                    ids[i] = id + 1;
-                }
+        let [near, far] = terrain.footprints(shader, &places.depth);
+        let making = terrain.making();
+        for (i, &k) in self.out[..self.len].iter().enumerate() {
+            let k = k as usize;
+            let [c, r] = [0, 1].map(|axis| f64::from(self.node[axis][i]));
+            let g = DVec2::new(c + f64::from(places.u[i]), r + f64::from(places.v[i]));
+            let square = places.cells_per_px[i].max(near[i]).min(far[i]);
+            let ground = || terrain.lit.sample([at[0][i], at[1][i]], super::lod(square), &making);
+            let print = || {
+                let axes =
+                    shader.blocks.find(samples.prim[k]).map(|f| Spot::new(&f, shader.lens, samples.at(k)).axes());
+                let spacing = terrain.hf.spacing() * DVec2::new(1.0, -1.0);
+                let axes = axes.map_or([DVec2::NAN; 2], |axes| axes.map(|v| v * spacing));
+                Print::new(axes, f64::from(near[i].sqrt()) * terrain.pitch)
+            };
+            let side = f64::from(square.sqrt());
+            if let Some((c, id)) = terrain.covered(shader, g, side, print, ground, pixel_of(samples.at(k))) {
+                let c = shader.sky.through_air(c, places.depth[i]);
+                painted.set(k, c, id.unwrap_or(self.layer as u32) + 1);
             }
         }
     }
@@ -214,7 +274,7 @@ impl Batch {
 
 impl TerrainShade<'_> {
     /// Squared sides, in cells, of the smallest and the largest square on the ground that a pixel can cover at a depth.
-    #[inline]
+    #[inline(always)]
     fn footprints(&self, shader: &Shader<'_>, depth: &Lanes) -> [Lanes; 2] {
         let (mut near, mut far) = ([0.0; LANES], [0.0; LANES]);
         let (constant, per_depth) = self.cells_per_depth(shader);
@@ -233,6 +293,7 @@ impl TerrainShade<'_> {
     }
 
     /// Levels of averages, 256 steps to a level. The triangle tells slant and bend, the depth keeps it sane.
+    #[inline(always)]
     fn lods(&self, shader: &Shader<'_>, depth: &Lanes, cells_per_px: &Lanes) -> [u32; LANES] {
         let [near, far] = self.footprints(shader, depth);
         let mut out = [0; LANES];
@@ -242,18 +303,17 @@ impl TerrainShade<'_> {
         out
     }
 
-    /// Colours of lit ground through the air.
-    fn colors(&self, shader: &Shader<'_>, root: &[Lanes; 3], direct: &Lanes, sky: &Lanes, depth: &Lanes) -> [Lanes; 3] {
-        let mut haze = [0.0; LANES];
-        for i in 0..LANES {
-            haze[i] = shader.sky.haze_at(depth[i]);
-        }
-        let (warm, cool, air) = (self.light.warm, self.light.cool, shader.sky.haze());
+    /// Square roots of the colours of lit ground through the air.
+    #[inline(always)]
+    fn colors(&self, shader: &Shader<'_>, halves: &[Halves; LANES], lods: &[u32; LANES], depth: &Lanes) -> [Lanes; 3] {
+        let air = shader.sky.haze();
         let mut out = [[0.0; LANES]; 3];
-        for (k, out) in out.iter_mut().enumerate() {
-            for i in 0..LANES {
-                let c = root[k][i] * root[k][i] * (warm[k] * direct[i] + cool[k] * sky[i]);
-                out[i] = c + haze[i] * (air[k] - c);
+        for i in 0..LANES {
+            let haze = shader.sky.haze_at(depth[i]);
+            let root = halves[i].between((lods[i] & 255) as i32 as f32 * (1.0 / 256.0));
+            for k in 0..3 {
+                let c = root[k] * root[k];
+                out[k][i] = (c + haze * (air[k] - c)).sqrt();
             }
         }
         out

@@ -13,16 +13,21 @@ static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
     })
 });
 
-/// sRGB value of the square of `i / 4095`.
-static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
-    (0..4096)
-        .map(|i| {
-            let l = (i as f32 / 4095.0).powi(2);
-            let s = if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
-            (s * 255.0 + 0.5) as u8
-        })
-        .collect()
+/// sRGB values by the square root of linear light.
+pub(crate) type Encoding = [u8; 4096];
+
+/// sRGB value of the square of `(i + 0.5) / 4096`.
+static ENCODED: LazyLock<Encoding> = LazyLock::new(|| {
+    std::array::from_fn(|i| {
+        let l = ((i as f32 + 0.5) / 4096.0).powi(2);
+        let s = if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
+        (s * 255.0 + 0.5) as u8
+    })
 });
+
+pub(crate) fn encoding() -> &'static Encoding {
+    &ENCODED
+}
 
 /// sRGB to linear light.
 pub(crate) fn linear(rgb: [u8; 3]) -> Rgb {
@@ -32,13 +37,18 @@ pub(crate) fn linear(rgb: [u8; 3]) -> Rgb {
 
 /// Linear light to sRGB.
 pub(crate) fn encode(c: Rgb) -> [u8; 3] {
-    let t = &*ENCODED;
-    c.to_array().map(|v| t[(v.clamp(0.0, 1.0).sqrt() * 4095.0 + 0.5) as usize])
+    Packed::new(c).encode(encoding())
 }
 
-/// Square roots of linear light in 8 bits, which interpolate nearly evenly to the eye.
-pub(crate) fn encode_root(c: Rgb) -> [u8; 3] {
-    c.to_array().map(|v| (v.clamp(0.0, 1.0).sqrt() * 255.0 + 0.5) as u8)
+/// The nearest of the whole numbers to 65535 times a value in 0..=1.
+#[inline(always)]
+pub(crate) fn sixteen_bits(v: f32) -> u16 {
+    let v = v * 65535.0;
+    // In this order NaN becomes 0.
+    let v = if v > 0.0 { v } else { 0.0 };
+    let v = if v < 65535.0 { v } else { 65535.0 };
+    // Adding 2^23 leaves the rounded integer in the low bits of the mantissa.
+    (v + 8_388_608.0).to_bits() as u16
 }
 
 /// Linear light kept in 16 bits per channel, by square root so that dark tones keep their steps.
@@ -47,13 +57,19 @@ pub(crate) struct Packed([u16; 3]);
 
 impl Packed {
     pub(crate) fn new(c: Rgb) -> Self {
-        Self(c.to_array().map(|v| (v.clamp(0.0, 1.0).sqrt() * 65535.0 + 0.5) as u16))
+        Self(c.to_array().map(|v| sixteen_bits(v.max(0.0).sqrt())))
+    }
+
+    /// From square roots of linear light.
+    #[inline(always)]
+    pub(crate) fn of_roots(root: [u16; 3]) -> Self {
+        Self(root)
     }
 
     /// sRGB, as [`encode`] gives it.
-    pub(crate) fn encode(self) -> [u8; 3] {
-        let t = &*ENCODED;
-        self.0.map(|v| t[(u32::from(v) * 4095 + 32_767) as usize / 65_535])
+    #[inline(always)]
+    pub(crate) fn encode(self, encoding: &Encoding) -> [u8; 3] {
+        self.0.map(|v| encoding[usize::from(v >> 4)])
     }
 
     pub(crate) fn rgb(self) -> Rgb {
@@ -77,7 +93,7 @@ mod tests {
         for v in 0..=255u8 {
             assert_eq!(encode(linear([v; 3])), [v; 3]);
             assert_eq!(encode(Packed::new(linear([v; 3])).rgb()), [v; 3]);
-            assert_eq!(Packed::new(linear([v; 3])).encode(), [v; 3]);
+            assert_eq!(Packed::new(linear([v; 3])).encode(encoding()), [v; 3]);
         }
     }
 }

@@ -1,33 +1,24 @@
-//! Ground with its light on it: colour and light of every node, made tile by tile where they are looked at.
+//! Ground with its light on it: made node by node, tile by tile, where it is looked at.
 //!
-//! Light is fixed to the map, so none of it depends on the view: what one frame makes serves the next. A node takes
-//! eight bytes, a pixel eight nodes, and their weighted sum is one pass of 16-bit integers.
+//! Light is fixed to the map, so none of it depends on the view: what one frame makes serves the next. Two pictures of the
+//! ground are kept: its lit colour, which most pixels take as it is, and colour and light apart, where something lies over
+//! the ground. A node takes eight bytes in each, and a pixel a weighted sum of four nodes in 16-bit integers.
 
-use super::color::{Rgb, encode_root};
+use super::color::Rgb;
 use super::ground::{Means, Surface};
 use super::palette::Tint;
 use super::relief::ReliefLight;
 use super::shadow::Shadows;
+use super::tiles::{self, Around, Node, STRIDE, Tile, Tiles};
 use glam::{Vec3A, Vec4};
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Red, green, blue (square roots of linear light), direct light, light from the sky; the rest is spare.
-type Node = [u8; 8];
-
-/// Cells along a side of a tile, a power of two; one more node along each side, so that no cell lies in two tiles.
-const TILE: usize = 64;
-const STRIDE: usize = TILE + 1;
 
 /// Amounts of light that the stored values end at.
 const MOST_DIRECT: f32 = 1.4;
 const MOST_SKY: f32 = 0.8;
-
-/// Bytes of tiles after which a frame starts anew: long flights over a huge ground must not collect all of it.
-const MOST_BYTES: usize = 192 << 20;
-
-/// Fixed-point steps of a cell.
-pub(crate) const CELL: i32 = 256;
+/// Square root of the brightest lit colour that is told from still brighter ones; 1 = white.
+const BRIGHTEST: f32 = 1.25;
+/// What a weighted sum gives for square root 1 of linear light.
+const ONE: f32 = 256.0 * 255.0 / BRIGHTEST;
 
 /// Everything that the tiles of a ground are made from.
 pub(crate) struct Making<'a> {
@@ -40,117 +31,167 @@ pub(crate) struct Making<'a> {
 }
 
 /// Colour and light at a place of the ground.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Lit {
     /// Square roots of linear light.
-    pub(crate) root: [f32; 3],
+    root: [f32; 3],
     /// Amounts of direct light and of light from the sky.
     pub(crate) direct: f32,
     pub(crate) sky: f32,
 }
 
-struct Level {
-    cols: usize,
-    rows: usize,
-    tiles_across: usize,
-    tiles: Vec<OnceLock<Box<[Node]>>>,
-}
-
-/// The tiles of a ground, see the module.
+/// The pictures of a ground, see the module.
 pub(crate) struct LitGround {
-    levels: Vec<Level>,
-    bytes: AtomicUsize,
+    /// Square roots of the lit colour of the level and of the next one, each with a spare byte.
+    colors: Tiles,
+    /// Square roots of the colour without light, direct light, light from the sky.
+    parts: Tiles,
 }
 
 impl LitGround {
     /// No tile made yet.
     pub(crate) fn new(cols: usize, rows: usize, top: usize) -> Self {
-        let level = |k: usize| {
-            let [cols, rows] = [cols, rows].map(|n| n.div_ceil(1 << k));
-            let [across, down] = [cols, rows].map(|n| n.div_ceil(TILE));
-            let tiles = (0..across * down).map(|_| OnceLock::new()).collect();
-            Level { cols, rows, tiles_across: across, tiles }
-        };
-        Self { levels: (0..=top).map(level).collect(), bytes: AtomicUsize::new(0) }
+        Self { colors: Tiles::new([cols, rows], top), parts: Tiles::new([cols, rows], top) }
     }
 
     /// Whether so much is kept that the next frame had better start anew.
     pub(crate) fn is_full(&self) -> bool {
-        self.bytes.load(Ordering::Relaxed) > MOST_BYTES
+        self.colors.is_full() || self.parts.is_full()
     }
 
-    /// Weighted sum of nodes around a place, over 2^lod cells; 256 times the stored values.
-    /// * `at`: column and row, [`CELL`] steps to a cell;
+    /// Square roots of the lit colour around a place, averaged over 2^k cells and over twice as many; [`ONE`] = 1.
+    /// * `at`: column and row, [`tiles::CELL`] steps to a cell.
+    #[inline(always)]
+    pub(crate) fn colors(&self, at: [i32; 2], k: usize, making: &Making<'_>) -> Halves {
+        let k = k.min(self.colors.top());
+        match self.colors.around(k, at, |k, tile| self.make_colors(k, tile, making)) {
+            Some(around) => mean(&around),
+            None => Halves::default(),
+        }
+    }
+
+    /// Square roots of the lit colour around a place.
     /// * `lod`: level of averages, 256 steps to a level.
-    #[inline]
-    pub(crate) fn sample(&self, at: [i32; 2], lod: u32, making: &Making<'_>) -> [u16; 8] {
-        let lod = lod.min((self.levels.len() as u32 - 1) << 8);
+    pub(crate) fn color(&self, at: [i32; 2], lod: u32, making: &Making<'_>) -> [f32; 3] {
+        self.colors(at, (lod >> 8) as usize, making).between((lod & 255) as f32 / 256.0)
+    }
+
+    /// Colour and light around a place, see [`LitGround::color`].
+    pub(crate) fn sample(&self, at: [i32; 2], lod: u32, making: &Making<'_>) -> Lit {
+        let lod = lod.min((self.parts.top() as u32) << 8);
         let (k, share) = ((lod >> 8) as usize, lod & 255);
         let mut sum = [0u16; 8];
-        self.add(k, at, 256 - share, making, &mut sum);
-        if share > 0 {
-            self.add(k + 1, at, share, making, &mut sum);
-        }
-        sum
-    }
-
-    #[inline]
-    fn add(&self, k: usize, at: [i32; 2], total: u32, making: &Making<'_>, sum: &mut [u16; 8]) {
-        let level = &self.levels[k];
-        // Node i of level k lies at (i + 0.5) 2^k - 0.5 of level 0.
-        let place = |x: i32, n: usize| {
-            let x = (((x + CELL / 2) >> k) - CELL / 2).clamp(0, (n as i32 - 1) * CELL) as u32;
-            ((x >> 8) as usize, x & 255)
-        };
-        let ((c, u), (r, v)) = (place(at[0], level.cols), place(at[1], level.rows));
-        let index = r / TILE * level.tiles_across + c / TILE;
-        let tile = match level.tiles[index].get() {
-            Some(tile) => tile,
-            None => self.make(k, index, making),
-        };
-        // Whole weights that sum up to `total`.
-        let (wu, wuv) = ((u * total) >> 8, (u * v * total) >> 16);
-        let wv = (v * total) >> 8;
-        let first = r % TILE * STRIDE + c % TILE;
-        let Some(nodes) = tile.get(first..first + STRIDE + 2) else { return };
-        accumulate(sum, nodes[0], total + wuv - wu - wv);
-        accumulate(sum, nodes[1], wu - wuv);
-        accumulate(sum, nodes[STRIDE], wv - wuv);
-        accumulate(sum, nodes[STRIDE + 1], wuv);
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn make(&self, k: usize, index: usize, making: &Making<'_>) -> &[Node] {
-        let level = &self.levels[k];
-        level.tiles[index].get_or_init(|| {
-            self.bytes.fetch_add(STRIDE * STRIDE * size_of::<Node>(), Ordering::Relaxed);
-            let (c0, r0) = (index % level.tiles_across * TILE, index / level.tiles_across * TILE);
-            let mut tile = Vec::with_capacity(STRIDE * STRIDE);
-            let mut row = Row::new(STRIDE.min(level.cols - c0));
-            for j in 0..STRIDE {
-                row.fill(making, k, (r0 + j).min(level.rows - 1), c0);
-                tile.extend((0..STRIDE).map(|i| row.lit[i.min(row.lit.len() - 1)]));
+        for (k, total) in [(k, 256 - share), (k + 1, share)] {
+            if total > 0
+                && let Some(around) = self.parts.around(k, at, |k, tile| self.make_parts(k, tile, making))
+            {
+                add(&around, total, &mut sum);
             }
-            tile.into_boxed_slice()
+        }
+        Lit::of(sum)
+    }
+
+    fn make_parts(&self, k: usize, tile: [usize; 2], making: &Making<'_>) -> Box<Tile> {
+        let [columns, rows] = self.parts.repeated(k, tile);
+        let mut row = Row::new(columns.first()..=columns.last());
+        let mut out = Vec::with_capacity(STRIDE * STRIDE);
+        for r in rows.all() {
+            row.fill(making, k, r);
+            out.extend(columns.all().map(|c| row.lit[c - row.first].node()));
+        }
+        tiles::boxed(out)
+    }
+
+    fn make_colors(&self, k: usize, tile: [usize; 2], making: &Making<'_>) -> Box<Tile> {
+        let [columns, rows] = self.colors.repeated(k, tile);
+        // The coarsest level goes on for ever.
+        let coarse = (k < self.colors.top()).then(|| {
+            let ends = [&columns, &rows].map(|axis| [axis.first(), axis.last()]);
+            Coarse::new(making, k + 1, self.colors.nodes(k + 1), ends)
+        });
+        let mut row = Row::new(columns.first()..=columns.last());
+        let mut out = Vec::with_capacity(STRIDE * STRIDE);
+        for r in rows.all() {
+            row.fill(making, k, r);
+            out.extend(columns.all().map(|c| {
+                let here = row.lit[c - row.first].root(making.light);
+                let next = coarse.as_ref().map_or(here, |coarse| coarse.at([c, r]));
+                let ([r, g, b], [next_r, next_g, next_b]) = (bytes(here), bytes(next));
+                [r, g, b, 0, next_r, next_g, next_b, 0]
+            }));
+        }
+        tiles::boxed(out)
+    }
+}
+
+/// Weighted mean of both colours of four nodes, four channels in one product: no channel carries into the next, for
+/// the weights sum up to 256.
+#[inline(always)]
+fn mean(around: &Around<'_>) -> Halves {
+    const EVEN: u64 = 0x00ff_00ff_00ff_00ff;
+    let (u, v) = (u64::from(around.east_share), u64::from(around.south_share));
+    let both = (u * v) >> 8;
+    let nodes = [around.north[0], around.north[1], around.south[0], around.south[1]].map(u64::from_le_bytes);
+    let (mut even, mut odd) = (0, 0);
+    for (node, weight) in nodes.into_iter().zip([256 + both - u - v, u - both, v - both, both]) {
+        even += (node & EVEN) * weight;
+        odd += (node >> 8 & EVEN) * weight;
+    }
+    Halves { even, odd }
+}
+
+/// Square roots of two colours in 16-bit channels: red, blue of the finer level, then of the coarser; green likewise, each
+/// followed by a spare channel.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Halves {
+    even: u64,
+    odd: u64,
+}
+
+impl Halves {
+    /// Square roots of linear red, green, blue, a share of the way to the coarser level.
+    #[inline(always)]
+    pub(crate) fn between(self, share: f32) -> [f32; 3] {
+        let channel = |bits: u64, k: u32| (bits >> (16 * k)) as u32 & 0xffff;
+        [(self.even, 0), (self.odd, 0), (self.even, 1)].map(|(bits, k)| {
+            let (fine, coarse) = (channel(bits, k) as i32 as f32, channel(bits, k + 2) as i32 as f32);
+            (fine + share * (coarse - fine)) * (1.0 / ONE)
         })
     }
 }
 
-#[inline]
-fn accumulate(sum: &mut [u16; 8], node: Node, weight: u32) {
-    for (s, v) in sum.iter_mut().zip(node) {
-        *s = s.wrapping_add(u16::from(v).wrapping_mul(weight as u16));
+/// Adds the values of four nodes, weighted with whole numbers that sum up to `total`.
+fn add(around: &Around<'_>, total: u32, sum: &mut [u16; 8]) {
+    let (u, v) = (around.east_share, around.south_share);
+    let (east, south, both) = ((u * total) >> 8, (v * total) >> 8, (u * v * total) >> 16);
+    let weights = [total + both - east - south, east - both, south - both, both];
+    for (node, weight) in around.north.iter().chain(around.south).zip(weights) {
+        for (s, v) in sum.iter_mut().zip(node) {
+            *s += u16::from(*v) * weight as u16;
+        }
     }
 }
 
+/// Square roots of lit colours in 8 bits.
+fn bytes(root: Vec3A) -> [u8; 3] {
+    (root / BRIGHTEST).to_array().map(byte)
+}
+
+fn byte(v: f32) -> u8 {
+    (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
+}
+
 impl Lit {
-    /// From a weighted sum of nodes.
-    #[inline]
-    pub(crate) fn of(sum: [u16; 8]) -> Self {
+    /// From a weighted sum of nodes, 256 times the stored values.
+    fn of(sum: [u16; 8]) -> Self {
         const ONE: f32 = 256.0 * 255.0;
         let [r, g, b, direct, sky, ..] = sum.map(f32::from);
         Self { root: [r / ONE, g / ONE, b / ONE], direct: direct * (MOST_DIRECT / ONE), sky: sky * (MOST_SKY / ONE) }
+    }
+
+    fn node(&self) -> Node {
+        let [r, g, b] = self.root.map(byte);
+        [r, g, b, byte(self.direct / MOST_DIRECT), byte(self.sky / MOST_SKY), 0, 0, 0]
     }
 
     /// Linear colour of the ground without light.
@@ -158,22 +199,31 @@ impl Lit {
         let root = Vec3A::from_array(self.root);
         root * root
     }
+
+    /// Square roots of the lit colour.
+    fn root(&self, light: &ReliefLight) -> Vec3A {
+        let c = self.albedo() * (light.warm * self.direct + light.cool * self.sky);
+        Vec3A::from_array(c.to_array().map(f32::sqrt))
+    }
 }
 
-/// A row of nodes in the making.
+/// A row of nodes in the making, from column `first` on.
 struct Row {
+    first: usize,
     shape: Vec<Vec4>,
     shares: Vec<f32>,
-    lit: Vec<Node>,
+    lit: Vec<Lit>,
 }
 
 impl Row {
-    fn new(n: usize) -> Self {
-        Self { shape: vec![Vec4::ZERO; n], shares: vec![1.0; n], lit: vec![Node::default(); n] }
+    /// Room for columns in rising order.
+    fn new(columns: std::ops::RangeInclusive<usize>) -> Self {
+        let (first, n) = (*columns.start(), columns.count());
+        Self { first, shape: vec![Vec4::ZERO; n], shares: vec![1.0; n], lit: vec![Lit::default(); n] }
     }
 
-    fn fill(&mut self, m: &Making<'_>, k: usize, row: usize, first: usize) {
-        let stored = k >= m.means.first;
+    fn fill(&mut self, m: &Making<'_>, k: usize, row: usize) {
+        let (stored, first) = (k >= m.means.first, self.first);
         if stored {
             for (i, n) in self.shape.iter_mut().enumerate() {
                 *n = m.means.node(k, first + i, row);
@@ -195,17 +245,65 @@ impl Row {
     }
 }
 
-fn lit_node(m: &Making<'_>, shape: Vec4, open: f32, lit: f32) -> Node {
+fn lit_node(m: &Making<'_>, shape: Vec4, open: f32, lit: f32) -> Lit {
     let steep = (shape.x * shape.x + shape.y * shape.y).sqrt();
-    let [r, g, b] = encode_root(m.tint.color(shape.z, steep));
+    let root = m.tint.color(shape.z, steep).to_array().map(f32::sqrt);
     let n = Vec3A::new(-shape.x * m.exaggeration, -shape.y * m.exaggeration, 1.0).normalize();
     let [direct, sky] = m.light.parts(n, open, lit);
-    let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
-    [r, g, b, byte(direct / MOST_DIRECT), byte(sky / MOST_SKY), 0, 0, 0]
+    Lit { root, direct, sky }
+}
+
+/// Lit colours of a level around a tile of the next finer one.
+struct Coarse {
+    first: [usize; 2],
+    cols: usize,
+    roots: Vec<Vec3A>,
+    /// Columns and rows of the level.
+    nodes: [usize; 2],
+}
+
+impl Coarse {
+    /// * `k`: the level;
+    /// * `fine`: first and last column and row of the finer level.
+    fn new(m: &Making<'_>, k: usize, nodes: [usize; 2], fine: [[usize; 2]; 2]) -> Self {
+        let [columns, rows] = [0, 1].map(|axis| {
+            let [first, last] = fine[axis].map(|i| i / 2);
+            first.saturating_sub(1)..=(last + 1).min(nodes[axis] - 1)
+        });
+        let first = [*columns.start(), *rows.start()];
+        let mut row = Row::new(columns);
+        let mut roots = Vec::new();
+        for r in rows {
+            row.fill(m, k, r);
+            roots.extend(row.lit.iter().map(|lit| lit.root(m.light)));
+        }
+        Self { first, cols: row.lit.len(), roots, nodes }
+    }
+
+    /// At a node of the finer level. Between such nodes, a line errs from one between coarse nodes by as much at the coarse
+    /// nodes as halfway to the next fine ones, and by less than anywhere else.
+    fn at(&self, node: [usize; 2]) -> Vec3A {
+        let [columns, rows] = [0, 1].map(|axis| taps(node[axis], self.nodes[axis]));
+        let mut sum = Vec3A::ZERO;
+        for (r, v) in rows {
+            for (c, u) in columns {
+                sum += u * v * self.roots[(r - self.first[1]) * self.cols + c - self.first[0]];
+            }
+        }
+        sum
+    }
+}
+
+/// Nodes of the next coarser level, of `n`, around a node, and their weights.
+fn taps(i: usize, n: usize) -> [(usize, f32); 3] {
+    let (before, here, after) = ((i / 2).saturating_sub(1), i / 2, (i / 2 + 1).min(n - 1));
+    let (near, far) = if i.is_multiple_of(2) { (before, after) } else { (after, before) };
+    [(near, 0.1875), (here, 0.875), (far, -0.0625)]
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::tiles::CELL;
     use super::*;
     use belvedere_core::DVec2;
     use belvedere_scene::{Heightfield, Light, NodeState, Palette, Relief};
@@ -230,6 +328,11 @@ mod tests {
         test(&LitGround::new(hf.cols(), hf.rows(), means.top()), &making);
     }
 
+    /// Linear colour from its square roots.
+    fn linear(roots: [f32; 3]) -> Rgb {
+        Rgb::from_array(roots.map(|v| v * v))
+    }
+
     #[test]
     fn interpolated_light_is_that_of_the_interpolated_ground() {
         let hf = hills(150, 131);
@@ -240,17 +343,20 @@ mod tests {
                 m.surface.row(r, 0, &mut row);
                 for c in 1..148 {
                     for share in [0i32, 64, 200] {
-                        let got = Lit::of(ground.sample([c * CELL + share, r as i32 * CELL], 0, m));
+                        let at = [c * CELL + share, r as i32 * CELL];
+                        let parts = ground.sample(at, 0, m);
                         let shape = row[c as usize].lerp(row[c as usize + 1], share as f32 / 256.0);
                         let near = m.means.at(1, c as f32 + share as f32 / 256.0, r as f32);
                         let steep = shape.truncate().truncate().length();
                         let normal = Vec3A::new(-shape.x, -shape.y, 1.0).normalize();
                         let light = m.light.at(normal, m.means.openness(shape.z, near));
                         let want = m.tint.color(shape.z, steep) * light;
-                        let has = got.albedo() * (m.light.warm * got.direct + m.light.cool * got.sky);
+                        let apart = parts.albedo() * (m.light.warm * parts.direct + m.light.cool * parts.sky);
                         let steps = |c: Rgb| c.max(Rgb::ZERO).to_array().map(|v| 255.0 * v.sqrt());
-                        for (a, b) in steps(want).into_iter().zip(steps(has)) {
-                            (worst, sum, n) = (worst.max((a - b).abs()), sum + (a - b).abs(), n + 1.0);
+                        for has in [apart, linear(ground.color(at, 0, m))] {
+                            for (a, b) in steps(want).into_iter().zip(steps(has)) {
+                                (worst, sum, n) = (worst.max((a - b).abs()), sum + (a - b).abs(), n + 1.0);
+                            }
                         }
                     }
                 }
@@ -268,10 +374,15 @@ mod tests {
         let making =
             Making { surface: &surface, means: &means, shadows: None, tint: &tint, light: &light, exaggeration: 1.0 };
         let ground = LitGround::new(70, 70, means.top());
-        let want = ground.sample([0, 0], 0, &making);
+        let (want, color) = (ground.sample([0, 0], 0, &making), ground.color([0, 0], 0, &making));
         for i in 0..20_000i32 {
-            let at = [i * 7919 % (80 * CELL) - 5 * CELL, i * 104_729 % (80 * CELL) - 5 * CELL];
-            assert_eq!(ground.sample(at, (i * 37 % 2300) as u32, &making), want, "{at:?}");
+            let at = [i * 7919 % (69 * CELL + 1), i * 104_729 % (69 * CELL + 1)];
+            let lod = (i * 37 % 2300) as u32;
+            assert_eq!(ground.sample(at, lod, &making), want, "{at:?}");
+            assert_eq!(ground.color(at, lod, &making), color, "{at:?}");
+        }
+        for at in [[i32::MAX; 2], [-5 * CELL, 0], [0, 900 * CELL], [i32::MIN; 2]] {
+            assert_eq!(ground.color(at, 0, &making), [0.0; 3], "off the ground: {at:?}");
         }
     }
 
@@ -281,19 +392,38 @@ mod tests {
         with_making(&hf, |ground, m| {
             // A place at the middle of a node of level 5, against the mean over its 32 x 32 nodes.
             let (c, r, side) = (96, 64, 32i32);
-            let mut mean = [0.0f32; 5];
+            let mut mean = [0.0f32; 8];
+            let values = |lit: Lit, color: Rgb| {
+                let [[r, g, b], color] = [lit.root, color.to_array().map(f32::sqrt)];
+                [r, g, b, lit.direct, lit.sky, color[0], color[1], color[2]]
+            };
             for i in 0..side * side {
-                let sum = ground.sample([(c + i % side) * CELL, (r + i / side) * CELL], 0, m);
-                let lit = Lit::of(sum);
-                for (s, v) in mean.iter_mut().zip([lit.root[0], lit.root[1], lit.root[2], lit.direct, lit.sky]) {
-                    *s += v / (side * side) as f32;
-                }
+                let at = [(c + i % side) * CELL, (r + i / side) * CELL];
+                let now = values(ground.sample(at, 0, m), linear(ground.color(at, 0, m)));
+                mean.iter_mut().zip(now).for_each(|(s, v)| *s += v / (side * side) as f32);
             }
             let at = [c * CELL + (side - 1) * CELL / 2, r * CELL + (side - 1) * CELL / 2];
-            let lit = Lit::of(ground.sample(at, 5 << 8, m));
-            for (a, b) in mean.into_iter().zip([lit.root[0], lit.root[1], lit.root[2], lit.direct, lit.sky]) {
-                assert!((a - b).abs() < 0.1, "{mean:?} {lit:?}");
+            let got = values(ground.sample(at, 5 << 8, m), linear(ground.color(at, 5 << 8, m)));
+            assert!(mean.iter().zip(got).all(|(a, b)| (a - b).abs() < 0.1), "{mean:?} {got:?}");
+        });
+    }
+
+    #[test]
+    fn levels_pass_into_each_other() {
+        let hf = hills(150, 131);
+        with_making(&hf, |ground, m| {
+            let (mut worst, mut sum, mut n) = (0.0f32, 0.0, 0.0);
+            for i in 0..20_000i32 {
+                let at = [i * 7919 % (149 * CELL), i * 104_729 % (130 * CELL)];
+                for k in 1..4 {
+                    let steps = |lod: u32| linear(ground.color(at, lod, m)).to_array().map(|v| 255.0 * v.sqrt());
+                    for (a, b) in steps((k << 8) - 1).into_iter().zip(steps(k << 8)) {
+                        (worst, sum, n) = (worst.max((a - b).abs()), sum + (a - b).abs(), n + 1.0);
+                    }
+                }
             }
+            // What bends sharply at a node of the coarser level lies between nodes of the finer one.
+            assert!(worst < 20.0 && sum / n < 1.6, "{worst} steps at most, {} on average", sum / n);
         });
     }
 }

@@ -7,26 +7,29 @@ mod drape;
 mod ground;
 mod lit;
 mod mesh;
+mod paint;
 mod palette;
 mod print;
 mod relief;
 mod seen;
 mod shadow;
 mod sky;
+mod spot;
 mod terrain;
 mod texture;
+mod tiles;
 
+use crate::band::SKY;
 use crate::blocks::{BOX_TRIANGLES, Block, Blocks, Found, SIDE};
 use crate::grid::CELL_TRIANGLES;
 use crate::lens::{Lens, SUB};
 use crate::polish::Polish;
-use crate::raster::SKY;
 use area::AreaMap;
-use batch::Batch;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{BoxLayer, BoxShape, Heightfield, LayerKind, Relief, RenderJob};
 use color::{Rgb, linear, smoothstep};
 use glam::Vec3A;
+pub(crate) use paint::{Painted, Samples};
 use relief::ReliefLight;
 use sky::Sky;
 use terrain::TerrainShade;
@@ -49,21 +52,11 @@ enum LayerShade<'a> {
     Other,
 }
 
-/// A sample of the picture: what was hit, its nearness, and its place on the image in fixed-point steps.
+/// A sample of the picture: what was hit, and its place on the image in fixed-point steps.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sample {
     pub(crate) prim: u32,
-    pub(crate) q: f32,
     pub(crate) at: [i32; 2],
-}
-
-/// Colour and identity of a sample.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Painted {
-    /// Linear.
-    pub(crate) color: Rgb,
-    /// 0 = sky, else 1 + layer.
-    pub(crate) id: u32,
 }
 
 /// Colour, identity and place of a sample.
@@ -105,6 +98,12 @@ impl<'a> Shader<'a> {
         }
     }
 
+    /// Whether the only layer with surfaces is terrain.
+    #[inline(always)]
+    pub(crate) fn only_terrain(&self) -> bool {
+        self.only_terrain
+    }
+
     /// Whether both primitives (not sky) belong to one terrain layer, whose colours change smoothly.
     #[inline]
     pub(crate) fn is_terrain(&self, a: u32, b: u32) -> bool {
@@ -126,35 +125,6 @@ impl<'a> Shader<'a> {
     ) -> Option<(DVec3, f32)> {
         let found = if prim == SKY { None } else { self.blocks.find(prim) };
         polish.place(&found?, near, DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5))
-    }
-
-    /// Colours of samples, in their order.
-    pub(crate) fn paint(&self, samples: impl Iterator<Item = Sample>, painted: &mut [Painted]) {
-        let mut batch = Batch::new();
-        for (i, Sample { prim, q, at }) in samples.enumerate().take(painted.len()) {
-            let found = if prim == SKY { None } else { self.blocks.find(prim) };
-            let Some(found) = found else {
-                painted[i] = Painted { color: self.sky.at(pixel_of(at)), id: 0 };
-                continue;
-            };
-            let depth = self.lens.depth_of(q);
-            match &self.layers[found.block.layer as usize] {
-                LayerShade::Terrain(_) => batch.push(self, &found, at, depth, i, painted),
-                LayerShade::Boxes(b, light) => {
-                    let hit = Hit::new(&found, self.lens, at);
-                    let (shape, world, n) = hit.on_box(&found, b);
-                    let color = box_color(shape, light, n, world, self.lens.footprint(f64::from(depth)));
-                    let color = self.sky.through_air(color, depth);
-                    painted[i] = Painted { color, id: found.block.layer + 1 };
-                }
-                LayerShade::Mesh(m) => {
-                    let (color, _) = m.shade(&found, Hit::new(&found, self.lens, at).weights);
-                    painted[i] = Painted { color: self.sky.through_air(color, depth), id: found.block.layer + 1 };
-                }
-                LayerShade::Other => painted[i] = Painted { color: Rgb::ZERO, id: found.block.layer + 1 },
-            }
-        }
-        batch.flush(self, painted);
     }
 
     /// True position of what a sample sees, scene coordinates; NaN in the sky.

@@ -1,6 +1,7 @@
 //! Sky and haze.
 
 use super::color::{Rgb, linear, smoothstep};
+use crate::lens::SUB;
 use belvedere_core::{Aabb, DVec3, Pinhole};
 
 /// Thresholds of ordered dithering, 8 x 8 (Bayer 1973), each 0..64 once.
@@ -15,17 +16,33 @@ const BAYER: [[u8; 8]; 8] = [
     [63, 31, 55, 23, 61, 29, 53, 21],
 ];
 
+/// What dithering adds to square roots of linear light, by row and column.
+const THRESHOLDS: [[f32; 8]; 8] = {
+    let mut out = [[0.0; 8]; 8];
+    let mut i = 0;
+    while i < 64 {
+        out[i / 8][i % 8] = ((BAYER[i / 8][i % 8] as f32 + 0.5) / 64.0 - 0.5) / 255.0;
+        i += 1;
+    }
+    out
+};
+
+/// Samples that are coloured together.
+const LANES: usize = 32;
+
 /// Largest share of a colour that haze takes.
 const THICKEST: f32 = 0.62;
 
 /// Steps of the table of sky colours per unit of the sine of the elevation.
 const STEPS: f32 = 512.0;
+/// Last place in it.
+const MOST: f32 = 2.0 * STEPS - 0.01;
 
 /// Colours of the air.
 #[derive(Debug)]
 pub(crate) struct Sky {
-    /// Square roots of linear colours, by the sine of the elevation from -1 to 1.
-    roots: Vec<Rgb>,
+    /// Square roots of linear colours, by the sine of the elevation from -1 to 1, and how they change to the next.
+    steps: Box<[[[f32; 4]; 2]; 2 * STEPS as usize]>,
     haze: Rgb,
     /// Upward parts of the ray of a pixel: sine = (a + b x + c y) / |(1, d (x - cx), d (y - cy))|.
     up: [f32; 3],
@@ -49,7 +66,7 @@ impl Sky {
         let (center, scale) = (pinhole.center_px(), pinhole.scale_px());
         let per_px = if pinhole.is_orthographic() { 0.0 } else { 1.0 / scale };
         Self {
-            roots: (0..=2 * STEPS as usize).map(|i| roots(towards(i as f32 / STEPS - 1.0))).collect(),
+            steps: steps(),
             haze: linear([186, 205, 224]),
             up: [pinhole.forward.z, pinhole.right.z, pinhole.down.z].map(|v| v as f32),
             center: [center.x as f32, center.y as f32],
@@ -59,7 +76,7 @@ impl Sky {
     }
 
     /// Sine of the elevation that the straight ray of a pixel looks at.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn sine(&self, [x, y]: [f32; 2]) -> f32 {
         let (x, y) = ((x - self.center[0]) * self.per_px, (y - self.center[1]) * self.per_px);
         (self.up[0] + self.up[1] * x + self.up[2] * y) / (1.0 + x * x + y * y).sqrt()
@@ -69,10 +86,40 @@ impl Sky {
     #[inline]
     pub(crate) fn at(&self, pixel: [f32; 2]) -> Rgb {
         let [x, y] = pixel.map(|v| v.max(0.0) as usize % 8);
-        let threshold = (f32::from(BAYER[y][x]) + 0.5) / 64.0 - 0.5;
         // Square roots of linear light are nearly even in 8-bit steps.
-        let root = self.root(self.sine(pixel)) + Rgb::splat(threshold / 255.0);
+        let root = self.root(self.sine(pixel)) + Rgb::splat(THRESHOLDS[y][x]);
         root * root
+    }
+
+    /// Square roots of [`Sky::at`] for many places, fixed-point steps.
+    #[inline(always)]
+    pub(crate) fn paint(&self, x: &[i32], y: &[i32], [red, green, blue]: [&mut [f32]; 3]) {
+        debug_assert!(x.len() == y.len() && x.len() == red.len());
+        let chunks = red.chunks_mut(LANES).zip(green.chunks_mut(LANES)).zip(blue.chunks_mut(LANES));
+        for ((x, y), ((red, green), blue)) in x.chunks(LANES).zip(y.chunks(LANES)).zip(chunks) {
+            let (mut at, mut threshold, mut root) = ([0.0f32; LANES], [0.0; LANES], [[0.0f32; 4]; LANES]);
+            let (mut px, mut py) = ([0; LANES], [0; LANES]);
+            px[..x.len()].copy_from_slice(x);
+            py[..y.len()].copy_from_slice(y);
+            for i in 0..LANES {
+                let pixel = [px[i] as f32 * (1.0 / SUB as f32), py[i] as f32 * (1.0 / SUB as f32)];
+                let here = (self.sine(pixel) + 1.0) * STEPS;
+                let here = if here > 0.0 { here } else { 0.0 };
+                at[i] = if here < MOST { here } else { MOST };
+            }
+            for i in 0..LANES {
+                threshold[i] = THRESHOLDS[(py[i] >> 8) as usize & 7][(px[i] >> 8) as usize & 7];
+                let below = at[i] as i32 as usize;
+                let (share, [low, change]) =
+                    (at[i] - below as i32 as f32, self.steps[below & (2 * STEPS as usize - 1)]);
+                root[i] = std::array::from_fn(|k| low[k] + share * change[k]);
+            }
+            for (k, out) in [red, green, blue].into_iter().enumerate() {
+                for (i, out) in out.iter_mut().enumerate() {
+                    *out = root[i][k] + threshold[i];
+                }
+            }
+        }
     }
 
     /// Sky at an elevation, given its sine.
@@ -83,13 +130,13 @@ impl Sky {
 
     #[inline]
     fn root(&self, sine: f32) -> Rgb {
-        let at = ((sine + 1.0) * STEPS).clamp(0.0, 2.0 * STEPS - 0.01);
-        let (i, share) = (at as usize, at.fract());
-        self.roots[i].lerp(self.roots[i + 1], share)
+        let at = ((sine + 1.0) * STEPS).clamp(0.0, MOST);
+        let [low, change] = self.steps[at as usize].map(|[r, g, b, _]| Rgb::new(r, g, b));
+        low + at.fract() * change
     }
 
     /// Share of a colour that haze takes at `depth`: full contrast over the nearer part of the scene, then slowly paler.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn haze_at(&self, depth: f32) -> f32 {
         let [near, far] = self.depths;
         let t = (depth - near) / (far - near).max(1e-6);
@@ -106,6 +153,15 @@ impl Sky {
     pub(crate) fn through_air(&self, color: Rgb, depth: f32) -> Rgb {
         color.lerp(self.haze, self.haze_at(depth))
     }
+}
+
+fn steps() -> Box<[[[f32; 4]; 2]; 2 * STEPS as usize]> {
+    let at = |i: usize| roots(towards(i as f32 / STEPS - 1.0));
+    let mut next = at(0);
+    Box::new(std::array::from_fn(|i| {
+        let here = std::mem::replace(&mut next, at(i + 1));
+        [here, next - here].map(|v| [v.x, v.y, v.z, 0.0])
+    }))
 }
 
 fn roots(c: Rgb) -> Rgb {
@@ -143,6 +199,10 @@ mod tests {
             assert!((f64::from(sky.sine(pixel)) - want).abs() < 1e-6);
             let step = (roots(sky.at(pixel)) - roots(towards(want as f32))).abs().max_element() * 255.0;
             assert!(step < 0.8, "{step} steps");
+            let (x, y) = ([pixel[0] as i32 * 256 + 128], [pixel[1] as i32 * 256 + 128]);
+            let ([mut r], [mut g], [mut b]) = ([0.0], [0.0], [0.0]);
+            sky.paint(&x, &y, [&mut r, &mut g, &mut b].map(std::slice::from_mut));
+            assert!((Rgb::new(r * r, g * g, b * b) - sky.at(pixel)).abs().max_element() < 1e-5);
         }
     }
 }

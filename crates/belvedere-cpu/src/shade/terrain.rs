@@ -4,12 +4,13 @@ use super::area::AreaMap;
 use super::color::{Rgb, linear, smoothstep};
 use super::drape::DrapeMap;
 use super::ground::{Means, Surface};
-use super::lit::{CELL, Lit, LitGround, Making};
+use super::lit::{Lit, LitGround, Making};
 use super::palette::Tint;
 use super::print::Print;
 use super::relief::ReliefLight;
 use super::shadow::Shadows;
 use super::texture::stipple;
+use super::tiles::CELL;
 use super::{Shader, lod};
 use belvedere_core::{DVec2, DVec3, Stage};
 use belvedere_scene::{AreaSurface, Heightfield, Light, Palette, Relief, RenderJob, Shading, TerrainLayer};
@@ -117,11 +118,16 @@ impl<'a> TerrainShade<'a> {
     ) -> (Rgb, Option<u32>) {
         let g = self.hf.grid_from_scene(xy);
         let side = fp / self.pitch;
-        let at = (g * f64::from(CELL)).as_ivec2();
-        let lit = Lit::of(self.lit.sample([at.x, at.y], lod((side * side) as f32), &self.making()));
-        let print = Print::new(axes, shader.lens.footprint(depth));
-        let covered = self.covered(shader, g, side, &print, &lit, pixel.as_vec2().to_array());
-        covered.unwrap_or_else(|| (lit.albedo() * self.light_of(&lit), None))
+        let last = DVec2::new((self.hf.cols() - 1) as f64, (self.hf.rows() - 1) as f64);
+        let at = (g.clamp(DVec2::ZERO, last) * f64::from(CELL)).as_ivec2().to_array();
+        let lod = lod((side * side) as f32);
+        let making = self.making();
+        let print = || Print::new(axes, shader.lens.footprint(depth));
+        let ground = || self.lit.sample(at, lod, &making);
+        self.covered(shader, g, side, print, ground, pixel.as_vec2().to_array()).unwrap_or_else(|| {
+            let root = Rgb::from_array(self.lit.color(at, lod, &making));
+            (root * root, None)
+        })
     }
 
     fn light_of(&self, lit: &Lit) -> Rgb {
@@ -131,41 +137,46 @@ impl<'a> TerrainShade<'a> {
     /// Colour and area where a picture or an area covers the ground; `None` where nothing does.
     /// * `g`: column and row;
     /// * `cells`: side of the square that the pixel covers, cells;
-    /// * `print`: the patch itself;
-    /// * `lit`: the ground there.
+    /// * `print`: tells the patch itself;
+    /// * `ground`: tells the ground there.
     pub(super) fn covered(
         &self,
         shader: &Shader<'_>,
         g: DVec2,
         cells: f64,
-        print: &Print,
-        lit: &Lit,
+        print: impl FnOnce() -> Print,
+        ground: impl FnOnce() -> Lit,
         pixel: [f32; 2],
     ) -> Option<(Rgb, Option<u32>)> {
         let spacing = self.hf.spacing();
         let (xy, fp) = (self.hf.north_west() + DVec2::new(g.x, -g.y) * spacing, cells * self.pitch);
+        let areas = shader.areas.iter().map(|a| (a, a.depth_inside(xy) / fp));
+        let areas: Vec<_> = areas.filter(|(_, inside)| *inside > -0.5).collect();
+        if self.drapes.is_empty() && areas.is_empty() {
+            return None;
+        }
+        let print = print();
+        let drapes = self.drapes.iter().map(|d| d.at(xy, &print)).filter(|(_, alpha)| *alpha > 0.0);
+        let drapes: Vec<_> = drapes.collect();
+        if drapes.is_empty() && areas.is_empty() {
+            return None;
+        }
+        let lit = ground();
         let mut albedo = lit.albedo();
         let mut draped = 0.0f32;
-        for d in &self.drapes {
-            let (c, a) = d.at(xy, print);
-            albedo = albedo.lerp(c, a);
-            draped = draped.max(a);
+        for (color, alpha) in drapes {
+            albedo = albedo.lerp(color, alpha);
+            draped = draped.max(alpha);
         }
         // A photograph has its own light: model it only half.
-        let mut light = self.light_of(lit).lerp(Rgb::splat(0.95), 0.5 * draped);
-        let (mut id, mut water, mut touched) = (None, 0.0f32, draped > 0.0);
-        for a in &shader.areas {
-            let inside = a.depth_inside(xy) / fp;
-            let cover = (0.5 + inside).clamp(0.0, 1.0) as f32;
-            if cover <= 0.0 {
-                continue;
-            }
-            touched = true;
+        let mut light = self.light_of(&lit).lerp(Rgb::splat(0.95), 0.5 * draped);
+        let (mut id, mut water) = (None, 0.0f32);
+        for (a, inside) in areas {
             if inside >= 0.0 {
                 id = Some(a.layer);
             }
-            let share = cover * a.alpha;
-            albedo = albedo.lerp(fill(a, xy, inside as f32, print), share);
+            let share = (0.5 + inside).clamp(0.0, 1.0) as f32 * a.alpha;
+            albedo = albedo.lerp(fill(a, xy, inside as f32, &print), share);
             match a.surface {
                 AreaSurface::Water => water += share * (1.0 - water),
                 AreaSurface::Glacier => {
@@ -175,9 +186,6 @@ impl<'a> TerrainShade<'a> {
                 }
                 _ => water *= 1.0 - share,
             }
-        }
-        if !touched {
-            return None;
         }
         if water > 0.0 {
             let down = -shader.sky.sine(pixel);

@@ -1,0 +1,163 @@
+//! What the samples of a band of image rows see.
+
+use crate::lens::SUB;
+
+/// Samples that may be written past the last one of a row.
+pub(crate) const SLACK: usize = 8;
+
+/// No surface.
+pub(crate) const SKY: u32 = u32::MAX;
+
+/// Sample positions inside a pixel, in 1/256 pixel. The first is the centre; the rest carry colour coverage.
+pub(crate) fn sample_offsets(samples: u32) -> Vec<[i32; 2]> {
+    let centre = [SUB / 2, SUB / 2];
+    // Rotated grids: no two samples share a row or a column. Steps of 1/16 pixel from the centre.
+    let pattern: &[[i32; 2]] = match samples {
+        4 => &[[-2, -6], [6, -2], [-6, 2], [2, 6]],
+        16 => &[
+            [1, 1],
+            [-1, -3],
+            [-3, 2],
+            [4, -1],
+            [-5, -2],
+            [2, 5],
+            [5, 3],
+            [3, -5],
+            [-2, 6],
+            [0, -7],
+            [-4, -6],
+            [-6, 4],
+            [-8, 0],
+            [7, -4],
+            [6, 7],
+            [-7, -8],
+        ],
+        _ => &[],
+    };
+    let step = SUB / 16;
+    std::iter::once(centre).chain(pattern.iter().map(|[x, y]| [centre[0] + step * x, centre[1] + step * y])).collect()
+}
+
+/// Nearness and primitive of every sample of the rows `y0..y1`.
+///
+/// The nearer surface wins; of two equally near ones that with the smaller number. So the order of drawing does not matter.
+#[derive(Debug, Default)]
+pub(crate) struct Band {
+    pub(crate) y0: i32,
+    pub(crate) y1: i32,
+    pub(crate) width: i32,
+    pub(crate) offsets: Vec<[i32; 2]>,
+    /// Smallest and largest offset along x and y.
+    reach: [[i32; 2]; 2],
+    /// Larger = nearer, planes by sample.
+    pub(crate) q: Vec<f32>,
+    pub(crate) prim: Vec<u32>,
+    /// Samples from one row to the next: a few more than there are pixels, so that whole lanes fit.
+    pub(crate) stride: usize,
+    tiles: Tiles,
+    /// Fragments inside a triangle, for tests of coverage.
+    #[cfg(test)]
+    pub(crate) hits: Vec<u32>,
+}
+
+impl Band {
+    #[cfg(test)]
+    pub(crate) fn new(y0: i32, y1: i32, width: i32, offsets: Vec<[i32; 2]>) -> Self {
+        let mut band = Self::default();
+        band.clear(y0, y1, width, &offsets);
+        band
+    }
+
+    /// Makes the band one of sky, for other rows; memory is kept.
+    pub(crate) fn clear(&mut self, y0: i32, y1: i32, width: i32, offsets: &[[i32; 2]]) {
+        (self.y0, self.y1, self.width) = (y0, y1, width);
+        self.offsets.clear();
+        self.offsets.extend_from_slice(offsets);
+        self.reach = [0, 1].map(|axis| {
+            let along = offsets.iter().map(|o: &[i32; 2]| o[axis]);
+            [along.clone().min().unwrap_or(0), along.max().unwrap_or(0)]
+        });
+        self.stride = (width.max(0) as usize).next_multiple_of(SLACK) + SLACK;
+        let n = offsets.len() * (y1 - y0).max(0) as usize * self.stride;
+        self.q.clear();
+        self.q.resize(n, f32::NEG_INFINITY);
+        self.prim.clear();
+        self.prim.resize(n, SKY);
+        self.tiles.clear(self.stride);
+        #[cfg(test)]
+        {
+            self.hits = vec![0; n];
+        }
+    }
+
+    /// Index of a sample.
+    #[inline(always)]
+    pub(crate) fn index(&self, sample: usize, x: i32, y: i32) -> usize {
+        let rows = (self.y1 - self.y0) as usize;
+        (sample * rows + (y - self.y0) as usize) * self.stride + x as usize
+    }
+
+    /// Whether no sample of the band lies in a box of fixed-point positions.
+    #[inline(always)]
+    pub(crate) fn misses(&self, x: [i32; 2], y: [i32; 2]) -> bool {
+        let [[left, right], [top, bottom]] = self.reach;
+        let (xa, xb) = ((x[0] - right + SUB - 1) >> 8, (x[1] - left) >> 8);
+        let (ya, yb) = ((y[0] - bottom + SUB - 1) >> 8, (y[1] - top) >> 8);
+        (xa > xb) | (ya > yb) | (xb < 0) | (xa >= self.width) | (yb < self.y0) | (ya >= self.y1)
+    }
+
+    /// Whether everything in these columns of the image, whose nearness is at most `q`, is hidden by what was drawn.
+    pub(crate) fn hides(&mut self, x: [i32; 2], q: f32) -> bool {
+        let (from, to) = ((x[0] >> 8).max(0) as usize / TILE, (x[1] >> 8).clamp(0, self.width - 1) as usize / TILE);
+        (from..=to).all(|tile| {
+            if self.tiles.stale[tile] {
+                let columns = tile * TILE..((tile + 1) * TILE).min(self.width as usize);
+                let least =
+                    |row: &[f32]| row[columns.clone()].iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
+                self.tiles.least[tile] =
+                    self.q.chunks(self.stride).map(least).fold(f32::INFINITY, |a, b| if b < a { b } else { a });
+                self.tiles.stale[tile] = false;
+            }
+            self.tiles.least[tile] > q
+        })
+    }
+
+    /// Tells that something was drawn in these columns.
+    pub(crate) fn drew(&mut self, x: [i32; 2]) {
+        let (from, to) = ((x[0] >> 8).max(0) as usize / TILE, (x[1] >> 8).clamp(0, self.width - 1) as usize / TILE);
+        if let Some(stale) = self.tiles.stale.get_mut(from..=to) {
+            stale.fill(true);
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn write(&mut self, i: usize, q: f32, prim: u32) {
+        #[cfg(test)]
+        {
+            self.hits[i] += 1;
+        }
+        if q > self.q[i] || (q == self.q[i] && prim < self.prim[i]) {
+            self.q[i] = q;
+            self.prim[i] = prim;
+        }
+    }
+}
+
+/// Pixels along a tile, whose least nearness is known.
+const TILE: usize = 32;
+
+/// Least nearness of all samples per tile: what is farther is hidden there.
+#[derive(Debug, Default)]
+struct Tiles {
+    least: Vec<f32>,
+    stale: Vec<bool>,
+}
+
+impl Tiles {
+    fn clear(&mut self, width: usize) {
+        self.least.clear();
+        self.least.resize(width.div_ceil(TILE), f32::NEG_INFINITY);
+        self.stale.clear();
+        self.stale.resize(width.div_ceil(TILE), false);
+    }
+}

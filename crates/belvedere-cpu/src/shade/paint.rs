@@ -1,0 +1,191 @@
+//! Colours of many samples at a time.
+
+use super::batch::Batch;
+use super::color::{self, Encoding, Packed, Rgb};
+use super::{Hit, LayerShade, Shader, box_color};
+use crate::band::SKY;
+use crate::blocks::{CELL_BITS, Geometry, SOUP};
+use crate::vector::{self, Kernel};
+
+/// Samples of the picture: what was hit, its nearness, and the place on the image in fixed-point steps; slices of equal
+/// length.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Samples<'s> {
+    pub(crate) prim: &'s [u32],
+    pub(crate) q: &'s [f32],
+    pub(crate) x: &'s [i32],
+    pub(crate) y: &'s [i32],
+}
+
+impl Samples<'_> {
+    #[inline(always)]
+    pub(super) fn at(&self, k: usize) -> [i32; 2] {
+        [self.x[k], self.y[k]]
+    }
+}
+
+/// Colours and identities of samples.
+#[derive(Debug, Default)]
+pub(crate) struct Painted {
+    /// Square roots of linear red, green, blue.
+    pub(crate) root: [Vec<f32>; 3],
+    /// 0 = sky, else 1 + layer.
+    pub(crate) id: Vec<u32>,
+}
+
+impl Painted {
+    fn resize(&mut self, n: usize) {
+        self.root.iter_mut().for_each(|plane| plane.resize(n, 0.0));
+        self.id.resize(n, 0);
+    }
+
+    /// * `color`: linear.
+    pub(super) fn set(&mut self, k: usize, color: Rgb, id: u32) {
+        self.set_root(k, color.to_array().map(|v| v.max(0.0).sqrt()), id);
+    }
+
+    #[inline(always)]
+    pub(super) fn set_root(&mut self, k: usize, root: [f32; 3], id: u32) {
+        for (plane, v) in self.root.iter_mut().zip(root) {
+            plane[k] = v;
+        }
+        self.id[k] = id;
+    }
+
+    /// As it is kept to be drawn over.
+    pub(crate) fn pack(&self, out: &mut [Packed]) {
+        vector::run(Write { root: self.root.each_ref().map(Vec::as_slice), out });
+    }
+
+    /// As it is stored in pictures.
+    pub(crate) fn encode(&self, out: &mut [[u8; 3]]) {
+        vector::run(Write { root: self.root.each_ref().map(Vec::as_slice), out });
+    }
+}
+
+/// A colour that can be told by square roots of linear light, 16 bits each.
+trait OfRoots {
+    fn of(root: [u16; 3], encoding: &Encoding) -> Self;
+}
+
+impl OfRoots for Packed {
+    #[inline(always)]
+    fn of(root: [u16; 3], _: &Encoding) -> Self {
+        Self::of_roots(root)
+    }
+}
+
+impl OfRoots for [u8; 3] {
+    #[inline(always)]
+    fn of(root: [u16; 3], encoding: &Encoding) -> Self {
+        Packed::of_roots(root).encode(encoding)
+    }
+}
+
+struct Write<'p, T> {
+    root: [&'p [f32]; 3],
+    out: &'p mut [T],
+}
+
+impl<T: OfRoots> Kernel for Write<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        const N: usize = 32;
+        let (mut whole, encoding) = ([[0u16; N]; 3], color::encoding());
+        for (i, out) in self.out.chunks_mut(N).enumerate() {
+            for (whole, root) in whole.iter_mut().zip(self.root) {
+                for (whole, root) in whole.iter_mut().zip(&root[i * N..]) {
+                    *whole = color::sixteen_bits(*root);
+                }
+            }
+            for (k, out) in out.iter_mut().enumerate() {
+                *out = T::of([whole[0][k], whole[1][k], whole[2][k]], encoding);
+            }
+        }
+    }
+}
+
+/// How many of the first primitives belong to the block of the first one, or are sky.
+#[inline(always)]
+fn run_of(first: u32, prims: &[u32]) -> usize {
+    const N: usize = 16;
+    let block = if first >> CELL_BITS == SKY >> CELL_BITS { u32::MAX } else { u32::MAX << CELL_BITS };
+    let mut n = 0;
+    for chunk in prims.chunks(N) {
+        let other = |p: &u32| (p ^ first) & block;
+        if chunk.iter().fold(0, |all, p| all | other(p)) != 0 {
+            return n + chunk.iter().take_while(|p| other(p) == 0).count();
+        }
+        n += chunk.len();
+    }
+    n
+}
+
+struct Paint<'p> {
+    shader: &'p Shader<'p>,
+    samples: Samples<'p>,
+    painted: &'p mut Painted,
+}
+
+impl Kernel for Paint<'_> {
+    type Output = ();
+
+    /// Runs of samples on one block, or of sky.
+    #[inline(always)]
+    fn run(self) {
+        let Self { shader, samples, painted } = self;
+        let mut batch = Batch::new();
+        let mut from = 0;
+        while let Some(&prim) = samples.prim.get(from) {
+            let to = from + run_of(prim, &samples.prim[from..]);
+            if prim == SKY {
+                shader.paint_sky(&samples, [from, to], painted);
+            } else if prim & SOUP == 0
+                && let Some(block) = shader.blocks.list.get((prim >> CELL_BITS) as usize)
+                && let Geometry::Grid(nodes) = &block.geometry
+                && let LayerShade::Terrain(_) = shader.layers[block.layer as usize]
+            {
+                batch.take(shader, (block, nodes), &samples, [from, to], painted);
+            } else {
+                (from..to).for_each(|k| shader.paint_one(&samples, k, &mut batch, painted));
+            }
+            from = to;
+        }
+        batch.flush(shader, &samples, painted);
+    }
+}
+
+impl Shader<'_> {
+    /// Colours of samples, in their order.
+    pub(crate) fn paint(&self, samples: Samples<'_>, painted: &mut Painted) {
+        painted.resize(samples.prim.len());
+        vector::run(Paint { shader: self, samples, painted });
+    }
+
+    #[inline(always)]
+    fn paint_sky(&self, samples: &Samples<'_>, [from, to]: [usize; 2], painted: &mut Painted) {
+        let out = painted.root.each_mut().map(|plane| &mut plane[from..to]);
+        self.sky.paint(&samples.x[from..to], &samples.y[from..to], out);
+        painted.id[from..to].fill(0);
+    }
+
+    /// A sample of an explicit triangle.
+    #[inline(never)]
+    fn paint_one(&self, samples: &Samples<'_>, k: usize, batch: &mut Batch, painted: &mut Painted) {
+        let Some(found) = self.blocks.find(samples.prim[k]) else { return painted.set(k, Rgb::ZERO, 0) };
+        let (layer, depth) = (found.block.layer, self.lens.depth_of(samples.q[k]));
+        let hit = Hit::new(&found, self.lens, samples.at(k));
+        let color = match &self.layers[layer as usize] {
+            LayerShade::Terrain(_) => return batch.take_odd(layer as usize, self, samples, k, painted),
+            LayerShade::Boxes(b, light) => {
+                let (shape, world, n) = hit.on_box(&found, b);
+                box_color(shape, light, n, world, self.lens.footprint(f64::from(depth)))
+            }
+            LayerShade::Mesh(m) => m.shade(&found, hit.weights).0,
+            LayerShade::Other => Rgb::ZERO,
+        };
+        painted.set(k, self.sky.through_air(color, depth), layer + 1);
+    }
+}

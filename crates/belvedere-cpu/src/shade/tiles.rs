@@ -1,0 +1,136 @@
+//! Pictures of the ground at ever coarser levels, in tiles that are made where they are looked at.
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What is kept of a node of the ground.
+pub(super) type Node = [u8; 8];
+
+/// Cells along a side of a tile, a power of two; one more node along each side, so that no cell lies in two tiles.
+const SIDE: usize = 64;
+pub(super) const STRIDE: usize = SIDE + 1;
+const NODES: usize = STRIDE * STRIDE;
+pub(super) type Tile = [Node; NODES];
+
+/// Fixed-point steps of a cell.
+pub(crate) const CELL: i32 = 256;
+
+/// Bytes of tiles after which a frame starts anew: long flights over a huge ground must not collect all of it.
+const MOST_BYTES: usize = 192 << 20;
+
+struct Level {
+    nodes: [usize; 2],
+    across: usize,
+    tiles: Vec<OnceLock<Box<Tile>>>,
+}
+
+/// Levels of halved detail, each with a rim of one node that repeats the border: no place needs clamping.
+pub(super) struct Tiles {
+    levels: Vec<Level>,
+    bytes: AtomicUsize,
+}
+
+/// The nodes around a place, west and east in a row, and its way from the first towards the others in 1/256.
+pub(super) struct Around<'a> {
+    pub(super) north: &'a [Node; 2],
+    pub(super) south: &'a [Node; 2],
+    pub(super) east_share: u32,
+    pub(super) south_share: u32,
+}
+
+impl Tiles {
+    /// No tile made yet.
+    pub(super) fn new(nodes: [usize; 2], top: usize) -> Self {
+        let level = |k: usize| {
+            let nodes = nodes.map(|n| n.div_ceil(1 << k));
+            let [across, down] = nodes.map(|n| (n + 1).div_ceil(SIDE));
+            Level { nodes, across, tiles: (0..across * down).map(|_| OnceLock::new()).collect() }
+        };
+        Self { levels: (0..=top).map(level).collect(), bytes: AtomicUsize::new(0) }
+    }
+
+    /// The coarsest level.
+    #[inline(always)]
+    pub(super) fn top(&self) -> usize {
+        self.levels.len() - 1
+    }
+
+    /// Columns and rows of a level.
+    pub(super) fn nodes(&self, k: usize) -> [usize; 2] {
+        self.levels[k].nodes
+    }
+
+    /// Columns and rows that the nodes of a tile repeat.
+    pub(super) fn repeated(&self, k: usize, tile: [usize; 2]) -> [Repeated; 2] {
+        [0, 1].map(|axis| Repeated { from: tile[axis] * SIDE, nodes: self.levels[k].nodes[axis] })
+    }
+
+    /// Whether so much is kept that the next frame had better start anew.
+    pub(super) fn is_full(&self) -> bool {
+        self.bytes.load(Ordering::Relaxed) > MOST_BYTES
+    }
+
+    /// Nodes around a place; `None` off the ground.
+    /// * `at`: column and row of level 0, [`CELL`] steps to a cell;
+    /// * `make`: makes a tile from the number of its level and its column and row.
+    #[inline(always)]
+    pub(super) fn around(
+        &self,
+        k: usize,
+        at: [i32; 2],
+        make: impl FnOnce(usize, [usize; 2]) -> Box<Tile>,
+    ) -> Option<Around<'_>> {
+        let level = self.levels.get(k)?;
+        // Node i of level k lies at (i + 0.5) 2^k - 0.5 of level 0, and is number i + 1 with the rim.
+        let [x, y] = at.map(|x| ((x.wrapping_add(CELL / 2) >> k) + CELL / 2) as u32 as usize);
+        let (c, r) = (x >> 8, y >> 8);
+        let index = r / SIDE * level.across + c / SIDE;
+        let place = level.tiles.get(index)?;
+        let tile = match place.get() {
+            Some(tile) => tile,
+            None => self.made(place, || make(k, [index % level.across, index / level.across])),
+        };
+        let first = r % SIDE * STRIDE + c % SIDE;
+        Some(Around {
+            north: tile[first..].first_chunk()?,
+            south: tile[first + STRIDE..].first_chunk()?,
+            east_share: x as u32 & 255,
+            south_share: y as u32 & 255,
+        })
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn made<'a>(&self, place: &'a OnceLock<Box<Tile>>, make: impl FnOnce() -> Box<Tile>) -> &'a Tile {
+        place.get_or_init(|| {
+            self.bytes.fetch_add(size_of::<Tile>(), Ordering::Relaxed);
+            make()
+        })
+    }
+}
+
+/// The nodes along an axis that the nodes of a tile repeat.
+pub(super) struct Repeated {
+    from: usize,
+    nodes: usize,
+}
+
+impl Repeated {
+    pub(super) fn all(&self) -> impl Iterator<Item = usize> + use<> {
+        let Self { from, nodes } = *self;
+        (from..from + STRIDE).map(move |i| i.saturating_sub(1).min(nodes - 1))
+    }
+
+    pub(super) fn first(&self) -> usize {
+        self.from.saturating_sub(1).min(self.nodes - 1)
+    }
+
+    pub(super) fn last(&self) -> usize {
+        (self.from + STRIDE - 2).min(self.nodes - 1)
+    }
+}
+
+/// A tile of nodes row by row.
+pub(super) fn boxed(nodes: Vec<Node>) -> Box<Tile> {
+    nodes.into_boxed_slice().try_into().unwrap_or_else(|_| Box::new([Node::default(); NODES]))
+}

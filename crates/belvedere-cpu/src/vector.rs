@@ -1,0 +1,33 @@
+//! Loops compiled for the vector instructions of the machine.
+//!
+//! The program is built for the oldest processors; a kernel is compiled for newer ones as well, and the best version is
+//! picked while it runs. Only instructions differ: no operation is contracted or reordered, so all versions give the same
+//! bits.
+
+use pulp::{Arch, Simd, WithSimd};
+use std::sync::LazyLock;
+
+static ARCH: LazyLock<Arch> = LazyLock::new(Arch::new);
+
+/// Work worth compiling more than once. [`Kernel::run`] and all that is hot in it must be `#[inline(always)]`.
+pub(crate) trait Kernel {
+    type Output;
+    fn run(self) -> Self::Output;
+}
+
+struct With<K>(K);
+
+impl<K: Kernel> WithSimd for With<K> {
+    type Output = K::Output;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> K::Output {
+        self.0.run()
+    }
+}
+
+/// Runs the version for this machine.
+#[inline]
+pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
+    ARCH.dispatch(With(kernel))
+}
