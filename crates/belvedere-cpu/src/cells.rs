@@ -172,13 +172,18 @@ impl Band {
         prim: u32,
     ) {
         let judged = self.judge(row, (boxes, corners), tiny, look);
+        // No processor guesses which samples see their cell: these first, without a branch.
+        let (mut seen, mut n) = ([0; SIDE], 0);
         for c in 0..SIDE {
+            seen[n % SIDE] = c;
+            n += usize::from(judged.code[c] != 0);
+        }
+        for &c in &seen[..n] {
             let (code, at, prim) = (judged.code[c], judged.at[c] as usize, prim | (c as u32) << 1);
-            match code {
-                0 => {}
-                UPPER => self.write(at, judged.q[c], prim),
-                LOWER => self.write(at, judged.q[c], prim | 1),
-                _ => self.write_carefully(row, boxes, look, c, (at, code, prim)),
+            if code == UPPER || code == LOWER {
+                self.write(at, judged.q[c], prim | (code >> 1));
+            } else {
+                self.write_carefully(row, boxes, look, c, (at, code, prim));
             }
         }
     }
