@@ -45,7 +45,11 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         &["belvedere-core", "belvedere-scene"],
         &["glam", "rayon", "rustfft", "serde", "thiserror", "tracing"],
     ),
-    ("belvedere-cpu", &["belvedere-core", "belvedere-scene"], &["ab_glyph", "glam", "pulp", "rayon", "thiserror", "tracing"]),
+    (
+        "belvedere-cpu",
+        &["belvedere-core", "belvedere-scene"],
+        &["ab_glyph", "glam", "pulp", "rayon", "thiserror", "tracing"],
+    ),
     (
         "belvedere",
         &["belvedere-construct", "belvedere-core", "belvedere-cpu", "belvedere-io", "belvedere-scene"],
