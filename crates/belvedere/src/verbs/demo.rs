@@ -7,19 +7,60 @@ use crate::{BelvedereError, CameraPicture, OpenOptions, Session};
 use belvedere_construct::{MeasureOptions, Measures};
 use std::path::{Path, PathBuf};
 
-/// Name and text of every scene of the demo; they need no files.
-pub const SCENES: &[(&str, &str)] = &[
-    ("massif", include_str!("../../../../scenes/massif.toml")),
-    ("massif_curved_rays", include_str!("../../../../scenes/massif_curved_rays.toml")),
-    ("street", include_str!("../../../../scenes/street.toml")),
+/// A scene of the demo; it needs no files.
+#[derive(Debug, Clone, Copy)]
+pub struct DemoScene {
+    /// Start of the names of its files.
+    pub name: &'static str,
+    /// The scene file.
+    pub text: &'static str,
+    /// What a picture pair shows, in one sentence.
+    sentence: &'static str,
+    /// Whether its rays are bent, so that pictures of the camera tell something.
+    bends_rays: bool,
+}
+
+/// Every technique, on generated ground.
+pub const SCENES: &[DemoScene] = &[
+    DemoScene {
+        name: "massif",
+        text: include_str!("../../../../scenes/massif.toml"),
+        sentence: "The whole valley tilts towards you along a smooth curve: the lake and the trail behind the ridges come into sight, and the summits keep their skyline.",
+        bends_rays: true,
+    },
+    DemoScene {
+        name: "massif_curved_rays",
+        text: include_str!("../../../../scenes/massif_curved_rays.toml"),
+        sentence: "The rays of sight run straight at first and then bend down over the ridge, into the valley behind it.",
+        bends_rays: true,
+    },
+    DemoScene {
+        name: "massif_lake_terrain",
+        text: include_str!("../../../../scenes/massif_lake_terrain.toml"),
+        sentence: "The rays stay straight and the ground makes way: ridges sink just as far as they must, and the road, the trail and the lake behind them are seen.",
+        bends_rays: false,
+    },
+    DemoScene {
+        name: "street",
+        text: include_str!("../../../../scenes/street.toml"),
+        sentence: "The near streets are seen steeply from above, so that the way lies open between the towers; the far side of town stays a skyline.",
+        bends_rays: true,
+    },
 ];
 
-/// Pictures of the camera of every scene: ending of the name and place.
+impl DemoScene {
+    fn cameras(&self) -> &'static [(&'static str, CameraPicture)] {
+        if self.bends_rays { &CAMERAS } else { &[] }
+    }
+}
+
+/// Pictures of a camera whose rays bend: ending of the name and place.
 const CAMERAS: [(&str, CameraPicture); 2] =
     [("_camera", CameraPicture::Outside(None)), ("_overhead", CameraPicture::Overhead)];
 
 /// Draws every scene of [`SCENES`] into `folder`, which is made if need be: `NAME.png` (straight beside bent) with its
-/// record, `NAME_camera.png` (the camera from outside) and `NAME_overhead.png` with theirs, `NAME.toml`, and `index.html`. Returns the files.
+/// record, `NAME.toml`, where rays bend `NAME_camera.png` (the camera from outside) and `NAME_overhead.png` with their records,
+/// and `index.html`. Returns the files.
 ///
 /// # Errors
 /// [`BelvedereError::Io`] if a file exists and `overwrite` is false, else as [`render::render`].
@@ -35,15 +76,18 @@ pub fn demo(
     let picture_of = |name: &str| folder.join(format!("{name}.png"));
     let scene_of = |name: &str| folder.join(format!("{name}.toml"));
     output::check(&index, &[], overwrite)?;
-    for (name, _) in SCENES {
+    for scene in SCENES {
+        let name = scene.name;
         output::check(&scene_of(name), &[], overwrite)?;
-        let pictures = [(*name).to_owned()].into_iter().chain(CAMERAS.map(|(ending, _)| format!("{name}{ending}")));
+        let cameras = scene.cameras().iter().map(|(ending, _)| format!("{name}{ending}"));
+        let pictures = [name.to_owned()].into_iter().chain(cameras);
         for path in pictures.flat_map(|name| render::outputs(&picture_of(&name), &request)) {
             output::check(&path, &[], overwrite)?;
         }
     }
     let (mut written, mut sections) = (Vec::new(), String::new());
-    for (name, text) in SCENES {
+    for scene in SCENES {
+        let DemoScene { name, text, .. } = *scene;
         output::write_text(&scene_of(name), text, overwrite)?;
         let mut session = Session::from_text(&scene_of(name), text, options)?;
         session.inputs = vec![scene_of(name)];
@@ -57,36 +101,21 @@ pub fn demo(
             &options.progress,
         )?;
         written.extend(picture.write(&picture_of(name), overwrite)?);
-        for (ending, camera) in CAMERAS {
-            let request = RenderRequest { compare: false, camera: Some(camera), ..request.clone() };
+        for (ending, camera) in scene.cameras() {
+            let request = RenderRequest { compare: false, camera: Some(*camera), ..request.clone() };
             let picture = render::render(&session, &request, &options.progress)?;
             written.extend(picture.write(&picture_of(&format!("{name}{ending}")), overwrite)?);
         }
         written.push(scene_of(name));
-        sections += &section(name, &picture.sidecar, &measures);
+        sections += &section(scene, &picture.sidecar, &measures);
     }
     output::write_text(&index, &page(&sections), overwrite)?;
     written.push(index);
     Ok(written)
 }
 
-/// What a picture pair shows, in one sentence.
-fn sentence(name: &str) -> &'static str {
-    match name {
-        "massif" => {
-            "The whole valley tilts towards you along a smooth curve: the lake and the trail behind the ridges come into sight, and the summits keep their skyline."
-        }
-        "massif_curved_rays" => {
-            "The rays of sight run straight at first and then bend down over the ridge, into the valley behind it."
-        }
-        "street" => {
-            "The near streets are seen steeply from above, so that the way lies open between the towers; the far side of town stays a skyline."
-        }
-        _ => "The same camera, bent.",
-    }
-}
-
-fn section(name: &str, sidecar: &render::Sidecar, measures: &Measures) -> String {
+fn section(scene: &DemoScene, sidecar: &render::Sidecar, measures: &Measures) -> String {
+    let DemoScene { name, sentence, .. } = *scene;
     let (mut straight, mut bent) = ("straight".to_owned(), "bent".to_owned());
     if let Some(line) = &measures.lines {
         let share = |s: Option<f64>| {
@@ -101,16 +130,22 @@ fn section(name: &str, sidecar: &render::Sidecar, measures: &Measures) -> String
             d.max_m, d.max_px
         )
     });
+    let title = escape(&sidecar.scene.title);
+    let cameras = if scene.bends_rays { cameras(name, &title) } else { String::new() };
     format!(
         "<section>\n<h2>{title}</h2>\n<p>{sentence}</p>\n<figure>\n<a href=\"{name}.png\"><img src=\"{name}.png\" \
          alt=\"{title}: two pictures from the same camera. Left, {straight}. Right, {bent}.\"></a>\n\
          <figcaption><span>{straight}</span><span>{bent}</span></figcaption>\n</figure>\n\
-         <figure class=\"pair\">\n<a href=\"{name}_camera.png\"><img src=\"{name}_camera.png\" alt=\"The camera of {title} from outside: its rays on the terrain\"></a>\n\
+         {cameras}<p class=\"small\">{moved}<a href=\"{name}.toml\">Scene</a> · <a href=\"{name}.png.json\">record</a></p>\n</section>\n",
+    )
+}
+
+/// The camera of a scene from outside and from above.
+fn cameras(name: &str, title: &str) -> String {
+    format!(
+        "<figure class=\"pair\">\n<a href=\"{name}_camera.png\"><img src=\"{name}_camera.png\" alt=\"The camera of {title} from outside: its rays on the terrain\"></a>\n\
          <a href=\"{name}_overhead.png\"><img src=\"{name}_overhead.png\" alt=\"The same from above\"></a>\n\
-         <figcaption><span>the camera that sees this, from beside</span><span>and from above</span></figcaption>\n</figure>\n\
-         <p class=\"small\">{moved}<a href=\"{name}.toml\">Scene</a> · <a href=\"{name}.png.json\">record</a></p>\n</section>\n",
-        title = escape(&sidecar.scene.title),
-        sentence = sentence(name),
+         <figcaption><span>the camera that sees this, from beside</span><span>and from above</span></figcaption>\n</figure>\n"
     )
 }
 
