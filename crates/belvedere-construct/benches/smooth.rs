@@ -2,7 +2,7 @@
 #![allow(missing_docs)]
 
 use belvedere_construct::terrain::{
-    ConjugateGradients, ElevationRows, Hierarchy, Real, SmoothPass, Smoother, grid_weight,
+    Cholesky, ConjugateGradients, ElevationRows, Hierarchy, Real, SmoothPass, Smoother, grid_weight,
 };
 use belvedere_core::DVec2;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
@@ -57,6 +57,20 @@ fn elevation(c: &mut Criterion) {
     });
 }
 
+/// The paper's way at its size: a factor, and a solution with it.
+fn sparse(c: &mut Criterion) {
+    let n = 129;
+    let rows = ElevationRows::default();
+    let make = || Cholesky::new(n, n, 0.36, &rows).expect("positive definite");
+    let mut group = c.benchmark_group("sparse factor of 129 x 129");
+    group.sample_size(10);
+    group.bench_function("make", |b| b.iter(make));
+    let mut factor = make();
+    let mut x: Vec<f64> = (0..n * n).map(number).collect();
+    group.bench_function("solve", |b| b.iter(|| factor.solve(&mut x)));
+    group.finish();
+}
+
 /// The whole pass over 1025 x 1025 nodes with `solver_nodes` 65, 129 and all.
 fn pass(c: &mut Criterion) {
     let n = 1025;
@@ -75,5 +89,5 @@ fn pass(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, solves, elevation, pass);
+criterion_group!(benches, solves, elevation, sparse, pass);
 criterion_main!(benches);

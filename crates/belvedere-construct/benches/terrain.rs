@@ -4,103 +4,13 @@
 //! threads, medians (Linux only, where the kernel counts it), which is what to believe on a busy machine.
 #![allow(missing_docs, clippy::print_stdout)]
 
-use belvedere_construct::terrain::{
-    Cells, Field, Naive, PointKind, Pyramid, ReferencePoint, TerrainSettings, Wedge, in_view,
-};
+mod ground;
+
+use belvedere_construct::terrain::{Cells, Field, Naive, Pyramid, ReferencePoint, TerrainSettings, Wedge};
 use belvedere_core::{DVec2, DVec3};
-use belvedere_scene::{Heightfield, NodeState};
 use criterion::Criterion;
+use ground::{NODES, cpu_ms, fractal, points, valley};
 use std::hint::black_box;
-
-const NODES: usize = 1025;
-const SPACING_M: f64 = 30.0;
-
-/// Fractal mountains of 2 km: midpoint displacement (diamond and square), roughness 1.1.
-fn fractal(seed: u64) -> Field {
-    let n = NODES;
-    let mut z = vec![0.0f64; n * n];
-    let noise = |i: usize| {
-        let mut x = (i as u64 ^ (seed << 32)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        x = (x ^ (x >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        ((x ^ (x >> 32)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    };
-    let (mut step, mut height) = (n - 1, 1000.0);
-    while step > 1 {
-        let half = step / 2;
-        for row in (half..n).step_by(step) {
-            for col in (half..n).step_by(step) {
-                let corners = [
-                    (row - half, col - half),
-                    (row - half, col + half),
-                    (row + half, col - half),
-                    (row + half, col + half),
-                ];
-                let mean = corners.iter().map(|&(r, c)| z[r * n + c]).sum::<f64>() / 4.0;
-                z[row * n + col] = mean + height * noise(row * n + col);
-            }
-        }
-        for row in (0..n).step_by(half) {
-            for col in ((row + half) % step..n).step_by(step) {
-                let (mut sum, mut count) = (0.0, 0.0);
-                for (r, c) in [(-1isize, 0isize), (1, 0), (0, -1), (0, 1)] {
-                    let at = (row.checked_add_signed(r * half as isize), col.checked_add_signed(c * half as isize));
-                    if let (Some(r), Some(c)) = at
-                        && r < n
-                        && c < n
-                    {
-                        sum += z[r * n + c];
-                        count += 1.0;
-                    }
-                }
-                z[row * n + col] = sum / count + height * noise(row * n + col);
-            }
-        }
-        step = half;
-        height *= 0.5f64.powf(1.1);
-    }
-    let [low, high] = z.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)]);
-    let heights = z.iter().map(|v| (500.0 + 2000.0 * (v - low) / (high - low)) as f32).collect();
-    let states = vec![NodeState::Measured; n * n];
-    let hf = Heightfield::new(DVec2::ZERO, DVec2::splat(SPACING_M), n, n, heights, states).expect("well formed");
-    Field::new(&hf, |_| 0.0).expect("has data")
-}
-
-/// The lowest of ways from west to east, found row by row: a valley route.
-fn valley(field: &Field) -> Vec<DVec2> {
-    let (n, h) = (field.cols(), field.heights());
-    let cost = |i: usize| (h[i] - field.datum()) * (h[i] - field.datum());
-    let mut best: Vec<f64> = (0..n).map(|row| cost(row * n)).collect();
-    let mut from = vec![0usize; n * n];
-    for col in 1..n {
-        let before = best.clone();
-        for row in 0..n {
-            let near = row.saturating_sub(1)..(row + 2).min(n);
-            let least = near.min_by(|&a, &b| before[a].total_cmp(&before[b])).unwrap_or(row);
-            from[row * n + col] = least;
-            best[row] = before[least] + cost(row * n + col);
-        }
-    }
-    let mut row = (0..n).min_by(|&a, &b| best[a].total_cmp(&best[b])).unwrap_or(0);
-    let mut path = Vec::with_capacity(n);
-    for col in (0..n).rev() {
-        path.push(DVec2::new(col as f64, row as f64));
-        row = from[row * n + col];
-    }
-    path
-}
-
-/// `count` points in view, equally spaced along the route.
-fn points(field: &Field, route: &[DVec2], wedge: &Wedge, count: usize) -> Vec<ReferencePoint> {
-    let at = |i: usize, of: usize| {
-        let t = i as f64 / of as f64 * (route.len() - 2) as f64;
-        let grid = route[t as usize].lerp(route[t as usize + 1], t.fract());
-        let ground = field.surface_at(grid).expect("on the ground");
-        ReferencePoint { layer: 0, feature: 0, along_m: 0.0, grid, ground, lift: 1.0, kind: PointKind::Line }
-    };
-    let all: Vec<ReferencePoint> = (0..10_000).map(|i| at(i, 10_000)).collect();
-    let seen = in_view(field, &all, wedge, 1.5).0;
-    (0..count).map(|i| all[seen[i * seen.len() / count]]).collect()
-}
 
 struct Case {
     field: Field,
@@ -128,16 +38,6 @@ impl Case {
     }
 }
 
-/// Processor time of all threads so far, milliseconds; 0 where the kernel does not tell.
-fn cpu_ms() -> f64 {
-    let Ok(tasks) = std::fs::read_dir("/proc/self/task") else { return 0.0 };
-    let of_task = |t: std::fs::DirEntry| {
-        let text = std::fs::read_to_string(t.path().join("schedstat")).ok()?;
-        text.split(' ').next()?.parse::<f64>().ok()
-    };
-    tasks.flatten().filter_map(of_task).sum::<f64>() * 1e-6
-}
-
 /// Per run; the kernel counts in ticks of some milliseconds, so several runs are taken together.
 fn median_cpu<T>(rounds: usize, work: impl Fn() -> T) -> f64 {
     let batch = |runs: usize| {
@@ -161,16 +61,33 @@ fn processor_time(rounds: usize) {
     let naive = case.greedy();
     println!("displacement   {:8.2} ms", median_cpu(rounds, || naive.displacement(&case.field, &case.cells)));
     // The points of the paper's table, and one more to see the line.
+    let mut of_points = Vec::new();
     for count in [195, 202, 513, 560, 660, 670, 1340] {
         let case = Case::new(7, count);
         let c = *case.greedy().counters();
-        println!(
-            "{count:5} points   {:8.3} ms   {} traces, {} hits",
-            median_cpu(rounds, || case.greedy()),
-            c.traces,
-            c.hits
-        );
+        let time = median_cpu(rounds, || case.greedy());
+        println!("{count:5} points   {time:8.3} ms   {} traces, {} hits", c.traces, c.hits);
+        of_points.push((count as f64, time));
     }
+    println!("exponent of points {:.2}", exponent(&of_points));
+    let mut of_cells = Vec::new();
+    for keep in [80, 160, 320, 651, 1300, 2600] {
+        let time = median_cpu(rounds, || Cells::new(&case.field, keep));
+        let case = Case { cells: Cells::new(&case.field, keep), ..Case::new(7, 670) };
+        let greedy = median_cpu(rounds, || case.greedy());
+        println!("{keep:5} cells    {time:8.2} ms to make, greedy pass {greedy:8.3} ms");
+        of_cells.push((keep as f64, greedy));
+    }
+    println!("exponent of cells  {:.2}", exponent(&of_cells));
+}
+
+/// Slope of the least-squares line through the logarithms.
+fn exponent(of: &[(f64, f64)]) -> f64 {
+    let n = of.len() as f64;
+    let mean = |f: fn(&(f64, f64)) -> f64| of.iter().map(f).sum::<f64>() / n;
+    let (mx, my) = (mean(|p| p.0.ln()), mean(|p| p.1.ln()));
+    let slope = |p: &(f64, f64)| (p.0.ln() - mx) * (p.1.ln() - my);
+    of.iter().map(slope).sum::<f64>() / of.iter().map(|p| (p.0.ln() - mx).powi(2)).sum::<f64>()
 }
 
 fn main() {

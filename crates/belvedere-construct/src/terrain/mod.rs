@@ -25,9 +25,11 @@ pub use line_of_sight::{SightSample, guard_tau, sight_samples};
 pub use metrics::{Deformation, FrameChange, TerrainMetrics, terrain_metrics};
 pub use points::{PointKind, ReferencePoint, Unusable, UnusableReason, reference_points};
 pub use settings::{Detail, SolverMode, TerrainSettings};
+#[cfg(feature = "sparse")]
+pub use smooth::Cholesky;
 pub use smooth::{
-    ConjugateGradients, Convergence, Dct, ElevationRows, Green, Hierarchy, Real, SmoothError, SmoothMemory, SmoothPass,
-    Smoothed, Smoother, grid_weight, laplacian, row_weight, temporal_weight,
+    Between, ConjugateGradients, Convergence, Dct, ElevationRows, Green, Hierarchy, Real, SmoothError, SmoothMemory,
+    SmoothPass, Smoothed, Smoother, grid_weight, laplacian, row_weight, temporal_weight,
 };
 pub use solve::{
     Covered, Fallback, QpReport, Solved, TerrainMemory, TerrainReport, TerrainSolver, TerrainTimes, UnresolvedReason,

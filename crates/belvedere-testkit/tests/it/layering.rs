@@ -43,7 +43,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     (
         "belvedere-construct",
         &["belvedere-core", "belvedere-scene"],
-        &["glam", "rayon", "rustfft", "serde", "thiserror", "tracing"],
+        &["glam", "pulp", "rayon", "rsparse", "rustfft", "serde", "thiserror", "tracing"],
     ),
     (
         "belvedere-cpu",

@@ -13,11 +13,20 @@ use rustfft::{Fft, FftNum, FftPlanner};
 pub trait Real: FftNum + Float {
     /// Nearest value.
     fn of(x: f64) -> Self;
+
+    /// The values themselves if they are f64.
+    fn doubles(_: &mut [Self]) -> Option<&mut [f64]> {
+        None
+    }
 }
 
 impl Real for f64 {
     fn of(x: f64) -> Self {
         x
+    }
+
+    fn doubles(values: &mut [Self]) -> Option<&mut [f64]> {
+        Some(values)
     }
 }
 

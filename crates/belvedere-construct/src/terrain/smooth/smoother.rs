@@ -2,6 +2,8 @@
 
 use super::dct::Dct;
 use super::line::Real;
+use super::packs::Packs;
+use super::products::{self, Products};
 
 /// A smooth pass that cannot be set up.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -19,6 +21,16 @@ pub enum SmoothError {
         /// Weight on the solver's grid.
         g: f64,
     },
+    /// No Cholesky factor.
+    #[error("the matrix of {cols} x {rows} nodes with w^2 + g^2 = {shift} has no factor; give larger weights")]
+    NotDefinite {
+        /// Columns.
+        cols: usize,
+        /// Rows.
+        rows: usize,
+        /// w^2 + g^2 on the solver's grid.
+        shift: f64,
+    },
 }
 
 /// Weight on a grid of `longer` nodes along its longer side from the weight stated for 129 nodes: w goes with the square
@@ -34,10 +46,28 @@ pub fn grid_weight(w: f64, longer: usize) -> f64 {
 #[derive(Debug, Clone)]
 pub struct Smoother<T: Real = f64> {
     dct: Dct<T>,
+    fast: Fast,
     ex: Vec<T>,
     ey: Vec<T>,
     w: f64,
     g: f64,
+}
+
+/// The quickest way for a size, in f64.
+#[derive(Debug, Clone)]
+enum Fast {
+    Products(Box<Products>),
+    Packs(Packs),
+    None,
+}
+
+impl Fast {
+    fn new(cols: usize, rows: usize) -> Self {
+        if cols.max(rows) <= products::MOST {
+            return Self::Products(Box::new(Products::new(cols, rows)));
+        }
+        Packs::new(cols, rows).map_or(Self::None, Self::Packs)
+    }
 }
 
 impl<T: Real> Smoother<T> {
@@ -54,7 +84,8 @@ impl<T: Real> Smoother<T> {
             return Err(SmoothError::Temporal { g });
         }
         let e = |n: usize| (0..n).map(|k| T::of(eigenvalue(k, n))).collect();
-        Ok(Self { dct: Dct::new(cols, rows), ex: e(cols), ey: e(rows), w, g })
+        let fast = if T::doubles(&mut []).is_some() { Fast::new(cols, rows) } else { Fast::None };
+        Ok(Self { dct: Dct::new(cols, rows), fast, ex: e(cols), ey: e(rows), w, g })
     }
 
     /// Columns.
@@ -102,6 +133,17 @@ impl<T: Real> Smoother<T> {
     /// # Panics
     /// If `rhs` has another size than the grid.
     pub fn solve(&mut self, rhs: &mut [T]) {
+        assert_eq!(rhs.len(), self.ex.len() * self.ey.len(), "values of a grid");
+        let shift = self.shift();
+        match (&mut self.fast, T::doubles(rhs)) {
+            (Fast::Products(fast), Some(rhs)) => fast.solve(rhs, shift),
+            (Fast::Packs(fast), Some(rhs)) => fast.solve(rhs, shift),
+            _ => self.solve_by_lines(rhs),
+        }
+    }
+
+    /// H^-1, in place, whatever the size of the grid; what [`Self::solve`] is judged by.
+    pub fn solve_by_lines(&mut self, rhs: &mut [T]) {
         let (ex, ey, shift) = (&self.ex, &self.ey, T::of(self.shift()));
         self.dct.filter(rhs, |k, spectrum| {
             for (x, ey) in spectrum.iter_mut().zip(ey) {
@@ -123,7 +165,7 @@ impl<T: Real> Smoother<T> {
 }
 
 /// k-th eigenvalue of the Laplacian of n nodes in a line with mirrored ends.
-fn eigenvalue(k: usize, n: usize) -> f64 {
+pub(super) fn eigenvalue(k: usize, n: usize) -> f64 {
     // 2 cos(x) - 2 without its cancellation at small x.
     let s = (std::f64::consts::FRAC_PI_2 * k as f64 / n as f64).sin();
     -4.0 * s * s

@@ -1,5 +1,6 @@
 //! The smooth pass against dense matrices.
 
+mod cholesky;
 mod hierarchy;
 mod pass;
 mod support;

@@ -1,6 +1,6 @@
 //! Cosine transforms, H^-1 and its Green's function.
 
-use belvedere_construct::terrain::{Dct, Green, SmoothError, Smoother, grid_weight, laplacian};
+use belvedere_construct::terrain::{Between, Dct, Green, SmoothError, Smoother, grid_weight, laplacian};
 
 use super::support::{apart, dense_h, laplacian_rows, numbers};
 
@@ -65,20 +65,39 @@ fn the_twin_in_f32_agrees() {
     assert!(apart(&exact, &single) < 3e-6 * largest, "{:e}", apart(&exact, &single) / largest);
 }
 
+/// Sizes for matrix products, for packs of rows and columns (with tails, radices 2, 3, 5, 7, 13, 41), and for neither.
+const LARGER: [(usize, usize); 5] = [(131, 97), (205, 210), (260, 17), (1, 1025), (197, 67)];
+
 #[test]
 fn the_number_of_threads_does_not_change_a_bit() {
-    let (cols, rows) = (131, 97);
-    let data = numbers(4, cols * rows);
-    let run = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let mut x = data.clone();
-            Smoother::<f64>::new(cols, rows, 0.3, 0.1).unwrap().solve(&mut x);
-            x
-        })
-    };
-    let one = run(1);
-    assert!(one == run(2) && one == run(5));
+    for (cols, rows) in LARGER {
+        let data = numbers(4, cols * rows);
+        let run = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut x = data.clone();
+                Smoother::<f64>::new(cols, rows, 0.3, 0.1).unwrap().solve(&mut x);
+                x
+            })
+        };
+        let one = run(1);
+        assert!(one == run(2) && one == run(5), "{cols} x {rows}");
+    }
+}
+
+#[test]
+fn every_way_to_solve_finds_the_same() {
+    for (cols, rows) in LARGER {
+        for (w, g) in [(0.3, 0.0), (0.004, 0.001)] {
+            let b = numbers(8, cols * rows);
+            let mut smoother = Smoother::<f64>::new(cols, rows, w, g).unwrap();
+            let (mut quick, mut plain) = (b.clone(), b);
+            smoother.solve(&mut quick);
+            smoother.solve_by_lines(&mut plain);
+            let largest = plain.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
+            assert!(apart(&quick, &plain) < 1e-11 * largest, "{cols} x {rows}: {:e}", apart(&quick, &plain) / largest);
+        }
+    }
 }
 
 #[test]
@@ -132,6 +151,43 @@ fn four_looks_into_the_table_are_an_entry_of_the_inverse() {
             let column = dense.solve(&unit);
             let entries: Vec<f64> = (0..n).map(|a| green.entry(a as u32, b as u32)).collect();
             assert!(apart(&column, &entries) < 1e-12, "{cols} x {rows}: {:e}", apart(&column, &entries));
+        }
+    }
+}
+
+#[test]
+fn points_between_nodes_are_bilinear_in_the_entries() {
+    for (cols, rows) in SIZES {
+        let smoother = Smoother::<f64>::new(cols, rows, 0.6, 0.0).unwrap();
+        let green = Green::new(&smoother);
+        let xy = numbers(9, 40);
+        let point = |k: usize| {
+            let cell = |v: f64, n: usize| {
+                let at = 0.5 * (v + 1.0) * (n - 1) as f64;
+                let first = (at as usize).min(n.saturating_sub(2));
+                (first as u32, at - first as f64)
+            };
+            let ((col, x), (row, y)) = (cell(xy[2 * k], cols), cell(xy[2 * k + 1], rows));
+            Between { col, row, x, y }
+        };
+        let corners = |p: Between| {
+            let step = |n: usize| u32::from(n > 1);
+            [0, 1, 2, 3].map(|k: u32| {
+                let (i, j) = (k % 2, k / 2);
+                let hat = |k: u32, x: f64| if k == 1 { x } else { 1.0 - x };
+                ((p.row + j * step(rows)) * cols as u32 + p.col + i * step(cols), hat(i, p.x) * hat(j, p.y))
+            })
+        };
+        let nodes = [0, cols * rows - 1, cols * rows / 2].map(|n| Between::node(n as u32, cols, rows));
+        let points: Vec<Between> = (0..20).map(point).chain(nodes).collect();
+        for a in &points {
+            for b in &points {
+                let entry =
+                    |(i, f): (u32, f64)| corners(*b).map(|(j, g)| f * g * green.entry(i, j)).iter().sum::<f64>();
+                let expected: f64 = corners(*a).map(entry).iter().sum();
+                let found = green.between(*a, *b);
+                assert!((found - expected).abs() < 1e-13, "{cols} x {rows}, {a:?}, {b:?}: {found} and {expected}");
+            }
         }
     }
 }
