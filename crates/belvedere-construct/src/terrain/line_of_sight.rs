@@ -93,11 +93,13 @@ impl<'a> SightWalk<'a> {
     }
 
     /// Leaves out the crossings before `tau` (some just before it may still come).
+    #[inline(always)]
     pub(super) fn skip_to(&mut self, tau: f64) {
         self.crossings.iter_mut().for_each(|c| c.skip_to(tau));
     }
 
     /// Appends the crossings from where the walk is up to `tau`.
+    #[inline(always)]
     pub(super) fn samples_to(&mut self, end: f64, out: &mut Vec<SightSample>) {
         loop {
             let next = self.crossings.each_ref().map(|c| c.tau);
@@ -122,6 +124,7 @@ impl<'a> SightWalk<'a> {
     }
 
     /// The edge crossed at `tau` on line `k` of a family (x, y, x - y), and the share of its second node.
+    #[inline(always)]
     fn edge(&self, family: usize, k: f64, tau: f64) -> ([u32; 2], f64) {
         let cols = self.field.cols();
         let last = DVec2::new((cols - 1) as f64, (self.field.rows() - 1) as f64);
@@ -186,11 +189,13 @@ impl Crossings {
         out
     }
 
+    #[inline(always)]
     fn first_from(&self, tau: f64) -> f64 {
         let at = self.start + tau * self.step;
         if self.step > 0.0 { (at - AT_NODE).ceil() } else { (at + AT_NODE).floor() }
     }
 
+    #[inline(always)]
     fn skip_to(&mut self, tau: f64) {
         if tau > self.tau {
             let k = self.first_from(tau);
@@ -199,12 +204,14 @@ impl Crossings {
         }
     }
 
+    #[inline(always)]
     fn set(&mut self) {
         let over = if self.step > 0.0 { self.k > self.last } else { self.k < self.last };
         self.tau = if over { f64::INFINITY } else { (self.k - self.start) / self.step };
     }
 
     /// The line crossed now; goes on to the next one.
+    #[inline(always)]
     fn advance(&mut self) -> f64 {
         let k = self.k;
         self.k += self.step.signum();

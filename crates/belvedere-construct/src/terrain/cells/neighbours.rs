@@ -2,6 +2,8 @@
 
 use super::NO_CELL;
 use super::pairs::Pairs;
+use super::regions::BAND;
+use rayon::prelude::*;
 
 /// Neighbours of each cell in compressed rows.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,17 +16,28 @@ pub(super) struct Neighbours {
 impl Neighbours {
     /// Border = edges of the grid between nodes of two cells; the rim of the terrain and voids are no border.
     pub(super) fn new(cols: usize, labels: &[u32], cells: usize) -> Self {
+        let bands: Vec<Pairs<u32>> = labels
+            .par_chunks(BAND * cols)
+            .enumerate()
+            .map(|(band, rows)| {
+                let mut out = Pairs::new();
+                let mut meet = |a: u32, b: u32| {
+                    if a != b && a != NO_CELL && b != NO_CELL {
+                        *out.entry(a, b) += 1;
+                    }
+                };
+                for row in rows.chunks_exact(cols) {
+                    row.iter().zip(&row[1..]).for_each(|(&a, &b)| meet(a, b));
+                }
+                // Every row with the next one, the first row of the next band included.
+                let below = &labels[(band * BAND * cols + cols).min(labels.len())..];
+                rows.iter().zip(below).for_each(|(&a, &b)| meet(a, b));
+                out
+            })
+            .collect();
         let mut shared = Pairs::new();
-        let mut meet = |a: u32, b: u32| {
-            if a != b && a != NO_CELL && b != NO_CELL {
-                *shared.entry(a, b) += 1u32;
-            }
-        };
-        for row in labels.chunks_exact(cols) {
-            row.windows(2).for_each(|w| meet(w[0], w[1]));
-        }
-        for (&a, &b) in labels.iter().zip(&labels[cols.min(labels.len())..]) {
-            meet(a, b);
+        for ([a, b], edges) in bands.iter().flat_map(Pairs::iter) {
+            *shared.entry(a, b) += edges;
         }
         let both = |([a, b], edges): ([u32; 2], u32)| [(a, b, edges), (b, a, edges)];
         let mut all: Vec<(u32, u32, u32)> = shared.iter().flat_map(both).collect();

@@ -4,18 +4,28 @@
 pub(super) struct Pairs<T> {
     slots: Vec<(u64, T)>,
     used: usize,
+    /// Slot asked for last: neighbours mostly ask for the same.
+    last: usize,
 }
 
 const FREE: u64 = u64::MAX;
 
 impl<T: Copy + Default> Pairs<T> {
     pub(super) fn new() -> Self {
-        Self { slots: vec![(FREE, T::default()); 1 << 10], used: 0 }
+        Self { slots: vec![(FREE, T::default()); 1 << 10], used: 0, last: 0 }
     }
 
     /// The value of a pair, at first `T::default()`.
+    #[inline]
     pub(super) fn entry(&mut self, a: u32, b: u32) -> &mut T {
         let key = u64::from(a.min(b)) << 32 | u64::from(a.max(b));
+        if self.slots[self.last].0 != key {
+            self.last = self.find(key);
+        }
+        &mut self.slots[self.last].1
+    }
+
+    fn find(&mut self, key: u64) -> usize {
         if 2 * self.used >= self.slots.len() {
             self.grow();
         }
@@ -24,7 +34,7 @@ impl<T: Copy + Default> Pairs<T> {
             self.slots[i].0 = key;
             self.used += 1;
         }
-        &mut self.slots[i].1
+        i
     }
 
     fn slot(&self, key: u64) -> usize {

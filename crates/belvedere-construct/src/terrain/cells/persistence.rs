@@ -3,7 +3,8 @@
 use super::super::Field;
 use super::NO_CELL;
 use super::pairs::Pairs;
-use super::regions::Regions;
+use super::regions::{BAND, Regions};
+use rayon::prelude::*;
 use std::cmp::Ordering::{self, Equal};
 
 /// How summits give way to higher ones as the water that surrounds them falls.
@@ -24,20 +25,38 @@ pub(super) struct Kept {
     pub(super) persistence: Vec<f64>,
 }
 
-/// The highest way from one region to another: the lower of two touching nodes, as index + 1; 0 = none yet.
-type Saddle = u32;
+/// The highest way from one region to another: height and index of the lower of two touching nodes. Ordered as nodes are,
+/// the lowest possible one by default.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+struct Saddle {
+    /// Bits of the height such that they are ordered as heights.
+    key: u64,
+    node: u32,
+}
+
+const SIGN: u64 = 1 << 63;
+
+impl Saddle {
+    #[inline]
+    fn new(height: f64, node: usize) -> Self {
+        // -0 and 0 are one height.
+        let bits = (height + 0.0).to_bits();
+        Self { key: if bits & SIGN == 0 { bits | SIGN } else { !bits }, node: node as u32 }
+    }
+
+    fn height(self) -> f64 {
+        f64::from_bits(if self.key & SIGN == 0 { !self.key } else { self.key & !SIGN })
+    }
+}
 
 impl Persistence {
     pub(super) fn new(field: &Field, regions: &Regions) -> Self {
         let order = Order(field.heights());
-        let mut saddles: Vec<([u32; 2], u32)> =
-            saddles(field, regions).iter().map(|(pair, saddle)| (pair, saddle - 1)).collect();
-        saddles.sort_unstable_by(|(p, a), (q, b)| order.compare(*b, *a).then_with(|| p.cmp(q)));
         let count = regions.summits.len();
         let mut out = Self { height: vec![f64::INFINITY; count], across: (0..count as u32).collect() };
         // A component is named after the region of its highest summit.
         let mut parent: Vec<u32> = (0..count as u32).collect();
-        for ([a, b], saddle) in saddles {
+        for (saddle, [a, b]) in saddles(field, regions) {
             let (top_a, top_b) = (find(&mut parent, a), find(&mut parent, b));
             if top_a == top_b {
                 continue;
@@ -46,7 +65,7 @@ impl Persistence {
             let a_stays = order.compare(summit(top_a), summit(top_b)).is_gt();
             let (stays, goes, beyond) = if a_stays { (top_a, top_b, a) } else { (top_b, top_a, b) };
             parent[goes as usize] = stays;
-            out.height[goes as usize] = field.heights()[summit(goes) as usize] - field.heights()[saddle as usize];
+            out.height[goes as usize] = field.heights()[summit(goes) as usize] - saddle.height();
             out.across[goes as usize] = beyond;
         }
         out
@@ -97,46 +116,76 @@ impl Order<'_> {
         // Not `total_cmp`, to which -0 and 0 differ; no height is NaN.
         self.0[a as usize].partial_cmp(&self.0[b as usize]).unwrap_or(Equal).then(a.cmp(&b))
     }
-
-    /// Whether node `a` is higher than node `b`.
-    fn above(self, a: u32, b: u32) -> bool {
-        let (ha, hb) = (self.0[a as usize], self.0[b as usize]);
-        ha > hb || (ha == hb && a > b)
-    }
 }
 
-/// Highest saddle between touching regions, over all eight directions.
-fn saddles(field: &Field, regions: &Regions) -> Pairs<Saddle> {
+/// Highest saddle between touching regions, over all eight directions; the highest first.
+fn saddles(field: &Field, regions: &Regions) -> Vec<(Saddle, [u32; 2])> {
     let (cols, rows) = (field.cols(), field.rows());
-    let order = Order(field.heights());
-    let mut out = Pairs::new();
-    let of = &regions.of_node;
-    let mut meet = |i: usize, j: usize| {
-        let (a, b) = (of[i], of[j]);
-        if a != b && a != NO_CELL && b != NO_CELL {
-            let lower = if order.above(i as u32, j as u32) { j } else { i } as u32;
-            let best: &mut Saddle = out.entry(a, b);
-            if *best == 0 || order.above(lower, *best - 1) {
-                *best = lower + 1;
-            }
-        }
-    };
-    for row in 0..rows {
-        for col in 0..cols {
-            let i = row * cols + col;
-            if col + 1 < cols {
-                meet(i, i + 1);
-            }
-            if row + 1 < rows {
-                meet(i, i + cols);
-                if col + 1 < cols {
-                    meet(i, i + cols + 1);
-                    meet(i + 1, i + cols);
+    let bands: Vec<Pairs<Saddle>> = (0..rows.div_ceil(BAND))
+        .into_par_iter()
+        .map(|band| {
+            let mut out = Pairs::new();
+            for row in band * BAND..(band * BAND + BAND).min(rows) {
+                let line = |row: usize| {
+                    let range = row * cols..((row + 1) * cols).min(rows * cols);
+                    Line { first: range.start, of: &regions.of_node[range.clone()], heights: &field.heights()[range] }
+                };
+                line(row).meet_next(&mut out);
+                if row + 1 < rows {
+                    line(row).meet_below(&line(row + 1), &mut out);
                 }
             }
+            out
+        })
+        .collect();
+    let mut all = Pairs::new();
+    for ([a, b], saddle) in bands.iter().flat_map(Pairs::iter) {
+        let best: &mut Saddle = all.entry(a, b);
+        *best = saddle.max(*best);
+    }
+    let mut all: Vec<_> = all.iter().map(|(pair, saddle)| (saddle, pair)).collect();
+    all.par_sort_unstable_by(|(a, p), (b, q)| b.cmp(a).then_with(|| p.cmp(q)));
+    all
+}
+
+/// A row of the grid.
+struct Line<'a> {
+    /// Index of its first node.
+    first: usize,
+    of: &'a [u32],
+    heights: &'a [f64],
+}
+
+impl Line<'_> {
+    fn meet_next(&self, out: &mut Pairs<Saddle>) {
+        for c in 1..self.of.len() {
+            self.meet(c - 1, self, c, out);
         }
     }
-    out
+
+    fn meet_below(&self, below: &Self, out: &mut Pairs<Saddle>) {
+        let last = self.of.len() - 1;
+        for c in 0..last {
+            self.meet(c, below, c, out);
+            self.meet(c, below, c + 1, out);
+            self.meet(c + 1, below, c, out);
+        }
+        self.meet(last, below, last, out);
+    }
+
+    /// Node `i` touches node `j`, which comes later in this row or in the next one.
+    #[inline(always)]
+    fn meet(&self, i: usize, other: &Self, j: usize, out: &mut Pairs<Saddle>) {
+        let (a, b) = (self.of[i], other.of[j]);
+        if a != b && a != NO_CELL && b != NO_CELL {
+            let (here, there) = (self.heights[i], other.heights[j]);
+            // Of equal heights the smaller index is lower: this row's.
+            let saddle =
+                if here <= there { Saddle::new(here, self.first + i) } else { Saddle::new(there, other.first + j) };
+            let best = out.entry(a, b);
+            *best = saddle.max(*best);
+        }
+    }
 }
 
 fn find(parent: &mut [u32], mut r: u32) -> u32 {

@@ -81,7 +81,7 @@ impl Naive {
         points: &[ReferencePoint],
     ) -> Self {
         let mut pass = queue::Pass::new(field, cells, settings, eye, points);
-        pass.run(&trace::Skipping { field, pyramid });
+        pass.run(&trace::Skipping { field, cells, pyramid });
         pass.finish()
     }
 

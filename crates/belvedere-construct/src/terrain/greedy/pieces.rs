@@ -21,6 +21,11 @@ impl Pieces {
         }
     }
 
+    /// Nothing of the cell that was at most `h` high is higher now.
+    pub(super) fn highest(&self, h: f64) -> f64 {
+        self.affine.iter().map(|a| a.of(h)).reduce(f64::max).unwrap_or(h)
+    }
+
     /// Whether anything is done.
     pub fn changed(&self) -> bool {
         !self.affine.is_empty()

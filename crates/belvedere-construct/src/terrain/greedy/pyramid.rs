@@ -1,12 +1,13 @@
 //! Largest heights of ever larger blocks, by which a line of sight skips ground that it clears.
 
 use super::super::Field;
+use super::super::cells::BLOCKS;
 use super::super::line_of_sight::{SightSample, SightWalk};
 use belvedere_core::DVec2;
 use rayon::prelude::*;
 
 /// Sides of the blocks, cells.
-const SIDES: [usize; 3] = [4, 16, 64];
+const SIDES: [usize; 3] = [BLOCKS[0], BLOCKS[1], 64];
 
 /// Largest heights of the square blocks of the ground (a maximum mipmap, Tevs et al. 2008, in steps of four).
 ///
@@ -19,6 +20,8 @@ pub struct Pyramid {
 #[derive(Debug, Clone, PartialEq)]
 struct Level {
     side: f64,
+    /// One over `side`.
+    per_side: f64,
     cols: usize,
     rows: usize,
     max: Vec<f32>,
@@ -37,26 +40,31 @@ impl Pyramid {
 
     /// Appends the crossings of a line of sight (`height`: at tau 0 and 1) between `from` and its end with ground that
     /// might be higher than it by more than `-clearance`; all of those, and some others.
+    ///
+    /// * `now`: highest ground in a block (level, index) as it is now, or a bound of it, from its untouched highest ground.
+    #[inline(always)]
     pub(super) fn near_misses(
         &self,
         walk: &mut SightWalk<'_>,
         start: DVec2,
         height: [f64; 2],
-        clearance: f64,
-        from: f64,
+        (clearance, from): (f64, f64),
+        now: impl Fn(usize, usize, f64) -> f64,
         out: &mut Vec<SightSample>,
     ) {
         let (t0, t1) = walk.span();
         // Small enough to be nothing, large enough to step over a border in f64.
         const NUDGE: f64 = 1e-10;
         let dir = walk.dir();
+        let per_cell = dir.recip();
         let at = |t: f64| height[0] + t * (height[1] - height[0]) - clearance;
         let top = self.levels.len() - 1;
         let (mut t, mut level) = (t0.max(from), 0);
         while t < t1 {
-            let (max, exit) = self.levels[level].block(start, dir, t + NUDGE);
+            let (block, exit) = self.levels[level].block(start, dir, per_cell, t + NUDGE);
             let exit = exit.max(t + NUDGE).min(t1);
-            let clear = f64::from(max) <= at(t).min(at(exit));
+            let (max, limit) = (f64::from(self.levels[level].max[block]), at(t).min(at(exit)));
+            let clear = max <= limit || now(level, block, max) <= limit;
             if !clear && level > 0 {
                 level -= 1;
                 continue;
@@ -73,15 +81,18 @@ impl Pyramid {
 }
 
 impl Level {
-    /// Largest height of the block at `t`, and where the line leaves it.
-    fn block(&self, start: DVec2, dir: DVec2, t: f64) -> (f32, f64) {
-        let at = (start + t * dir) / self.side;
+    /// The block at `t`, and where the line leaves it.
+    #[inline(always)]
+    fn block(&self, start: DVec2, dir: DVec2, per_cell: DVec2, t: f64) -> (usize, f64) {
+        // Sides are powers of two.
+        let at = (start + t * dir) * self.per_side;
         let index = |x: f64, n: usize| (x.max(0.0) as usize).min(n - 1);
         let (col, row) = (index(at.x, self.cols), index(at.y, self.rows));
-        let exit = |p: f64, d: f64, i: usize| {
-            if d == 0.0 { f64::INFINITY } else { ((i + usize::from(d > 0.0)) as f64 * self.side - p) / d }
+        let exit = |axis: usize, i: usize| {
+            let border = (i + usize::from(dir[axis] > 0.0)) as f64 * self.side;
+            if dir[axis] == 0.0 { f64::INFINITY } else { (border - start[axis]) * per_cell[axis] }
         };
-        (self.max[row * self.cols + col], exit(start.x, dir.x, col).min(exit(start.y, dir.y, row)))
+        (row * self.cols + col, exit(0, col).min(exit(1, row)))
     }
 }
 
@@ -99,7 +110,7 @@ fn finest(field: &Field) -> Level {
             }
         }
     });
-    Level { side: side as f64, cols, rows, max }
+    Level { side: side as f64, per_side: 1.0 / side as f64, cols, rows, max }
 }
 
 fn coarser(fine: &Level, side: f64) -> Level {
@@ -112,5 +123,5 @@ fn coarser(fine: &Level, side: f64) -> Level {
             max[to] = max[to].max(fine.max[row * fine.cols + col]);
         }
     }
-    Level { side, cols, rows, max }
+    Level { side, per_side: 1.0 / side, cols, rows, max }
 }

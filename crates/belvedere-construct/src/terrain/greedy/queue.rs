@@ -6,6 +6,7 @@ use super::equations::{Affine, Price, blended, scale_to_clear, shift_to_clear};
 use super::trace::{Hit, Sampler, Target, hits};
 use super::{BACKWARD, CLEARANCE, GreedyCounters, NEAR, Naive, Pieces};
 use belvedere_core::{DVec2, DVec3};
+use rayon::prelude::*;
 use std::collections::BinaryHeap;
 
 /// Heights that differ by less than this share of the relief are equal.
@@ -34,6 +35,17 @@ impl PartialOrd for Entry {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         Some(self.cmp(other))
     }
+}
+
+/// Points whose samples are taken at the same time.
+const AHEAD: usize = 64;
+
+/// Samples that are taken ahead.
+struct Ahead {
+    /// The whole lines of all points that are still to be sampled, the farthest last.
+    order: Vec<Entry>,
+    /// With the height of the point for which they hold.
+    of_point: Vec<Option<(f64, Vec<SightSample>)>>,
 }
 
 pub(super) struct Pass<'a> {
@@ -90,10 +102,35 @@ impl<'a> Pass<'a> {
 
     pub(super) fn run(&mut self, sampler: &dyn Sampler) {
         (0..self.targets.len()).for_each(|point| self.enqueue(point));
+        let mut order: Vec<Entry> = self.heap.iter().copied().collect();
+        order.sort_unstable();
+        let mut ahead = Ahead { order, of_point: vec![None; self.targets.len()] };
         let (mut samples, mut found) = (Vec::new(), Vec::new());
         while let Some(entry) = self.heap.pop() {
             self.counters.traces += 1;
-            self.trace(entry, sampler, &mut samples, &mut found);
+            self.samples(&entry, sampler, &mut ahead, &mut samples);
+            self.trace(entry, &samples, &mut found);
+        }
+    }
+
+    /// Samples of a line of sight. Those of the next points in the first order are taken at the same time on all cores: as
+    /// ground is only ever lowered, they hold all that later ones would, until the point itself is lowered.
+    fn samples(&self, entry: &Entry, sampler: &dyn Sampler, ahead: &mut Ahead, samples: &mut Vec<SightSample>) {
+        let sight = |point: usize| self.targets[point].sight(self.field, &self.pieces, self.eye);
+        if ahead.order.last().is_some_and(|next| next <= entry) {
+            let batch = ahead.order.split_off(ahead.order.len().saturating_sub(AHEAD));
+            let of = |next: &Entry| {
+                let (sight, mut samples) = (sight(next.point), Vec::new());
+                sampler.samples(&sight, &self.pieces, &mut samples);
+                (sight.height[0], samples)
+            };
+            let found: Vec<_> = batch.par_iter().with_min_len(AHEAD / 16).map(of).collect();
+            batch.iter().zip(found).for_each(|(next, found)| ahead.of_point[next.point] = Some(found));
+        }
+        let sight = sight(entry.point);
+        match ahead.of_point[entry.point].take() {
+            Some((height, found)) if entry.whole && height == sight.height[0] => *samples = found,
+            _ => sampler.samples(&sight, &self.pieces, samples),
         }
     }
 
@@ -112,14 +149,13 @@ impl<'a> Pass<'a> {
     }
 
     /// Follows a line of sight and clears it, cell by cell.
-    fn trace(&mut self, entry: Entry, sampler: &dyn Sampler, samples: &mut Vec<SightSample>, found: &mut Vec<Hit>) {
+    fn trace(&mut self, entry: Entry, samples: &[SightSample], found: &mut Vec<Hit>) {
         let target = self.targets[entry.point];
         if entry.whole {
             self.waiting[entry.point] = false;
             self.unresolved[entry.point] = false;
         }
         let sight = target.sight(self.field, &self.pieces, self.eye);
-        sampler.samples(&sight, samples);
         hits(samples, self.field, self.cells, &self.pieces, &sight, (entry.below, self.slack), found);
         // Clearing a cell changes nothing in the others.
         while let Some(&first) = found.first() {

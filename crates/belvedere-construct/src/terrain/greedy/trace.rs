@@ -4,6 +4,7 @@ use super::super::line_of_sight::{SightSample, SightWalk, guard_tau};
 use super::super::{Cells, Field, NO_CELL, ReferencePoint};
 use super::{CLEARANCE, CLEARANCE_GROWS, Pieces, Pyramid};
 use belvedere_core::DVec2;
+use pulp::{Arch, Simd, WithSimd};
 
 /// The line of sight of one point as the ground is now. Heights are over the datum.
 pub(super) struct Sight {
@@ -41,23 +42,49 @@ pub(super) struct Hit {
 }
 
 /// Finds the samples of a line of sight that may lie too high.
-pub(super) trait Sampler {
-    /// All samples whose untouched ground is higher than the line of sight allows, in order, and possibly others.
-    fn samples(&self, sight: &Sight, out: &mut Vec<SightSample>);
+pub(super) trait Sampler: Sync {
+    /// All samples whose ground is higher than the line of sight allows, in order, and possibly others.
+    ///
+    /// * `pieces`: what is done to each cell.
+    fn samples(&self, sight: &Sight, pieces: &[Pieces], out: &mut Vec<SightSample>);
 }
 
 /// Leaves out what clears the blocks of a pyramid.
 pub(super) struct Skipping<'a> {
     pub(super) field: &'a Field,
+    pub(super) cells: &'a Cells,
     pub(super) pyramid: &'a Pyramid,
 }
 
 impl Sampler for Skipping<'_> {
-    fn samples(&self, sight: &Sight, out: &mut Vec<SightSample>) {
+    fn samples(&self, sight: &Sight, pieces: &[Pieces], out: &mut Vec<SightSample>) {
         out.clear();
-        let Some(mut walk) = SightWalk::new(self.field, sight.from, sight.eye, false) else { return };
-        let height = sight.height.map(|h| h + self.field.datum());
-        self.pyramid.near_misses(&mut walk, sight.from, height, sight.clearance, sight.guard, out);
+        Arch::new().dispatch(Skip { all: self, sight, pieces, out });
+    }
+}
+
+/// With the instructions at hand: rounding is a call without them.
+struct Skip<'a> {
+    all: &'a Skipping<'a>,
+    sight: &'a Sight,
+    pieces: &'a [Pieces],
+    out: &'a mut Vec<SightSample>,
+}
+
+impl WithSimd for Skip<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { all: Skipping { field, cells, pyramid }, sight, pieces, out } = self;
+        let Some(mut walk) = SightWalk::new(field, sight.from, sight.eye, false) else { return };
+        let datum = field.datum();
+        let now = |level: usize, block: usize, max: f64| {
+            let cell = cells.of_block(level, block);
+            if cell == NO_CELL { max } else { pieces[cell as usize].highest(max - datum) + datum }
+        };
+        let height = sight.height.map(|h| h + datum);
+        pyramid.near_misses(&mut walk, sight.from, height, (sight.clearance, sight.guard), now, out);
     }
 }
 
