@@ -8,7 +8,7 @@ pub(super) struct Cholesky {
 }
 
 /// Sum of products in eight lanes, always in the same order.
-#[inline]
+#[inline(always)]
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut lanes = [0.0f64; 8];
     let (wide_a, rest_a) = a.as_chunks::<8>();
@@ -40,8 +40,30 @@ impl Cholesky {
         }
     }
 
+    /// Drops row `k`: its column is turned into the ones behind it, by one plane rotation each. O((size - k)^2).
+    pub(super) fn remove(&mut self, k: usize) {
+        let mut rotations: Vec<(f64, f64)> = Vec::with_capacity(self.size - k);
+        for i in k + 1..self.size {
+            let (from, to) = (start(i), start(i - 1));
+            let mut x = self.packed[from + k];
+            self.packed.copy_within(from..from + k, to);
+            self.packed.copy_within(from + k + 1..from + i + 1, to + k);
+            let rest = &mut self.packed[to + k..to + i];
+            for (l, (c, s)) in rest.iter_mut().zip(&rotations) {
+                (*l, x) = (c * *l + s * x, c * x - s * *l);
+            }
+            let diagonal = &mut rest[i - k - 1];
+            let length = diagonal.hypot(x);
+            rotations.push((*diagonal / length, x / length));
+            *diagonal = length;
+        }
+        self.size -= 1;
+        self.packed.truncate(start(self.size));
+    }
+
     /// Appends a row: its products with the rows already there, then its own square. A pivot at or below `floor` times
     /// that square (the row depends on the others) is set to it.
+    #[inline(always)]
     pub(super) fn push(&mut self, products: impl Iterator<Item = f64>, square: f64, floor: f64) {
         let (n, first) = (self.size, self.packed.len());
         self.packed.extend(products);
@@ -57,6 +79,7 @@ impl Cholesky {
     }
 
     /// Solves `L L^T x = b` in place.
+    #[inline(always)]
     pub(super) fn solve(&self, b: &mut [f64]) {
         for i in 0..self.size {
             let row = &self.packed[start(i)..start(i + 1)];
@@ -96,5 +119,26 @@ mod tests {
             assert!((x - b).abs() < 1e-12, "{x} and {b}");
         }
         assert_eq!(factor.size(), n);
+    }
+
+    #[test]
+    fn a_factor_without_a_row_is_that_of_the_others() {
+        let n = 12;
+        let a = |i: usize, j: usize| 1.0 / (1.0 + i.abs_diff(j) as f64) + f64::from(u8::from(i == j));
+        let of = |rows: &[usize]| {
+            let mut factor = Cholesky::default();
+            for (k, &i) in rows.iter().enumerate() {
+                factor.push(rows[..k].iter().map(|&j| a(i, j)), a(i, i), 0.0);
+            }
+            factor
+        };
+        for gone in [0, 5, n - 1] {
+            let mut factor = of(&(0..n).collect::<Vec<_>>());
+            factor.remove(gone);
+            let expected = of(&(0..n).filter(|i| *i != gone).collect::<Vec<_>>());
+            assert_eq!((factor.size(), factor.packed.len()), (n - 1, expected.packed.len()));
+            let apart = factor.packed.iter().zip(&expected.packed).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-14, "without {gone}: {apart:e}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! The dual program: `min 1/2 m^T K m - c^T m` over `m >= 0`.
 
 use super::cholesky::{Cholesky, dot};
+use pulp::{Arch, Simd, WithSimd};
 
 /// A pivot below this share of its diagonal counts as dependent.
 const DEPENDENT: f64 = 1e-10;
@@ -18,6 +19,8 @@ pub(super) struct Dual {
     order: Vec<usize>,
     active: Vec<bool>,
     factor: Cholesky,
+    /// Rows of the last solution.
+    solved: usize,
 }
 
 fn start(row: usize) -> usize {
@@ -75,12 +78,15 @@ impl Dual {
     /// Block principal pivoting while it makes progress, which it mostly does; else the primal active-set method, which
     /// never leaves the feasible multipliers and ends.
     ///
-    /// Rows are met to within `tolerance`, in units of the rows.
+    /// Rows are met to within `tolerance`, in units of the rows. When only a few rows joined a solution, descending keeps
+    /// most of the factor.
     pub(super) fn solve(&mut self, tolerance: f64) {
         let begin: Vec<f64> = self.m.iter().map(|m| m.max(0.0)).collect();
-        if !self.pivot_blocks(tolerance) {
+        let few = self.solved > 0 && 4 * (self.len() - self.solved) < self.order.len();
+        if few || !self.pivot_blocks(tolerance) {
             self.descend(begin, tolerance);
         }
+        self.solved = self.len();
     }
 
     fn pivot_blocks(&mut self, tolerance: f64) -> bool {
@@ -160,14 +166,27 @@ impl Dual {
         for &i in rows {
             self.active[i] = !self.active[i];
         }
-        let first = self.order.iter().position(|&i| !self.active[i]).unwrap_or(self.order.len());
-        self.factor.truncate(first);
+        let gone: Vec<usize> = (0..self.order.len()).filter(|&k| !self.active[self.order[k]]).collect();
+        let (n, known) = (self.order.len(), self.factor.size());
+        // A rotation takes about eight times the time of a product.
+        let rotated: usize = gone.iter().map(|k| 8 * known.saturating_sub(*k).pow(2) / 2).sum();
+        let renewed: usize = gone.first().map_or(0, |first| (n.pow(3) - first.pow(3)) / 6);
+        if rotated < renewed {
+            gone.iter().rev().filter(|k| **k < known).for_each(|k| self.factor.remove(*k));
+        } else if let Some(first) = gone.first() {
+            self.factor.truncate(*first);
+        }
         self.order.retain(|&i| self.active[i]);
         self.order.extend(rows.iter().filter(|&&i| self.active[i]));
     }
 
     /// Multipliers that meet the active rows exactly.
     fn solution(&mut self) -> Vec<f64> {
+        Arch::new().dispatch(Solution(self))
+    }
+
+    #[inline(always)]
+    fn find_solution(&mut self) -> Vec<f64> {
         let mut factor = std::mem::take(&mut self.factor);
         for k in factor.size()..self.order.len() {
             let row = self.order[k];
@@ -186,6 +205,11 @@ impl Dual {
 
     /// `K m - c`.
     fn gradient(&self, out: &mut Vec<f64>) {
+        Arch::new().dispatch(Gradient(self, out));
+    }
+
+    #[inline(always)]
+    fn find_gradient(&self, out: &mut Vec<f64>) {
         out.clear();
         out.extend(self.excess.iter().map(|c| -c));
         for i in 0..self.len() {
@@ -205,6 +229,30 @@ impl Dual {
         let mut g = Vec::new();
         self.gradient(&mut g);
         0.5 * self.m.iter().zip(g.iter().zip(&self.excess)).map(|(m, (g, c))| m * (g + c)).sum::<f64>()
+    }
+}
+
+/// With the widest registers at hand.
+struct Solution<'a>(&'a mut Dual);
+
+impl WithSimd for Solution<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Vec<f64> {
+        self.0.find_solution()
+    }
+}
+
+/// Likewise.
+struct Gradient<'a>(&'a Dual, &'a mut Vec<f64>);
+
+impl WithSimd for Gradient<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.0.find_gradient(self.1);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The norm in which displacements are measured.
 
-use crate::terrain::smooth::{Green, Smoother};
+use crate::terrain::smooth::{Between, Green, Smoother};
 
 /// `H = L^2 + (w^2 + g^2) I` with its inverse, as a whole and entry by entry. An entry costs four look-ups and no solve,
 /// which is what makes the dual program cheap.
@@ -21,9 +21,9 @@ impl Metric {
         self.smoother.solve(v);
     }
 
-    /// Entry (a, b) of the inverse of H; `a` and `b` are node indices.
+    /// Inverse of H between the bilinear values at two points.
     #[inline]
-    pub(super) fn inverse_entry(&self, a: u32, b: u32) -> f64 {
-        self.green.entry(a, b)
+    pub(super) fn between(&self, a: Between, b: Between) -> f64 {
+        self.green.between(a, b)
     }
 }

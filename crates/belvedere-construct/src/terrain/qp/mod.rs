@@ -5,11 +5,13 @@
 //! program is convex and its solution is the only one. Not in the paper.
 
 mod bent;
+mod bundle;
 mod cholesky;
 mod dual;
 mod metric;
 mod pool;
 mod problem;
+mod rescue;
 mod row;
 mod seen;
 mod solver;
@@ -21,4 +23,5 @@ pub use problem::{
     Candidate, Certificate, LinesOfSight, QpError, QpOptions, QpProblem, QpResult, Reason, SolvedRow, StraightSight,
     Unresolved,
 };
+pub use rescue::Rescued;
 pub use solver::QpSolver;

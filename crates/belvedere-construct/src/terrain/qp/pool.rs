@@ -85,6 +85,8 @@ impl Pool {
                 out.push(Kept { place, multiplier, idle });
             }
         }
+        // What leaves first comes last, so that most of the factor stays.
+        out.sort_by(|a, b| b.multiplier.total_cmp(&a.multiplier));
         out
     }
 

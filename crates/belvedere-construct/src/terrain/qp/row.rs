@@ -1,6 +1,7 @@
 //! Rows of the program: `a u <= bound`.
 
 use super::metric::Metric;
+use crate::terrain::smooth::Between;
 use belvedere_core::DVec2;
 
 /// What a row asks for.
@@ -20,13 +21,16 @@ pub(super) struct Row {
     pub(super) len: usize,
     pub(super) bound: f64,
     pub(super) asks: Asks,
+    /// The same as bilinear values at one or two points, with their factors.
+    pub(super) points: [(f64, Between); 2],
 }
 
 impl Row {
-    pub(super) fn ceiling(node: u32, bound: f64) -> Self {
+    /// * `at`: the node.
+    pub(super) fn ceiling(node: u32, at: Between, bound: f64) -> Self {
         let (mut nodes, mut weights) = ([0; 8], [0.0; 8]);
         (nodes[0], weights[0]) = (node, 1.0);
-        Self { nodes, weights, len: 1, bound, asks: Asks::Ceiling(node) }
+        Self { nodes, weights, len: 1, bound, asks: Asks::Ceiling(node), points: [(1.0, at), (0.0, at)] }
     }
 
     pub(super) fn is_ceiling(&self) -> bool {
@@ -45,9 +49,10 @@ impl Row {
     /// `a H^-1 b` for the rows a and b.
     pub(super) fn product(&self, other: &Self, metric: &Metric) -> f64 {
         let mut sum = 0.0;
-        for (a, wa) in self.entries() {
-            let inner: f64 = other.entries().map(|(b, wb)| wb * metric.inverse_entry(a, b)).sum();
-            sum += wa * inner;
+        for (f, a) in self.points.iter().filter(|p| p.0 != 0.0) {
+            for (g, b) in other.points.iter().filter(|p| p.0 != 0.0) {
+                sum += f * g * metric.between(*a, *b);
+            }
         }
         sum
     }

@@ -69,7 +69,9 @@ impl Seen {
             (nodes[k + 4], weights[k + 4]) = (self.nodes[k], -rest * self.weights[k]);
         }
         let bound = touch.z - rest * self.displacement(&surface.u) - touch.ground - margin * fade(touch.tau);
-        Row { nodes, weights, len: 8, bound, asks: Asks::Sight { candidate: self.index, at: touch.at, tau: touch.tau } }
+        let points = [(1.0, surface.lattice.between(touch.at)), (-rest, surface.lattice.between(self.grid))];
+        let asks = Asks::Sight { candidate: self.index, at: touch.at, tau: touch.tau };
+        Row { nodes, weights, len: 8, bound, asks, points }
     }
 
     /// The row of this candidate where the ground comes nearest to its line around `at`.

@@ -1,5 +1,6 @@
 //! Rows are found where they are missed, a few per round, until none is missed.
 
+use super::bundle::{Bundle, Rise};
 use super::metric::Metric;
 use super::pool::{IDLE, Kept, Place, Pool};
 use super::problem::{QpError, QpOptions, QpProblem, QpResult, Reason, Unresolved};
@@ -8,7 +9,7 @@ use super::seen::Seen;
 use super::surface::{Lattice, Surface};
 use super::walk::{Clearance, Touch, fade};
 use crate::terrain::Field;
-use crate::terrain::smooth::{Hierarchy, Smoother};
+use crate::terrain::smooth::{Between, Hierarchy, Smoother};
 use belvedere_core::DVec2;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -20,6 +21,9 @@ const EXACT: f64 = 1e-6;
 const CEILING_ROUNDS: usize = 40;
 /// The ground may sink to this many times relief and height of the eye; beyond, rows become soft.
 const DEPTH: f64 = 4.0;
+/// Rounds of a cold frame in which only every so many lines of sight are followed; a warm frame has one.
+const ROUGH_ROUNDS: usize = 4;
+const ROUGH: usize = 4;
 /// Price of slack where rows contradict each other.
 const LAST_PRICE: f64 = 1e3;
 
@@ -27,9 +31,10 @@ const LAST_PRICE: f64 = 1e3;
 #[derive(Debug, Clone)]
 pub struct QpSolver {
     metric: Metric,
-    surface: Surface,
+    pub(super) hierarchy: Hierarchy,
+    pub(super) surface: Surface,
     options: QpOptions,
-    kept: Vec<Kept>,
+    pub(super) kept: Vec<Kept>,
 }
 
 /// What one frame works with.
@@ -37,6 +42,7 @@ struct Frame<'a> {
     problem: QpProblem<'a>,
     target: Vec<f64>,
     seen: Vec<Seen>,
+    bundles: Vec<Bundle>,
     pool: Pool,
     clearance: Clearance,
     /// Inverse price of slack, 0 = none.
@@ -50,7 +56,7 @@ impl QpSolver {
     pub fn new(field: &Field, hierarchy: &Hierarchy, smoother: Smoother, options: QpOptions) -> Self {
         let lattice = Lattice { cols: hierarchy.cols(), rows: hierarchy.rows(), step: hierarchy.step() };
         let surface = Surface::new(field.heights(), field.cols(), field.rows(), lattice);
-        Self { metric: Metric::new(smoother), surface, options, kept: Vec::new() }
+        Self { metric: Metric::new(smoother), hierarchy: hierarchy.clone(), surface, options, kept: Vec::new() }
     }
 
     /// Other ground on the same grid (in mode `paper+qp` detail may be scaled).
@@ -66,6 +72,11 @@ impl QpSolver {
     /// Parameters of the next frames.
     pub fn set_options(&mut self, options: QpOptions) {
         self.options = options;
+    }
+
+    pub(super) fn clearance(&self) -> Clearance {
+        let QpOptions { margin, tolerance, guard, .. } = self.options;
+        Clearance { margin, tolerance, guard }
     }
 
     /// Forgets the frames before.
@@ -125,19 +136,23 @@ impl QpSolver {
             problem: *problem,
             target: problem.target.map_or_else(|| vec![0.0; nodes], <[f64]>::to_vec),
             seen: Seen::all(problem, &self.surface),
+            bundles: Vec::new(),
             pool: Pool::default(),
-            clearance: Clearance { margin: o.margin, tolerance: o.tolerance, guard: o.guard },
+            clearance: self.clearance(),
             soft: o.slack_price.map_or(0.0, |price| 1.0 / price),
         };
         let mut out = QpResult::default();
         frame.drop_unseen(o.guard, &mut out.unresolved);
+        frame.bundles = Bundle::all(&frame.seen, problem.sight.straight().is_some());
         self.take_up(&mut frame);
         out.kept = frame.pool.rows.len();
+        let rough = if out.kept > 0 { 1 } else { ROUGH_ROUNDS };
         let depth = self.depth(&frame);
         let mut missed = Vec::new();
         while out.rounds < o.rounds {
             self.settle(&mut frame);
-            missed = frame.missed(&self.surface);
+            let first = if out.rounds < rough { frame.missed(&self.surface, ROUGH) } else { Vec::new() };
+            missed = if first.is_empty() { frame.missed(&self.surface, 1) } else { first };
             out.rounds += 1;
             let new = frame.thinned(&self.surface, &missed, out.rounds);
             let deepest = self.surface.u.iter().copied().fold(0.0, f64::min);
@@ -194,7 +209,8 @@ impl QpSolver {
     }
 
     fn ceiling_row(&self, frame: &Frame, node: u32) -> Row {
-        Row::ceiling(node, self.ceiling(frame, node as usize))
+        let at = Between::node(node, self.surface.lattice.cols, self.surface.lattice.rows);
+        Row::ceiling(node, at, self.ceiling(frame, node as usize))
     }
 
     fn push(&self, frame: &mut Frame, row: Row, begin: (f64, u32)) {
@@ -226,6 +242,7 @@ impl QpSolver {
                 self.push(frame, row, (0.0, IDLE));
             }
         }
+        frame.moved(&self.surface, &u);
         self.surface.displace(&u);
     }
 
@@ -293,16 +310,29 @@ impl Frame<'_> {
         });
     }
 
-    /// All places where the asked clearance is missed; first the index in `seen`.
-    fn missed(&self, surface: &Surface) -> Vec<(usize, Touch)> {
-        let of = |(k, s): (usize, &Seen)| {
-            let mut touches: Vec<(usize, Touch)> = Vec::new();
-            for chord in s.line(s.displacement(&surface.u)) {
-                chord.walk(surface, s.grid, &self.clearance, &mut |t| touches.push((k, t)));
+    /// The displacement changes: what room that takes.
+    fn moved(&mut self, surface: &Surface, after: &[f64]) {
+        let change: Vec<f64> = surface.u.iter().zip(after).map(|(b, a)| a - b).collect();
+        let rise = Rise::new(&surface.lattice, &change);
+        let seen = &self.seen;
+        self.bundles.par_iter_mut().with_min_len(32).for_each(|b| b.moved(seen, &change, &rise));
+    }
+
+    /// All places where the asked clearance is missed; first the index in `seen`. Lines that still have room are not
+    /// followed.
+    ///
+    /// * `every`: of those lines only every so many.
+    fn missed(&mut self, surface: &Surface, every: usize) -> Vec<(usize, Touch)> {
+        let (seen, clearance) = (&self.seen, &self.clearance);
+        let of = |bundle: &mut Bundle| {
+            if bundle.room > 0.0 {
+                return Vec::new();
             }
+            let (touches, room) = bundle.walk(seen, surface, clearance, every);
+            bundle.room = if every == 1 && touches.is_empty() { room } else { -1.0 };
             touches
         };
-        self.seen.par_iter().enumerate().with_min_len(64).flat_map_iter(of).collect()
+        self.bundles.par_iter_mut().with_min_len(8).flat_map_iter(of).collect()
     }
 
     /// Rows for the worst of each bunch of neighbours; bunches get smaller from round to round.

@@ -1,5 +1,6 @@
 //! The ground as drawn: two triangles per cell, displaced by the bilinear grid of the solver; and what it stays below.
 
+use crate::terrain::smooth::Between;
 use belvedere_core::DVec2;
 
 /// Cells per side of the smallest block whose bound follows the displacement.
@@ -19,14 +20,19 @@ pub(super) struct Lattice {
 impl Lattice {
     /// Nodes and weights of the bilinear value at grid position `g`.
     pub(super) fn weights(&self, g: DVec2) -> ([u32; 4], [f64; 4]) {
-        let s = g / self.step;
-        let col = (s.x.max(0.0) as usize).min(self.cols.saturating_sub(2));
-        let row = (s.y.max(0.0) as usize).min(self.rows.saturating_sub(2));
-        let (a, b) = (s.x - col as f64, s.y - row as f64);
-        let i = row * self.cols + col;
+        let Between { col, row, x: a, y: b } = self.between(g);
+        let i = row as usize * self.cols + col as usize;
         let (right, below) = (usize::from(self.cols > 1), if self.rows > 1 { self.cols } else { 0 });
         let nodes = [i, i + right, i + below, i + below + right].map(|n| n as u32);
         (nodes, [(1.0 - a) * (1.0 - b), a * (1.0 - b), (1.0 - a) * b, a * b])
+    }
+
+    /// Grid position `g` by cell.
+    pub(super) fn between(&self, g: DVec2) -> Between {
+        let s = g / self.step;
+        let col = (s.x.max(0.0) as usize).min(self.cols.saturating_sub(2));
+        let row = (s.y.max(0.0) as usize).min(self.rows.saturating_sub(2));
+        Between { col: col as u32, row: row as u32, x: s.x - col as f64, y: s.y - row as f64 }
     }
 
     pub(super) fn at(&self, u: &[f64], g: DVec2) -> f64 {
@@ -42,6 +48,8 @@ struct Level {
     rows: usize,
     /// Cells per side of a block.
     size: usize,
+    /// One over `size`.
+    scale: f64,
     highest: Vec<f64>,
 }
 
@@ -51,8 +59,7 @@ impl Level {
         let (lo, hi) = (a.min(b), a.max(b));
         let extent = (hi - lo).max_element();
         let level = levels.iter().find(|l| l.size as f64 >= extent).unwrap_or(&levels[levels.len() - 1]);
-        let scale = 1.0 / level.size as f64;
-        let index = |v: f64, n: usize| ((v * scale).max(0.0) as usize).min(n - 1);
+        let index = |v: f64, n: usize| ((v * level.scale).max(0.0) as usize).min(n - 1);
         let (x0, x1) = (index(lo.x, level.cols), index(hi.x, level.cols));
         let (y0, y1) = (index(lo.y, level.rows), index(hi.y, level.rows));
         let mut most = f64::NEG_INFINITY;
@@ -83,7 +90,13 @@ impl Surface {
         let mut levels = Vec::new();
         let mut size = BLOCK;
         loop {
-            levels.push(Level { cols: c, rows: r, size, highest: vec![f64::INFINITY; c * r] });
+            levels.push(Level {
+                cols: c,
+                rows: r,
+                size,
+                scale: 1.0 / size as f64,
+                highest: vec![f64::INFINITY; c * r],
+            });
             if c == 1 && r == 1 {
                 break;
             }
@@ -114,7 +127,7 @@ impl Surface {
         for size in STILL {
             let (cols, rows) = ((self.cols - 1).div_ceil(size).max(1), (self.rows - 1).div_ceil(size).max(1));
             let highest = (0..cols * rows).map(|b| self.highest(b % cols * size, b / cols * size, size)).collect();
-            self.still.push(Level { cols, rows, size, highest });
+            self.still.push(Level { cols, rows, size, scale: 1.0 / size as f64, highest });
         }
     }
 

@@ -45,10 +45,31 @@ pub(super) struct Touch {
     pub(super) excess: f64,
 }
 
+/// What is found along a part of a line.
+pub(super) struct Found {
+    /// The place that misses most.
+    pub(super) worst: Option<Touch>,
+    /// By how much the ground may rise before another place can be missed.
+    pub(super) room: f64,
+}
+
+impl Found {
+    fn new() -> Self {
+        Self { worst: None, room: f64::INFINITY }
+    }
+}
+
 /// Longest part that is walked without asking the bounds again, cells.
-const LEAF: f64 = 8.0;
+pub(super) const LEAF: f64 = 8.0;
 /// Longest part whose crossings are visited without asking the finest bounds, cells.
 const FINE: f64 = 3.0;
+
+/// Largest whole number up to `x`, a coordinate; where there is no instruction for it, `f64::floor` is a call.
+#[inline]
+fn floor(x: f64) -> f64 {
+    let whole = x as i64 as f64;
+    if whole > x { whole - 1.0 } else { whole }
+}
 
 impl Chord {
     fn at(&self, t: f64) -> DVec2 {
@@ -87,16 +108,25 @@ impl Chord {
         (from < to).then_some([from, to])
     }
 
-    /// Calls `touch` with the worst place of each short part where the asked clearance is missed by more than the tolerance.
-    pub(super) fn walk(&self, surface: &Surface, point: DVec2, clearance: &Clearance, touch: &mut impl FnMut(Touch)) {
-        let Some(part) = self.part(surface, point, clearance.guard) else { return };
-        // Where counting begins and ends no kink need lie.
-        for t in part {
+    /// Where counting begins and ends no kink need lie: the places that miss the asked clearance there, or else the room.
+    pub(super) fn ends_of(&self, surface: &Surface, part: [f64; 2], clearance: &Clearance) -> [Result<Touch, f64>; 2] {
+        part.map(|t| {
             let end = self.place(surface, t, clearance);
-            if end.excess > clearance.tolerance * fade(end.tau) {
-                touch(end);
-            }
-        }
+            let missing = end.excess - clearance.tolerance * fade(end.tau);
+            if missing > 0.0 { Ok(end) } else { Err(-missing) }
+        })
+    }
+
+    /// Calls `touch` with the worst place of each short piece of a part where the asked clearance is missed by more than
+    /// the tolerance. `room` becomes no more than what is left elsewhere.
+    pub(super) fn walk(
+        &self,
+        surface: &Surface,
+        part: [f64; 2],
+        clearance: &Clearance,
+        room: &mut f64,
+        touch: &mut impl FnMut(Touch),
+    ) {
         let mut stack = [[0.0f64; 2]; 64];
         stack[0] = part;
         let mut depth = 1;
@@ -106,15 +136,13 @@ impl Chord {
             let (ga, gb) = (self.at(a), self.at(b));
             let lowest = Self::mix(self.z, a).min(Self::mix(self.z, b))
                 - clearance.margin * fade(Self::mix(self.tau, a).max(Self::mix(self.tau, b)));
-            if surface.bound(ga, gb) <= lowest {
+            let left = lowest - surface.bound(ga, gb);
+            if left >= 0.0 {
+                *room = room.min(left);
                 continue;
             }
             if (gb - ga).abs().max_element() <= LEAF || depth + 2 > stack.len() {
-                let mut best = None;
-                self.by_cells(surface, [a, b], clearance, &mut best);
-                if let Some(worst) = best {
-                    touch(worst);
-                }
+                self.look(surface, [a, b], clearance, room, touch);
                 continue;
             }
             let middle = 0.5 * (a + b);
@@ -124,8 +152,25 @@ impl Chord {
         }
     }
 
+    /// As [`Self::walk`], for a short part as a whole.
+    pub(super) fn look(
+        &self,
+        surface: &Surface,
+        part: [f64; 2],
+        clearance: &Clearance,
+        room: &mut f64,
+        touch: &mut impl FnMut(Touch),
+    ) {
+        let mut found = Found::new();
+        self.by_cells(surface, part, clearance, &mut found);
+        *room = room.min(found.room);
+        if let Some(worst) = found.worst {
+            touch(worst);
+        }
+    }
+
     /// Cuts a part at the lines of the solver's grid and takes the worst place of all pieces.
-    fn by_cells(&self, surface: &Surface, [a, b]: [f64; 2], clearance: &Clearance, best: &mut Option<Touch>) {
+    fn by_cells(&self, surface: &Surface, [a, b]: [f64; 2], clearance: &Clearance, found: &mut Found) {
         let step = surface.lattice.step;
         let (p, d) = (self.ends[0] / step, (self.ends[1] - self.ends[0]) / step);
         let mut from = a;
@@ -135,46 +180,63 @@ impl Chord {
                 if d[axis] != 0.0 {
                     // The next line strictly ahead; the nudge steps over the one that `from` lies on.
                     let v = p[axis] + from * d[axis];
-                    let line = if d[axis] > 0.0 { (v + 1e-9).floor() + 1.0 } else { (v - 1e-9).ceil() - 1.0 };
+                    let line = if d[axis] > 0.0 { floor(v + 1e-9) + 1.0 } else { -floor(1e-9 - v) - 1.0 };
                     to = to.min((line - p[axis]) / d[axis]);
                 }
             }
             let to = if to > from { to } else { b };
             let gap = Gap::new(self, surface, 0.5 * (from + to), clearance);
-            self.in_cell(surface, [from, to], &gap, best);
+            self.in_cell(surface, [from, to], &gap, found);
             if (step.x.fract() != 0.0 || step.y.fract() != 0.0) && to < b {
-                gap.judge(self, to, self.at(to), surface.ground(self.at(to)), best);
+                gap.judge(self, to, self.at(to), surface.ground(self.at(to)), found);
             }
             from = to;
         }
     }
 
     /// Within one cell of the solver's grid.
-    fn in_cell(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap, best: &mut Option<Touch>) {
+    fn in_cell(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap, found: &mut Found) {
         let (ga, gb) = (self.at(a), self.at(b));
-        if surface.still_bound(ga, gb) + gap.most(self, [a, b]) <= 0.0 {
+        let over = surface.still_bound(ga, gb) + gap.most(self, [a, b]);
+        if over <= 0.0 {
+            found.room = found.room.min(-over);
             return;
         }
-        if (gb - ga).abs().max_element() > FINE {
-            let middle = 0.5 * (a + b);
-            self.in_cell(surface, [a, middle], gap, best);
-            self.in_cell(surface, [middle, b], gap, best);
-            return;
+        // Steps instead of halves: there are three at most.
+        let pieces = ((gb - ga).abs().max_element() / FINE).max(1.0).ceil();
+        for k in 0..pieces as usize {
+            let place = |k: usize| a + (b - a) * (k as f64 / pieces);
+            let part = [place(k), if k + 1 < pieces as usize { place(k + 1) } else { b }];
+            let over = surface.still_bound(self.at(part[0]), self.at(part[1])) + gap.most(self, part);
+            if over <= 0.0 {
+                found.room = found.room.min(-over);
+            } else {
+                self.in_piece(surface, part, gap, found);
+            }
         }
+    }
+
+    /// Within a short piece: every kink, and the tops between kinks.
+    fn in_piece(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap, found: &mut Found) {
         let mut nearest = f64::NEG_INFINITY;
         self.crossings(surface, [a, b], &mut |t, at, ground| {
-            nearest = nearest.max(gap.judge(self, t, at, ground, best));
+            nearest = nearest.max(gap.judge(self, t, at, ground, found));
         });
         // Between two kinks the displaced ground may bulge.
         let span = 1.0 / (self.ends[1] - self.ends[0]).abs().max_element();
         let bulge = -0.25 * gap.c[2] * span * span;
-        if bulge > 0.0 && nearest.max(gap.missing(self, surface, a)).max(gap.missing(self, surface, b)) + bulge > 0.0 {
-            self.between(surface, [a, b], gap, best);
+        if bulge > 0.0 {
+            let highest = nearest.max(gap.missing(self, surface, a)).max(gap.missing(self, surface, b)) + bulge;
+            if highest > 0.0 {
+                self.between(surface, [a, b], gap, found);
+            } else {
+                found.room = found.room.min(-highest);
+            }
         }
     }
 
     /// The top of the displaced ground between neighbouring kinks of a part.
-    fn between(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap, best: &mut Option<Touch>) {
+    fn between(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap, found: &mut Found) {
         let mut kinks = vec![(a, surface.ground(self.at(a))), (b, surface.ground(self.at(b)))];
         self.crossings(surface, [a, b], &mut |t, _, ground| kinks.push((t, ground)));
         kinks.sort_by(|x, y| x.0.total_cmp(&y.0));
@@ -183,7 +245,7 @@ impl Chord {
             let slope = (h1 - h0) / (t1 - t0);
             let top = -0.5 * (slope + gap.c[1]) / gap.c[2];
             if top > t0 && top < t1 {
-                gap.judge(self, top, self.at(top), h0 + slope * (top - t0), best);
+                gap.judge(self, top, self.at(top), h0 + slope * (top - t0), found);
             }
         }
     }
@@ -218,7 +280,7 @@ impl Chord {
         let (cols, rows) = (surface.cols, surface.rows);
         let heights = &surface.heights;
         let lines = |from: f64, to: f64| {
-            let (lo, hi) = (from.min(to).ceil(), from.max(to).floor());
+            let (lo, hi) = (-floor(-from.min(to)), floor(from.max(to)));
             (0..(hi - lo + 1.0).max(0.0) as usize).map(move |k| lo + k as f64)
         };
         if d.x != 0.0 {
@@ -297,18 +359,20 @@ impl Gap {
 
     /// Excess beyond the tolerance at `t`.
     fn missing(&self, chord: &Chord, surface: &Surface, t: f64) -> f64 {
-        self.judge(chord, t, chord.at(t), surface.ground(chord.at(t)), &mut None)
+        self.judge(chord, t, chord.at(t), surface.ground(chord.at(t)), &mut Found::new())
     }
 
     /// Takes a place into account; returns its excess beyond the tolerance.
     #[inline]
-    fn judge(&self, chord: &Chord, t: f64, at: DVec2, ground: f64, best: &mut Option<Touch>) -> f64 {
+    fn judge(&self, chord: &Chord, t: f64, at: DVec2, ground: f64, found: &mut Found) -> f64 {
         let tau = Chord::mix(chord.tau, t);
         let share = fade(tau);
         let excess = ground + self.at(t) + self.clearance.margin * share;
         let missing = excess - self.clearance.tolerance * share;
-        if missing > 0.0 && best.is_none_or(|b| excess > b.excess) {
-            *best = Some(Touch { at, tau, ground, z: Chord::mix(chord.z, t), excess });
+        if missing <= 0.0 {
+            found.room = found.room.min(-missing);
+        } else if found.worst.is_none_or(|b| excess > b.excess) {
+            found.worst = Some(Touch { at, tau, ground, z: Chord::mix(chord.z, t), excess });
         }
         missing
     }

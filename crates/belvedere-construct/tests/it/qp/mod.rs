@@ -4,4 +4,5 @@ mod bars;
 mod bent;
 mod cases;
 mod reference;
+mod rescue;
 mod small;
