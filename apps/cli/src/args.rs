@@ -33,7 +33,7 @@ pub(crate) struct Common {
     /// Worker threads; 0 = all cores
     #[arg(long, global = true, default_value_t = 0, value_name = "N", allow_negative_numbers = true, value_parser = parse_threads)]
     pub(crate) threads: usize,
-    /// Memory for one picture, such as 2GiB or 800MiB
+    /// Memory for one picture, and for the samples of one file, such as 2GiB or 800MiB
     #[arg(long, global = true, value_name = "SIZE", value_parser = parse_bytes)]
     pub(crate) max_mem: Option<u64>,
     /// Seed of whatever is generated, instead of the scene's
@@ -277,15 +277,10 @@ impl From<RendererKind> for RendererChoice {
     }
 }
 
-/// A picture.
+/// How pictures and frames are drawn.
 #[derive(Debug, Args)]
-pub(crate) struct RenderArgs {
-    /// Scene file, TOML or JSON
-    pub(crate) scene: PathBuf,
-    /// Output; the record is written beside it as OUT.png.json
-    #[arg(short, long, value_name = "OUT.png")]
-    pub(crate) out: PathBuf,
-    /// Size of the picture instead of the scene's, such as 1920x1080
+pub(crate) struct DrawArgs {
+    /// Size in pixels instead of the scene's, such as 1920x1080
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,
     /// Renderer
@@ -297,6 +292,24 @@ pub(crate) struct RenderArgs {
     /// Straight beside bent
     #[arg(long, conflicts_with = "straight")]
     pub(crate) compare: bool,
+    /// Coverage samples per pixel: 1, 4 or 16
+    #[arg(long, default_value_t = 4, value_name = "N")]
+    pub(crate) samples: u32,
+    /// Largest error of terrain drawn in less detail far away, pixels; 0 draws every cell
+    #[arg(long, default_value_t = 0.5, value_name = "PX", allow_hyphen_values = true, value_parser = parse_lod)]
+    pub(crate) lod: f64,
+}
+
+/// A picture.
+#[derive(Debug, Args)]
+pub(crate) struct RenderArgs {
+    /// Scene file, TOML or JSON
+    pub(crate) scene: PathBuf,
+    /// Output; the record is written beside it as OUT.png.json
+    #[arg(short, long, value_name = "OUT.png")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) draw: DrawArgs,
     /// Buffers to write beside the picture
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     pub(crate) aux: Vec<AuxKind>,
@@ -325,12 +338,6 @@ pub(crate) struct RenderArgs {
     /// colours by height (GDAL colour-relief text, GMT .cpt)
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) palette: Option<String>,
-    /// Coverage samples per pixel: 1, 4 or 16
-    #[arg(long, default_value_t = 4, value_name = "N")]
-    pub(crate) samples: u32,
-    /// Largest error of terrain drawn in less detail far away, pixels; 0 draws every cell
-    #[arg(long, default_value_t = 0.5, value_name = "PX", allow_hyphen_values = true, value_parser = parse_lod)]
-    pub(crate) lod: f64,
 }
 
 /// What makes no sense for pictures of the camera.
@@ -377,21 +384,8 @@ pub(crate) struct AnimateArgs {
     /// Go on with the frames that are there
     #[arg(long)]
     pub(crate) resume: bool,
-    /// Size of the frames instead of the scene's, such as 1920x1080
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = parse_size)]
-    pub(crate) size: Option<[u32; 2]>,
-    /// Renderer
-    #[arg(long, value_enum, default_value = "auto")]
-    pub(crate) renderer: RendererKind,
-    /// Without the bends
-    #[arg(long)]
-    pub(crate) straight: bool,
-    /// Straight beside bent
-    #[arg(long, conflicts_with = "straight")]
-    pub(crate) compare: bool,
-    /// Coverage samples per pixel: 1, 4 or 16
-    #[arg(long, default_value_t = 4, value_name = "N")]
-    pub(crate) samples: u32,
+    #[command(flatten)]
+    pub(crate) draw: DrawArgs,
 }
 
 /// Buffers beside a picture.

@@ -101,6 +101,7 @@ impl Context {
             seed: self.common.seed,
             palette: None,
             unsolved: false,
+            max_bytes: self.common.max_mem,
             progress: self.progress.clone(),
         }
     }

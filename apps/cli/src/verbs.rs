@@ -1,8 +1,8 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, FigureKind, FiguresArgs, InfoArgs,
-    MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs,
+    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, DrawArgs, FigureKind, FiguresArgs,
+    InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs,
     TechniqueKind, Verb,
 };
 use crate::report::{Context, done, print};
@@ -77,13 +77,19 @@ fn answer(verb: &str, session: &Session, out: Option<&PathBuf>, text: &str, cont
     Ok(Goal::Reached)
 }
 
-fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
+/// What all pictures and frames have in common.
+fn request(args: &DrawArgs, context: &Context) -> RenderRequest {
     let mut request = RenderRequest { straight: args.straight, compare: args.compare, ..RenderRequest::default() };
     request.renderer = args.renderer.into();
     request.options.threads = context.common.threads;
     request.options.samples = args.samples;
     request.options.lod_px = args.lod;
     request.options.max_bytes = context.common.max_mem.unwrap_or(request.options.max_bytes);
+    request
+}
+
+fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
+    let mut request = request(&args.draw, context);
     request.aux = args
         .aux
         .iter()
@@ -108,7 +114,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         ready(Some(path), &[&args.scene], context)?;
     }
     let palette = args.palette.as_deref().map(PaletteDoc::of);
-    let options = OpenOptions { palette, ..context.options(Needs::Everything, args.size) };
+    let options = OpenOptions { palette, ..context.options(Needs::Everything, args.draw.size) };
     let session = Session::open(&args.scene, &options)?;
     let delta = session.terrain_report().filter(|_| !request.straight).map(|_| render::delta_path(&args.out));
     for path in outputs.iter().chain(&delta) {
@@ -168,11 +174,7 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
 
 fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
     animate::places(&args.out)?;
-    let mut render = RenderRequest { straight: args.straight, compare: args.compare, ..RenderRequest::default() };
-    render.renderer = args.renderer.into();
-    render.options.threads = context.common.threads;
-    render.options.samples = args.samples;
-    render.options.max_bytes = context.common.max_mem.unwrap_or(render.options.max_bytes);
+    let render = request(&args.draw, context);
     let animation = AnimationDoc {
         along: args.along,
         sweep: args.sweep.map(|phi_deg| SweepDoc { phi_deg }),
@@ -185,7 +187,7 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
     let request =
         AnimateRequest { animation, render, out: args.out, resume: args.resume, overwrite: context.common.overwrite };
     // Every frame is solved by itself.
-    let options = OpenOptions { unsolved: true, ..context.options(Needs::Everything, args.size) };
+    let options = OpenOptions { unsolved: true, ..context.options(Needs::Everything, args.draw.size) };
     let mut session = Session::open(&args.scene, &options)?;
     let made = animate::animate(&mut session, &request, &context.progress)?;
     context.finish();

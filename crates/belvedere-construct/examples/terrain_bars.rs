@@ -78,6 +78,7 @@ fn line(features: Vec<LineFeature>) -> LayerKind {
         hidden: Hidden::Dash,
         lift_m: 1.0,
         markers: None,
+        label_px: None,
     })
 }
 

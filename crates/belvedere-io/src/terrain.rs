@@ -41,6 +41,8 @@ pub struct TerrainRequest {
     pub crs: CrsChoice,
     /// Closes holes inside the data by a smooth membrane and marks the nodes [`NodeState::Filled`].
     pub fill_voids: bool,
+    /// Holes of more than this share of the nodes stay open all the same: what would be made up there is no ground.
+    pub largest_hole: f64,
     /// Memory for decoded samples.
     pub limits: Limits,
     /// Most nodes of the heightfield; larger sources are thinned out.
@@ -61,6 +63,7 @@ impl Default for TerrainRequest {
         Self {
             crs: CrsChoice::Auto,
             fill_voids: false,
+            largest_hole: 1.0,
             limits: Limits::default(),
             max_nodes: 16_000_000,
             source_crs: None,
@@ -151,13 +154,13 @@ pub fn load_terrain(
         );
         return Err(IoError::format(first, reason));
     }
-    let states = states(&mut grid, request.fill_voids, progress)?;
+    let (states, left_open) = states(&mut grid, request, progress)?;
     let heightfield =
         Heightfield::new(grid.geometry.north_west, grid.geometry.spacing, grid.cols, grid.rows, grid.heights, states)
             .map_err(|e: HeightfieldError| IoError::format(first, e.to_string()))?;
     let void_share = void_samples as f64 / samples.max(1) as f64;
     let filled_share = heightfield.share_of(NodeState::Filled);
-    warn_about_voids(first, void_samples, void_share, filled_share, &mut warnings);
+    warn_about_voids(first, void_samples, void_share, filled_share, left_open, &mut warnings);
     let crs = target.crs;
     let value = LoadedTerrain {
         heightfield,
@@ -174,12 +177,19 @@ pub fn load_terrain(
     Ok(Loaded { value, warnings })
 }
 
-fn warn_about_voids(path: &Path, voids: usize, share: f64, filled: f64, warnings: &mut Vec<String>) {
+fn warn_about_voids(path: &Path, voids: usize, share: f64, filled: f64, left_open: usize, warnings: &mut Vec<String>) {
     if voids == 0 {
         return;
     }
+    let large = match left_open {
+        0 => String::new(),
+        1 => ", but for a large one, which stays open".to_owned(),
+        n => format!(", but for {n} large ones, which stay open"),
+    };
     let fate = if filled > 0.0 {
-        format!("holes were filled, {:.2} % of the nodes", 100.0 * filled)
+        format!("holes were filled, {:.2} % of the nodes{large}", 100.0 * filled)
+    } else if left_open > 0 {
+        "they are too large to be filled and stay holes; take terrain with fewer holes".to_owned()
     } else {
         "they stay holes; fill_voids = true closes them".to_owned()
     };
@@ -187,11 +197,18 @@ fn warn_about_voids(path: &Path, voids: usize, share: f64, filled: f64, warnings
     warnings.push(format!("{}: {voids} samples ({percent:.2} %) hold no data: {fate}", path.display()));
 }
 
-/// States of all nodes; makes heights finite where they are filled.
-fn states(grid: &mut SceneGrid, fill_voids: bool, progress: &Progress) -> Result<Vec<NodeState>, IoError> {
+/// States of all nodes, and how many holes are too large to be filled; makes heights finite where they are filled.
+fn states(
+    grid: &mut SceneGrid,
+    request: &TerrainRequest,
+    progress: &Progress,
+) -> Result<(Vec<NodeState>, usize), IoError> {
     let mut states: Vec<NodeState> =
         grid.heights.iter().map(|h| if h.is_finite() { NodeState::Measured } else { NodeState::Void }).collect();
-    if fill_voids {
+    let mut left_open = 0;
+    if request.fill_voids {
+        let most = (request.largest_hole.clamp(0.0, 1.0) * grid.heights.len() as f64) as usize;
+        left_open = fill::leave_open(grid.cols, &mut grid.heights, most);
         let unknown: Vec<usize> = (0..grid.heights.len()).filter(|&i| grid.heights[i].is_nan()).collect();
         fill::fill(grid.cols, grid.rows, &mut grid.heights, progress)?;
         for i in unknown {
@@ -203,7 +220,7 @@ fn states(grid: &mut SceneGrid, fill_voids: bool, progress: &Progress) -> Result
     for h in grid.heights.iter_mut().filter(|h| !h.is_finite()) {
         *h = 0.0;
     }
-    Ok(states)
+    Ok((states, left_open))
 }
 
 /// CRS of the scene; `system` is `None` for a local one.

@@ -28,6 +28,8 @@ pub struct RenderOptions {
     pub aux: Aux,
     /// Marks that belong to no layer.
     pub overlay: Overlay,
+    /// Whether lines, outlines, points and names are drawn, those of the overlay too; else surfaces alone.
+    pub marks: bool,
     /// Memory the renderer may use for one picture, bytes; more is [`RenderError::TooLarge`].
     pub max_bytes: u64,
 }
@@ -41,6 +43,7 @@ impl Default for RenderOptions {
             threads: 0,
             aux: Aux::default(),
             overlay: Overlay::default(),
+            marks: true,
             max_bytes: 4 << 30,
         }
     }

@@ -369,15 +369,21 @@ impl Heightfield {
         DVec2::new((xy.x - self.north_west.x) / self.spacing.x, (self.north_west.y - xy.y) / self.spacing.y)
     }
 
-    /// Bilinear height at a scene position; `None` outside the grid or where one of the four nodes is a void.
-    pub fn height_at(&self, xy: DVec2) -> Option<f64> {
+    /// The cell (column, row) of a scene position and the place within it, 0..=1 each; `None` outside the grid.
+    fn cell_at(&self, xy: DVec2) -> Option<([usize; 2], DVec2)> {
         let g = self.grid_from_scene(xy);
-        let (last_c, last_r) = ((self.cols - 1) as f64, (self.rows - 1) as f64);
-        if !(g.x >= 0.0 && g.x <= last_c && g.y >= 0.0 && g.y <= last_r) {
+        let last = DVec2::new((self.cols - 1) as f64, (self.rows - 1) as f64);
+        if !(g.x >= 0.0 && g.x <= last.x && g.y >= 0.0 && g.y <= last.y) {
             return None;
         }
         let (c, r) = ((g.x as usize).min(self.cols - 2), (g.y as usize).min(self.rows - 2));
-        let (u, v) = (g.x - c as f64, g.y - r as f64);
+        Some(([c, r], g - DVec2::new(c as f64, r as f64)))
+    }
+
+    /// Bilinear height at a scene position; `None` outside the grid or where one of the four nodes is a void.
+    pub fn height_at(&self, xy: DVec2) -> Option<f64> {
+        let ([c, r], f) = self.cell_at(xy)?;
+        let (u, v) = (f.x, f.y);
         let i = r * self.cols + c;
         let corners = [i, i + 1, i + self.cols, i + self.cols + 1];
         let weights = [(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v];
@@ -419,13 +425,8 @@ impl Heightfield {
     /// Height of the drawn surface (two triangles per cell, see [`Heightfield::surface_in_cell`]) at a scene
     /// position; `None` outside the grid and in holes. Differs from the bilinear [`Heightfield::height_at`] inside cells only.
     pub fn surface_at(&self, xy: DVec2) -> Option<f64> {
-        let g = self.grid_from_scene(xy);
-        let (last_c, last_r) = ((self.cols - 1) as f64, (self.rows - 1) as f64);
-        if !(g.x >= 0.0 && g.x <= last_c && g.y >= 0.0 && g.y <= last_r) {
-            return None;
-        }
-        let (c, r) = ((g.x as usize).min(self.cols - 2), (g.y as usize).min(self.rows - 2));
-        self.surface_in_cell(c, r, g.x - c as f64, g.y - r as f64)
+        let ([c, r], f) = self.cell_at(xy)?;
+        self.surface_in_cell(c, r, f.x, f.y)
     }
 
     fn triangle_height(&self, nodes: [usize; 3], weights: [f64; 3]) -> Option<f64> {

@@ -141,6 +141,9 @@ pub struct LineLayer {
     pub lift_m: f64,
     /// Marks along each line at equal distances; `None` = none.
     pub markers: Option<DistanceMarkers>,
+    /// Height of the letters of names, pixels; `None` = no names. Each name is written once, at the middle of the longest stretch that
+    /// is seen; names that would overlap earlier ones are left out.
+    pub label_px: Option<f64>,
 }
 
 /// One polygon of an area layer.

@@ -6,6 +6,7 @@ use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, Document, LayerDoc, PaletteDoc, PaletteName, SourceDocument};
 use belvedere_construct::terrain::TerrainReport;
 use belvedere_core::View;
+use belvedere_io::Limits;
 use belvedere_scene::{Light, Progress, Scene};
 use std::path::{Path, PathBuf};
 
@@ -36,8 +37,17 @@ pub struct OpenOptions {
     pub palette: Option<PaletteDoc>,
     /// Leaves stages that a solver would have to make out of the view: for those who want the document alone.
     pub unsolved: bool,
+    /// Memory that the samples of one file may take, bytes; `None` = what [`Limits::default`] says.
+    pub max_bytes: Option<u64>,
     /// Progress and cancellation.
     pub progress: Progress,
+}
+
+impl OpenOptions {
+    /// Limits for reading files.
+    pub(crate) fn limits(&self) -> Limits {
+        self.max_bytes.map_or_else(Limits::default, |max_bytes| Limits { max_bytes })
+    }
 }
 
 /// An opened scene: layers, view and light, and what was odd on the way.

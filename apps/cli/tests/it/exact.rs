@@ -1,4 +1,4 @@
-//! The rasteriser against the exact tracer on every ready scene, at the default tolerance.
+//! The rasteriser against the exact tracer on every ready scene, at the default tolerance, with and without level of detail.
 
 use super::Place;
 use std::path::Path;
@@ -16,12 +16,11 @@ fn values(path: &Path) -> Vec<[u8; 4]> {
     bytes[header..].chunks_exact(4).map(|b| [b[0], b[1], b[2], b[3]]).collect()
 }
 
-fn draw(place: &Place, scene: &str, root: Option<&str>, renderer: &str, size: [usize; 2]) -> Buffers {
+/// * `options`: how it is drawn.
+fn draw(place: &Place, scene: &str, root: Option<&str>, renderer: &str, options: &[&str], size: [usize; 2]) -> Buffers {
     let (out, text) = (format!("{renderer}.png"), format!("{}x{}", size[0], size[1]));
     let mut args = vec!["render", scene, "-o", &out, "--renderer", renderer, "--size", &text, "--samples", "1"];
-    if renderer == "cpu" {
-        args.extend(["--lod", "0"]);
-    }
+    args.extend(options);
     args.extend(["--aux", "depth,id", "--overwrite"]);
     args.extend(root.iter().flat_map(|root| ["--allow-root", root]));
     place.ok(&args);
@@ -70,12 +69,16 @@ fn every_ready_scene_is_drawn_as_the_tracer_sees_it() {
         }
         let size = if name == "massif_curved_rays" { [1280, 720] } else { [320, 180] };
         let place = Place::new();
-        let [exact, drawn] =
-            ["exact", "cpu"].map(|r| draw(&place, path.to_str().expect("UTF-8"), root.as_deref(), r, size));
-        let [judged, ids, depths] = compare(&exact, &drawn);
-        let few = |n: usize| n as f64 <= 1e-3 * judged as f64;
-        if judged < size[0] * size[1] / 3 || !few(ids) || !few(depths) {
-            faults.push(format!("{name}: of {judged} pixels {ids} differ in id, {depths} in depth"));
+        let draw = |renderer: &str, options: &[&str]| {
+            draw(&place, path.to_str().expect("UTF-8"), root.as_deref(), renderer, options, size)
+        };
+        let exact = draw("exact", &[]);
+        for detail in [&["--lod", "0"][..], &[]] {
+            let [judged, ids, depths] = compare(&exact, &draw("cpu", detail));
+            let few = |n: usize| n as f64 <= 1e-3 * judged as f64;
+            if judged < size[0] * size[1] / 3 || !few(ids) || !few(depths) {
+                faults.push(format!("{name} {detail:?}: of {judged} pixels {ids} differ in id, {depths} in depth"));
+            }
         }
     }
     assert!(faults.is_empty(), "{faults:#?}");

@@ -54,11 +54,17 @@ fn small_holes_are_filled_marked_and_said_or_kept() {
 }
 
 #[test]
-fn ground_that_is_mostly_hole_is_not_made_up() {
-    let place = place(|row, col| (34..60).contains(&row) && (2..62).contains(&col) && col > 33);
-    let (open, warnings) = ground(&place, &[]);
+fn large_holes_are_not_made_up_and_small_ones_beside_them_are() {
+    let large = |row: usize, col: usize| (34..60).contains(&row) && (34..62).contains(&col);
+    let alone = place(large);
+    let (open, warnings) = ground(&alone, &[]);
     assert_eq!(open["filled_nodes"].as_u64(), Some(0), "{open}");
-    assert!(warnings.contains("so they stay open"), "{warnings}");
+    assert!(warnings.contains("too large to be filled"), "{warnings}");
+    let both = place(|row, col| large(row, col) || ((10..13).contains(&row) && (10..14).contains(&col)));
+    let (mixed, warnings) = ground(&both, &[]);
+    assert!(mixed["filled_nodes"].as_u64().is_some_and(|n| n > 0), "{mixed}");
+    assert!(mixed["void_nodes"].as_u64() >= open["void_nodes"].as_u64(), "{mixed}");
+    assert!(warnings.contains("but for a large one, which stays open"), "{warnings}");
 }
 
 #[test]

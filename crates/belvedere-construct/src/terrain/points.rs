@@ -247,6 +247,7 @@ mod tests {
             hidden: Hidden::Dash,
             lift_m: 1.5,
             markers: None,
+            label_px: None,
         });
         Scene { layers: vec![Layer { id: "line".into(), must_see: true, kind }], ..Scene::default() }
     }

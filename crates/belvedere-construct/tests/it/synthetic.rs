@@ -49,6 +49,7 @@ pub(crate) fn line_layer(id: &str, points: Vec<DVec3>) -> Layer {
         hidden: Hidden::Dash,
         lift_m: 1.0,
         markers: None,
+        label_px: None,
     });
     Layer { id: id.into(), must_see: true, kind }
 }

@@ -4,7 +4,7 @@
 //! ([`crate::marks`]), and nothing that decides what is seen where: the reference that other renderers are judged by.
 
 mod beam;
-mod boxes;
+pub(crate) mod boxes;
 mod curve;
 mod meshes;
 mod root;

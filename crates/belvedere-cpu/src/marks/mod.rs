@@ -4,6 +4,7 @@ mod dash;
 mod distance;
 mod face;
 mod label;
+mod names;
 mod path;
 mod ribbon;
 mod sight;
@@ -34,6 +35,7 @@ const HIDDEN_WIDTH: f64 = 0.6;
 const SMALL_PX: f64 = 11.0;
 
 /// All marks of a frame, in the order of the layers.
+#[derive(Default)]
 pub(crate) struct Marks {
     under: Vec<Sheet>,
     faces: Vec<Face>,
@@ -44,6 +46,9 @@ pub(crate) struct Marks {
 impl Marks {
     /// * `depth`: surfaces at the pixel centres.
     pub(crate) fn new(job: &RenderJob<'_>, passes: &[Pass<'_>], lens: &Lens, tolerance_px: f64, depth: &[f32]) -> Self {
+        if !job.options.marks {
+            return Self::default();
+        }
         let map = DepthMap { depth, width: lens.width, height: lens.height };
         let sight = Sight::new(job.scene, job.view);
         let maker = Maker { scene: job.scene, passes, lens, tolerance_px, map, sight: &sight };
@@ -56,6 +61,7 @@ impl Marks {
                 LayerKind::Line(l) => {
                     sheets.push(maker.line_layer(l, id));
                     sheets.extend(maker.distances(l, id, &mut wishes));
+                    wishes.extend(maker.line_names(l));
                 }
                 LayerKind::Area(a) => sheets.extend(maker.outlines(a, id)),
                 LayerKind::Point(p) => sheets.push(maker.points(p, id, &mut wishes)),

@@ -7,6 +7,9 @@ use belvedere_core::DVec3;
 use belvedere_scene::{Light, MeshLayer, Relief};
 use glam::Vec3A;
 
+/// Share of the sun that a place with a normal sees.
+pub(super) type Sun<'s> = dyn Fn(DVec3, DVec3) -> f32 + 's;
+
 /// A mesh layer ready for colouring.
 pub(super) struct MeshShade<'a> {
     layer: &'a MeshLayer,
@@ -23,33 +26,40 @@ impl<'a> MeshShade<'a> {
         Self { layer, light: ReliefLight::new(Relief::Sun, light), foot: bounds.min.z, height }
     }
 
-    /// Colour and true position of a sample.
-    pub(super) fn shade(&self, found: &Found<'_>, weights: [f64; 3]) -> (Rgb, DVec3) {
+    /// True position of a sample.
+    pub(super) fn place(&self, found: &Found<'_>, weights: [f64; 3]) -> DVec3 {
+        let corners = self.layer.mesh.corners(found.block.origin[0] + found.parent as usize);
+        corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
+    }
+
+    /// Colour of a sample.
+    pub(super) fn shade(&self, found: &Found<'_>, weights: [f64; 3], sun: &Sun<'_>) -> Rgb {
         let triangle = found.block.origin[0] + found.parent as usize;
         let [a, b, c] = found.v.map(|v| [i64::from(v.screen.x), i64::from(v.screen.y)]);
         // y runs down the image: counter-clockwise in space is clockwise here.
         let front = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]) <= 0;
-        let corners = self.layer.mesh.corners(triangle);
-        let world = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
-        (self.color(triangle, weights, front, world.z), world)
+        self.color(triangle, weights, front, self.place(found, weights), sun)
     }
 
     /// * `front`: whether the side is seen from which the corners run counter-clockwise.
-    pub(super) fn color(&self, triangle: usize, weights: [f64; 3], front: bool, z: f64) -> Rgb {
+    fn color(&self, triangle: usize, weights: [f64; 3], front: bool, p: DVec3, sun: &Sun<'_>) -> Rgb {
         let mesh = &self.layer.mesh;
         let normal = mesh.normal_at(triangle, weights);
         let n = if front { normal } else { -normal };
         let color = mesh.color_at(triangle, weights).unwrap_or(self.layer.color);
         // Darker towards the foot, and from below.
-        let up = (((z - self.foot) / self.height) as f32).clamp(0.0, 1.0);
+        let up = (((p.z - self.foot) / self.height) as f32).clamp(0.0, 1.0);
         let open = (0.60 + 0.40 * smoothstep(-0.1, 0.6, up)) * (1.0 - 0.25 * (-n.z as f32).max(0.0));
-        let lit = self.light.at(Vec3A::new(n.x as f32, n.y as f32, n.z as f32), open) * 0.82
+        // Shadows end where the triangle does, whatever its smooth normals say.
+        let face = mesh.face_normal(triangle);
+        let sun = sun(p, if front { face } else { -face });
+        let lit = self.light.at(Vec3A::new(n.x as f32, n.y as f32, n.z as f32), open, sun) * 0.82
             + Rgb::new(0.19, 0.18, 0.18) * open;
         linear([color.r, color.g, color.b]) * lit * (0.76 + 0.24 * open)
     }
 
     /// See [`MeshShade::color`], at a point of the mesh.
-    pub(super) fn color_at(&self, triangle: usize, front: bool, p: DVec3) -> Rgb {
-        self.color(triangle, self.layer.mesh.weights_at(triangle, p), front, p.z)
+    pub(super) fn color_at(&self, triangle: usize, front: bool, p: DVec3, sun: &Sun<'_>) -> Rgb {
+        self.color(triangle, self.layer.mesh.weights_at(triangle, p), front, p, sun)
     }
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod area;
 mod batch;
+mod cast;
 pub(crate) mod color;
 mod drape;
 mod ground;
@@ -27,6 +28,7 @@ use crate::polish::Polish;
 use area::AreaMap;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{BoxLayer, BoxShape, Heightfield, LayerKind, Relief, RenderJob};
+use cast::Casters;
 use color::{Rgb, linear, smoothstep};
 use glam::Vec3A;
 pub(crate) use paint::{Painted, Samples};
@@ -41,6 +43,7 @@ pub(crate) struct Shader<'a> {
     blocks: &'a Blocks,
     layers: Vec<LayerShade<'a>>,
     areas: Vec<AreaMap>,
+    casters: Option<Casters<'a>>,
     /// The only layer with surfaces, if that is terrain.
     only_terrain: bool,
 }
@@ -93,6 +96,7 @@ impl<'a> Shader<'a> {
             lens,
             blocks,
             areas: areas.collect(),
+            casters: Casters::new(job.scene, job.light),
             layers,
             only_terrain,
         }
@@ -135,9 +139,32 @@ impl<'a> Shader<'a> {
         match &self.layers[found.block.layer as usize] {
             LayerShade::Terrain(t) => hit.on_ground(&found, t.hf),
             LayerShade::Boxes(b, _) => hit.on_box(&found, b).1,
-            LayerShade::Mesh(m) => m.shade(&found, hit.weights).1,
+            LayerShade::Mesh(m) => m.place(&found, hit.weights),
             LayerShade::Other => DVec3::NAN,
         }
+    }
+}
+
+impl Shader<'_> {
+    /// Share of the sun that a surface sees, all of it without cast shadows.
+    /// * `n`: unit normal to the side that is seen; `footprint`: size of a pixel there, scene units.
+    fn sun_on(&self, p: DVec3, n: DVec3, footprint: f64) -> f32 {
+        self.casters.as_ref().map_or(1.0, |c| c.on_surface(p, n, footprint))
+    }
+
+    /// Boxes look like an architect's model: matt, darker towards the foot, with drawn edges.
+    /// * `n`: outward unit normal of the face; `footprint`: size of a pixel at the box, scene units.
+    fn box_color(&self, shape: &BoxShape, light: &ReliefLight, n: DVec3, world: DVec3, footprint: f64) -> Rgb {
+        let centre = shape.base + DVec3::Z * 0.5 * shape.size.z;
+        let up = (((world.z - shape.base.z) / shape.size.z.max(1e-9)) as f32).clamp(0.0, 1.0);
+        let open = 0.60 + 0.40 * smoothstep(-0.1, 0.6, up);
+        let sun = self.sun_on(world, n, footprint);
+        let n = Vec3A::new(n.x as f32, n.y as f32, n.z as f32);
+        let c = shape.color;
+        let ink = 1.0 - 0.42 * edge_share(shape, world - centre, footprint);
+        // Streets return light that open ground does not.
+        let lit = light.at(n, open, sun) * 0.82 + Rgb::new(0.19, 0.18, 0.18) * open;
+        linear([c.r, c.g, c.b]) * lit * ((0.76 + 0.24 * open) * ink)
     }
 }
 
@@ -211,20 +238,6 @@ impl Hit {
         let n = if n.dot(p[0] - centre) < 0.0 { -n } else { n }.normalize_or(DVec3::Z);
         (shape, p[0] * self.weights[0] + p[1] * self.weights[1] + p[2] * self.weights[2], n)
     }
-}
-
-/// Boxes look like an architect's model: matt, darker towards the foot, with drawn edges.
-/// * `n`: outward unit normal of the face; `footprint`: size of a pixel at the box, scene units.
-fn box_color(shape: &BoxShape, light: &ReliefLight, n: DVec3, world: DVec3, footprint: f64) -> Rgb {
-    let centre = shape.base + DVec3::Z * 0.5 * shape.size.z;
-    let up = (((world.z - shape.base.z) / shape.size.z.max(1e-9)) as f32).clamp(0.0, 1.0);
-    let open = 0.60 + 0.40 * smoothstep(-0.1, 0.6, up);
-    let n = Vec3A::new(n.x as f32, n.y as f32, n.z as f32);
-    let c = shape.color;
-    let ink = 1.0 - 0.42 * edge_share(shape, world - centre, footprint);
-    // Streets return light that open ground does not.
-    let lit = light.at(n, open) * 0.82 + Rgb::new(0.19, 0.18, 0.18) * open;
-    linear([c.r, c.g, c.b]) * lit * ((0.76 + 0.24 * open) * ink)
 }
 
 /// How much of a pixel the edge of a box covers, at a place on its surface relative to its centre.

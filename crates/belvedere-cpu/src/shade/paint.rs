@@ -2,7 +2,7 @@
 
 use super::batch::Batch;
 use super::color::{self, Encoding, Packed, Rgb};
-use super::{Hit, LayerShade, Shader, box_color};
+use super::{Hit, LayerShade, Shader};
 use crate::band::SKY;
 use crate::blocks::{CELL_BITS, Geometry, SOUP};
 use crate::vector::{self, Kernel};
@@ -176,14 +176,14 @@ impl Shader<'_> {
     fn paint_one(&self, samples: &Samples<'_>, k: usize, batch: &mut Batch, painted: &mut Painted) {
         let Some(found) = self.blocks.find(samples.prim[k]) else { return painted.set(k, Rgb::ZERO, 0) };
         let (layer, depth) = (found.block.layer, self.lens.depth_of(samples.q[k]));
-        let hit = Hit::new(&found, self.lens, samples.at(k));
+        let (hit, footprint) = (Hit::new(&found, self.lens, samples.at(k)), self.lens.footprint(f64::from(depth)));
         let color = match &self.layers[layer as usize] {
             LayerShade::Terrain(_) => return batch.take_odd(layer as usize, self, samples, k, painted),
             LayerShade::Boxes(b, light) => {
                 let (shape, world, n) = hit.on_box(&found, b);
-                box_color(shape, light, n, world, self.lens.footprint(f64::from(depth)))
+                self.box_color(shape, light, n, world, footprint)
             }
-            LayerShade::Mesh(m) => m.shade(&found, hit.weights).0,
+            LayerShade::Mesh(m) => m.shade(&found, hit.weights, &|p, n| self.sun_on(p, n, footprint)),
             LayerShade::Other => Rgb::ZERO,
         };
         painted.set(k, self.sky.through_air(color, depth), layer + 1);

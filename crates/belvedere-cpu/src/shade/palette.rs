@@ -29,14 +29,14 @@ type Stops = &'static [(f32, [u8; 3])];
 const NEVER: [f32; 2] = [1e30, 2e30];
 
 const ALPINE: Stops = &[
-    (0.0, [92, 128, 98]),
-    (0.15, [111, 146, 105]),
-    (0.32, [139, 165, 114]),
-    (0.48, [170, 178, 124]),
-    (0.62, [192, 182, 139]),
-    (0.76, [202, 187, 156]),
-    (0.88, [211, 200, 185]),
-    (1.0, [230, 228, 226]),
+    (0.0, [101, 138, 104]),
+    (0.15, [121, 156, 110]),
+    (0.32, [148, 174, 118]),
+    (0.48, [176, 184, 128]),
+    (0.62, [195, 186, 142]),
+    (0.76, [205, 190, 158]),
+    (0.88, [214, 203, 187]),
+    (1.0, [232, 230, 228]),
 ];
 const DESERT: Stops = &[
     (0.0, [150, 112, 88]),
@@ -86,8 +86,8 @@ impl Tint {
             Palette::Plain => (built_in(PLAIN), GREY, NEVER, NEVER),
             Palette::Ramp(ramp) => (from_ramp(ramp, z_range_m), GREY, NEVER, NEVER),
             Palette::Alpine | Palette::Auto => {
-                let line = (bottom + 0.80 * span).max(2450.0);
-                (built_in(ALPINE), [160, 149, 136], [0.62, 1.25], [line, line + 0.14 * span.max(300.0)])
+                let line = (bottom + 0.70 * span).max(2450.0);
+                (built_in(ALPINE), [156, 149, 137], [0.66, 1.3], [line, line + 0.14 * span.max(300.0)])
             }
         };
         let per_m = (STEPS - 1) as f32 / span;

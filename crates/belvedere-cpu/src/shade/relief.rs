@@ -12,8 +12,18 @@ const BRIGHTEST: f32 = 4.0;
 /// Highest main light of the Swiss blend, radians: lower light models gentle slopes better.
 const SWISS_ALTITUDE: f64 = 0.68;
 
+/// How much steeper a Swiss relief draws level ground, and the tangent of the slope at which half of that is left.
+const GENTLE: f32 = 1.2;
+const GENTLE_SLOPE: f32 = 0.25;
+
+/// How much more a Swiss relief makes of the openness of a place than the sky does.
+const FORM: f32 = 2.0;
+
 /// What a cast shadow leaves of the direct light of a Swiss relief, whose light is a drawing rather than a sun.
 const SWISS_SHADOW: f32 = 0.45;
+
+/// The same for ground without relief, on which only boxes and meshes throw shadows.
+const FLAT_SHADOW: f32 = 0.62;
 
 /// Light model of a layer.
 #[derive(Debug, Clone)]
@@ -24,7 +34,7 @@ pub(crate) struct ReliefLight {
     /// Side lights of the blend, stretched likewise, and the direction their weight vanishes in.
     sides: [(Vec3A, [f32; 2]); 4],
     /// What is left of direct light in a cast shadow.
-    in_shadow: f32,
+    pub(crate) in_shadow: f32,
     /// Colours of direct light and of that from the sky, see [`ReliefLight::parts`].
     pub(crate) warm: Rgb,
     pub(crate) cool: Rgb,
@@ -49,14 +59,19 @@ impl ReliefLight {
             Relief::None => (Rgb::ONE, Rgb::ZERO),
             _ => (linear([255, 247, 232]) * 1.12, linear([126, 142, 176])),
         };
-        let in_shadow = if relief == Relief::Swiss { SWISS_SHADOW } else { 0.0 };
+        let in_shadow = match relief {
+            Relief::Swiss => SWISS_SHADOW,
+            Relief::Sun => 0.0,
+            Relief::None => FLAT_SHADOW,
+        };
         Self { relief, sun: towards(light.azimuth, altitude), sides, in_shadow, warm, cool }
     }
 
-    /// Factor by which light from everywhere colours a surface with unit normal `n` that no shadow falls on.
-    /// `open` is the share of the sky that the surroundings leave, 1 = level ground.
-    pub(crate) fn at(&self, n: Vec3A, open: f32) -> Rgb {
-        let [direct, sky] = self.parts(n, open, 1.0);
+    /// Factor by which light from everywhere colours a surface with unit normal `n`.
+    /// * `open`: share of the sky that the surroundings leave, 1 = level ground;
+    /// * `lit`: share of the sun that no shadow takes.
+    pub(crate) fn at(&self, n: Vec3A, open: f32, lit: f32) -> Rgb {
+        let [direct, sky] = self.parts(n, open, lit);
         self.warm * direct + self.cool * sky
     }
 
@@ -70,7 +85,13 @@ impl ReliefLight {
         let bright = match self.relief {
             Relief::None => return [1.0, 0.0],
             Relief::Sun => n.dot(self.sun).max(0.0),
-            Relief::Swiss => self.blend(n),
+            Relief::Swiss => {
+                let direct = 0.80 * tone(self.blend(modelled(n)));
+                // Ridges stand out from their surroundings, valleys lie back.
+                let open = 1.0 + FORM * (open - 1.0);
+                let shadow = self.in_shadow + (1.0 - self.in_shadow) * lit;
+                return [direct * (0.6 + 0.4 * open) * shadow, 0.62 * (0.5 + 0.5 * n.z) * open];
+            }
         };
         let direct = 0.80 * tone(bright) * (0.7 + 0.3 * open) * (self.in_shadow + (1.0 - self.in_shadow) * lit);
         [direct, 0.62 * (0.5 + 0.5 * n.z) * open]
@@ -95,6 +116,13 @@ impl ReliefLight {
     }
 }
 
+/// The normal as the drawing models it: gentle slopes up to twice as steep, so that plains have a relief; walls as they are.
+fn modelled(n: Vec3A) -> Vec3A {
+    let slope = (n.x * n.x + n.y * n.y) / (n.z * n.z).max(1e-6);
+    let more = 1.0 + GENTLE / (1.0 + slope / (GENTLE_SLOPE * GENTLE_SLOPE));
+    Vec3A::new(n.x * more, n.y * more, n.z).normalize_or(Vec3A::Z)
+}
+
 /// 1 on level ground; softly limited above, lifted below so that shadows keep their drawing. From a table: powers cost
 /// as much as the rest of the light.
 fn tone(bright: f32) -> f32 {
@@ -107,7 +135,7 @@ fn tone(bright: f32) -> f32 {
 }
 
 fn tone_of(bright: f32) -> f32 {
-    if bright > 1.0 { 1.0 + 0.55 * (1.0 - (-(bright - 1.0) / 0.55).exp()) } else { bright.powf(1.15) }
+    if bright > 1.0 { 1.0 + 0.55 * (1.0 - (-(bright - 1.0) / 0.55).exp()) } else { bright.powf(1.25) }
 }
 
 #[cfg(test)]
@@ -121,6 +149,26 @@ mod tests {
             assert!((tone(x) - tone_of(x)).abs() < 1e-4, "{x}");
         }
         assert!((tone(99.0) - 1.55).abs() < 0.01);
+    }
+
+    #[test]
+    fn gentle_slopes_are_modelled_and_walls_are_left_alone() {
+        let light = ReliefLight::new(Relief::Swiss, &Light::default());
+        let towards = |slope: f32| Vec3A::new(-slope, slope, 1.0).normalize();
+        let away = |slope: f32| Vec3A::new(slope, -slope, 1.0).normalize();
+        // Three degrees towards the light and away from it: a step of a tenth and more.
+        let [bright, dark] = [towards(0.037), away(0.037)].map(|n| light.parts(n, 1.0, 1.0)[0]);
+        assert!(bright / dark > 1.1, "{bright} {dark}");
+        let mut before = f32::INFINITY;
+        for i in 0..200 {
+            let slope = 0.02 * i as f32;
+            let n = modelled(away(slope));
+            assert!((n.length() - 1.0).abs() < 1e-5 && n.z < before, "steeper ground stays steeper: {slope}");
+            before = n.z;
+        }
+        let wall = away(4.0);
+        assert!(modelled(wall).dot(wall) > 0.9999);
+        assert_eq!(modelled(Vec3A::Z), Vec3A::Z);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Colour of what a traced ray meets.
 
 use super::terrain::TerrainShade;
-use super::{LayerShade, Shaded, Shader, box_color};
+use super::{LayerShade, Shaded, Shader};
 use crate::exact::{Part, Seen};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::NodeState;
@@ -22,10 +22,12 @@ impl Shader<'_> {
                 t.shade_at(self, seen.point.truncate(), fp, axes, seen.depth, pixel)
             }
             (LayerShade::Boxes(b, light), Part::Face(index, normal)) => match b.boxes.get(index) {
-                Some(shape) => (box_color(shape, light, normal, seen.point, footprint), None),
+                Some(shape) => (self.box_color(shape, light, normal, seen.point, footprint), None),
                 None => (super::Rgb::ZERO, None),
             },
-            (LayerShade::Mesh(m), Part::Triangle(index, front)) => (m.color_at(index, front, seen.point), None),
+            (LayerShade::Mesh(m), Part::Triangle(index, front)) => {
+                (m.color_at(index, front, seen.point, &|p, n| self.sun_on(p, n, footprint)), None)
+            }
             _ => (super::Rgb::ZERO, None),
         };
         let color = self.sky.through_air(color, seen.depth as f32);

@@ -31,7 +31,7 @@ const THRESHOLDS: [[f32; 8]; 8] = {
 const LANES: usize = 32;
 
 /// Largest share of a colour that haze takes.
-const THICKEST: f32 = 0.62;
+const THICKEST: f32 = 0.54;
 
 /// Steps of the table of sky colours per unit of the sine of the elevation.
 const STEPS: f32 = 512.0;
@@ -50,6 +50,8 @@ pub(crate) struct Sky {
     per_px: f32,
     /// Depths of the nearest and the farthest point that the scene can have, scene units.
     depths: [f32; 2],
+    /// Largest share of a colour that haze takes: none in a parallel projection, whose eye is nowhere.
+    thickest: f32,
 }
 
 impl Sky {
@@ -72,6 +74,7 @@ impl Sky {
             center: [center.x as f32, center.y as f32],
             per_px: per_px as f32,
             depths,
+            thickest: if pinhole.is_orthographic() { 0.0 } else { THICKEST },
         }
     }
 
@@ -141,7 +144,7 @@ impl Sky {
         let [near, far] = self.depths;
         let t = (depth - near) / (far - near).max(1e-6);
         let t = ((t - 0.22) / (1.15 - 0.22)).clamp(0.0, 1.0);
-        THICKEST * t * t * (3.0 - 2.0 * t)
+        self.thickest * t * t * (3.0 - 2.0 * t)
     }
 
     /// Linear colour of the haze.

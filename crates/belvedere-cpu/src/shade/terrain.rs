@@ -102,7 +102,7 @@ impl<'a> TerrainShade<'a> {
 
     /// Whether anything lies over the ground.
     pub(super) fn is_covered(&self, shader: &Shader<'_>) -> bool {
-        !self.drapes.is_empty() || !shader.areas.is_empty()
+        !self.drapes.is_empty() || !shader.areas.is_empty() || shader.casters.is_some()
     }
 
     /// Colour of the ground at a place of which a pixel covers a square of side `fp`, and the area it lies in.
@@ -130,8 +130,17 @@ impl<'a> TerrainShade<'a> {
         })
     }
 
-    fn light_of(&self, lit: &Lit) -> Rgb {
-        self.light.warm * lit.direct + self.light.cool * lit.sky
+    /// * `sun`: share of the sun that boxes and meshes leave.
+    fn light_of(&self, lit: &Lit, sun: f32) -> Rgb {
+        let left = self.light.in_shadow + (1.0 - self.light.in_shadow) * sun;
+        self.light.warm * (lit.direct * left) + self.light.cool * lit.sky
+    }
+
+    /// Share of the sun that boxes and meshes leave to a place of which a pixel covers `print`.
+    fn sun_on(&self, shader: &Shader<'_>, xy: DVec2, print: &Print) -> f32 {
+        let Some(casters) = &shader.casters else { return 1.0 };
+        let Some(z) = self.hf.surface_at(xy) else { return 1.0 };
+        casters.on_ground(xy.extend(z), [print.major, print.major.perp().normalize_or_zero() * print.minor])
     }
 
     /// Colour and area where a picture or an area covers the ground; `None` where nothing does.
@@ -152,13 +161,14 @@ impl<'a> TerrainShade<'a> {
         let (xy, fp) = (self.hf.north_west() + DVec2::new(g.x, -g.y) * spacing, cells * self.pitch);
         let areas = shader.areas.iter().map(|a| (a, a.depth_inside(xy) / fp));
         let areas: Vec<_> = areas.filter(|(_, inside)| *inside > -0.5).collect();
-        if self.drapes.is_empty() && areas.is_empty() {
+        if self.drapes.is_empty() && areas.is_empty() && shader.casters.is_none() {
             return None;
         }
         let print = print();
         let drapes = self.drapes.iter().map(|d| d.at(xy, &print)).filter(|(_, alpha)| *alpha > 0.0);
         let drapes: Vec<_> = drapes.collect();
-        if drapes.is_empty() && areas.is_empty() {
+        let sun = self.sun_on(shader, xy, &print);
+        if drapes.is_empty() && areas.is_empty() && sun >= 1.0 {
             return None;
         }
         let lit = ground();
@@ -169,7 +179,7 @@ impl<'a> TerrainShade<'a> {
             draped = draped.max(alpha);
         }
         // A photograph has its own light: model it only half.
-        let mut light = self.light_of(&lit).lerp(Rgb::splat(0.95), 0.5 * draped);
+        let mut light = self.light_of(&lit, sun).lerp(Rgb::splat(0.95 * (0.5 + 0.5 * sun)), 0.5 * draped);
         let (mut id, mut water) = (None, 0.0f32);
         for (a, inside) in areas {
             if inside >= 0.0 {
@@ -191,7 +201,7 @@ impl<'a> TerrainShade<'a> {
             let down = -shader.sky.sine(pixel);
             let mirror = 0.03 + 0.55 * (1.0 - down.clamp(0.0, 1.0)).powi(5);
             let reflected = shader.sky.towards(0.15 + 0.5 * down.clamp(0.0, 1.0));
-            light = light.lerp(Rgb::ONE, water);
+            light = light.lerp(Rgb::splat(0.6 + 0.4 * sun), water);
             return Some(((albedo * light).lerp(reflected, water * mirror), id));
         }
         Some((albedo * light, id))

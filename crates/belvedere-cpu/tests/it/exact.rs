@@ -3,7 +3,7 @@
 use crate::support::{Random, hills, layer, options, pinhole, render, scene, terrain};
 use crate::support_views::{spline, turns, views};
 use belvedere_core::grid::Grid;
-use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
+use belvedere_core::map::curved_rays::{Model, Pencil, Shape, Sharpness, TurnSpec};
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{
@@ -14,6 +14,7 @@ use belvedere_scene::{
     Aux, BoxLayer, BoxShape, Color, Frame, Heightfield, LayerKind, Light, Mesh, MeshColors, MeshLayer, NodeState,
     Progress, RenderJob, RenderOptions, Renderer, Scene, builtin,
 };
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// Largest difference in depth, as a share of it.
@@ -207,52 +208,97 @@ fn random_view(random: &mut Random, kind: usize, image: [u32; 2]) -> Option<View
             return View::new(bent.pinhole().clone(), [&[earth, ground], bent.stages()].concat()).ok();
         }
         kind => {
-            let model = [Model::Modified, Model::Original, Model::C0, Model::C2, Model::Circular][kind % 5];
-            let rays = random_turn(random, &ph, model)?;
+            let model = MODELS[kind % 5];
             match kind {
-                5..10 => vec![rays],
-                10 => vec![earth, ground, rays],
-                _ => return under_spline(random, &ph, ground, model),
+                5..10 => vec![random_turns(random, &ph, model, 1)?],
+                10 => vec![earth, ground, random_turns(random, &ph, model, 1)?],
+                11 => return under_spline(random, &ph, ground, model),
+                kind => vec![random_turns(random, &ph, MODELS[kind - 12], 2)?],
             }
         }
     };
     View::new(ph, stages).ok()
 }
 
+/// Kinds of random views, see [`random_view`].
+const KINDS: usize = 17;
+const MODELS: [Model; 5] = [Model::Modified, Model::Original, Model::C0, Model::C2, Model::Circular];
+
 /// Ground that gives way, under a spline, seen along curved rays.
 fn under_spline(random: &mut Random, ph: &Pinhole, ground: Stage, model: Model) -> Option<View> {
     let bent = spline(ph.clone(), "progressive");
-    let rays = random_turn(random, bent.pinhole(), model)?;
+    let rays = random_turns(random, bent.pinhole(), model, 1)?;
     View::new(bent.pinhole().clone(), [&[ground], bent.stages(), &[rays]].concat()).ok()
 }
 
-fn random_turn(random: &mut Random, ph: &Pinhole, model: Model) -> Option<Stage> {
+/// Rays of one or two turns that look over the hills.
+fn random_turns(random: &mut Random, ph: &Pinhole, model: Model, turns: usize) -> Option<Stage> {
     let forward = ph.forward.with_z(0.0).normalize();
-    let at = random.range(0.5, 1.1) * ph.eye.truncate().length();
-    let plane = |share: f64| ph.eye + forward * at * share;
-    let spec = TurnSpec {
-        viewpoint: ph.eye + DVec3::Z * random.range(-60.0, 260.0) + ph.right * random.range(-80.0, 80.0),
-        t0: plane(random.range(0.75, 0.92)),
-        t1: plane(1.0),
-        t2: plane(random.range(1.08, 1.25)),
-        pencil: Pencil::Parallel { normal: -forward },
-        m: Sharpness::Bend,
-    };
-    CurvedRays::new(ph, model, &[spec]).ok().map(Stage::CurvedRays)
+    let far = random.range(0.5, 1.1) * ph.eye.truncate().length();
+    let mut rise = 0.0;
+    let specs: Vec<TurnSpec> = (0..turns)
+        .map(|k| {
+            let at = far * (1.0 + 0.55 * k as f64);
+            let plane = |share: f64| ph.eye + forward * at * share;
+            rise += random.range(-60.0, 260.0) / turns as f64;
+            TurnSpec {
+                viewpoint: ph.eye + DVec3::Z * rise + ph.right * random.range(-80.0, 80.0),
+                t0: plane(random.range(0.75, 0.92)),
+                t1: plane(1.0),
+                t2: plane(random.range(1.08, 1.25)),
+                pencil: Pencil::Parallel { normal: -forward },
+                // Around 1.05 a conic arc is a parabola.
+                m: match model {
+                    Model::Modified if random.next() < 0.7 => Sharpness::Value(random.range(0.6, 1.5)),
+                    _ => Sharpness::Bend,
+                },
+            }
+        })
+        .collect();
+    CurvedRays::new(ph, model, &specs).ok().map(Stage::CurvedRays)
+}
+
+/// On what kind of curve a picture sees its places, of a lattice of pixels: how often each.
+fn count_curves(scene: &Scene, view: &View, counts: &mut BTreeMap<String, usize>) {
+    let tracer = Tracer::new(scene, view);
+    let [w, h] = view.pinhole().image.map(f64::from);
+    let names: Vec<&str> = view.stages().iter().map(Stage::name).collect();
+    for i in 0..96 {
+        let pixel = DVec2::new((f64::from(i % 12) + 0.5) * w / 12.0, (f64::from(i / 12) + 0.5) * h / 8.0);
+        let Some(seen) = tracer.first_hit(pixel) else { continue };
+        let mut add = |name: String| *counts.entry(name).or_default() += 1;
+        add(format!("stages {}", names.join(" ")));
+        let turned = view.curved_rays().filter(|_| names.len() == 1);
+        let Some(rays) = turned else { continue };
+        let pieces = view.ray(pixel).pieces().expect("curved rays alone have pieces");
+        let piece = pieces.iter().find(|p| seen.depth <= p.depth[1]).expect("the last one has no end");
+        let shape = match piece.shape {
+            Shape::Line { .. } if piece.segment > 0 => "a line past a turn".to_owned(),
+            Shape::Line { .. } => "a line".to_owned(),
+            Shape::Conic(arc) if (arc.curve.weight - 1.0).abs() < 1e-12 => "a parabola".to_owned(),
+            Shape::Conic(arc) if arc.curve.weight < 1.0 => "an ellipse".to_owned(),
+            Shape::Conic(_) => "a hyperbola".to_owned(),
+            Shape::C2(_) => "a quartic".to_owned(),
+        };
+        add(shape);
+        add(format!("segment {} of {} turns", piece.segment, rays.turn_count()));
+    }
 }
 
 #[test]
-fn rasteriser_and_tracer_agree_on_204_random_views() {
-    const VIEWS: usize = 204;
-    const KINDS: usize = 12;
+fn rasteriser_and_tracer_agree_on_random_views_of_all_stages() {
+    const VIEWS: usize = 12 * KINDS;
     let scenes: Vec<Scene> = (0..4).map(|i| with_towers(hills(24, 50.0, 120.0 + 20.0 * i as f64, 70 + i))).collect();
     let mut random = Random::new(20_100_726);
     let (mut total, mut judged_views, mut worst) = (Difference::default(), 0, Vec::new());
+    let mut curves = BTreeMap::new();
     for i in 0.. {
         assert!(i < 3 * VIEWS, "only {judged_views} of {i} random views are possible");
         let Some(view) = random_view(&mut random, judged_views % KINDS, [64, 36]) else { continue };
-        let d = difference(&scenes[judged_views % scenes.len()], &view);
+        let scene = &scenes[judged_views % scenes.len()];
+        let d = difference(scene, &view);
         total.add(d);
+        count_curves(scene, &view, &mut curves);
         if (d.ids + d.depths) as f64 > 2e-3 * d.pixels as f64 {
             let names: Vec<&str> = view.stages().iter().map(Stage::name).collect();
             worst.push(format!("view {judged_views} {names:?}: {d:?}"));
@@ -264,6 +310,13 @@ fn rasteriser_and_tracer_agree_on_204_random_views() {
     }
     assert!(total.judged > total.pixels / 2, "{total:?}");
     assert!(total.is_small(), "{total:?}; {worst:#?}");
+    // Every kind of curve and every chain of stages has been looked along.
+    let wanted = ["a line", "a line past a turn", "a parabola", "an ellipse", "a hyperbola", "a quartic"];
+    for name in wanted.iter().map(ToString::to_string).chain((0..5).map(|k| format!("segment {k} of 2 turns"))) {
+        assert!(curves.get(&name).is_some_and(|n| *n >= 20), "{name}: {curves:#?}");
+    }
+    let chains = curves.keys().filter(|k| k.starts_with("stages ")).count();
+    assert!(chains >= 8, "{curves:#?}");
 }
 
 /// A heightfield with other node positions.

@@ -7,6 +7,7 @@ mod marks;
 mod real_data;
 mod reference;
 mod robust;
+mod steady;
 mod subdivision;
 mod support;
 mod support_views;

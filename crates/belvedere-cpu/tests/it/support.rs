@@ -93,6 +93,7 @@ pub(crate) fn line(points: Vec<DVec3>, hidden: Hidden) -> LineLayer {
         hidden,
         lift_m: 2.0,
         markers: None,
+        label_px: None,
     }
 }
 

@@ -39,6 +39,41 @@ impl Level {
     }
 }
 
+/// Takes holes (NaN, joined along rows and columns) of more than `most` nodes for outside; returns how many there are.
+pub(super) fn leave_open(cols: usize, heights: &mut [f32], most: usize) -> usize {
+    let mut seen = vec![false; heights.len()];
+    let (mut hole, mut large) = (Vec::new(), 0);
+    for start in 0..heights.len() {
+        if seen[start] || !heights[start].is_nan() {
+            continue;
+        }
+        seen[start] = true;
+        hole.clear();
+        hole.push(start);
+        let mut next = 0;
+        while let Some(&i) = hole.get(next) {
+            next += 1;
+            let c = i % cols;
+            let beside = [
+                (c > 0).then(|| i - 1),
+                (c + 1 < cols).then(|| i + 1),
+                i.checked_sub(cols),
+                (i + cols < heights.len()).then(|| i + cols),
+            ];
+            for k in beside.into_iter().flatten() {
+                if heights[k].is_nan() && !std::mem::replace(&mut seen[k], true) {
+                    hole.push(k);
+                }
+            }
+        }
+        if hole.len() > most {
+            large += 1;
+            hole.iter().for_each(|&i| heights[i] = f32::INFINITY);
+        }
+    }
+    large
+}
+
 /// Replaces NaN by the solution of Laplace's equation with the known heights as boundary values and no flow through the
 /// outside (infinite) and the border: multigrid from coarse to fine, each level relaxed by Gauss-Seidel with
 /// over-relaxation (any textbook). Known heights are not touched; the same input gives the same bits.
@@ -136,6 +171,29 @@ fn relax(level: &mut Level, unknown: &[usize]) {
             unknown.iter().copied().for_each(&mut update);
         } else {
             unknown.iter().rev().copied().for_each(&mut update);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_hole_is_judged_by_itself() {
+        // A hole of 9 nodes, one of 4 that touches it only at a corner, and one at the border.
+        let (cols, rows) = (12, 10);
+        let holes = [(2..5, 2..5), (5..7, 5..7), (11..12, 0..3)];
+        let inside = |c: usize, r: usize| holes.iter().position(|(cs, rs)| cs.contains(&c) && rs.contains(&r));
+        let made = |i: usize| if inside(i % cols, i / cols).is_some() { f32::NAN } else { i as f32 };
+        for (most, open) in [(9, 0), (8, 1), (4, 1), (3, 2), (2, 3), (0, 3)] {
+            let mut heights: Vec<f32> = (0..cols * rows).map(made).collect();
+            assert_eq!(leave_open(cols, &mut heights, most), open, "at most {most}");
+            fill(cols, rows, &mut heights, &Progress::silent()).unwrap();
+            for (i, h) in heights.iter().enumerate() {
+                let size = inside(i % cols, i / cols).map(|k| [9, 4, 3][k]);
+                assert_eq!(h.is_finite(), size.is_none_or(|n| n <= most), "node {i}, at most {most}");
+            }
         }
     }
 }

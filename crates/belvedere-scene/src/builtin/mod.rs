@@ -84,6 +84,7 @@ fn line_layer(id: &str, feature: LineFeature) -> Layer {
             hidden: Hidden::Dash,
             lift_m: 2.0,
             markers: None,
+            label_px: None,
         }),
     }
 }

@@ -3,7 +3,7 @@
 use super::{INK, PAPER, length};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_cpu::canvas::{Canvas, text_size};
-use belvedere_scene::{Color, Frame, LayerKind, Scene};
+use belvedere_scene::{Color, Frame};
 use rayon::prelude::*;
 
 /// Dark blue to yellow with evenly rising lightness, told apart with any colour vision (support colours of viridis, CC0).
@@ -26,9 +26,10 @@ pub(crate) fn ramp(share: f64) -> [u8; 3] {
     std::array::from_fn(|c| ((RAMP[i][c] + (t - i as f32) * (RAMP[i + 1][c] - RAMP[i][c])) * 255.0 + 0.5) as u8)
 }
 
-/// Colours the surfaces of `frame`, which must have world positions; lines and points stay. Returns the largest displacement, scene units.
-pub(crate) fn paint(frame: &mut Frame, scene: &Scene, view: &View) -> f64 {
-    let Some(world) = &frame.world else { return 0.0 };
+/// Colours the surfaces of `frame`; what was drawn over them stays. Returns the largest displacement, scene units.
+/// * `bare`: the same picture without marks, with world positions.
+pub(crate) fn paint(frame: &mut Frame, bare: &Frame, view: &View) -> f64 {
+    let Some(world) = &bare.world else { return 0.0 };
     let straight = view.straightened();
     let moved: Vec<f64> = world
         .par_iter()
@@ -41,11 +42,9 @@ pub(crate) fn paint(frame: &mut Frame, scene: &Scene, view: &View) -> f64 {
         })
         .collect();
     let most = moved.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max);
-    let is_mark: Vec<bool> = std::iter::once(false)
-        .chain(scene.layers.iter().map(|l| matches!(l.kind, LayerKind::Line(_) | LayerKind::Point(_))))
-        .collect();
-    for ((color, moved), id) in frame.color.iter_mut().zip(&moved).zip(&frame.id) {
-        if moved.is_finite() && !is_mark.get(*id as usize).copied().unwrap_or(false) {
+    for ((color, bare), moved) in frame.color.iter_mut().zip(&bare.color).zip(&moved) {
+        // A mark leaves no pixel as it is, but for one that it hardly touches.
+        if moved.is_finite() && color == bare {
             let [r, g, b] = color.map(f32::from);
             let light = (0.30 * r + 0.59 * g + 0.11 * b) / 255.0;
             let tone = ramp(if most > 0.0 { moved / most } else { 0.0 });

@@ -25,8 +25,15 @@ pub(super) fn load(
             loader.fail(index, "source_crs", format!("source_crs \"{text}\" is not known; give \"EPSG:n\""))
         })?),
     };
-    let request =
-        TerrainRequest { crs, fill_voids: doc.fill_voids, source_crs, nodata: doc.nodata, ..TerrainRequest::default() };
+    let request = TerrainRequest {
+        crs,
+        fill_voids: doc.fill_voids,
+        largest_hole: doc.largest_hole.unwrap_or(1.0),
+        source_crs,
+        nodata: doc.nodata,
+        limits: loader.options.limits(),
+        ..TerrainRequest::default()
+    };
     let loaded = load_terrain(&files, &request, &loader.options.progress)?;
     loader.note(index, loaded.warnings);
     Ok((loaded.value.heightfield, loaded.value.crs))

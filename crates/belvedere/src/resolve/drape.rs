@@ -12,8 +12,14 @@ const MAX_SIDE: usize = 8192;
 const FIT: usize = 9;
 
 /// Reads a picture and places it by an affine map fitted to its own coordinate system.
-pub(super) fn load(path: &Path, crs: Crs, terrain: Option<Aabb>, progress: &Progress) -> Result<Loaded<Drape>, String> {
-    let opened = GeoTiff::open(path, Limits::default()).map_err(|e| e.to_string())?;
+pub(super) fn load(
+    path: &Path,
+    crs: Crs,
+    terrain: Option<Aabb>,
+    limits: Limits,
+    progress: &Progress,
+) -> Result<Loaded<Drape>, String> {
+    let opened = GeoTiff::open(path, limits).map_err(|e| e.to_string())?;
     let (file, mut warnings) = (opened.value, opened.warnings);
     let level = file.level_for(MAX_SIDE);
     let info = file.level_info(level).unwrap_or_else(|| file.info().clone());

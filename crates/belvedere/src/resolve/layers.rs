@@ -4,14 +4,14 @@ use super::validate::{color, optional_color};
 use super::{Ground, builtin, vectors};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    AreaDoc, AutoOrLength, HiddenDoc, LayerDoc, LineDoc, PaletteDoc, PaletteName, Paths, PlaceDoc, PointLayerDoc,
-    ReliefDoc, RouteDoc, ShadingDoc, SourceDocument, SurfaceDoc, SymbolDoc, TerrainDoc,
+    AreaDoc, AutoOrLength, Document, HiddenDoc, LayerDoc, LineDoc, PaletteDoc, PaletteName, Paths, PlaceDoc,
+    PointLayerDoc, ReliefDoc, RouteDoc, ShadingDoc, SourceDocument, SurfaceDoc, SymbolDoc, TerrainDoc,
 };
 use crate::{BelvedereError, OpenOptions};
 use belvedere_core::DVec2;
 use belvedere_scene::{
     AreaLayer, AreaSurface, Color, Crs, DistanceMarkers, Drape, Heightfield, Hidden, Layer, LayerKind, LineFeature,
-    LineLayer, Palette, PointLayer, PointLook, Relief, RouteCost, Shading, Symbol, TerrainLayer, drape_polyline,
+    LineLayer, Palette, PointLayer, PointLook, Relief, RouteCost, Scene, Shading, Symbol, TerrainLayer, drape_polyline,
     least_cost_route, valley_route,
 };
 use std::path::PathBuf;
@@ -131,7 +131,7 @@ impl Loader<'_> {
         let bounds = ground.terrain.map(Heightfield::bounds);
         let mut drapes = Vec::new();
         for file in files {
-            let loaded = super::drape::load(&file, ground.crs, bounds, &self.options.progress);
+            let loaded = super::drape::load(&file, ground.crs, bounds, self.options.limits(), &self.options.progress);
             let loaded = loaded.map_err(|e| self.fail(index, "drape", e))?;
             self.note(index, loaded.warnings);
             drapes.push(loaded.value);
@@ -177,6 +177,7 @@ impl Loader<'_> {
                 AutoOrLength::Auto(_) => DistanceMarkers::Auto,
                 AutoOrLength::Length(every) => DistanceMarkers::Every(every),
             }),
+            label_px: style.labels.then_some(style.label_px),
         }))
     }
 
@@ -330,6 +331,25 @@ fn surface(doc: SurfaceDoc) -> AreaSurface {
         SurfaceDoc::Water => AreaSurface::Water,
         SurfaceDoc::Forest => AreaSurface::Forest,
         SurfaceDoc::Glacier => AreaSurface::Glacier,
+    }
+}
+
+/// Writes into the areas of a document what was found to cover them, and their colours.
+pub(super) fn fill_surfaces(document: &mut Document, scene: &Scene) {
+    for doc in &mut document.layer {
+        let LayerDoc::Area(doc) = doc else { continue };
+        let layer = scene.layers.iter().find(|l| l.id == doc.id);
+        let Some(LayerKind::Area(layer)) = layer.map(|l| &l.kind) else { continue };
+        doc.style.water = None;
+        doc.style.surface = Some(match layer.surface {
+            AreaSurface::Plain => SurfaceDoc::Plain,
+            AreaSurface::Water => SurfaceDoc::Water,
+            AreaSurface::Forest => SurfaceDoc::Forest,
+            AreaSurface::Glacier => SurfaceDoc::Glacier,
+        });
+        let Color { r, g, b, a } = layer.fill;
+        let alpha = if a == 255 { String::new() } else { format!("{a:02x}") };
+        doc.style.color.get_or_insert_with(|| format!("#{r:02x}{g:02x}{b:02x}{alpha}"));
     }
 }
 

@@ -6,7 +6,7 @@ use crate::BelvedereError;
 use crate::scene_file::{MeshDoc, Paths, TransformDoc};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_io::crs::{CoordinateSystem, Transform};
-use belvedere_io::{Limits, MeshFile, load_mesh};
+use belvedere_io::{MeshFile, load_mesh};
 use belvedere_scene::{Crs, LayerKind, Mesh, MeshColors, MeshLayer};
 use glam::{DMat3, EulerRot};
 
@@ -53,7 +53,7 @@ fn source(loader: &mut Loader<'_>, index: usize, doc: &MeshDoc) -> Result<MeshFi
     let mut all: Option<MeshFile> = None;
     for path in loader.files(index, "source", &doc.source)? {
         loader.options.progress.tick("reading meshes", 0.0)?;
-        let loaded = load_mesh(&path, &Limits::default())?;
+        let loaded = load_mesh(&path, &loader.options.limits())?;
         loader.note(index, loaded.warnings);
         match &mut all {
             Some(all) => join(all, loaded.value),

@@ -31,7 +31,11 @@ use terrain::Solving;
 const MEAN_EARTH_RADIUS_M: f64 = 6_371_008.8;
 
 /// Resolves everything.
-pub(crate) fn session(source: SourceDocument, roots: &Roots, options: &OpenOptions) -> Result<Session, BelvedereError> {
+pub(crate) fn session(
+    mut source: SourceDocument,
+    roots: &Roots,
+    options: &OpenOptions,
+) -> Result<Session, BelvedereError> {
     validate::document(&source)?;
     refuse_constructor(&source)?;
     let mut loader = layers::Loader {
@@ -44,6 +48,7 @@ pub(crate) fn session(source: SourceDocument, roots: &Roots, options: &OpenOptio
     };
     let scene = load(&mut loader)?;
     let layers::Loader { inputs, warnings, .. } = loader;
+    layers::fill_surfaces(&mut source.document, &scene);
     let mut memory = TerrainMemory::default();
     let mut solving = Solving { memory: &mut memory, time_step_s: None, progress: &options.progress };
     let looked = look(&source, roots, &scene, (!options.unsolved).then_some(&mut solving))?;

@@ -82,7 +82,10 @@ fn layer_sources(layer: &LayerDoc) -> Result<(), Complaint> {
 fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
     let width = |v: f64| within("width_px", v, 0.0, 100.0);
     match layer {
-        LayerDoc::Terrain(l) => within("exaggeration", l.style.exaggeration, 0.0, 100.0),
+        LayerDoc::Terrain(l) => {
+            l.largest_hole.map_or(Ok(()), |share| within("largest_hole", share, 0.0, 1.0))?;
+            within("exaggeration", l.style.exaggeration, 0.0, 100.0)
+        }
         LayerDoc::Line(l) => {
             color("color", &l.style.color)?;
             optional_color("casing", &l.style.casing)?;
@@ -90,6 +93,7 @@ fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
             if let Some(AutoOrLength::Length(every)) = l.style.distance_markers_m {
                 within("distance_markers_m", every, 0.0, 1e9)?;
             }
+            within("label_px", l.style.label_px, 0.0, 200.0)?;
             lift(l.style.lift_m)
         }
         LayerDoc::Area(l) => {

@@ -131,6 +131,9 @@ pub struct TerrainDoc {
     /// Whether holes are filled; filled parts are marked.
     #[serde(default)]
     pub fill_voids: bool,
+    /// Largest hole that is filled, as a share of the ground, in (0, 1]; larger ones stay open. By default every hole is filled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_hole: Option<f64>,
     /// `EPSG:n` of the files, instead of what they say.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub source_crs: Option<String>,
@@ -358,6 +361,10 @@ pub struct LineStyleDoc {
     /// Marks along each line at this distance over the ground, metres, > 0, or `auto`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distance_markers_m: Option<AutoOrLength>,
+    /// Whether names are written, each once, as far as they do not overlap.
+    pub labels: bool,
+    /// Height of the letters, pixels, in (0, 200].
+    pub label_px: f64,
 }
 
 impl Default for LineStyleDoc {
@@ -369,6 +376,8 @@ impl Default for LineStyleDoc {
             hidden: HiddenDoc::Dash,
             lift_m: 1.0,
             distance_markers_m: None,
+            labels: false,
+            label_px: 13.0,
         }
     }
 }

@@ -174,9 +174,10 @@ fn open(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Session, B
         features: request.features.iter().map(name).collect(),
         curved_earth: request.curved_earth,
         crs: request.crs.clone(),
+        keep_voids: true,
         ..RevealRequest::default()
     };
-    reveal::load(&request, true, options)
+    reveal::load(&request, options)
 }
 
 /// Eye and place looked at in the scene.

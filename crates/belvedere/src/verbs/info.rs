@@ -18,6 +18,8 @@ pub enum FileInfo {
     Terrain(TerrainInfo),
     /// A picture.
     Picture(PictureInfo),
+    /// Samples that make no terrain of a scene; the last warning says why.
+    Raster(PictureInfo),
     /// Lines, areas, points.
     Features(FeatureInfo),
     /// Triangles.
@@ -185,22 +187,35 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
         .into());
     }
     if ends(&["tif", "tiff"]) {
-        let opened = GeoTiff::open(path, Limits::default())?;
-        let info = opened.value.info();
-        let picture = info.bands >= 3 || matches!(info.photometric, belvedere_io::Photometric::Palette(_));
-        if picture {
-            return Ok(FileInfo::Picture(PictureInfo {
-                path: name.to_owned(),
-                size: [info.width, info.height],
-                bands: info.bands,
-                samples: info.sample_type.name(),
-                crs: info.crs.to_string(),
-                corners: info.corners(),
-                warnings: opened.warnings,
-            }));
-        }
+        return geotiff(path, name, progress);
     }
     terrain(path, progress)
+}
+
+/// A picture, terrain, or else the raster alone.
+fn geotiff(path: &Path, name: &str, progress: &Progress) -> Result<FileInfo, BelvedereError> {
+    let opened = GeoTiff::open(path, Limits::default())?;
+    let (file, info) = (&opened.value, opened.value.info());
+    let picture = PictureInfo {
+        path: name.to_owned(),
+        size: [info.width, info.height],
+        bands: info.bands,
+        samples: info.sample_type.name(),
+        crs: info.crs.to_string(),
+        corners: info.corners(),
+        warnings: opened.warnings,
+    };
+    if info.bands >= 3 || matches!(info.photometric, belvedere_io::Photometric::Palette(_)) {
+        return Ok(FileInfo::Picture(picture));
+    }
+    match terrain(path, progress) {
+        // Whole and readable, only no ground of a scene as it stands.
+        Err(reason) if !reason.is_cancelled() && file.read(0, progress).is_ok() => {
+            let warnings = picture.warnings.iter().cloned().chain([reason.to_string()]).collect();
+            Ok(FileInfo::Raster(PictureInfo { warnings, ..picture }))
+        }
+        answer => answer,
+    }
 }
 
 fn terrain(path: &Path, progress: &Progress) -> Result<FileInfo, BelvedereError> {

@@ -285,7 +285,7 @@ fn draw_view(session: &Session, request: &RenderRequest, progress: &Progress) ->
         Some(SwitchOrLength::Switch(false)) | None => None,
     });
     let grid_spacing = asked.and_then(|spacing| grid::spacing(scene, spacing));
-    let world = heatmap || request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
+    let world = request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
     let exact = !request.aux.is_empty();
     let mut options = RenderOptions { aux: Aux { world, exact }, ..request.options.clone() };
     options.overlay.under.extend(grid_spacing.map(|spacing| grid::lines(scene, spacing)).into_iter().flatten());
@@ -303,7 +303,15 @@ fn draw_view(session: &Session, request: &RenderRequest, progress: &Progress) ->
         thin::draw(&mut frame, &behind, scene, &view, covered);
     }
     let straight = if request.compare || ghost { Some(draw(&view.straightened())?) } else { None };
-    let heatmap_max = heatmap.then(|| heat::paint(&mut frame, scene, &view));
+    let mut heatmap_max = None;
+    if heatmap {
+        // Names and lines are read on the colours, not through them.
+        let aux = Aux { world: true, exact: false };
+        let options = RenderOptions { marks: false, aux, ..request.options.clone() };
+        let job = RenderJob { scene, view: &view, light: session.light(), options: &options, progress };
+        let bare = request.renderer.renderer().render(&job)?;
+        heatmap_max = Some(heat::paint(&mut frame, &bare, &view));
+    }
     if let Some(straight) = straight.as_ref().filter(|_| ghost) {
         ghost::draw(&mut frame, straight, scene);
     }

@@ -17,7 +17,7 @@ use belvedere_construct::terrain::{TerrainMemory, TerrainReport};
 use belvedere_construct::{Goal, MeasureOptions, RevealMemory, RevealOptions, RevealReport, Revealed};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_io::png::{self, Channels};
-use belvedere_scene::{Crs, NodeState, Progress};
+use belvedere_scene::{Crs, Progress};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -120,7 +120,7 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     if let Some(fov) = request.fov_y_deg.filter(|fov| !(*fov > 0.0 && *fov < 180.0)) {
         return Err(BelvedereError::Usage(format!("--fov is {fov}, it must lie strictly between 0 and 180 degrees")));
     }
-    let mut session = open(request, options)?;
+    let mut session = load(request, options)?;
     let base = base_view(request, &session)?;
     let image = request.image.unwrap_or([1280, 720]);
     let search = RevealOptions {
@@ -176,32 +176,12 @@ fn make_way(session: &mut Session, technique: Technique, progress: &Progress) ->
     })
 }
 
-/// Most of the ground that may be made up, share of the nodes; above it holes stay open.
-pub const MAX_FILLED_SHARE: f64 = 0.15;
+/// Largest hole that is filled, share of the ground: what would be made up in a larger one is no ground.
+pub const LARGEST_HOLE: f64 = 0.03;
 
-/// The terrain and the features, holes filled unless they are to be kept or too much of the ground.
-fn open(request: &RevealRequest, options: &OpenOptions) -> Result<Session, BelvedereError> {
-    let session = load(request, request.keep_voids, options)?;
-    let filled = session.scene.terrain().map_or(0.0, |t| t.share_of(NodeState::Filled));
-    if filled <= MAX_FILLED_SHARE {
-        return Ok(session);
-    }
-    let mut session = load(request, true, options)?;
-    session.warnings.push(format!(
-        "holes are {:.1} % of the ground, more than the {:.0} % that are filled, so they stay open; take terrain with fewer holes",
-        100.0 * filled,
-        100.0 * MAX_FILLED_SHARE
-    ));
-    Ok(session)
-}
-
-/// The terrain and the features as a session.
-pub(super) fn load(
-    request: &RevealRequest,
-    keep_voids: bool,
-    options: &OpenOptions,
-) -> Result<Session, BelvedereError> {
-    let (document, roots) = document(request, keep_voids)?;
+/// The terrain and the features as a session; holes are filled unless they are large or to be kept.
+pub(super) fn load(request: &RevealRequest, options: &OpenOptions) -> Result<Session, BelvedereError> {
+    let (document, roots) = document(request)?;
     let source = SourceDocument::made(PathBuf::from("reveal.toml"), document);
     let mut session = crate::resolve::session(source, &roots, options)?;
     session.inputs.remove(0);
@@ -380,14 +360,15 @@ fn base_view(request: &RevealRequest, session: &Session) -> Result<Option<View>,
 }
 
 /// A document of the terrain and the features, and the folders they lie in.
-fn document(request: &RevealRequest, keep_voids: bool) -> Result<(Document, Roots), BelvedereError> {
+fn document(request: &RevealRequest) -> Result<(Document, Roots), BelvedereError> {
     let mut roots = Roots::default();
     let dem = locate(&request.dem, &mut roots)?;
     let palette = crate::session::located(&request.palette, &mut roots.allowed)?;
     let mut layer = vec![LayerDoc::Terrain(TerrainDoc {
         id: "ground".into(),
         source: Paths::One(dem),
-        fill_voids: !keep_voids,
+        fill_voids: !request.keep_voids,
+        largest_hole: (!request.keep_voids).then_some(LARGEST_HOLE),
         source_crs: None,
         nodata: None,
         drape: None,

@@ -15,6 +15,7 @@ fn line(field: &Field, path: &[[f64; 2]]) -> Scene {
         hidden: Hidden::Dash,
         lift_m: 1.0,
         markers: None,
+        label_px: None,
     });
     Scene { layers: vec![Layer { id: "line".into(), must_see: true, kind }], ..Scene::default() }
 }

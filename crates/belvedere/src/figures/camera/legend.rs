@@ -11,7 +11,7 @@ const ROW: f64 = 17.0;
 /// Draws legend, and from above also scale bar and north.
 pub(crate) fn draw(canvas: &mut Canvas<'_>, figure: &CameraFigure, title: &str) {
     let size = canvas.size();
-    let widest = figure.legend.iter().map(|(_, text)| text_size(LETTERS_PX, text).width + 34.0);
+    let widest = figure.legend.iter().map(|(_, text)| text_size(LETTERS_PX, text).width + 42.0);
     let width = widest.fold(text_size(14.0, title).width + 20.0, f64::max);
     let height = 30.0 + ROW * figure.legend.len() as f64;
     if size.x < width + 20.0 || size.y < height + 20.0 {

@@ -43,6 +43,8 @@ pub struct Settings {
     pub samples: u32,
     /// Worst error of bent edges, pixels.
     pub tolerance_px: f64,
+    /// Worst error of terrain in less detail, pixels.
+    pub lod_px: f64,
     /// Who draws.
     pub renderer: String,
     /// Without the bends.
@@ -124,6 +126,7 @@ impl Manifest {
                 image: session.view().pinhole().image,
                 samples: request.options.samples,
                 tolerance_px: request.options.tolerance_px,
+                lod_px: request.options.lod_px,
                 renderer: request.renderer.renderer().name().to_owned(),
                 straight: request.straight,
                 compare: request.compare,

@@ -1,0 +1,100 @@
+//! Names of lines.
+
+use super::label::Wish;
+use super::visibility::Station;
+use super::{Maker, Style, casing_of, darker, path, width_or_none};
+use crate::canvas::text_size;
+use belvedere_core::DVec2;
+use belvedere_scene::LineLayer;
+use rayon::prelude::*;
+
+/// Room that a name leaves at the rim of the picture, pixels.
+const RIM: f64 = 4.0;
+/// A name needs a stretch of line of at least this share of its own width.
+const LEAST_SHARE: f64 = 0.6;
+
+/// A stretch of line that is seen: its length and middle, pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Stretch {
+    length: f64,
+    middle: DVec2,
+}
+
+impl Maker<'_> {
+    /// Each name of a layer once, where the longest stretch of the lines that bear it is seen.
+    pub(super) fn line_names(&self, layer: &LineLayer) -> Vec<Wish> {
+        let Some(size_px) = layer.label_px else { return Vec::new() };
+        let half_px = 0.5 * width_or_none(layer.width_px);
+        let style = Style { half_px, casing_px: None, hidden: layer.hidden, lift_m: layer.lift_m };
+        let stretches: Vec<(&str, Option<Stretch>)> = layer
+            .features
+            .par_iter()
+            .filter(|f| !f.name.trim().is_empty())
+            .map(|f| (f.name.trim(), self.longest(&path::drape(self.scene, &f.points, layer.lift_m), style)))
+            .collect();
+        let mut names: Vec<(&str, Stretch)> = Vec::new();
+        for (name, stretch) in stretches {
+            let Some(stretch) = stretch else { continue };
+            match names.iter_mut().find(|(n, _)| *n == name) {
+                Some((_, best)) if stretch.length > best.length => *best = stretch,
+                Some(_) => {}
+                None => names.push((name, stretch)),
+            }
+        }
+        names.retain(|(name, s)| s.length >= LEAST_SHARE * text_size(size_px, name).width);
+        // The longer a line is seen, the sooner its name finds a place.
+        names.sort_by(|a, b| b.1.length.total_cmp(&a.1.length).then(a.0.cmp(b.0)));
+        let side = casing_of(half_px);
+        let wish = |(name, s): (&str, Stretch)| Wish {
+            text: name.to_owned(),
+            at: s.middle,
+            marker: [side; 2],
+            size_px,
+            color: darker(layer.color),
+            leader: false,
+        };
+        names.into_iter().map(wish).collect()
+    }
+
+    fn longest(&self, places: &[path::Place], style: Style) -> Option<Stretch> {
+        let size = 2.0 * self.lens.center;
+        let parts = self.runs(places, style).into_iter().flat_map(|(_, run)| run.parts());
+        let seen = parts.filter(|(visible, _)| *visible).flat_map(|(_, part)| within(&part, size));
+        seen.max_by(|a, b| a.length.total_cmp(&b.length))
+    }
+}
+
+/// Stretches of a line within the picture.
+fn within(part: &[Station], size: DVec2) -> Vec<Stretch> {
+    let inside = |s: &Station| s.pixel.cmpge(DVec2::splat(RIM)).all() && s.pixel.cmple(size - RIM).all();
+    let stretch = |stations: &[Station]| {
+        let (first, last) = (stations.first()?, stations.last()?);
+        let half = 0.5 * (first.arc_px + last.arc_px);
+        let after = stations.partition_point(|s| s.arc_px < half).min(stations.len() - 1);
+        let [a, b] = [after.saturating_sub(1), after].map(|i| &stations[i]);
+        let share = (half - a.arc_px) / (b.arc_px - a.arc_px).max(1e-9);
+        let middle = a.pixel.lerp(b.pixel, share.clamp(0.0, 1.0));
+        Some(Stretch { length: last.arc_px - first.arc_px, middle })
+    };
+    part.split(|s| !inside(s)).filter_map(stretch).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::path::Place;
+    use super::*;
+    use belvedere_core::DVec3;
+
+    #[test]
+    fn the_middle_of_a_stretch_is_that_of_its_part_within_the_picture() {
+        let station = |i: i32| Station {
+            pixel: DVec2::new(f64::from(i), 50.0),
+            arc_px: f64::from(i) + 30.0,
+            place: Place { p: DVec3::ZERO, along: 0.0, on_ground: true },
+        };
+        let line: Vec<Station> = (-30..200).map(station).collect();
+        let found = within(&line, DVec2::new(100.0, 80.0));
+        assert_eq!(found, [Stretch { length: 92.0, middle: DVec2::new(50.0, 50.0) }]);
+        assert!(within(&line, DVec2::new(100.0, 40.0)).is_empty());
+    }
+}

@@ -1,0 +1,249 @@
+//! Shadows that boxes and meshes throw, and those that fall on them: straight rays towards the sun, on the map.
+
+use crate::exact::boxes::{Boxes, Solid};
+use belvedere_core::{Aabb, DVec2, DVec3};
+use belvedere_scene::{Ground, LayerKind, Light, MeshTree, Scene};
+
+/// Half the width of the sun, radians.
+const SUN_RADIUS: f64 = 0.004_65;
+/// How far a ray begins off the surface that it leaves, in sides of a pixel, and in coordinates' own size: rounding.
+const OFF_PX: f64 = 0.02;
+const OFF: f64 = 1e-9;
+/// Rays that tell whether a pixel lies wholly in light or in shadow; the rest is asked on borders alone.
+const FIRST: usize = 4;
+
+/// Places within a pixel, -0.5..0.5 to the right and down, and on the sun, -1..1 across; the first four are those in the corners.
+const PATTERN: [[f64; 4]; 16] = pattern();
+
+const fn pattern() -> [[f64; 4]; 16] {
+    // Rows of a 4 x 4 lattice that is turned, in an order that visits the corners first.
+    const ORDER: [[u8; 2]; 16] = [
+        [0, 0],
+        [3, 0],
+        [0, 3],
+        [3, 3],
+        [1, 1],
+        [2, 2],
+        [2, 1],
+        [1, 2],
+        [1, 0],
+        [2, 3],
+        [0, 2],
+        [3, 1],
+        [2, 0],
+        [1, 3],
+        [0, 1],
+        [3, 2],
+    ];
+    let mut out = [[0.0; 4]; 16];
+    let mut i = 0;
+    while i < 16 {
+        let [a, b] = [ORDER[i][0] as f64, ORDER[i][1] as f64];
+        let (x, y) = (4.0 * a + b, 4.0 * b + 3.0 - a);
+        // Opposite corners of the pixel see opposite sides of the sun half of the time.
+        let (u, v) = (4.0 * ((ORDER[i][0] ^ 1) as f64) + b, 4.0 * ((ORDER[i][1] ^ 2) as f64) + a);
+        out[i] = [(x + 0.5) / 16.0 - 0.5, (y + 0.5) / 16.0 - 0.5, (u + 0.5) / 8.0 - 1.0, (v + 0.5) / 8.0 - 1.0];
+        i += 1;
+    }
+    out
+}
+
+/// What throws shadows beside the ground on itself.
+pub(super) struct Casters<'a> {
+    boxes: Boxes,
+    meshes: Vec<MeshTree<'a>>,
+    grounds: Vec<Ground<'a>>,
+    /// Around all boxes and meshes, and highest place of everything.
+    solid: Aabb,
+    top: f64,
+    sun: DVec3,
+    /// Two directions across it, as long as the sun is wide.
+    across: [DVec3; 2],
+}
+
+impl<'a> Casters<'a> {
+    /// `None` where no shadows are wanted, the sun is down, or nothing but the ground throws any.
+    pub(super) fn new(scene: &'a Scene, light: &Light) -> Option<Self> {
+        let sun = light.direction();
+        if !(light.shadows && sun.z > 0.01) {
+            return None;
+        }
+        let (mut solids, mut meshes, mut grounds) = (Vec::new(), Vec::new(), Vec::new());
+        let mut solid = Aabb::EMPTY;
+        for (i, layer) in scene.layers.iter().enumerate() {
+            match &layer.kind {
+                LayerKind::Boxes(b) => {
+                    solids.extend(b.boxes.iter().enumerate().map(|(k, s)| Solid::new(i, k, s, |_: &Aabb| [0.0; 2])));
+                }
+                LayerKind::Mesh(m) => {
+                    solid = solid.union(m.mesh.bounds());
+                    meshes.push(MeshTree::new(&m.mesh));
+                }
+                _ => {}
+            }
+        }
+        let boxes = Boxes::new(solids);
+        let solid = solid.union(boxes.bounds());
+        if solid.is_empty() {
+            return None;
+        }
+        let mut top = solid.max.z;
+        for layer in &scene.layers {
+            if let LayerKind::Terrain(t) = &layer.kind {
+                top = top.max(t.heightfield.z_range()[1]);
+                grounds.push(Ground::new(&t.heightfield));
+            }
+        }
+        let (u, v) = sun.any_orthonormal_pair();
+        Some(Self { boxes, meshes, grounds, solid, top, sun, across: [SUN_RADIUS * u, SUN_RADIUS * v] })
+    }
+
+    /// Share of the sun that boxes and meshes leave to a pixel on the ground.
+    /// * `axes`: way on the map per pixel to the right and per pixel down.
+    pub(super) fn on_ground(&self, p: DVec3, axes: [DVec2; 2]) -> f32 {
+        // Away from every caster: the box that the rays run through.
+        let way = self.way(p.z, self.solid.max.z);
+        let reach = (axes[0].length() + axes[1].length()) + 2.0 * SUN_RADIUS * way;
+        let end = p + way * self.sun;
+        let apart = p.min(end) - reach;
+        if way <= 0.0 || apart.cmpgt(self.solid.max).any() || (p.max(end) + reach).cmplt(self.solid.min).any() {
+            return 1.0;
+        }
+        let [right, down] = axes.map(|a| a.extend(0.0));
+        self.share(p, [right, down], false)
+    }
+
+    /// Share of the sun that everything leaves to a pixel on a surface with a normal.
+    /// * `side`: of the square that the pixel covers there.
+    pub(super) fn on_surface(&self, p: DVec3, normal: DVec3, side: f64) -> f32 {
+        if normal.dot(self.sun) <= 0.0 {
+            return 0.0;
+        }
+        let (u, v) = normal.any_orthonormal_pair();
+        let off = OFF_PX * side + OFF * p.abs().max_element();
+        self.share(p + off * normal, [side * u, side * v], true)
+    }
+
+    fn share(&self, p: DVec3, [right, down]: [DVec3; 2], over_ground: bool) -> f32 {
+        let lit = |i: usize| {
+            let [x, y, u, v] = PATTERN[i];
+            let sun = self.sun + u * self.across[0] + v * self.across[1];
+            u32::from(self.sees(p + x * right + y * down, sun, over_ground))
+        };
+        let corners: u32 = (0..FIRST).map(lit).sum();
+        if corners == 0 || corners as usize == FIRST {
+            return (corners / FIRST as u32) as f32;
+        }
+        let rest: u32 = (FIRST..PATTERN.len()).map(lit).sum();
+        (corners + rest) as f32 / PATTERN.len() as f32
+    }
+
+    /// Length of a ray from a height until it is above another.
+    fn way(&self, z: f64, top: f64) -> f64 {
+        (top - z) / self.sun.z
+    }
+
+    fn sees(&self, p: DVec3, sun: DVec3, over_ground: bool) -> bool {
+        let to = |top: f64| p + self.way(p.z, top).max(0.0) * sun;
+        let end = to(self.solid.max.z);
+        let mut free = true;
+        self.boxes.near(p, end, 0.0, &mut |_, _| {
+            free = false;
+            false
+        });
+        free && self.meshes.iter().all(|tree| tree.first_crossing(p, end).is_none())
+            && (!over_ground || self.grounds.iter().all(|g| g.sees(p, to(self.top))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_scene::{
+        BoxLayer, BoxShape, Color, Heightfield, Layer, Mesh, MeshColors, MeshLayer, Palette, Relief, TerrainLayer,
+    };
+
+    /// Sun in the west, 45 degrees high.
+    const SUN: Light =
+        Light { azimuth: 1.5 * std::f64::consts::PI, altitude: std::f64::consts::FRAC_PI_4, shadows: true };
+    const AXES: [DVec2; 2] = [DVec2::new(0.5, 0.0), DVec2::new(0.0, 0.5)];
+
+    fn layer(kind: LayerKind) -> Layer {
+        Layer { id: "any".into(), must_see: false, kind }
+    }
+
+    /// A tower 20 wide and 50 high in the middle.
+    fn tower() -> LayerKind {
+        let (base, size) = (DVec3::ZERO, DVec3::new(20.0, 20.0, 50.0));
+        LayerKind::Boxes(BoxLayer { boxes: vec![BoxShape { base, size, yaw: 0.0, color: Color::rgb(200, 200, 200) }] })
+    }
+
+    /// The same as triangles.
+    fn tower_mesh() -> LayerKind {
+        let LayerKind::Boxes(b) = tower() else { panic!("boxes") };
+        let triangles = crate::blocks::BOX_TRIANGLES.map(|t| t.map(|k| k as u32)).to_vec();
+        let mesh = Mesh::new(&b.boxes[0].corners(), triangles, MeshColors::Layer).unwrap();
+        LayerKind::Mesh(MeshLayer { mesh, color: Color::rgb(200, 200, 200) })
+    }
+
+    #[test]
+    fn a_tower_throws_its_shadow_away_from_the_sun_as_far_as_it_is_high() {
+        for kind in [tower(), tower_mesh()] {
+            let scene = Scene { layers: vec![layer(kind)], ..Scene::default() };
+            let casters = Casters::new(&scene, &SUN).unwrap();
+            for i in -80..160 {
+                let x = f64::from(i) + 0.25;
+                let lit = casters.on_ground(DVec3::new(x, 3.0, 0.0), AXES);
+                // The foot itself is in the dark; the sun is as wide as 0.93 over the length of this shadow.
+                let want = if (-9.0..58.5).contains(&x) { Some(0.0) } else { None };
+                let want = want.or_else(|| (x < -11.0 || x > 61.5).then_some(1.0));
+                assert!(want.is_none_or(|w| lit == w), "{lit} at {x}");
+            }
+            let border: Vec<f32> =
+                (0..20).map(|i| casters.on_ground(DVec3::new(59.0 + 0.1 * f64::from(i), 0.0, 0.0), AXES)).collect();
+            assert!(border.windows(2).all(|w| w[0] <= w[1]), "{border:?}");
+            assert!(border.iter().filter(|v| **v > 0.0 && **v < 1.0).count() > 4, "the border is soft: {border:?}");
+            assert_eq!(casters.on_ground(DVec3::new(30.0, 10.9, 0.0), AXES), 1.0);
+        }
+    }
+
+    #[test]
+    fn walls_are_lit_from_the_sun_and_darkened_by_each_other_and_by_hills() {
+        // A ridge of 60 in the west.
+        let heights = (0..41 * 41).map(|i| if i % 41 < 3 { 60.0 } else { 0.0 }).collect();
+        let hf = Heightfield::measured(DVec2::new(-100.0, 100.0), DVec2::splat(5.0), 41, 41, heights).unwrap();
+        let terrain = TerrainLayer {
+            heightfield: hf,
+            drapes: Vec::new(),
+            relief: Relief::Sun,
+            shading: None,
+            exaggeration: 1.0,
+            palette: Palette::Plain,
+        };
+        let scene = |ground: bool| {
+            let ground = ground.then(|| layer(LayerKind::Terrain(terrain.clone())));
+            Scene { layers: ground.into_iter().chain([layer(tower())]).collect(), ..Scene::default() }
+        };
+        let low = Light { altitude: 0.4, ..SUN };
+        let (open, behind) = (scene(false), scene(true));
+        let [open, behind] = [&open, &behind].map(|s| Casters::new(s, &low).unwrap());
+        let west = |z: f64| (DVec3::new(-10.0, 0.0, z), DVec3::NEG_X);
+        for z in [5.0, 20.0, 45.0] {
+            let (p, n) = west(z);
+            assert_eq!(open.on_surface(p, n, 0.2), 1.0, "{z}: nothing throws a shadow on itself");
+            // The sun's ray over the ridge at x = -90 comes down by tan 0.4 on 80.
+            let want = if z < 60.0 - 80.0 * 0.4f64.tan() { 0.0 } else { 1.0 };
+            assert_eq!(behind.on_surface(p, n, 0.2), want, "{z}");
+        }
+        assert_eq!(open.on_surface(DVec3::new(10.0, 0.0, 5.0), DVec3::X, 0.2), 0.0, "the far side");
+        assert_eq!(open.on_surface(DVec3::new(3.0, 2.0, 50.0), DVec3::Z, 0.2), 1.0, "the roof");
+    }
+
+    #[test]
+    fn nothing_is_asked_where_there_is_nothing_to_ask() {
+        let scene = Scene { layers: vec![layer(tower())], ..Scene::default() };
+        assert!(Casters::new(&scene, &Light { shadows: false, ..SUN }).is_none());
+        assert!(Casters::new(&scene, &Light { altitude: -0.1, ..SUN }).is_none());
+        assert!(Casters::new(&Scene::default(), &SUN).is_none());
+    }
+}
