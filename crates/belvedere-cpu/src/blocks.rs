@@ -2,7 +2,7 @@
 
 use crate::band::Band;
 use crate::choose::{Choice, Chooser, Chosen};
-use crate::grid::{CELL_TRIANGLES, Cover, Nodes, cell_weights, kept_node};
+use crate::grid::{CELL_TRIANGLES, Cover, NODES, Nodes, cell_weights, kept_node};
 use crate::lens::{Lens, SUB, ScreenVertex};
 pub(crate) use crate::lod::SIDE;
 use crate::lod::{self, Tree};
@@ -318,6 +318,11 @@ impl Job<'_> {
         let count = cols + 1;
         let columns = self.pass.columns(hf, block.origin[0], step, count);
         let mut whole = true;
+        // All of them first: rows lie far apart in memory, and none has to wait for another.
+        let mut heights = [[0.0; NODES]; NODES];
+        for (r, heights) in heights[..=rows].iter_mut().enumerate() {
+            columns.heights(hf, block.origin[1] + step * r, heights);
+        }
         for r in 0..=rows {
             let (col, row) = (block.origin[0], block.origin[1] + step * r);
             let first = row * hf.cols() + col;
@@ -337,7 +342,7 @@ impl Job<'_> {
                 let part = r * count..(r + 1) * count;
                 let (x, y) = (&mut nodes.x[part.clone()], &mut nodes.y[part.clone()]);
                 let mut out = Row { x, y, q: &mut nodes.q[part] };
-                whole = self.pass.ground_row(self.lens, hf, &columns, row, &mut out);
+                whole = self.pass.ground_row(self.lens, hf, &columns, row, &heights[r][..count], &mut out);
             }
             if !whole {
                 self.spare.keep(Geometry::Grid(nodes));

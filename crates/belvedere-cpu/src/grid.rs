@@ -85,23 +85,18 @@ impl Nodes {
 
     /// What the nodes cover; to be called once all are set.
     pub(crate) fn cover(&mut self) -> Cover {
-        let stride = self.cells[0] + 1;
         self.spans.clear();
+        if !self.holes {
+            return vector::run(Around(self));
+        }
         let mut all = Cover::EMPTY;
         for r in 0..=self.cells[1] {
-            let row = r * stride..(r + 1) * stride;
-            let mut cover = Cover::EMPTY;
-            if self.holes {
-                let on = (0..stride).map(|c| self.at(c, r)).filter(|v| !v.is_none());
-                cover = on.fold(cover, Cover::including);
-            } else {
-                let [x, y] = [&self.x, &self.y].map(|v| &v[row.clone()]);
-                cover = vector::run(Around { x, y, q: &self.q[row] });
-            }
-            self.spans.push(cover.y);
-            all.x = [all.x[0].min(cover.x[0]), all.x[1].max(cover.x[1])];
-            all.y = [all.y[0].min(cover.y[0]), all.y[1].max(cover.y[1])];
-            all.q = all.q.max(cover.q);
+            let on = (0..=self.cells[0]).map(|c| self.at(c, r)).filter(|v| !v.is_none());
+            let row = on.fold(Cover::EMPTY, Cover::including);
+            self.spans.push(row.y);
+            all.x = [all.x[0].min(row.x[0]), all.x[1].max(row.x[1])];
+            all.y = [all.y[0].min(row.y[0]), all.y[1].max(row.y[1])];
+            all.q = all.q.max(row.q);
         }
         all
     }
@@ -136,23 +131,29 @@ impl Nodes {
     }
 }
 
-/// The range of nodes of a row.
-struct Around<'a> {
-    x: &'a [i32],
-    y: &'a [i32],
-    q: &'a [f32],
-}
+/// The range of nodes without holes.
+struct Around<'a>(&'a mut Nodes);
 
 impl Kernel for Around<'_> {
     type Output = Cover;
 
     #[inline(always)]
     fn run(self) -> Cover {
-        let range = |v: &[i32]| v.iter().fold([i32::MAX, i32::MIN], |[lo, hi], v| [lo.min(*v), hi.max(*v)]);
-        // Whole numbers in the order of the bits' values, both signs.
-        let order = |bits: i32| bits ^ ((bits >> 31) as u32 >> 1) as i32;
-        let most = self.q.iter().fold(i32::MIN, |most, q| most.max(order(q.to_bits() as i32)));
-        Cover { x: range(self.x), y: range(self.y), q: f32::from_bits(order(most) as u32) }
+        let Nodes { x, y, q, spans, cells, .. } = self.0;
+        let stride = cells[0] + 1;
+        let (mut left, mut right, mut near) = ([i32::MAX; NODES], [i32::MIN; NODES], [f32::NEG_INFINITY; NODES]);
+        for ((x, y), q) in x.chunks(stride).zip(y.chunks(stride)).zip(q.chunks(stride)) {
+            for ((left, right), x) in left.iter_mut().zip(&mut right).zip(x) {
+                (*left, *right) = ((*left).min(*x), (*right).max(*x));
+            }
+            for (near, q) in near.iter_mut().zip(q) {
+                *near = if *q > *near { *q } else { *near };
+            }
+            spans.push(y.iter().fold([i32::MAX, i32::MIN], |[lo, hi], y| [lo.min(*y), hi.max(*y)]));
+        }
+        let x = [left.into_iter().fold(i32::MAX, i32::min), right.into_iter().fold(i32::MIN, i32::max)];
+        let y = spans.iter().fold([i32::MAX, i32::MIN], |[lo, hi], y| [lo.min(y[0]), hi.max(y[1])]);
+        Cover { x, y, q: near.into_iter().fold(f32::NEG_INFINITY, |a, b| if b > a { b } else { a }) }
     }
 }
 

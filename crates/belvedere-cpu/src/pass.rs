@@ -36,6 +36,18 @@ pub(crate) struct Columns {
     x: [f32; NODES],
 }
 
+impl Columns {
+    /// Their heights in a row of the ground.
+    #[inline(always)]
+    pub(crate) fn heights(&self, hf: &Heightfield, row: usize, out: &mut [f32; NODES]) {
+        let from = &hf.heights()[row * hf.cols() + self.first..];
+        match (self.step, from.first_chunk::<NODES>()) {
+            (1, Some(whole)) if self.count == NODES => *out = *whole,
+            _ => out.iter_mut().zip(from.iter().step_by(self.step)).take(self.count).for_each(|(o, h)| *o = *h),
+        }
+    }
+}
+
 impl<'a> Pass<'a> {
     /// The passes that together draw every image of every point once.
     pub(crate) fn all(view: &'a View) -> Vec<Self> {
@@ -66,25 +78,17 @@ impl<'a> Pass<'a> {
     }
 
     /// Images of a row of nodes without holes; `false` if one of them has none, or must be clipped.
+    /// * `heights`: see [`Columns::heights`].
     pub(crate) fn ground_row(
         &self,
         lens: &Lens,
         hf: &Heightfield,
         columns: &Columns,
         row: usize,
+        heights: &[f32],
         out: &mut Row<'_>,
     ) -> bool {
         let Columns { first, step, count: n, .. } = *columns;
-        let at = row * hf.cols() + first;
-        let mut picked = [0.0f32; NODES];
-        let heights = if step == 1 {
-            &hf.heights()[at..at + n]
-        } else {
-            for (i, h) in picked[..n].iter_mut().enumerate() {
-                *h = hf.heights()[at + i * step];
-            }
-            &picked[..n]
-        };
         if let Some(projector) = &self.projector {
             let y = projector.relative(hf.node_xy(first, row))[1];
             return projector.row(&columns.x[..n], y, heights, out);
@@ -103,7 +107,8 @@ impl<'a> Pass<'a> {
         let ([mut x], [mut y], [mut q]) = ([0], [0], [0.0]);
         let mut out =
             Row { x: std::slice::from_mut(&mut x), y: std::slice::from_mut(&mut y), q: std::slice::from_mut(&mut q) };
-        let whole = self.ground_row(lens, hf, &self.columns(hf, col, 1, 1), row, &mut out);
+        let height = [hf.heights()[row * hf.cols() + col]];
+        let whole = self.ground_row(lens, hf, &self.columns(hf, col, 1, 1), row, &height, &mut out);
         whole.then_some(ScreenVertex { x, y, q })
     }
 

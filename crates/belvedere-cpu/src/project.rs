@@ -273,12 +273,14 @@ impl Run<'_, '_, '_> {
     fn all(&mut self, camera: &impl Camera) -> bool {
         let n = self.x.len();
         let mut missed = [0; LANES];
-        if n < LANES {
-            (0..n).for_each(|i| self.some::<1>(i, camera, &mut missed));
-        }
         let mut i = 0;
-        while n >= LANES && i < n {
-            self.some::<LANES>(i.min(n - LANES), camera, &mut missed);
+        while i < n {
+            match n - i {
+                LANES.. => self.some::<LANES>(i, camera, &mut missed),
+                left if n >= LANES && left > LANES / 4 => self.some::<LANES>(n - LANES, camera, &mut missed),
+                _ if n >= LANES => self.some::<{ LANES / 4 }>(n - LANES / 4, camera, &mut missed),
+                _ => (i..n).for_each(|i| self.some::<1>(i, camera, &mut missed)),
+            }
             i += LANES;
         }
         missed.iter().fold(0, |a, b| a | b) == 0
@@ -305,19 +307,18 @@ impl Run<'_, '_, '_> {
 }
 
 /// phi of the modified model in single precision: 0 before t0, `a - b` after t2, between them
-/// `a = phi + m q`, `b = psi + m q`, `q = sqrt(phi psi)`; sums of positive terms scaled by `a + b`, so that nothing cancels.
+/// `a = phi + m q`, `b = psi + m q`, `q = sqrt(phi psi)`.
+///
+/// With `d = m (a + b) + sqrt(m^2 (a - b)^2 + 4 a b)` it is `q = 2 a b / d`, and of phi and psi the larger one is
+/// `n / d`, `n = max(a, b) d - 2 m a b`, the other `q^2` over that: no small difference is taken, and one quotient is.
 #[inline(always)]
 fn phi(m: f32, a: f32, b: f32) -> f32 {
-    let c = a + b;
-    let scale = 1.0 / c;
-    let (u, v) = (a * scale, b * scale);
-    let uv = u * v;
-    let difference = m * (u - v);
-    let q = 2.0 * uv / (m + (difference * difference + 4.0 * uv).sqrt());
-    let large = (if u > v { u } else { v }) - m * q;
-    let small = q * q / large;
-    let wedge = c * if a > b { large } else { small };
-    let phi = if b > 0.0 { wedge } else { a - b };
+    let ab = a * b;
+    let difference = m * (a - b);
+    let d = m * (a + b) + (difference * difference + 4.0 * ab).sqrt();
+    let n = (if a > b { a } else { b }) * d - 2.0 * m * ab;
+    let wedge = if a > b { [n, d] } else { [4.0 * ab * ab, n * d] };
+    let phi = if b > 0.0 { wedge[0] / wedge[1] } else { a - b };
     if a > 0.0 { phi } else { 0.0 }
 }
 

@@ -16,12 +16,12 @@ const BAYER: [[u8; 8]; 8] = [
     [63, 31, 55, 23, 61, 29, 53, 21],
 ];
 
-/// What dithering adds to square roots of linear light, by row and column.
-const THRESHOLDS: [[f32; 8]; 8] = {
-    let mut out = [[0.0; 8]; 8];
+/// What dithering adds to square roots of linear light, row by row.
+const THRESHOLDS: [f32; 64] = {
+    let mut out = [0.0; 64];
     let mut i = 0;
     while i < 64 {
-        out[i / 8][i % 8] = ((BAYER[i / 8][i % 8] as f32 + 0.5) / 64.0 - 0.5) / 255.0;
+        out[i] = ((BAYER[i / 8][i % 8] as f32 + 0.5) / 64.0 - 0.5) / 255.0;
         i += 1;
     }
     out
@@ -90,7 +90,7 @@ impl Sky {
     pub(crate) fn at(&self, pixel: [f32; 2]) -> Rgb {
         let [x, y] = pixel.map(|v| v.max(0.0) as usize % 8);
         // Square roots of linear light are nearly even in 8-bit steps.
-        let root = self.root(self.sine(pixel)) + Rgb::splat(THRESHOLDS[y][x]);
+        let root = self.root(self.sine(pixel)) + Rgb::splat(THRESHOLDS[8 * y + x]);
         root * root
     }
 
@@ -100,27 +100,32 @@ impl Sky {
         debug_assert!(x.len() == y.len() && x.len() == red.len());
         let chunks = red.chunks_mut(LANES).zip(green.chunks_mut(LANES)).zip(blue.chunks_mut(LANES));
         for ((x, y), ((red, green), blue)) in x.chunks(LANES).zip(y.chunks(LANES)).zip(chunks) {
-            let (mut at, mut threshold, mut root) = ([0.0f32; LANES], [0.0; LANES], [[0.0f32; 4]; LANES]);
             let (mut px, mut py) = ([0; LANES], [0; LANES]);
             px[..x.len()].copy_from_slice(x);
             py[..y.len()].copy_from_slice(y);
+            let (mut below, mut share, mut threshold) = ([0; LANES], [0.0; LANES], [0.0; LANES]);
             for i in 0..LANES {
                 let pixel = [px[i] as f32 * (1.0 / SUB as f32), py[i] as f32 * (1.0 / SUB as f32)];
-                let here = (self.sine(pixel) + 1.0) * STEPS;
-                let here = if here > 0.0 { here } else { 0.0 };
-                at[i] = if here < MOST { here } else { MOST };
+                let at = (self.sine(pixel) + 1.0) * STEPS;
+                let at = if at > 0.0 { at } else { 0.0 };
+                let at = if at < MOST { at } else { MOST };
+                below[i] = at as i32;
+                share[i] = at - below[i] as f32;
             }
             for i in 0..LANES {
-                threshold[i] = THRESHOLDS[(py[i] >> 8) as usize & 7][(px[i] >> 8) as usize & 7];
-                let below = at[i] as i32 as usize;
-                let (share, [low, change]) =
-                    (at[i] - below as i32 as f32, self.steps[below & (2 * STEPS as usize - 1)]);
-                root[i] = std::array::from_fn(|k| low[k] + share * change[k]);
+                threshold[i] = THRESHOLDS[((py[i] >> 5) & 56 | (px[i] >> 8) & 7) as usize];
+            }
+            let mut root = [[0.0f32; 4]; LANES];
+            for i in 0..LANES {
+                let [low, change] = &self.steps[below[i] as usize & (2 * STEPS as usize - 1)];
+                root[i] = std::array::from_fn(|k| (low[k] + share[i] * change[k]) + threshold[i]);
             }
             for (k, out) in [red, green, blue].into_iter().enumerate() {
-                for (i, out) in out.iter_mut().enumerate() {
-                    *out = root[i][k] + threshold[i];
+                let mut plane = [0.0; LANES];
+                for i in 0..LANES {
+                    plane[i] = root[i][k];
                 }
+                out.copy_from_slice(&plane[..out.len()]);
             }
         }
     }
