@@ -5,7 +5,7 @@
 //! rounds exactly, so that every machine and every vector width gives the same bits.
 
 use crate::lens::SUB;
-use crate::vector::{self, Kernel};
+use crate::vector::{self, Kernel, nearest};
 use belvedere_core::map::terrain::TerrainDisocclusion;
 use belvedere_core::{DVec2, DVec3, Pinhole, Stage, View};
 use belvedere_scene::Heightfield;
@@ -14,8 +14,6 @@ use rayon::prelude::*;
 /// Images farther than this from the image centre, pixels, are left to double precision: the fixed-point numbers of
 /// nearer ones fit the mantissa.
 const REACH_PX: f32 = 16_000.0;
-/// Adding it leaves the rounded integer in the low bits of the mantissa.
-const ROUND: f32 = 12_582_912.0;
 /// Nodes projected at a time.
 const LANES: usize = 16;
 /// Nodes lifted at a time.
@@ -325,7 +323,7 @@ fn phi(m: f32, a: f32, b: f32) -> f32 {
 /// Nearest 1/256 pixel of a length below [`REACH_PX`].
 #[inline(always)]
 fn fixed(px: f32) -> i32 {
-    ((px * SUB as f32 + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
+    nearest(px * SUB as f32)
 }
 
 /// Images of all nodes of a ground, row-major: what a frame computes first, on its own.

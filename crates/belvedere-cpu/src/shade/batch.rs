@@ -10,6 +10,7 @@ use super::{LayerShade, Painted, Samples, Shader, pixel_of};
 use crate::blocks::{Block, SIDE};
 use crate::grid::Nodes;
 use crate::lens::SUB;
+use crate::vector::nearest;
 use belvedere_core::DVec2;
 
 /// Samples to a batch.
@@ -230,8 +231,8 @@ impl Batch {
         let last = [terrain.hf.cols(), terrain.hf.rows()].map(|n| (n - 1) as i32 * CELL);
         for i in 0..LANES {
             let [c, r] = [self.node[0][i] * CELL, self.node[1][i] * CELL];
-            columns[i] = c.saturating_add((places.u[i] * CELL as f32) as i32).clamp(0, last[0]);
-            rows[i] = r.saturating_add((places.v[i] * CELL as f32) as i32).clamp(0, last[1]);
+            columns[i] = c.wrapping_add(nearest(places.u[i] * CELL as f32)).clamp(0, last[0]);
+            rows[i] = r.wrapping_add(nearest(places.v[i] * CELL as f32)).clamp(0, last[1]);
         }
         [columns, rows]
     }

@@ -25,6 +25,7 @@ use crate::blocks::{BOX_TRIANGLES, Block, Blocks, Found, SIDE};
 use crate::grid::CELL_TRIANGLES;
 use crate::lens::{Lens, SUB};
 use crate::polish::Polish;
+use crate::vector::nearest;
 use area::AreaMap;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{BoxLayer, BoxShape, Heightfield, LayerKind, Relief, RenderJob};
@@ -174,13 +175,13 @@ fn pixel_of([x, y]: [i32; 2]) -> [f32; 2] {
 }
 
 /// Level of averages for a pixel that covers `cells` squares of a cell: 128 log2, 256 steps to a level, 0 up to one cell.
-#[inline]
+#[inline(always)]
 fn lod(cells: f32) -> u32 {
     let bits = cells.max(1.0).to_bits();
     let (exponent, mantissa) = ((bits >> 23) as f32 - 127.0, f32::from_bits((bits & 0x7f_ffff) | 0x3f80_0000));
     // The parabola through log2 at 1, the root of 2, and 2: within 0.009.
     let log2 = exponent + (mantissa - 1.0) * (1.707_103 - 0.353_551_5 * mantissa);
-    (128.0 * log2) as u32
+    nearest(128.0 * log2) as u32
 }
 
 /// Place of a sample inside the parent triangle.

@@ -2,6 +2,7 @@
 
 use super::color::{Rgb, linear, smoothstep};
 use crate::lens::SUB;
+use crate::vector::nearest;
 use belvedere_core::{Aabb, DVec3, Pinhole};
 
 /// Thresholds of ordered dithering, 8 x 8 (Bayer 1973), each 0..64 once.
@@ -109,7 +110,8 @@ impl Sky {
                 let at = (self.sine(pixel) + 1.0) * STEPS;
                 let at = if at > 0.0 { at } else { 0.0 };
                 let at = if at < MOST { at } else { MOST };
-                below[i] = at as i32;
+                // On a step, either of the two beside it will do.
+                below[i] = nearest(at - 0.5);
                 share[i] = at - below[i] as f32;
             }
             for i in 0..LANES {
