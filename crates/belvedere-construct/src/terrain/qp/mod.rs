@@ -11,7 +11,6 @@ mod dual;
 mod metric;
 mod pool;
 mod problem;
-mod rescue;
 mod row;
 mod seen;
 mod solver;
@@ -23,5 +22,4 @@ pub use problem::{
     Candidate, Certificate, LinesOfSight, QpError, QpOptions, QpProblem, QpResult, Reason, SolvedRow, StraightSight,
     Unresolved,
 };
-pub use rescue::Rescued;
 pub use solver::QpSolver;

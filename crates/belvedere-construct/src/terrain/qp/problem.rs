@@ -144,33 +144,6 @@ pub struct Certificate {
     pub rows: Vec<(u32, f64)>,
 }
 
-impl std::fmt::Display for Certificate {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { depth, gap, rows } = self;
-        let mut heaviest = rows.clone();
-        heaviest.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        let mut ids: Vec<u32> = heaviest.iter().take(5).map(|r| r.0).collect();
-        ids.dedup();
-        let count = rows.len();
-        write!(
-            f,
-            "{count} lines of sight cannot be clear at once, first of all those of candidates {ids:?}: ground that sinks by \
-             {depth:.0} m at most misses them by {gap:.2} m on average; raise the eye or the limit of rise, or refine the grid"
-        )
-    }
-}
-
-impl std::fmt::Display for Reason {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::TooNear => write!(f, "nearer to the eye than three times the guard"),
-            Self::NoLine => write!(f, "no line of sight: outside the domain of a stage"),
-            Self::Infeasible(proof) => proof.fmt(f),
-            Self::NotSettled { lacks } => write!(f, "{lacks:.2} m lack when the rounds were used up"),
-        }
-    }
-}
-
 /// A candidate that is not seen.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unresolved {

@@ -31,10 +31,9 @@ const LAST_PRICE: f64 = 1e3;
 #[derive(Debug, Clone)]
 pub struct QpSolver {
     metric: Metric,
-    pub(super) hierarchy: Hierarchy,
-    pub(super) surface: Surface,
+    surface: Surface,
     options: QpOptions,
-    pub(super) kept: Vec<Kept>,
+    kept: Vec<Kept>,
 }
 
 /// What one frame works with.
@@ -56,7 +55,7 @@ impl QpSolver {
     pub fn new(field: &Field, hierarchy: &Hierarchy, smoother: Smoother, options: QpOptions) -> Self {
         let lattice = Lattice { cols: hierarchy.cols(), rows: hierarchy.rows(), step: hierarchy.step() };
         let surface = Surface::new(field.heights(), field.cols(), field.rows(), lattice);
-        Self { metric: Metric::new(smoother), hierarchy: hierarchy.clone(), surface, options, kept: Vec::new() }
+        Self { metric: Metric::new(smoother), surface, options, kept: Vec::new() }
     }
 
     /// Other ground on the same grid (in mode `paper+qp` detail may be scaled).
@@ -74,7 +73,7 @@ impl QpSolver {
         self.options = options;
     }
 
-    pub(super) fn clearance(&self) -> Clearance {
+    fn clearance(&self) -> Clearance {
         let QpOptions { margin, tolerance, guard, .. } = self.options;
         Clearance { margin, tolerance, guard }
     }

@@ -3,6 +3,6 @@
 mod bars;
 mod bent;
 mod cases;
+mod proof;
 mod reference;
-mod rescue;
 mod small;
