@@ -6,16 +6,13 @@ use crate::grid::{CELL_TRIANGLES, Cover, NODES, Nodes, cell_weights, kept_node};
 use crate::lens::{Lens, SUB, ScreenVertex};
 pub(crate) use crate::lod::SIDE;
 use crate::lod::{self, Tree};
-use crate::pass::{Look, Pass};
+use crate::pass::Pass;
 use crate::project::Row;
 use crate::refine::{Corner, Refiner};
-use belvedere_core::Aabb;
-use belvedere_scene::{BoxLayer, Heightfield, LayerKind, NodeState, RenderOptions, Scene};
+use belvedere_scene::{Heightfield, LayerKind, NodeState, RenderOptions, Scene};
 use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
 
-/// Boxes to a block.
-const BOXES: usize = 64;
 /// A primitive number with this bit counts soup triangles; without it, cells of grid blocks.
 pub(crate) const SOUP: u32 = 1 << 31;
 /// Bits of a grid primitive below the block number: 10 of the cell, 1 of the triangle.
@@ -73,22 +70,6 @@ pub(crate) struct Counts {
     pub(crate) split: u64,
     pub(crate) missed: u64,
 }
-
-/// Corner numbers (see [`belvedere_scene::BoxShape::corners`]) of the twelve triangles of a box, two per face.
-pub(crate) const BOX_TRIANGLES: [[usize; 3]; 12] = [
-    [0, 2, 3],
-    [0, 3, 1],
-    [4, 5, 7],
-    [4, 7, 6],
-    [0, 1, 5],
-    [0, 5, 4],
-    [2, 6, 7],
-    [2, 7, 3],
-    [0, 4, 6],
-    [0, 6, 2],
-    [1, 3, 7],
-    [1, 7, 5],
-];
 
 /// Where a sample hit: a block's parent triangle and the screen triangle drawn for it.
 pub(crate) struct Found<'a> {
@@ -323,7 +304,7 @@ impl Job<'_> {
         for (r, heights) in heights[..=rows].iter_mut().enumerate() {
             columns.heights(hf, block.origin[1] + step * r, heights);
         }
-        for r in 0..=rows {
+        for (r, heights) in heights[..=rows].iter().enumerate() {
             let (col, row) = (block.origin[0], block.origin[1] + step * r);
             let first = row * hf.cols() + col;
             let states = hf.states();
@@ -342,7 +323,7 @@ impl Job<'_> {
                 let part = r * count..(r + 1) * count;
                 let (x, y) = (&mut nodes.x[part.clone()], &mut nodes.y[part.clone()]);
                 let mut out = Row { x, y, q: &mut nodes.q[part] };
-                whole = self.pass.ground_row(self.lens, hf, &columns, row, &heights[r][..count], &mut out);
+                whole = self.pass.ground_row(self.lens, hf, &columns, row, &heights[..count], &mut out);
             }
             if !whole {
                 self.spare.keep(Geometry::Grid(nodes));
@@ -388,31 +369,6 @@ impl Job<'_> {
         block.counts.drawn = refiner.out.len() as u64;
         block.cover = cover_of(&refiner.out);
         block.geometry = Geometry::Soup(refiner.out);
-    }
-
-    fn boxes(&self, layer: &BoxLayer) -> Vec<Block> {
-        (0..layer.boxes.len().div_ceil(BOXES)).into_par_iter().filter_map(|i| self.box_block(layer, i)).collect()
-    }
-
-    fn box_block(&self, layer: &BoxLayer, i: usize) -> Option<Block> {
-        let boxes = &layer.boxes[i * BOXES..layer.boxes.len().min((i + 1) * BOXES)];
-        let bounds = Aabb::of(boxes.iter().flat_map(|b| b.corners()));
-        if self.pass.look(self.lens, &bounds) == Look::Out {
-            return None;
-        }
-        let mut refiner = Refiner::new(self.pass, self.lens, self.tolerance_px, self.spare.soup());
-        let judge = !self.pass.is_straight();
-        let mut missed = 0;
-        for (k, shape) in boxes.iter().enumerate() {
-            let corners = shape.corners().map(|p| refiner.corner(p));
-            missed += corners.iter().filter(|c| c.is_missing()).count() as u64;
-            for (t, tri) in BOX_TRIANGLES.iter().enumerate() {
-                let weights = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-                refiner.triangle(tri.map(|n| corners[n]), weights, [judge; 3], (12 * k + t) as u32);
-            }
-        }
-        let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };
-        Block::soup(self.layer, i * BOXES, refiner.out, counts)
     }
 }
 

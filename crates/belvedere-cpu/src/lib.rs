@@ -6,6 +6,7 @@
 
 mod band;
 mod blocks;
+mod box_blocks;
 pub mod canvas;
 mod cells;
 mod choose;

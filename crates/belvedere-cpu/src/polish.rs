@@ -4,7 +4,8 @@
 //! image and much in depth. Where depths and places are asked for, the place found is moved on its surface, by Newton steps on the
 //! true map, until its image is the centre of the pixel.
 
-use crate::blocks::{BOX_TRIANGLES, Found};
+use crate::blocks::Found;
+use crate::box_blocks::BOX_TRIANGLES;
 use crate::lens::Lens;
 use crate::pass::Pass;
 use belvedere_core::{DVec2, DVec3};

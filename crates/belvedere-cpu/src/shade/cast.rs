@@ -181,7 +181,7 @@ mod tests {
     /// The same as triangles.
     fn tower_mesh() -> LayerKind {
         let LayerKind::Boxes(b) = tower() else { panic!("boxes") };
-        let triangles = crate::blocks::BOX_TRIANGLES.map(|t| t.map(|k| k as u32)).to_vec();
+        let triangles = crate::box_blocks::BOX_TRIANGLES.map(|t| t.map(|k| k as u32)).to_vec();
         let mesh = Mesh::new(&b.boxes[0].corners(), triangles, MeshColors::Layer).unwrap();
         LayerKind::Mesh(MeshLayer { mesh, color: Color::rgb(200, 200, 200) })
     }

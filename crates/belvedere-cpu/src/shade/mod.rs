@@ -21,7 +21,8 @@ mod texture;
 mod tiles;
 
 use crate::band::SKY;
-use crate::blocks::{BOX_TRIANGLES, Block, Blocks, Found, SIDE};
+use crate::blocks::{Block, Blocks, Found, SIDE};
+use crate::box_blocks::BOX_TRIANGLES;
 use crate::grid::CELL_TRIANGLES;
 use crate::lens::{Lens, SUB};
 use crate::polish::Polish;
