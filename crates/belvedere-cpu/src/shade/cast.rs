@@ -196,7 +196,7 @@ mod tests {
                 let lit = casters.on_ground(DVec3::new(x, 3.0, 0.0), AXES);
                 // The foot itself is in the dark; the sun is as wide as 0.93 over the length of this shadow.
                 let want = if (-9.0..58.5).contains(&x) { Some(0.0) } else { None };
-                let want = want.or_else(|| (x < -11.0 || x > 61.5).then_some(1.0));
+                let want = want.or_else(|| (!(-11.0..=61.5).contains(&x)).then_some(1.0));
                 assert!(want.is_none_or(|w| lit == w), "{lit} at {x}");
             }
             let border: Vec<f32> =
