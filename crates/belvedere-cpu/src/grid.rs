@@ -302,4 +302,20 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn all_versions_draw_the_same_bits() {
+        for (pitch, samples) in PITCHES.into_iter().flat_map(|p| [(p, 1), (p, 4)]) {
+            let (width, height) = ((64 * pitch - 300) / SUB + 2, (32 * pitch - 300) / SUB + 2);
+            let draw = |plain: bool| {
+                let mut band = Band::new(0, height, width, sample_offsets(samples));
+                for (i, nodes) in sheet(pitch, true).iter().enumerate() {
+                    let draw = Draw { nodes, first_prim: (i as u32) << 11, band: &mut band };
+                    if plain { draw.run() } else { vector::run(draw) }
+                }
+                (band.q.iter().map(|q| q.to_bits()).collect::<Vec<_>>(), band.prim)
+            };
+            assert!(draw(true) == draw(false), "pitch {pitch}");
+        }
+    }
 }

@@ -169,6 +169,7 @@ impl GroundImage {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vector::Kernel;
     use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
     use belvedere_core::map::earth::EarthCurvature;
     use belvedere_core::{CurvedRays, Projection};
@@ -277,6 +278,26 @@ mod tests {
                     assert!(projector.row(&relative[c..=c], north, &heights[c..=c], &mut out));
                     assert_eq!((x1[0], y1[0], q1[0].to_bits()), (x[c], py[c], q[c].to_bits()));
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn all_versions_give_the_same_bits() {
+        let (xs, ys, zs) = ground();
+        for view in views() {
+            let projector = Projector::new(&view, 0).expect("has a form");
+            let relative: Vec<f32> = xs.iter().map(|&x| projector.relative(DVec2::new(x, 0.0))[0]).collect();
+            for (r, &y) in ys.iter().enumerate().step_by(7) {
+                let y = projector.relative(DVec2::new(0.0, y))[1];
+                let image = |plain: bool| {
+                    let (mut x, mut py, mut q) = ([0; 33], [0; 33], [0.0; 33]);
+                    let out = &mut Row { x: &mut x, y: &mut py, q: &mut q };
+                    let run = Run { projector: &projector, x: &relative, y, heights: &zs[r * 33..][..33], out };
+                    let whole = if plain { run.run() } else { vector::run(run) };
+                    (x, py, q.map(f32::to_bits), whole)
+                };
+                assert!(image(true) == image(false), "row {r}");
             }
         }
     }
