@@ -2,6 +2,7 @@
 
 use super::mesh::{MeshDoc, TransformDoc};
 use super::overlay::AutoOrLength;
+use super::palette::PaletteDoc;
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
@@ -189,67 +190,6 @@ pub enum ShadingDoc {
     Map,
     /// Those of the deformed ground.
     Deformed,
-}
-
-/// Tint by height: a name, or a file of colours by height (GDAL colour-relief text, or GMT `.cpt`).
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum PaletteDoc {
-    /// A built-in one.
-    Named(PaletteName),
-    /// A file.
-    File(String),
-}
-
-impl Default for PaletteDoc {
-    fn default() -> Self {
-        Self::Named(PaletteName::Auto)
-    }
-}
-
-impl PaletteDoc {
-    /// The built-in one of that name, else a file.
-    pub fn of(text: &str) -> Self {
-        let named = PaletteName::ALL.iter().find(|(name, _)| *name == text);
-        named.map_or_else(|| Self::File(text.to_owned()), |(_, palette)| Self::Named(*palette))
-    }
-}
-
-impl<'de> Deserialize<'de> for PaletteDoc {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        String::deserialize(deserializer).map(|text| Self::of(&text))
-    }
-}
-
-/// Built-in tints.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum PaletteName {
-    /// Chosen by the range of heights.
-    #[default]
-    Auto,
-    /// Green valleys, brown slopes, white summits.
-    Alpine,
-    /// Sand and rust.
-    Desert,
-    /// Rock and ice.
-    Glacial,
-    /// Blue to yellow in even steps of lightness: the one that is read most safely.
-    Clear,
-    /// One light grey.
-    Plain,
-}
-
-impl PaletteName {
-    /// All of them, as files write them.
-    pub const ALL: [(&'static str, Self); 6] = [
-        ("auto", Self::Auto),
-        ("alpine", Self::Alpine),
-        ("desert", Self::Desert),
-        ("glacial", Self::Glacial),
-        ("clear", Self::Clear),
-        ("plain", Self::Plain),
-    ];
 }
 
 /// What happens to the parts that the terrain hides.

@@ -8,6 +8,7 @@ mod layers;
 mod mesh;
 mod node;
 mod overlay;
+mod palette;
 pub mod paths;
 mod stages;
 mod toml_tree;
@@ -17,12 +18,13 @@ pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDo
 pub use intent::{AnimationDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
 pub use layers::{
     AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, HiddenDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc,
-    ModelDoc, PaletteDoc, PaletteName, Paths, PlaceDoc, PointLayerDoc, PointStyleDoc, ReliefDoc, RouteDoc, ShadingDoc,
-    SurfaceDoc, SymbolDoc, TerrainDoc, TerrainStyleDoc,
+    ModelDoc, Paths, PlaceDoc, PointLayerDoc, PointStyleDoc, ReliefDoc, RouteDoc, ShadingDoc, SurfaceDoc, SymbolDoc,
+    TerrainDoc, TerrainStyleDoc,
 };
 pub use mesh::{MeshDoc, MeshStyleDoc, TransformDoc};
 pub(crate) use node::{Node, Value};
 pub use overlay::{AutoOrLength, AutoWord, OverlayDoc, SwitchOrLength};
+pub use palette::{PaletteDoc, PaletteName};
 pub use stages::{
     AxisDoc, BendDoc, BendRule, CurveFrameDoc, CurveUnitsDoc, DetailDoc, EaseDoc, PlaneDoc, PresetDoc,
     PresetDocumentDoc, PresetsDoc, RayModelDoc, RaysStageDoc, SolverMode, SplineStageDoc, StageDoc, TagDoc,
