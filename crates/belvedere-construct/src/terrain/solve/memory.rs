@@ -45,9 +45,17 @@ pub(super) struct Prepared {
     pub(super) cells: Option<Arc<(Cells, Pyramid)>>,
     /// Of modes with a greedy pass.
     pub(super) smooth: Option<SmoothPass>,
-    /// Of modes with a quadratic program.
-    pub(super) qp: Option<QpSolver>,
-    /// Whether the program holds other ground than `level`.
+    /// Of modes with a quadratic program: the one of frames without a frame before.
+    pub(super) still: Option<Program>,
+    /// And the one that keeps near the frame before, in films.
+    pub(super) moving: Option<Program>,
+}
+
+/// A quadratic program.
+#[derive(Debug, Clone)]
+pub(super) struct Program {
+    pub(super) solver: QpSolver,
+    /// Whether it holds other ground than [`Prepared::level`].
     pub(super) foreign: bool,
 }
 
@@ -156,7 +164,9 @@ impl Prepared {
             }
             None => None,
         };
-        let qp = with_qp.then(|| program(&level, &grid, pace, settings)).transpose()?;
+        let made = |pace| program(&level, &grid, pace, settings).map(|solver| Program { solver, foreign: false });
+        let still = with_qp.then(|| made(Pace { g: 0.0, ..pace })).transpose()?;
+        let moving = (with_qp && pace.g > 0.0).then(|| made(pace)).transpose()?;
         Ok(Self {
             settings: settings.clone(),
             pace,
@@ -168,8 +178,8 @@ impl Prepared {
             check,
             cells,
             smooth,
-            qp,
-            foreign: false,
+            still,
+            moving,
         })
     }
 

@@ -3,7 +3,7 @@
 use super::super::qp::QpProblem;
 use super::super::{Field, Hierarchy, Naive, Pyramid, ReferencePoint, Smoother, SolverMode, TerrainSettings};
 use super::fallback::{self, Fallback};
-use super::memory::{Pace, Prepared, program};
+use super::memory::{self, Pace, Prepared};
 use super::{Done, QpReport, Seen, TerrainTimes, scales, since};
 use crate::ConstructError;
 use belvedere_core::DVec3;
@@ -48,7 +48,7 @@ impl Passes<'_> {
         if prepared.cells.is_some() {
             detail = self.paper(prepared, seen, &mut done, times)?;
         }
-        if prepared.qp.is_some() {
+        if prepared.still.is_some() {
             self.guarantee(prepared, seen, &mut detail, &mut done, times)?;
         }
         let fine = done.fine.take();
@@ -124,14 +124,17 @@ impl Passes<'_> {
             }
             _ => None,
         };
-        let Some(qp) = &mut prepared.qp else { return Ok(()) };
+        let warm = self.last.is_some() && prepared.moving.is_some();
+        let pace = if warm { self.pace } else { Pace { g: 0.0, ..self.pace } };
+        let Some(program) = (if warm { &mut prepared.moving } else { &mut prepared.still }) else { return Ok(()) };
+        let qp = &mut program.solver;
         let mut ground: Cow<'_, [f64]> = match &detail {
             Some(detail) => self.field.heights().iter().zip(detail).map(|(h, d)| h + d).collect(),
             None => self.field.heights().into(),
         };
         // The program was made with the ground itself; bounds over other ground take time.
         let mut foreign = self.lowered || detail.is_some();
-        if foreign || prepared.foreign {
+        if foreign || program.foreign {
             qp.set_heights(&ground)?;
         }
         let (candidates, sight) = (&seen.candidates[..], &*seen.sight);
@@ -150,7 +153,7 @@ impl Passes<'_> {
                 done.fallbacks.push(Fallback::Detail);
             }
         }
-        prepared.foreign = foreign;
+        program.foreign = foreign;
         done.coarse.clone_from(&result.u);
         for nodes in fallback::finer(&prepared.grid, self.field) {
             if fallback::stuck(&result) == 0 {
@@ -159,7 +162,7 @@ impl Passes<'_> {
             self.progress.tick("quadratic program on a finer grid", 0.7)?;
             let grid = Hierarchy::new(self.field.cols(), self.field.rows(), nodes);
             let start = target.as_ref().map(|t| fallback::resampled(&prepared.grid, t, &grid));
-            let mut finer = program(self.field, &grid, self.pace, self.settings)?;
+            let mut finer = memory::program(self.field, &grid, pace, self.settings)?;
             finer.set_heights(&ground)?;
             let next = finer.solve(&QpProblem { target: start.as_deref(), ..problem })?;
             if fallback::stuck(&next) < fallback::stuck(&result) {
