@@ -139,7 +139,7 @@ fn solve(scene: &Scene, view: &View, mode: SolverMode, w: Option<f64>) -> Result
 
 fn bars(name: &str, scene: &Scene, count: usize, w: Option<f64>) -> Result<(), Failure> {
     println!(
-        "{name}: above  points  before  visible  dense  worst_m  unresolved  raised  rms(qp)  rms(paper)  ratio  rows  active  rounds  qp_ms"
+        "{name}: above  points  before  visible  dense  worst_m  unresolved  raised  rms(qp)  rms(paper)  ratio  normal(qp)  normal(paper)  visible(paper)  rows  active  rounds  qp_ms"
     );
     let (mut worst_visible, mut worst_dense, mut failed, mut raised, mut ratios) =
         (1.0f64, 1.0f64, 0, 0.0f64, Vec::new());
@@ -151,7 +151,7 @@ fn bars(name: &str, scene: &Scene, count: usize, w: Option<f64>) -> Result<(), F
         let ratio = qp.rms_m / paper.rms_m.max(1e-9);
         let rows = qp.qp.ok_or("no program")?;
         println!(
-            "{name}  {above:6.0} {:6} {:8.4} {:8.5} {:8.5} {:7.2} {unresolved:6} {:8.3} {:8.2} {:8.2} {ratio:7.3} {:6} {:5} {:4} {:8.0}",
+            "{name}  {above:6.0} {:6} {:8.4} {:8.5} {:8.5} {:7.2} {unresolved:6} {:8.3} {:8.2} {:8.2} {ratio:7.3} {:6.3} {:6.3} {:6.3} {:6} {:5} {:4} {:8.0}",
             qp.points,
             qp.visible_before,
             qp.visible,
@@ -160,6 +160,9 @@ fn bars(name: &str, scene: &Scene, count: usize, w: Option<f64>) -> Result<(), F
             qp.raised_max_m,
             qp.rms_m,
             paper.rms_m,
+            qp.normal_mean_deg,
+            paper.normal_mean_deg,
+            paper.visible,
             rows.rows,
             rows.active,
             rows.rounds,

@@ -1,4 +1,4 @@
-//! What later stages bring into the picture.
+//! What the picture shows.
 
 use belvedere_core::{Camera, DVec3, View};
 
@@ -11,4 +11,9 @@ pub(super) fn shows(view: &View, p: DVec3) -> bool {
     let [width, height] = view.pinhole().image.map(f64::from);
     let inside = |x: f64, size: f64, beside: f64| (-beside * size..=(1.0 + beside) * size).contains(&x);
     image.depth >= view.pinhole().near && inside(image.pixel.x, width, BESIDE) && inside(image.pixel.y, height, 1.0)
+}
+
+/// Whether a place lies in the picture as it is.
+pub(super) fn in_frame(view: &View, p: DVec3) -> bool {
+    view.project(p).is_ok_and(|image| image.depth >= view.pinhole().near && view.pinhole().contains(image.pixel))
 }

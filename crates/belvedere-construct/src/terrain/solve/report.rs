@@ -4,7 +4,7 @@ use super::super::metrics::{excesses, shown};
 use super::super::qp::{Reason, Unresolved};
 use super::super::{
     Deformation, Field, FrameChange, GreedyCounters, PointKind, ReferencePoint, SolverMode, TerrainSettings,
-    UnusableReason, terrain_metrics,
+    Unusable, UnusableReason, terrain_metrics,
 };
 use super::memory::Prepared;
 use super::{Done, Fallback, Seen, since};
@@ -249,7 +249,8 @@ fn covered(c: &Context<'_>, dense: &[ReferencePoint]) -> Vec<Covered> {
 
 fn unresolved(c: &Context<'_>, done: &Done) -> Vec<UnresolvedRun> {
     let mut runs = Runs { field: c.field, out: Vec::new() };
-    for u in &c.prepared.unusable {
+    let asked = |u: &&Unusable| c.seen.wedge.contains(c.field.scene_from_grid(u.grid));
+    for u in c.prepared.unusable.iter().filter(asked) {
         let reason = match u.reason {
             UnusableReason::OutsideDem => UnresolvedReason::OutsideDem,
             UnusableReason::NoData => UnresolvedReason::NoData,

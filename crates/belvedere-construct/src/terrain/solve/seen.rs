@@ -55,7 +55,12 @@ impl<'a> Seen<'a> {
         };
         let (inside, outside) = in_view(self.field, points, &self.wedge, self.guard);
         let inside = inside.into_iter().filter(|&i| near[i] && in_frame(&points[i])).collect();
-        let too_near = |&(i, why): &(usize, LeftOut)| (why == LeftOut::TooNear && near[i]).then_some(i);
+        // The wedge knows no height: most of what lies that near is below the picture.
+        let shown = |p: &ReferencePoint| {
+            bent::in_frame(self.base, self.field.scene_from_grid(p.grid).extend(p.ground + p.lift))
+        };
+        let too_near =
+            |&(i, why): &(usize, LeftOut)| (why == LeftOut::TooNear && near[i] && shown(&points[i])).then_some(i);
         (inside, outside.iter().filter_map(too_near).collect())
     }
 }
