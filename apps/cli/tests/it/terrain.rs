@@ -232,3 +232,59 @@ fn andorra_is_shown_with_a_progressive_bend_and_terrain() {
     let share = number(&report["lines"]["bent"]["sight"]["share"]);
     assert!(share >= 0.99, "{share} of the in-frame length is visible: {}", report["terrain"]);
 }
+
+/// The record of the solver beside a picture of the hills.
+fn solved(more: &str) -> (serde_json::Value, Vec<u8>) {
+    let place = place(|r, c| Some(hills(r, c)));
+    place.write("s.toml", &scene(&format!("solver_nodes = 33\n{more}")).replace("[64, 36]", "[160, 90]"));
+    place.ok(&["render", "s.toml", "-o", "p.png"]);
+    let record = serde_json::from_slice(&super::read(&place.path("p.png.json"))).expect("JSON");
+    (record, super::read(&place.path("p.png")))
+}
+
+#[test]
+fn a_slider_goes_from_moving_the_camera_to_moving_the_ground() {
+    let run = |more: &str| {
+        let record = solved(more).0;
+        let eye = [0, 1, 2].map(|k| number(&record["view"]["eye"][k]));
+        (eye, number(&record["disocclusion"]["rms_m"]), number(&record["disocclusion"]["visible"]))
+    };
+    let [stays, half, free] = ["adjust_viewpoint = 1.0", "adjust_viewpoint = 0.5", "adjust_viewpoint = 0.0"].map(run);
+    assert_eq!(run("").0, stays.0);
+    assert!(half.0 != stays.0 && half.1 < stays.1 && free.1 < 0.8 * half.1, "{stays:?} {half:?} {free:?}");
+    assert!([stays, half, free].iter().all(|r| r.2 == 1.0));
+    let place = place(|r, c| Some(hills(r, c)));
+    place.write("s.toml", &scene("adjust_viewpoint = 1.5"));
+    let line = place.fails(&["check", "s.toml"]);
+    assert!(line.contains("adjust_viewpoint is 1.5"), "{line}");
+}
+
+#[test]
+fn at_a_price_ground_stays_and_is_drawn_see_through() {
+    let (hard, _) = solved("");
+    let (soft, picture) = solved("slack_price = 0.01");
+    let of = |r: &serde_json::Value, key: &str| number(&r["disocclusion"][key]);
+    assert!(of(&soft, "rms_m") < 0.95 * of(&hard, "rms_m"), "{} {}", of(&soft, "rms_m"), of(&hard, "rms_m"));
+    assert!(of(&soft, "visible") < 1.0 && soft["disocclusion"]["guaranteed"] == false);
+    assert!(hard["disocclusion"]["covered"].is_null());
+    let covered = soft["disocclusion"]["covered"].as_array().expect("covered places");
+    assert!(!covered.is_empty() && covered.iter().all(|c| number(&c["over_m"]) > 0.0));
+    // The same ground from its solved grid is solid.
+    let place = place(|r, c| Some(hills(r, c)));
+    place.write("s.toml", &scene("solver_nodes = 33\nslack_price = 0.01").replace("[64, 36]", "[160, 90]"));
+    place.ok(&["render", "s.toml", "-o", "p.png"]);
+    assert_eq!(super::read(&place.path("p.png")), picture, "same scene, same bytes");
+    let record: serde_json::Value = serde_json::from_slice(&super::read(&place.path("p.png.json"))).expect("JSON");
+    place.write("solid.json", &record["scene"].to_string());
+    place.ok(&["render", "solid.json", "-o", "solid.png"]);
+    assert_ne!(super::read(&place.path("solid.png")), picture, "nothing shows through");
+}
+
+#[test]
+fn what_lies_beyond_the_distance_ahead_is_not_asked_for() {
+    let near = solved("ahead_m = 2500").0;
+    let all = solved("").0;
+    let of = |r: &serde_json::Value, key: &str| number(&r["disocclusion"][key]);
+    assert!(of(&near, "points") < 0.6 * of(&all, "points") && of(&near, "rms_m") < of(&all, "rms_m"));
+    assert_eq!(of(&near, "visible"), 1.0);
+}
