@@ -36,7 +36,7 @@ fn picture(place: &Place, scene: &str, more: &[&str]) -> Vec<u8> {
 }
 
 /// The compressed pixels of a PNG, without the record of the scene that it carries.
-fn pixels(png: &[u8]) -> Vec<u8> {
+pub(super) fn pixels(png: &[u8]) -> Vec<u8> {
     let (mut at, mut out) = (8, Vec::new());
     while at + 8 <= png.len() {
         let length = u32::from_be_bytes([png[at], png[at + 1], png[at + 2], png[at + 3]]) as usize;
