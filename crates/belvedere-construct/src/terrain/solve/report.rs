@@ -3,8 +3,8 @@
 use super::super::metrics::{excesses, shown};
 use super::super::qp::{Reason, Unresolved};
 use super::super::{
-    Deformation, Field, FrameChange, GreedyCounters, PointKind, ReferencePoint, SolverMode, TerrainSettings,
-    Unusable, UnusableReason, terrain_metrics,
+    Deformation, Field, FrameChange, GreedyCounters, PointKind, ReferencePoint, SolverMode, TerrainSettings, Unusable,
+    UnusableReason, terrain_metrics,
 };
 use super::memory::Prepared;
 use super::{Done, Fallback, Seen, since};
