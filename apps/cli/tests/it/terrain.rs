@@ -273,7 +273,9 @@ fn at_a_price_ground_stays_and_is_drawn_see_through() {
     let place = place(|r, c| Some(hills(r, c)));
     place.write("s.toml", &scene("solver_nodes = 33\nslack_price = 0.01").replace("[64, 36]", "[160, 90]"));
     place.ok(&["render", "s.toml", "-o", "p.png"]);
-    assert_eq!(super::read(&place.path("p.png")), picture, "same scene, same bytes");
+    // The records name the folders, which differ.
+    let again = super::looks::pixels(&super::read(&place.path("p.png")));
+    assert!(again == super::looks::pixels(&picture), "same scene, same pixels");
     let record: serde_json::Value = serde_json::from_slice(&super::read(&place.path("p.png.json"))).expect("JSON");
     place.write("solid.json", &record["scene"].to_string());
     place.ok(&["render", "solid.json", "-o", "solid.png"]);
