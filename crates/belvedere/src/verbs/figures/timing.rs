@@ -6,7 +6,7 @@ use super::sheet::Pixels;
 use crate::BelvedereError;
 use belvedere_construct::ConstructError;
 use belvedere_construct::terrain::{
-    Cells, Hierarchy, Naive, ReferencePoint, SmoothPass, SolverMode, Wedge, in_view, reference_points,
+    Cells, Hierarchy, Naive, ReferencePoint, SmoothPass, SolverMode, TerrainSettings, Wedge, in_view, reference_points,
 };
 use belvedere_core::DVec2;
 use serde::Serialize;
@@ -55,7 +55,9 @@ pub(super) fn timing(area: &Area) -> Result<Timing, BelvedereError> {
     let (field, settings) = (&area.field, area.in_mode(SolverMode::Paper));
     let cells_ms = median(|| drop(Cells::new(field, area.cells.len())));
     let began = Instant::now();
-    let hierarchy = Hierarchy::new(field.cols(), field.rows(), settings.solver_nodes);
+    // The paper's grid, whatever the scene asks for.
+    let nodes = TerrainSettings::default().solver_nodes;
+    let hierarchy = Hierarchy::new(field.cols(), field.rows(), nodes);
     let unknowns = hierarchy.nodes();
     let rows: Vec<DVec2> = area.points.iter().map(|p| p.grid).chain(summits(area)).collect();
     let mut pass =
