@@ -58,7 +58,8 @@ pub struct TerrainReport {
     pub qp: Option<QpReport>,
     /// Ways out of contradicting rows that were taken, in their order; empty as a rule.
     pub fallbacks: Vec<Fallback>,
-    /// Whether every reference point and candidate in view is guaranteed to be seen in this picture.
+    /// Whether every reference point and candidate in view is guaranteed to be seen in this picture, but for what ground nearer than
+    /// the guard covers; what is seen between candidates is [`TerrainReport::visible_dense`].
     pub guaranteed: bool,
     /// What cannot be seen, and why.
     pub unresolved: Vec<UnresolvedRun>,

@@ -33,9 +33,6 @@ const BUILTIN: [(&str, &str); 2] = [
     ("massif_lake_terrain", include_str!("../../../../../scenes/massif_lake_terrain.toml")),
 ];
 
-/// Nodes along a side of the built-in areas in their scene files, and here, where they are as large as the paper's.
-const SIZES: [&str; 2] = ["size=513", "size=1025"];
-
 /// What one area comes to.
 #[derive(Debug, Clone, Serialize)]
 struct AreaRecord {
@@ -65,9 +62,7 @@ pub fn terrain(
     let (page, record) = (folder.join("index.html"), folder.join("figures.json"));
     output::check(&page, scenes, overwrite)?;
     output::check(&record, scenes, overwrite)?;
-    let builtin = BUILTIN
-        .iter()
-        .map(|(name, text)| (PathBuf::from(format!("{name}.toml")), Some(text.replace(SIZES[0], SIZES[1]))));
+    let builtin = BUILTIN.iter().map(|(name, text)| (PathBuf::from(format!("{name}.toml")), Some(*text)));
     let given = scenes.iter().map(|path| (path.clone(), None));
     let areas: Vec<_> = if scenes.is_empty() { builtin.collect() } else { given.collect() };
     let mut names: Vec<_> = areas.iter().filter_map(|(path, _)| path.file_stem()).collect();
@@ -80,7 +75,7 @@ pub fn terrain(
     }
     let (mut records, mut written) = (Vec::new(), Vec::new());
     for (path, text) in &areas {
-        let area = Area::open(path, text.as_deref(), options)?;
+        let area = Area::open(path, *text, options)?;
         records.push(figures_of(&area, folder, overwrite, &mut written)?);
     }
     output::write_text(&record, &pretty(&records)?, overwrite)?;
