@@ -51,7 +51,7 @@ impl Bundle {
             let points = [grids().fold(first.grid, DVec2::min), grids().fold(first.grid, DVec2::max)];
             first.chords.iter().map(|c| rise.along(points, [c.ends[1]; 2])).fold(0.0, f64::max)
         } else {
-            let chords = members.iter().flat_map(|s| &s.chords);
+            let chords = members.iter().flat_map(|s| s.chords.iter());
             chords.map(|c| rise.along([c.ends[0]; 2], [c.ends[1]; 2])).fold(0.0, f64::max)
         };
         self.room -= sank + rose;

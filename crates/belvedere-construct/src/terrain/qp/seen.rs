@@ -5,6 +5,8 @@ use super::row::{Asks, Row};
 use super::surface::Surface;
 use super::walk::{Chord, Clearance, Touch, fade};
 use belvedere_core::DVec2;
+use rayon::prelude::*;
+use std::sync::Arc;
 
 /// How far along a line of sight a row of the frame before is looked for, cells.
 const FOLLOW: f64 = 2.5;
@@ -15,7 +17,7 @@ pub(super) struct Seen {
     /// Index among the candidates.
     pub(super) index: usize,
     pub(super) grid: DVec2,
-    pub(super) chords: Vec<Chord>,
+    pub(super) chords: Arc<[Chord]>,
     /// Displacement of the candidate for which the chords hold.
     reference: f64,
     nodes: [u32; 4],
@@ -26,20 +28,38 @@ impl Seen {
     /// Lines of sight of all candidates, which are displaced as the surface is unless lines are straight. A candidate
     /// without a line has no chords.
     pub(super) fn all(problem: &QpProblem, surface: &Surface) -> Vec<Self> {
-        let mut line = Vec::new();
-        let all = problem.candidates.iter().enumerate();
-        all.map(|(index, c)| {
-            let (nodes, weights) = surface.lattice.weights(c.grid);
-            let mut seen = Self { index, grid: c.grid, chords: Vec::new(), reference: 0.0, nodes, weights };
+        let of = |index: usize| {
+            let grid = problem.candidates[index].grid;
+            let (nodes, weights) = surface.lattice.weights(grid);
+            let mut seen = Self { index, grid, chords: Arc::new([]), reference: 0.0, nodes, weights };
             if problem.sight.straight().is_none() {
                 seen.reference = seen.displacement(&surface.u);
             }
-            line.clear();
-            problem.sight.trace(c.grid, surface.ground(c.grid) + c.lift + seen.reference, &mut line);
-            seen.chords = chords(&line);
+            seen.trace(problem, surface);
             seen
-        })
-        .collect()
+        };
+        (0..problem.candidates.len()).into_par_iter().with_min_len(32).map(of).collect()
+    }
+
+    /// Traces again the lines of sight of candidates that moved by more than `moved` since; returns how many.
+    pub(super) fn follow_up(all: &mut [Self], problem: &QpProblem, surface: &Surface, moved: f64) -> usize {
+        let renew = |seen: &mut Self| {
+            let d = seen.displacement(&surface.u);
+            let far = (d - seen.reference).abs() > moved;
+            if far {
+                seen.reference = d;
+                seen.trace(problem, surface);
+            }
+            usize::from(far)
+        };
+        all.par_iter_mut().with_min_len(32).map(renew).sum()
+    }
+
+    fn trace(&mut self, problem: &QpProblem, surface: &Surface) {
+        let mut line = Vec::new();
+        let lift = problem.candidates[self.index].lift;
+        problem.sight.trace(self.grid, surface.ground(self.grid) + lift + self.reference, &mut line);
+        self.chords = chords(&line);
     }
 
     pub(super) fn displacement(&self, u: &[f64]) -> f64 {
@@ -96,11 +116,11 @@ impl Seen {
 }
 
 /// Chords of a polyline; its share of the way is measured in plan.
-fn chords(line: &[(DVec2, f64)]) -> Vec<Chord> {
+fn chords(line: &[(DVec2, f64)]) -> Arc<[Chord]> {
     let length = |p: &[(DVec2, f64)]| (p[1].0 - p[0].0).length();
     let total: f64 = line.windows(2).map(length).sum();
     if !(total > 0.0 && line.iter().all(|(g, z)| g.is_finite() && z.is_finite())) {
-        return Vec::new();
+        return Arc::new([]);
     }
     let mut way = 0.0;
     line.windows(2)

@@ -87,7 +87,7 @@ impl QpSolver {
 
     /// Solves one frame, beginning with the rows of the frame before.
     ///
-    /// Lines of sight that are not straight are traced again from the displaced candidates until they stay where they are.
+    /// Lines of sight that are not straight are traced again from the displaced candidates until those stay where they are.
     ///
     /// # Errors
     /// Every [`QpError`].
@@ -98,17 +98,16 @@ impl QpSolver {
             length(what, values.unwrap_or(&self.surface.u), nodes)?;
         }
         self.check_eye(problem)?;
-        let mut out = self.pass(problem);
+        let mut lines = Seen::all(problem, &self.surface);
+        let mut out = self.pass(problem, &lines);
         if problem.sight.straight().is_none() {
             for _ in 0..10 {
-                let before = self.surface.u.clone();
-                let next = self.pass(problem);
-                let (rounds, added) = (out.rounds + next.rounds, out.added + next.added);
-                out = QpResult { rounds, added, kept: out.kept, ..next };
-                let moved = before.iter().zip(&self.surface.u).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-                if moved < 0.1 * self.options.tolerance {
+                if Seen::follow_up(&mut lines, problem, &self.surface, 0.1 * self.options.tolerance) == 0 {
                     break;
                 }
+                let next = self.pass(problem, &lines);
+                let (rounds, added) = (out.rounds + next.rounds, out.added + next.added);
+                out = QpResult { rounds, added, kept: out.kept, ..next };
             }
         }
         out.milliseconds = begin.elapsed().as_secs_f64() * 1e3;
@@ -127,14 +126,14 @@ impl QpSolver {
         Ok(())
     }
 
-    /// Solves with the lines of sight of the present displacement.
-    fn pass(&mut self, problem: &QpProblem) -> QpResult {
+    /// Solves with these lines of sight.
+    fn pass(&mut self, problem: &QpProblem, lines: &[Seen]) -> QpResult {
         let o = self.options;
         let nodes = self.surface.u.len();
         let mut frame = Frame {
             problem: *problem,
             target: problem.target.map_or_else(|| vec![0.0; nodes], <[f64]>::to_vec),
-            seen: Seen::all(problem, &self.surface),
+            seen: lines.to_vec(),
             bundles: Vec::new(),
             pool: Pool::default(),
             clearance: self.clearance(),
@@ -180,7 +179,7 @@ impl QpSolver {
         let heights = &self.surface.heights;
         let (low, mut high) =
             heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), h| (a.min(*h), b.max(*h)));
-        for chord in frame.seen.iter().flat_map(|s| &s.chords) {
+        for chord in frame.seen.iter().flat_map(|s| s.chords.iter()) {
             high = high.max(chord.z[0]).max(chord.z[1]);
         }
         DEPTH * (high - low)
