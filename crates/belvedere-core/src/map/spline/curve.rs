@@ -177,9 +177,10 @@ impl DeformationCurve {
         }
         for (i, cell) in self.cells.iter().enumerate() {
             let end = self.cells.get(i + 1).map_or(far_point, |c| c.point);
-            if (q - cell.point).dot(cell.tangent[0]) >= 0.0
-                && (q - end).dot(cell.tangent[1]) <= 0.0
-                && let Some((l, d)) = self.foot_in(cell, q)
+            let along = [(q - cell.point).dot(cell.tangent[0]), (q - end).dot(cell.tangent[1])];
+            if along[0] >= 0.0
+                && along[1] <= 0.0
+                && let Some((l, d)) = self.foot_in(cell, q, along)
             {
                 offer(l, d);
             }
@@ -208,8 +209,8 @@ impl DeformationCurve {
         self.foot(q)
     }
 
-    /// Root of `(q - P(l)) . T(l)` in a cell at whose ends it changes sign from + to -.
-    fn foot_in(&self, cell: &Cell, q: DVec2) -> Option<(f64, f64)> {
+    /// Root of `(q - P(l)) . T(l)` in a cell at whose ends it has the values `along`, + and -.
+    fn foot_in(&self, cell: &Cell, q: DVec2, along: [f64; 2]) -> Option<(f64, f64)> {
         let span = &self.spans[cell.span];
         // Along, across, and the derivative of -along.
         let offsets = |l: f64| {
@@ -220,7 +221,8 @@ impl DeformationCurve {
             (v.dot(t), d, 1.0 - curvature_in(span, x, cell.x_mid, self.scale) * d)
         };
         let (mut lo, mut hi) = (cell.l0, cell.l1);
-        let mut l = 0.5 * (lo + hi);
+        let share = along[0] / (along[0] - along[1]);
+        let mut l = if share.is_finite() { lo + share * (hi - lo) } else { 0.5 * (lo + hi) };
         for _ in 0..80 {
             let (g, _, j) = offsets(l);
             if g > 0.0 {
@@ -229,10 +231,11 @@ impl DeformationCurve {
                 hi = l
             }
             let newton = l + g / j;
-            let next = if j > 0.0 && newton >= lo && newton <= hi { newton } else { 0.5 * (lo + hi) };
+            let smooth = j > 0.0 && newton >= lo && newton <= hi;
+            let next = if smooth { newton } else { 0.5 * (lo + hi) };
             let step = (next - l).abs();
             l = next;
-            if step <= 1e-8 * self.length {
+            if step <= if smooth { 1e-6 } else { 1e-8 } * self.length {
                 break;
             }
         }
