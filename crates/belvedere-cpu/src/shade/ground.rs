@@ -2,6 +2,7 @@
 //!
 //! Only averages are kept: full detail is always at hand in the heights themselves.
 
+use crate::vector::{self, Kernel};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, NodeState};
 use glam::Vec4;
@@ -68,14 +69,14 @@ impl<'a> Surface<'a> {
     /// dz/dx, dz/dy, height, 1 of the nodes of a row from column `first`; zeros at voids.
     pub(crate) fn row(&self, row: usize, first: usize, out: &mut [Vec4]) {
         let (cols, rows) = (self.hf.cols(), self.hf.rows());
-        let states = self.hf.states();
+        let states = self.hf.states().each();
         let inner = row > 0 && row + 1 < rows && self.bent.is_none();
         let per = (0.5 / self.hf.spacing()).as_vec2();
         for (k, out) in out.iter_mut().enumerate() {
             let (c, i) = (first + k, row * cols + first + k);
             if inner && c > 0 && c + 1 < cols {
                 let around = [i - 1, i, i + 1, i - cols, i + cols];
-                if around.iter().all(|&n| states[n] != NodeState::Void) {
+                if states.is_none_or(|states| around.iter().all(|&n| states[n] != NodeState::Void)) {
                     let [west, here, east, north, south] = around.map(|n| self.heights[n]);
                     *out = Vec4::new((east - west) * per.x, (north - south) * per.y, here, 1.0);
                     continue;
@@ -123,6 +124,40 @@ impl<'a> Surface<'a> {
             return self.row(row, first, out);
         }
         let (cols, rows, side) = (self.hf.cols(), self.hf.rows(), 1 << k);
+        let (from, to) = ((first * side).saturating_sub(1), ((first + out.len()) * side + 1).min(cols));
+        // The outermost nodes, voids and bends go one by one.
+        let inner = row > 0
+            && (row + 1) * side < rows
+            && side <= CHUNK
+            && self.bent.is_none()
+            && self.is_solid(row, side, from..to);
+        if !inner {
+            return self.mean_of_each(k, row, first, out);
+        }
+        let whole = first.max(1)..(first + out.len()).min((cols - 1) / side);
+        for ends in [first..whole.start.min(first + out.len()), whole.end.max(first)..first + out.len()] {
+            if !ends.is_empty() {
+                self.mean_of_each(k, row, ends.start, &mut out[ends.start - first..ends.end - first]);
+            }
+        }
+        if !whole.is_empty() {
+            let part = whole.start - first..whole.end - first;
+            vector::run(Inner { surface: self, side, row, first: whole.start, out: &mut out[part] });
+        }
+    }
+
+    /// Whether there is no void among these columns of the rows of a row of averages and of one more on either side.
+    fn is_solid(&self, row: usize, side: usize, columns: std::ops::Range<usize>) -> bool {
+        let (cols, rows) = (self.hf.cols(), self.hf.rows());
+        self.hf.states().each().is_none_or(|states| {
+            let rows = (row * side).saturating_sub(1)..((row + 1) * side + 1).min(rows);
+            !rows.into_iter().any(|r| states[r * cols..][columns.clone()].contains(&NodeState::Void))
+        })
+    }
+
+    /// [`Surface::mean_row`] of any nodes.
+    fn mean_of_each(&self, k: usize, row: usize, first: usize, out: &mut [Vec4]) {
+        let (cols, rows, side) = (self.hf.cols(), self.hf.rows(), 1 << k);
         let (from, to) = (first * side, ((first + out.len()) * side).min(cols));
         let mut fine = vec![Vec4::ZERO; to.saturating_sub(from)];
         out.fill(Vec4::ZERO);
@@ -133,6 +168,56 @@ impl<'a> Surface<'a> {
             }
         }
         out.iter_mut().filter(|n| n.w > 0.0).for_each(|n| *n /= n.w);
+    }
+}
+
+/// Averages of nodes away from voids and borders. The central differences along a row or a column of a square cancel but for
+/// the two nodes on either side of each end.
+struct Inner<'a, 's> {
+    surface: &'a Surface<'s>,
+    side: usize,
+    row: usize,
+    first: usize,
+    out: &'a mut [Vec4],
+}
+
+/// Columns of the ground that are summed up at a time.
+const CHUNK: usize = 256;
+
+impl Kernel for Inner<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { surface, side, row, first, out } = self;
+        let per = (0.5 / surface.hf.spacing()).as_vec2() / (side * side) as f32;
+        let share = 1.0 / (side * side) as f32;
+        let cols = surface.hf.cols();
+        for (chunk, out) in out.chunks_mut((CHUNK / side).max(1)).enumerate() {
+            let c0 = (first + chunk * (CHUNK / side).max(1)) * side - 1;
+            let n = out.len() * side + 2;
+            let line = |r: usize| &surface.heights[r * cols + c0..][..n];
+            // Sums down the columns, and what the rows at either end of the square leave.
+            let (mut sum, mut ends) = ([0.0f32; CHUNK + 2], [0.0f32; CHUNK + 2]);
+            let (sum, ends) = (&mut sum[..n], &mut ends[..n]);
+            for r in row * side..(row + 1) * side {
+                for (sum, h) in sum.iter_mut().zip(line(r)) {
+                    *sum += h;
+                }
+            }
+            let [north, south] = [row * side, (row + 1) * side].map(|r| [line(r - 1), line(r)]);
+            for i in 0..n {
+                ends[i] = (north[0][i] - south[0][i]) + (north[1][i] - south[1][i]);
+            }
+            for (i, out) in out.iter_mut().enumerate() {
+                let from = i * side;
+                let (a, b) = (&sum[from..from + 2], &sum[from + side..from + side + 2]);
+                let east = (b[0] - a[0]) + (b[1] - a[1]);
+                let north: f32 = ends[from + 1..=from + side].iter().sum();
+                let height: f32 = sum[from + 1..=from + side].iter().sum();
+                *out = Vec4::new(east * per.x, north * per.y, height * share, 1.0);
+            }
+        }
     }
 }
 
@@ -152,7 +237,7 @@ fn bent_slope(hf: &Heightfield, c: usize, r: usize, bent: &Moved<'_>) -> Option<
 }
 
 /// Averages over `2^k x 2^k` nodes: dz/dx, dz/dy, height, and the height that the wider surroundings ask for (see
-/// [`Means::openness`]).
+/// [`Openness::at`]).
 #[derive(Debug)]
 struct Level {
     cols: usize,
@@ -210,7 +295,7 @@ impl Means {
         }
     }
 
-    /// Stores the weighted mean heights of the surroundings, see [`Means::openness`].
+    /// Stores the weighted mean heights of the surroundings, see [`Openness::at`].
     fn set_surroundings(&mut self) {
         let scales = SURROUNDINGS.map(|(level, share)| {
             let k = level.clamp(self.first, self.top());
@@ -250,7 +335,7 @@ impl Means {
     }
 
     /// Averages of level `k` (stored) at fractional column and row of the ground.
-    #[inline]
+    #[cfg(test)]
     pub(crate) fn at(&self, k: usize, col: f32, row: f32) -> Vec4 {
         let level = &self.levels[(k - self.first).min(self.levels.len() - 1)];
         // Node i of level k lies at (i + 0.5) 2^k - 0.5 of the ground.
@@ -268,23 +353,61 @@ impl Means {
         level.nodes[row * level.cols + col]
     }
 
+    /// Nodes of a row of a stored level, from column `first`.
+    pub(crate) fn row(&self, k: usize, row: usize, first: usize, out: &mut [Vec4]) {
+        let level = &self.levels[k - self.first];
+        out.copy_from_slice(&level.nodes[row * level.cols + first..][..out.len()]);
+    }
+
+    /// Averages of the finest stored level at the nodes of a row of the finer level `k`, from column `first`.
+    pub(crate) fn row_between(&self, k: usize, row: usize, first: usize, out: &mut [Vec4]) {
+        let level = &self.levels[0];
+        let step = 1.0 / (1u32 << (self.first - k)) as f32;
+        let place = |i: usize| (i as f32 + 0.5) * step - 0.5;
+        let (r0, r1, v) = tap(place(row), level.rows);
+        let (n, s) = (&level.nodes[r0 * level.cols..][..level.cols], &level.nodes[r1 * level.cols..][..level.cols]);
+        for (i, out) in out.iter_mut().enumerate() {
+            let (c0, c1, u) = tap(place(first + i), level.cols);
+            let (a, b) = (n[c0] + u * (n[c1] - n[c0]), s[c0] + u * (s[c1] - s[c0]));
+            *out = a + v * (b - a);
+        }
+    }
+
     /// Columns and rows of a level that is stored.
     pub(crate) fn size(&self, k: usize) -> [usize; 2] {
         let level = &self.levels[k - self.first];
         [level.cols, level.rows]
     }
 
-    /// How far a place at `height` stands above its surroundings at three scales, as the share of the sky that they leave:
-    /// about 0.8..=1.2, 1 on level ground. Our stand-in for sky visibility.
-    /// * `near`: the averages of the finest stored level there.
-    #[inline]
-    pub(crate) fn openness(&self, height: f32, near: Vec4) -> f32 {
+    /// How open places are, see [`Openness::at`].
+    #[inline(always)]
+    pub(crate) fn openness(&self) -> Openness {
         let per_m =
             |level: usize, share: f32| share / (self.spacing * (1u32 << level.clamp(self.first, self.top())) as f32);
-        let wide: f32 = SURROUNDINGS.iter().map(|&(level, share)| per_m(level, share)).sum();
-        let above = per_m(self.first, NEAR_SHARE) * (height - near.z) + wide * height - near.w;
+        Openness {
+            near: per_m(self.first, NEAR_SHARE),
+            wide: SURROUNDINGS.iter().map(|&(level, share)| per_m(level, share)).sum(),
+        }
+    }
+}
+
+/// Weights of the surroundings of a place, per unit of height.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Openness {
+    near: f32,
+    wide: f32,
+}
+
+impl Openness {
+    /// How far a place at `height` stands above its surroundings at three scales, as the share of the sky that they leave:
+    /// about 0.8..=1.2, 1 on level ground. Our stand-in for sky visibility.
+    /// * `near`, `asked`: height and what the surroundings ask for, of the finest stored level there.
+    #[inline(always)]
+    pub(crate) fn at(self, height: f32, near: f32, asked: f32) -> f32 {
+        let above = self.near * (height - near) + self.wide * height - asked;
         let x = above / 0.16;
-        1.0 + 0.42 * (x / (1.0 + x * x).sqrt()).min(0.45)
+        let x = x / (1.0 + x * x).sqrt();
+        1.0 + 0.42 * if x < 0.45 { x } else { 0.45 }
     }
 }
 
@@ -353,6 +476,33 @@ mod tests {
             for (c, n) in row.iter().enumerate() {
                 let void = hf.states()[r * 67 + c] == NodeState::Void;
                 assert!(if void { *n == Vec4::ZERO } else { (n.truncate().truncate() - want).length() < 1e-4 });
+            }
+        }
+    }
+
+    #[test]
+    fn sums_of_squares_are_those_of_their_nodes() {
+        let (cols, rows) = (331, 143);
+        let h = |i: usize| 900.0 + 300.0 * (i as f32 * 0.37).sin() + (i / cols) as f32 * 3.1;
+        let void = |i: usize| i == 70 * cols + 200;
+        let state = |i: usize| if void(i) { NodeState::Void } else { NodeState::Measured };
+        let states = (0..cols * rows).map(state).collect();
+        let heights = (0..cols * rows).map(h).collect();
+        let hf = Heightfield::new(DVec2::ZERO, DVec2::new(10.0, 20.0), cols, rows, heights, states).unwrap();
+        let surface = Surface::of_map(&hf);
+        for (k, first) in [(1usize, 0), (2, 3), (3, 1), (4, 0)] {
+            let n = cols.div_ceil(1 << k) - first;
+            for row in 0..rows.div_ceil(1 << k) {
+                let [mut sums, mut each] = [vec![Vec4::ZERO; n], vec![Vec4::ZERO; n]];
+                surface.mean_row(k, row, first, &mut sums);
+                surface.mean_of_each(k, row, first, &mut each);
+                for (a, b) in sums.iter().zip(&each) {
+                    let off = (*a - *b).abs();
+                    assert!(
+                        off.truncate().truncate().max_element() < 2e-4 && off.z < 2e-3,
+                        "level {k}, row {row}: {a} {b}"
+                    );
+                }
             }
         }
     }

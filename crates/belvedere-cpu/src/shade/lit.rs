@@ -4,13 +4,13 @@
 //! ground are kept: its lit colour, which most pixels take as it is, and colour and light apart, where something lies over
 //! the ground. A node takes eight bytes in each, and a pixel a weighted sum of four nodes in 16-bit integers.
 
+use super::coarse::Coarse;
 use super::color::Rgb;
-use super::ground::{Means, Surface};
-use super::palette::Tint;
+use super::patch::{LANES, Lanes, Making, Patch};
 use super::relief::ReliefLight;
-use super::shadow::Shadows;
-use super::tiles::{self, Around, Node, STRIDE, Tile, Tiles};
-use glam::{Vec3A, Vec4};
+use super::tiles::{self, Around, Node, Tile, Tiles};
+use crate::vector::{self, Kernel, nearest};
+use glam::Vec3A;
 
 /// Amounts of light that the stored values end at.
 const MOST_DIRECT: f32 = 1.4;
@@ -19,16 +19,6 @@ const MOST_SKY: f32 = 0.8;
 const BRIGHTEST: f32 = 1.25;
 /// What a weighted sum gives for square root 1 of linear light.
 const ONE: f32 = 256.0 * 255.0 / BRIGHTEST;
-
-/// Everything that the tiles of a ground are made from.
-pub(crate) struct Making<'a> {
-    pub(crate) surface: &'a Surface<'a>,
-    pub(crate) means: &'a Means,
-    pub(crate) shadows: Option<&'a Shadows>,
-    pub(crate) tint: &'a Tint,
-    pub(crate) light: &'a ReliefLight,
-    pub(crate) exaggeration: f32,
-}
 
 /// Colour and light at a place of the ground.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -93,34 +83,15 @@ impl LitGround {
 
     fn make_parts(&self, k: usize, tile: [usize; 2], making: &Making<'_>) -> Box<Tile> {
         let [columns, rows] = self.parts.repeated(k, tile);
-        let mut row = Row::new(columns.first()..=columns.last());
-        let mut out = Vec::with_capacity(STRIDE * STRIDE);
-        for r in rows.all() {
-            row.fill(making, k, r);
-            out.extend(columns.all().map(|c| row.lit[c - row.first].node()));
-        }
-        tiles::boxed(out)
+        vector::run(Parts(&Patch::new(making, k, columns.all(), rows.all())))
     }
 
     fn make_colors(&self, k: usize, tile: [usize; 2], making: &Making<'_>) -> Box<Tile> {
         let [columns, rows] = self.colors.repeated(k, tile);
+        let patch = Patch::new(making, k, columns.all(), rows.all());
         // The coarsest level goes on for ever.
-        let coarse = (k < self.colors.top()).then(|| {
-            let ends = [&columns, &rows].map(|axis| [axis.first(), axis.last()]);
-            Coarse::new(making, k + 1, self.colors.nodes(k + 1), ends)
-        });
-        let mut row = Row::new(columns.first()..=columns.last());
-        let mut out = Vec::with_capacity(STRIDE * STRIDE);
-        for r in rows.all() {
-            row.fill(making, k, r);
-            out.extend(columns.all().map(|c| {
-                let here = row.lit[c - row.first].root(making.light);
-                let next = coarse.as_ref().map_or(here, |coarse| coarse.at([c, r]));
-                let ([r, g, b], [next_r, next_g, next_b]) = (bytes(here), bytes(next));
-                [r, g, b, 0, next_r, next_g, next_b, 0]
-            }));
-        }
-        tiles::boxed(out)
+        let next = (k < self.colors.top()).then(|| Coarse::new(making, k + 1, [columns, rows]));
+        vector::run(Colors { patch: &patch, next: next.as_ref(), light: making.light })
     }
 }
 
@@ -172,13 +143,88 @@ fn add(around: &Around<'_>, total: u32, sum: &mut [u16; 8]) {
     }
 }
 
-/// Square roots of lit colours in 8 bits.
-fn bytes(root: Vec3A) -> [u8; 3] {
-    (root / BRIGHTEST).to_array().map(byte)
+/// The nearest of 255 steps up to 1.
+#[inline(always)]
+fn byte(v: f32) -> u32 {
+    // In this order NaN becomes 0.
+    let v = if v > 0.0 { v } else { 0.0 };
+    nearest((if v < 1.0 { v } else { 1.0 }) * 255.0) as u32
 }
 
-fn byte(v: f32) -> u8 {
-    (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
+/// Four values in a word.
+#[inline(always)]
+fn word(v: [f32; 4]) -> u32 {
+    byte(v[0]) | byte(v[1]) << 8 | byte(v[2]) << 16 | byte(v[3]) << 24
+}
+
+/// Two words, [`LANES`] nodes at a time.
+#[inline(always)]
+fn push(out: &mut Vec<Node>, low: &[u32; LANES], high: &[u32; LANES]) {
+    for i in 0..LANES.min(tiles::NODES - out.len()) {
+        out.push((u64::from(low[i]) | u64::from(high[i]) << 32).to_le_bytes());
+    }
+}
+
+/// Writes a tile of colour and light apart.
+struct Parts<'a>(&'a Patch);
+
+impl Kernel for Parts<'_> {
+    type Output = Box<Tile>;
+
+    #[inline(always)]
+    fn run(self) -> Box<Tile> {
+        let mut out = Vec::with_capacity(tiles::NODES);
+        for nodes in self.0.nodes() {
+            let ([r, g, b], direct, sky) = (&nodes.root, &nodes.direct, &nodes.sky);
+            let (mut low, mut high) = ([0; LANES], [0; LANES]);
+            for i in 0..LANES {
+                low[i] = word([r[i], g[i], b[i], direct[i] * (1.0 / MOST_DIRECT)]);
+                high[i] = word([sky[i] * (1.0 / MOST_SKY), 0.0, 0.0, 0.0]);
+            }
+            push(&mut out, &low, &high);
+        }
+        tiles::boxed(out)
+    }
+}
+
+/// Writes a tile of lit colours.
+struct Colors<'a> {
+    patch: &'a Patch,
+    /// `None` on the coarsest level.
+    next: Option<&'a Coarse>,
+    light: &'a ReliefLight,
+}
+
+impl Kernel for Colors<'_> {
+    type Output = Box<Tile>;
+
+    #[inline(always)]
+    fn run(self) -> Box<Tile> {
+        let mut out = Vec::with_capacity(tiles::NODES);
+        let next = self.next.map(Coarse::finer);
+        for (n, nodes) in self.patch.nodes().iter().enumerate() {
+            let here = nodes.lit_roots(self.light);
+            let low = Self::words(&here);
+            let high = match &next {
+                Some(next) => next.get(n).map_or([0; LANES], |roots| Self::words(&roots)),
+                None => low,
+            };
+            push(&mut out, &low, &high);
+        }
+        tiles::boxed(out)
+    }
+}
+
+impl Colors<'_> {
+    #[inline(always)]
+    fn words([r, g, b]: &[Lanes; 3]) -> [u32; LANES] {
+        let mut out = [0; LANES];
+        for i in 0..LANES {
+            let [r, g, b] = [r[i] * (1.0 / BRIGHTEST), g[i] * (1.0 / BRIGHTEST), b[i] * (1.0 / BRIGHTEST)];
+            out[i] = word([r, g, b, 0.0]);
+        }
+        out
+    }
 }
 
 impl Lit {
@@ -189,124 +235,22 @@ impl Lit {
         Self { root: [r / ONE, g / ONE, b / ONE], direct: direct * (MOST_DIRECT / ONE), sky: sky * (MOST_SKY / ONE) }
     }
 
-    fn node(&self) -> Node {
-        let [r, g, b] = self.root.map(byte);
-        [r, g, b, byte(self.direct / MOST_DIRECT), byte(self.sky / MOST_SKY), 0, 0, 0]
-    }
-
     /// Linear colour of the ground without light.
     pub(crate) fn albedo(&self) -> Rgb {
         let root = Vec3A::from_array(self.root);
         root * root
     }
-
-    /// Square roots of the lit colour.
-    fn root(&self, light: &ReliefLight) -> Vec3A {
-        let c = self.albedo() * (light.warm * self.direct + light.cool * self.sky);
-        Vec3A::from_array(c.to_array().map(f32::sqrt))
-    }
-}
-
-/// A row of nodes in the making, from column `first` on.
-struct Row {
-    first: usize,
-    shape: Vec<Vec4>,
-    shares: Vec<f32>,
-    lit: Vec<Lit>,
-}
-
-impl Row {
-    /// Room for columns in rising order.
-    fn new(columns: std::ops::RangeInclusive<usize>) -> Self {
-        let (first, n) = (*columns.start(), columns.count());
-        Self { first, shape: vec![Vec4::ZERO; n], shares: vec![1.0; n], lit: vec![Lit::default(); n] }
-    }
-
-    fn fill(&mut self, m: &Making<'_>, k: usize, row: usize) {
-        let (stored, first) = (k >= m.means.first, self.first);
-        if stored {
-            for (i, n) in self.shape.iter_mut().enumerate() {
-                *n = m.means.node(k, first + i, row);
-            }
-        } else {
-            m.surface.mean_row(k, row, first, &mut self.shape);
-        }
-        if let Some(shadows) = m.shadows {
-            shadows.share_row(k, row, first, &mut self.shares);
-        }
-        let side = (1u32 << k) as f32;
-        let place = |i: usize| (i as f32 + 0.5) * side - 0.5;
-        for (i, (out, shape)) in self.lit.iter_mut().zip(&self.shape).enumerate() {
-            let near = if stored { *shape } else { m.means.at(m.means.first, place(first + i), place(row)) };
-            // A hole looks like the ground around it.
-            let shape = if stored || shape.w > 0.0 { *shape } else { near };
-            *out = lit_node(m, shape, m.means.openness(shape.z, near), self.shares[i]);
-        }
-    }
-}
-
-fn lit_node(m: &Making<'_>, shape: Vec4, open: f32, lit: f32) -> Lit {
-    let steep = (shape.x * shape.x + shape.y * shape.y).sqrt();
-    let root = m.tint.color(shape.z, steep).to_array().map(f32::sqrt);
-    let n = Vec3A::new(-shape.x * m.exaggeration, -shape.y * m.exaggeration, 1.0).normalize();
-    let [direct, sky] = m.light.parts(n, open, lit);
-    Lit { root, direct, sky }
-}
-
-/// Lit colours of a level around a tile of the next finer one.
-struct Coarse {
-    first: [usize; 2],
-    cols: usize,
-    roots: Vec<Vec3A>,
-    /// Columns and rows of the level.
-    nodes: [usize; 2],
-}
-
-impl Coarse {
-    /// * `k`: the level;
-    /// * `fine`: first and last column and row of the finer level.
-    fn new(m: &Making<'_>, k: usize, nodes: [usize; 2], fine: [[usize; 2]; 2]) -> Self {
-        let [columns, rows] = [0, 1].map(|axis| {
-            let [first, last] = fine[axis].map(|i| i / 2);
-            first.saturating_sub(1)..=(last + 1).min(nodes[axis] - 1)
-        });
-        let first = [*columns.start(), *rows.start()];
-        let mut row = Row::new(columns);
-        let mut roots = Vec::new();
-        for r in rows {
-            row.fill(m, k, r);
-            roots.extend(row.lit.iter().map(|lit| lit.root(m.light)));
-        }
-        Self { first, cols: row.lit.len(), roots, nodes }
-    }
-
-    /// At a node of the finer level. Between such nodes, a line errs from one between coarse nodes by as much at the coarse
-    /// nodes as halfway to the next fine ones, and by less than anywhere else.
-    fn at(&self, node: [usize; 2]) -> Vec3A {
-        let [columns, rows] = [0, 1].map(|axis| taps(node[axis], self.nodes[axis]));
-        let mut sum = Vec3A::ZERO;
-        for (r, v) in rows {
-            for (c, u) in columns {
-                sum += u * v * self.roots[(r - self.first[1]) * self.cols + c - self.first[0]];
-            }
-        }
-        sum
-    }
-}
-
-/// Nodes of the next coarser level, of `n`, around a node, and their weights.
-fn taps(i: usize, n: usize) -> [(usize, f32); 3] {
-    let (before, here, after) = ((i / 2).saturating_sub(1), i / 2, (i / 2 + 1).min(n - 1));
-    let (near, far) = if i.is_multiple_of(2) { (before, after) } else { (after, before) };
-    [(near, 0.1875), (here, 0.875), (far, -0.0625)]
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::ground::{Means, Surface};
+    use super::super::palette::Tint;
     use super::super::tiles::CELL;
     use super::*;
     use belvedere_core::DVec2;
     use belvedere_scene::{Heightfield, Light, NodeState, Palette, Relief};
+    use glam::Vec4;
 
     fn hills(cols: usize, rows: usize) -> Heightfield {
         let h = |i: usize| {
@@ -349,7 +293,7 @@ mod tests {
                         let near = m.means.at(1, c as f32 + share as f32 / 256.0, r as f32);
                         let steep = shape.truncate().truncate().length();
                         let normal = Vec3A::new(-shape.x, -shape.y, 1.0).normalize();
-                        let light = m.light.at(normal, m.means.openness(shape.z, near), 1.0);
+                        let light = m.light.at(normal, m.means.openness().at(shape.z, near.z, near.w), 1.0);
                         let want = m.tint.color(shape.z, steep) * light;
                         let apart = parts.albedo() * (m.light.warm * parts.direct + m.light.cool * parts.sky);
                         let steps = |c: Rgb| c.max(Rgb::ZERO).to_array().map(|v| 255.0 * v.sqrt());

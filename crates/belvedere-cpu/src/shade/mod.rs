@@ -3,6 +3,7 @@
 pub(crate) mod area;
 mod batch;
 mod cast;
+mod coarse;
 pub(crate) mod color;
 mod drape;
 mod ground;
@@ -10,6 +11,7 @@ mod lit;
 mod mesh;
 mod paint;
 mod palette;
+mod patch;
 mod print;
 mod relief;
 mod seen;

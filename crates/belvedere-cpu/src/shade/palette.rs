@@ -1,7 +1,8 @@
 //! Hypsometric tints. The built-in ramps are ours: muted, lighter the higher for every kind of colour vision, so that they
 //! also read without colour.
 
-use super::color::{Rgb, linear, smoothstep};
+use super::color::{Rgb, linear};
+use crate::vector::nearest;
 use belvedere_scene::{Palette, Ramp};
 
 /// Steps of the table by height.
@@ -12,21 +13,24 @@ const GREY: [u8; 3] = [205, 205, 202];
 /// Tint by height, and the colours that steepness and height add.
 #[derive(Debug)]
 pub(crate) struct Tint {
-    ramp: Vec<Rgb>,
+    /// One more, for the way to it: the last one again.
+    ramp: Box<[[f32; 4]; STEPS + 1]>,
     bottom_m: f32,
     per_m: f32,
     rock: Rgb,
     /// Tangent of the slope at which rock begins and has taken over.
-    rock_slope: [f32; 2],
+    rock_slope: Step,
     snow: Rgb,
     /// Heights at which snow begins and has taken over on gentle slopes, metres.
-    snow_m: [f32; 2],
+    snow_m: Step,
 }
 
 type Stops = &'static [(f32, [u8; 3])];
 
 /// A step that never comes; finite: a step between infinities is NaN.
 const NEVER: [f32; 2] = [1e30, 2e30];
+/// Tangents of the slopes at which snow begins to slide off and has gone.
+const SNOW_SLOPE: Step = Step::new([0.7, 1.3]);
 
 const ALPINE: Stops = &[
     (0.0, [101, 138, 104]),
@@ -91,22 +95,76 @@ impl Tint {
             }
         };
         let per_m = (STEPS - 1) as f32 / span;
-        Self { ramp, bottom_m: bottom, per_m, rock: linear(rock), rock_slope, snow: linear([244, 247, 250]), snow_m }
+        Self {
+            ramp: Box::new(std::array::from_fn(|i| ramp[i.min(STEPS - 1)].extend(0.0).to_array())),
+            bottom_m: bottom,
+            per_m,
+            rock: linear(rock),
+            rock_slope: Step::new(rock_slope),
+            snow: linear([244, 247, 250]),
+            snow_m: Step::new(snow_m),
+        }
     }
 
-    /// Colour of ground at a height, with the tangent of its slope: the tint, rock where it is steep, snow where it is
-    /// high and not steep.
+    /// Colours of ground at heights, with the tangents of its slopes, linear: the tint, rock where it is steep, snow where
+    /// it is high and not steep.
+    #[inline(always)]
+    pub(crate) fn colors<const N: usize>(&self, height_m: &[f32; N], steep: &[f32; N]) -> [[f32; N]; 3] {
+        // The last place in the table lies just before its end.
+        const MOST: f32 = (STEPS - 1) as f32 - 0.001;
+        let (mut below, mut share, mut rock, mut snow) = ([0; N], [0.0; N], [0.0; N], [0.0; N]);
+        for i in 0..N {
+            let t = (height_m[i] - self.bottom_m) * self.per_m;
+            let t = if t > 0.0 { t } else { 0.0 };
+            let t = if t < MOST { t } else { MOST };
+            // On a step, either of the two beside it will do.
+            below[i] = nearest(t - 0.5);
+            share[i] = t - below[i] as f32;
+            rock[i] = 0.85 * self.rock_slope.at(steep[i]);
+            snow[i] = self.snow_m.at(height_m[i]) * (1.0 - SNOW_SLOPE.at(steep[i]));
+        }
+        let mut tint = [[0.0f32; 4]; N];
+        for i in 0..N {
+            let k = below[i] as usize & (STEPS - 1);
+            let (a, b) = (self.ramp[k], self.ramp[k + 1]);
+            tint[i] = std::array::from_fn(|c| a[c] + share[i] * (b[c] - a[c]));
+        }
+        let (stone, white) = (self.rock.to_array(), self.snow.to_array());
+        let mut out = [[0.0; N]; 3];
+        for (k, out) in out.iter_mut().enumerate() {
+            for i in 0..N {
+                let bare = tint[i][k] + rock[i] * (stone[k] - tint[i][k]);
+                out[i] = bare + snow[i] * (white[k] - bare);
+            }
+        }
+        out
+    }
+
+    /// One of [`Tint::colors`].
+    #[cfg(test)]
     pub(crate) fn color(&self, height_m: f32, steep: f32) -> Rgb {
-        let rock = 0.85 * smoothstep(self.rock_slope[0], self.rock_slope[1], steep);
-        let snow = smoothstep(self.snow_m[0], self.snow_m[1], height_m) * (1.0 - smoothstep(0.7, 1.3, steep));
-        self.at(height_m).lerp(self.rock, rock).lerp(self.snow, snow)
+        Rgb::from_array(self.colors(&[height_m], &[steep]).map(|[v]| v))
+    }
+}
+
+/// 0 below a value, 1 above another, smooth between.
+#[derive(Debug, Clone, Copy)]
+struct Step {
+    from: f32,
+    per: f32,
+}
+
+impl Step {
+    const fn new([from, to]: [f32; 2]) -> Self {
+        Self { from, per: 1.0 / (to - from) }
     }
 
-    /// Tint at a height.
-    fn at(&self, height_m: f32) -> Rgb {
-        let t = ((height_m - self.bottom_m) * self.per_m).clamp(0.0, (STEPS - 1) as f32);
-        let i = (t as usize).min(STEPS - 2);
-        self.ramp[i].lerp(self.ramp[i + 1], t - i as f32)
+    #[inline(always)]
+    fn at(self, x: f32) -> f32 {
+        let t = (x - self.from) * self.per;
+        let t = if t > 0.0 { t } else { 0.0 };
+        let t = if t < 1.0 { t } else { 1.0 };
+        t * t * (3.0 - 2.0 * t)
     }
 }
 
@@ -178,7 +236,7 @@ mod tests {
         for palette in &BUILT_IN {
             for range in [[0.0, 4000.0], [12.0, 12.0]] {
                 let tint = Tint::new(palette, range);
-                let snow = smoothstep(tint.snow_m[0], tint.snow_m[1], range[0] as f32);
+                let snow = tint.snow_m.at(range[0] as f32);
                 assert!(snow == 0.0, "{palette:?}: {snow} of the lowest ground is snow");
             }
         }

@@ -1,12 +1,14 @@
 //! Relief light on terrain.
 
 use super::color::{Rgb, linear};
+use crate::vector::nearest;
 use belvedere_scene::{Light, Relief};
 use glam::Vec3A;
 use std::sync::LazyLock;
 
 /// Steps of the table of tones, and the brightness at its end.
 const STEPS: usize = 1024;
+type Tones = [f32; STEPS + 1];
 const BRIGHTEST: f32 = 4.0;
 
 /// Highest main light of the Swiss blend, radians: lower light models gentle slopes better.
@@ -30,9 +32,9 @@ const FLAT_SHADOW: f32 = 0.62;
 pub(crate) struct ReliefLight {
     relief: Relief,
     /// Direction to the sun, stretched so that level ground gets 1.
-    sun: Vec3A,
+    sun: [f32; 3],
     /// Side lights of the blend, stretched likewise, and the direction their weight vanishes in.
-    sides: [(Vec3A, [f32; 2]); 4],
+    sides: [([f32; 3], [f32; 2]); 4],
     /// What is left of direct light in a cast shadow.
     pub(crate) in_shadow: f32,
     /// Colours of direct light and of that from the sky, see [`ReliefLight::parts`].
@@ -44,8 +46,7 @@ impl ReliefLight {
     pub(crate) fn new(relief: Relief, light: &Light) -> Self {
         let towards = |azimuth: f64, altitude: f64| {
             let d = Light { azimuth, altitude, shadows: false }.direction();
-            let d = Vec3A::new(d.x as f32, d.y as f32, d.z as f32);
-            d / d.z
+            (d / d.z).to_array().map(|v| v as f32)
         };
         let mut altitude = light.altitude.clamp(0.05, 1.5);
         if relief == Relief::Swiss {
@@ -82,55 +83,93 @@ impl ReliefLight {
     /// azimuth and the slope's aspect, so that slopes along the main light are modelled too (after Mark 1992, USGS
     /// multidirectional shading; the blend and the tones are ours).
     pub(crate) fn parts(&self, n: Vec3A, open: f32, lit: f32) -> [f32; 2] {
-        let bright = match self.relief {
-            Relief::None => return [1.0, 0.0],
-            Relief::Sun => n.dot(self.sun).max(0.0),
-            Relief::Swiss => {
-                let direct = 0.80 * tone(self.blend(modelled(n)));
-                // Ridges stand out from their surroundings, valleys lie back.
-                let open = 1.0 + FORM * (open - 1.0);
-                let shadow = self.in_shadow + (1.0 - self.in_shadow) * lit;
-                return [direct * (0.6 + 0.4 * open) * shadow, 0.62 * (0.5 + 0.5 * n.z) * open];
-            }
-        };
-        let direct = 0.80 * tone(bright) * (0.7 + 0.3 * open) * (self.in_shadow + (1.0 - self.in_shadow) * lit);
-        [direct, 0.62 * (0.5 + 0.5 * n.z) * open]
+        self.parts_of(&n.to_array().map(|v| [v]), &[open], &[lit]).map(|[v]| v)
     }
 
-    fn blend(&self, n: Vec3A) -> f32 {
-        let main = n.dot(self.sun).max(0.0);
-        let steep = n.x * n.x + n.y * n.y;
-        if steep < 1e-9 {
-            return main;
+    /// [`ReliefLight::parts`] of many surfaces.
+    #[inline(always)]
+    pub(crate) fn parts_of<const N: usize>(&self, n: &[[f32; N]; 3], open: &[f32; N], lit: &[f32; N]) -> [[f32; N]; 2] {
+        if self.relief == Relief::None {
+            return [[1.0; N], [0.0; N]];
         }
+        let (tones, swiss) = (&*TONES, self.relief == Relief::Swiss);
+        let (mut bright, mut direct, mut sky) = ([0.0; N], [0.0; N], [0.0; N]);
+        let [x, y, z] = n;
+        if swiss {
+            for i in 0..N {
+                bright[i] = self.blend(modelled([x[i], y[i], z[i]]));
+            }
+        } else {
+            for i in 0..N {
+                bright[i] = positive(dot([x[i], y[i], z[i]], self.sun));
+            }
+        }
+        for v in &mut bright {
+            *v = tone(*v, tones);
+        }
+        // Ridges stand out from their surroundings, valleys lie back.
+        let (form, constant, per_open) = if swiss { (FORM, 0.6, 0.4) } else { (1.0, 0.7, 0.3) };
+        for i in 0..N {
+            let open = 1.0 + form * (open[i] - 1.0);
+            let left = self.in_shadow + (1.0 - self.in_shadow) * lit[i];
+            direct[i] = 0.80 * bright[i] * (constant + per_open * open) * left;
+            sky[i] = 0.62 * (0.5 + 0.5 * z[i]) * open;
+        }
+        [direct, sky]
+    }
+
+    #[inline(always)]
+    fn blend(&self, n: [f32; 3]) -> f32 {
+        let main = positive(dot(n, self.sun));
+        let steep = n[0] * n[0] + n[1] * n[1];
         let (mut sum, mut weights) = (0.0, 0.0);
         for (d, [sx, sy]) in &self.sides {
-            let cross = n.x * sy - n.y * sx;
+            let cross = n[0] * sy - n[1] * sx;
             let w = cross * cross;
-            sum += w * n.dot(*d).max(0.0);
+            sum += w * positive(dot(n, *d));
             weights += w;
         }
         // Level ground has no aspect: fade the side lights in with the slope.
-        let share = 0.42 * (steep * 12.0).min(1.0);
-        main + share * (sum / weights.max(1e-9) - main)
+        let share = 0.42 * if steep < 1.0 / 12.0 { steep * 12.0 } else { 1.0 };
+        main + share * (sum / (if weights > 1e-9 { weights } else { 1e-9 }) - main)
     }
 }
 
-/// The normal as the drawing models it: gentle slopes up to twice as steep, so that plains have a relief; walls as they are.
-fn modelled(n: Vec3A) -> Vec3A {
-    let slope = (n.x * n.x + n.y * n.y) / (n.z * n.z).max(1e-6);
-    let more = 1.0 + GENTLE / (1.0 + slope / (GENTLE_SLOPE * GENTLE_SLOPE));
-    Vec3A::new(n.x * more, n.y * more, n.z).normalize_or(Vec3A::Z)
+#[inline(always)]
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
+
+#[inline(always)]
+fn positive(v: f32) -> f32 {
+    if v > 0.0 { v } else { 0.0 }
+}
+
+/// The normal as the drawing models it: gentle slopes up to twice as steep, so that plains have a relief; walls as they are.
+#[inline(always)]
+fn modelled([x, y, z]: [f32; 3]) -> [f32; 3] {
+    let zz = if z * z > 1e-6 { z * z } else { 1e-6 };
+    let slope = (x * x + y * y) / zz;
+    let more = 1.0 + GENTLE / (1.0 + slope * (1.0 / (GENTLE_SLOPE * GENTLE_SLOPE)));
+    let [x, y] = [x * more, y * more];
+    let length2 = x * x + y * y + z * z;
+    let scale = 1.0 / (if length2 > 1e-12 { length2 } else { 1e-12 }).sqrt();
+    [x * scale, y * scale, z * scale]
+}
+
+static TONES: LazyLock<Tones> = LazyLock::new(|| std::array::from_fn(|i| tone_of(i as f32 * BRIGHTEST / STEPS as f32)));
 
 /// 1 on level ground; softly limited above, lifted below so that shadows keep their drawing. From a table: powers cost
 /// as much as the rest of the light.
-fn tone(bright: f32) -> f32 {
-    static TONES: LazyLock<[f32; STEPS + 1]> =
-        LazyLock::new(|| std::array::from_fn(|i| tone_of(i as f32 * BRIGHTEST / STEPS as f32)));
-    let x = bright.clamp(0.0, BRIGHTEST) * (STEPS as f32 / BRIGHTEST);
-    let i = (x as usize).min(STEPS - 1);
-    let (a, b) = (TONES[i], TONES[i + 1]);
+#[inline(always)]
+fn tone(bright: f32, tones: &Tones) -> f32 {
+    // The last place in the table lies just before its end.
+    const MOST: f32 = STEPS as f32 - 0.01;
+    let x = bright * (STEPS as f32 / BRIGHTEST);
+    let x = if x < MOST { x } else { MOST };
+    // On a step, either of the two beside it will do.
+    let i = nearest(x - 0.5);
+    let (a, b) = (tones[i as usize & (STEPS - 1)], tones[(i as usize & (STEPS - 1)) + 1]);
     a + (x - i as f32) * (b - a)
 }
 
@@ -146,9 +185,9 @@ mod tests {
     fn tones_from_the_table_are_the_formula() {
         for i in 0..=10_000 {
             let x = i as f32 / 3e3;
-            assert!((tone(x) - tone_of(x)).abs() < 1e-4, "{x}");
+            assert!((tone(x, &TONES) - tone_of(x)).abs() < 1e-4, "{x}");
         }
-        assert!((tone(99.0) - 1.55).abs() < 0.01);
+        assert!((tone(99.0, &TONES) - 1.55).abs() < 0.01);
     }
 
     #[test]
@@ -162,13 +201,13 @@ mod tests {
         let mut before = f32::INFINITY;
         for i in 0..200 {
             let slope = 0.02 * i as f32;
-            let n = modelled(away(slope));
+            let n = Vec3A::from_array(modelled(away(slope).to_array()));
             assert!((n.length() - 1.0).abs() < 1e-5 && n.z < before, "steeper ground stays steeper: {slope}");
             before = n.z;
         }
         let wall = away(4.0);
-        assert!(modelled(wall).dot(wall) > 0.9999);
-        assert_eq!(modelled(Vec3A::Z), Vec3A::Z);
+        assert!(Vec3A::from_array(modelled(wall.to_array())).dot(wall) > 0.9999);
+        assert_eq!(modelled([0.0, 0.0, 1.0]), [0.0, 0.0, 1.0]);
     }
 
     #[test]

@@ -9,7 +9,7 @@ pub(super) type Node = [u8; 8];
 /// Cells along a side of a tile, a power of two; one more node along each side, so that no cell lies in two tiles.
 const SIDE: usize = 64;
 pub(super) const STRIDE: usize = SIDE + 1;
-const NODES: usize = STRIDE * STRIDE;
+pub(super) const NODES: usize = STRIDE * STRIDE;
 pub(super) type Tile = [Node; NODES];
 
 /// Fixed-point steps of a cell.
@@ -53,11 +53,6 @@ impl Tiles {
     #[inline(always)]
     pub(super) fn top(&self) -> usize {
         self.levels.len() - 1
-    }
-
-    /// Columns and rows of a level.
-    pub(super) fn nodes(&self, k: usize) -> [usize; 2] {
-        self.levels[k].nodes
     }
 
     /// Columns and rows that the nodes of a tile repeat.
@@ -110,23 +105,37 @@ impl Tiles {
 }
 
 /// The nodes along an axis that the nodes of a tile repeat.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Repeated {
     from: usize,
     nodes: usize,
 }
 
 impl Repeated {
-    pub(super) fn all(&self) -> impl Iterator<Item = usize> + use<> {
-        let Self { from, nodes } = *self;
-        (from..from + STRIDE).map(move |i| i.saturating_sub(1).min(nodes - 1))
+    pub(super) fn all(self) -> impl Iterator<Item = usize> + Clone {
+        (self.from..self.from + STRIDE).map(move |i| i.saturating_sub(1).min(self.nodes - 1))
     }
 
-    pub(super) fn first(&self) -> usize {
-        self.from.saturating_sub(1).min(self.nodes - 1)
+    /// The nodes of the next coarser level over them, and one more at either end; where there is none, the last one again.
+    pub(super) fn parents(self) -> impl Iterator<Item = usize> + Clone {
+        let last = self.nodes.div_ceil(2) - 1;
+        (0..SIDE / 2 + 3).map(move |i| (self.from / 2 + i).saturating_sub(2).min(last))
     }
 
-    pub(super) fn last(&self) -> usize {
-        (self.from + STRIDE - 2).min(self.nodes - 1)
+    /// Which of the parents lies over a node.
+    pub(super) fn parent_of(self, node: usize) -> usize {
+        node / 2 + 2 - self.from / 2
+    }
+
+    /// Makes values, one for each node and those that would be there without borders, repeat the border.
+    #[inline(always)]
+    pub(super) fn repeat(self, values: &mut [f32]) {
+        if self.from == 0 {
+            values[0] = values[1];
+        }
+        let n = (self.nodes + 1 - self.from).clamp(1, values.len());
+        let last = values[n - 1];
+        values[n..].fill(last);
     }
 }
 

@@ -1,0 +1,91 @@
+//! Lit colours of a level, brought to the nodes of the next finer one.
+
+use super::patch::{LANES, Lanes, Making, Patch};
+use super::tiles::{NODES, Repeated, STRIDE};
+
+/// Nodes along a side: half as many as those of a tile, and two more around.
+const SIDE: usize = STRIDE / 2 + 3;
+
+/// Weights of the node over a finer one, and of those before and after it, for the finer one's place: even or odd. Between
+/// such nodes, a line errs from one between coarse nodes by as much at the coarse nodes as halfway to the next fine ones, and
+/// by less than anywhere else.
+const WEIGHTS: [[f32; 3]; 2] = [[0.1875, 0.875, -0.0625], [-0.0625, 0.875, 0.1875]];
+
+/// Square roots of lit colours around a tile of the finer level.
+pub(super) struct Coarse {
+    /// Rows of [`SIDE`], plane by plane.
+    planes: [Vec<f32>; 3],
+    fine: [Repeated; 2],
+}
+
+/// The same at the nodes of the tile, padded to whole lanes.
+pub(super) struct Finer([Vec<f32>; 3]);
+
+impl Coarse {
+    /// * `k`: the level;
+    /// * `fine`: columns and rows of the tile.
+    pub(super) fn new(m: &Making<'_>, k: usize, fine: [Repeated; 2]) -> Self {
+        let patch = Patch::new(m, k, fine[0].parents(), fine[1].parents());
+        let mut planes = [0; 3].map(|_| Vec::with_capacity(SIDE * SIDE + LANES));
+        for nodes in patch.nodes() {
+            for (plane, lanes) in planes.iter_mut().zip(nodes.lit_roots(m.light)) {
+                plane.extend_from_slice(&lanes);
+            }
+        }
+        Self { planes, fine }
+    }
+
+    #[inline(always)]
+    pub(super) fn finer(&self) -> Finer {
+        let [columns, rows] = self.fine;
+        Finer(self.planes.each_ref().map(|plane| {
+            let mut out = vec![0.0; NODES.next_multiple_of(LANES)];
+            for (r, out) in rows.all().zip(out.chunks_exact_mut(STRIDE)) {
+                let first = rows.parent_of(r).saturating_sub(1) * SIDE;
+                if let Some(above) = plane.get(first..first + 3 * SIDE) {
+                    finer_row(&columns, &between_rows(above, WEIGHTS[r % 2]), out);
+                }
+            }
+            out
+        }))
+    }
+}
+
+impl Finer {
+    /// [`LANES`] nodes of the tile.
+    #[inline(always)]
+    pub(super) fn get(&self, n: usize) -> Option<[Lanes; 3]> {
+        let lanes = |plane: &Vec<f32>| plane.get(n * LANES..).and_then(|p| p.first_chunk().copied());
+        let [r, g, b] = &self.0;
+        Some([lanes(r)?, lanes(g)?, lanes(b)?])
+    }
+}
+
+#[inline(always)]
+fn between_rows(rows: &[f32], [a, b, c]: [f32; 3]) -> [f32; SIDE] {
+    let mut out = [0.0; SIDE];
+    let (north, here, south) = (&rows[..SIDE], &rows[SIDE..2 * SIDE], &rows[2 * SIDE..3 * SIDE]);
+    for i in 0..SIDE {
+        out[i] = a * north[i] + b * here[i] + c * south[i];
+    }
+    out
+}
+
+#[inline(always)]
+fn finer_row(columns: &Repeated, row: &[f32; SIDE], out: &mut [f32]) {
+    const N: usize = SIDE - 2;
+    let [mut even, mut odd] = [[0.0; N]; 2];
+    let [[a, b, c], [d, e, f]] = WEIGHTS;
+    for i in 0..N {
+        even[i] = a * row[i] + b * row[i + 1] + c * row[i + 2];
+        odd[i] = d * row[i] + e * row[i + 1] + f * row[i + 2];
+    }
+    // A tile begins with the node before its first cell: an odd one.
+    for (i, pair) in out.chunks_mut(2).enumerate().take(N) {
+        pair[0] = odd[i];
+        if let ([_, second], Some(even)) = (pair, even.get(i + 1)) {
+            *second = *even;
+        }
+    }
+    columns.repeat(out);
+}
