@@ -55,8 +55,8 @@ const GLACIAL: Stops = &[
     (0.22, [150, 147, 136]),
     (0.42, [170, 167, 160]),
     (0.62, [193, 195, 196]),
-    (0.82, [218, 224, 230]),
-    (1.0, [240, 244, 248]),
+    (0.82, [212, 218, 224]),
+    (1.0, [228, 232, 237]),
 ];
 /// Blue to yellow, which every kind of colour vision tells apart, in even steps of lightness.
 const CLEAR: Stops = &[
@@ -67,6 +67,8 @@ const CLEAR: Stops = &[
     (0.8, [212, 199, 142]),
     (1.0, [245, 233, 168]),
 ];
+/// Not white: slopes in the light are brighter than this, and must not run into white.
+const SNOW: [u8; 3] = [229, 233, 238];
 const PLAIN: Stops = &[(0.0, GREY), (1.0, GREY)];
 
 impl Tint {
@@ -101,7 +103,7 @@ impl Tint {
             per_m,
             rock: linear(rock),
             rock_slope: Step::new(rock_slope),
-            snow: linear([244, 247, 250]),
+            snow: linear(SNOW),
             snow_m: Step::new(snow_m),
         }
     }
