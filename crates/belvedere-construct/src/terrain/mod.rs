@@ -32,7 +32,7 @@ pub use smooth::{
     SmoothPass, Smoothed, Smoother, grid_weight, laplacian, row_weight, temporal_weight,
 };
 pub use solve::{
-    Covered, Fallback, QpReport, Solved, TerrainMemory, TerrainReport, TerrainSolver, TerrainTimes, UnresolvedReason,
+    Covered, Fallback, LiveFrame, LiveTerrain, QpReport, Solved, TerrainMemory, TerrainReport, TerrainSolver, TerrainTimes, UnresolvedReason,
     UnresolvedRun,
 };
 pub use viewpoint::{

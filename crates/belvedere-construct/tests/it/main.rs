@@ -2,6 +2,7 @@
 
 mod bars;
 mod flight;
+mod live;
 mod measure;
 mod qp;
 mod reveal;

@@ -3,6 +3,7 @@
 //! Cases are drawn in turn, forth and back, so that a busy machine disturbs all of them alike; ratios are medians of ratios of
 //! frames of one round. Processor time of all threads counts where the system tells it (Linux), wall time elsewhere.
 
+use super::bench_flight::{FlightCost, fly};
 use crate::BelvedereError;
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
@@ -15,6 +16,9 @@ use belvedere_scene::{
 };
 use serde::Serialize;
 use std::time::Instant;
+
+/// Pictures of a flight per round.
+const FLIGHT: usize = 8;
 
 /// What to measure.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,6 +105,8 @@ pub struct BenchReport {
     pub frames: Vec<FrameCost>,
     /// Projection alone.
     pub projection: Vec<ProjectionCost>,
+    /// A flight over terrain that makes way.
+    pub flight: Vec<FlightCost>,
     /// Growth.
     pub growth: Vec<Growth>,
 }
@@ -149,6 +155,7 @@ fn report(request: &BenchRequest, progress: &Progress) -> Result<BenchReport, Be
         rounds,
         frames,
         projection: project(&views, rounds)?,
+        flight: fly(nodes, image, FLIGHT * rounds)?,
         growth,
     })
 }
@@ -263,7 +270,7 @@ fn project(views: &[(&'static str, View); 3], rounds: usize) -> Result<Vec<Proje
 }
 
 /// Ridges on 10 km of ground, `nodes` x `nodes` nodes.
-fn ground(nodes: usize) -> Result<Scene, BelvedereError> {
+pub(super) fn ground(nodes: usize) -> Result<Scene, BelvedereError> {
     let extent = 10_240.0;
     let (half, spacing, step) = (0.5 * extent, extent / (nodes - 1) as f64, 10.24 / (nodes - 1) as f64);
     let height = |i: usize| {
@@ -311,11 +318,11 @@ fn views(image: [u32; 2]) -> Result<[(&'static str, View); 3], BelvedereError> {
     ])
 }
 
-fn broken(e: impl std::fmt::Display) -> BelvedereError {
+pub(super) fn broken(e: impl std::fmt::Display) -> BelvedereError {
     BelvedereError::Usage(format!("the scene of the measurement cannot be made with this size: {e}"))
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
@@ -369,6 +376,15 @@ impl std::fmt::Display for BenchReport {
                 p.view, p.mpts_per_core_s, p.points
             )?;
         }
+        for cost in &self.flight {
+            let FlightCost { way, pictures, points, ground_ms: [g50, g95], picture_ms: [p50, p95], lag, hidden } = cost;
+            writeln!(
+                f,
+                "flight, {points:.0} points, {way}: ground after {g50:.1} ms (95 % {g95:.1}), picture after {p50:.1} ms \
+                 (95 % {p95:.1}), {lag} pictures late at most, {:.1} % hidden at most ({pictures} pictures)",
+                100.0 * hidden
+            )?;
+        }
         for g in &self.growth {
             let at: Vec<String> = g.sizes.iter().zip(&g.cpu_ms).map(|(s, t)| format!("{s:.2e}: {t:.1}")).collect();
             writeln!(f, "growth with {}: exponent {:.2} (cpu ms at {})", g.of, g.exponent, at.join(", "))?;
@@ -386,6 +402,8 @@ mod tests {
         let request = BenchRequest { rounds: 1, nodes: 65, image: [64, 36], threads: 1 };
         let report = bench(&request, &Progress::silent()).unwrap();
         assert_eq!((report.frames.len(), report.projection.len(), report.growth.len()), (12, 2, 3));
+        assert!(report.flight.iter().all(|f| f.pictures == FLIGHT && f.points > 1.0 && f.ground_ms[0] > 0.0));
+        assert!((report.flight.len(), report.flight[0].lag) == (2, 0) && report.flight[0].hidden < 0.05);
         assert!(report.frames.iter().all(|c| c.cpu_ms > 0.0 && c.triangles > 0));
         assert!(report.frames[0].ratio == 1.0 && report.projection.iter().all(|p| p.mpts_per_core_s > 0.0));
         assert!(report.to_string().contains("growth with pixels: exponent"));

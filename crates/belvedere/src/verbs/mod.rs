@@ -2,6 +2,7 @@
 
 pub mod animate;
 pub mod bench;
+mod bench_flight;
 mod buffers;
 pub mod check;
 pub mod demo;

@@ -131,6 +131,11 @@ impl TerrainMemory {
         self.last.as_ref().map(|last| last.coarse.as_slice()).filter(|u| u.len() == prepared.grid.nodes())
     }
 
+    /// Reference points of the scene, seen or not.
+    pub(super) fn points(&self) -> &[ReferencePoint] {
+        self.prepared.as_ref().map_or(&[], |prepared| &prepared.points)
+    }
+
     pub(super) fn keep(&mut self, prepared: Prepared, view: &View, coarse: Vec<f64>) {
         self.last = Some(Last { eye: view.pinhole().eye, forward: view.pinhole().forward, coarse });
         self.prepared = Some(prepared);

@@ -3,12 +3,14 @@
 mod adjust;
 mod bent;
 mod fallback;
+mod live;
 mod memory;
 mod passes;
 mod report;
 mod seen;
 
 pub use fallback::Fallback;
+pub use live::{LiveFrame, LiveTerrain};
 pub use memory::TerrainMemory;
 pub use report::{Covered, QpReport, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
 
@@ -80,14 +82,12 @@ impl TerrainSolver {
         memory: &mut TerrainMemory,
         progress: &Progress,
     ) -> Result<Solved, ConstructError> {
-        let Ran { prepared, field, done, times } = self.run(scene, base, memory, None, progress)?;
-        let field: &Field = &field;
+        let ran = self.run(scene, base, memory, None, progress)?;
         progress.tick("figures of the displaced terrain", 0.95)?;
         let began = Instant::now();
-        let delta = match &done.full {
-            Some(full) => spread(field, [field.cols(), field.rows()], DVec2::ONE, full)?,
-            None => on_solver_grid(field, &prepared, &done.coarse)?,
-        };
+        let delta = ran.delta()?;
+        let Ran { prepared, field, done, times } = ran;
+        let field: &Field = &field;
         let previous = memory.before(&prepared).map(|u| on_solver_grid(field, &prepared, u)).transpose()?;
         let context = report::Context {
             settings: &self.settings,
@@ -100,6 +100,20 @@ impl TerrainSolver {
         let report = report::report(&context, &done, times, began);
         memory.keep(prepared, base, done.coarse);
         Ok(Solved { stage: TerrainDisocclusion::new(delta), report })
+    }
+
+    /// As [`TerrainSolver::solve`], without the figures, which take longer than the solution; also the ground as the eye sees it.
+    fn advance(
+        &self,
+        scene: &Scene,
+        base: &View,
+        memory: &mut TerrainMemory,
+        progress: &Progress,
+    ) -> Result<(TerrainDisocclusion, Arc<Field>), ConstructError> {
+        let ran = self.run(scene, base, memory, None, progress)?;
+        let stage = TerrainDisocclusion::new(ran.delta()?);
+        memory.keep(ran.prepared, base, ran.done.coarse);
+        Ok((stage, ran.field))
     }
 
     /// The passes of one frame, without figures; the memory lends what it has prepared. `asked` stands for what `base` shows.
@@ -161,6 +175,16 @@ struct Ran {
     field: Arc<Field>,
     done: Done,
     times: TerrainTimes,
+}
+
+impl Ran {
+    /// The displacement over the scene.
+    fn delta(&self) -> Result<Grid, GridError> {
+        match &self.done.full {
+            Some(full) => spread(&self.field, [self.field.cols(), self.field.rows()], DVec2::ONE, full),
+            None => on_solver_grid(&self.field, &self.prepared, &self.done.coarse),
+        }
+    }
 }
 
 fn on_solver_grid(field: &Field, prepared: &Prepared, u: &[f64]) -> Result<Grid, GridError> {

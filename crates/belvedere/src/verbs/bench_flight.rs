@@ -1,0 +1,140 @@
+//! What a picture of a flight over terrain that makes way costs: solved for every picture, and solved beside the drawing.
+
+use super::bench::{broken, ground, median};
+use crate::BelvedereError;
+use belvedere_construct::terrain::{LiveTerrain, TerrainMemory, TerrainSettings, TerrainSolver};
+use belvedere_construct::{Flight, FlightOptions};
+use belvedere_core::{Pinhole, Projection, Stage, View};
+use belvedere_cpu::CpuRenderer;
+use belvedere_scene::{
+    Color, Frame, Hidden, Layer, LayerKind, Light, LineFeature, LineLayer, Progress, RenderJob, RenderOptions,
+    Renderer, Scene, drape_polyline, valley_route,
+};
+use serde::Serialize;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Pictures per second, and how far the walker comes from one to the next, metres.
+const RATE: f64 = 25.0;
+const STEP_M: f64 = 3.0;
+
+/// A way to come by the ground of the pictures.
+#[derive(Debug, Clone, Serialize)]
+pub struct FlightCost {
+    /// `solved and judged for every picture`, or `solved beside the drawing`.
+    pub way: &'static str,
+    /// Pictures after the first.
+    pub pictures: usize,
+    /// Reference points in the picture, on average.
+    pub points: f64,
+    /// Wall time until the ground of a picture is there, milliseconds: median and 95 %.
+    pub ground_ms: [f64; 2],
+    /// The same with the drawing.
+    pub picture_ms: [f64; 2],
+    /// Pictures that the ground lags behind, at most.
+    pub lag: u64,
+    /// Largest share of the points of a picture that its ground hides.
+    pub hidden: f64,
+}
+
+/// Flies both ways over ground of `nodes` x `nodes` nodes.
+pub(super) fn fly(nodes: usize, image: [u32; 2], pictures: usize) -> Result<Vec<FlightCost>, BelvedereError> {
+    let scene = Arc::new(with_route(ground(nodes)?)?);
+    let views = views(&scene, image, pictures + 1)?;
+    let solver = TerrainSolver::new(TerrainSettings::default()).map_err(broken)?.with_time_step(1.0 / RATE);
+    let mut memory = TerrainMemory::default();
+    let each = time("solved and judged for every picture", &scene, &views, |view| {
+        let solved = solver.solve(&scene, view, &mut memory, &Progress::silent()).map_err(broken)?;
+        let hidden = 1.0 - solved.report.visible;
+        Ok(Ground { stage: Stage::TerrainDisocclusion(solved.stage), points: solved.report.points, lag: 0, hidden })
+    })?;
+    let mut live = LiveTerrain::new(solver.clone(), scene.clone());
+    let beside = time("solved beside the drawing", &scene, &views, |view| {
+        let frame = live.frame(view).map_err(broken)?;
+        let hidden = frame.hidden as f64 / frame.points.max(1) as f64;
+        Ok(Ground { stage: Stage::TerrainDisocclusion(frame.stage), points: frame.points, lag: frame.lag, hidden })
+    })?;
+    Ok(vec![each, beside])
+}
+
+struct Ground {
+    stage: Stage,
+    points: usize,
+    lag: u64,
+    hidden: f64,
+}
+
+/// The first picture warms up.
+fn time(
+    way: &'static str,
+    scene: &Scene,
+    views: &[View],
+    mut ground: impl FnMut(&View) -> Result<Ground, BelvedereError>,
+) -> Result<FlightCost, BelvedereError> {
+    let options = RenderOptions { samples: 1, lod_px: 0.5, ..RenderOptions::default() };
+    let (light, progress, mut frame) = (Light::default(), Progress::silent(), Frame::default());
+    let (mut waits, mut wholes, mut points, mut lag, mut hidden) = (Vec::new(), Vec::new(), 0, 0, 0.0f64);
+    for (k, view) in views.iter().enumerate() {
+        let began = Instant::now();
+        let made = ground(view)?;
+        let wait = began.elapsed();
+        let bent = View::new(view.pinhole().clone(), vec![made.stage]).map_err(broken)?;
+        let job = RenderJob { scene, view: &bent, light: &light, options: &options, progress: &progress };
+        CpuRenderer.render_into(&job, &mut frame)?;
+        if k > 0 {
+            waits.push(wait.as_secs_f64() * 1e3);
+            wholes.push(began.elapsed().as_secs_f64() * 1e3);
+            points += made.points;
+            lag = lag.max(made.lag);
+            hidden = hidden.max(made.hidden);
+        }
+    }
+    let pictures = waits.len();
+    let both = |times: Vec<f64>| [median(times.clone()), most(times, 0.95)];
+    let points = points as f64 / pictures.max(1) as f64;
+    Ok(FlightCost { way, pictures, points, ground_ms: both(waits), picture_ms: both(wholes), lag, hidden })
+}
+
+/// The value that `share` of all values do not exceed.
+fn most(mut values: Vec<f64>, share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let last = values.len().saturating_sub(1);
+    values.get((last as f64 * share).ceil() as usize).copied().unwrap_or(0.0)
+}
+
+/// A route along the valleys that must be seen.
+fn with_route(mut scene: Scene) -> Result<Scene, BelvedereError> {
+    let Some(terrain) = scene.terrain() else { return Ok(scene) };
+    let way = valley_route(terrain, 7).map_err(broken)?;
+    let feature = |points| LineFeature { name: "route".into(), points };
+    let line = LineLayer {
+        features: drape_polyline(terrain, &way).parts.into_iter().map(feature).collect(),
+        color: Color::rgb(215, 48, 31),
+        width_px: 3.0,
+        casing: None,
+        hidden: Hidden::Dash,
+        lift_m: 1.0,
+        markers: None,
+        label_px: None,
+    };
+    scene.layers.push(Layer { id: "route".into(), must_see: true, kind: LayerKind::Line(line) });
+    Ok(scene)
+}
+
+fn views(scene: &Scene, image: [u32; 2], pictures: usize) -> Result<Vec<View>, BelvedereError> {
+    let lines = scene.layers.iter().filter_map(|l| match &l.kind {
+        LayerKind::Line(line) => line.features.first(),
+        _ => None,
+    });
+    let route: Vec<_> = lines.flat_map(|f| f.points.iter().map(|p| p.truncate())).collect();
+    let length: f64 = route.windows(2).map(|p| p[0].distance(p[1])).sum();
+    let flight = Flight::along(&route, scene.terrain(), &FlightOptions::for_length(length)).map_err(broken)?;
+    let lens = Projection::Perspective { fov_y: 45f64.to_radians() };
+    let view = |k: usize| {
+        let (eye, target) = flight.at(STEP_M * k as f64);
+        Pinhole::look_at(eye, target, belvedere_core::DVec3::Z, lens, image, 1.0, None)
+            .map(View::straight)
+            .map_err(broken)
+    };
+    (0..pictures).map(view).collect()
+}
