@@ -83,7 +83,9 @@ impl LiveTerrain {
         self.frame += 1;
         let order = Order { frame: self.frame, view: base.clone() };
         // A thread that has ended answers nothing, which is found below.
-        let _ = self.orders.as_ref().map(|orders| orders.send(order));
+        if let Some(orders) = &self.orders {
+            let _ = orders.send(order);
+        }
         while let Ok(answer) = self.answers.try_recv() {
             self.take(answer)?;
         }
