@@ -32,8 +32,8 @@ pub use smooth::{
     SmoothPass, Smoothed, Smoother, grid_weight, laplacian, row_weight, temporal_weight,
 };
 pub use solve::{
-    Covered, Fallback, LiveFrame, LiveTerrain, QpReport, Solved, TerrainMemory, TerrainReport, TerrainSolver, TerrainTimes, UnresolvedReason,
-    UnresolvedRun,
+    Covered, Fallback, LiveFrame, LiveTerrain, QpReport, Solved, TerrainMemory, TerrainReport, TerrainSolver,
+    TerrainTimes, UnresolvedReason, UnresolvedRun,
 };
 pub use viewpoint::{
     AdjustedViewpoint, ViewpointEnergy, ViewpointOptions, adjust_viewpoint, ghost_alpha, height_slope,
