@@ -23,7 +23,7 @@ const REACH_PX: f64 = 3.0;
 /// A ray this far above the ground, pixels, meets nothing that less detail leaves out.
 const CLEAR_PX: f64 = 0.8;
 /// Steps of an eighth of a cell that a ray is followed at most, halvings of the step in which it goes under, and how often that is done.
-const MOST_STEPS: u32 = 64;
+const MOST_STEPS: u32 = 128;
 const HALVINGS: usize = 10;
 const ROUNDS: usize = 4;
 
@@ -91,7 +91,9 @@ impl<'a> Polish<'a> {
 
     /// Newton steps on the surface from `place` to where the image is `pixel`.
     fn settle(&self, surface: &Surface<'_>, place: DVec3, pixel: DVec2) -> Option<Settled> {
-        let (mut p, mut image) = (place, self.image(place)?);
+        // Ground in less detail lies beside the ground itself.
+        let mut p = surface.at(place)?;
+        let mut image = self.image(p)?;
         let mut best = (image.0.distance(pixel), p, image.1);
         let first = best.0;
         for _ in 0..STEPS {

@@ -89,26 +89,28 @@ impl Batch {
         self.turn_to(block.layer as usize, shader, samples, painted);
         let (stride, step) = (block.cells[0] + 1, block.step as i32);
         let origin = block.origin.map(|n| n as i32);
-        let (nx, ny, nq) = (&nodes.x[..], &nodes.y[..], &nodes.q[..]);
+        let n = nodes.x.len().min(nodes.y.len()).min(nodes.q.len());
+        let (nx, ny, nq) = (&nodes.x[..n], &nodes.y[..n], &nodes.q[..n]);
         let seamed = block.is_seamed();
+        let (prims, xs, ys) = (&samples.prim[..to], &samples.x[..to], &samples.y[..to]);
         for k in from..to {
             if self.len == LANES {
                 self.flush(shader, samples, painted);
             }
-            let prim = samples.prim[k];
+            let prim = prims[k];
             let (cell, lower) = ((prim >> 1) as usize & (SIDE * SIDE - 1), (prim & 1) as usize);
             let (c, r) = (cell % SIDE, cell / SIDE);
             let nw = r * stride + c;
             let at = [nw, nw + stride + 1, if lower == 0 { nw + 1 } else { nw + stride }];
-            if (seamed && block.is_odd([c, r])) || at[1] >= nx.len() {
+            let i = self.len & (LANES - 1);
+            if (seamed && block.is_odd([c, r])) || (at[1] >= n) | (at[2] >= n) | (nw >= n) {
                 self.push_odd(shader, samples, k);
                 continue;
             }
-            let i = self.len;
             for (v, at) in at.into_iter().enumerate() {
                 (self.x[v][i], self.y[v][i], self.q[v][i]) = (nx[at], ny[at], nq[at]);
             }
-            (self.at[0][i], self.at[1][i]) = (samples.x[k], samples.y[k]);
+            (self.at[0][i], self.at[1][i]) = (xs[k], ys[k]);
             (self.node[0][i], self.node[1][i]) = (origin[0] + step * c as i32, origin[1] + step * r as i32);
             (self.step[i], self.lower[i]) = (step as f32, lower as i32);
             self.out[i] = k as u32;

@@ -31,6 +31,11 @@ const THRESHOLDS: [f32; 64] = {
 /// Samples that are coloured together.
 const LANES: usize = 32;
 
+/// How far a row of samples may be off a line between its ends to be coloured along it: square roots of colours, less than half
+/// a step of an 8-bit picture, and places in the table.
+const EVEN: f32 = 0.4 / 255.0;
+const EVEN_OFF: f32 = 0.25;
+
 /// Largest share of a colour that haze takes.
 const THICKEST: f32 = 0.54;
 
@@ -42,15 +47,19 @@ const MOST: f32 = 2.0 * STEPS - 0.01;
 /// Colours of the air.
 #[derive(Debug)]
 pub(crate) struct Sky {
-    /// Square roots of linear colours, by the sine of the elevation from -1 to 1, and how they change to the next.
+    /// Square roots of linear colours, by the sine of the elevation from -1 to 1, and how they change to the next; last in each
+    /// how much the change has changed up to there.
     steps: Box<[[[f32; 4]; 2]; 2 * STEPS as usize]>,
     haze: Rgb,
     /// Upward parts of the ray of a pixel: sine = (a + b x + c y) / |(1, d (x - cx), d (y - cy))|.
     up: [f32; 3],
     center: [f32; 2],
     per_px: f32,
-    /// Depths of the nearest and the farthest point that the scene can have, scene units.
-    depths: [f32; 2],
+    /// Whether the sine runs along a line over a row of [`LANES`] pixels, nearly.
+    even: bool,
+    /// Depth at which haze begins, and how fast it thickens, per scene unit.
+    haze_from: f32,
+    haze_per: f32,
     /// Largest share of a colour that haze takes: none in a parallel projection, whose eye is nowhere.
     thickest: f32,
 }
@@ -68,13 +77,20 @@ impl Sky {
         };
         let (center, scale) = (pinhole.center_px(), pinhole.scale_px());
         let per_px = if pinhole.is_orthographic() { 0.0 } else { 1.0 / scale };
+        // Full contrast over the nearer part of the scene, whose depths end at these.
+        let [near, far]: [f32; 2] = depths;
+        let span = (far - near).max(1e-6);
+        // The second derivative of the sine along a row is 1.2 at most, the distance from a chord an eighth of it.
+        let off = 0.15 * (LANES as f64 * per_px).powi(2) * f64::from(STEPS);
         Self {
             steps: steps(),
             haze: linear([186, 205, 224]),
             up: [pinhole.forward.z, pinhole.right.z, pinhole.down.z].map(|v| v as f32),
             center: [center.x as f32, center.y as f32],
             per_px: per_px as f32,
-            depths,
+            even: off <= f64::from(EVEN_OFF),
+            haze_from: near + 0.22 * span,
+            haze_per: 1.0 / ((1.15 - 0.22) * span),
             thickest: if pinhole.is_orthographic() { 0.0 } else { THICKEST },
         }
     }
@@ -100,35 +116,73 @@ impl Sky {
     pub(crate) fn paint(&self, x: &[i32], y: &[i32], [red, green, blue]: [&mut [f32]; 3]) {
         debug_assert!(x.len() == y.len() && x.len() == red.len());
         let chunks = red.chunks_mut(LANES).zip(green.chunks_mut(LANES)).zip(blue.chunks_mut(LANES));
+        let mut end = None;
         for ((x, y), ((red, green), blue)) in x.chunks(LANES).zip(y.chunks(LANES)).zip(chunks) {
-            let (mut px, mut py) = ([0; LANES], [0; LANES]);
-            px[..x.len()].copy_from_slice(x);
-            py[..y.len()].copy_from_slice(y);
-            let (mut below, mut share, mut threshold) = ([0; LANES], [0.0; LANES], [0.0; LANES]);
+            let out = [red, green, blue];
+            let row = match (x.first_chunk(), y.first_chunk()) {
+                (Some(x), Some(y)) if self.even && is_row(x, y) => self.row(x[0], y[0], &mut end),
+                _ => None,
+            };
+            match row {
+                Some(row) => row.paint(x[0], y[0], out),
+                None => self.paint_each(x, y, out),
+            }
+        }
+    }
+
+    /// Colours along a row of [`LANES`] pixels, if they change evenly.
+    /// * `end`: where the last row ended.
+    #[inline(always)]
+    fn row(&self, x: i32, y: i32, end: &mut Option<(i32, Place)>) -> Option<Line> {
+        let place = |x: i32| {
+            let at = self.place([x, y]);
+            let [low, change] = self.steps[(at as usize).min(2 * STEPS as usize - 1)];
+            Place { at, root: std::array::from_fn(|k| low[k] + at.fract() * change[k]) }
+        };
+        let from = end.filter(|(at, _)| *at == x).map_or_else(|| place(x), |(_, place)| place);
+        let next = x + LANES as i32 * SUB;
+        let to = place(next);
+        *end = Some((next, to));
+        let change = std::array::from_fn(|k| (to.root[k] - from.root[k]) * (1.0 / LANES as f32));
+        // A line that turns by so much, wherever it does, is nowhere farther from its chord.
+        let off = 0.25 * ((to.at - from.at).abs() + 1.0) * (to.root[3] - from.root[3]).abs();
+        (off <= EVEN).then_some(Line { from: from.root, change })
+    }
+
+    /// Place of a sample in the table.
+    #[inline(always)]
+    fn place(&self, [x, y]: [i32; 2]) -> f32 {
+        let at = (self.sine([x as f32 * (1.0 / SUB as f32), y as f32 * (1.0 / SUB as f32)]) + 1.0) * STEPS;
+        let at = if at > 0.0 { at } else { 0.0 };
+        if at < MOST { at } else { MOST }
+    }
+
+    #[inline(always)]
+    fn paint_each(&self, x: &[i32], y: &[i32], out: [&mut [f32]; 3]) {
+        let (mut px, mut py) = ([0; LANES], [0; LANES]);
+        px[..x.len()].copy_from_slice(x);
+        py[..y.len()].copy_from_slice(y);
+        let (mut below, mut share, mut threshold) = ([0; LANES], [0.0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
+            let at = self.place([px[i], py[i]]);
+            // On a step, either of the two beside it will do.
+            below[i] = nearest(at - 0.5);
+            share[i] = at - below[i] as f32;
+        }
+        for i in 0..LANES {
+            threshold[i] = THRESHOLDS[((py[i] >> 5) & 56 | (px[i] >> 8) & 7) as usize];
+        }
+        let mut root = [[0.0f32; 4]; LANES];
+        for i in 0..LANES {
+            let [low, change] = &self.steps[below[i] as usize & (2 * STEPS as usize - 1)];
+            root[i] = std::array::from_fn(|k| (low[k] + share[i] * change[k]) + threshold[i]);
+        }
+        for (k, out) in out.into_iter().enumerate() {
+            let mut plane = [0.0; LANES];
             for i in 0..LANES {
-                let pixel = [px[i] as f32 * (1.0 / SUB as f32), py[i] as f32 * (1.0 / SUB as f32)];
-                let at = (self.sine(pixel) + 1.0) * STEPS;
-                let at = if at > 0.0 { at } else { 0.0 };
-                let at = if at < MOST { at } else { MOST };
-                // On a step, either of the two beside it will do.
-                below[i] = nearest(at - 0.5);
-                share[i] = at - below[i] as f32;
+                plane[i] = root[i][k];
             }
-            for i in 0..LANES {
-                threshold[i] = THRESHOLDS[((py[i] >> 5) & 56 | (px[i] >> 8) & 7) as usize];
-            }
-            let mut root = [[0.0f32; 4]; LANES];
-            for i in 0..LANES {
-                let [low, change] = &self.steps[below[i] as usize & (2 * STEPS as usize - 1)];
-                root[i] = std::array::from_fn(|k| (low[k] + share[i] * change[k]) + threshold[i]);
-            }
-            for (k, out) in [red, green, blue].into_iter().enumerate() {
-                let mut plane = [0.0; LANES];
-                for i in 0..LANES {
-                    plane[i] = root[i][k];
-                }
-                out.copy_from_slice(&plane[..out.len()]);
-            }
+            out.copy_from_slice(&plane[..out.len()]);
         }
     }
 
@@ -148,9 +202,9 @@ impl Sky {
     /// Share of a colour that haze takes at `depth`: full contrast over the nearer part of the scene, then slowly paler.
     #[inline(always)]
     pub(crate) fn haze_at(&self, depth: f32) -> f32 {
-        let [near, far] = self.depths;
-        let t = (depth - near) / (far - near).max(1e-6);
-        let t = ((t - 0.22) / (1.15 - 0.22)).clamp(0.0, 1.0);
+        let t = (depth - self.haze_from) * self.haze_per;
+        let t = if t > 0.0 { t } else { 0.0 };
+        let t = if t < 1.0 { t } else { 1.0 };
         self.thickest * t * t * (3.0 - 2.0 * t)
     }
 
@@ -165,12 +219,57 @@ impl Sky {
     }
 }
 
+/// A place in the table of colours, and square roots of the colour there.
+#[derive(Clone, Copy)]
+struct Place {
+    at: f32,
+    root: [f32; 4],
+}
+
+/// Square roots of colours along a row of pixels.
+struct Line {
+    from: [f32; 4],
+    change: [f32; 4],
+}
+
+impl Line {
+    /// * `x`, `y`: the first sample, fixed-point steps.
+    #[inline(always)]
+    fn paint(&self, x: i32, y: i32, out: [&mut [f32]; 3]) {
+        let thresholds = &THRESHOLDS[((y >> 5) & 56) as usize..][..8];
+        let mut threshold = [0.0; LANES];
+        for i in 0..LANES {
+            threshold[i] = thresholds[((x >> 8) as usize + i) & 7];
+        }
+        for (k, out) in out.into_iter().enumerate() {
+            let Some(out) = out.first_chunk_mut::<LANES>() else { return };
+            for i in 0..LANES {
+                out[i] = (self.from[k] + i as f32 * self.change[k]) + threshold[i];
+            }
+        }
+    }
+}
+
+/// Whether samples are those of neighbouring pixels of a row.
+#[inline(always)]
+fn is_row(x: &[i32; LANES], y: &[i32; LANES]) -> bool {
+    let mut off = 0;
+    for i in 0..LANES {
+        off |= (x[i] - x[0] - i as i32 * SUB) | (y[i] - y[0]);
+    }
+    off == 0
+}
+
 fn steps() -> Box<[[[f32; 4]; 2]; 2 * STEPS as usize]> {
     let at = |i: usize| roots(towards(i as f32 / STEPS - 1.0));
-    let mut next = at(0);
+    let (mut next, mut before, mut turned) = (at(0), Rgb::ZERO, 0.0);
     Box::new(std::array::from_fn(|i| {
         let here = std::mem::replace(&mut next, at(i + 1));
-        [here, next - here].map(|v| [v.x, v.y, v.z, 0.0])
+        let change = next - here;
+        let turn = if i == 0 { 0.0 } else { (change - before).abs().max_element() };
+        before = change;
+        turned += turn;
+        [here.extend(turned - turn), change.extend(turn)].map(|v| v.to_array())
     }))
 }
 
@@ -201,6 +300,7 @@ mod tests {
         let up = DVec3::new(0.2, 0.1, 1.0);
         let p = Pinhole::look_at(DVec3::ZERO, DVec3::new(3.0, 8.0, 1.0), up, lens, [80, 60], 1.0, None).unwrap();
         let sky = Sky::new(&Aabb::EMPTY, &p);
+        assert!(!sky.even, "so wide a view is not even");
         for i in 0..4800 {
             let pixel = DVec2::new(f64::from(i % 80) + 0.5, f64::from(i / 80) + 0.5);
             let t = (pixel - p.center_px()) / p.scale_px();
@@ -213,6 +313,34 @@ mod tests {
             let ([mut r], [mut g], [mut b]) = ([0.0], [0.0], [0.0]);
             sky.paint(&x, &y, [&mut r, &mut g, &mut b].map(std::slice::from_mut));
             assert!((Rgb::new(r * r, g * g, b * b) - sky.at(pixel)).abs().max_element() < 1e-5);
+        }
+    }
+    #[test]
+    fn rows_of_sky_are_within_a_step_of_each_of_their_pixels() {
+        let lens = Projection::Perspective { fov_y: 0.8 };
+        for (roll, pitch) in [(0.0, 0.0), (0.0, 0.3), (0.0, -0.2), (0.05, 0.0), (0.3, 0.1), (1.5, 0.0)] {
+            let up = DVec3::new(f64::sin(roll), 0.0, f64::cos(roll));
+            let target = DVec3::new(0.0, f64::cos(pitch), f64::sin(pitch));
+            let p = Pinhole::look_at(DVec3::ZERO, target, up, lens, [1283, 720], 1.0, None).unwrap();
+            let sky = Sky::new(&Aabb::EMPTY, &p);
+            assert!(sky.even);
+            let x: Vec<i32> = (0..1283).map(|x| x * SUB + SUB / 2).collect();
+            let (mut planes, mut each) = ([(); 3].map(|()| vec![0.0f32; 1283]), [(); 3].map(|()| vec![0.0f32; 1283]));
+            let (mut worst, mut lines) = (0.0f32, 0);
+            for row in (0..720).step_by(7) {
+                let y = vec![row * SUB + SUB / 2; 1283];
+                sky.paint(&x, &y, planes.each_mut().map(Vec::as_mut_slice));
+                for (k, x) in x.chunks(LANES).enumerate() {
+                    let out = each.each_mut().map(|plane| &mut plane[k * LANES..][..x.len()]);
+                    sky.paint_each(x, &y[..x.len()], out);
+                }
+                for (a, b) in planes.iter().flatten().zip(each.iter().flatten()) {
+                    worst = worst.max((a - b).abs() * 255.0);
+                    lines += u32::from(a != b);
+                }
+            }
+            assert!(worst < 0.6, "rolled by {roll}, raised by {pitch}: {worst} steps");
+            assert!(lines > 10_000 || roll > 0.2, "most rows are even: {lines}");
         }
     }
 }

@@ -319,6 +319,34 @@ fn rasteriser_and_tracer_agree_on_random_views_of_all_stages() {
     assert!(chains >= 8, "{curves:#?}");
 }
 
+#[test]
+fn less_detail_and_the_tracer_agree_on_random_views_of_all_stages() {
+    const VIEWS: usize = 2 * KINDS;
+    let scenes: Vec<Scene> = (0..2).map(|i| with_towers(hills(769, 1.5, 70.0 + 50.0 * i as f64, 70 + i))).collect();
+    let options = RenderOptions { lod_px: RenderOptions::default().lod_px, ..exactly() };
+    let mut random = Random::new(19_970_803);
+    let (mut total, mut views, mut worst, mut less) = (Difference::default(), 0, Vec::new(), 0);
+    for i in 0..3 * VIEWS {
+        if views == VIEWS {
+            break;
+        }
+        let Some(view) = random_view(&mut random, i % KINDS, [144, 81]) else { continue };
+        let scene = &scenes[views % scenes.len()];
+        let drawn = render(scene, &view, &options);
+        less += usize::from(2 * drawn.stats.triangles_drawn < drawn.stats.triangles_in);
+        let d = compare(&trace(scene, &view, &exactly()), &drawn);
+        total.add(d);
+        if !d.is_small() {
+            let names: Vec<&str> = view.stages().iter().map(Stage::name).collect();
+            worst.push(format!("view {views} {names:?}: {d:?}"));
+        }
+        views += 1;
+    }
+    assert!(views == VIEWS && total.judged > total.pixels / 2, "{views} views: {total:?}");
+    assert!(less > VIEWS / 2, "less detail in {less} of {VIEWS} views");
+    assert!(total.is_small(), "{total:?}; {worst:#?}");
+}
+
 /// A heightfield with other node positions.
 fn placed(hf: &Heightfield, north_west: DVec2, spacing: DVec2) -> Heightfield {
     let (heights, states) = (hf.heights().to_vec(), hf.states().to_vec());

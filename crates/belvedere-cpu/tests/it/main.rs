@@ -8,6 +8,7 @@ mod real_data;
 mod reference;
 mod robust;
 mod steady;
+mod steady_lines;
 mod subdivision;
 mod support;
 mod support_views;
