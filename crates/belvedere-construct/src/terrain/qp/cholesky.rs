@@ -18,9 +18,12 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
             lanes[k] += x[k] * y[k];
         }
     }
-    let tail: f64 = rest_a.iter().zip(rest_b).map(|(x, y)| x * y).sum();
-    let [a, b, c, d, e, f, g, h] = lanes;
-    ((a + e) + (b + f)) + ((c + g) + (d + h)) + tail
+    for half in [4, 2, 1] {
+        for k in 0..half {
+            lanes[k] += lanes[k + half];
+        }
+    }
+    lanes[0] + rest_a.iter().zip(rest_b).map(|(x, y)| x * y).sum::<f64>()
 }
 
 fn start(row: usize) -> usize {

@@ -32,19 +32,11 @@ impl Dual {
         self.m.len()
     }
 
-    /// Adds a row: its products with the rows already there, its square, its diagonal addition (inverse weight of its
+    /// Adds a row: its products with the rows already there and itself, its diagonal addition (inverse weight of its
     /// slack, 0 = hard), its excess at zero multipliers, and the multiplier to begin with.
-    pub(super) fn push(
-        &mut self,
-        products: impl Iterator<Item = f64>,
-        square: f64,
-        soft: f64,
-        excess: f64,
-        begin: f64,
-    ) {
-        let scale = 1.0 / square.max(f64::MIN_POSITIVE).sqrt();
-        let scales = &self.scale;
-        self.packed.extend(products.zip(scales).map(|(k, s)| k * s * scale));
+    pub(super) fn push(&mut self, products: &[f64], soft: f64, excess: f64, begin: f64) {
+        let scale = 1.0 / products[self.len()].max(f64::MIN_POSITIVE).sqrt();
+        self.packed.extend(products.iter().zip(&self.scale).map(|(k, s)| k * s * scale));
         self.packed.push(1.0);
         self.scale.push(scale);
         self.soft.push(soft * scale * scale);
@@ -268,7 +260,7 @@ mod tests {
         let c = |i: usize| ((i * 7919) % 13) as f64 - 6.0;
         let mut dual = Dual::default();
         for i in 0..n {
-            dual.push((0..i).map(|j| k(i, j)), k(i, i), 0.0, c(i), 0.0);
+            dual.push(&(0..=i).map(|j| k(i, j)).collect::<Vec<_>>(), 0.0, c(i), 0.0);
         }
         dual.solve(1e-9);
         let mut active = 0;

@@ -22,7 +22,7 @@ impl Metric {
     }
 
     /// Inverse of H between the bilinear values at two points.
-    #[inline]
+    #[inline(always)]
     pub(super) fn between(&self, a: Between, b: Between) -> f64 {
         self.green.between(a, b)
     }

@@ -8,6 +8,7 @@ mod bent;
 mod bundle;
 mod cholesky;
 mod dual;
+mod lanes;
 mod metric;
 mod pool;
 mod problem;

@@ -5,6 +5,8 @@ use super::metric::Metric;
 use super::problem::{Certificate, SolvedRow};
 use super::row::{Asks, Row};
 use belvedere_core::DVec2;
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
 
 /// A row remembered between frames.
 #[derive(Debug, Clone, Copy)]
@@ -25,6 +27,20 @@ pub(super) enum Place {
 /// A row without a multiplier is forgotten after so many frames; at once if it never had one at the end of a frame.
 pub(super) const IDLE: u32 = 3;
 
+/// A row to be added.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct New {
+    pub(super) row: Row,
+    /// By how much the target exceeds it.
+    pub(super) excess: f64,
+    /// Inverse price of its slack, 0 = none.
+    pub(super) soft: f64,
+    /// Multiplier to begin with.
+    pub(super) multiplier: f64,
+    /// Frames without one.
+    pub(super) idle: u32,
+}
+
 #[derive(Debug, Default)]
 pub(super) struct Pool {
     pub(super) rows: Vec<Row>,
@@ -33,13 +49,21 @@ pub(super) struct Pool {
 }
 
 impl Pool {
-    /// Adds a row that `target` exceeds by `excess`; `soft` = inverse price of its slack, 0 = none.
-    pub(super) fn push(&mut self, row: Row, metric: &Metric, excess: f64, soft: f64, begin: (f64, u32)) {
-        let products = self.rows.iter().map(|r| row.product(r, metric));
-        let square = row.product(&row, metric);
-        self.dual.push(products, square, soft, excess, begin.0);
-        self.rows.push(row);
-        self.idle.push(begin.1);
+    /// Adds rows.
+    pub(super) fn extend(&mut self, new: Vec<New>, metric: &Metric) {
+        let known = self.rows.len();
+        self.rows.extend(new.iter().map(|n| n.row));
+        let rows = &self.rows;
+        let products = |k: usize| {
+            let mut out = Vec::with_capacity(known + k + 1);
+            Arch::new().dispatch(Products { row: &rows[known + k], rows: &rows[..=known + k], metric, out: &mut out });
+            out
+        };
+        let products: Vec<Vec<f64>> = (0..new.len()).into_par_iter().with_min_len(4).map(products).collect();
+        for (new, products) in new.into_iter().zip(products) {
+            self.dual.push(&products, new.soft, new.excess, new.multiplier);
+            self.idle.push(new.idle);
+        }
     }
 
     pub(super) fn solve(&mut self, tolerance: f64) {
@@ -131,5 +155,24 @@ impl Pool {
             sum.iter().map(|(&node, &g)| if g > 0.0 { -g * depth } else { g * ceiling(node as usize) }).sum();
         let gap = (least - bound) / total;
         (gap > 0.0).then(|| Certificate { depth, gap, rows: rows.iter().map(|(i, m)| (*i, m / total)).collect() })
+    }
+}
+
+/// `a H^-1 b` of a row with others, with the widest registers at hand.
+struct Products<'a> {
+    row: &'a Row,
+    rows: &'a [Row],
+    metric: &'a Metric,
+    out: &'a mut Vec<f64>,
+}
+
+impl WithSimd for Products<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for other in self.rows {
+            self.out.push(self.row.product(other, self.metric));
+        }
     }
 }

@@ -47,6 +47,7 @@ impl Row {
     }
 
     /// `a H^-1 b` for the rows a and b.
+    #[inline(always)]
     pub(super) fn product(&self, other: &Self, metric: &Metric) -> f64 {
         let mut sum = 0.0;
         for (f, a) in self.points.iter().filter(|p| p.0 != 0.0) {

@@ -2,7 +2,7 @@
 
 use super::bundle::{Bundle, Rise};
 use super::metric::Metric;
-use super::pool::{IDLE, Kept, Place, Pool};
+use super::pool::{IDLE, Kept, New, Place, Pool};
 use super::problem::{QpError, QpOptions, QpProblem, QpResult, Reason, Unresolved};
 use super::row::Row;
 use super::seen::Seen;
@@ -21,9 +21,6 @@ const EXACT: f64 = 1e-6;
 const CEILING_ROUNDS: usize = 40;
 /// The ground may sink to this many times relief and height of the eye; beyond, rows become soft.
 const DEPTH: f64 = 4.0;
-/// Rounds of a cold frame in which only every so many lines of sight are followed; a warm frame has one.
-const ROUGH_ROUNDS: usize = 4;
-const ROUGH: usize = 4;
 /// Price of slack where rows contradict each other.
 const LAST_PRICE: f64 = 1e3;
 
@@ -144,13 +141,11 @@ impl QpSolver {
         frame.bundles = Bundle::all(&frame.seen, problem.sight.straight().is_some());
         self.take_up(&mut frame);
         out.kept = frame.pool.rows.len();
-        let rough = if out.kept > 0 { 1 } else { ROUGH_ROUNDS };
         let depth = self.depth(&frame);
         let mut missed = Vec::new();
         while out.rounds < o.rounds {
             self.settle(&mut frame);
-            let first = if out.rounds < rough { frame.missed(&self.surface, ROUGH) } else { Vec::new() };
-            missed = if first.is_empty() { frame.missed(&self.surface, 1) } else { first };
+            missed = frame.missed(&self.surface);
             out.rounds += 1;
             let new = frame.thinned(&self.surface, &missed, out.rounds);
             let deepest = self.surface.u.iter().copied().fold(0.0, f64::min);
@@ -165,9 +160,7 @@ impl QpSolver {
             if new.is_empty() {
                 break;
             }
-            for row in new {
-                self.push(&mut frame, row, (0.0, IDLE));
-            }
+            self.push(&mut frame, new);
         }
         self.report(&frame, &missed, depth, &mut out);
         self.kept = frame.pool.kept(|i| problem.candidates[i].id);
@@ -176,9 +169,7 @@ impl QpSolver {
 
     /// How far the ground may sink.
     fn depth(&self, frame: &Frame) -> f64 {
-        let heights = &self.surface.heights;
-        let (low, mut high) =
-            heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), h| (a.min(*h), b.max(*h)));
+        let [low, mut high] = self.surface.range;
         for chord in frame.seen.iter().flat_map(|s| s.chords.iter()) {
             high = high.max(chord.z[0]).max(chord.z[1]);
         }
@@ -189,6 +180,7 @@ impl QpSolver {
     fn take_up(&self, frame: &mut Frame) {
         let by_id: BTreeMap<u32, usize> =
             frame.seen.iter().enumerate().map(|(k, s)| (frame.problem.candidates[s.index].id, k)).collect();
+        let mut new = Vec::with_capacity(self.kept.len());
         for kept in &self.kept {
             let row = match kept.place {
                 Place::Ceiling(node) => Some(self.ceiling_row(frame, node)),
@@ -196,10 +188,10 @@ impl QpSolver {
                     by_id.get(&id).and_then(|&k| frame.seen[k].follow(&self.surface, at, &frame.clearance))
                 }
             };
-            if let Some(row) = row {
-                self.push(frame, row, (kept.multiplier, kept.idle));
-            }
+            let begin = (kept.multiplier, kept.idle);
+            new.extend(row.map(|row| self.new_row(frame, row, begin)));
         }
+        frame.pool.extend(new, &self.metric);
     }
 
     fn ceiling(&self, frame: &Frame, node: usize) -> f64 {
@@ -211,18 +203,23 @@ impl QpSolver {
         Row::ceiling(node, at, self.ceiling(frame, node as usize))
     }
 
-    fn push(&self, frame: &mut Frame, row: Row, begin: (f64, u32)) {
+    fn new_row(&self, frame: &Frame, row: Row, (multiplier, idle): (f64, u32)) -> New {
         let excess = row.at(&frame.target) - row.bound;
         let soft = if row.is_ceiling() { 0.0 } else { frame.soft };
-        frame.pool.push(row, &self.metric, excess, soft, begin);
+        New { row, excess, soft, multiplier, idle }
+    }
+
+    /// Adds rows that had no multiplier so far.
+    fn push(&self, frame: &mut Frame, rows: impl IntoIterator<Item = Row>) {
+        let new = rows.into_iter().map(|row| self.new_row(frame, row, (0.0, IDLE))).collect();
+        frame.pool.extend(new, &self.metric);
     }
 
     /// Starts again with rows that may be missed at a price.
     fn soften(&self, frame: &mut Frame) {
         frame.soft = 1.0 / LAST_PRICE;
-        for row in std::mem::take(&mut frame.pool).rows {
-            self.push(frame, row, (0.0, IDLE));
-        }
+        let rows = std::mem::take(&mut frame.pool).rows;
+        self.push(frame, rows);
     }
 
     /// Solves with the rows in play and adds ceilings until no node rises above its own.
@@ -235,10 +232,8 @@ impl QpSolver {
             if risen.is_empty() {
                 break;
             }
-            for node in risen {
-                let row = self.ceiling_row(frame, node);
-                self.push(frame, row, (0.0, IDLE));
-            }
+            let rows: Vec<Row> = risen.into_iter().map(|node| self.ceiling_row(frame, node)).collect();
+            self.push(frame, rows);
         }
         frame.moved(&self.surface, &u);
         self.surface.displace(&u);
@@ -313,24 +308,14 @@ impl Frame<'_> {
         let change: Vec<f64> = surface.u.iter().zip(after).map(|(b, a)| a - b).collect();
         let rise = Rise::new(&surface.lattice, &change);
         let seen = &self.seen;
-        self.bundles.par_iter_mut().with_min_len(32).for_each(|b| b.moved(seen, &change, &rise));
+        self.bundles.par_iter_mut().with_min_len(32).for_each(|b| b.moved(seen, &rise));
     }
 
-    /// All places where the asked clearance is missed; first the index in `seen`. Lines that still have room are not
+    /// All places where the asked clearance is missed; first the index in `seen`. Where lines still have room they are not
     /// followed.
-    ///
-    /// * `every`: of those lines only every so many.
-    fn missed(&mut self, surface: &Surface, every: usize) -> Vec<(usize, Touch)> {
+    fn missed(&mut self, surface: &Surface) -> Vec<(usize, Touch)> {
         let (seen, clearance) = (&self.seen, &self.clearance);
-        let of = |bundle: &mut Bundle| {
-            if bundle.room > 0.0 {
-                return Vec::new();
-            }
-            let (touches, room) = bundle.walk(seen, surface, clearance, every);
-            bundle.room = if every == 1 && touches.is_empty() { room } else { -1.0 };
-            touches
-        };
-        self.bundles.par_iter_mut().with_min_len(8).flat_map_iter(of).collect()
+        self.bundles.par_iter_mut().with_min_len(8).flat_map_iter(|b| b.walk(seen, surface, clearance)).collect()
     }
 
     /// Rows for the worst of each bunch of neighbours; bunches get smaller from round to round.

@@ -78,8 +78,12 @@ pub(super) struct Surface {
     pub(super) cols: usize,
     pub(super) rows: usize,
     pub(super) heights: Vec<f64>,
+    /// Lowest and highest of them.
+    pub(super) range: [f64; 2],
     pub(super) lattice: Lattice,
     pub(super) u: Vec<f64>,
+    /// For each cell of the lattice the value at its first node and the factors of x, y and xy, both 0..=1 in the cell.
+    pub(super) patches: Vec<[f64; 4]>,
     still: Vec<Level>,
     levels: Vec<Level>,
 }
@@ -106,8 +110,10 @@ impl Surface {
             cols,
             rows,
             heights: heights.to_vec(),
+            range: [0.0; 2],
             lattice,
             u: vec![0.0; lattice.cols * lattice.rows],
+            patches: vec![[0.0; 4]; (lattice.cols.max(2) - 1) * (lattice.rows.max(2) - 1)],
             still: Vec::new(),
             levels,
         };
@@ -123,6 +129,8 @@ impl Surface {
     }
 
     fn bound_heights(&mut self) {
+        let range = |[low, high]: [f64; 2], h: &f64| [low.min(*h), high.max(*h)];
+        self.range = self.heights.iter().fold([f64::INFINITY, f64::NEG_INFINITY], range);
         self.still.clear();
         for size in STILL {
             let (cols, rows) = ((self.cols - 1).div_ceil(size).max(1), (self.rows - 1).div_ceil(size).max(1));
@@ -142,6 +150,15 @@ impl Surface {
     pub(super) fn displace(&mut self, u: &[f64]) {
         self.u.copy_from_slice(u);
         let lattice = self.lattice;
+        for (row, line) in self.patches.chunks_exact_mut(lattice.cols.max(2) - 1).enumerate() {
+            let upper = &u[row * lattice.cols..][..lattice.cols];
+            let lower = &u[(row + 1).min(lattice.rows - 1) * lattice.cols..][..lattice.cols];
+            for (col, patch) in line.iter_mut().enumerate() {
+                let right = (col + 1).min(lattice.cols - 1);
+                let [nw, ne, sw, se] = [upper[col], upper[right], lower[col], lower[right]];
+                *patch = [nw, ne - nw, sw - nw, se - sw - ne + nw];
+            }
+        }
         let span = |block: usize, step: f64, n: usize| {
             let from = ((block * BLOCK) as f64 / step) as usize;
             let to = (((block + 1) * BLOCK) as f64 / step).ceil() as usize;
@@ -189,7 +206,29 @@ impl Surface {
         Level::bound(&self.still, a, b)
     }
 
+    /// Nothing of the displacement in a box (least and greatest corner, grid) is higher; and the factor of xy there that is farthest
+    /// from 0, per square cell of the field.
+    pub(super) fn displaced_bound(&self, [low, high]: [DVec2; 2]) -> (f64, f64) {
+        let (cols, rows) = (self.lattice.cols.max(2) - 1, self.lattice.rows.max(2) - 1);
+        let [low, high] = [low, high].map(|c| c / self.lattice.step);
+        let index = |v: f64, n: usize| (v.max(0.0) as usize).min(n - 1);
+        let (mut most, mut twist) = (f64::NEG_INFINITY, 0.0f64);
+        for row in index(low.y, rows)..=index(high.y, rows) {
+            let y = [low.y, high.y].map(|y| (y - row as f64).clamp(0.0, 1.0));
+            for col in index(low.x, cols)..=index(high.x, cols) {
+                let x = [low.x, high.x].map(|x| (x - col as f64).clamp(0.0, 1.0));
+                let [c, cx, cy, cxy] = self.patches[row * cols + col];
+                for (x, y) in [(x[0], y[0]), (x[1], y[0]), (x[0], y[1]), (x[1], y[1])] {
+                    most = most.max(c + x * cx + y * (cy + x * cxy));
+                }
+                twist = twist.max(cxy.abs());
+            }
+        }
+        (most, twist / (self.lattice.step.x * self.lattice.step.y))
+    }
+
     /// Height of the undisplaced triangles at grid position `g` (clamped into the grid).
+    #[inline]
     pub(super) fn ground(&self, g: DVec2) -> f64 {
         let (col, row) = (
             (g.x.max(0.0) as usize).min(self.cols.saturating_sub(2)),

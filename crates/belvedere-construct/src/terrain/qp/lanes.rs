@@ -1,0 +1,359 @@
+//! Neighbouring lines of sight abreast, one per lane of a register: a bound of what they miss, by which most are let pass.
+
+use super::surface::Surface;
+use super::walk::{Chord, Clearance};
+use pulp::{Arch, Simd, WithSimd};
+
+/// Lines side by side, as many as the widest register holds.
+pub(super) const LANES: usize = 8;
+
+/// A number for each line.
+type Lane = [f64; LANES];
+
+/// Straight lines of sight from their points to the eye, each over the part of it that counts. Spare lanes repeat the last
+/// line.
+pub(super) struct Lanes {
+    /// Points by axis; the third is x - y.
+    p: [Lane; 3],
+    /// Ways to the eye, likewise, and one over them.
+    d: [Lane; 3],
+    per: [Lane; 3],
+    /// Heights at the points and what they rise by to the eye.
+    z: [Lane; 2],
+    part: [Lane; 2],
+    /// Clearance without its tolerance.
+    asked: f64,
+}
+
+impl Lanes {
+    /// * `lines`: with the parts of them that count; not empty, at most [`LANES`].
+    pub(super) fn new(lines: &[(usize, Chord, [f64; 2])], clearance: &Clearance) -> Self {
+        let each = |of: &dyn Fn(&Chord, [f64; 2]) -> f64| -> Lane {
+            std::array::from_fn(|l| {
+                let (_, chord, part) = &lines[l.min(lines.len() - 1)];
+                of(chord, *part)
+            })
+        };
+        let p = [each(&|c, _| c.ends[0].x), each(&|c, _| c.ends[0].y), each(&|c, _| c.ends[0].x - c.ends[0].y)];
+        let way = |c: &Chord| c.ends[1] - c.ends[0];
+        let d = [each(&|c, _| way(c).x), each(&|c, _| way(c).y), each(&|c, _| way(c).x - way(c).y)];
+        Self {
+            p,
+            d,
+            per: d.map(|d| d.map(|d| 1.0 / d)),
+            z: [each(&|c, _| c.z[0]), each(&|c, _| c.z[1] - c.z[0])],
+            part: [each(&|_, part| part[0]), each(&|_, part| part[1])],
+            asked: clearance.margin - clearance.tolerance,
+        }
+    }
+
+    /// For each part (the same for all lines): by how much the place of a line that misses the asked clearance by most does
+    /// so, beyond the tolerance; negative where all kinks and ends keep it.
+    pub(super) fn most(&self, surface: &Surface, parts: &[[f64; 2]], out: &mut Vec<Lane>) {
+        Arch::new().dispatch(Most { lanes: self, surface, parts, out });
+    }
+}
+
+/// With the widest registers at hand.
+struct Most<'a> {
+    lanes: &'a Lanes,
+    surface: &'a Surface,
+    parts: &'a [[f64; 2]],
+    out: &'a mut Vec<Lane>,
+}
+
+impl WithSimd for Most<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let begin = self.out.len();
+        self.out.resize(begin + self.parts.len(), [0.0; LANES]);
+        for k in 0..LANES / S::F64_LANES {
+            let lines = Register::new(simd, self.lanes, k);
+            for (part, out) in self.parts.iter().zip(&mut self.out[begin..]) {
+                S::as_mut_simd_f64s(out).0[k] = lines.most(self.surface, *part);
+            }
+        }
+    }
+}
+
+/// Lines of one register.
+struct Register<S: Simd> {
+    simd: S,
+    p: [S::f64s; 3],
+    d: [S::f64s; 3],
+    per: [S::f64s; 3],
+    z: [S::f64s; 2],
+    part: [S::f64s; 2],
+    asked: S::f64s,
+}
+
+/// Where lines are at some parameters of theirs.
+#[derive(Clone, Copy)]
+struct Place<S: Simd> {
+    t: S::f64s,
+    x: S::f64s,
+    y: S::f64s,
+}
+
+impl<S: Simd> Register<S> {
+    /// The k-th register of lanes.
+    #[inline(always)]
+    fn new(simd: S, lanes: &Lanes, k: usize) -> Self {
+        let one = |lane: &Lane| S::as_simd_f64s(lane).0[k];
+        let three = |[a, b, c]: &[Lane; 3]| [one(a), one(b), one(c)];
+        let two = |[a, b]: &[Lane; 2]| [one(a), one(b)];
+        Self {
+            simd,
+            p: three(&lanes.p),
+            d: three(&lanes.d),
+            per: three(&lanes.per),
+            z: two(&lanes.z),
+            part: two(&lanes.part),
+            asked: simd.splat_f64s(lanes.asked),
+        }
+    }
+
+    /// At every kink of the drawn ground and of the displacement, and at the ends.
+    #[inline(always)]
+    fn most(&self, surface: &Surface, [a, b]: [f64; 2]) -> S::f64s {
+        let simd = self.simd;
+        let within = [simd.max_f64s(self.part[0], simd.splat_f64s(a)), simd.min_f64s(self.part[1], simd.splat_f64s(b))];
+        let mut most = simd.splat_f64s(f64::NEG_INFINITY);
+        self.edges::<0>(surface, within, &mut most);
+        self.edges::<1>(surface, within, &mut most);
+        self.edges::<2>(surface, within, &mut most);
+        for axis in 0..2 {
+            // Lines of the solver's grid, where they are none of the ground's.
+            let step = surface.lattice.step[axis];
+            if step.fract() != 0.0 {
+                let [mut k, last] = self.range(axis, step, within);
+                while k <= last {
+                    self.judge_between(surface, self.crossing(axis, k * step), within, &mut most);
+                    k += 1.0;
+                }
+            }
+        }
+        if simd.reduce_max_f64s(self.part[0]) >= a {
+            self.judge_between(surface, within[0], within, &mut most);
+        }
+        if simd.reduce_min_f64s(self.part[1]) <= b {
+            self.judge_between(surface, within[1], within, &mut most);
+        }
+        most
+    }
+
+    #[inline(always)]
+    fn at(&self, axis: usize, t: S::f64s) -> S::f64s {
+        self.simd.mul_add_e_f64s(t, self.d[axis], self.p[axis])
+    }
+
+    /// Parameters at which a coordinate (x, y, x - y) has a value.
+    #[inline(always)]
+    fn crossing(&self, axis: usize, value: f64) -> S::f64s {
+        let simd = self.simd;
+        simd.mul_f64s(simd.sub_f64s(simd.splat_f64s(value), self.p[axis]), self.per[axis])
+    }
+
+    /// First and last multiple of `step` of a coordinate within the parts, and possibly one more.
+    #[inline(always)]
+    fn range(&self, axis: usize, step: f64, [from, to]: [S::f64s; 2]) -> [f64; 2] {
+        // Parts may end at a multiple; rounding must not lose it.
+        const NUDGE: f64 = 1e-6;
+        let (a, b) = (self.at(axis, from), self.at(axis, to));
+        let low = self.simd.reduce_min_f64s(self.simd.min_f64s(a, b));
+        let high = self.simd.reduce_max_f64s(self.simd.max_f64s(a, b));
+        [(low / step - NUDGE).ceil(), (high / step + NUDGE).floor()]
+    }
+
+    /// Whole part (at most `last`) of coordinates and the rest, which is 1 where the whole part could be one more. Below 0
+    /// counts as 0, and so does NaN.
+    #[inline(always)]
+    fn split(&self, x: S::f64s, last: f64) -> (S::f64s, S::f64s) {
+        // Adding it rounds to whole numbers.
+        const WHOLE: f64 = 6_755_399_441_055_744.0;
+        let simd = self.simd;
+        let x = simd.max_f64s(x, simd.splat_f64s(0.0));
+        let middle = simd.min_f64s(simd.sub_f64s(x, simd.splat_f64s(0.5)), simd.splat_f64s(last));
+        let whole = simd.sub_f64s(simd.add_f64s(middle, simd.splat_f64s(WHOLE)), simd.splat_f64s(WHOLE));
+        (whole, simd.sub_f64s(x, whole))
+    }
+
+    /// Whole numbers below 2^32 as indices.
+    #[inline(always)]
+    fn indices(&self, whole: S::f64s) -> [u32; LANES] {
+        const UNITS: f64 = 4_503_599_627_370_496.0;
+        let mut out = [0.0; LANES];
+        S::as_mut_simd_f64s(&mut out).0[0] = self.simd.add_f64s(whole, self.simd.splat_f64s(UNITS));
+        out.map(|v| v.to_bits() as u32)
+    }
+
+    #[inline(always)]
+    fn load(lane: &Lane) -> S::f64s {
+        S::as_simd_f64s(lane).0[0]
+    }
+
+    /// Kinks at one family of edges: lines x = k, y = k, or x - y = k.
+    #[inline(always)]
+    fn edges<const FAMILY: usize>(&self, surface: &Surface, within: [S::f64s; 2], most: &mut S::f64s) {
+        let simd = self.simd;
+        let last = [(surface.cols - 1) as f64, (surface.rows - 1) as f64];
+        let cols = simd.splat_f64s(surface.cols as f64);
+        // The diagonals of the corners are nodes of the other families.
+        let limits = [[0.0, last[0]], [0.0, last[1]], [1.0 - last[1], last[0] - 1.0]][FAMILY];
+        let [first, end] = self.range(FAMILY, 1.0, within);
+        let (mut k, until) = (first.max(limits[0]), end.min(limits[1]));
+        let stride = [surface.cols, 1, surface.cols + 1][FAMILY];
+        // What runs along the edges.
+        let along = usize::from(FAMILY == 0);
+        while k <= until {
+            let (t, line) = (self.crossing(FAMILY, k), simd.splat_f64s(k));
+            let place = self.at(along, t);
+            let end = if FAMILY == 2 { last[0].min(last[1] + k) } else { last[along] } - 1.0;
+            let (whole, share) = self.split(place, end);
+            let (corner, x, y) = match FAMILY {
+                0 => (simd.mul_add_e_f64s(whole, cols, line), line, place),
+                1 => (simd.mul_add_e_f64s(line, cols, whole), place, line),
+                _ => {
+                    let row = simd.max_f64s(simd.sub_f64s(whole, line), simd.splat_f64s(0.0));
+                    (simd.mul_add_e_f64s(row, cols, whole), place, simd.sub_f64s(place, line))
+                }
+            };
+            let node = self.indices(corner);
+            let (mut from, mut to) = ([0.0; LANES], [0.0; LANES]);
+            for l in 0..S::F64_LANES {
+                let node = node[l] as usize;
+                (from[l], to[l]) = (surface.heights[node], surface.heights[node + stride]);
+            }
+            let (from, to) = (Self::load(&from), Self::load(&to));
+            let ground = simd.mul_add_e_f64s(share, simd.sub_f64s(to, from), from);
+            self.judge(surface, Place { t, x, y }, ground, within, most);
+            k += 1.0;
+        }
+    }
+
+    /// Takes places within the parts into account.
+    #[inline(always)]
+    fn judge(&self, surface: &Surface, place: Place<S>, ground: S::f64s, within: [S::f64s; 2], most: &mut S::f64s) {
+        let (simd, lattice) = (self.simd, &surface.lattice);
+        let last = [lattice.cols, lattice.rows].map(|n| (n.max(2) - 2) as f64);
+        let per = [lattice.step.x, lattice.step.y].map(|step| simd.splat_f64s(1.0 / step));
+        let (col, x) = self.split(simd.mul_f64s(place.x, per[0]), last[0]);
+        let (row, y) = self.split(simd.mul_f64s(place.y, per[1]), last[1]);
+        let cell = self.indices(simd.mul_add_e_f64s(row, simd.splat_f64s(last[0] + 1.0), col));
+        let mut patch = [[0.0; LANES]; 4];
+        for l in 0..S::F64_LANES {
+            let [c, cx, cy, cxy] = surface.patches[cell[l] as usize];
+            (patch[0][l], patch[1][l], patch[2][l], patch[3][l]) = (c, cx, cy, cxy);
+        }
+        let [c, cx, cy, cxy] = [0, 1, 2, 3].map(|k| Self::load(&patch[k]));
+        let u = simd.mul_add_e_f64s(y, simd.mul_add_e_f64s(x, cxy, cy), simd.mul_add_e_f64s(x, cx, c));
+        let line = simd.mul_add_e_f64s(place.t, self.z[1], self.z[0]);
+        let share = simd.min_f64s(simd.mul_f64s(simd.splat_f64s(5.0), place.t), simd.splat_f64s(1.0));
+        let over = simd.sub_f64s(simd.add_f64s(ground, u), line);
+        let missing = simd.mul_add_e_f64s(self.asked, share, over);
+        let after = simd.less_than_or_equal_f64s(within[0], place.t);
+        let counts = simd.and_m64s(after, simd.less_than_or_equal_f64s(place.t, within[1]));
+        *most = simd.select_f64s(counts, simd.max_f64s(missing, *most), *most);
+    }
+
+    /// As [`Self::judge`], anywhere on the triangles.
+    #[inline(always)]
+    fn judge_between(&self, surface: &Surface, t: S::f64s, within: [S::f64s; 2], most: &mut S::f64s) {
+        let place = Place { t, x: self.at(0, t), y: self.at(1, t) };
+        let (mut x, mut y, mut ground) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        (S::as_mut_simd_f64s(&mut x).0[0], S::as_mut_simd_f64s(&mut y).0[0]) = (place.x, place.y);
+        for l in 0..S::F64_LANES {
+            ground[l] = surface.ground([x[l], y[l]].into());
+        }
+        self.judge(surface, place, Self::load(&ground), within, most);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::surface::Lattice;
+    use super::super::walk::fade;
+    use super::*;
+    use belvedere_core::DVec2;
+
+    /// Reproducible numbers in 0..1.
+    fn number(i: usize) -> f64 {
+        (i as f64 * 0.618_033_988_749_895).fract()
+    }
+
+    #[test]
+    fn lines_abreast_miss_what_each_of_them_misses_alone() {
+        let clearance = Clearance { margin: 1.0, tolerance: 0.2, guard: 1.5 };
+        // Whole steps of the solver's grid, and others.
+        for (cols, rows, nodes) in [(33, 25, [5, 4]), (40, 31, [6, 8]), (12, 12, [12, 12]), (9, 7, [1, 2])] {
+            let step =
+                DVec2::new((cols - 1) as f64 / (nodes[0] - 1).max(1) as f64, (rows - 1) as f64 / (nodes[1] - 1) as f64);
+            let heights: Vec<f64> = (0..cols * rows).map(|i| 40.0 * number(i * i)).collect();
+            let mut surface = Surface::new(&heights, cols, rows, Lattice { cols: nodes[0], rows: nodes[1], step });
+            surface.displace(&(0..nodes[0] * nodes[1]).map(|i| -30.0 * number(7 * i + 3)).collect::<Vec<_>>());
+            let last = DVec2::new((cols - 1) as f64, (rows - 1) as f64);
+            for case in 0..40 {
+                let r = |k: usize| number(100 * case + k);
+                let eye = match case % 4 {
+                    0 => DVec2::new(r(1), r(2)) * last,
+                    1 => DVec2::new(r(1) * 3.0 - 1.0, -5.0),
+                    // Along the lines of the grid and through nodes.
+                    2 => DVec2::new((r(1) * last.x).floor(), (r(2) * last.y).floor()),
+                    _ => DVec2::new(last.x, last.y),
+                };
+                let first = if case % 4 == 2 { DVec2::new(eye.x, 0.0) } else { DVec2::new(r(3), r(4)) * last };
+                let lines: Vec<(usize, Chord, [f64; 2])> = (0..1 + case % LANES)
+                    .filter_map(|k| {
+                        let point = (first + 0.3 * k as f64).min(last);
+                        let chord = Chord { ends: [point, eye], z: [20.0 * r(5), 60.0 * r(6)], tau: [0.0, 1.0] };
+                        Some((k, chord, chord.part(&surface, point, clearance.guard)?))
+                    })
+                    .collect();
+                if lines.is_empty() {
+                    continue;
+                }
+                let parts = [[0.0, 1.0], [0.2, 0.4 + 0.2 * r(7)], [0.999, 1.0]];
+                let mut found = Vec::new();
+                Lanes::new(&lines, &clearance).most(&surface, &parts, &mut found);
+                for (part, found) in parts.iter().zip(&found) {
+                    for ((_, chord, whole), found) in lines.iter().zip(found) {
+                        let part = [part[0].max(whole[0]), part[1].min(whole[1])];
+                        let missing = |t: f64| {
+                            let at = chord.ends[0] + t * (chord.ends[1] - chord.ends[0]);
+                            let line = chord.z[0] + t * (chord.z[1] - chord.z[0]);
+                            let ground = surface.ground(at) + surface.lattice.at(&surface.u, at);
+                            ground - line + (clearance.margin - clearance.tolerance) * fade(t)
+                        };
+                        // Kinks, and the ends of lines; what lies at the end of a part counts in one of its neighbours.
+                        let mut all = f64::NEG_INFINITY;
+                        if part[0] <= part[1] {
+                            chord.kinks(&surface, part, &clearance, &mut |touch| {
+                                let end = part.iter().any(|t| (t - touch.tau).abs() < 1e-12);
+                                let inside = touch.tau > part[0] && touch.tau < part[1] && !end;
+                                if whole.contains(&touch.tau) || inside {
+                                    all = all.max(missing(touch.tau));
+                                }
+                            });
+                        }
+                        // Between kinks it bulges at most by so much.
+                        let bulge = 0.25 * surface.displaced_bound([DVec2::ZERO, last]).1;
+                        let between = (0..=300).map(|k| missing(part[0] + (part[1] - part[0]) * f64::from(k) / 300.0));
+                        let most = between.fold(all, f64::max);
+                        let context = format!("{cols} x {rows}, case {case}, {part:?}: {found} for {all}, {most}");
+                        if part[0] <= part[1] {
+                            assert!(
+                                *found >= all - 1e-9 && (part != *whole || *found >= most - bulge - 1e-9),
+                                "{context}"
+                            );
+                            assert!(step.fract() != DVec2::ZERO || *found <= all.max(most) + 1e-9, "{context}");
+                        } else {
+                            assert_eq!(*found, f64::NEG_INFINITY, "{context}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
