@@ -9,7 +9,7 @@ mod ground;
 use belvedere_construct::terrain::{Cells, Field, Naive, Pyramid, ReferencePoint, TerrainSettings, Wedge};
 use belvedere_core::{DVec2, DVec3};
 use criterion::Criterion;
-use ground::{NODES, cpu_ms, fractal, points, valley};
+use ground::{NODES, cpu_ms, exponent, fractal, points, route};
 use std::hint::black_box;
 
 struct Case {
@@ -21,10 +21,11 @@ struct Case {
 }
 
 impl Case {
-    fn new(seed: u64, count: usize) -> Self {
-        let field = fractal(seed);
-        let route = valley(&field);
-        let eye_grid = DVec2::new(512.0, 1000.0);
+    /// * `nodes`: per side.
+    fn new(seed: u64, nodes: usize, count: usize) -> Self {
+        let field = fractal(seed, nodes);
+        let route = route(seed, nodes);
+        let eye_grid = DVec2::new(512.0, 1000.0) * ((nodes - 1) as f64 / 1024.0);
         let ground = field.surface_at(eye_grid).expect("on the ground");
         let eye = field.scene_from_grid(eye_grid).extend(ground + 700.0);
         let wedge = Wedge { heading: DVec2::Y, half_angle: 35f64.to_radians(), ..Wedge::all_around(eye.truncate()) };
@@ -52,7 +53,7 @@ fn median_cpu<T>(rounds: usize, work: impl Fn() -> T) -> f64 {
 }
 
 fn processor_time(rounds: usize) {
-    let case = Case::new(7, 670);
+    let case = Case::new(7, NODES, 670);
     println!("cells: {}, at {NODES} x {NODES}", case.cells.len());
     let count = Cells::default_count(&case.field);
     println!("cells          {:8.2} ms", median_cpu(rounds, || Cells::new(&case.field, count)));
@@ -63,7 +64,7 @@ fn processor_time(rounds: usize) {
     // The points of the paper's table, and one more to see the line.
     let mut of_points = Vec::new();
     for count in [195, 202, 513, 560, 660, 670, 1340] {
-        let case = Case::new(7, count);
+        let case = Case::new(7, NODES, count);
         let c = *case.greedy().counters();
         let time = median_cpu(rounds, || case.greedy());
         println!("{count:5} points   {time:8.3} ms   {} traces, {} hits", c.traces, c.hits);
@@ -73,21 +74,23 @@ fn processor_time(rounds: usize) {
     let mut of_cells = Vec::new();
     for keep in [80, 160, 320, 651, 1300, 2600] {
         let time = median_cpu(rounds, || Cells::new(&case.field, keep));
-        let case = Case { cells: Cells::new(&case.field, keep), ..Case::new(7, 670) };
+        let case = Case { cells: Cells::new(&case.field, keep), ..Case::new(7, NODES, 670) };
         let greedy = median_cpu(rounds, || case.greedy());
         println!("{keep:5} cells    {time:8.2} ms to make, greedy pass {greedy:8.3} ms");
         of_cells.push((keep as f64, greedy));
     }
     println!("exponent of cells  {:.2}", exponent(&of_cells));
-}
-
-/// Slope of the least-squares line through the logarithms.
-fn exponent(of: &[(f64, f64)]) -> f64 {
-    let n = of.len() as f64;
-    let mean = |f: fn(&(f64, f64)) -> f64| of.iter().map(f).sum::<f64>() / n;
-    let (mx, my) = (mean(|p| p.0.ln()), mean(|p| p.1.ln()));
-    let slope = |p: &(f64, f64)| (p.0.ln() - mx) * (p.1.ln() - my);
-    of.iter().map(slope).sum::<f64>() / of.iter().map(|p| (p.0.ln() - mx).powi(2)).sum::<f64>()
+    let (mut of_nodes, mut greedy_of_nodes) = (Vec::new(), Vec::new());
+    for nodes in [257, 513, NODES] {
+        let case = Case::new(7, nodes, 670);
+        let (count, square) = (Cells::default_count(&case.field), (nodes * nodes) as f64);
+        let cells = median_cpu(rounds, || Cells::new(&case.field, count));
+        let greedy = median_cpu(rounds, || case.greedy());
+        println!("{nodes:5} squared  {cells:8.2} ms to make {count} cells, greedy pass {greedy:8.3} ms");
+        of_nodes.push((square, cells));
+        greedy_of_nodes.push((square, greedy));
+    }
+    println!("exponents of nodes: cells {:.2}, greedy pass {:.2}", exponent(&of_nodes), exponent(&greedy_of_nodes));
 }
 
 fn main() {
@@ -96,7 +99,7 @@ fn main() {
         processor_time(args.iter().filter_map(|a| a.parse().ok()).next().unwrap_or(9));
         return;
     }
-    let case = Case::new(7, 670);
+    let case = Case::new(7, NODES, 670);
     let mut criterion = Criterion::default().configure_from_args().sample_size(20);
     let count = Cells::default_count(&case.field);
     criterion.bench_function("cells 1025^2", |b| b.iter(|| Cells::new(&case.field, count)));

@@ -6,10 +6,13 @@ use belvedere_core::DVec2;
 use belvedere_scene::{Heightfield, NodeState};
 
 pub(crate) const NODES: usize = 1025;
-const SPACING_M: f64 = 30.0;
+/// Side of the ground, whatever its nodes.
+const SIDE_M: f64 = 30.0 * 1024.0;
 
 /// Fractal mountains of 2 km: midpoint displacement (diamond and square), roughness 1.1.
-pub(crate) fn fractal(seed: u64) -> Field {
+///
+/// * `nodes`: per side, [`NODES`] or every 2nd, 4th, ... of them: the same mountains.
+pub(crate) fn fractal(seed: u64, nodes: usize) -> Field {
     let n = NODES;
     let mut z = vec![0.0f64; n * n];
     let noise = |i: usize| {
@@ -52,14 +55,24 @@ pub(crate) fn fractal(seed: u64) -> Field {
         height *= 0.5f64.powf(1.1);
     }
     let [low, high] = z.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)]);
-    let heights = z.iter().map(|v| (500.0 + 2000.0 * (v - low) / (high - low)) as f32).collect();
-    let states = vec![NodeState::Measured; n * n];
-    let hf = Heightfield::new(DVec2::ZERO, DVec2::splat(SPACING_M), n, n, heights, states).expect("well formed");
+    let step = (n - 1) / (nodes - 1);
+    let of_row = |row: usize| z[row * n..(row + 1) * n].iter().step_by(step);
+    let kept = (0..n).step_by(step).flat_map(of_row);
+    let heights = kept.map(|v| (500.0 + 2000.0 * (v - low) / (high - low)) as f32).collect();
+    let states = vec![NodeState::Measured; nodes * nodes];
+    let spacing = DVec2::splat(SIDE_M / (nodes - 1) as f64);
+    let hf = Heightfield::new(DVec2::ZERO, spacing, nodes, nodes, heights, states).expect("well formed");
     Field::new(&hf, |_| 0.0).expect("has data")
 }
 
+/// The valley route of the mountains on a grid of so many nodes per side.
+pub(crate) fn route(seed: u64, nodes: usize) -> Vec<DVec2> {
+    let scale = (nodes - 1) as f64 / (NODES - 1) as f64;
+    valley(&fractal(seed, NODES)).into_iter().map(|p| p * scale).collect()
+}
+
 /// The lowest of ways from west to east, found row by row: a valley route.
-pub(crate) fn valley(field: &Field) -> Vec<DVec2> {
+fn valley(field: &Field) -> Vec<DVec2> {
     let (n, h) = (field.cols(), field.heights());
     let cost = |i: usize| (h[i] - field.datum()) * (h[i] - field.datum());
     let mut best: Vec<f64> = (0..n).map(|row| cost(row * n)).collect();
@@ -103,4 +116,13 @@ pub(crate) fn cpu_ms() -> f64 {
         text.split(' ').next()?.parse::<f64>().ok()
     };
     tasks.flatten().filter_map(of_task).sum::<f64>() * 1e-6
+}
+
+/// Slope of the least-squares line through the logarithms.
+pub(crate) fn exponent(of: &[(f64, f64)]) -> f64 {
+    let n = of.len() as f64;
+    let mean = |f: fn(&(f64, f64)) -> f64| of.iter().map(f).sum::<f64>() / n;
+    let (mx, my) = (mean(|p| p.0.ln()), mean(|p| p.1.ln()));
+    let slope = |p: &(f64, f64)| (p.0.ln() - mx) * (p.1.ln() - my);
+    of.iter().map(slope).sum::<f64>() / of.iter().map(|p| (p.0.ln() - mx).powi(2)).sum::<f64>()
 }
