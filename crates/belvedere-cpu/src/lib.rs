@@ -254,11 +254,8 @@ fn finish(marks: &Marks, lens: &Lens, buffers: &mut Buffers) {
 
 /// Image of a node of the ground; four times that where cells are subdivided.
 const NODE_BYTES: u64 = 4 * 12;
-/// Slopes and openness of a node with their averages, for as many nodes as are kept.
-const SHADE_BYTES: u64 = 32;
-const SHADED_NODES: u64 = 17 << 20;
 
-/// Bytes that a picture takes: the frame, the bands in work and the projected vertices.
+/// Bytes that a picture takes: the frame, the bands in work, the projected vertices and the lit ground.
 fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
     let [width, height] = job.view.pinhole().image;
     let samples = job.options.samples;
@@ -279,7 +276,7 @@ fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
         .map(|l| match &l.kind {
             belvedere_scene::LayerKind::Terrain(t) => {
                 let nodes = (t.heightfield.cols() * t.heightfield.rows()) as u64;
-                drawn(nodes) + nodes.min(SHADED_NODES) * SHADE_BYTES
+                drawn(nodes) + shade::ground_bytes(job, &t.heightfield)
             }
             belvedere_scene::LayerKind::Boxes(b) => b.boxes.len() as u64 * 12 * 64,
             // A triangle on the image and, for the tracer, its share of a tree.

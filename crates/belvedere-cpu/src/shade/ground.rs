@@ -258,6 +258,11 @@ pub(crate) fn first_level(nodes: usize) -> usize {
     if nodes <= SMALL_GROUND { 1 } else { (1..).find(|k| nodes >> (2 * k) <= MOST_NODES).unwrap_or(1) }
 }
 
+/// Bytes that the averages of a ground of so many nodes take.
+pub(crate) fn means_bytes(nodes: u64) -> u64 {
+    (nodes >> (2 * first_level(nodes as usize))) * size_of::<Vec4>() as u64 * 4 / 3
+}
+
 impl Means {
     /// Averages of the ground.
     pub(crate) fn new(surface: &Surface<'_>) -> Self {

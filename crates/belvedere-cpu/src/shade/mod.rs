@@ -30,7 +30,7 @@ use crate::lens::{Lens, SUB};
 use crate::polish::Polish;
 use crate::vector::nearest;
 use area::AreaMap;
-use belvedere_core::{DVec2, DVec3};
+use belvedere_core::{DVec2, DVec3, Stage};
 use belvedere_scene::{BoxLayer, BoxShape, Heightfield, LayerKind, Relief, RenderJob};
 use cast::Casters;
 use color::{Rgb, linear, smoothstep};
@@ -74,6 +74,17 @@ pub(crate) struct Shaded {
     pub(crate) id: u32,
     /// True position, scene coordinates; NaN in the sky.
     pub(crate) world: DVec3,
+}
+
+/// Bytes that colours need of a ground beside its heights: averages, heights that a stage lifted, shadows, and both pictures of
+/// the lit ground.
+pub(crate) fn ground_bytes(job: &RenderJob<'_>, hf: &Heightfield) -> u64 {
+    let nodes = hf.heights().len() as u64;
+    let lifted = job.view.stages().iter().any(|s| matches!(s, Stage::TerrainDisocclusion(_)));
+    let shadows = if job.light.shadows { nodes * 4 / 3 } else { 0 };
+    let pixels = job.view.pinhole().image.map(u64::from).iter().product();
+    let lit = 2 * tiles::most_bytes([hf.cols(), hf.rows()], pixels);
+    ground::means_bytes(nodes) + shadows + lit + if lifted { 4 * nodes } else { 0 }
 }
 
 impl<'a> Shader<'a> {

@@ -18,10 +18,28 @@ pub(crate) const CELL: i32 = 256;
 /// Bytes of tiles after which a frame starts anew: long flights over a huge ground must not collect all of it.
 const MOST_BYTES: usize = 192 << 20;
 
+/// Bytes of tiles that a picture makes at most, about: a node or two for each of its pixels, and tiles of which it sees a corner.
+const BYTES_PER_PIXEL: u64 = 64;
+const BYTES_OF_CORNERS: u64 = 32 << 20;
+
 struct Level {
     nodes: [usize; 2],
     across: usize,
     tiles: Vec<OnceLock<Box<Tile>>>,
+}
+
+/// Nodes and tiles across and down of a level.
+fn level_size(nodes: [usize; 2], k: usize) -> ([usize; 2], [usize; 2]) {
+    let nodes = nodes.map(|n| n.div_ceil(1 << k));
+    (nodes, nodes.map(|n| (n + 1).div_ceil(SIDE)))
+}
+
+/// Bytes that the tiles of a ground take at most: all of them, or what is kept and what one more picture makes.
+pub(crate) fn most_bytes(nodes: [usize; 2], pixels: u64) -> u64 {
+    let levels = 1 + nodes[0].max(nodes[1]).next_power_of_two().trailing_zeros() as usize;
+    let tiles: usize = (0..levels).map(|k| level_size(nodes, k).1.iter().product::<usize>()).sum();
+    let all = tiles as u64 * size_of::<Tile>() as u64;
+    all.min(pixels.saturating_mul(BYTES_PER_PIXEL).saturating_add(MOST_BYTES as u64 + BYTES_OF_CORNERS))
 }
 
 /// Levels of halved detail, each with a rim of one node that repeats the border: no place needs clamping.
@@ -42,8 +60,7 @@ impl Tiles {
     /// No tile made yet.
     pub(super) fn new(nodes: [usize; 2], top: usize) -> Self {
         let level = |k: usize| {
-            let nodes = nodes.map(|n| n.div_ceil(1 << k));
-            let [across, down] = nodes.map(|n| (n + 1).div_ceil(SIDE));
+            let (nodes, [across, down]) = level_size(nodes, k);
             Level { nodes, across, tiles: (0..across * down).map(|_| OnceLock::new()).collect() }
         };
         Self { levels: (0..=top).map(level).collect(), bytes: AtomicUsize::new(0) }
@@ -142,4 +159,27 @@ impl Repeated {
 /// A tile of nodes row by row.
 pub(super) fn boxed(nodes: Vec<Node>) -> Box<Tile> {
     nodes.into_boxed_slice().try_into().unwrap_or_else(|_| Box::new([Node::default(); NODES]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_take_no_more_than_is_said() {
+        for nodes in [[70usize, 70], [300, 129], [1, 2], [1025, 40]] {
+            let top = nodes[0].max(nodes[1]).next_power_of_two().trailing_zeros() as usize;
+            let tiles = Tiles::new(nodes, top);
+            for (k, c, r) in
+                (0..=top).flat_map(|k| (0..nodes[0]).flat_map(move |c| (0..nodes[1]).map(move |r| (k, c, r))))
+            {
+                let at = [c, r].map(|i| i as i32 * CELL);
+                assert!(tiles.around(k, at, |_, _| boxed(Vec::new())).is_some());
+            }
+            let bytes = tiles.bytes.load(Ordering::Relaxed) as u64;
+            let most = most_bytes(nodes, u64::MAX);
+            assert!(bytes <= most && 2 * bytes > most, "{nodes:?}: {bytes} of {most}");
+        }
+        assert!(most_bytes([40_000, 40_000], 1 << 20) < 320 << 20, "not all of a huge ground");
+    }
 }
