@@ -12,7 +12,7 @@ use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest};
 use belvedere::verbs::render::{self, AuxBuffer, AuxFormat, RenderRequest};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
 use belvedere::verbs::{bench, check, demo, figures, info, measure, output, pick, points};
-use belvedere::{CameraPicture, Needs, OpenOptions, Session};
+use belvedere::{CameraPicture, Needs, OpenOptions, Session, scene_file};
 use std::path::{Path, PathBuf};
 
 /// Whether a verb reached its stated goal.
@@ -109,15 +109,15 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     let overhead = args.overhead.then_some(CameraPicture::Overhead);
     request.camera = overhead.or(args.outside.map(CameraPicture::Outside));
     png_named(&args.out)?;
-    let outputs = render::outputs(&args.out, &request);
+    let solves = scene_file::read(&args.scene)?.document.solves_terrain();
+    let outputs = render::outputs(&args.out, &request, solves);
     for path in &outputs {
         ready(Some(path), &[&args.scene], context)?;
     }
     let palette = args.palette.as_deref().map(PaletteDoc::of);
     let options = OpenOptions { palette, ..context.options(Needs::Everything, args.draw.size) };
     let session = Session::open(&args.scene, &options)?;
-    let delta = session.terrain_report().filter(|_| !request.straight).map(|_| render::delta_path(&args.out));
-    for path in outputs.iter().chain(&delta) {
+    for path in &outputs {
         output::check(path, session.inputs(), context.common.overwrite)?;
     }
     let picture = render::render(&session, &request, &context.progress)?;

@@ -8,7 +8,7 @@
 mod ground;
 
 use belvedere_construct::terrain::qp::{Candidate, QpOptions, QpProblem, QpSolver, StraightSight};
-use belvedere_construct::terrain::{Hierarchy, Smoother, TerrainSettings, Wedge, grid_weight};
+use belvedere_construct::terrain::{Hierarchy, Smoother, TerrainSettings, Wedge, grid_weight, stated_spacing};
 use belvedere_core::DVec2;
 use ground::{NODES, cpu_ms, exponent, fractal, points, route};
 use std::time::Instant;
@@ -33,7 +33,8 @@ fn fly(g: f64, nodes: usize, count: usize) -> f64 {
     let dense = points(&field, &route, &wedge, count).into_iter().enumerate();
     let candidates: Vec<Candidate> =
         dense.map(|(i, p)| Candidate { id: i as u32, grid: p.grid, lift: p.lift }).collect();
-    let w = grid_weight(settings.smoothness(), hierarchy.cols());
+    let w =
+        grid_weight(settings.smoothness(stated_spacing(field.cols(), field.rows(), field.spacing())), hierarchy.cols());
     let smoother = Smoother::new(hierarchy.cols(), hierarchy.rows(), w, g * w).expect("in range");
     let mut solver = QpSolver::new(&field, &hierarchy, smoother, QpOptions::of(&settings));
     let mut last: Option<Vec<f64>> = None;

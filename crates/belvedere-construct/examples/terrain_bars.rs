@@ -68,7 +68,7 @@ fn main() -> Result<(), Failure> {
         }
         let scene = scene(loaded.heightfield, loaded.crs, layers);
         bars(name, &scene, eyes, w)?;
-        fly(name, &scene, frames)?;
+        fly(name, &scene, frames, w)?;
     }
     Ok(())
 }
@@ -139,7 +139,7 @@ fn solve(scene: &Scene, view: &View, mode: SolverMode, w: Option<f64>) -> Result
 
 fn bars(name: &str, scene: &Scene, count: usize, w: Option<f64>) -> Result<(), Failure> {
     println!(
-        "{name}: above  points  before  visible  dense  worst_m  unresolved  raised  rms(qp)  rms(paper)  ratio  normal(qp)  normal(paper)  visible(paper)  rows  active  rounds  qp_ms"
+        "{name}: above  points  before  visible  dense  in_guard  worst_m  unresolved  raised  rms(qp)  rms(paper)  ratio  normal(qp)  normal(paper)  visible(paper)  rows  active  rounds  qp_ms"
     );
     let (mut worst_visible, mut worst_dense, mut failed, mut raised, mut ratios) =
         (1.0f64, 1.0f64, 0, 0.0f64, Vec::new());
@@ -148,21 +148,22 @@ fn bars(name: &str, scene: &Scene, count: usize, w: Option<f64>) -> Result<(), F
         let (qp, _) = solve(scene, &view, SolverMode::Qp, w)?;
         let (paper, _) = solve(scene, &view, SolverMode::Paper, None)?;
         let unresolved: usize = qp.unresolved.iter().map(|r| r.points).sum();
-        let ratio = qp.rms_m / paper.rms_m.max(1e-9);
+        let ratio = qp.metrics.rms_m / paper.metrics.rms_m.max(1e-9);
         let rows = qp.qp.ok_or("no program")?;
         println!(
-            "{name}  {above:6.0} {:6} {:8.4} {:8.5} {:8.5} {:7.2} {unresolved:6} {:8.3} {:8.2} {:8.2} {ratio:7.3} {:6.3} {:6.3} {:6.3} {:6} {:5} {:4} {:8.0}",
+            "{name}  {above:6.0} {:6} {:8.4} {:8.5} {:8.5} {:8.5} {:7.2} {unresolved:6} {:8.3} {:8.2} {:8.2} {ratio:7.3} {:6.3} {:6.3} {:6.3} {:6} {:5} {:4} {:8.0}",
             qp.points,
             qp.visible_before,
-            qp.visible,
-            qp.visible_dense,
-            qp.hidden_worst_m,
-            qp.raised_max_m,
-            qp.rms_m,
-            paper.rms_m,
-            qp.normal_mean_deg,
-            paper.normal_mean_deg,
-            paper.visible,
+            qp.metrics.visible,
+            qp.metrics.visible_dense,
+            qp.metrics.hidden_in_guard,
+            qp.metrics.hidden_worst_m,
+            qp.metrics.raised_max_m,
+            qp.metrics.rms_m,
+            paper.metrics.rms_m,
+            qp.metrics.normal_mean_deg,
+            paper.metrics.normal_mean_deg,
+            paper.metrics.visible,
             rows.rows,
             rows.active,
             rows.rounds,
@@ -171,12 +172,12 @@ fn bars(name: &str, scene: &Scene, count: usize, w: Option<f64>) -> Result<(), F
         for run in qp.unresolved.iter().take(3) {
             println!("    {run:?}");
         }
-        worst_visible = worst_visible.min(qp.visible);
-        worst_dense = worst_dense.min(qp.visible_dense);
+        worst_visible = worst_visible.min(qp.metrics.visible);
+        worst_dense = worst_dense.min(qp.metrics.visible_dense);
         failed += usize::from(unresolved > 0);
-        raised = raised.max(qp.raised_max_m);
-        squares = [squares[0] + qp.rms_m.powi(2), squares[1] + paper.rms_m.powi(2)];
-        if paper.rms_m > 0.5 {
+        raised = raised.max(qp.metrics.raised_max_m);
+        squares = [squares[0] + qp.metrics.rms_m.powi(2), squares[1] + paper.metrics.rms_m.powi(2)];
+        if paper.metrics.rms_m > 0.5 {
             ratios.push(ratio);
         }
     }
@@ -191,24 +192,25 @@ fn bars(name: &str, scene: &Scene, count: usize, w: Option<f64>) -> Result<(), F
 }
 
 /// A walker's film: 1.4 m/s at 25 frames per second, then 3 m per frame.
-fn fly(name: &str, scene: &Scene, frames: usize) -> Result<(), Failure> {
+fn fly(name: &str, scene: &Scene, frames: usize, w: Option<f64>) -> Result<(), Failure> {
     let way = ways(scene).into_iter().max_by_key(Vec::len).ok_or("no route")?;
     let length: f64 = way.windows(2).map(|w| w[0].distance(w[1])).sum();
     let flight = Flight::along(&way, scene.terrain(), &FlightOptions::for_length(length))?;
     for (label, step, dt) in [("walking, 1.4 m/s at 25 fps", 0.056, 0.04), ("3 m per frame at 30 fps", 3.0, 1.0 / 30.0)]
     {
-        let solver = TerrainSolver::new(TerrainSettings::default())?.with_time_step(dt);
+        let settings = TerrainSettings { w, ..TerrainSettings::default() };
+        let solver = TerrainSolver::new(settings)?.with_time_step(dt);
         let mut memory = TerrainMemory::default();
         let (mut worst, mut mean, mut visible, mut times) = (0.0f64, 0.0, 1.0f64, Vec::new());
         for i in 0..frames {
             let (eye, target) = flight.at(0.3 * length + i as f64 * step);
             let solved = solver.solve(scene, &view(eye, target)?, &mut memory, &Progress::silent())?;
-            if let Some(change) = solved.report.frame {
+            if let Some(change) = solved.report.metrics.frame {
                 worst = worst.max(change.max_m);
                 mean += change.rms_m / (frames - 1) as f64;
                 times.push(solved.report.times.qp_ms);
             }
-            visible = visible.min(solved.report.visible_dense);
+            visible = visible.min(solved.report.metrics.visible_dense);
         }
         times.sort_by(f64::total_cmp);
         let at = |q: f64| times.get((q * times.len() as f64) as usize).copied().unwrap_or(f64::NAN);

@@ -68,8 +68,8 @@ impl Constructor for TerrainSolver {
         let mut stages: Vec<Stage> = base.stages().iter().filter(|s| s.rank() != rank).cloned().collect();
         stages.insert(stages.iter().take_while(|s| s.rank() < rank).count(), ground);
         let report = &solved.report;
-        let goal = if report.visible < 1.0 {
-            let percent = 100.0 * report.visible;
+        let goal = if report.metrics.visible < 1.0 {
+            let percent = 100.0 * report.metrics.visible;
             Goal::Missed(vec![format!(
                 "{percent:.2} % of {} reference points are visible, all were wanted",
                 report.points

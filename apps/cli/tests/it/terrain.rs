@@ -193,6 +193,12 @@ fn an_intent_is_solved_and_its_picture_says_what_moved() {
     );
     place.ok(&["render", "s.toml", "-o", "straight.png", "--straight"]);
     assert!(!place.path("straight.delta.tif").exists());
+    // Before any work is done, and nothing is half written.
+    place.write("kept.delta.tif", "mine");
+    let line = place.fails(&["render", "s.toml", "-o", "kept.png"]);
+    assert!(line.contains("kept.delta.tif") && line.contains("exists"), "{line}");
+    assert!(!place.path("kept.png").exists() && !place.path("kept.png.json").exists());
+    place.ok(&["render", "s.toml", "-o", "kept.png", "--straight"]);
     place.write("bad.toml", &scene("rise_limit_m = -1"));
     let line = place.fails(&["check", "bad.toml"]);
     assert!(line.contains("bad.toml:") && line.contains("rise_limit_m is -1"), "{line}");

@@ -23,8 +23,8 @@ pub use greedy::{
 };
 pub use line_of_sight::{SightSample, guard_tau, sight_samples};
 pub use metrics::{Deformation, FrameChange, TerrainMetrics, terrain_metrics};
-pub use points::{PointKind, ReferencePoint, Unusable, UnusableReason, reference_points};
-pub use settings::{Detail, SolverMode, TerrainSettings};
+pub use points::{PointKind, ReferencePoint, Unusable, UnusableReason, candidate_points, reference_points};
+pub use settings::{Detail, LONGEST_SMOOTHING_M, SolverMode, TerrainSettings, stated_spacing};
 #[cfg(feature = "sparse")]
 pub use smooth::Cholesky;
 pub use smooth::{

@@ -74,14 +74,30 @@ pub struct Unusable {
 /// * Points: themselves.
 ///
 /// Lengths in cells are measured in grid coordinates. `spacing` is `settings.spacing` for the points that stand for the
-/// features, and `settings.candidates` for the dense ones that the quadratic program looks after.
+/// features.
 pub fn reference_points(
     scene: &Scene,
     field: &Field,
     settings: &TerrainSettings,
     spacing: f64,
 ) -> (Vec<ReferencePoint>, Vec<Unusable>) {
-    let mut out = Sorter { field, layer: 0, feature: 0, lift: 0.0, usable: Vec::new(), unusable: Vec::new() };
+    sorted(Sorter::new(field, false), scene, settings, spacing)
+}
+
+/// Points that the quadratic program looks after: as [`reference_points`] `settings.candidates` apart, but each on the nearest bend
+/// of the drawn line that is no farther than half of that: its own corner, or an edge of the ground's mesh. Between two bends line and
+/// ground are straight, so a line is hidden first at a bend.
+pub fn candidate_points(scene: &Scene, field: &Field, settings: &TerrainSettings) -> Vec<ReferencePoint> {
+    sorted(Sorter::new(field, true), scene, settings, settings.candidates).0
+}
+
+fn sorted(
+    mut out: Sorter<'_>,
+    scene: &Scene,
+    settings: &TerrainSettings,
+    spacing: f64,
+) -> (Vec<ReferencePoint>, Vec<Unusable>) {
+    let field = out.field;
     for (layer, content) in scene.must_see() {
         out.layer = layer;
         match &content.kind {
@@ -121,6 +137,8 @@ fn to_grid(field: &Field, points: impl Iterator<Item = DVec2>) -> Vec<DVec2> {
 /// Puts points where they belong.
 struct Sorter<'a> {
     field: &'a Field,
+    /// Whether points along paths move to bends.
+    bends: bool,
     layer: usize,
     feature: usize,
     lift: f64,
@@ -128,7 +146,11 @@ struct Sorter<'a> {
     unusable: Vec<Unusable>,
 }
 
-impl Sorter<'_> {
+impl<'a> Sorter<'a> {
+    fn new(field: &'a Field, bends: bool) -> Self {
+        Self { field, bends, layer: 0, feature: 0, lift: 0.0, usable: Vec::new(), unusable: Vec::new() }
+    }
+
     fn put(&mut self, grid: DVec2, along_m: f64, kind: PointKind) {
         let (layer, feature) = (self.layer, self.feature);
         match self.field.surface_at(grid) {
@@ -160,7 +182,10 @@ impl Sorter<'_> {
                 if share.is_nan() || share > 1.0 {
                     break;
                 }
-                self.put(pair[0] + share.max(0.0) * step, before_m + share.max(0.0) * length_m, kind);
+                let share = share.max(0.0);
+                let reach = 0.5 * cells / (parts as f64 * length);
+                let share = if self.bends { nearest_bend(pair[0], step, share, reach) } else { share };
+                self.put(pair[0] + share * step, before_m + share * length_m, kind);
                 placed += 1;
             }
             before += length;
@@ -203,6 +228,15 @@ impl Sorter<'_> {
             }
         }
     }
+}
+
+/// The share of a straight way, `share` or less than `reach` away from it, at which the way ends or crosses the mesh.
+fn nearest_bend(from: DVec2, step: DVec2, share: f64, reach: f64) -> f64 {
+    let at = from + share * step;
+    let lines = [(from.x, step.x, at.x), (from.y, step.y, at.y), (from.x - from.y, step.x - step.y, at.x - at.y)];
+    let crossings = lines.into_iter().map(|(from, step, at)| (at.round() - from) / step);
+    let bends = crossings.chain([0.0, 1.0]).filter(|b| (0.0..=1.0).contains(b) && (b - share).abs() < reach);
+    bends.min_by(|a, b| (a - share).abs().total_cmp(&(b - share).abs())).unwrap_or(share)
 }
 
 /// Even-odd rule.
@@ -290,6 +324,26 @@ mod tests {
         let lifted = TerrainSettings { lift_m: Some(9.0), ..TerrainSettings::default() };
         assert!(reference_points(&scene, &field, &lifted, 2.0).0.iter().all(|p| p.lift == 9.0));
         assert_eq!(points(&scene, &field, 0.25).0.len(), 45 + 5, "dense");
+    }
+
+    #[test]
+    fn candidates_lie_on_the_bends_of_the_drawn_line() {
+        let field = field();
+        let scene = lines(&field, &[&[[2.05, 3.3], [9.4, 6.8], [9.4, 12.2], [17.5, 20.3]]]);
+        let settings = TerrainSettings::default();
+        let (even, _) = points(&scene, &field, settings.candidates);
+        let found = candidate_points(&scene, &field, &settings);
+        assert_eq!(found.len(), even.len());
+        assert!(found.windows(2).all(|w| w[0].along_m <= w[1].along_m), "in their order");
+        let bend = |p: DVec2| [p.x, p.y, p.x - p.y].iter().any(|v| (v - v.round()).abs() < 1e-9);
+        for (p, q) in found.iter().zip(&even) {
+            assert!((p.grid - q.grid).length() <= 0.5 * settings.candidates + 1e-9);
+            assert!((p.ground - field.surface_at(p.grid).unwrap()).abs() < 1e-9);
+            assert!(p.grid == q.grid || bend(p.grid) || (p.grid - DVec2::new(9.4, 6.8)).length() < 1e-9, "{p:?}");
+        }
+        // The second leg runs south along x = 9.4: it crosses rows 7..=12 and the diagonals at y = k + 0.4.
+        let leg = |y: f64| found.iter().filter(|p| (p.grid - DVec2::new(9.4, y)).length() < 1e-9).count();
+        assert!((7..=12).all(|y| leg(f64::from(y)) == 1) && (7..=11).all(|y| leg(f64::from(y) + 0.4) == 1));
     }
 
     #[test]

@@ -1,5 +1,15 @@
 //! The parameters of terrain disocclusion and their defaults.
 
+use belvedere_core::DVec2;
+
+/// Longest smoothing of mode qp where no `w` is stated, metres: about the width of a valley floor. On ground larger than 35 km
+/// w = 0.3 would spread every displacement over the next ridge.
+pub const LONGEST_SMOOTHING_M: f64 = 500.0;
+/// Intervals between the 129 nodes for which smoothness weights are stated.
+const STATED: f64 = 128.0;
+/// Largest smoothness weight.
+pub(super) const MOST_W: f64 = 1e4;
+
 /// Which passes run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub enum SolverMode {
@@ -44,7 +54,8 @@ pub struct TerrainSettings {
     pub mu: f64,
     /// Weight of displacement in the change inside a cell, >= 0.
     pub mu_dev: f64,
-    /// Smoothness weight, stated for a solver's grid of 129 nodes; `None` = 0.6 (paper, paper+qp) or 0.3 (qp).
+    /// Smoothness weight, stated for a solver's grid of 129 nodes; `None` = 0.6 (paper, paper+qp) or 0.3 (qp), there so much more
+    /// that the smoothing is no longer than [`LONGEST_SMOOTHING_M`].
     pub w: Option<f64>,
     /// Weight of the elevation rows, >= 0.
     pub rows_weight: f64,
@@ -92,13 +103,63 @@ impl Default for TerrainSettings {
 }
 
 impl TerrainSettings {
-    /// Smoothness weight in force, for 129 nodes.
-    pub fn smoothness(&self) -> f64 {
-        self.w.unwrap_or(if self.mode == SolverMode::Qp { 0.3 } else { 0.6 })
+    /// Smoothness weight in force, for 129 nodes `stated_m` apart, see [`stated_spacing`].
+    pub fn smoothness(&self, stated_m: f64) -> f64 {
+        let usual = match self.mode {
+            SolverMode::Qp => (stated_m / LONGEST_SMOOTHING_M).powi(2).clamp(0.3, MOST_W),
+            SolverMode::Paper | SolverMode::PaperQp => 0.6,
+        };
+        self.w.unwrap_or(usual)
+    }
+
+    /// Wavelength over 2 pi at which the smoothing halves a displacement, metres.
+    pub fn smoothing_length(&self, stated_m: f64) -> f64 {
+        stated_m / self.smoothness(stated_m).sqrt()
     }
 
     /// Treatment of detail in force.
     pub fn detail(&self) -> Detail {
         self.detail.unwrap_or(if self.mode == SolverMode::Qp { Detail::Plain } else { Detail::Scaled })
+    }
+}
+
+/// Spacing of 129 nodes along the longer side of terrain with `cols` x `rows` nodes `spacing` apart, scene units.
+pub fn stated_spacing(cols: usize, rows: usize, spacing: DVec2) -> f64 {
+    (cols.max(rows).max(2) - 1) as f64 * spacing.max_element() / STATED
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settings(mode: SolverMode, w: Option<f64>) -> TerrainSettings {
+        TerrainSettings { mode, w, ..TerrainSettings::default() }
+    }
+
+    #[test]
+    fn smoothing_is_capped_in_metres_unless_w_is_stated() {
+        let usual = settings(SolverMode::Qp, None);
+        assert_eq!(usual.smoothness(240.0), 0.3, "1025 nodes 30 m apart keep the stated default");
+        assert!(usual.smoothing_length(240.0) < LONGEST_SMOOTHING_M);
+        assert!(usual.smoothness(860.0) > 0.3, "1201 nodes 92 m apart do not");
+        assert!((usual.smoothing_length(860.0) - LONGEST_SMOOTHING_M).abs() < 1e-9);
+        for stated_m in [1.0, 240.0, 273.0, 275.0, 860.0, 20_000.0] {
+            assert!(usual.smoothing_length(stated_m) <= LONGEST_SMOOTHING_M * (1.0 + 1e-12), "{stated_m}");
+            for w in [0.05, 0.3, 7.0] {
+                assert_eq!(settings(SolverMode::Qp, Some(w)).smoothness(stated_m), w, "a stated w is literal");
+            }
+            for mode in [SolverMode::Paper, SolverMode::PaperQp] {
+                assert_eq!(settings(mode, None).smoothness(stated_m), 0.6, "the paper's is the paper's");
+            }
+        }
+        assert_eq!(usual.smoothness(1e9), MOST_W);
+    }
+
+    #[test]
+    fn the_stated_grid_lies_along_the_longer_side() {
+        assert_eq!(stated_spacing(1025, 600, DVec2::splat(30.0)), 240.0);
+        assert_eq!(stated_spacing(600, 1025, DVec2::splat(30.0)), 240.0);
+        assert_eq!(stated_spacing(129, 2, DVec2::new(5.0, 4.0)), 5.0);
+        assert!(stated_spacing(1, 1, DVec2::ONE) > 0.0);
     }
 }

@@ -1,6 +1,7 @@
 //! Integration tests of belvedere-construct.
 
 mod bars;
+mod fallbacks;
 mod flight;
 mod live;
 mod measure;
@@ -8,6 +9,7 @@ mod qp;
 mod reveal;
 mod sight;
 mod smooth;
+mod smoothing;
 mod synthetic;
 mod trends;
 mod viewpoint;

@@ -63,7 +63,7 @@ impl Case {
     /// The naive ground smoothed, without elevation and temporal rows.
     fn smooth(&self, settings: &TerrainSettings, naive: &[f64]) -> TerrainMetrics {
         let grid = Hierarchy::new(self.field.cols(), self.field.rows(), 81);
-        let w = grid_weight(settings.smoothness(), grid.cols().max(grid.rows()));
+        let w = grid_weight(settings.w.unwrap(), grid.cols().max(grid.rows()));
         let mut u: Vec<f64> = grid.restrict(naive).into_iter().map(|u| w * w * u).collect();
         Smoother::new(grid.cols(), grid.rows(), w, 0.0).unwrap().solve(&mut u);
         self.judge(settings, [grid.cols(), grid.rows()], u)
@@ -79,7 +79,7 @@ fn visibility_and_steps_rise_with_w() {
     for w in [0.1, 0.6, 1.0, 10.0] {
         let all: Vec<TerrainMetrics> = cases.iter().zip(&naive).map(|(c, u)| c.smooth(&settings(w), u)).collect();
         let mean = |f: &dyn Fn(&TerrainMetrics) -> f64| all.iter().map(f).sum::<f64>() / all.len() as f64;
-        let now = [mean(&|m| m.visible.unwrap()), mean(&|m| m.step_p999_m)];
+        let now = [mean(&|m| m.visible), mean(&|m| m.step_p999_m)];
         assert!(now[0] >= before[0] && now[1] > before[1], "w = {w}: {before:?}, then {now:?}");
         before = now;
     }
@@ -93,12 +93,12 @@ fn the_naive_ground_shows_nearly_everything_and_smoothing_hides_some_of_it() {
         let u = case.naive(&settings);
         let naive = case.judge(&settings, [case.field.cols(), case.field.rows()], u.clone());
         let smooth = case.smooth(&settings, &u);
-        let [before, naive_seen, after] = [still, naive, smooth].map(|m| m.visible.unwrap());
+        let [before, naive_seen, after] = [still, naive, smooth].map(|m| m.visible);
         assert!(before < 0.8 && naive_seen > 0.9 && after < naive_seen, "{before} {naive_seen} {after}");
         assert!(after > before);
         assert_eq!(naive.raised_max_m, 0.0);
         // Two methods of judging agree about the length.
-        let dense = naive.visible_dense.unwrap();
+        let dense = naive.visible_dense;
         assert!((dense - naive_seen).abs() < 0.05, "{naive_seen} {dense}");
     }
 }

@@ -134,7 +134,7 @@ fn load(loader: &mut layers::Loader<'_>) -> Result<Scene, BelvedereError> {
     let doc = &source.document;
     let mut crs = crs_wanted(source)?;
     let mut layers: Vec<Option<Layer>> = doc.layer.iter().map(|_| None).collect();
-    let solves = !loader.options.unsolved && doc.stage.iter().any(StageDoc::is_terrain_intent);
+    let solves = !loader.options.unsolved && doc.solves_terrain();
     let needs = if solves { Needs::Everything } else { loader.options.needs };
     let with_ground = needs != Needs::View || ground_is_needed(source, crs);
     for (i, layer) in doc.layer.iter().enumerate().filter(|_| with_ground) {

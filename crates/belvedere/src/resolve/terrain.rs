@@ -7,6 +7,7 @@ use crate::scene_file::{DetailDoc, PointDoc, SolverMode as ModeDoc, SourceDocume
 use belvedere_construct::ConstructError;
 use belvedere_construct::terrain::{
     Cells, Detail, Field, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver, ViewpointOptions,
+    stated_spacing,
 };
 use belvedere_core::{DVec3, Pinhole, Stage, View};
 use belvedere_scene::{Progress, Scene};
@@ -73,6 +74,7 @@ pub(crate) fn settings(doc: &TerrainStageDoc) -> Result<TerrainSettings, (&'stat
 /// The document with every default filled in.
 pub(crate) fn document(settings: &TerrainSettings, scene: &Scene) -> TerrainStageDoc {
     let nodes = || scene.terrain().and_then(|t| Field::new(t, |_| 0.0).ok()).map(|f| Cells::default_count(&f));
+    let smoothness = || scene.terrain().map(|t| settings.smoothness(stated_spacing(t.cols(), t.rows(), t.spacing())));
     TerrainStageDoc {
         delta: None,
         delta_sha256: None,
@@ -88,7 +90,7 @@ pub(crate) fn document(settings: &TerrainSettings, scene: &Scene) -> TerrainStag
         eta: Some(settings.eta),
         mu: Some(settings.mu),
         mu_dev: Some(settings.mu_dev),
-        w: Some(settings.smoothness()),
+        w: settings.w.or_else(smoothness),
         rows_weight: Some(settings.rows_weight),
         gamma_time_s: Some(settings.gamma_time_s),
         solver_nodes: Some(settings.solver_nodes as u32),

@@ -48,6 +48,13 @@ pub struct Document {
     pub animation: Option<super::intent::AnimationDoc>,
 }
 
+impl Document {
+    /// Whether ground has to make way before anything can be drawn: the scene names what must be seen, not how far the ground moves.
+    pub fn solves_terrain(&self) -> bool {
+        self.stage.iter().any(StageDoc::is_terrain_intent)
+    }
+}
+
 /// The keys of a [`Document`] as they stand in a file; layers and stages are read by kind.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]

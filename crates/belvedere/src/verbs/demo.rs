@@ -3,7 +3,7 @@
 use super::html::{STYLE, escape};
 use super::output;
 use super::render::{self, RenderRequest};
-use crate::{BelvedereError, CameraPicture, OpenOptions, Session};
+use crate::{BelvedereError, CameraPicture, OpenOptions, Session, scene_file};
 use belvedere_construct::{MeasureOptions, Measures};
 use std::path::{Path, PathBuf};
 
@@ -80,8 +80,9 @@ pub fn demo(
         let name = scene.name;
         output::check(&scene_of(name), &[], overwrite)?;
         let cameras = scene.cameras().iter().map(|(ending, _)| format!("{name}{ending}"));
-        let pictures = [name.to_owned()].into_iter().chain(cameras);
-        for path in pictures.flat_map(|name| render::outputs(&picture_of(&name), &request)) {
+        let solves = scene_file::parse(&scene_of(name), scene.text)?.document.solves_terrain();
+        let cameras = cameras.flat_map(|name| render::outputs(&picture_of(&name), &request, false));
+        for path in render::outputs(&picture_of(name), &request, solves).into_iter().chain(cameras) {
             output::check(&path, &[], overwrite)?;
         }
     }

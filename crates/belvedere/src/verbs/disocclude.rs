@@ -109,10 +109,7 @@ impl DisoccludeFiles {
     /// Every file that will be written.
     pub fn all(&self) -> Vec<PathBuf> {
         let asked = [&self.report, &self.displacement, &self.features].into_iter().flatten().cloned();
-        let pictures = self
-            .picture
-            .iter()
-            .flat_map(|p| render::outputs(p, &RenderRequest::default()).into_iter().chain([render::delta_path(p)]));
+        let pictures = self.picture.iter().flat_map(|p| render::outputs(p, &RenderRequest::default(), true));
         std::iter::once(self.out.clone()).chain(asked).chain(pictures).collect()
     }
 }
@@ -239,10 +236,10 @@ impl Disoccluded {
     pub fn missed(&self) -> Vec<String> {
         let r = self.report();
         let mut out = Vec::new();
-        if r.visible < 1.0 {
+        if r.metrics.visible < 1.0 {
             out.push(format!(
                 "{:.2} % of the {} points in view are visible, all were wanted",
-                100.0 * r.visible,
+                100.0 * r.metrics.visible,
                 r.points
             ));
         }
@@ -255,9 +252,9 @@ impl Disoccluded {
         format!(
             "visible of the features in view: {:.1} % before, {:.1} % after; the ground moved by {:.1} m rms, {:.1} m at most",
             100.0 * r.visible_dense_before,
-            100.0 * r.visible_dense,
-            r.rms_m,
-            r.max_m
+            100.0 * r.metrics.visible_dense,
+            r.metrics.rms_m,
+            r.metrics.max_m
         )
     }
 

@@ -213,13 +213,16 @@ pub fn delta_path(out: &Path) -> PathBuf {
 }
 
 /// Files that [`Picture::write`] makes for `out`.
-pub fn outputs(out: &Path, request: &RenderRequest) -> Vec<PathBuf> {
+///
+/// * `solves`: whether the scene asks for terrain disocclusion by an intent, see [`Document::solves_terrain`](crate::scene_file::Document::solves_terrain).
+pub fn outputs(out: &Path, request: &RenderRequest, solves: bool) -> Vec<PathBuf> {
     let sidecar = sibling(out, ".json");
     let aux: Vec<PathBuf> = match request.aux_format {
         AuxFormat::Npy => request.aux.iter().map(|a| aux_path(out, *a)).collect(),
         AuxFormat::Exr => request.aux.first().map(|_| out.with_extension("exr")).into_iter().collect(),
     };
-    [out.to_owned(), sidecar].into_iter().chain(aux).collect()
+    let delta = (solves && !request.straight && request.camera.is_none()).then(|| delta_path(out));
+    [out.to_owned(), sidecar].into_iter().chain(delta).chain(aux).collect()
 }
 
 /// Draws the session's view, or its camera.

@@ -37,10 +37,12 @@ pub struct Deformation<'a> {
 /// How well the ground makes way and how much it is changed. Lengths in scene units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct TerrainMetrics {
-    /// Share of the reference points that are seen, 0..=1; `None` without points in view.
-    pub visible: Option<f64>,
-    /// Share of the dense points that are seen, 0..=1; `None` if nothing is in view.
-    pub visible_dense: Option<f64>,
+    /// Share of the reference points that are seen, 0..=1; 1 without points in view.
+    pub visible: f64,
+    /// Share of the dense points that are seen, 0..=1; 1 without points in view.
+    pub visible_dense: f64,
+    /// Share of the dense points that are seen but for ground nearer to them than the guard, 0..=1.
+    pub hidden_in_guard: f64,
     /// How far the ground rises over the line of sight that it hides most; 0 if nothing is hidden.
     pub hidden_worst_m: f64,
     /// Root mean square displacement of the nodes.
@@ -73,8 +75,8 @@ pub struct FrameChange {
 /// Share of points that the displaced ground shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Shown {
-    /// 0..=1; `None` without points on the ground.
-    pub(super) share: Option<f64>,
+    /// 0..=1; 1 without points on the ground.
+    pub(super) share: f64,
     /// As [`TerrainMetrics::hidden_worst_m`].
     pub(super) worst_m: f64,
 }
@@ -92,6 +94,14 @@ pub(super) fn excesses(
     points.par_iter().map(over).collect()
 }
 
+/// For each dense point that is seen beyond the guard, the largest height over its line of sight of the ground nearer than that.
+fn near_excesses(of: &Deformation<'_>) -> Vec<f64> {
+    let drawn = Drawn::new(of.field, of.delta, of.guard);
+    let seen = |p: &&ReferencePoint| drawn.excess(p.grid, p.lift, of.sight).is_some_and(|over| over <= TOUCH);
+    let near = |p: &ReferencePoint| drawn.near_excess(p.grid, p.lift, of.sight).unwrap_or(-1.0);
+    of.dense.par_iter().filter(seen).map(near).collect()
+}
+
 /// Judges points by lines of sight against the drawn surface, two triangles per cell plus the displacement.
 pub(super) fn shown(
     field: &Field,
@@ -102,7 +112,7 @@ pub(super) fn shown(
 ) -> Shown {
     let over: Vec<f64> = excesses(field, delta, guard, sight, points).into_iter().flatten().collect();
     let hidden = over.iter().filter(|over| **over > 0.0).count();
-    let share = (!over.is_empty()).then(|| 1.0 - hidden as f64 / over.len() as f64);
+    let share = 1.0 - hidden as f64 / over.len().max(1) as f64;
     let worst_m = over.into_iter().filter(|over| over.is_finite()).fold(0.0, f64::max);
     Shown { share, worst_m }
 }
@@ -114,6 +124,8 @@ pub fn terrain_metrics(of: &Deformation<'_>) -> TerrainMetrics {
     let (points, dense) = (judge(of.points), judge(of.dense));
     let u = change::at_nodes(of.field, of.delta);
     let steps = change::steps(of.field, of.cells, &u);
+    let near = near_excesses(of);
+    let hidden_in_guard = near.iter().filter(|over| **over > TOUCH).count() as f64 / of.dense.len().max(1) as f64;
     let normals = change::normals(of.field, &u);
     let size = change::size(of.field, &u);
     let frame = of.previous.map(|before| {
@@ -125,6 +137,7 @@ pub fn terrain_metrics(of: &Deformation<'_>) -> TerrainMetrics {
     TerrainMetrics {
         visible: points.share,
         visible_dense: dense.share,
+        hidden_in_guard,
         hidden_worst_m: points.worst_m.max(dense.worst_m),
         rms_m: size.rms,
         max_m: size.max,

@@ -55,6 +55,24 @@ impl<'a> Drawn<'a> {
         Some(worst)
     }
 
+    /// As [`Self::excess`], of the ground nearer than the guard.
+    pub(super) fn near_excess(&self, g: DVec2, lift: f64, sight: &dyn LinesOfSight) -> Option<f64> {
+        let z = self.field.surface_at(g)? + self.delta_at(g) + lift;
+        let mut line: Vec<Place> = Vec::new();
+        sight.trace(g, z, &mut line);
+        let mut worst = -1.0f64;
+        for pair in line.windows(2) {
+            let leaves = beyond(g, self.guard, pair[0], pair[1]);
+            if leaves != Some(pair[0]) {
+                worst = self.excess_of(pair[0], leaves.unwrap_or(pair[1]), worst);
+            }
+            if leaves.is_some() {
+                break;
+            }
+        }
+        Some(worst)
+    }
+
     /// The same over one chord; anything not above `least` comes back as that.
     fn excess_of(&self, from: Place, to: Place, least: f64) -> f64 {
         let (g, dir) = (from.0, to.0 - from.0);

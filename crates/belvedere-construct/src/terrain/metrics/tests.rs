@@ -99,17 +99,33 @@ fn a_wall_hides_what_is_behind_it_until_it_is_lowered() {
     let before = judge(&scene, &field, &still, eye);
     // Seen are: up to column 5 no, the line over the wall reaches the ground at 35 - 30 = 5 columns; 5.6 with the lift.
     let expected = |cut: f64| (28.0 - (20.0 - cut)) / 28.0;
-    assert!(before.visible_dense.unwrap() > expected(5.0) - 0.4 / 28.0 - 1.6 / 28.0, "{before:?}");
-    assert!(before.visible_dense.unwrap() < expected(5.0) + 2.5 / 28.0, "{before:?}");
-    assert!(before.visible.unwrap() < 0.6);
+    assert!(before.visible_dense > expected(5.0) - 0.4 / 28.0 - 1.6 / 28.0, "{before:?}");
+    assert!(before.visible_dense < expected(5.0) + 2.5 / 28.0, "{before:?}");
+    assert!(before.visible < 0.6);
     // The point two cells behind the wall sees it 50 - (1 + 99 * 2/17) m too high.
     assert!(before.hidden_worst_m > 35.0 && before.hidden_worst_m < 49.0);
     assert_eq!((before.rms_m, before.max_m, before.step_p999_m, before.normal_mean_deg), (0.0, 0.0, 0.0, 0.0));
     let lowered = delta_of(&field, 41, |x, _| if x == 20.0 { -50.0 } else { 0.0 });
     let after = judge(&scene, &field, &lowered, eye);
-    assert_eq!((after.visible, after.visible_dense, after.hidden_worst_m), (Some(1.0), Some(1.0), 0.0));
+    assert_eq!((after.visible, after.visible_dense, after.hidden_worst_m), (1.0, 1.0, 0.0));
     assert!((after.rms_m - (2500.0f64 / 41.0).sqrt()).abs() < 1e-9);
     assert_eq!((after.max_m, after.raised_max_m), (50.0, 0.0));
+}
+
+#[test]
+fn what_only_ground_inside_the_guard_hides_is_counted_by_itself() {
+    // A bank 10 m high, less than a cell in front of the line; the eye stands 100 m high 15 cells behind it.
+    let field = field_of(41, 21, DVec2::splat(10.0), |c, _| if c == 20 { 510.0 } else { 500.0 });
+    let scene = line(&field, &[[19.0, 10.0], [19.4, 10.0]]);
+    let eye = field.scene_from_grid(DVec2::new(35.0, 10.0)).extend(600.0);
+    let still = judge(&scene, &field, &delta_of(&field, 2, |_, _| 0.0), eye);
+    assert_eq!((still.visible, still.visible_dense, still.hidden_in_guard), (1.0, 1.0, 1.0));
+    let lowered = judge(&scene, &field, &delta_of(&field, 41, |x, _| if x == 20.0 { -10.0 } else { 0.0 }), eye);
+    assert_eq!((lowered.visible_dense, lowered.hidden_in_guard), (1.0, 0.0));
+    // Hidden by something beyond the guard as well, it is hidden.
+    let both = field_of(41, 21, DVec2::splat(10.0), |c, _| if c == 20 || c == 24 { 560.0 } else { 500.0 });
+    let both = judge(&scene, &both, &delta_of(&both, 2, |_, _| 0.0), eye);
+    assert_eq!((both.visible_dense, both.hidden_in_guard), (0.0, 0.0));
 }
 
 #[test]
@@ -121,7 +137,7 @@ fn a_tilt_turns_every_normal_alike_and_a_shift_none() {
     let angle = 0.2f64.atan().to_degrees();
     assert!((tilted.normal_mean_deg - angle).abs() < 1e-9 && (tilted.normal_p95_deg - angle).abs() < 1e-9);
     assert!((tilted.max_m - 58.0).abs() < 1e-9 && (tilted.step_p999_m - 2.0).abs() < 1e-9);
-    assert_eq!((tilted.visible, tilted.visible_dense, tilted.border_step_m), (None, None, None));
+    assert_eq!((tilted.visible, tilted.visible_dense, tilted.border_step_m), (1.0, 1.0, None));
     let south = judge(&scene, &field, &delta_of(&field, 5, |_, y| 5.0 * y), eye);
     assert!((south.normal_mean_deg - angle).abs() < 1e-9, "25 m between rows");
     assert!((south.raised_max_m - 95.0).abs() < 1e-9);
@@ -160,6 +176,7 @@ fn steps_between_cells_and_frames_are_those_of_the_displacement() {
     for key in [
         "visible",
         "visible_dense",
+        "hidden_in_guard",
         "hidden_worst_m",
         "rms_m",
         "max_m",
@@ -185,10 +202,10 @@ fn voids_hide_nothing_and_are_not_counted() {
     let scene = line(&field, &[[2.0, 10.0], [18.0, 10.0]]);
     let eye = field.scene_from_grid(DVec2::new(35.0, 10.0)).extend(600.0);
     let metrics = judge(&scene, &field, &delta_of(&field, 2, |_, _| -3.0), eye);
-    assert_eq!((metrics.visible, metrics.visible_dense), (Some(1.0), Some(1.0)), "a wall of voids is no wall");
+    assert_eq!((metrics.visible, metrics.visible_dense), (1.0, 1.0), "a wall of voids is no wall");
     assert_eq!(metrics.rms_m, 3.0);
     let nowhere = line(&field, &[[20.0, 3.0], [20.0, 9.0]]);
-    assert_eq!(judge(&nowhere, &field, &delta_of(&field, 2, |_, _| -3.0), eye).visible_dense, None);
+    assert_eq!(judge(&nowhere, &field, &delta_of(&field, 2, |_, _| -3.0), eye).visible_dense, 1.0);
 }
 
 #[test]

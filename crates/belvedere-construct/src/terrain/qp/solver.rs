@@ -150,7 +150,9 @@ impl QpSolver {
             let new = frame.thinned(&self.surface, &missed, out.rounds);
             let deepest = self.surface.u.iter().copied().fold(0.0, f64::min);
             if new.is_empty() && deepest >= -depth {
-                missed.clear();
+                // Rows that had to become soft are missed still, though none more would help.
+                let forced = frame.soft > 0.0 && o.slack_price.is_none();
+                missed = if forced { frame.missed(&self.surface, 1) } else { Vec::new() };
                 break;
             }
             if deepest < -depth && frame.soft == 0.0 {

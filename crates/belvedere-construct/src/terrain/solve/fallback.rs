@@ -1,7 +1,7 @@
 //! What is done when rows of the quadratic program contradict each other on the solver's grid.
 //!
-//! In this order: slack, which the program buys by itself; the detail of the ground around what is missed is cut down;
-//! finer grids, to which the ground's own belongs.
+//! In this order: slack, which the program buys by itself; the detail of the ground around what is missed is cut down; ground
+//! nearer to a place than the guard is left as it is; finer grids are taken, to which the ground's own belongs.
 
 use super::super::qp::{QpResult, Reason, SolvedRow};
 use super::super::{Field, Hierarchy};
@@ -14,6 +14,8 @@ use serde::Serialize;
 pub enum Fallback {
     /// Bumps that the solver's grid cannot hold were cut down where they hide something.
     Detail,
+    /// Ground nearer to a place than the guard was left as it is.
+    Guard,
     /// The program was solved again on a finer grid.
     FinerGrid {
         /// Nodes along its longer side.

@@ -1,9 +1,10 @@
 //! What is prepared once per terrain and what is remembered between frames.
 
 use super::super::qp::{QpOptions, QpSolver};
+use super::super::settings::MOST_W;
 use super::super::{
     Cells, Field, Hierarchy, Pyramid, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings, Unusable,
-    grid_weight, reference_points, temporal_weight,
+    candidate_points, grid_weight, reference_points, stated_spacing, temporal_weight,
 };
 use crate::ConstructError;
 use belvedere_core::{DVec2, DVec3, View};
@@ -69,9 +70,9 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    /// Both for 129 nodes.
-    pub(super) fn new(settings: &TerrainSettings, frame: Option<[f64; 2]>) -> Self {
-        let w = settings.smoothness();
+    /// Both for 129 nodes, on the terrain that will be solved on.
+    pub(super) fn new(settings: &TerrainSettings, terrain: &Heightfield, frame: Option<[f64; 2]>) -> Self {
+        let w = settings.smoothness(stated_spacing(terrain.cols(), terrain.rows(), terrain.spacing()));
         Self { w, g: frame.map_or(0.0, |[dt, time]| temporal_weight(w, dt, time)) }
     }
 
@@ -153,7 +154,7 @@ impl Prepared {
         let grid = Hierarchy::new(level.cols(), level.rows(), settings.solver_nodes);
         let (points, unusable) = reference_points(scene, &level, settings, settings.spacing);
         let with_qp = settings.mode != SolverMode::Paper;
-        let dense = if with_qp { reference_points(scene, &level, settings, settings.candidates).0 } else { Vec::new() };
+        let dense = if with_qp { candidate_points(scene, &level, settings) } else { Vec::new() };
         let check = reference_points(scene, &level, settings, CHECK_CELLS).0;
         let cells = (settings.mode != SolverMode::Qp).then(|| {
             let keep = settings.cells.unwrap_or_else(|| Cells::default_count(&level));
@@ -165,11 +166,13 @@ impl Prepared {
                     |&i: &u32| DVec2::new((i as usize % level.cols()) as f64, (i as usize / level.cols()) as f64);
                 let rows: Vec<DVec2> =
                     points.iter().map(|p| p.grid).chain(parts.0.summits().iter().map(summit)).collect();
-                Some(SmoothPass::new(grid.clone(), settings.smoothness(), settings.rows_weight, &rows)?)
+                Some(SmoothPass::new(grid.clone(), pace.w, settings.rows_weight, &rows)?)
             }
             None => None,
         };
-        let made = |pace| program(&level, &grid, pace, settings).map(|solver| Program { solver, foreign: false });
+        let made = |pace| {
+            program(&level, &grid, pace, options(settings, false)).map(|solver| Program { solver, foreign: false })
+        };
         let still = with_qp.then(|| made(Pace { g: 0.0, ..pace })).transpose()?;
         let moving = (with_qp && pace.g > 0.0).then(|| made(pace)).transpose()?;
         Ok(Self {
@@ -199,16 +202,26 @@ impl Prepared {
     }
 }
 
+/// Ground is cleared as near as this to a place, cells. Nearer, a third of a percent of the length is hidden on steep ground, and
+/// showing that as well would move a twentieth more ground.
+const CLEARED_CELLS: f64 = 0.5;
+
+/// How near the quadratic program clears the ground: at once, or from the guard on where rows nearer than that contradict others.
+pub(super) fn options(settings: &TerrainSettings, from_guard: bool) -> QpOptions {
+    let guard = if from_guard { settings.guard } else { settings.guard.min(CLEARED_CELLS) };
+    QpOptions { guard, ..QpOptions::of(settings) }
+}
+
 /// The quadratic program on a solver's grid.
 pub(super) fn program(
     field: &Field,
     grid: &Hierarchy,
     pace: Pace,
-    settings: &TerrainSettings,
+    options: QpOptions,
 ) -> Result<QpSolver, ConstructError> {
     let Pace { w, g } = pace.on(grid);
     let smoother = Smoother::new(grid.cols(), grid.rows(), w, g)?;
-    Ok(QpSolver::new(field, grid, smoother, QpOptions::of(settings)))
+    Ok(QpSolver::new(field, grid, smoother, options))
 }
 
 /// Which points count when only features up to `ahead_m` along their path from the eye do: the plan distance to the feature's
@@ -249,7 +262,7 @@ pub(super) fn check(settings: &TerrainSettings) -> Result<(), ConstructError> {
     if !in_range(s.guard, 0.0, 1e3) {
         return bad("guard", s.guard, "0..=1000 cells");
     }
-    if let Some(w) = s.w.filter(|w| !in_range(*w, 1e-4, 1e4)) {
+    if let Some(w) = s.w.filter(|w| !in_range(*w, 1e-4, MOST_W)) {
         return bad("w", w, "0.0001..=10000");
     }
     let weights = [("eta", s.eta), ("mu", s.mu), ("mu_dev", s.mu_dev), ("rows_weight", s.rows_weight)];

@@ -131,7 +131,7 @@ impl TerrainSolver {
         }
         let began = Instant::now();
         progress.tick("cells and points of the terrain", 0.0)?;
-        let pace = Pace::new(&self.settings, self.frame());
+        let pace = Pace::new(&self.settings, heightfield, self.frame());
         let mut prepared = memory.prepared_for(scene, heightfield, &self.settings, pace)?;
         let earth = base.stages().iter().find_map(|s| match s {
             Stage::EarthCurvature(earth) => Some(*earth),

@@ -139,6 +139,7 @@ impl Passes<'_> {
         }
         let (candidates, sight) = (&seen.candidates[..], &*seen.sight);
         let problem = QpProblem { candidates, sight, target: target.as_deref(), ceilings: None };
+        qp.set_options(memory::options(self.settings, false));
         let mut result = qp.solve(&problem)?;
         if fallback::stuck(&result) > 0 {
             let cut = fallback::cut_detail(self.field, &ground, &prepared.grid, &result.active);
@@ -151,6 +152,18 @@ impl Passes<'_> {
                 let before = detail.take().unwrap_or_else(|| vec![0.0; cut.len()]);
                 *detail = Some(before.iter().zip(cut).map(|(d, c)| d + c).collect());
                 done.fallbacks.push(Fallback::Detail);
+            } else {
+                qp.set_heights(&ground)?;
+            }
+        }
+        let mut from_guard = false;
+        if fallback::stuck(&result) > 0 {
+            qp.set_options(memory::options(self.settings, true));
+            let next = qp.solve(&problem)?;
+            from_guard = fallback::stuck(&next) < fallback::stuck(&result);
+            if from_guard {
+                result = next;
+                done.fallbacks.push(Fallback::Guard);
             }
         }
         program.foreign = foreign;
@@ -162,7 +175,8 @@ impl Passes<'_> {
             self.progress.tick("quadratic program on a finer grid", 0.7)?;
             let grid = Hierarchy::new(self.field.cols(), self.field.rows(), nodes);
             let start = target.as_ref().map(|t| fallback::resampled(&prepared.grid, t, &grid));
-            let mut finer = memory::program(self.field, &grid, pace, self.settings)?;
+            let options = memory::options(self.settings, from_guard);
+            let mut finer = memory::program(self.field, &grid, pace, options)?;
             finer.set_heights(&ground)?;
             let next = finer.solve(&QpProblem { target: start.as_deref(), ..problem })?;
             if fallback::stuck(&next) < fallback::stuck(&result) {

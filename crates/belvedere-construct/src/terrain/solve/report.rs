@@ -3,8 +3,8 @@
 use super::super::metrics::{excesses, shown};
 use super::super::qp::{Reason, Unresolved};
 use super::super::{
-    Deformation, Field, FrameChange, GreedyCounters, PointKind, ReferencePoint, SolverMode, TerrainSettings, Unusable,
-    UnusableReason, terrain_metrics,
+    Deformation, Field, GreedyCounters, PointKind, ReferencePoint, SolverMode, TerrainMetrics, TerrainSettings,
+    Unusable, UnusableReason, stated_spacing, terrain_metrics,
 };
 use super::memory::Prepared;
 use super::{Done, Fallback, Seen, since};
@@ -13,6 +13,10 @@ use belvedere_core::grid::Grid;
 use serde::Serialize;
 use std::time::Instant;
 
+/// Share of the length in view that must be seen for a promise to be kept: places between two candidates may lie a little under
+/// the line of sight.
+const AGREES: f64 = 0.99;
+
 /// Everything about a solved displacement. Lengths in scene units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TerrainReport {
@@ -20,46 +24,28 @@ pub struct TerrainReport {
     pub parameters: TerrainSettings,
     /// Smoothness weight in force, for a solver's grid of 129 nodes.
     pub w: f64,
-    /// Wavelength over 2 pi at which the smoothing halves a displacement.
+    /// Wavelength over 2 pi at which the smoothing halves a displacement; in mode qp at most
+    /// [`LONGEST_SMOOTHING_M`](super::super::LONGEST_SMOOTHING_M) unless w was stated.
     pub smoothing_length_m: f64,
     /// Columns and rows of the solver's grid.
     pub solver_grid: [usize; 2],
     /// Reference points in view.
     pub points: usize,
-    /// Visible share of them, by a tracer that knows nothing of the solver; 1 without points.
-    pub visible: f64,
-    /// The same before the ground gave way.
+    /// What is seen and how far the ground moved, by a judge that knows nothing of the solver; dense points lie every fifth of a cell.
+    #[serde(flatten)]
+    pub metrics: TerrainMetrics,
+    /// [`TerrainMetrics::visible`] before the ground gave way.
     pub visible_before: f64,
-    /// Visible share of the features in view, judged every fifth of a cell.
-    pub visible_dense: f64,
-    /// The same before.
+    /// [`TerrainMetrics::visible_dense`] before.
     pub visible_dense_before: f64,
-    /// How far the line of sight of the worst hidden place runs under ground.
-    pub hidden_worst_m: f64,
-    /// Root mean square displacement over the nodes with data.
-    pub rms_m: f64,
-    /// Largest displacement, up or down.
-    pub max_m: f64,
-    /// Most that the ground rises anywhere.
-    pub raised_max_m: f64,
-    /// Mean angle between the normals before and after, degrees.
-    pub normal_mean_deg: f64,
-    /// 95 % of the nodes lie below this angle.
-    pub normal_p95_deg: f64,
-    /// Mean step of the displacement across borders of cells, from node to node; `None` where the mode has no cells.
-    pub border_step_m: Option<f64>,
-    /// 99.9 % of the steps of the displacement from node to node lie below this.
-    pub step_p999_m: f64,
-    /// Change against the frame before; `None` for the first frame and after a jump.
-    pub frame: Option<FrameChange>,
     /// The greedy pass; `None` in mode qp.
     pub greedy: Option<GreedyCounters>,
     /// The quadratic program; `None` in mode paper.
     pub qp: Option<QpReport>,
     /// Ways out of contradicting rows that were taken, in their order; empty as a rule.
     pub fallbacks: Vec<Fallback>,
-    /// Whether every reference point and candidate in view is guaranteed to be seen in this picture, but for what ground nearer than
-    /// the guard covers; what is seen between candidates is [`TerrainReport::visible_dense`].
+    /// Whether every reference point and candidate in view is guaranteed to be seen in this picture, and the judge agrees: of the
+    /// length in view at least 0.99 is seen, past ground nearer than the guard as well.
     pub guaranteed: bool,
     /// What cannot be seen, and why.
     pub unresolved: Vec<UnresolvedRun>,
@@ -194,39 +180,28 @@ pub(super) fn report(c: &Context<'_>, done: &Done, mut times: TerrainTimes, bega
     };
     let metrics = terrain_metrics(&of);
     let before = |points: &[ReferencePoint]| {
-        super::level(field).map_or(1.0, |level| shown(field, &level, guard, &*seen.sight, points).share.unwrap_or(1.0))
+        super::level(field).map_or(1.0, |level| shown(field, &level, guard, &*seen.sight, points).share)
     };
     let unresolved = unresolved(c, done);
     let (guards, qp_met) = (c.settings.mode != SolverMode::Paper, done.qp_unresolved.is_empty());
-    let spacing = (prepared.grid.step() * field.spacing()).max_element();
-    let (visible, visible_dense) = (metrics.visible.unwrap_or(1.0), metrics.visible_dense.unwrap_or(1.0));
+    let stated_m = stated_spacing(field.cols(), field.rows(), field.spacing());
+    let w = c.settings.smoothness(stated_m);
     let mut out = TerrainReport {
-        parameters: TerrainSettings {
-            w: Some(c.settings.smoothness()),
-            detail: Some(c.settings.detail()),
-            ..c.settings.clone()
-        },
-        w: c.settings.smoothness(),
-        smoothing_length_m: spacing / prepared.weights().w.sqrt(),
+        parameters: TerrainSettings { w: Some(w), detail: Some(c.settings.detail()), ..c.settings.clone() },
+        w,
+        smoothing_length_m: c.settings.smoothing_length(stated_m),
         solver_grid: [prepared.grid.cols(), prepared.grid.rows()],
         points: points.len(),
-        visible,
+        metrics,
         visible_before: before(&points),
-        visible_dense,
         visible_dense_before: before(&dense),
-        hidden_worst_m: metrics.hidden_worst_m,
-        rms_m: metrics.rms_m,
-        max_m: metrics.max_m,
-        raised_max_m: metrics.raised_max_m,
-        normal_mean_deg: metrics.normal_mean_deg,
-        normal_p95_deg: metrics.normal_p95_deg,
-        border_step_m: metrics.border_step_m,
-        step_p999_m: metrics.step_p999_m,
-        frame: metrics.frame,
         greedy: done.greedy,
         qp: done.qp,
         fallbacks: done.fallbacks.clone(),
-        guaranteed: guards && qp_met && visible == 1.0,
+        guaranteed: guards
+            && qp_met
+            && metrics.visible == 1.0
+            && metrics.visible_dense - metrics.hidden_in_guard >= AGREES,
         unresolved,
         covered: covered(c, &dense),
         times,

@@ -3,7 +3,7 @@
 //! A few eyes each; `BELVEDERE_EYES=20` judges as many (minutes).
 
 use belvedere_construct::terrain::qp::{Candidate, QpOptions, QpProblem, QpSolver, StraightSight};
-use belvedere_construct::terrain::{Field, Hierarchy, Smoother, TerrainSettings, grid_weight};
+use belvedere_construct::terrain::{Field, Hierarchy, Smoother, TerrainSettings, grid_weight, stated_spacing};
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
 use belvedere_io::vector::{lines_on_terrain, load_vectors};
@@ -98,7 +98,8 @@ fn solver(place: &Place) -> (QpSolver, Hierarchy) {
     let settings = TerrainSettings::default();
     let hierarchy = Hierarchy::new(place.field.cols(), place.field.rows(), settings.solver_nodes);
     let (cols, rows) = (hierarchy.cols(), hierarchy.rows());
-    let smoother = Smoother::new(cols, rows, grid_weight(settings.smoothness(), cols.max(rows)), 0.0).unwrap();
+    let stated_m = stated_spacing(place.field.cols(), place.field.rows(), place.field.spacing());
+    let smoother = Smoother::new(cols, rows, grid_weight(settings.smoothness(stated_m), cols.max(rows)), 0.0).unwrap();
     (QpSolver::new(&place.field, &hierarchy, smoother, QpOptions::of(&settings)), hierarchy)
 }
 

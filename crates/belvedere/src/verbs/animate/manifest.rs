@@ -95,13 +95,13 @@ impl FrameTerrain {
     pub(super) fn of(report: &TerrainReport) -> Self {
         Self {
             points: report.points,
-            visible: report.visible,
-            visible_dense: report.visible_dense,
+            visible: report.metrics.visible,
+            visible_dense: report.metrics.visible_dense,
             unresolved: report.unresolved.iter().map(|r| r.points).sum(),
-            rms_m: report.rms_m,
-            max_m: report.max_m,
-            frame_rms_m: report.frame.map_or(0.0, |f| f.rms_m),
-            frame_max_m: report.frame.map_or(0.0, |f| f.max_m),
+            rms_m: report.metrics.rms_m,
+            max_m: report.metrics.max_m,
+            frame_rms_m: report.metrics.frame.map_or(0.0, |f| f.rms_m),
+            frame_max_m: report.metrics.frame.map_or(0.0, |f| f.max_m),
         }
     }
 }

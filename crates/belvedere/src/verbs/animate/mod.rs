@@ -11,7 +11,7 @@ use super::render::{self, RenderRequest};
 use super::{check, output};
 use crate::provenance::{self, ViewRecord};
 use crate::resolve::terrain::Solving;
-use crate::scene_file::{AnimationDoc, StageDoc};
+use crate::scene_file::AnimationDoc;
 use crate::{BelvedereError, Session};
 use belvedere_construct::terrain::TerrainMemory;
 use belvedere_scene::Progress;
@@ -179,7 +179,7 @@ fn draw_missing(
 ) -> Result<usize, BelvedereError> {
     let missing: Vec<usize> = (0..plan.len()).filter(|&f| manifest.frames[f].is_none()).collect();
     // What a solver remembers depends on every frame before: those that are there are solved again, not drawn.
-    let solves = session.resolved().stage.iter().any(StageDoc::is_terrain_intent);
+    let solves = session.resolved().solves_terrain();
     let last = missing.last().map_or(0, |f| f + 1);
     let work: Vec<usize> = if solves { (0..last).collect() } else { missing.clone() };
     let quiet = progress.unheard();

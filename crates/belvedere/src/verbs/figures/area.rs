@@ -98,11 +98,11 @@ impl Area {
         let (light, progress) = (self.session.light(), &self.progress);
         Ok(CpuRenderer.render(&RenderJob { scene, view: &view, light, options: &options, progress })?)
     }
+}
 
-    /// Path of a picture of this area.
-    pub(super) fn picture(&self, folder: &Path, what: &str) -> PathBuf {
-        folder.join(format!("{}_{what}.png", self.name))
-    }
+/// Path of a picture of an area.
+pub(super) fn picture(folder: &Path, name: &str, what: &str) -> PathBuf {
+    folder.join(format!("{name}_{what}.png"))
 }
 
 /// Reference points of a picture.

@@ -48,10 +48,10 @@ pub(super) fn eyes(area: &Area) -> Result<Vec<EyeRow>, BelvedereError> {
             let r = area.solve(&area.in_mode(mode), &view)?.report;
             let unresolved = r.unresolved.iter().map(|run| run.points).sum();
             let of = EyeResult {
-                visible: r.visible,
-                visible_dense: r.visible_dense,
-                rms_m: r.rms_m,
-                max_m: r.max_m,
+                visible: r.metrics.visible,
+                visible_dense: r.metrics.visible_dense,
+                rms_m: r.metrics.rms_m,
+                max_m: r.metrics.max_m,
                 unresolved,
             };
             Ok((of, r.points, r.visible_before))

@@ -73,6 +73,9 @@ pub fn terrain(
             "two scenes are called {name}, and so would their pictures; rename one"
         )));
     }
+    for (name, what) in names.iter().flat_map(|name| PICTURES.map(|what| (name, what))) {
+        output::check(&area::picture(folder, &name.to_string_lossy(), what), scenes, overwrite)?;
+    }
     let (mut records, mut written) = (Vec::new(), Vec::new());
     for (path, text) in &areas {
         let area = Area::open(path, *text, options)?;
@@ -84,6 +87,9 @@ pub fn terrain(
     Ok(written)
 }
 
+/// What pictures of an area show.
+const PICTURES: [&str; 6] = ["pair", "steps", "profile", "w", "eta", "times"];
+
 fn figures_of(
     area: &Area,
     folder: &Path,
@@ -92,7 +98,7 @@ fn figures_of(
 ) -> Result<AreaRecord, BelvedereError> {
     let mut pictures = Vec::new();
     let mut keep = |what: &str, pixels: Pixels| -> Result<(), BelvedereError> {
-        let path = area.picture(folder, what);
+        let path = area::picture(folder, &area.name, what);
         let (width, height, pixels) = pixels;
         let text = [("Software", format!("belvedere {}", crate::VERSION)), ("Comment", NOTE.to_owned())];
         let text = text.each_ref().map(|(k, v)| (*k, v.as_str()));

@@ -81,14 +81,14 @@ fn mode_row(name: &str, r: &TerrainReport) -> String {
         name.into(),
         r.points.to_string(),
         format!("{:.3}", r.visible_before),
-        format!("{:.3}", r.visible),
-        format!("{:.3}", r.visible_dense),
-        format!("{:.1}", r.rms_m),
-        format!("{:.0}", r.max_m),
-        format!("{:.1}", r.raised_max_m),
-        format!("{:.2}", r.normal_mean_deg),
-        format!("{:.1}", r.step_p999_m),
-        r.border_step_m.map_or_else(|| "-".into(), |b| format!("{b:.2}")),
+        format!("{:.3}", r.metrics.visible),
+        format!("{:.3}", r.metrics.visible_dense),
+        format!("{:.1}", r.metrics.rms_m),
+        format!("{:.0}", r.metrics.max_m),
+        format!("{:.1}", r.metrics.raised_max_m),
+        format!("{:.2}", r.metrics.normal_mean_deg),
+        format!("{:.1}", r.metrics.step_p999_m),
+        r.metrics.border_step_m.map_or_else(|| "-".into(), |b| format!("{b:.2}")),
     ])
 }
 

@@ -33,7 +33,11 @@ pub(super) fn pair(area: &Area, solutions: &Solutions) -> Result<Pixels, Belvede
     };
     let after = Panel {
         title: "The ground makes way".into(),
-        note: format!("{} can be seen; the ground moved {:.0} m at most", percent(r.visible_dense), r.max_m),
+        note: format!(
+            "{} can be seen; the ground moved {:.0} m at most",
+            percent(r.metrics.visible_dense),
+            r.metrics.max_m
+        ),
         frame: area.draw(scene, Some(&solved.stage), PAIR)?,
     };
     Ok(sheet(&[before, after], 2))
@@ -78,7 +82,12 @@ pub(super) fn steps(area: &Area, solutions: &Solutions) -> Result<Pixels, Belved
 
 /// The figures of a solution that fit under a picture.
 pub(super) fn figures(r: &TerrainReport) -> String {
-    format!("visible {}, moved {:.0} m rms, largest step {:.0} m", percent(r.visible), r.rms_m, r.step_p999_m)
+    format!(
+        "visible {}, moved {:.0} m rms, largest step {:.0} m",
+        percent(r.metrics.visible),
+        r.metrics.rms_m,
+        r.metrics.step_p999_m
+    )
 }
 
 pub(super) fn percent(share: f64) -> String {

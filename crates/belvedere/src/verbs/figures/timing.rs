@@ -7,6 +7,7 @@ use crate::BelvedereError;
 use belvedere_construct::ConstructError;
 use belvedere_construct::terrain::{
     Cells, Hierarchy, Naive, ReferencePoint, SmoothPass, SolverMode, TerrainSettings, Wedge, in_view, reference_points,
+    stated_spacing,
 };
 use belvedere_core::DVec2;
 use serde::Serialize;
@@ -54,14 +55,14 @@ pub(super) struct GreedyTime {
 pub(super) fn timing(area: &Area) -> Result<Timing, BelvedereError> {
     let (field, settings) = (&area.field, area.in_mode(SolverMode::Paper));
     let cells_ms = median(|| drop(Cells::new(field, area.cells.len())));
+    let w = settings.smoothness(stated_spacing(field.cols(), field.rows(), field.spacing()));
     let began = Instant::now();
     // The paper's grid, whatever the scene asks for.
     let nodes = TerrainSettings::default().solver_nodes;
     let hierarchy = Hierarchy::new(field.cols(), field.rows(), nodes);
     let unknowns = hierarchy.nodes();
     let rows: Vec<DVec2> = area.points.iter().map(|p| p.grid).chain(summits(area)).collect();
-    let mut pass =
-        SmoothPass::new(hierarchy, settings.smoothness(), settings.rows_weight, &rows).map_err(ConstructError::from)?;
+    let mut pass = SmoothPass::new(hierarchy, w, settings.rows_weight, &rows).map_err(ConstructError::from)?;
     let prepare_ms = since(began);
     let naive = area.naive(&settings).displacement(field, &area.cells);
     let solve_ms = median(|| drop(pass.run(&naive, None, None)));
