@@ -297,3 +297,12 @@ fn what_lies_beyond_the_distance_ahead_is_not_asked_for() {
     assert!(of(&near, "points") < 0.6 * of(&all, "points") && of(&near, "rms_m") < of(&all, "rms_m"));
     assert_eq!(of(&near, "visible"), 1.0);
 }
+
+#[test]
+fn the_demo_finds_a_displacement_in_its_way_before_it_draws() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("demo")).expect("folder");
+    place.write("demo/massif_lake_terrain.delta.tif", "mine");
+    let line = place.fails(&["demo", "-o", "demo"]);
+    assert!(line.contains("massif_lake_terrain.delta.tif") && !place.path("demo/massif.png").exists(), "{line}");
+}

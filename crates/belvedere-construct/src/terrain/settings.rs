@@ -2,9 +2,9 @@
 
 use belvedere_core::DVec2;
 
-/// Longest smoothing of mode qp where no `w` is stated, metres: about the width of a valley floor. On ground larger than 35 km
+/// Longest smoothing of mode qp where no `w` is stated, metres: about the width of a valley floor. On ground wider than 32 km
 /// w = 0.3 would spread every displacement over the next ridge.
-pub const LONGEST_SMOOTHING_M: f64 = 500.0;
+pub const LONGEST_SMOOTHING_M: f64 = 450.0;
 /// Intervals between the 129 nodes for which smoothness weights are stated.
 const STATED: f64 = 128.0;
 /// Largest smoothness weight.
@@ -143,7 +143,7 @@ mod tests {
         assert!(usual.smoothing_length(240.0) < LONGEST_SMOOTHING_M);
         assert!(usual.smoothness(860.0) > 0.3, "1201 nodes 92 m apart do not");
         assert!((usual.smoothing_length(860.0) - LONGEST_SMOOTHING_M).abs() < 1e-9);
-        for stated_m in [1.0, 240.0, 273.0, 275.0, 860.0, 20_000.0] {
+        for stated_m in [1.0, 240.0, 246.0, 247.0, 860.0, 20_000.0] {
             assert!(usual.smoothing_length(stated_m) <= LONGEST_SMOOTHING_M * (1.0 + 1e-12), "{stated_m}");
             for w in [0.05, 0.3, 7.0] {
                 assert_eq!(settings(SolverMode::Qp, Some(w)).smoothness(stated_m), w, "a stated w is literal");

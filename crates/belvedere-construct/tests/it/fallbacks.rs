@@ -79,10 +79,14 @@ fn pits_need_a_finer_grid() {
 
 #[test]
 fn ground_inside_the_guard_is_left_before_a_finer_grid_is_taken() {
-    // A hole whose rim, a cell away, hides the place by a little; at the guard the line of sight is free. Two nodes can only tilt.
-    let height = |x: usize, y: usize| if (x, y) == (200, 10) { -7.0 } else { 0.0 };
-    let scene = scene(401, 21, height, &[DVec2::new(200.0, 10.0)]);
-    let (eye, look) = (at(DVec2::new(210.0, 10.0), 40.0), at(DVec2::new(200.0, 10.0), 0.0));
+    // On the floor of a wide basin, so that it rises over nothing that two nodes hold, a post hides a place less than a cell behind it.
+    let height = |x: usize, y: usize| match (x, y) {
+        (201, 10) => -40.0,
+        (150..250, _) => -100.0,
+        _ => 0.0,
+    };
+    let scene = scene(401, 21, height, &[DVec2::new(200.2, 10.0)]);
+    let (eye, look) = (at(DVec2::new(240.0, 10.0), 20.0), at(DVec2::new(200.0, 10.0), -100.0));
     let report = solve(&scene, eye, look, &TerrainSettings { solver_nodes: 2, ..TerrainSettings::default() }).report;
     assert_eq!(report.fallbacks, [Fallback::Guard], "{report:?}");
     assert_eq!((report.metrics.visible, report.metrics.hidden_in_guard), (1.0, 1.0));
@@ -107,6 +111,6 @@ fn what_no_grid_shows_is_named_with_a_proof() {
         let UnresolvedReason::Infeasible { depth_m, gap_m, rows } = run.reason else { panic!("{run:?}") };
         assert!(depth_m >= 4.0 * 120.0 && gap_m > 0.0 && gap_m.is_finite() && rows > 0, "{run:?}");
     }
-    // Slack keeps the ground where it can be drawn.
-    assert!(report.metrics.max_m < 480.0 && report.metrics.raised_max_m <= 0.5, "{:?}", report.metrics);
+    // Slack keeps the ground from sinking without end: rows as hard as ever would ask for 60 m per node.
+    assert!(report.metrics.max_m < 1000.0 && report.metrics.raised_max_m <= 0.5, "{:?}", report.metrics);
 }

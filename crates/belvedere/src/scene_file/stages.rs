@@ -96,7 +96,7 @@ pub struct TerrainStageDoc {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mu_dev: Option<f64>,
     /// Smoothness weight, for a solver's grid of 129 nodes; by default 0.6, in mode qp 0.3 or as much more as keeps the smoothing
-    /// no longer than 500 m.
+    /// no longer than 450 m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub w: Option<f64>,
     /// Weight of the rows.

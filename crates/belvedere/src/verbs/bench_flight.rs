@@ -45,7 +45,7 @@ pub(super) fn fly(nodes: usize, image: [u32; 2], pictures: usize) -> Result<Vec<
     let mut memory = TerrainMemory::default();
     let each = time("solved and judged for every picture", &scene, &views, |view| {
         let solved = solver.solve(&scene, view, &mut memory, &Progress::silent()).map_err(broken)?;
-        let hidden = 1.0 - solved.report.visible;
+        let hidden = 1.0 - solved.report.metrics.visible;
         Ok(Ground { stage: Stage::TerrainDisocclusion(solved.stage), points: solved.report.points, lag: 0, hidden })
     })?;
     let mut live = LiveTerrain::new(solver.clone(), scene.clone());

@@ -202,9 +202,9 @@ impl Prepared {
     }
 }
 
-/// Ground is cleared as near as this to a place, cells. Nearer, a third of a percent of the length is hidden on steep ground, and
-/// showing that as well would move a twentieth more ground.
-const CLEARED_CELLS: f64 = 0.5;
+/// Ground is cleared as near as this to a place, cells. On steep ground half a percent of the length is hidden by what is nearer;
+/// showing that too would move a fiftieth more ground.
+const CLEARED_CELLS: f64 = 0.6;
 
 /// How near the quadratic program clears the ground: at once, or from the guard on where rows nearer than that contradict others.
 pub(super) fn options(settings: &TerrainSettings, from_guard: bool) -> QpOptions {
