@@ -152,7 +152,9 @@ impl QpSolver {
             if new.is_empty() && deepest >= -depth {
                 // Rows that had to become soft are missed still, though none more would help.
                 let forced = frame.soft > 0.0 && o.slack_price.is_none();
-                missed = if forced { frame.missed(&self.surface, 1) } else { Vec::new() };
+                if !forced {
+                    missed.clear();
+                }
                 break;
             }
             if deepest < -depth && frame.soft == 0.0 {
