@@ -56,7 +56,7 @@ fn unknown_figures_and_scenes_of_one_name_are_refused() {
     let (one, two) = (area("small.toml", &place), area("other/small.toml", &place));
     let error = place.fails(&["figures", "terrain", &one, &two, "-o", "figures"]);
     assert!(error.contains("small") && error.contains("rename"), "{error}");
-    std::fs::create_dir(place.path("figures")).expect("folder");
+    std::fs::create_dir_all(place.path("figures")).expect("folder");
     place.write("figures/small_eta.png", "mine");
     let error = place.fails(&["figures", "terrain", &one, "-o", "figures"]);
     assert!(error.contains("small_eta.png") && !place.path("figures/small_pair.png").exists(), "{error}");

@@ -60,11 +60,11 @@ fn everything_asked_for_is_visible_on_the_grid_of_the_input() {
     assert!(super::read(&place.path("p.png")).starts_with(b"\x89PNG") && place.path("p.png.json").exists());
     assert!(number(&r["visible_before"]) < 0.8, "the hills hide much: {r}");
     assert_eq!(number(&r["visible"]), 1.0, "{r}");
-    assert!(number(&r["visible_dense"]) >= 0.98, "{r}");
+    assert!(number(&r["visible_dense"]) >= 0.99, "{r}");
     // The promise is given where the judge, who counts the ground inside the guard too, finds it kept.
     let seen = number(&r["visible_dense"]) - number(&r["hidden_in_guard"]);
     assert_eq!(r["guaranteed"], seen >= 0.99, "{r}");
-    assert!(seen >= 0.97, "{r}");
+    assert!(seen > 0.7, "on ground as steep as this a sixth is hidden by what lies within 0.6 cells: {r}");
     assert!(number(&r["raised_max_m"]) <= 0.5, "{r}");
     assert!(number(&r["rms_m"]) > 0.5);
     for key in ["hidden_worst_m", "max_m", "normal_mean_deg", "normal_p95_deg", "step_p999_m", "smoothing_length_m"] {
