@@ -69,6 +69,16 @@ pub(super) trait Camera {
     fn images<const N: usize>(&self, xs: &[f32; N], zs: &[f32; N]) -> Images<N>;
 }
 
+/// Images of nodes, one like the other.
+#[inline(always)]
+fn each<const N: usize>(xs: &[f32; N], zs: &[f32; N], image: impl Fn(f32, f32) -> Image) -> Images<N> {
+    let mut out = Images::default();
+    for i in 0..N {
+        (out.x[i], out.y[i], out.q[i], out.missed[i]) = image(xs[i], zs[i]);
+    }
+    out
+}
+
 pub(super) struct Perspective<'p, 'a> {
     pub(super) projector: &'p Projector<'a>,
     rows: [f32; 3],
@@ -95,13 +105,11 @@ impl Perspective<'_, '_> {
 impl Camera for Perspective<'_, '_> {
     #[inline(always)]
     fn images<const N: usize>(&self, xs: &[f32; N], zs: &[f32; N]) -> Images<N> {
-        let mut out = Images::default();
-        for i in 0..N {
-            let v = self.view(xs[i], zs[i]);
+        each(xs, zs, |x, z| {
+            let v = self.view(x, z);
             let q = 1.0 / v[2];
-            (out.x[i], out.y[i], out.q[i], out.missed[i]) = self.photograph(v, self.projector.scale * q, q);
-        }
-        out
+            self.photograph(v, self.projector.scale * q, q)
+        })
     }
 }
 
@@ -110,12 +118,10 @@ struct Parallel<'p, 'a>(Perspective<'p, 'a>);
 impl Camera for Parallel<'_, '_> {
     #[inline(always)]
     fn images<const N: usize>(&self, xs: &[f32; N], zs: &[f32; N]) -> Images<N> {
-        let mut out = Images::default();
-        for i in 0..N {
-            let v = self.0.view(xs[i], zs[i]);
-            (out.x[i], out.y[i], out.q[i], out.missed[i]) = self.0.photograph(v, self.0.projector.scale, -v[2]);
-        }
-        out
+        each(xs, zs, |x, z| {
+            let v = self.0.view(x, z);
+            self.0.photograph(v, self.0.projector.scale, -v[2])
+        })
     }
 }
 
@@ -128,12 +134,7 @@ struct Bent<'p, 'a> {
 impl Camera for Bent<'_, '_> {
     #[inline(always)]
     fn images<const N: usize>(&self, xs: &[f32; N], zs: &[f32; N]) -> Images<N> {
-        // No closure: compilers may leave one out of the version for this machine.
-        let mut out = Images::default();
-        for i in 0..N {
-            (out.x[i], out.y[i], out.q[i], out.missed[i]) = self.image(xs[i], zs[i]);
-        }
-        out
+        each(xs, zs, |x, z| self.image(x, z))
     }
 }
 
