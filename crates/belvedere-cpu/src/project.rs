@@ -5,7 +5,6 @@
 //! rounds exactly, so that every machine and every vector width gives the same bits.
 
 mod cameras;
-mod spline;
 
 use crate::lens::SUB;
 use crate::vector;
@@ -14,7 +13,6 @@ use belvedere_core::{DVec2, DVec3, Pinhole, Stage, View};
 use belvedere_scene::Heightfield;
 use cameras::{Bend, Form, Run};
 use rayon::prelude::*;
-use spline::Spline;
 
 /// Nodes lifted at a time.
 const CHUNK: usize = 64;
@@ -29,7 +27,7 @@ pub(crate) struct Row<'r> {
 
 /// The chain of a view in single precision, for one record of its curved rays.
 ///
-/// Agrees with [`View`] to 0.01 px: curved earth around the eye, ground that makes way, a spline or one turn of conic arcs, pinhole.
+/// Agrees with [`View`] to 0.01 px: curved earth around the eye, ground that makes way, one turn of conic arcs, pinhole.
 #[derive(Debug)]
 pub(crate) struct Projector<'a> {
     eye: DVec3,
@@ -41,7 +39,6 @@ pub(crate) struct Projector<'a> {
     /// View space before the turn: right, down, forward.
     view: [Form; 3],
     bend: Option<Bend>,
-    spline: Option<Spline>,
     scale: f32,
     center: [i32; 2],
     ortho: bool,
@@ -61,7 +58,6 @@ impl<'a> Projector<'a> {
             lift: None,
             view: [p.right, p.down, p.forward].map(|axis| Form::new(axis, 0.0)),
             bend: None,
-            spline: None,
             scale: p.scale_px() as f32,
             center: (p.center_px() * f64::from(SUB)).to_array().map(|c| c.round() as i32),
             ortho: p.is_orthographic(),
@@ -75,9 +71,6 @@ impl<'a> Projector<'a> {
                 }
                 Stage::TerrainDisocclusion(t) => out.lift = Some(t),
                 Stage::CurvedRays(rays) if rays.turns().is_empty() => {}
-                Stage::SplineBend(bend) => out.spline = Some(Spline::new(bend, p)?),
-                // Rays that bend after space did have no form yet.
-                Stage::CurvedRays(_) if out.spline.is_some() => return None,
                 Stage::CurvedRays(rays) => out.set_turn(p, rays.turns().get(record)?)?,
                 _ => return None,
             }
@@ -179,8 +172,6 @@ mod tests {
     use crate::vector::Kernel;
     use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
     use belvedere_core::map::earth::EarthCurvature;
-    use belvedere_core::map::spline::{ReferencePlane, SplineBend, default_pivot};
-    use belvedere_core::presets::PresetDocument;
     use belvedere_core::{CurvedRays, Projection};
 
     fn camera(lens: Projection) -> Pinhole {
@@ -216,16 +207,9 @@ mod tests {
         );
         let lift = Stage::TerrainDisocclusion(TerrainDisocclusion::new(grid.unwrap()));
         let bent = turns(&camera, &[(4000.0, 700.0), (9000.0, 1300.0)]);
-        let splined = |preset: &str, before: &[Stage]| {
-            let plane = ReferencePlane::level(0.0);
-            let document = PresetDocument::builtin(preset).unwrap();
-            let bend = SplineBend::new(&camera, &document, &plane, default_pivot(&camera, &plane)).unwrap();
-            View::new(bend.adapted_pinhole(&camera), [before, &[Stage::SplineBend(bend)]].concat()).unwrap()
-        };
-        let splines = [splined("progressive", &[]), splined("degressive", &[earth.clone(), lift.clone()])];
         let stages = [vec![], vec![earth.clone()], vec![lift.clone()], vec![bent.clone()], vec![earth, lift, bent]];
         let with = |stages| View::new(camera.clone(), stages).unwrap();
-        stages.into_iter().map(with).chain([View::straight(flat)]).chain(splines).collect()
+        stages.into_iter().map(with).chain([View::straight(flat)]).collect()
     }
 
     /// Columns, rows and heights around the eye, in scene coordinates.

@@ -5,7 +5,7 @@ use belvedere_core::map::spline::SplineBend;
 use belvedere_core::{DVec2, DVec3, SpaceMap};
 
 /// Pieces of the curve between its ends.
-pub(crate) const PIECES: usize = 512;
+const PIECES: usize = 512;
 /// Largest accepted error of a place on the curve, curve units, and of a unit normal. The eye is about a curve unit away
 /// from the curve, so both stay far below 0.01 pixel.
 const PLACE_ERROR: f64 = 1e-7;
@@ -17,22 +17,22 @@ const NORMAL_ERROR: f64 = 1e-6;
 pub(crate) struct SplineTable<'a> {
     bend: &'a SplineBend,
     /// Pivot, right, heading, normal; then the plane of the curve.
-    pub(crate) origin: DVec3,
-    pub(crate) axes: [DVec3; 3],
-    pub(crate) curve_axes: [DVec3; 2],
+    origin: DVec3,
+    axes: [DVec3; 3],
+    curve_axes: [DVec3; 2],
     /// Scene units of one piece and its inverse, and pieces from the near end to the pivot.
-    pub(crate) piece_length: f64,
-    pub(crate) pieces_per_unit: f64,
-    pub(crate) piece_of_origin: f64,
+    piece_length: f64,
+    pieces_per_unit: f64,
+    piece_of_origin: f64,
     /// Piece k at index k + 1; the straight extensions first and last.
-    pub(crate) pieces: Vec<Piece>,
+    pieces: Vec<Piece>,
 }
 
 /// `c[0] + c[1] t + c[2] t^2 + c[3] t^3`, t = 0..1: place (u, v) relative to the pivot in scene units, normal (u, v).
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Piece {
-    pub(crate) c: [[f64; 4]; 4],
-    pub(crate) good: bool,
+struct Piece {
+    c: [[f64; 4]; 4],
+    good: bool,
 }
 
 /// Place and normal with their derivatives by pieces.

@@ -1,6 +1,5 @@
 //! Cameras in single precision, for many nodes of a row at a time.
 
-use super::spline::Splined;
 use super::{Projector, Row};
 use crate::lens::SUB;
 use crate::vector::{Kernel, nearest};
@@ -26,12 +25,12 @@ impl Form {
 
     /// What all points of a row share.
     #[inline(always)]
-    pub(super) fn row(self, y: f32) -> f32 {
+    fn row(self, y: f32) -> f32 {
         self.at_eye + self.gradient[1] * y
     }
 
     #[inline(always)]
-    pub(super) fn at(self, row: f32, x: f32, z: f32) -> f32 {
+    fn at(self, row: f32, x: f32, z: f32) -> f32 {
         (row + self.gradient[0] * x) + self.gradient[2] * z
     }
 }
@@ -46,41 +45,16 @@ pub(super) struct Bend {
 }
 
 /// Fixed-point pixel and nearness, and not 0 where they cannot be used.
-pub(super) type Image = (i32, i32, f32, u32);
-
-/// The same of many nodes.
-pub(super) struct Images<const N: usize> {
-    pub(super) x: [i32; N],
-    pub(super) y: [i32; N],
-    pub(super) q: [f32; N],
-    pub(super) missed: [u32; N],
-}
-
-impl<const N: usize> Default for Images<N> {
-    #[inline(always)]
-    fn default() -> Self {
-        Self { x: [0; N], y: [0; N], q: [0.0; N], missed: [0; N] }
-    }
-}
+type Image = (i32, i32, f32, u32);
 
 /// A camera for the nodes of a row.
-pub(super) trait Camera {
-    /// * `xs`, `zs`: relative to the eye.
-    fn images<const N: usize>(&self, xs: &[f32; N], zs: &[f32; N]) -> Images<N>;
+trait Camera {
+    /// * `x`, `z`: relative to the eye.
+    fn image(&self, x: f32, z: f32) -> Image;
 }
 
-/// Images of nodes, one like the other.
-#[inline(always)]
-fn each<const N: usize>(xs: &[f32; N], zs: &[f32; N], image: impl Fn(f32, f32) -> Image) -> Images<N> {
-    let mut out = Images::default();
-    for i in 0..N {
-        (out.x[i], out.y[i], out.q[i], out.missed[i]) = image(xs[i], zs[i]);
-    }
-    out
-}
-
-pub(super) struct Perspective<'p, 'a> {
-    pub(super) projector: &'p Projector<'a>,
+struct Perspective<'p, 'a> {
+    projector: &'p Projector<'a>,
     rows: [f32; 3],
 }
 
@@ -93,7 +67,7 @@ impl Perspective<'_, '_> {
     }
 
     #[inline(always)]
-    pub(super) fn photograph(&self, [vx, vy, vz]: [f32; 3], scale: f32, q: f32) -> Image {
+    fn photograph(&self, [vx, vy, vz]: [f32; 3], scale: f32, q: f32) -> Image {
         let p = self.projector;
         let (px, py) = (vx * scale, vy * scale);
         let (x, y) = (p.center[0].wrapping_add(fixed(px)), p.center[1].wrapping_add(fixed(py)));
@@ -104,12 +78,10 @@ impl Perspective<'_, '_> {
 
 impl Camera for Perspective<'_, '_> {
     #[inline(always)]
-    fn images<const N: usize>(&self, xs: &[f32; N], zs: &[f32; N]) -> Images<N> {
-        each(xs, zs, |x, z| {
-            let v = self.view(x, z);
-            let q = 1.0 / v[2];
-            self.photograph(v, self.projector.scale * q, q)
-        })
+    fn image(&self, x: f32, z: f32) -> Image {
+        let v = self.view(x, z);
+        let q = 1.0 / v[2];
+        self.photograph(v, self.projector.scale * q, q)
     }
 }
 
@@ -117,11 +89,9 @@ struct Parallel<'p, 'a>(Perspective<'p, 'a>);
 
 impl Camera for Parallel<'_, '_> {
     #[inline(always)]
-    fn images<const N: usize>(&self, xs: &[f32; N], zs: &[f32; N]) -> Images<N> {
-        each(xs, zs, |x, z| {
-            let v = self.0.view(x, z);
-            self.0.photograph(v, self.0.projector.scale, -v[2])
-        })
+    fn image(&self, x: f32, z: f32) -> Image {
+        let v = self.0.view(x, z);
+        self.0.photograph(v, self.0.projector.scale, -v[2])
     }
 }
 
@@ -132,13 +102,6 @@ struct Bent<'p, 'a> {
 }
 
 impl Camera for Bent<'_, '_> {
-    #[inline(always)]
-    fn images<const N: usize>(&self, xs: &[f32; N], zs: &[f32; N]) -> Images<N> {
-        each(xs, zs, |x, z| self.image(x, z))
-    }
-}
-
-impl Bent<'_, '_> {
     #[inline(always)]
     fn image(&self, x: f32, z: f32) -> Image {
         let (a, b) = (self.bend.a.at(self.rows[0], x, z), self.bend.b.at(self.rows[1], x, z));
@@ -168,12 +131,6 @@ impl Kernel for Run<'_, '_, '_> {
     fn run(mut self) -> bool {
         let projector = self.projector;
         let straight = Perspective { projector, rows: projector.view.map(|f| f.row(self.y)) };
-        if let Some(spline) = &projector.spline {
-            return match projector.ortho {
-                false => self.all(&Splined::new(straight, spline, self.y, false)),
-                true => self.all(&Splined::new(straight, spline, self.y, true)),
-            };
-        }
         match (projector.ortho, &projector.bend) {
             (false, None) => self.all(&straight),
             (false, Some(bend)) => {
@@ -216,12 +173,12 @@ impl Run<'_, '_, '_> {
         let ends = (x[from..].first_chunk_mut::<N>(), y[from..].first_chunk_mut::<N>());
         let ((Some(px), Some(py)), Some(pq)) = (ends, q[from..].first_chunk_mut::<N>()) else { return };
         // Of arrays of its own a compiler knows that they do not overlap.
-        let mut zs = [0.0; N];
+        let (mut ix, mut iy, mut iq, mut misses) = ([0; N], [0; N], [0.0; N], [0; N]);
         for i in 0..N {
-            zs[i] = self.projector.z(xs[i], self.y, hs[i]);
+            let z = self.projector.z(xs[i], self.y, hs[i]);
+            (ix[i], iy[i], iq[i], misses[i]) = camera.image(xs[i], z);
         }
-        let Images { x, y, q, missed: misses } = camera.images(xs, &zs);
-        (*px, *py, *pq) = (x, y, q);
+        (*px, *py, *pq) = (ix, iy, iq);
         missed.iter_mut().zip(misses).for_each(|(all, miss)| *all |= miss);
     }
 }
