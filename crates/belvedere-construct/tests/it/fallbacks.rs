@@ -112,5 +112,5 @@ fn what_no_grid_shows_is_named_with_a_proof() {
         assert!(depth_m >= 4.0 * 120.0 && gap_m > 0.0 && gap_m.is_finite() && rows > 0, "{run:?}");
     }
     // Slack keeps the ground from sinking without end: rows as hard as ever would ask for 60 m per node.
-    assert!(report.metrics.max_m < 1000.0 && report.metrics.raised_max_m <= 0.5, "{:?}", report.metrics);
+    assert!(report.metrics.max_m < 4000.0 && report.metrics.raised_max_m <= 0.5, "{:?}", report.metrics);
 }
