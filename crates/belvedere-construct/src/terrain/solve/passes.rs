@@ -1,6 +1,6 @@
 //! The passes of one frame, in the order of the mode.
 
-use super::super::qp::QpProblem;
+use super::super::qp::{QpOptions, QpProblem, QpResult};
 use super::super::{Field, Hierarchy, Naive, Pyramid, ReferencePoint, Smoother, SolverMode, TerrainSettings};
 use super::fallback::{self, Fallback};
 use super::memory::{self, Pace, Prepared};
@@ -102,6 +102,21 @@ impl Passes<'_> {
         Ok(detail)
     }
 
+    /// What the quadratic program stays near to; `None` = no displacement.
+    fn target(&self, prepared: &Prepared, done: &Done) -> Result<Option<Vec<f64>>, ConstructError> {
+        let Pace { w, g } = prepared.weights();
+        Ok(match (self.settings.mode, self.last) {
+            (SolverMode::PaperQp, _) => Some(done.coarse.clone()),
+            (_, Some(last)) if self.pace.g > 0.0 => {
+                let mut u: Vec<f64> = last.iter().map(|u| g * g * u).collect();
+                let mut smoother: Smoother = Smoother::new(prepared.grid.cols(), prepared.grid.rows(), w, g)?;
+                smoother.solve(&mut u);
+                Some(u)
+            }
+            _ => None,
+        })
+    }
+
     /// The quadratic program.
     fn guarantee(
         &self,
@@ -113,17 +128,7 @@ impl Passes<'_> {
     ) -> Result<(), ConstructError> {
         self.progress.tick("quadratic program", 0.5)?;
         let began = Instant::now();
-        let Pace { w, g } = prepared.weights();
-        let target = match (self.settings.mode, self.last) {
-            (SolverMode::PaperQp, _) => Some(done.coarse.clone()),
-            (_, Some(last)) if self.pace.g > 0.0 => {
-                let mut u: Vec<f64> = last.iter().map(|u| g * g * u).collect();
-                let mut smoother: Smoother = Smoother::new(prepared.grid.cols(), prepared.grid.rows(), w, g)?;
-                smoother.solve(&mut u);
-                Some(u)
-            }
-            _ => None,
-        };
+        let target = self.target(prepared, done)?;
         let warm = self.last.is_some() && prepared.moving.is_some();
         let pace = if warm { self.pace } else { Pace { g: 0.0, ..self.pace } };
         let Some(program) = (if warm { &mut prepared.moving } else { &mut prepared.still }) else { return Ok(()) };
@@ -168,22 +173,9 @@ impl Passes<'_> {
         }
         program.foreign = foreign;
         done.coarse.clone_from(&result.u);
-        for nodes in fallback::finer(&prepared.grid, self.field) {
-            if fallback::stuck(&result) == 0 {
-                break;
-            }
-            self.progress.tick("quadratic program on a finer grid", 0.7)?;
-            let grid = Hierarchy::new(self.field.cols(), self.field.rows(), nodes);
-            let start = target.as_ref().map(|t| fallback::resampled(&prepared.grid, t, &grid));
+        if fallback::stuck(&result) > 0 {
             let options = memory::options(self.settings, from_guard);
-            let mut finer = memory::program(self.field, &grid, pace, options)?;
-            finer.set_heights(&ground)?;
-            let next = finer.solve(&QpProblem { target: start.as_deref(), ..problem })?;
-            if fallback::stuck(&next) < fallback::stuck(&result) {
-                done.fine = Some(grid.prolong(&next.u));
-                result = next;
-                done.fallbacks.push(Fallback::FinerGrid { nodes });
-            }
+            result = self.on_finer_grids(&prepared.grid, &ground, &problem, (pace, options), result, done)?;
         }
         done.qp = Some(QpReport {
             rounds: result.rounds,
@@ -198,5 +190,33 @@ impl Passes<'_> {
         done.rows = result.active;
         times.qp_ms = since(began);
         Ok(())
+    }
+    /// Solves again on finer and finer grids until nothing is missed any more; answers the best result.
+    fn on_finer_grids(
+        &self,
+        coarse: &Hierarchy,
+        ground: &[f64],
+        problem: &QpProblem<'_>,
+        (pace, options): (Pace, QpOptions),
+        mut best: QpResult,
+        done: &mut Done,
+    ) -> Result<QpResult, ConstructError> {
+        for nodes in fallback::finer(coarse, self.field) {
+            if fallback::stuck(&best) == 0 {
+                break;
+            }
+            self.progress.tick("quadratic program on a finer grid", 0.7)?;
+            let grid = Hierarchy::new(self.field.cols(), self.field.rows(), nodes);
+            let target = problem.target.map(|t| fallback::resampled(coarse, t, &grid));
+            let mut finer = memory::program(self.field, &grid, pace, options)?;
+            finer.set_heights(ground)?;
+            let next = finer.solve(&QpProblem { target: target.as_deref(), ..*problem })?;
+            if fallback::stuck(&next) < fallback::stuck(&best) {
+                done.fine = Some(grid.prolong(&next.u));
+                best = next;
+                done.fallbacks.push(Fallback::FinerGrid { nodes });
+            }
+        }
+        Ok(best)
     }
 }
