@@ -4,7 +4,7 @@ use super::problem::LinesOfSight;
 use crate::terrain::Field;
 use belvedere_core::{Camera, DVec2, DVec3, Stage, View};
 
-/// A chord leaves the ray that it stands for by less than this in height, metres; the margin of the program is twenty times that.
+/// A chord leaves the ray that it stands for by less than this in height, metres; the usual margin is twenty times that.
 const BOW: f64 = 0.05;
 /// And by less than this in plan, cells.
 const BOW_PLAN: f64 = 0.02;
