@@ -74,17 +74,7 @@ fn main() -> Result<(), Failure> {
 }
 
 fn line(features: Vec<LineFeature>) -> LayerKind {
-    let color = Color::rgb(215, 48, 31);
-    LayerKind::Line(LineLayer {
-        features,
-        color,
-        width_px: 3.0,
-        casing: None,
-        hidden: Hidden::Dash,
-        lift_m: 1.0,
-        markers: None,
-        label_px: None,
-    })
+    LayerKind::Line(LineLayer::new(features, Color::rgb(215, 48, 31)))
 }
 
 fn scene(heightfield: Heightfield, crs: belvedere_scene::Crs, features: Vec<(&str, LayerKind)>) -> Scene {

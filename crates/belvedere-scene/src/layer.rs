@@ -146,6 +146,22 @@ pub struct LineLayer {
     pub label_px: Option<f64>,
 }
 
+impl LineLayer {
+    /// Lines in the usual style: 3 pixels wide, dashed where hidden, 1 m above ground, without casing, marks or names.
+    pub fn new(features: Vec<LineFeature>, color: Color) -> Self {
+        Self {
+            features,
+            color,
+            width_px: 3.0,
+            casing: None,
+            hidden: Hidden::Dash,
+            lift_m: 1.0,
+            markers: None,
+            label_px: None,
+        }
+    }
+}
+
 /// One polygon of an area layer.
 #[derive(Debug, Clone, Default)]
 pub struct AreaFeature {

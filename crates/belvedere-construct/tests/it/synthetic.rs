@@ -41,16 +41,8 @@ pub(crate) fn terrain_layer(heightfield: Heightfield) -> Layer {
 }
 
 pub(crate) fn line_layer(id: &str, points: Vec<DVec3>) -> Layer {
-    let kind = LayerKind::Line(LineLayer {
-        features: vec![LineFeature { name: id.into(), points }],
-        color: Color::rgb(200, 30, 30),
-        width_px: 3.0,
-        casing: None,
-        hidden: Hidden::Dash,
-        lift_m: 1.0,
-        markers: None,
-        label_px: None,
-    });
+    let features = vec![LineFeature { name: id.into(), points }];
+    let kind = LayerKind::Line(LineLayer::new(features, Color::rgb(200, 30, 30)));
     Layer { id: id.into(), must_see: true, kind }
 }
 

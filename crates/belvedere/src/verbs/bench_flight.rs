@@ -7,8 +7,8 @@ use belvedere_construct::{Flight, FlightOptions};
 use belvedere_core::{Pinhole, Projection, Stage, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_scene::{
-    Color, Frame, Hidden, Layer, LayerKind, Light, LineFeature, LineLayer, Progress, RenderJob, RenderOptions,
-    Renderer, Scene, drape_polyline, valley_route,
+    Color, Frame, Layer, LayerKind, Light, LineFeature, LineLayer, Progress, RenderJob, RenderOptions, Renderer, Scene,
+    drape_polyline, valley_route,
 };
 use serde::Serialize;
 use std::sync::Arc;
@@ -107,16 +107,8 @@ fn with_route(mut scene: Scene) -> Result<Scene, BelvedereError> {
     let Some(terrain) = scene.terrain() else { return Ok(scene) };
     let way = valley_route(terrain, 7).map_err(broken)?;
     let feature = |points| LineFeature { name: "route".into(), points };
-    let line = LineLayer {
-        features: drape_polyline(terrain, &way).parts.into_iter().map(feature).collect(),
-        color: Color::rgb(215, 48, 31),
-        width_px: 3.0,
-        casing: None,
-        hidden: Hidden::Dash,
-        lift_m: 1.0,
-        markers: None,
-        label_px: None,
-    };
+    let features = drape_polyline(terrain, &way).parts.into_iter().map(feature).collect();
+    let line = LineLayer::new(features, Color::rgb(215, 48, 31));
     scene.layers.push(Layer { id: "route".into(), must_see: true, kind: LayerKind::Line(line) });
     Ok(scene)
 }
