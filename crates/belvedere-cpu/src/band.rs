@@ -1,6 +1,7 @@
 //! What the samples of a band of image rows see.
 
 use crate::lens::SUB;
+use std::ops::Range;
 
 /// Samples that may be written past the last one of a row.
 pub(crate) const SLACK: usize = 8;
@@ -70,7 +71,11 @@ impl Band {
 
     /// Makes the band one of sky, for other rows; memory is kept.
     pub(crate) fn clear(&mut self, y0: i32, y1: i32, width: i32, offsets: &[[i32; 2]]) {
+        let alike = (self.y1 - self.y0, self.width, self.offsets.as_slice()) == (y1 - y0, width, offsets);
         (self.y0, self.y1, self.width) = (y0, y1, width);
+        if alike {
+            return self.clear_drawn();
+        }
         self.offsets.clear();
         self.offsets.extend_from_slice(offsets);
         self.reach = [0, 1].map(|axis| {
@@ -88,6 +93,27 @@ impl Band {
         {
             self.hits = vec![0; n];
         }
+    }
+
+    /// Clears the columns in which something was drawn.
+    fn clear_drawn(&mut self) {
+        let rows = self.q.chunks_mut(self.stride.max(1)).zip(self.prim.chunks_mut(self.stride.max(1)));
+        for (q, prim) in rows {
+            for Part { columns, drawn } in parts(&self.tiles.drawn, self.stride) {
+                if drawn {
+                    q[columns.clone()].fill(f32::NEG_INFINITY);
+                    prim[columns].fill(SKY);
+                }
+            }
+        }
+        self.tiles.clear(self.stride);
+        #[cfg(test)]
+        self.hits.fill(0);
+    }
+
+    /// The columns from left to right, by whether anything may be seen there but sky.
+    pub(crate) fn parts(&self) -> impl Iterator<Item = Part> {
+        parts(&self.tiles.drawn, self.width.max(0) as usize)
     }
 
     /// Index of a sample.
@@ -122,11 +148,13 @@ impl Band {
         })
     }
 
-    /// Tells that something was drawn in these columns.
+    /// Tells that something was drawn in these columns; what nobody tells of is neither coloured nor cleared.
     pub(crate) fn drew(&mut self, x: [i32; 2]) {
         let (from, to) = ((x[0] >> 8).max(0) as usize / TILE, (x[1] >> 8).clamp(0, self.width - 1) as usize / TILE);
-        if let Some(stale) = self.tiles.stale.get_mut(from..=to) {
-            stale.fill(true);
+        for tiles in [&mut self.tiles.stale, &mut self.tiles.drawn] {
+            if let Some(tiles) = tiles.get_mut(from..=to) {
+                tiles.fill(true);
+            }
         }
     }
 
@@ -151,13 +179,57 @@ const TILE: usize = 32;
 struct Tiles {
     least: Vec<f32>,
     stale: Vec<bool>,
+    /// Whether anything was drawn since the band was cleared.
+    drawn: Vec<bool>,
+}
+
+/// Columns in all of which something was drawn, or nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Part {
+    pub(crate) columns: Range<usize>,
+    pub(crate) drawn: bool,
+}
+
+/// The first `width` columns, tiles of one kind together.
+fn parts(drawn: &[bool], width: usize) -> impl Iterator<Item = Part> {
+    let mut from = 0;
+    drawn.chunk_by(|a, b| a == b).map_while(move |tiles| {
+        let columns = from..(from + tiles.len() * TILE).min(width);
+        from = columns.end;
+        (!columns.is_empty()).then(|| Part { columns, drawn: tiles[0] })
+    })
 }
 
 impl Tiles {
     fn clear(&mut self, width: usize) {
         self.least.clear();
         self.least.resize(width.div_ceil(TILE), f32::NEG_INFINITY);
-        self.stale.clear();
-        self.stale.resize(width.div_ceil(TILE), false);
+        for flags in [&mut self.stale, &mut self.drawn] {
+            flags.clear();
+            flags.resize(width.div_ceil(TILE), false);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_band_that_was_drawn_in_is_cleared_like_a_new_one() {
+        let offsets = sample_offsets(4);
+        let mut band = Band::new(0, 16, 203, offsets.clone());
+        assert!(band.parts().eq([Part { columns: 0..203, drawn: false }]));
+        for (from, to) in [(40, 95), (200, 202)] {
+            for (s, y) in (0..offsets.len()).flat_map(|s| (0..16).map(move |y| (s, y))) {
+                (from..=to).for_each(|x| band.write(band.index(s, x, y), 1.0, 7));
+            }
+            band.drew([from as i32 * 256 + 3, to as i32 * 256 + 255]);
+        }
+        let part = |columns, drawn| Part { columns, drawn };
+        assert!(band.parts().eq([part(0..32, false), part(32..96, true), part(96..192, false), part(192..203, true)]));
+        band.clear(32, 48, 203, &offsets);
+        let new = Band::new(32, 48, 203, offsets);
+        assert!(band.q == new.q && band.prim == new.prim && band.hits == new.hits && band.parts().eq(new.parts()));
     }
 }

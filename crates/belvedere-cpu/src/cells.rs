@@ -9,6 +9,7 @@ use crate::raster::owns_edge;
 /// Cells with bounding boxes below this go together: four pixels, or so. Differences of their corners have products whose sums
 /// stay below 2^24, so single precision decides exactly.
 const TINY: i32 = 4 * SUB;
+const _: () = assert!(SIDE == u32::BITS as usize, "a bit per cell of a row");
 const _: () = assert!(TINY as i64 * TINY as i64 * 12 < 1 << 24, "sums of products fit the mantissa of f32");
 
 /// In a cell's half with the north-east node.
@@ -79,15 +80,17 @@ impl Look {
 impl Boxes {
     #[inline(always)]
     fn of(row: &CellRow<'_>) -> Self {
-        let [x, y] = [row.x, row.y].map(|[n, s]| {
-            let (mut lo, mut hi) = ([0; SIDE], [0; SIDE]);
-            for c in 0..SIDE {
-                lo[c] = least(least(n[c], n[c + 1]), least(s[c], s[c + 1]));
-                hi[c] = most(most(n[c], n[c + 1]), most(s[c], s[c + 1]));
-            }
-            [lo, hi]
-        });
-        Self { x, y }
+        Self { x: Self::ranges(row.x), y: Self::ranges(row.y) }
+    }
+
+    #[inline(always)]
+    fn ranges([n, s]: [&[i32; NODES]; 2]) -> [Whole; 2] {
+        let (mut lo, mut hi) = ([0; SIDE], [0; SIDE]);
+        for c in 0..SIDE {
+            lo[c] = least(least(n[c], n[c + 1]), least(s[c], s[c + 1]));
+            hi[c] = most(most(n[c], n[c + 1]), most(s[c], s[c + 1]));
+        }
+        [lo, hi]
     }
 }
 
@@ -172,13 +175,14 @@ impl Band {
         prim: u32,
     ) {
         let judged = self.judge(row, (boxes, corners), tiny, look);
-        // No processor guesses which samples see their cell: these first, without a branch.
-        let (mut seen, mut n) = ([0; SIDE], 0);
+        // No processor guesses which samples see their cell: these as bits, without a branch.
+        let mut seen = 0u32;
         for c in 0..SIDE {
-            seen[n % SIDE] = c;
-            n += usize::from(judged.code[c] != 0);
+            seen |= if judged.code[c] != 0 { 1 << c } else { 0 };
         }
-        for &c in &seen[..n] {
+        while seen != 0 {
+            let c = seen.trailing_zeros() as usize;
+            seen &= seen - 1;
             let (code, at, prim) = (judged.code[c], judged.at[c] as usize, prim | (c as u32) << 1);
             if code == UPPER || code == LOWER {
                 self.write(at, judged.q[c], prim | (code >> 1));
@@ -202,12 +206,15 @@ impl Band {
             let inside = (sx <= boxes.x[1][c]) & (sy <= boxes.y[1][c]);
             let on_band = (px >= 0) & (px < width) & (py >= y0) & (py < y1) & (tiny[c] != 0);
             let (tx, ty) = ((sx - from[0]) as f32, (sy - from[1]) as f32);
-            let edges =
-                edges([xa[c], xb[c], xc[c], xd[c]].map(|x| x - tx), [ya[c], yb[c], yc[c], yd[c]].map(|y| y - ty));
+            // No closures here: they would be compiled apart, for the oldest processors.
+            let edges = edges(
+                [xa[c] - tx, xb[c] - tx, xc[c] - tx, xd[c] - tx],
+                [ya[c] - ty, yb[c] - ty, yc[c] - ty, yd[c] - ty],
+            );
             let [north, east, diagonal, west, south] = edges;
             let lo = [least(least(north, east), diagonal), least(least(west, south), diagonal)];
             let hi = [most(most(north, east), diagonal), most(most(west, south), diagonal)];
-            let [upper, lower] = [0, 1].map(|h| (lo[h] > 0.0) | (hi[h] < 0.0));
+            let (upper, lower) = ((lo[0] > 0.0) | (hi[0] < 0.0), (lo[1] > 0.0) | (hi[1] < 0.0));
             let edge = (lo[0] == 0.0) | (hi[0] == 0.0) | (lo[1] == 0.0) | (hi[1] == 0.0);
             let code = (u32::from(upper) * UPPER) | (u32::from(lower) * LOWER) | (u32::from(edge) * EDGE);
             out.code[c] = if inside & on_band { code } else { 0 };

@@ -55,7 +55,10 @@ impl Band {
             }
             for py in ya..=yb {
                 let (xs, ys) = (xa * SUB + ox, py * SUB + oy);
-                let e: [i32; 3] = std::array::from_fn(|i| dx[i] * (ys - v[i].y) - dy[i] * (xs - v[i].x) - own[i]);
+                let mut e = [0; 3];
+                for i in 0..3 {
+                    e[i] = dx[i] * (ys - v[i].y) - dy[i] * (xs - v[i].x) - own[i];
+                }
                 let first = self.index(s, xa, py);
                 let lane = Lane { q: plane.at(xs, ys) as f32, slope, range: [plane.q_min, plane.q_max], prim };
                 #[cfg(test)]

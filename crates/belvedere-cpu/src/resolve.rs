@@ -1,11 +1,12 @@
 //! From samples to pixels.
 
-use crate::band::{Band, SKY};
+use crate::band::{Band, Part, SKY};
 use crate::lens::{Lens, SUB};
 use crate::polish::Polish;
 use crate::shade::color::Packed;
 use crate::shade::{Painted, Sample, Samples, Shader};
 use crate::vector::{self, Kernel};
+use std::ops::Range;
 
 /// Rows of the picture that a band fills.
 pub(crate) struct Rows<'a, 'c> {
@@ -32,29 +33,66 @@ const SAME_SURFACE: f32 = 0.02;
 pub(crate) fn resolve(band: &Band, shader: &Shader<'_>, lens: &Lens, rows: &mut Rows<'_, '_>) {
     let width = band.width.max(0) as usize;
     let [ox, oy] = band.offsets[0];
-    let xs: Vec<i32> = (0..band.width).map(|x| x * SUB + ox).collect();
-    let mut ys = vec![0; width];
-    let mut painted = Painted::default();
-    let mut edges = Edges::default();
-    for y in band.y0..band.y1 {
-        let first = band.index(0, 0, y);
-        let out = (y - band.y0) as usize * width;
-        let (prim, q) = (&band.prim[first..][..width], &band.q[first..][..width]);
-        vector::run(Depths { ortho: lens.ortho, q, prim, out: &mut rows.depth[out..] });
-        ys.fill(y * SUB + oy);
-        shader.paint(Samples { prim, q, x: &xs, y: &ys }, &mut painted);
-        rows.id[out..][..width].copy_from_slice(&painted.id);
+    let x: Vec<i32> = (0..band.width).map(|x| x * SUB + ox).collect();
+    let mut y = vec![0; width];
+    let mut brushes = Brushes::default();
+    for row in band.y0..band.y1 {
+        y.fill(row * SUB + oy);
+        let first = (row - band.y0) as usize * width;
+        for Part { columns, drawn } in band.parts() {
+            let out = first + columns.start..first + columns.end;
+            let at = (&x[columns.clone()], &y[columns.clone()]);
+            match &mut *rows.color {
+                Colors::Stored(color) if !drawn => {
+                    // Places of the sky are no numbers from the start.
+                    rows.depth[out.clone()].fill(f32::INFINITY);
+                    rows.id[out.clone()].fill(0);
+                    shader.sky.store([at.0[0], at.1[0]], &mut color[out]);
+                }
+                _ => brushes.paint(band, shader, lens, (columns, row), at, rows, out),
+            }
+        }
+    }
+}
+
+/// Memory for colours.
+#[derive(Default)]
+struct Brushes {
+    painted: Painted,
+    edges: Edges,
+}
+
+impl Brushes {
+    /// Colours columns of a row.
+    /// * `at`: places of the samples at the pixels' centres; `out`: the pixels among those of the band.
+    #[allow(clippy::too_many_arguments, reason = "what is seen, where, by whom, and where it goes")]
+    fn paint(
+        &mut self,
+        band: &Band,
+        shader: &Shader<'_>,
+        lens: &Lens,
+        (columns, row): (Range<usize>, i32),
+        (x, y): (&[i32], &[i32]),
+        rows: &mut Rows<'_, '_>,
+        out: Range<usize>,
+    ) {
+        let Self { painted, edges } = self;
+        let from = band.index(0, columns.start as i32, row);
+        let (prim, q) = (&band.prim[from..][..columns.len()], &band.q[from..][..columns.len()]);
+        vector::run(Depths { ortho: lens.ortho, q, prim, out: &mut rows.depth[out.clone()] });
+        shader.paint(Samples { prim, q, x, y }, painted);
+        rows.id[out.clone()].copy_from_slice(&painted.id);
         if rows.world.is_some() || rows.polish.is_some() {
-            for x in 0..width {
-                place(band, shader, rows, out + x, [x as i32, y]);
+            for (out, x) in out.clone().zip(columns.clone()) {
+                place(band, shader, rows, out, [x as i32, row]);
             }
         }
         if band.offsets.len() > 1 {
-            edges.mix(band, shader, y, &mut painted);
+            edges.mix(band, shader, (columns, row), painted);
         }
         match &mut *rows.color {
-            Colors::Open(color) => painted.pack(&mut color[out..][..width]),
-            Colors::Stored(color) => painted.encode(&mut color[out..][..width]),
+            Colors::Open(color) => painted.pack(&mut color[out]),
+            Colors::Stored(color) => painted.encode(&mut color[out]),
         }
     }
 }
@@ -101,10 +139,10 @@ struct Edges {
     x: Vec<i32>,
     y: Vec<i32>,
     painted: Painted,
-    /// Not 0 for pixels of a row that may see several surfaces.
+    /// Not 0 for pixels painted that may see several surfaces.
     uneven: Vec<u32>,
-    /// Pixel, share of its centre, and number of its first sample.
-    pixels: Vec<(u32, u32, usize)>,
+    /// Number of the pixel among those painted, share of its centre, and number of its first sample.
+    pixels: Vec<(usize, u32, usize)>,
     /// Coverage samples of each sample.
     shares: Vec<u32>,
 }
@@ -112,18 +150,26 @@ struct Edges {
 impl Edges {
     /// Replaces the colours of pixels by the mean of their coverage samples, where these see more than one surface;
     /// samples on one surface share the colour of the first of them.
-    fn mix(&mut self, band: &Band, shader: &Shader<'_>, y: i32, painted: &mut Painted) {
+    /// * `columns`, `y`: the pixels that were painted.
+    fn mix(
+        &mut self,
+        band: &Band,
+        shader: &Shader<'_>,
+        (columns, y): (Range<usize>, i32),
+        painted: &mut Painted,
+    ) {
         let Self { prim, q, x, y: ys, shares, pixels, .. } = self;
         [prim, shares].into_iter().for_each(Vec::clear);
         [x, ys].into_iter().for_each(Vec::clear);
         q.clear();
         pixels.clear();
         self.uneven.clear();
-        self.uneven.resize(band.width.max(0) as usize, 0);
-        vector::run(Unevenness { band, y, terrain: shader.only_terrain(), out: &mut self.uneven });
-        for x in 0..self.uneven.len() {
-            if self.uneven[x] != 0 && (shader.only_terrain() || !is_even(band, shader, x as i32, y)) {
-                self.take(band, shader, x as i32, y);
+        self.uneven.resize(columns.len(), 0);
+        vector::run(Unevenness { band, first: columns.start, y, terrain: shader.only_terrain(), out: &mut self.uneven });
+        for i in 0..self.uneven.len() {
+            let x = (columns.start + i) as i32;
+            if self.uneven[i] != 0 && (shader.only_terrain() || !is_even(band, shader, x, y)) {
+                self.take(band, shader, [x, y], i);
             }
         }
         if self.pixels.is_empty() {
@@ -131,10 +177,10 @@ impl Edges {
         }
         shader.paint(Samples { prim: &self.prim, q: &self.q, x: &self.x, y: &self.y }, &mut self.painted);
         let n = (band.offsets.len() - 1) as f32;
-        for (i, &(x, centre, first)) in self.pixels.iter().enumerate() {
+        for (i, &(pixel, centre, first)) in self.pixels.iter().enumerate() {
             let last = self.pixels.get(i + 1).map_or(self.prim.len(), |p| p.2);
             for (root, from) in painted.root.iter_mut().zip(&self.painted.root) {
-                let root = &mut root[x as usize];
+                let root = &mut root[pixel];
                 let others = from[first..last].iter().zip(&self.shares[first..last]);
                 let sum = others.fold(*root * *root * centre as f32, |sum, (c, share)| sum + c * c * *share as f32);
                 *root = (sum / n).sqrt();
@@ -142,7 +188,8 @@ impl Edges {
         }
     }
 
-    fn take(&mut self, band: &Band, shader: &Shader<'_>, x: i32, y: i32) {
+    /// * `pixel`: its number among those painted.
+    fn take(&mut self, band: &Band, shader: &Shader<'_>, [x, y]: [i32; 2], pixel: usize) {
         let seen = |s: usize| {
             let i = band.index(s, x, y);
             (band.prim[i], band.q[i])
@@ -165,13 +212,14 @@ impl Edges {
                 self.shares.push(1);
             }
         }
-        self.pixels.push((x as u32, centre, first));
+        self.pixels.push((pixel, centre, first));
     }
 }
 
-/// Finds the pixels of a row that may see several surfaces.
+/// Finds the pixels of a row, from column `first` on, that may see several surfaces.
 struct Unevenness<'u> {
     band: &'u Band,
+    first: usize,
     y: i32,
     /// Whether there is but one terrain to be seen, whose colours change smoothly.
     terrain: bool,
@@ -185,7 +233,7 @@ impl Kernel for Unevenness<'_> {
     fn run(self) {
         let (band, width) = (self.band, self.out.len());
         let row = |s: usize| {
-            let first = band.index(s, 0, self.y);
+            let first = band.index(s, self.first as i32, self.y);
             (&band.prim[first..][..width], &band.q[first..][..width])
         };
         let (prims, qs) = row(0);

@@ -1,7 +1,7 @@
 //! Samples of one terrain layer, shaded together: each step is a plain loop over short arrays, which compilers turn
 //! into vector instructions.
 
-use super::lit::Halves;
+use super::lit::Colors;
 use super::print::Print;
 use super::spot::Spot;
 use super::terrain::TerrainShade;
@@ -14,9 +14,9 @@ use crate::vector::nearest;
 use belvedere_core::DVec2;
 
 /// Samples to a batch.
-const LANES: usize = 32;
+pub(super) const LANES: usize = 32;
 type Lanes = [f32; LANES];
-type Whole = [i32; LANES];
+pub(super) type Whole = [i32; LANES];
 
 /// Samples waiting to be shaded, each on one half of a cell of the ground.
 pub(super) struct Batch {
@@ -171,11 +171,8 @@ impl Batch {
         let lods = terrain.lods(shader, &places.depth, &places.cells_per_px);
         let at = self.fixed(&places, terrain);
         let making = terrain.making();
-        let mut halves = [Halves::default(); LANES];
-        for i in 0..self.len {
-            halves[i] = terrain.lit.colors([at[0][i], at[1][i]], (lods[i] >> 8) as usize, &making);
-        }
-        let color = terrain.colors(shader, &halves, &lods, &places.depth);
+        let colors = terrain.lit.colors_of(&at, &lods, self.len, &making);
+        let color = terrain.colors(shader, &colors, &lods, &places.depth);
         for (i, &k) in self.out[..self.len].iter().enumerate() {
             painted.set_root(k as usize, [color[0][i], color[1][i], color[2][i]], self.layer as u32 + 1);
         }
@@ -208,15 +205,12 @@ impl Batch {
     fn weigh(&self, out: &mut Places) {
         let Self { at: [xs, ys], x: [x0, x1, x2], y: [y0, y1, y2], q: [q0, q1, q2], step, lower, .. } = self;
         for i in 0..LANES {
-            let x = [x0[i] - xs[i], x1[i] - xs[i], x2[i] - xs[i]].map(|v| v as f32);
-            let y = [y0[i] - ys[i], y1[i] - ys[i], y2[i] - ys[i]].map(|v| v as f32);
+            let x = [(x0[i] - xs[i]) as f32, (x1[i] - xs[i]) as f32, (x2[i] - xs[i]) as f32];
+            let y = [(y0[i] - ys[i]) as f32, (y1[i] - ys[i]) as f32, (y2[i] - ys[i]) as f32];
             let (w0, w1, w2) = (x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]);
             let inverse = 1.0 / (w0 + w1 + w2);
-            let weight = |w: f32, q: f32| {
-                let w = w * inverse;
-                (if w > 0.0 { w } else { 0.0 }) * q
-            };
-            let (w0, w1, w2) = (weight(w0, q0[i]), weight(w1, q1[i]), weight(w2, q2[i]));
+            let (w0, w1, w2) =
+                (positive(w0 * inverse) * q0[i], positive(w1 * inverse) * q1[i], positive(w2 * inverse) * q2[i]);
             let scale = step[i] / (w0 + w1 + w2);
             // The vertex between lies beside the diagonal, where only one coordinate differs.
             let (most, least) = ((w1 + w2) * scale, w1 * scale);
@@ -232,7 +226,7 @@ impl Batch {
         let [mut columns, mut rows] = [[0; LANES]; 2];
         let last = [terrain.hf.cols(), terrain.hf.rows()].map(|n| (n - 1) as i32 * CELL);
         for i in 0..LANES {
-            let [c, r] = [self.node[0][i] * CELL, self.node[1][i] * CELL];
+            let (c, r) = (self.node[0][i] * CELL, self.node[1][i] * CELL);
             columns[i] = c.wrapping_add(nearest(places.u[i] * CELL as f32)).clamp(0, last[0]);
             rows[i] = r.wrapping_add(nearest(places.v[i] * CELL as f32)).clamp(0, last[1]);
         }
@@ -275,6 +269,11 @@ impl Batch {
     }
 }
 
+#[inline(always)]
+fn positive(v: f32) -> f32 {
+    if v > 0.0 { v } else { 0.0 }
+}
+
 impl TerrainShade<'_> {
     /// Squared sides, in cells, of the smallest and the largest square on the ground that a pixel can cover at a depth.
     #[inline(always)]
@@ -308,12 +307,12 @@ impl TerrainShade<'_> {
 
     /// Square roots of the colours of lit ground through the air.
     #[inline(always)]
-    fn colors(&self, shader: &Shader<'_>, halves: &[Halves; LANES], lods: &[u32; LANES], depth: &Lanes) -> [Lanes; 3] {
+    fn colors(&self, shader: &Shader<'_>, colors: &Colors, lods: &[u32; LANES], depth: &Lanes) -> [Lanes; 3] {
         let air = shader.sky.haze();
         let mut out = [[0.0; LANES]; 3];
         for i in 0..LANES {
             let haze = shader.sky.haze_at(depth[i]);
-            let root = halves[i].between((lods[i] & 255) as i32 as f32 * (1.0 / 256.0));
+            let root = colors.between(i, (lods[i] & 255) as i32 as f32 * (1.0 / 256.0));
             for k in 0..3 {
                 let c = root[k] * root[k];
                 out[k][i] = (c + haze * (air[k] - c)).sqrt();

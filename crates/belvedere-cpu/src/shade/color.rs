@@ -25,6 +25,62 @@ static ENCODED: LazyLock<Encoding> = LazyLock::new(|| {
     })
 });
 
+/// First place in [`ENCODED`] of every value, and of three beyond the last one, which no place has.
+static FIRST: LazyLock<[i32; 260]> =
+    LazyLock::new(|| std::array::from_fn(|v| ENCODED.partition_point(|e| usize::from(*e) < v) as i32));
+
+/// Stores square roots of linear light, 16 bits each, as sRGB; tables at hand.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Encoder {
+    encoded: &'static Encoding,
+    first: &'static [i32; 260],
+}
+
+/// Values that are stored together.
+pub(crate) const LANES: usize = 32;
+/// Pixels that are written together.
+pub(crate) const PIXELS: usize = 8 * LANES;
+
+impl Encoder {
+    pub(crate) fn new() -> Self {
+        Self { encoded: &ENCODED, first: &FIRST }
+    }
+
+    /// sRGB values by square roots of linear light.
+    #[inline(always)]
+    pub(crate) fn encode(self, roots: &[f32; LANES]) -> [u8; LANES] {
+        let mut out = [0; LANES];
+        for i in 0..LANES {
+            out[i] = self.encoded[place(roots[i]) as usize & (self.encoded.len() - 1)];
+        }
+        out
+    }
+
+    /// The same for values between `least` and `most`, fast where these differ by few steps.
+    #[inline(always)]
+    pub(crate) fn encode_between(self, roots: &[f32; LANES], [least, most]: [f32; 2]) -> [u8; LANES] {
+        let mask = self.encoded.len() - 1;
+        let (least, most) = (self.encoded[place(least) as usize & mask], self.encoded[place(most) as usize & mask]);
+        if most.wrapping_sub(least) > 3 {
+            return self.encode(roots);
+        }
+        let [_, a, b, c] = self.first[usize::from(least)..].first_chunk().copied().unwrap_or_default();
+        let mut out = [0; LANES];
+        for i in 0..LANES {
+            let at = place(roots[i]);
+            let steps = i32::from(at >= a) + i32::from(at >= b) + i32::from(at >= c);
+            out[i] = (i32::from(least) + steps) as u8;
+        }
+        out
+    }
+}
+
+/// Place in [`Encoding`].
+#[inline(always)]
+fn place(root: f32) -> i32 {
+    i32::from(sixteen_bits(root) >> 4)
+}
+
 pub(crate) fn encoding() -> &'static Encoding {
     &ENCODED
 }
@@ -87,6 +143,20 @@ pub(crate) fn smoothstep(a: f32, b: f32, x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn values_stored_together_are_those_stored_alone() {
+        let encoder = Encoder::new();
+        for from in (-20..1300).map(|k| k as f32 / 1255.0) {
+            for step in [0.0, 1e-5, 2e-4, 3e-4, -4e-4, 2e-3, -0.02, f32::NAN] {
+                let roots: [f32; LANES] = std::array::from_fn(|i| from + step * i as f32);
+                let want = roots.map(|root| Packed::of_roots([sixteen_bits(root); 3]).encode(encoding())[0]);
+                let ends = [0, 1].map(|k| if (step < 0.0) == (k == 0) { roots[LANES - 1] } else { roots[0] });
+                assert_eq!(encoder.encode(&roots), want);
+                assert_eq!(encoder.encode_between(&roots, ends), want, "{from} {step}");
+            }
+        }
+    }
 
     #[test]
     fn every_srgb_value_survives_linear_light_and_packing() {

@@ -4,6 +4,7 @@
 //! ground are kept: its lit colour, which most pixels take as it is, and colour and light apart, where something lies over
 //! the ground. A node takes eight bytes in each, and a pixel a weighted sum of four nodes in 16-bit integers.
 
+use super::batch;
 use super::coarse::Coarse;
 use super::color::Rgb;
 use super::patch::{LANES, Lanes, Making, Patch};
@@ -49,21 +50,54 @@ impl LitGround {
         self.colors.is_full() || self.parts.is_full()
     }
 
-    /// Square roots of the lit colour around a place, averaged over 2^k cells and over twice as many; [`ONE`] = 1.
-    /// * `at`: column and row, [`tiles::CELL`] steps to a cell.
+    /// Square roots of the lit colour around `n` places, see [`LitGround::color`].
+    /// * `at`: columns and rows, [`tiles::CELL`] steps to a cell.
     #[inline(always)]
-    pub(crate) fn colors(&self, at: [i32; 2], k: usize, making: &Making<'_>) -> Halves {
-        let k = k.min(self.colors.top());
-        match self.colors.around(k, at, |k, tile| self.make_colors(k, tile, making)) {
-            Some(around) => mean(&around),
-            None => Halves::default(),
+    pub(super) fn colors_of(
+        &self,
+        at: &[batch::Whole; 2],
+        lods: &[u32; batch::LANES],
+        n: usize,
+        making: &Making<'_>,
+    ) -> Colors {
+        const LANES: usize = batch::LANES;
+        let top = self.colors.top() as u32;
+        let (mut k, mut x, mut y, mut first) = ([0; LANES], [0; LANES], [0; LANES], [0; LANES]);
+        for i in 0..LANES {
+            k[i] = least(lods[i] >> 8, top);
+            (x[i], y[i]) = (tiles::place(at[0][i], k[i]), tiles::place(at[1][i], k[i]));
+            first[i] = tiles::first_of(x[i], y[i]);
         }
+        let mut nodes = [[[0; LANES]; 2]; 4];
+        let (mut last, mut tile) = ([u32::MAX; 3], None);
+        for i in 0..n {
+            // Neighbours mostly lie in the same tile.
+            let here = [k[i], x[i] / tiles::SPAN, y[i] / tiles::SPAN];
+            if here != last {
+                (last, tile) = (here, self.colors.tile(here, |k, tile| self.make_colors(k, tile, making)));
+            }
+            if let Some(around) = tile.and_then(|tile| tiles::around(tile, first[i] as usize)) {
+                for (nodes, [fine, coarse]) in nodes.iter_mut().zip(around) {
+                    (nodes[0][i], nodes[1][i]) = (fine, coarse);
+                }
+            }
+        }
+        let mut out = Colors { fine: [[0; LANES]; 2], coarse: [[0; LANES]; 2] };
+        let [nw, ne, sw, se] = &nodes;
+        for i in 0..LANES {
+            let weights = weights(x[i] & 255, y[i] & 255);
+            (out.fine[0][i], out.fine[1][i]) = mean([nw[0][i], ne[0][i], sw[0][i], se[0][i]], weights);
+            (out.coarse[0][i], out.coarse[1][i]) = mean([nw[1][i], ne[1][i], sw[1][i], se[1][i]], weights);
+        }
+        out
     }
 
     /// Square roots of the lit colour around a place.
     /// * `lod`: level of averages, 256 steps to a level.
     pub(crate) fn color(&self, at: [i32; 2], lod: u32, making: &Making<'_>) -> [f32; 3] {
-        self.colors(at, (lod >> 8) as usize, making).between((lod & 255) as f32 / 256.0)
+        let places = [0, 1].map(|axis| [at[axis]; batch::LANES]);
+        let colors = self.colors_of(&places, &[lod; batch::LANES], 1, making);
+        colors.between(0, (lod & 255) as f32 / 256.0)
     }
 
     /// Colour and light around a place, see [`LitGround::color`].
@@ -91,44 +125,58 @@ impl LitGround {
         let patch = Patch::new(making, k, columns.all(), rows.all());
         // The coarsest level goes on for ever.
         let next = (k < self.colors.top()).then(|| Coarse::new(making, k + 1, [columns, rows]));
-        vector::run(Colors { patch: &patch, next: next.as_ref(), light: making.light })
+        vector::run(Writing { patch: &patch, next: next.as_ref(), light: making.light })
     }
 }
 
-/// Weighted mean of both colours of four nodes, four channels in one product: no channel carries into the next, for
-/// the weights sum up to 256.
+/// Weights of four nodes: whole numbers that sum up to 256.
 #[inline(always)]
-fn mean(around: &Around<'_>) -> Halves {
-    const EVEN: u64 = 0x00ff_00ff_00ff_00ff;
-    let (u, v) = (u64::from(around.east_share), u64::from(around.south_share));
+fn weights(u: u32, v: u32) -> [u32; 4] {
     let both = (u * v) >> 8;
-    let nodes = [around.north[0], around.north[1], around.south[0], around.south[1]].map(u64::from_le_bytes);
+    [256 + both - u - v, u - both, v - both, both]
+}
+
+/// Weighted sum of a colour of four nodes, two channels in one product: no channel carries into the next. First and third
+/// channel, then the second one.
+#[inline(always)]
+fn mean(nodes: [u32; 4], weights: [u32; 4]) -> (u32, u32) {
+    const EVEN: u32 = 0x00ff_00ff;
     let (mut even, mut odd) = (0, 0);
-    for (node, weight) in nodes.into_iter().zip([256 + both - u - v, u - both, v - both, both]) {
-        even += (node & EVEN) * weight;
-        odd += (node >> 8 & EVEN) * weight;
+    for i in 0..4 {
+        even += (nodes[i] & EVEN) * weights[i];
+        odd += (nodes[i] >> 8 & EVEN) * weights[i];
     }
-    Halves { even, odd }
+    (even, odd)
 }
 
-/// Square roots of two colours in 16-bit channels: red, blue of the finer level, then of the coarser; green likewise, each
-/// followed by a spare channel.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Halves {
-    even: u64,
-    odd: u64,
+#[inline(always)]
+fn least(a: u32, b: u32) -> u32 {
+    if a < b { a } else { b }
 }
 
-impl Halves {
-    /// Square roots of linear red, green, blue, a share of the way to the coarser level.
+/// Square roots of the colours of two levels, place by place: red and blue in 16 bits each, and green.
+pub(super) struct Colors {
+    fine: [[u32; batch::LANES]; 2],
+    coarse: [[u32; batch::LANES]; 2],
+}
+
+impl Colors {
+    /// Square roots of linear red, green, blue at place `i`, a share of the way to the coarser level.
     #[inline(always)]
-    pub(crate) fn between(self, share: f32) -> [f32; 3] {
-        let channel = |bits: u64, k: u32| (bits >> (16 * k)) as u32 & 0xffff;
-        [(self.even, 0), (self.odd, 0), (self.even, 1)].map(|(bits, k)| {
-            let (fine, coarse) = (channel(bits, k) as i32 as f32, channel(bits, k + 2) as i32 as f32);
-            (fine + share * (coarse - fine)) * (1.0 / ONE)
-        })
+    pub(super) fn between(&self, i: usize, share: f32) -> [f32; 3] {
+        let (even, odd) = ([self.fine[0][i], self.coarse[0][i]], [self.fine[1][i], self.coarse[1][i]]);
+        [
+            between(even[0] & 0xffff, even[1] & 0xffff, share),
+            between(odd[0], odd[1], share),
+            between(even[0] >> 16, even[1] >> 16, share),
+        ]
     }
+}
+
+#[inline(always)]
+fn between(fine: u32, coarse: u32, share: f32) -> f32 {
+    let (fine, coarse) = (fine as i32 as f32, coarse as i32 as f32);
+    (fine + share * (coarse - fine)) * (1.0 / ONE)
 }
 
 /// Adds the values of four nodes, weighted with whole numbers that sum up to `total`.
@@ -188,14 +236,14 @@ impl Kernel for Parts<'_> {
 }
 
 /// Writes a tile of lit colours.
-struct Colors<'a> {
+struct Writing<'a> {
     patch: &'a Patch,
     /// `None` on the coarsest level.
     next: Option<&'a Coarse>,
     light: &'a ReliefLight,
 }
 
-impl Kernel for Colors<'_> {
+impl Kernel for Writing<'_> {
     type Output = Box<Tile>;
 
     #[inline(always)]
@@ -215,7 +263,7 @@ impl Kernel for Colors<'_> {
     }
 }
 
-impl Colors<'_> {
+impl Writing<'_> {
     #[inline(always)]
     fn words([r, g, b]: &[Lanes; 3]) -> [u32; LANES] {
         let mut out = [0; LANES];

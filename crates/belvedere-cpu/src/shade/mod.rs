@@ -17,6 +17,7 @@ mod relief;
 mod seen;
 mod shadow;
 mod sky;
+mod sky_row;
 mod spot;
 mod terrain;
 mod texture;

@@ -1,7 +1,7 @@
 //! Colours of many samples at a time.
 
 use super::batch::Batch;
-use super::color::{self, Encoding, Packed, Rgb};
+use super::color::{self, Encoder, LANES, PIXELS, Packed, Rgb};
 use super::{Hit, LayerShade, Shader};
 use crate::band::SKY;
 use crate::blocks::{CELL_BITS, Geometry, SOUP};
@@ -54,56 +54,63 @@ impl Painted {
 
     /// As it is kept to be drawn over.
     pub(crate) fn pack(&self, out: &mut [Packed]) {
-        vector::run(Write { root: self.root.each_ref().map(Vec::as_slice), out });
+        vector::run(Pack { root: self.root.each_ref().map(Vec::as_slice), out });
     }
 
     /// As it is stored in pictures.
     pub(crate) fn encode(&self, out: &mut [[u8; 3]]) {
-        vector::run(Write { root: self.root.each_ref().map(Vec::as_slice), out });
+        vector::run(Encode { root: self.root.each_ref().map(Vec::as_slice), out });
     }
 }
 
-/// A colour that can be told by square roots of linear light, 16 bits each.
-trait OfRoots {
-    fn of(root: [u16; 3], encoding: &Encoding) -> Self;
-}
-
-impl OfRoots for Packed {
-    #[inline(always)]
-    fn of(root: [u16; 3], _: &Encoding) -> Self {
-        Self::of_roots(root)
-    }
-}
-
-impl OfRoots for [u8; 3] {
-    #[inline(always)]
-    fn of(root: [u16; 3], encoding: &Encoding) -> Self {
-        Packed::of_roots(root).encode(encoding)
-    }
-}
-
-struct Write<'p, T> {
+struct Pack<'p> {
     root: [&'p [f32]; 3],
-    out: &'p mut [T],
+    out: &'p mut [Packed],
 }
 
-impl<T: OfRoots> Kernel for Write<'_, T> {
+impl Kernel for Pack<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        const N: usize = 32;
-        let (mut whole, encoding) = ([[0u16; N]; 3], color::encoding());
-        for (i, out) in self.out.chunks_mut(N).enumerate() {
-            for (whole, root) in whole.iter_mut().zip(self.root) {
-                for (whole, root) in whole.iter_mut().zip(&root[i * N..]) {
-                    *whole = color::sixteen_bits(*root);
+        let [red, green, blue] = self.root;
+        for (((out, r), g), b) in self.out.iter_mut().zip(red).zip(green).zip(blue) {
+            *out = Packed::of_roots([color::sixteen_bits(*r), color::sixteen_bits(*g), color::sixteen_bits(*b)]);
+        }
+    }
+}
+
+struct Encode<'p> {
+    root: [&'p [f32]; 3],
+    out: &'p mut [[u8; 3]],
+}
+
+impl Kernel for Encode<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let encoder = Encoder::new();
+        let mut planes = [[0; PIXELS]; 3];
+        for (i, out) in self.out.chunks_mut(PIXELS).enumerate() {
+            for (plane, root) in planes.iter_mut().zip(self.root) {
+                let root = &root[i * PIXELS..][..out.len()];
+                for (plane, root) in plane.chunks_mut(LANES).zip(root.chunks(LANES)) {
+                    let mut whole = [0.0; LANES];
+                    whole[..root.len()].copy_from_slice(root);
+                    plane.copy_from_slice(&encoder.encode(root.first_chunk().unwrap_or(&whole)));
                 }
             }
-            for (k, out) in out.iter_mut().enumerate() {
-                *out = T::of([whole[0][k], whole[1][k], whole[2][k]], encoding);
-            }
+            interleave(&planes, out);
         }
+    }
+}
+
+/// Writes pixels, red first.
+#[inline(always)]
+pub(super) fn interleave([red, green, blue]: &[[u8; PIXELS]; 3], out: &mut [[u8; 3]]) {
+    for (((out, r), g), b) in out.iter_mut().zip(red).zip(green).zip(blue) {
+        *out = [*r, *g, *b];
     }
 }
 

@@ -28,8 +28,11 @@ const THRESHOLDS: [f32; 64] = {
     out
 };
 
+/// What none of them exceeds.
+const HALF_A_STEP: f32 = 0.5 / 255.0;
+
 /// Samples that are coloured together.
-const LANES: usize = 32;
+pub(super) const LANES: usize = 32;
 
 /// How far a row of samples may be off a line between its ends to be coloured along it: square roots of colours, less than half
 /// a step of an 8-bit picture, and places in the table.
@@ -119,12 +122,12 @@ impl Sky {
         let mut end = None;
         for ((x, y), ((red, green), blue)) in x.chunks(LANES).zip(y.chunks(LANES)).zip(chunks) {
             let out = [red, green, blue];
-            let row = match (x.first_chunk(), y.first_chunk()) {
-                (Some(x), Some(y)) if self.even && is_row(x, y) => self.row(x[0], y[0], &mut end),
+            let line = match (x.first_chunk(), y.first_chunk()) {
+                (Some(x), Some(y)) if is_row(x, y) => self.line(x[0], y[0], &mut end),
                 _ => None,
             };
-            match row {
-                Some(row) => row.paint(x[0], y[0], out),
+            match line {
+                Some(line) => line.paint(x[0], y[0], out),
                 None => self.paint_each(x, y, out),
             }
         }
@@ -133,7 +136,10 @@ impl Sky {
     /// Colours along a row of [`LANES`] pixels, if they change evenly.
     /// * `end`: where the last row ended.
     #[inline(always)]
-    fn row(&self, x: i32, y: i32, end: &mut Option<(i32, Place)>) -> Option<Line> {
+    pub(super) fn line(&self, x: i32, y: i32, end: &mut Option<(i32, Place)>) -> Option<Line> {
+        if !self.even {
+            return None;
+        }
         let place = |x: i32| {
             let at = self.place([x, y]);
             let [low, change] = self.steps[(at as usize).min(2 * STEPS as usize - 1)];
@@ -158,7 +164,7 @@ impl Sky {
     }
 
     #[inline(always)]
-    fn paint_each(&self, x: &[i32], y: &[i32], out: [&mut [f32]; 3]) {
+    pub(super) fn paint_each(&self, x: &[i32], y: &[i32], out: [&mut [f32]; 3]) {
         let (mut px, mut py) = ([0; LANES], [0; LANES]);
         px[..x.len()].copy_from_slice(x);
         py[..y.len()].copy_from_slice(y);
@@ -221,21 +227,32 @@ impl Sky {
 
 /// A place in the table of colours, and square roots of the colour there.
 #[derive(Clone, Copy)]
-struct Place {
+pub(super) struct Place {
     at: f32,
     root: [f32; 4],
 }
 
 /// Square roots of colours along a row of pixels.
-struct Line {
+pub(super) struct Line {
     from: [f32; 4],
     change: [f32; 4],
 }
 
 impl Line {
+    /// Bounds of what [`Line::paint`] paints.
+    #[inline(always)]
+    pub(super) fn ends(&self) -> [[f32; 2]; 3] {
+        let mut out = [[0.0; 2]; 3];
+        for (k, out) in out.iter_mut().enumerate() {
+            let (from, to) = (self.from[k], self.from[k] + (LANES - 1) as f32 * self.change[k]);
+            *out = if from < to { [from - HALF_A_STEP, to + HALF_A_STEP] } else { [to - HALF_A_STEP, from + HALF_A_STEP] };
+        }
+        out
+    }
+
     /// * `x`, `y`: the first sample, fixed-point steps.
     #[inline(always)]
-    fn paint(&self, x: i32, y: i32, out: [&mut [f32]; 3]) {
+    pub(super) fn paint(&self, x: i32, y: i32, out: [&mut [f32]; 3]) {
         let thresholds = &THRESHOLDS[((y >> 5) & 56) as usize..][..8];
         let mut threshold = [0.0; LANES];
         for i in 0..LANES {

@@ -3,6 +3,9 @@
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// Fixed-point steps of a tile, of the nodes of its own level.
+pub(super) const SPAN: u32 = SIDE as u32 * CELL as u32;
+
 /// What is kept of a node of the ground.
 pub(super) type Node = [u8; 8];
 
@@ -92,22 +95,31 @@ impl Tiles {
         at: [i32; 2],
         make: impl FnOnce(usize, [usize; 2]) -> Box<Tile>,
     ) -> Option<Around<'_>> {
-        let level = self.levels.get(k)?;
-        // Node i of level k lies at (i + 0.5) 2^k - 0.5 of level 0, and is number i + 1 with the rim.
-        let [x, y] = at.map(|x| ((x.wrapping_add(CELL / 2) >> k) + CELL / 2) as u32 as usize);
-        let (c, r) = (x >> 8, y >> 8);
-        let index = r / SIDE * level.across + c / SIDE;
-        let place = level.tiles.get(index)?;
-        let tile = match place.get() {
-            Some(tile) => tile,
-            None => self.made(place, || make(k, [index % level.across, index / level.across])),
-        };
-        let first = r % SIDE * STRIDE + c % SIDE;
+        let (x, y) = (place(at[0], k as u32), place(at[1], k as u32));
+        let tile = self.tile([k as u32, x / SPAN, y / SPAN], make)?;
+        let first = first_of(x, y) as usize;
         Some(Around {
             north: tile[first..].first_chunk()?,
             south: tile[first + STRIDE..].first_chunk()?,
-            east_share: x as u32 & 255,
-            south_share: y as u32 & 255,
+            east_share: x & 255,
+            south_share: y & 255,
+        })
+    }
+
+    /// A tile by its level, column and row; `None` off the ground.
+    #[inline(always)]
+    pub(super) fn tile(
+        &self,
+        [k, column, row]: [u32; 3],
+        make: impl FnOnce(usize, [usize; 2]) -> Box<Tile>,
+    ) -> Option<&Tile> {
+        let (k, column, row) = (k as usize, column as usize, row as usize);
+        let level = self.levels.get(k)?;
+        let index = row * level.across + column;
+        let place = level.tiles.get(index)?;
+        Some(match place.get() {
+            Some(tile) => tile,
+            None => self.made(place, || make(k, [index % level.across, index / level.across])),
         })
     }
 
@@ -119,6 +131,32 @@ impl Tiles {
             make()
         })
     }
+}
+
+/// Place along an axis of level `k`, [`CELL`] steps from node to node.
+/// * `at`: the same of level 0.
+#[inline(always)]
+pub(super) fn place(at: i32, k: u32) -> u32 {
+    // Node i of level k lies at (i + 0.5) 2^k - 0.5 of level 0, and is number i + 1 with the rim.
+    ((at.wrapping_add(CELL / 2) >> (k & 31)) + CELL / 2) as u32
+}
+
+/// The north-western of the nodes around a place of a level, among those of its tile.
+#[inline(always)]
+pub(super) fn first_of(x: u32, y: u32) -> u32 {
+    (y / CELL as u32) % SIDE as u32 * STRIDE as u32 + (x / CELL as u32) % SIDE as u32
+}
+
+/// The nodes around a place of a tile: north-west, north-east, south-west, south-east; both words of each.
+#[inline(always)]
+pub(super) fn around(tile: &Tile, first: usize) -> Option<[[u32; 2]; 4]> {
+    let ([a, b], [c, d]) = (tile[first..].first_chunk()?, tile[first + STRIDE..].first_chunk()?);
+    Some([words(*a), words(*b), words(*c), words(*d)])
+}
+
+#[inline(always)]
+fn words([a, b, c, d, e, f, g, h]: Node) -> [u32; 2] {
+    [u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h])]
 }
 
 /// The nodes along an axis that the nodes of a tile repeat.
