@@ -224,7 +224,7 @@ mod tests {
             for (s, y) in (0..offsets.len()).flat_map(|s| (0..16).map(move |y| (s, y))) {
                 (from..=to).for_each(|x| band.write(band.index(s, x, y), 1.0, 7));
             }
-            band.drew([from as i32 * 256 + 3, to as i32 * 256 + 255]);
+            band.drew([from * 256 + 3, to * 256 + 255]);
         }
         let part = |columns, drawn| Part { columns, drawn };
         assert!(band.parts().eq([part(0..32, false), part(32..96, true), part(96..192, false), part(192..203, true)]));

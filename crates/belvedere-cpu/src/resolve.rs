@@ -151,13 +151,7 @@ impl Edges {
     /// Replaces the colours of pixels by the mean of their coverage samples, where these see more than one surface;
     /// samples on one surface share the colour of the first of them.
     /// * `columns`, `y`: the pixels that were painted.
-    fn mix(
-        &mut self,
-        band: &Band,
-        shader: &Shader<'_>,
-        (columns, y): (Range<usize>, i32),
-        painted: &mut Painted,
-    ) {
+    fn mix(&mut self, band: &Band, shader: &Shader<'_>, (columns, y): (Range<usize>, i32), painted: &mut Painted) {
         let Self { prim, q, x, y: ys, shares, pixels, .. } = self;
         [prim, shares].into_iter().for_each(Vec::clear);
         [x, ys].into_iter().for_each(Vec::clear);
@@ -165,7 +159,13 @@ impl Edges {
         pixels.clear();
         self.uneven.clear();
         self.uneven.resize(columns.len(), 0);
-        vector::run(Unevenness { band, first: columns.start, y, terrain: shader.only_terrain(), out: &mut self.uneven });
+        vector::run(Unevenness {
+            band,
+            first: columns.start,
+            y,
+            terrain: shader.only_terrain(),
+            out: &mut self.uneven,
+        });
         for i in 0..self.uneven.len() {
             let x = (columns.start + i) as i32;
             if self.uneven[i] != 0 && (shader.only_terrain() || !is_even(band, shader, x, y)) {

@@ -7,7 +7,7 @@ use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, NodeState};
 use glam::Vec4;
 use rayon::prelude::*;
-use std::borrow::Cow;
+use std::ops::Deref;
 use std::sync::Arc;
 
 /// Most nodes that the finest stored level may have, unless it is the first one.
@@ -27,38 +27,53 @@ pub(crate) type Moved<'a> = dyn Fn(DVec3) -> Option<DVec3> + Send + Sync + 'a;
 pub(crate) struct Surface<'a> {
     pub(crate) hf: &'a Heightfield,
     /// Heights row by row; differ from the heightfield's where the ground was moved up or down.
-    heights: Cow<'a, [f32]>,
+    heights: Heights<'a>,
     /// Displacement that also moves sideways: slopes are taken between displaced neighbours.
     bent: Option<Arc<Moved<'a>>>,
+}
+
+enum Heights<'a> {
+    Map(&'a [f32]),
+    Moved(Arc<Vec<f32>>),
+}
+
+impl Deref for Heights<'_> {
+    type Target = [f32];
+
+    #[inline(always)]
+    fn deref(&self) -> &[f32] {
+        match self {
+            Self::Map(heights) => heights,
+            Self::Moved(heights) => heights,
+        }
+    }
 }
 
 impl<'a> Surface<'a> {
     /// The undisplaced ground.
     pub(crate) fn of_map(hf: &'a Heightfield) -> Self {
-        Self { hf, heights: Cow::Borrowed(hf.heights()), bent: None }
+        Self { hf, heights: Heights::Map(hf.heights()), bent: None }
     }
 
-    /// Ground that `lift` moves along z alone.
-    pub(crate) fn lifted(hf: &'a Heightfield, lift: &Moved<'_>) -> Self {
-        let mut heights = hf.heights().to_vec();
-        heights.par_chunks_mut(hf.cols()).enumerate().for_each(|(r, row)| {
-            for (c, h) in row.iter_mut().enumerate() {
-                if let Some(p) = hf.node(c, r).and_then(lift) {
-                    *h = p.z as f32;
-                }
-            }
-        });
-        Self { hf, heights: Cow::Owned(heights), bent: None }
+    /// Ground moved along z alone.
+    /// * `heights`: row by row.
+    pub(crate) fn lifted(hf: &'a Heightfield, heights: Arc<Vec<f32>>) -> Self {
+        Self { hf, heights: Heights::Moved(heights), bent: None }
     }
 
     /// Ground displaced in any direction.
     pub(crate) fn bent(hf: &'a Heightfield, bent: Arc<Moved<'a>>) -> Self {
-        Self { hf, heights: Cow::Borrowed(hf.heights()), bent: Some(bent) }
+        Self { hf, heights: Heights::Map(hf.heights()), bent: Some(bent) }
     }
 
     /// Whether nothing was displaced.
     pub(crate) fn is_map(&self) -> bool {
-        self.bent.is_none() && matches!(self.heights, Cow::Borrowed(_))
+        self.bent.is_none() && matches!(self.heights, Heights::Map(_))
+    }
+
+    /// Heights moved along z alone, if they were.
+    pub(crate) fn moved(&self) -> Option<&Arc<Vec<f32>>> {
+        if let Heights::Moved(heights) = &self.heights { Some(heights) } else { None }
     }
 
     /// Heights row by row; those of voids mean nothing.

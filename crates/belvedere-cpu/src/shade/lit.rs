@@ -50,6 +50,18 @@ impl LitGround {
         self.colors.is_full() || self.parts.is_full()
     }
 
+    /// Bytes of the tiles made so far.
+    #[cfg(test)]
+    pub(super) fn bytes(&self) -> usize {
+        self.colors.bytes() + self.parts.bytes()
+    }
+
+    /// Forgets the tiles that may not be kept, see [`Tiles::retain`].
+    pub(super) fn retain(&mut self, keep: impl Fn([[usize; 2]; 2]) -> bool) {
+        self.colors.retain(&keep);
+        self.parts.retain(&keep);
+    }
+
     /// Square roots of the lit colour around `n` places, see [`LitGround::color`].
     /// * `at`: columns and rows, [`tiles::CELL`] steps to a cell.
     #[inline(always)]

@@ -245,7 +245,8 @@ impl Line {
         let mut out = [[0.0; 2]; 3];
         for (k, out) in out.iter_mut().enumerate() {
             let (from, to) = (self.from[k], self.from[k] + (LANES - 1) as f32 * self.change[k]);
-            *out = if from < to { [from - HALF_A_STEP, to + HALF_A_STEP] } else { [to - HALF_A_STEP, from + HALF_A_STEP] };
+            *out =
+                if from < to { [from - HALF_A_STEP, to + HALF_A_STEP] } else { [to - HALF_A_STEP, from + HALF_A_STEP] };
         }
         out
     }

@@ -5,6 +5,7 @@ use super::color::{Rgb, linear, smoothstep};
 use super::drape::DrapeMap;
 use super::ground::{Means, Surface};
 use super::lit::{Lit, LitGround};
+use super::moved;
 use super::palette::Tint;
 use super::patch::Making;
 use super::print::Print;
@@ -42,11 +43,11 @@ struct ShadowKey(Light);
 
 /// What lit ground is kept under: all that it is made from, besides the heights.
 #[derive(Clone, PartialEq)]
-struct LitKey {
-    relief: Relief,
-    light: Light,
-    palette: Palette,
-    exaggeration: f64,
+pub(super) struct LitKey {
+    pub(super) relief: Relief,
+    pub(super) light: Light,
+    pub(super) palette: Palette,
+    pub(super) exaggeration: f64,
 }
 
 impl<'a> TerrainShade<'a> {
@@ -54,19 +55,23 @@ impl<'a> TerrainShade<'a> {
         let hf = &layer.heightfield;
         let surface = lit_surface(layer, job);
         let light = *job.light;
+        let (relief, palette) = (layer.relief, layer.palette.clone());
+        let key = LitKey { relief, light, palette, exaggeration: layer.exaggeration };
         let top = |means: &Means| LitGround::new(hf.cols(), hf.rows(), means.top());
         let make_shadows = |means: &Means| Shadows::new(&surface, means, &light);
         let (means, shadows, lit) = if surface.is_map() {
             // The map's own light stays the same from frame to frame.
             let means = hf.derived_for(&MeansKey, || Means::new(&surface));
             let shadows = light.shadows.then(|| hf.derived_for(&ShadowKey(light), || make_shadows(&means)));
-            let (relief, palette) = (layer.relief, layer.palette.clone());
-            let key = LitKey { relief, light, palette, exaggeration: layer.exaggeration };
             let mut lit = hf.derived_for(&key, || top(&means));
             if lit.is_full() {
                 hf.forget(&key);
                 lit = hf.derived_for(&key, || top(&means));
             }
+            (means, shadows, lit)
+        } else if let Some(heights) = surface.moved() {
+            let (means, lit) = moved::light(&surface, heights, &key);
+            let shadows = light.shadows.then(|| Arc::new(make_shadows(&means)));
             (means, shadows, lit)
         } else {
             let means = Arc::new(Means::new(&surface));
@@ -240,6 +245,9 @@ fn lit_surface<'a>(layer: &'a TerrainLayer, job: &RenderJob<'a>) -> Surface<'a> 
         },
     };
     let upright = |s: &Stage| matches!(s, Stage::EarthCurvature(_) | Stage::TerrainDisocclusion(_));
+    if deformed.iter().all(upright) {
+        return Surface::lifted(hf, Arc::new(moved::heights(hf, deformed)));
+    }
     let moved = move |p: DVec3| deformed.iter().try_fold(p, |p, s| s.as_map().apply(p)).ok().filter(|p| p.is_finite());
-    if deformed.iter().all(upright) { Surface::lifted(hf, &moved) } else { Surface::bent(hf, Arc::new(moved)) }
+    Surface::bent(hf, Arc::new(moved))
 }

@@ -80,6 +80,12 @@ impl Tiles {
         [0, 1].map(|axis| Repeated { from: tile[axis] * SIDE, nodes: self.levels[k].nodes[axis] })
     }
 
+    /// Bytes of the tiles made so far.
+    #[cfg(test)]
+    pub(super) fn bytes(&self) -> usize {
+        self.bytes.load(Ordering::Relaxed)
+    }
+
     /// Whether so much is kept that the next frame had better start anew.
     pub(super) fn is_full(&self) -> bool {
         self.bytes.load(Ordering::Relaxed) > MOST_BYTES
@@ -121,6 +127,23 @@ impl Tiles {
             Some(tile) => tile,
             None => self.made(place, || make(k, [index % level.across, index / level.across])),
         })
+    }
+
+    /// Forgets the tiles that may not be kept.
+    /// * `keep`: by the columns and rows of level 0 that a tile repeats or leans on, first and last.
+    pub(super) fn retain(&mut self, keep: impl Fn([[usize; 2]; 2]) -> bool) {
+        for (k, level) in self.levels.iter_mut().enumerate() {
+            for (i, tile) in level.tiles.iter_mut().enumerate() {
+                let reach = [i % level.across, i / level.across].map(|i| {
+                    // Three nodes of the next level and a rim of one on either side.
+                    [(i * SIDE).saturating_sub(8) << k, ((i + 1) * SIDE + 8) << k]
+                });
+                if tile.get().is_some() && !keep(reach) {
+                    tile.take();
+                    *self.bytes.get_mut() -= size_of::<Tile>();
+                }
+            }
+        }
     }
 
     #[cold]

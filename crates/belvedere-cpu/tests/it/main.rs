@@ -4,6 +4,7 @@ mod exact;
 mod lines;
 mod lod;
 mod marks;
+mod moved;
 mod real_data;
 mod reference;
 mod robust;
