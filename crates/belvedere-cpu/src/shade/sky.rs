@@ -127,7 +127,7 @@ impl Sky {
                 _ => None,
             };
             match line {
-                Some(line) => line.paint(x[0], y[0], out),
+                Some(line) => line.paint(&thresholds(x[0], y[0]), out),
                 None => self.paint_each(x, y, out),
             }
         }
@@ -251,14 +251,9 @@ impl Line {
         out
     }
 
-    /// * `x`, `y`: the first sample, fixed-point steps.
+    /// * `threshold`: see [`thresholds`].
     #[inline(always)]
-    pub(super) fn paint(&self, x: i32, y: i32, out: [&mut [f32]; 3]) {
-        let thresholds = &THRESHOLDS[((y >> 5) & 56) as usize..][..8];
-        let mut threshold = [0.0; LANES];
-        for i in 0..LANES {
-            threshold[i] = thresholds[((x >> 8) as usize + i) & 7];
-        }
+    pub(super) fn paint(&self, threshold: &[f32; LANES], out: [&mut [f32]; 3]) {
         for (k, out) in out.into_iter().enumerate() {
             let Some(out) = out.first_chunk_mut::<LANES>() else { return };
             for i in 0..LANES {
@@ -266,6 +261,18 @@ impl Line {
             }
         }
     }
+}
+
+/// What dithering adds to a row of pixels.
+/// * `x`, `y`: the first sample, fixed-point steps.
+#[inline(always)]
+pub(super) fn thresholds(x: i32, y: i32) -> [f32; LANES] {
+    let row = &THRESHOLDS[((y >> 5) & 56) as usize..][..8];
+    let mut out = [0.0; LANES];
+    for i in 0..LANES {
+        out[i] = row[((x >> 8) as usize + i) & 7];
+    }
+    out
 }
 
 /// Whether samples are those of neighbouring pixels of a row.

@@ -2,7 +2,7 @@
 
 use super::color::{Encoder, PIXELS};
 use super::paint::interleave;
-use super::sky::{LANES, Sky};
+use super::sky::{LANES, Sky, thresholds};
 use crate::lens::SUB;
 use crate::vector::{self, Kernel};
 
@@ -27,7 +27,7 @@ impl Kernel for Store<'_> {
     fn run(self) {
         let Self { sky, at: [x, y], out } = self;
         let (encoder, mut end, rows) = (Encoder::new(), None, [y; LANES]);
-        let mut planes = [[0; PIXELS]; 3];
+        let (mut planes, threshold) = ([[0; PIXELS]; 3], thresholds(x, y));
         for (i, out) in out.chunks_mut(PIXELS).enumerate() {
             for j in 0..out.len().div_ceil(LANES) {
                 let x = x + (i * PIXELS + j * LANES) as i32 * SUB;
@@ -36,7 +36,7 @@ impl Kernel for Store<'_> {
                 let [red, green, blue] = &mut roots;
                 let ends = match if whole { sky.line(x, y, &mut end) } else { None } {
                     Some(line) => {
-                        line.paint(x, y, [red, green, blue]);
+                        line.paint(&threshold, [red, green, blue]);
                         line.ends()
                     }
                     None => {
