@@ -29,6 +29,11 @@ impl SightSample {
         a + self.weight * (b - a)
     }
 
+    /// Whether both are the same node, met on two lines of the grid.
+    pub(super) fn same_node(&self, other: &Self) -> bool {
+        self.weight == 0.0 && other.weight == 0.0 && self.nodes == other.nodes
+    }
+
     /// The end of the edge that is nearer to the crossing.
     pub fn nearest(&self) -> usize {
         self.nodes[usize::from(self.weight > 0.5)] as usize
@@ -56,6 +61,19 @@ pub fn sight_samples(field: &Field, from: DVec2, eye: DVec2, diagonals: bool, ou
         let (_, end) = walk.span();
         walk.samples_to(end, out);
     }
+}
+
+/// Neighbouring lines of the grid of one family, in the order in which a line of sight crosses them.
+pub(super) struct Lines {
+    pub(super) first: f64,
+    /// 1 or -1: to the next one.
+    pub(super) sign: f64,
+    pub(super) count: usize,
+    /// Line `k` is crossed at `(k - start) per_line`,
+    pub(super) start: f64,
+    pub(super) per_line: f64,
+    /// and there at `along[0] + tau along[1]` of itself.
+    pub(super) along: [f64; 2],
 }
 
 /// A line of sight on its way from the point to the eye.
@@ -92,12 +110,6 @@ impl<'a> SightWalk<'a> {
         self.dir
     }
 
-    /// Leaves out the crossings before `tau` (some just before it may still come).
-    #[inline(always)]
-    pub(super) fn skip_to(&mut self, tau: f64) {
-        self.crossings.iter_mut().for_each(|c| c.skip_to(tau));
-    }
-
     /// Appends the crossings from where the walk is up to `tau`.
     #[inline(always)]
     pub(super) fn samples_to(&mut self, end: f64, out: &mut Vec<SightSample>) {
@@ -111,16 +123,42 @@ impl<'a> SightWalk<'a> {
                 return;
             }
             let k = self.crossings[family].advance();
-            if !(tau > 0.0 && tau < 1.0) {
-                continue;
-            }
-            let (nodes, weight) = self.edge(family, k, tau);
-            let again = weight == 0.0 && out.last().is_some_and(|s| s.nodes == nodes && s.weight == 0.0);
-            let void = nodes.iter().any(|&n| self.field.void()[n as usize]);
-            if !again && !void {
-                out.push(SightSample { tau, nodes, weight, rho: (1.0 - tau) * self.plan_m });
+            let Some(sample) = self.at(family, k, tau) else { continue };
+            if !out.last().is_some_and(|s| s.same_node(&sample)) {
+                out.push(sample);
             }
         }
+    }
+
+    /// Lines of a family (0: x = k, 1: y = k) that are crossed in a part of the line of sight, and perhaps the next ones.
+    #[inline(always)]
+    pub(super) fn lines(&self, family: usize, part: (f64, f64)) -> Option<Lines> {
+        let c = &self.crossings[family];
+        if c.tau == f64::INFINITY {
+            return None;
+        }
+        let sign = c.step.signum();
+        let within = |k: f64| sign * (sign * k).clamp(sign * c.k, sign * c.last);
+        let (first, last) = (within(c.first_from(part.0)), within(c.first_from(part.1)));
+        let (count, along) = (((last - first) * sign) as usize + 1, [self.from[1 - family], self.dir[1 - family]]);
+        Some(Lines { first, sign, count, start: c.start, per_line: c.step.recip(), along })
+    }
+
+    /// The crossing with line `k` of a family.
+    #[inline(always)]
+    pub(super) fn crossing(&self, family: usize, k: f64) -> Option<SightSample> {
+        let c = &self.crossings[family];
+        self.at(family, k, (k - c.start) / c.step)
+    }
+
+    #[inline(always)]
+    fn at(&self, family: usize, k: f64, tau: f64) -> Option<SightSample> {
+        if !(tau > 0.0 && tau < 1.0) {
+            return None;
+        }
+        let (nodes, weight) = self.edge(family, k, tau);
+        let void = nodes.iter().any(|&n| self.field.void()[n as usize]);
+        (!void).then_some(SightSample { tau, nodes, weight, rho: (1.0 - tau) * self.plan_m })
     }
 
     /// The edge crossed at `tau` on line `k` of a family (x, y, x - y), and the share of its second node.
@@ -193,15 +231,6 @@ impl Crossings {
     fn first_from(&self, tau: f64) -> f64 {
         let at = self.start + tau * self.step;
         if self.step > 0.0 { (at - AT_NODE).ceil() } else { (at + AT_NODE).floor() }
-    }
-
-    #[inline(always)]
-    fn skip_to(&mut self, tau: f64) {
-        if tau > self.tau {
-            let k = self.first_from(tau);
-            self.k = if self.step > 0.0 { self.k.max(k) } else { self.k.min(k) };
-            self.set();
-        }
     }
 
     #[inline(always)]

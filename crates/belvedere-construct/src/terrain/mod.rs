@@ -10,6 +10,7 @@ mod line_of_sight;
 mod metrics;
 mod points;
 pub mod qp;
+mod register;
 mod settings;
 mod smooth;
 mod solve;
@@ -18,7 +19,7 @@ mod viewpoint;
 pub use cells::{Cells, NO_CELL};
 pub use field::{Field, FieldError};
 pub use greedy::{
-    Affine, EyeError, GreedyCounters, LeftOut, Naive, Pieces, Price, Pyramid, Wedge, blended, check_eye, in_view,
+    Affine, Blocks, EyeError, GreedyCounters, LeftOut, Naive, Pieces, Price, Wedge, blended, check_eye, in_view,
     scale_to_clear, shift_to_clear,
 };
 pub use line_of_sight::{SightSample, guard_tau, sight_samples};

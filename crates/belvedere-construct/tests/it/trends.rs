@@ -3,7 +3,7 @@
 use crate::synthetic::{camera, scene};
 use belvedere_construct::terrain::qp::StraightSight;
 use belvedere_construct::terrain::{
-    Cells, Deformation, Field, Hierarchy, Naive, Pyramid, ReferencePoint, Smoother, TerrainMetrics, TerrainSettings,
+    Blocks, Cells, Deformation, Field, Hierarchy, Naive, ReferencePoint, Smoother, TerrainMetrics, TerrainSettings,
     Wedge, check_eye, grid_weight, in_view, reference_points, terrain_metrics,
 };
 use belvedere_core::DVec3;
@@ -34,8 +34,8 @@ impl Case {
     }
 
     fn naive(&self, settings: &TerrainSettings) -> Vec<f64> {
-        let pyramid = Pyramid::new(&self.field);
-        let naive = Naive::new(&self.field, &self.cells, &pyramid, settings, self.eye, &self.points);
+        let blocks = Blocks::new(&self.field, &self.cells);
+        let naive = Naive::new(&self.field, &self.cells, &blocks, settings, self.eye, &self.points);
         naive.displacement(&self.field, &self.cells)
     }
 

@@ -32,11 +32,7 @@ pub struct Cells {
     persistence: Vec<f64>,
     tables: Tables,
     neighbours: Neighbours,
-    of_block: [Vec<u32>; BLOCKS.len()],
 }
-
-/// Sides of the blocks of nodes that may lie in one cell, cells of the grid.
-pub(super) const BLOCKS: [usize; 2] = [4, 16];
 
 impl Cells {
     /// * `keep`: cells wanted; fewer if the ground has fewer summits, more if it has more unconnected parts.
@@ -53,8 +49,7 @@ impl Cells {
         let count = kept.summits.len();
         let (tables, neighbours) =
             rayon::join(|| Tables::new(field, &labels, count), || Neighbours::new(field.cols(), &labels, count));
-        let of_block = blocks(field, &labels);
-        Self { labels, summits: kept.summits, persistence: kept.persistence, tables, neighbours, of_block }
+        Self { labels, summits: kept.summits, persistence: kept.persistence, tables, neighbours }
     }
 
     /// Cells wanted by default: one for 1600 nodes, at least one.
@@ -99,35 +94,10 @@ impl Cells {
         self.tables.higher(cell, h)
     }
 
-    /// The cell of all nodes of a block of [`BLOCKS`]`[level]` squared cells of the grid, its rim included; [`NO_CELL`] if
-    /// there are several or the level has no such blocks.
-    #[inline]
-    pub(super) fn of_block(&self, level: usize, block: usize) -> u32 {
-        self.of_block.get(level).map_or(NO_CELL, |blocks| blocks[block])
-    }
-
     /// Number of nodes of a cell, at least 1.
     pub fn size(&self, cell: usize) -> usize {
         self.tables.size(cell)
     }
-}
-
-fn blocks(field: &Field, labels: &[u32]) -> [Vec<u32>; BLOCKS.len()] {
-    let (cols, rows) = (field.cols(), field.rows());
-    BLOCKS.map(|side| {
-        let width = (cols - 1).div_ceil(side);
-        let mut out = vec![NO_CELL; width * (rows - 1).div_ceil(side)];
-        out.par_chunks_mut(width).enumerate().with_min_len(4).for_each(|(row, out)| {
-            let lines = row * side..=(row * side + side).min(rows - 1);
-            for (col, out) in out.iter_mut().enumerate() {
-                let across = col * side..=(col * side + side).min(cols - 1);
-                let first = labels[row * side * cols + col * side];
-                let one = lines.clone().all(|y| labels[y * cols..][across.clone()].iter().all(|l| *l == first));
-                *out = if one { first } else { NO_CELL };
-            }
-        });
-        out
-    })
 }
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
 //! The greedy pass: cell by cell, far to near, the ground is scaled and displaced until every point is seen.
 
+mod blocks;
 mod equations;
 mod pieces;
-mod pyramid;
 mod queue;
 #[cfg(test)]
 mod reference;
+mod scan;
 #[cfg(test)]
 mod tests;
 mod trace;
@@ -15,9 +16,9 @@ use super::{Cells, Field, NO_CELL, ReferencePoint, TerrainSettings};
 use belvedere_core::{DVec2, DVec3};
 use rayon::prelude::*;
 
+pub use blocks::Blocks;
 pub use equations::{Affine, Price, blended, scale_to_clear, shift_to_clear};
 pub use pieces::Pieces;
-pub use pyramid::Pyramid;
 pub use view::{EyeError, LeftOut, Wedge, check_eye, in_view};
 
 /// Lines of sight clear the ground by this share of the relief, less near their points.
@@ -64,7 +65,7 @@ pub struct Naive {
 impl Naive {
     /// Runs the pass, in the plane of [`Field`] (straight lines of sight).
     ///
-    /// * `pyramid`: of `field`; `cells`: of `field`;
+    /// * `cells`, `blocks`: of `field`;
     /// * `eye`: scene coordinates, see [`check_eye`];
     /// * `points`: those in view, see [`in_view`].
     ///
@@ -75,13 +76,13 @@ impl Naive {
     pub fn new(
         field: &Field,
         cells: &Cells,
-        pyramid: &Pyramid,
+        blocks: &Blocks,
         settings: &TerrainSettings,
         eye: DVec3,
         points: &[ReferencePoint],
     ) -> Self {
-        let mut pass = queue::Pass::new(field, cells, settings, eye, points);
-        pass.run(&trace::Skipping { field, cells, pyramid });
+        let mut pass = queue::Pass::new(field, cells, blocks, settings, eye, points);
+        pass.run(&trace::Skipping { field, cells, blocks });
         pass.finish()
     }
 

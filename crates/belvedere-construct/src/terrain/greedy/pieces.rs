@@ -3,12 +3,20 @@
 use super::equations::Affine;
 
 /// What is done to a cell, by distance to the eye in plan: rings around the eye, the nearest first.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Pieces {
     /// Outer radii of all rings but the last, ascending, scene units.
     radii: Vec<f64>,
     /// One per ring; none at all = nothing is done.
     affine: Vec<Affine>,
+    /// Largest scale and shift of all rings.
+    bound: Affine,
+}
+
+impl Default for Pieces {
+    fn default() -> Self {
+        Self { radii: Vec::new(), affine: Vec::new(), bound: Affine::IDENTITY }
+    }
 }
 
 impl Pieces {
@@ -21,9 +29,10 @@ impl Pieces {
         }
     }
 
-    /// Nothing of the cell that was at most `h` high is higher now.
+    /// Nothing of the cell that was at most `h` >= 0 high is higher now.
+    #[inline(always)]
     pub(super) fn highest(&self, h: f64) -> f64 {
-        self.affine.iter().map(|a| a.of(h)).reduce(f64::max).unwrap_or(h)
+        self.bound.of(h)
     }
 
     /// Whether anything is done.
@@ -49,6 +58,8 @@ impl Pieces {
         }
         let last = if below < f64::INFINITY { ring } else { self.radii.len() };
         self.affine[..=last].iter_mut().for_each(|a| *a = change(*a));
+        let larger = |a: Affine, b: &Affine| Affine { scale: a.scale.max(b.scale), shift: a.shift.max(b.shift) };
+        self.bound = self.affine[1..].iter().fold(self.affine[0], larger);
         divide
     }
 }

@@ -3,11 +3,12 @@
 use super::super::line_of_sight::SightSample;
 use super::super::{Cells, Field, ReferencePoint, TerrainSettings};
 use super::equations::{Affine, Price, blended, scale_to_clear, shift_to_clear};
-use super::trace::{Hit, Sampler, Target, hits};
-use super::{BACKWARD, CLEARANCE, GreedyCounters, NEAR, Naive, Pieces};
+use super::trace::{Hit, Lowered, Room, Sampler, Target, hits};
+use super::{BACKWARD, Blocks, CLEARANCE, GreedyCounters, NEAR, Naive};
 use belvedere_core::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::collections::BinaryHeap;
+use std::ops::Range;
 
 /// Heights that differ by less than this share of the relief are equal.
 const EQUAL: f64 = 1e-12;
@@ -37,20 +38,40 @@ impl PartialOrd for Entry {
     }
 }
 
-/// Points whose samples are taken at the same time.
+/// Points whose samples are taken at the same time, and by one core.
 const AHEAD: usize = 64;
+const BY_ONE: usize = 8;
 
-/// Samples that are taken ahead.
+/// Samples of lines of sight, most of them taken ahead.
 struct Ahead {
     /// The whole lines of all points that are still to be sampled, the farthest last.
     order: Vec<Entry>,
-    /// With the height of the point for which they hold.
-    of_point: Vec<Option<(f64, Vec<SightSample>)>>,
+    taken: Vec<Taken>,
+    /// For each point the height for which its samples hold, and which of those of which of the above they are.
+    of_point: Vec<Option<(f64, usize, Range<usize>)>>,
+    /// Those of a line that is sampled by itself.
+    single: Taken,
+}
+
+/// Samples of several lines, one after the other.
+#[derive(Default)]
+struct Taken {
+    samples: Vec<SightSample>,
+    room: Room,
+}
+
+impl Ahead {
+    fn new(mut order: Vec<Entry>) -> Self {
+        order.sort_unstable();
+        let taken = std::iter::repeat_with(Taken::default).take(AHEAD / BY_ONE).collect();
+        Self { of_point: vec![None; order.len()], order, taken, single: Taken::default() }
+    }
 }
 
 pub(super) struct Pass<'a> {
     field: &'a Field,
     cells: &'a Cells,
+    blocks: &'a Blocks,
     settings: &'a TerrainSettings,
     eye: (DVec2, f64),
     /// Smallest height difference that counts.
@@ -59,7 +80,7 @@ pub(super) struct Pass<'a> {
     /// Points of each cell, and where each cell's begin.
     of_cell: Vec<usize>,
     first: Vec<usize>,
-    pieces: Vec<Pieces>,
+    ground: Lowered,
     /// Whether the whole line of a point waits in the heap.
     waiting: Vec<bool>,
     unresolved: Vec<bool>,
@@ -73,6 +94,7 @@ impl<'a> Pass<'a> {
     pub(super) fn new(
         field: &'a Field,
         cells: &'a Cells,
+        blocks: &'a Blocks,
         settings: &'a TerrainSettings,
         eye: DVec3,
         points: &[ReferencePoint],
@@ -85,12 +107,13 @@ impl<'a> Pass<'a> {
         Self {
             field,
             cells,
+            blocks,
             settings,
             eye: (grid, z),
             slack: EQUAL * (field.relief() + z.abs()),
             of_cell,
             first,
-            pieces: vec![Pieces::default(); cells.len()],
+            ground: Lowered::new(blocks, cells.len()),
             waiting: vec![false; targets.len()],
             unresolved: vec![false; targets.len()],
             backward: vec![0; cells.len()],
@@ -102,43 +125,62 @@ impl<'a> Pass<'a> {
 
     pub(super) fn run(&mut self, sampler: &dyn Sampler) {
         (0..self.targets.len()).for_each(|point| self.enqueue(point));
-        let mut order: Vec<Entry> = self.heap.iter().copied().collect();
-        order.sort_unstable();
-        let mut ahead = Ahead { order, of_point: vec![None; self.targets.len()] };
-        let (mut samples, mut found) = (Vec::new(), Vec::new());
+        let mut ahead = Ahead::new(self.heap.iter().copied().collect());
+        let mut found = Vec::new();
         while let Some(entry) = self.heap.pop() {
             self.counters.traces += 1;
-            self.samples(&entry, sampler, &mut ahead, &mut samples);
-            self.trace(entry, &samples, &mut found);
+            let samples = self.samples(&entry, sampler, &mut ahead);
+            self.trace(entry, samples, &mut found);
         }
     }
 
     /// Samples of a line of sight. Those of the next points in the first order are taken at the same time on all cores: as
     /// ground is only ever lowered, they hold all that later ones would, until the point itself is lowered.
-    fn samples(&self, entry: &Entry, sampler: &dyn Sampler, ahead: &mut Ahead, samples: &mut Vec<SightSample>) {
-        let sight = |point: usize| self.targets[point].sight(self.field, &self.pieces, self.eye);
-        if ahead.order.last().is_some_and(|next| next <= entry) {
-            let batch = ahead.order.split_off(ahead.order.len().saturating_sub(AHEAD));
-            let of = |next: &Entry| {
-                let (sight, mut samples) = (sight(next.point), Vec::new());
-                sampler.samples(&sight, &self.pieces, &mut samples);
-                (sight.height[0], samples)
-            };
-            let found: Vec<_> = batch.par_iter().with_min_len(AHEAD / 16).map(of).collect();
-            batch.iter().zip(found).for_each(|(next, found)| ahead.of_point[next.point] = Some(found));
+    fn samples<'s>(&mut self, entry: &Entry, sampler: &dyn Sampler, ahead: &'s mut Ahead) -> &'s [SightSample] {
+        if ahead.order.last() == Some(entry) {
+            self.ground.settle(self.blocks);
+            self.sample_ahead(sampler, ahead);
         }
-        let sight = sight(entry.point);
+        let sight = self.targets[entry.point].sight(self.field, &self.ground.pieces, self.eye);
+        let single = &mut ahead.single;
         match ahead.of_point[entry.point].take() {
-            Some((height, found)) if entry.whole && height == sight.height[0] => *samples = found,
-            _ => sampler.samples(&sight, &self.pieces, samples),
+            Some((height, taken, range)) if entry.whole && height == sight.height[0] => {
+                &ahead.taken[taken].samples[range]
+            }
+            _ => {
+                single.samples.clear();
+                sampler.samples(&sight, &self.ground, &mut single.room, &mut single.samples);
+                &single.samples
+            }
+        }
+    }
+
+    fn sample_ahead(&self, sampler: &dyn Sampler, ahead: &mut Ahead) {
+        let mut batch = ahead.order.split_off(ahead.order.len().saturating_sub(AHEAD));
+        batch.reverse();
+        let sample = |(taken, entries): (&mut Taken, &[Entry])| -> Vec<(f64, Range<usize>)> {
+            taken.samples.clear();
+            let of = |next: &Entry| {
+                let (sight, start) =
+                    (self.targets[next.point].sight(self.field, &self.ground.pieces, self.eye), taken.samples.len());
+                sampler.samples(&sight, &self.ground, &mut taken.room, &mut taken.samples);
+                (sight.height[0], start..taken.samples.len())
+            };
+            entries.iter().map(of).collect()
+        };
+        let found: Vec<_> = ahead.taken.par_iter_mut().zip(batch.par_chunks(BY_ONE)).map(sample).collect();
+        for (i, (entries, found)) in batch.chunks(BY_ONE).zip(found).enumerate() {
+            for (entry, (height, range)) in entries.iter().zip(found) {
+                ahead.of_point[entry.point] = Some((height, i, range));
+            }
         }
     }
 
     pub(super) fn finish(mut self) -> Naive {
         let unresolved: Vec<usize> = (0..self.targets.len()).filter(|&i| self.unresolved[i]).collect();
         self.counters.unresolved = unresolved.len();
-        self.counters.cells_changed = self.pieces.iter().filter(|p| p.changed()).count();
-        Naive { eye: self.eye.0, pieces: self.pieces, unresolved, counters: self.counters }
+        self.counters.cells_changed = self.ground.pieces.iter().filter(|p| p.changed()).count();
+        Naive { eye: self.eye.0, pieces: self.ground.pieces, unresolved, counters: self.counters }
     }
 
     fn enqueue(&mut self, point: usize) {
@@ -155,8 +197,8 @@ impl<'a> Pass<'a> {
             self.waiting[entry.point] = false;
             self.unresolved[entry.point] = false;
         }
-        let sight = target.sight(self.field, &self.pieces, self.eye);
-        hits(samples, self.field, self.cells, &self.pieces, &sight, (entry.below, self.slack), found);
+        let sight = target.sight(self.field, &self.ground.pieces, self.eye);
+        hits(samples, self.field, self.cells, &self.ground.pieces, &sight, (entry.below, self.slack), found);
         // Clearing a cell changes nothing in the others.
         while let Some(&first) = found.first() {
             let below = if first.cell == target.cell {
@@ -215,7 +257,7 @@ impl<'a> Pass<'a> {
         let scale = mine().map(|h| scale_to_clear(h.limit, h.z)).fold(1.0, f64::min);
         let (scale, lambda) = if low { (1.0, 0.0) } else { (scale, self.best_lambda(cell, worst, scale, shift)) };
         let deepest = -self.field.relief();
-        let divided = self.pieces[cell].change(below, |now| {
+        let divided = self.ground.change(cell, below, |now| {
             let new = blended(now, scale, shift, lambda);
             Affine { shift: new.shift.max(deepest), ..new }
         });
@@ -223,11 +265,11 @@ impl<'a> Pass<'a> {
     }
 
     fn best_lambda(&self, cell: usize, worst: &Hit, scale: f64, shift: f64) -> f64 {
-        let now = self.pieces[cell].at(worst.rho);
+        let now = self.ground.pieces[cell].at(worst.rho);
         let (higher_share, higher_mean) = self.cells.higher(cell, (worst.limit - now.shift) / now.scale);
         let (ids, shares) = self.cells.neighbours(cell);
         let neighbours: Vec<(f64, Affine)> =
-            ids.iter().zip(shares).map(|(&n, &w)| (w, self.pieces[n as usize].at(worst.rho))).collect();
+            ids.iter().zip(shares).map(|(&n, &w)| (w, self.ground.pieces[n as usize].at(worst.rho))).collect();
         let &TerrainSettings { eta, mu, mu_dev, .. } = self.settings;
         let mean = self.cells.mean_height(cell);
         Price { now, scale, shift, higher_share, higher_mean, mean, neighbours: &neighbours, eta, mu, mu_dev }
@@ -249,7 +291,7 @@ impl<'a> Pass<'a> {
         let slack = 2.0 * self.slack;
         found.retain_mut(|h| {
             if h.cell == cell {
-                h.z = self.pieces[cell].at(h.rho).of(h.original);
+                h.z = self.ground.pieces[cell].at(h.rho).of(h.original);
             }
             h.cell != cell || h.z > h.limit + slack
         });

@@ -1,14 +1,14 @@
 use super::super::cells::tests::{field_of, noise};
 use super::super::{PointKind, SightSample, sight_samples};
 use super::reference::Reference;
-use super::trace::{Sampler, Sight, Skipping};
+use super::trace::{Lowered, Room, Sampler, Sight, Skipping};
 use super::*;
 
 /// Leaves out nothing.
 struct Every<'a>(&'a Field);
 
 impl Sampler for Every<'_> {
-    fn samples(&self, sight: &Sight, _: &[Pieces], out: &mut Vec<SightSample>) {
+    fn samples(&self, sight: &Sight, _: &Lowered, _: &mut Room, out: &mut Vec<SightSample>) {
         sight_samples(self.0, sight.from, sight.eye, false, out);
     }
 }
@@ -69,7 +69,7 @@ impl Case {
     }
 
     fn naive(&self, settings: &TerrainSettings) -> Naive {
-        Naive::new(&self.field, &self.cells, &Pyramid::new(&self.field), settings, self.eye, &self.points)
+        Naive::new(&self.field, &self.cells, &Blocks::new(&self.field, &self.cells), settings, self.eye, &self.points)
     }
 
     /// Eyes inside, outside, above a node, on a grid line and low, over square and oblong nodes, with and without voids.
@@ -156,25 +156,27 @@ fn ground_is_never_raised_and_traces_are_bounded() {
 #[test]
 fn skipping_leaves_out_nothing_that_is_too_high() {
     let case = &Case::all()[2];
-    let (field, cells, pyramid) = (&case.field, &case.cells, Pyramid::new(&case.field));
-    let untouched = vec![Pieces::default(); cells.len()];
-    let mut lowered = untouched.clone();
-    for (i, pieces) in lowered.iter_mut().enumerate().filter(|(i, _)| i % 3 > 0) {
-        pieces.change(f64::INFINITY, |_| Affine { scale: 0.9, shift: -10.0 * i as f64 });
-        pieces.change(1200.0, |a| Affine { shift: a.shift - 40.0, ..a });
+    let (field, cells, blocks) = (&case.field, &case.cells, Blocks::new(&case.field, &case.cells));
+    let untouched = Lowered::new(&blocks, cells.len());
+    let mut lowered = Lowered::new(&blocks, cells.len());
+    for cell in (0..cells.len()).filter(|i| i % 3 > 0) {
+        lowered.change(cell, f64::INFINITY, |_| Affine { scale: 0.9, shift: -10.0 * cell as f64 });
+        lowered.change(cell, 1200.0, |a| Affine { shift: a.shift - 40.0, ..a });
     }
+    lowered.settle(&blocks);
     let eye = (field.grid_from_scene(case.eye.truncate()), case.eye.z - field.datum());
-    let (mut some, mut all) = (Vec::new(), Vec::new());
+    let (mut some, mut all, mut room) = (Vec::new(), Vec::new(), Room::default());
     let mut kept = [0, 0];
-    for (pieces, kept) in [&untouched, &lowered].into_iter().zip(&mut kept) {
+    for (ground, kept) in [&untouched, &lowered].into_iter().zip(&mut kept) {
         let (mut total, mut high) = (0, 0);
         for p in &case.points {
             let target = trace::Target::new(field, cells, p, eye.0, 1.5);
-            let sight = target.sight(field, &untouched, eye);
-            Skipping { field, cells, pyramid: &pyramid }.samples(&sight, pieces, &mut some);
-            Every(field).samples(&sight, pieces, &mut all);
+            let sight = target.sight(field, &untouched.pieces, eye);
+            some.clear();
+            Skipping { field, cells, blocks: &blocks }.samples(&sight, ground, &mut room, &mut some);
+            Every(field).samples(&sight, ground, &mut room, &mut all);
             let too_high = |s: &&SightSample| {
-                let affine = pieces[cells.labels()[s.nearest()] as usize].at(s.rho);
+                let affine = ground.pieces[cells.labels()[s.nearest()] as usize].at(s.rho);
                 s.tau > sight.guard && affine.of(s.of(field.heights()) - field.datum()) > sight.limit(s.tau)
             };
             let (a, b): (Vec<_>, Vec<_>) =
@@ -192,9 +194,10 @@ fn skipping_leaves_out_nothing_that_is_too_high() {
 #[test]
 fn skipping_is_right_where_lines_run_along_the_grid_and_beside_it() {
     let field = mountains(70, 67, DVec2::splat(30.0), 9, false);
-    let (cells, pyramid) = (Cells::new(&field, 3), Pyramid::new(&field));
-    let untouched = vec![Pieces::default(); cells.len()];
-    let (mut some, mut all) = (Vec::new(), Vec::new());
+    let cells = Cells::new(&field, 3);
+    let blocks = Blocks::new(&field, &cells);
+    let ground = Lowered::new(&blocks, cells.len());
+    let (mut some, mut all, mut room) = (Vec::new(), Vec::new(), Room::default());
     let places = [0.0, 4.0, 16.0, 33.5, 64.0, 66.0];
     let mut high = 0;
     for from in places.iter().flat_map(|&x| places.map(|y| DVec2::new(x, y))) {
@@ -207,7 +210,8 @@ fn skipping_is_right_where_lines_run_along_the_grid_and_beside_it() {
             DVec2::new(from.y, from.x) * 1.5,
         ] {
             let sight = Sight { from, eye, height: [300.0, 500.0], guard: 0.0, clearance: 1.0 };
-            Skipping { field: &field, cells: &cells, pyramid: &pyramid }.samples(&sight, &untouched, &mut some);
+            some.clear();
+            Skipping { field: &field, cells: &cells, blocks: &blocks }.samples(&sight, &ground, &mut room, &mut some);
             sight_samples(&field, from, eye, false, &mut all);
             let too_high = |s: &&SightSample| s.of(field.heights()) - field.datum() > sight.limit(s.tau);
             let (a, b): (Vec<_>, Vec<_>) =
@@ -236,7 +240,7 @@ fn a_point_on_the_far_slope_is_cleared_by_lowering_what_is_nearer() {
     let eye = eye(&field, 20.0, 60.0, 1250.0);
     let points: Vec<ReferencePoint> = (0..12).map(|i| point(&field, 20.0, 14.0 - f64::from(i)).unwrap()).collect();
     let settings = TerrainSettings::default();
-    let naive = Naive::new(&field, &cells, &Pyramid::new(&field), &settings, eye, &points);
+    let naive = Naive::new(&field, &cells, &Blocks::new(&field, &cells), &settings, eye, &points);
     let c = *naive.counters();
     assert!(c.regular == 0 && c.backfacing > 0 && c.splits > 0 && c.unresolved == 0, "{c:?}");
     let farthest = naive.displacement_at(&field, &cells, &points[11]);
@@ -284,7 +288,8 @@ fn mirrored_and_transposed_scenes_give_mirrored_and_transposed_ground() {
         let points: Vec<ReferencePoint> =
             route(&base, 70).iter().map(|p| ReferencePoint { grid: map(p.grid), ..*p }).collect();
         let g = map(at);
-        let naive = Naive::new(field, &cells, &Pyramid::new(field), &settings, eye(field, g.x, g.y, 2100.0), &points);
+        let naive =
+            Naive::new(field, &cells, &Blocks::new(field, &cells), &settings, eye(field, g.x, g.y, 2100.0), &points);
         (naive.displacement(field, &cells), *naive.counters())
     };
     // Points inside cells may lie on the other triangle: give them the same height.
@@ -308,8 +313,14 @@ fn flat_and_smallest_grounds_stay_as_they_are() {
         let cells = Cells::new(&field, 5);
         let points: Vec<ReferencePoint> =
             (0..5).filter_map(|i| point(&field, 0.2 * f64::from(i), 0.1 * f64::from(i))).collect();
-        let naive =
-            Naive::new(&field, &cells, &Pyramid::new(&field), &settings, eye(&field, 25.0, 18.0, 900.0), &points);
+        let naive = Naive::new(
+            &field,
+            &cells,
+            &Blocks::new(&field, &cells),
+            &settings,
+            eye(&field, 25.0, 18.0, 900.0),
+            &points,
+        );
         assert_eq!((naive.counters().traces, naive.counters().hits), (5, 0));
         assert!(naive.displacement(&field, &cells).iter().all(|u| *u == 0.0));
     }
@@ -326,7 +337,7 @@ fn what_the_pass_cannot_clear_is_named_and_stays_within_the_relief() {
     let points: Vec<ReferencePoint> = (0..9).map(|i| point(&field, 53.5, 2.0 + 2.0 * f64::from(i)).unwrap()).collect();
     let eye = eye(&field, 5.5, 10.5, 505.0);
     let settings = TerrainSettings::default();
-    let naive = Naive::new(&field, &cells, &Pyramid::new(&field), &settings, eye, &points);
+    let naive = Naive::new(&field, &cells, &Blocks::new(&field, &cells), &settings, eye, &points);
     let u = naive.displacement(&field, &cells);
     assert!(u.iter().all(|u| u.is_finite() && *u >= -2.0 * field.relief()));
     let slow = Reference::run(&field, &cells, &settings, eye, &points);
@@ -339,7 +350,7 @@ fn a_point_under_the_eye_has_no_line_of_sight() {
     let cells = Cells::new(&field, 1);
     let points = [point(&field, 10.0, 10.0).unwrap()];
     let eye = eye(&field, 10.0, 10.0, 1500.0);
-    let naive = Naive::new(&field, &cells, &Pyramid::new(&field), &TerrainSettings::default(), eye, &points);
+    let naive = Naive::new(&field, &cells, &Blocks::new(&field, &cells), &TerrainSettings::default(), eye, &points);
     assert_eq!(naive.counters().hits, 0);
     let left_out = in_view(&field, &points, &Wedge::all_around(eye.truncate()), 1.5).1;
     assert_eq!(left_out, [(0, LeftOut::TooNear)]);

@@ -2,7 +2,8 @@
 
 use super::super::line_of_sight::{SightSample, SightWalk, guard_tau};
 use super::super::{Cells, Field, NO_CELL, ReferencePoint};
-use super::{CLEARANCE, CLEARANCE_GROWS, Pieces, Pyramid};
+use super::scan::{High, Scan, merge};
+use super::{Affine, Blocks, CLEARANCE, CLEARANCE_GROWS, Pieces};
 use belvedere_core::DVec2;
 use pulp::{Arch, Simd, WithSimd};
 
@@ -43,23 +44,58 @@ pub(super) struct Hit {
 
 /// Finds the samples of a line of sight that may lie too high.
 pub(super) trait Sampler: Sync {
-    /// All samples whose ground is higher than the line of sight allows, in order, and possibly others.
-    ///
-    /// * `pieces`: what is done to each cell.
-    fn samples(&self, sight: &Sight, pieces: &[Pieces], out: &mut Vec<SightSample>);
+    /// Appends all samples whose ground is higher than the line of sight allows, in order, and possibly others.
+    fn samples(&self, sight: &Sight, ground: &Lowered, room: &mut Room, out: &mut Vec<SightSample>);
 }
 
-/// Leaves out what clears the blocks of a pyramid.
+/// Room to work in, kept from line to line.
+#[derive(Default)]
+pub(super) struct Room {
+    parts: Vec<(f64, f64)>,
+    high: Vec<High>,
+    by_family: [Vec<SightSample>; 2],
+}
+
+/// The ground as it is now.
+pub(super) struct Lowered {
+    /// What is done to each cell.
+    pub(super) pieces: Vec<Pieces>,
+    /// A bound of the highest ground of each block.
+    pub(super) ceilings: Vec<f32>,
+    /// Cells that were lowered since those were set.
+    lowered: Vec<usize>,
+}
+
+impl Lowered {
+    /// Untouched.
+    pub(super) fn new(blocks: &Blocks, cells: usize) -> Self {
+        Self { pieces: vec![Pieces::default(); cells], ceilings: blocks.ceilings(), lowered: Vec::new() }
+    }
+
+    /// See [`Pieces::change`].
+    pub(super) fn change(&mut self, cell: usize, below: f64, change: impl FnMut(Affine) -> Affine) -> bool {
+        self.lowered.push(cell);
+        self.pieces[cell].change(below, change)
+    }
+
+    /// Sets the bounds anew where ground was lowered; until then they are higher than need be.
+    pub(super) fn settle(&mut self, blocks: &Blocks) {
+        self.lowered.sort_unstable();
+        self.lowered.dedup();
+        self.lowered.drain(..).for_each(|cell| blocks.lower(cell, &self.pieces, &mut self.ceilings));
+    }
+}
+
+/// Leaves out blocks that the line clears, and what was lowered enough.
 pub(super) struct Skipping<'a> {
     pub(super) field: &'a Field,
     pub(super) cells: &'a Cells,
-    pub(super) pyramid: &'a Pyramid,
+    pub(super) blocks: &'a Blocks,
 }
 
 impl Sampler for Skipping<'_> {
-    fn samples(&self, sight: &Sight, pieces: &[Pieces], out: &mut Vec<SightSample>) {
-        out.clear();
-        Arch::new().dispatch(Skip { all: self, sight, pieces, out });
+    fn samples(&self, sight: &Sight, ground: &Lowered, room: &mut Room, out: &mut Vec<SightSample>) {
+        Arch::new().dispatch(Skip { all: self, sight, ground, room, out });
     }
 }
 
@@ -67,7 +103,8 @@ impl Sampler for Skipping<'_> {
 struct Skip<'a> {
     all: &'a Skipping<'a>,
     sight: &'a Sight,
-    pieces: &'a [Pieces],
+    ground: &'a Lowered,
+    room: &'a mut Room,
     out: &'a mut Vec<SightSample>,
 }
 
@@ -75,16 +112,23 @@ impl WithSimd for Skip<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self { all: Skipping { field, cells, pyramid }, sight, pieces, out } = self;
-        let Some(mut walk) = SightWalk::new(field, sight.from, sight.eye, false) else { return };
-        let datum = field.datum();
-        let now = |level: usize, block: usize, max: f64| {
-            let cell = cells.of_block(level, block);
-            if cell == NO_CELL { max } else { pieces[cell as usize].highest(max - datum) + datum }
-        };
-        let height = sight.height.map(|h| h + datum);
-        pyramid.near_misses(&mut walk, sight.from, height, (sight.clearance, sight.guard), now, out);
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { all: Skipping { field, cells, blocks }, sight, ground: Lowered { pieces, ceilings, .. }, room, out } =
+            self;
+        let Room { parts, high, by_family: [columns, rows] } = room;
+        let Some(walk) = SightWalk::new(field, sight.from, sight.eye, false) else { return };
+        let height = sight.height.map(|h| h - sight.clearance);
+        let (t0, t1) = walk.span();
+        parts.clear();
+        columns.clear();
+        rows.clear();
+        blocks.near_parts((sight.from, walk.dir()), (t0.max(sight.guard), t1), height, ceilings, parts);
+        let scan = Scan { simd, field, cells, pieces, height };
+        for &part in &*parts {
+            scan.part::<0>(&walk, part, high, columns);
+            scan.part::<1>(&walk, part, high, rows);
+        }
+        merge([columns, rows], out);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Lines of sight of neighbours, followed as one as long as no ground comes near.
 
-use super::lanes::{LANES, Lanes};
+use super::super::register::LANES;
+use super::lanes::Lanes;
 use super::seen::Seen;
 use super::surface::{Lattice, Surface};
 use super::walk::{Chord, Clearance, LEAF, Touch, fade};

@@ -1,14 +1,9 @@
 //! Neighbouring lines of sight abreast, one per lane of a register: a bound of what they miss, by which most are let pass.
 
+use super::super::register::{LANES, Lane, indices, load, split, store};
 use super::surface::Surface;
 use super::walk::{Chord, Clearance};
 use pulp::{Arch, Simd, WithSimd};
-
-/// Lines side by side, as many as the widest register holds.
-pub(super) const LANES: usize = 8;
-
-/// A number for each line.
-type Lane = [f64; LANES];
 
 /// Straight lines of sight from their points to the eye, each over the part of it that counts. Spare lanes repeat the last
 /// line.
@@ -167,33 +162,6 @@ impl<S: Simd> Register<S> {
         [(low / step - NUDGE).ceil(), (high / step + NUDGE).floor()]
     }
 
-    /// Whole part (at most `last`) of coordinates and the rest, which is 1 where the whole part could be one more. Below 0
-    /// counts as 0, and so does NaN.
-    #[inline(always)]
-    fn split(&self, x: S::f64s, last: f64) -> (S::f64s, S::f64s) {
-        // Adding it rounds to whole numbers.
-        const WHOLE: f64 = 6_755_399_441_055_744.0;
-        let simd = self.simd;
-        let x = simd.max_f64s(x, simd.splat_f64s(0.0));
-        let middle = simd.min_f64s(simd.sub_f64s(x, simd.splat_f64s(0.5)), simd.splat_f64s(last));
-        let whole = simd.sub_f64s(simd.add_f64s(middle, simd.splat_f64s(WHOLE)), simd.splat_f64s(WHOLE));
-        (whole, simd.sub_f64s(x, whole))
-    }
-
-    /// Whole numbers below 2^32 as indices.
-    #[inline(always)]
-    fn indices(&self, whole: S::f64s) -> [u32; LANES] {
-        const UNITS: f64 = 4_503_599_627_370_496.0;
-        let mut out = [0.0; LANES];
-        S::as_mut_simd_f64s(&mut out).0[0] = self.simd.add_f64s(whole, self.simd.splat_f64s(UNITS));
-        out.map(|v| v.to_bits() as u32)
-    }
-
-    #[inline(always)]
-    fn load(lane: &Lane) -> S::f64s {
-        S::as_simd_f64s(lane).0[0]
-    }
-
     /// Kinks at one family of edges: lines x = k, y = k, or x - y = k.
     #[inline(always)]
     fn edges<const FAMILY: usize>(&self, surface: &Surface, within: [S::f64s; 2], most: &mut S::f64s) {
@@ -211,7 +179,7 @@ impl<S: Simd> Register<S> {
             let (t, line) = (self.crossing(FAMILY, k), simd.splat_f64s(k));
             let place = self.at(along, t);
             let end = if FAMILY == 2 { last[0].min(last[1] + k) } else { last[along] } - 1.0;
-            let (whole, share) = self.split(place, end);
+            let (whole, share) = split(simd, place, end);
             let (corner, x, y) = match FAMILY {
                 0 => (simd.mul_add_e_f64s(whole, cols, line), line, place),
                 1 => (simd.mul_add_e_f64s(line, cols, whole), place, line),
@@ -220,13 +188,13 @@ impl<S: Simd> Register<S> {
                     (simd.mul_add_e_f64s(row, cols, whole), place, simd.sub_f64s(place, line))
                 }
             };
-            let node = self.indices(corner);
+            let node = indices(simd, corner);
             let (mut from, mut to) = ([0.0; LANES], [0.0; LANES]);
             for l in 0..S::F64_LANES {
                 let node = node[l] as usize;
                 (from[l], to[l]) = (surface.heights[node], surface.heights[node + stride]);
             }
-            let (from, to) = (Self::load(&from), Self::load(&to));
+            let (from, to) = (load::<S>(&from), load::<S>(&to));
             let ground = simd.mul_add_e_f64s(share, simd.sub_f64s(to, from), from);
             self.judge(surface, Place { t, x, y }, ground, within, most);
             k += 1.0;
@@ -239,15 +207,15 @@ impl<S: Simd> Register<S> {
         let (simd, lattice) = (self.simd, &surface.lattice);
         let last = [lattice.cols, lattice.rows].map(|n| (n.max(2) - 2) as f64);
         let per = [lattice.step.x, lattice.step.y].map(|step| simd.splat_f64s(1.0 / step));
-        let (col, x) = self.split(simd.mul_f64s(place.x, per[0]), last[0]);
-        let (row, y) = self.split(simd.mul_f64s(place.y, per[1]), last[1]);
-        let cell = self.indices(simd.mul_add_e_f64s(row, simd.splat_f64s(last[0] + 1.0), col));
+        let (col, x) = split(simd, simd.mul_f64s(place.x, per[0]), last[0]);
+        let (row, y) = split(simd, simd.mul_f64s(place.y, per[1]), last[1]);
+        let cell = indices(simd, simd.mul_add_e_f64s(row, simd.splat_f64s(last[0] + 1.0), col));
         let mut patch = [[0.0; LANES]; 4];
         for l in 0..S::F64_LANES {
             let [c, cx, cy, cxy] = surface.patches[cell[l] as usize];
             (patch[0][l], patch[1][l], patch[2][l], patch[3][l]) = (c, cx, cy, cxy);
         }
-        let [c, cx, cy, cxy] = [0, 1, 2, 3].map(|k| Self::load(&patch[k]));
+        let [c, cx, cy, cxy] = [0, 1, 2, 3].map(|k| load::<S>(&patch[k]));
         let u = simd.mul_add_e_f64s(y, simd.mul_add_e_f64s(x, cxy, cy), simd.mul_add_e_f64s(x, cx, c));
         let line = simd.mul_add_e_f64s(place.t, self.z[1], self.z[0]);
         let share = simd.min_f64s(simd.mul_f64s(simd.splat_f64s(5.0), place.t), simd.splat_f64s(1.0));
@@ -262,12 +230,11 @@ impl<S: Simd> Register<S> {
     #[inline(always)]
     fn judge_between(&self, surface: &Surface, t: S::f64s, within: [S::f64s; 2], most: &mut S::f64s) {
         let place = Place { t, x: self.at(0, t), y: self.at(1, t) };
-        let (mut x, mut y, mut ground) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        (S::as_mut_simd_f64s(&mut x).0[0], S::as_mut_simd_f64s(&mut y).0[0]) = (place.x, place.y);
+        let (x, y, mut ground) = (store::<S>(place.x), store::<S>(place.y), [0.0; LANES]);
         for l in 0..S::F64_LANES {
             ground[l] = surface.ground([x[l], y[l]].into());
         }
-        self.judge(surface, place, Self::load(&ground), within, most);
+        self.judge(surface, place, load::<S>(&ground), within, most);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::super::qp::{QpOptions, QpSolver};
 use super::super::settings::MOST_W;
 use super::super::{
-    Cells, Field, Hierarchy, Pyramid, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings, Unusable,
+    Blocks, Cells, Field, Hierarchy, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings, Unusable,
     candidate_points, grid_weight, reference_points, stated_spacing, temporal_weight,
 };
 use crate::ConstructError;
@@ -43,7 +43,7 @@ pub(super) struct Prepared {
     /// Points every fifth of a cell, by which the result is judged.
     check: Vec<ReferencePoint>,
     /// Of modes with a greedy pass.
-    pub(super) cells: Option<Arc<(Cells, Pyramid)>>,
+    pub(super) cells: Option<Arc<(Cells, Blocks)>>,
     /// Of modes with a greedy pass.
     pub(super) smooth: Option<SmoothPass>,
     /// Of modes with a quadratic program: the one of frames without a frame before.
@@ -158,7 +158,9 @@ impl Prepared {
         let check = reference_points(scene, &level, settings, CHECK_CELLS).0;
         let cells = (settings.mode != SolverMode::Qp).then(|| {
             let keep = settings.cells.unwrap_or_else(|| Cells::default_count(&level));
-            Arc::new((Cells::new(&level, keep), Pyramid::new(&level)))
+            let cells = Cells::new(&level, keep);
+            let blocks = Blocks::new(&level, &cells);
+            Arc::new((cells, blocks))
         });
         let smooth = match &cells {
             Some(parts) => {

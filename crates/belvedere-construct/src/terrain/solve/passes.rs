@@ -1,7 +1,7 @@
 //! The passes of one frame, in the order of the mode.
 
 use super::super::qp::{QpOptions, QpProblem, QpResult};
-use super::super::{Field, Hierarchy, Naive, Pyramid, ReferencePoint, Smoother, SolverMode, TerrainSettings};
+use super::super::{Blocks, Field, Hierarchy, Naive, ReferencePoint, Smoother, SolverMode, TerrainSettings};
 use super::fallback::{self, Fallback};
 use super::memory::{self, Pace, Prepared};
 use super::{Done, QpReport, Seen, TerrainTimes, scales, since};
@@ -71,18 +71,18 @@ impl Passes<'_> {
         times: &mut TerrainTimes,
     ) -> Result<Option<Vec<f64>>, ConstructError> {
         let Some(parts) = prepared.cells.clone() else { return Ok(None) };
-        let (cells, pyramid) = &*parts;
+        let (cells, blocks) = &*parts;
         self.progress.tick("greedy pass", 0.2)?;
         let began = Instant::now();
         let field = self.field;
         // On a curved earth the ground under the points, and what bounds it, differs with the eye.
-        let own = self.lowered.then(|| Pyramid::new(field));
+        let own = self.lowered.then(|| Blocks::new(field, cells));
         let point = |&i: &usize| {
             let p = prepared.points[i];
             ReferencePoint { ground: field.surface_at(p.grid).unwrap_or(p.ground), ..p }
         };
         let points: Vec<ReferencePoint> = seen.points.iter().map(point).collect();
-        let naive = Naive::new(field, cells, own.as_ref().unwrap_or(pyramid), self.settings, self.eye, &points);
+        let naive = Naive::new(field, cells, own.as_ref().unwrap_or(blocks), self.settings, self.eye, &points);
         done.greedy = Some(*naive.counters());
         done.greedy_unresolved = naive.unresolved().iter().map(|&k| seen.points[k]).collect();
         times.greedy_ms = since(began);

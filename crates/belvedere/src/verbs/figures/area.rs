@@ -5,7 +5,7 @@ use crate::scene_file::StageDoc;
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::ConstructError;
 use belvedere_construct::terrain::{
-    Cells, Field, Naive, Pyramid, ReferencePoint, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver,
+    Blocks, Cells, Field, Naive, ReferencePoint, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver,
     Wedge, in_view, reference_points,
 };
 use belvedere_core::grid::Grid;
@@ -25,7 +25,7 @@ pub(super) struct Area {
     pub(super) settings: TerrainSettings,
     pub(super) field: Field,
     pub(super) cells: Cells,
-    pub(super) pyramid: Pyramid,
+    pub(super) blocks: Blocks,
     /// Reference points in view.
     pub(super) points: Vec<ReferencePoint>,
     pub(super) progress: Progress,
@@ -50,10 +50,10 @@ impl Area {
         let cells = Cells::new(&field, settings.cells.unwrap_or_else(|| Cells::default_count(&field)));
         let view = View::straight(session.view().pinhole().clone());
         let name = path.file_stem().map_or_else(|| "area".into(), |s| s.to_string_lossy().into_owned());
-        let pyramid = Pyramid::new(&field);
+        let blocks = Blocks::new(&field, &cells);
         let points = in_frame(session.scene(), &field, &settings, view.pinhole());
         let progress = options.progress.clone();
-        Ok(Self { name, session, view, settings, field, cells, pyramid, points, progress })
+        Ok(Self { name, session, view, settings, field, cells, blocks, points, progress })
     }
 
     /// The settings of the area in another mode.
@@ -69,7 +69,7 @@ impl Area {
 
     /// The greedy pass alone, on the points in view.
     pub(super) fn naive(&self, settings: &TerrainSettings) -> Naive {
-        Naive::new(&self.field, &self.cells, &self.pyramid, settings, self.eye(), &self.points)
+        Naive::new(&self.field, &self.cells, &self.blocks, settings, self.eye(), &self.points)
     }
 
     /// The ground as the greedy pass leaves it.

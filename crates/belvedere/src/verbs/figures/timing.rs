@@ -71,7 +71,7 @@ pub(super) fn timing(area: &Area) -> Result<Timing, BelvedereError> {
     for (count, paper_ms) in PAPER {
         let Some(points) = evenly(&many, count) else { continue };
         area.progress.tick("times", greedy.len() as f64 / PAPER.len() as f64)?;
-        let run = || drop(Naive::new(field, &area.cells, &area.pyramid, &settings, area.eye(), &points));
+        let run = || drop(Naive::new(field, &area.cells, &area.blocks, &settings, area.eye(), &points));
         greedy.push(GreedyTime { points: count, ms: median(run), paper_ms });
     }
     let exponent = exponent(&greedy);

@@ -1,0 +1,42 @@
+//! Places on a grid, several in a register.
+
+use pulp::Simd;
+
+/// The most numbers that a register holds.
+pub(super) const LANES: usize = 8;
+
+/// A number for each place; registers with fewer take the first ones.
+pub(super) type Lane = [f64; LANES];
+
+/// The first register of a lane.
+#[inline(always)]
+pub(super) fn load<S: Simd>(lane: &Lane) -> S::f64s {
+    S::as_simd_f64s(lane).0[0]
+}
+
+/// A register as numbers; the others are 0.
+#[inline(always)]
+pub(super) fn store<S: Simd>(register: S::f64s) -> Lane {
+    let mut out = [0.0; LANES];
+    S::as_mut_simd_f64s(&mut out).0[0] = register;
+    out
+}
+
+/// Whole part (at most `last`) of coordinates and the rest, which is 1 where the whole part could be one more. Below 0
+/// counts as 0, and so does NaN.
+#[inline(always)]
+pub(super) fn split<S: Simd>(simd: S, x: S::f64s, last: f64) -> (S::f64s, S::f64s) {
+    // Adding it rounds to whole numbers.
+    const WHOLE: f64 = 6_755_399_441_055_744.0;
+    let x = simd.max_f64s(x, simd.splat_f64s(0.0));
+    let middle = simd.min_f64s(simd.sub_f64s(x, simd.splat_f64s(0.5)), simd.splat_f64s(last));
+    let whole = simd.sub_f64s(simd.add_f64s(middle, simd.splat_f64s(WHOLE)), simd.splat_f64s(WHOLE));
+    (whole, simd.sub_f64s(x, whole))
+}
+
+/// Whole numbers below 2^32 as indices.
+#[inline(always)]
+pub(super) fn indices<S: Simd>(simd: S, whole: S::f64s) -> [u32; LANES] {
+    const UNITS: f64 = 4_503_599_627_370_496.0;
+    store::<S>(simd.add_f64s(whole, simd.splat_f64s(UNITS))).map(|v| v.to_bits() as u32)
+}
