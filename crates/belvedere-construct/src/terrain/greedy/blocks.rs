@@ -173,3 +173,43 @@ fn by_cell(start: &[u32], parts: &[Part], cells: usize) -> (Vec<u32>, Vec<u32>) 
     }
     (first, of_cell)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::cells::tests::{field_of, noise};
+    use super::super::Affine;
+    use super::super::trace::Lowered;
+    use super::*;
+
+    #[test]
+    fn nothing_stands_out_of_a_block_after_cells_were_lowered() {
+        let (cols, rows) = (45, 38);
+        let field = field_of(cols, rows, DVec2::splat(30.0), |c, r| {
+            let h = noise(r * cols + c, 4);
+            if h < 0.02 { f64::NAN } else { 900.0 * h }
+        });
+        let cells = Cells::new(&field, 60);
+        let blocks = Blocks::new(&field, &cells);
+        let mut ground = Lowered::new(&blocks, cells.len());
+        for cell in (0..cells.len()).step_by(2) {
+            ground.change(cell, f64::INFINITY, |_| Affine { scale: 0.7, shift: -3.0 * cell as f64 });
+        }
+        ground.settle(&blocks);
+        let mut close = 0;
+        for (from, step) in (0..cols * rows - cols - 1).flat_map(|n| [(n, 1), (n, cols)]) {
+            let (to, [x, y]) = (from + step, [from % cols, from / cols]);
+            if x + 1 == cols || field.void()[from] || field.void()[to] {
+                continue;
+            }
+            let ceiling = f64::from(ground.ceilings[y / SIDE * blocks.cols + x / SIDE]);
+            for weight in (0..=10).map(|k| 0.1 * f64::from(k)) {
+                let nearest = if weight > 0.5 { to } else { from };
+                let h = (1.0 - weight) * field.heights()[from] + weight * field.heights()[to] - field.datum();
+                let z = ground.pieces[cells.labels()[nearest] as usize].highest(h);
+                assert!(z <= ceiling, "edge {from} to {to} at {weight}: {z} over {ceiling}");
+                close += usize::from(z > ceiling - 1.0);
+            }
+        }
+        assert!(close > 20, "bounds are met by {close} places only");
+    }
+}

@@ -2,6 +2,7 @@
 
 mod blocks;
 mod equations;
+mod hits;
 mod pieces;
 mod queue;
 #[cfg(test)]

@@ -35,6 +35,12 @@ impl Pieces {
         self.bound.of(h)
     }
 
+    /// Whether everywhere the same is done; then [`Self::highest`] is what is done.
+    #[inline(always)]
+    pub(super) fn alike(&self) -> bool {
+        self.affine.len() <= 1
+    }
+
     /// Whether anything is done.
     pub fn changed(&self) -> bool {
         !self.affine.is_empty()

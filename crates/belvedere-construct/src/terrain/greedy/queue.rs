@@ -1,9 +1,10 @@
 //! The order in which points are followed, and what each of them does to the ground.
 
-use super::super::line_of_sight::SightSample;
 use super::super::{Cells, Field, ReferencePoint, TerrainSettings};
 use super::equations::{Affine, Price, blended, scale_to_clear, shift_to_clear};
-use super::trace::{Hit, Lowered, Room, Sampler, Target, hits};
+use super::hits::{Hit, Hits};
+use super::scan::High;
+use super::trace::{Lowered, Room, Sampler, Sight, Target};
 use super::{BACKWARD, Blocks, CLEARANCE, GreedyCounters, NEAR, Naive};
 use belvedere_core::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -56,7 +57,7 @@ struct Ahead {
 /// Samples of several lines, one after the other.
 #[derive(Default)]
 struct Taken {
-    samples: Vec<SightSample>,
+    samples: Vec<High>,
     room: Room,
 }
 
@@ -134,14 +135,18 @@ impl<'a> Pass<'a> {
         }
     }
 
+    fn sight(&self, entry: &Entry) -> Sight {
+        self.targets[entry.point].sight(self.field, &self.ground.pieces, self.eye, entry.below)
+    }
+
     /// Samples of a line of sight. Those of the next points in the first order are taken at the same time on all cores: as
     /// ground is only ever lowered, they hold all that later ones would, until the point itself is lowered.
-    fn samples<'s>(&mut self, entry: &Entry, sampler: &dyn Sampler, ahead: &'s mut Ahead) -> &'s [SightSample] {
+    fn samples<'s>(&mut self, entry: &Entry, sampler: &dyn Sampler, ahead: &'s mut Ahead) -> &'s [High] {
         if ahead.order.last() == Some(entry) {
             self.ground.settle(self.blocks);
             self.sample_ahead(sampler, ahead);
         }
-        let sight = self.targets[entry.point].sight(self.field, &self.ground.pieces, self.eye);
+        let sight = self.sight(entry);
         let single = &mut ahead.single;
         match ahead.of_point[entry.point].take() {
             Some((height, taken, range)) if entry.whole && height == sight.height[0] => {
@@ -161,8 +166,7 @@ impl<'a> Pass<'a> {
         let sample = |(taken, entries): (&mut Taken, &[Entry])| -> Vec<(f64, Range<usize>)> {
             taken.samples.clear();
             let of = |next: &Entry| {
-                let (sight, start) =
-                    (self.targets[next.point].sight(self.field, &self.ground.pieces, self.eye), taken.samples.len());
+                let (sight, start) = (self.sight(next), taken.samples.len());
                 sampler.samples(&sight, &self.ground, &mut taken.room, &mut taken.samples);
                 (sight.height[0], start..taken.samples.len())
             };
@@ -191,14 +195,15 @@ impl<'a> Pass<'a> {
     }
 
     /// Follows a line of sight and clears it, cell by cell.
-    fn trace(&mut self, entry: Entry, samples: &[SightSample], found: &mut Vec<Hit>) {
+    fn trace(&mut self, entry: Entry, samples: &[High], found: &mut Vec<Hit>) {
         let target = self.targets[entry.point];
         if entry.whole {
             self.waiting[entry.point] = false;
             self.unresolved[entry.point] = false;
         }
-        let sight = target.sight(self.field, &self.ground.pieces, self.eye);
-        hits(samples, self.field, self.cells, &self.ground.pieces, &sight, (entry.below, self.slack), found);
+        let sight = self.sight(&entry);
+        let (field, cells, pieces) = (self.field, self.cells, &self.ground.pieces);
+        Hits { field, cells, pieces, sight: &sight, below: entry.below, slack: self.slack }.find(samples, found);
         // Clearing a cell changes nothing in the others.
         while let Some(&first) = found.first() {
             let below = if first.cell == target.cell {

@@ -1,66 +1,81 @@
-//! Looks at every crossing of a part of a line of sight, coarsely and fast, for those whose ground may lie over it.
+//! Looks at every crossing of a line of sight, fast, for those whose ground may lie over it.
 
-use super::super::line_of_sight::{SightSample, SightWalk};
-use super::super::register::{LANES, indices, load, split, store};
-use super::super::{Cells, Field};
-use super::Pieces;
+use super::super::line_of_sight::SightWalk;
+use super::super::register::{LANES, Lane, indices, load, split, store};
+use super::super::{Cells, Field, NO_CELL};
+use super::trace::Sight;
+use super::{CLEARANCE_GROWS, Pieces};
 use pulp::Simd;
 
-/// A ground whose lines of sight are looked at, as it is now.
+/// A crossing whose ground may lie over the line of sight.
+///
+/// Heights are over the datum, and known to within [`Sight::doubt`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct High {
+    pub(super) tau: f64,
+    /// Height of the untouched ground, and the highest that it may be.
+    pub(super) h: f64,
+    pub(super) limit: f64,
+    /// Cell of the nearer node; [`NO_CELL`] where rounding decides which one that is, or whether there is ground.
+    pub(super) cell: u32,
+    /// Column of the grid that is crossed (family 0), or row (1).
+    pub(super) family: u8,
+    pub(super) line: u32,
+}
+
+/// Weights so near to a node or to the middle of an edge might belong to either side.
+pub(super) const UNSURE: f64 = 1e-6;
+
+/// A line of sight over a ground as it is now.
 pub(super) struct Scan<'a, S: Simd> {
     pub(super) simd: S,
     pub(super) field: &'a Field,
     pub(super) cells: &'a Cells,
     pub(super) pieces: &'a [Pieces],
-    /// Height over the datum of the line, less the largest clearance, at the point and at the eye.
-    pub(super) height: [f64; 2],
+    pub(super) sight: &'a Sight,
 }
 
-/// A crossing with ground that was higher than it may be.
-#[derive(Clone, Copy, Default)]
-pub(super) struct High {
-    /// Line of the grid.
-    line: f64,
-    /// First node of the edge, and the share of its second one.
-    node: u32,
-    weight: f64,
-    /// Height of the untouched ground, and the highest that it may be, over the datum.
-    h: f64,
+/// Crossings abreast, as the numbers of a register.
+struct Abreast {
+    line: Lane,
+    tau: Lane,
+    h: Lane,
+    limit: Lane,
+    weight: Lane,
+    node: [u32; LANES],
+}
+
+/// The crossing that stands out most of those that were kept last.
+struct Record {
+    cell: u32,
+    excess: f64,
     limit: f64,
 }
 
-/// Of the relief: heights are not known better than this.
-const DOUBT: f64 = 1e-9;
-/// Crossings so near to the middle of an edge might belong to either end.
-const MIDDLE: f64 = 1e-6;
-
 impl<S: Simd> Scan<'_, S> {
-    /// Appends the crossings with columns (`FAMILY` 0) or rows (1) between two places of the line whose ground is higher than
-    /// `height` allows; and some that are not, by less than rounding.
+    /// Appends the crossings with columns (`FAMILY` 0) or rows (1) between two places of the line, in order, whose ground is
+    /// higher than it may be.
+    ///
+    /// Left out is what another one of the same cell, nearer to the point, makes needless: that one stands out more and the
+    /// line is lower there, and so it will be after any scaling and displacement of the cell. Where it is cleared both are.
     #[inline(always)]
-    pub(super) fn part<const FAMILY: usize>(
-        &self,
-        walk: &SightWalk<'_>,
-        part: (f64, f64),
-        high: &mut Vec<High>,
-        out: &mut Vec<SightSample>,
-    ) {
+    pub(super) fn part<const FAMILY: usize>(&self, walk: &SightWalk<'_>, part: (f64, f64), out: &mut Vec<High>) {
         let Some(lines) = walk.lines(FAMILY, part) else { return };
-        high.clear();
-        let simd = self.simd;
+        let (simd, sight) = (self.simd, self.sight);
         let [cols, rows] = [self.field.cols(), self.field.rows()];
         // Steps between the nodes of a line, and between lines.
         let [along, across] = if FAMILY == 0 { [cols, 1] } else { [1, cols] };
         let end = (if FAMILY == 0 { rows } else { cols } - 2) as f64;
-        let doubt = DOUBT * self.field.relief();
-        let rise = simd.splat_f64s(self.height[1] - self.height[0]);
-        let (bottom, datum) = (simd.splat_f64s(self.height[0] - doubt), simd.splat_f64s(self.field.datum()));
-        let [strides, apart] = [along, across].map(|n| simd.splat_f64s(n as f64));
-        let [start, per_line] = [lines.start, lines.per_line].map(|x| simd.splat_f64s(x));
-        let [from, dir] = lines.along.map(|x| simd.splat_f64s(x));
-        let last = simd.splat_f64s(lines.count as f64 - 1.0);
+        let splat = |x: f64| simd.splat_f64s(x);
+        let (foot, rise) = (splat(sight.height[0]), splat(sight.height[1] - sight.height[0]));
+        let (clearance, grows) = (splat(sight.clearance), splat(1.0 / CLEARANCE_GROWS));
+        let (datum, doubt) = (splat(self.field.datum()), sight.doubt);
+        let [strides, apart] = [along, across].map(|n| splat(n as f64));
+        let [start, per_line] = [lines.start, lines.per_line].map(splat);
+        let [from, dir] = lines.along.map(splat);
+        let [first, sign, last] = [lines.first, lines.sign, lines.count as f64 - 1.0].map(splat);
         let mut nth: S::f64s = load::<S>(&std::array::from_fn(|l| l as f64));
-        let [first, sign] = [lines.first, lines.sign].map(|x| simd.splat_f64s(x));
+        let mut record = Record { cell: NO_CELL, excess: f64::NEG_INFINITY, limit: f64::INFINITY };
         for at in (0..lines.count).step_by(S::F64_LANES) {
             let line = simd.mul_add_e_f64s(simd.min_f64s(nth, last), sign, first);
             let tau = simd.mul_f64s(simd.sub_f64s(line, start), per_line);
@@ -73,40 +88,63 @@ impl<S: Simd> Scan<'_, S> {
             }
             let (a, b) = (load::<S>(&a), load::<S>(&b));
             let h = simd.sub_f64s(simd.mul_add_e_f64s(weight, simd.sub_f64s(b, a), a), datum);
-            let limit = simd.mul_add_e_f64s(tau, rise, bottom);
-            nth = simd.add_f64s(nth, simd.splat_f64s(S::F64_LANES as f64));
-            if simd.reduce_max_f64s(simd.sub_f64s(h, limit)) <= 0.0 {
+            let share = simd.min_f64s(simd.mul_f64s(tau, grows), splat(1.0));
+            let limit = simd.sub_f64s(simd.mul_add_e_f64s(tau, rise, foot), simd.mul_f64s(clearance, share));
+            nth = simd.add_f64s(nth, splat(S::F64_LANES as f64));
+            if simd.reduce_max_f64s(simd.sub_f64s(h, limit)) < -doubt {
                 continue;
             }
-            let [line, weight, h, limit] = [line, weight, h, limit].map(store::<S>);
+            let [line, tau, h, limit, weight] = [line, tau, h, limit, weight].map(store::<S>);
+            let abreast = Abreast { line, tau, h, limit, weight, node };
             for l in 0..S::F64_LANES.min(lines.count - at) {
-                if h[l] > limit[l] {
-                    high.push(High { line: line[l], node: node[l], weight: weight[l], h: h[l], limit: limit[l] });
-                }
+                out.extend(self.high::<FAMILY>(&abreast, l, along, &mut record));
             }
-        }
-        for h in high.iter().filter(|h| self.still(h, along)) {
-            out.extend(walk.crossing(FAMILY, h.line));
         }
     }
 
-    /// Whether it may still be so after what was done to the ground.
     #[inline(always)]
-    fn still(&self, high: &High, along: usize) -> bool {
-        let over = |node: usize| {
-            let pieces = self.pieces.get(self.cells.labels()[node] as usize);
-            pieces.is_some_and(|pieces| pieces.highest(high.h) > high.limit)
-        };
-        let (first, second) = (high.node as usize, high.node as usize + along);
-        over(if high.weight > 0.5 { second } else { first })
-            || ((high.weight - 0.5).abs() < MIDDLE && (over(first) || over(second)))
+    fn high<const FAMILY: usize>(
+        &self,
+        abreast: &Abreast,
+        l: usize,
+        along: usize,
+        record: &mut Record,
+    ) -> Option<High> {
+        let (h, limit, tau, weight) = (abreast.h[l], abreast.limit[l], abreast.tau[l], abreast.weight[l]);
+        let doubt = self.sight.doubt;
+        if h < limit - doubt {
+            return None;
+        }
+        let mut high = High { tau, h, limit, cell: NO_CELL, family: FAMILY as u8, line: abreast.line[l] as u32 };
+        let off = (weight - 0.5).abs();
+        if !(UNSURE..=0.5 - UNSURE).contains(&off) {
+            return Some(high);
+        }
+        let node = abreast.node[l] as usize;
+        let [near, far] = if weight > 0.5 { [node + along, node] } else { [node, node + along] };
+        high.cell = self.cells.labels()[near];
+        let pieces = self.pieces.get(high.cell as usize)?;
+        let excess = pieces.highest(h) - limit;
+        if excess < -doubt {
+            return None;
+        }
+        // Where rings differ nothing is left out.
+        let comparable = pieces.alike() && self.sight.comparable(&high);
+        if comparable && self.cells.labels()[far] != NO_CELL {
+            if high.cell == record.cell && limit >= record.limit && excess + 2.0 * doubt < record.excess {
+                return None;
+            }
+            if high.cell != record.cell || excess > record.excess {
+                *record = Record { cell: high.cell, excess, limit };
+            }
+        }
+        Some(high)
     }
 }
 
-/// Both in one order, what is on a line of either family once.
+/// Appends both in one order.
 #[inline(always)]
-pub(super) fn merge([columns, rows]: [&[SightSample]; 2], out: &mut Vec<SightSample>) {
-    let start = out.len();
+pub(super) fn merge([columns, rows]: [&[High]; 2], out: &mut Vec<High>) {
     let (mut i, mut j) = (0, 0);
     loop {
         let next = match (columns.get(i), rows.get(j)) {
@@ -115,8 +153,6 @@ pub(super) fn merge([columns, rows]: [&[SightSample]; 2], out: &mut Vec<SightSam
             (None, Some(b)) => (j += 1, b).1,
             (None, None) => return,
         };
-        if !out[start..].last().is_some_and(|s| s.same_node(next)) {
-            out.push(*next);
-        }
+        out.push(*next);
     }
 }

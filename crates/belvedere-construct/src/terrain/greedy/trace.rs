@@ -1,11 +1,14 @@
 //! What hides a point.
 
-use super::super::line_of_sight::{SightSample, SightWalk, guard_tau};
+use super::super::line_of_sight::{SightWalk, guard_tau};
 use super::super::{Cells, Field, NO_CELL, ReferencePoint};
-use super::scan::{High, Scan, merge};
+use super::scan::{High, Scan, UNSURE, merge};
 use super::{Affine, Blocks, CLEARANCE, CLEARANCE_GROWS, Pieces};
 use belvedere_core::DVec2;
 use pulp::{Arch, Simd, WithSimd};
+
+/// Of all heights in use.
+const DOUBT: f64 = 1e-12;
 
 /// The line of sight of one point as the ground is now. Heights are over the datum.
 pub(super) struct Sight {
@@ -17,9 +20,19 @@ pub(super) struct Sight {
     pub(super) guard: f64,
     /// Largest clearance.
     pub(super) clearance: f64,
+    /// Height up to which scaling means nothing.
+    pub(super) low: f64,
+    /// Heights are not known better than this before they are computed exactly.
+    pub(super) doubt: f64,
 }
 
 impl Sight {
+    /// Whether a crossing may stand for others of its cell: it surely counts, and scaling means something there.
+    #[inline(always)]
+    pub(super) fn comparable(&self, high: &High) -> bool {
+        high.tau > self.guard + UNSURE && high.limit > self.low
+    }
+
     /// The height that the ground must not exceed.
     pub(super) fn limit(&self, tau: f64) -> f64 {
         let line = (1.0 - tau) * self.height[0] + tau * self.height[1];
@@ -27,33 +40,18 @@ impl Sight {
     }
 }
 
-/// Ground over a line of sight.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Hit {
-    /// Cell of the nearer node.
-    pub(super) cell: usize,
-    /// Distance to the eye in plan.
-    pub(super) rho: f64,
-    /// Height that the ground must not exceed here.
-    pub(super) limit: f64,
-    /// Height of the untouched ground.
-    pub(super) original: f64,
-    /// Height of the ground.
-    pub(super) z: f64,
-}
-
-/// Finds the samples of a line of sight that may lie too high.
+/// Finds the ground that may lie over a line of sight.
 pub(super) trait Sampler: Sync {
-    /// Appends all samples whose ground is higher than the line of sight allows, in order, and possibly others.
-    fn samples(&self, sight: &Sight, ground: &Lowered, room: &mut Room, out: &mut Vec<SightSample>);
+    /// Appends, in order, what may lie over the line of sight now or after cells were lowered further; what others of the
+    /// same cell make needless may be missing, see [`Scan::part`].
+    fn samples(&self, sight: &Sight, ground: &Lowered, room: &mut Room, out: &mut Vec<High>);
 }
 
 /// Room to work in, kept from line to line.
 #[derive(Default)]
 pub(super) struct Room {
     parts: Vec<(f64, f64)>,
-    high: Vec<High>,
-    by_family: [Vec<SightSample>; 2],
+    by_family: [Vec<High>; 2],
 }
 
 /// The ground as it is now.
@@ -94,7 +92,7 @@ pub(super) struct Skipping<'a> {
 }
 
 impl Sampler for Skipping<'_> {
-    fn samples(&self, sight: &Sight, ground: &Lowered, room: &mut Room, out: &mut Vec<SightSample>) {
+    fn samples(&self, sight: &Sight, ground: &Lowered, room: &mut Room, out: &mut Vec<High>) {
         Arch::new().dispatch(Skip { all: self, sight, ground, room, out });
     }
 }
@@ -105,7 +103,7 @@ struct Skip<'a> {
     sight: &'a Sight,
     ground: &'a Lowered,
     room: &'a mut Room,
-    out: &'a mut Vec<SightSample>,
+    out: &'a mut Vec<High>,
 }
 
 impl WithSimd for Skip<'_> {
@@ -115,7 +113,7 @@ impl WithSimd for Skip<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { all: Skipping { field, cells, blocks }, sight, ground: Lowered { pieces, ceilings, .. }, room, out } =
             self;
-        let Room { parts, high, by_family: [columns, rows] } = room;
+        let Room { parts, by_family: [columns, rows] } = room;
         let Some(walk) = SightWalk::new(field, sight.from, sight.eye, false) else { return };
         let height = sight.height.map(|h| h - sight.clearance);
         let (t0, t1) = walk.span();
@@ -123,40 +121,12 @@ impl WithSimd for Skip<'_> {
         columns.clear();
         rows.clear();
         blocks.near_parts((sight.from, walk.dir()), (t0.max(sight.guard), t1), height, ceilings, parts);
-        let scan = Scan { simd, field, cells, pieces, height };
+        let scan = Scan { simd, field, cells, pieces, sight };
         for &part in &*parts {
-            scan.part::<0>(&walk, part, high, columns);
-            scan.part::<1>(&walk, part, high, rows);
+            scan.part::<0>(&walk, part, columns);
+            scan.part::<1>(&walk, part, rows);
         }
         merge([columns, rows], out);
-    }
-}
-
-/// The ground over the line of sight that lies nearer to the eye than `below`, in order.
-pub(super) fn hits(
-    samples: &[SightSample],
-    field: &Field,
-    cells: &Cells,
-    pieces: &[Pieces],
-    sight: &Sight,
-    (below, slack): (f64, f64),
-    out: &mut Vec<Hit>,
-) {
-    out.clear();
-    for s in samples {
-        if s.rho >= below {
-            continue;
-        }
-        let (original, limit) = (s.of(field.heights()) - field.datum(), sight.limit(s.tau));
-        // Ground is only ever lowered.
-        if original <= limit + slack {
-            continue;
-        }
-        let cell = cells.labels()[s.nearest()] as usize;
-        let z = pieces[cell].at(s.rho).of(original);
-        if z > limit + slack {
-            out.push(Hit { cell, rho: s.rho, limit, original, z });
-        }
     }
 }
 
@@ -206,9 +176,12 @@ impl Target {
         (1.0 - self.guard) * self.rho
     }
 
-    pub(super) fn sight(&self, field: &Field, pieces: &[Pieces], (eye, eye_z): (DVec2, f64)) -> Sight {
+    /// * `below`: only ground that is nearer to the eye counts.
+    pub(super) fn sight(&self, field: &Field, pieces: &[Pieces], (eye, eye_z): (DVec2, f64), below: f64) -> Sight {
         let z = pieces[self.cell].at(self.rho).of(self.original) + self.lift;
         let clearance = CLEARANCE * field.relief();
-        Sight { from: self.grid, eye, height: [z, eye_z], guard: self.guard, clearance }
+        let guard = if below < self.below() { 1.0 - below / self.rho } else { self.guard };
+        let doubt = DOUBT * (field.relief() + field.datum().abs() + eye_z.abs());
+        Sight { from: self.grid, eye, height: [z, eye_z], guard, clearance, low: clearance, doubt }
     }
 }
