@@ -138,10 +138,14 @@ impl Band {
         (from..=to).all(|tile| {
             if self.tiles.stale[tile] {
                 let columns = tile * TILE..((tile + 1) * TILE).min(self.width as usize);
-                let least =
-                    |row: &[f32]| row[columns.clone()].iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
-                self.tiles.least[tile] =
-                    self.q.chunks(self.stride).map(least).fold(f32::INFINITY, |a, b| if b < a { b } else { a });
+                // Column by column: many at once.
+                let mut least = [f32::INFINITY; TILE];
+                for row in self.q.chunks(self.stride) {
+                    for (least, q) in least.iter_mut().zip(&row[columns.clone()]) {
+                        *least = if *q < *least { *q } else { *least };
+                    }
+                }
+                self.tiles.least[tile] = least.into_iter().fold(f32::INFINITY, |a, b| if b < a { b } else { a });
                 self.tiles.stale[tile] = false;
             }
             self.tiles.least[tile] > q
