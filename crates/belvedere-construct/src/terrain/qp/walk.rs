@@ -302,13 +302,18 @@ impl Chord {
             }
         }
         if d.x != d.y {
+            let last = [(cols - 1) as f64, (rows - 1) as f64];
             for k in lines(ga.x - ga.y, gb.x - gb.y) {
+                // First and last edge of the diagonal. Those of the north-east and south-west corners have none.
+                let (first, end) = (k.max(0.0), last[0].min(last[1] + k) - 1.0);
+                if first > end {
+                    continue;
+                }
                 let t = (k - (p.x - p.y)) / (d.x - d.y);
                 let g = p + t * d;
-                let col = (g.x.max(k.max(0.0)) as usize).min(cols.saturating_sub(2));
-                let row = (col as f64 - k).clamp(0.0, (rows - 2) as f64) as usize;
-                let f = (g.x - col as f64).clamp(0.0, 1.0);
-                let i = row * cols + col;
+                let start = floor(g.x).clamp(first, end);
+                let f = (g.x - start).clamp(0.0, 1.0);
+                let i = (start - k) as usize * cols + start as usize;
                 visit(t, g, heights[i] + f * (heights[i + cols + 1] - heights[i]));
             }
         }
@@ -375,5 +380,38 @@ impl Gap {
             found.worst = Some(Touch { at, tau, ground, z: Chord::mix(chord.z, t), excess });
         }
         missing
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::surface::Lattice;
+    use super::*;
+
+    #[test]
+    fn kinks_have_the_height_of_the_ground_up_to_the_rims_and_corners() {
+        let (cols, rows) = (7, 5);
+        let heights: Vec<f64> = (0..cols * rows).map(|i| ((i * 7919) % 101) as f64).collect();
+        let step = DVec2::new((cols - 1) as f64, (rows - 1) as f64);
+        let surface = Surface::new(&heights, cols, rows, Lattice { cols: 2, rows: 2, step });
+        let (e, s) = (step.x, step.y);
+        // Rims and diagonals both ways, over the corners, and to nodes and middles of edges of each rim.
+        let mut ends = vec![[[0.0, s], [e, s]], [[0.0, 0.0], [e, 0.0]], [[0.0, 0.0], [0.0, s]], [[e, 0.0], [e, s]]];
+        ends.extend([[[2.0, 0.0], [e, s]], [[0.0, 0.0], [s, s]], [[0.0, s], [e, 0.0]], [[1.0, 2.0], [3.0, s]]]);
+        for k in 0..=12 {
+            let v = 0.5 * f64::from(k);
+            ends.extend([[[2.3, 1.6], [v, s]], [[2.3, 1.6], [v, 0.0]]]);
+            ends.extend([[[2.3, 1.6], [0.0, v.min(s)]], [[2.3, 1.6], [e, v.min(s)]]]);
+        }
+        let mut visited = 0;
+        for [a, b] in ends.iter().flat_map(|&[a, b]| [[a, b], [b, a]]) {
+            let chord = Chord { ends: [a.into(), b.into()], z: [0.0; 2], tau: [0.0, 1.0] };
+            chord.crossings(&surface, [0.0, 1.0], &mut |t, at, ground| {
+                visited += 1;
+                assert!((at - chord.at(t)).length() < 1e-12, "{a:?} to {b:?} at {t}");
+                assert!((ground - surface.ground(at)).abs() < 1e-9, "{a:?} to {b:?}: {ground} at {at}");
+            });
+        }
+        assert!(visited > 400, "{visited}");
     }
 }

@@ -224,7 +224,9 @@ fn covered(c: &Context<'_>, dense: &[ReferencePoint]) -> Vec<Covered> {
 }
 
 fn unresolved(c: &Context<'_>, done: &Done) -> Vec<UnresolvedRun> {
-    let mut runs = Runs { field: c.field, out: Vec::new() };
+    let field = c.field;
+    let gap_m = 1.5 * c.settings.spacing * field.spacing().max_element();
+    let mut runs = Runs { field, gap_m, out: Vec::new() };
     let asked = |u: &&Unusable| c.seen.wedge.contains(c.field.scene_from_grid(u.grid));
     for u in c.prepared.unusable.iter().filter(asked) {
         let reason = match u.reason {
@@ -262,6 +264,8 @@ fn unresolved(c: &Context<'_>, done: &Done) -> Vec<UnresolvedRun> {
 
 struct Runs<'a> {
     field: &'a Field,
+    /// Points of a line or rim farther apart along it have others between them, which are seen.
+    gap_m: f64,
     out: Vec<UnresolvedRun>,
 }
 
@@ -277,6 +281,7 @@ impl Runs<'_> {
     ) {
         let same = |r: &UnresolvedRun| {
             (r.layer, r.feature, r.kind) == (layer, feature, kind)
+                && (along - r.to_m).abs() <= self.gap_m
                 && std::mem::discriminant(&r.reason) == std::mem::discriminant(&reason)
         };
         if let Some(run) = self.out.last_mut().filter(|r| same(r)) {
