@@ -28,7 +28,11 @@ fn pictures_tables_and_trends_of_an_area() {
         assert!(read(&place.path(&format!("figures/{name}"))).starts_with(b"\x89PNG"), "{name}");
     }
     let number = |v: &serde_json::Value| v.as_f64().unwrap_or_else(|| panic!("{v} is no number"));
-    let [paper, _, qp] = [0, 1, 2].map(|i| &area["modes"][i]);
+    let [paper, both, qp] = [0, 1, 2].map(|i| &area["modes"][i]);
+    // What the scene leaves open is each mode's own.
+    for (mode, w, detail) in [(paper, 0.6, "scaled"), (both, 0.6, "scaled"), (qp, 0.3, "plain")] {
+        assert_eq!((number(&mode["w"]), mode["parameters"]["detail"].as_str()), (w, Some(detail)), "{mode}");
+    }
     assert!(number(&qp["visible_before"]) < 0.9, "the area hides something");
     assert!(number(&qp["visible"]) >= number(&paper["visible"]));
     assert!(

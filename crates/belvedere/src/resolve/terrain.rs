@@ -163,6 +163,9 @@ pub(super) fn adjust(
     Ok(())
 }
 
+/// Share of the length in view from which on it is said that ground inside the guard hides it.
+const WORTH_SAYING: f64 = 0.01;
+
 /// What a user should know of a solution: one sentence each.
 pub(crate) fn remarks(solved: &Solved) -> Vec<String> {
     let report = &solved.report;
@@ -179,6 +182,14 @@ pub(crate) fn remarks(solved: &Solved) -> Vec<String> {
         out.push(format!(
             "terrain_disocclusion: {points} points cannot be shown ({}); the report names them",
             why.join(", ")
+        ));
+    }
+    let (hidden, guard) = (report.metrics.hidden_in_guard, report.parameters.guard);
+    if hidden > WORTH_SAYING && report.parameters.mode != SolverMode::Paper {
+        out.push(format!(
+            "terrain_disocclusion: {:.1} % of the features in view count as visible although ground nearer to them than {guard} cells \
+             hides them; guard = 0 clears that ground too",
+            100.0 * hidden
         ));
     }
     if report.points == 0 {

@@ -39,7 +39,8 @@ impl Area {
             Some(text) => Session { inputs: Vec::new(), ..Session::from_text(path, text, &options)? },
             None => Session::open(path, &options)?,
         };
-        let asked = session.resolved().stage.iter().find_map(|stage| match stage {
+        // As stated: the resolved document holds defaults of its own mode, and other modes have others.
+        let asked = session.source.document.stage.iter().find_map(|stage| match stage {
             StageDoc::TerrainDisocclusion(doc) => Some(doc.clone()),
             _ => None,
         });

@@ -76,12 +76,14 @@ fn plot(chart: &Chart, bytes: &mut [u8]) -> Result<(), Box<dyn std::error::Error
     let [x, y] = [x, y].map(|[lo, hi]| if lo < hi { [lo, hi] } else { [0.0, 1.0] });
     let room = 0.04 * (y[1] - y[0]);
     let low = if y[0] >= 0.0 && y[0] < 0.2 * y[1] { 0.0 } else { y[0] - room };
+    // Dots on the frame would be cut in two.
+    let side = if chart.curves.iter().any(|c| c.look == Look::Dots) { 0.04 * (x[1] - x[0]) } else { 0.0 };
     let mut axes = ChartBuilder::on(&area)
         .caption(&chart.title, (LETTERS, 20))
         .margin(14)
         .x_label_area_size(44)
         .y_label_area_size(64)
-        .build_cartesian_2d(x[0]..x[1] * 1.0001, low..y[1] + room)?;
+        .build_cartesian_2d(x[0] - side..x[1] * 1.0001 + side, low..y[1] + room)?;
     axes.configure_mesh()
         .x_desc(&chart.x)
         .y_desc(&chart.y)

@@ -83,7 +83,7 @@ pub(super) fn steps(area: &Area, solutions: &Solutions) -> Result<Pixels, Belved
 /// The figures of a solution that fit under a picture.
 pub(super) fn figures(r: &TerrainReport) -> String {
     format!(
-        "visible {}, moved {:.0} m rms, largest step {:.0} m",
+        "visible {}, moved {:.0} m rms, 99.9 % of steps below {:.0} m",
         percent(r.metrics.visible),
         r.metrics.rms_m,
         r.metrics.step_p999_m
