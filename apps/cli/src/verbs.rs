@@ -115,7 +115,9 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         ready(Some(path), &[&args.scene], context)?;
     }
     let palette = args.palette.as_deref().map(PaletteDoc::of);
-    let options = OpenOptions { palette, ..context.options(Needs::Everything, args.draw.size) };
+    // A straight picture has no use for ground that makes way.
+    let unsolved = request.straight;
+    let options = OpenOptions { palette, unsolved, ..context.options(Needs::Everything, args.draw.size) };
     let session = Session::open(&args.scene, &options)?;
     for path in &outputs {
         output::check(path, session.inputs(), context.common.overwrite)?;

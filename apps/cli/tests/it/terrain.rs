@@ -68,6 +68,9 @@ fn everything_asked_for_is_visible_on_the_grid_of_the_input() {
     assert!(r["warnings"].to_string().contains("guard = 0 clears that ground too"), "{}", r["warnings"]);
     assert!(number(&r["raised_max_m"]) <= 0.5, "{r}");
     assert!(number(&r["rms_m"]) > 0.5);
+    let strict = ["disocclude", "dem.asc", "way.geojson", "-o", "strict.tif", "--strict"];
+    let strict = place.run(&[&strict[..], &VIEW].concat());
+    assert_eq!(strict.status.code(), Some(1), "{}", String::from_utf8_lossy(&strict.stderr));
     // Without a guard the same ground is cleared for little more, and then it is.
     let clear = report(&holed(), &["--set", "guard=0", "--set", "candidates=0.1"]);
     assert_eq!((number(&clear["visible"]), number(&clear["hidden_in_guard"])), (1.0, 0.0), "{clear}");
@@ -250,6 +253,17 @@ fn andorra_is_shown_with_a_progressive_bend_and_terrain() {
     let report = Place::new().json(&["measure", scene.to_str().expect("UTF-8"), "--allow-root", root]);
     let share = number(&report["lines"]["bent"]["sight"]["share"]);
     assert!(share >= 0.99, "{share} of the in-frame length is visible: {}", report["terrain"]);
+}
+
+#[test]
+fn a_straight_picture_asks_nothing_of_the_ground() {
+    let place = place(|r, c| Some(hills(r, c)));
+    place.write("far.geojson", "{\"type\":\"LineString\",\"coordinates\":[[9.0,47.0],[9.1,47.1]]}");
+    place.write("s.toml", &scene("").replace("way.geojson", "far.geojson"));
+    assert!(place.fails(&["render", "s.toml", "-o", "p.png"]).contains("outside"));
+    place.ok(&["render", "s.toml", "-o", "p.png", "--straight"]);
+    let record: serde_json::Value = serde_json::from_slice(&super::read(&place.path("p.png.json"))).expect("JSON");
+    assert!(record["disocclusion"].is_null() && record["stages"] == serde_json::json!([]), "{record}");
 }
 
 /// The record of the solver beside a picture of the hills.

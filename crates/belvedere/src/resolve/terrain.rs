@@ -138,7 +138,9 @@ pub(super) fn adjust(
         StageDoc::TerrainDisocclusion(doc) if doc.delta.is_none() => Some((i.to_string(), doc, doc.adjust_viewpoint?)),
         _ => None,
     });
-    let Some((at, doc, slider)) = wanted.filter(|_| solving.time_step_s.is_none()) else { return Ok(()) };
+    // At 1 the camera stays where it is.
+    let moves = wanted.filter(|(.., slider)| *slider < 1.0 && solving.time_step_s.is_none());
+    let Some((at, doc, slider)) = moves else { return Ok(()) };
     let fail = |key: &str, reason: String| source.error(&["stage", &at, key], reason);
     let Some(target) = camera.look_at else {
         let reason =

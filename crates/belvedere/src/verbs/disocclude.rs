@@ -20,6 +20,8 @@ use std::path::{Path, PathBuf};
 
 /// Sides of the picture that the field of view belongs to, pixels.
 const IMAGE: [u32; 2] = [1280, 720];
+/// Share of the length in view that is wanted visible.
+const VISIBLE_LENGTH: f64 = 0.99;
 
 /// What to show, and from where.
 #[derive(Debug, Clone, Default)]
@@ -241,6 +243,14 @@ impl Disoccluded {
                 "{:.2} % of the {} points in view are visible, all were wanted",
                 100.0 * r.metrics.visible,
                 r.points
+            ));
+        }
+        let length = r.metrics.visible_dense - r.metrics.hidden_in_guard;
+        if length < VISIBLE_LENGTH {
+            out.push(format!(
+                "{:.2} % of the length in view is visible, {:.0} % were wanted",
+                100.0 * length,
+                100.0 * VISIBLE_LENGTH
             ));
         }
         out
