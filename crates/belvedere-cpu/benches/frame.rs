@@ -1,4 +1,4 @@
-//! Frames of 2.1 million triangles, 1280 x 720: straight against bent, without and with anti-aliasing.
+//! Frames of 2.1 million triangles, 1280 x 720: straight against bent, without and with anti-aliasing, and in less detail.
 #![allow(missing_docs)]
 
 mod support;
@@ -11,11 +11,11 @@ use support::{NODES, ground, views};
 fn frames(c: &mut Criterion) {
     let scene = ground(NODES);
     let (light, progress) = (Light::default(), Progress::silent());
-    for samples in [1, 4] {
-        let mut group = c.benchmark_group(format!("frame, {samples} samples"));
+    for (samples, lod_px) in [(1, 0.0), (4, 0.0), (1, 0.5)] {
+        let mut group = c.benchmark_group(format!("frame, {samples} samples, detail {lod_px} px"));
         group.sample_size(10);
         for (name, view) in views([1280, 720]) {
-            let options = RenderOptions { samples, ..RenderOptions::default() };
+            let options = RenderOptions { samples, lod_px, ..RenderOptions::default() };
             let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
             group.bench_function(name, |b| b.iter(|| CpuRenderer.render(&job).expect("drawn")));
         }
