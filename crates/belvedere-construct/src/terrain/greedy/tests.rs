@@ -150,6 +150,36 @@ fn the_fast_pass_does_what_the_obvious_one_does() {
 }
 
 #[test]
+fn it_makes_no_difference_what_is_left_out() {
+    let settings = TerrainSettings::default();
+    let mut hits = 0;
+    for seed in 0..80usize {
+        let r = |k: usize| noise(100 * seed + k, 3);
+        let size = |k: usize| 24 + (60.0 * r(k)) as usize;
+        let (cols, rows) = (size(0), size(1));
+        let field =
+            mountains(cols, rows, DVec2::new(30.0 + 60.0 * r(2), 30.0 + 60.0 * r(3)), seed as u64, seed % 3 == 0);
+        // Over the middle, beside the ground, on a line of the grid.
+        let at = match seed % 4 {
+            0 => [0.5 * cols as f64, -20.0 * r(4)],
+            1 => [(r(4) * cols as f64).floor(), (r(5) * rows as f64).floor()],
+            _ => [r(4) * cols as f64, r(5) * rows as f64],
+        };
+        let case = Case::new(field, 1 + (40.0 * r(6)) as usize, [at[0], at[1], 1950.0 + 700.0 * r(7)], 60);
+        let blocks = Blocks::new(&case.field, &case.cells);
+        let mut every = queue::Pass::new(&case.field, &case.cells, &blocks, &settings, case.eye, &case.points);
+        every.run(&Every(&case.field));
+        let (every, naive) = (every.finish(), case.naive(&settings));
+        assert_eq!((naive.counters(), naive.unresolved()), (every.counters(), every.unresolved()), "seed {seed}");
+        let moved = |n: &Naive| n.displacement(&case.field, &case.cells);
+        let far = moved(&naive).iter().zip(moved(&every)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(far <= 1e-9 * case.field.relief(), "seed {seed}: {far}");
+        hits += naive.counters().hits;
+    }
+    assert!(hits > 500, "{hits}");
+}
+
+#[test]
 fn afterwards_the_tracer_sees_every_point_that_was_resolved() {
     let settings = TerrainSettings::default();
     for (i, case) in Case::all().iter().enumerate() {
