@@ -123,14 +123,17 @@ impl<S: Simd> Scan<'_, S> {
         let node = abreast.node[l] as usize;
         let [near, far] = if weight > 0.5 { [node + along, node] } else { [node, node + along] };
         high.cell = self.cells.labels()[near];
+        // No ground there; it must not stand for what is.
+        if self.cells.labels()[far] == NO_CELL {
+            return None;
+        }
         let pieces = self.pieces.get(high.cell as usize)?;
         let excess = pieces.highest(h) - limit;
         if excess < -doubt {
             return None;
         }
         // Where rings differ nothing is left out.
-        let comparable = pieces.alike() && self.sight.comparable(&high);
-        if comparable && self.cells.labels()[far] != NO_CELL {
+        if pieces.alike() && self.sight.comparable(&high) {
             if high.cell == record.cell && limit >= record.limit && excess + 2.0 * doubt < record.excess {
                 return None;
             }
