@@ -18,8 +18,8 @@ pub(crate) struct Nodes {
     pub(crate) x: Vec<i32>,
     pub(crate) y: Vec<i32>,
     pub(crate) q: Vec<f32>,
-    /// Smallest and largest y of each row.
-    spans: Vec<[i32; 2]>,
+    /// What each row of nodes covers.
+    spans: Vec<Cover>,
     /// Cells along both axes.
     cells: [usize; 2],
     /// Whether some nodes have no image.
@@ -42,6 +42,16 @@ impl Cover {
             x: [self.x[0].min(v.x), self.x[1].max(v.x)],
             y: [self.y[0].min(v.y), self.y[1].max(v.y)],
             q: if v.q > self.q { v.q } else { self.q },
+        }
+    }
+
+    /// What both cover.
+    #[inline(always)]
+    fn with(self, other: Self) -> Self {
+        Self {
+            x: [self.x[0].min(other.x[0]), self.x[1].max(other.x[1])],
+            y: [self.y[0].min(other.y[0]), self.y[1].max(other.y[1])],
+            q: if other.q > self.q { other.q } else { self.q },
         }
     }
 }
@@ -93,10 +103,8 @@ impl Nodes {
         for r in 0..=self.cells[1] {
             let on = (0..=self.cells[0]).map(|c| self.at(c, r)).filter(|v| !v.is_none());
             let row = on.fold(Cover::EMPTY, Cover::including);
-            self.spans.push(row.y);
-            all.x = [all.x[0].min(row.x[0]), all.x[1].max(row.x[1])];
-            all.y = [all.y[0].min(row.y[0]), all.y[1].max(row.y[1])];
-            all.q = all.q.max(row.q);
+            self.spans.push(row);
+            all = all.with(row);
         }
         all
     }
@@ -141,20 +149,40 @@ impl Kernel for Around<'_> {
     fn run(self) -> Cover {
         let Nodes { x, y, q, spans, cells, .. } = self.0;
         let stride = cells[0] + 1;
-        let (mut left, mut right, mut near) = ([i32::MAX; NODES], [i32::MIN; NODES], [f32::NEG_INFINITY; NODES]);
+        let mut all = Cover::EMPTY;
         for ((x, y), q) in x.chunks(stride).zip(y.chunks(stride)).zip(q.chunks(stride)) {
-            for ((left, right), x) in left.iter_mut().zip(&mut right).zip(x) {
-                (*left, *right) = ((*left).min(*x), (*right).max(*x));
-            }
-            for (near, q) in near.iter_mut().zip(q) {
-                *near = if *q > *near { *q } else { *near };
-            }
-            spans.push(y.iter().fold([i32::MAX, i32::MIN], |[lo, hi], y| [lo.min(*y), hi.max(*y)]));
+            let row = Cover { x: range(x), y: range(y), q: largest(q) };
+            spans.push(row);
+            all = all.with(row);
         }
-        let x = [left.into_iter().fold(i32::MAX, i32::min), right.into_iter().fold(i32::MIN, i32::max)];
-        let y = spans.iter().fold([i32::MAX, i32::MIN], |[lo, hi], y| [lo.min(y[0]), hi.max(y[1])]);
-        Cover { x, y, q: near.into_iter().fold(f32::NEG_INFINITY, |a, b| if b > a { b } else { a }) }
+        all
     }
+}
+
+#[inline(always)]
+fn range(values: &[i32]) -> [i32; 2] {
+    let mut out = [i32::MAX, i32::MIN];
+    for v in values {
+        out = [out[0].min(*v), out[1].max(*v)];
+    }
+    out
+}
+
+#[inline(always)]
+fn largest(values: &[f32]) -> f32 {
+    // Lane by lane: the compiler may not change the order of comparisons.
+    const LANES: usize = 16;
+    let mut lanes = [f32::NEG_INFINITY; LANES];
+    for part in values.chunks(LANES) {
+        for (most, v) in lanes.iter_mut().zip(part) {
+            *most = if *v > *most { *v } else { *most };
+        }
+    }
+    let mut out = f32::NEG_INFINITY;
+    for v in lanes {
+        out = if v > out { v } else { out };
+    }
+    out
 }
 
 struct Draw<'d> {
@@ -170,10 +198,10 @@ impl Kernel for Draw<'_> {
     fn run(self) {
         let Self { nodes, first_prim, band } = self;
         let [cols, rows] = nodes.cells;
-        let (top, bottom) = (band.y0 * SUB, band.y1 * SUB);
+        let (top, bottom, right) = (band.y0 * SUB, band.y1 * SUB, band.width * SUB);
         for r in 0..rows {
-            let (n, s) = (nodes.spans[r], nodes.spans[r + 1]);
-            if n[0].min(s[0]) >= bottom || n[1].max(s[1]) < top {
+            let Cover { x, y, q } = nodes.spans[r].with(nodes.spans[r + 1]);
+            if y[0] >= bottom || y[1] < top || x[0] >= right || x[1] < 0 || band.hides(x, q) {
                 continue;
             }
             let prim = first_prim | ((r * SIDE) as u32) << 1;

@@ -38,16 +38,17 @@ impl Coarse {
     #[inline(always)]
     pub(super) fn finer(&self) -> Finer {
         let [columns, rows] = self.fine;
-        Finer(self.planes.each_ref().map(|plane| {
-            let mut out = vec![0.0; NODES.next_multiple_of(LANES)];
-            for (r, out) in rows.all().zip(out.chunks_exact_mut(STRIDE)) {
+        let mut all = [0; 3].map(|_| vec![0.0; NODES.next_multiple_of(LANES)]);
+        // No closures here: they would be compiled apart, for the oldest processors.
+        for (plane, out) in self.planes.iter().zip(&mut all) {
+            for (r, out) in rows.all().iter().zip(out.chunks_exact_mut(STRIDE)) {
                 let first = rows.parent_of(r).saturating_sub(1) * SIDE;
                 if let Some(above) = plane.get(first..first + 3 * SIDE) {
                     finer_row(&columns, &between_rows(above, WEIGHTS[r % 2]), out);
                 }
             }
-            out
-        }))
+        }
+        Finer(all)
     }
 }
 
@@ -87,5 +88,5 @@ fn finer_row(columns: &Repeated, row: &[f32; SIDE], out: &mut [f32]) {
             *second = *even;
         }
     }
-    columns.repeat(out);
+    columns.all().repeat(out);
 }

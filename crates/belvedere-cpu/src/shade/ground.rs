@@ -7,7 +7,7 @@ use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, NodeState};
 use glam::Vec4;
 use rayon::prelude::*;
-use std::ops::Deref;
+use std::ops::{Deref, Range};
 use std::sync::Arc;
 
 /// Most nodes that the finest stored level may have, unless it is the first one.
@@ -82,23 +82,33 @@ impl<'a> Surface<'a> {
     }
 
     /// dz/dx, dz/dy, height, 1 of the nodes of a row from column `first`; zeros at voids.
-    pub(crate) fn row(&self, row: usize, first: usize, out: &mut [Vec4]) {
-        let (cols, rows) = (self.hf.cols(), self.hf.rows());
-        let states = self.hf.states().each();
+    pub(crate) fn row(&self, row: usize, first: usize, out: &mut Planes) {
+        let (cols, rows, n) = (self.hf.cols(), self.hf.rows(), out.w.len());
         let inner = row > 0 && row + 1 < rows && self.bent.is_none();
-        let per = (0.5 / self.hf.spacing()).as_vec2();
-        for (k, out) in out.iter_mut().enumerate() {
-            let (c, i) = (first + k, row * cols + first + k);
-            if inner && c > 0 && c + 1 < cols {
-                let around = [i - 1, i, i + 1, i - cols, i + cols];
-                if states.is_none_or(|states| around.iter().all(|&n| states[n] != NodeState::Void)) {
-                    let [west, here, east, north, south] = around.map(|n| self.heights[n]);
-                    *out = Vec4::new((east - west) * per.x, (north - south) * per.y, here, 1.0);
-                    continue;
-                }
-            }
-            *out = self.node(c, row);
+        let columns = first.max(1)..(first + n).min(cols - 1);
+        // The outermost nodes, voids and bends go one by one.
+        let solid = inner && !columns.is_empty() && self.is_solid(row, 1, columns.start - 1..columns.end + 1);
+        let whole = if solid { columns.clone() } else { first..first };
+        for c in (first..first + n).filter(|c| !whole.contains(c)) {
+            let near = (inner && columns.contains(&c)).then(|| self.inner_node(c, row)).flatten();
+            out.set(c - first, near.unwrap_or_else(|| self.node(c, row)));
         }
+        if !whole.is_empty() {
+            vector::run(Nodes { surface: self, row, columns: whole, first, out });
+        }
+    }
+
+    /// A node with four neighbours; `None` where one of them or it is void.
+    fn inner_node(&self, c: usize, r: usize) -> Option<Vec4> {
+        let (cols, states) = (self.hf.cols(), self.hf.states());
+        let i = r * cols + c;
+        let around = [i - 1, i, i + 1, i - cols, i + cols];
+        if around.iter().any(|&n| states[n] == NodeState::Void) {
+            return None;
+        }
+        let per = (0.5 / self.hf.spacing()).as_vec2();
+        let [west, here, east, north, south] = around.map(|n| self.heights[n]);
+        Some(Vec4::new((east - west) * per.x, (north - south) * per.y, here, 1.0))
     }
 
     /// One node of [`Surface::row`].
@@ -134,35 +144,32 @@ impl<'a> Surface<'a> {
     }
 
     /// Mean of the `2^k x 2^k` nodes of each node of a row of level `k`, from column `first`; zeros where all are void.
-    pub(crate) fn mean_row(&self, k: usize, row: usize, first: usize, out: &mut [Vec4]) {
+    pub(crate) fn mean_row(&self, k: usize, row: usize, first: usize, out: &mut Planes) {
         if k == 0 {
             return self.row(row, first, out);
         }
-        let (cols, rows, side) = (self.hf.cols(), self.hf.rows(), 1 << k);
-        let (from, to) = ((first * side).saturating_sub(1), ((first + out.len()) * side + 1).min(cols));
+        let (cols, rows, side, n) = (self.hf.cols(), self.hf.rows(), 1 << k, out.w.len());
+        let (from, to) = ((first * side).saturating_sub(1), ((first + n) * side + 1).min(cols));
         // The outermost nodes, voids and bends go one by one.
         let inner = row > 0
             && (row + 1) * side < rows
             && side <= CHUNK
             && self.bent.is_none()
             && self.is_solid(row, side, from..to);
-        if !inner {
-            return self.mean_of_each(k, row, first, out);
-        }
-        let whole = first.max(1)..(first + out.len()).min((cols - 1) / side);
-        for ends in [first..whole.start.min(first + out.len()), whole.end.max(first)..first + out.len()] {
+        let end = first + n;
+        let whole = if inner { first.max(1)..end.min((cols - 1) / side) } else { end..end };
+        for ends in [first..whole.start.min(end), whole.end.max(first)..end] {
             if !ends.is_empty() {
-                self.mean_of_each(k, row, ends.start, &mut out[ends.start - first..ends.end - first]);
+                self.mean_of_each(k, row, ends.start, out, ends.start - first..ends.end - first);
             }
         }
         if !whole.is_empty() {
-            let part = whole.start - first..whole.end - first;
-            vector::run(Inner { surface: self, side, row, first: whole.start, out: &mut out[part] });
+            vector::run(Inner { surface: self, side, row, columns: whole, first, out });
         }
     }
 
     /// Whether there is no void among these columns of the rows of a row of averages and of one more on either side.
-    fn is_solid(&self, row: usize, side: usize, columns: std::ops::Range<usize>) -> bool {
+    fn is_solid(&self, row: usize, side: usize, columns: Range<usize>) -> bool {
         let (cols, rows) = (self.hf.cols(), self.hf.rows());
         self.hf.states().each().is_none_or(|states| {
             let rows = (row * side).saturating_sub(1)..((row + 1) * side + 1).min(rows);
@@ -170,19 +177,89 @@ impl<'a> Surface<'a> {
         })
     }
 
-    /// [`Surface::mean_row`] of any nodes.
-    fn mean_of_each(&self, k: usize, row: usize, first: usize, out: &mut [Vec4]) {
+    /// [`Surface::mean_row`] of any nodes, from column `first`.
+    /// * `places`: where they go.
+    fn mean_of_each(&self, k: usize, row: usize, first: usize, out: &mut Planes, places: Range<usize>) {
         let (cols, rows, side) = (self.hf.cols(), self.hf.rows(), 1 << k);
-        let (from, to) = (first * side, ((first + out.len()) * side).min(cols));
-        let mut fine = vec![Vec4::ZERO; to.saturating_sub(from)];
-        out.fill(Vec4::ZERO);
+        let (from, to) = (first * side, ((first + places.len()) * side).min(cols));
+        let mut fine = Planes::new(to.saturating_sub(from));
+        let mut sums = vec![Vec4::ZERO; places.len()];
         for r in row * side..((row + 1) * side).min(rows) {
             self.row(r, from, &mut fine);
-            for (sum, part) in out.iter_mut().zip(fine.chunks(side)) {
-                *sum += part.iter().copied().sum::<Vec4>();
+            for (i, sum) in sums.iter_mut().enumerate() {
+                let part = i * side..((i + 1) * side).min(fine.w.len());
+                *sum += part.map(|i| fine.get(i)).sum::<Vec4>();
             }
         }
-        out.iter_mut().filter(|n| n.w > 0.0).for_each(|n| *n /= n.w);
+        for (at, sum) in places.zip(sums) {
+            out.set(at, if sum.w > 0.0 { sum / sum.w } else { Vec4::ZERO });
+        }
+    }
+}
+
+/// A row of nodes, plane by plane.
+#[derive(Debug, Clone)]
+pub(crate) struct Planes {
+    /// dz/dx, dz/dy, height.
+    pub(crate) xyz: [Vec<f32>; 3],
+    /// What comes fourth: see [`Surface::row`] and [`Level`].
+    pub(crate) w: Vec<f32>,
+}
+
+impl Planes {
+    pub(crate) fn new(n: usize) -> Self {
+        Self { xyz: [vec![0.0; n], vec![0.0; n], vec![0.0; n]], w: vec![0.0; n] }
+    }
+
+    #[inline(always)]
+    pub(crate) fn get(&self, i: usize) -> Vec4 {
+        let [x, y, z] = &self.xyz;
+        Vec4::new(x[i], y[i], z[i], self.w[i])
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, v: Vec4) {
+        let [x, y, z] = &mut self.xyz;
+        (x[i], y[i], z[i], self.w[i]) = (v.x, v.y, v.z, v.w);
+    }
+
+    /// The same places of all planes.
+    #[inline(always)]
+    fn part(&mut self, places: Range<usize>) -> [&mut [f32]; 4] {
+        let [x, y, z] = &mut self.xyz;
+        [&mut x[places.clone()], &mut y[places.clone()], &mut z[places.clone()], &mut self.w[places]]
+    }
+}
+
+/// Nodes away from voids and borders.
+struct Nodes<'a, 's> {
+    surface: &'a Surface<'s>,
+    row: usize,
+    columns: Range<usize>,
+    /// The column at the first place.
+    first: usize,
+    out: &'a mut Planes,
+}
+
+impl Kernel for Nodes<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { surface, row, columns, first, out } = self;
+        let (cols, n, heights) = (surface.hf.cols(), columns.len(), &*surface.heights);
+        let per = (0.5 / surface.hf.spacing()).as_vec2();
+        let here = row * cols + columns.start;
+        let (north, south) = (&heights[here - cols..][..n], &heights[here + cols..][..n]);
+        let (west, middle, east) = (&heights[here - 1..][..n], &heights[here..][..n], &heights[here + 1..][..n]);
+        let [x, y, z, w] = out.part(columns.start - first..columns.end - first);
+        let (x, y, z, w) = (&mut x[..n], &mut y[..n], &mut z[..n], &mut w[..n]);
+        for i in 0..n {
+            x[i] = (east[i] - west[i]) * per.x;
+            y[i] = (north[i] - south[i]) * per.y;
+            z[i] = middle[i];
+            w[i] = 1.0;
+        }
     }
 }
 
@@ -192,8 +269,10 @@ struct Inner<'a, 's> {
     surface: &'a Surface<'s>,
     side: usize,
     row: usize,
+    columns: Range<usize>,
+    /// The column at the first place.
     first: usize,
-    out: &'a mut [Vec4],
+    out: &'a mut Planes,
 }
 
 /// Columns of the ground that are summed up at a time.
@@ -204,33 +283,64 @@ impl Kernel for Inner<'_, '_> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { surface, side, row, first, out } = self;
+        match self.side {
+            2 => self.squares::<2>(2),
+            4 => self.squares::<4>(4),
+            8 => self.squares::<8>(8),
+            side => self.squares::<0>(side),
+        }
+    }
+}
+
+impl Inner<'_, '_> {
+    /// * `SIDE`: the side again, if it is one of those that are compiled apart, else 0.
+    #[inline(always)]
+    fn squares<const SIDE: usize>(self, side: usize) {
+        let Self { surface, row, columns, first, out, .. } = self;
+        let side = if SIDE > 0 { SIDE } else { side };
         let per = (0.5 / surface.hf.spacing()).as_vec2() / (side * side) as f32;
         let share = 1.0 / (side * side) as f32;
-        let cols = surface.hf.cols();
-        for (chunk, out) in out.chunks_mut((CHUNK / side).max(1)).enumerate() {
-            let c0 = (first + chunk * (CHUNK / side).max(1)) * side - 1;
-            let n = out.len() * side + 2;
-            let line = |r: usize| &surface.heights[r * cols + c0..][..n];
+        let (cols, heights) = (surface.hf.cols(), &*surface.heights);
+        for from in columns.clone().step_by(CHUNK / side) {
+            let to = (from + CHUNK / side).min(columns.end);
+            let (c0, n) = (from * side - 1, (to - from) * side + 2);
             // Sums down the columns, and what the rows at either end of the square leave.
             let (mut sum, mut ends) = ([0.0f32; CHUNK + 2], [0.0f32; CHUNK + 2]);
-            let (sum, ends) = (&mut sum[..n], &mut ends[..n]);
-            for r in row * side..(row + 1) * side {
-                for (sum, h) in sum.iter_mut().zip(line(r)) {
-                    *sum += h;
+            let line = |r: usize| &heights[r * cols + c0..][..n];
+            let top = row * side;
+            let (north0, south1) = (line(top - 1), line(top + side));
+            if SIDE > 0 {
+                // All rows at once: they lie far apart in memory, and none has to wait for another.
+                let rows: [&[f32]; SIDE] = std::array::from_fn(|k| line(top + k));
+                for i in 0..n {
+                    let mut down = 0.0;
+                    for row in &rows {
+                        down += row[i];
+                    }
+                    sum[i] = down;
+                    ends[i] = (north0[i] - rows[SIDE - 1][i]) + (rows[0][i] - south1[i]);
+                }
+            } else {
+                for r in top..top + side {
+                    for (sum, h) in sum.iter_mut().zip(line(r)) {
+                        *sum += h;
+                    }
+                }
+                let (south0, north1) = (line(top + side - 1), line(top));
+                for i in 0..n {
+                    ends[i] = (north0[i] - south0[i]) + (north1[i] - south1[i]);
                 }
             }
-            let [north, south] = [row * side, (row + 1) * side].map(|r| [line(r - 1), line(r)]);
-            for i in 0..n {
-                ends[i] = (north[0][i] - south[0][i]) + (north[1][i] - south[1][i]);
-            }
-            for (i, out) in out.iter_mut().enumerate() {
-                let from = i * side;
-                let (a, b) = (&sum[from..from + 2], &sum[from + side..from + side + 2]);
-                let east = (b[0] - a[0]) + (b[1] - a[1]);
-                let north: f32 = ends[from + 1..=from + side].iter().sum();
-                let height: f32 = sum[from + 1..=from + side].iter().sum();
-                *out = Vec4::new(east * per.x, north * per.y, height * share, 1.0);
+            let [x, y, z, w] = out.part(from - first..to - first);
+            for (i, (((x, y), z), w)) in x.iter_mut().zip(y).zip(z).zip(w).enumerate() {
+                let (sum, ends) = (&sum[i * side..][..side + 2], &ends[i * side..][..side + 2]);
+                let east = (sum[side] - sum[0]) + (sum[side + 1] - sum[1]);
+                let (mut north, mut height) = (0.0, 0.0);
+                for k in 1..side + 1 {
+                    north += ends[k];
+                    height += sum[k];
+                }
+                (*x, *y, *z, *w) = (east * per.x, north * per.y, height * share, 1.0);
             }
         }
     }
@@ -285,7 +395,13 @@ impl Means {
         let first = first_level(hf.cols() * hf.rows());
         let [cols, rows] = [hf.cols(), hf.rows()].map(|n| n.div_ceil(1 << first));
         let mut nodes = vec![Vec4::ZERO; cols * rows];
-        nodes.par_chunks_mut(cols).enumerate().for_each(|(r, row)| surface.mean_row(first, r, 0, row));
+        nodes.par_chunks_mut(cols).enumerate().for_each_init(
+            || Planes::new(cols),
+            |planes, (r, row)| {
+                surface.mean_row(first, r, 0, planes);
+                row.iter_mut().enumerate().for_each(|(i, node)| *node = planes.get(i));
+            },
+        );
         let mut levels = vec![Level { cols, rows, nodes }];
         while let Some(last) = levels.last()
             && last.cols.max(last.rows) > 1
@@ -374,22 +490,12 @@ impl Means {
     }
 
     /// Nodes of a row of a stored level, from column `first`.
-    pub(crate) fn row(&self, k: usize, row: usize, first: usize, out: &mut [Vec4]) {
+    pub(crate) fn row(&self, k: usize, row: usize, first: usize, out: &mut Planes) {
         let level = &self.levels[k - self.first];
-        out.copy_from_slice(&level.nodes[row * level.cols + first..][..out.len()]);
-    }
-
-    /// Averages of the finest stored level at the nodes of a row of the finer level `k`, from column `first`.
-    pub(crate) fn row_between(&self, k: usize, row: usize, first: usize, out: &mut [Vec4]) {
-        let level = &self.levels[0];
-        let step = 1.0 / (1u32 << (self.first - k)) as f32;
-        let place = |i: usize| (i as f32 + 0.5) * step - 0.5;
-        let (r0, r1, v) = tap(place(row), level.rows);
-        let (n, s) = (&level.nodes[r0 * level.cols..][..level.cols], &level.nodes[r1 * level.cols..][..level.cols]);
-        for (i, out) in out.iter_mut().enumerate() {
-            let (c0, c1, u) = tap(place(first + i), level.cols);
-            let (a, b) = (n[c0] + u * (n[c1] - n[c0]), s[c0] + u * (s[c1] - s[c0]));
-            *out = a + v * (b - a);
+        let nodes = &level.nodes[row * level.cols + first..][..out.w.len()];
+        let [x, y, z, w] = out.part(0..nodes.len());
+        for ((((node, x), y), z), w) in nodes.iter().zip(x).zip(y).zip(z).zip(w) {
+            (*x, *y, *z, *w) = (node.x, node.y, node.z, node.w);
         }
     }
 
@@ -407,6 +513,66 @@ impl Means {
         Openness {
             near: per_m(self.first, NEAR_SHARE),
             wide: SURROUNDINGS.iter().map(|&(level, share)| per_m(level, share)).sum(),
+        }
+    }
+}
+
+/// Averages of the finest stored level at nodes of a finer one, row after row.
+pub(crate) struct Between {
+    /// Nodes of the finer level to one of the stored.
+    step: f32,
+    /// Nodes west and east of each column, and the share of the way.
+    taps: Vec<(usize, usize, f32)>,
+    /// Rows of the stored level brought to the columns, those last asked for.
+    lines: [(usize, Planes); 2],
+}
+
+impl Between {
+    /// * `k`: the finer level, of whose columns there are `n` from `first` on.
+    pub(crate) fn new(means: &Means, k: usize, first: usize, n: usize) -> Self {
+        let step = 1.0 / (1u32 << (means.first - k)) as f32;
+        let taps = (first..first + n).map(|c| tap(Self::place(step, c), means.levels[0].cols)).collect();
+        Self { step, taps, lines: [(usize::MAX, Planes::new(n)), (usize::MAX, Planes::new(n))] }
+    }
+
+    fn place(step: f32, i: usize) -> f32 {
+        (i as f32 + 0.5) * step - 0.5
+    }
+
+    /// A row of the finer level.
+    pub(crate) fn row(&mut self, means: &Means, row: usize, out: &mut Planes) {
+        let (north, south, v) = tap(Self::place(self.step, row), means.levels[0].rows);
+        if self.lines[1].0 == north {
+            self.lines.swap(0, 1);
+        }
+        for (line, row) in self.lines.iter_mut().zip([north, south]) {
+            if line.0 != row {
+                line.0 = row;
+                means.levels[0].between_columns(row, &self.taps, &mut line.1);
+            }
+        }
+        vector::run(Mix { lines: [&self.lines[0].1, &self.lines[1].1], v, out });
+    }
+}
+
+/// Mixes two rows.
+struct Mix<'a> {
+    lines: [&'a Planes; 2],
+    v: f32,
+    out: &'a mut Planes,
+}
+
+impl Kernel for Mix<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { lines: [north, south], v, out } = self;
+        let planes = out.xyz.iter_mut().zip(&north.xyz).zip(&south.xyz);
+        for ((out, north), south) in planes.chain([((&mut out.w, &north.w), &south.w)]) {
+            for ((out, a), b) in out.iter_mut().zip(north).zip(south) {
+                *out = a + v * (b - a);
+            }
         }
     }
 }
@@ -443,6 +609,14 @@ impl Level {
             }
         });
         Self { cols, rows, nodes }
+    }
+
+    /// A row between its columns.
+    fn between_columns(&self, row: usize, taps: &[(usize, usize, f32)], out: &mut Planes) {
+        let nodes = &self.nodes[row * self.cols..][..self.cols];
+        for (i, &(west, east, u)) in taps.iter().enumerate() {
+            out.set(i, nodes[west] + u * (nodes[east] - nodes[west]));
+        }
     }
 
     fn mean_w(&self, col: usize, row: usize) -> f32 {
@@ -490,12 +664,12 @@ mod tests {
                 assert!((n.truncate().truncate() - want).length() < 1e-4, "level {k}, node {i}: {n}");
             }
         }
-        let mut row = vec![Vec4::ZERO; 67];
+        let mut row = Planes::new(67);
         for r in 0..41 {
             surface.row(r, 0, &mut row);
-            for (c, n) in row.iter().enumerate() {
-                let void = hf.states()[r * 67 + c] == NodeState::Void;
-                assert!(if void { *n == Vec4::ZERO } else { (n.truncate().truncate() - want).length() < 1e-4 });
+            for c in 0..67 {
+                let (n, void) = (row.get(c), hf.states()[r * 67 + c] == NodeState::Void);
+                assert!(if void { n == Vec4::ZERO } else { (n.truncate().truncate() - want).length() < 1e-4 });
             }
         }
     }
@@ -513,11 +687,12 @@ mod tests {
         for (k, first) in [(1usize, 0), (2, 3), (3, 1), (4, 0)] {
             let n = cols.div_ceil(1 << k) - first;
             for row in 0..rows.div_ceil(1 << k) {
-                let [mut sums, mut each] = [vec![Vec4::ZERO; n], vec![Vec4::ZERO; n]];
+                let [mut sums, mut each] = [Planes::new(n), Planes::new(n)];
                 surface.mean_row(k, row, first, &mut sums);
-                surface.mean_of_each(k, row, first, &mut each);
-                for (a, b) in sums.iter().zip(&each) {
-                    let off = (*a - *b).abs();
+                surface.mean_of_each(k, row, first, &mut each, 0..n);
+                for i in 0..n {
+                    let (a, b) = (sums.get(i), each.get(i));
+                    let off = (a - b).abs();
                     assert!(
                         off.truncate().truncate().max_element() < 2e-4 && off.z < 2e-3,
                         "level {k}, row {row}: {a} {b}"
@@ -533,9 +708,9 @@ mod tests {
         let surface = Surface::of_map(&hf);
         for k in [1usize, 2, 3] {
             let cols = 37usize.div_ceil(1 << k);
-            let mut got = vec![Vec4::ZERO; cols - 1];
+            let mut got = Planes::new(cols - 1);
             surface.mean_row(k, 1, 1, &mut got);
-            for (i, got) in got.iter().enumerate() {
+            for (i, got) in got.xyz[2].iter().enumerate() {
                 let (mut sum, mut n) = (0.0, 0.0);
                 for r in 1 << k..(2 << k).min(23) {
                     for c in (i + 1) << k..((i + 2) << k).min(37) {
@@ -544,7 +719,7 @@ mod tests {
                         }
                     }
                 }
-                assert!((got.z - sum / n).abs() < 1e-3, "level {k} node {i}: {got} {}", sum / n);
+                assert!((got - sum / n).abs() < 1e-3, "level {k} node {i}: {got} {}", sum / n);
             }
         }
     }

@@ -304,13 +304,12 @@ impl Lit {
 
 #[cfg(test)]
 mod tests {
-    use super::super::ground::{Means, Surface};
+    use super::super::ground::{Means, Planes, Surface};
     use super::super::palette::Tint;
     use super::super::tiles::CELL;
     use super::*;
     use belvedere_core::DVec2;
     use belvedere_scene::{Heightfield, Light, NodeState, Palette, Relief};
-    use glam::Vec4;
 
     fn hills(cols: usize, rows: usize) -> Heightfield {
         let h = |i: usize| {
@@ -341,7 +340,7 @@ mod tests {
     fn interpolated_light_is_that_of_the_interpolated_ground() {
         let hf = hills(150, 131);
         with_making(&hf, |ground, m| {
-            let mut row = vec![Vec4::ZERO; 150];
+            let mut row = Planes::new(150);
             let (mut worst, mut sum, mut n) = (0.0f32, 0.0, 0.0);
             for r in 1..129 {
                 m.surface.row(r, 0, &mut row);
@@ -349,7 +348,7 @@ mod tests {
                     for share in [0i32, 64, 200] {
                         let at = [c * CELL + share, r as i32 * CELL];
                         let parts = ground.sample(at, 0, m);
-                        let shape = row[c as usize].lerp(row[c as usize + 1], share as f32 / 256.0);
+                        let shape = row.get(c as usize).lerp(row.get(c as usize + 1), share as f32 / 256.0);
                         let near = m.means.at(1, c as f32 + share as f32 / 256.0, r as f32);
                         let steep = shape.truncate().truncate().length();
                         let normal = Vec3A::new(-shape.x, -shape.y, 1.0).normalize();

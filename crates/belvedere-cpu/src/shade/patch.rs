@@ -1,12 +1,12 @@
 //! Nodes of the ground with the light on them, a patch at a time: each step is a plain loop over short arrays, which
 //! compilers turn into vector instructions.
 
-use super::ground::{Means, Surface};
+use super::ground::{Between, Means, Planes, Surface};
 use super::palette::Tint;
 use super::relief::ReliefLight;
 use super::shadow::Shadows;
+use super::tiles::Line;
 use crate::vector::{self, Kernel};
-use glam::Vec4;
 
 /// Nodes that are lit together.
 pub(super) const LANES: usize = 32;
@@ -32,21 +32,24 @@ pub(super) struct LitNodes {
     pub(super) sky: Lanes,
 }
 
-/// What the light on nodes depends on.
-#[derive(Clone)]
+/// What the light on nodes depends on, plane by plane, padded to whole lanes.
 struct Shapes {
     /// dz/dx, dz/dy, height.
-    shape: [Lanes; 3],
+    shape: [Vec<f32>; 3],
     /// Height of the near surroundings and what the wider ones ask for, see [`Means::openness`].
-    near: [Lanes; 2],
+    near: [Vec<f32>; 2],
     /// Share of the sun that no shadow takes.
-    sun: Lanes,
+    sun: Vec<f32>,
 }
 
 const NOTHING: Lanes = [0.0; LANES];
 
 impl Shapes {
-    const EMPTY: Self = Self { shape: [NOTHING; 3], near: [NOTHING; 2], sun: [1.0; LANES] };
+    fn new(nodes: usize) -> Self {
+        let n = nodes.next_multiple_of(LANES);
+        let plane = || vec![0.0; n];
+        Self { shape: [plane(), plane(), plane()], near: [plane(), plane()], sun: vec![1.0; n] }
+    }
 }
 
 /// Nodes of a level with the light on them, row by row.
@@ -55,28 +58,17 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// The nodes where rows and columns meet, both in rising order; some may be there twice.
-    pub(super) fn new(
-        m: &Making<'_>,
-        k: usize,
-        columns: impl Iterator<Item = usize> + Clone,
-        rows: impl Iterator<Item = usize>,
-    ) -> Self {
-        let (first, last) = columns.clone().fold((usize::MAX, 0), |(lo, hi), c| (lo.min(c), hi.max(c)));
-        let mut row = Row::new(first, last + 1 - first.min(last));
-        let mut shapes = Vec::new();
-        let mut n = 0;
-        for r in rows {
-            row.fill(m, k, r);
-            for c in columns.clone() {
-                let (i, lane) = (c - first, n % LANES);
-                if lane == 0 {
-                    shapes.push(Shapes::EMPTY);
-                }
-                if let Some(to) = shapes.last_mut() {
-                    row.write(i, to, lane);
-                }
-                n += 1;
+    /// The nodes where rows and columns meet.
+    pub(super) fn new(m: &Making<'_>, k: usize, columns: Line, rows: Line) -> Self {
+        let mut shapes = Shapes::new(columns.count * rows.count);
+        let (first, inside) = columns.inside();
+        let mut row = Row::new(m, k, first, inside.len());
+        for (n, r) in rows.iter().enumerate() {
+            let all = n * columns.count..(n + 1) * columns.count;
+            row.fill(m, k, r, &mut shapes, all.start + inside.start);
+            let Shapes { shape: [x, y, z], near: [height, asked], sun } = &mut shapes;
+            for plane in [x, y, z, height, asked, sun] {
+                columns.repeat(&mut plane[all.clone()]);
             }
         }
         Self { nodes: vector::run(LightUp { m, shapes: &shapes }) }
@@ -107,45 +99,70 @@ impl LitNodes {
 /// A row of nodes in the making, from column `first` on.
 struct Row {
     first: usize,
-    shape: Vec<Vec4>,
-    near: Vec<Vec4>,
-    sun: Vec<f32>,
+    shape: Planes,
+    near: Planes,
+    /// The surroundings of levels finer than those stored.
+    between: Option<Between>,
 }
 
 impl Row {
-    fn new(first: usize, n: usize) -> Self {
-        Self { first, shape: vec![Vec4::ZERO; n], near: vec![Vec4::ZERO; n], sun: vec![1.0; n] }
+    fn new(m: &Making<'_>, k: usize, first: usize, n: usize) -> Self {
+        let between = (k < m.means.first).then(|| Between::new(m.means, k, first, n));
+        Self { first, shape: Planes::new(n), near: Planes::new(n), between }
     }
 
-    fn fill(&mut self, m: &Making<'_>, k: usize, row: usize) {
-        let Self { first, shape, near, sun } = self;
-        if k >= m.means.first {
-            m.means.row(k, row, *first, shape);
-            near.copy_from_slice(shape);
-        } else {
-            m.surface.mean_row(k, row, *first, shape);
-            m.means.row_between(k, row, *first, near);
-        }
+    /// Writes row `row` of level `k` from place `at` on.
+    fn fill(&mut self, m: &Making<'_>, k: usize, row: usize, to: &mut Shapes, at: usize) {
+        let Self { first, shape, near, between } = self;
+        let places = at..at + shape.w.len();
         if let Some(shadows) = m.shadows {
-            shadows.share_row(k, row, *first, sun);
+            shadows.share_row(k, row, *first, &mut to.sun[places.clone()]);
         }
+        let surroundings = if let Some(between) = between {
+            m.surface.mean_row(k, row, *first, shape);
+            between.row(m.means, row, near);
+            near
+        } else {
+            m.means.row(k, row, *first, shape);
+            &*shape
+        };
+        let Shapes { shape: [x, y, z], near: [height, asked], .. } = to;
+        let to = [x, y, z, height, asked].map(|plane| &mut plane[places.clone()]);
+        vector::run(Join { shape, surroundings, to });
     }
+}
+
+/// Joins nodes and their surroundings.
+struct Join<'a> {
+    shape: &'a Planes,
+    surroundings: &'a Planes,
+    to: [&'a mut [f32]; 5],
+}
+
+impl Kernel for Join<'_> {
+    type Output = ();
 
     #[inline(always)]
-    fn write(&self, i: usize, to: &mut Shapes, lane: usize) {
-        let near = self.near[i];
-        // A hole looks like the ground around it.
-        let [x, y, z, _] = if self.shape[i].w == 0.0 { near } else { self.shape[i] }.to_array();
-        (to.shape[0][lane], to.shape[1][lane], to.shape[2][lane]) = (x, y, z);
-        (to.near[0][lane], to.near[1][lane]) = (near.z, near.w);
-        to.sun[lane] = self.sun[i];
+    fn run(self) {
+        let Self { shape, surroundings, to: [x, y, z, height, asked] } = self;
+        let n = shape.w.len();
+        for (k, to) in [x, y, z].into_iter().enumerate() {
+            let (to, here, near, w) = (&mut to[..n], &shape.xyz[k][..n], &surroundings.xyz[k][..n], &shape.w[..n]);
+            for i in 0..n {
+                // A hole looks like the ground around it.
+                let (here, near) = (here[i], near[i]);
+                to[i] = if w[i] == 0.0 { near } else { here };
+            }
+        }
+        height.copy_from_slice(&surroundings.xyz[2]);
+        asked.copy_from_slice(&surroundings.w);
     }
 }
 
 /// Lights nodes.
 struct LightUp<'a> {
     m: &'a Making<'a>,
-    shapes: &'a [Shapes],
+    shapes: &'a Shapes,
 }
 
 impl Kernel for LightUp<'_> {
@@ -153,26 +170,36 @@ impl Kernel for LightUp<'_> {
 
     #[inline(always)]
     fn run(self) -> Vec<LitNodes> {
-        let mut out = Vec::with_capacity(self.shapes.len());
-        for nodes in self.shapes {
-            out.push(light_up(self.m, nodes));
+        let Shapes { shape: [x, y, z], near: [height, asked], sun } = self.shapes;
+        let mut out = Vec::with_capacity(x.len() / LANES);
+        for n in (0..x.len()).step_by(LANES) {
+            let (Some(x), Some(y), Some(z)) = (lanes(x, n), lanes(y, n), lanes(z, n)) else { break };
+            let (Some(height), Some(asked), Some(sun)) = (lanes(height, n), lanes(asked, n), lanes(sun, n)) else {
+                break;
+            };
+            out.push(light_up(self.m, [x, y, z], [height, asked], sun));
         }
         out
     }
 }
 
 #[inline(always)]
-fn light_up(m: &Making<'_>, nodes: &Shapes) -> LitNodes {
-    let ([x, y, z], openness) = (&nodes.shape, m.means.openness());
+fn lanes(plane: &[f32], n: usize) -> Option<&Lanes> {
+    plane.get(n..)?.first_chunk()
+}
+
+#[inline(always)]
+fn light_up(m: &Making<'_>, [x, y, z]: [&Lanes; 3], near: [&Lanes; 2], sun: &Lanes) -> LitNodes {
+    let openness = m.means.openness();
     let (mut open, mut steep, mut normal) = (NOTHING, NOTHING, [NOTHING; 3]);
     for i in 0..LANES {
-        open[i] = openness.at(z[i], nodes.near[0][i], nodes.near[1][i]);
+        open[i] = openness.at(z[i], near[0][i], near[1][i]);
         steep[i] = (x[i] * x[i] + y[i] * y[i]).sqrt();
         let (a, b) = (x[i] * -m.exaggeration, y[i] * -m.exaggeration);
         let scale = 1.0 / (a * a + b * b + 1.0).sqrt();
         (normal[0][i], normal[1][i], normal[2][i]) = (a * scale, b * scale, scale);
     }
-    let [direct, sky] = m.light.parts_of(&normal, &open, &nodes.sun);
+    let [direct, sky] = m.light.parts_of(&normal, &open, sun);
     let mut root = m.tint.colors(z, &steep);
     for plane in &mut root {
         for v in plane {

@@ -1,5 +1,6 @@
 //! Pictures of the ground at ever coarser levels, in tiles that are made where they are looked at.
 
+use std::ops::Range;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -10,7 +11,7 @@ pub(super) const SPAN: u32 = SIDE as u32 * CELL as u32;
 pub(super) type Node = [u8; 8];
 
 /// Cells along a side of a tile, a power of two; one more node along each side, so that no cell lies in two tiles.
-const SIDE: usize = 64;
+const SIDE: usize = 32;
 pub(super) const STRIDE: usize = SIDE + 1;
 pub(super) const NODES: usize = STRIDE * STRIDE;
 pub(super) type Tile = [Node; NODES];
@@ -182,6 +183,39 @@ fn words([a, b, c, d, e, f, g, h]: Node) -> [u32; 2] {
     [u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h])]
 }
 
+/// Nodes in a line, `count` of them from `first` on; those beyond the ends of the ground repeat the ones there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line {
+    first: isize,
+    pub(super) count: usize,
+    /// The last node of the ground.
+    last: usize,
+}
+
+impl Line {
+    pub(super) fn iter(self) -> impl Iterator<Item = usize> {
+        (self.first..self.first + self.count as isize).map(move |i| (i.max(0) as usize).min(self.last))
+    }
+
+    /// The first node that is there, and which of the line's nodes are there.
+    pub(super) fn inside(self) -> (usize, Range<usize>) {
+        let from = (-self.first).max(0) as usize;
+        let to = (self.last as isize + 1 - self.first).clamp(from as isize, self.count as isize);
+        ((self.first + from as isize) as usize, from..to as usize)
+    }
+
+    /// Gives the nodes that are not there the values of those that they repeat.
+    #[inline(always)]
+    pub(super) fn repeat(self, values: &mut [f32]) {
+        let (_, Range { start, end }) = self.inside();
+        if start < end {
+            let (first, last) = (values[start], values[end - 1]);
+            values[..start].fill(first);
+            values[end..].fill(last);
+        }
+    }
+}
+
 /// The nodes along an axis that the nodes of a tile repeat.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Repeated {
@@ -190,30 +224,18 @@ pub(super) struct Repeated {
 }
 
 impl Repeated {
-    pub(super) fn all(self) -> impl Iterator<Item = usize> + Clone {
-        (self.from..self.from + STRIDE).map(move |i| i.saturating_sub(1).min(self.nodes - 1))
+    pub(super) fn all(self) -> Line {
+        Line { first: self.from as isize - 1, count: STRIDE, last: self.nodes - 1 }
     }
 
     /// The nodes of the next coarser level over them, and one more at either end; where there is none, the last one again.
-    pub(super) fn parents(self) -> impl Iterator<Item = usize> + Clone {
-        let last = self.nodes.div_ceil(2) - 1;
-        (0..SIDE / 2 + 3).map(move |i| (self.from / 2 + i).saturating_sub(2).min(last))
+    pub(super) fn parents(self) -> Line {
+        Line { first: (self.from / 2) as isize - 2, count: SIDE / 2 + 3, last: self.nodes.div_ceil(2) - 1 }
     }
 
     /// Which of the parents lies over a node.
     pub(super) fn parent_of(self, node: usize) -> usize {
         node / 2 + 2 - self.from / 2
-    }
-
-    /// Makes values, one for each node and those that would be there without borders, repeat the border.
-    #[inline(always)]
-    pub(super) fn repeat(self, values: &mut [f32]) {
-        if self.from == 0 {
-            values[0] = values[1];
-        }
-        let n = (self.nodes + 1 - self.from).clamp(1, values.len());
-        let last = values[n - 1];
-        values[n..].fill(last);
     }
 }
 
