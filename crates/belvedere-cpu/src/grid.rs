@@ -248,7 +248,7 @@ pub(crate) fn cell_weights(seam: [bool; 4], cells: [usize; 2], [c, r]: [usize; 2
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::band::sample_offsets;
+    use crate::band::{SKY, sample_offsets};
 
     /// Images of nodes (c, r) every `pitch` fixed-point steps, inner ones shaken by up to a quarter of that.
     fn image([c, r]: [usize; 2], pitch: i32) -> ScreenVertex {
@@ -329,6 +329,35 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn rows_behind_what_was_drawn_are_left_out_and_no_other() {
+        // A level block, and one behind it from which some rows and single nodes stand out.
+        let block = |q: &dyn Fn(usize, usize) -> f32| {
+            let mut nodes = Nodes::default();
+            nodes.reset([32, 32]);
+            for (c, r) in (0..33).flat_map(|c| (0..33).map(move |r| (c, r))) {
+                nodes.set(c, r, ScreenVertex { x: c as i32 * 300 - 400, y: r as i32 * 300 - 400, q: q(c, r) });
+            }
+            let cover = nodes.cover();
+            (nodes, cover)
+        };
+        let rough = |c: usize, r: usize| if (7 * c + 11 * r) % 97 == 5 { 1.3 } else { 0.75 + 0.01 * r as f32 };
+        let blocks = [block(&|_, _| 1.0), block(&rough)];
+        let draw = |order: [usize; 2]| {
+            let mut band = Band::new(0, 16, 32, sample_offsets(4));
+            for i in order {
+                blocks[i].0.draw((i as u32) << 11, &mut band);
+                band.drew(blocks[i].1.x);
+            }
+            band
+        };
+        let (hiding, whole) = (draw([0, 1]), draw([1, 0]));
+        assert!(hiding.q == whole.q && hiding.prim == whole.prim, "the same samples");
+        let drawn = |band: &Band| band.hits.iter().sum::<u32>();
+        assert!(drawn(&hiding) < drawn(&whole), "some rows were left out");
+        assert!(hiding.prim.iter().any(|p| *p != SKY && p >> 11 == 1), "some stand out");
     }
 
     #[test]

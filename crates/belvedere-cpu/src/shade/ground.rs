@@ -2,7 +2,8 @@
 //!
 //! Only averages are kept: full detail is always at hand in the heights themselves.
 
-use crate::vector::{self, Kernel};
+use super::rows::{CHUNK, Inner, Inside, Planes};
+use crate::vector;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, NodeState};
 use glam::Vec4;
@@ -94,7 +95,7 @@ impl<'a> Surface<'a> {
             out.set(c - first, near.unwrap_or_else(|| self.node(c, row)));
         }
         if !whole.is_empty() {
-            vector::run(Nodes { surface: self, row, columns: whole, first, out });
+            vector::run(Inside { surface: self, row, columns: whole, first, out });
         }
     }
 
@@ -197,155 +198,6 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// A row of nodes, plane by plane.
-#[derive(Debug, Clone)]
-pub(crate) struct Planes {
-    /// dz/dx, dz/dy, height.
-    pub(crate) xyz: [Vec<f32>; 3],
-    /// What comes fourth: see [`Surface::row`] and [`Level`].
-    pub(crate) w: Vec<f32>,
-}
-
-impl Planes {
-    pub(crate) fn new(n: usize) -> Self {
-        Self { xyz: [vec![0.0; n], vec![0.0; n], vec![0.0; n]], w: vec![0.0; n] }
-    }
-
-    #[inline(always)]
-    pub(crate) fn get(&self, i: usize) -> Vec4 {
-        let [x, y, z] = &self.xyz;
-        Vec4::new(x[i], y[i], z[i], self.w[i])
-    }
-
-    #[inline(always)]
-    fn set(&mut self, i: usize, v: Vec4) {
-        let [x, y, z] = &mut self.xyz;
-        (x[i], y[i], z[i], self.w[i]) = (v.x, v.y, v.z, v.w);
-    }
-
-    /// The same places of all planes.
-    #[inline(always)]
-    fn part(&mut self, places: Range<usize>) -> [&mut [f32]; 4] {
-        let [x, y, z] = &mut self.xyz;
-        [&mut x[places.clone()], &mut y[places.clone()], &mut z[places.clone()], &mut self.w[places]]
-    }
-}
-
-/// Nodes away from voids and borders.
-struct Nodes<'a, 's> {
-    surface: &'a Surface<'s>,
-    row: usize,
-    columns: Range<usize>,
-    /// The column at the first place.
-    first: usize,
-    out: &'a mut Planes,
-}
-
-impl Kernel for Nodes<'_, '_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { surface, row, columns, first, out } = self;
-        let (cols, n, heights) = (surface.hf.cols(), columns.len(), &*surface.heights);
-        let per = (0.5 / surface.hf.spacing()).as_vec2();
-        let here = row * cols + columns.start;
-        let (north, south) = (&heights[here - cols..][..n], &heights[here + cols..][..n]);
-        let (west, middle, east) = (&heights[here - 1..][..n], &heights[here..][..n], &heights[here + 1..][..n]);
-        let [x, y, z, w] = out.part(columns.start - first..columns.end - first);
-        let (x, y, z, w) = (&mut x[..n], &mut y[..n], &mut z[..n], &mut w[..n]);
-        for i in 0..n {
-            x[i] = (east[i] - west[i]) * per.x;
-            y[i] = (north[i] - south[i]) * per.y;
-            z[i] = middle[i];
-            w[i] = 1.0;
-        }
-    }
-}
-
-/// Averages of nodes away from voids and borders. The central differences along a row or a column of a square cancel but for
-/// the two nodes on either side of each end.
-struct Inner<'a, 's> {
-    surface: &'a Surface<'s>,
-    side: usize,
-    row: usize,
-    columns: Range<usize>,
-    /// The column at the first place.
-    first: usize,
-    out: &'a mut Planes,
-}
-
-/// Columns of the ground that are summed up at a time.
-const CHUNK: usize = 256;
-
-impl Kernel for Inner<'_, '_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        match self.side {
-            2 => self.squares::<2>(2),
-            4 => self.squares::<4>(4),
-            8 => self.squares::<8>(8),
-            side => self.squares::<0>(side),
-        }
-    }
-}
-
-impl Inner<'_, '_> {
-    /// * `SIDE`: the side again, if it is one of those that are compiled apart, else 0.
-    #[inline(always)]
-    fn squares<const SIDE: usize>(self, side: usize) {
-        let Self { surface, row, columns, first, out, .. } = self;
-        let side = if SIDE > 0 { SIDE } else { side };
-        let per = (0.5 / surface.hf.spacing()).as_vec2() / (side * side) as f32;
-        let share = 1.0 / (side * side) as f32;
-        let (cols, heights) = (surface.hf.cols(), &*surface.heights);
-        for from in columns.clone().step_by(CHUNK / side) {
-            let to = (from + CHUNK / side).min(columns.end);
-            let (c0, n) = (from * side - 1, (to - from) * side + 2);
-            // Sums down the columns, and what the rows at either end of the square leave.
-            let (mut sum, mut ends) = ([0.0f32; CHUNK + 2], [0.0f32; CHUNK + 2]);
-            let line = |r: usize| &heights[r * cols + c0..][..n];
-            let top = row * side;
-            let (north0, south1) = (line(top - 1), line(top + side));
-            if SIDE > 0 {
-                // All rows at once: they lie far apart in memory, and none has to wait for another.
-                let rows: [&[f32]; SIDE] = std::array::from_fn(|k| line(top + k));
-                for i in 0..n {
-                    let mut down = 0.0;
-                    for row in &rows {
-                        down += row[i];
-                    }
-                    sum[i] = down;
-                    ends[i] = (north0[i] - rows[SIDE - 1][i]) + (rows[0][i] - south1[i]);
-                }
-            } else {
-                for r in top..top + side {
-                    for (sum, h) in sum.iter_mut().zip(line(r)) {
-                        *sum += h;
-                    }
-                }
-                let (south0, north1) = (line(top + side - 1), line(top));
-                for i in 0..n {
-                    ends[i] = (north0[i] - south0[i]) + (north1[i] - south1[i]);
-                }
-            }
-            let [x, y, z, w] = out.part(from - first..to - first);
-            for (i, (((x, y), z), w)) in x.iter_mut().zip(y).zip(z).zip(w).enumerate() {
-                let (sum, ends) = (&sum[i * side..][..side + 2], &ends[i * side..][..side + 2]);
-                let east = (sum[side] - sum[0]) + (sum[side + 1] - sum[1]);
-                let (mut north, mut height) = (0.0, 0.0);
-                for k in 1..side + 1 {
-                    north += ends[k];
-                    height += sum[k];
-                }
-                (*x, *y, *z, *w) = (east * per.x, north * per.y, height * share, 1.0);
-            }
-        }
-    }
-}
-
 /// Slope of a displaced surface; `None` where the node itself cannot be displaced.
 fn bent_slope(hf: &Heightfield, c: usize, r: usize, bent: &Moved<'_>) -> Option<DVec2> {
     let at = |c: usize, r: usize| hf.node(c, r).and_then(bent);
@@ -364,9 +216,9 @@ fn bent_slope(hf: &Heightfield, c: usize, r: usize, bent: &Moved<'_>) -> Option<
 /// Averages over `2^k x 2^k` nodes: dz/dx, dz/dy, height, and the height that the wider surroundings ask for (see
 /// [`Openness::at`]).
 #[derive(Debug)]
-struct Level {
-    cols: usize,
-    rows: usize,
+pub(super) struct Level {
+    pub(super) cols: usize,
+    pub(super) rows: usize,
     nodes: Vec<Vec4>,
 }
 
@@ -374,7 +226,7 @@ struct Level {
 #[derive(Debug)]
 pub(crate) struct Means {
     pub(crate) first: usize,
-    levels: Vec<Level>,
+    pub(super) levels: Vec<Level>,
     spacing: f32,
 }
 
@@ -517,66 +369,6 @@ impl Means {
     }
 }
 
-/// Averages of the finest stored level at nodes of a finer one, row after row.
-pub(crate) struct Between {
-    /// Nodes of the finer level to one of the stored.
-    step: f32,
-    /// Nodes west and east of each column, and the share of the way.
-    taps: Vec<(usize, usize, f32)>,
-    /// Rows of the stored level brought to the columns, those last asked for.
-    lines: [(usize, Planes); 2],
-}
-
-impl Between {
-    /// * `k`: the finer level, of whose columns there are `n` from `first` on.
-    pub(crate) fn new(means: &Means, k: usize, first: usize, n: usize) -> Self {
-        let step = 1.0 / (1u32 << (means.first - k)) as f32;
-        let taps = (first..first + n).map(|c| tap(Self::place(step, c), means.levels[0].cols)).collect();
-        Self { step, taps, lines: [(usize::MAX, Planes::new(n)), (usize::MAX, Planes::new(n))] }
-    }
-
-    fn place(step: f32, i: usize) -> f32 {
-        (i as f32 + 0.5) * step - 0.5
-    }
-
-    /// A row of the finer level.
-    pub(crate) fn row(&mut self, means: &Means, row: usize, out: &mut Planes) {
-        let (north, south, v) = tap(Self::place(self.step, row), means.levels[0].rows);
-        if self.lines[1].0 == north {
-            self.lines.swap(0, 1);
-        }
-        for (line, row) in self.lines.iter_mut().zip([north, south]) {
-            if line.0 != row {
-                line.0 = row;
-                means.levels[0].between_columns(row, &self.taps, &mut line.1);
-            }
-        }
-        vector::run(Mix { lines: [&self.lines[0].1, &self.lines[1].1], v, out });
-    }
-}
-
-/// Mixes two rows.
-struct Mix<'a> {
-    lines: [&'a Planes; 2],
-    v: f32,
-    out: &'a mut Planes,
-}
-
-impl Kernel for Mix<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { lines: [north, south], v, out } = self;
-        let planes = out.xyz.iter_mut().zip(&north.xyz).zip(&south.xyz);
-        for ((out, north), south) in planes.chain([((&mut out.w, &north.w), &south.w)]) {
-            for ((out, a), b) in out.iter_mut().zip(north).zip(south) {
-                *out = a + v * (b - a);
-            }
-        }
-    }
-}
-
 /// Weights of the surroundings of a place, per unit of height.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Openness {
@@ -612,7 +404,7 @@ impl Level {
     }
 
     /// A row between its columns.
-    fn between_columns(&self, row: usize, taps: &[(usize, usize, f32)], out: &mut Planes) {
+    pub(super) fn between_columns(&self, row: usize, taps: &[(usize, usize, f32)], out: &mut Planes) {
         let nodes = &self.nodes[row * self.cols..][..self.cols];
         for (i, &(west, east, u)) in taps.iter().enumerate() {
             out.set(i, nodes[west] + u * (nodes[east] - nodes[west]));
@@ -635,7 +427,7 @@ impl Level {
 }
 
 #[inline]
-fn tap(x: f32, n: usize) -> (usize, usize, f32) {
+pub(super) fn tap(x: f32, n: usize) -> (usize, usize, f32) {
     let x = x.clamp(0.0, (n - 1) as f32);
     let i = x as usize;
     (i, (i + 1).min(n - 1), x - i as f32)

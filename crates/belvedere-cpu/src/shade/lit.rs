@@ -304,8 +304,9 @@ impl Lit {
 
 #[cfg(test)]
 mod tests {
-    use super::super::ground::{Means, Planes, Surface};
+    use super::super::ground::{Means, Surface};
     use super::super::palette::Tint;
+    use super::super::rows::Planes;
     use super::super::tiles::CELL;
     use super::*;
     use belvedere_core::DVec2;

@@ -15,6 +15,7 @@ mod palette;
 mod patch;
 mod print;
 mod relief;
+mod rows;
 mod seen;
 mod shadow;
 mod sky;

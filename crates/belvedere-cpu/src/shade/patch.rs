@@ -1,9 +1,10 @@
 //! Nodes of the ground with the light on them, a patch at a time: each step is a plain loop over short arrays, which
 //! compilers turn into vector instructions.
 
-use super::ground::{Between, Means, Planes, Surface};
+use super::ground::{Means, Surface};
 use super::palette::Tint;
 use super::relief::ReliefLight;
+use super::rows::{Between, Planes};
 use super::shadow::Shadows;
 use super::tiles::Line;
 use crate::vector::{self, Kernel};

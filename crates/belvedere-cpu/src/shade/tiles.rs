@@ -249,6 +249,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn lines_repeat_the_ends_of_the_ground() {
+        for (from, nodes) in [(0, 5), (0, 200), (32, 33), (64, 70), (32, 32), (0, 1)] {
+            for line in [Repeated { from, nodes }.all(), Repeated { from, nodes }.parents()] {
+                let (first, inside) = line.inside();
+                let mut values = vec![-1.0; line.count];
+                inside.clone().for_each(|i| values[i] = (first + i - inside.start) as f32);
+                line.repeat(&mut values);
+                let want: Vec<f32> = line.iter().map(|i| i as f32).collect();
+                assert_eq!(values, want, "{from} of {nodes}");
+            }
+        }
+    }
+
+    #[test]
     fn tiles_take_no_more_than_is_said() {
         for nodes in [[70usize, 70], [300, 129], [1, 2], [1025, 40]] {
             let top = nodes[0].max(nodes[1]).next_power_of_two().trailing_zeros() as usize;
