@@ -4,7 +4,7 @@ use super::Field;
 use belvedere_core::DVec2;
 
 /// Lines that come closer to a node than this pass through it, cells.
-const AT_NODE: f64 = 1e-9;
+pub(super) const AT_NODE: f64 = 1e-9;
 
 /// One crossing of the line of sight from a point P to the eye V with an edge of the ground.
 ///
@@ -63,19 +63,6 @@ pub fn sight_samples(field: &Field, from: DVec2, eye: DVec2, diagonals: bool, ou
     }
 }
 
-/// Neighbouring lines of the grid of one family, in the order in which a line of sight crosses them.
-pub(super) struct Lines {
-    pub(super) first: f64,
-    /// 1 or -1: to the next one.
-    pub(super) sign: f64,
-    pub(super) count: usize,
-    /// Line `k` is crossed at `(k - start) per_line`,
-    pub(super) start: f64,
-    pub(super) per_line: f64,
-    /// and there at `along[0] + tau along[1]` of itself.
-    pub(super) along: [f64; 2],
-}
-
 /// A line of sight on its way from the point to the eye.
 pub(super) struct SightWalk<'a> {
     field: &'a Field,
@@ -130,21 +117,12 @@ impl<'a> SightWalk<'a> {
         }
     }
 
-    /// Lines of a family (0: x = k, 1: y = k) that are crossed in a part of the line of sight, and perhaps the next ones.
-    #[inline(always)]
-    pub(super) fn lines(&self, family: usize, part: (f64, f64)) -> Option<Lines> {
-        let c = &self.crossings[family];
-        if c.tau == f64::INFINITY {
-            return None;
-        }
-        let sign = c.step.signum();
-        let within = |k: f64| sign * (sign * k).clamp(sign * c.k, sign * c.last);
-        let (first, last) = (within(c.first_from(part.0)), within(c.first_from(part.1)));
-        let (count, along) = (((last - first) * sign) as usize + 1, [self.from[1 - family], self.dir[1 - family]]);
-        Some(Lines { first, sign, count, start: c.start, per_line: c.step.recip(), along })
+    /// Where the line of sight starts, cells.
+    pub(super) fn from(&self) -> DVec2 {
+        self.from
     }
 
-    /// The crossing with line `k` of a family.
+    /// The crossing with line `k` of a family (0: x = k, 1: y = k).
     #[inline(always)]
     pub(super) fn crossing(&self, family: usize, k: f64) -> Option<SightSample> {
         let c = &self.crossings[family];

@@ -1,32 +1,55 @@
-//! Highest ground of square blocks, by which a line of sight passes ground that it clears.
+//! The ground in square blocks: what a line of sight reads of one lies together.
 
 use super::super::{Cells, Field, NO_CELL};
-use super::Pieces;
 use belvedere_core::DVec2;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Cells of the grid along a side of a block.
-const SIDE: usize = 8;
+pub(super) const SIDE: usize = 8;
+/// Nodes along a side, rims included.
+pub(super) const ALONG: usize = SIDE + 1;
+const NODES: usize = ALONG * ALONG;
+/// Part of a node without data.
+pub(super) const NO_PART: u8 = u8::MAX;
 
-/// Highest ground of every block of the untouched ground, cell by cell. Heights are over the datum.
+/// The untouched ground block by block, with the highest ground of every cell in each. Heights are over the datum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blocks {
     cols: usize,
     rows: usize,
+    tiles: Vec<Tile>,
     /// First part of each block, and the end.
     start: Vec<u32>,
     parts: Vec<Part>,
     /// First entry of each cell of the ground, and the end.
     first: Vec<u32>,
-    /// Blocks in which a cell has a part.
+    /// Numbers of the parts of each cell.
     of_cell: Vec<u32>,
+    /// Highest ground of each block.
+    ceilings: Vec<f32>,
+}
+
+/// The nodes of a block row by row; beside the grid its last ones again.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tile {
+    /// The nearest to the true ones.
+    pub(super) heights: [f32; NODES],
+    /// Number within the block of the part that a node belongs to; [`NO_PART`] without data.
+    pub(super) part_of: [u8; NODES],
+    /// Whether there are several parts, or nodes without data.
+    pub(super) mixed: bool,
+    /// A slant that no node is higher than: its height at the north-west node, and what it rises by column and row.
+    slant: [f32; 3],
 }
 
 /// What belongs to one cell of the ground in a block.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Part {
-    cell: u32,
-    highest: f32,
+pub(super) struct Part {
+    pub(super) cell: u32,
+    pub(super) block: u32,
+    /// No ground of it is higher.
+    pub(super) highest: f32,
 }
 
 impl Blocks {
@@ -34,99 +57,108 @@ impl Blocks {
     pub fn new(field: &Field, cells: &Cells) -> Self {
         let (cols, rows) = ((field.cols() - 1).div_ceil(SIDE), (field.rows() - 1).div_ceil(SIDE));
         let of_row = |row: usize| {
-            let (mut parts, mut ends) = (Vec::with_capacity(3 * cols), Vec::with_capacity(cols));
+            let (mut tiles, mut parts) = (Vec::with_capacity(cols), Vec::with_capacity(3 * cols));
+            let mut ends = Vec::with_capacity(cols);
             for col in 0..cols {
-                of_block(field, cells, [col, row].map(|k| k * SIDE), &mut parts);
+                let corner = [col, row].map(|k| k * SIDE);
+                let first = parts.len();
+                of_block(field, cells, corner, (row * cols + col) as u32, &mut parts);
+                tiles.push(Tile::new(field, cells, corner, &parts[first..]));
                 ends.push(parts.len() as u32);
             }
-            (parts, ends)
+            (tiles, parts, ends)
         };
         let of_rows: Vec<_> = (0..rows).into_par_iter().with_min_len(4).map(of_row).collect();
-        let (mut start, mut parts) = (vec![0], Vec::new());
-        for (of_row, ends) in of_rows {
+        let (mut tiles, mut start, mut parts) = (Vec::with_capacity(cols * rows), vec![0], Vec::new());
+        for (of_row, of_parts, ends) in of_rows {
+            tiles.extend(of_row);
             start.extend(ends.iter().map(|end| parts.len() as u32 + end));
-            parts.extend(of_row);
+            parts.extend(of_parts);
         }
-        let (first, of_cell) = by_cell(&start, &parts, cells.len());
-        Self { cols, rows, start, parts, first, of_cell }
+        let (first, of_cell) = by_cell(&parts, cells.len());
+        let highest = |ends: &[u32]| parts[ends[0] as usize..ends[1] as usize].iter().map(|p| p.highest);
+        let ceilings = start.windows(2).map(|ends| highest(ends).fold(f32::NEG_INFINITY, f32::max)).collect();
+        Self { cols, rows, tiles, start, parts, first, of_cell, ceilings }
+    }
+
+    /// Blocks along both axes.
+    pub(super) fn size(&self) -> [usize; 2] {
+        [self.cols, self.rows]
+    }
+
+    /// Grid coordinates of a block's north-west node.
+    pub(super) fn corner(&self, block: usize) -> DVec2 {
+        DVec2::new((block % self.cols * SIDE) as f64, (block / self.cols * SIDE) as f64)
+    }
+
+    pub(super) fn tile(&self, block: usize) -> &Tile {
+        &self.tiles[block]
     }
 
     /// A bound of the highest untouched ground of each block.
-    pub(super) fn ceilings(&self) -> Vec<f32> {
-        let parts = |block: &[u32]| &self.parts[block[0] as usize..block[1] as usize];
-        let highest = |block: &[u32]| parts(block).iter().map(|p| p.highest).fold(f32::NEG_INFINITY, f32::max);
-        self.start.windows(2).map(highest).collect()
+    pub(super) fn ceilings(&self) -> &[f32] {
+        &self.ceilings
     }
 
-    /// Sets the bounds anew of the blocks in which there is ground of a cell.
-    pub(super) fn lower(&self, cell: usize, pieces: &[Pieces], ceilings: &mut [f32]) {
-        for &block in &self.of_cell[self.first[cell] as usize..self.first[cell + 1] as usize] {
-            ceilings[block as usize] = self.ceiling(block as usize, pieces);
-        }
+    pub(super) fn all_parts(&self) -> &[Part] {
+        &self.parts
     }
 
-    fn ceiling(&self, block: usize, pieces: &[Pieces]) -> f32 {
-        let parts = &self.parts[self.start[block] as usize..self.start[block + 1] as usize];
-        let highest = |p: &Part| pieces[p.cell as usize].highest(f64::from(p.highest));
-        (parts.iter().map(highest).fold(f64::NEG_INFINITY, f64::max) as f32).next_up()
+    /// Numbers of the parts of a block.
+    pub(super) fn numbers(&self, block: usize) -> Range<usize> {
+        self.start[block] as usize..self.start[block + 1] as usize
     }
 
-    /// Parts of a line of sight over blocks that may be higher than it, in order; neighbouring ones are one.
-    ///
-    /// * `start`, `dir`: the line in cells; `span`: the part to look at;
-    /// * `height`: the highest that ground may be at 0 and 1, over the datum.
-    #[inline(always)]
-    pub(super) fn near_parts(
-        &self,
-        (start, dir): (DVec2, DVec2),
-        (t0, t1): (f64, f64),
-        height: [f64; 2],
-        ceilings: &[f32],
-        out: &mut Vec<(f64, f64)>,
-    ) {
-        let side = SIDE as f64;
-        let at = start + t0 * dir;
-        let block = |x: f64, d: f64, n: usize| {
-            let k = (x / side) as usize;
-            // On a border it is the block ahead that counts; the one behind holds the same nodes there.
-            let behind = d < 0.0 && k as f64 * side == x && k > 0;
-            (k - usize::from(behind)).min(n - 1)
-        };
-        let (mut col, mut row) = (block(at.x, dir.x, self.cols), block(at.y, dir.y, self.rows));
-        let border = |k: usize, axis: usize| {
-            let ahead = (k + usize::from(dir[axis] > 0.0)) as f64 * side;
-            if dir[axis] == 0.0 { f64::INFINITY } else { (ahead - start[axis]) / dir[axis] }
-        };
-        let mut next = [border(col, 0), border(row, 1)];
-        let stride = DVec2::splat(side) / dir.abs();
-        let rise = height[1] - height[0];
-        // The lower end of the line over a block is that nearer to the point if it rises.
-        let falls = rise < 0.0;
-        let (mut t, mut part) = (t0, None);
-        while t < t1 {
-            let across = usize::from(next[1] < next[0]);
-            let exit = next[across].min(t1);
-            let limit = height[0] + if falls { exit } else { t } * rise;
-            if f64::from(ceilings[row * self.cols + col]) > limit {
-                part.get_or_insert(t);
-            } else if let Some(from) = part.take() {
-                out.push((from, t));
-            }
-            let on = |k: usize, n: usize| if dir[across] > 0.0 { (k + 1).min(n - 1) } else { k.saturating_sub(1) };
-            if across == 0 {
-                col = on(col, self.cols);
-            } else {
-                row = on(row, self.rows);
-            }
-            next[across] += stride[across];
-            t = exit;
-        }
-        out.extend(part.map(|from| (from, t1)));
+    /// Numbers of the parts of a cell.
+    pub(super) fn parts_of_cell(&self, cell: usize) -> &[u32] {
+        &self.of_cell[self.first[cell] as usize..self.first[cell + 1] as usize]
     }
 }
 
+impl Tile {
+    /// * `corner`: column and row of the north-west node; `parts`: of the block.
+    fn new(field: &Field, cells: &Cells, corner: [usize; 2], parts: &[Part]) -> Self {
+        let mut out =
+            Self { heights: [0.0; NODES], part_of: [NO_PART; NODES], mixed: parts.len() != 1, slant: [0.0; 3] };
+        for k in 0..NODES {
+            let (x, y) = ((corner[0] + k % ALONG).min(field.cols() - 1), (corner[1] + k / ALONG).min(field.rows() - 1));
+            let node = y * field.cols() + x;
+            let cell = cells.labels()[node];
+            out.heights[k] = (field.heights()[node] - field.datum()) as f32;
+            match parts.iter().position(|p| p.cell == cell) {
+                Some(part) => out.part_of[k] = part as u8,
+                None => out.mixed = true,
+            }
+        }
+        out.slant = slant(&out.heights);
+        out
+    }
+
+    /// The slant's height at a place of the block, cells from its north-west corner: no ground there is higher.
+    #[inline(always)]
+    pub(super) fn highest_at(&self, [x, y]: [f64; 2]) -> f64 {
+        let [corner, east, south] = self.slant.map(f64::from);
+        corner + x * east + y * south
+    }
+}
+
+/// The slant of least squares, lifted over all nodes.
+fn slant(heights: &[f32; NODES]) -> [f32; 3] {
+    let middle = (SIDE / 2) as f32;
+    // Sum of the squared distances from the middle.
+    let spread = ALONG as f32 * (0..ALONG).map(|k| (k as f32 - middle).powi(2)).sum::<f32>();
+    let at = |k: usize| [(k % ALONG) as f32, (k / ALONG) as f32];
+    let mut slopes = [0.0; 2];
+    for (k, h) in heights.iter().enumerate() {
+        (0..2).for_each(|axis| slopes[axis] += (at(k)[axis] - middle) * h / spread);
+    }
+    let above = |(k, h): (usize, &f32)| f64::from(*h) - (0..2).map(|a| f64::from(at(k)[a] * slopes[a])).sum::<f64>();
+    let corner = heights.iter().enumerate().map(above).fold(f64::NEG_INFINITY, f64::max);
+    [(corner as f32).next_up(), slopes[0], slopes[1]]
+}
+
 /// Appends the parts of the block whose north-west corner is given.
-fn of_block(field: &Field, cells: &Cells, [col, row]: [usize; 2], out: &mut Vec<Part>) {
+fn of_block(field: &Field, cells: &Cells, [col, row]: [usize; 2], block: u32, out: &mut Vec<Part>) {
     let (cols, rows, heights, labels) = (field.cols(), field.rows(), field.heights(), cells.labels());
     let first = out.len();
     let mut part = first;
@@ -152,24 +184,22 @@ fn of_block(field: &Field, cells: &Cells, [col, row]: [usize; 2], out: &mut Vec<
             }
             match out.get_mut(part) {
                 Some(part) => part.highest = part.highest.max(highest),
-                None => out.push(Part { cell, highest }),
+                None => out.push(Part { cell, block, highest }),
             }
         }
     }
 }
 
-/// Blocks of each cell, and where each cell's begin.
-fn by_cell(start: &[u32], parts: &[Part], cells: usize) -> (Vec<u32>, Vec<u32>) {
+/// Numbers of the parts of each cell, and where each cell's begin.
+fn by_cell(parts: &[Part], cells: usize) -> (Vec<u32>, Vec<u32>) {
     let mut first = vec![0u32; cells + 1];
     parts.iter().for_each(|p| first[p.cell as usize + 1] += 1);
     (0..cells).for_each(|c| first[c + 1] += first[c]);
     let (mut next, mut of_cell) = (first.clone(), vec![0; parts.len()]);
-    for (block, ends) in start.windows(2).enumerate() {
-        for part in &parts[ends[0] as usize..ends[1] as usize] {
-            let at = &mut next[part.cell as usize];
-            of_cell[*at as usize] = block as u32;
-            *at += 1;
-        }
+    for (number, part) in parts.iter().enumerate() {
+        let at = &mut next[part.cell as usize];
+        of_cell[*at as usize] = number as u32;
+        *at += 1;
     }
     (first, of_cell)
 }
@@ -190,9 +220,14 @@ mod tests {
         });
         let cells = Cells::new(&field, 60);
         let blocks = Blocks::new(&field, &cells);
-        let mut ground = Lowered::new(&blocks, cells.len());
+        let eye = DVec2::new(20.0, -3.0);
+        let mut ground = Lowered::new(&field, &blocks, cells.len(), eye);
         for cell in (0..cells.len()).step_by(2) {
             ground.change(cell, f64::INFINITY, |_| Affine { scale: 0.7, shift: -3.0 * cell as f64 });
+        }
+        for cell in (0..cells.len()).step_by(3) {
+            let below = 30.0 * (5 + cell % 30) as f64;
+            ground.change(cell, below, |a| Affine { shift: a.shift - 200.0, ..a });
         }
         ground.settle(&blocks);
         let mut close = 0;
@@ -201,11 +236,13 @@ mod tests {
             if x + 1 == cols || field.void()[from] || field.void()[to] {
                 continue;
             }
-            let ceiling = f64::from(ground.ceilings[y / SIDE * blocks.cols + x / SIDE]);
+            let ceiling = f64::from(ground.ceilings.of_blocks()[y / SIDE * blocks.cols + x / SIDE]);
             for weight in (0..=10).map(|k| 0.1 * f64::from(k)) {
                 let nearest = if weight > 0.5 { to } else { from };
                 let h = (1.0 - weight) * field.heights()[from] + weight * field.heights()[to] - field.datum();
-                let z = ground.pieces[cells.labels()[nearest] as usize].highest(h);
+                let at = DVec2::new(x as f64, y as f64) + weight * if step == 1 { DVec2::X } else { DVec2::Y };
+                let rho = ((at - eye) * field.spacing()).length();
+                let z = ground.pieces[cells.labels()[nearest] as usize].at(rho).of(h);
                 assert!(z <= ceiling, "edge {from} to {to} at {weight}: {z} over {ceiling}");
                 close += usize::from(z > ceiling - 1.0);
             }

@@ -19,6 +19,13 @@ impl Affine {
     pub fn of(&self, h: f64) -> f64 {
         self.scale * h + self.shift
     }
+
+    /// Makes no height >= 0 less high than either.
+    #[inline(always)]
+    pub(super) fn larger(self, other: &Self) -> Self {
+        let of = |a: f64, b: f64| if a > b { a } else { b };
+        Self { scale: of(self.scale, other.scale), shift: of(self.shift, other.shift) }
+    }
 }
 
 /// (5): the factor that brings ground of height `z` down to a line of sight of height `limit`.

@@ -3,7 +3,7 @@
 use super::super::line_of_sight::{SightSample, SightWalk};
 use super::super::{Cells, Field, NO_CELL};
 use super::Pieces;
-use super::scan::High;
+use super::scan::{High, UNSURE};
 use super::trace::Sight;
 
 /// Ground over a line of sight.
@@ -40,8 +40,7 @@ impl Hits<'_> {
         out.clear();
         let Some(walk) = SightWalk::new(self.field, self.sight.from, self.sight.eye, false) else { return };
         for run in high.chunk_by(|a, b| a.cell == b.cell) {
-            let pieces = self.pieces.get(run[0].cell as usize);
-            match pieces.filter(|p| p.alike()) {
+            match self.pieces.get(run[0].cell as usize) {
                 Some(pieces) => self.telling(run, pieces, |h| out.extend(self.hit(&walk, h))),
                 None => out.extend(run.iter().filter_map(|h| self.hit(&walk, h))),
             }
@@ -52,26 +51,36 @@ impl Hits<'_> {
 
     /// Gives out those of one cell, one after the other along the line, that may tell what is done to it.
     fn telling(&self, run: &[High], pieces: &Pieces, mut give: impl FnMut(&High)) {
-        let doubt = self.sight.doubt;
-        let excess = |h: &High| pieces.highest(h.h) - h.limit;
+        let Sight { doubt, rho, .. } = *self.sight;
+        // `None` where rounding decides between two rings.
+        let excess = |h: &High| {
+            let distances = [h.tau + UNSURE, h.tau - UNSURE].map(|t| (1.0 - t) * rho);
+            let (affine, exact) = pieces.between(distances);
+            exact.then(|| affine.of(h.h) - h.limit)
+        };
         let (mut most, mut least) = (f64::NEG_INFINITY, f64::INFINITY);
         for h in run.iter().filter(|h| self.sight.comparable(h)) {
-            let e = excess(h);
-            most = most.max(e);
-            least = least.min(h.limit / (h.limit + e));
+            if let Some(e) = excess(h) {
+                most = most.max(e);
+                least = least.min(h.limit / (h.limit + e));
+            }
         }
         // Heights are larger than `low`.
         let ratios = least * (1.0 + 4.0 * doubt / self.sight.low);
         let mut first = true;
         for h in run {
-            let e = excess(h);
+            let Some(e) = excess(h) else {
+                give(h);
+                continue;
+            };
             if e < -doubt {
                 continue;
             }
             let extreme = e + 2.0 * doubt >= most || h.limit <= ratios * (h.limit + e);
-            if first || extreme || !self.sight.comparable(h) {
+            let counts = self.sight.comparable(h);
+            if first || extreme || !counts {
                 give(h);
-                first &= e <= 2.0 * doubt;
+                first &= !counts || e <= 2.0 * doubt;
             }
         }
     }

@@ -1,6 +1,7 @@
 //! The greedy pass: cell by cell, far to near, the ground is scaled and displaced until every point is seen.
 
 mod blocks;
+mod ceilings;
 mod equations;
 mod hits;
 mod pieces;
@@ -11,6 +12,7 @@ mod scan;
 #[cfg(test)]
 mod tests;
 mod trace;
+mod under;
 mod view;
 
 use super::{Cells, Field, NO_CELL, ReferencePoint, TerrainSettings};
@@ -83,7 +85,7 @@ impl Naive {
         points: &[ReferencePoint],
     ) -> Self {
         let mut pass = queue::Pass::new(field, cells, blocks, settings, eye, points);
-        pass.run(&trace::Skipping { field, cells, blocks });
+        pass.run(&trace::Skipping { field, blocks });
         pass.finish()
     }
 

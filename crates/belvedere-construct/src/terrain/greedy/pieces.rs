@@ -29,13 +29,24 @@ impl Pieces {
         }
     }
 
-    /// Nothing of the cell that was at most `h` >= 0 high is higher now.
+    /// Ground of the cell that was at least 0 high is nowhere higher than this makes it.
     #[inline(always)]
-    pub(super) fn highest(&self, h: f64) -> f64 {
-        self.bound.of(h)
+    pub(super) fn bound(&self) -> Affine {
+        self.bound
     }
 
-    /// Whether everywhere the same is done; then [`Self::highest`] is what is done.
+    /// The same between two distances to the eye, and whether it is what is done at all of them.
+    #[inline(always)]
+    pub(super) fn between(&self, [near, far]: [f64; 2]) -> (Affine, bool) {
+        if self.alike() { (self.bound, true) } else { self.rings_between(near, far) }
+    }
+
+    fn rings_between(&self, near: f64, far: f64) -> (Affine, bool) {
+        let [first, last] = [near, far].map(|rho| self.radii.partition_point(|&r| r <= rho));
+        (self.affine[first + 1..=last].iter().fold(self.affine[first], Affine::larger), first == last)
+    }
+
+    /// Whether everywhere the same is done; then [`Self::bound`] is what is done.
     #[inline(always)]
     pub(super) fn alike(&self) -> bool {
         self.affine.len() <= 1
@@ -64,8 +75,7 @@ impl Pieces {
         }
         let last = if below < f64::INFINITY { ring } else { self.radii.len() };
         self.affine[..=last].iter_mut().for_each(|a| *a = change(*a));
-        let larger = |a: Affine, b: &Affine| Affine { scale: a.scale.max(b.scale), shift: a.shift.max(b.shift) };
-        self.bound = self.affine[1..].iter().fold(self.affine[0], larger);
+        self.bound = self.affine[1..].iter().fold(self.affine[0], Affine::larger);
         divide
     }
 }

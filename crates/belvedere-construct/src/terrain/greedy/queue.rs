@@ -7,9 +7,7 @@ use super::scan::High;
 use super::trace::{Lowered, Room, Sampler, Sight, Target};
 use super::{BACKWARD, Blocks, CLEARANCE, GreedyCounters, NEAR, Naive};
 use belvedere_core::{DVec2, DVec3};
-use rayon::prelude::*;
 use std::collections::BinaryHeap;
-use std::ops::Range;
 
 /// Heights that differ by less than this share of the relief are equal.
 const EQUAL: f64 = 1e-12;
@@ -39,35 +37,8 @@ impl PartialOrd for Entry {
     }
 }
 
-/// Points whose samples are taken at the same time, and by one core.
-const AHEAD: usize = 64;
-const BY_ONE: usize = 8;
-
-/// Samples of lines of sight, most of them taken ahead.
-struct Ahead {
-    /// The whole lines of all points that are still to be sampled, the farthest last.
-    order: Vec<Entry>,
-    taken: Vec<Taken>,
-    /// For each point the height for which its samples hold, and which of those of which of the above they are.
-    of_point: Vec<Option<(f64, usize, Range<usize>)>>,
-    /// Those of a line that is sampled by itself.
-    single: Taken,
-}
-
-/// Samples of several lines, one after the other.
-#[derive(Default)]
-struct Taken {
-    samples: Vec<High>,
-    room: Room,
-}
-
-impl Ahead {
-    fn new(mut order: Vec<Entry>) -> Self {
-        order.sort_unstable();
-        let taken = std::iter::repeat_with(Taken::default).take(AHEAD / BY_ONE).collect();
-        Self { of_point: vec![None; order.len()], order, taken, single: Taken::default() }
-    }
-}
+/// Traces after which the bounds of the ground are set anew: sooner costs more than it saves.
+const SETTLE: usize = 12;
 
 pub(super) struct Pass<'a> {
     field: &'a Field,
@@ -114,7 +85,7 @@ impl<'a> Pass<'a> {
             slack: EQUAL * (field.relief() + z.abs()),
             of_cell,
             first,
-            ground: Lowered::new(blocks, cells.len()),
+            ground: Lowered::new(field, blocks, cells.len(), grid),
             waiting: vec![false; targets.len()],
             unresolved: vec![false; targets.len()],
             backward: vec![0; cells.len()],
@@ -126,57 +97,17 @@ impl<'a> Pass<'a> {
 
     pub(super) fn run(&mut self, sampler: &dyn Sampler) {
         (0..self.targets.len()).for_each(|point| self.enqueue(point));
-        let mut ahead = Ahead::new(self.heap.iter().copied().collect());
-        let mut found = Vec::new();
+        let (mut room, mut samples, mut found) = (Room::default(), Vec::new(), Vec::new());
         while let Some(entry) = self.heap.pop() {
+            if self.counters.traces.is_multiple_of(SETTLE) {
+                self.ground.settle(self.blocks);
+            }
             self.counters.traces += 1;
-            let samples = self.samples(&entry, sampler, &mut ahead);
-            self.trace(entry, samples, &mut found);
-        }
-    }
-
-    fn sight(&self, entry: &Entry) -> Sight {
-        self.targets[entry.point].sight(self.field, &self.ground.pieces, self.eye, entry.below)
-    }
-
-    /// Samples of a line of sight. Those of the next points in the first order are taken at the same time on all cores: as
-    /// ground is only ever lowered, they hold all that later ones would, until the point itself is lowered.
-    fn samples<'s>(&mut self, entry: &Entry, sampler: &dyn Sampler, ahead: &'s mut Ahead) -> &'s [High] {
-        if ahead.order.last() == Some(entry) {
-            self.ground.settle(self.blocks);
-            self.sample_ahead(sampler, ahead);
-        }
-        let sight = self.sight(entry);
-        let single = &mut ahead.single;
-        match ahead.of_point[entry.point].take() {
-            Some((height, taken, range)) if entry.whole && height == sight.height[0] => {
-                &ahead.taken[taken].samples[range]
-            }
-            _ => {
-                single.samples.clear();
-                sampler.samples(&sight, &self.ground, &mut single.room, &mut single.samples);
-                &single.samples
-            }
-        }
-    }
-
-    fn sample_ahead(&self, sampler: &dyn Sampler, ahead: &mut Ahead) {
-        let mut batch = ahead.order.split_off(ahead.order.len().saturating_sub(AHEAD));
-        batch.reverse();
-        let sample = |(taken, entries): (&mut Taken, &[Entry])| -> Vec<(f64, Range<usize>)> {
-            taken.samples.clear();
-            let of = |next: &Entry| {
-                let (sight, start) = (self.sight(next), taken.samples.len());
-                sampler.samples(&sight, &self.ground, &mut taken.room, &mut taken.samples);
-                (sight.height[0], start..taken.samples.len())
-            };
-            entries.iter().map(of).collect()
-        };
-        let found: Vec<_> = ahead.taken.par_iter_mut().zip(batch.par_chunks(BY_ONE)).map(sample).collect();
-        for (i, (entries, found)) in batch.chunks(BY_ONE).zip(found).enumerate() {
-            for (entry, (height, range)) in entries.iter().zip(found) {
-                ahead.of_point[entry.point] = Some((height, i, range));
-            }
+            let target = &self.targets[entry.point];
+            let sight = target.sight(self.field, &self.ground.pieces, self.eye, entry.below);
+            samples.clear();
+            sampler.samples(&sight, &self.ground, &mut room, &mut samples);
+            self.trace(entry, &sight, &samples, &mut found);
         }
     }
 
@@ -195,15 +126,14 @@ impl<'a> Pass<'a> {
     }
 
     /// Follows a line of sight and clears it, cell by cell.
-    fn trace(&mut self, entry: Entry, samples: &[High], found: &mut Vec<Hit>) {
+    fn trace(&mut self, entry: Entry, sight: &Sight, samples: &[High], found: &mut Vec<Hit>) {
         let target = self.targets[entry.point];
         if entry.whole {
             self.waiting[entry.point] = false;
             self.unresolved[entry.point] = false;
         }
-        let sight = self.sight(&entry);
         let (field, cells, pieces) = (self.field, self.cells, &self.ground.pieces);
-        Hits { field, cells, pieces, sight: &sight, below: entry.below, slack: self.slack }.find(samples, found);
+        Hits { field, cells, pieces, sight, below: entry.below, slack: self.slack }.find(samples, found);
         // Clearing a cell changes nothing in the others.
         while let Some(&first) = found.first() {
             let below = if first.cell == target.cell {

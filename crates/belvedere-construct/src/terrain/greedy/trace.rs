@@ -2,18 +2,24 @@
 
 use super::super::line_of_sight::{SightWalk, guard_tau};
 use super::super::{Cells, Field, NO_CELL, ReferencePoint};
-use super::scan::{High, Scan, UNSURE, merge};
+use super::ceilings::Ceilings;
+use super::scan::{Done, High, Scan, UNSURE, merge};
+use super::under::{Over, Under};
 use super::{Affine, Blocks, CLEARANCE, CLEARANCE_GROWS, Pieces};
 use belvedere_core::DVec2;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Of all heights in use.
 const DOUBT: f64 = 1e-12;
+/// Of the relief, for heights are kept in single precision.
+const ROUNDED: f64 = 1.2e-7;
 
 /// The line of sight of one point as the ground is now. Heights are over the datum.
 pub(super) struct Sight {
     pub(super) from: DVec2,
     pub(super) eye: DVec2,
+    /// Distance from the point to the eye in plan, scene units.
+    pub(super) rho: f64,
     /// Height of the line at the point and at the eye.
     pub(super) height: [f64; 2],
     /// Where the point's own ground ends.
@@ -30,7 +36,7 @@ impl Sight {
     /// Whether a crossing may stand for others of its cell: it surely counts, and scaling means something there.
     #[inline(always)]
     pub(super) fn comparable(&self, high: &High) -> bool {
-        high.tau > self.guard + UNSURE && high.limit > self.low
+        high.tau > self.guard + UNSURE && high.tau < 1.0 - UNSURE && high.limit > self.low
     }
 
     /// The height that the ground must not exceed.
@@ -43,14 +49,15 @@ impl Sight {
 /// Finds the ground that may lie over a line of sight.
 pub(super) trait Sampler: Sync {
     /// Appends, in order, what may lie over the line of sight now or after cells were lowered further; what others of the
-    /// same cell make needless may be missing, see [`Scan::part`].
+    /// same cell make needless may be missing, see [`Scan::blocks`].
     fn samples(&self, sight: &Sight, ground: &Lowered, room: &mut Room, out: &mut Vec<High>);
 }
 
 /// Room to work in, kept from line to line.
 #[derive(Default)]
 pub(super) struct Room {
-    parts: Vec<(f64, f64)>,
+    over: Vec<Over>,
+    done: Vec<Done>,
     by_family: [Vec<High>; 2],
 }
 
@@ -58,36 +65,32 @@ pub(super) struct Room {
 pub(super) struct Lowered {
     /// What is done to each cell.
     pub(super) pieces: Vec<Pieces>,
-    /// A bound of the highest ground of each block.
-    pub(super) ceilings: Vec<f32>,
-    /// Cells that were lowered since those were set.
-    lowered: Vec<usize>,
+    pub(super) ceilings: Ceilings,
 }
 
 impl Lowered {
     /// Untouched.
-    pub(super) fn new(blocks: &Blocks, cells: usize) -> Self {
-        Self { pieces: vec![Pieces::default(); cells], ceilings: blocks.ceilings(), lowered: Vec::new() }
+    ///
+    /// * `eye`: grid coordinates.
+    pub(super) fn new(field: &Field, blocks: &Blocks, cells: usize, eye: DVec2) -> Self {
+        Self { pieces: vec![Pieces::default(); cells], ceilings: Ceilings::new(blocks, eye, field.spacing()) }
     }
 
     /// See [`Pieces::change`].
     pub(super) fn change(&mut self, cell: usize, below: f64, change: impl FnMut(Affine) -> Affine) -> bool {
-        self.lowered.push(cell);
+        self.ceilings.lower(cell);
         self.pieces[cell].change(below, change)
     }
 
-    /// Sets the bounds anew where ground was lowered; until then they are higher than need be.
+    /// Sets the bounds anew where ground was lowered.
     pub(super) fn settle(&mut self, blocks: &Blocks) {
-        self.lowered.sort_unstable();
-        self.lowered.dedup();
-        self.lowered.drain(..).for_each(|cell| blocks.lower(cell, &self.pieces, &mut self.ceilings));
+        self.ceilings.settle(blocks, &self.pieces);
     }
 }
 
 /// Leaves out blocks that the line clears, and what was lowered enough.
 pub(super) struct Skipping<'a> {
     pub(super) field: &'a Field,
-    pub(super) cells: &'a Cells,
     pub(super) blocks: &'a Blocks,
 }
 
@@ -111,22 +114,14 @@ impl WithSimd for Skip<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { all: Skipping { field, cells, blocks }, sight, ground: Lowered { pieces, ceilings, .. }, room, out } =
-            self;
-        let Room { parts, by_family: [columns, rows] } = room;
-        let Some(walk) = SightWalk::new(field, sight.from, sight.eye, false) else { return };
-        let height = sight.height.map(|h| h - sight.clearance);
-        let (t0, t1) = walk.span();
-        parts.clear();
-        columns.clear();
-        rows.clear();
-        blocks.near_parts((sight.from, walk.dir()), (t0.max(sight.guard), t1), height, ceilings, parts);
-        let scan = Scan { simd, field, cells, pieces, sight };
-        for &part in &*parts {
-            scan.part::<0>(&walk, part, columns);
-            scan.part::<1>(&walk, part, rows);
-        }
-        merge([columns, rows], out);
+        let Self { all: Skipping { field, blocks }, sight, ground, room, out } = self;
+        let Room { over, done, by_family } = room;
+        let Some(walk) = &SightWalk::new(field, sight.from, sight.eye, false) else { return };
+        over.clear();
+        by_family.iter_mut().for_each(Vec::clear);
+        Under { size: blocks.size(), ceilings: ground.ceilings.of_blocks() }.near(simd, walk, sight, over);
+        Scan { simd, blocks, ground, sight, walk }.blocks(over, done, by_family);
+        merge(by_family, out);
     }
 }
 
@@ -181,7 +176,7 @@ impl Target {
         let z = pieces[self.cell].at(self.rho).of(self.original) + self.lift;
         let clearance = CLEARANCE * field.relief();
         let guard = if below < self.below() { 1.0 - below / self.rho } else { self.guard };
-        let doubt = DOUBT * (field.relief() + field.datum().abs() + eye_z.abs());
-        Sight { from: self.grid, eye, height: [z, eye_z], guard, clearance, low: clearance, doubt }
+        let doubt = DOUBT * (field.relief() + field.datum().abs() + eye_z.abs()) + ROUNDED * field.relief();
+        Sight { from: self.grid, eye, rho: self.rho, height: [z, eye_z], guard, clearance, low: clearance, doubt }
     }
 }
