@@ -81,8 +81,8 @@ impl Chooser<'_> {
 
     fn visit(&self, level: usize, block: [usize; 2], mut plain: bool, out: &mut Choice) {
         let Some(bounds) = self.tree.bounds(self.hf, level, block) else { return };
-        let Look::Seen(depth_min) = self.pass.look(self.lens, &bounds) else { return };
-        let px_per_unit = self.pass.px_per_height(self.lens, &bounds, depth_min);
+        let Look::Seen(extent) = self.pass.look(self.lens, &bounds) else { return };
+        let px_per_unit = self.pass.px_per_height(self.lens, &bounds, extent);
         let height_px = f64::from(self.tree.span(level, block).error) * px_per_unit;
         // Where records meet, all of them must cut the same triangles.
         let whole = self.pass.holds(&bounds);
@@ -164,8 +164,8 @@ impl Chooser<'_> {
                 continue;
             }
             let Some(bounds) = self.tree.bounds(self.hf, level, block) else { continue };
-            if let Look::Seen(depth_min) = self.pass.look(self.lens, &bounds) {
-                let px_per_unit = self.pass.px_per_height(self.lens, &bounds, depth_min);
+            if let Look::Seen(extent) = self.pass.look(self.lens, &bounds) {
+                let px_per_unit = self.pass.px_per_height(self.lens, &bounds, extent);
                 out.add(Chosen { level, block, px_per_unit, whole: self.pass.holds(&bounds), ..parent });
             }
         }

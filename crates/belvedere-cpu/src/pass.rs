@@ -14,7 +14,7 @@ pub(crate) struct Pass<'a> {
     record: usize,
     displacer: Displacer<'a>,
     projector: Option<Projector<'a>>,
-    height_px: f64,
+    height: HeightPx,
 }
 
 /// What the image shows of a box.
@@ -22,8 +22,17 @@ pub(crate) struct Pass<'a> {
 pub(crate) enum Look {
     /// Nothing, or nothing of this pass.
     Out,
-    /// Perhaps some of it, at least this deep; `None` where part of it may be beside the eye.
-    Seen(Option<f64>),
+    /// Perhaps some of it; `None` where part of it may be beside the eye.
+    Seen(Option<Extent>),
+}
+
+/// Where all of a box lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Extent {
+    /// Least depth, positive.
+    depth: f64,
+    /// Least and largest place on the image, pixels from its centre.
+    image: [DVec2; 2],
 }
 
 /// Columns of the ground: `count` of them from `first` on, `step` apart.
@@ -56,7 +65,7 @@ impl<'a> Pass<'a> {
             record,
             displacer: Displacer::new(view, record),
             projector: Projector::new(view, record),
-            height_px: height_px(view, record),
+            height: HeightPx::new(view, record),
         };
         (0..view.records()).map(pass).collect()
     }
@@ -139,12 +148,15 @@ impl<'a> Pass<'a> {
         if self.is_only() {
             let Some(b) = displaced(self.view.stages(), bounds) else { return Look::Seen(None) };
             let (mut code, mut depth) = (u8::MAX, f64::INFINITY);
+            let mut image = [DVec2::INFINITY, DVec2::NEG_INFINITY];
             for corner in b.corners() {
                 let v = lens.view_from(corner);
                 code &= lens.outcode(v, 2.0);
                 depth = depth.min(v.z);
+                let place = lens.pixel(v) - lens.center;
+                image = [image[0].min(place), image[1].max(place)];
             }
-            return if code != 0 { Look::Out } else { Look::Seen((depth > 0.0).then_some(depth)) };
+            return if code != 0 { Look::Out } else { Look::Seen((depth > 0.0).then_some(Extent { depth, image })) };
         }
         if self.record_margins(bounds).is_some_and(|all| (0..2).any(|side| all.iter().all(|m| m[side] <= 0.0))) {
             return Look::Out;
@@ -152,19 +164,25 @@ impl<'a> Pass<'a> {
         let Some(b) = self.view.image_box(bounds) else { return Look::Seen(None) };
         let size = 2.0 * lens.center;
         let out = b.max.x < -2.0 || b.max.y < -2.0 || b.min.x > size.x + 2.0 || b.min.y > size.y + 2.0;
-        if out { Look::Out } else { Look::Seen(Some(b.depth_min)) }
+        if out {
+            return Look::Out;
+        }
+        let extent = Extent { depth: b.depth_min, image: [b.min - lens.center, b.max - lens.center] };
+        Look::Seen((extent.depth > 0.0).then_some(extent))
     }
 
     /// Bound in pixels on what a unit of height inside the box can change on the image; infinite where unknown.
-    /// * `depth_min`: of the box, see [`Look::Seen`].
-    pub(crate) fn px_per_height(&self, lens: &Lens, bounds: &Aabb, depth_min: Option<f64>) -> f64 {
-        let Some(depth) = depth_min.filter(|d| *d > 0.0) else { return f64::INFINITY };
+    /// * `extent`: of the box, see [`Look::Seen`].
+    pub(crate) fn px_per_height(&self, lens: &Lens, bounds: &Aabb, extent: Option<Extent>) -> f64 {
+        let Some(Extent { depth, image }) = extent else { return f64::INFINITY };
         let stretch = |bend: &belvedere_core::map::spline::SplineBend| {
             let places = bounds.corners().into_iter().chain([bounds.center()]);
             places.map(|p| bend.jacobian(p).map_or(f64::INFINITY, |j| j.z_axis.length())).fold(0.0, f64::max)
         };
         let spline = self.view.stages().iter().find_map(|s| if let Stage::SplineBend(b) = s { Some(b) } else { None });
-        let height_px = self.height_px * spline.map_or(1.0, stretch);
+        // What lies beyond the image is not drawn.
+        let image = image.map(|place| place.clamp(-lens.center.abs(), lens.center.abs()));
+        let height_px = self.height.most(lens, image) * spline.map_or(1.0, stretch);
         if lens.ortho { height_px } else { height_px / depth }
     }
 
@@ -181,35 +199,116 @@ fn displaced(stages: &[Stage], bounds: &Aabb) -> Option<Aabb> {
     stages.iter().try_fold(*bounds, |b, stage| stage.displaced_bounds(&b))
 }
 
-/// Pixels that a unit of height moves an image at depth 1 at most, anywhere on the image.
+/// Pixels that a unit of height moves an image at depth 1.
 ///
 /// Earth and terrain move points straight up or down. A turn shears a height by `before Z + (phi_a a_z + phi_b b_z) shift` with
 /// phi_a in 0..=1 and phi_b in -1..=0; the image of that is convex in the sum and in the pixel, so ends and corners decide. After
 /// a spline a height points anywhere.
-fn height_px(view: &View, record: usize) -> f64 {
-    let ph = view.pinhole();
-    let (scale, half) = (ph.scale_px(), ph.center_px().abs());
-    let corners = [DVec2::new(-half.x, -half.y), DVec2::new(half.x, -half.y), DVec2::new(-half.x, half.y), half];
-    let ball = if ph.is_orthographic() { scale } else { (scale * scale + half.length_squared()).sqrt() };
-    let across = |d: DVec3| {
-        let lateral = DVec2::new(d.dot(ph.right), d.dot(ph.down)) * scale;
-        let depth = if ph.is_orthographic() { 0.0 } else { d.dot(ph.forward) };
-        corners.iter().map(|c| (lateral - *c * depth).length()).fold(0.0, f64::max)
-    };
-    let splined = view.stages().iter().any(|s| matches!(s, Stage::SplineBend(_)));
-    let turn = view.curved_rays().and_then(|rays| rays.turns().get(record));
-    match (turn, splined) {
-        (None, false) => across(DVec3::Z),
-        (None, true) => ball,
-        (Some(turn), false) => {
-            let (a, b) = (turn.a.gradient.z, -turn.b.gradient.z);
-            let sums = [a.min(0.0) + b.min(0.0), a.max(0.0) + b.max(0.0)];
-            sums.map(|t| across(turn.before * DVec3::Z + t * turn.shift)).into_iter().fold(0.0, f64::max)
+#[derive(Debug)]
+enum HeightPx {
+    /// Across the axis in pixels, and along it, of the ends of what a height may become.
+    Ways(Vec<(DVec2, f64)>),
+    /// Any direction, of this length.
+    Any(f64),
+}
+
+impl HeightPx {
+    fn new(view: &View, record: usize) -> Self {
+        let ph = view.pinhole();
+        let way = |d: DVec3| {
+            let depth = if ph.is_orthographic() { 0.0 } else { d.dot(ph.forward) };
+            (DVec2::new(d.dot(ph.right), d.dot(ph.down)) * ph.scale_px(), depth)
+        };
+        let splined = view.stages().iter().any(|s| matches!(s, Stage::SplineBend(_)));
+        let turn = view.curved_rays().and_then(|rays| rays.turns().get(record));
+        match (turn, splined) {
+            (None, false) => Self::Ways(vec![way(DVec3::Z)]),
+            (None, true) => Self::Any(1.0),
+            (Some(turn), false) => {
+                let (a, b) = (turn.a.gradient.z, -turn.b.gradient.z);
+                let sums = [a.min(0.0) + b.min(0.0), a.max(0.0) + b.max(0.0)];
+                Self::Ways(sums.map(|t| way(turn.before * DVec3::Z + t * turn.shift)).to_vec())
+            }
+            (Some(turn), true) => {
+                let before = turn.before.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
+                let slopes = turn.a.gradient.length() + turn.b.gradient.length();
+                Self::Any(before + turn.shift.length() * slopes)
+            }
         }
-        (Some(turn), true) => {
-            let before = turn.before.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
-            let slopes = turn.a.gradient.length() + turn.b.gradient.length();
-            ball * (before + turn.shift.length() * slopes)
+    }
+
+    /// At most, in a part of the image: its least and largest place, pixels from the centre.
+    fn most(&self, lens: &Lens, [min, max]: [DVec2; 2]) -> f64 {
+        let corners = [min, max, DVec2::new(min.x, max.y), DVec2::new(max.x, min.y)];
+        match self {
+            Self::Ways(ways) => {
+                let off = |c: DVec2| ways.iter().map(move |(across, depth)| (*across - c * *depth).length());
+                corners.into_iter().flat_map(off).fold(0.0, f64::max)
+            }
+            Self::Any(length) if lens.ortho => length * lens.scale,
+            Self::Any(length) => {
+                let off = |c: DVec2| (lens.scale * lens.scale + c.length_squared()).sqrt();
+                length * corners.into_iter().map(off).fold(0.0, f64::max)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
+    use belvedere_core::map::earth::EarthCurvature;
+    use belvedere_core::{CurvedRays, Pinhole, Projection};
+
+    fn views() -> Vec<View> {
+        let (eye, target) = (DVec3::new(300.0, -9000.0, 2600.0), DVec3::new(0.0, 0.0, -900.0));
+        let camera = |lens| Pinhole::look_at(eye, target, DVec3::Z, lens, [640, 360], 1.0, None).unwrap();
+        let wide = camera(Projection::Perspective { fov_y: 0.9 });
+        let turn = TurnSpec {
+            viewpoint: eye + DVec3::Z * 1200.0,
+            t0: DVec3::new(0.0, -1500.0, 0.0),
+            t1: DVec3::ZERO,
+            t2: DVec3::new(0.0, 1500.0, 0.0),
+            pencil: Pencil::Parallel { normal: -DVec3::Y },
+            m: Sharpness::Bend,
+        };
+        let rays = CurvedRays::new(&wide, Model::Modified, &[turn]).unwrap();
+        let earth = Stage::EarthCurvature(EarthCurvature { eye, radius: 6.37e6, refraction: 0.13 });
+        let flat = View::straight(camera(Projection::Orthographic { height: 6000.0 }));
+        let stages = [vec![], vec![earth.clone()], vec![earth, Stage::CurvedRays(rays)]];
+        stages.into_iter().map(|s| View::new(wide.clone(), s).unwrap()).chain([flat]).collect()
+    }
+
+    #[test]
+    fn no_height_changes_the_image_by_more_than_is_said_nor_is_much_more_said() {
+        for (k, view) in views().iter().enumerate() {
+            let lens = Lens::new(view.pinhole());
+            let pass = &Pass::all(view)[0];
+            let (mut boxes, mut loose) = (0, 0.0f64);
+            for (i, j) in (-8..8).flat_map(|i| (-6..24).map(move |j| (i, j))) {
+                let min = DVec3::new(500.0 * f64::from(i), 500.0 * f64::from(j), -200.0);
+                let bounds = Aabb { min, max: min + DVec3::new(400.0, 400.0, 300.0) };
+                let Look::Seen(extent @ Some(_)) = pass.look(&lens, &bounds) else { continue };
+                let most = pass.px_per_height(&lens, &bounds, extent);
+                let mut worst = 0.0f64;
+                let image = |p: DVec3| view.displace_in(0, p).ok().and_then(|d| view.pinhole().project(d.point).ok());
+                for n in 0..64 {
+                    let at = |k: i32| f64::from(n >> (2 * k) & 3) / 3.0;
+                    let low = min + DVec3::new(400.0 * at(0), 400.0 * at(1), 270.0 * at(2));
+                    let (Some((a, _)), Some((b, _))) = (image(low), image(low + DVec3::Z * 30.0)) else { continue };
+                    if [a, b].iter().all(|p| p.cmpge(DVec2::ZERO).all() && p.cmple(2.0 * lens.center).all()) {
+                        worst = worst.max(a.distance(b) / 30.0);
+                    }
+                }
+                assert!(worst <= most * (1.0 + 1e-9), "view {k}, box {i} {j}: {worst} > {most}");
+                boxes += usize::from(worst > 0.0);
+                // Far away, where all of a box is about as deep.
+                if worst > 0.0 && j >= 10 {
+                    loose = loose.max(most / worst);
+                }
+            }
+            assert!(boxes > 60 && loose < 1.02, "view {k}: {boxes} boxes, {loose} times too much");
         }
     }
 }
