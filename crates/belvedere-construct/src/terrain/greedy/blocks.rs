@@ -147,12 +147,14 @@ fn slant(heights: &[f32; NODES]) -> [f32; 3] {
     let middle = (SIDE / 2) as f32;
     // Sum of the squared distances from the middle.
     let spread = ALONG as f32 * (0..ALONG).map(|k| (k as f32 - middle).powi(2)).sum::<f32>();
-    let at = |k: usize| [(k % ALONG) as f32, (k / ALONG) as f32];
+    let at = |k: usize| [k % ALONG, k / ALONG];
     let mut slopes = [0.0; 2];
     for (k, h) in heights.iter().enumerate() {
-        (0..2).for_each(|axis| slopes[axis] += (at(k)[axis] - middle) * h / spread);
+        (0..2).for_each(|axis| slopes[axis] += (at(k)[axis] as f32 - middle) * h / spread);
     }
-    let above = |(k, h): (usize, &f32)| f64::from(*h) - (0..2).map(|a| f64::from(at(k)[a] * slopes[a])).sum::<f64>();
+    // In f64, as it is looked up.
+    let rise = |k: usize| (0..2).map(|axis| at(k)[axis] as f64 * f64::from(slopes[axis])).sum::<f64>();
+    let above = |(k, h): (usize, &f32)| f64::from(*h) - rise(k);
     let corner = heights.iter().enumerate().map(above).fold(f64::NEG_INFINITY, f64::max);
     [(corner as f32).next_up(), slopes[0], slopes[1]]
 }
