@@ -83,7 +83,7 @@ impl<S: Simd> Scan<'_, S> {
         let [t, u] = over.span;
         let slant =
             |t: f64| tile.highest_at([start.x + t * dir.x - over.corner[0], start.y + t * dir.y - over.corner[1]]);
-        let (rise, foot) = (sight.height[1] - sight.height[0], sight.height[0] - sight.clearance - sight.doubt);
+        let (foot, rise) = sight.clear();
         let (slant, line) = ([slant(t), slant(u)], [foot + t * rise, foot + u * rise]);
         let lowest = if rise < 0.0 { line[1] } else { line[0] };
         let distances = [(1.0 - u - UNSURE) * sight.rho, (1.0 - t + UNSURE) * sight.rho];
@@ -93,8 +93,8 @@ impl<S: Simd> Scan<'_, S> {
             let (affine, exact) = self.ground.pieces[part.cell as usize].between(distances);
             done.push(Done { cell: part.cell, affine, exact });
             // Slants and lines of sight are straight: the ends decide.
-            let slants = affine.of(slant[0]) < line[0] && affine.of(slant[1]) < line[1];
-            if !slants && affine.of(f64::from(part.highest)) >= lowest {
+            let below = affine.of(slant[0]) < line[0] && affine.of(slant[1]) < line[1];
+            if !below && affine.of(f64::from(part.highest)) >= lowest {
                 most = Some(most.map_or(affine, |most: Affine| most.larger(&affine)));
             }
         }

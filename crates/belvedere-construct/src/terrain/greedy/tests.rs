@@ -263,31 +263,33 @@ fn what_is_left_out_tells_nothing_now_and_after_more_was_lowered() {
     assert!(kept.is_sorted_by(|a, b| a > b), "{kept:?}");
 }
 
+/// Whether nothing that is left out of a line of sight over untouched ground tells anything; how much is over the line.
+fn told_alike(field: &Field, cells: &Cells, blocks: &Blocks, [from, eye]: [DVec2; 2], height: [f64; 2]) -> usize {
+    let ground = Lowered::new(field, blocks, cells.len(), eye);
+    let rho = ((eye - from) * field.spacing()).length();
+    let sight = Sight { from, eye, rho, height, guard: 0.0, clearance: 1.0, low: 1.0, doubt: 1e-3 };
+    let (mut some, mut all, mut room) = (Vec::new(), Vec::new(), Room::default());
+    Skipping { field, blocks }.samples(&sight, &ground, &mut room, &mut some);
+    Every(field).samples(&sight, &ground, &mut room, &mut all);
+    let hits = Hits { field, cells, pieces: &ground.pieces, sight: &sight, below: f64::INFINITY, slack: 1e-9 };
+    let (mut of_some, mut of_all) = (Vec::new(), Vec::new());
+    hits.find(&some, &mut of_some);
+    hits.find(&all, &mut of_all);
+    assert_eq!(telling(&of_some, sight.low), telling(&of_all, sight.low), "{from} to {eye}");
+    of_all.len()
+}
+
 #[test]
 fn a_hill_within_one_block_is_found_by_lines_through_corners_of_blocks() {
     let hill = |c: usize, r: usize| if (18..=22).contains(&c) && (18..=22).contains(&r) { 300.0 } else { 0.0 };
     let field = field_of(41, 41, DVec2::splat(30.0), hill);
     let cells = Cells::new(&field, 2);
     let blocks = Blocks::new(&field, &cells);
-    let (mut some, mut all, mut room) = (Vec::new(), Vec::new(), Room::default());
-    let (mut of_some, mut of_all) = (Vec::new(), Vec::new());
     let places = [0.0, 8.0, 16.0, 20.0, 24.0, 32.0, 40.0];
     let corners: Vec<DVec2> = places.iter().flat_map(|&x| places.map(|y| DVec2::new(x, y))).collect();
     let mut high = 0;
     for (&from, &eye) in corners.iter().flat_map(|a| corners.iter().map(move |b| (a, b))).filter(|(a, b)| a != b) {
-        let ground = Lowered::new(&field, &blocks, cells.len(), eye);
-        let rho = ((eye - from) * field.spacing()).length();
-        let sight = Sight { from, eye, rho, height: [40.0, 90.0], guard: 0.0, clearance: 1.0, low: 1.0, doubt: 1e-3 };
-        some.clear();
-        all.clear();
-        Skipping { field: &field, blocks: &blocks }.samples(&sight, &ground, &mut room, &mut some);
-        Every(&field).samples(&sight, &ground, &mut room, &mut all);
-        let (below, pieces) = (f64::INFINITY, &ground.pieces[..]);
-        let hits = Hits { field: &field, cells: &cells, pieces, sight: &sight, below, slack: 1e-9 };
-        hits.find(&some, &mut of_some);
-        hits.find(&all, &mut of_all);
-        assert_eq!(telling(&of_some, sight.low), telling(&of_all, sight.low), "{from} to {eye}");
-        high += of_all.len();
+        high += told_alike(&field, &cells, &blocks, [from, eye], [40.0, 90.0]);
     }
     assert!(high > 1000, "{high}");
 }
@@ -297,8 +299,6 @@ fn what_is_left_out_tells_nothing_where_lines_run_along_the_grid_and_beside_it()
     let field = mountains(70, 67, DVec2::splat(30.0), 9, 0.0);
     let cells = Cells::new(&field, 3);
     let blocks = Blocks::new(&field, &cells);
-    let (mut some, mut all, mut room) = (Vec::new(), Vec::new(), Room::default());
-    let (mut of_some, mut of_all) = (Vec::new(), Vec::new());
     let places = [0.0, 4.0, 16.0, 33.5, 64.0, 66.0];
     let mut high = 0;
     for from in places.iter().flat_map(|&x| places.map(|y| DVec2::new(x, y))) {
@@ -310,21 +310,9 @@ fn what_is_left_out_tells_nothing_where_lines_run_along_the_grid_and_beside_it()
             DVec2::new(64.0, 16.0),
             DVec2::new(from.y, from.x) * 1.5,
         ] {
-            let ground = Lowered::new(&field, &blocks, cells.len(), eye);
-            let rho = ((eye - from) * field.spacing()).length();
             // Up to the eye and down to it.
             for height in [[300.0, 500.0], [500.0, 40.0]] {
-                let sight = Sight { from, eye, rho, height, guard: 0.0, clearance: 1.0, low: 1.0, doubt: 1e-3 };
-                some.clear();
-                all.clear();
-                Skipping { field: &field, blocks: &blocks }.samples(&sight, &ground, &mut room, &mut some);
-                Every(&field).samples(&sight, &ground, &mut room, &mut all);
-                let (below, pieces) = (f64::INFINITY, &ground.pieces[..]);
-                let hits = Hits { field: &field, cells: &cells, pieces, sight: &sight, below, slack: 1e-9 };
-                hits.find(&some, &mut of_some);
-                hits.find(&all, &mut of_all);
-                assert_eq!(telling(&of_some, sight.low), telling(&of_all, sight.low), "{from} to {eye}");
-                high += of_all.len();
+                high += told_alike(&field, &cells, &blocks, [from, eye], height);
             }
         }
     }

@@ -39,6 +39,12 @@ impl Sight {
         high.tau > self.guard + UNSURE && high.tau < 1.0 - UNSURE && high.limit > self.low
     }
 
+    /// A line nowhere higher than [`Self::limit`], rounding counted: its height at the point, and what it rises to the eye.
+    #[inline(always)]
+    pub(super) fn clear(&self) -> (f64, f64) {
+        (self.height[0] - self.clearance - self.doubt, self.height[1] - self.height[0])
+    }
+
     /// The height that the ground must not exceed.
     pub(super) fn limit(&self, tau: f64) -> f64 {
         let line = (1.0 - tau) * self.height[0] + tau * self.height[1];

@@ -131,16 +131,15 @@ struct Line {
     per_cell: [f64; 2],
     /// The part to look at.
     ends: [f64; 2],
-    /// The least that ground may be high at the point, and how much more at the eye.
+    /// See [`Sight::clear`].
     foot: f64,
     rise: f64,
 }
 
 impl Line {
     fn new(sight: &Sight, dir: DVec2, ends: [f64; 2]) -> Self {
-        let foot = sight.height[0] - sight.clearance - sight.doubt;
-        let (start, rise) = (sight.from.to_array(), sight.height[1] - sight.height[0]);
-        Self { start, dir: dir.to_array(), per_cell: dir.recip().to_array(), ends, foot, rise }
+        let (foot, rise) = sight.clear();
+        Self { start: sight.from.to_array(), dir: dir.to_array(), per_cell: dir.recip().to_array(), ends, foot, rise }
     }
 
     /// Column (axis 0) or row of the block at a place of the line.
