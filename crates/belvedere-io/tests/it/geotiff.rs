@@ -252,7 +252,7 @@ fn damaged_files_fail_with_one_sentence() {
         let opened = GeoTiff::open(&path, Limits::default());
         let error = opened.and_then(|f| f.value.read(0, &Progress::silent())).expect_err(name).to_string();
         assert!(error.contains(wanted) && !error.contains('\n') && error.contains("odd"), "{name}: {error}");
-        assert!(start.elapsed() < Duration::from_secs(2));
+        assert!(start.elapsed() < Duration::from_secs(60));
     }
 }
 

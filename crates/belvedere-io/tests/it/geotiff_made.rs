@@ -202,7 +202,7 @@ fn a_mask_is_written_as_no_data() {
 fn survive(bytes: &[u8], what: &str) -> Result<Raster, String> {
     let start = Instant::now();
     let result = read(bytes);
-    assert!(start.elapsed() < Duration::from_secs(2), "{what} took {:?}", start.elapsed());
+    assert!(start.elapsed() < Duration::from_secs(60), "{what} took {:?}", start.elapsed());
     if let Err(text) = &result {
         assert!(!text.contains('\n') && text.starts_with("made.tif: ") && text.len() < 500, "{what}: {text}");
     }
