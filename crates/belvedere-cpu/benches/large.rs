@@ -1,5 +1,7 @@
 //! Flying over generated grounds of 4k x 4k and 16k x 16k nodes: processor time per frame and memory.
-//! Each ground is measured in a process of its own, so that its memory is its own.
+//! Two flights: a steady one, whose frames show a little more ground than the one before, and jumps, each of which shows a
+//! place not seen before. Each ground lives in a process of its own, so that its memory is its own; they draw the frames in
+//! turn, so that a busy machine disturbs all of them alike.
 //!
 //! `cargo bench -p belvedere-cpu --bench large -- [NODES..]`, 4097 and 16385 if left out.
 #![allow(missing_docs, clippy::print_stdout)]
@@ -8,12 +10,13 @@ mod support;
 
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_cpu::CpuRenderer;
-use belvedere_scene::{Frame, Heightfield, Light, Progress, RenderJob, RenderOptions, Renderer};
+use belvedere_scene::{Frame, Heightfield, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
 use rayon::prelude::*;
+use std::io::{BufRead, BufReader, Lines, Write};
+use std::process::{Child, ChildStdout, Command, Stdio};
 use support::{cpu_ms, median, scene};
 
 const SPACING_M: f64 = 10.0;
-const FRAMES: usize = 24;
 const ALONE: &str = "--alone";
 
 /// Ridges of all sizes from 40 km down to 60 m, heights of about -900..900 m.
@@ -33,57 +36,136 @@ fn status_mib(key: &str) -> f64 {
     line.and_then(|l| l.trim().trim_end_matches(" kB").parse::<f64>().ok()).unwrap_or(0.0) / 1024.0
 }
 
-fn fly(nodes: usize) {
+/// A flight along the circle.
+#[derive(Clone, Copy)]
+struct Flight {
+    name: &'static str,
+    frames: usize,
+    /// Degrees of the circle from frame to frame.
+    step_deg: f64,
+}
+
+/// The jumps come first: they end where the steady flight begins.
+const FLIGHTS: [Flight; 2] = [
+    Flight { name: "jumps of 2.4 km", frames: 24, step_deg: 15.0 },
+    Flight { name: "steady, 40 m a frame", frames: 240, step_deg: 0.2546 },
+];
+
+/// The same flight over every ground: a circle around the middle, looking along it.
+fn view(angle_deg: f64) -> View {
+    let way = DVec2::from_angle(angle_deg.to_radians());
+    let eye = (way * 9_000.0).extend(2_600.0);
+    let target = eye + (way.perp() * 20_000.0).extend(-4_500.0);
+    let lens = Projection::Perspective { fov_y: 50f64.to_radians() };
+    View::straight(Pinhole::look_at(eye, target, DVec3::Z, lens, [1280, 720], 1.0, None).expect("well formed"))
+}
+
+fn ground(nodes: usize) -> Scene {
     let half = 0.5 * (nodes - 1) as f64 * SPACING_M;
     let mut heights = vec![0.0f32; nodes * nodes];
     heights.par_chunks_mut(nodes).enumerate().for_each(|(r, row)| {
         let y = half - r as f64 * SPACING_M;
         row.iter_mut().enumerate().for_each(|(c, h)| *h = height(c as f64 * SPACING_M - half, y));
     });
-    let corner = DVec2::new(-half, half);
-    let scene = scene(Heightfield::measured(corner, DVec2::splat(SPACING_M), nodes, nodes, heights));
+    scene(Heightfield::measured(DVec2::new(-half, half), DVec2::splat(SPACING_M), nodes, nodes, heights))
+}
+
+/// Draws the view at each angle that is asked for, and answers with milliseconds of processor time, triangles drawn, and
+/// MiB of memory: now and at most.
+fn answer(nodes: usize) {
+    let scene = ground(nodes);
     let (light, progress) = (Light::default(), Progress::silent());
     let options = RenderOptions { samples: 1, ..RenderOptions::default() };
     let mut frame = Frame::default();
-    let (mut times, mut drawn) = (Vec::new(), 0);
-    for i in 0..=FRAMES {
-        // The same flight over both grounds: a circle around the middle, looking along it.
-        let way = DVec2::from_angle(std::f64::consts::TAU * i as f64 / FRAMES as f64);
-        let eye = (way * 9_000.0).extend(2_600.0);
-        let target = eye + (way.perp() * 20_000.0).extend(-4_500.0);
-        let lens = Projection::Perspective { fov_y: 50f64.to_radians() };
-        let camera = Pinhole::look_at(eye, target, DVec3::Z, lens, [1280, 720], 1.0, None).expect("well formed");
-        let view = View::straight(camera);
+    for line in std::io::stdin().lines() {
+        let view = view(line.ok().and_then(|l| l.parse().ok()).expect("an angle"));
         let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
         let before = cpu_ms();
         CpuRenderer.render_into(&job, &mut frame).expect("drawn");
-        // The first frame derives what is kept.
-        if i > 0 {
-            times.push(cpu_ms() - before);
-            drawn += frame.stats.triangles_drawn;
+        let ms = cpu_ms() - before;
+        println!("{ms} {} {} {}", frame.stats.triangles_drawn, status_mib("VmRSS"), status_mib("VmHWM"));
+    }
+}
+
+/// A ground in a process of its own.
+struct Ground {
+    nodes: usize,
+    process: Child,
+    answers: Lines<BufReader<ChildStdout>>,
+}
+
+impl Ground {
+    fn new(nodes: usize) -> Self {
+        let me = std::env::current_exe().expect("a path");
+        let mut command = Command::new(me);
+        command.args([ALONE, &nodes.to_string()]).stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut process = command.spawn().expect("started");
+        let answers = BufReader::new(process.stdout.take().expect("a pipe")).lines();
+        Self { nodes, process, answers }
+    }
+
+    /// See [`answer`].
+    fn draw(&mut self, angle_deg: f64) -> [f64; 4] {
+        let ask = self.process.stdin.as_mut().expect("a pipe");
+        writeln!(ask, "{angle_deg}").expect("it listens");
+        let line = self.answers.next().and_then(Result::ok).expect("it answers");
+        let mut numbers = line.split(' ').map(|v| v.parse().expect("a number"));
+        std::array::from_fn(|_| numbers.next().expect("four numbers"))
+    }
+}
+
+/// Share of the values that are smaller.
+fn quantile(values: &[f64], share: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted[((sorted.len() - 1) as f64 * share).round() as usize]
+}
+
+fn report(flight: Flight, grounds: &mut [Ground]) {
+    let mut figures: Vec<Vec<[f64; 4]>> = vec![Vec::new(); grounds.len()];
+    for i in 1..=flight.frames {
+        for (ground, figures) in grounds.iter_mut().zip(&mut figures) {
+            figures.push(ground.draw(flight.step_deg * i as f64));
         }
     }
-    println!(
-        "{nodes} x {nodes}: {:.1} ms cpu per frame (worst {:.1}), {} triangles drawn, resident {:.0} MiB, most {:.0} MiB",
-        median(&times),
-        times.iter().fold(0.0f64, |a, &b| a.max(b)),
-        drawn / FRAMES as u64,
-        status_mib("VmRSS"),
-        status_mib("VmHWM")
-    );
+    println!("{}, {} frames:", flight.name, flight.frames);
+    let column = |k: usize, f: usize| figures[k].iter().map(|v| v[f]).collect::<Vec<f64>>();
+    for (k, ground) in grounds.iter().enumerate() {
+        let (ms, last) = (column(k, 0), figures[k][flight.frames - 1]);
+        // Of frames drawn one after the other, not of medians.
+        let ratios: Vec<f64> = ms.iter().zip(column(0, 0)).map(|(a, b)| a / b).collect();
+        println!(
+            "  {0} x {0}: {1:.1} ms cpu per frame (95 %: {2:.1}, worst {3:.1}), {4:.2} of the first ground, \
+             {5:.0} triangles drawn, resident {6:.0} MiB, most {7:.0} MiB",
+            ground.nodes,
+            median(&ms),
+            quantile(&ms, 0.95),
+            quantile(&ms, 1.0),
+            median(&ratios),
+            median(&column(k, 1)),
+            last[2],
+            last[3]
+        );
+    }
 }
 
 fn main() {
     let args: Vec<String> = std::env::args().collect();
     let sizes: Vec<usize> = args.iter().filter_map(|a| a.parse().ok()).collect();
     if args.iter().any(|a| a == ALONE) {
-        sizes.into_iter().for_each(fly);
+        sizes.into_iter().for_each(answer);
         return;
     }
     let sizes = if sizes.is_empty() { vec![4097, 16_385] } else { sizes };
-    for nodes in sizes {
-        let me = std::env::current_exe().expect("a path");
-        let status = std::process::Command::new(me).args([ALONE, &nodes.to_string()]).status();
-        assert!(status.is_ok_and(|s| s.success()), "{nodes} x {nodes} failed");
+    let mut grounds: Vec<Ground> = sizes.into_iter().map(Ground::new).collect();
+    // The first frame derives what is kept.
+    for ground in &mut grounds {
+        let [ms, ..] = ground.draw(0.0);
+        println!("{0} x {0}: first frame {ms:.0} ms", ground.nodes);
+    }
+    FLIGHTS.iter().for_each(|flight| report(*flight, &mut grounds));
+    for Ground { mut process, .. } in grounds {
+        drop(process.stdin.take());
+        assert!(process.wait().is_ok_and(|s| s.success()), "a ground failed");
     }
 }

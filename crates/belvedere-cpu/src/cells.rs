@@ -6,11 +6,11 @@ use crate::lens::{SUB, ScreenVertex};
 use crate::lod::SIDE;
 use crate::raster::owns_edge;
 
-/// Cells with bounding boxes below this go together: four pixels, or so. Differences of their corners have products whose sums
-/// stay below 2^24, so single precision decides exactly.
-const TINY: i32 = 4 * SUB;
+/// Cells with bounding boxes below this go together: eight pixels, or so. Differences of their corners have products whose
+/// differences stay below 2^24, so single precision decides exactly.
+const TINY: i32 = 8 * SUB;
 const _: () = assert!(SIDE == u32::BITS as usize, "a bit per cell of a row");
-const _: () = assert!(TINY as i64 * TINY as i64 * 12 < 1 << 24, "sums of products fit the mantissa of f32");
+const _: () = assert!(TINY as i64 * TINY as i64 * 2 < 1 << 24, "differences of products fit the mantissa of f32");
 
 /// In a cell's half with the north-east node.
 const UPPER: u32 = 1;

@@ -281,7 +281,7 @@ mod tests {
         [fine, block(if fine_first { 32 } else { 0 }, 2, [false; 4])]
     }
 
-    const PITCHES: [i32; 7] = [37, 64, 128, 200, 256, 700, 3000];
+    const PITCHES: [i32; 8] = [37, 64, 128, 200, 256, 700, 1600, 3000];
 
     #[test]
     fn sheets_of_different_detail_cover_every_sample_once() {
