@@ -115,15 +115,19 @@ impl Spare {
 }
 
 impl Block {
-    /// Whether nodes of any cell were moved to meet a coarser neighbour.
-    pub(crate) fn is_seamed(&self) -> bool {
-        self.seam.contains(&true)
-    }
-
-    /// Whether nodes of a cell may have been moved so.
-    pub(crate) fn is_odd(&self, [c, r]: [usize; 2]) -> bool {
+    /// Numbers of the row or column of cells along the north, east, south and west side if nodes were moved there, else one
+    /// that no cell has.
+    #[inline(always)]
+    pub(crate) fn seam(&self) -> [u32; 4] {
+        const NONE: u32 = u32::MAX;
+        let last = [(self.cells[0] as u32).wrapping_sub(1), (self.cells[1] as u32).wrapping_sub(1)];
         let [north, east, south, west] = self.seam;
-        (north & (r == 0)) | (south & (r + 1 == self.cells[1])) | (west & (c == 0)) | (east & (c + 1 == self.cells[0]))
+        [
+            if north { 0 } else { NONE },
+            if east { last[0] } else { NONE },
+            if south { last[1] } else { NONE },
+            if west { 0 } else { NONE },
+        ]
     }
 
     /// Explicit triangles of the boxes or triangles from number `first` on; `None` if there are none.

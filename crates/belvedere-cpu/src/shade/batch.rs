@@ -15,6 +15,7 @@ use belvedere_core::DVec2;
 
 /// Samples to a batch.
 pub(super) const LANES: usize = 32;
+const _: () = assert!(LANES == u32::BITS as usize, "a bit per sample");
 type Lanes = [f32; LANES];
 pub(super) type Whole = [i32; LANES];
 
@@ -24,6 +25,8 @@ pub(super) struct Batch {
     layer: usize,
     /// Where each result goes.
     out: [u32; LANES],
+    /// Nearness of the sample.
+    near: Lanes,
     /// Place of the sample, and the vertices of its triangle: north-west, south-east, and the one between; fixed-point steps.
     at: [Whole; 2],
     x: [Whole; 3],
@@ -64,6 +67,7 @@ impl Batch {
             len: 0,
             layer: 0,
             out: [0; LANES],
+            near: zero,
             at: [none; 2],
             x: [none; 3],
             y: [none; 3],
@@ -87,35 +91,68 @@ impl Batch {
         painted: &mut Painted,
     ) {
         self.turn_to(block.layer as usize, shader, samples, painted);
-        let (stride, step) = (block.cells[0] + 1, block.step as i32);
-        let origin = block.origin.map(|n| n as i32);
-        let n = nodes.x.len().min(nodes.y.len()).min(nodes.q.len());
-        let (nx, ny, nq) = (&nodes.x[..n], &nodes.y[..n], &nodes.q[..n]);
-        let seamed = block.is_seamed();
-        let (prims, xs, ys) = (&samples.prim[..to], &samples.x[..to], &samples.y[..to]);
-        for k in from..to {
+        let mut from = from;
+        while from < to {
             if self.len == LANES {
                 self.flush(shader, samples, painted);
             }
-            let prim = prims[k];
-            let (cell, lower) = ((prim >> 1) as usize & (SIDE * SIDE - 1), (prim & 1) as usize);
-            let (c, r) = (cell % SIDE, cell / SIDE);
-            let nw = r * stride + c;
-            let at = [nw, nw + stride + 1, if lower == 0 { nw + 1 } else { nw + stride }];
-            let i = self.len & (LANES - 1);
-            if (seamed && block.is_odd([c, r])) || (at[1] >= n) | (at[2] >= n) | (nw >= n) {
-                self.push_odd(shader, samples, k);
-                continue;
+            let n = (LANES - self.len).min(to - from);
+            let plain = self.take_plain((block, nodes), samples, from, n);
+            from += plain;
+            if plain < n {
+                self.push_odd(shader, samples, from);
+                from += 1;
             }
-            for (v, at) in at.into_iter().enumerate() {
-                (self.x[v][i], self.y[v][i], self.q[v][i]) = (nx[at], ny[at], nq[at]);
-            }
-            (self.at[0][i], self.at[1][i]) = (xs[k], ys[k]);
-            (self.node[0][i], self.node[1][i]) = (origin[0] + step * c as i32, origin[1] + step * r as i32);
-            (self.step[i], self.lower[i]) = (step as f32, lower as i32);
-            self.out[i] = k as u32;
-            self.len = i + 1;
         }
+    }
+
+    /// Takes in samples up to the first one that does not lie on a plain half of a cell, `n` at most; the number of them.
+    #[inline(always)]
+    fn take_plain(
+        &mut self,
+        (block, nodes): (&Block, &Nodes),
+        samples: &Samples<'_>,
+        from: usize,
+        n: usize,
+    ) -> usize {
+        let (stride, step) = (block.cells[0] as u32 + 1, block.step as i32);
+        let origin = block.origin.map(|n| n as i32);
+        let mut prims = [0; LANES];
+        prims[..n].copy_from_slice(&samples.prim[from..from + n]);
+        let count = nodes.x.len().min(nodes.y.len()).min(nodes.q.len());
+        let (mut nw, mut between) = ([0u32; LANES], [0u32; LANES]);
+        let (mut columns, mut rows, mut lower) = ([0; LANES], [0; LANES], [0; LANES]);
+        let (mut odd, [north, east, south, west]) = (0u32, block.seam());
+        for i in 0..LANES {
+            let cell = (prims[i] >> 1) & (SIDE * SIDE - 1) as u32;
+            let (c, r) = (cell % SIDE as u32, cell / SIDE as u32);
+            lower[i] = (prims[i] & 1) as i32;
+            nw[i] = r * stride + c;
+            between[i] = nw[i] + if lower[i] == 0 { 1 } else { stride };
+            (columns[i], rows[i]) = (origin[0] + step * c as i32, origin[1] + step * r as i32);
+            let beyond = (nw[i] + stride + 1) as usize >= count;
+            let is_odd = (c == west) | (c == east) | (r == north) | (r == south) | beyond;
+            odd |= if is_odd { 1 << i } else { 0 };
+        }
+        let n = n.min(odd.trailing_zeros() as usize);
+        let (nx, ny, nq) = (&nodes.x[..count], &nodes.y[..count], &nodes.q[..count]);
+        let lanes = self.len..self.len + n;
+        for (j, i) in lanes.clone().enumerate() {
+            let at = [nw[j] as usize, (nw[j] + stride + 1) as usize, between[j] as usize];
+            for v in 0..3 {
+                (self.x[v][i], self.y[v][i], self.q[v][i]) = (nx[at[v]], ny[at[v]], nq[at[v]]);
+            }
+            self.out[i] = (from + j) as u32;
+        }
+        self.near[lanes.clone()].copy_from_slice(&samples.q[from..from + n]);
+        self.at[0][lanes.clone()].copy_from_slice(&samples.x[from..from + n]);
+        self.at[1][lanes.clone()].copy_from_slice(&samples.y[from..from + n]);
+        self.node[0][lanes.clone()].copy_from_slice(&columns[..n]);
+        self.node[1][lanes.clone()].copy_from_slice(&rows[..n]);
+        self.lower[lanes.clone()].copy_from_slice(&lower[..n]);
+        self.step[lanes].fill(step as f32);
+        self.len += n;
+        n
     }
 
     /// Takes in a sample of any triangle of ground.
@@ -151,6 +188,7 @@ impl Batch {
         self.odd_lanes[self.odd] = (self.len, OddPlace { node: Spot::node(&found), at, cells_per_px });
         self.odd += 1;
         self.out[self.len] = k as u32;
+        self.near[self.len] = samples.q[k];
         self.len += 1;
     }
 
@@ -167,15 +205,13 @@ impl Batch {
 
     #[inline(always)]
     fn shade(&mut self, shader: &Shader<'_>, terrain: &TerrainShade<'_>, samples: &Samples<'_>, painted: &mut Painted) {
-        let places = self.places(shader, samples);
+        let places = self.places(shader);
         let lods = terrain.lods(shader, &places.depth, &places.cells_per_px);
         let at = self.fixed(&places, terrain);
         let making = terrain.making();
         let colors = terrain.lit.colors_of(&at, &lods, self.len, &making);
         let color = terrain.colors(shader, &colors, &lods, &places.depth);
-        for (i, &k) in self.out[..self.len].iter().enumerate() {
-            painted.set_root(k as usize, [color[0][i], color[1][i], color[2][i]], self.layer as u32 + 1);
-        }
+        painted.set_roots(&self.out[..self.len], &color, self.layer as u32 + 1);
         if terrain.is_covered(shader) {
             self.cover(shader, terrain, &places, &at, samples, painted);
         }
@@ -183,11 +219,11 @@ impl Batch {
 
     /// Where the samples lie.
     #[inline(always)]
-    fn places(&mut self, shader: &Shader<'_>, samples: &Samples<'_>) -> Places {
+    fn places(&mut self, shader: &Shader<'_>) -> Places {
         let zero = [0.0; LANES];
         let mut out = Places { u: zero, v: zero, cells_per_px: zero, depth: zero };
-        for (depth, &k) in out.depth.iter_mut().zip(&self.out[..self.len]) {
-            *depth = shader.lens.depth_of(samples.q[k as usize]);
+        for i in 0..LANES {
+            out.depth[i] = shader.lens.depth_of(self.near[i]);
         }
         if shader.lens.ortho {
             self.q = [[1.0; LANES]; 3];
@@ -319,5 +355,78 @@ impl TerrainShade<'_> {
             }
         }
         out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::band::{Band, SKY, sample_offsets};
+    use crate::blocks::Blocks;
+    use crate::lens::Lens;
+    use crate::pass::Pass;
+    use belvedere_core::{DVec3, Pinhole, Projection, View};
+    use belvedere_scene::{
+        Heightfield, Layer, LayerKind, Light, Palette, Progress, Relief, RenderJob, RenderOptions, Scene, TerrainLayer,
+    };
+
+    fn hills() -> Scene {
+        let h = |c: usize, r: usize| 40.0 * ((c as f32 * 0.06).sin() + (r as f32 * 0.045).cos()) + 0.1 * (c * r % 5) as f32;
+        let heights = (0..257 * 257).map(|i| h(i % 257, i / 257)).collect();
+        let corner = DVec2::new(-1280.0, 1280.0);
+        let terrain = TerrainLayer {
+            heightfield: Heightfield::measured(corner, DVec2::splat(10.0), 257, 257, heights).unwrap(),
+            drapes: Vec::new(),
+            relief: Relief::Swiss,
+            shading: None,
+            exaggeration: 1.0,
+            palette: Palette::Alpine,
+        };
+        let layer = Layer { id: "ground".into(), must_see: false, kind: LayerKind::Terrain(terrain) };
+        Scene { layers: vec![layer], ..Scene::default() }
+    }
+
+    #[test]
+    fn samples_taken_together_are_those_of_their_triangles() {
+        let scene = hills();
+        let lens = Projection::Perspective { fov_y: 0.9 };
+        let (eye, target) = (DVec3::new(100.0, -1300.0, 260.0), DVec3::new(0.0, 0.0, -60.0));
+        let camera = Pinhole::look_at(eye, target, DVec3::Z, lens, [331, 160], 1.0, None).unwrap();
+        let view = View::straight(camera);
+        let (light, progress) = (Light::default(), Progress::silent());
+        let options = RenderOptions { samples: 1, lod_px: 0.5, ..RenderOptions::default() };
+        let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
+        let (lens, passes) = (Lens::new(view.pinhole()), Pass::all(&view));
+        let mut blocks = Blocks::default();
+        blocks.build(&scene, &passes, &lens, &options);
+        let shader = Shader::new(&job, &lens, &blocks);
+        let mut band = Band::new(0, 160, 331, sample_offsets(1));
+        blocks.draw(&mut band);
+        let x: Vec<i32> = (0..331).map(|x| x * SUB + SUB / 2).collect();
+        let (mut odd, mut plain) = (0, 0);
+        for row in 0..160 {
+            let (y, from) = (vec![row * SUB + SUB / 2; 331], band.index(0, 0, row));
+            let samples = Samples { prim: &band.prim[from..][..331], q: &band.q[from..][..331], x: &x, y: &y };
+            let [mut together, mut each] = [Painted::default(), Painted::default()];
+            shader.paint(samples, &mut together);
+            shader.paint(samples, &mut each);
+            each.root.iter_mut().for_each(|plane| plane.fill(-1.0));
+            let mut batch = Batch::new();
+            for k in (0..331).filter(|k| samples.prim[*k] != SKY) {
+                batch.take_odd(0, &shader, &samples, k, &mut each);
+                let (block, cell) = (samples.prim[k] >> 11, (samples.prim[k] >> 1) & 1023);
+                let (c, r, seam) = (cell % 32, cell / 32, blocks.list[block as usize].seam());
+                let is_odd = c == seam[3] || c == seam[1] || r == seam[0] || r == seam[2];
+                (odd, plain) = (odd + u32::from(is_odd), plain + u32::from(!is_odd));
+            }
+            batch.flush(&shader, &samples, &mut each);
+            assert_eq!(together.id, each.id);
+            for (plane, each) in together.root.iter().zip(&each.root) {
+                for (k, (a, b)) in plane.iter().zip(each).enumerate().filter(|(k, _)| samples.prim[*k] != SKY) {
+                    assert!((a - b).abs() < 0.004, "row {row}, column {k}: {a} {b}");
+                }
+            }
+        }
+        assert!(odd > 200 && plain > 10_000, "{odd} samples beside coarser blocks, {plain} others");
     }
 }

@@ -45,11 +45,29 @@ impl Painted {
     }
 
     #[inline(always)]
-    pub(super) fn set_root(&mut self, k: usize, root: [f32; 3], id: u32) {
+    fn set_root(&mut self, k: usize, root: [f32; 3], id: u32) {
         for (plane, v) in self.root.iter_mut().zip(root) {
             plane[k] = v;
         }
         self.id[k] = id;
+    }
+
+    /// Colours of the samples with these numbers, mostly one after the other.
+    #[inline(always)]
+    pub(super) fn set_roots<const N: usize>(&mut self, numbers: &[u32], root: &[[f32; N]; 3], id: u32) {
+        let (Some(&first), Some(&last)) = (numbers.first(), numbers.last()) else { return };
+        // They rise.
+        if (last - first) as usize + 1 == numbers.len() {
+            let all = first as usize..=last as usize;
+            for (plane, root) in self.root.iter_mut().zip(root) {
+                plane[all.clone()].copy_from_slice(&root[..numbers.len()]);
+            }
+            self.id[all].fill(id);
+            return;
+        }
+        for (i, &k) in numbers.iter().enumerate() {
+            self.set_root(k as usize, [root[0][i], root[1][i], root[2][i]], id);
+        }
     }
 
     /// As it is kept to be drawn over.

@@ -1,6 +1,6 @@
 //! Sky and haze.
 
-use super::color::{Rgb, linear, smoothstep};
+use super::color::{PIXELS, Rgb, linear, smoothstep};
 use crate::lens::SUB;
 use crate::vector::nearest;
 use belvedere_core::{Aabb, DVec3, Pinhole};
@@ -33,6 +33,9 @@ const HALF_A_STEP: f32 = 0.5 / 255.0;
 
 /// Samples that are coloured together.
 pub(super) const LANES: usize = 32;
+
+/// Ends of the rows of [`LANES`] pixels that are stored together.
+const PLACES: usize = PIXELS / LANES + 1;
 
 /// How far a row of samples may be off a line between its ends to be coloured along it: square roots of colours, less than half
 /// a step of an 8-bit picture, and places in the table.
@@ -140,19 +143,45 @@ impl Sky {
         if !self.even {
             return None;
         }
-        let place = |x: i32| {
-            let at = self.place([x, y]);
-            let [low, change] = self.steps[(at as usize).min(2 * STEPS as usize - 1)];
-            Place { at, root: std::array::from_fn(|k| low[k] + at.fract() * change[k]) }
-        };
-        let from = end.filter(|(at, _)| *at == x).map_or_else(|| place(x), |(_, place)| place);
+        // No closures: they would be compiled apart, for the oldest processors.
         let next = x + LANES as i32 * SUB;
-        let to = place(next);
+        let from = match *end {
+            Some((at, place)) if at == x => place,
+            _ => self.root_at(self.place([x, y])),
+        };
+        let to = self.root_at(self.place([next, y]));
         *end = Some((next, to));
-        let change = std::array::from_fn(|k| (to.root[k] - from.root[k]) * (1.0 / LANES as f32));
-        // A line that turns by so much, wherever it does, is nowhere farther from its chord.
-        let off = 0.25 * ((to.at - from.at).abs() + 1.0) * (to.root[3] - from.root[3]).abs();
-        (off <= EVEN).then_some(Line { from: from.root, change })
+        from.line_to(&to)
+    }
+
+    /// Places along a row, [`LANES`] pixels apart, and what the table says there; `None` if colours do not change evenly.
+    #[inline(always)]
+    pub(super) fn places(&self, x: i32, y: i32) -> Option<[Place; PLACES]> {
+        if !self.even {
+            return None;
+        }
+        let mut at = [0.0; PLACES.next_power_of_two()];
+        for (i, at) in at.iter_mut().enumerate() {
+            *at = self.place([x + i as i32 * LANES as i32 * SUB, y]);
+        }
+        let mut out = [Place { at: 0.0, root: [0.0; 4] }; PLACES];
+        for (out, at) in out.iter_mut().zip(at) {
+            *out = self.root_at(at);
+        }
+        Some(out)
+    }
+
+    /// What the table says at a place.
+    #[inline(always)]
+    fn root_at(&self, at: f32) -> Place {
+        // Places are not negative: this is the whole number below.
+        let below = at as i32;
+        let ([low, change], share) = (&self.steps[below as usize & (2 * STEPS as usize - 1)], at - below as f32);
+        let mut root = [0.0; 4];
+        for k in 0..4 {
+            root[k] = low[k] + share * change[k];
+        }
+        Place { at, root }
     }
 
     /// Place of a sample in the table.
@@ -181,7 +210,9 @@ impl Sky {
         let mut root = [[0.0f32; 4]; LANES];
         for i in 0..LANES {
             let [low, change] = &self.steps[below[i] as usize & (2 * STEPS as usize - 1)];
-            root[i] = std::array::from_fn(|k| (low[k] + share[i] * change[k]) + threshold[i]);
+            for k in 0..4 {
+                root[i][k] = (low[k] + share[i] * change[k]) + threshold[i];
+            }
         }
         for (k, out) in out.into_iter().enumerate() {
             let mut plane = [0.0; LANES];
@@ -230,6 +261,20 @@ impl Sky {
 pub(super) struct Place {
     at: f32,
     root: [f32; 4],
+}
+
+impl Place {
+    /// The line to a place [`LANES`] pixels further, if colours change evenly up to there.
+    #[inline(always)]
+    pub(super) fn line_to(&self, to: &Self) -> Option<Line> {
+        let mut change = [0.0; 4];
+        for (k, change) in change.iter_mut().enumerate() {
+            *change = (to.root[k] - self.root[k]) * (1.0 / LANES as f32);
+        }
+        // A line that turns by so much, wherever it does, is nowhere farther from its chord.
+        let off = 0.25 * ((to.at - self.at).abs() + 1.0) * (to.root[3] - self.root[3]).abs();
+        (off <= EVEN).then_some(Line { from: self.root, change })
+    }
 }
 
 /// Square roots of colours along a row of pixels.
