@@ -108,13 +108,7 @@ impl Batch {
 
     /// Takes in samples up to the first one that does not lie on a plain half of a cell, `n` at most; the number of them.
     #[inline(always)]
-    fn take_plain(
-        &mut self,
-        (block, nodes): (&Block, &Nodes),
-        samples: &Samples<'_>,
-        from: usize,
-        n: usize,
-    ) -> usize {
+    fn take_plain(&mut self, (block, nodes): (&Block, &Nodes), samples: &Samples<'_>, from: usize, n: usize) -> usize {
         let (stride, step) = (block.cells[0] as u32 + 1, block.step as i32);
         let origin = block.origin.map(|n| n as i32);
         let mut prims = [0; LANES];
@@ -371,7 +365,8 @@ mod tests {
     };
 
     fn hills() -> Scene {
-        let h = |c: usize, r: usize| 40.0 * ((c as f32 * 0.06).sin() + (r as f32 * 0.045).cos()) + 0.1 * (c * r % 5) as f32;
+        let h =
+            |c: usize, r: usize| 40.0 * ((c as f32 * 0.06).sin() + (r as f32 * 0.045).cos()) + 0.1 * (c * r % 5) as f32;
         let heights = (0..257 * 257).map(|i| h(i % 257, i / 257)).collect();
         let corner = DVec2::new(-1280.0, 1280.0);
         let terrain = TerrainLayer {
