@@ -81,6 +81,21 @@ pub(super) struct Shown {
     pub(super) worst_m: f64,
 }
 
+impl Shown {
+    /// * `over`: of each point on the ground, see [`excesses`].
+    fn of(over: impl Iterator<Item = f64>) -> Self {
+        let (mut points, mut hidden, mut worst_m) = (0usize, 0usize, 0.0f64);
+        for over in over {
+            points += 1;
+            hidden += usize::from(over > 0.0);
+            if over.is_finite() {
+                worst_m = worst_m.max(over);
+            }
+        }
+        Self { share: 1.0 - hidden as f64 / points.max(1) as f64, worst_m }
+    }
+}
+
 /// Largest height of the ground over the line of sight of each point, negative where it is seen; `None` beside the ground.
 pub(super) fn excesses(
     field: &Field,
@@ -90,16 +105,26 @@ pub(super) fn excesses(
     points: &[ReferencePoint],
 ) -> Vec<Option<f64>> {
     let drawn = Drawn::new(field, delta, guard);
-    let over = |p: &ReferencePoint| drawn.excess(p.grid, p.lift, sight).map(|o| if o > TOUCH { o } else { -1.0 });
-    points.par_iter().map(over).collect()
+    points.par_iter().map(|p| drawn.line(p.grid, p.lift, sight).map(|line| over(drawn.excess(&line)))).collect()
 }
 
-/// For each dense point that is seen beyond the guard, the largest height over its line of sight of the ground nearer than that.
-fn near_excesses(of: &Deformation<'_>) -> Vec<f64> {
+/// What rises over a line of sight; any negative number if that is rounding.
+fn over(excess: f64) -> f64 {
+    if excess > TOUCH { excess } else { -1.0 }
+}
+
+/// The dense points, and the share of them that is hidden by ground nearer than the guard alone.
+fn dense(of: &Deformation<'_>) -> (Shown, f64) {
     let drawn = Drawn::new(of.field, of.delta, of.guard);
-    let seen = |p: &&ReferencePoint| drawn.excess(p.grid, p.lift, of.sight).is_some_and(|over| over <= TOUCH);
-    let near = |p: &ReferencePoint| drawn.near_excess(p.grid, p.lift, of.sight).unwrap_or(-1.0);
-    of.dense.par_iter().filter(seen).map(near).collect()
+    let judged = |p: &ReferencePoint| {
+        drawn.line(p.grid, p.lift, of.sight).map(|line| {
+            let over = over(drawn.excess(&line));
+            (over, over <= 0.0 && drawn.near_excess(&line) > TOUCH)
+        })
+    };
+    let judged: Vec<(f64, bool)> = of.dense.par_iter().filter_map(judged).collect();
+    let in_guard = judged.iter().filter(|j| j.1).count();
+    (Shown::of(judged.into_iter().map(|j| j.0)), in_guard as f64 / of.dense.len().max(1) as f64)
 }
 
 /// Judges points by lines of sight against the drawn surface, two triangles per cell plus the displacement.
@@ -110,22 +135,16 @@ pub(super) fn shown(
     sight: &dyn LinesOfSight,
     points: &[ReferencePoint],
 ) -> Shown {
-    let over: Vec<f64> = excesses(field, delta, guard, sight, points).into_iter().flatten().collect();
-    let hidden = over.iter().filter(|over| **over > 0.0).count();
-    let share = 1.0 - hidden as f64 / over.len().max(1) as f64;
-    let worst_m = over.into_iter().filter(|over| over.is_finite()).fold(0.0, f64::max);
-    Shown { share, worst_m }
+    Shown::of(excesses(field, delta, guard, sight, points).into_iter().flatten())
 }
 
 /// Judges a displacement by lines of sight against the drawn surface, and by what it does to the nodes. Shares no sampling
 /// with the solvers.
 pub fn terrain_metrics(of: &Deformation<'_>) -> TerrainMetrics {
     let judge = |points: &[ReferencePoint]| shown(of.field, of.delta, of.guard, of.sight, points);
-    let (points, dense) = (judge(of.points), judge(of.dense));
+    let (points, (dense, hidden_in_guard)) = (judge(of.points), dense(of));
     let u = change::at_nodes(of.field, of.delta);
     let steps = change::steps(of.field, of.cells, &u);
-    let near = near_excesses(of);
-    let hidden_in_guard = near.iter().filter(|over| **over > TOUCH).count() as f64 / of.dense.len().max(1) as f64;
     let normals = change::normals(of.field, &u);
     let size = change::size(of.field, &u);
     let frame = of.previous.map(|before| {

@@ -25,7 +25,7 @@ struct Part {
 }
 
 /// A place on a line of sight: grid coordinates and height.
-type Place = (DVec2, f64);
+pub(super) type Place = (DVec2, f64);
 
 impl<'a> Drawn<'a> {
     pub(super) fn new(field: &'a Field, delta: &'a Grid, guard: f64) -> Self {
@@ -37,32 +37,33 @@ impl<'a> Drawn<'a> {
         self.delta.sample(self.field.scene_from_grid(g)).unwrap_or(0.0)
     }
 
-    /// Largest height of the ground over the line of sight of a point `lift` above it, beyond the guard; any negative
-    /// number if it is below the line everywhere, infinite if there is no line; `None` where there is no ground.
-    pub(super) fn excess(&self, g: DVec2, lift: f64, sight: &dyn LinesOfSight) -> Option<f64> {
+    /// The line of sight of a point `lift` above the ground, from there to the eye; fewer than two places if there is none,
+    /// `None` where there is no ground.
+    pub(super) fn line(&self, g: DVec2, lift: f64, sight: &dyn LinesOfSight) -> Option<Vec<Place>> {
         let z = self.field.surface_at(g)? + self.delta_at(g) + lift;
-        let mut line: Vec<Place> = Vec::new();
+        let mut line = Vec::new();
         sight.trace(g, z, &mut line);
-        if line.len() < 2 {
-            return Some(f64::INFINITY);
-        }
+        Some(line)
+    }
+
+    /// Largest height of the ground over a line of sight, beyond the guard; any negative number if it is below the line
+    /// everywhere, infinite if there is no line.
+    pub(super) fn excess(&self, line: &[Place]) -> f64 {
+        let [(point, _), _, ..] = *line else { return f64::INFINITY };
         let mut worst = -1.0f64;
         for pair in line.windows(2) {
-            if let Some(from) = beyond(g, self.guard, pair[0], pair[1]) {
+            if let Some(from) = beyond(point, self.guard, pair[0], pair[1]) {
                 worst = self.excess_of(from, pair[1], worst);
             }
         }
-        Some(worst)
+        worst
     }
 
-    /// As [`Self::excess`], of the ground nearer than the guard.
-    pub(super) fn near_excess(&self, g: DVec2, lift: f64, sight: &dyn LinesOfSight) -> Option<f64> {
-        let z = self.field.surface_at(g)? + self.delta_at(g) + lift;
-        let mut line: Vec<Place> = Vec::new();
-        sight.trace(g, z, &mut line);
+    /// As [`Self::excess`], of the ground nearer than the guard; negative if there is no line.
+    pub(super) fn near_excess(&self, line: &[Place]) -> f64 {
         let mut worst = -1.0f64;
         for pair in line.windows(2) {
-            let leaves = beyond(g, self.guard, pair[0], pair[1]);
+            let leaves = beyond(line[0].0, self.guard, pair[0], pair[1]);
             if leaves != Some(pair[0]) {
                 worst = self.excess_of(pair[0], leaves.unwrap_or(pair[1]), worst);
             }
@@ -70,7 +71,7 @@ impl<'a> Drawn<'a> {
                 break;
             }
         }
-        Some(worst)
+        worst
     }
 
     /// The same over one chord; anything not above `least` comes back as that.

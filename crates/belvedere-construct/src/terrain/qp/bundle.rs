@@ -1,9 +1,11 @@
 //! Lines of sight of neighbours, followed as one as long as no ground comes near.
 
 use super::super::register::LANES;
+use super::alone::Alone;
 use super::lanes::Lanes;
+use super::rise::Rise;
 use super::seen::Seen;
-use super::surface::{Lattice, Surface};
+use super::surface::Surface;
 use super::walk::{Chord, Clearance, LEAF, Touch, fade};
 use belvedere_core::DVec2;
 use std::ops::Range;
@@ -21,10 +23,17 @@ const FINE: f64 = 2.0;
 /// Larger blocks are not believed to be out of the way if they leave less room, scene units: room saves walks later on.
 const WISH: f64 = 2.0;
 
-/// Consecutive candidates that see one eye along straight lines, or a single one.
+/// Lines of sight that are followed as one.
 #[derive(Debug, Clone)]
-pub(super) struct Bundle {
-    pub(super) members: Range<usize>,
+pub(super) enum Bundle {
+    Alone(Alone),
+    Together(Together),
+}
+
+/// Consecutive candidates that see one eye along straight lines.
+#[derive(Debug, Clone)]
+pub(super) struct Together {
+    members: Range<usize>,
     /// By how much the ground may rise against all lines before a place can be missed that is not on a `near` part; negative
     /// if that is not known.
     room: f64,
@@ -45,29 +54,42 @@ struct Near {
 type Line = (usize, Chord, [f64; 2]);
 
 impl Bundle {
-    fn new(members: Range<usize>) -> Self {
-        Self { members, room: -1.0, near: Vec::new() }
-    }
-
     /// Bundles of all candidates, in their order; `straight` lines may share one.
     pub(super) fn all(seen: &[Seen], straight: bool) -> Vec<Self> {
         let mut out: Vec<Self> = Vec::new();
         let mut first = 0;
-        for i in 0..seen.len() {
-            let near = (seen[i].grid - seen[first].grid).abs().max_element() <= SPREAD;
-            if i > first && !(straight && near && i - first < MOST) {
-                out.push(Self::new(first..i));
+        for i in 1..=seen.len() {
+            let near = i < seen.len() && (seen[i].grid - seen[first].grid).abs().max_element() <= SPREAD;
+            if !(straight && near && i - first < MOST) {
+                out.push(match first..i {
+                    members if members.len() > 1 => Self::Together(Together { members, room: -1.0, near: Vec::new() }),
+                    _ => Self::Alone(Alone::new(first, &seen[first])),
+                });
                 first = i;
             }
-        }
-        if first < seen.len() {
-            out.push(Self::new(first..seen.len()));
         }
         out
     }
 
     /// The displacement changed: takes what the ground rose and the lines sank at most from the room.
     pub(super) fn moved(&mut self, seen: &[Seen], rise: &Rise) {
+        match self {
+            Self::Alone(one) => one.moved(seen, rise),
+            Self::Together(all) => all.moved(seen, rise),
+        }
+    }
+
+    /// All places where the asked clearance is missed. Where there is room left nothing is looked at.
+    pub(super) fn walk(&mut self, seen: &[Seen], surface: &Surface, clearance: &Clearance) -> Vec<(usize, Touch)> {
+        match self {
+            Self::Alone(one) => one.walk(seen, surface, clearance),
+            Self::Together(all) => all.walk(seen, surface, clearance),
+        }
+    }
+}
+
+impl Together {
+    fn moved(&mut self, seen: &[Seen], rise: &Rise) {
         if self.room <= 0.0 {
             return;
         }
@@ -76,19 +98,13 @@ impl Bundle {
         for near in self.near.iter_mut().filter(|n| n.room > 0.0) {
             near.room -= sank + rise.within(near.corners);
         }
-        let rose = if let [first, _, ..] = members {
-            let grids = || members.iter().map(|s| s.grid);
-            let points = [grids().fold(first.grid, DVec2::min), grids().fold(first.grid, DVec2::max)];
-            first.chords.iter().map(|c| rise.along(points, [c.ends[1]; 2])).fold(0.0, f64::max)
-        } else {
-            let chords = members.iter().flat_map(|s| s.chords.iter());
-            chords.map(|c| rise.along([c.ends[0]; 2], [c.ends[1]; 2])).fold(0.0, f64::max)
-        };
-        self.room -= sank + rose;
+        let grids = || members.iter().map(|s| s.grid);
+        let points = [grids().fold(DVec2::INFINITY, DVec2::min), grids().fold(DVec2::NEG_INFINITY, DVec2::max)];
+        let to_eye = members[0].chords.iter();
+        self.room -= sank + to_eye.map(|c| rise.along(points, [c.ends[1]; 2])).fold(0.0, f64::max);
     }
 
-    /// All places where the asked clearance is missed. Where there is room left nothing is looked at.
-    pub(super) fn walk(&mut self, seen: &[Seen], surface: &Surface, clearance: &Clearance) -> Vec<(usize, Touch)> {
+    fn walk(&mut self, seen: &[Seen], surface: &Surface, clearance: &Clearance) -> Vec<(usize, Touch)> {
         let (known, mut touches) = (self.room > 0.0, Vec::new());
         if known && self.near.iter().all(|n| n.room > 0.0) {
             return touches;
@@ -105,12 +121,8 @@ impl Bundle {
         if !known {
             self.room = ends(&lines, surface, clearance, &mut touches);
             self.near.clear();
-            if self.members.len() > 1 && !lines.is_empty() {
+            if !lines.is_empty() {
                 Fan::new(&lines).walk(surface, clearance, &mut self.room, &mut self.near);
-            } else {
-                for (k, chord, part) in &lines {
-                    chord.walk(surface, *part, clearance, &mut self.room, &mut |t| touches.push((*k, t)));
-                }
             }
             if !touches.is_empty() {
                 self.room = -1.0;
@@ -241,69 +253,5 @@ impl Fan {
                 near.push(Near { part, corners: [low, high], room: -1.0 });
             }
         }
-    }
-}
-
-/// Largest rise of the ground by blocks of the solver's grid.
-pub(super) struct Rise<'a> {
-    lattice: &'a Lattice,
-    /// By how much each node of the solver's grid rose.
-    pub(super) change: &'a [f64],
-    cols: usize,
-    rows: usize,
-    /// Cells per block.
-    size: DVec2,
-    most: Vec<f64>,
-}
-
-/// Cells of the solver's grid per side of a block.
-const SIDE: usize = 4;
-
-impl<'a> Rise<'a> {
-    pub(super) fn new(lattice: &'a Lattice, change: &'a [f64]) -> Self {
-        let blocks = |n: usize| (n - 1).div_ceil(SIDE).max(1);
-        let (cols, rows) = (blocks(lattice.cols), blocks(lattice.rows));
-        let most = |b: usize| {
-            let (x, y) = (b % cols * SIDE, b / cols * SIDE);
-            let across = x..=(x + SIDE).min(lattice.cols - 1);
-            let down = y..=(y + SIDE).min(lattice.rows - 1);
-            down.flat_map(|y| &change[y * lattice.cols..][across.clone()]).copied().fold(0.0, f64::max)
-        };
-        let most = (0..cols * rows).map(most).collect();
-        Self { lattice, change, cols, rows, size: lattice.step * SIDE as f64, most }
-    }
-
-    /// Nothing in a box (least and greatest corner, grid) rises more.
-    fn within(&self, corners: [DVec2; 2]) -> f64 {
-        let Lattice { cols, rows, step } = *self.lattice;
-        let [low, high] = corners.map(|c| c / step);
-        let first = |v: f64, n: usize| ((v - 1e-9).max(0.0) as usize).min(n - 1);
-        let last = |v: f64, n: usize| ((v + 1e-9).max(0.0) as usize + 1).min(n - 1);
-        let mut most = 0.0f64;
-        for y in first(low.y, rows)..=last(high.y, rows) {
-            for v in &self.change[y * cols..][first(low.x, cols)..=last(high.x, cols)] {
-                most = most.max(*v);
-            }
-        }
-        most
-    }
-
-    /// Nothing on straight ways (grid) from one box (least and greatest corner) to another rises more.
-    fn along(&self, from: [DVec2; 2], to: [DVec2; 2]) -> f64 {
-        let ([a, b], [c, d]) = (from.map(|p| p / self.size), to.map(|p| p / self.size));
-        let pieces = (c - a).abs().max_element().clamp(1.0, 1e4).ceil();
-        let index = |v: f64, n: usize| (v.max(0.0) as usize).min(n - 1);
-        let mut most = 0.0f64;
-        for k in 0..pieces as usize {
-            let (s, t) = (k as f64 / pieces, (k + 1) as f64 / pieces);
-            let low = a.lerp(c, s).min(a.lerp(c, t)) - 1e-9;
-            let high = b.lerp(d, s).max(b.lerp(d, t)) + 1e-9;
-            for y in index(low.y, self.rows)..=index(high.y, self.rows) {
-                for x in index(low.x, self.cols)..=index(high.x, self.cols) {
-                    most = most.max(self.most[y * self.cols + x]);
-                }
-            }
-        }
-        most
     }
 }

@@ -4,6 +4,7 @@
 //! would come too close to a line of sight, and to a ceiling for every node. That a point is seen is linear in u, so the
 //! program is convex and its solution is the only one. Not in the paper.
 
+mod alone;
 mod bent;
 mod bundle;
 mod cholesky;
@@ -12,6 +13,7 @@ mod lanes;
 mod metric;
 mod pool;
 mod problem;
+mod rise;
 mod row;
 mod seen;
 mod solver;

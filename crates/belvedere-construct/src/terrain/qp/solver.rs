@@ -1,9 +1,10 @@
 //! Rows are found where they are missed, a few per round, until none is missed.
 
-use super::bundle::{Bundle, Rise};
+use super::bundle::Bundle;
 use super::metric::Metric;
 use super::pool::{IDLE, Kept, New, Place, Pool};
 use super::problem::{QpError, QpOptions, QpProblem, QpResult, Reason, Unresolved};
+use super::rise::Rise;
 use super::row::Row;
 use super::seen::Seen;
 use super::surface::{Lattice, Surface};

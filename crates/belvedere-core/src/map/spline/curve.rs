@@ -215,10 +215,10 @@ impl DeformationCurve {
         // Along, across, and the derivative of -along.
         let offsets = |l: f64| {
             let x = cell.parameter(l);
-            let t = self.tangent_in(cell, x);
+            let (t, kap) = frame_in(span, x, cell.x_mid, self.scale);
             let v = q - span.point(x);
             let d = v.dot(t.perp());
-            (v.dot(t), d, 1.0 - curvature_in(span, x, cell.x_mid, self.scale) * d)
+            (v.dot(t), d, 1.0 - kap * d)
         };
         let (mut lo, mut hi) = (cell.l0, cell.l1);
         let share = along[0] / (along[0] - along[1]);
@@ -292,16 +292,34 @@ pub(super) fn tangent_in(span: &CubicSpan, x: f64, inward: f64, scale: f64) -> D
 
 /// Curvature at `x`; where the speed vanishes that of the side of `inward`. At most 1e8 / scale.
 pub(super) fn curvature_in(span: &CubicSpan, x: f64, inward: f64, scale: f64) -> f64 {
-    let slow = 1e-7 * scale;
+    let slow = SLOW * scale;
     let x = if span.d1(x).length_squared() > slow * slow { x } else { moving(span, x, inward, slow) };
-    let (d1, d2) = (span.d1(x), span.d2(x));
+    let d1 = span.d1(x);
+    curvature(d1, d1.length(), span.d2(x), scale)
+}
+
+/// Both [`tangent_in`] and [`curvature_in`].
+fn frame_in(span: &CubicSpan, x: f64, inward: f64, scale: f64) -> (DVec2, f64) {
+    let d1 = span.d1(x);
+    let speed = d1.length();
+    if speed > SLOW * scale {
+        (d1 / speed, curvature(d1, speed, span.d2(x), scale))
+    } else {
+        (tangent_in(span, x, inward, scale), curvature_in(span, x, inward, scale))
+    }
+}
+
+/// Speeds below this share of the scale are too slow to tell the curvature.
+const SLOW: f64 = 1e-7;
+
+fn curvature(d1: DVec2, speed: f64, d2: DVec2, scale: f64) -> f64 {
     let cross = d1.perp_dot(d2);
     // Below this it is the rounding of the difference of two products.
-    if cross.abs() <= 1e-15 * scale * d2.length() {
+    if cross * cross <= 1e-30 * scale * scale * d2.length_squared() {
         return 0.0;
     }
     let limit = 1e8 / scale;
-    (cross / d1.length().powi(3)).clamp(-limit, limit)
+    (cross / (speed * speed * speed)).clamp(-limit, limit)
 }
 
 /// The nearest of a few parameters between `x` and `inward` at which the speed exceeds `slow`.
