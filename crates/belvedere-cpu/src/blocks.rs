@@ -5,7 +5,7 @@ use crate::choose::{Choice, Chooser, Chosen};
 use crate::grid::{CELL_TRIANGLES, Cover, NODES, Nodes, cell_weights, kept_node};
 use crate::lens::{Lens, SUB, ScreenVertex};
 pub(crate) use crate::lod::SIDE;
-use crate::lod::{self, Tree};
+use crate::lod::{self, Sparse, Tree};
 use crate::pass::Pass;
 use crate::project::Row;
 use crate::refine::{Corner, Refiner};
@@ -157,7 +157,7 @@ impl Blocks {
                         let tree = hf.derived(|| Tree::new(hf));
                         let chooser = Chooser { hf, tree: &tree, pass, lens, tolerance_px, lod_px: options.lod_px };
                         chooser.choose(&mut self.choice);
-                        let blocks = self.choice.list.par_iter().filter_map(|c| job.terrain_block(hf, c));
+                        let blocks = self.choice.list.par_iter().filter_map(|c| job.terrain_block(hf, &tree.sparse, c));
                         self.list.par_extend(blocks);
                     }
                     LayerKind::Boxes(b) => self.list.extend(job.boxes(b)),
@@ -263,7 +263,7 @@ pub(crate) struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn terrain_block(&self, hf: &Heightfield, chosen: &Chosen) -> Option<Block> {
+    fn terrain_block(&self, hf: &Heightfield, sparse: &Sparse, chosen: &Chosen) -> Option<Block> {
         let (origin, last) = lod::nodes(hf, chosen.level, chosen.block);
         let step = 1 << chosen.level;
         let mut out = Block {
@@ -278,7 +278,7 @@ impl Job<'_> {
             counts: Counts::default(),
         };
         let careful = chosen.edges || !chosen.whole || chosen.judged.contains(&true);
-        if !careful && let Some(mut nodes) = self.project_grid(hf, &out) {
+        if !careful && let Some(mut nodes) = self.project_grid(hf, sparse, &out) {
             nodes.close_seams(chosen.seam);
             out.cover = nodes.cover();
             out.counts.drawn = 2 * (out.cells[0] * out.cells[1]) as u64;
@@ -296,7 +296,7 @@ impl Job<'_> {
     }
 
     /// Nodes of the block on the image, if none needs clipping.
-    fn project_grid(&self, hf: &Heightfield, block: &Block) -> Option<Nodes> {
+    fn project_grid(&self, hf: &Heightfield, sparse: &Sparse, block: &Block) -> Option<Nodes> {
         let ([cols, rows], step) = (block.cells, block.step);
         let mut nodes = self.spare.nodes();
         nodes.reset(block.cells);
@@ -306,7 +306,7 @@ impl Job<'_> {
         // All of them first: rows lie far apart in memory, and none has to wait for another.
         let mut heights = [[0.0; NODES]; NODES];
         for (r, heights) in heights[..=rows].iter_mut().enumerate() {
-            columns.heights(hf, block.origin[1] + step * r, heights);
+            columns.heights(hf, sparse, block.origin[1] + step * r, heights);
         }
         for (r, heights) in heights[..=rows].iter().enumerate() {
             let (col, row) = (block.origin[0], block.origin[1] + step * r);

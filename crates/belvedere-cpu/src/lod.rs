@@ -37,6 +37,43 @@ struct Level {
 #[derive(Debug)]
 pub(crate) struct Tree {
     levels: Vec<Level>,
+    pub(crate) sparse: Sparse,
+}
+
+/// Nodes along both axes to one of [`Sparse`].
+const EVERY: usize = 8;
+
+/// Heights of every [`EVERY`]th node along both axes: blocks in little detail find theirs side by side instead of each in a
+/// line of memory of its own.
+#[derive(Debug)]
+pub(crate) struct Sparse {
+    cols: usize,
+    heights: Vec<f32>,
+}
+
+impl Sparse {
+    fn new(hf: &Heightfield) -> Self {
+        let cols = (hf.cols() - 1) / EVERY + 1;
+        let rows = hf.heights().par_chunks(hf.cols()).step_by(EVERY);
+        let heights = rows.flat_map_iter(|row| row.iter().step_by(EVERY).copied()).collect();
+        Self { cols, heights }
+    }
+
+    /// Heights of a row of the ground from column `first` on, those of every `step`-th node and perhaps more; how many make
+    /// that step.
+    #[inline(always)]
+    pub(crate) fn row<'h>(&'h self, hf: &'h Heightfield, [first, row]: [usize; 2], step: usize) -> (&'h [f32], usize) {
+        if (first | row | step).is_multiple_of(EVERY) {
+            (&self.heights[row / EVERY * self.cols + first / EVERY..], step / EVERY)
+        } else {
+            (&hf.heights()[row * hf.cols() + first..], step)
+        }
+    }
+
+    /// Bytes for a ground of so many nodes.
+    pub(crate) fn bytes(nodes: u64) -> u64 {
+        nodes / (EVERY * EVERY) as u64 * size_of::<f32>() as u64
+    }
 }
 
 impl Tree {
@@ -56,7 +93,7 @@ impl Tree {
                 break;
             }
         }
-        Self { levels }
+        Self { levels, sparse: Sparse::new(hf) }
     }
 
     pub(crate) fn levels(&self) -> usize {
@@ -317,6 +354,26 @@ mod tests {
                     assert!(sewn <= bound + 1e-4, "level {level}, side {side}: {sewn} > {bound}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn heights_side_by_side_are_those_of_the_ground() {
+        for (cols, rows) in [(257, 193), (100, 65), (8, 9), (2, 2)] {
+            let hf = rough(cols, rows, None);
+            let sparse = Sparse::new(&hf);
+            assert!(Sparse::bytes((cols * rows) as u64) <= 4 * sparse.heights.len() as u64);
+            let mut apart = 0;
+            for (step, r) in [1, 2, 4, 8, 16, 32, 64].into_iter().flat_map(|step| (0..rows).map(move |r| (step, r))) {
+                for first in 0..cols {
+                    let (from, by) = sparse.row(&hf, [first, r], step);
+                    apart += usize::from(by != step);
+                    for (i, c) in (first..cols).step_by(step).enumerate() {
+                        assert_eq!(from[i * by], hf.heights()[r * cols + c], "{cols} x {rows}: {c}, {r}, step {step}");
+                    }
+                }
+            }
+            assert_eq!(apart, 4 * sparse.heights.len(), "steps of 8 to 64 from every node that is there");
         }
     }
 

@@ -3,6 +3,7 @@
 use crate::displace::{Displacer, Points};
 use crate::grid::NODES;
 use crate::lens::{Lens, ScreenVertex};
+use crate::lod::Sparse;
 use crate::project::{Projector, Row};
 use belvedere_core::{Aabb, DVec2, DVec3, SpaceMap, Stage, View};
 use belvedere_scene::Heightfield;
@@ -48,11 +49,11 @@ pub(crate) struct Columns {
 impl Columns {
     /// Their heights in a row of the ground.
     #[inline(always)]
-    pub(crate) fn heights(&self, hf: &Heightfield, row: usize, out: &mut [f32; NODES]) {
-        let from = &hf.heights()[row * hf.cols() + self.first..];
-        match (self.step, from.first_chunk::<NODES>()) {
+    pub(crate) fn heights(&self, hf: &Heightfield, sparse: &Sparse, row: usize, out: &mut [f32; NODES]) {
+        let (from, step) = sparse.row(hf, [self.first, row], self.step);
+        match (step, from.first_chunk::<NODES>()) {
             (1, Some(whole)) if self.count == NODES => *out = *whole,
-            _ => out.iter_mut().zip(from.iter().step_by(self.step)).take(self.count).for_each(|(o, h)| *o = *h),
+            _ => out.iter_mut().zip(from.iter().step_by(step)).take(self.count).for_each(|(o, h)| *o = *h),
         }
     }
 }

@@ -30,6 +30,7 @@ use crate::blocks::{Block, Blocks, Found, SIDE};
 use crate::box_blocks::BOX_TRIANGLES;
 use crate::grid::CELL_TRIANGLES;
 use crate::lens::{Lens, SUB};
+use crate::lod::Sparse;
 use crate::polish::Polish;
 use crate::vector::nearest;
 use area::AreaMap;
@@ -79,7 +80,7 @@ pub(crate) struct Shaded {
     pub(crate) world: DVec3,
 }
 
-/// Bytes that colours need of a ground beside its heights: averages, heights that a stage lifted now and before, shadows, and both pictures of
+/// Bytes that colours need of a ground beside its heights: averages, some heights side by side, heights that a stage lifted now and before, shadows, and both pictures of
 /// the lit ground.
 pub(crate) fn ground_bytes(job: &RenderJob<'_>, hf: &Heightfield) -> u64 {
     let nodes = hf.heights().len() as u64;
@@ -87,7 +88,7 @@ pub(crate) fn ground_bytes(job: &RenderJob<'_>, hf: &Heightfield) -> u64 {
     let shadows = if job.light.shadows { nodes * 4 / 3 } else { 0 };
     let pixels = job.view.pinhole().image.map(u64::from).iter().product();
     let lit = 2 * tiles::most_bytes([hf.cols(), hf.rows()], pixels);
-    ground::means_bytes(nodes) + shadows + lit + if lifted { 8 * nodes } else { 0 }
+    ground::means_bytes(nodes) + Sparse::bytes(nodes) + shadows + lit + if lifted { 8 * nodes } else { 0 }
 }
 
 impl<'a> Shader<'a> {
