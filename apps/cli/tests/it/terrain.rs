@@ -242,6 +242,7 @@ fn a_film_of_giving_ground_goes_on_to_the_same_bytes() {
         serde_json::from_slice(&super::read(&place.path("whole/animation.json"))).expect("JSON");
     for frame in 0..4 {
         assert_eq!(number(&record["frames"][frame]["terrain"]["visible"]), 1.0, "frame {frame}: {record}");
+        assert_eq!(record["frames"][frame]["terrain"]["guaranteed"], true, "frame {frame}: {record}");
     }
 }
 

@@ -1,11 +1,11 @@
 //! Names of lines.
 
 use super::label::Wish;
-use super::visibility::Station;
+use super::visibility::{Run, Station};
 use super::{Maker, Style, casing_of, darker, path, width_or_none};
 use crate::canvas::text_size;
 use belvedere_core::DVec2;
-use belvedere_scene::LineLayer;
+use belvedere_scene::{Hidden, LineLayer};
 use rayon::prelude::*;
 
 /// Room that a name leaves at the rim of the picture, pixels.
@@ -13,7 +13,7 @@ const RIM: f64 = 4.0;
 /// A name needs a stretch of line of at least this share of its own width.
 const LEAST_SHARE: f64 = 0.6;
 
-/// A stretch of line that is seen: its length and middle, pixels.
+/// A stretch of line that is drawn as seen: its length and middle, pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Stretch {
     length: f64,
@@ -21,7 +21,7 @@ struct Stretch {
 }
 
 impl Maker<'_> {
-    /// Each name of a layer once, where the longest stretch of the lines that bear it is seen.
+    /// Each name of a layer once, at the longest stretch of the lines that bear it.
     pub(super) fn line_names(&self, layer: &LineLayer) -> Vec<Wish> {
         let Some(size_px) = layer.label_px else { return Vec::new() };
         let half_px = 0.5 * width_or_none(layer.width_px);
@@ -58,9 +58,13 @@ impl Maker<'_> {
 
     fn longest(&self, places: &[path::Place], style: Style) -> Option<Stretch> {
         let size = 2.0 * self.lens.center;
-        let parts = self.runs(places, style).into_iter().flat_map(|(_, run)| run.parts());
-        let seen = parts.filter(|(visible, _)| *visible).flat_map(|(_, part)| within(&part, size));
-        seen.max_by(|a, b| a.length.total_cmp(&b.length))
+        // Where hidden parts are drawn like the others a name has all of the line to choose from.
+        let drawn = |run: Run| match style.hidden {
+            Hidden::Show => vec![run.stations],
+            _ => run.parts().into_iter().filter(|(visible, _)| *visible).map(|(_, part)| part).collect(),
+        };
+        let parts = self.runs(places, style).into_iter().flat_map(|(_, run)| drawn(run));
+        parts.flat_map(|part| within(&part, size)).max_by(|a, b| a.length.total_cmp(&b.length))
     }
 }
 

@@ -80,6 +80,9 @@ pub struct FrameTerrain {
     pub visible_dense: f64,
     /// Points that cannot be shown.
     pub unresolved: usize,
+    /// Whether all that is asked for is guaranteed to be seen in this frame, see [`TerrainReport::guaranteed`].
+    #[serde(default)]
+    pub guaranteed: bool,
     /// Root mean square displacement, metres.
     pub rms_m: f64,
     /// Largest displacement, metres.
@@ -98,6 +101,7 @@ impl FrameTerrain {
             visible: report.metrics.visible,
             visible_dense: report.metrics.visible_dense,
             unresolved: report.unresolved.iter().map(|r| r.points).sum(),
+            guaranteed: report.guaranteed,
             rms_m: report.metrics.rms_m,
             max_m: report.metrics.max_m,
             frame_rms_m: report.metrics.frame.map_or(0.0, |f| f.rms_m),
