@@ -241,8 +241,12 @@ fn a_film_of_giving_ground_goes_on_to_the_same_bytes() {
     let record: serde_json::Value =
         serde_json::from_slice(&super::read(&place.path("whole/animation.json"))).expect("JSON");
     for frame in 0..4 {
-        assert_eq!(number(&record["frames"][frame]["terrain"]["visible"]), 1.0, "frame {frame}: {record}");
-        assert_eq!(record["frames"][frame]["terrain"]["guaranteed"], true, "frame {frame}: {record}");
+        let terrain = &record["frames"][frame]["terrain"];
+        assert_eq!(number(&terrain["visible"]), 1.0, "frame {frame}: {record}");
+        // Steep ground close to the way hides some of it.
+        let seen = number(&terrain["visible_dense"]) - number(&terrain["hidden_in_guard"]);
+        assert_eq!(terrain["guaranteed"], seen >= 0.99, "frame {frame}: {record}");
+        assert!(terrain["unresolved"] == 0 && seen > 0.9, "frame {frame}: {record}");
     }
 }
 

@@ -78,6 +78,9 @@ pub struct FrameTerrain {
     pub visible: f64,
     /// Visible share of the features in view.
     pub visible_dense: f64,
+    /// Share of them that is hidden by ground nearer to them than the guard alone.
+    #[serde(default)]
+    pub hidden_in_guard: f64,
     /// Points that cannot be shown.
     pub unresolved: usize,
     /// Whether all that is asked for is guaranteed to be seen in this frame, see [`TerrainReport::guaranteed`].
@@ -100,6 +103,7 @@ impl FrameTerrain {
             points: report.points,
             visible: report.metrics.visible,
             visible_dense: report.metrics.visible_dense,
+            hidden_in_guard: report.metrics.hidden_in_guard,
             unresolved: report.unresolved.iter().map(|r| r.points).sum(),
             guaranteed: report.guaranteed,
             rms_m: report.metrics.rms_m,
