@@ -381,47 +381,54 @@ mod tests {
         Scene { layers: vec![layer], ..Scene::default() }
     }
 
+    /// Square roots of colours may differ by a step of an 8-bit picture: places of both ways are rounded apart.
+    const STEP: f32 = 1.0 / 255.0;
+
     #[test]
     fn samples_taken_together_are_those_of_their_triangles() {
         let scene = hills();
-        let lens = Projection::Perspective { fov_y: 0.9 };
-        let (eye, target) = (DVec3::new(100.0, -1300.0, 260.0), DVec3::new(0.0, 0.0, -60.0));
-        let camera = Pinhole::look_at(eye, target, DVec3::Z, lens, [331, 160], 1.0, None).unwrap();
-        let view = View::straight(camera);
         let (light, progress) = (Light::default(), Progress::silent());
         let options = RenderOptions { samples: 1, lod_px: 0.5, ..RenderOptions::default() };
-        let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
-        let (lens, passes) = (Lens::new(view.pinhole()), Pass::all(&view));
-        let mut blocks = Blocks::default();
-        blocks.build(&scene, &passes, &lens, &options);
-        let shader = Shader::new(&job, &lens, &blocks);
-        let mut band = Band::new(0, 160, 331, sample_offsets(1));
-        blocks.draw(&mut band);
-        let x: Vec<i32> = (0..331).map(|x| x * SUB + SUB / 2).collect();
-        let (mut odd, mut plain) = (0, 0);
-        for row in 0..160 {
-            let (y, from) = (vec![row * SUB + SUB / 2; 331], band.index(0, 0, row));
-            let samples = Samples { prim: &band.prim[from..][..331], q: &band.q[from..][..331], x: &x, y: &y };
-            let [mut together, mut each] = [Painted::default(), Painted::default()];
-            shader.paint(samples, &mut together);
-            shader.paint(samples, &mut each);
-            each.root.iter_mut().for_each(|plane| plane.fill(-1.0));
-            let mut batch = Batch::new();
-            for k in (0..331).filter(|k| samples.prim[*k] != SKY) {
-                batch.take_odd(0, &shader, &samples, k, &mut each);
-                let (block, cell) = (samples.prim[k] >> 11, (samples.prim[k] >> 1) & 1023);
-                let (c, r, seam) = (cell % 32, cell / 32, blocks.list[block as usize].seam());
-                let is_odd = c == seam[3] || c == seam[1] || r == seam[0] || r == seam[2];
-                (odd, plain) = (odd + u32::from(is_odd), plain + u32::from(!is_odd));
-            }
-            batch.flush(&shader, &samples, &mut each);
-            assert_eq!(together.id, each.id);
-            for (plane, each) in together.root.iter().zip(&each.root) {
-                for (k, (a, b)) in plane.iter().zip(each).enumerate().filter(|(k, _)| samples.prim[*k] != SKY) {
-                    assert!((a - b).abs() < 0.004, "row {row}, column {k}: {a} {b}");
+        // Samples in cells along the north, east, south and west side beside coarser blocks, and others.
+        let (mut odd, mut plain) = ([0; 4], 0);
+        // From all sides, for what is coarser lies farther away.
+        for (x, y) in [(100.0, -1300.0), (1300.0, 100.0), (-100.0, 1300.0), (-1300.0, -100.0)] {
+            let lens = Projection::Perspective { fov_y: 0.9 };
+            let (eye, target) = (DVec3::new(x, y, 260.0), DVec3::new(0.0, 0.0, -60.0));
+            let view = View::straight(Pinhole::look_at(eye, target, DVec3::Z, lens, [331, 160], 1.0, None).unwrap());
+            let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
+            let (lens, passes) = (Lens::new(view.pinhole()), Pass::all(&view));
+            let mut blocks = Blocks::default();
+            blocks.build(&scene, &passes, &lens, &options);
+            let shader = Shader::new(&job, &lens, &blocks);
+            let mut band = Band::new(0, 160, 331, sample_offsets(1));
+            blocks.draw(&mut band);
+            let x: Vec<i32> = (0..331).map(|x| x * SUB + SUB / 2).collect();
+            for row in 0..160 {
+                let (y, from) = (vec![row * SUB + SUB / 2; 331], band.index(0, 0, row));
+                let samples = Samples { prim: &band.prim[from..][..331], q: &band.q[from..][..331], x: &x, y: &y };
+                let [mut together, mut each] = [Painted::default(), Painted::default()];
+                shader.paint(samples, &mut together);
+                shader.paint(samples, &mut each);
+                each.root.iter_mut().for_each(|plane| plane.fill(-1.0));
+                let mut batch = Batch::new();
+                for k in (0..331).filter(|k| samples.prim[*k] != SKY) {
+                    batch.take_odd(0, &shader, &samples, k, &mut each);
+                    let (block, cell) = (samples.prim[k] >> 11, (samples.prim[k] >> 1) & 1023);
+                    let (c, r, seam) = (cell % 32, cell / 32, blocks.list[block as usize].seam());
+                    let beside = [r == seam[0], c == seam[1], r == seam[2], c == seam[3]];
+                    odd.iter_mut().zip(beside).for_each(|(odd, beside)| *odd += u32::from(beside));
+                    plain += u32::from(!beside.contains(&true));
+                }
+                batch.flush(&shader, &samples, &mut each);
+                assert_eq!(together.id, each.id);
+                for (plane, each) in together.root.iter().zip(&each.root) {
+                    for (k, (a, b)) in plane.iter().zip(each).enumerate().filter(|(k, _)| samples.prim[*k] != SKY) {
+                        assert!((a - b).abs() < STEP, "row {row}, column {k}: {a} {b}");
+                    }
                 }
             }
         }
-        assert!(odd > 200 && plain > 10_000, "{odd} samples beside coarser blocks, {plain} others");
+        assert!(odd.iter().all(|odd| *odd > 100) && plain > 40_000, "{odd:?} beside coarser blocks, {plain} others");
     }
 }

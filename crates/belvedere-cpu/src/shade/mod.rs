@@ -80,8 +80,8 @@ pub(crate) struct Shaded {
     pub(crate) world: DVec3,
 }
 
-/// Bytes that colours need of a ground beside its heights: averages, some heights side by side, heights that a stage lifted now and before, shadows, and both pictures of
-/// the lit ground.
+/// Bytes that colours need of a ground beside its heights: averages, some heights side by side, heights that a stage lifted now
+/// and before, shadows, and both pictures of the lit ground.
 pub(crate) fn ground_bytes(job: &RenderJob<'_>, hf: &Heightfield) -> u64 {
     let nodes = hf.heights().len() as u64;
     let lifted = job.view.stages().iter().any(|s| matches!(s, Stage::TerrainDisocclusion(_)));
