@@ -1,6 +1,7 @@
 //! Integration tests of belvedere-construct.
 
 mod bars;
+mod coarse;
 mod fallbacks;
 mod flight;
 mod live;

@@ -5,6 +5,7 @@ mod ray;
 
 use super::qp::LinesOfSight;
 use super::{Cells, Field, ReferencePoint};
+use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
 use ray::Drawn;
 use rayon::prelude::*;
@@ -108,23 +109,52 @@ pub(super) fn excesses(
     points.par_iter().map(|p| drawn.line(p.grid, p.lift, sight).map(|line| over(drawn.excess(&line)))).collect()
 }
 
+/// Where the drawn ground hides places at grid coordinates with a lift, and by how much it rises over their lines of sight there.
+///
+/// * `guard`: ground nearer than this to a place does not hide it, cells.
+pub(super) fn hiding(
+    field: &Field,
+    delta: &Grid,
+    guard: f64,
+    sight: &dyn LinesOfSight,
+    places: &[(DVec2, f64)],
+) -> Vec<Option<(DVec2, f64)>> {
+    let drawn = Drawn::new(field, delta, guard);
+    let of = |&(g, lift): &(DVec2, f64)| {
+        let worst = drawn.worst(&drawn.line(g, lift, sight)?);
+        (worst.over > TOUCH && worst.over.is_finite()).then_some((worst.at, worst.over))
+    };
+    places.par_iter().map(of).collect()
+}
+
 /// What rises over a line of sight; any negative number if that is rounding.
 fn over(excess: f64) -> f64 {
     if excess > TOUCH { excess } else { -1.0 }
 }
 
-/// The dense points, and the share of them that is hidden by ground nearer than the guard alone.
-fn dense(of: &Deformation<'_>) -> (Shown, f64) {
+/// What hides a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Hides {
+    /// Ground that rises so far over its line of sight; infinite if it has none.
+    Ground(f64),
+    /// Only ground nearer to it than the guard.
+    InGuard(f64),
+}
+
+/// Each dense point on the ground, by its index, and what hides it.
+fn dense(of: &Deformation<'_>) -> Vec<(usize, Option<Hides>)> {
     let drawn = Drawn::new(of.field, of.delta, of.guard);
-    let judged = |p: &ReferencePoint| {
-        drawn.line(p.grid, p.lift, of.sight).map(|line| {
-            let over = over(drawn.excess(&line));
-            (over, over <= 0.0 && drawn.near_excess(&line) > TOUCH)
-        })
+    let judged = |(i, p): (usize, &ReferencePoint)| {
+        let line = drawn.line(p.grid, p.lift, of.sight)?;
+        let (over, near) = (drawn.excess(&line), drawn.near_excess(&line));
+        let hides = match (over > TOUCH, near > TOUCH) {
+            (true, _) => Some(Hides::Ground(over)),
+            (false, true) => Some(Hides::InGuard(near)),
+            (false, false) => None,
+        };
+        Some((i, hides))
     };
-    let judged: Vec<(f64, bool)> = of.dense.par_iter().filter_map(judged).collect();
-    let in_guard = judged.iter().filter(|j| j.1).count();
-    (Shown::of(judged.into_iter().map(|j| j.0)), in_guard as f64 / of.dense.len().max(1) as f64)
+    of.dense.par_iter().enumerate().filter_map(judged).collect()
 }
 
 /// Judges points by lines of sight against the drawn surface, two triangles per cell plus the displacement.
@@ -141,8 +171,35 @@ pub(super) fn shown(
 /// Judges a displacement by lines of sight against the drawn surface, and by what it does to the nodes. Shares no sampling
 /// with the solvers.
 pub fn terrain_metrics(of: &Deformation<'_>) -> TerrainMetrics {
-    let judge = |points: &[ReferencePoint]| shown(of.field, of.delta, of.guard, of.sight, points);
-    let (points, (dense, hidden_in_guard)) = (judge(of.points), dense(of));
+    judged(of).metrics
+}
+
+/// A judgement, point by point.
+pub(super) struct Judged {
+    pub(super) metrics: TerrainMetrics,
+    /// Reference points that are hidden, by their index, and how far the ground rises over their lines.
+    pub(super) points: Vec<(usize, f64)>,
+    /// Dense points that are hidden, by their index.
+    pub(super) dense: Vec<(usize, Hides)>,
+}
+
+/// As [`terrain_metrics`], and which points are hidden.
+pub(super) fn judged(of: &Deformation<'_>) -> Judged {
+    let over = excesses(of.field, of.delta, of.guard, of.sight, of.points);
+    let hidden = over.iter().enumerate().filter_map(|(i, over)| Some((i, (*over)?)).filter(|(_, over)| *over > 0.0));
+    let dense = dense(of);
+    let metrics = figures(of, Shown::of(over.iter().copied().flatten()), &dense);
+    let dense = dense.into_iter().filter_map(|(i, hides)| Some((i, hides?))).collect();
+    Judged { metrics, points: hidden.collect(), dense }
+}
+
+fn figures(of: &Deformation<'_>, points: Shown, dense: &[(usize, Option<Hides>)]) -> TerrainMetrics {
+    let in_guard = dense.iter().filter(|d| matches!(d.1, Some(Hides::InGuard(_)))).count();
+    let hidden_in_guard = in_guard as f64 / of.dense.len().max(1) as f64;
+    let dense = Shown::of(dense.iter().map(|d| match d.1 {
+        Some(Hides::Ground(over)) => over,
+        _ => -1.0,
+    }));
     let u = change::at_nodes(of.field, of.delta);
     let steps = change::steps(of.field, of.cells, &u);
     let normals = change::normals(of.field, &u);

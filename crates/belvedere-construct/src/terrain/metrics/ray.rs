@@ -27,6 +27,15 @@ struct Part {
 /// A place on a line of sight: grid coordinates and height.
 pub(super) type Place = (DVec2, f64);
 
+/// The ground that rises most over a line of sight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Worst {
+    /// By how much; any negative number if it is below the line everywhere, infinite if there is no line.
+    pub(super) over: f64,
+    /// Where, grid coordinates; the point itself where nothing rises over its line.
+    pub(super) at: DVec2,
+}
+
 impl<'a> Drawn<'a> {
     pub(super) fn new(field: &'a Field, delta: &'a Grid, guard: f64) -> Self {
         let highest = field.datum() + field.relief() + delta.range()[1].max(0.0);
@@ -49,11 +58,16 @@ impl<'a> Drawn<'a> {
     /// Largest height of the ground over a line of sight, beyond the guard; any negative number if it is below the line
     /// everywhere, infinite if there is no line.
     pub(super) fn excess(&self, line: &[Place]) -> f64 {
-        let [(point, _), _, ..] = *line else { return f64::INFINITY };
-        let mut worst = -1.0f64;
+        self.worst(line).over
+    }
+
+    /// As [`Self::excess`], with its place.
+    pub(super) fn worst(&self, line: &[Place]) -> Worst {
+        let [(at, _), _, ..] = *line else { return Worst { over: f64::INFINITY, at: DVec2::ZERO } };
+        let mut worst = Worst { over: -1.0, at };
         for pair in line.windows(2) {
-            if let Some(from) = beyond(point, self.guard, pair[0], pair[1]) {
-                worst = self.excess_of(from, pair[1], worst);
+            if let Some(from) = beyond(at, self.guard, pair[0], pair[1]) {
+                self.excess_of(from, pair[1], &mut worst);
             }
         }
         worst
@@ -61,28 +75,27 @@ impl<'a> Drawn<'a> {
 
     /// As [`Self::excess`], of the ground nearer than the guard; negative if there is no line.
     pub(super) fn near_excess(&self, line: &[Place]) -> f64 {
-        let mut worst = -1.0f64;
+        let mut worst = Worst { over: -1.0, at: DVec2::ZERO };
         for pair in line.windows(2) {
             let leaves = beyond(line[0].0, self.guard, pair[0], pair[1]);
             if leaves != Some(pair[0]) {
-                worst = self.excess_of(pair[0], leaves.unwrap_or(pair[1]), worst);
+                self.excess_of(pair[0], leaves.unwrap_or(pair[1]), &mut worst);
             }
             if leaves.is_some() {
                 break;
             }
         }
-        worst
+        worst.over
     }
 
-    /// The same over one chord; anything not above `least` comes back as that.
-    fn excess_of(&self, from: Place, to: Place, least: f64) -> f64 {
+    /// The same over one chord, where that is more than `worst`.
+    fn excess_of(&self, from: Place, to: Place, worst: &mut Worst) {
         let (g, dir) = (from.0, to.0 - from.0);
         let (z, dz) = (from.1, to.1 - from.1);
-        let Some([mut t, last]) = self.clip(g, dir) else { return least };
+        let Some([mut t, last]) = self.clip(g, dir) else { return };
         let steps = [dir.x, dir.y].map(|d| if d == 0.0 { f64::INFINITY } else { 1.0 / d.abs() });
         // Enough to step over a border in spite of rounding.
         let nudge = 1e-9 * steps[0].min(steps[1]).min(1e9);
-        let mut worst = least;
         while t < last {
             // Above everything, and rising from here.
             if dz >= 0.0 && z + t * dz > self.highest {
@@ -97,10 +110,9 @@ impl<'a> Drawn<'a> {
                 _ => f64::INFINITY,
             };
             let leave = border(g.x, dir.x, col).min(border(g.y, dir.y, row)).max(t + nudge).min(last);
-            worst = self.excess_in(&Part { col, row, t: [t, leave] }, g, dir, (z, dz), worst);
+            self.excess_in(&Part { col, row, t: [t, leave] }, g, dir, (z, dz), worst);
             t = if leave > t { leave } else { last };
         }
-        worst
     }
 
     /// Part of a chord over the grid.
@@ -121,8 +133,8 @@ impl<'a> Drawn<'a> {
         (from < to).then_some([from, to])
     }
 
-    /// The same over one cell; anything not above `least` may come back as that.
-    fn excess_in(&self, part: &Part, g: DVec2, dir: DVec2, (z, dz): (f64, f64), least: f64) -> f64 {
+    /// The same over one cell.
+    fn excess_in(&self, part: &Part, g: DVec2, dir: DVec2, (z, dz): (f64, f64), worst: &mut Worst) {
         let cols = self.field.cols();
         let nw = part.row * cols + part.col;
         let nodes = [nw, nw + 1, nw + cols, nw + cols + 1];
@@ -130,15 +142,14 @@ impl<'a> Drawn<'a> {
         let void = nodes.map(|i| self.field.void()[i]);
         let top = height.into_iter().fold(f64::NEG_INFINITY, f64::max) + self.delta.range()[1].max(0.0);
         let low = (z + part.t[0] * dz).min(z + part.t[1] * dz);
-        if top - low <= least {
-            return least;
+        if top - low <= worst.over {
+            return;
         }
         let corner = DVec2::new(part.col as f64, part.row as f64);
         let local = |t: f64| g + t * dir - corner;
         let across = dir.x - dir.y;
         let diagonal = (g.y - corner.y - (g.x - corner.x)) / across;
         let middle = if diagonal > part.t[0] && diagonal < part.t[1] { diagonal } else { part.t[1] };
-        let mut worst = least;
         for [from, to] in [[part.t[0], middle], [middle, part.t[1]]] {
             if to <= from {
                 continue;
@@ -158,11 +169,13 @@ impl<'a> Drawn<'a> {
             let count = ((to - from) * dir.length() / STEP).ceil().max(1.0) as usize;
             for k in 0..=count {
                 let t = from + (to - from) * k as f64 / count as f64;
-                let ground = height[0] + slope.dot(local(t)) + self.delta_at(g + t * dir);
-                worst = worst.max(ground - (z + t * dz));
+                let at = g + t * dir;
+                let over = height[0] + slope.dot(local(t)) + self.delta_at(at) - (z + t * dz);
+                if over > worst.over {
+                    *worst = Worst { over, at };
+                }
             }
         }
-        worst
     }
 }
 

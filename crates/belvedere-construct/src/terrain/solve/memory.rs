@@ -83,7 +83,7 @@ impl Pace {
 }
 
 /// Spacing of the points by which the result is judged, cells.
-const CHECK_CELLS: f64 = 0.2;
+pub(super) const CHECK_CELLS: f64 = 0.2;
 /// The view jumped if the eye moved by more than this share of the terrain's diagonal, or turned by more than this angle.
 const JUMP_SHARE: f64 = 0.05;
 const JUMP_COS: f64 = 0.939_692_620_785_908_4;

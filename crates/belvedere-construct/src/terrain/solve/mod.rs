@@ -2,6 +2,7 @@
 
 mod adjust;
 mod bent;
+mod drawn;
 mod fallback;
 mod live;
 mod memory;
@@ -15,7 +16,7 @@ pub use memory::TerrainMemory;
 pub use report::{Covered, QpReport, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
 
 use super::qp::{SolvedRow, Unresolved};
-use super::{Detail, Field, SolverMode, TerrainSettings, check_eye};
+use super::{Detail, Field, Hierarchy, SolverMode, TerrainSettings, check_eye};
 use crate::ConstructError;
 use adjust::Asked;
 use belvedere_core::grid::{Grid, GridError};
@@ -88,7 +89,7 @@ impl TerrainSolver {
         let delta = ran.delta()?;
         let Ran { prepared, field, done, times } = ran;
         let field: &Field = &field;
-        let previous = memory.before(&prepared).map(|u| on_solver_grid(field, &prepared, u)).transpose()?;
+        let previous = memory.before(&prepared).map(|u| on_grid(field, &prepared.grid, u)).transpose()?;
         let context = report::Context {
             settings: &self.settings,
             field,
@@ -181,14 +182,21 @@ impl Ran {
     /// The displacement over the scene.
     fn delta(&self) -> Result<Grid, GridError> {
         match &self.done.full {
-            Some(full) => spread(&self.field, [self.field.cols(), self.field.rows()], DVec2::ONE, full),
-            None => on_solver_grid(&self.field, &self.prepared, &self.done.coarse),
+            Some(full) => at_every_node(&self.field, full),
+            None => match &self.done.fine {
+                Some((grid, u)) => on_grid(&self.field, grid, u),
+                None => on_grid(&self.field, &self.prepared.grid, &self.done.coarse),
+            },
         }
     }
 }
 
-fn on_solver_grid(field: &Field, prepared: &Prepared, u: &[f64]) -> Result<Grid, GridError> {
-    spread(field, [prepared.grid.cols(), prepared.grid.rows()], prepared.grid.step(), u)
+fn on_grid(field: &Field, grid: &Hierarchy, u: &[f64]) -> Result<Grid, GridError> {
+    spread(field, [grid.cols(), grid.rows()], grid.step(), u)
+}
+
+fn at_every_node(field: &Field, values: &[f64]) -> Result<Grid, GridError> {
+    spread(field, [field.cols(), field.rows()], DVec2::ONE, values)
 }
 
 /// Values at nodes `step` cells apart over the field as a grid of the scene. The rim is repeated one node farther out, so
@@ -223,8 +231,8 @@ struct Done {
     coarse: Vec<f64>,
     /// Displacement at every node of the terrain, where that is more than the solver's grid can hold.
     full: Option<Vec<f64>>,
-    /// Displacement at every node of the terrain, where the solver's grid was too coarse.
-    fine: Option<Vec<f64>>,
+    /// Displacement at the nodes of a finer grid, where the solver's was too coarse.
+    fine: Option<(Hierarchy, Vec<f64>)>,
     /// Ways out of contradicting rows that were taken.
     fallbacks: Vec<Fallback>,
     greedy: Option<super::GreedyCounters>,

@@ -2,6 +2,7 @@
 
 use super::super::qp::{QpOptions, QpProblem, QpResult};
 use super::super::{Blocks, Field, Hierarchy, Naive, ReferencePoint, Smoother, SolverMode, TerrainSettings};
+use super::drawn::Drawn;
 use super::fallback::{self, Fallback};
 use super::memory::{self, Pace, Prepared};
 use super::{Done, QpReport, Seen, TerrainTimes, scales, since};
@@ -10,6 +11,17 @@ use belvedere_core::DVec3;
 use belvedere_scene::Progress;
 use std::borrow::Cow;
 use std::time::Instant;
+
+/// What finer grids are tried on.
+struct Finer<'a> {
+    /// The solver's grid.
+    coarse: &'a Hierarchy,
+    /// The undisplaced ground with its change of detail, at every node.
+    ground: &'a [f64],
+    detail: Option<&'a [f64]>,
+    pace: Pace,
+    options: QpOptions,
+}
 
 pub(super) struct Passes<'a> {
     pub(super) settings: &'a TerrainSettings,
@@ -54,10 +66,16 @@ impl Passes<'_> {
         let fine = done.fine.take();
         done.full = match (fine, detail) {
             (fine, Some(detail)) => {
-                let smooth = fine.unwrap_or_else(|| prepared.grid.prolong(&done.coarse));
+                let smooth = match fine {
+                    Some((grid, u)) => grid.prolong(&u),
+                    None => prepared.grid.prolong(&done.coarse),
+                };
                 Some(smooth.iter().zip(detail).map(|(a, b)| a + b).collect())
             }
-            (fine, None) => fine,
+            (fine, None) => {
+                done.fine = fine;
+                None
+            }
         };
         Ok(done)
     }
@@ -172,10 +190,16 @@ impl Passes<'_> {
             }
         }
         program.foreign = foreign;
+        if let (Some(detail), 0) = (&detail, fallback::stuck(&result)) {
+            let options = memory::options(self.settings, from_guard);
+            let drawn = Drawn { field: self.field, grid: &prepared.grid, detail, options };
+            result = drawn.agree(qp, &ground, &problem, result)?;
+        }
         done.coarse.clone_from(&result.u);
         if fallback::stuck(&result) > 0 {
             let options = memory::options(self.settings, from_guard);
-            result = self.on_finer_grids(&prepared.grid, &ground, &problem, (pace, options), result, done)?;
+            let grids = Finer { coarse: &prepared.grid, ground: &ground, detail: detail.as_deref(), pace, options };
+            result = self.on_finer_grids(&grids, &problem, result, done)?;
         }
         done.qp = Some(QpReport {
             rounds: result.rounds,
@@ -194,13 +218,12 @@ impl Passes<'_> {
     /// Solves again on finer and finer grids until nothing is missed any more; answers the best result.
     fn on_finer_grids(
         &self,
-        coarse: &Hierarchy,
-        ground: &[f64],
+        grids: &Finer<'_>,
         problem: &QpProblem<'_>,
-        (pace, options): (Pace, QpOptions),
         mut best: QpResult,
         done: &mut Done,
     ) -> Result<QpResult, ConstructError> {
+        let Finer { coarse, ground, detail, pace, options } = *grids;
         for nodes in fallback::finer(coarse, self.field) {
             if fallback::stuck(&best) == 0 {
                 break;
@@ -210,9 +233,14 @@ impl Passes<'_> {
             let target = problem.target.map(|t| fallback::resampled(coarse, t, &grid));
             let mut finer = memory::program(self.field, &grid, pace, options)?;
             finer.set_heights(ground)?;
-            let next = finer.solve(&QpProblem { target: target.as_deref(), ..*problem })?;
+            let problem = QpProblem { target: target.as_deref(), ..*problem };
+            let mut next = finer.solve(&problem)?;
+            if let Some(detail) = detail {
+                next = Drawn { field: self.field, grid: &grid, detail, options }
+                    .agree(&mut finer, ground, &problem, next)?;
+            }
             if fallback::stuck(&next) < fallback::stuck(&best) {
-                done.fine = Some(grid.prolong(&next.u));
+                done.fine = Some((grid, next.u.clone()));
                 best = next;
                 done.fallbacks.push(Fallback::FinerGrid { nodes });
             }

@@ -1,16 +1,17 @@
 //! What a displacement achieves and what it costs, ready for JSON.
 
-use super::super::metrics::{excesses, shown};
+use super::super::metrics::{Hides, Judged, excesses, judged, shown};
 use super::super::qp::{Reason, Unresolved};
 use super::super::{
     Deformation, Field, GreedyCounters, PointKind, ReferencePoint, SolverMode, TerrainMetrics, TerrainSettings,
-    Unusable, UnusableReason, stated_spacing, terrain_metrics,
+    Unusable, UnusableReason, stated_spacing,
 };
-use super::memory::Prepared;
+use super::memory::{CHECK_CELLS, Prepared};
 use super::{Done, Fallback, Seen, since};
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 /// Share of the length in view that must be seen for a promise to be kept: places between two candidates may lie a little under
@@ -31,6 +32,8 @@ pub struct TerrainReport {
     pub solver_grid: [usize; 2],
     /// Reference points in view.
     pub points: usize,
+    /// Places that were asked for: reference points and candidates in view. 0 = nothing was, the ground stays as it is.
+    pub asked: usize,
     /// What is seen and how far the ground moved, by a judge that knows nothing of the solver; dense points lie every fifth of a cell.
     #[serde(flatten)]
     pub metrics: TerrainMetrics,
@@ -45,10 +48,12 @@ pub struct TerrainReport {
     /// Ways out of contradicting rows that were taken, in their order; empty as a rule.
     pub fallbacks: Vec<Fallback>,
     /// Whether every reference point and candidate in view is guaranteed to be seen in this picture, and the judge agrees: of the
-    /// length in view at least 0.99 is seen, past ground nearer than the guard as well.
+    /// length in view at least 0.99 is seen, past ground nearer than the guard as well. Where nothing is asked for nothing is guaranteed.
     pub guaranteed: bool,
     /// What cannot be seen, and why.
     pub unresolved: Vec<UnresolvedRun>,
+    /// What else the judge finds hidden of the length in view, and why: places between two that were looked after.
+    pub hidden: Vec<UnresolvedRun>,
     /// Places that stay covered at the slack price.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub covered: Vec<Covered>,
@@ -129,6 +134,26 @@ pub enum UnresolvedReason {
     },
     /// The greedy pass could not show it.
     Greedy,
+    /// The greedy pass showed it and the smooth pass covered it again, as mode `paper` does.
+    Smoothed {
+        /// How far the ground rises over its line of sight.
+        over_m: f64,
+    },
+    /// The program holds it for seen and the judge does not.
+    Judged {
+        /// How far the ground rises over its line of sight.
+        over_m: f64,
+    },
+    /// Between two places that are seen.
+    Between {
+        /// How far the ground rises over its line of sight.
+        over_m: f64,
+    },
+    /// Ground nearer to it than the guard hides it.
+    InsideGuard {
+        /// How far that ground rises over its line of sight.
+        over_m: f64,
+    },
 }
 
 /// A part of a feature that is not seen: points one after the other with the same reason.
@@ -148,7 +173,7 @@ pub struct UnresolvedRun {
     pub at: [f64; 2],
     /// Points.
     pub points: usize,
-    /// Why; of a run of points the first one's figures.
+    /// Why; of a run of points the first one's figures, but the largest of those that say how far ground rises.
     #[serde(flatten)]
     pub reason: UnresolvedReason,
 }
@@ -178,11 +203,12 @@ pub(super) fn report(c: &Context<'_>, done: &Done, mut times: TerrainTimes, bega
         sight: &*seen.sight,
         guard,
     };
-    let metrics = terrain_metrics(&of);
+    let judgement = judged(&of);
+    let metrics = judgement.metrics;
     let before = |points: &[ReferencePoint]| {
         super::level(field).map_or(1.0, |level| shown(field, &level, guard, &*seen.sight, points).share)
     };
-    let unresolved = unresolved(c, done);
+    let (unresolved, hidden) = (unresolved(c, done, &judgement), hidden(c, &judgement, &dense));
     let (guards, qp_met) = (c.settings.mode != SolverMode::Paper, done.qp_unresolved.is_empty());
     let stated_m = stated_spacing(field.cols(), field.rows(), field.spacing());
     let w = c.settings.smoothness(stated_m);
@@ -192,6 +218,7 @@ pub(super) fn report(c: &Context<'_>, done: &Done, mut times: TerrainTimes, bega
         smoothing_length_m: c.settings.smoothing_length(stated_m),
         solver_grid: [prepared.grid.cols(), prepared.grid.rows()],
         points: points.len(),
+        asked: seen.candidates.len(),
         metrics,
         visible_before: before(&points),
         visible_dense_before: before(&dense),
@@ -199,10 +226,12 @@ pub(super) fn report(c: &Context<'_>, done: &Done, mut times: TerrainTimes, bega
         qp: done.qp,
         fallbacks: done.fallbacks.clone(),
         guaranteed: guards
+            && !seen.candidates.is_empty()
             && qp_met
             && metrics.visible == 1.0
             && metrics.visible_dense - metrics.hidden_in_guard >= AGREES,
         unresolved,
+        hidden,
         covered: covered(c, &dense),
         times,
     };
@@ -223,10 +252,27 @@ fn covered(c: &Context<'_>, dense: &[ReferencePoint]) -> Vec<Covered> {
     dense.iter().zip(over).filter_map(place).collect()
 }
 
-fn unresolved(c: &Context<'_>, done: &Done) -> Vec<UnresolvedRun> {
-    let field = c.field;
-    let gap_m = 1.5 * c.settings.spacing * field.spacing().max_element();
-    let mut runs = Runs { field, gap_m, out: Vec::new() };
+/// Dense points that are hidden although no place that is named stands for them.
+fn hidden(c: &Context<'_>, judgement: &Judged, dense: &[ReferencePoint]) -> Vec<UnresolvedRun> {
+    let mut runs = Runs::new(c.field, CHECK_CELLS);
+    // At a price the report names what stays covered.
+    if c.settings.slack_price.is_some() {
+        return runs.out;
+    }
+    for (i, hides) in &judgement.dense {
+        let reason = match *hides {
+            Hides::InGuard(over_m) => UnresolvedReason::InsideGuard { over_m },
+            Hides::Ground(over_m) if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,
+            Hides::Ground(over_m) if c.settings.mode == SolverMode::Paper => UnresolvedReason::Smoothed { over_m },
+            Hides::Ground(over_m) => UnresolvedReason::Between { over_m },
+        };
+        runs.put(&dense[*i], reason);
+    }
+    runs.out
+}
+
+fn unresolved(c: &Context<'_>, done: &Done, judgement: &Judged) -> Vec<UnresolvedRun> {
+    let mut runs = Runs::new(c.field, c.settings.spacing);
     let asked = |u: &&Unusable| c.seen.wedge.contains(c.field.scene_from_grid(u.grid));
     for u in c.prepared.unusable.iter().filter(asked) {
         let reason = match u.reason {
@@ -244,6 +290,7 @@ fn unresolved(c: &Context<'_>, done: &Done) -> Vec<UnresolvedRun> {
         }
     }
     let dense = c.prepared.dense.len();
+    let mut named: BTreeSet<usize> = done.greedy_unresolved.iter().copied().collect();
     for Unresolved { id, reason } in &done.qp_unresolved {
         let id = *id as usize;
         let point = if id < dense { c.prepared.dense.get(id) } else { c.prepared.points.get(id - dense) };
@@ -258,6 +305,18 @@ fn unresolved(c: &Context<'_>, done: &Done) -> Vec<UnresolvedRun> {
         if let Some(point) = point {
             runs.put(point, reason);
         }
+        named.extend(id.checked_sub(dense));
+    }
+    for &(k, over_m) in &judgement.points {
+        let i = c.seen.points[k];
+        if c.settings.slack_price.is_none() && !named.contains(&i) {
+            let reason = match c.settings.mode {
+                _ if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,
+                SolverMode::Paper => UnresolvedReason::Smoothed { over_m },
+                SolverMode::PaperQp | SolverMode::Qp => UnresolvedReason::Judged { over_m },
+            };
+            runs.put(&c.prepared.points[i], reason);
+        }
     }
     runs.out
 }
@@ -269,7 +328,12 @@ struct Runs<'a> {
     out: Vec<UnresolvedRun>,
 }
 
-impl Runs<'_> {
+impl<'a> Runs<'a> {
+    /// * `spacing`: of the points, cells.
+    fn new(field: &'a Field, spacing: f64) -> Self {
+        Self { field, gap_m: 1.5 * spacing * field.spacing().max_element(), out: Vec::new() }
+    }
+
     fn put(&mut self, p: &ReferencePoint, reason: UnresolvedReason) {
         self.add((p.layer, p.feature, p.kind, p.along_m, p.grid), reason);
     }
@@ -286,9 +350,22 @@ impl Runs<'_> {
         };
         if let Some(run) = self.out.last_mut().filter(|r| same(r)) {
             (run.to_m, run.points) = (along, run.points + 1);
+            run.reason = worse(run.reason, reason);
             return;
         }
         let at = self.field.scene_from_grid(grid).to_array();
         self.out.push(UnresolvedRun { layer, feature, kind, from_m: along, to_m: along, at, points: 1, reason });
+    }
+}
+
+/// Of two reasons of one kind the first, with the larger rise of ground over a line of sight.
+fn worse(first: UnresolvedReason, next: UnresolvedReason) -> UnresolvedReason {
+    use UnresolvedReason::{Between, InsideGuard, Judged, Smoothed};
+    match (first, next) {
+        (Smoothed { over_m: a }, Smoothed { over_m: b }) => Smoothed { over_m: a.max(b) },
+        (Judged { over_m: a }, Judged { over_m: b }) => Judged { over_m: a.max(b) },
+        (Between { over_m: a }, Between { over_m: b }) => Between { over_m: a.max(b) },
+        (InsideGuard { over_m: a }, InsideGuard { over_m: b }) => InsideGuard { over_m: a.max(b) },
+        _ => first,
     }
 }
