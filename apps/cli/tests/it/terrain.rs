@@ -103,6 +103,37 @@ fn everything_asked_for_is_visible_on_the_grid_of_the_input() {
 }
 
 #[test]
+fn where_nothing_is_asked_for_nothing_is_guaranteed_and_that_is_said() {
+    let place = place(|r, c| Some(hills(r, c)));
+    let near = report(&place, &["--set", "ahead_m=5"]);
+    let away = ["disocclude", "dem.asc", "way.geojson", "-o", "away.tif", "--report", "away.json"];
+    place.ok(&[&away[..], &["--eye", "8.022,46.002,1500", "--look", "8.022,45.9"]].concat());
+    let away: serde_json::Value = serde_json::from_slice(&super::read(&place.path("away.json"))).expect("JSON");
+    for (r, why) in [(&near, "ahead_m = 5 m"), (&away, "in the picture; the ground stays")] {
+        assert_eq!((&r["asked"], &r["points"], &r["guaranteed"]), (&0.into(), &0.into(), &false.into()), "{r}");
+        assert_eq!(number(&r["max_m"]), 0.0);
+        let said: Vec<String> = r["warnings"].as_array().expect("a list").iter().map(ToString::to_string).collect();
+        let nothing: Vec<&String> = said.iter().filter(|w| w.contains("nothing was asked for")).collect();
+        assert!(nothing.len() == 1 && nothing[0].contains(why), "{said:?}");
+    }
+    let all = report(&place, &[]);
+    assert!(number(&all["asked"]) > number(&all["points"]) && !all["warnings"].to_string().contains("nothing was"));
+}
+
+#[test]
+fn figures_say_whether_they_are_of_the_picture_or_of_all_ground() {
+    let place = place(|r, c| Some(hills(r, c)));
+    let args = ["disocclude", "dem.asc", "way.geojson", "-o", "out.tif", "--picture", "p.png"];
+    let said = place.ok(&[&args[..], &VIEW].concat());
+    let all = said.split("all the ground, in the picture or not, moved by ").nth(1).expect("the sentence");
+    let most: f64 = all.split_whitespace().nth(3).and_then(|n| n.parse().ok()).expect("a number");
+    let record: serde_json::Value = serde_json::from_slice(&super::read(&place.path("p.png.json"))).expect("JSON");
+    let shown = number(&record["displacement"]["max_m"]);
+    assert!(shown > 0.0 && shown <= most + 0.1, "{shown} of {most}: {said}");
+    assert!(record["note"].as_str().is_some_and(|n| n.contains("what is shown is displaced by up to")), "{record}");
+}
+
+#[test]
 fn the_paper_hides_what_the_guarantee_shows() {
     let place = place(|r, c| Some(hills(r, c)));
     let paper = report(&place, &["--mode", "paper"]);

@@ -194,10 +194,31 @@ pub(crate) fn remarks(solved: &Solved) -> Vec<String> {
             100.0 * hidden
         ));
     }
-    if report.points == 0 {
-        out.push(
-            "terrain_disocclusion: no part of the features lies in the picture, so the ground stays as it is".into(),
-        );
+    let between = 1.0 - report.metrics.visible_dense;
+    if between > WORTH_SAYING && points == 0 && report.parameters.mode != SolverMode::Paper {
+        out.push(format!(
+            "terrain_disocclusion: {:.1} % of the features in view is hidden between places that are seen, which stand {} cells apart; \
+             `hidden` in the report names the parts, a smaller candidates shows more of them",
+            100.0 * between,
+            report.parameters.candidates
+        ));
+    }
+    if report.asked == 0 {
+        out.push(nothing_asked(report.parameters.ahead_m));
     }
     out
+}
+
+/// That there was nothing to do, and why.
+fn nothing_asked(ahead_m: Option<f64>) -> String {
+    let (limit, remedy) = match ahead_m {
+        Some(m) => {
+            (format!(" up to ahead_m = {m} m along their path from the eye"), "give a longer ahead_m or another view")
+        }
+        None => (String::new(), "give another view"),
+    };
+    format!(
+        "terrain_disocclusion: nothing was asked for: no part of the features lies on the ground in the picture{limit}; the ground \
+         stays as it is and nothing is guaranteed; {remedy}"
+    )
 }

@@ -260,7 +260,7 @@ impl Disoccluded {
     pub fn summary(&self) -> String {
         let r = self.report();
         format!(
-            "visible of the features in view: {:.1} % before, {:.1} % after; the ground moved by {:.1} m rms, {:.1} m at most",
+            "visible of the features in view: {:.1} % before, {:.1} % after; all the ground, in the picture or not, moved by {:.1} m rms, {:.1} m at most",
             100.0 * r.visible_dense_before,
             100.0 * r.metrics.visible_dense,
             r.metrics.rms_m,

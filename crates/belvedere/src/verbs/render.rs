@@ -103,7 +103,8 @@ impl AuxBuffer {
     }
 }
 
-/// How far a picture moves what it shows, against the same camera without bends; sampled every few pixels.
+/// How far a picture moves what it shows, against the same camera without bends; sampled every few pixels. Ground that it does not
+/// show may have moved farther.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct DisplacementReport {
     /// Largest, scene units.
@@ -430,7 +431,7 @@ impl Picture {
 
     fn bent_title(&self) -> String {
         match self.sidecar.displacement {
-            Some(d) => format!("bent: moved by up to {:.0} m, {:.0} px", d.max_m, d.max_px),
+            Some(d) => format!("bent: what is seen moved by up to {:.0} m, {:.0} px", d.max_m, d.max_px),
             None => "the same camera".into(),
         }
     }

@@ -34,7 +34,7 @@ pub(super) fn pair(area: &Area, solutions: &Solutions) -> Result<Pixels, Belvede
     let after = Panel {
         title: "The ground makes way".into(),
         note: format!(
-            "{} can be seen; the ground moved {:.0} m at most",
+            "{} can be seen; of all the ground no node moved more than {:.0} m",
             percent(r.metrics.visible_dense),
             r.metrics.max_m
         ),
