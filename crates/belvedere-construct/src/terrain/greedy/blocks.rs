@@ -1,4 +1,4 @@
-//! The ground in square blocks: what a line of sight reads of one lies together.
+//! The ground in square blocks, and how high each of them is.
 
 use super::super::{Cells, Field, NO_CELL};
 use belvedere_core::DVec2;
@@ -7,18 +7,16 @@ use std::ops::Range;
 
 /// Cells of the grid along a side of a block.
 pub(super) const SIDE: usize = 8;
-/// Nodes along a side, rims included.
-pub(super) const ALONG: usize = SIDE + 1;
-const NODES: usize = ALONG * ALONG;
-/// Part of a node without data.
-pub(super) const NO_PART: u8 = u8::MAX;
 
-/// The untouched ground block by block, with the highest ground of every cell in each. Heights are over the datum.
+/// The untouched ground, and block by block the highest ground of every cell in it. Heights are over the datum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blocks {
-    cols: usize,
-    rows: usize,
-    tiles: Vec<Tile>,
+    /// Of the grid, columns and rows.
+    nodes: [usize; 2],
+    /// Of every node the nearest to the true one.
+    heights: Vec<f32>,
+    /// Blocks along both axes.
+    size: [usize; 2],
     /// First part of each block, and the end.
     start: Vec<u32>,
     parts: Vec<Part>,
@@ -28,19 +26,6 @@ pub struct Blocks {
     of_cell: Vec<u32>,
     /// Highest ground of each block.
     ceilings: Vec<f32>,
-}
-
-/// The nodes of a block row by row; beside the grid its last ones again.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Tile {
-    /// The nearest to the true ones.
-    pub(super) heights: [f32; NODES],
-    /// Number within the block of the part that a node belongs to; [`NO_PART`] without data.
-    pub(super) part_of: [u8; NODES],
-    /// Whether there are several parts, or nodes without data.
-    pub(super) mixed: bool,
-    /// A slant that no node is higher than: its height at the north-west node, and what it rises by column and row.
-    slant: [f32; 3],
 }
 
 /// What belongs to one cell of the ground in a block.
@@ -55,44 +40,49 @@ pub(super) struct Part {
 impl Blocks {
     /// * `cells`: of a ground with as many nodes as `field`.
     pub fn new(field: &Field, cells: &Cells) -> Self {
-        let (cols, rows) = ((field.cols() - 1).div_ceil(SIDE), (field.rows() - 1).div_ceil(SIDE));
+        let nodes = [field.cols(), field.rows()];
+        let size = nodes.map(|n| (n - 1).div_ceil(SIDE));
         let of_row = |row: usize| {
-            let (mut tiles, mut parts) = (Vec::with_capacity(cols), Vec::with_capacity(3 * cols));
-            let mut ends = Vec::with_capacity(cols);
-            for col in 0..cols {
+            let mut parts = Vec::with_capacity(3 * size[0]);
+            let mut ends = Vec::with_capacity(size[0]);
+            for col in 0..size[0] {
                 let corner = [col, row].map(|k| k * SIDE);
-                let first = parts.len();
-                of_block(field, cells, corner, (row * cols + col) as u32, &mut parts);
-                tiles.push(Tile::new(field, cells, corner, &parts[first..]));
+                of_block(field, cells, corner, (row * size[0] + col) as u32, &mut parts);
                 ends.push(parts.len() as u32);
             }
-            (tiles, parts, ends)
+            (parts, ends)
         };
-        let of_rows: Vec<_> = (0..rows).into_par_iter().with_min_len(4).map(of_row).collect();
-        let (mut tiles, mut start, mut parts) = (Vec::with_capacity(cols * rows), vec![0], Vec::new());
-        for (of_row, of_parts, ends) in of_rows {
-            tiles.extend(of_row);
+        let of_rows: Vec<_> = (0..size[1]).into_par_iter().with_min_len(4).map(of_row).collect();
+        let (mut start, mut parts) = (vec![0], Vec::new());
+        for (of_row, ends) in of_rows {
             start.extend(ends.iter().map(|end| parts.len() as u32 + end));
-            parts.extend(of_parts);
+            parts.extend(of_row);
         }
         let (first, of_cell) = by_cell(&parts, cells.len());
         let highest = |ends: &[u32]| parts[ends[0] as usize..ends[1] as usize].iter().map(|p| p.highest);
         let ceilings = start.windows(2).map(|ends| highest(ends).fold(f32::NEG_INFINITY, f32::max)).collect();
-        Self { cols, rows, tiles, start, parts, first, of_cell, ceilings }
+        let heights = field.heights().iter().map(|h| (h - field.datum()) as f32).collect();
+        Self { nodes, heights, size, start, parts, first, of_cell, ceilings }
+    }
+
+    /// Nodes of the grid along both axes.
+    pub(super) fn nodes(&self) -> [usize; 2] {
+        self.nodes
+    }
+
+    /// Heights of all nodes, row-major; what there is at voids means nothing.
+    pub(super) fn heights(&self) -> &[f32] {
+        &self.heights
     }
 
     /// Blocks along both axes.
     pub(super) fn size(&self) -> [usize; 2] {
-        [self.cols, self.rows]
+        self.size
     }
 
     /// Grid coordinates of a block's north-west node.
     pub(super) fn corner(&self, block: usize) -> DVec2 {
-        DVec2::new((block % self.cols * SIDE) as f64, (block / self.cols * SIDE) as f64)
-    }
-
-    pub(super) fn tile(&self, block: usize) -> &Tile {
-        &self.tiles[block]
+        DVec2::new((block % self.size[0] * SIDE) as f64, (block / self.size[0] * SIDE) as f64)
     }
 
     /// A bound of the highest untouched ground of each block.
@@ -113,50 +103,6 @@ impl Blocks {
     pub(super) fn parts_of_cell(&self, cell: usize) -> &[u32] {
         &self.of_cell[self.first[cell] as usize..self.first[cell + 1] as usize]
     }
-}
-
-impl Tile {
-    /// * `corner`: column and row of the north-west node; `parts`: of the block.
-    fn new(field: &Field, cells: &Cells, corner: [usize; 2], parts: &[Part]) -> Self {
-        let mut out =
-            Self { heights: [0.0; NODES], part_of: [NO_PART; NODES], mixed: parts.len() != 1, slant: [0.0; 3] };
-        for k in 0..NODES {
-            let (x, y) = ((corner[0] + k % ALONG).min(field.cols() - 1), (corner[1] + k / ALONG).min(field.rows() - 1));
-            let node = y * field.cols() + x;
-            let cell = cells.labels()[node];
-            out.heights[k] = (field.heights()[node] - field.datum()) as f32;
-            match parts.iter().position(|p| p.cell == cell) {
-                Some(part) => out.part_of[k] = part as u8,
-                None => out.mixed = true,
-            }
-        }
-        out.slant = slant(&out.heights);
-        out
-    }
-
-    /// The slant's height at a place of the block, cells from its north-west corner: no ground there is higher.
-    #[inline(always)]
-    pub(super) fn highest_at(&self, [x, y]: [f64; 2]) -> f64 {
-        let [corner, east, south] = self.slant.map(f64::from);
-        corner + x * east + y * south
-    }
-}
-
-/// The slant of least squares, lifted over all nodes.
-fn slant(heights: &[f32; NODES]) -> [f32; 3] {
-    let middle = (SIDE / 2) as f32;
-    // Sum of the squared distances from the middle.
-    let spread = ALONG as f32 * (0..ALONG).map(|k| (k as f32 - middle).powi(2)).sum::<f32>();
-    let at = |k: usize| [k % ALONG, k / ALONG];
-    let mut slopes = [0.0; 2];
-    for (k, h) in heights.iter().enumerate() {
-        (0..2).for_each(|axis| slopes[axis] += (at(k)[axis] as f32 - middle) * h / spread);
-    }
-    // In f64, as it is looked up.
-    let rise = |k: usize| (0..2).map(|axis| at(k)[axis] as f64 * f64::from(slopes[axis])).sum::<f64>();
-    let above = |(k, h): (usize, &f32)| f64::from(*h) - rise(k);
-    let corner = heights.iter().enumerate().map(above).fold(f64::NEG_INFINITY, f64::max);
-    [(corner as f32).next_up(), slopes[0], slopes[1]]
 }
 
 /// Appends the parts of the block whose north-west corner is given.
@@ -238,7 +184,7 @@ mod tests {
             if x + 1 == cols || field.void()[from] || field.void()[to] {
                 continue;
             }
-            let ceiling = f64::from(ground.ceilings.of_blocks()[y / SIDE * blocks.cols + x / SIDE]);
+            let ceiling = f64::from(ground.ceilings.of_blocks()[y / SIDE * blocks.size[0] + x / SIDE]);
             for weight in (0..=10).map(|k| 0.1 * f64::from(k)) {
                 let nearest = if weight > 0.5 { to } else { from };
                 let h = (1.0 - weight) * field.heights()[from] + weight * field.heights()[to] - field.datum();

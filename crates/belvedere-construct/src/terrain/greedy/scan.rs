@@ -1,11 +1,9 @@
-//! Looks at every crossing of a line of sight, fast, for those whose ground may lie over it.
+//! Looks at crossings of a line of sight, fast, for those whose ground may lie over it.
 
 use super::super::NO_CELL;
-use super::super::line_of_sight::SightWalk;
+use super::super::line_of_sight::{AT_NODE, SightWalk};
 use super::super::register::{LANES, indices, load, split, store};
-use super::blocks::{ALONG, NO_PART, SIDE, Tile};
 use super::trace::{Lowered, Sight};
-use super::under::Over;
 use super::{Affine, Blocks, CLEARANCE_GROWS};
 use pulp::Simd;
 
@@ -32,25 +30,15 @@ pub(super) const UNSURE: f64 = 1e-6;
 pub(super) struct Scan<'a, S: Simd> {
     pub(super) simd: S,
     pub(super) blocks: &'a Blocks,
+    /// Cell of each node.
+    pub(super) labels: &'a [u32],
     pub(super) ground: &'a Lowered,
     pub(super) sight: &'a Sight,
     pub(super) walk: &'a SightWalk<'a>,
 }
 
-/// What is done to a part of a block where the line of sight is over it.
-#[derive(Clone, Copy)]
-pub(super) struct Done {
-    cell: u32,
-    /// A bound of it,
-    affine: Affine,
-    /// and whether it is just that.
-    exact: bool,
-}
-
-/// At places in doubt: which cell it is does not matter, for ground is only ever lowered.
-const IN_DOUBT: Done = Done { cell: NO_CELL, affine: Affine::IDENTITY, exact: false };
-
 /// The crossing that stands out most of those that were kept last.
+#[derive(Clone, Copy)]
 struct Record {
     cell: u32,
     excess: f64,
@@ -58,117 +46,113 @@ struct Record {
 }
 
 impl<S: Simd> Scan<'_, S> {
-    /// Appends the crossings with columns and those with rows, in order, whose ground is higher than it may be.
+    /// Appends the crossings with columns (family 0) or rows (1), in order, whose ground is higher than it may be.
     ///
     /// Left out is what another one of the same cell, nearer to the point, makes needless: that one stands out more and the
     /// line is lower there, and so it will be after any scaling and displacement of the cell, of which ground nearer to the eye
     /// always gets all that ground farther away gets. Where it is cleared both are.
+    ///
+    /// * `stretches`: parts of the line to look at, in order.
     #[inline(always)]
-    pub(super) fn blocks(&self, over: &[Over], done: &mut Vec<Done>, [columns, rows]: &mut [Vec<High>; 2]) {
-        let mut records = [Record::NONE; 2];
-        for over in over {
-            let tile = self.blocks.tile(over.block);
-            let Some(bound) = self.parts(over, tile, done) else { continue };
-            let [of_columns, of_rows] = &mut records;
-            self.block::<0>(over, tile, (bound, done), of_columns, columns);
-            self.block::<1>(over, tile, (bound, done), of_rows, rows);
+    pub(super) fn family<const FAMILY: usize>(&self, stretches: &[[f64; 2]], out: &mut Vec<High>) {
+        let (start, dir) = (self.walk.from()[FAMILY], self.walk.dir()[FAMILY]);
+        if dir == 0.0 {
+            return;
         }
-    }
-
-    /// What is done to the parts of a block, and to those at most that the line of sight does not clear; `None` if there are
-    /// none of them.
-    #[inline(always)]
-    fn parts(&self, over: &Over, tile: &Tile, done: &mut Vec<Done>) -> Option<Affine> {
-        let (sight, start, dir) = (self.sight, self.walk.from(), self.walk.dir());
-        let [t, u] = over.span;
-        let slant =
-            |t: f64| tile.highest_at([start.x + t * dir.x - over.corner[0], start.y + t * dir.y - over.corner[1]]);
-        let (foot, rise) = sight.clear();
-        let (slant, line) = ([slant(t), slant(u)], [foot + t * rise, foot + u * rise]);
-        let lowest = if rise < 0.0 { line[1] } else { line[0] };
-        let distances = [(1.0 - u - UNSURE) * sight.rho, (1.0 - t + UNSURE) * sight.rho];
-        let mut most = None;
-        done.clear();
-        for part in &self.blocks.all_parts()[self.blocks.numbers(over.block)] {
-            let (affine, exact) = self.ground.pieces[part.cell as usize].between(distances);
-            done.push(Done { cell: part.cell, affine, exact });
-            // Slants and lines of sight are straight: the ends decide.
-            let below = affine.of(slant[0]) < line[0] && affine.of(slant[1]) < line[1];
-            if !below && affine.of(f64::from(part.highest)) >= lowest {
-                most = Some(most.map_or(affine, |most: Affine| most.larger(&affine)));
+        // Along the line, whichever way it goes.
+        let (sign, last) = (dir.signum(), self.blocks.nodes()[FAMILY] as f64 - 1.0);
+        let (mut next, end) = if sign > 0.0 { (0.0, last) } else { (-last, 0.0) };
+        let mut record = Record::NONE;
+        for [from, to] in stretches {
+            let first = (sign * (start + from * dir) - AT_NODE).ceil().max(next);
+            let past = (sign * (start + to * dir) + AT_NODE).floor().min(end) + 1.0;
+            let mut at = first;
+            while at < past {
+                self.register::<FAMILY>(sign, [at, past - 1.0], &mut record, out);
+                at += S::F64_LANES as f64;
             }
+            next = next.max(past);
         }
-        most
     }
 
-    /// * `bound`: what is not cleared is nowhere higher than this makes it.
+    /// * `first`, `last`: the lines of the grid, times `sign`; as many as fit are looked at.
     #[inline(always)]
-    fn block<const FAMILY: usize>(
+    fn register<const FAMILY: usize>(
         &self,
-        over: &Over,
-        tile: &Tile,
-        (bound, done): (Affine, &[Done]),
+        sign: f64,
+        [first, last]: [f64; 2],
         record: &mut Record,
         out: &mut Vec<High>,
     ) {
-        let (simd, sight) = (self.simd, self.sight);
-        // Steps between the nodes of a line, and between lines.
-        let [along, across] = if FAMILY == 0 { [ALONG, 1] } else { [1, ALONG] };
+        let (simd, sight, other) = (self.simd, self.sight, 1 - FAMILY);
+        let (heights, cells) = (self.blocks.heights(), self.ground.cells());
+        let nodes = self.blocks.nodes();
+        let [along, across] = if FAMILY == 0 { [nodes[0], 1] } else { [1, nodes[0]] };
         let (start, dir) = (self.walk.from(), self.walk.dir());
-        let (first, count) = over.lines[FAMILY];
         let splat = |x: f64| simd.splat_f64s(x);
-        let (foot, rise) = (splat(sight.height[0]), splat(sight.height[1] - sight.height[0]));
-        let (clearance, grows) = (splat(sight.clearance), splat(1.0 / CLEARANCE_GROWS));
-        let [strides, apart] = [along, across].map(|n| splat(n as f64));
-        let [per_line, from, dir_along] =
-            [dir[FAMILY].recip(), start[1 - FAMILY] - over.corner[1 - FAMILY], dir[1 - FAMILY]].map(splat);
-        let [start, corner] = [start[FAMILY], over.corner[FAMILY]].map(splat);
-        let [first, sign, last] = [first, dir[FAMILY].signum(), count as f64 - 1.0].map(splat);
-        let mut nth: S::f64s = load::<S>(&std::array::from_fn(|l| l as f64));
-        for at in (0..count).step_by(S::F64_LANES) {
-            let line = simd.mul_add_e_f64s(simd.min_f64s(nth, last), sign, first);
-            nth = simd.add_f64s(nth, splat(S::F64_LANES as f64));
-            let tau = simd.mul_f64s(simd.sub_f64s(line, start), per_line);
-            let (whole, weight) = split(simd, simd.mul_add_e_f64s(tau, dir_along, from), (SIDE - 1) as f64);
-            let nearest_line = simd.mul_f64s(simd.sub_f64s(line, corner), apart);
-            let node = indices(simd, simd.mul_add_e_f64s(whole, strides, nearest_line));
-            let (mut a, mut b) = ([0.0; LANES], [0.0; LANES]);
-            for l in 0..S::F64_LANES {
-                let node = node[l] as usize;
-                (a[l], b[l]) = (f64::from(tile.heights[node]), f64::from(tile.heights[node + along]));
-            }
-            let (a, b) = (load::<S>(&a), load::<S>(&b));
-            let h = simd.mul_add_e_f64s(weight, simd.sub_f64s(b, a), a);
-            let share = simd.min_f64s(simd.mul_f64s(tau, grows), splat(1.0));
-            let limit = simd.sub_f64s(simd.mul_add_e_f64s(tau, rise, foot), simd.mul_f64s(clearance, share));
-            let most = simd.sub_f64s(simd.mul_add_e_f64s(splat(bound.scale), h, splat(bound.shift)), limit);
-            if simd.reduce_max_f64s(most) < -sight.doubt {
+        let nth = load::<S>(&std::array::from_fn(|l| l as f64));
+        let line = simd.mul_f64s(simd.min_f64s(simd.add_f64s(nth, splat(first)), splat(last)), splat(sign));
+        let tau = simd.mul_f64s(simd.sub_f64s(line, splat(start[FAMILY])), splat(dir[FAMILY].recip()));
+        let place = simd.mul_add_e_f64s(tau, splat(dir[other]), splat(start[other]));
+        let (whole, weight) = split(simd, place, nodes[other] as f64 - 2.0);
+        let node = simd.mul_add_e_f64s(whole, splat(along as f64), simd.mul_f64s(line, splat(across as f64)));
+        let half = splat(0.5);
+        let farther = simd.greater_than_f64s(weight, half);
+        let near = simd.add_f64s(node, simd.select_f64s(farther, splat(along as f64), splat(0.0)));
+        let (node, near) = (indices(simd, node), indices(simd, near));
+        let (mut a, mut b, mut scale, mut shift) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        let mut cell = [0; LANES];
+        for l in 0..S::F64_LANES {
+            let node = node[l] as usize;
+            (a[l], b[l]) = (f64::from(heights[node]), f64::from(heights[node + along]));
+            cell[l] = self.labels[near[l] as usize];
+            [scale[l], shift[l]] = cells[(cell[l] as usize).min(cells.len() - 1)];
+        }
+        let (a, b) = (load::<S>(&a), load::<S>(&b));
+        let h = simd.mul_add_e_f64s(weight, simd.sub_f64s(b, a), a);
+        let share = simd.min_f64s(simd.mul_f64s(tau, splat(1.0 / CLEARANCE_GROWS)), splat(1.0));
+        let rise = splat(sight.height[1] - sight.height[0]);
+        let line_of_sight = simd.mul_add_e_f64s(tau, rise, splat(sight.height[0]));
+        let limit = simd.sub_f64s(line_of_sight, simd.mul_f64s(splat(sight.clearance), share));
+        // Which cell it is does not matter at places in doubt: ground is only ever lowered.
+        let aside = simd.abs_f64s(simd.sub_f64s(weight, half));
+        let sure = simd.and_m64s(
+            simd.greater_than_or_equal_f64s(aside, splat(UNSURE)),
+            simd.less_than_or_equal_f64s(aside, splat(0.5 - UNSURE)),
+        );
+        let lowered = simd.mul_add_e_f64s(load::<S>(&scale), h, load::<S>(&shift));
+        let excess = simd.sub_f64s(simd.select_f64s(sure, lowered, h), limit);
+        if simd.reduce_max_f64s(excess) < -sight.doubt {
+            return;
+        }
+        let (excess, limit, h, tau) = (store::<S>(excess), store::<S>(limit), store::<S>(h), store::<S>(tau));
+        let (aside, line) = (store::<S>(aside), store::<S>(line));
+        let count = ((last - first) as usize + 1).min(S::F64_LANES);
+        for l in 0..count {
+            if excess[l] < -sight.doubt {
                 continue;
             }
-            let (line, tau, weight) = (store::<S>(line), store::<S>(tau), store::<S>(weight));
-            let (h, limit, most) = (store::<S>(h), store::<S>(limit), store::<S>(most));
-            for l in 0..S::F64_LANES.min(count - at) {
-                if most[l] < -sight.doubt {
-                    continue;
-                }
-                let of = if tile.mixed {
-                    let nodes = [node[l] as usize, node[l] as usize + along];
-                    match which(done, &tile.part_of, nodes, weight[l]) {
-                        Some(of) => of,
-                        None => continue,
-                    }
-                } else {
-                    done[0]
-                };
-                let excess = of.affine.of(h[l]) - limit[l];
-                if excess < -sight.doubt {
-                    continue;
-                }
-                let (cell, line) = (of.cell, line[l] as u32);
-                let high = High { tau: tau[l], h: h[l], limit: limit[l], cell, family: FAMILY as u8, line };
-                if !(of.exact && sight.comparable(&high)) || record.keeps(&high, excess, 2.0 * sight.doubt) {
-                    out.push(high);
-                }
+            let high =
+                High { tau: tau[l], h: h[l], limit: limit[l], cell: cell[l], family: FAMILY as u8, line: line[l] as u32 };
+            if !(UNSURE..=0.5 - UNSURE).contains(&aside[l]) {
+                out.push(High { cell: NO_CELL, ..high });
+                continue;
+            }
+            if record.covers(cell[l], limit[l], excess[l] + 2.0 * sight.doubt) {
+                continue;
+            }
+            let far = if node[l] == near[l] { node[l] as usize + along } else { node[l] as usize };
+            if cell[l] == NO_CELL || self.labels[far] == NO_CELL {
+                continue;
+            }
+            let distances = [(1.0 - tau[l] - UNSURE) * sight.rho, (1.0 - tau[l] + UNSURE) * sight.rho];
+            let (affine, exact): (Affine, bool) = self.ground.pieces[cell[l] as usize].between(distances);
+            let excess = affine.of(h[l]) - limit[l];
+            if excess < -sight.doubt {
+                continue;
+            }
+            if !(exact && sight.comparable(&high)) || record.keeps(&high, excess, 2.0 * sight.doubt) {
+                out.push(high);
             }
         }
     }
@@ -177,10 +161,16 @@ impl<S: Simd> Scan<'_, S> {
 impl Record {
     const NONE: Self = Self { cell: NO_CELL, excess: f64::NEG_INFINITY, limit: f64::INFINITY };
 
+    /// Whether a crossing that stands out no more than `most` is needless beside this one.
+    #[inline(always)]
+    fn covers(&self, cell: u32, limit: f64, most: f64) -> bool {
+        cell == self.cell && limit >= self.limit && most < self.excess
+    }
+
     /// Whether a crossing is needed beside this one; `doubt`: of differences.
     #[inline(always)]
     fn keeps(&mut self, high: &High, excess: f64, doubt: f64) -> bool {
-        if high.cell == self.cell && high.limit >= self.limit && excess + doubt < self.excess {
+        if self.covers(high.cell, high.limit, excess + doubt) {
             return false;
         }
         if high.cell != self.cell || excess > self.excess {
@@ -188,17 +178,6 @@ impl Record {
         }
         true
     }
-}
-
-/// What is done where an edge is crossed; `None` where it lacks an end: that must not stand for ground.
-#[inline(always)]
-fn which(done: &[Done], part_of: &[u8; ALONG * ALONG], nodes: [usize; 2], weight: f64) -> Option<Done> {
-    if !(UNSURE..=0.5 - UNSURE).contains(&(weight - 0.5).abs()) {
-        return Some(IN_DOUBT);
-    }
-    let [near, far] = if weight > 0.5 { [nodes[1], nodes[0]] } else { nodes };
-    let part = done.get(usize::from(part_of[near]))?;
-    (part_of[far] != NO_PART).then_some(*part)
 }
 
 /// Appends both in one order.

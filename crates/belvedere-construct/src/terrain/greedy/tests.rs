@@ -246,7 +246,7 @@ fn what_is_left_out_tells_nothing_now_and_after_more_was_lowered() {
             let sight = target.sight(field, &grounds[0].pieces, eye, below);
             some.clear();
             all.clear();
-            Skipping { field, blocks: &blocks }.samples(&sight, &grounds[then], &mut room, &mut some);
+            Skipping { field, cells, blocks: &blocks }.samples(&sight, &grounds[then], &mut room, &mut some);
             Every(field).samples(&sight, &grounds[then], &mut room, &mut all);
             for now in &grounds[then..] {
                 let hits = Hits { field, cells, pieces: &now.pieces, sight: &sight, below, slack: 1e-9 };
@@ -269,7 +269,7 @@ fn told_alike(field: &Field, cells: &Cells, blocks: &Blocks, [from, eye]: [DVec2
     let rho = ((eye - from) * field.spacing()).length();
     let sight = Sight { from, eye, rho, height, guard: 0.0, clearance: 1.0, low: 1.0, doubt: 1e-3 };
     let (mut some, mut all, mut room) = (Vec::new(), Vec::new(), Room::default());
-    Skipping { field, blocks }.samples(&sight, &ground, &mut room, &mut some);
+    Skipping { field, cells, blocks }.samples(&sight, &ground, &mut room, &mut some);
     Every(field).samples(&sight, &ground, &mut room, &mut all);
     let hits = Hits { field, cells, pieces: &ground.pieces, sight: &sight, below: f64::INFINITY, slack: 1e-9 };
     let (mut of_some, mut of_all) = (Vec::new(), Vec::new());

@@ -3,8 +3,8 @@
 use super::super::line_of_sight::{SightWalk, guard_tau};
 use super::super::{Cells, Field, NO_CELL, ReferencePoint};
 use super::ceilings::Ceilings;
-use super::scan::{Done, High, Scan, UNSURE, merge};
-use super::under::{Over, Under};
+use super::scan::{High, Scan, UNSURE, merge};
+use super::under::Under;
 use super::{Affine, Blocks, CLEARANCE, CLEARANCE_GROWS, Pieces};
 use belvedere_core::DVec2;
 use pulp::{Arch, Simd, WithSimd};
@@ -62,8 +62,7 @@ pub(super) trait Sampler: Sync {
 /// Room to work in, kept from line to line.
 #[derive(Default)]
 pub(super) struct Room {
-    over: Vec<Over>,
-    done: Vec<Done>,
+    stretches: Vec<[f64; 2]>,
     by_family: [Vec<High>; 2],
 }
 
@@ -71,6 +70,8 @@ pub(super) struct Room {
 pub(super) struct Lowered {
     /// What is done to each cell.
     pub(super) pieces: Vec<Pieces>,
+    /// The most that is done to ground of each cell, as scale and shift; and a last one for no cell.
+    cells: Vec<[f64; 2]>,
     pub(super) ceilings: Ceilings,
 }
 
@@ -79,13 +80,26 @@ impl Lowered {
     ///
     /// * `eye`: grid coordinates.
     pub(super) fn new(field: &Field, blocks: &Blocks, cells: usize, eye: DVec2) -> Self {
-        Self { pieces: vec![Pieces::default(); cells], ceilings: Ceilings::new(blocks, eye, field.spacing()) }
+        Self {
+            pieces: vec![Pieces::default(); cells],
+            cells: vec![[1.0, 0.0]; cells + 1],
+            ceilings: Ceilings::new(blocks, eye, field.spacing()),
+        }
     }
 
     /// See [`Pieces::change`].
     pub(super) fn change(&mut self, cell: usize, below: f64, change: impl FnMut(Affine) -> Affine) -> bool {
         self.ceilings.lower(cell);
-        self.pieces[cell].change(below, change)
+        let divided = self.pieces[cell].change(below, change);
+        let Affine { scale, shift } = self.pieces[cell].bound();
+        self.cells[cell] = [scale, shift];
+        divided
+    }
+
+    /// Scale and shift of each cell: ground of it that was at least 0 high is nowhere higher than these make it. The last
+    /// ones, which change nothing, are for what belongs to none.
+    pub(super) fn cells(&self) -> &[[f64; 2]] {
+        &self.cells
     }
 
     /// Sets the bounds anew where ground was lowered.
@@ -97,6 +111,7 @@ impl Lowered {
 /// Leaves out blocks that the line clears, and what was lowered enough.
 pub(super) struct Skipping<'a> {
     pub(super) field: &'a Field,
+    pub(super) cells: &'a Cells,
     pub(super) blocks: &'a Blocks,
 }
 
@@ -120,13 +135,16 @@ impl WithSimd for Skip<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { all: Skipping { field, blocks }, sight, ground, room, out } = self;
-        let Room { over, done, by_family } = room;
+        let Self { all: Skipping { field, cells, blocks }, sight, ground, room, out } = self;
+        let Room { stretches, by_family } = room;
         let Some(walk) = &SightWalk::new(field, sight.from, sight.eye, false) else { return };
-        over.clear();
+        stretches.clear();
         by_family.iter_mut().for_each(Vec::clear);
-        Under { size: blocks.size(), ceilings: ground.ceilings.of_blocks() }.near(simd, walk, sight, over);
-        Scan { simd, blocks, ground, sight, walk }.blocks(over, done, by_family);
+        Under { size: blocks.size(), ceilings: ground.ceilings.of_blocks() }.near(simd, walk, sight, stretches);
+        let scan = Scan { simd, blocks, labels: cells.labels(), ground, sight, walk };
+        let [columns, rows] = by_family;
+        scan.family::<0>(stretches, columns);
+        scan.family::<1>(stretches, rows);
         merge(by_family, out);
     }
 }

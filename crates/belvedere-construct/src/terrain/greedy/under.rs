@@ -1,22 +1,11 @@
-//! Blocks of ground under a line of sight: those that it clears are passed.
+//! Ground under a line of sight in blocks: parts of the line that clear them are passed.
 
-use super::super::line_of_sight::{AT_NODE, SightWalk};
+use super::super::line_of_sight::SightWalk;
 use super::super::register::{LANES, Lane, indices, load, split, store};
 use super::blocks::SIDE;
 use super::trace::Sight;
 use belvedere_core::DVec2;
 use pulp::Simd;
-
-/// The part of a line of sight over a block.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Over {
-    pub(super) block: usize,
-    /// Column and row of its north-west corner.
-    pub(super) corner: [f64; 2],
-    /// First column (row) of the grid that is crossed, and how many.
-    pub(super) lines: [(f64, usize); 2],
-    pub(super) span: [f64; 2],
-}
 
 /// Blocks, and how high each may be.
 pub(super) struct Under<'a> {
@@ -29,7 +18,7 @@ pub(super) struct Under<'a> {
 impl Under<'_> {
     /// The parts of a line of sight, from where its point's own ground ends, over blocks that may be higher than it, in order.
     #[inline(always)]
-    pub(super) fn near<S: Simd>(&self, simd: S, walk: &SightWalk<'_>, sight: &Sight, out: &mut Vec<Over>) {
+    pub(super) fn near<S: Simd>(&self, simd: S, walk: &SightWalk<'_>, sight: &Sight, out: &mut Vec<[f64; 2]>) {
         let (t0, t1) = walk.span();
         let line = Line::new(sight, walk.dir(), [t0.max(sight.guard), t1]);
         if line.ends[0] >= t1 {
@@ -37,29 +26,36 @@ impl Under<'_> {
         }
         // Slice by slice across the axis along which the line runs faster: there are one or two blocks in each.
         let major = usize::from(line.dir[1].abs() > line.dir[0].abs());
-        let sizes = self.size;
-        let [first, last] = line.ends.map(|t| line.block(major, t, sizes[major]));
-        let count = first.abs_diff(last) + 1;
-        let slice = |i: usize| if line.dir[major] > 0.0 { first + i } else { first - i };
-        for at in (0..count).step_by(S::F64_LANES) {
-            let over = self.over_slices(simd, &line, major, slice(at));
-            for i in (at..count.min(at + S::F64_LANES)).filter(|i| over[i - at] > 0.0) {
-                let from = if i == 0 { (line.ends[0], None) } else { (line.border(major, slice(i - 1)), Some(major)) };
-                let to = if i + 1 == count { (t1, None) } else { (line.border(major, slice(i)), Some(major)) };
-                self.slice(&line, major, slice(i), [from, to], out);
+        let last = self.size[major] - 1;
+        let sign = line.dir[major].signum();
+        let [first, end] = line.ends.map(|t| sign * line.block(major, t, last));
+        let mut at = first;
+        while at <= end {
+            let (over, ends) = self.slices(simd, &line, major, sign * at);
+            if simd.reduce_max_f64s(load::<S>(&over)) > 0.0 {
+                let count = ((end - at) as usize + 1).min(S::F64_LANES);
+                for l in (0..count).filter(|&l| over[l] > 0.0) {
+                    let [from, to] = ends.map(|e| e[l]);
+                    match out.last_mut() {
+                        Some(last) if last[1] >= from => last[1] = to,
+                        _ => out.push([from, to]),
+                    }
+                }
             }
+            at += S::F64_LANES as f64;
         }
     }
 
-    /// How far the ground of slices of blocks, from number `first` on, may stand out of a line of sight; a bound.
+    /// How far the ground of slices of blocks, from number `first` on, may stand out of a line of sight, a bound; and where
+    /// the line comes into them and leaves.
     #[inline(always)]
-    fn over_slices<S: Simd>(&self, simd: S, line: &Line, major: usize, first: usize) -> Lane {
+    fn slices<S: Simd>(&self, simd: S, line: &Line, major: usize, first: f64) -> (Lane, [Lane; 2]) {
         let (minor, sizes) = (1 - major, self.size);
         let steps = if major == 0 { [1.0, self.size[0] as f64] } else { [self.size[0] as f64, 1.0] };
         let side = SIDE as f64;
         let (sign, per_slice) = (line.dir[major].signum(), side / line.dir[major]);
         let nth = load::<S>(&std::array::from_fn(|l| l as f64));
-        let slice = simd.mul_add_e_f64s(nth, simd.splat_f64s(sign), simd.splat_f64s(first as f64));
+        let slice = simd.mul_add_e_f64s(nth, simd.splat_f64s(sign), simd.splat_f64s(first));
         // Where the line comes in and leaves. No closures: they would not be compiled for the registers.
         let behind = if sign > 0.0 { 0.0 } else { 1.0 } - line.start[major] / side;
         let entry = simd.mul_f64s(simd.add_f64s(slice, simd.splat_f64s(behind)), simd.splat_f64s(per_slice));
@@ -86,40 +82,7 @@ impl Under<'_> {
         }
         let lowest = if line.rise < 0.0 { u } else { t };
         let limit = simd.mul_add_e_f64s(lowest, simd.splat_f64s(line.rise), simd.splat_f64s(line.foot));
-        store::<S>(simd.sub_f64s(load::<S>(&ceiling), limit))
-    }
-
-    /// The parts of a line over the blocks of one slice.
-    ///
-    /// * `ends`: where it comes into the slice and leaves it, and the axis of the border there.
-    #[inline(always)]
-    fn slice(
-        &self,
-        line: &Line,
-        major: usize,
-        slice: usize,
-        [from, to]: [(f64, Option<usize>); 2],
-        out: &mut Vec<Over>,
-    ) {
-        let (minor, sizes) = (1 - major, self.size);
-        let [mut within, last] = [from.0, to.0].map(|t| line.block(minor, t, sizes[minor]));
-        let (mut t, mut entered) = from;
-        loop {
-            let here = within;
-            let (exit, left) = if here == last { to } else { (line.border(minor, here).min(to.0), Some(minor)) };
-            let place = if major == 0 { [slice, here] } else { [here, slice] };
-            let block = place[1] * self.size[0] + place[0];
-            // The lower end of the line over a block is that nearer to the point if it rises.
-            let limit = line.foot + if line.rise < 0.0 { exit } else { t } * line.rise;
-            if f64::from(self.ceilings[block]) > limit {
-                out.push(line.over(block, place, [t, exit], [entered, left]));
-            }
-            if here == last {
-                return;
-            }
-            within = if line.dir[minor] > 0.0 { here + 1 } else { here - 1 };
-            (t, entered) = (exit, left);
-        }
+        (store::<S>(simd.sub_f64s(load::<S>(&ceiling), limit)), [store::<S>(t), store::<S>(u)])
     }
 }
 
@@ -127,8 +90,6 @@ impl Under<'_> {
 struct Line {
     start: [f64; 2],
     dir: [f64; 2],
-    /// One over that.
-    per_cell: [f64; 2],
     /// The part to look at.
     ends: [f64; 2],
     /// See [`Sight::clear`].
@@ -139,59 +100,12 @@ struct Line {
 impl Line {
     fn new(sight: &Sight, dir: DVec2, ends: [f64; 2]) -> Self {
         let (foot, rise) = sight.clear();
-        Self { start: sight.from.to_array(), dir: dir.to_array(), per_cell: dir.recip().to_array(), ends, foot, rise }
+        Self { start: sight.from.to_array(), dir: dir.to_array(), ends, foot, rise }
     }
 
-    /// Column (axis 0) or row of the block at a place of the line.
+    /// Column (axis 0) or row of the block at a place of the line; on a border any of both, for both hold the nodes there.
     #[inline(always)]
-    fn block(&self, axis: usize, t: f64, count: usize) -> usize {
-        let at = (self.start[axis] + t * self.dir[axis]) / SIDE as f64;
-        let k = at as usize;
-        // On a border it is the block ahead that counts; the one behind holds the same nodes there.
-        let behind = self.dir[axis] < 0.0 && k as f64 == at && k > 0;
-        (k - usize::from(behind)).min(count - 1)
+    fn block(&self, axis: usize, t: f64, last: usize) -> f64 {
+        ((self.start[axis] + t * self.dir[axis]) / SIDE as f64).floor().clamp(0.0, last as f64)
     }
-
-    /// Where the line leaves a column or row of blocks.
-    #[inline(always)]
-    fn border(&self, axis: usize, k: usize) -> f64 {
-        ((k + usize::from(self.dir[axis] > 0.0)) as f64 * SIDE as f64 - self.start[axis]) * self.per_cell[axis]
-    }
-
-    /// * `ends`: the axes of the borders through which the line comes and leaves; `None` where it begins or ends.
-    #[inline(always)]
-    fn over(&self, block: usize, place: [usize; 2], span: [f64; 2], ends: [Option<usize>; 2]) -> Over {
-        let columns = lines([self.start[0], self.dir[0]], place[0], span, ends.map(|e| e.map(|e| e == 0)));
-        let rows = lines([self.start[1], self.dir[1]], place[1], span, ends.map(|e| e.map(|e| e == 1)));
-        Over { block, corner: place.map(|k| (k * SIDE) as f64), lines: [columns, rows], span }
-    }
-}
-
-/// Columns (or rows) of the grid that a line of sight crosses over a block: the first one, and how many. Those on a border
-/// belong to the block behind it, so that neighbouring parts of a line share none and leave out none.
-///
-/// * `start`, `dir`: the line, cells; `place`: of the block; `span`: the part of the line;
-/// * `ends`: whether it comes and leaves through borders of this family; `None` where the line begins or ends.
-#[inline(always)]
-fn lines([start, dir]: [f64; 2], place: usize, span: [f64; 2], [entered, left]: [Option<bool>; 2]) -> (f64, usize) {
-    if dir == 0.0 {
-        return (0.0, 0);
-    }
-    let sign = dir.signum();
-    let side = SIDE as f64;
-    // Along the line, whichever way it goes.
-    let behind = if dir > 0.0 { place as f64 } else { -((place + 1) as f64) } * side;
-    let ahead = behind + side;
-    let [from, to] = span.map(|t| sign * (start + t * dir));
-    let first = match entered {
-        Some(true) => behind,
-        Some(false) => from.ceil().clamp(behind, ahead),
-        None => (from - AT_NODE).ceil().clamp(behind, ahead),
-    };
-    let end = match left {
-        Some(true) => ahead,
-        Some(false) => to.ceil().clamp(behind, ahead),
-        None => ((to + AT_NODE).floor() + 1.0).clamp(behind, ahead + 1.0),
-    };
-    (sign * first, (end - first).max(0.0) as usize)
 }
