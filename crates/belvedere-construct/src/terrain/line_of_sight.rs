@@ -58,33 +58,67 @@ pub fn guard_tau(from: DVec2, eye: DVec2, guard: f64) -> f64 {
 pub fn sight_samples(field: &Field, from: DVec2, eye: DVec2, diagonals: bool, out: &mut Vec<SightSample>) {
     out.clear();
     if let Some(mut walk) = SightWalk::new(field, from, eye, diagonals) {
-        let (_, end) = walk.span();
+        let (_, end) = walk.line.span;
         walk.samples_to(end, out);
     }
 }
 
-/// A line of sight on its way from the point to the eye.
-pub(super) struct SightWalk<'a> {
+/// A line of sight over the grid, in plan.
+pub(super) struct SightLine<'a> {
     field: &'a Field,
     from: DVec2,
     dir: DVec2,
     plan_m: f64,
     span: (f64, f64),
+}
+
+/// A line of sight on its way from the point to the eye.
+struct SightWalk<'a> {
+    line: SightLine<'a>,
     crossings: [Crossings; 3],
 }
 
 impl<'a> SightWalk<'a> {
     /// `None` if the line does not meet the grid.
-    pub(super) fn new(field: &'a Field, from: DVec2, eye: DVec2, diagonals: bool) -> Option<Self> {
-        let dir = eye - from;
-        let span = over(field, from, dir)?;
+    fn new(field: &'a Field, from: DVec2, eye: DVec2, diagonals: bool) -> Option<Self> {
+        let line = SightLine::new(field, from, eye)?;
+        let (dir, span) = (line.dir, line.span);
         let diagonal = if diagonals { dir.x - dir.y } else { 0.0 };
         let crossings = [
             Crossings::new(from.x, dir.x, span),
             Crossings::new(from.y, dir.y, span),
             Crossings::new(from.x - from.y, diagonal, span),
         ];
-        Some(Self { field, from, dir, plan_m: (dir * field.spacing()).length(), span, crossings })
+        Some(Self { line, crossings })
+    }
+
+    /// Appends the crossings from where the walk is up to `tau`.
+    #[inline(always)]
+    fn samples_to(&mut self, end: f64, out: &mut Vec<SightSample>) {
+        loop {
+            let next = self.crossings.each_ref().map(|c| c.tau);
+            let family = if next[1] < next[0] { 1 } else { 0 };
+            let family = if next[2] < next[family] { 2 } else { family };
+            let tau = next[family];
+            // Beside the span there are none, so the last may lie beyond its end by rounding.
+            if tau == f64::INFINITY || (tau > end && end < self.line.span.1) {
+                return;
+            }
+            let k = self.crossings[family].advance();
+            let Some(sample) = self.line.at(family, k, tau) else { continue };
+            if !out.last().is_some_and(|s| s.same_node(&sample)) {
+                out.push(sample);
+            }
+        }
+    }
+}
+
+impl<'a> SightLine<'a> {
+    /// `None` if the line does not meet the grid.
+    pub(super) fn new(field: &'a Field, from: DVec2, eye: DVec2) -> Option<Self> {
+        let dir = eye - from;
+        let span = over(field, from, dir)?;
+        Some(Self { field, from, dir, plan_m: (dir * field.spacing()).length(), span })
     }
 
     /// The part of the line over the grid.
@@ -92,41 +126,20 @@ impl<'a> SightWalk<'a> {
         self.span
     }
 
-    /// From the point to the eye, cells.
-    pub(super) fn dir(&self) -> DVec2 {
-        self.dir
-    }
-
-    /// Appends the crossings from where the walk is up to `tau`.
-    #[inline(always)]
-    pub(super) fn samples_to(&mut self, end: f64, out: &mut Vec<SightSample>) {
-        loop {
-            let next = self.crossings.each_ref().map(|c| c.tau);
-            let family = if next[1] < next[0] { 1 } else { 0 };
-            let family = if next[2] < next[family] { 2 } else { family };
-            let tau = next[family];
-            // Beside the span there are none, so the last may lie beyond its end by rounding.
-            if tau == f64::INFINITY || (tau > end && end < self.span.1) {
-                return;
-            }
-            let k = self.crossings[family].advance();
-            let Some(sample) = self.at(family, k, tau) else { continue };
-            if !out.last().is_some_and(|s| s.same_node(&sample)) {
-                out.push(sample);
-            }
-        }
-    }
-
     /// Where the line of sight starts, cells.
     pub(super) fn from(&self) -> DVec2 {
         self.from
     }
 
+    /// From the point to the eye, cells.
+    pub(super) fn dir(&self) -> DVec2 {
+        self.dir
+    }
+
     /// The crossing with line `k` of a family (0: x = k, 1: y = k).
     #[inline(always)]
     pub(super) fn crossing(&self, family: usize, k: f64) -> Option<SightSample> {
-        let c = &self.crossings[family];
-        self.at(family, k, (k - c.start) / c.step)
+        self.at(family, k, (k - self.from[family]) / self.dir[family])
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Cells of the grid along a side of a block.
-pub(super) const SIDE: usize = 8;
+pub(super) const SIDE: usize = 16;
 
 /// The untouched ground, and block by block the highest ground of every cell in it. Heights are over the datum.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,7 +58,7 @@ impl Blocks {
             start.extend(ends.iter().map(|end| parts.len() as u32 + end));
             parts.extend(of_row);
         }
-        let (first, of_cell) = by_cell(&parts, cells.len());
+        let (first, of_cell) = by_cell(parts.iter().map(|p| p.cell as usize), cells.len());
         let highest = |ends: &[u32]| parts[ends[0] as usize..ends[1] as usize].iter().map(|p| p.highest);
         let ceilings = start.windows(2).map(|ends| highest(ends).fold(f32::NEG_INFINITY, f32::max)).collect();
         let heights = field.heights().iter().map(|h| (h - field.datum()) as f32).collect();
@@ -138,18 +138,20 @@ fn of_block(field: &Field, cells: &Cells, [col, row]: [usize; 2], block: u32, ou
     }
 }
 
-/// Numbers of the parts of each cell, and where each cell's begin.
-fn by_cell(parts: &[Part], cells: usize) -> (Vec<u32>, Vec<u32>) {
+/// Where each cell's things begin, and the end; and the numbers of the things of each cell, ascending.
+///
+/// * `of`: the cell of each thing.
+pub(super) fn by_cell(of: impl ExactSizeIterator<Item = usize> + Clone, cells: usize) -> (Vec<u32>, Vec<u32>) {
     let mut first = vec![0u32; cells + 1];
-    parts.iter().for_each(|p| first[p.cell as usize + 1] += 1);
+    of.clone().for_each(|cell| first[cell + 1] += 1);
     (0..cells).for_each(|c| first[c + 1] += first[c]);
-    let (mut next, mut of_cell) = (first.clone(), vec![0; parts.len()]);
-    for (number, part) in parts.iter().enumerate() {
-        let at = &mut next[part.cell as usize];
-        of_cell[*at as usize] = number as u32;
+    let (mut next, mut numbers) = (first.clone(), vec![0; of.len()]);
+    for (number, cell) in of.enumerate() {
+        let at = &mut next[cell];
+        numbers[*at as usize] = number as u32;
         *at += 1;
     }
-    (first, of_cell)
+    (first, numbers)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The ground over a line of sight, exactly.
 
-use super::super::line_of_sight::{SightSample, SightWalk};
+use super::super::line_of_sight::{SightLine, SightSample};
 use super::super::{Cells, Field, NO_CELL};
 use super::Pieces;
 use super::scan::{High, UNSURE};
@@ -24,6 +24,7 @@ pub(super) struct Hit {
 /// Finds hits among what may be hits.
 pub(super) struct Hits<'a> {
     pub(super) field: &'a Field,
+    pub(super) line: &'a SightLine<'a>,
     pub(super) cells: &'a Cells,
     pub(super) pieces: &'a [Pieces],
     pub(super) sight: &'a Sight,
@@ -38,11 +39,10 @@ impl Hits<'_> {
     /// out most, the one whose height must be scaled down most, and possibly others.
     pub(super) fn find(&self, high: &[High], out: &mut Vec<Hit>) {
         out.clear();
-        let Some(walk) = SightWalk::new(self.field, self.sight.from, self.sight.eye, false) else { return };
         for run in high.chunk_by(|a, b| a.cell == b.cell) {
             match self.pieces.get(run[0].cell as usize) {
-                Some(pieces) => self.telling(run, pieces, |h| out.extend(self.hit(&walk, h))),
-                None => out.extend(run.iter().filter_map(|h| self.hit(&walk, h))),
+                Some(pieces) => self.telling(run, pieces, |h| out.extend(self.hit(h))),
+                None => out.extend(run.iter().filter_map(|h| self.hit(h))),
             }
         }
         // Where columns and rows are crossed at once, rounding may have put them the wrong way round.
@@ -85,8 +85,8 @@ impl Hits<'_> {
         }
     }
 
-    fn hit(&self, walk: &SightWalk<'_>, high: &High) -> Option<Hit> {
-        let s: SightSample = walk.crossing(usize::from(high.family), f64::from(high.line))?;
+    fn hit(&self, high: &High) -> Option<Hit> {
+        let s: SightSample = self.line.crossing(usize::from(high.family), f64::from(high.line))?;
         let cell = self.cells.labels()[s.nearest()];
         if cell == NO_CELL || s.rho >= self.below {
             return None;

@@ -22,11 +22,7 @@ impl Default for Pieces {
 impl Pieces {
     /// What is done at distance `rho`.
     pub fn at(&self, rho: f64) -> Affine {
-        match self.affine.len() {
-            0 => Affine::IDENTITY,
-            1 => self.affine[0],
-            _ => self.affine[self.radii.partition_point(|&r| r <= rho)],
-        }
+        if self.alike() { self.bound } else { self.affine[self.radii.partition_point(|&r| r <= rho)] }
     }
 
     /// Ground of the cell that was at least 0 high is nowhere higher than this makes it.
@@ -42,7 +38,8 @@ impl Pieces {
     }
 
     fn rings_between(&self, near: f64, far: f64) -> (Affine, bool) {
-        let [first, last] = [near, far].map(|rho| self.radii.partition_point(|&r| r <= rho));
+        let first = self.radii.partition_point(|&r| r <= near);
+        let last = first + self.radii[first..].iter().take_while(|r| **r <= far).count();
         (self.affine[first + 1..=last].iter().fold(self.affine[first], Affine::larger), first == last)
     }
 

@@ -1,10 +1,11 @@
 //! The order in which points are followed, and what each of them does to the ground.
 
+use super::super::line_of_sight::SightLine;
 use super::super::{Cells, Field, ReferencePoint, TerrainSettings};
+use super::blocks::by_cell;
 use super::equations::{Affine, Price, blended, scale_to_clear, shift_to_clear};
 use super::hits::{Hit, Hits};
-use super::scan::High;
-use super::trace::{Lowered, Room, Sampler, Sight, Target};
+use super::trace::{Lowered, Room, Sampler, Target};
 use super::{BACKWARD, Blocks, CLEARANCE, GreedyCounters, NEAR, Naive};
 use belvedere_core::{DVec2, DVec3};
 use std::collections::BinaryHeap;
@@ -37,6 +38,29 @@ impl PartialOrd for Entry {
     }
 }
 
+/// What is to follow, the farthest first. Nearly all of it is known from the beginning.
+#[derive(Default)]
+struct Queue {
+    /// The last one first.
+    sorted: Vec<Entry>,
+    added: BinaryHeap<Entry>,
+}
+
+impl Queue {
+    fn new(mut entries: Vec<Entry>) -> Self {
+        entries.sort_unstable();
+        Self { sorted: entries, added: BinaryHeap::new() }
+    }
+
+    fn push(&mut self, entry: Entry) {
+        self.added.push(entry);
+    }
+
+    fn pop(&mut self) -> Option<Entry> {
+        if self.added.peek() > self.sorted.last() { self.added.pop() } else { self.sorted.pop() }
+    }
+}
+
 /// Traces after which the bounds of the ground are set anew: sooner costs more than it saves.
 const SETTLE: usize = 12;
 
@@ -50,15 +74,17 @@ pub(super) struct Pass<'a> {
     slack: f64,
     targets: Vec<Target>,
     /// Points of each cell, and where each cell's begin.
-    of_cell: Vec<usize>,
-    first: Vec<usize>,
+    of_cell: Vec<u32>,
+    first: Vec<u32>,
     ground: Lowered,
-    /// Whether the whole line of a point waits in the heap.
+    /// Whether the whole line of a point waits in the queue.
     waiting: Vec<bool>,
     unresolved: Vec<bool>,
     /// Backward events of each cell.
     backward: Vec<u32>,
-    heap: BinaryHeap<Entry>,
+    queue: Queue,
+    /// Room for what is done to neighbours.
+    neighbours: Vec<(f64, Affine)>,
     pub(super) counters: GreedyCounters,
 }
 
@@ -73,9 +99,7 @@ impl<'a> Pass<'a> {
     ) -> Self {
         let (grid, z) = (field.grid_from_scene(eye.truncate()), eye.z - field.datum());
         let targets: Vec<Target> = points.iter().map(|p| Target::new(field, cells, p, grid, settings.guard)).collect();
-        let mut of_cell: Vec<usize> = (0..targets.len()).collect();
-        of_cell.sort_by_key(|&i| targets[i].cell);
-        let first = (0..=cells.len()).map(|c| of_cell.partition_point(|&i| targets[i].cell < c)).collect();
+        let (first, of_cell) = by_cell(targets.iter().map(|t| t.cell), cells.len());
         Self {
             field,
             cells,
@@ -89,16 +113,18 @@ impl<'a> Pass<'a> {
             waiting: vec![false; targets.len()],
             unresolved: vec![false; targets.len()],
             backward: vec![0; cells.len()],
-            heap: BinaryHeap::with_capacity(2 * targets.len()),
+            queue: Queue::default(),
+            neighbours: Vec::new(),
             counters: GreedyCounters::default(),
             targets,
         }
     }
 
     pub(super) fn run(&mut self, sampler: &dyn Sampler) {
-        (0..self.targets.len()).for_each(|point| self.enqueue(point));
+        self.waiting.fill(true);
+        self.queue = Queue::new((0..self.targets.len()).map(|point| self.whole(point)).collect());
         let (mut room, mut samples, mut found) = (Room::default(), Vec::new(), Vec::new());
-        while let Some(entry) = self.heap.pop() {
+        while let Some(entry) = self.queue.pop() {
             if self.counters.traces.is_multiple_of(SETTLE) {
                 self.ground.settle(self.blocks);
             }
@@ -106,8 +132,14 @@ impl<'a> Pass<'a> {
             let target = &self.targets[entry.point];
             let sight = target.sight(self.field, &self.ground.pieces, self.eye, entry.below);
             samples.clear();
-            sampler.samples(&sight, &self.ground, &mut room, &mut samples);
-            self.trace(entry, &sight, &samples, &mut found);
+            found.clear();
+            if let Some(line) = &SightLine::new(self.field, sight.from, sight.eye) {
+                sampler.samples(line, &sight, &self.ground, &mut room, &mut samples);
+                let (field, cells, pieces) = (self.field, self.cells, &self.ground.pieces);
+                Hits { field, cells, pieces, line, sight: &sight, below: entry.below, slack: self.slack }
+                    .find(&samples, &mut found);
+            }
+            self.clear_line(entry, &mut found);
         }
     }
 
@@ -118,29 +150,30 @@ impl<'a> Pass<'a> {
         Naive { eye: self.eye.0, pieces: self.ground.pieces, unresolved, counters: self.counters }
     }
 
+    fn points_of(&self, cell: usize) -> &[u32] {
+        &self.of_cell[self.first[cell] as usize..self.first[cell + 1] as usize]
+    }
+
     fn enqueue(&mut self, point: usize) {
         if !std::mem::replace(&mut self.waiting[point], true) {
-            let target = &self.targets[point];
-            self.heap.push(Entry { rho: target.rho, point, below: target.below(), whole: true });
+            self.queue.push(self.whole(point));
         }
     }
 
-    /// Follows a line of sight and clears it, cell by cell.
-    fn trace(&mut self, entry: Entry, sight: &Sight, samples: &[High], found: &mut Vec<Hit>) {
+    /// Clears a line of sight of what was found on it, cell by cell.
+    fn clear_line(&mut self, entry: Entry, found: &mut Vec<Hit>) {
         let target = self.targets[entry.point];
         if entry.whole {
             self.waiting[entry.point] = false;
             self.unresolved[entry.point] = false;
         }
-        let (field, cells, pieces) = (self.field, self.cells, &self.ground.pieces);
-        Hits { field, cells, pieces, sight, below: entry.below, slack: self.slack }.find(samples, found);
         // Clearing a cell changes nothing in the others.
         while let Some(&first) = found.first() {
             let below = if first.cell == target.cell {
                 if entry.below - first.rho > NEAR * target.per_cell {
                     self.counters.aux += 1;
                     let (rho, below) = (first.rho, first.rho.next_up());
-                    self.heap.push(Entry { rho, point: entry.point, below, whole: false });
+                    self.queue.push(Entry { rho, point: entry.point, below, whole: false });
                     return;
                 }
                 self.counters.backfacing += 1;
@@ -162,9 +195,8 @@ impl<'a> Pass<'a> {
     /// How far from the eye another point's cell may be changed: without bounds, unless that lowers points farther away
     /// that were finished, and did so before.
     fn reach(&mut self, entry: &Entry, cell: usize) -> f64 {
-        let lowers_finished = self.of_cell[self.first[cell]..self.first[cell + 1]]
-            .iter()
-            .any(|&i| !self.waiting[i] && self.whole(i) > *entry);
+        let mut points = self.points_of(cell).iter().map(|&i| i as usize);
+        let lowers_finished = points.any(|i| !self.waiting[i] && self.whole(i) > *entry);
         if !lowers_finished {
             return f64::INFINITY;
         }
@@ -199,22 +231,23 @@ impl<'a> Pass<'a> {
         self.counters.splits += usize::from(divided);
     }
 
-    fn best_lambda(&self, cell: usize, worst: &Hit, scale: f64, shift: f64) -> f64 {
+    fn best_lambda(&mut self, cell: usize, worst: &Hit, scale: f64, shift: f64) -> f64 {
         let now = self.ground.pieces[cell].at(worst.rho);
         let (higher_share, higher_mean) = self.cells.higher(cell, (worst.limit - now.shift) / now.scale);
         let (ids, shares) = self.cells.neighbours(cell);
-        let neighbours: Vec<(f64, Affine)> =
-            ids.iter().zip(shares).map(|(&n, &w)| (w, self.ground.pieces[n as usize].at(worst.rho))).collect();
+        self.neighbours.clear();
+        self.neighbours
+            .extend(ids.iter().zip(shares).map(|(&n, &w)| (w, self.ground.pieces[n as usize].at(worst.rho))));
         let &TerrainSettings { eta, mu, mu_dev, .. } = self.settings;
         let mean = self.cells.mean_height(cell);
-        Price { now, scale, shift, higher_share, higher_mean, mean, neighbours: &neighbours, eta, mu, mu_dev }
+        Price { now, scale, shift, higher_share, higher_mean, mean, neighbours: &self.neighbours, eta, mu, mu_dev }
             .best_lambda()
     }
 
     /// Points on the lowered ground that were followed before are followed again.
     fn put_back(&mut self, entry: &Entry, cell: usize, below: f64) {
         for k in self.first[cell]..self.first[cell + 1] {
-            let i = self.of_cell[k];
+            let i = self.of_cell[k as usize] as usize;
             if i != entry.point && self.targets[i].rho < below {
                 self.enqueue(i);
             }

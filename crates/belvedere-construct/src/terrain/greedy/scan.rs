@@ -1,7 +1,7 @@
 //! Looks at crossings of a line of sight, fast, for those whose ground may lie over it.
 
 use super::super::NO_CELL;
-use super::super::line_of_sight::{AT_NODE, SightWalk};
+use super::super::line_of_sight::{AT_NODE, SightLine};
 use super::super::register::{LANES, indices, load, split, store};
 use super::trace::{Lowered, Sight};
 use super::{Affine, Blocks, CLEARANCE_GROWS};
@@ -34,7 +34,7 @@ pub(super) struct Scan<'a, S: Simd> {
     pub(super) labels: &'a [u32],
     pub(super) ground: &'a Lowered,
     pub(super) sight: &'a Sight,
-    pub(super) walk: &'a SightWalk<'a>,
+    pub(super) line: &'a SightLine<'a>,
 }
 
 /// The crossing that stands out most of those that were kept last.
@@ -55,7 +55,7 @@ impl<S: Simd> Scan<'_, S> {
     /// * `stretches`: parts of the line to look at, in order.
     #[inline(always)]
     pub(super) fn family<const FAMILY: usize>(&self, stretches: &[[f64; 2]], out: &mut Vec<High>) {
-        let (start, dir) = (self.walk.from()[FAMILY], self.walk.dir()[FAMILY]);
+        let (start, dir) = (self.line.from()[FAMILY], self.line.dir()[FAMILY]);
         if dir == 0.0 {
             return;
         }
@@ -88,7 +88,7 @@ impl<S: Simd> Scan<'_, S> {
         let (heights, cells) = (self.blocks.heights(), self.ground.cells());
         let nodes = self.blocks.nodes();
         let [along, across] = if FAMILY == 0 { [nodes[0], 1] } else { [1, nodes[0]] };
-        let (start, dir) = (self.walk.from(), self.walk.dir());
+        let (start, dir) = (self.line.from(), self.line.dir());
         let splat = |x: f64| simd.splat_f64s(x);
         let nth = load::<S>(&std::array::from_fn(|l| l as f64));
         let line = simd.mul_f64s(simd.min_f64s(simd.add_f64s(nth, splat(first)), splat(last)), splat(sign));
@@ -132,8 +132,14 @@ impl<S: Simd> Scan<'_, S> {
             if excess[l] < -sight.doubt {
                 continue;
             }
-            let high =
-                High { tau: tau[l], h: h[l], limit: limit[l], cell: cell[l], family: FAMILY as u8, line: line[l] as u32 };
+            let high = High {
+                tau: tau[l],
+                h: h[l],
+                limit: limit[l],
+                cell: cell[l],
+                family: FAMILY as u8,
+                line: line[l] as u32,
+            };
             if !(UNSURE..=0.5 - UNSURE).contains(&aside[l]) {
                 out.push(High { cell: NO_CELL, ..high });
                 continue;

@@ -1,4 +1,5 @@
 use super::super::cells::tests::{field_of, noise};
+use super::super::line_of_sight::SightLine;
 use super::super::{PointKind, sight_samples};
 use super::hits::{Hit, Hits};
 use super::reference::Reference;
@@ -10,7 +11,7 @@ use super::*;
 struct Every<'a>(&'a Field);
 
 impl Sampler for Every<'_> {
-    fn samples(&self, sight: &Sight, _: &Lowered, _: &mut Room, out: &mut Vec<High>) {
+    fn samples(&self, _: &SightLine<'_>, sight: &Sight, _: &Lowered, _: &mut Room, out: &mut Vec<High>) {
         let mut samples = Vec::new();
         sight_samples(self.0, sight.from, sight.eye, false, &mut samples);
         out.extend(samples.iter().map(|s| {
@@ -244,12 +245,13 @@ fn what_is_left_out_tells_nothing_now_and_after_more_was_lowered() {
             let target = trace::Target::new(field, cells, p, eye.0, 1.5);
             let below = target.below();
             let sight = target.sight(field, &grounds[0].pieces, eye, below);
+            let line = SightLine::new(field, sight.from, sight.eye).unwrap();
             some.clear();
             all.clear();
-            Skipping { field, cells, blocks: &blocks }.samples(&sight, &grounds[then], &mut room, &mut some);
-            Every(field).samples(&sight, &grounds[then], &mut room, &mut all);
+            Skipping { cells, blocks: &blocks }.samples(&line, &sight, &grounds[then], &mut room, &mut some);
+            Every(field).samples(&line, &sight, &grounds[then], &mut room, &mut all);
             for now in &grounds[then..] {
-                let hits = Hits { field, cells, pieces: &now.pieces, sight: &sight, below, slack: 1e-9 };
+                let hits = Hits { field, cells, pieces: &now.pieces, line: &line, sight: &sight, below, slack: 1e-9 };
                 hits.find(&some, &mut of_some);
                 hits.find(&all, &mut of_all);
                 assert_eq!(telling(&of_some, sight.low), telling(&of_all, sight.low));
@@ -269,9 +271,11 @@ fn told_alike(field: &Field, cells: &Cells, blocks: &Blocks, [from, eye]: [DVec2
     let rho = ((eye - from) * field.spacing()).length();
     let sight = Sight { from, eye, rho, height, guard: 0.0, clearance: 1.0, low: 1.0, doubt: 1e-3 };
     let (mut some, mut all, mut room) = (Vec::new(), Vec::new(), Room::default());
-    Skipping { field, cells, blocks }.samples(&sight, &ground, &mut room, &mut some);
-    Every(field).samples(&sight, &ground, &mut room, &mut all);
-    let hits = Hits { field, cells, pieces: &ground.pieces, sight: &sight, below: f64::INFINITY, slack: 1e-9 };
+    let line = SightLine::new(field, from, eye).unwrap();
+    Skipping { cells, blocks }.samples(&line, &sight, &ground, &mut room, &mut some);
+    Every(field).samples(&line, &sight, &ground, &mut room, &mut all);
+    let hits =
+        Hits { field, cells, pieces: &ground.pieces, line: &line, sight: &sight, below: f64::INFINITY, slack: 1e-9 };
     let (mut of_some, mut of_all) = (Vec::new(), Vec::new());
     hits.find(&some, &mut of_some);
     hits.find(&all, &mut of_all);

@@ -1,6 +1,6 @@
 //! What hides a point.
 
-use super::super::line_of_sight::{SightWalk, guard_tau};
+use super::super::line_of_sight::{SightLine, guard_tau};
 use super::super::{Cells, Field, NO_CELL, ReferencePoint};
 use super::ceilings::Ceilings;
 use super::scan::{High, Scan, UNSURE, merge};
@@ -56,7 +56,7 @@ impl Sight {
 pub(super) trait Sampler: Sync {
     /// Appends, in order, what may lie over the line of sight now or after cells were lowered further; what others of the
     /// same cell make needless may be missing, see [`Scan::blocks`].
-    fn samples(&self, sight: &Sight, ground: &Lowered, room: &mut Room, out: &mut Vec<High>);
+    fn samples(&self, line: &SightLine<'_>, sight: &Sight, ground: &Lowered, room: &mut Room, out: &mut Vec<High>);
 }
 
 /// Room to work in, kept from line to line.
@@ -110,20 +110,20 @@ impl Lowered {
 
 /// Leaves out blocks that the line clears, and what was lowered enough.
 pub(super) struct Skipping<'a> {
-    pub(super) field: &'a Field,
     pub(super) cells: &'a Cells,
     pub(super) blocks: &'a Blocks,
 }
 
 impl Sampler for Skipping<'_> {
-    fn samples(&self, sight: &Sight, ground: &Lowered, room: &mut Room, out: &mut Vec<High>) {
-        Arch::new().dispatch(Skip { all: self, sight, ground, room, out });
+    fn samples(&self, line: &SightLine<'_>, sight: &Sight, ground: &Lowered, room: &mut Room, out: &mut Vec<High>) {
+        Arch::new().dispatch(Skip { all: self, line, sight, ground, room, out });
     }
 }
 
 /// With the instructions at hand: rounding is a call without them.
 struct Skip<'a> {
     all: &'a Skipping<'a>,
+    line: &'a SightLine<'a>,
     sight: &'a Sight,
     ground: &'a Lowered,
     room: &'a mut Room,
@@ -135,13 +135,12 @@ impl WithSimd for Skip<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { all: Skipping { field, cells, blocks }, sight, ground, room, out } = self;
+        let Self { all: Skipping { cells, blocks }, line, sight, ground, room, out } = self;
         let Room { stretches, by_family } = room;
-        let Some(walk) = &SightWalk::new(field, sight.from, sight.eye, false) else { return };
         stretches.clear();
         by_family.iter_mut().for_each(Vec::clear);
-        Under { size: blocks.size(), ceilings: ground.ceilings.of_blocks() }.near(simd, walk, sight, stretches);
-        let scan = Scan { simd, blocks, labels: cells.labels(), ground, sight, walk };
+        Under { size: blocks.size(), ceilings: ground.ceilings.of_blocks() }.near(simd, line, sight, stretches);
+        let scan = Scan { simd, blocks, labels: cells.labels(), ground, sight, line };
         let [columns, rows] = by_family;
         scan.family::<0>(stretches, columns);
         scan.family::<1>(stretches, rows);

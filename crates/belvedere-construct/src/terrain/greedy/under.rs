@@ -1,6 +1,6 @@
 //! Ground under a line of sight in blocks: parts of the line that clear them are passed.
 
-use super::super::line_of_sight::SightWalk;
+use super::super::line_of_sight::SightLine;
 use super::super::register::{LANES, Lane, indices, load, split, store};
 use super::blocks::SIDE;
 use super::trace::Sight;
@@ -18,9 +18,9 @@ pub(super) struct Under<'a> {
 impl Under<'_> {
     /// The parts of a line of sight, from where its point's own ground ends, over blocks that may be higher than it, in order.
     #[inline(always)]
-    pub(super) fn near<S: Simd>(&self, simd: S, walk: &SightWalk<'_>, sight: &Sight, out: &mut Vec<[f64; 2]>) {
-        let (t0, t1) = walk.span();
-        let line = Line::new(sight, walk.dir(), [t0.max(sight.guard), t1]);
+    pub(super) fn near<S: Simd>(&self, simd: S, plan: &SightLine<'_>, sight: &Sight, out: &mut Vec<[f64; 2]>) {
+        let (t0, t1) = plan.span();
+        let line = Line::new(sight, plan.dir(), [t0.max(sight.guard), t1]);
         if line.ends[0] >= t1 {
             return;
         }
