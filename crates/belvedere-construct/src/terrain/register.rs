@@ -8,6 +8,9 @@ pub(super) const LANES: usize = 8;
 /// A number for each place; registers with fewer take the first ones.
 pub(super) type Lane = [f64; LANES];
 
+/// The number of each place.
+pub(super) const NTH: Lane = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
 /// The first register of a lane.
 #[inline(always)]
 pub(super) fn load<S: Simd>(lane: &Lane) -> S::f64s {
@@ -38,5 +41,11 @@ pub(super) fn split<S: Simd>(simd: S, x: S::f64s, last: f64) -> (S::f64s, S::f64
 #[inline(always)]
 pub(super) fn indices<S: Simd>(simd: S, whole: S::f64s) -> [u32; LANES] {
     const UNITS: f64 = 4_503_599_627_370_496.0;
-    store::<S>(simd.add_f64s(whole, simd.splat_f64s(UNITS))).map(|v| v.to_bits() as u32)
+    let units = store::<S>(simd.add_f64s(whole, simd.splat_f64s(UNITS)));
+    // Not mapped: closures are not compiled for the registers.
+    let mut out = [0; LANES];
+    for (out, units) in out.iter_mut().zip(&units) {
+        *out = units.to_bits() as u32;
+    }
+    out
 }

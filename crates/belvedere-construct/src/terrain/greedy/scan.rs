@@ -2,7 +2,7 @@
 
 use super::super::NO_CELL;
 use super::super::line_of_sight::{AT_NODE, SightLine};
-use super::super::register::{LANES, indices, load, split, store};
+use super::super::register::{LANES, NTH, indices, load, split, store};
 use super::trace::{Lowered, Sight};
 use super::{Affine, Blocks, CLEARANCE_GROWS};
 use pulp::Simd;
@@ -90,7 +90,7 @@ impl<S: Simd> Scan<'_, S> {
         let [along, across] = if FAMILY == 0 { [nodes[0], 1] } else { [1, nodes[0]] };
         let (start, dir) = (self.line.from(), self.line.dir());
         let splat = |x: f64| simd.splat_f64s(x);
-        let nth = load::<S>(&std::array::from_fn(|l| l as f64));
+        let nth = load::<S>(&NTH);
         let line = simd.mul_f64s(simd.min_f64s(simd.add_f64s(nth, splat(first)), splat(last)), splat(sign));
         let tau = simd.mul_f64s(simd.sub_f64s(line, splat(start[FAMILY])), splat(dir[FAMILY].recip()));
         let place = simd.mul_add_e_f64s(tau, splat(dir[other]), splat(start[other]));

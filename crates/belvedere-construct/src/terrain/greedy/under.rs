@@ -1,7 +1,7 @@
 //! Ground under a line of sight in blocks: parts of the line that clear them are passed.
 
 use super::super::line_of_sight::SightLine;
-use super::super::register::{LANES, Lane, indices, load, split, store};
+use super::super::register::{LANES, Lane, NTH, indices, load, split, store};
 use super::blocks::SIDE;
 use super::trace::Sight;
 use belvedere_core::DVec2;
@@ -54,7 +54,7 @@ impl Under<'_> {
         let steps = if major == 0 { [1.0, self.size[0] as f64] } else { [self.size[0] as f64, 1.0] };
         let side = SIDE as f64;
         let (sign, per_slice) = (line.dir[major].signum(), side / line.dir[major]);
-        let nth = load::<S>(&std::array::from_fn(|l| l as f64));
+        let nth = load::<S>(&NTH);
         let slice = simd.mul_add_e_f64s(nth, simd.splat_f64s(sign), simd.splat_f64s(first));
         // Where the line comes in and leaves. No closures: they would not be compiled for the registers.
         let behind = if sign > 0.0 { 0.0 } else { 1.0 } - line.start[major] / side;
