@@ -17,6 +17,12 @@ pub(super) fn load<S: Simd>(lane: &Lane) -> S::f64s {
     S::as_simd_f64s(lane).0[0]
 }
 
+/// The first numbers of many, of which there must be enough.
+#[inline(always)]
+pub(super) fn load_from<S: Simd>(numbers: &[f64]) -> S::f64s {
+    S::as_simd_f64s(&numbers[..S::F64_LANES]).0[0]
+}
+
 /// A register as numbers; the others are 0.
 #[inline(always)]
 pub(super) fn store<S: Simd>(register: S::f64s) -> Lane {

@@ -3,6 +3,7 @@
 mod blocks;
 mod ceilings;
 mod equations;
+mod gather;
 mod hits;
 mod pieces;
 mod queue;

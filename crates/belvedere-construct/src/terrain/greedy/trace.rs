@@ -3,6 +3,7 @@
 use super::super::line_of_sight::{SightLine, guard_tau};
 use super::super::{Cells, Field, NO_CELL, ReferencePoint};
 use super::ceilings::Ceilings;
+use super::gather::Crossings;
 use super::scan::{High, Scan, UNSURE, merge};
 use super::under::Under;
 use super::{Affine, Blocks, CLEARANCE, CLEARANCE_GROWS, Pieces};
@@ -63,6 +64,7 @@ pub(super) trait Sampler: Sync {
 #[derive(Default)]
 pub(super) struct Room {
     stretches: Vec<[f64; 2]>,
+    crossings: [Crossings; 2],
     by_family: [Vec<High>; 2],
 }
 
@@ -136,14 +138,16 @@ impl WithSimd for Skip<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { all: Skipping { cells, blocks }, line, sight, ground, room, out } = self;
-        let Room { stretches, by_family } = room;
+        let Room { stretches, crossings: [columns, rows], by_family } = room;
         stretches.clear();
         by_family.iter_mut().for_each(Vec::clear);
         Under { size: blocks.size(), ceilings: ground.ceilings.of_blocks() }.near(simd, line, sight, stretches);
-        let scan = Scan { simd, blocks, labels: cells.labels(), ground, sight, line };
-        let [columns, rows] = by_family;
-        scan.family::<0>(stretches, columns);
-        scan.family::<1>(stretches, rows);
+        let labels = cells.labels();
+        columns.gather::<S, 0>(simd, line, stretches, blocks, (labels, ground.cells()));
+        rows.gather::<S, 1>(simd, line, stretches, blocks, (labels, ground.cells()));
+        let scan = Scan { simd, nodes: blocks.nodes(), labels, ground, sight };
+        scan.family::<0>(columns, &mut by_family[0]);
+        scan.family::<1>(rows, &mut by_family[1]);
         merge(by_family, out);
     }
 }
