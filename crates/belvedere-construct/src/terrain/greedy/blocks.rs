@@ -13,8 +13,7 @@ pub(super) const SIDE: usize = 16;
 pub struct Blocks {
     /// Of the grid, columns and rows.
     nodes: [usize; 2],
-    /// Of every node the nearest to the true one.
-    heights: Vec<f32>,
+    ground: Vec<Node>,
     /// Blocks along both axes.
     size: [usize; 2],
     /// First part of each block, and the end.
@@ -26,6 +25,15 @@ pub struct Blocks {
     of_cell: Vec<u32>,
     /// Highest ground of each block.
     ceilings: Vec<f32>,
+}
+
+/// What a line of sight asks of a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Node {
+    /// The nearest to the true one.
+    pub(super) height: f32,
+    /// The number of all cells for none.
+    pub(super) cell: u32,
 }
 
 /// What belongs to one cell of the ground in a block.
@@ -61,8 +69,10 @@ impl Blocks {
         let (first, of_cell) = by_cell(parts.iter().map(|p| p.cell as usize), cells.len());
         let highest = |ends: &[u32]| parts[ends[0] as usize..ends[1] as usize].iter().map(|p| p.highest);
         let ceilings = start.windows(2).map(|ends| highest(ends).fold(f32::NEG_INFINITY, f32::max)).collect();
-        let heights = field.heights().iter().map(|h| (h - field.datum()) as f32).collect();
-        Self { nodes, heights, size, start, parts, first, of_cell, ceilings }
+        let node =
+            |(&h, &cell): (&f64, &u32)| Node { height: (h - field.datum()) as f32, cell: cell.min(cells.len() as u32) };
+        let ground = field.heights().par_iter().zip(cells.labels()).with_min_len(1 << 16).map(node).collect();
+        Self { nodes, ground, size, start, parts, first, of_cell, ceilings }
     }
 
     /// Nodes of the grid along both axes.
@@ -70,9 +80,9 @@ impl Blocks {
         self.nodes
     }
 
-    /// Heights of all nodes, row-major; what there is at voids means nothing.
-    pub(super) fn heights(&self) -> &[f32] {
-        &self.heights
+    /// All nodes, row-major; heights of voids mean nothing.
+    pub(super) fn ground(&self) -> &[Node] {
+        &self.ground
     }
 
     /// Blocks along both axes.

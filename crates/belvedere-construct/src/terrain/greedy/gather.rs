@@ -3,6 +3,7 @@
 use super::super::line_of_sight::{AT_NODE, SightLine};
 use super::super::register::{LANES, NTH, load, split, store};
 use super::Blocks;
+use super::blocks::Node;
 use pulp::Simd;
 
 /// Crossings of a line of sight with one family of lines of the grid, and the ground there; one array for each quantity.
@@ -21,8 +22,8 @@ pub(super) struct Crossings {
     pub(super) weight: Vec<f64>,
     /// Heights of both ends.
     pub(super) heights: [Vec<f64>; 2],
-    /// Cell of the nearer end.
-    pub(super) cell: Vec<u32>,
+    /// Cell of the nearer end, and of the other one.
+    pub(super) cells: [Vec<u32>; 2],
     /// The most that is done to it.
     pub(super) scale: Vec<f64>,
     pub(super) shift: Vec<f64>,
@@ -36,17 +37,10 @@ impl Crossings {
         self.count
     }
 
-    /// The ends of the edge that is crossed.
-    #[inline(always)]
-    pub(super) fn nodes(&self, i: usize, along: usize) -> [usize; 2] {
-        let node = number(self.node[i]);
-        [node, node + along]
-    }
-
     /// Works out the crossings with columns (family 0) or rows (1), and fetches the ground.
     ///
     /// * `stretches`: parts of the line to look at, in order;
-    /// * `labels`: cell of each node; `cells`: what is done to each, and a last one for none.
+    /// * `cells`: what is done to each, and a last one for none.
     #[inline(always)]
     pub(super) fn gather<S: Simd, const FAMILY: usize>(
         &mut self,
@@ -54,7 +48,7 @@ impl Crossings {
         line: &SightLine<'_>,
         stretches: &[[f64; 2]],
         blocks: &Blocks,
-        (labels, cells): (&[u32], &[[f64; 2]]),
+        cells: &[[f64; 2]],
     ) {
         self.count = 0;
         self.reserve(blocks.nodes()[FAMILY] + LANES);
@@ -77,8 +71,7 @@ impl Crossings {
             self.count -= (at - past.max(first)) as usize;
             next = next.max(past);
         }
-        let along = along::<FAMILY>(blocks.nodes());
-        self.fetch(blocks.heights(), along, labels, cells);
+        self.fetch(blocks.ground(), along::<FAMILY>(blocks.nodes()), cells);
     }
 
     fn reserve(&mut self, room: usize) {
@@ -90,7 +83,7 @@ impl Crossings {
             for numbers in [&mut self.scale, &mut self.shift] {
                 numbers.resize(room, 0.0);
             }
-            self.cell.resize(room, 0);
+            self.cells.iter_mut().for_each(|cells| cells.resize(room, 0));
         }
     }
 
@@ -122,30 +115,24 @@ impl Crossings {
     }
 
     #[inline(always)]
-    fn fetch(&mut self, heights: &[f32], along: usize, labels: &[u32], cells: &[[f64; 2]]) {
+    fn fetch(&mut self, ground: &[Node], along: usize, done: &[[f64; 2]]) {
         let n = self.count;
         let (node, weight) = (&self.node[..n], &self.weight[..n]);
-        let [a, b] = &mut self.heights;
-        let (a, b, cell) = (&mut a[..n], &mut b[..n], &mut self.cell[..n]);
+        let [a, b] = self.heights.each_mut().map(|h| &mut h[..n]);
+        let [near, far] = self.cells.each_mut().map(|c| &mut c[..n]);
         let (scale, shift) = (&mut self.scale[..n], &mut self.shift[..n]);
         for i in 0..n {
-            let near = number(node[i]);
-            let far = near + along;
-            (a[i], b[i]) = (f64::from(heights[near]), f64::from(heights[far]));
-            let label = labels[if weight[i] > 0.5 { far } else { near }];
-            cell[i] = label;
-            [scale[i], shift[i]] = cells[(label as usize).min(cells.len() - 1)];
+            let first = node[i].to_bits() as u32 as usize;
+            let [begin, end] = [ground[first], ground[first + along]];
+            (a[i], b[i]) = (f64::from(begin.height), f64::from(end.height));
+            (near[i], far[i]) = if weight[i] > 0.5 { (end.cell, begin.cell) } else { (begin.cell, end.cell) };
+            [scale[i], shift[i]] = done[near[i] as usize];
         }
     }
 }
 
 /// From one end of an edge to the other, in nodes.
 #[inline(always)]
-pub(super) fn along<const FAMILY: usize>(nodes: [usize; 2]) -> usize {
+fn along<const FAMILY: usize>(nodes: [usize; 2]) -> usize {
     if FAMILY == 0 { nodes[0] } else { 1 }
-}
-
-#[inline(always)]
-fn number(bits: f64) -> usize {
-    bits.to_bits() as u32 as usize
 }

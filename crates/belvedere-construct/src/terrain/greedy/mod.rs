@@ -86,7 +86,7 @@ impl Naive {
         points: &[ReferencePoint],
     ) -> Self {
         let mut pass = queue::Pass::new(field, cells, blocks, settings, eye, points);
-        pass.run(&trace::Skipping { cells, blocks });
+        pass.run(&trace::Skipping { blocks });
         pass.finish()
     }
 

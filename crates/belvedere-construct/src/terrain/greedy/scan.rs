@@ -2,9 +2,9 @@
 
 use super::super::NO_CELL;
 use super::super::register::{load_from, store};
-use super::CLEARANCE_GROWS;
-use super::gather::{Crossings, along};
+use super::gather::Crossings;
 use super::trace::{Lowered, Sight};
+use super::{CLEARANCE_GROWS, Pieces};
 use pulp::Simd;
 
 /// A crossing whose ground may lie over the line of sight.
@@ -29,10 +29,6 @@ pub(super) const UNSURE: f64 = 1e-6;
 /// A line of sight over a ground as it is now.
 pub(super) struct Scan<'a, S: Simd> {
     pub(super) simd: S,
-    /// Nodes of the grid along both axes.
-    pub(super) nodes: [usize; 2],
-    /// Cell of each node.
-    pub(super) labels: &'a [u32],
     pub(super) ground: &'a Lowered,
     pub(super) sight: &'a Sight,
 }
@@ -88,7 +84,8 @@ impl<S: Simd> Scan<'_, S> {
             if excess[l] < -sight.doubt {
                 continue;
             }
-            let (i, cell) = (first + l, of.cell[first + l]);
+            let i = first + l;
+            let [cell, far] = [of.cells[0][i], of.cells[1][i]];
             let high =
                 High { tau: of.tau[i], h: h[l], limit: limit[l], cell, family: FAMILY as u8, line: of.line[i] as u32 };
             if !(UNSURE..=0.5 - UNSURE).contains(&(of.weight[i] - 0.5).abs()) {
@@ -98,12 +95,10 @@ impl<S: Simd> Scan<'_, S> {
             if record.covers(cell, limit[l], excess[l] + 2.0 * sight.doubt) {
                 continue;
             }
-            let nodes = of.nodes(i, along::<FAMILY>(self.nodes));
-            if nodes.iter().any(|&n| self.labels[n] == NO_CELL) {
-                continue;
-            }
+            // Where an end is void there is no ground.
+            let (Some(pieces), Some(_)) = (self.pieces(cell), self.pieces(far)) else { continue };
             let distances = [(1.0 - high.tau - UNSURE) * sight.rho, (1.0 - high.tau + UNSURE) * sight.rho];
-            let (affine, exact) = self.ground.pieces[cell as usize].between(distances);
+            let (affine, exact) = pieces.between(distances);
             let excess = affine.of(high.h) - high.limit;
             if excess < -sight.doubt {
                 continue;
@@ -112,6 +107,12 @@ impl<S: Simd> Scan<'_, S> {
                 out.push(high);
             }
         }
+    }
+
+    /// What is done to a cell; `None` for none.
+    #[inline(always)]
+    fn pieces(&self, cell: u32) -> Option<&Pieces> {
+        self.ground.pieces.get(cell as usize)
     }
 }
 

@@ -248,7 +248,7 @@ fn what_is_left_out_tells_nothing_now_and_after_more_was_lowered() {
             let line = SightLine::new(field, sight.from, sight.eye).unwrap();
             some.clear();
             all.clear();
-            Skipping { cells, blocks: &blocks }.samples(&line, &sight, &grounds[then], &mut room, &mut some);
+            Skipping { blocks: &blocks }.samples(&line, &sight, &grounds[then], &mut room, &mut some);
             Every(field).samples(&line, &sight, &grounds[then], &mut room, &mut all);
             for now in &grounds[then..] {
                 let hits = Hits { field, cells, pieces: &now.pieces, line: &line, sight: &sight, below, slack: 1e-9 };
@@ -272,7 +272,7 @@ fn told_alike(field: &Field, cells: &Cells, blocks: &Blocks, [from, eye]: [DVec2
     let sight = Sight { from, eye, rho, height, guard: 0.0, clearance: 1.0, low: 1.0, doubt: 1e-3 };
     let (mut some, mut all, mut room) = (Vec::new(), Vec::new(), Room::default());
     let line = SightLine::new(field, from, eye).unwrap();
-    Skipping { cells, blocks }.samples(&line, &sight, &ground, &mut room, &mut some);
+    Skipping { blocks }.samples(&line, &sight, &ground, &mut room, &mut some);
     Every(field).samples(&line, &sight, &ground, &mut room, &mut all);
     let hits =
         Hits { field, cells, pieces: &ground.pieces, line: &line, sight: &sight, below: f64::INFINITY, slack: 1e-9 };

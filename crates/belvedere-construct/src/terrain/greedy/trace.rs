@@ -112,7 +112,6 @@ impl Lowered {
 
 /// Leaves out blocks that the line clears, and what was lowered enough.
 pub(super) struct Skipping<'a> {
-    pub(super) cells: &'a Cells,
     pub(super) blocks: &'a Blocks,
 }
 
@@ -137,15 +136,14 @@ impl WithSimd for Skip<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { all: Skipping { cells, blocks }, line, sight, ground, room, out } = self;
+        let Self { all: Skipping { blocks }, line, sight, ground, room, out } = self;
         let Room { stretches, crossings: [columns, rows], by_family } = room;
         stretches.clear();
         by_family.iter_mut().for_each(Vec::clear);
         Under { size: blocks.size(), ceilings: ground.ceilings.of_blocks() }.near(simd, line, sight, stretches);
-        let labels = cells.labels();
-        columns.gather::<S, 0>(simd, line, stretches, blocks, (labels, ground.cells()));
-        rows.gather::<S, 1>(simd, line, stretches, blocks, (labels, ground.cells()));
-        let scan = Scan { simd, nodes: blocks.nodes(), labels, ground, sight };
+        columns.gather::<S, 0>(simd, line, stretches, blocks, ground.cells());
+        rows.gather::<S, 1>(simd, line, stretches, blocks, ground.cells());
+        let scan = Scan { simd, ground, sight };
         scan.family::<0>(columns, &mut by_family[0]);
         scan.family::<1>(rows, &mut by_family[1]);
         merge(by_family, out);

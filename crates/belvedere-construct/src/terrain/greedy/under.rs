@@ -82,7 +82,20 @@ impl Under<'_> {
         }
         let lowest = if line.rise < 0.0 { u } else { t };
         let limit = simd.mul_add_e_f64s(lowest, simd.splat_f64s(line.rise), simd.splat_f64s(line.foot));
-        (store::<S>(simd.sub_f64s(load::<S>(&ceiling), limit)), [store::<S>(t), store::<S>(u)])
+        let over = store::<S>(simd.sub_f64s(load::<S>(&ceiling), limit));
+        // Where it goes up or down through the highest ground of a slice, the part above needs no look.
+        let through = simd.mul_f64s(
+            simd.sub_f64s(load::<S>(&ceiling), simd.splat_f64s(line.foot)),
+            simd.splat_f64s(line.rise.recip()),
+        );
+        let [t, u] = if line.rise > 0.0 {
+            [t, simd.min_f64s(u, through)]
+        } else if line.rise < 0.0 {
+            [simd.max_f64s(t, through), u]
+        } else {
+            [t, u]
+        };
+        (over, [store::<S>(t), store::<S>(u)])
     }
 }
 
