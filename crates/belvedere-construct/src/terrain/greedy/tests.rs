@@ -299,28 +299,47 @@ fn a_hill_within_one_block_is_found_by_lines_through_corners_of_blocks() {
 }
 
 #[test]
-fn what_is_left_out_tells_nothing_where_lines_run_along_the_grid_and_beside_it() {
-    let field = mountains(70, 67, DVec2::splat(30.0), 9, 0.0);
-    let cells = Cells::new(&field, 3);
+fn a_line_of_sight_meets_level_ground_where_it_goes_down_into_it_and_leaves_it() {
+    let plateau = |c: usize, _| if (12..=52).contains(&c) { 300.0 } else { 0.0 };
+    let field = field_of(65, 33, DVec2::splat(30.0), plateau);
+    let cells = Cells::new(&field, 1);
     let blocks = Blocks::new(&field, &cells);
+    let mut high = 0;
+    for k in 0..40 {
+        let [a, b] = [DVec2::new(2.0, 3.0 + 0.7 * f64::from(k)), DVec2::new(62.0, 29.0 - 0.6 * f64::from(k))];
+        let [foot, head] = [40.0 + 5.0 * f64::from(k), 420.0 + 17.0 * f64::from(k)];
+        high += told_alike(&field, &cells, &blocks, [a, b], [foot, head]);
+        high += told_alike(&field, &cells, &blocks, [a, b], [head, foot]);
+    }
+    assert!(high > 500, "{high}");
+}
+
+#[test]
+fn what_is_left_out_tells_nothing_where_lines_run_along_the_grid_and_beside_it() {
     let places = [0.0, 4.0, 16.0, 33.5, 64.0, 66.0];
     let mut high = 0;
-    for from in places.iter().flat_map(|&x| places.map(|y| DVec2::new(x, y))) {
-        let nearly = DVec2::new(from.x + 40.0, from.y + 3e-7);
-        for eye in [
-            nearly,
-            DVec2::new(from.x, -9.0),
-            DVec2::new(90.0, from.y),
-            DVec2::new(64.0, 16.0),
-            DVec2::new(from.y, from.x) * 1.5,
-        ] {
-            // Up to the eye and down to it.
-            for height in [[300.0, 500.0], [500.0, 40.0]] {
-                high += told_alike(&field, &cells, &blocks, [from, eye], height);
+    // Beside voids too: there is ground at a node with data, although not on all edges from it.
+    for void in [0.0, 0.1] {
+        let field = mountains(70, 67, DVec2::splat(30.0), 9, void);
+        let cells = Cells::new(&field, 3);
+        let blocks = Blocks::new(&field, &cells);
+        for from in places.iter().flat_map(|&x| places.map(|y| DVec2::new(x, y))) {
+            let nearly = DVec2::new(from.x + 40.0, from.y + 3e-7);
+            for eye in [
+                nearly,
+                DVec2::new(from.x, -9.0),
+                DVec2::new(90.0, from.y),
+                DVec2::new(64.0, 16.0),
+                DVec2::new(from.y, from.x) * 1.5,
+            ] {
+                // Up to the eye and down to it.
+                for height in [[300.0, 500.0], [500.0, 40.0]] {
+                    high += told_alike(&field, &cells, &blocks, [from, eye], height);
+                }
             }
         }
     }
-    assert!(high > 1000, "{high}");
+    assert!(high > 2000, "{high}");
 }
 
 /// A single round hill of 400 m in the middle.
