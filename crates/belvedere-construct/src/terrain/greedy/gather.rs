@@ -77,12 +77,9 @@ impl Crossings {
     fn reserve(&mut self, room: usize) {
         if self.tau.len() < room {
             let [a, b] = &mut self.heights;
-            for numbers in [&mut self.line, &mut self.tau, &mut self.node, &mut self.weight, a, b] {
-                numbers.resize(room, 0.0);
-            }
-            for numbers in [&mut self.scale, &mut self.shift] {
-                numbers.resize(room, 0.0);
-            }
+            let places = [&mut self.line, &mut self.tau, &mut self.node, &mut self.weight];
+            let ground = [a, b, &mut self.scale, &mut self.shift];
+            places.into_iter().chain(ground).for_each(|numbers| numbers.resize(room, 0.0));
             self.cells.iter_mut().for_each(|cells| cells.resize(room, 0));
         }
     }
