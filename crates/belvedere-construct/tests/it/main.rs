@@ -2,6 +2,7 @@
 
 mod bars;
 mod coarse;
+mod coming;
 mod fallbacks;
 mod flight;
 mod live;

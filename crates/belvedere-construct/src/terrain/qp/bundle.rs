@@ -196,7 +196,7 @@ impl Fan {
         for (_, chord, part) in lines {
             out.points = [out.points[0].min(chord.ends[0]), out.points[1].max(chord.ends[0])];
             out.eye = chord.ends[1];
-            out.z = [out.z[0].min(chord.z[0]), chord.z[1]];
+            out.z = [out.z[0].min(chord.z[0]), out.z[1].min(chord.z[1])];
             out.part = [out.part[0].min(part[0]), out.part[1].max(part[1])];
         }
         out

@@ -20,8 +20,8 @@ pub trait LinesOfSight: Sync {
     /// chain of (grid coordinates, height); nothing if the point has none, e.g. outside the domain of a stage.
     fn trace(&self, grid: DVec2, z: f64, out: &mut Vec<(DVec2, f64)>);
 
-    /// The eye (grid coordinates, height) if every line is a straight segment to it, so that lines depend linearly on the
-    /// heights of their points.
+    /// The eye (grid coordinates, height) if every line is a straight segment to it or to a place over it that depends on the point's
+    /// place alone, so that lines depend linearly on the heights of their points.
     fn straight(&self) -> Option<(DVec2, f64)> {
         None
     }

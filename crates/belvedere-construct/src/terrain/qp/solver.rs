@@ -175,8 +175,10 @@ impl QpSolver {
     /// How far the ground may sink.
     fn depth(&self, frame: &Frame) -> f64 {
         let [low, mut high] = self.surface.range;
+        // Lines may end over the eye.
+        let eye = frame.problem.sight.straight().map(|(_, z)| z);
         for chord in frame.seen.iter().flat_map(|s| s.chords.iter()) {
-            high = high.max(chord.z[0]).max(chord.z[1]);
+            high = high.max(chord.z[0]).max(eye.unwrap_or(chord.z[1]));
         }
         DEPTH * (high - low)
     }

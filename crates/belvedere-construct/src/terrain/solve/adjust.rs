@@ -68,7 +68,7 @@ impl Level {
         let solver = TerrainSolver::new(settings)?;
         let straight = straight(base, base.pinhole().clone())?;
         let ran = solver.run(scene, &straight, &mut TerrainMemory::default(), None, progress)?;
-        let seen = Seen::new(&ran.field, &ran.prepared, &straight, &solver.settings);
+        let seen = Seen::new(&ran.field, &ran.prepared, &straight, &solver.settings, false);
         let asked = Asked { points: seen.points.clone(), candidates: seen.candidates.clone() };
         drop(seen);
         Ok(Self { solver, memory: TerrainMemory::holding(ran.prepared), asked })

@@ -2,6 +2,7 @@
 
 mod adjust;
 mod bent;
+mod coming;
 mod drawn;
 mod fallback;
 mod live;
@@ -94,7 +95,7 @@ impl TerrainSolver {
             settings: &self.settings,
             field,
             prepared: &prepared,
-            seen: &Seen::new(field, &prepared, base, &self.settings),
+            seen: &Seen::new(field, &prepared, base, &self.settings, false),
             delta: &delta,
             previous: previous.as_ref(),
         };
@@ -147,7 +148,7 @@ impl TerrainSolver {
             *memory = TerrainMemory::holding(prepared);
             return Err(e.into());
         }
-        let mut seen = Seen::new(&field, &prepared, base, &self.settings);
+        let mut seen = Seen::new(&field, &prepared, base, &self.settings, self.frame().is_some());
         if let Some(asked) = asked {
             (seen.points, seen.candidates) = (asked.points.clone(), asked.candidates.clone());
         }

@@ -160,10 +160,16 @@ impl Passes<'_> {
         if foreign || program.foreign {
             qp.set_heights(&ground)?;
         }
-        let (candidates, sight) = (&seen.candidates[..], &*seen.sight);
-        let problem = QpProblem { candidates, sight, target: target.as_deref(), ceilings: None };
+        let (asked, sight) = (&seen.candidates[..], &*seen.sight);
+        let wider = [asked, &seen.coming[..]].concat();
+        let mut problem = QpProblem { candidates: &wider, sight, target: target.as_deref(), ceilings: None };
         qp.set_options(memory::options(self.settings, false));
         let mut result = qp.solve(&problem)?;
+        if fallback::stuck(&result) > 0 && wider.len() > asked.len() {
+            // What the picture does not show yet is not to cost it anything.
+            problem = QpProblem { candidates: asked, ..problem };
+            result = qp.solve(&problem)?;
+        }
         if fallback::stuck(&result) > 0 {
             let cut = fallback::cut_detail(self.field, &ground, &prepared.grid, &result.active);
             let lower: Vec<f64> = ground.iter().zip(&cut).map(|(h, c)| h + c).collect();
