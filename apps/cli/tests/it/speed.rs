@@ -26,5 +26,13 @@ fn bench_reports_as_a_table_and_as_json() {
     let report = place.json(&[&args[..], &["--json"]].concat());
     assert_eq!(report["frames"].as_array().map(Vec::len), Some(12));
     assert!(report["projection"][1]["mpts_per_core_s"].as_f64().is_some_and(|v| v > 0.0));
+    // The paper's way to solve the smooth pass, without and with elevation rows, comes to what ours comes to.
+    assert!(table.contains("by sparse Cholesky factor"), "{table}");
+    for cost in report["smooth"].as_array().expect("a list") {
+        let of = |key: &str| cost["sparse"][key].as_f64().expect("a number");
+        assert!(of("factor_ms") > 0.0 && of("solve_ms") > 0.0 && of("entries") > 65.0 * 65.0, "{cost}");
+        assert!(of("differs_m") <= 1e-8 * of("largest_m") && of("largest_m") > 10.0, "{cost}");
+    }
+    assert_eq!(report["smooth"].as_array().map(Vec::len), Some(2));
     assert!(place.fails(&["bench", "--nodes", "1"]).contains("33..=8193"));
 }

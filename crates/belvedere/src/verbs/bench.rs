@@ -4,6 +4,7 @@
 //! frames of one round. Processor time of all threads counts where the system tells it (Linux), wall time elsewhere.
 
 use super::bench_flight::{FlightCost, fly};
+use super::bench_smooth::{SmoothCost, smooth};
 use crate::BelvedereError;
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
@@ -107,6 +108,8 @@ pub struct BenchReport {
     pub projection: Vec<ProjectionCost>,
     /// A flight over terrain that makes way.
     pub flight: Vec<FlightCost>,
+    /// The smooth pass of terrain that makes way, our way and the paper's.
+    pub smooth: Vec<SmoothCost>,
     /// Growth.
     pub growth: Vec<Growth>,
 }
@@ -156,6 +159,7 @@ fn report(request: &BenchRequest, progress: &Progress) -> Result<BenchReport, Be
         frames,
         projection: project(&views, rounds)?,
         flight: fly(nodes, image, FLIGHT * rounds)?,
+        smooth: smooth(nodes, rounds)?,
         growth,
     })
 }
@@ -385,6 +389,7 @@ impl std::fmt::Display for BenchReport {
                 100.0 * hidden
             )?;
         }
+        self.smooth.iter().try_for_each(|cost| writeln!(f, "{cost}"))?;
         for g in &self.growth {
             let at: Vec<String> = g.sizes.iter().zip(&g.cpu_ms).map(|(s, t)| format!("{s:.2e}: {t:.1}")).collect();
             writeln!(f, "growth with {}: exponent {:.2} (cpu ms at {})", g.of, g.exponent, at.join(", "))?;

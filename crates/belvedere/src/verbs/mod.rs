@@ -3,6 +3,7 @@
 pub mod animate;
 pub mod bench;
 mod bench_flight;
+mod bench_smooth;
 mod buffers;
 pub mod check;
 pub mod demo;
