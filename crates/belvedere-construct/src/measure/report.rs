@@ -154,13 +154,13 @@ fn summarise_group(
 }
 
 fn ratio(part: f64, whole: f64) -> Option<f64> {
-    // The sum of nothing is -0.0.
-    (whole > 0.0).then(|| (part + 0.0) / whole)
+    (whole > 0.0).then(|| part / whole)
 }
 
 fn visibility(rows: &[(f64, Judged)], near_miss: f64) -> Visibility {
     let framed: Vec<&(f64, Judged)> = rows.iter().filter(|(_, j)| j.in_frame).collect();
-    let sum = |keep: &dyn Fn(&Judged) -> bool| framed.iter().filter(|(_, j)| keep(j)).map(|(a, _)| a).sum::<f64>();
+    // From 0.0, for the sum of nothing is -0.0.
+    let sum = |keep: &dyn Fn(&Judged) -> bool| framed.iter().filter(|(_, j)| keep(j)).fold(0.0, |sum, (a, _)| sum + a);
     let sharp = |j: &Judged| j.clearance.is_some_and(|c| c.abs() >= near_miss);
     let in_frame = sum(&|_| true);
     let clear_cut = sum(&sharp);
