@@ -43,10 +43,12 @@ pub(super) fn split<S: Simd>(simd: S, x: S::f64s, last: f64) -> (S::f64s, S::f64
     (whole, simd.sub_f64s(x, whole))
 }
 
+/// Added to a whole number below 2^32 it leaves that in the lowest bits.
+pub(super) const UNITS: f64 = 4_503_599_627_370_496.0;
+
 /// Whole numbers below 2^32 as indices.
 #[inline(always)]
 pub(super) fn indices<S: Simd>(simd: S, whole: S::f64s) -> [u32; LANES] {
-    const UNITS: f64 = 4_503_599_627_370_496.0;
     let units = store::<S>(simd.add_f64s(whole, simd.splat_f64s(UNITS)));
     // Not mapped: closures are not compiled for the registers.
     let mut out = [0; LANES];

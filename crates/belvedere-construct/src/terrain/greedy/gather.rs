@@ -1,7 +1,7 @@
 //! What the ground is like where a line of sight crosses the grid.
 
 use super::super::line_of_sight::{AT_NODE, SightLine};
-use super::super::register::{LANES, NTH, load, split, store};
+use super::super::register::{LANES, NTH, UNITS, load, split, store};
 use super::Blocks;
 use super::blocks::Node;
 use pulp::Simd;
@@ -24,13 +24,10 @@ pub(super) struct Crossings {
     pub(super) heights: [Vec<f64>; 2],
     /// Cell of the nearer end, and of the other one.
     pub(super) cells: [Vec<u32>; 2],
-    /// The most that is done to it.
+    /// The most that is done to the cell of the nearer end.
     pub(super) scale: Vec<f64>,
     pub(super) shift: Vec<f64>,
 }
-
-/// Added to a whole number it leaves that in the lowest bits.
-const UNITS: f64 = 4_503_599_627_370_496.0;
 
 impl Crossings {
     pub(super) fn len(&self) -> usize {

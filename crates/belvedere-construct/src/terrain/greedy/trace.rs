@@ -56,7 +56,7 @@ impl Sight {
 /// Finds the ground that may lie over a line of sight.
 pub(super) trait Sampler: Sync {
     /// Appends, in order, what may lie over the line of sight now or after cells were lowered further; what others of the
-    /// same cell make needless may be missing, see [`Scan::blocks`].
+    /// same cell make needless may be missing, see [`Scan::family`].
     fn samples(&self, line: &SightLine<'_>, sight: &Sight, ground: &Lowered, room: &mut Room, out: &mut Vec<High>);
 }
 
