@@ -2,8 +2,8 @@
 
 use crate::ConstructError;
 use crate::reveal::{Goal, RevealMemory, RevealOptions, reveal};
-use crate::terrain::{TerrainMemory, TerrainSolver};
 use belvedere_core::{Stage, View};
+use belvedere_disocclusion::{TerrainMemory, TerrainSolver};
 use belvedere_scene::{Progress, Scene};
 
 /// What a constructor came to.

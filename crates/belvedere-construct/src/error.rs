@@ -62,31 +62,9 @@ pub enum ConstructError {
         /// Eyes tried.
         tried: usize,
     },
-    /// A parameter of terrain disocclusion out of range.
-    #[error("{key} is {value}, it must lie in: {range}")]
-    Setting {
-        /// Name, as scene files write it.
-        key: &'static str,
-        /// Value given.
-        value: f64,
-        /// Range.
-        range: &'static str,
-    },
-    /// An eye from which terrain cannot be solved.
+    /// Terrain disocclusion could not do its work.
     #[error(transparent)]
-    Eye(#[from] crate::terrain::EyeError),
-    /// Terrain that cannot be solved on.
-    #[error(transparent)]
-    Terrain(#[from] crate::terrain::FieldError),
-    /// A smooth pass that cannot be set up.
-    #[error(transparent)]
-    Smooth(#[from] crate::terrain::SmoothError),
-    /// A quadratic program that cannot be set up.
-    #[error(transparent)]
-    Qp(#[from] crate::terrain::qp::QpError),
-    /// A displacement that is no grid.
-    #[error(transparent)]
-    Grid(#[from] belvedere_core::grid::GridError),
+    Disocclusion(#[from] belvedere_disocclusion::DisocclusionError),
     /// A pinhole could not be made.
     #[error(transparent)]
     Pinhole(#[from] PinholeError),

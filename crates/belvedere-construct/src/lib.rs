@@ -9,14 +9,10 @@ pub mod flight;
 pub mod measure;
 pub mod reveal;
 mod samples;
-mod sight;
-pub mod terrain;
 
-pub use belvedere_scene::Ground;
 pub use constructor::{Constructed, Constructor};
 pub use error::ConstructError;
 pub use flight::{Flight, FlightError, FlightOptions};
 pub use measure::{MeasureOptions, Measures, measure};
 pub use reveal::{Goal, RevealMemory, RevealOptions, RevealReport, Revealed, reveal};
 pub use samples::{Amount, Sample, SampledFeature, default_spacing, sample_features};
-pub use sight::{Obstacles, SightOptions};

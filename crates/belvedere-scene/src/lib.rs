@@ -1,24 +1,19 @@
 //! What is looked at: terrain, lines, areas, points, boxes and meshes as plain data, never view-dependent;
 //! and the contract between pictures and whoever needs them ([`Renderer`], [`RenderJob`], [`Frame`]).
 
-pub mod builtin;
 pub mod drape;
 pub mod frame;
-pub mod ground;
 pub mod heightfield;
 pub mod layer;
 pub mod light;
 pub mod mesh;
-pub mod mesh_tree;
 pub mod overlay;
 pub mod progress;
 pub mod ramp;
-pub mod route;
 pub mod scene;
 
 pub use drape::{Draped, drape_polyline};
 pub use frame::{Aux, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer};
-pub use ground::Ground;
 pub use heightfield::{Heightfield, HeightfieldError, NodeState, States};
 pub use layer::{
     AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Color, Drape, Hidden, Layer, LayerKind, LineFeature,
@@ -26,9 +21,7 @@ pub use layer::{
 };
 pub use light::Light;
 pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer};
-pub use mesh_tree::MeshTree;
 pub use overlay::{DistanceMarkers, Overlay, OverlayFace, OverlayLine, OverlayPoint, PointLook, Symbol};
 pub use progress::{Cancelled, Progress};
 pub use ramp::{Ramp, RampHeight, RampStop};
-pub use route::{RouteCost, RouteError, least_cost_route, valley_route};
 pub use scene::{Crs, Scene, Unit};

@@ -2,6 +2,7 @@
 
 pub mod laws;
 mod random;
+pub mod synthetic;
 
 pub use random::Random;
 

@@ -70,6 +70,9 @@ pub enum BelvedereError {
     /// A constructor or measure failed.
     #[error(transparent)]
     Construct(#[from] belvedere_construct::ConstructError),
+    /// Terrain could not be solved.
+    #[error(transparent)]
+    Disocclusion(#[from] belvedere_disocclusion::DisocclusionError),
     /// Cancelled.
     #[error(transparent)]
     Cancelled(#[from] belvedere_scene::Cancelled),
@@ -82,6 +85,7 @@ impl BelvedereError {
             self,
             Self::Cancelled(_)
                 | Self::Construct(belvedere_construct::ConstructError::Cancelled(_))
+                | Self::Disocclusion(belvedere_disocclusion::DisocclusionError::Cancelled(_))
                 | Self::Io(belvedere_io::IoError::Cancelled(_))
                 | Self::Render(belvedere_scene::RenderError::Cancelled(_))
         )

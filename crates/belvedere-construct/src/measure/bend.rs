@@ -2,9 +2,9 @@
 
 use super::Judged;
 use crate::samples::SampledFeature;
-use crate::sight::Obstacles;
 use belvedere_core::{Camera, DVec2, DVec3, SpaceMap, View};
 use belvedere_scene::{Heightfield, Scene};
+use belvedere_sight::Obstacles;
 use serde::Serialize;
 
 /// Distortion of the bent picture, over the ground nodes that lie in it.

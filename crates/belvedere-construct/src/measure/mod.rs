@@ -10,9 +10,9 @@ pub use report::{Clearance, FeatureMeasure, Measures, MethodShare, Visibility};
 
 use crate::ConstructError;
 use crate::samples::{Sample, SampledFeature, default_spacing, sample_features};
-use crate::sight::{Obstacles, SightOptions};
 use belvedere_core::{Camera, DVec2, DVec3, View};
 use belvedere_scene::{Light, Progress, Renderer, Scene};
+use belvedere_sight::{Obstacles, SightOptions};
 use rayon::prelude::*;
 
 /// How to measure.

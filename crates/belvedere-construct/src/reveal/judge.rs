@@ -2,10 +2,10 @@
 
 use crate::measure::bend::{facing, median_height, nodes};
 use crate::samples::{Sample, SampledFeature};
-use crate::sight::{Obstacles, SightOptions};
 use belvedere_core::map::spline::ReferencePlane;
 use belvedere_core::{Camera, DVec2, DVec3, Stage, View};
 use belvedere_scene::{Heightfield, Scene};
+use belvedere_sight::{Obstacles, SightOptions};
 use serde::Serialize;
 
 /// What one candidate picture comes to.

@@ -1,11 +1,11 @@
 //! What `reveal` promises, on real mountains.
 
 use crate::reveal::assert_bars;
-use crate::synthetic::{line_layer, terrain_layer};
 use belvedere_construct::{RevealMemory, RevealOptions, reveal};
 use belvedere_io::vector::{lines_on_terrain, load_vectors};
 use belvedere_io::{TerrainRequest, load_terrain};
 use belvedere_scene::{LayerKind, Progress, Scene};
+use belvedere_testkit::synthetic::{line_layer, terrain_layer};
 
 fn load(terrain: &str, lines: &str) -> Option<Scene> {
     let (terrain, lines) = (belvedere_testkit::data(terrain)?, belvedere_testkit::data(lines)?);

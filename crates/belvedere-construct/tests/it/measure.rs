@@ -1,7 +1,7 @@
-use crate::synthetic::{Marcher, camera, line_layer, on_a_small_planet, point_layer, scene};
 use belvedere_construct::{ConstructError, MeasureOptions, Measures, measure};
 use belvedere_core::{DVec3, View};
 use belvedere_scene::{Progress, Renderer, Scene};
+use belvedere_testkit::synthetic::{Marcher, camera, line_layer, on_a_small_planet, point_layer, scene};
 
 fn run(scene: &Scene, view: &View, renderer: Option<&dyn Renderer>) -> Result<Measures, ConstructError> {
     measure(

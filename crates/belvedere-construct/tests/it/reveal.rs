@@ -1,10 +1,10 @@
-use crate::synthetic::{camera, line_layer, scene};
 use belvedere_construct::{
     ConstructError, Goal, MeasureOptions, RevealMemory, RevealOptions, Revealed, measure, reveal,
 };
 use belvedere_core::{DVec3, View};
 use belvedere_cpu::CpuRenderer;
-use belvedere_scene::{Progress, Scene, builtin};
+use belvedere_scene::{Progress, Scene};
+use belvedere_testkit::synthetic::{camera, line_layer, scene};
 
 fn run(scene: &Scene, base: Option<&View>) -> Result<Revealed, ConstructError> {
     reveal(scene, base, &RevealOptions::default(), &mut RevealMemory::default(), &Progress::silent())
@@ -33,13 +33,13 @@ pub(crate) fn assert_bars(name: &str, scene: &Scene, found: &Revealed) {
 
 #[test]
 fn the_built_in_massif_shows_its_trail() {
-    let (scene, _) = builtin::massif(1, 257).unwrap();
+    let (scene, _) = belvedere_builtin::massif(1, 257).unwrap();
     assert_bars("massif", &scene, &run(&scene, None).unwrap());
 }
 
 #[test]
 fn a_given_camera_is_kept() {
-    let (scene, suggested) = builtin::massif(1, 257).unwrap();
+    let (scene, suggested) = belvedere_builtin::massif(1, 257).unwrap();
     let lens = belvedere_core::Projection::Perspective { fov_y: suggested.fov_y };
     let pinhole =
         belvedere_core::Pinhole::look_at(suggested.eye, suggested.look_at, DVec3::Z, lens, [640, 360], 1.0, None)
@@ -118,7 +118,7 @@ fn a_single_point_and_a_short_line_are_enough() {
     scene.layers[1] = line_layer("short", vec![z(1500.0, 1500.0), z(1540.0, 1500.0)]);
     let found = run(&scene, None).unwrap();
     assert!(found.report.bent.in_frame > 0.9, "{:?}", found.report.bent);
-    scene.layers[1] = crate::synthetic::point_layer("hut", z(1500.0, 1500.0));
+    scene.layers[1] = belvedere_testkit::synthetic::point_layer("hut", z(1500.0, 1500.0));
     assert!(run(&scene, None).unwrap().report.bent.in_frame > 0.9);
 }
 

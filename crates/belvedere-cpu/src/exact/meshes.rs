@@ -4,7 +4,7 @@ use super::curve::Span;
 use super::root::root;
 use super::trace::{Found, Part, Walk};
 use belvedere_core::DVec3;
-use belvedere_scene::MeshTree;
+use belvedere_sight::MeshTree;
 
 /// How far outside a triangle, in weights of its corners, a bent ray still meets it: more than rounding, so that no ray slips
 /// between two triangles.

@@ -5,7 +5,8 @@ use super::curve::{Curve, Span, Split};
 use super::root::root;
 use crate::lens::Lens;
 use belvedere_core::{Aabb, Camera, DVec2, DVec3, View};
-use belvedere_scene::{Ground, Heightfield, LayerKind, MeshTree, NodeState, Scene};
+use belvedere_scene::{Heightfield, LayerKind, NodeState, Scene};
+use belvedere_sight::{Ground, MeshTree};
 use std::ops::ControlFlow;
 
 /// Largest distance of a ray from the chord that tells where to look for its hits, pixels.
@@ -71,7 +72,7 @@ impl<'a> Tracer<'a> {
         for (i, layer) in scene.layers.iter().enumerate() {
             match &layer.kind {
                 LayerKind::Terrain(t) => {
-                    let lifted: Option<belvedere_scene::ground::Lift<'_>> = split.ground.is_some().then_some(&lift);
+                    let lifted: Option<belvedere_sight::Lift<'_>> = split.ground.is_some().then_some(&lift);
                     grounds.push((i, Ground::lifted(&t.heightfield, lifted)));
                 }
                 LayerKind::Boxes(b) => solids.extend(

@@ -2,7 +2,8 @@
 
 use crate::exact::boxes::{Boxes, Solid};
 use belvedere_core::{Aabb, DVec2, DVec3};
-use belvedere_scene::{Ground, LayerKind, Light, MeshTree, Scene};
+use belvedere_scene::{LayerKind, Light, Scene};
+use belvedere_sight::{Ground, MeshTree};
 
 /// Half the width of the sun, radians.
 const SUN_RADIUS: f64 = 0.004_65;

@@ -12,7 +12,7 @@ use belvedere_core::{
 use belvedere_cpu::{ExactRenderer, Tracer};
 use belvedere_scene::{
     Aux, BoxLayer, BoxShape, Color, Frame, Heightfield, LayerKind, Light, Mesh, MeshColors, MeshLayer, NodeState,
-    Progress, RenderJob, RenderOptions, Renderer, Scene, builtin,
+    Progress, RenderJob, RenderOptions, Renderer, Scene,
 };
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -103,7 +103,7 @@ fn tower(hf: &Heightfield, x: f64, y: f64, yaw: f64) -> BoxShape {
 
 /// The built-in church twice as large; with a fault, two of its corners are taken for each other.
 fn church(at: DVec3, faulty: bool) -> LayerKind {
-    let (scene, _) = builtin::church().expect("the church can be built");
+    let (scene, _) = belvedere_builtin::church().expect("the church can be built");
     let LayerKind::Mesh(made) = &scene.layers[0].kind else { panic!("a mesh") };
     let swapped = |v: u32| match v {
         4 if faulty => 40,
@@ -170,7 +170,7 @@ fn rasteriser_and_tracer_agree_on_all_stages() {
 
 #[test]
 fn rasteriser_and_tracer_agree_on_built_in_scenes() {
-    for (name, made) in [("massif", builtin::massif(7, 257)), ("street", builtin::street(7))] {
+    for (name, made) in [("massif", belvedere_builtin::massif(7, 257)), ("street", belvedere_builtin::street(7))] {
         let (scene, camera) = made.expect("the built-in scene can be made");
         let ph = pinhole(camera.eye, camera.look_at, camera.fov_y.to_degrees(), [320, 180]);
         let ground = ReferencePlane::level(camera.look_at.z);

@@ -3,7 +3,6 @@
 use crate::support::{layer, line, options, pinhole, render, scene, show, terrain};
 use crate::support_views::spline_over;
 use belvedere_core::{DVec2, DVec3, View};
-use belvedere_scene::builtin;
 use belvedere_scene::{AreaFeature, AreaLayer, Color, Heightfield, Hidden, LayerKind, LineFeature, NodeState, Scene};
 
 const LAT0: f64 = 42.5;
@@ -133,7 +132,7 @@ fn bent_andorra_has_no_cracks_either() {
 
 #[test]
 fn built_in_scenes_fill_their_pictures() {
-    let scenes = [("massif", builtin::massif(7, 513)), ("street", builtin::street(7))];
+    let scenes = [("massif", belvedere_builtin::massif(7, 513)), ("street", belvedere_builtin::street(7))];
     for (name, made) in scenes {
         let (scene, camera) = made.expect("the built-in scene can be made");
         let view = View::straight(pinhole(camera.eye, camera.look_at, camera.fov_y.to_degrees(), [1280, 720]));

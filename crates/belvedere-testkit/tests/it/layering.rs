@@ -6,7 +6,9 @@ use std::process::Command;
 /// Which workspace crates and which external crates each crate may depend on (dev-dependencies are free).
 const RULES: &[(&str, &[&str], &[&str])] = &[
     ("belvedere-core", &[], &["glam", "serde", "thiserror"]),
-    ("belvedere-scene", &["belvedere-core"], &["glam", "obvhs", "rayon", "serde", "thiserror"]),
+    ("belvedere-scene", &["belvedere-core"], &["glam", "rayon", "serde", "thiserror"]),
+    ("belvedere-sight", &["belvedere-core", "belvedere-scene"], &["glam", "obvhs", "rayon"]),
+    ("belvedere-builtin", &["belvedere-core", "belvedere-scene", "belvedere-sight"], &["rayon", "thiserror"]),
     (
         "belvedere-io",
         &["belvedere-core", "belvedere-scene"],
@@ -41,18 +43,32 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         ],
     ),
     (
-        "belvedere-construct",
-        &["belvedere-core", "belvedere-scene"],
+        "belvedere-disocclusion",
+        &["belvedere-core", "belvedere-scene", "belvedere-sight"],
         &["glam", "pulp", "rayon", "rsparse", "rustfft", "serde", "thiserror", "tracing"],
     ),
     (
+        "belvedere-construct",
+        &["belvedere-core", "belvedere-disocclusion", "belvedere-scene", "belvedere-sight"],
+        &["glam", "rayon", "serde", "thiserror", "tracing"],
+    ),
+    (
         "belvedere-cpu",
-        &["belvedere-core", "belvedere-scene"],
+        &["belvedere-core", "belvedere-scene", "belvedere-sight"],
         &["ab_glyph", "glam", "pulp", "rayon", "thiserror", "tracing"],
     ),
     (
         "belvedere",
-        &["belvedere-construct", "belvedere-core", "belvedere-cpu", "belvedere-io", "belvedere-scene"],
+        &[
+            "belvedere-builtin",
+            "belvedere-construct",
+            "belvedere-core",
+            "belvedere-cpu",
+            "belvedere-disocclusion",
+            "belvedere-io",
+            "belvedere-scene",
+            "belvedere-sight",
+        ],
         &[
             "glam",
             "plotters",
@@ -67,7 +83,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
             "tracing",
         ],
     ),
-    ("belvedere-testkit", &["belvedere-core", "belvedere-scene"], &["glam"]),
+    ("belvedere-testkit", &["belvedere-core", "belvedere-scene"], &["glam", "rayon"]),
     (
         "belvedere-cli",
         &["belvedere"],

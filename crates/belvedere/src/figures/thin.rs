@@ -1,9 +1,9 @@
 //! Ground that still covers what must be seen, drawn see-through.
 
-use belvedere_construct::ConstructError;
-use belvedere_construct::terrain::qp::{LinesOfSight, ViewSight};
-use belvedere_construct::terrain::{Covered, Field, ghost_alpha};
 use belvedere_core::{Camera, DVec2, SpaceMap, Stage, View};
+use belvedere_disocclusion::DisocclusionError;
+use belvedere_disocclusion::visibility_qp::{LinesOfSight, ViewSight};
+use belvedere_disocclusion::{Covered, Field, ghost_alpha};
 use belvedere_scene::{Frame, Heightfield, LayerKind, Scene};
 
 /// Occlusion at which the ground is half see-through, scene units.
@@ -20,8 +20,8 @@ const BELOW: f64 = 0.5;
 /// The scene with the ground cut away down to the lines of sight of what it covers. `None` without terrain.
 ///
 /// # Errors
-/// [`ConstructError::Terrain`].
-pub(crate) fn cut(scene: &Scene, view: &View, covered: &[Covered]) -> Result<Option<Scene>, ConstructError> {
+/// [`DisocclusionError::Terrain`].
+pub(crate) fn cut(scene: &Scene, view: &View, covered: &[Covered]) -> Result<Option<Scene>, DisocclusionError> {
     let Some(terrain) = scene.terrain() else { return Ok(None) };
     let fallen = |xy: DVec2| {
         let earth = view.stages().iter().find_map(|s| match s {

@@ -1,7 +1,8 @@
 //! Built-in scenes as sources: `builtin:massif?seed=7&size=513`, `builtin:street?layer=route`.
 
 use crate::scene_file::suggestion;
-use belvedere_scene::{LayerKind, Scene, builtin};
+use belvedere_builtin as builtin;
+use belvedere_scene::{LayerKind, Scene};
 
 /// Seed of a built-in scene that names none.
 pub(crate) const DEFAULT_SEED: u64 = 7;

@@ -8,11 +8,11 @@ use crate::scene_file::{
     PointLayerDoc, ReliefDoc, RouteDoc, ShadingDoc, SourceDocument, SurfaceDoc, SymbolDoc, TerrainDoc,
 };
 use crate::{BelvedereError, OpenOptions};
+use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
 use belvedere_core::DVec2;
 use belvedere_scene::{
     AreaLayer, AreaSurface, Color, Crs, DistanceMarkers, Drape, Heightfield, Hidden, Layer, LayerKind, LineFeature,
-    LineLayer, Palette, PointLayer, PointLook, Relief, RouteCost, Scene, Shading, Symbol, TerrainLayer, drape_polyline,
-    least_cost_route, valley_route,
+    LineLayer, Palette, PointLayer, PointLook, Relief, Scene, Shading, Symbol, TerrainLayer, drape_polyline,
 };
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -20,8 +20,8 @@ use crate::scene_file::{
     ConstructorKind, Document, EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc, UnitDoc,
 };
 use crate::{BelvedereError, Needs, OpenOptions, Session};
-use belvedere_construct::terrain::{TerrainMemory, TerrainReport};
 use belvedere_core::{DVec2, EarthCurvature, Stage, View};
+use belvedere_disocclusion::{TerrainMemory, TerrainReport};
 use belvedere_io::crs::{CoordinateSystem, Transform, gaussian_radius_m, utm_epsg};
 use belvedere_scene::{Crs, Heightfield, Layer, LayerKind, Light, Scene, Unit};
 use std::path::PathBuf;

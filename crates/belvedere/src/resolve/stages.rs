@@ -8,10 +8,10 @@ use crate::scene_file::paths::Roots;
 use crate::scene_file::{
     self, Document, PlaneDoc, PresetsDoc, SourceDocument, SplineStageDoc, StageDoc, TerrainStageDoc,
 };
-use belvedere_construct::terrain::TerrainReport;
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
 use belvedere_core::presets::{BUILTIN_NAMES, PresetDocument};
 use belvedere_core::{DVec3, Pinhole, SplineBend, Stage, TerrainDisocclusion, View};
+use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::Scene;
 use std::path::PathBuf;
 

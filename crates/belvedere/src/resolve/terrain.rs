@@ -4,12 +4,12 @@ use super::camera::ResolvedCamera;
 use super::stages::Fail;
 use crate::BelvedereError;
 use crate::scene_file::{DetailDoc, PointDoc, SolverMode as ModeDoc, SourceDocument, StageDoc, TerrainStageDoc};
-use belvedere_construct::ConstructError;
-use belvedere_construct::terrain::{
+use belvedere_core::{DVec3, Pinhole, Stage, View};
+use belvedere_disocclusion::DisocclusionError;
+use belvedere_disocclusion::{
     Cells, Detail, Field, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver, ViewpointOptions,
     stated_spacing,
 };
-use belvedere_core::{DVec3, Pinhole, Stage, View};
 use belvedere_scene::{Progress, Scene};
 
 /// What a solver needs beside the document.
@@ -22,8 +22,8 @@ pub(crate) struct Solving<'a> {
 
 /// Ranges of the parameters of a document.
 pub(super) fn check(doc: &TerrainStageDoc) -> Result<(), (&'static str, String)> {
-    if let Err(ConstructError::Setting { key, value, range }) = TerrainSolver::new(settings(doc)?) {
-        return Err((key, ConstructError::Setting { key, value, range }.to_string()));
+    if let Err(DisocclusionError::Setting { key, value, range }) = TerrainSolver::new(settings(doc)?) {
+        return Err((key, DisocclusionError::Setting { key, value, range }.to_string()));
     }
     match doc.adjust_viewpoint {
         Some(slider) if !(0.0..=1.0).contains(&slider) => {
@@ -116,7 +116,7 @@ pub(super) fn solve(
     fail: &Fail<'_>,
 ) -> Result<Solved, BelvedereError> {
     let mut solver = TerrainSolver::new(settings).map_err(|e| match &e {
-        ConstructError::Setting { key, .. } => fail(&[*key], e.to_string()),
+        DisocclusionError::Setting { key, .. } => fail(&[*key], e.to_string()),
         _ => fail(&[], e.to_string()),
     })?;
     if let Some(seconds) = solving.time_step_s {

@@ -2,13 +2,14 @@
 
 use super::bench::{broken, ground, median};
 use crate::BelvedereError;
-use belvedere_construct::terrain::{LiveTerrain, TerrainMemory, TerrainSettings, TerrainSolver};
+use belvedere_builtin::valley_route;
 use belvedere_construct::{Flight, FlightOptions};
 use belvedere_core::{Pinhole, Projection, Stage, View};
 use belvedere_cpu::CpuRenderer;
+use belvedere_disocclusion::{LiveTerrain, TerrainMemory, TerrainSettings, TerrainSolver};
 use belvedere_scene::{
     Color, Frame, Layer, LayerKind, Light, LineFeature, LineLayer, Progress, RenderJob, RenderOptions, Renderer, Scene,
-    drape_polyline, valley_route,
+    drape_polyline,
 };
 use serde::Serialize;
 use std::sync::Arc;

@@ -2,10 +2,10 @@
 
 use super::bench::{broken, median};
 use crate::BelvedereError;
-use belvedere_construct::terrain::{
+use belvedere_core::DVec2;
+use belvedere_disocclusion::{
     ConjugateGradients, ElevationRows, Hierarchy, SmoothError, Smoother, TerrainSettings, grid_weight, row_weight,
 };
-use belvedere_core::DVec2;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -83,7 +83,7 @@ fn sparse(
     ours: &[f64],
 ) -> Result<Option<SparseCost>, SmoothError> {
     let began = Instant::now();
-    let mut factor = belvedere_construct::terrain::Cholesky::new(n, n, shift, rows)?;
+    let mut factor = belvedere_disocclusion::Cholesky::new(n, n, shift, rows)?;
     let factor_ms = began.elapsed().as_secs_f64() * 1e3;
     let mut theirs = wanted.to_vec();
     let began = Instant::now();

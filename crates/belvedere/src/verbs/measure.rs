@@ -4,7 +4,7 @@ use super::render::RendererChoice;
 use crate::{BelvedereError, Session};
 pub use belvedere_construct::MeasureOptions;
 use belvedere_construct::Measures;
-use belvedere_construct::terrain::TerrainReport;
+use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::Progress;
 use serde::Serialize;
 

@@ -6,10 +6,10 @@ use crate::figures::{badge, camera, ghost, grid, heat, thin};
 use crate::provenance::{self, InputFile};
 use crate::scene_file::{StageDoc, SwitchOrLength};
 use crate::{BelvedereError, CameraPicture, Session};
-use belvedere_construct::terrain::TerrainReport;
 use belvedere_core::{Camera, DVec2, Stage, View};
 use belvedere_cpu::canvas::Canvas;
 use belvedere_cpu::{CpuRenderer, ExactRenderer};
+use belvedere_disocclusion::TerrainReport;
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::{
     Aux, Crs, Frame, FrameStats, Heightfield, NodeState, Progress, RenderJob, RenderOptions, Renderer,

@@ -13,9 +13,9 @@ use crate::scene_file::{
     TerrainDoc, TerrainStyleDoc, UnitDoc,
 };
 use crate::{BelvedereError, OpenOptions, Session};
-use belvedere_construct::terrain::{TerrainMemory, TerrainReport};
 use belvedere_construct::{Goal, MeasureOptions, RevealMemory, RevealOptions, RevealReport, Revealed};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
+use belvedere_disocclusion::{TerrainMemory, TerrainReport};
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::{Crs, Progress};
 use serde::Serialize;

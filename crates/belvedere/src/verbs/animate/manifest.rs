@@ -6,7 +6,7 @@ use crate::scene_file::AnimationDoc;
 use crate::verbs::render::{DisplacementReport, RenderRequest};
 use crate::verbs::{check, output};
 use crate::{BelvedereError, Session};
-use belvedere_construct::terrain::TerrainReport;
+use belvedere_disocclusion::TerrainReport;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 

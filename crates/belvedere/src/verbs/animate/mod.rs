@@ -13,7 +13,7 @@ use crate::provenance::{self, ViewRecord};
 use crate::resolve::terrain::Solving;
 use crate::scene_file::AnimationDoc;
 use crate::{BelvedereError, Session};
-use belvedere_construct::terrain::TerrainMemory;
+use belvedere_disocclusion::TerrainMemory;
 use belvedere_scene::Progress;
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -3,14 +3,14 @@
 use crate::resolve::terrain as intent;
 use crate::scene_file::StageDoc;
 use crate::{BelvedereError, OpenOptions, Session};
-use belvedere_construct::ConstructError;
-use belvedere_construct::terrain::{
-    Blocks, Cells, Field, Naive, ReferencePoint, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver,
-    Wedge, in_view, reference_points,
-};
 use belvedere_core::grid::Grid;
 use belvedere_core::{DVec3, Pinhole, Stage, TerrainDisocclusion, View};
 use belvedere_cpu::CpuRenderer;
+use belvedere_disocclusion::DisocclusionError;
+use belvedere_disocclusion::{
+    Blocks, Cells, Field, Naive, ReferencePoint, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver,
+    Wedge, in_view, reference_points,
+};
 use belvedere_scene::{Frame, Progress, RenderJob, RenderOptions, Renderer, Scene};
 use std::path::{Path, PathBuf};
 
@@ -46,8 +46,8 @@ impl Area {
         });
         let settings = intent::settings(&asked.unwrap_or_default());
         let settings = settings.map_err(|(_, reason)| BelvedereError::Usage(reason))?;
-        let terrain = session.scene().terrain().ok_or(ConstructError::NoTerrain)?;
-        let field = Field::new(terrain, |_| 0.0).map_err(ConstructError::from)?;
+        let terrain = session.scene().terrain().ok_or(DisocclusionError::NoTerrain)?;
+        let field = Field::new(terrain, |_| 0.0).map_err(DisocclusionError::from)?;
         let cells = Cells::new(&field, settings.cells.unwrap_or_else(|| Cells::default_count(&field)));
         let view = View::straight(session.view().pinhole().clone());
         let name = path.file_stem().map_or_else(|| "area".into(), |s| s.to_string_lossy().into_owned());
@@ -77,7 +77,8 @@ impl Area {
     pub(super) fn naive_stage(&self, naive: &Naive) -> Result<TerrainDisocclusion, BelvedereError> {
         let f = &self.field;
         let values = naive.displacement(f, &self.cells);
-        let grid = Grid::new(f.north_west(), f.spacing(), f.cols(), f.rows(), values).map_err(ConstructError::from)?;
+        let grid =
+            Grid::new(f.north_west(), f.spacing(), f.cols(), f.rows(), values).map_err(DisocclusionError::from)?;
         Ok(TerrainDisocclusion::new(grid))
     }
 

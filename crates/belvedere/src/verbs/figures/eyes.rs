@@ -2,8 +2,8 @@
 
 use super::area::Area;
 use crate::BelvedereError;
-use belvedere_construct::terrain::SolverMode;
 use belvedere_core::{DVec3, Pinhole, View};
+use belvedere_disocclusion::SolverMode;
 use serde::Serialize;
 
 /// A walker, a tower, a drone, and the heights of the paper's kind of view, metres over the ground.

@@ -15,7 +15,7 @@ use super::check::pretty;
 use super::output;
 use crate::{BelvedereError, OpenOptions};
 use area::Area;
-use belvedere_construct::terrain::TerrainReport;
+use belvedere_disocclusion::TerrainReport;
 use belvedere_io::png::{self, Channels};
 use pictures::Solutions;
 use serde::Serialize;

@@ -4,7 +4,7 @@ use super::AreaRecord;
 use super::eyes::EyeRow;
 use super::timing::{PAPER_CELLS, PAPER_SOLVE, Timing};
 use crate::verbs::html::{STYLE, escape};
-use belvedere_construct::terrain::{SolverMode, TerrainReport};
+use belvedere_disocclusion::{SolverMode, TerrainReport};
 use std::fmt::Write;
 
 const TABLES: &str = "table{border-collapse:collapse;margin:.6rem 0 1.4rem;font-size:.9rem}td,th{padding:.2rem .7rem;\

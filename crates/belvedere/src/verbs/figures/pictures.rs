@@ -4,8 +4,8 @@ use super::area::Area;
 use super::sheet::{Panel, Pixels, sheet};
 use super::{PAIR, TILE};
 use crate::BelvedereError;
-use belvedere_construct::terrain::{Solved, SolverMode, TerrainReport};
 use belvedere_core::TerrainDisocclusion;
+use belvedere_disocclusion::{Solved, SolverMode, TerrainReport};
 use belvedere_scene::Scene;
 
 /// Solutions of the area's own parameters that several figures share.

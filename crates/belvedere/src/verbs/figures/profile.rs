@@ -4,8 +4,8 @@ use super::area::Area;
 use super::chart::{self, Chart, Corner, Curve, Look};
 use super::sheet::Pixels;
 use crate::BelvedereError;
-use belvedere_construct::terrain::{ReferencePoint, Solved};
 use belvedere_core::DVec2;
+use belvedere_disocclusion::{ReferencePoint, Solved};
 
 /// Places along the line, besides its ends.
 const PLACES: usize = 1200;
@@ -51,8 +51,8 @@ fn worst(area: &Area) -> Option<&ReferencePoint> {
     let to = field.grid_from_scene(eye.truncate());
     let mut samples = Vec::new();
     let mut excess = |p: &ReferencePoint| {
-        belvedere_construct::terrain::sight_samples(field, p.grid, to, true, &mut samples);
-        let guard = belvedere_construct::terrain::guard_tau(p.grid, to, area.settings.guard);
+        belvedere_disocclusion::sight_samples(field, p.grid, to, true, &mut samples);
+        let guard = belvedere_disocclusion::guard_tau(p.grid, to, area.settings.guard);
         let from = p.ground + p.lift;
         let over =
             samples.iter().filter(|s| s.tau > guard).map(|s| s.of(field.heights()) - (from + s.tau * (eye.z - from)));

@@ -5,7 +5,7 @@ use super::area::Area;
 use super::pictures::figures;
 use super::sheet::{Panel, Pixels, sheet};
 use crate::BelvedereError;
-use belvedere_construct::terrain::{SolverMode, TerrainReport, TerrainSettings};
+use belvedere_disocclusion::{SolverMode, TerrainReport, TerrainSettings};
 use serde::Serialize;
 
 const W: [f64; 5] = [0.1, 0.6, 1.0, 10.0, 100.0];

@@ -4,12 +4,12 @@ use super::area::Area;
 use super::chart::{self, Chart, Corner, Curve, Look};
 use super::sheet::Pixels;
 use crate::BelvedereError;
-use belvedere_construct::ConstructError;
-use belvedere_construct::terrain::{
+use belvedere_core::DVec2;
+use belvedere_disocclusion::DisocclusionError;
+use belvedere_disocclusion::{
     Cells, Hierarchy, Naive, ReferencePoint, SmoothPass, SolverMode, TerrainSettings, Wedge, in_view, reference_points,
     stated_spacing,
 };
-use belvedere_core::DVec2;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -62,7 +62,7 @@ pub(super) fn timing(area: &Area) -> Result<Timing, BelvedereError> {
     let hierarchy = Hierarchy::new(field.cols(), field.rows(), nodes);
     let unknowns = hierarchy.nodes();
     let rows: Vec<DVec2> = area.points.iter().map(|p| p.grid).chain(summits(area)).collect();
-    let mut pass = SmoothPass::new(hierarchy, w, settings.rows_weight, &rows).map_err(ConstructError::from)?;
+    let mut pass = SmoothPass::new(hierarchy, w, settings.rows_weight, &rows).map_err(DisocclusionError::from)?;
     let prepare_ms = since(began);
     let naive = area.naive(&settings).displacement(field, &area.cells);
     let solve_ms = median(|| drop(pass.run(&naive, None, None)));

@@ -1,0 +1,4 @@
+//! Tests of the built-in scenes.
+
+mod builtin;
+mod route;

@@ -1,0 +1,52 @@
+//! What can go wrong before terrain is solved. A place that cannot be made visible is a result, not an error.
+
+use crate::visibility_qp::QpError;
+use crate::{EyeError, FieldError, SmoothError};
+use belvedere_core::grid::GridError;
+use belvedere_scene::Cancelled;
+
+/// Terrain that could not be solved at all.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DisocclusionError {
+    /// Cancelled through [`belvedere_scene::Progress`].
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// There is no terrain.
+    #[error("the scene has no terrain layer; terrain disocclusion needs one")]
+    NoTerrain,
+    /// No layer of the scene must be seen.
+    #[error("none of the {layers} layers has must_see = true; mark the features that the picture is made for")]
+    NothingToSee {
+        /// Layers of the scene.
+        layers: usize,
+    },
+    /// A parameter out of range.
+    #[error("{key} is {value}, it must lie in: {range}")]
+    Setting {
+        /// Name, as scene files write it.
+        key: &'static str,
+        /// Value given.
+        value: f64,
+        /// Range.
+        range: &'static str,
+    },
+    /// An eye from which terrain cannot be solved.
+    #[error(transparent)]
+    Eye(#[from] EyeError),
+    /// Terrain that cannot be solved on.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+    /// A smooth pass that cannot be set up.
+    #[error(transparent)]
+    Smooth(#[from] SmoothError),
+    /// A quadratic program that cannot be set up.
+    #[error(transparent)]
+    Qp(#[from] QpError),
+    /// A displacement that is no grid.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// A pinhole and its stages that make no view.
+    #[error(transparent)]
+    View(#[from] belvedere_core::ViewError),
+}

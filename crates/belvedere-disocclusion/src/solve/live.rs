@@ -1,0 +1,160 @@
+//! Solving beside the drawing: a picture waits for its ground only where that would fall too far behind.
+
+use super::super::metrics::excesses;
+use super::super::visibility_qp::ViewSight;
+use super::super::{Field, ReferencePoint};
+use super::{TerrainMemory, TerrainSolver, bent};
+use crate::DisocclusionError;
+use belvedere_core::{TerrainDisocclusion, View};
+use belvedere_scene::{Cancelled, Progress, Scene};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
+
+/// Terrain that makes way while pictures are drawn. A thread of its own solves for the newest view that was asked for; every
+/// picture gets the newest ground there is and says what of the features that ground shows it.
+///
+/// Which ground a picture gets depends on how fast the machine is: films are solved frame by frame instead ([`TerrainSolver`]).
+#[derive(Debug)]
+pub struct LiveTerrain {
+    orders: Option<Sender<Order>>,
+    answers: Receiver<Answer>,
+    worker: Option<JoinHandle<()>>,
+    progress: Progress,
+    guard: f64,
+    frame: u64,
+    ground: Option<Ground>,
+}
+
+/// Ground for a picture.
+#[derive(Debug, Clone)]
+pub struct LiveFrame {
+    /// The displacement.
+    pub stage: TerrainDisocclusion,
+    /// How many pictures ago the view was asked for that it was solved for, 0..=[`LiveTerrain::LAG`].
+    pub lag: u64,
+    /// Reference points in the picture, farther from the eye than three times the guard.
+    pub points: usize,
+    /// How many of them this ground hides from this eye.
+    pub hidden: usize,
+    /// How far the ground rises over the line of sight that it hides most, scene units; 0 if nothing is hidden.
+    pub hidden_worst_m: f64,
+}
+
+#[derive(Debug)]
+struct Order {
+    frame: u64,
+    view: View,
+}
+
+type Answer = Result<Ground, DisocclusionError>;
+
+#[derive(Debug)]
+struct Ground {
+    frame: u64,
+    stage: TerrainDisocclusion,
+    field: Arc<Field>,
+    points: Arc<[ReferencePoint]>,
+}
+
+impl LiveTerrain {
+    /// A picture waits rather than show ground that was solved for a view more than this many pictures before.
+    pub const LAG: u64 = 3;
+
+    /// Starts the thread.
+    ///
+    /// * `solver`: with the time between two pictures, if the ground shall move gently.
+    pub fn new(solver: TerrainSolver, scene: Arc<Scene>) -> Self {
+        let (orders, inbox) = channel();
+        let (outbox, answers) = channel();
+        let progress = Progress::silent();
+        let guard = solver.settings().guard;
+        let own = progress.clone();
+        let worker = std::thread::spawn(move || work(&solver, &scene, &inbox, &outbox, &own));
+        Self { orders: Some(orders), answers, worker: Some(worker), progress, guard, frame: 0, ground: None }
+    }
+
+    /// Ground for the next picture, and whether it shows what it should from the eye of `base`.
+    ///
+    /// # Errors
+    /// Those of [`TerrainSolver::solve`], for this view or one of the last; the next view may be asked for all the same.
+    pub fn frame(&mut self, base: &View) -> Result<LiveFrame, DisocclusionError> {
+        self.frame += 1;
+        let order = Order { frame: self.frame, view: base.clone() };
+        // A thread that has ended answers nothing, which is found below.
+        if let Some(orders) = &self.orders {
+            let _ = orders.send(order);
+        }
+        while let Ok(answer) = self.answers.try_recv() {
+            self.take(answer)?;
+        }
+        loop {
+            match &self.ground {
+                Some(ground) if self.frame - ground.frame <= Self::LAG => return Ok(self.judged(ground, base)),
+                _ => match self.answers.recv() {
+                    Ok(answer) => self.take(answer)?,
+                    Err(_) => return Err(Cancelled.into()),
+                },
+            }
+        }
+    }
+
+    fn take(&mut self, answer: Answer) -> Result<(), DisocclusionError> {
+        self.ground = Some(answer?);
+        Ok(())
+    }
+
+    fn judged(&self, ground: &Ground, base: &View) -> LiveFrame {
+        let field = &*ground.field;
+        let eye = base.pinhole().eye.truncate();
+        let nearest = 3.0 * self.guard * field.spacing().max_element();
+        let shown = |p: &&ReferencePoint| {
+            let at = field.scene_from_grid(p.grid);
+            at.distance(eye) > nearest && bent::in_frame(base, at.extend(p.ground + p.lift))
+        };
+        let points: Vec<ReferencePoint> = ground.points.iter().filter(shown).copied().collect();
+        let sight = ViewSight::new(base, field);
+        let over = excesses(field, ground.stage.grid(), self.guard, &sight, &points);
+        let hidden: Vec<f64> = over.into_iter().flatten().filter(|over| *over > 0.0).collect();
+        LiveFrame {
+            stage: ground.stage.clone(),
+            lag: self.frame - ground.frame,
+            points: points.len(),
+            hidden: hidden.len(),
+            hidden_worst_m: hidden.into_iter().filter(|over| over.is_finite()).fold(0.0, f64::max),
+        }
+    }
+}
+
+impl Drop for LiveTerrain {
+    fn drop(&mut self) {
+        self.progress.cancel_flag().store(true, Ordering::Relaxed);
+        self.orders = None;
+        if let Some(worker) = self.worker.take() {
+            // A panic over there has been printed there.
+            let _ = worker.join();
+        }
+    }
+}
+
+/// Solves for the newest view until nobody asks any more.
+fn work(solver: &TerrainSolver, scene: &Scene, inbox: &Receiver<Order>, outbox: &Sender<Answer>, progress: &Progress) {
+    let mut memory = TerrainMemory::default();
+    let mut points: Arc<[ReferencePoint]> = Arc::new([]);
+    while let Ok(mut order) = inbox.recv() {
+        while let Ok(newer) = inbox.try_recv() {
+            order = newer;
+        }
+        let Order { frame, view } = order;
+        let ground = solver.advance(scene, &view, &mut memory, progress).map(|(stage, field)| {
+            if points.is_empty() {
+                points = memory.points().into();
+            }
+            Ground { frame, stage, field, points: points.clone() }
+        });
+        if outbox.send(ground).is_err() {
+            return;
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! What is prepared once per terrain and what is remembered between frames.
+
+use super::super::settings::MOST_W;
+use super::super::visibility_qp::{QpOptions, QpSolver};
+use super::super::{
+    Blocks, Cells, Field, Hierarchy, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings, Unusable,
+    candidate_points, grid_weight, reference_points, stated_spacing, temporal_weight,
+};
+use crate::DisocclusionError;
+use belvedere_core::{DVec2, DVec3, View};
+use belvedere_scene::{Heightfield, Scene};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What the frames before leave to the next one. Same scene, views and memory, same result.
+///
+/// It belongs to one scene; other terrain, features or parameters make it begin anew.
+#[derive(Debug, Clone, Default)]
+pub struct TerrainMemory {
+    prepared: Option<Prepared>,
+    last: Option<Last>,
+}
+
+/// The frame before.
+#[derive(Debug, Clone)]
+struct Last {
+    eye: DVec3,
+    forward: DVec3,
+    coarse: Vec<f64>,
+}
+
+/// Everything that does not depend on the view.
+#[derive(Debug, Clone)]
+pub(super) struct Prepared {
+    settings: TerrainSettings,
+    pace: Pace,
+    pub(super) level: Arc<Field>,
+    pub(super) grid: Hierarchy,
+    pub(super) points: Vec<ReferencePoint>,
+    pub(super) unusable: Vec<Unusable>,
+    /// Candidates of the quadratic program along the features.
+    pub(super) dense: Vec<ReferencePoint>,
+    /// Points every fifth of a cell, by which the result is judged.
+    check: Vec<ReferencePoint>,
+    /// Of modes with a greedy pass.
+    pub(super) cells: Option<Arc<(Cells, Blocks)>>,
+    /// Of modes with a greedy pass.
+    pub(super) smooth: Option<SmoothPass>,
+    /// Of modes with a quadratic program: the one of frames without a frame before.
+    pub(super) still: Option<Program>,
+    /// And the one that keeps near the frame before, in films.
+    pub(super) moving: Option<Program>,
+}
+
+/// A quadratic program.
+#[derive(Debug, Clone)]
+pub(super) struct Program {
+    pub(super) solver: QpSolver,
+    /// Whether it holds other ground than [`Prepared::level`].
+    pub(super) foreign: bool,
+}
+
+/// Smoothness and temporal weight on the solver's grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pace {
+    /// w.
+    pub(super) w: f64,
+    /// gamma; 0 for single pictures.
+    pub(super) g: f64,
+}
+
+impl Pace {
+    /// Both for 129 nodes, on the terrain that will be solved on.
+    pub(super) fn new(settings: &TerrainSettings, terrain: &Heightfield, frame: Option<[f64; 2]>) -> Self {
+        let w = settings.smoothness(stated_spacing(terrain.cols(), terrain.rows(), terrain.spacing()));
+        Self { w, g: frame.map_or(0.0, |[dt, time]| temporal_weight(w, dt, time)) }
+    }
+
+    fn on(self, grid: &Hierarchy) -> Self {
+        let longer = grid.cols().max(grid.rows());
+        Self { w: grid_weight(self.w, longer), g: grid_weight(self.g, longer) }
+    }
+}
+
+/// Spacing of the points by which the result is judged, cells.
+pub(super) const CHECK_CELLS: f64 = 0.2;
+/// The view jumped if the eye moved by more than this share of the terrain's diagonal, or turned by more than this angle.
+const JUMP_SHARE: f64 = 0.05;
+const JUMP_COS: f64 = 0.939_692_620_785_908_4;
+
+impl TerrainMemory {
+    /// A memory of preparations alone.
+    pub(super) fn holding(prepared: Prepared) -> Self {
+        Self { prepared: Some(prepared), last: None }
+    }
+
+    /// What was prepared before, or now.
+    pub(super) fn prepared_for(
+        &mut self,
+        scene: &Scene,
+        heightfield: &Heightfield,
+        settings: &TerrainSettings,
+        pace: Pace,
+    ) -> Result<Prepared, DisocclusionError> {
+        let fits = |p: &Prepared| {
+            p.settings == *settings
+                && p.pace == pace
+                && (p.level.cols(), p.level.rows()) == (heightfield.cols(), heightfield.rows())
+                && (p.level.north_west(), p.level.spacing()) == (heightfield.north_west(), heightfield.spacing())
+        };
+        match self.prepared.take().filter(fits) {
+            Some(prepared) => Ok(prepared),
+            None => {
+                self.last = None;
+                Prepared::new(scene, heightfield, settings, pace)
+            }
+        }
+    }
+
+    /// Displacement of the frame before, unless the view has jumped since.
+    pub(super) fn last_for(&self, view: &View, prepared: &Prepared) -> Option<Vec<f64>> {
+        let field = &prepared.level;
+        let size = DVec2::new((field.cols() - 1) as f64, (field.rows() - 1) as f64) * field.spacing();
+        let last = self.last.as_ref().filter(|_| prepared.pace.g > 0.0)?;
+        let near = last.eye.distance(view.pinhole().eye) <= JUMP_SHARE * size.length();
+        let turned = last.forward.dot(view.pinhole().forward) < JUMP_COS;
+        (near && !turned).then(|| last.coarse.clone())
+    }
+
+    /// Displacement of the frame before on the same grid, whatever happened to the view since.
+    pub(super) fn before(&self, prepared: &Prepared) -> Option<&[f64]> {
+        self.last.as_ref().map(|last| last.coarse.as_slice()).filter(|u| u.len() == prepared.grid.nodes())
+    }
+
+    /// Reference points of the scene, seen or not.
+    pub(super) fn points(&self) -> &[ReferencePoint] {
+        self.prepared.as_ref().map_or(&[], |prepared| &prepared.points)
+    }
+
+    pub(super) fn keep(&mut self, prepared: Prepared, view: &View, coarse: Vec<f64>) {
+        self.last = Some(Last { eye: view.pinhole().eye, forward: view.pinhole().forward, coarse });
+        self.prepared = Some(prepared);
+    }
+}
+
+impl Prepared {
+    fn new(
+        scene: &Scene,
+        heightfield: &Heightfield,
+        settings: &TerrainSettings,
+        pace: Pace,
+    ) -> Result<Self, DisocclusionError> {
+        let level = Field::new(heightfield, |_| 0.0)?;
+        let grid = Hierarchy::new(level.cols(), level.rows(), settings.solver_nodes);
+        let (points, unusable) = reference_points(scene, &level, settings, settings.spacing);
+        let with_qp = settings.mode != SolverMode::Paper;
+        let dense = if with_qp { candidate_points(scene, &level, settings) } else { Vec::new() };
+        let check = reference_points(scene, &level, settings, CHECK_CELLS).0;
+        let cells = (settings.mode != SolverMode::Qp).then(|| {
+            let keep = settings.cells.unwrap_or_else(|| Cells::default_count(&level));
+            let cells = Cells::new(&level, keep);
+            let blocks = Blocks::new(&level, &cells);
+            Arc::new((cells, blocks))
+        });
+        let smooth = match &cells {
+            Some(parts) => {
+                let summit =
+                    |&i: &u32| DVec2::new((i as usize % level.cols()) as f64, (i as usize / level.cols()) as f64);
+                let rows: Vec<DVec2> =
+                    points.iter().map(|p| p.grid).chain(parts.0.summits().iter().map(summit)).collect();
+                Some(SmoothPass::new(grid.clone(), pace.w, settings.rows_weight, &rows)?)
+            }
+            None => None,
+        };
+        let made = |pace| {
+            program(&level, &grid, pace, options(settings, false)).map(|solver| Program { solver, foreign: false })
+        };
+        let still = with_qp.then(|| made(Pace { g: 0.0, ..pace })).transpose()?;
+        let moving = (with_qp && pace.g > 0.0).then(|| made(pace)).transpose()?;
+        Ok(Self {
+            settings: settings.clone(),
+            pace,
+            level: Arc::new(level),
+            grid,
+            points,
+            unusable,
+            dense,
+            check,
+            cells,
+            smooth,
+            still,
+            moving,
+        })
+    }
+
+    /// Points every fifth of a cell that the picture shows.
+    pub(super) fn dense_in_view(&self, seen: &super::Seen<'_>) -> Vec<ReferencePoint> {
+        seen.indices(&self.check).0.into_iter().map(|i| self.check[i]).collect()
+    }
+
+    /// Weights on the solver's grid.
+    pub(super) fn weights(&self) -> Pace {
+        self.pace.on(&self.grid)
+    }
+}
+
+/// Ground is cleared as near as this to a place, cells. On steep ground half a percent of the length is hidden by what is nearer;
+/// showing that too would move a fiftieth more ground.
+const CLEARED_CELLS: f64 = 0.6;
+
+/// How near the quadratic program clears the ground: at once, or from the guard on where rows nearer than that contradict others.
+pub(super) fn options(settings: &TerrainSettings, from_guard: bool) -> QpOptions {
+    let guard = if from_guard { settings.guard } else { settings.guard.min(CLEARED_CELLS) };
+    QpOptions { guard, ..QpOptions::of(settings) }
+}
+
+/// The quadratic program on a solver's grid.
+pub(super) fn program(
+    field: &Field,
+    grid: &Hierarchy,
+    pace: Pace,
+    options: QpOptions,
+) -> Result<QpSolver, DisocclusionError> {
+    let Pace { w, g } = pace.on(grid);
+    let smoother = Smoother::new(grid.cols(), grid.rows(), w, g)?;
+    Ok(QpSolver::new(field, grid, smoother, options))
+}
+
+/// Which points count when only features up to `ahead_m` along their path from the eye do: the plan distance to the feature's
+/// point nearest to the eye, and the length along the feature from there.
+pub(super) fn ahead(field: &Field, points: &[ReferencePoint], eye: DVec2, ahead_m: Option<f64>) -> Vec<bool> {
+    let Some(limit) = ahead_m else { return vec![true; points.len()] };
+    let distance = |p: &ReferencePoint| field.scene_from_grid(p.grid).distance(eye);
+    let mut nearest: BTreeMap<(usize, usize), (f64, f64)> = BTreeMap::new();
+    for p in points {
+        let best = nearest.entry((p.layer, p.feature)).or_insert((f64::INFINITY, 0.0));
+        if distance(p) < best.0 {
+            *best = (distance(p), p.along_m);
+        }
+    }
+    let path = |p: &ReferencePoint| match (p.kind, nearest.get(&(p.layer, p.feature))) {
+        (super::super::PointKind::Line, Some((from_eye, along))) => from_eye + (p.along_m - along).abs(),
+        _ => distance(p),
+    };
+    points.iter().map(|p| path(p) <= limit).collect()
+}
+
+/// Ranges of the parameters.
+pub(super) fn check(settings: &TerrainSettings) -> Result<(), DisocclusionError> {
+    let bad =
+        |key: &'static str, value: f64, range: &'static str| Err(DisocclusionError::Setting { key, value, range });
+    let s = settings;
+    let in_range = |v: f64, low: f64, high: f64| v >= low && v <= high;
+    if s.cells == Some(0) {
+        return bad("cells", 0.0, "at least 1");
+    }
+    if !in_range(s.solver_nodes as f64, 2.0, 4097.0) {
+        return bad("solver_nodes", s.solver_nodes as f64, "2..=4097");
+    }
+    for (key, value) in [("spacing", s.spacing), ("candidates", s.candidates)] {
+        if !in_range(value, 0.02, 1e4) {
+            return bad(key, value, "0.02..=10000 cells");
+        }
+    }
+    if !in_range(s.guard, 0.0, 1e3) {
+        return bad("guard", s.guard, "0..=1000 cells");
+    }
+    if let Some(w) = s.w.filter(|w| !in_range(*w, 1e-4, MOST_W)) {
+        return bad("w", w, "0.0001..=10000");
+    }
+    let weights = [("eta", s.eta), ("mu", s.mu), ("mu_dev", s.mu_dev), ("rows_weight", s.rows_weight)];
+    for (key, value) in weights {
+        if !in_range(value, 0.0, 1e6) {
+            return bad(key, value, "0..=1000000");
+        }
+    }
+    let lengths = [("lift_m", s.lift_m.unwrap_or(0.0)), ("margin_m", s.margin_m), ("gamma_time_s", s.gamma_time_s)];
+    for (key, value) in lengths {
+        if !in_range(value, 0.0, 1e4) {
+            return bad(key, value, "0..=10000");
+        }
+    }
+    if !(s.rise_limit_m >= 0.0) {
+        return bad("rise_limit_m", s.rise_limit_m, "0 or more");
+    }
+    if let Some(price) = s.slack_price.filter(|p| !in_range(*p, 1e-9, 1e9)) {
+        return bad("slack_price", price, "0.000000001..=1000000000");
+    }
+    match s.ahead_m {
+        Some(v) if !(v > 0.0) => bad("ahead_m", v, "above 0"),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,250 @@
+//! Settings and memory to a stage and its report.
+
+mod adjust;
+mod bent;
+mod coming;
+mod drawn;
+mod fallback;
+mod live;
+mod memory;
+mod passes;
+mod report;
+mod seen;
+
+pub use fallback::Fallback;
+pub use live::{LiveFrame, LiveTerrain};
+pub use memory::TerrainMemory;
+pub use report::{Covered, QpReport, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
+
+use super::visibility_qp::{SolvedRow, Unresolved};
+use super::{Detail, Field, Hierarchy, SolverMode, TerrainSettings, check_eye};
+use crate::DisocclusionError;
+use adjust::Asked;
+use belvedere_core::grid::{Grid, GridError};
+use belvedere_core::{DVec2, EarthCurvature, SpaceMap, Stage, TerrainDisocclusion, View};
+use belvedere_scene::{Progress, Scene};
+use memory::{Pace, Prepared};
+use passes::Passes;
+use seen::Seen;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Terrain disocclusion as a constructor: the ground of a scene makes way for what must be seen.
+#[derive(Debug, Clone)]
+pub struct TerrainSolver {
+    settings: TerrainSettings,
+    time_step_s: Option<f64>,
+}
+
+/// A solved stage.
+#[derive(Debug, Clone)]
+pub struct Solved {
+    /// The displacement.
+    pub stage: TerrainDisocclusion,
+    /// What it achieves.
+    pub report: TerrainReport,
+}
+
+impl TerrainSolver {
+    /// A solver for single pictures.
+    ///
+    /// # Errors
+    /// [`DisocclusionError::Setting`] if a parameter is out of range.
+    pub fn new(settings: TerrainSettings) -> Result<Self, DisocclusionError> {
+        memory::check(&settings)?;
+        Ok(Self { settings, time_step_s: None })
+    }
+
+    /// A solver for the frames of a film, `seconds` apart.
+    pub fn with_time_step(self, seconds: f64) -> Self {
+        Self { time_step_s: Some(seconds).filter(|s| *s > 0.0 && s.is_finite()), ..self }
+    }
+
+    fn frame(&self) -> Option<[f64; 2]> {
+        self.time_step_s.filter(|_| self.settings.gamma_time_s > 0.0).map(|dt| [dt, self.settings.gamma_time_s])
+    }
+
+    /// The parameters.
+    pub fn settings(&self) -> &TerrainSettings {
+        &self.settings
+    }
+
+    /// Solves for the features that must be seen, in the picture of `base`.
+    ///
+    /// * `base`: the camera with the stages before (earth) and after (spline, curved rays); a terrain stage in it is left out;
+    /// * `memory`: that of the frame before, of the same scene; new where there is none.
+    ///
+    /// # Errors
+    /// [`DisocclusionError::NoTerrain`], [`DisocclusionError::NothingToSee`], [`DisocclusionError::Eye`], [`DisocclusionError::Terrain`],
+    /// [`DisocclusionError::Cancelled`]. What cannot be made visible is no error: the report names it.
+    pub fn solve(
+        &self,
+        scene: &Scene,
+        base: &View,
+        memory: &mut TerrainMemory,
+        progress: &Progress,
+    ) -> Result<Solved, DisocclusionError> {
+        let ran = self.run(scene, base, memory, None, progress)?;
+        progress.tick("figures of the displaced terrain", 0.95)?;
+        let began = Instant::now();
+        let delta = ran.delta()?;
+        let Ran { prepared, field, done, times } = ran;
+        let field: &Field = &field;
+        let previous = memory.before(&prepared).map(|u| on_grid(field, &prepared.grid, u)).transpose()?;
+        let context = report::Context {
+            settings: &self.settings,
+            field,
+            prepared: &prepared,
+            seen: &Seen::new(field, &prepared, base, &self.settings, false),
+            delta: &delta,
+            previous: previous.as_ref(),
+        };
+        let report = report::report(&context, &done, times, began);
+        memory.keep(prepared, base, done.coarse);
+        Ok(Solved { stage: TerrainDisocclusion::new(delta), report })
+    }
+
+    /// As [`TerrainSolver::solve`], without the figures, which take longer than the solution; also the ground as the eye sees it.
+    fn advance(
+        &self,
+        scene: &Scene,
+        base: &View,
+        memory: &mut TerrainMemory,
+        progress: &Progress,
+    ) -> Result<(TerrainDisocclusion, Arc<Field>), DisocclusionError> {
+        let ran = self.run(scene, base, memory, None, progress)?;
+        let stage = TerrainDisocclusion::new(ran.delta()?);
+        memory.keep(ran.prepared, base, ran.done.coarse);
+        Ok((stage, ran.field))
+    }
+
+    /// The passes of one frame, without figures; the memory lends what it has prepared. `asked` stands for what `base` shows.
+    fn run(
+        &self,
+        scene: &Scene,
+        base: &View,
+        memory: &mut TerrainMemory,
+        asked: Option<&Asked>,
+        progress: &Progress,
+    ) -> Result<Ran, DisocclusionError> {
+        let heightfield = scene.terrain().ok_or(DisocclusionError::NoTerrain)?;
+        if scene.must_see().next().is_none() {
+            return Err(DisocclusionError::NothingToSee { layers: scene.layers.len() });
+        }
+        let began = Instant::now();
+        progress.tick("cells and points of the terrain", 0.0)?;
+        let pace = Pace::new(&self.settings, heightfield, self.frame());
+        let mut prepared = memory.prepared_for(scene, heightfield, &self.settings, pace)?;
+        let earth = base.stages().iter().find_map(|s| match s {
+            Stage::EarthCurvature(earth) => Some(*earth),
+            _ => None,
+        });
+        let field = match &earth {
+            Some(earth) => Arc::new(Field::new(heightfield, |p| drop_at(earth, p))?),
+            None => prepared.level.clone(),
+        };
+        let eye = base.pinhole().eye;
+        if let Err(e) = check_eye(&field, eye) {
+            *memory = TerrainMemory::holding(prepared);
+            return Err(e.into());
+        }
+        let mut seen = Seen::new(&field, &prepared, base, &self.settings, self.frame().is_some());
+        if let Some(asked) = asked {
+            (seen.points, seen.candidates) = (asked.points.clone(), asked.candidates.clone());
+        }
+        let mut times = TerrainTimes { prepare_ms: since(began), ..TerrainTimes::default() };
+        let last = memory.last_for(base, &prepared);
+        let passes = Passes {
+            settings: &self.settings,
+            field: &field,
+            lowered: earth.is_some(),
+            pace,
+            frame: self.frame(),
+            eye,
+            last: last.as_deref(),
+            progress,
+        };
+        let done = passes.run(&mut prepared, &seen, &mut times)?;
+        drop(seen);
+        Ok(Ran { prepared, field, done, times })
+    }
+}
+
+/// A frame before its figures.
+struct Ran {
+    prepared: Prepared,
+    /// The ground as the eye sees it.
+    field: Arc<Field>,
+    done: Done,
+    times: TerrainTimes,
+}
+
+impl Ran {
+    /// The displacement over the scene.
+    fn delta(&self) -> Result<Grid, GridError> {
+        match &self.done.full {
+            Some(full) => at_every_node(&self.field, full),
+            None => match &self.done.fine {
+                Some((grid, u)) => on_grid(&self.field, grid, u),
+                None => on_grid(&self.field, &self.prepared.grid, &self.done.coarse),
+            },
+        }
+    }
+}
+
+fn on_grid(field: &Field, grid: &Hierarchy, u: &[f64]) -> Result<Grid, GridError> {
+    spread(field, [grid.cols(), grid.rows()], grid.step(), u)
+}
+
+fn at_every_node(field: &Field, values: &[f64]) -> Result<Grid, GridError> {
+    spread(field, [field.cols(), field.rows()], DVec2::ONE, values)
+}
+
+/// Values at nodes `step` cells apart over the field as a grid of the scene. The rim is repeated one node farther out, so
+/// that rounding leaves no place of the ground beside the grid.
+fn spread(field: &Field, [cols, rows]: [usize; 2], step: DVec2, values: &[f64]) -> Result<Grid, GridError> {
+    let inner = |i: usize, n: usize| i.saturating_sub(1).min(n - 1);
+    let padded = (0..(cols + 2) * (rows + 2)).map(|i| {
+        let (col, row) = (inner(i % (cols + 2), cols), inner(i / (cols + 2), rows));
+        values[row * cols + col]
+    });
+    Grid::new(field.scene_from_grid(-step), step * field.spacing(), cols + 2, rows + 2, padded.collect())
+}
+
+/// No displacement at all.
+fn level(field: &Field) -> Option<Grid> {
+    let step = DVec2::new((field.cols() - 1) as f64, (field.rows() - 1) as f64);
+    spread(field, [2, 2], step, &[0.0; 4]).ok()
+}
+
+fn since(began: Instant) -> f64 {
+    began.elapsed().as_secs_f64() * 1e3
+}
+
+/// How far the ground lies lower at scene x, y because the earth is round.
+fn drop_at(earth: &EarthCurvature, p: DVec2) -> f64 {
+    earth.apply(p.extend(0.0)).map_or(0.0, |q| -q.z)
+}
+
+/// What the passes came to.
+struct Done {
+    /// Displacement at the nodes of the solver's grid.
+    coarse: Vec<f64>,
+    /// Displacement at every node of the terrain, where that is more than the solver's grid can hold.
+    full: Option<Vec<f64>>,
+    /// Displacement at the nodes of a finer grid, where the solver's was too coarse.
+    fine: Option<(Hierarchy, Vec<f64>)>,
+    /// Ways out of contradicting rows that were taken.
+    fallbacks: Vec<Fallback>,
+    greedy: Option<super::GreedyCounters>,
+    greedy_unresolved: Vec<usize>,
+    qp: Option<QpReport>,
+    qp_unresolved: Vec<Unresolved>,
+    /// Rows of the quadratic program with a multiplier.
+    rows: Vec<SolvedRow>,
+}
+
+/// Whether detail is scaled with the ground under it.
+fn scales(settings: &TerrainSettings) -> bool {
+    settings.detail() == Detail::Scaled && settings.mode != SolverMode::Qp
+}

@@ -1,0 +1,256 @@
+//! The passes of one frame, in the order of the mode.
+
+use super::super::visibility_qp::{QpOptions, QpProblem, QpResult};
+use super::super::{Blocks, Field, Hierarchy, Naive, ReferencePoint, Smoother, SolverMode, TerrainSettings};
+use super::drawn::Drawn;
+use super::fallback::{self, Fallback};
+use super::memory::{self, Pace, Prepared};
+use super::{Done, QpReport, Seen, TerrainTimes, scales, since};
+use crate::DisocclusionError;
+use belvedere_core::DVec3;
+use belvedere_scene::Progress;
+use std::borrow::Cow;
+use std::time::Instant;
+
+/// What finer grids are tried on.
+struct Finer<'a> {
+    /// The solver's grid.
+    coarse: &'a Hierarchy,
+    /// The undisplaced ground with its change of detail, at every node.
+    ground: &'a [f64],
+    detail: Option<&'a [f64]>,
+    pace: Pace,
+    options: QpOptions,
+}
+
+pub(super) struct Passes<'a> {
+    pub(super) settings: &'a TerrainSettings,
+    /// The ground as the eye sees it.
+    pub(super) field: &'a Field,
+    /// Whether that lies lower than the data say, for the earth is curved.
+    pub(super) lowered: bool,
+    pub(super) pace: Pace,
+    /// Seconds between frames and time constant of coherence; `None` for single pictures.
+    pub(super) frame: Option<[f64; 2]>,
+    pub(super) eye: DVec3,
+    /// Displacement of the frame before.
+    pub(super) last: Option<&'a [f64]>,
+    pub(super) progress: &'a Progress,
+}
+
+impl Passes<'_> {
+    pub(super) fn run(
+        &self,
+        prepared: &mut Prepared,
+        seen: &Seen<'_>,
+        times: &mut TerrainTimes,
+    ) -> Result<Done, DisocclusionError> {
+        let mut done = Done {
+            coarse: vec![0.0; prepared.grid.nodes()],
+            full: None,
+            fine: None,
+            fallbacks: Vec::new(),
+            greedy: None,
+            greedy_unresolved: Vec::new(),
+            qp: None,
+            qp_unresolved: Vec::new(),
+            rows: Vec::new(),
+        };
+        let mut detail = None;
+        if prepared.cells.is_some() {
+            detail = self.paper(prepared, seen, &mut done, times)?;
+        }
+        if prepared.still.is_some() {
+            self.guarantee(prepared, seen, &mut detail, &mut done, times)?;
+        }
+        let fine = done.fine.take();
+        done.full = match (fine, detail) {
+            (fine, Some(detail)) => {
+                let smooth = match fine {
+                    Some((grid, u)) => grid.prolong(&u),
+                    None => prepared.grid.prolong(&done.coarse),
+                };
+                Some(smooth.iter().zip(detail).map(|(a, b)| a + b).collect())
+            }
+            (fine, None) => {
+                done.fine = fine;
+                None
+            }
+        };
+        Ok(done)
+    }
+
+    /// Greedy and smooth pass; answers the change of detail at every node, if detail is scaled.
+    fn paper(
+        &self,
+        prepared: &mut Prepared,
+        seen: &Seen<'_>,
+        done: &mut Done,
+        times: &mut TerrainTimes,
+    ) -> Result<Option<Vec<f64>>, DisocclusionError> {
+        let Some(parts) = prepared.cells.clone() else { return Ok(None) };
+        let (cells, blocks) = &*parts;
+        self.progress.tick("greedy pass", 0.2)?;
+        let began = Instant::now();
+        let field = self.field;
+        // On a curved earth the ground under the points, and what bounds it, differs with the eye.
+        let own = self.lowered.then(|| Blocks::new(field, cells));
+        let point = |&i: &usize| {
+            let p = prepared.points[i];
+            ReferencePoint { ground: field.surface_at(p.grid).unwrap_or(p.ground), ..p }
+        };
+        let points: Vec<ReferencePoint> = seen.points.iter().map(point).collect();
+        let naive = Naive::new(field, cells, own.as_ref().unwrap_or(blocks), self.settings, self.eye, &points);
+        done.greedy = Some(*naive.counters());
+        done.greedy_unresolved = naive.unresolved().iter().map(|&k| seen.points[k]).collect();
+        times.greedy_ms = since(began);
+        self.progress.tick("smooth pass", 0.4)?;
+        let began = Instant::now();
+        let Some(pass) = &mut prepared.smooth else { return Ok(None) };
+        let u = pass.run(&naive.displacement(field, cells), self.frame, self.last).u;
+        // A still after a jump has no frame before: the pass takes the naive displacement in its place.
+        let detail = (scales(self.settings) && !pass.hierarchy().is_full()).then(|| {
+            let whole = pass.scaled(&u, field.heights(), &naive.scale(field, cells));
+            let smooth = pass.plain(&u);
+            let parts = whole.iter().zip(smooth).zip(field.void());
+            parts.map(|((w, s), void)| if *void { 0.0 } else { w - s }).collect()
+        });
+        done.coarse = u;
+        times.smooth_ms = since(began);
+        Ok(detail)
+    }
+
+    /// What the quadratic program stays near to; `None` = no displacement.
+    fn target(&self, prepared: &Prepared, done: &Done) -> Result<Option<Vec<f64>>, DisocclusionError> {
+        let Pace { w, g } = prepared.weights();
+        Ok(match (self.settings.mode, self.last) {
+            (SolverMode::PaperQp, _) => Some(done.coarse.clone()),
+            (_, Some(last)) if self.pace.g > 0.0 => {
+                let mut u: Vec<f64> = last.iter().map(|u| g * g * u).collect();
+                let mut smoother: Smoother = Smoother::new(prepared.grid.cols(), prepared.grid.rows(), w, g)?;
+                smoother.solve(&mut u);
+                Some(u)
+            }
+            _ => None,
+        })
+    }
+
+    /// The quadratic program.
+    fn guarantee(
+        &self,
+        prepared: &mut Prepared,
+        seen: &Seen<'_>,
+        detail: &mut Option<Vec<f64>>,
+        done: &mut Done,
+        times: &mut TerrainTimes,
+    ) -> Result<(), DisocclusionError> {
+        self.progress.tick("quadratic program", 0.5)?;
+        let began = Instant::now();
+        let target = self.target(prepared, done)?;
+        let warm = self.last.is_some() && prepared.moving.is_some();
+        let pace = if warm { self.pace } else { Pace { g: 0.0, ..self.pace } };
+        let Some(program) = (if warm { &mut prepared.moving } else { &mut prepared.still }) else { return Ok(()) };
+        let qp = &mut program.solver;
+        let mut ground: Cow<'_, [f64]> = match &detail {
+            Some(detail) => self.field.heights().iter().zip(detail).map(|(h, d)| h + d).collect(),
+            None => self.field.heights().into(),
+        };
+        // The program was made with the ground itself; bounds over other ground take time.
+        let mut foreign = self.lowered || detail.is_some();
+        if foreign || program.foreign {
+            qp.set_heights(&ground)?;
+        }
+        let (asked, sight) = (&seen.candidates[..], &*seen.sight);
+        let wider = [asked, &seen.coming[..]].concat();
+        let mut problem = QpProblem { candidates: &wider, sight, target: target.as_deref(), ceilings: None };
+        qp.set_options(memory::options(self.settings, false));
+        let mut result = qp.solve(&problem)?;
+        if fallback::stuck(&result) > 0 && wider.len() > asked.len() {
+            // What the picture does not show yet is not to cost it anything.
+            problem = QpProblem { candidates: asked, ..problem };
+            result = qp.solve(&problem)?;
+        }
+        if fallback::stuck(&result) > 0 {
+            let cut = fallback::cut_detail(self.field, &ground, &prepared.grid, &result.active);
+            let lower: Vec<f64> = ground.iter().zip(&cut).map(|(h, c)| h + c).collect();
+            qp.set_heights(&lower)?;
+            foreign = true;
+            let next = qp.solve(&problem)?;
+            if fallback::stuck(&next) < fallback::stuck(&result) {
+                (result, ground) = (next, lower.into());
+                let before = detail.take().unwrap_or_else(|| vec![0.0; cut.len()]);
+                *detail = Some(before.iter().zip(cut).map(|(d, c)| d + c).collect());
+                done.fallbacks.push(Fallback::Detail);
+            } else {
+                qp.set_heights(&ground)?;
+            }
+        }
+        let mut from_guard = false;
+        if fallback::stuck(&result) > 0 {
+            qp.set_options(memory::options(self.settings, true));
+            let next = qp.solve(&problem)?;
+            from_guard = fallback::stuck(&next) < fallback::stuck(&result);
+            if from_guard {
+                result = next;
+                done.fallbacks.push(Fallback::Guard);
+            }
+        }
+        program.foreign = foreign;
+        if let (Some(detail), 0) = (&detail, fallback::stuck(&result)) {
+            let options = memory::options(self.settings, from_guard);
+            let drawn = Drawn { field: self.field, grid: &prepared.grid, detail, options };
+            result = drawn.agree(qp, &ground, &problem, result)?;
+        }
+        done.coarse.clone_from(&result.u);
+        if fallback::stuck(&result) > 0 {
+            let options = memory::options(self.settings, from_guard);
+            let grids = Finer { coarse: &prepared.grid, ground: &ground, detail: detail.as_deref(), pace, options };
+            result = self.on_finer_grids(&grids, &problem, result, done)?;
+        }
+        done.qp = Some(QpReport {
+            rounds: result.rounds,
+            rows: result.rows,
+            active: result.active.len(),
+            added: result.added,
+            kept: result.kept,
+            candidates: seen.candidates.len(),
+            energy: result.energy,
+        });
+        done.qp_unresolved = result.unresolved;
+        done.rows = result.active;
+        times.qp_ms = since(began);
+        Ok(())
+    }
+    /// Solves again on finer and finer grids until nothing is missed any more; answers the best result.
+    fn on_finer_grids(
+        &self,
+        grids: &Finer<'_>,
+        problem: &QpProblem<'_>,
+        mut best: QpResult,
+        done: &mut Done,
+    ) -> Result<QpResult, DisocclusionError> {
+        let Finer { coarse, ground, detail, pace, options } = *grids;
+        for nodes in fallback::finer(coarse, self.field) {
+            if fallback::stuck(&best) == 0 {
+                break;
+            }
+            self.progress.tick("quadratic program on a finer grid", 0.7)?;
+            let grid = Hierarchy::new(self.field.cols(), self.field.rows(), nodes);
+            let target = problem.target.map(|t| fallback::resampled(coarse, t, &grid));
+            let mut finer = memory::program(self.field, &grid, pace, options)?;
+            finer.set_heights(ground)?;
+            let problem = QpProblem { target: target.as_deref(), ..*problem };
+            let mut next = finer.solve(&problem)?;
+            if let Some(detail) = detail {
+                next = Drawn { field: self.field, grid: &grid, detail, options }
+                    .agree(&mut finer, ground, &problem, next)?;
+            }
+            if fallback::stuck(&next) < fallback::stuck(&best) {
+                done.fine = Some((grid, next.u.clone()));
+                best = next;
+                done.fallbacks.push(Fallback::FinerGrid { nodes });
+            }
+        }
+        Ok(best)
+    }
+}

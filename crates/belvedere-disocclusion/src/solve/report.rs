@@ -1,0 +1,371 @@
+//! What a displacement achieves and what it costs, ready for JSON.
+
+use super::super::metrics::{Hides, Judged, excesses, judged, shown};
+use super::super::visibility_qp::{Reason, Unresolved};
+use super::super::{
+    Deformation, Field, GreedyCounters, PointKind, ReferencePoint, SolverMode, TerrainMetrics, TerrainSettings,
+    Unusable, UnusableReason, stated_spacing,
+};
+use super::memory::{CHECK_CELLS, Prepared};
+use super::{Done, Fallback, Seen, since};
+use belvedere_core::DVec2;
+use belvedere_core::grid::Grid;
+use serde::Serialize;
+use std::collections::BTreeSet;
+use std::time::Instant;
+
+/// Share of the length in view that must be seen for a promise to be kept: places between two candidates may lie a little under
+/// the line of sight.
+const AGREES: f64 = 0.99;
+
+/// Everything about a solved displacement. Lengths in scene units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TerrainReport {
+    /// The parameters, with defaults filled in.
+    pub parameters: TerrainSettings,
+    /// Smoothness weight in force, for a solver's grid of 129 nodes.
+    pub w: f64,
+    /// Wavelength over 2 pi at which the smoothing halves a displacement; in mode qp at most
+    /// [`LONGEST_SMOOTHING_M`](super::super::LONGEST_SMOOTHING_M) unless w was stated.
+    pub smoothing_length_m: f64,
+    /// Columns and rows of the solver's grid.
+    pub solver_grid: [usize; 2],
+    /// Reference points in view.
+    pub points: usize,
+    /// Places that were asked for: reference points and candidates in view. 0 = nothing was, the ground stays as it is.
+    pub asked: usize,
+    /// What is seen and how far the ground moved, by a judge that knows nothing of the solver; dense points lie every fifth of a cell.
+    #[serde(flatten)]
+    pub metrics: TerrainMetrics,
+    /// [`TerrainMetrics::visible`] before the ground gave way.
+    pub visible_before: f64,
+    /// [`TerrainMetrics::visible_dense`] before.
+    pub visible_dense_before: f64,
+    /// The greedy pass; `None` in mode qp.
+    pub greedy: Option<GreedyCounters>,
+    /// The quadratic program; `None` in mode paper.
+    pub qp: Option<QpReport>,
+    /// Ways out of contradicting rows that were taken, in their order; empty as a rule.
+    pub fallbacks: Vec<Fallback>,
+    /// Whether every reference point and candidate in view is guaranteed to be seen in this picture, and the judge agrees: of the
+    /// length in view at least 0.99 is seen, past ground nearer than the guard as well. Where nothing is asked for nothing is guaranteed.
+    pub guaranteed: bool,
+    /// What cannot be seen, and why.
+    pub unresolved: Vec<UnresolvedRun>,
+    /// What else the judge finds hidden of the length in view, and why: places between two that were looked after.
+    pub hidden: Vec<UnresolvedRun>,
+    /// Places that stay covered at the slack price.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub covered: Vec<Covered>,
+    /// Times.
+    pub times: TerrainTimes,
+}
+
+/// A place that stays covered because clearing it costs more than the slack price allows.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Covered {
+    /// Scene x, y.
+    pub at: [f64; 2],
+    /// Height over the ground at which it is wanted.
+    pub lift_m: f64,
+    /// How far the ground rises over its line of sight.
+    pub over_m: f64,
+}
+
+/// Figures of the quadratic program.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct QpReport {
+    /// Rounds in which all lines of sight were checked.
+    pub rounds: usize,
+    /// Rows at the end.
+    pub rows: usize,
+    /// Rows with a multiplier.
+    pub active: usize,
+    /// Rows added.
+    pub added: usize,
+    /// Rows taken over from the frame before.
+    pub kept: usize,
+    /// Points that had to be seen.
+    pub candidates: usize,
+    /// Half the squared norm of the displacement against its target.
+    pub energy: f64,
+}
+
+/// Wall times, milliseconds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct TerrainTimes {
+    /// Cells, points, tables; next to nothing after the first frame.
+    pub prepare_ms: f64,
+    /// Greedy pass.
+    pub greedy_ms: f64,
+    /// Smooth pass.
+    pub smooth_ms: f64,
+    /// Quadratic program.
+    pub qp_ms: f64,
+    /// These figures.
+    pub report_ms: f64,
+}
+
+/// Why a part of a feature is not seen.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "reason", rename_all = "snake_case")]
+pub enum UnresolvedReason {
+    /// Beside the terrain.
+    OutsideDem,
+    /// Where the terrain holds no data.
+    NoData,
+    /// Nearer to the eye than three times the guard.
+    NearerThanGuard,
+    /// It has no line of sight, for it lies outside the domain of a later stage.
+    NoLineOfSight,
+    /// Rows contradict each other: no displacement down to `depth_m` shows all that is asked.
+    Infeasible {
+        /// Displacements down to this are ruled out.
+        depth_m: f64,
+        /// By how much the weighted rows miss at best, > 0.
+        gap_m: f64,
+        /// Rows of the proof.
+        rows: usize,
+    },
+    /// The quadratic program used up its rounds.
+    NotSettled {
+        /// Metres that lack.
+        lacks_m: f64,
+    },
+    /// The greedy pass could not show it.
+    Greedy,
+    /// The greedy pass showed it and the smooth pass covered it again, as mode `paper` does.
+    Smoothed {
+        /// How far the ground rises over its line of sight.
+        over_m: f64,
+    },
+    /// The program holds it for seen and the judge does not.
+    Judged {
+        /// How far the ground rises over its line of sight.
+        over_m: f64,
+    },
+    /// Between two places that are seen.
+    Between {
+        /// How far the ground rises over its line of sight.
+        over_m: f64,
+    },
+    /// Ground nearer to it than the guard hides it.
+    InsideGuard {
+        /// How far that ground rises over its line of sight.
+        over_m: f64,
+    },
+}
+
+/// A part of a feature that is not seen: points one after the other with the same reason.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct UnresolvedRun {
+    /// Index of the layer in the scene.
+    pub layer: usize,
+    /// Index of the feature in its layer.
+    pub feature: usize,
+    /// Kind of points.
+    pub kind: PointKind,
+    /// Length along the feature at the first point.
+    pub from_m: f64,
+    /// Length along the feature at the last point.
+    pub to_m: f64,
+    /// Scene x, y of the first point.
+    pub at: [f64; 2],
+    /// Points.
+    pub points: usize,
+    /// Why; of a run of points the first one's figures, but the largest of those that say how far ground rises.
+    #[serde(flatten)]
+    pub reason: UnresolvedReason,
+}
+
+pub(super) struct Context<'a> {
+    pub(super) settings: &'a TerrainSettings,
+    pub(super) field: &'a Field,
+    pub(super) prepared: &'a Prepared,
+    pub(super) seen: &'a Seen<'a>,
+    /// The solution.
+    pub(super) delta: &'a Grid,
+    /// That of the frame before.
+    pub(super) previous: Option<&'a Grid>,
+}
+
+pub(super) fn report(c: &Context<'_>, done: &Done, mut times: TerrainTimes, began: Instant) -> TerrainReport {
+    let (field, prepared, seen, guard) = (c.field, c.prepared, c.seen, c.settings.guard);
+    let points: Vec<ReferencePoint> = seen.points.iter().map(|&i| prepared.points[i]).collect();
+    let dense = prepared.dense_in_view(seen);
+    let of = Deformation {
+        field,
+        delta: c.delta,
+        previous: c.previous,
+        cells: prepared.cells.as_ref().map(|parts| &parts.0),
+        points: &points,
+        dense: &dense,
+        sight: &*seen.sight,
+        guard,
+    };
+    let judgement = judged(&of);
+    let metrics = judgement.metrics;
+    let before = |points: &[ReferencePoint]| {
+        super::level(field).map_or(1.0, |level| shown(field, &level, guard, &*seen.sight, points).share)
+    };
+    let (unresolved, hidden) = (unresolved(c, done, &judgement), hidden(c, &judgement, &dense));
+    let (guards, qp_met) = (c.settings.mode != SolverMode::Paper, done.qp_unresolved.is_empty());
+    let stated_m = stated_spacing(field.cols(), field.rows(), field.spacing());
+    let w = c.settings.smoothness(stated_m);
+    let mut out = TerrainReport {
+        parameters: TerrainSettings { w: Some(w), detail: Some(c.settings.detail()), ..c.settings.clone() },
+        w,
+        smoothing_length_m: c.settings.smoothing_length(stated_m),
+        solver_grid: [prepared.grid.cols(), prepared.grid.rows()],
+        points: points.len(),
+        asked: seen.candidates.len(),
+        metrics,
+        visible_before: before(&points),
+        visible_dense_before: before(&dense),
+        greedy: done.greedy,
+        qp: done.qp,
+        fallbacks: done.fallbacks.clone(),
+        guaranteed: guards
+            && !seen.candidates.is_empty()
+            && qp_met
+            && metrics.visible == 1.0
+            && metrics.visible_dense - metrics.hidden_in_guard >= AGREES,
+        unresolved,
+        hidden,
+        covered: covered(c, &dense),
+        times,
+    };
+    times.report_ms = since(began);
+    out.times = times;
+    out
+}
+
+fn covered(c: &Context<'_>, dense: &[ReferencePoint]) -> Vec<Covered> {
+    if c.settings.slack_price.is_none() {
+        return Vec::new();
+    }
+    let over = excesses(c.field, c.delta, c.settings.guard, &*c.seen.sight, dense);
+    let place = |(p, over): (&ReferencePoint, Option<f64>)| {
+        let over_m = over.filter(|o| *o > 0.0 && o.is_finite())?;
+        Some(Covered { at: c.field.scene_from_grid(p.grid).to_array(), lift_m: p.lift, over_m })
+    };
+    dense.iter().zip(over).filter_map(place).collect()
+}
+
+/// Dense points that are hidden although no place that is named stands for them.
+fn hidden(c: &Context<'_>, judgement: &Judged, dense: &[ReferencePoint]) -> Vec<UnresolvedRun> {
+    let mut runs = Runs::new(c.field, CHECK_CELLS);
+    // At a price the report names what stays covered.
+    if c.settings.slack_price.is_some() {
+        return runs.out;
+    }
+    for (i, hides) in &judgement.dense {
+        let reason = match *hides {
+            Hides::InGuard(over_m) => UnresolvedReason::InsideGuard { over_m },
+            Hides::Ground(over_m) if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,
+            Hides::Ground(over_m) if c.settings.mode == SolverMode::Paper => UnresolvedReason::Smoothed { over_m },
+            Hides::Ground(over_m) => UnresolvedReason::Between { over_m },
+        };
+        runs.put(&dense[*i], reason);
+    }
+    runs.out
+}
+
+fn unresolved(c: &Context<'_>, done: &Done, judgement: &Judged) -> Vec<UnresolvedRun> {
+    let mut runs = Runs::new(c.field, c.settings.spacing);
+    let asked = |u: &&Unusable| c.seen.wedge.contains(c.field.scene_from_grid(u.grid));
+    for u in c.prepared.unusable.iter().filter(asked) {
+        let reason = match u.reason {
+            UnusableReason::OutsideDem => UnresolvedReason::OutsideDem,
+            UnusableReason::NoData => UnresolvedReason::NoData,
+        };
+        runs.add((u.layer, u.feature, u.kind, u.along_m, u.grid), reason);
+    }
+    for &i in &c.seen.too_near {
+        runs.put(&c.prepared.points[i], UnresolvedReason::NearerThanGuard);
+    }
+    if c.settings.mode == SolverMode::Paper {
+        for &i in &done.greedy_unresolved {
+            runs.put(&c.prepared.points[i], UnresolvedReason::Greedy);
+        }
+    }
+    let dense = c.prepared.dense.len();
+    let mut named: BTreeSet<usize> = done.greedy_unresolved.iter().copied().collect();
+    for Unresolved { id, reason } in &done.qp_unresolved {
+        let id = *id as usize;
+        let point = if id < dense { c.prepared.dense.get(id) } else { c.prepared.points.get(id - dense) };
+        let reason = match reason {
+            Reason::TooNear => UnresolvedReason::NearerThanGuard,
+            Reason::NoLine => UnresolvedReason::NoLineOfSight,
+            Reason::Infeasible(p) => {
+                UnresolvedReason::Infeasible { depth_m: p.depth, gap_m: p.gap, rows: p.rows.len() }
+            }
+            Reason::NotSettled { lacks } => UnresolvedReason::NotSettled { lacks_m: *lacks },
+        };
+        if let Some(point) = point {
+            runs.put(point, reason);
+        }
+        named.extend(id.checked_sub(dense));
+    }
+    for &(k, over_m) in &judgement.points {
+        let i = c.seen.points[k];
+        if c.settings.slack_price.is_none() && !named.contains(&i) {
+            let reason = match c.settings.mode {
+                _ if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,
+                SolverMode::Paper => UnresolvedReason::Smoothed { over_m },
+                SolverMode::PaperQp | SolverMode::Qp => UnresolvedReason::Judged { over_m },
+            };
+            runs.put(&c.prepared.points[i], reason);
+        }
+    }
+    runs.out
+}
+
+struct Runs<'a> {
+    field: &'a Field,
+    /// Points of a line or rim farther apart along it have others between them, which are seen.
+    gap_m: f64,
+    out: Vec<UnresolvedRun>,
+}
+
+impl<'a> Runs<'a> {
+    /// * `spacing`: of the points, cells.
+    fn new(field: &'a Field, spacing: f64) -> Self {
+        Self { field, gap_m: 1.5 * spacing * field.spacing().max_element(), out: Vec::new() }
+    }
+
+    fn put(&mut self, p: &ReferencePoint, reason: UnresolvedReason) {
+        self.add((p.layer, p.feature, p.kind, p.along_m, p.grid), reason);
+    }
+
+    fn add(
+        &mut self,
+        (layer, feature, kind, along, grid): (usize, usize, PointKind, f64, DVec2),
+        reason: UnresolvedReason,
+    ) {
+        let same = |r: &UnresolvedRun| {
+            (r.layer, r.feature, r.kind) == (layer, feature, kind)
+                && (along - r.to_m).abs() <= self.gap_m
+                && std::mem::discriminant(&r.reason) == std::mem::discriminant(&reason)
+        };
+        if let Some(run) = self.out.last_mut().filter(|r| same(r)) {
+            (run.to_m, run.points) = (along, run.points + 1);
+            run.reason = worse(run.reason, reason);
+            return;
+        }
+        let at = self.field.scene_from_grid(grid).to_array();
+        self.out.push(UnresolvedRun { layer, feature, kind, from_m: along, to_m: along, at, points: 1, reason });
+    }
+}
+
+/// Of two reasons of one kind the first, with the larger rise of ground over a line of sight.
+fn worse(first: UnresolvedReason, next: UnresolvedReason) -> UnresolvedReason {
+    use UnresolvedReason::{Between, InsideGuard, Judged, Smoothed};
+    match (first, next) {
+        (Smoothed { over_m: a }, Smoothed { over_m: b }) => Smoothed { over_m: a.max(b) },
+        (Judged { over_m: a }, Judged { over_m: b }) => Judged { over_m: a.max(b) },
+        (Between { over_m: a }, Between { over_m: b }) => Between { over_m: a.max(b) },
+        (InsideGuard { over_m: a }, InsideGuard { over_m: b }) => InsideGuard { over_m: a.max(b) },
+        _ => first,
+    }
+}

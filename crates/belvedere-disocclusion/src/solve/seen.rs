@@ -1,0 +1,89 @@
+//! What of the features the picture is asked to show.
+
+use super::super::visibility_qp::{Candidate, LinesOfSight, StraightSight, ViewSight};
+use super::super::{Field, LeftOut, ReferencePoint, TerrainSettings, Wedge, in_view};
+use super::bent;
+use super::coming::{self, ComingSight};
+use super::memory::{self, Prepared};
+use belvedere_core::{Stage, View};
+
+/// What of the features the picture is asked to show.
+pub(super) struct Seen<'a> {
+    field: &'a Field,
+    base: &'a View,
+    pub(super) wedge: Wedge,
+    guard: f64,
+    ahead_m: Option<f64>,
+    /// Indices of reference points.
+    pub(super) points: Vec<usize>,
+    /// Reference points in view that are too near to the eye.
+    pub(super) too_near: Vec<usize>,
+    /// Dense points and, after them, the reference points.
+    pub(super) candidates: Vec<Candidate>,
+    /// Of films, what lies beside the picture, likewise.
+    pub(super) coming: Vec<Candidate>,
+    pub(super) sight: Box<dyn LinesOfSight + 'a>,
+    /// Whether lines of sight do not run straight to the eye: later stages bend them, or the picture is a parallel one.
+    bent: bool,
+}
+
+impl<'a> Seen<'a> {
+    /// * `film`: asks by degrees for what lies beside the picture.
+    pub(super) fn new(
+        field: &'a Field,
+        prepared: &Prepared,
+        base: &'a View,
+        settings: &TerrainSettings,
+        film: bool,
+    ) -> Self {
+        let later = |s: &Stage| matches!(s, Stage::SplineBend(_) | Stage::CurvedRays(_));
+        let bent = base.pinhole().is_orthographic() || base.stages().iter().any(later);
+        let eye = base.pinhole().eye;
+        let wedge = if bent { Wedge::all_around(eye.truncate()) } else { Wedge::of_pinhole(base.pinhole()) };
+        let straight = StraightSight { eye: field.grid_from_scene(eye.truncate()), z: eye.z };
+        let wider = coming::beside(&wedge).filter(|_| film);
+        let sight: Box<dyn LinesOfSight + 'a> = match (bent, &wider) {
+            (true, _) => Box::new(ViewSight::new(base, field)),
+            (false, Some(_)) => Box::new(ComingSight { straight, field, wedge }),
+            (false, None) => Box::new(straight),
+        };
+        let (guard, ahead_m) = (settings.guard, settings.ahead_m);
+        let (points, too_near, candidates, coming) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut seen = Self { field, base, wedge, guard, ahead_m, points, too_near, candidates, coming, sight, bent };
+        (seen.points, seen.too_near) = seen.indices(&prepared.points);
+        seen.candidates = seen.candidates_of(prepared, &seen.points);
+        if let Some(wider) = wider {
+            let narrow = std::mem::replace(&mut seen.wedge, wider);
+            let (points, _) = seen.indices(&prepared.points);
+            seen.coming = coming::others(seen.candidates_of(prepared, &points), &seen.candidates);
+            seen.wedge = narrow;
+        }
+        seen
+    }
+
+    /// Dense points in the wedge and, after them, these reference points.
+    fn candidates_of(&self, prepared: &Prepared, points: &[usize]) -> Vec<Candidate> {
+        let offset = prepared.dense.len();
+        let candidate = |id: usize, p: &ReferencePoint| Candidate { id: id as u32, grid: p.grid, lift: p.lift };
+        let (dense, _) = self.indices(&prepared.dense);
+        let dense = dense.iter().map(|&i| candidate(i, &prepared.dense[i]));
+        dense.chain(points.iter().map(|&i| candidate(offset + i, &prepared.points[i]))).collect()
+    }
+
+    /// Which of the points are asked for, and which would be if they were not too near.
+    pub(super) fn indices(&self, points: &[ReferencePoint]) -> (Vec<usize>, Vec<usize>) {
+        let near = memory::ahead(self.field, points, self.wedge.eye, self.ahead_m);
+        let in_frame = |p: &ReferencePoint| {
+            !self.bent || bent::shows(self.base, self.field.scene_from_grid(p.grid).extend(p.ground + p.lift))
+        };
+        let (inside, outside) = in_view(self.field, points, &self.wedge, self.guard);
+        let inside = inside.into_iter().filter(|&i| near[i] && in_frame(&points[i])).collect();
+        // The wedge knows no height: most of what lies that near is below the picture.
+        let shown = |p: &ReferencePoint| {
+            bent::in_frame(self.base, self.field.scene_from_grid(p.grid).extend(p.ground + p.lift))
+        };
+        let too_near =
+            |&(i, why): &(usize, LeftOut)| (why == LeftOut::TooNear && near[i] && shown(&points[i])).then_some(i);
+        (inside, outside.iter().filter_map(too_near).collect())
+    }
+}

@@ -1,0 +1,120 @@
+//! A line of sight that is followed by itself: one that bends, or one without neighbours.
+
+use super::rise::Rise;
+use super::seen::Seen;
+use super::surface::Surface;
+use super::walk::{Clearance, Touch};
+
+/// With room for this many times the greatest rise it is not asked where the ground rose.
+const AMPLE: f64 = 8.0;
+
+/// The line of one candidate.
+#[derive(Debug, Clone)]
+pub(super) struct Alone {
+    member: usize,
+    /// For each chord, by how much the ground may rise against it before a place can be missed; negative if that is not known.
+    rooms: Vec<f64>,
+}
+
+impl Alone {
+    /// * `member`: index of the candidate.
+    pub(super) fn new(member: usize, seen: &Seen) -> Self {
+        Self { member, rooms: vec![-1.0; seen.chords.len()] }
+    }
+
+    /// The displacement changed: takes what the ground rose and the line sank at most from the rooms.
+    pub(super) fn moved(&mut self, seen: &[Seen], rise: &Rise) {
+        let seen = &seen[self.member];
+        let sank = (-seen.displacement(rise.change)).max(0.0);
+        for (room, chord) in self.rooms.iter_mut().zip(seen.chords.iter()).filter(|(room, _)| **room > 0.0) {
+            let ample = *room > AMPLE * (sank + rise.greatest);
+            *room -= sank + if ample { rise.greatest } else { rise.along([chord.ends[0]; 2], [chord.ends[1]; 2]) };
+        }
+    }
+
+    /// All places where the asked clearance is missed, but for chords with room left.
+    pub(super) fn walk(&mut self, seen: &[Seen], surface: &Surface, clearance: &Clearance) -> Vec<(usize, Touch)> {
+        let (seen, member, mut touches) = (&seen[self.member], self.member, Vec::new());
+        for (room, chord) in self.rooms.iter_mut().zip(seen.line(seen.displacement(&surface.u))) {
+            if *room > 0.0 {
+                continue;
+            }
+            *room = f64::INFINITY;
+            let Some(part) = chord.part(surface, seen.grid, clearance.guard) else { continue };
+            let before = touches.len();
+            for end in chord.ends_of(surface, part, clearance) {
+                match end {
+                    Ok(touch) => touches.push((member, touch)),
+                    Err(left) => *room = room.min(left),
+                }
+            }
+            chord.walk(surface, part, clearance, room, &mut |touch| touches.push((member, touch)));
+            if touches.len() > before {
+                *room = -1.0;
+            }
+        }
+        touches
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::problem::{Candidate, LinesOfSight, QpProblem};
+    use super::super::surface::Lattice;
+    use super::*;
+    use crate::cells::tests::noise;
+    use belvedere_core::DVec2;
+
+    /// Rises from the point, bows aside and ends in the eye.
+    struct Bowed;
+
+    impl LinesOfSight for Bowed {
+        fn trace(&self, grid: DVec2, z: f64, out: &mut Vec<(DVec2, f64)>) {
+            let (eye, top) = (DVec2::new(38.0, 3.0), 130.0);
+            out.extend((0..=6).map(|k| {
+                let t = f64::from(k) / 6.0;
+                (grid.lerp(eye, t) + DVec2::new(8.0 * t * (1.0 - t), 0.0), z + t * (2.0 - t) * (top - z))
+            }));
+        }
+    }
+
+    #[test]
+    fn what_has_room_is_not_missed_however_the_ground_moves() {
+        let (nodes, coarse) = (41, 21);
+        let heights: Vec<f64> = (0..nodes * nodes).map(|i| 90.0 * noise(i, 1) * noise(i / 5, 2)).collect();
+        let step = DVec2::splat((nodes - 1) as f64 / (coarse - 1) as f64);
+        let mut surface = Surface::new(&heights, nodes, nodes, Lattice { cols: coarse, rows: coarse, step });
+        let candidates: Vec<Candidate> = (0..60)
+            .map(|id| Candidate {
+                id,
+                grid: DVec2::new(1.0 + 0.5 * f64::from(id), 38.0 - 0.3 * f64::from(id)),
+                lift: 2.0,
+            })
+            .collect();
+        let problem = QpProblem { candidates: &candidates, sight: &Bowed, target: None, ceilings: None };
+        let seen = Seen::all(&problem, &surface);
+        let clearance = Clearance { margin: 1.0, tolerance: 0.2, guard: 1.5 };
+        let fresh = || (0..seen.len()).map(|k| Alone::new(k, &seen[k])).collect::<Vec<_>>();
+        let (mut lines, mut touches, mut roomy) = (fresh(), 0, 0);
+        for round in 0..40 {
+            for (line, mut anew) in lines.iter_mut().zip(fresh()) {
+                roomy += line.rooms.iter().filter(|room| **room > 0.0).count();
+                let found = line.walk(&seen, &surface, &clearance);
+                assert_eq!(found, anew.walk(&seen, &surface, &clearance), "round {round}");
+                touches += found.len();
+            }
+            // A hill grows steadily, the rest goes up and down and sinks.
+            let step = |i: usize| {
+                let (x, y) = (i % coarse, i / coarse);
+                let hill = (9..13).contains(&x) && (8..12).contains(&y);
+                if hill { 2.0 } else { 2.0 * (noise(i, 10 + round) - 0.7) }
+            };
+            let u: Vec<f64> = surface.u.iter().enumerate().map(|(i, u)| u + step(i)).collect();
+            let rose: Vec<f64> = surface.u.iter().zip(&u).map(|(before, after)| after - before).collect();
+            let rise = Rise::new(&surface.lattice, &rose);
+            lines.iter_mut().for_each(|line| line.moved(&seen, &rise));
+            surface.displace(&u);
+        }
+        assert!(touches > 300 && roomy > 1000, "{touches} touches, {roomy} chords with room");
+    }
+}

@@ -1,0 +1,360 @@
+//! Rows are found where they are missed, a few per round, until none is missed.
+
+use super::bundle::Bundle;
+use super::metric::Metric;
+use super::pool::{IDLE, Kept, New, Place, Pool};
+use super::problem::{QpError, QpOptions, QpProblem, QpResult, Reason, Unresolved};
+use super::rise::Rise;
+use super::row::Row;
+use super::seen::Seen;
+use super::surface::{Lattice, Surface};
+use super::walk::{Clearance, Touch, fade};
+use crate::Field;
+use crate::smooth::{Between, Hierarchy, Smoother};
+use belvedere_core::DVec2;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// Rows are met to within this by the dual solver, metres.
+const EXACT: f64 = 1e-6;
+/// Rounds of ceilings between two checks of the lines of sight, at most.
+const CEILING_ROUNDS: usize = 40;
+/// The ground may sink to this many times relief and height of the eye; beyond, rows become soft.
+const DEPTH: f64 = 4.0;
+/// Price of slack where rows contradict each other.
+const LAST_PRICE: f64 = 1e3;
+
+/// The program over one terrain. Remembers rows, multipliers and displacement between frames.
+#[derive(Debug, Clone)]
+pub struct QpSolver {
+    metric: Metric,
+    surface: Surface,
+    options: QpOptions,
+    kept: Vec<Kept>,
+}
+
+/// What one frame works with.
+struct Frame<'a> {
+    problem: QpProblem<'a>,
+    target: Vec<f64>,
+    seen: Vec<Seen>,
+    bundles: Vec<Bundle>,
+    pool: Pool,
+    clearance: Clearance,
+    /// Inverse price of slack, 0 = none.
+    soft: f64,
+}
+
+impl QpSolver {
+    /// * `field`: the ground;
+    /// * `hierarchy`: the solver's grid over it;
+    /// * `smoother`: H on that grid, without elevation rows.
+    pub fn new(field: &Field, hierarchy: &Hierarchy, smoother: Smoother, options: QpOptions) -> Self {
+        let lattice = Lattice { cols: hierarchy.cols(), rows: hierarchy.rows(), step: hierarchy.step() };
+        let surface = Surface::new(field.heights(), field.cols(), field.rows(), lattice);
+        Self { metric: Metric::new(smoother), surface, options, kept: Vec::new() }
+    }
+
+    /// Other ground on the same grid (in mode `paper+qp` detail may be scaled).
+    ///
+    /// # Errors
+    /// [`QpError::Length`].
+    pub fn set_heights(&mut self, heights: &[f64]) -> Result<(), QpError> {
+        length("the ground", heights, self.surface.heights.len())?;
+        self.surface.set_heights(heights);
+        Ok(())
+    }
+
+    /// Parameters of the next frames.
+    pub fn set_options(&mut self, options: QpOptions) {
+        self.options = options;
+    }
+
+    fn clearance(&self) -> Clearance {
+        let QpOptions { margin, tolerance, guard, .. } = self.options;
+        Clearance { margin, tolerance, guard }
+    }
+
+    /// Forgets the frames before.
+    pub fn reset(&mut self) {
+        self.kept.clear();
+        let rest = vec![0.0; self.surface.u.len()];
+        self.surface.displace(&rest);
+    }
+
+    /// Solves one frame, beginning with the rows of the frame before.
+    ///
+    /// Lines of sight that are not straight are traced again from the displaced candidates until those stay where they are.
+    ///
+    /// # Errors
+    /// Every [`QpError`].
+    pub fn solve(&mut self, problem: &QpProblem) -> Result<QpResult, QpError> {
+        let begin = Instant::now();
+        let nodes = self.surface.u.len();
+        for (what, values) in [("the target", problem.target), ("the ceiling", problem.ceilings)] {
+            length(what, values.unwrap_or(&self.surface.u), nodes)?;
+        }
+        self.check_eye(problem)?;
+        let mut lines = Seen::all(problem, &self.surface);
+        let mut out = self.pass(problem, &lines);
+        if problem.sight.straight().is_none() {
+            for _ in 0..10 {
+                if Seen::follow_up(&mut lines, problem, &self.surface, 0.1 * self.options.tolerance) == 0 {
+                    break;
+                }
+                let next = self.pass(problem, &lines);
+                let (rounds, added) = (out.rounds + next.rounds, out.added + next.added);
+                out = QpResult { rounds, added, kept: out.kept, ..next };
+            }
+        }
+        out.milliseconds = begin.elapsed().as_secs_f64() * 1e3;
+        Ok(out)
+    }
+
+    fn check_eye(&self, problem: &QpProblem) -> Result<(), QpError> {
+        let Some((at, eye)) = problem.sight.straight() else { return Ok(()) };
+        let last = DVec2::new((self.surface.cols - 1) as f64, (self.surface.rows - 1) as f64);
+        if at.cmpge(DVec2::ZERO).all() && at.cmple(last).all() {
+            let ground = self.surface.ground(at);
+            if eye <= ground {
+                return Err(QpError::EyeUnderGround { eye, ground, below: ground - eye });
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves with these lines of sight.
+    fn pass(&mut self, problem: &QpProblem, lines: &[Seen]) -> QpResult {
+        let o = self.options;
+        let nodes = self.surface.u.len();
+        let mut frame = Frame {
+            problem: *problem,
+            target: problem.target.map_or_else(|| vec![0.0; nodes], <[f64]>::to_vec),
+            seen: lines.to_vec(),
+            bundles: Vec::new(),
+            pool: Pool::default(),
+            clearance: self.clearance(),
+            soft: o.slack_price.map_or(0.0, |price| 1.0 / price),
+        };
+        let mut out = QpResult::default();
+        frame.drop_unseen(o.guard, &mut out.unresolved);
+        frame.bundles = Bundle::all(&frame.seen, problem.sight.straight().is_some());
+        self.take_up(&mut frame);
+        out.kept = frame.pool.rows.len();
+        let depth = self.depth(&frame);
+        let mut missed = Vec::new();
+        while out.rounds < o.rounds {
+            self.settle(&mut frame);
+            missed = frame.missed(&self.surface);
+            out.rounds += 1;
+            let new = frame.thinned(&self.surface, &missed, out.rounds);
+            let deepest = self.surface.u.iter().copied().fold(0.0, f64::min);
+            if new.is_empty() && deepest >= -depth {
+                // Rows that had to become soft are missed still, though none more would help.
+                let forced = frame.soft > 0.0 && o.slack_price.is_none();
+                if !forced {
+                    missed.clear();
+                }
+                break;
+            }
+            if deepest < -depth && frame.soft == 0.0 {
+                self.soften(&mut frame);
+                continue;
+            }
+            if new.is_empty() {
+                break;
+            }
+            self.push(&mut frame, new);
+        }
+        self.report(&frame, &missed, depth, &mut out);
+        self.kept = frame.pool.kept(|i| problem.candidates[i].id);
+        out
+    }
+
+    /// How far the ground may sink.
+    fn depth(&self, frame: &Frame) -> f64 {
+        let [low, mut high] = self.surface.range;
+        // Lines may end over the eye.
+        let eye = frame.problem.sight.straight().map(|(_, z)| z);
+        for chord in frame.seen.iter().flat_map(|s| s.chords.iter()) {
+            high = high.max(chord.z[0]).max(eye.unwrap_or(chord.z[1]));
+        }
+        DEPTH * (high - low)
+    }
+
+    /// The rows of the frame before, where they are now.
+    fn take_up(&self, frame: &mut Frame) {
+        let by_id: BTreeMap<u32, usize> =
+            frame.seen.iter().enumerate().map(|(k, s)| (frame.problem.candidates[s.index].id, k)).collect();
+        let mut new = Vec::with_capacity(self.kept.len());
+        for kept in &self.kept {
+            let row = match kept.place {
+                Place::Ceiling(node) => Some(self.ceiling_row(frame, node)),
+                Place::Sight { id, at } => {
+                    by_id.get(&id).and_then(|&k| frame.seen[k].follow(&self.surface, at, &frame.clearance))
+                }
+            };
+            let begin = (kept.multiplier, kept.idle);
+            new.extend(row.map(|row| self.new_row(frame, row, begin)));
+        }
+        frame.pool.extend(new, &self.metric);
+    }
+
+    fn ceiling(&self, frame: &Frame, node: usize) -> f64 {
+        frame.problem.ceilings.map_or(self.options.ceiling, |c| c[node])
+    }
+
+    fn ceiling_row(&self, frame: &Frame, node: u32) -> Row {
+        let at = Between::node(node, self.surface.lattice.cols, self.surface.lattice.rows);
+        Row::ceiling(node, at, self.ceiling(frame, node as usize))
+    }
+
+    fn new_row(&self, frame: &Frame, row: Row, (multiplier, idle): (f64, u32)) -> New {
+        let excess = row.at(&frame.target) - row.bound;
+        let soft = if row.is_ceiling() { 0.0 } else { frame.soft };
+        New { row, excess, soft, multiplier, idle }
+    }
+
+    /// Adds rows that had no multiplier so far.
+    fn push(&self, frame: &mut Frame, rows: impl IntoIterator<Item = Row>) {
+        let new = rows.into_iter().map(|row| self.new_row(frame, row, (0.0, IDLE))).collect();
+        frame.pool.extend(new, &self.metric);
+    }
+
+    /// Starts again with rows that may be missed at a price.
+    fn soften(&self, frame: &mut Frame) {
+        frame.soft = 1.0 / LAST_PRICE;
+        let rows = std::mem::take(&mut frame.pool).rows;
+        self.push(frame, rows);
+    }
+
+    /// Solves with the rows in play and adds ceilings until no node rises above its own.
+    fn settle(&mut self, frame: &mut Frame) {
+        let mut u = vec![0.0; frame.target.len()];
+        for _ in 0..CEILING_ROUNDS {
+            frame.pool.solve(EXACT);
+            frame.pool.displacement(&mut self.metric, &frame.target, &mut u);
+            let risen = self.risen(frame, &u);
+            if risen.is_empty() {
+                break;
+            }
+            let rows: Vec<Row> = risen.into_iter().map(|node| self.ceiling_row(frame, node)).collect();
+            self.push(frame, rows);
+        }
+        frame.moved(&self.surface, &u);
+        self.surface.displace(&u);
+    }
+
+    /// Nodes above their ceiling, by more than the tolerance, and by more than their neighbours.
+    fn risen(&self, frame: &Frame, u: &[f64]) -> Vec<u32> {
+        let (cols, rows) = (self.surface.lattice.cols, self.surface.lattice.rows);
+        let over = |j: usize| u[j] - self.ceiling(frame, j);
+        let mut out = Vec::new();
+        for i in 0..u.len() {
+            let v = over(i);
+            if v <= self.options.ceiling_tolerance {
+                continue;
+            }
+            let (x, y) = (i % cols, i / cols);
+            let mut around = (y.saturating_sub(1)..(y + 2).min(rows))
+                .flat_map(|y| (x.saturating_sub(1)..(x + 2).min(cols)).map(move |x| y * cols + x));
+            if around.all(|j| over(j) < v || (over(j) == v && j <= i)) {
+                out.push(i as u32);
+            }
+        }
+        out
+    }
+
+    fn report(&self, frame: &Frame, missed: &[(usize, Touch)], depth: f64, out: &mut QpResult) {
+        let id = |i: usize| frame.problem.candidates[i].id;
+        out.u = self.surface.u.clone();
+        out.rows = frame.pool.rows.len();
+        out.added = out.rows - out.kept;
+        out.active = frame.pool.active(id);
+        out.energy = frame.pool.energy();
+        let mut worst = BTreeMap::<u32, f64>::new();
+        for (k, touch) in missed {
+            let lacks = worst.entry(id(frame.seen[*k].index)).or_default();
+            *lacks = lacks.max(touch.excess);
+        }
+        let forced = frame.soft > 0.0 && self.options.slack_price.is_none();
+        if forced {
+            for row in &out.active {
+                if let (Some(id), true) = (row.candidate, row.slack > frame.clearance.tolerance * fade(row.tau)) {
+                    let lacks = worst.entry(id).or_default();
+                    *lacks = lacks.max(row.slack);
+                }
+            }
+        }
+        let proof = if forced { frame.pool.certificate(depth, |node| self.ceiling(frame, node), id) } else { None };
+        out.unresolved.extend(worst.into_iter().map(|(id, lacks)| {
+            let reason = proof.clone().map_or(Reason::NotSettled { lacks }, Reason::Infeasible);
+            Unresolved { id, reason }
+        }));
+    }
+}
+
+impl Frame<'_> {
+    /// Sets aside what cannot be seen at all.
+    fn drop_unseen(&mut self, guard: f64, unresolved: &mut Vec<Unresolved>) {
+        let candidates = self.problem.candidates;
+        self.seen.retain(|s| {
+            let reason = match s {
+                s if s.chords.is_empty() => Reason::NoLine,
+                s if s.distance() < 3.0 * guard => Reason::TooNear,
+                _ => return true,
+            };
+            unresolved.push(Unresolved { id: candidates[s.index].id, reason });
+            false
+        });
+    }
+
+    /// The displacement changes: what room that takes.
+    fn moved(&mut self, surface: &Surface, after: &[f64]) {
+        let change: Vec<f64> = surface.u.iter().zip(after).map(|(b, a)| a - b).collect();
+        let rise = Rise::new(&surface.lattice, &change);
+        let seen = &self.seen;
+        self.bundles.par_iter_mut().with_min_len(32).for_each(|b| b.moved(seen, &rise));
+    }
+
+    /// All places where the asked clearance is missed; first the index in `seen`. Where lines still have room they are not
+    /// followed.
+    fn missed(&mut self, surface: &Surface) -> Vec<(usize, Touch)> {
+        let (seen, clearance) = (&self.seen, &self.clearance);
+        self.bundles.par_iter_mut().with_min_len(8).flat_map_iter(|b| b.walk(seen, surface, clearance)).collect()
+    }
+
+    /// Rows for the worst of each bunch of neighbours; bunches get smaller from round to round.
+    fn thinned(&self, surface: &Surface, missed: &[(usize, Touch)], round: usize) -> Vec<Row> {
+        let fine = if self.soft > 0.0 { 0.5 } else { 0.5f64.powi(round as i32 / 3 - 1).max(1.0 / 32.0) };
+        let size = surface.lattice.step * fine;
+        let key = |at: DVec2, grid: DVec2| [at / size, grid / size].map(|v| (v.x.floor() as i64, v.y.floor() as i64));
+        let mut bought = BTreeMap::<_, f64>::new();
+        if self.soft > 0.0 {
+            for (i, row) in self.pool.rows.iter().enumerate() {
+                if let super::row::Asks::Sight { candidate, at, .. } = row.asks {
+                    let slack = bought.entry(key(at, self.problem.candidates[candidate].grid)).or_default();
+                    *slack = slack.max(self.pool.slack(i));
+                }
+            }
+        }
+        let mut best: BTreeMap<_, (usize, Touch)> = BTreeMap::new();
+        for (k, touch) in missed {
+            let key = key(touch.at, self.seen[*k].grid);
+            let slack = bought.get(&key).copied().unwrap_or(0.0);
+            if self.soft > 0.0 && touch.excess <= 1.1 * slack + self.clearance.tolerance {
+                continue;
+            }
+            let slot = best.entry(key).or_insert((*k, *touch));
+            if touch.excess > slot.1.excess {
+                *slot = (*k, *touch);
+            }
+        }
+        best.into_values().map(|(k, t)| self.seen[k].row(surface, &t, self.clearance.margin)).collect()
+    }
+}
+
+fn length(what: &'static str, values: &[f64], nodes: usize) -> Result<(), QpError> {
+    if values.len() == nodes { Ok(()) } else { Err(QpError::Length { what, given: values.len(), nodes }) }
+}

@@ -1,4 +1,0 @@
-//! Tests of the scene crate.
-
-mod builtin;
-mod route;

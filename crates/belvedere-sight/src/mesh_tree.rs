@@ -1,0 +1,240 @@
+//! A mesh made ready for rays and lines of sight: a tree of bounds over its triangles.
+
+use belvedere_core::DVec3;
+use belvedere_scene::Mesh;
+use glam::Vec3A;
+use obvhs::Boundable;
+use obvhs::aabb::Aabb as Bounds;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::leaf_collapser::collapse;
+use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+
+/// Most triangles of a leaf, and what a step down the tree costs in tests of triangles.
+const LEAF: u32 = 4;
+const STEP_COST: f32 = 2.0;
+
+/// A mesh with a bounding volume hierarchy over its triangles.
+///
+/// The bounds are exact: vertices are single precision relative to [`Mesh::origin`], and so are they. Segments are double precision.
+pub struct MeshTree<'a> {
+    mesh: &'a Mesh,
+    tree: Bvh2,
+    lift: [f64; 2],
+}
+
+struct Corners<'m>(&'m Mesh, [u32; 3]);
+
+impl Boundable for Corners<'_> {
+    fn aabb(&self) -> Bounds {
+        let [a, b, c] = self.1.map(|v| Vec3A::from(self.0.positions()[v as usize]));
+        Bounds { min: a.min(b).min(c), max: a.max(b).max(c) }
+    }
+}
+
+impl<'a> MeshTree<'a> {
+    /// Builds the tree: about as long as sorting the triangles.
+    pub fn new(mesh: &'a Mesh) -> Self {
+        Self::lifted(mesh, [0.0; 2])
+    }
+
+    /// The tree of a mesh whose points may be displaced vertically by something in a range of heights, scene units.
+    pub fn lifted(mesh: &'a Mesh, lift: [f64; 2]) -> Self {
+        let triangles: Vec<Corners<'_>> = mesh.triangles().iter().map(|&t| Corners(mesh, t)).collect();
+        let mut tree = Bvh2::default();
+        if !triangles.is_empty() {
+            let all = (0..triangles.len() as u32).collect();
+            let mut builder = PlocBuilder::with_capacity(triangles.len());
+            tree = builder.build(PlocSearchDistance::Low, &triangles, all, SortPrecision::U64, 2);
+            collapse(&mut tree, LEAF, STEP_COST);
+        }
+        Self { mesh, tree, lift: [lift[0].min(0.0), lift[1].max(0.0)] }
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &'a Mesh {
+        self.mesh
+    }
+
+    /// Range of the vertical displacement that the tree allows for.
+    pub fn lift(&self) -> [f64; 2] {
+        self.lift
+    }
+
+    /// Visits the triangles whose bounds come within `reach` (scene units) of the straight segment `a b`, the nearer ones to `a` rather
+    /// first. `visit` answers the parameter (0 at `a`, 1 at `b`) beyond which nothing matters any more.
+    pub fn near(&self, a: DVec3, b: DVec3, reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
+        if self.tree.nodes.is_empty() {
+            return;
+        }
+        let segment = Segment::new(a - self.mesh.origin(), b - self.mesh.origin(), reach, self.lift);
+        let mut limit = 1.0f64;
+        let mut stack = vec![(0usize, 0.0f64)];
+        while let Some((at, enter)) = stack.pop() {
+            if enter > limit {
+                continue;
+            }
+            let node = &self.tree.nodes[at];
+            let first = node.first_index as usize;
+            if node.prim_count > 0 {
+                for &triangle in &self.tree.primitive_indices[first..first + node.prim_count as usize] {
+                    limit = limit.min(visit(triangle as usize));
+                }
+                continue;
+            }
+            let child = |i: usize| segment.enter(self.tree.nodes[i].aabb()).map(|t| (i, t));
+            match (child(first), child(first + 1)) {
+                (Some(l), Some(r)) => stack.extend(if l.1 <= r.1 { [r, l] } else { [l, r] }),
+                (l, r) => stack.extend(l.or(r)),
+            }
+        }
+    }
+
+    /// Where the straight segment `a b` first passes a triangle: its parameter (0 at `a`, 1 at `b`) and its number.
+    pub fn first_crossing(&self, a: DVec3, b: DVec3) -> Option<(f64, usize)> {
+        let mut best: Option<(f64, usize)> = None;
+        self.near(a, b, 0.0, &mut |triangle| {
+            if let Some(t) = self.crossing(triangle, a, b)
+                && best.is_none_or(|(s, other)| (t, triangle) < (s, other))
+            {
+                best = Some((t, triangle));
+            }
+            best.map_or(1.0, |(t, _)| t)
+        });
+        best
+    }
+
+    /// Where the straight segment `a b` passes a triangle. Of the triangles around an edge at least one is passed by a segment through it.
+    pub fn crossing(&self, triangle: usize, a: DVec3, b: DVec3) -> Option<f64> {
+        let along = b - a;
+        let corner = |v: u32| self.mesh.positions()[v as usize].as_dvec3() - (a - self.mesh.origin());
+        let [p, q, r] = self.mesh.triangles()[triangle].map(corner);
+        // Volumes over the edges: swapping an edge's ends changes nothing but the sign.
+        let volumes = [q.cross(r), r.cross(p), p.cross(q)].map(|n| n.dot(along));
+        if volumes.iter().any(|v| *v < 0.0) && volumes.iter().any(|v| *v > 0.0) {
+            return None;
+        }
+        let normal = (q - p).cross(r - p);
+        let t = p.dot(normal) / along.dot(normal);
+        (0.0..=1.0).contains(&t).then_some(t)
+    }
+}
+
+/// A segment and the room around it.
+struct Segment {
+    a: DVec3,
+    along: DVec3,
+    /// What boxes grow by at their smallest and largest corner.
+    grow: [DVec3; 2],
+}
+
+impl Segment {
+    fn new(a: DVec3, b: DVec3, reach: f64, lift: [f64; 2]) -> Self {
+        let grow = [DVec3::splat(-reach) + lift[0] * DVec3::Z, DVec3::splat(reach) + lift[1] * DVec3::Z];
+        Self { a, along: b - a, grow }
+    }
+
+    /// Parameter at which the segment enters a box.
+    fn enter(&self, bounds: &Bounds) -> Option<f64> {
+        let (lo, hi) = (bounds.min.as_dvec3() + self.grow[0], bounds.max.as_dvec3() + self.grow[1]);
+        let (mut t0, mut t1) = (0.0f64, 1.0f64);
+        for axis in 0..3 {
+            let (p, d) = (self.a[axis], self.along[axis]);
+            if d == 0.0 {
+                if !(lo[axis] <= p && p <= hi[axis]) {
+                    return None;
+                }
+                continue;
+            }
+            let (s0, s1) = ((lo[axis] - p) / d, (hi[axis] - p) / d);
+            // Rounding of the quotients must not lose a box that is only just touched.
+            t0 = t0.max(s0.min(s1) - 1e-12);
+            t1 = t1.min(s0.max(s1) + 1e-12);
+        }
+        (t0 <= t1).then_some(t0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_scene::MeshColors;
+
+    /// A heap of random triangles.
+    fn heap(n: usize) -> Mesh {
+        let mut seed = 7u64;
+        let mut next = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) as f64 / f64::from(1u32 << 31)
+        };
+        let mut positions = Vec::new();
+        for _ in 0..n {
+            let middle = DVec3::new(5e5 + 100.0 * next(), 4.7e6 + 100.0 * next(), 100.0 * next());
+            for _ in 0..3 {
+                positions.push(middle + 8.0 * DVec3::new(next(), next(), next()));
+            }
+        }
+        let triangles = (0..n as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        Mesh::new(&positions, triangles, MeshColors::Layer).unwrap()
+    }
+
+    fn places() -> Vec<(DVec3, DVec3)> {
+        let corner = DVec3::new(5e5, 4.7e6, 0.0);
+        (0..400)
+            .map(|i| {
+                let angle = f64::from(i) * 0.37;
+                let a = corner + DVec3::new(50.0 + 90.0 * angle.cos(), 50.0 + 90.0 * angle.sin(), f64::from(i % 100));
+                (a, corner + DVec3::new(f64::from(i * 7 % 100), f64::from(i * 31 % 100), 50.0))
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_tree_finds_what_trying_every_triangle_finds() {
+        let mesh = heap(3000);
+        let tree = MeshTree::new(&mesh);
+        let mut hits = 0;
+        for (a, b) in places() {
+            let all = (0..mesh.triangles().len()).filter_map(|i| Some((tree.crossing(i, a, b)?, i)));
+            let expected = all.min_by(|x, y| x.partial_cmp(y).unwrap());
+            hits += usize::from(expected.is_some());
+            assert_eq!(tree.first_crossing(a, b), expected);
+        }
+        assert!(hits > 200, "{hits}");
+    }
+
+    #[test]
+    fn reach_and_lift_widen_the_search() {
+        let mesh = heap(500);
+        for (reach, lift) in [(2.5, [0.0, 0.0]), (0.0, [-4.0, 3.0])] {
+            let tree = MeshTree::lifted(&mesh, lift);
+            for (a, b) in places().into_iter().take(60) {
+                let mut seen = vec![false; mesh.triangles().len()];
+                tree.near(a, b, reach, &mut |t| {
+                    seen[t] = true;
+                    1.0
+                });
+                for i in 0..=1000 {
+                    let p = a.lerp(b, f64::from(i) / 1000.0);
+                    for (t, seen) in seen.iter().enumerate() {
+                        let corners = mesh.corners(t);
+                        let lo = corners.iter().fold(DVec3::INFINITY, |m, c| m.min(*c)) - reach + lift[0] * DVec3::Z;
+                        let hi =
+                            corners.iter().fold(DVec3::NEG_INFINITY, |m, c| m.max(*c)) + reach + lift[1] * DVec3::Z;
+                        let inside = p.cmpge(lo).all() && p.cmple(hi).all();
+                        assert!(*seen || !inside, "triangle {t} at {p}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn empty_meshes_and_single_triangles_have_trees() {
+        let empty = Mesh::default();
+        assert_eq!(MeshTree::new(&empty).first_crossing(DVec3::ZERO, DVec3::ONE), None);
+        let one = Mesh::new(&[DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]], MeshColors::Layer).unwrap();
+        let p = DVec3::new(0.25, 0.25, 2.0);
+        assert_eq!(MeshTree::new(&one).first_crossing(p, p - 4.0 * DVec3::Z), Some((0.5, 0)));
+        assert_eq!(MeshTree::new(&one).first_crossing(p, p - DVec3::Z), None);
+    }
+}

@@ -1,0 +1,231 @@
+//! Lines of sight along straight and curved rays, past terrain, boxes and meshes.
+
+use crate::{Ground, MeshTree};
+use belvedere_core::{Camera, DVec2, DVec3, View};
+use belvedere_scene::{BoxShape, LayerKind, Scene};
+
+/// Everything of a scene that can stand in the way.
+pub struct Obstacles<'a> {
+    grounds: Vec<Ground<'a>>,
+    boxes: Vec<Block>,
+    meshes: Vec<MeshTree<'a>>,
+}
+
+/// How lines of sight are walked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SightOptions {
+    /// Largest distance between a curved ray and the chords that stand for it near the ground, scene units.
+    pub chord_m: f64,
+    /// Clearances are not followed beyond this, scene units; 0 = only whether the point is seen.
+    pub cap_m: f64,
+    /// Plan distance from the point within which the sight line must be clear, but the ground that falls away from the
+    /// point towards the eye is no measure of clearance, scene units.
+    pub guard_m: f64,
+}
+
+/// One upright box, ready for segment tests.
+struct Block {
+    center: DVec3,
+    half: DVec3,
+    sin_cos: (f64, f64),
+    reach: f64,
+}
+
+impl Block {
+    fn new(shape: &BoxShape) -> Self {
+        let half = 0.5 * shape.size;
+        Self {
+            center: shape.base + DVec3::Z * half.z,
+            half,
+            sin_cos: shape.yaw.sin_cos(),
+            reach: half.truncate().length(),
+        }
+    }
+
+    fn local(&self, p: DVec3) -> DVec3 {
+        let ((sin, cos), d) = (self.sin_cos, p - self.center);
+        DVec3::new(cos * d.x + sin * d.y, cos * d.y - sin * d.x, d.z)
+    }
+
+    /// How deep inside the box the segment runs: distance from the middle of its inner part to the nearest side or top.
+    fn depth_inside(&self, a: DVec3, b: DVec3) -> Option<f64> {
+        let (la, lb) = (self.local(a), self.local(b));
+        let (mut t0, mut t1) = (0.0f64, 1.0f64);
+        for axis in 0..3 {
+            let (p, d, h) = (la[axis], lb[axis] - la[axis], self.half[axis]);
+            if d == 0.0 {
+                if p.abs() >= h {
+                    return None;
+                }
+                continue;
+            }
+            let (s0, s1) = ((-h - p) / d, (h - p) / d);
+            t0 = t0.max(s0.min(s1));
+            t1 = t1.min(s0.max(s1));
+        }
+        if t0 >= t1 {
+            return None;
+        }
+        let middle = la.lerp(lb, 0.5 * (t0 + t1));
+        let sides = self.half - middle.abs();
+        Some(sides.x.min(sides.y).min(self.half.z - middle.z).max(0.0))
+    }
+}
+
+impl<'a> Obstacles<'a> {
+    /// Collects terrain, boxes and meshes of `scene`.
+    pub fn new(scene: &'a Scene) -> Self {
+        let mut out = Self { grounds: Vec::new(), boxes: Vec::new(), meshes: Vec::new() };
+        for layer in &scene.layers {
+            match &layer.kind {
+                LayerKind::Terrain(t) => out.grounds.push(Ground::new(&t.heightfield)),
+                LayerKind::Boxes(b) => out.boxes.extend(b.boxes.iter().map(Block::new)),
+                LayerKind::Mesh(m) => out.meshes.push(MeshTree::new(&m.mesh)),
+                LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) => {}
+            }
+        }
+        out
+    }
+
+    /// The terrain layers.
+    pub fn grounds(&self) -> &[Ground<'a>] {
+        &self.grounds
+    }
+
+    /// Height of `p` over the highest terrain below or above it; `None` beside all terrain.
+    pub fn above_ground(&self, p: DVec3) -> Option<f64> {
+        let heights = self.grounds.iter().filter_map(|g| g.heightfield().surface_at(p.truncate()));
+        heights.map(|h| p.z - h).min_by(f64::total_cmp)
+    }
+
+    /// [`Ground::min_gap`] over all obstacles; a segment through a box has a negative gap, and so has one through a mesh: but just,
+    /// for a surface has no depth.
+    pub fn min_gap(&self, a: DVec3, b: DVec3, cap: f64, floor: f64) -> f64 {
+        let mut best = cap;
+        for ground in &self.grounds {
+            best = ground.min_gap(a, b, best, floor);
+            if best < floor {
+                return best;
+            }
+        }
+        let (low, high) = (a.min(b), a.max(b));
+        for block in &self.boxes {
+            let near = |axis: usize, r: f64| low[axis] < block.center[axis] + r && high[axis] > block.center[axis] - r;
+            if near(0, block.reach)
+                && near(1, block.reach)
+                && near(2, block.half.z)
+                && let Some(depth) = block.depth_inside(a, b)
+            {
+                best = best.min(-depth.max(f64::MIN_POSITIVE));
+                if best < floor {
+                    return best;
+                }
+            }
+        }
+        if best > -f64::MIN_POSITIVE && self.meshes.iter().any(|m| m.first_crossing(a, b).is_some()) {
+            best = -f64::MIN_POSITIVE;
+        }
+        best
+    }
+
+    /// How clear the sight line of `view` to `p_world` is, where `p_world` has an image at `pixel` and `depth`:
+    /// the smallest height of the (curved) ray over the ground between the near plane and the point, in scene units;
+    /// negative = hidden, and how far the ray runs under ground. At most `options.cap_m`.
+    ///
+    /// `lift` is the height of the point over its own ground. Near the point (see [`SightOptions::guard_m`]) only a ray that
+    /// comes closer to the ground than that counts.
+    ///
+    /// The ray is the inverse of the view's stages at that pixel, followed by depth; the terrain is never displaced.
+    pub fn clearance(
+        &self,
+        view: &View,
+        (p_world, lift): (DVec3, f64),
+        (pixel, depth): (DVec2, f64),
+        options: &SightOptions,
+    ) -> f64 {
+        let near = view.pinhole().near.min(depth);
+        let ray = view.ray(pixel);
+        let at = |w: f64| if w >= depth { Some(p_world) } else { ray.at(w).ok().map(|r| r.point) };
+        let straight = view.stages().is_empty();
+        let guard_depth = self.guard_depth(&at, p_world, near, depth, options.guard_m);
+        let floor = if options.cap_m > 0.0 { f64::NEG_INFINITY } else { 0.0 };
+        let walk = |from: f64, to: f64, cap: f64, floor: f64| {
+            if straight {
+                return at(from).map_or(cap, |a| at(to).map_or(cap, |b| self.min_gap(a, b, cap, floor)));
+            }
+            let pieces = 12;
+            let depth_at = |i: usize| from + (to - from) * i as f64 / pieces as f64;
+            let mut chords = Chords { obstacles: self, at: &at, chord_m: options.chord_m, floor, best: cap };
+            // From the point towards the eye: what hides it is usually near it.
+            for i in (0..pieces).rev() {
+                let (w0, w1) = (depth_at(i), depth_at(i + 1));
+                chords.walk((w0, at(w0)), (w1, at(w1)), 0);
+                if chords.best < floor {
+                    break;
+                }
+            }
+            chords.best
+        };
+        let own = if options.cap_m > 0.0 { (lift - 1e-3).max(0.0) } else { 0.0 };
+        let beside = walk(guard_depth, depth, own, floor);
+        if beside < 0.0 && options.cap_m <= 0.0 {
+            return beside;
+        }
+        let along = walk(near, guard_depth, options.cap_m, floor);
+        if beside < own { along.min(beside) } else { along }
+    }
+
+    /// Depth at which the ray comes within `guard` of its end, in plan.
+    fn guard_depth(&self, at: &dyn Fn(f64) -> Option<DVec3>, p: DVec3, near: f64, depth: f64, guard: f64) -> f64 {
+        let step = 1e-4 * (depth - near);
+        let Some(before) = at(depth - step).filter(|_| step > 0.0) else { return depth };
+        let speed = (p - before).truncate().length() / step;
+        if speed * (depth - near) <= guard { near } else { depth - guard / speed }
+    }
+}
+
+/// Walks a curve by chords, halving them only where the difference could matter.
+struct Chords<'a> {
+    obstacles: &'a Obstacles<'a>,
+    at: &'a dyn Fn(f64) -> Option<DVec3>,
+    chord_m: f64,
+    floor: f64,
+    best: f64,
+}
+
+/// Chords are halved at most this often.
+const MAX_HALVINGS: u32 = 14;
+/// Where the ray has no point at all (outside the domain of a stage) halving stops earlier.
+const MAX_HALVINGS_OF_NOTHING: u32 = 6;
+
+impl Chords<'_> {
+    fn walk(&mut self, (w0, p0): (f64, Option<DVec3>), (w1, p1): (f64, Option<DVec3>), halvings: u32) {
+        if self.best < self.floor {
+            return;
+        }
+        let middle_depth = 0.5 * (w0 + w1);
+        let middle = (self.at)(middle_depth);
+        let split_at = match (p0, middle, p1) {
+            (Some(a), Some(m), Some(b)) => {
+                let bow = (m - 0.5 * (a + b)).length();
+                if bow <= self.chord_m || halvings >= MAX_HALVINGS {
+                    self.best = self.obstacles.min_gap(a, b, self.best, self.floor);
+                    return;
+                }
+                // A curve stays within a few times the bow at its middle; if even that is clear, so is the curve.
+                let safe = self.best + 4.0 * bow;
+                if self.obstacles.min_gap(a, b, safe, safe) >= safe {
+                    return;
+                }
+                MAX_HALVINGS
+            }
+            (None, None, None) => 2,
+            _ => MAX_HALVINGS_OF_NOTHING,
+        };
+        if halvings >= split_at {
+            return;
+        }
+        self.walk((middle_depth, middle), (w1, p1), halvings + 1);
+        self.walk((w0, p0), (middle_depth, middle), halvings + 1);
+    }
+}

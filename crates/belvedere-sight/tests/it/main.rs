@@ -1,0 +1,3 @@
+//! Tests of belvedere-sight.
+
+mod obstacles;
