@@ -11,8 +11,9 @@ use belvedere::verbs::animate::{self, AnimateRequest, Film};
 use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest};
 use belvedere::verbs::render::{self, AuxBuffer, AuxFormat, RenderRequest};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
-use belvedere::verbs::{bench, check, demo, figures, info, measure, output, pick, points};
+use belvedere::verbs::{check, info, measure, output, pick, points};
 use belvedere::{CameraPicture, Needs, OpenOptions, Session, scene_file};
+use belvedere_bench::BenchRequest;
 use std::path::{Path, PathBuf};
 
 /// Whether a verb reached its stated goal.
@@ -268,7 +269,12 @@ fn draw_figures(args: &FiguresArgs, context: &Context) -> anyhow::Result<Goal> {
     let mut written = Vec::new();
     if args.what.0.contains(&FigureKind::Terrain) {
         let options = context.options(Needs::Everything, None);
-        written.extend(figures::terrain(&args.out, &args.scenes, &options, context.common.overwrite)?);
+        written.extend(belvedere_gallery::terrain_figures(
+            &args.out,
+            &args.scenes,
+            &options,
+            context.common.overwrite,
+        )?);
     }
     context.finish();
     if context.common.json {
@@ -283,7 +289,7 @@ fn demonstrate(args: &DemoArgs, context: &Context) -> anyhow::Result<Goal> {
     let mut request = RenderRequest::default();
     request.options.threads = context.common.threads;
     let options = context.options(Needs::Everything, args.size);
-    let written = demo::demo(&args.out, &options, &request, context.common.overwrite)?;
+    let written = belvedere_gallery::demo(&args.out, &options, &request, context.common.overwrite)?;
     context.finish();
     if context.common.json {
         context.print(&done("demo", &written, &[]))?;
@@ -381,8 +387,8 @@ fn schema(args: &SchemaArgs, context: &Context) -> anyhow::Result<Goal> {
 fn measure_machine(args: &BenchArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[], context)?;
     let threads = context.common.threads;
-    let request = bench::BenchRequest { rounds: args.rounds, nodes: args.nodes, image: args.size, threads };
-    let report = bench::bench(&request, &context.progress)?;
+    let request = BenchRequest { rounds: args.rounds, nodes: args.nodes, image: args.size, threads };
+    let report = belvedere_bench::bench(&request, &context.progress)?;
     context.finish();
     let text = output::json(&report)?;
     match &args.out {

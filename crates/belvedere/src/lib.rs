@@ -9,17 +9,22 @@
 //! ```
 
 mod error;
-mod figures;
+mod overlays;
 pub mod provenance;
 mod resolve;
 pub mod scene_file;
 mod session;
 pub mod verbs;
 
+pub use belvedere_builtin as builtin;
+pub use belvedere_construct as construct;
 pub use belvedere_core as core;
+pub use belvedere_cpu as cpu;
+pub use belvedere_disocclusion as disocclusion;
+pub use belvedere_io as io;
 pub use belvedere_scene as scene;
 pub use error::BelvedereError;
-pub use figures::camera::CameraPicture;
+pub use overlays::camera::CameraPicture;
 pub use session::{Needs, OpenOptions, Session};
 
 /// Version of the program.

@@ -3,9 +3,9 @@
 use crate::BelvedereError;
 use crate::resolve;
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{self, Document, LayerDoc, PaletteDoc, PaletteName, SourceDocument};
+use crate::scene_file::{self, Document, LayerDoc, PaletteDoc, PaletteName, SourceDocument, StageDoc};
 use belvedere_core::View;
-use belvedere_disocclusion::TerrainReport;
+use belvedere_disocclusion::{TerrainReport, TerrainSettings};
 use belvedere_io::Limits;
 use belvedere_scene::{Light, Progress, Scene};
 use std::path::{Path, PathBuf};
@@ -118,6 +118,19 @@ impl Session {
     /// What the solver of terrain disocclusion came to; `None` if none ran.
     pub fn terrain_report(&self) -> Option<&TerrainReport> {
         self.terrain.as_ref()
+    }
+
+    /// Parameters of terrain disocclusion as the scene file states them, else the usual ones.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Usage`] with the parameter that is out of range.
+    pub fn terrain_settings(&self) -> Result<TerrainSettings, BelvedereError> {
+        let stated = self.source.document.stage.iter().find_map(|stage| match stage {
+            StageDoc::TerrainDisocclusion(doc) => Some(doc.clone()),
+            _ => None,
+        });
+        let settings = resolve::terrain::settings(&stated.unwrap_or_default());
+        settings.map_err(|(_, reason)| BelvedereError::Usage(reason))
     }
 
     /// What was odd: one sentence each.

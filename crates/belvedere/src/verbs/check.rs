@@ -122,7 +122,11 @@ pub fn schema_json() -> Result<String, BelvedereError> {
     pretty(&schemars::schema_for!(Document))
 }
 
-pub(crate) fn pretty<T: Serialize>(value: &T) -> Result<String, BelvedereError> {
+/// `value` as indented JSON that ends in a newline.
+///
+/// # Errors
+/// As [`document_toml`].
+pub fn pretty<T: Serialize>(value: &T) -> Result<String, BelvedereError> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|e| BelvedereError::Usage(format!("the document cannot be written as JSON: {e}")))?;
     Ok(text + "\n")

@@ -2,7 +2,7 @@
 
 use super::buffers;
 use super::output;
-use crate::figures::{badge, camera, ghost, grid, heat, thin};
+use crate::overlays::{badge, camera, ghost, grid, heat, thin};
 use crate::provenance::{self, InputFile};
 use crate::scene_file::{StageDoc, SwitchOrLength};
 use crate::{BelvedereError, CameraPicture, Session};

@@ -1,12 +1,11 @@
 //! What the steps cost, for as many points as the paper had.
 
 use super::area::Area;
-use super::chart::{self, Chart, Corner, Curve, Look};
-use super::sheet::Pixels;
-use crate::BelvedereError;
-use belvedere_core::DVec2;
-use belvedere_disocclusion::DisocclusionError;
-use belvedere_disocclusion::{
+use crate::chart::{self, Chart, Corner, Curve, Look};
+use crate::sheet::Pixels;
+use anyhow::Result;
+use belvedere::core::DVec2;
+use belvedere::disocclusion::{
     Cells, Hierarchy, Naive, ReferencePoint, SmoothPass, SolverMode, TerrainSettings, Wedge, in_view, reference_points,
     stated_spacing,
 };
@@ -14,45 +13,45 @@ use serde::Serialize;
 use std::time::Instant;
 
 /// Points in view, and milliseconds for lines of sight and parameters, of the six examples of Deng et al. 2013.
-pub(super) const PAPER: [(usize, f64); 6] =
+pub(crate) const PAPER: [(usize, f64); 6] =
     [(195, 2.0), (202, 3.0), (513, 12.0), (560, 14.0), (660, 14.0), (670, 14.0)];
 /// The paper's cells and the milliseconds for them.
-pub(super) const PAPER_CELLS: (usize, f64) = (651, 1570.0);
+pub(crate) const PAPER_CELLS: (usize, f64) = (651, 1570.0);
 /// The paper's unknowns, and milliseconds of a solution per frame.
-pub(super) const PAPER_SOLVE: (usize, f64) = (16_641, 30.0);
+pub(crate) const PAPER_SOLVE: (usize, f64) = (16_641, 30.0);
 /// Times are medians of so many runs.
 const RUNS: usize = 5;
 
 /// Times of one area, wall milliseconds.
 #[derive(Debug, Clone, Serialize)]
-pub(super) struct Timing {
+pub(crate) struct Timing {
     /// Nodes of the terrain.
-    pub(super) nodes: [usize; 2],
-    pub(super) cells: usize,
+    pub(crate) nodes: [usize; 2],
+    pub(crate) cells: usize,
     /// Cells and their tables.
-    pub(super) cells_ms: f64,
+    pub(crate) cells_ms: f64,
     /// Unknowns of the smooth pass.
-    pub(super) unknowns: usize,
+    pub(crate) unknowns: usize,
     /// Preparing the smooth pass: no matrix is built or factorised.
-    pub(super) prepare_ms: f64,
+    pub(crate) prepare_ms: f64,
     /// One solution of the smooth pass, elevation rows included.
-    pub(super) solve_ms: f64,
+    pub(crate) solve_ms: f64,
     /// Greedy pass for as many points as the paper had; fewer lines if the features have not as many.
-    pub(super) greedy: Vec<GreedyTime>,
+    pub(crate) greedy: Vec<GreedyTime>,
     /// Fitted: greedy time grows like this power of the points.
-    pub(super) exponent: Option<f64>,
+    pub(crate) exponent: Option<f64>,
 }
 
 /// Lines of sight and parameters of some points.
 #[derive(Debug, Clone, Copy, Serialize)]
-pub(super) struct GreedyTime {
-    pub(super) points: usize,
-    pub(super) ms: f64,
-    pub(super) paper_ms: f64,
+pub(crate) struct GreedyTime {
+    pub(crate) points: usize,
+    pub(crate) ms: f64,
+    pub(crate) paper_ms: f64,
 }
 
 /// Measures an area.
-pub(super) fn timing(area: &Area) -> Result<Timing, BelvedereError> {
+pub(crate) fn timing(area: &Area) -> Result<Timing> {
     let (field, settings) = (&area.field, area.in_mode(SolverMode::Paper));
     let cells_ms = median(|| drop(Cells::new(field, area.cells.len())));
     let w = settings.smoothness(stated_spacing(field.cols(), field.rows(), field.spacing()));
@@ -62,7 +61,7 @@ pub(super) fn timing(area: &Area) -> Result<Timing, BelvedereError> {
     let hierarchy = Hierarchy::new(field.cols(), field.rows(), nodes);
     let unknowns = hierarchy.nodes();
     let rows: Vec<DVec2> = area.points.iter().map(|p| p.grid).chain(summits(area)).collect();
-    let mut pass = SmoothPass::new(hierarchy, w, settings.rows_weight, &rows).map_err(DisocclusionError::from)?;
+    let mut pass = SmoothPass::new(hierarchy, w, settings.rows_weight, &rows)?;
     let prepare_ms = since(began);
     let naive = area.naive(&settings).displacement(field, &area.cells);
     let solve_ms = median(|| drop(pass.run(&naive, None, None)));
@@ -80,7 +79,7 @@ pub(super) fn timing(area: &Area) -> Result<Timing, BelvedereError> {
 }
 
 /// Time against points, the paper's beside ours.
-pub(super) fn plot(timing: &Timing) -> Result<Option<Pixels>, BelvedereError> {
+pub(crate) fn plot(timing: &Timing) -> Result<Option<Pixels>> {
     if timing.greedy.is_empty() {
         return Ok(None);
     }

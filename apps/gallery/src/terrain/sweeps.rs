@@ -3,9 +3,9 @@
 use super::TILE;
 use super::area::Area;
 use super::pictures::figures;
-use super::sheet::{Panel, Pixels, sheet};
-use crate::BelvedereError;
-use belvedere_disocclusion::{SolverMode, TerrainReport, TerrainSettings};
+use crate::sheet::{Panel, Pixels, sheet};
+use anyhow::Result;
+use belvedere::disocclusion::{SolverMode, TerrainReport, TerrainSettings};
 use serde::Serialize;
 
 const W: [f64; 5] = [0.1, 0.6, 1.0, 10.0, 100.0];
@@ -13,18 +13,18 @@ const ETA: [f64; 5] = [0.0, 0.1, 1.0, 5.0, 10.0];
 
 /// One value of a sweep and what it leads to.
 #[derive(Debug, Clone, Serialize)]
-pub(super) struct Trial {
-    pub(super) value: f64,
-    pub(super) report: TerrainReport,
+pub(crate) struct Trial {
+    pub(crate) value: f64,
+    pub(crate) report: TerrainReport,
 }
 
 /// Sheet and figures over w, 0.1..=100.
-pub(super) fn over_w(area: &Area) -> Result<(Pixels, Vec<Trial>), BelvedereError> {
+pub(crate) fn over_w(area: &Area) -> Result<(Pixels, Vec<Trial>)> {
     sweep(area, "w", &W, |settings, w| settings.w = Some(w))
 }
 
 /// Sheet and figures over eta, 0..=10.
-pub(super) fn over_eta(area: &Area) -> Result<(Pixels, Vec<Trial>), BelvedereError> {
+pub(crate) fn over_eta(area: &Area) -> Result<(Pixels, Vec<Trial>)> {
     sweep(area, "eta", &ETA, |settings, eta| settings.eta = eta)
 }
 
@@ -33,7 +33,7 @@ fn sweep(
     name: &str,
     values: &[f64],
     set: impl Fn(&mut TerrainSettings, f64),
-) -> Result<(Pixels, Vec<Trial>), BelvedereError> {
+) -> Result<(Pixels, Vec<Trial>)> {
     let scene = area.session.scene();
     let note = format!("{} points in view", area.points.len());
     let mut panels = vec![Panel { title: "Perspective".into(), note, frame: area.draw(scene, None, TILE)? }];

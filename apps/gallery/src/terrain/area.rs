@@ -1,53 +1,46 @@
 //! A mountain area of the figures: a scene, its camera, and everything of the solver that is made once.
 
-use crate::resolve::terrain as intent;
-use crate::scene_file::StageDoc;
-use crate::{BelvedereError, OpenOptions, Session};
-use belvedere_core::grid::Grid;
-use belvedere_core::{DVec3, Pinhole, Stage, TerrainDisocclusion, View};
-use belvedere_cpu::CpuRenderer;
-use belvedere_disocclusion::DisocclusionError;
-use belvedere_disocclusion::{
+use anyhow::{Context, Result};
+use belvedere::core::grid::Grid;
+use belvedere::core::{DVec3, Pinhole, Stage, TerrainDisocclusion, View};
+use belvedere::cpu::CpuRenderer;
+use belvedere::disocclusion::{
     Blocks, Cells, Field, Naive, ReferencePoint, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver,
     Wedge, in_view, reference_points,
 };
-use belvedere_scene::{Frame, Progress, RenderJob, RenderOptions, Renderer, Scene};
+use belvedere::scene::{Frame, Progress, RenderJob, RenderOptions, Renderer, Scene};
+use belvedere::{OpenOptions, Session};
 use std::path::{Path, PathBuf};
 
 /// An area and what is known of it before anything is solved.
-pub(super) struct Area {
+pub(crate) struct Area {
     /// Start of the names of its files.
-    pub(super) name: String,
-    pub(super) session: Session,
+    pub(crate) name: String,
+    pub(crate) session: Session,
     /// The camera, without any bend.
-    pub(super) view: View,
+    pub(crate) view: View,
     /// Parameters of the scene's stage, else the usual ones.
-    pub(super) settings: TerrainSettings,
-    pub(super) field: Field,
-    pub(super) cells: Cells,
-    pub(super) blocks: Blocks,
+    pub(crate) settings: TerrainSettings,
+    pub(crate) field: Field,
+    pub(crate) cells: Cells,
+    pub(crate) blocks: Blocks,
     /// Reference points in view.
-    pub(super) points: Vec<ReferencePoint>,
-    pub(super) progress: Progress,
+    pub(crate) points: Vec<ReferencePoint>,
+    pub(crate) progress: Progress,
 }
 
 impl Area {
     /// Opens a scene; of its stages only the parameters of terrain disocclusion count.
-    pub(super) fn open(path: &Path, text: Option<&str>, options: &OpenOptions) -> Result<Self, BelvedereError> {
+    pub(crate) fn open(path: &Path, text: Option<&str>, options: &OpenOptions) -> Result<Self> {
         let options = OpenOptions { unsolved: true, ..options.clone() };
         let session = match text {
-            Some(text) => Session { inputs: Vec::new(), ..Session::from_text(path, text, &options)? },
+            Some(text) => Session::from_text(path, text, &options)?,
             None => Session::open(path, &options)?,
         };
         // As stated: the resolved document holds defaults of its own mode, and other modes have others.
-        let asked = session.source.document.stage.iter().find_map(|stage| match stage {
-            StageDoc::TerrainDisocclusion(doc) => Some(doc.clone()),
-            _ => None,
-        });
-        let settings = intent::settings(&asked.unwrap_or_default());
-        let settings = settings.map_err(|(_, reason)| BelvedereError::Usage(reason))?;
-        let terrain = session.scene().terrain().ok_or(DisocclusionError::NoTerrain)?;
-        let field = Field::new(terrain, |_| 0.0).map_err(DisocclusionError::from)?;
+        let settings = session.terrain_settings()?;
+        let terrain = session.scene().terrain().context("the scene has no terrain; add a layer of kind \"terrain\"")?;
+        let field = Field::new(terrain, |_| 0.0)?;
         let cells = Cells::new(&field, settings.cells.unwrap_or_else(|| Cells::default_count(&field)));
         let view = View::straight(session.view().pinhole().clone());
         let name = path.file_stem().map_or_else(|| "area".into(), |s| s.to_string_lossy().into_owned());
@@ -58,44 +51,38 @@ impl Area {
     }
 
     /// The settings of the area in another mode.
-    pub(super) fn in_mode(&self, mode: SolverMode) -> TerrainSettings {
+    pub(crate) fn in_mode(&self, mode: SolverMode) -> TerrainSettings {
         TerrainSettings { mode, ..self.settings.clone() }
     }
 
     /// Solves for a still from the camera, or from another eye with the same direction of view.
-    pub(super) fn solve(&self, settings: &TerrainSettings, view: &View) -> Result<Solved, BelvedereError> {
+    pub(crate) fn solve(&self, settings: &TerrainSettings, view: &View) -> Result<Solved> {
         let solver = TerrainSolver::new(settings.clone())?;
         Ok(solver.solve(self.session.scene(), view, &mut TerrainMemory::default(), &self.progress)?)
     }
 
     /// The greedy pass alone, on the points in view.
-    pub(super) fn naive(&self, settings: &TerrainSettings) -> Naive {
+    pub(crate) fn naive(&self, settings: &TerrainSettings) -> Naive {
         Naive::new(&self.field, &self.cells, &self.blocks, settings, self.eye(), &self.points)
     }
 
     /// The ground as the greedy pass leaves it.
-    pub(super) fn naive_stage(&self, naive: &Naive) -> Result<TerrainDisocclusion, BelvedereError> {
+    pub(crate) fn naive_stage(&self, naive: &Naive) -> Result<TerrainDisocclusion> {
         let f = &self.field;
         let values = naive.displacement(f, &self.cells);
-        let grid =
-            Grid::new(f.north_west(), f.spacing(), f.cols(), f.rows(), values).map_err(DisocclusionError::from)?;
+        let grid = Grid::new(f.north_west(), f.spacing(), f.cols(), f.rows(), values)?;
         Ok(TerrainDisocclusion::new(grid))
     }
 
-    pub(super) fn eye(&self) -> DVec3 {
+    pub(crate) fn eye(&self) -> DVec3 {
         self.view.pinhole().eye
     }
 
     /// Draws the scene, or another version of it, with the ground displaced.
-    pub(super) fn draw(
-        &self,
-        scene: &Scene,
-        stage: Option<&TerrainDisocclusion>,
-        size: [u32; 2],
-    ) -> Result<Frame, BelvedereError> {
+    pub(crate) fn draw(&self, scene: &Scene, stage: Option<&TerrainDisocclusion>, size: [u32; 2]) -> Result<Frame> {
         let pinhole = Pinhole { image: size, ..self.view.pinhole().clone() };
         let stages = stage.map(|s| Stage::TerrainDisocclusion(s.clone())).into_iter().collect();
-        let view = View::new(pinhole, stages).map_err(|e| BelvedereError::Usage(e.to_string()))?;
+        let view = View::new(pinhole, stages)?;
         let options = RenderOptions::default();
         let (light, progress) = (self.session.light(), &self.progress);
         Ok(CpuRenderer.render(&RenderJob { scene, view: &view, light, options: &options, progress })?)
@@ -103,7 +90,7 @@ impl Area {
 }
 
 /// Path of a picture of an area.
-pub(super) fn picture(folder: &Path, name: &str, what: &str) -> PathBuf {
+pub(crate) fn picture(folder: &Path, name: &str, what: &str) -> PathBuf {
     folder.join(format!("{name}_{what}.png"))
 }
 

@@ -1,19 +1,19 @@
 //! What a picture of a flight over terrain that makes way costs: solved for every picture, and solved beside the drawing.
 
-use super::bench::{broken, ground, median};
-use crate::BelvedereError;
-use belvedere_builtin::valley_route;
-use belvedere_construct::{Flight, FlightOptions};
-use belvedere_core::{Pinhole, Projection, Stage, View};
-use belvedere_cpu::CpuRenderer;
-use belvedere_disocclusion::{LiveTerrain, TerrainMemory, TerrainSettings, TerrainSolver};
-use belvedere_scene::{
+use crate::clock::{Stopwatch, median, quantile};
+use crate::scene::ground;
+use anyhow::Result;
+use belvedere::builtin::valley_route;
+use belvedere::construct::{Flight, FlightOptions};
+use belvedere::core::{DVec3, Pinhole, Projection, Stage, View};
+use belvedere::cpu::CpuRenderer;
+use belvedere::disocclusion::{LiveTerrain, TerrainMemory, TerrainSettings, TerrainSolver};
+use belvedere::scene::{
     Color, Frame, Layer, LayerKind, Light, LineFeature, LineLayer, Progress, RenderJob, RenderOptions, Renderer, Scene,
     drape_polyline,
 };
 use serde::Serialize;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Pictures per second, and how far the walker comes from one to the next, metres.
 const RATE: f64 = 25.0;
@@ -39,19 +39,19 @@ pub struct FlightCost {
 }
 
 /// Flies both ways over ground of `nodes` x `nodes` nodes.
-pub(super) fn fly(nodes: usize, image: [u32; 2], pictures: usize) -> Result<Vec<FlightCost>, BelvedereError> {
+pub(crate) fn fly(nodes: usize, image: [u32; 2], pictures: usize) -> Result<Vec<FlightCost>> {
     let scene = Arc::new(with_route(ground(nodes)?)?);
     let views = views(&scene, image, pictures + 1)?;
-    let solver = TerrainSolver::new(TerrainSettings::default()).map_err(broken)?.with_time_step(1.0 / RATE);
+    let solver = TerrainSolver::new(TerrainSettings::default())?.with_time_step(1.0 / RATE);
     let mut memory = TerrainMemory::default();
     let each = time("solved and judged for every picture", &scene, &views, |view| {
-        let solved = solver.solve(&scene, view, &mut memory, &Progress::silent()).map_err(broken)?;
+        let solved = solver.solve(&scene, view, &mut memory, &Progress::silent())?;
         let hidden = 1.0 - solved.report.metrics.visible;
         Ok(Ground { stage: Stage::TerrainDisocclusion(solved.stage), points: solved.report.points, lag: 0, hidden })
     })?;
     let mut live = LiveTerrain::new(solver.clone(), scene.clone());
     let beside = time("solved beside the drawing", &scene, &views, |view| {
-        let frame = live.frame(view).map_err(broken)?;
+        let frame = live.frame(view)?;
         let hidden = frame.hidden as f64 / frame.points.max(1) as f64;
         Ok(Ground { stage: Stage::TerrainDisocclusion(frame.stage), points: frame.points, lag: frame.lag, hidden })
     })?;
@@ -70,43 +70,36 @@ fn time(
     way: &'static str,
     scene: &Scene,
     views: &[View],
-    mut ground: impl FnMut(&View) -> Result<Ground, BelvedereError>,
-) -> Result<FlightCost, BelvedereError> {
+    mut ground: impl FnMut(&View) -> Result<Ground>,
+) -> Result<FlightCost> {
     let options = RenderOptions { samples: 1, lod_px: 0.5, ..RenderOptions::default() };
     let (light, progress, mut frame) = (Light::default(), Progress::silent(), Frame::default());
     let (mut waits, mut wholes, mut points, mut lag, mut hidden) = (Vec::new(), Vec::new(), 0, 0, 0.0f64);
     for (k, view) in views.iter().enumerate() {
-        let began = Instant::now();
+        let watch = Stopwatch::start();
         let made = ground(view)?;
-        let wait = began.elapsed();
-        let bent = View::new(view.pinhole().clone(), vec![made.stage]).map_err(broken)?;
+        let ground_ms = watch.wall_ms();
+        let bent = View::new(view.pinhole().clone(), vec![made.stage])?;
         let job = RenderJob { scene, view: &bent, light: &light, options: &options, progress: &progress };
         CpuRenderer.render_into(&job, &mut frame)?;
         if k > 0 {
-            waits.push(wait.as_secs_f64() * 1e3);
-            wholes.push(began.elapsed().as_secs_f64() * 1e3);
+            waits.push(ground_ms);
+            wholes.push(watch.wall_ms());
             points += made.points;
             lag = lag.max(made.lag);
             hidden = hidden.max(made.hidden);
         }
     }
     let pictures = waits.len();
-    let both = |times: Vec<f64>| [median(times.clone()), most(times, 0.95)];
+    let both = |times: Vec<f64>| [median(times.clone()), quantile(times, 0.95)];
     let points = points as f64 / pictures.max(1) as f64;
     Ok(FlightCost { way, pictures, points, ground_ms: both(waits), picture_ms: both(wholes), lag, hidden })
 }
 
-/// The value that `share` of all values do not exceed.
-fn most(mut values: Vec<f64>, share: f64) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let last = values.len().saturating_sub(1);
-    values.get((last as f64 * share).ceil() as usize).copied().unwrap_or(0.0)
-}
-
 /// A route along the valleys that must be seen.
-fn with_route(mut scene: Scene) -> Result<Scene, BelvedereError> {
+fn with_route(mut scene: Scene) -> Result<Scene> {
     let Some(terrain) = scene.terrain() else { return Ok(scene) };
-    let way = valley_route(terrain, 7).map_err(broken)?;
+    let way = valley_route(terrain, 7)?;
     let feature = |points| LineFeature { name: "route".into(), points };
     let features = drape_polyline(terrain, &way).parts.into_iter().map(feature).collect();
     let line = LineLayer::new(features, Color::rgb(215, 48, 31));
@@ -114,20 +107,18 @@ fn with_route(mut scene: Scene) -> Result<Scene, BelvedereError> {
     Ok(scene)
 }
 
-fn views(scene: &Scene, image: [u32; 2], pictures: usize) -> Result<Vec<View>, BelvedereError> {
+fn views(scene: &Scene, image: [u32; 2], pictures: usize) -> Result<Vec<View>> {
     let lines = scene.layers.iter().filter_map(|l| match &l.kind {
         LayerKind::Line(line) => line.features.first(),
         _ => None,
     });
     let route: Vec<_> = lines.flat_map(|f| f.points.iter().map(|p| p.truncate())).collect();
     let length: f64 = route.windows(2).map(|p| p[0].distance(p[1])).sum();
-    let flight = Flight::along(&route, scene.terrain(), &FlightOptions::for_length(length)).map_err(broken)?;
+    let flight = Flight::along(&route, scene.terrain(), &FlightOptions::for_length(length))?;
     let lens = Projection::Perspective { fov_y: 45f64.to_radians() };
     let view = |k: usize| {
         let (eye, target) = flight.at(STEP_M * k as f64);
-        Pinhole::look_at(eye, target, belvedere_core::DVec3::Z, lens, image, 1.0, None)
-            .map(View::straight)
-            .map_err(broken)
+        Pinhole::look_at(eye, target, DVec3::Z, lens, image, 1.0, None).map(View::straight)
     };
-    (0..pictures).map(view).collect()
+    Ok((0..pictures).map(view).collect::<Result<_, _>>()?)
 }

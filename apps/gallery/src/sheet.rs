@@ -1,29 +1,29 @@
 //! Pictures of one size in rows, a caption of two lines under each.
 
-use crate::figures::INK;
-use belvedere_core::DVec2;
-use belvedere_cpu::canvas::Canvas;
-use belvedere_scene::{Color, Frame};
+use belvedere::core::DVec2;
+use belvedere::cpu::canvas::Canvas;
+use belvedere::scene::{Color, Frame};
 
 /// Between pictures, pixels.
 const GAP: usize = 10;
 /// Height of a caption, pixels.
 const CAPTION: usize = 48;
+const INK: Color = Color::rgb(38, 44, 54);
 const GREY: Color = Color::rgb(96, 102, 112);
 
 /// Width, height, and pixels row by row.
-pub(super) type Pixels = (usize, usize, Vec<[u8; 3]>);
+pub(crate) type Pixels = (usize, usize, Vec<[u8; 3]>);
 
 /// A picture of a sheet.
-pub(super) struct Panel {
-    pub(super) title: String,
+pub(crate) struct Panel {
+    pub(crate) title: String,
     /// Second line of the caption.
-    pub(super) note: String,
-    pub(super) frame: Frame,
+    pub(crate) note: String,
+    pub(crate) frame: Frame,
 }
 
 /// Lays out panels, `columns` to a row.
-pub(super) fn sheet(panels: &[Panel], columns: usize) -> Pixels {
+pub(crate) fn sheet(panels: &[Panel], columns: usize) -> Pixels {
     let Some(first) = panels.first() else { return (0, 0, Vec::new()) };
     let (w, h) = (first.frame.width, first.frame.height);
     let columns = columns.clamp(1, panels.len());

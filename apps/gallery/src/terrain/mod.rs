@@ -1,25 +1,24 @@
-//! `figures`: the figures and tables of the papers, drawn again on open data.
+//! `figures terrain`: the figures and tables of Deng et al. 2013, drawn again on open data.
 
 mod area;
 mod cells;
-mod chart;
 mod eyes;
 mod page;
 mod pictures;
 mod profile;
-mod sheet;
 mod sweeps;
 mod timing;
 
-use super::check::pretty;
-use super::output;
-use crate::{BelvedereError, OpenOptions};
+use crate::sheet::Pixels;
+use anyhow::{Context, Result, bail};
 use area::Area;
-use belvedere_disocclusion::TerrainReport;
-use belvedere_io::png::{self, Channels};
+use belvedere::OpenOptions;
+use belvedere::disocclusion::TerrainReport;
+use belvedere::io::png::{self, Channels};
+use belvedere::verbs::check::pretty;
+use belvedere::verbs::output;
 use pictures::Solutions;
 use serde::Serialize;
-use sheet::Pixels;
 use std::path::{Path, PathBuf};
 
 /// Size of the two pictures side by side, pixels.
@@ -29,8 +28,8 @@ const TILE: [u32; 2] = [640, 360];
 
 /// Areas that are drawn if no scene is given; they need no files.
 const BUILTIN: [(&str, &str); 2] = [
-    ("massif_terrain", include_str!("../../../../../scenes/massif_terrain.toml")),
-    ("massif_lake_terrain", include_str!("../../../../../scenes/massif_lake_terrain.toml")),
+    ("massif_terrain", include_str!("../../../../scenes/massif_terrain.toml")),
+    ("massif_lake_terrain", include_str!("../../../../scenes/massif_lake_terrain.toml")),
 ];
 
 /// What one area comes to.
@@ -51,14 +50,9 @@ struct AreaRecord {
 /// if there are none): pictures, `figures.json` with every report, and `index.html`. Returns the files.
 ///
 /// # Errors
-/// [`BelvedereError::Io`] if a file exists and `overwrite` is false; those of opening, solving and drawing a scene.
-pub fn terrain(
-    folder: &Path,
-    scenes: &[PathBuf],
-    options: &OpenOptions,
-    overwrite: bool,
-) -> Result<Vec<PathBuf>, BelvedereError> {
-    std::fs::create_dir_all(folder).map_err(|e| belvedere_io::IoError::os(folder, e))?;
+/// A file that exists if `overwrite` is false; those of opening, solving and drawing a scene.
+pub fn figures(folder: &Path, scenes: &[PathBuf], options: &OpenOptions, overwrite: bool) -> Result<Vec<PathBuf>> {
+    std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let (page, record) = (folder.join("index.html"), folder.join("figures.json"));
     output::check(&page, scenes, overwrite)?;
     output::check(&record, scenes, overwrite)?;
@@ -69,9 +63,7 @@ pub fn terrain(
     names.sort();
     if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {
         let name = twice[0].to_string_lossy();
-        return Err(BelvedereError::Usage(format!(
-            "two scenes are called {name}, and so would their pictures; rename one"
-        )));
+        bail!("two scenes are called {name}, and so would their pictures; rename one");
     }
     for (name, what) in names.iter().flat_map(|name| PICTURES.map(|what| (name, what))) {
         output::check(&area::picture(folder, &name.to_string_lossy(), what), scenes, overwrite)?;
@@ -90,17 +82,12 @@ pub fn terrain(
 /// What pictures of an area show.
 const PICTURES: [&str; 6] = ["pair", "steps", "profile", "w", "eta", "times"];
 
-fn figures_of(
-    area: &Area,
-    folder: &Path,
-    overwrite: bool,
-    written: &mut Vec<PathBuf>,
-) -> Result<AreaRecord, BelvedereError> {
+fn figures_of(area: &Area, folder: &Path, overwrite: bool, written: &mut Vec<PathBuf>) -> Result<AreaRecord> {
     let mut pictures = Vec::new();
-    let mut keep = |what: &str, pixels: Pixels| -> Result<(), BelvedereError> {
+    let mut keep = |what: &str, pixels: Pixels| -> Result<()> {
         let path = area::picture(folder, &area.name, what);
         let (width, height, pixels) = pixels;
-        let text = [("Software", format!("belvedere {}", crate::VERSION)), ("Comment", NOTE.to_owned())];
+        let text = [("Software", format!("belvedere {}", belvedere::VERSION)), ("Comment", NOTE.to_owned())];
         let text = text.each_ref().map(|(k, v)| (*k, v.as_str()));
         png::write(&path, overwrite, width, height, Channels::Rgb, pixels.as_flattened(), &text)?;
         pictures.extend(path.file_name().map(|n| n.to_string_lossy().into_owned()));

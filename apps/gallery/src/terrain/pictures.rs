@@ -1,29 +1,29 @@
 //! Perspective beside occlusion-free, and the way from one to the other: cells, naive ground, final ground.
 
 use super::area::Area;
-use super::sheet::{Panel, Pixels, sheet};
 use super::{PAIR, TILE};
-use crate::BelvedereError;
-use belvedere_core::TerrainDisocclusion;
-use belvedere_disocclusion::{Solved, SolverMode, TerrainReport};
-use belvedere_scene::Scene;
+use crate::sheet::{Panel, Pixels, sheet};
+use anyhow::Result;
+use belvedere::core::TerrainDisocclusion;
+use belvedere::disocclusion::{Solved, SolverMode, TerrainReport};
+use belvedere::scene::Scene;
 
 /// Solutions of the area's own parameters that several figures share.
-pub(super) struct Solutions {
-    pub(super) paper: Solved,
-    pub(super) paper_qp: Solved,
-    pub(super) qp: Solved,
+pub(crate) struct Solutions {
+    pub(crate) paper: Solved,
+    pub(crate) paper_qp: Solved,
+    pub(crate) qp: Solved,
 }
 
 impl Solutions {
-    pub(super) fn of(area: &Area) -> Result<Self, BelvedereError> {
+    pub(crate) fn of(area: &Area) -> Result<Self> {
         let solve = |mode| area.solve(&area.in_mode(mode), &area.view);
         Ok(Self { paper: solve(SolverMode::Paper)?, paper_qp: solve(SolverMode::PaperQp)?, qp: solve(SolverMode::Qp)? })
     }
 }
 
 /// Perspective on the left, occlusion-free on the right.
-pub(super) fn pair(area: &Area, solutions: &Solutions) -> Result<Pixels, BelvedereError> {
+pub(crate) fn pair(area: &Area, solutions: &Solutions) -> Result<Pixels> {
     let (scene, solved) = (area.session.scene(), &solutions.qp);
     let r = &solved.report;
     let before = Panel {
@@ -44,13 +44,13 @@ pub(super) fn pair(area: &Area, solutions: &Solutions) -> Result<Pixels, Belvede
 }
 
 /// Perspective, cells, naive ground, and what the three modes end with.
-pub(super) fn steps(area: &Area, solutions: &Solutions) -> Result<Pixels, BelvedereError> {
+pub(crate) fn steps(area: &Area, solutions: &Solutions) -> Result<Pixels> {
     let scene = area.session.scene();
     let settings = area.in_mode(SolverMode::Paper);
     let naive = area.naive(&settings);
     let counters = naive.counters();
     let draw = |scene: &Scene, stage: Option<&TerrainDisocclusion>| area.draw(scene, stage, TILE);
-    let ending = |title: &str, solved: &Solved| -> Result<Panel, BelvedereError> {
+    let ending = |title: &str, solved: &Solved| -> Result<Panel> {
         Ok(Panel { title: title.into(), note: figures(&solved.report), frame: draw(scene, Some(&solved.stage))? })
     };
     let panels = [
@@ -81,7 +81,7 @@ pub(super) fn steps(area: &Area, solutions: &Solutions) -> Result<Pixels, Belved
 }
 
 /// The figures of a solution that fit under a picture.
-pub(super) fn figures(r: &TerrainReport) -> String {
+pub(crate) fn figures(r: &TerrainReport) -> String {
     format!(
         "visible {}, moved {:.0} m rms, 99.9 % of steps below {:.0} m",
         percent(r.metrics.visible),
@@ -90,6 +90,6 @@ pub(super) fn figures(r: &TerrainReport) -> String {
     )
 }
 
-pub(super) fn percent(share: f64) -> String {
+pub(crate) fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
 }

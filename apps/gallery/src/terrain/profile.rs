@@ -1,17 +1,17 @@
 //! The ground along the line of sight that is hidden most, before and after.
 
 use super::area::Area;
-use super::chart::{self, Chart, Corner, Curve, Look};
-use super::sheet::Pixels;
-use crate::BelvedereError;
-use belvedere_core::DVec2;
-use belvedere_disocclusion::{ReferencePoint, Solved};
+use crate::chart::{self, Chart, Corner, Curve, Look};
+use crate::sheet::Pixels;
+use anyhow::Result;
+use belvedere::core::DVec2;
+use belvedere::disocclusion::{ReferencePoint, Solved};
 
 /// Places along the line, besides its ends.
 const PLACES: usize = 1200;
 
 /// The chart, or `None` if nothing is in view.
-pub(super) fn profile(area: &Area, solved: &Solved) -> Result<Option<Pixels>, BelvedereError> {
+pub(crate) fn profile(area: &Area, solved: &Solved) -> Result<Option<Pixels>> {
     let Some(point) = worst(area) else { return Ok(None) };
     let field = &area.field;
     let eye = area.eye();
@@ -51,8 +51,8 @@ fn worst(area: &Area) -> Option<&ReferencePoint> {
     let to = field.grid_from_scene(eye.truncate());
     let mut samples = Vec::new();
     let mut excess = |p: &ReferencePoint| {
-        belvedere_disocclusion::sight_samples(field, p.grid, to, true, &mut samples);
-        let guard = belvedere_disocclusion::guard_tau(p.grid, to, area.settings.guard);
+        belvedere::disocclusion::sight_samples(field, p.grid, to, true, &mut samples);
+        let guard = belvedere::disocclusion::guard_tau(p.grid, to, area.settings.guard);
         let from = p.ground + p.lift;
         let over =
             samples.iter().filter(|s| s.tau > guard).map(|s| s.of(field.heights()) - (from + s.tau * (eye.z - from)));

@@ -3,8 +3,8 @@
 use super::AreaRecord;
 use super::eyes::EyeRow;
 use super::timing::{PAPER_CELLS, PAPER_SOLVE, Timing};
-use crate::verbs::html::{STYLE, escape};
-use belvedere_disocclusion::{SolverMode, TerrainReport};
+use crate::html::{STYLE, escape};
+use belvedere::disocclusion::{SolverMode, TerrainReport};
 use std::fmt::Write;
 
 const TABLES: &str = "table{border-collapse:collapse;margin:.6rem 0 1.4rem;font-size:.9rem}td,th{padding:.2rem .7rem;\
@@ -20,7 +20,7 @@ const CAPTIONS: [(&str, &str); 6] = [
     ("times", "Time of the greedy pass against reference points."),
 ];
 
-pub(super) fn page(records: &[AreaRecord]) -> String {
+pub(crate) fn page(records: &[AreaRecord]) -> String {
     let mut sections = String::new();
     for record in records {
         sections += &section(record);
@@ -33,7 +33,7 @@ pub(super) fn page(records: &[AreaRecord]) -> String {
          elevation models and routes are not public, so kinds and trends can be compared, not single values. Displaced ground is \
          not to scale and not for navigation. Every figure is in <a href=\"figures.json\">figures.json</a>.</p>\n\
          {sections}<p class=\"small\">belvedere {}</p>\n</body>\n</html>\n",
-        crate::VERSION
+        belvedere::VERSION
     )
 }
 

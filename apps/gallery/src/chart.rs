@@ -1,11 +1,10 @@
 //! Charts with axes and a legend.
 
-use super::sheet::Pixels;
-use crate::BelvedereError;
-use belvedere_cpu::canvas;
+use crate::sheet::Pixels;
+use anyhow::{Result, anyhow};
+use belvedere::cpu::canvas;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
-use std::sync::Once;
 
 const WIDTH: u32 = 1280;
 const HEIGHT: u32 = 560;
@@ -13,7 +12,7 @@ const LETTERS: &str = "sans-serif";
 
 /// How a curve is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Look {
+pub(crate) enum Look {
     /// Filled down to the axis.
     Ground,
     Line,
@@ -23,13 +22,13 @@ pub(super) enum Look {
 
 /// An upper corner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Corner {
+pub(crate) enum Corner {
     Left,
     Right,
 }
 
 /// Values of one kind.
-pub(super) struct Curve {
+pub(crate) struct Curve {
     name: String,
     points: Vec<(f64, f64)>,
     color: RGBColor,
@@ -37,31 +36,26 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    pub(super) fn new(name: &str, points: Vec<(f64, f64)>, [r, g, b]: [u8; 3], look: Look) -> Self {
+    pub(crate) fn new(name: &str, points: Vec<(f64, f64)>, [r, g, b]: [u8; 3], look: Look) -> Self {
         Self { name: name.into(), points, color: RGBColor(r, g, b), look }
     }
 }
 
 /// A chart.
-pub(super) struct Chart {
-    pub(super) title: String,
-    pub(super) x: String,
-    pub(super) y: String,
+pub(crate) struct Chart {
+    pub(crate) title: String,
+    pub(crate) x: String,
+    pub(crate) y: String,
     /// Where the names of the curves stand.
-    pub(super) names: Corner,
-    pub(super) curves: Vec<Curve>,
+    pub(crate) names: Corner,
+    pub(crate) curves: Vec<Curve>,
 }
 
 /// The chart as a picture.
-pub(super) fn draw(chart: &Chart) -> Result<Pixels, BelvedereError> {
-    static FONT: Once = Once::new();
-    FONT.call_once(|| {
-        // Charts without letters would still show their curves.
-        let _ = register_font(LETTERS, FontStyle::Normal, canvas::FONT_BYTES);
-    });
+pub(crate) fn draw(chart: &Chart) -> Result<Pixels> {
+    register_font(LETTERS, FontStyle::Normal, canvas::FONT_BYTES).map_err(|_| anyhow!("the font cannot be read"))?;
     let mut bytes = vec![255u8; (WIDTH * HEIGHT * 3) as usize];
-    plot(chart, &mut bytes)
-        .map_err(|e| BelvedereError::Usage(format!("the chart \"{}\" cannot be drawn: {e}", chart.title)))?;
+    plot(chart, &mut bytes).map_err(|e| anyhow!("the chart \"{}\" cannot be drawn: {e}", chart.title))?;
     Ok((WIDTH as usize, HEIGHT as usize, bytes.as_chunks::<3>().0.to_vec()))
 }
 

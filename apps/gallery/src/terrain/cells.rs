@@ -1,14 +1,14 @@
 //! A drape of the cells: mountains in colours that neighbours do not share.
 
 use super::area::Area;
-use belvedere_disocclusion::NO_CELL;
-use belvedere_scene::{Drape, LayerKind, Palette, Scene};
+use belvedere::disocclusion::NO_CELL;
+use belvedere::scene::{Drape, LayerKind, Palette, Scene};
 
 /// Opacity of the colours over the relief.
 const ALPHA: u8 = 215;
 
 /// The scene with every cell in a colour of its own.
-pub(super) fn painted(area: &Area) -> Scene {
+pub(crate) fn painted(area: &Area) -> Scene {
     let field = &area.field;
     let colors = colors(area);
     let pixel = |label: &u32| if *label == NO_CELL { [0; 4] } else { colors[*label as usize] };

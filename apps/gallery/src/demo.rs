@@ -1,10 +1,11 @@
 //! `demo`: the built-in scenes, straight and bent side by side, and their cameras, with a page that shows them.
 
-use super::html::{STYLE, escape};
-use super::output;
-use super::render::{self, RenderRequest};
-use crate::{BelvedereError, CameraPicture, OpenOptions, Session, scene_file};
-use belvedere_construct::{MeasureOptions, Measures};
+use crate::html::{STYLE, escape};
+use anyhow::{Context, Result};
+use belvedere::construct::{self, MeasureOptions, Measures};
+use belvedere::verbs::output;
+use belvedere::verbs::render::{self, RenderRequest, Sidecar};
+use belvedere::{CameraPicture, OpenOptions, Session, scene_file};
 use std::path::{Path, PathBuf};
 
 /// A scene of the demo; it needs no files.
@@ -24,25 +25,25 @@ pub struct DemoScene {
 pub const SCENES: &[DemoScene] = &[
     DemoScene {
         name: "massif",
-        text: include_str!("../../../../scenes/massif.toml"),
+        text: include_str!("../../../scenes/massif.toml"),
         sentence: "The whole valley tilts towards you along a smooth curve: the lake and the trail behind the ridges come into sight, and the summits keep their skyline.",
         bends_rays: true,
     },
     DemoScene {
         name: "massif_curved_rays",
-        text: include_str!("../../../../scenes/massif_curved_rays.toml"),
+        text: include_str!("../../../scenes/massif_curved_rays.toml"),
         sentence: "The rays of sight run straight at first and then bend down over the ridge, into the valley behind it.",
         bends_rays: true,
     },
     DemoScene {
         name: "massif_lake_terrain",
-        text: include_str!("../../../../scenes/massif_lake_terrain.toml"),
+        text: include_str!("../../../scenes/massif_lake_terrain.toml"),
         sentence: "The rays stay straight and the ground makes way: ridges sink just as far as they must, and the road, the trail and the lake behind them are seen.",
         bends_rays: false,
     },
     DemoScene {
         name: "street",
-        text: include_str!("../../../../scenes/street.toml"),
+        text: include_str!("../../../scenes/street.toml"),
         sentence: "The near streets are seen steeply from above, so that the way lies open between the towers; the far side of town stays a skyline.",
         bends_rays: true,
     },
@@ -58,19 +59,14 @@ impl DemoScene {
 const CAMERAS: [(&str, CameraPicture); 2] =
     [("_camera", CameraPicture::Outside(None)), ("_overhead", CameraPicture::Overhead)];
 
-/// Draws every scene of [`SCENES`] into `folder`, which is made if need be: `NAME.png` (straight beside bent) with its
+/// `demo`: draws every scene of [`SCENES`] into `folder`, which is made if need be: `NAME.png` (straight beside bent) with its
 /// record, `NAME.toml`, where rays bend `NAME_camera.png` (the camera from outside) and `NAME_overhead.png` with their records,
 /// and `index.html`. Returns the files.
 ///
 /// # Errors
-/// [`BelvedereError::Io`] if a file exists and `overwrite` is false, else as [`render::render`].
-pub fn demo(
-    folder: &Path,
-    options: &OpenOptions,
-    request: &RenderRequest,
-    overwrite: bool,
-) -> Result<Vec<PathBuf>, BelvedereError> {
-    std::fs::create_dir_all(folder).map_err(|e| belvedere_io::IoError::os(folder, e))?;
+/// A file that exists if `overwrite` is false, else as [`render::render`].
+pub fn demo(folder: &Path, options: &OpenOptions, request: &RenderRequest, overwrite: bool) -> Result<Vec<PathBuf>> {
+    std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let index = folder.join("index.html");
     let request = RenderRequest { compare: true, straight: false, ..request.clone() };
     let picture_of = |name: &str| folder.join(format!("{name}.png"));
@@ -90,17 +86,11 @@ pub fn demo(
     for scene in SCENES {
         let DemoScene { name, text, .. } = *scene;
         output::write_text(&scene_of(name), text, overwrite)?;
-        let mut session = Session::from_text(&scene_of(name), text, options)?;
-        session.inputs = vec![scene_of(name)];
+        let session = Session::open(&scene_of(name), options)?;
         let picture = render::render(&session, &request, &options.progress)?;
         // Lines of sight alone: the page needs no second opinion.
-        let measures = belvedere_construct::measure(
-            session.scene(),
-            session.view(),
-            None,
-            &MeasureOptions::default(),
-            &options.progress,
-        )?;
+        let measures =
+            construct::measure(session.scene(), session.view(), None, &MeasureOptions::default(), &options.progress)?;
         written.extend(picture.write(&picture_of(name), overwrite)?);
         for (ending, camera) in scene.cameras() {
             let request = RenderRequest { compare: false, camera: Some(*camera), ..request.clone() };
@@ -115,7 +105,7 @@ pub fn demo(
     Ok(written)
 }
 
-fn section(scene: &DemoScene, sidecar: &render::Sidecar, measures: &Measures) -> String {
+fn section(scene: &DemoScene, sidecar: &Sidecar, measures: &Measures) -> String {
     let DemoScene { name, sentence, .. } = *scene;
     let (mut straight, mut bent) = ("straight".to_owned(), "bent".to_owned());
     if let Some(line) = &measures.lines {
@@ -159,6 +149,6 @@ fn page(sections: &str) -> String {
          dashes mark where the route runs behind something. Bent pictures are not to scale and not for navigation.</p>\n\
          {sections}<p class=\"small\">Change a scene and draw it again: <code>belvedere render street.toml -o mine.png --compare</code></p>\n\
          </body>\n</html>\n",
-        crate::VERSION
+        belvedere::VERSION
     )
 }

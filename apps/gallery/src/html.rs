@@ -1,7 +1,7 @@
 //! What every page of ours shares.
 
 /// Style of pages: light and dark, readable lines, pictures as wide as the page.
-pub(super) const STYLE: &str = ":root{color-scheme:light dark}body{font:17px/1.5 system-ui,sans-serif;max-width:84rem;margin:0 auto;\
+pub(crate) const STYLE: &str = ":root{color-scheme:light dark}body{font:17px/1.5 system-ui,sans-serif;max-width:84rem;margin:0 auto;\
 padding:2.5rem 1.5rem;color:#222;background:#fafaf8}h1{font-size:2.1rem;margin:0}h2{font-size:1.35rem;margin:3rem 0 0}\
 p{max-width:46rem;margin:.4rem 0 1rem}figure{margin:0}img{display:block;width:100%;height:auto;border-radius:6px}\
 figcaption{display:grid;grid-template-columns:1fr 1fr;gap:.5rem;padding:.5rem 0;font-weight:600}\
@@ -10,6 +10,6 @@ figcaption{display:grid;grid-template-columns:1fr 1fr;gap:.5rem;padding:.5rem 0;
 @media(prefers-color-scheme:dark){body{color:#e4e4e0;background:#191b1d}.small{color:#a0a4a8}a{color:#8bbdf0}}";
 
 /// Text for HTML.
-pub(super) fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('"', "&quot;").replace('<', "&lt;").replace('>', "&gt;")
 }

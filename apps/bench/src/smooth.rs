@@ -1,13 +1,12 @@
 //! What the smooth pass costs our way, by cosine transforms, and the paper's way, by a sparse factor.
 
-use super::bench::{broken, median};
-use crate::BelvedereError;
-use belvedere_core::DVec2;
-use belvedere_disocclusion::{
-    ConjugateGradients, ElevationRows, Hierarchy, SmoothError, Smoother, TerrainSettings, grid_weight, row_weight,
+use crate::clock::{Stopwatch, median};
+use anyhow::Result;
+use belvedere::core::DVec2;
+use belvedere::disocclusion::{
+    ConjugateGradients, ElevationRows, Hierarchy, Smoother, TerrainSettings, grid_weight, row_weight,
 };
 use serde::Serialize;
-use std::time::Instant;
 
 /// Elevation rows per node of the solver's grid: 1350 on 129 x 129.
 const ROWS_PER_NODE: f64 = 1350.0 / 16_641.0;
@@ -43,13 +42,13 @@ pub struct SparseCost {
 }
 
 /// Both ways without and with elevation rows, on the solver's grid of ground of `nodes` x `nodes` nodes.
-pub(super) fn smooth(nodes: usize, rounds: usize) -> Result<Vec<SmoothCost>, BelvedereError> {
+pub(crate) fn smooth(nodes: usize, rounds: usize) -> Result<Vec<SmoothCost>> {
     let grid = Hierarchy::new(nodes, nodes, TerrainSettings::default().solver_nodes);
     let count = (ROWS_PER_NODE * grid.nodes() as f64) as usize;
-    [0, count].into_iter().map(|rows| cost(&grid, nodes, rows, rounds).map_err(broken)).collect()
+    [0, count].into_iter().map(|rows| cost(&grid, nodes, rows, rounds)).collect()
 }
 
-fn cost(grid: &Hierarchy, nodes: usize, count: usize, rounds: usize) -> Result<SmoothCost, SmoothError> {
+fn cost(grid: &Hierarchy, nodes: usize, count: usize, rounds: usize) -> Result<SmoothCost> {
     // Reproducible numbers in 0..1.
     let number = |i: usize| (i as f64 * 0.618_033_988_749_895).fract();
     let n = grid.cols();
@@ -60,7 +59,7 @@ fn cost(grid: &Hierarchy, nodes: usize, count: usize, rounds: usize) -> Result<S
     rows.add_wanted(|i| -200.0 * number(i), &mut wanted);
     let (mut ours, mut cg, mut times) = (Vec::new(), ConjugateGradients::default(), Vec::new());
     for _ in 0..=rounds {
-        let began = Instant::now();
+        let watch = Stopwatch::start();
         if count == 0 {
             ours.clone_from(&wanted);
             smoother.solve(&mut ours);
@@ -68,34 +67,28 @@ fn cost(grid: &Hierarchy, nodes: usize, count: usize, rounds: usize) -> Result<S
             ours = vec![0.0; n * n];
             cg.solve(&mut smoother, &rows, &wanted, &mut ours, 1e-13, 200);
         }
-        times.push(began.elapsed().as_secs_f64() * 1e3);
+        times.push(watch.wall_ms());
     }
     let sparse = sparse(n, smoother.shift(), &rows, &wanted, &ours)?;
     Ok(SmoothCost { nodes: n, rows: count, cosine_ms: median(times), sparse })
 }
 
 #[cfg(feature = "sparse")]
-fn sparse(
-    n: usize,
-    shift: f64,
-    rows: &ElevationRows,
-    wanted: &[f64],
-    ours: &[f64],
-) -> Result<Option<SparseCost>, SmoothError> {
-    let began = Instant::now();
-    let mut factor = belvedere_disocclusion::Cholesky::new(n, n, shift, rows)?;
-    let factor_ms = began.elapsed().as_secs_f64() * 1e3;
+fn sparse(n: usize, shift: f64, rows: &ElevationRows, wanted: &[f64], ours: &[f64]) -> Result<Option<SparseCost>> {
+    let watch = Stopwatch::start();
+    let mut factor = belvedere::disocclusion::Cholesky::new(n, n, shift, rows)?;
+    let factor_ms = watch.wall_ms();
     let mut theirs = wanted.to_vec();
-    let began = Instant::now();
+    let watch = Stopwatch::start();
     factor.solve(&mut theirs);
-    let solve_ms = began.elapsed().as_secs_f64() * 1e3;
+    let solve_ms = watch.wall_ms();
     let differs_m = ours.iter().zip(&theirs).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let largest_m = ours.iter().map(|u| u.abs()).fold(0.0, f64::max);
     Ok(Some(SparseCost { factor_ms, solve_ms, entries: factor.entries(), differs_m, largest_m }))
 }
 
 #[cfg(not(feature = "sparse"))]
-fn sparse(_: usize, _: f64, _: &ElevationRows, _: &[f64], _: &[f64]) -> Result<Option<SparseCost>, SmoothError> {
+fn sparse(_: usize, _: f64, _: &ElevationRows, _: &[f64], _: &[f64]) -> Result<Option<SparseCost>> {
     Ok(None)
 }
 

@@ -1,0 +1,64 @@
+//! Processor time of all threads where the system tells it (Linux), wall time elsewhere.
+
+use std::time::Instant;
+
+/// Running threads are counted at the system's ticks: shorter times may come out as none at all.
+const LEAST_MS: f64 = 1e-3;
+
+/// Measures one piece of work.
+pub(crate) struct Stopwatch {
+    wall: Instant,
+    cpu_ms: Option<f64>,
+}
+
+impl Stopwatch {
+    pub(crate) fn start() -> Self {
+        Self { cpu_ms: cpu_ms(), wall: Instant::now() }
+    }
+
+    pub(crate) fn wall_ms(&self) -> f64 {
+        self.wall.elapsed().as_secs_f64() * 1e3
+    }
+
+    /// Processor time since the start, milliseconds; `None` where the system does not tell.
+    pub(crate) fn cpu_ms(&self) -> Option<f64> {
+        self.cpu_ms.zip(cpu_ms()).map(|(a, b)| (b - a).max(LEAST_MS))
+    }
+}
+
+/// What [`Stopwatch::cpu_ms`] is on this machine.
+pub(crate) fn name() -> &'static str {
+    if cpu_ms().is_some() { "processor time of all threads" } else { "wall time" }
+}
+
+/// Processor time of all threads so far, milliseconds; the kernel of Linux counts it in nanoseconds.
+fn cpu_ms() -> Option<f64> {
+    let of_task = |t: std::fs::DirEntry| {
+        let text = std::fs::read_to_string(t.path().join("schedstat")).ok()?;
+        text.split(' ').next()?.parse::<f64>().ok()
+    };
+    Some(std::fs::read_dir("/proc/self/task").ok()?.flatten().filter_map(of_task).sum::<f64>() * 1e-6)
+}
+
+/// Processes that wanted to run over the last minute.
+pub(crate) fn load() -> Option<f64> {
+    std::fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()
+}
+
+/// Processor, as the system names it.
+pub(crate) fn processor() -> String {
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = text.lines().find_map(|l| l.strip_prefix("model name")?.split_once(':').map(|(_, name)| name.trim()));
+    name.unwrap_or(std::env::consts::ARCH).to_owned()
+}
+
+/// The value that `share` of all values do not exceed; 0 without values.
+pub(crate) fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let last = values.len().saturating_sub(1);
+    values.get((last as f64 * share).ceil() as usize).copied().unwrap_or(0.0)
+}
+
+pub(crate) fn median(values: Vec<f64>) -> f64 {
+    quantile(values, 0.5)
+}
