@@ -73,7 +73,8 @@ fn time(
     mut ground: impl FnMut(&View) -> Result<Ground>,
 ) -> Result<FlightCost> {
     let options = RenderOptions { samples: 1, lod_px: 0.5, ..RenderOptions::default() };
-    let (light, progress, mut frame) = (Light::default(), Progress::silent(), Frame::default());
+    let (renderer, light) = (CpuRenderer::default(), Light::default());
+    let (progress, mut frame) = (Progress::silent(), Frame::default());
     let (mut waits, mut wholes, mut points, mut lag, mut hidden) = (Vec::new(), Vec::new(), 0, 0, 0.0f64);
     for (k, view) in views.iter().enumerate() {
         let watch = Stopwatch::start();
@@ -81,7 +82,7 @@ fn time(
         let ground_ms = watch.wall_ms();
         let bent = View::new(view.pinhole().clone(), vec![made.stage])?;
         let job = RenderJob { scene, view: &bent, light: &light, options: &options, progress: &progress };
-        CpuRenderer.render_into(&job, &mut frame)?;
+        renderer.render_into(&job, &mut frame)?;
         if k > 0 {
             waits.push(ground_ms);
             wholes.push(watch.wall_ms());

@@ -63,7 +63,7 @@ pub(crate) struct Case<'a> {
 
 /// Draws every case once per round, after a round that warms up.
 pub(crate) fn measure(cases: &[Case<'_>], rounds: usize, progress: &Progress) -> Result<Vec<FrameCost>> {
-    let light = Light::default();
+    let (renderer, light) = (CpuRenderer::default(), Light::default());
     let mut times: Vec<[Vec<f64>; 2]> = vec![Default::default(); cases.len()];
     let mut triangles = vec![0; cases.len()];
     let mut frame = Frame::default();
@@ -74,7 +74,7 @@ pub(crate) fn measure(cases: &[Case<'_>], rounds: usize, progress: &Progress) ->
             let options = RenderOptions { samples, lod_px, ..RenderOptions::default() };
             let watch = Stopwatch::start();
             let job = RenderJob { scene, view, light: &light, options: &options, progress };
-            CpuRenderer.render_into(&job, &mut frame)?;
+            renderer.render_into(&job, &mut frame)?;
             let wall = watch.wall_ms();
             let cpu = watch.cpu_ms().unwrap_or(wall);
             triangles[k] = frame.stats.triangles_drawn;

@@ -22,7 +22,7 @@ pub(crate) fn ground(nodes: usize) -> Result<Scene> {
     let heights = (0..nodes * nodes).map(height).collect();
     let heightfield = Heightfield::measured(DVec2::new(-half, half), DVec2::splat(spacing), nodes, nodes, heights);
     let terrain = TerrainLayer {
-        heightfield: heightfield?,
+        heightfield: heightfield?.into(),
         drapes: Vec::new(),
         relief: Relief::Swiss,
         shading: None,

@@ -64,7 +64,7 @@ fn ground_layer(heightfield: Heightfield, palette: Palette) -> Layer {
         id: "ground".into(),
         must_see: false,
         kind: LayerKind::Terrain(TerrainLayer {
-            heightfield,
+            heightfield: heightfield.into(),
             drapes: Vec::new(),
             relief: Relief::Swiss,
             shading: None,

@@ -23,7 +23,7 @@ struct Case<'a> {
 
 /// Processor and wall times of every case, round by round; the first round warms up.
 fn measure(cases: &[Case<'_>], rounds: usize) -> Vec<[Vec<f64>; 2]> {
-    let (light, progress) = (Light::default(), Progress::silent());
+    let (renderer, light, progress) = (CpuRenderer::default(), Light::default(), Progress::silent());
     let mut times: Vec<[Vec<f64>; 2]> = vec![Default::default(); cases.len()];
     let mut frame = Frame::default();
     for round in 0..=rounds {
@@ -34,7 +34,7 @@ fn measure(cases: &[Case<'_>], rounds: usize) -> Vec<[Vec<f64>; 2]> {
             let options = RenderOptions { samples, lod_px, ..RenderOptions::default() };
             let job = RenderJob { scene, view, light: &light, options: &options, progress: &progress };
             let (wall, cpu) = (Instant::now(), cpu_ms());
-            CpuRenderer.render_into(&job, &mut frame).expect("drawn");
+            renderer.render_into(&job, &mut frame).expect("drawn");
             let spent = [cpu_ms() - cpu, wall.elapsed().as_secs_f64() * 1e3];
             assert!(frame.id.contains(&1), "nothing drawn");
             if round > 0 {

@@ -10,14 +10,14 @@ use support::{NODES, ground, views};
 
 fn frames(c: &mut Criterion) {
     let scene = ground(NODES);
-    let (light, progress) = (Light::default(), Progress::silent());
+    let (renderer, light, progress) = (CpuRenderer::default(), Light::default(), Progress::silent());
     for (samples, lod_px) in [(1, 0.0), (4, 0.0), (1, 0.5)] {
         let mut group = c.benchmark_group(format!("frame, {samples} samples, detail {lod_px} px"));
         group.sample_size(10);
         for (name, view) in views([1280, 720]) {
             let options = RenderOptions { samples, lod_px, ..RenderOptions::default() };
             let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
-            group.bench_function(name, |b| b.iter(|| CpuRenderer.render(&job).expect("drawn")));
+            group.bench_function(name, |b| b.iter(|| renderer.render(&job).expect("drawn")));
         }
         group.finish();
     }

@@ -74,14 +74,14 @@ fn ground(nodes: usize) -> Scene {
 /// MiB of memory: now and at most.
 fn answer(nodes: usize) {
     let scene = ground(nodes);
-    let (light, progress) = (Light::default(), Progress::silent());
+    let (renderer, light, progress) = (CpuRenderer::default(), Light::default(), Progress::silent());
     let options = RenderOptions { samples: 1, ..RenderOptions::default() };
     let mut frame = Frame::default();
     for line in std::io::stdin().lines() {
         let view = view(line.ok().and_then(|l| l.parse().ok()).expect("an angle"));
         let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
         let before = cpu_ms();
-        CpuRenderer.render_into(&job, &mut frame).expect("drawn");
+        renderer.render_into(&job, &mut frame).expect("drawn");
         let ms = cpu_ms() - before;
         println!("{ms} {} {} {}", frame.stats.triangles_drawn, status_mib("VmRSS"), status_mib("VmHWM"));
     }

@@ -1,6 +1,7 @@
 //! Surfaces cut into blocks: culled, displaced and projected once per frame, ready to rasterise.
 
 use crate::band::Band;
+use crate::cache::{GroundCache, lock};
 use crate::choose::{Choice, Chooser, Chosen};
 use crate::grid::{CELL_TRIANGLES, Cover, NODES, Nodes, cell_weights, kept_node};
 use crate::lens::{Lens, SUB, ScreenVertex};
@@ -11,7 +12,7 @@ use crate::project::Row;
 use crate::refine::{Corner, Refiner};
 use belvedere_scene::{Heightfield, LayerKind, NodeState, RenderOptions, Scene};
 use rayon::prelude::*;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// A primitive number with this bit counts soup triangles; without it, cells of grid blocks.
 pub(crate) const SOUP: u32 = 1 << 31;
@@ -99,17 +100,17 @@ pub(crate) struct Spare {
 
 impl Spare {
     fn nodes(&self) -> Nodes {
-        self.nodes.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
+        lock(&self.nodes).pop().unwrap_or_default()
     }
 
     pub(crate) fn soup(&self) -> Vec<SoupTriangle> {
-        self.soup.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
+        lock(&self.soup).pop().unwrap_or_default()
     }
 
     fn keep(&self, geometry: Geometry) {
         match geometry {
-            Geometry::Grid(nodes) => self.nodes.lock().unwrap_or_else(PoisonError::into_inner).push(nodes),
-            Geometry::Soup(soup) => self.soup.lock().unwrap_or_else(PoisonError::into_inner).push(soup),
+            Geometry::Grid(nodes) => lock(&self.nodes).push(nodes),
+            Geometry::Soup(soup) => lock(&self.soup).push(soup),
         }
     }
 }
@@ -143,7 +144,14 @@ impl Block {
 
 impl Blocks {
     /// Displaces, projects, subdivides and clips every surface of the scene.
-    pub(crate) fn build(&mut self, scene: &Scene, passes: &[Pass<'_>], lens: &Lens, options: &RenderOptions) {
+    pub(crate) fn build(
+        &mut self,
+        scene: &Scene,
+        passes: &[Pass<'_>],
+        lens: &Lens,
+        options: &RenderOptions,
+        detail: &GroundCache<(), Arc<Tree>>,
+    ) {
         // A tolerance of zero or less would split without end.
         let tolerance_px = if options.tolerance_px > 0.01 { options.tolerance_px } else { 0.01 };
         self.list.drain(..).for_each(|b| self.spare.keep(b.geometry));
@@ -154,7 +162,7 @@ impl Blocks {
                 match &layer.kind {
                     LayerKind::Terrain(t) => {
                         let hf = &t.heightfield;
-                        let tree = hf.derived(|| Tree::new(hf));
+                        let tree = detail.get(hf, (), || Arc::new(Tree::new(hf)));
                         let chooser = Chooser { hf, tree: &tree, pass, lens, tolerance_px, lod_px: options.lod_px };
                         chooser.choose(&mut self.choice);
                         let blocks = self.choice.list.par_iter().filter_map(|c| job.terrain_block(hf, &tree.sparse, c));

@@ -7,6 +7,7 @@
 mod band;
 mod blocks;
 mod box_blocks;
+mod cache;
 pub mod canvas;
 mod cells;
 mod choose;
@@ -33,22 +34,27 @@ pub use project::GroundImage;
 use band::{Band, sample_offsets};
 use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
 use blocks::Blocks;
+use cache::{GroundCache, lock};
 use lens::Lens;
+use lod::Tree;
 use marks::Marks;
 use pass::Pass;
 use polish::Polish;
 use rayon::prelude::*;
 use resolve::{Colors, Rows, resolve};
-use shade::Shader;
 use shade::color::Packed;
+use shade::{LightCache, Shader};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 /// Rows of a band.
 const BAND: usize = 16;
 
 /// Draws scenes on the processor.
+///
+/// It remembers what it computed for a ground (light, averages, levels of detail) and the memory of its last frames: keep one
+/// renderer for all frames of a film. Pictures do not depend on what it drew before.
 ///
 /// ```
 /// use belvedere_core::{DVec3, Pinhole, Projection, View};
@@ -60,12 +66,17 @@ const BAND: usize = 16;
 /// let (scene, view) = (Scene::default(), View::straight(pinhole));
 /// let (light, options, progress) = (Light::default(), RenderOptions::default(), Progress::silent());
 /// let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
-/// let frame = CpuRenderer.render(&job)?;
+/// let frame = CpuRenderer::default().render(&job)?;
 /// assert!(frame.id.iter().all(|&id| id == 0), "nothing but sky");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, Copy, Default)]
-pub struct CpuRenderer;
+#[derive(Debug, Default)]
+pub struct CpuRenderer {
+    detail: GroundCache<(), Arc<Tree>>,
+    light: LightCache,
+    /// Buffers that no frame uses now; nothing in them but capacity survives.
+    scratch: Mutex<Vec<Scratch>>,
+}
 
 impl Renderer for CpuRenderer {
     fn name(&self) -> &'static str {
@@ -80,7 +91,7 @@ impl Renderer for CpuRenderer {
 
     fn render_into(&self, job: &RenderJob<'_>, frame: &mut Frame) -> Result<(), RenderError> {
         let old = Mutex::new(std::mem::take(frame));
-        *frame = prepared(job, |job| render(job, std::mem::take(&mut *lock(&old))))?;
+        *frame = prepared(job, |job| self.draw(job, std::mem::take(&mut *lock(&old))))?;
         Ok(())
     }
 }
@@ -93,14 +104,8 @@ struct Scratch {
     bands: Mutex<Vec<Band>>,
 }
 
-/// Scratch memory that no frame uses now; nothing in it but capacity survives.
-static SPARE: Mutex<Vec<Scratch>> = Mutex::new(Vec::new());
 /// Frames drawn at the same time whose memory is kept.
 const SPARE_FRAMES: usize = 2;
-
-fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 /// Runs `render` with checked options on the threads asked for.
 fn prepared(
@@ -122,46 +127,56 @@ fn prepared(
     }
 }
 
-fn render(job: &RenderJob<'_>, frame: Frame) -> Result<Frame, RenderError> {
-    let mut scratch = lock(&SPARE).pop().unwrap_or_default();
-    let result = render_with(job, frame, &mut scratch);
-    let mut spare = lock(&SPARE);
-    if spare.len() < SPARE_FRAMES {
-        spare.push(scratch);
+impl CpuRenderer {
+    fn draw(&self, job: &RenderJob<'_>, frame: Frame) -> Result<Frame, RenderError> {
+        let mut scratch = lock(&self.scratch).pop().unwrap_or_default();
+        let result = self.draw_with(job, frame, &mut scratch);
+        let mut spare = lock(&self.scratch);
+        if spare.len() < SPARE_FRAMES {
+            spare.push(scratch);
+        }
+        result
     }
-    result
-}
 
-fn render_with(job: &RenderJob<'_>, frame: Frame, scratch: &mut Scratch) -> Result<Frame, RenderError> {
-    let start = Instant::now();
-    job.progress.tick("project", 0.0)?;
-    let lens = Lens::new(job.view.pinhole());
-    let passes = Pass::all(job.view);
-    let Scratch { blocks, color, bands } = scratch;
-    blocks.build(job.scene, &passes, &lens, job.options);
-    job.progress.tick("project", 1.0)?;
-    let shader = Shader::new(job, &lens, blocks);
-    let mut buffers = Buffers::reuse(job, std::mem::take(color), frame);
-    let polish = job.options.aux.exact.then(|| Polish::new(job.scene, &passes, &lens));
-    draw_surfaces(job, &lens, blocks, (&shader, polish.as_ref()), bands, &mut buffers)?;
-    if buffers.open {
-        let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
-        let marks = Marks::new(job, &passes, &lens, tolerance_px, &buffers.depth);
-        job.progress.tick("lines", 0.0)?;
-        finish(&marks, &lens, &mut buffers);
-        job.progress.tick("lines", 1.0)?;
+    fn draw_with(&self, job: &RenderJob<'_>, frame: Frame, scratch: &mut Scratch) -> Result<Frame, RenderError> {
+        let start = Instant::now();
+        job.progress.tick("project", 0.0)?;
+        let lens = Lens::new(job.view.pinhole());
+        let passes = Pass::all(job.view);
+        let Scratch { blocks, color, bands } = scratch;
+        blocks.build(job.scene, &passes, &lens, job.options, &self.detail);
+        job.progress.tick("project", 1.0)?;
+        let shader = Shader::new(job, &lens, blocks, &self.light);
+        let mut buffers = Buffers::reuse(job, std::mem::take(color), frame);
+        let polish = job.options.aux.exact.then(|| Polish::new(job.scene, &passes, &lens));
+        draw_surfaces(job, &lens, blocks, (&shader, polish.as_ref()), bands, &mut buffers)?;
+        if buffers.open {
+            let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
+            let marks = Marks::new(job, &passes, &lens, tolerance_px, &buffers.depth);
+            job.progress.tick("lines", 0.0)?;
+            finish(&marks, &lens, &mut buffers);
+            job.progress.tick("lines", 1.0)?;
+        }
+        let counts = blocks.counts();
+        let stats = FrameStats {
+            triangles_in: blocks.triangles_in,
+            triangles_drawn: counts.drawn,
+            edges_split: counts.split,
+            vertices_missed: counts.missed,
+            milliseconds: start.elapsed().as_secs_f64() * 1e3,
+        };
+        *color = buffers.color;
+        let (width, height) = (lens.width as usize, lens.height as usize);
+        Ok(Frame {
+            width,
+            height,
+            color: buffers.out,
+            depth: buffers.depth,
+            id: buffers.id,
+            world: buffers.world,
+            stats,
+        })
     }
-    let counts = blocks.counts();
-    let stats = FrameStats {
-        triangles_in: blocks.triangles_in,
-        triangles_drawn: counts.drawn,
-        edges_split: counts.split,
-        vertices_missed: counts.missed,
-        milliseconds: start.elapsed().as_secs_f64() * 1e3,
-    };
-    *color = buffers.color;
-    let (width, height) = (lens.width as usize, lens.height as usize);
-    Ok(Frame { width, height, color: buffers.out, depth: buffers.depth, id: buffers.id, world: buffers.world, stats })
 }
 
 struct Buffers {

@@ -80,7 +80,7 @@ fn line(features: Vec<LineFeature>) -> LayerKind {
 
 fn scene(heightfield: Heightfield, crs: belvedere_scene::Crs, features: Vec<(&str, LayerKind)>) -> Scene {
     let ground = TerrainLayer {
-        heightfield,
+        heightfield: heightfield.into(),
         drapes: Vec::new(),
         relief: Relief::Swiss,
         shading: None,

@@ -1,9 +1,7 @@
 //! Terrain heights on a regular metric grid with holes.
 
 use belvedere_core::{Aabb, DVec2, DVec3};
-use std::any::{Any, TypeId};
 use std::ops::Index;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Whether a node carries a height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -85,8 +83,6 @@ pub struct Heightfield {
     /// Nothing where every node is measured: a byte per node matters for large grounds.
     states: Option<Vec<NodeState>>,
     z_range: [f64; 2],
-    derived: Derived,
-    looks: Looks,
 }
 
 /// States of all nodes, row-major. Takes no memory where every node is measured.
@@ -136,107 +132,7 @@ impl Index<usize> for States<'_> {
     }
 }
 
-/// What a renderer derived from the ground and wants to find again with the next frame. No part of the value: equal
-/// grounds are equal whatever was derived from them, and clones share it.
-#[derive(Clone, Default)]
-struct Derived(Arc<Mutex<Vec<(TypeId, Kept)>>>);
-
-type Kept = Arc<OnceLock<Arc<dyn Any + Send + Sync>>>;
-
-impl Derived {
-    fn of(&self, kind: TypeId) -> Kept {
-        let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, kept)) = all.iter().find(|(k, _)| *k == kind) {
-            return Arc::clone(kept);
-        }
-        let kept = Kept::default();
-        all.push((kind, Arc::clone(&kept)));
-        kept
-    }
-}
-
-impl PartialEq for Derived {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
-
-impl std::fmt::Debug for Derived {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Derived")
-    }
-}
-
-/// What was derived from the ground and a key, see [`Heightfield::derived_for`]. As [`Derived`], no part of the value.
-#[derive(Clone, Default)]
-struct Looks(Arc<Mutex<Vec<Look>>>);
-
-/// A key and what was derived for it.
-type Look = (Arc<dyn Any + Send + Sync>, Arc<dyn Any + Send + Sync>);
-
-/// Things with keys that a ground remembers; the one that was not asked for longest goes first.
-const MOST_LOOKS: usize = 6;
-
-impl PartialEq for Looks {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
-
-impl std::fmt::Debug for Looks {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Looks")
-    }
-}
-
-impl Looks {
-    fn find<K: Any + PartialEq, T: Any + Send + Sync>(&self, key: &K) -> Option<Arc<T>> {
-        let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let fits = |(k, v): &Look| k.downcast_ref::<K>() == Some(key) && v.is::<T>();
-        let found = all.iter().position(fits)?;
-        let entry = all.remove(found);
-        let value = Arc::clone(&entry.1);
-        all.push(entry);
-        value.downcast().ok()
-    }
-}
-
 impl Heightfield {
-    /// What `make` derives from this ground and `key`, made at the first call and kept with the ground (and with its
-    /// clones): a handful of things, those asked for last. `make` must depend on nothing but the ground and the key.
-    pub fn derived_for<K, T>(&self, key: &K, make: impl FnOnce() -> T) -> Arc<T>
-    where
-        K: Any + Clone + PartialEq + Send + Sync,
-        T: Any + Send + Sync,
-    {
-        if let Some(found) = self.looks.find(key) {
-            return found;
-        }
-        // Made without the lock: `make` may run in parallel and meet another call.
-        let made = Arc::new(make());
-        let mut all = self.looks.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if all.len() >= MOST_LOOKS {
-            all.remove(0);
-        }
-        all.push((Arc::new(key.clone()), made.clone()));
-        made
-    }
-
-    /// Forgets what was derived for `key`.
-    pub fn forget<K: Any + PartialEq>(&self, key: &K) {
-        let mut all = self.looks.0.lock().unwrap_or_else(PoisonError::into_inner);
-        all.retain(|(k, _)| k.downcast_ref::<K>() != Some(key));
-    }
-
-    /// What `make` derives from this ground, made at the first call and kept with it (and with its clones) from then on.
-    ///
-    /// There is one place per type. `make` must depend on nothing but the ground.
-    pub fn derived<T: Any + Send + Sync>(&self, make: impl Fn() -> T) -> Arc<T> {
-        let place = self.derived.of(TypeId::of::<T>());
-        let kept = place.get_or_init(|| Arc::new(make()));
-        Arc::clone(kept).downcast().unwrap_or_else(|_| Arc::new(make()))
-    }
-
     /// * `north_west`: scene x, y of node (0, 0);
     /// * `spacing`: metres between columns (towards east) and between rows (towards south), both > 0;
     /// * `heights`, `states`: row-major, `cols * rows` each.
@@ -301,17 +197,7 @@ impl Heightfield {
         if z_range[0] > z_range[1] {
             return Err(HeightfieldError::AllVoid { cols, rows });
         }
-        Ok(Self {
-            north_west,
-            spacing,
-            cols,
-            rows,
-            heights,
-            states,
-            z_range,
-            derived: Derived::default(),
-            looks: Looks::default(),
-        })
+        Ok(Self { north_west, spacing, cols, rows, heights, states, z_range })
     }
 
     /// Number of columns.
@@ -463,18 +349,6 @@ mod tests {
     }
 
     #[test]
-    fn what_is_derived_is_made_once_and_is_no_part_of_the_value() {
-        let (ground, other) = (saddle(None), saddle(None));
-        let copy = ground.clone();
-        assert_eq!(*ground.derived(|| 7u32), 7);
-        assert_eq!((*ground.derived(|| 8u32), *copy.derived(|| 9u32)), (7, 7), "kept, and shared with the clone");
-        assert_eq!(*ground.derived(|| "another type"), "another type");
-        assert_eq!(*ground.derived(|| 10u32), 7);
-        assert_eq!(*other.derived(|| 8u32), 8);
-        assert_eq!(ground, other);
-    }
-
-    #[test]
     fn states_take_memory_only_where_nodes_differ() {
         let (solid, holed) = (saddle(None), saddle(Some(1)));
         assert!(solid.states().each().is_none() && holed.states().each().is_some());
@@ -488,25 +362,6 @@ mod tests {
         assert_eq!(Heightfield::measured(nw, step, 2, 2, heights).unwrap(), solid);
         let short = Heightfield::measured(nw, step, 2, 2, vec![0.0; 3]);
         assert!(matches!(short, Err(HeightfieldError::Length { expected: 4, heights: 3, .. })), "{short:?}");
-    }
-
-    #[test]
-    fn what_is_derived_for_a_key_is_made_once_and_the_oldest_goes_first() {
-        let (ground, other) = (saddle(None), saddle(None));
-        let copy = ground.clone();
-        assert_eq!(*ground.derived_for(&1, || 7u32), 7);
-        let again = (*ground.derived_for(&1, || 8u32), *copy.derived_for(&1, || 9u32));
-        assert_eq!(again, (7, 7), "kept, and shared with the clone");
-        assert_eq!(*ground.derived_for(&2, || 8u32), 8, "another key");
-        assert_eq!(*ground.derived_for(&1, || "another type"), "another type");
-        assert_eq!(*other.derived_for(&1, || 8u32), 8);
-        assert_eq!(ground, other);
-        for key in 10..10 + MOST_LOOKS {
-            ground.derived_for(&key, || 0u32);
-        }
-        assert_eq!(*ground.derived_for(&1, || 11u32), 11, "the one not asked for longest was dropped");
-        ground.forget(&1);
-        assert_eq!(*ground.derived_for(&1, || 12u32), 12, "forgotten");
     }
 
     #[test]

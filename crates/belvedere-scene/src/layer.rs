@@ -101,8 +101,8 @@ pub struct Drape {
 /// A terrain layer.
 #[derive(Debug, Clone)]
 pub struct TerrainLayer {
-    /// Heights.
-    pub heightfield: Heightfield,
+    /// Heights. Shared, so that copies of a scene, and whatever is computed once per ground, agree on which ground it is.
+    pub heightfield: Arc<Heightfield>,
     /// Pictures draped over it, later ones on top.
     pub drapes: Vec<Drape>,
     /// Relief shading.

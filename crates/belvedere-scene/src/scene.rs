@@ -51,7 +51,7 @@ impl Scene {
     /// The first terrain layer's heightfield.
     pub fn terrain(&self) -> Option<&Heightfield> {
         self.layers.iter().find_map(|l| match &l.kind {
-            LayerKind::Terrain(t) => Some(&t.heightfield),
+            LayerKind::Terrain(t) => Some(&*t.heightfield),
             _ => None,
         })
     }

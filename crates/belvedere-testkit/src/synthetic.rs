@@ -31,7 +31,7 @@ pub fn mountains(n: usize, seed: u64) -> Heightfield {
 /// A terrain layer with default style.
 pub fn terrain_layer(heightfield: Heightfield) -> Layer {
     let kind = LayerKind::Terrain(TerrainLayer {
-        heightfield,
+        heightfield: heightfield.into(),
         drapes: Vec::new(),
         relief: Relief::Swiss,
         shading: None,

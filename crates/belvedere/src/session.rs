@@ -5,10 +5,12 @@ use crate::resolve;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, Document, LayerDoc, PaletteDoc, PaletteName, SourceDocument, StageDoc};
 use belvedere_core::View;
+use belvedere_cpu::CpuRenderer;
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
 use belvedere_io::Limits;
 use belvedere_scene::{Light, Progress, Scene};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// What of a scene is wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -63,6 +65,8 @@ pub struct Session {
     pub(crate) terrain: Option<TerrainReport>,
     pub(crate) warnings: Vec<String>,
     pub(crate) inputs: Vec<PathBuf>,
+    /// One for all frames: it remembers what does not depend on the view.
+    pub(crate) rasteriser: Arc<CpuRenderer>,
 }
 
 impl Session {

@@ -85,7 +85,7 @@ impl Area {
         let view = View::new(pinhole, stages)?;
         let options = RenderOptions::default();
         let (light, progress) = (self.session.light(), &self.progress);
-        Ok(CpuRenderer.render(&RenderJob { scene, view: &view, light, options: &options, progress })?)
+        Ok(CpuRenderer::default().render(&RenderJob { scene, view: &view, light, options: &options, progress })?)
     }
 }
 

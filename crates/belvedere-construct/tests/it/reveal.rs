@@ -12,7 +12,8 @@ fn run(scene: &Scene, base: Option<&View>) -> Result<Revealed, ConstructError> {
 
 /// What the command promises, judged by the measure with the renderer and not by the search's own figures.
 pub(crate) fn assert_bars(name: &str, scene: &Scene, found: &Revealed) {
-    let m = measure(scene, &found.view, Some(&CpuRenderer), &MeasureOptions::default(), &Progress::silent()).unwrap();
+    let m = measure(scene, &found.view, Some(&CpuRenderer::default()), &MeasureOptions::default(), &Progress::silent())
+        .unwrap();
     let lines = m.lines.unwrap();
     let share = |v: &measure::Visibility| v.sight.share.unwrap();
     let (straight, bent) = (share(&lines.straight), share(&lines.bent));

@@ -30,7 +30,7 @@ pub(crate) fn ground(nodes: usize) -> Scene {
 pub(crate) fn scene(heightfield: Result<Heightfield, HeightfieldError>) -> Scene {
     let heightfield = heightfield.expect("well formed");
     let terrain = TerrainLayer {
-        heightfield,
+        heightfield: heightfield.into(),
         drapes: Vec::new(),
         relief: Relief::Swiss,
         shading: None,

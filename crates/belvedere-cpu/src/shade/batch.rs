@@ -357,8 +357,10 @@ mod tests {
     use super::*;
     use crate::band::{Band, SKY, sample_offsets};
     use crate::blocks::Blocks;
+    use crate::cache::GroundCache;
     use crate::lens::Lens;
     use crate::pass::Pass;
+    use crate::shade::LightCache;
     use belvedere_core::{DVec3, Pinhole, Projection, View};
     use belvedere_scene::{
         Heightfield, Layer, LayerKind, Light, Palette, Progress, Relief, RenderJob, RenderOptions, Scene, TerrainLayer,
@@ -370,7 +372,7 @@ mod tests {
         let heights = (0..257 * 257).map(|i| h(i % 257, i / 257)).collect();
         let corner = DVec2::new(-1280.0, 1280.0);
         let terrain = TerrainLayer {
-            heightfield: Heightfield::measured(corner, DVec2::splat(10.0), 257, 257, heights).unwrap(),
+            heightfield: Heightfield::measured(corner, DVec2::splat(10.0), 257, 257, heights).unwrap().into(),
             drapes: Vec::new(),
             relief: Relief::Swiss,
             shading: None,
@@ -398,9 +400,9 @@ mod tests {
             let view = View::straight(Pinhole::look_at(eye, target, DVec3::Z, lens, [331, 160], 1.0, None).unwrap());
             let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
             let (lens, passes) = (Lens::new(view.pinhole()), Pass::all(&view));
-            let mut blocks = Blocks::default();
-            blocks.build(&scene, &passes, &lens, &options);
-            let shader = Shader::new(&job, &lens, &blocks);
+            let (mut blocks, light_cache) = (Blocks::default(), LightCache::default());
+            blocks.build(&scene, &passes, &lens, &options, &GroundCache::default());
+            let shader = Shader::new(&job, &lens, &blocks, &light_cache);
             let mut band = Band::new(0, 160, 331, sample_offsets(1));
             blocks.draw(&mut band);
             let x: Vec<i32> = (0..331).map(|x| x * SUB + SUB / 2).collect();

@@ -214,7 +214,7 @@ mod tests {
         let heights = (0..41 * 41).map(|i| if i % 41 < 3 { 60.0 } else { 0.0 }).collect();
         let hf = Heightfield::measured(DVec2::new(-100.0, 100.0), DVec2::splat(5.0), 41, 41, heights).unwrap();
         let terrain = TerrainLayer {
-            heightfield: hf,
+            heightfield: hf.into(),
             drapes: Vec::new(),
             relief: Relief::Sun,
             shading: None,

@@ -32,6 +32,7 @@ pub(crate) struct Lit {
 }
 
 /// The pictures of a ground, see the module.
+#[derive(Debug)]
 pub(crate) struct LitGround {
     /// Square roots of the lit colour of the level and of the next one, each with a spare byte.
     colors: Tiles,

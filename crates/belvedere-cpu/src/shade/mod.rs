@@ -42,6 +42,7 @@ use glam::Vec3A;
 pub(crate) use paint::{Painted, Samples};
 use relief::ReliefLight;
 use sky::Sky;
+pub(crate) use terrain::LightCache;
 use terrain::TerrainShade;
 
 /// Everything that colours need, made once per frame.
@@ -92,13 +93,13 @@ pub(crate) fn ground_bytes(job: &RenderJob<'_>, hf: &Heightfield) -> u64 {
 }
 
 impl<'a> Shader<'a> {
-    pub(crate) fn new(job: &RenderJob<'a>, lens: &'a Lens, blocks: &'a Blocks) -> Self {
+    pub(crate) fn new(job: &RenderJob<'a>, lens: &'a Lens, blocks: &'a Blocks, cache: &LightCache) -> Self {
         let layers: Vec<_> = job
             .scene
             .layers
             .iter()
             .map(|l| match &l.kind {
-                LayerKind::Terrain(t) => LayerShade::Terrain(Box::new(TerrainShade::new(t, job))),
+                LayerKind::Terrain(t) => LayerShade::Terrain(Box::new(TerrainShade::new(t, job, cache))),
                 LayerKind::Boxes(b) => LayerShade::Boxes(b, ReliefLight::new(Relief::Sun, job.light)),
                 LayerKind::Mesh(m) => LayerShade::Mesh(mesh::MeshShade::new(m, job.light)),
                 _ => LayerShade::Other,

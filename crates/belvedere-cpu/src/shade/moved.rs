@@ -3,10 +3,11 @@
 use super::ground::{Means, Surface};
 use super::lit::LitGround;
 use super::terrain::LitKey;
+use crate::cache::GroundCache;
 use belvedere_core::{DVec3, Stage, TerrainDisocclusion};
 use belvedere_scene::{Heightfield, NodeState};
 use rayon::prelude::*;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// Light falls on ground that moves by whole multiples of this share of a node's distance. A slope errs by half of that at
 /// most, far less than an 8-bit step, and ground that hardly moves has the same light in the next frame, to the last bit.
@@ -67,58 +68,42 @@ fn lifted(hf: &Heightfield, ground: &TerrainDisocclusion, rounded: &(impl Fn(f32
     heights
 }
 
-/// Light on moved ground, kept with the ground for the next frame.
-#[derive(Default)]
-struct Place(Mutex<Option<Kept>>);
-
-/// What it is kept under.
-#[derive(Clone, PartialEq)]
-struct MovedKey;
-
-struct Kept {
-    key: LitKey,
-    heights: Arc<Vec<f32>>,
-    means: Arc<Means>,
-    lit: Arc<LitGround>,
+/// Averages and light of ground with these heights.
+#[derive(Debug, Clone)]
+pub(super) struct DisplacedLight {
+    pub(super) heights: Arc<Vec<f32>>,
+    pub(super) means: Arc<Means>,
+    pub(super) lit: Arc<LitGround>,
 }
 
-/// Averages and light of moved ground.
-///
-/// The light is that of the last frame, less the tiles whose ground, or what it leans on, has other heights now: what comes out
-/// does not depend on what was there before.
-pub(super) fn light(surface: &Surface<'_>, heights: &Arc<Vec<f32>>, key: &LitKey) -> (Arc<Means>, Arc<LitGround>) {
-    let hf = surface.hf;
-    let place = hf.derived_for(&MovedKey, Place::default);
-    let lock = || place.0.lock().unwrap_or_else(PoisonError::into_inner);
-    let old = lock().take().filter(|old| old.key == *key && !old.lit.is_full());
-    let anew = |means: &Means| Arc::new(LitGround::new(hf.cols(), hf.rows(), means.top()));
-    let (means, lit) = match old {
-        Some(old) => {
-            let other = Squares::new(hf, &old.heights, heights);
-            if other.is_empty() {
-                (old.means, old.lit)
-            } else {
-                let means = Arc::new(Means::new(surface));
-                // Holes take the averages around them, from however far; the sun's shadows fall far.
-                let near = !key.light.shadows && hf.states().each().is_none_or(|s| !s.contains(&NodeState::Void));
-                let lit = match Arc::try_unwrap(old.lit) {
-                    Ok(mut lit) if near => {
-                        lit.retain(|reach| !other.touch(reach));
-                        Arc::new(lit)
-                    }
-                    _ => anew(&means),
-                };
-                (means, lit)
-            }
-        }
-        None => {
+/// Averages and light of displaced ground: those of the last frame, less the tiles whose ground, or what it leans on, has other
+/// heights now. What comes out does not depend on what was there before.
+pub(super) fn light(
+    cache: &GroundCache<LitKey, DisplacedLight>,
+    hf: &Arc<Heightfield>,
+    surface: &Surface<'_>,
+    heights: &Arc<Vec<f32>>,
+    key: LitKey,
+) -> DisplacedLight {
+    let old = cache.take(hf, &key).filter(|old| !old.lit.is_full());
+    let old = old.map(|old| (Squares::new(hf, &old.heights, heights), old));
+    let light = match old {
+        Some((changed, old)) if changed.is_empty() => old,
+        old => {
             let means = Arc::new(Means::new(surface));
-            let lit = anew(&means);
-            (means, lit)
+            // Holes take the averages around them, from however far; the sun's shadows fall far.
+            let near = !key.light.shadows && hf.states().each().is_none_or(|s| !s.contains(&NodeState::Void));
+            let lit = old.filter(|_| near).and_then(|(changed, old)| {
+                let mut lit = Arc::try_unwrap(old.lit).ok()?;
+                lit.retain(|reach| !changed.touch(reach));
+                Some(lit)
+            });
+            let lit = lit.unwrap_or_else(|| LitGround::new(hf.cols(), hf.rows(), means.top()));
+            DisplacedLight { heights: heights.clone(), means, lit: Arc::new(lit) }
         }
     };
-    *lock() = Some(Kept { key: key.clone(), heights: heights.clone(), means: means.clone(), lit: lit.clone() });
-    (means, lit)
+    cache.put(hf, key, light.clone());
+    light
 }
 
 /// Squares of nodes, by whether two grounds differ there.
@@ -203,7 +188,7 @@ mod tests {
 
     #[test]
     fn only_tiles_around_what_moved_on_are_made_again() {
-        let hf = hills(1100, 1100);
+        let (hf, cache) = (Arc::new(hills(1100, 1100)), GroundCache::default());
         let key =
             LitKey { relief: Relief::Swiss, light: Light::default(), palette: Palette::Alpine, exaggeration: 1.0 };
         let tint = Tint::new(&key.palette, hf.z_range());
@@ -212,7 +197,7 @@ mod tests {
             let mut heights = hf.heights().to_vec();
             heights[700 * 1100 + 800] -= depth;
             let surface = Surface::lifted(&hf, Arc::new(heights));
-            let (means, lit) = light(&surface, surface.moved().unwrap(), &key);
+            let DisplacedLight { means, lit, .. } = light(&cache, &hf, &surface, surface.moved().unwrap(), key.clone());
             let before = lit.bytes();
             let making = Making {
                 surface: &surface,

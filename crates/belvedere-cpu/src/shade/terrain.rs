@@ -5,7 +5,7 @@ use super::color::{Rgb, linear, smoothstep};
 use super::drape::DrapeMap;
 use super::ground::{Means, Surface};
 use super::lit::{Lit, LitGround};
-use super::moved;
+use super::moved::{self, DisplacedLight};
 use super::palette::Tint;
 use super::patch::Making;
 use super::print::Print;
@@ -14,6 +14,7 @@ use super::shadow::Shadows;
 use super::texture::stipple;
 use super::tiles::CELL;
 use super::{Shader, lod};
+use crate::cache::GroundCache;
 use belvedere_core::{DVec2, DVec3, Stage};
 use belvedere_scene::{AreaSurface, Heightfield, Light, Palette, Relief, RenderJob, Shading, TerrainLayer};
 use std::sync::Arc;
@@ -33,16 +34,17 @@ pub(super) struct TerrainShade<'a> {
     drapes: Vec<DrapeMap>,
 }
 
-/// What averages of a ground are kept under.
-#[derive(Clone, PartialEq)]
-struct MeansKey;
+/// Light on grounds, remembered from frame to frame.
+#[derive(Debug, Default)]
+pub(crate) struct LightCache {
+    means: GroundCache<(), Arc<Means>>,
+    shadows: GroundCache<Light, Arc<Shadows>>,
+    lit: GroundCache<LitKey, Arc<LitGround>>,
+    displaced: GroundCache<LitKey, DisplacedLight>,
+}
 
-/// What cast shadows are kept under.
-#[derive(Clone, PartialEq)]
-struct ShadowKey(Light);
-
-/// What lit ground is kept under: all that it is made from, besides the heights.
-#[derive(Clone, PartialEq)]
+/// All that the lit ground is computed from, besides the ground itself.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct LitKey {
     pub(super) relief: Relief,
     pub(super) light: Light,
@@ -51,33 +53,32 @@ pub(super) struct LitKey {
 }
 
 impl<'a> TerrainShade<'a> {
-    pub(super) fn new(layer: &'a TerrainLayer, job: &RenderJob<'a>) -> Self {
+    pub(super) fn new(layer: &'a TerrainLayer, job: &RenderJob<'a>, cache: &LightCache) -> Self {
         let hf = &layer.heightfield;
         let surface = lit_surface(layer, job);
         let light = *job.light;
         let (relief, palette) = (layer.relief, layer.palette.clone());
         let key = LitKey { relief, light, palette, exaggeration: layer.exaggeration };
-        let top = |means: &Means| LitGround::new(hf.cols(), hf.rows(), means.top());
-        let make_shadows = |means: &Means| Shadows::new(&surface, means, &light);
+        let unlit = |means: &Means| Arc::new(LitGround::new(hf.cols(), hf.rows(), means.top()));
+        let averages = || Arc::new(Means::new(&surface));
+        let cast = |means: &Means| Arc::new(Shadows::new(&surface, means, &light));
         let (means, shadows, lit) = if surface.is_map() {
             // The map's own light stays the same from frame to frame.
-            let means = hf.derived_for(&MeansKey, || Means::new(&surface));
-            let shadows = light.shadows.then(|| hf.derived_for(&ShadowKey(light), || make_shadows(&means)));
-            let mut lit = hf.derived_for(&key, || top(&means));
-            if lit.is_full() {
-                hf.forget(&key);
-                lit = hf.derived_for(&key, || top(&means));
-            }
-            (means, shadows, lit)
-        } else if let Some(heights) = surface.moved() {
-            let (means, lit) = moved::light(&surface, heights, &key);
-            let shadows = light.shadows.then(|| Arc::new(make_shadows(&means)));
+            let means = cache.means.get(hf, (), averages);
+            let shadows = light.shadows.then(|| cache.shadows.get(hf, light, || cast(&means)));
+            let lit = cache.lit.take(hf, &key).filter(|lit| !lit.is_full()).unwrap_or_else(|| unlit(&means));
+            cache.lit.put(hf, key, lit.clone());
             (means, shadows, lit)
         } else {
-            let means = Arc::new(Means::new(&surface));
-            let shadows = light.shadows.then(|| Arc::new(make_shadows(&means)));
-            let lit = Arc::new(top(&means));
-            (means, shadows, lit)
+            let (means, lit) = if let Some(heights) = surface.moved() {
+                let DisplacedLight { means, lit, .. } = moved::light(&cache.displaced, hf, &surface, heights, key);
+                (means, lit)
+            } else {
+                let means = averages();
+                let lit = unlit(&means);
+                (means, lit)
+            };
+            (means.clone(), light.shadows.then(|| cast(&means)), lit)
         };
         let spacing = hf.spacing();
         Self {

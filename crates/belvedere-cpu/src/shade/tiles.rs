@@ -26,6 +26,7 @@ const MOST_BYTES: usize = 192 << 20;
 const BYTES_PER_PIXEL: u64 = 64;
 const BYTES_OF_CORNERS: u64 = 32 << 20;
 
+#[derive(Debug)]
 struct Level {
     nodes: [usize; 2],
     across: usize,
@@ -47,6 +48,7 @@ pub(crate) fn most_bytes(nodes: [usize; 2], pixels: u64) -> u64 {
 }
 
 /// Levels of halved detail, each with a rim of one node that repeats the border: no place needs clamping.
+#[derive(Debug)]
 pub(super) struct Tiles {
     levels: Vec<Level>,
     bytes: AtomicUsize,

@@ -1,10 +1,10 @@
 //! Tests of the processor renderer against slow, independent references.
 
+mod cache;
 mod exact;
 mod lines;
 mod lod;
 mod marks;
-mod moved;
 mod real_data;
 mod reference;
 mod robust;

@@ -123,7 +123,13 @@ fn wrong_options_are_refused() {
     let scene = full_scene();
     let view = View::straight(pinhole(DVec3::new(0.0, -500.0, 300.0), DVec3::ZERO, 45.0, [640, 480]));
     let attempt = |options: &RenderOptions, progress: &Progress| {
-        CpuRenderer.render(&RenderJob { scene: &scene, view: &view, light: &Light::default(), options, progress })
+        CpuRenderer::default().render(&RenderJob {
+            scene: &scene,
+            view: &view,
+            light: &Light::default(),
+            options,
+            progress,
+        })
     };
     let silent = Progress::silent();
     for samples in [0, 2, 3, 5, 8, 17, u32::MAX] {
@@ -149,7 +155,7 @@ fn progress_rises_to_its_end() {
     let view = View::straight(pinhole(DVec3::new(0.0, -500.0, 300.0), DVec3::ZERO, 45.0, [640, 480]));
     let (scene, light, options) = (full_scene(), Light::default(), options(1));
     let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
-    CpuRenderer.render(&job).expect("drawn");
+    CpuRenderer::default().render(&job).expect("drawn");
     let seen = seen.lock().expect("no panic");
     assert!(seen.iter().all(|(_, d)| (0.0..=1.0).contains(d)));
     assert!(seen.iter().filter(|(s, _)| s == "draw").count() == 30, "one tick per band of 16 rows");

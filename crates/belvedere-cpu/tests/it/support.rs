@@ -32,7 +32,7 @@ impl Random {
 
 pub(crate) fn terrain(heightfield: Heightfield) -> TerrainLayer {
     TerrainLayer {
-        heightfield,
+        heightfield: heightfield.into(),
         drapes: Vec::new(),
         relief: Relief::Swiss,
         shading: None,
@@ -77,7 +77,7 @@ pub(crate) fn pinhole(eye: DVec3, look_at: DVec3, fov_deg: f64, image: [u32; 2])
 
 pub(crate) fn render(scene: &Scene, view: &View, options: &RenderOptions) -> Frame {
     let job = RenderJob { scene, view, light: &Light::default(), options, progress: &Progress::silent() };
-    CpuRenderer.render(&job).expect("picture is possible")
+    CpuRenderer::default().render(&job).expect("picture is possible")
 }
 
 pub(crate) fn options(samples: u32) -> RenderOptions {

@@ -75,7 +75,7 @@ pub(crate) fn cut(scene: &Scene, view: &View, covered: &[Covered]) -> Result<Opt
             let whole = &t.heightfield;
             let (cols, rows) = (whole.cols(), whole.rows());
             if let Ok(cut) = Heightfield::new(whole.north_west(), whole.spacing(), cols, rows, heights, states) {
-                t.heightfield = cut;
+                t.heightfield = cut.into();
             }
             return Ok(Some(out));
         }

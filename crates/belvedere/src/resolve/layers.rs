@@ -71,7 +71,10 @@ impl Loader<'_> {
                     _ => return Err(self.fail(index, "source", "the built-in scene has no terrain")),
                 }
             }
-            _ => super::dem::load(self, index, doc, wanted)?,
+            _ => {
+                let (heightfield, crs) = super::dem::load(self, index, doc, wanted)?;
+                (heightfield.into(), crs)
+            }
         };
         let layer = TerrainLayer {
             heightfield,

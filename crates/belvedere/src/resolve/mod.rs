@@ -25,6 +25,7 @@ use belvedere_disocclusion::{TerrainMemory, TerrainReport};
 use belvedere_io::crs::{CoordinateSystem, Transform, gaussian_radius_m, utm_epsg};
 use belvedere_scene::{Crs, Heightfield, Layer, LayerKind, Light, Scene, Unit};
 use std::path::PathBuf;
+use std::sync::Arc;
 use terrain::Solving;
 
 /// Mean radius of the earth for scenes without georeference, metres.
@@ -63,6 +64,7 @@ pub(crate) fn session(
         terrain: looked.terrain,
         warnings: warnings.into_iter().chain(looked.warnings).collect(),
         inputs: inputs.into_iter().chain(looked.inputs).collect(),
+        rasteriser: Arc::default(),
     })
 }
 
@@ -164,7 +166,7 @@ fn load(loader: &mut layers::Loader<'_>) -> Result<Scene, BelvedereError> {
 
 fn first_terrain(layers: &[Option<Layer>]) -> Option<&Heightfield> {
     layers.iter().flatten().find_map(|l| match &l.kind {
-        LayerKind::Terrain(t) => Some(&t.heightfield),
+        LayerKind::Terrain(t) => Some(&*t.heightfield),
         _ => None,
     })
 }

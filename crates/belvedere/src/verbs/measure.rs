@@ -40,7 +40,7 @@ pub fn measure(
     progress: &Progress,
 ) -> Result<MeasureReport, BelvedereError> {
     super::check::drawable(session)?;
-    let renderer = renderer.renderer();
+    let renderer = renderer.renderer(session);
     let measures = belvedere_construct::measure(session.scene(), session.view(), Some(renderer), options, progress)?;
     Ok(MeasureReport {
         scene: session.path().display().to_string(),

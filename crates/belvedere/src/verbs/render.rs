@@ -7,8 +7,8 @@ use crate::provenance::{self, InputFile};
 use crate::scene_file::{StageDoc, SwitchOrLength};
 use crate::{BelvedereError, CameraPicture, Session};
 use belvedere_core::{Camera, DVec2, Stage, View};
+use belvedere_cpu::ExactRenderer;
 use belvedere_cpu::canvas::Canvas;
-use belvedere_cpu::{CpuRenderer, ExactRenderer};
 use belvedere_disocclusion::TerrainReport;
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::{
@@ -69,10 +69,18 @@ pub enum RendererChoice {
 }
 
 impl RendererChoice {
-    /// The renderer itself.
-    pub fn renderer(self) -> &'static dyn Renderer {
+    /// Name for records.
+    pub fn name(self) -> &'static str {
         match self {
-            Self::Cpu => &CpuRenderer,
+            Self::Cpu => "cpu",
+            Self::Exact => "exact",
+        }
+    }
+
+    /// The renderer itself, the same for all frames of a session.
+    pub(crate) fn renderer(self, session: &Session) -> &dyn Renderer {
+        match self {
+            Self::Cpu => &*session.rasteriser,
             Self::Exact => &ExactRenderer,
         }
     }
@@ -252,7 +260,7 @@ pub(super) fn draw(
     let displacement = view.is_bent().then(|| measure_displacement(&view, &frame));
     let sidecar = Sidecar {
         program: format!("belvedere {}", crate::VERSION),
-        renderer: request.renderer.renderer().name(),
+        renderer: request.renderer.name(),
         note: displacement.map(|d| note(&view, &d)),
         stages: view.stages().iter().map(|s| s.name()).collect(),
         overlay,
@@ -295,7 +303,7 @@ fn draw_view(session: &Session, request: &RenderRequest, progress: &Progress) ->
     options.overlay.under.extend(grid_spacing.map(|spacing| grid::lines(scene, spacing)).into_iter().flatten());
     let draw = |view: &View| {
         let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
-        request.renderer.renderer().render(&job)
+        request.renderer.renderer(session).render(&job)
     };
     let mut frame = draw(&view)?;
     if let Some(covered) =
@@ -303,7 +311,7 @@ fn draw_view(session: &Session, request: &RenderRequest, progress: &Progress) ->
         && let Some(cut) = thin::cut(scene, &view, covered)?
     {
         let job = RenderJob { scene: &cut, view: &view, light: session.light(), options: &options, progress };
-        let behind = request.renderer.renderer().render(&job)?;
+        let behind = request.renderer.renderer(session).render(&job)?;
         thin::draw(&mut frame, &behind, scene, &view, covered);
     }
     let straight = if request.compare || ghost { Some(draw(&view.straightened())?) } else { None };
@@ -313,7 +321,7 @@ fn draw_view(session: &Session, request: &RenderRequest, progress: &Progress) ->
         let aux = Aux { world: true, exact: false };
         let options = RenderOptions { marks: false, aux, ..request.options.clone() };
         let job = RenderJob { scene, view: &view, light: session.light(), options: &options, progress };
-        let bare = request.renderer.renderer().render(&job)?;
+        let bare = request.renderer.renderer(session).render(&job)?;
         heatmap_max = Some(heat::paint(&mut frame, &bare, &view));
     }
     if let Some(straight) = straight.as_ref().filter(|_| ghost) {
@@ -341,7 +349,7 @@ fn draw_camera(
     let options = RenderOptions { overlay: figure.overlay.clone(), ..request.options.clone() };
     let (scene, view, light) = (session.scene(), &figure.view, session.light());
     let job = RenderJob { scene, view, light, options: &options, progress };
-    let mut frame = request.renderer.renderer().render(&job)?;
+    let mut frame = request.renderer.renderer(session).render(&job)?;
     let title = if scene.title.is_empty() { "The camera" } else { &scene.title };
     camera::draw_legend(&mut Canvas::new(&mut frame.color, frame.width), &figure, title);
     let overlay = OverlayRecord { camera: Some(picture.name()), ..OverlayRecord::default() };

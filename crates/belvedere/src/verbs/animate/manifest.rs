@@ -135,7 +135,7 @@ impl Manifest {
                 samples: request.options.samples,
                 tolerance_px: request.options.tolerance_px,
                 lod_px: request.options.lod_px,
-                renderer: request.renderer.renderer().name().to_owned(),
+                renderer: request.renderer.name().to_owned(),
                 straight: request.straight,
                 compare: request.compare,
             },
