@@ -401,7 +401,7 @@ mod tests {
             features: vec![PointFeature { name: "hut".into(), position }],
             color: Color::rgb(0, 0, 0),
             size_px: 3.0,
-            look: belvedere_scene::PointLook::default(),
+            style: belvedere_scene::PointStyle::default(),
             hidden: Hidden::Fade,
             lift_m: 4.0,
         });

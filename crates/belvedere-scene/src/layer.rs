@@ -1,6 +1,6 @@
 //! Layers and their styles.
 
-use crate::{DistanceMarkers, Heightfield, MeshLayer, PointLook, Ramp};
+use crate::{DistanceMarkers, Heightfield, MeshLayer, PointStyle, Ramp};
 use belvedere_core::{Aabb, DVec2, DVec3};
 use std::sync::Arc;
 
@@ -235,7 +235,7 @@ pub struct PointLayer {
     /// Diameter on screen, pixels.
     pub size_px: f64,
     /// Symbol, casing and names.
-    pub look: PointLook,
+    pub style: PointStyle,
     /// Style of hidden points.
     pub hidden: Hidden,
     /// Height above ground, metres.

@@ -21,7 +21,7 @@ pub use layer::{
 };
 pub use light::Light;
 pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer};
-pub use overlay::{DistanceMarkers, Overlay, OverlayFace, OverlayLine, OverlayPoint, PointLook, Symbol};
+pub use overlay::{DistanceMarkers, Overlay, OverlayFace, OverlayLine, OverlayPoint, PointStyle, Symbol};
 pub use progress::{Cancelled, Progress};
 pub use ramp::{Ramp, RampHeight, RampStop};
 pub use scene::{Crs, Scene, Unit};

@@ -21,7 +21,7 @@ pub enum Symbol {
 
 /// How the points of a layer look beside their colour and size.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PointLook {
+pub struct PointStyle {
     /// Shape.
     pub symbol: Symbol,
     /// Colour of the rim; `None` = no rim.
@@ -30,7 +30,7 @@ pub struct PointLook {
     pub label_px: Option<f64>,
 }
 
-impl Default for PointLook {
+impl Default for PointStyle {
     fn default() -> Self {
         Self { symbol: Symbol::Dot, casing: Some(Color::rgb(255, 255, 255)), label_px: None }
     }

@@ -56,7 +56,7 @@ pub fn point_layer(id: &str, position: DVec3) -> Layer {
         size_px: 8.0,
         hidden: Hidden::Fade,
         lift_m: 1.0,
-        look: belvedere_scene::PointLook::default(),
+        style: belvedere_scene::PointStyle::default(),
     });
     Layer { id: id.into(), must_see: true, kind }
 }

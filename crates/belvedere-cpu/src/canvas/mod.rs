@@ -78,7 +78,7 @@ impl<'a> Canvas<'a> {
         let (lo, hi) = points.iter().fold((first, first), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
         let half = 0.5 * width;
         self.shape(lo - half, hi + half, color, |p| {
-            let nearest = points.windows(2).map(|w| crate::shade::area::distance(p, w[0], w[1]));
+            let nearest = points.windows(2).map(|w| crate::shade::overlay::area::distance(p, w[0], w[1]));
             nearest.fold(p.distance(first), f64::min) - half
         });
     }

@@ -1,6 +1,6 @@
 //! Letters: outlines of the embedded font, set from left to right.
 
-use super::Canvas;
+use crate::canvas::Canvas;
 use ab_glyph::{Font, FontRef, Glyph, GlyphId, PxScale, ScaleFont, point};
 use belvedere_core::DVec2;
 use belvedere_scene::Color;

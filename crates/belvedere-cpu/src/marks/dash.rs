@@ -1,7 +1,7 @@
 //! Strokes along a line, whole or in dashes.
 
-use super::ribbon::{Lane, Stroke};
-use super::visibility::Station;
+use crate::marks::ribbon::{Lane, Stroke};
+use crate::marks::visibility::Station;
 
 /// Share of a period that is ink, and its shortest length in widths of the line.
 const INK: f64 = 0.55;
@@ -22,7 +22,8 @@ pub(crate) fn trace(part: &[Station], half: f64, lane: Lane, out: &mut Vec<Strok
         let mut to = from + 1;
         while to + 1 < part.len() && to - from < 24 {
             let (a, b) = (part[from].pixel, part[to + 1].pixel);
-            let straight = part[from + 1..=to].iter().all(|s| crate::shade::area::distance(s.pixel, a, b) < 0.06);
+            let straight =
+                part[from + 1..=to].iter().all(|s| crate::shade::overlay::area::distance(s.pixel, a, b) < 0.06);
             if !straight {
                 break;
             }
@@ -103,7 +104,7 @@ fn pieces([g0, g1]: [f64; 2], period: f64) -> Vec<(bool, [f64; 2])> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::marks::path::Place;
+    use crate::marks::path::LinePoint;
     use belvedere_core::{DVec2, DVec3};
 
     /// Beginnings of the dashes along a straight line of 1000 units seen at `px_per_unit` from unit `from` on, scene units.
@@ -112,7 +113,7 @@ mod tests {
         let part: Vec<Station> = (0..=n)
             .map(|i| {
                 let along = from + i as f64 / px_per_unit;
-                let place = Place { p: DVec3::X * along, along, on_ground: false };
+                let place = LinePoint { p: DVec3::X * along, along, on_ground: false };
                 Station { pixel: DVec2::new(along * px_per_unit, 10.0), arc_px: i as f64, place }
             })
             .collect();

@@ -1,6 +1,6 @@
 //! Marks along a line at equal distances over the ground.
 
-use super::path::Place;
+use crate::marks::path::LinePoint;
 use belvedere_scene::DistanceMarkers;
 
 /// Marks wanted on the longest line when the distance is left to us.
@@ -28,7 +28,7 @@ fn round(value: f64) -> f64 {
 }
 
 /// Places at multiples of `every` along the draped line, the beginning left out, with their texts.
-pub(crate) fn places(line: &[Place], every: f64) -> Vec<(Place, String)> {
+pub(crate) fn places(line: &[LinePoint], every: f64) -> Vec<(LinePoint, String)> {
     let mut out = Vec::new();
     let mut next = every;
     for pair in line.windows(2) {
@@ -57,8 +57,8 @@ mod tests {
     #[test]
     fn marks_are_equally_far_apart_over_the_ground() {
         // Up a slope of 3 in 4: 5 units of way for 4 across.
-        let at = |x: f64| Place { p: DVec3::new(x, 0.0, 0.75 * x), along: 1.25 * x, on_ground: true };
-        let line: Vec<Place> = (0..=64).map(|i| at(f64::from(i) * 62.5)).collect();
+        let at = |x: f64| LinePoint { p: DVec3::new(x, 0.0, 0.75 * x), along: 1.25 * x, on_ground: true };
+        let line: Vec<LinePoint> = (0..=64).map(|i| at(f64::from(i) * 62.5)).collect();
         let marks = places(&line, 1000.0);
         assert_eq!(marks.len(), 5);
         for (i, (place, name)) in marks.iter().enumerate() {

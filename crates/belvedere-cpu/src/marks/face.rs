@@ -1,7 +1,7 @@
 //! Translucent, flat, convex faces, in front of surfaces or faintly behind them.
 
-use crate::lens::Lens;
-use crate::pass::Pass;
+use crate::geometry::pass::Pass;
+use crate::geometry::screen::Screen;
 use crate::shade::color::{Packed, Rgb, linear};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::OverlayFace;
@@ -16,7 +16,7 @@ pub(crate) struct Face {
     edges: Vec<(DVec2, f64)>,
     lo: DVec2,
     hi: DVec2,
-    /// Nearness (as of [`crate::lens::ScreenVertex::q`]) at pixel `p` is `q.x p.x + q.y p.y + q.z`.
+    /// Nearness (as of [`crate::geometry::screen::ScreenVertex::q`]) at pixel `p` is `q.x p.x + q.y p.y + q.z`.
     q: DVec3,
     color: Rgb,
     alpha: f32,
@@ -24,14 +24,14 @@ pub(crate) struct Face {
 
 impl Face {
     /// `None` if nothing of it can be seen.
-    pub(crate) fn new(face: &OverlayFace, pass: &Pass<'_>, lens: &Lens) -> Option<Self> {
+    pub(crate) fn new(face: &OverlayFace, pass: &Pass<'_>, screen: &Screen) -> Option<Self> {
         let corners: Vec<DVec3> =
-            face.corners.iter().map(|&p| Some(lens.view_from(pass.displace(p)?))).collect::<Option<_>>()?;
-        let corners = clipped(corners, lens);
+            face.corners.iter().map(|&p| Some(screen.view_from(pass.displace(p)?))).collect::<Option<_>>()?;
+        let corners = clipped(corners, screen);
         if corners.len() < 3 {
             return None;
         }
-        let pixels: Vec<DVec2> = corners.iter().map(|&v| lens.pixel(v)).collect();
+        let pixels: Vec<DVec2> = corners.iter().map(|&v| screen.pixel(v)).collect();
         let area: f64 = (0..pixels.len()).map(|i| pixels[i].perp_dot(pixels[(i + 1) % pixels.len()])).sum();
         if area.abs() < 1e-6 {
             return None;
@@ -44,7 +44,7 @@ impl Face {
                 edges.push((normal, normal.dot(a)));
             }
         }
-        let nearness = |v: DVec3| if lens.ortho { -v.z } else { 1.0 / v.z };
+        let nearness = |v: DVec3| if screen.ortho { -v.z } else { 1.0 / v.z };
         let q = plane(&pixels, &corners.iter().map(|&v| nearness(v)).collect::<Vec<_>>())?;
         let (lo, hi) = pixels.iter().fold((pixels[0], pixels[0]), |(l, h), p| (l.min(*p), h.max(*p)));
         let c = face.color;
@@ -52,8 +52,8 @@ impl Face {
     }
 
     /// Draws the rows from `y0` on; `depth` are those of the whole picture.
-    pub(crate) fn draw(&self, lens: &Lens, y0: i32, color: &mut [Packed], depth: &[f32]) {
-        let width = lens.width;
+    pub(crate) fn draw(&self, screen: &Screen, y0: i32, color: &mut [Packed], depth: &[f32]) {
+        let width = screen.width;
         let rows = color.len() as i32 / width.max(1);
         let range = |lo: f64, hi: f64, from: i32, to: i32| {
             let low = (lo - 1.0).clamp(f64::from(from), f64::from(to)) as i32;
@@ -68,7 +68,7 @@ impl Face {
                     continue;
                 }
                 let q = self.q.dot(p.extend(1.0));
-                let here = if lens.ortho { -q } else { 1.0 / q.max(1e-30) };
+                let here = if screen.ortho { -q } else { 1.0 / q.max(1e-30) };
                 let seen = here <= f64::from(depth[(y * width + x) as usize]);
                 let alpha = cover * self.alpha * if seen { 1.0 } else { BEHIND };
                 let c = &mut color[((y - y0) * width + x) as usize];
@@ -79,12 +79,12 @@ impl Face {
 }
 
 /// The part of a convex polygon in front of the near plane and inside the guard planes.
-fn clipped(mut corners: Vec<DVec3>, lens: &Lens) -> Vec<DVec3> {
-    for plane in 0..crate::lens::PLANES {
+fn clipped(mut corners: Vec<DVec3>, screen: &Screen) -> Vec<DVec3> {
+    for plane in 0..crate::geometry::screen::PLANES {
         let mut out = Vec::with_capacity(corners.len() + 1);
         for (i, &a) in corners.iter().enumerate() {
             let b = corners[(i + 1) % corners.len()];
-            let (da, db) = (lens.clip_distances(a)[plane], lens.clip_distances(b)[plane]);
+            let (da, db) = (screen.clip_distances(a)[plane], screen.clip_distances(b)[plane]);
             if da >= 0.0 {
                 out.push(a);
             }

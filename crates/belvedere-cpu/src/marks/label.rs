@@ -13,7 +13,7 @@ const MOST: usize = 400;
 
 /// A text that wants a place.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Wish {
+pub(crate) struct LabelRequest {
     pub(crate) text: String,
     /// The point it belongs to, pixels.
     pub(crate) at: DVec2,
@@ -29,7 +29,7 @@ pub(crate) struct Wish {
 /// A text in its place.
 #[derive(Debug, Clone, PartialEq)]
 struct Placed {
-    wish: Wish,
+    label_request: LabelRequest,
     baseline: DVec2,
     leader: Option<[DVec2; 2]>,
 }
@@ -48,11 +48,11 @@ fn overlap(a: &Rect, b: &Rect) -> bool {
 
 impl Labels {
     /// Places what fits into a picture of `size`; earlier wishes first.
-    pub(crate) fn place(wishes: Vec<Wish>, size: DVec2) -> Self {
-        let markers: Vec<Rect> = wishes.iter().map(marker).collect();
+    pub(crate) fn place(requests: Vec<LabelRequest>, size: DVec2) -> Self {
+        let markers: Vec<Rect> = requests.iter().map(marker).collect();
         let mut taken: Vec<Rect> = Vec::new();
         let mut placed: Vec<Placed> = Vec::new();
-        for (i, wish) in wishes.into_iter().enumerate() {
+        for (i, label_request) in requests.into_iter().enumerate() {
             if placed.len() >= MOST {
                 break;
             }
@@ -62,13 +62,13 @@ impl Labels {
                     && !taken.iter().any(|t| overlap(t, r))
                     && !markers.iter().enumerate().any(|(k, m)| k != i && overlap(m, r))
             };
-            let found = candidates(&wish).into_iter().find(|(text, leader, _)| {
+            let found = candidates(&label_request).into_iter().find(|(text, leader, _)| {
                 free(text) && leader.as_ref().is_none_or(|l| !taken.iter().any(|t| overlap(t, &line_box(l))))
             });
             if let Some((text, leader, baseline)) = found {
                 taken.push(text);
                 taken.extend(leader.as_ref().map(line_box));
-                placed.push(Placed { wish, baseline, leader });
+                placed.push(Placed { label_request, baseline, leader });
             }
         }
         Self { placed }
@@ -77,15 +77,15 @@ impl Labels {
     /// Writes them.
     pub(crate) fn draw(&self, canvas: &mut Canvas<'_>) {
         for p in &self.placed {
-            let ink = p.wish.color;
+            let ink = p.label_request.color;
             if let Some(leader) = &p.leader {
                 canvas.line(leader, 2.6, rim(ink).with_alpha(150));
                 canvas.line(leader, 1.0, ink);
             }
         }
-        for Placed { wish, baseline, .. } in &self.placed {
-            let halo = (rim(wish.color).with_alpha(225), (wish.size_px / 7.0).clamp(1.2, 3.0));
-            canvas.text(*baseline, wish.size_px, &wish.text, wish.color, Some(halo));
+        for Placed { label_request, baseline, .. } in &self.placed {
+            let halo = (rim(label_request.color).with_alpha(225), (label_request.size_px / 7.0).clamp(1.2, 3.0));
+            canvas.text(*baseline, label_request.size_px, &label_request.text, label_request.color, Some(halo));
         }
     }
 }
@@ -96,9 +96,9 @@ fn rim(ink: Color) -> Color {
     if light { Color::rgb(30, 34, 40) } else { Color::rgb(255, 255, 255) }
 }
 
-fn marker(wish: &Wish) -> Rect {
-    let [side, above] = wish.marker;
-    [wish.at - DVec2::new(side, above), wish.at + side]
+fn marker(label_request: &LabelRequest) -> Rect {
+    let [side, above] = label_request.marker;
+    [label_request.at - DVec2::new(side, above), label_request.at + side]
 }
 
 fn line_box(line: &[DVec2; 2]) -> Rect {
@@ -106,22 +106,22 @@ fn line_box(line: &[DVec2; 2]) -> Rect {
 }
 
 /// Boxes of text to try, best first, with leader and baseline.
-fn candidates(wish: &Wish) -> Vec<(Rect, Option<[DVec2; 2]>, DVec2)> {
-    let size = text_size(wish.size_px, &wish.text);
-    let [side, above] = wish.marker;
+fn candidates(label_request: &LabelRequest) -> Vec<(Rect, Option<[DVec2; 2]>, DVec2)> {
+    let size = text_size(label_request.size_px, &label_request.text);
+    let [side, above] = label_request.marker;
     let rect = |baseline: DVec2| {
         let (lo, hi) = (DVec2::new(0.0, -size.ascent), DVec2::new(size.width, size.descent));
         [baseline + lo - ROOM, baseline + hi + ROOM]
     };
-    let level = wish.at.y + 0.36 * wish.size_px;
+    let level = label_request.at.y + 0.36 * label_request.size_px;
     let beside = [
-        DVec2::new(wish.at.x + side + 4.0, level),
-        DVec2::new(wish.at.x - side - 4.0 - size.width, level),
-        DVec2::new(wish.at.x - 0.5 * size.width, wish.at.y + side + 3.0 + size.ascent),
+        DVec2::new(label_request.at.x + side + 4.0, level),
+        DVec2::new(label_request.at.x - side - 4.0 - size.width, level),
+        DVec2::new(label_request.at.x - 0.5 * size.width, label_request.at.y + side + 3.0 + size.ascent),
     ];
     let mut out = Vec::new();
-    for length in LEADERS.into_iter().take(if wish.leader { LEADERS.len() } else { 1 }) {
-        let foot = wish.at - DVec2::Y * above;
+    for length in LEADERS.into_iter().take(if label_request.leader { LEADERS.len() } else { 1 }) {
+        let foot = label_request.at - DVec2::Y * above;
         let top = foot - DVec2::Y * (length + 2.0);
         for shift in [0.5, 0.15, 0.85] {
             let baseline = DVec2::new(top.x - shift * size.width, top.y - size.descent - 1.0);
@@ -138,24 +138,25 @@ fn candidates(wish: &Wish) -> Vec<(Rect, Option<[DVec2; 2]>, DVec2)> {
 mod tests {
     use super::*;
 
-    fn wish(i: usize, at: DVec2) -> Wish {
+    fn label_request(i: usize, at: DVec2) -> LabelRequest {
         let color = Color::rgb(0, 0, 0);
-        Wish { text: format!("Summit {i}"), at, marker: [5.0, 6.0], size_px: 13.0, color, leader: true }
+        LabelRequest { text: format!("Summit {i}"), at, marker: [5.0, 6.0], size_px: 13.0, color, leader: true }
     }
 
     #[test]
     fn names_do_not_overlap_and_the_first_come_first() {
         // Fifty summits in a tight row: not all names fit.
-        let wishes: Vec<Wish> = (0..50).map(|i| wish(i, DVec2::new(100.0 + 4.0 * i as f64, 230.0))).collect();
-        let labels = Labels::place(wishes.clone(), DVec2::new(400.0, 300.0));
+        let requests: Vec<LabelRequest> =
+            (0..50).map(|i| label_request(i, DVec2::new(100.0 + 4.0 * i as f64, 230.0))).collect();
+        let labels = Labels::place(requests.clone(), DVec2::new(400.0, 300.0));
         let n = labels.placed.len();
         assert!((8..50).contains(&n), "{n} names of 50");
-        assert_eq!(labels.placed[0].wish, wishes[0]);
+        assert_eq!(labels.placed[0].label_request, requests[0]);
         let rects: Vec<Rect> = labels
             .placed
             .iter()
             .map(|p| {
-                let size = text_size(13.0, &p.wish.text);
+                let size = text_size(13.0, &p.label_request.text);
                 [p.baseline - DVec2::Y * size.ascent, p.baseline + DVec2::new(size.width, size.descent)]
             })
             .collect();

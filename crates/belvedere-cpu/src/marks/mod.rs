@@ -4,30 +4,30 @@ mod dash;
 mod distance;
 mod face;
 mod label;
+mod line_of_sight;
 mod names;
 mod path;
 mod ribbon;
-mod sight;
 mod symbol;
 mod visibility;
 
-use crate::BAND;
 use crate::canvas::Canvas;
-use crate::lens::Lens;
-use crate::pass::Pass;
+use crate::geometry::pass::Pass;
+use crate::geometry::screen::Screen;
+use crate::raster::band::BAND;
 use crate::shade::color::{Packed, linear};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{
-    AreaLayer, Color, Hidden, LayerKind, LineLayer, Overlay, OverlayLine, OverlayPoint, PointLayer, PointLook,
+    AreaLayer, Color, Hidden, LayerKind, LineLayer, Overlay, OverlayLine, OverlayPoint, PointLayer, PointStyle,
     RenderJob, Scene, Symbol,
 };
 use face::Face;
-use label::{Labels, Wish};
-use path::Place;
+use label::{LabelRequest, Labels};
+use line_of_sight::LineOfSight;
+use path::LinePoint;
 use rayon::prelude::*;
-use ribbon::{Ink, Lane, Sheet, Stroke};
-use sight::Sight;
-use visibility::{DepthMap, Judge, Run};
+use ribbon::{Ink, Lane, Stroke, StrokeLayer};
+use visibility::{DepthMap, LineVisibility, Run};
 
 /// Width of a hidden line in widths of the visible one.
 const HIDDEN_WIDTH: f64 = 0.6;
@@ -37,42 +37,48 @@ const SMALL_PX: f64 = 11.0;
 /// All marks of a frame, in the order of the layers.
 #[derive(Default)]
 pub(crate) struct Marks {
-    under: Vec<Sheet>,
+    under: Vec<StrokeLayer>,
     faces: Vec<Face>,
-    sheets: Vec<Sheet>,
+    sheets: Vec<StrokeLayer>,
     labels: Labels,
 }
 
 impl Marks {
     /// * `depth`: surfaces at the pixel centres.
-    pub(crate) fn new(job: &RenderJob<'_>, passes: &[Pass<'_>], lens: &Lens, tolerance_px: f64, depth: &[f32]) -> Self {
+    pub(crate) fn new(
+        job: &RenderJob<'_>,
+        passes: &[Pass<'_>],
+        screen: &Screen,
+        tolerance_px: f64,
+        depth: &[f32],
+    ) -> Self {
         if !job.options.marks {
             return Self::default();
         }
-        let map = DepthMap { depth, width: lens.width, height: lens.height };
-        let sight = Sight::new(job.scene, job.view);
-        let maker = Maker { scene: job.scene, passes, lens, tolerance_px, map, sight: &sight };
+        let map = DepthMap { depth, width: screen.width, height: screen.height };
+        let sight = LineOfSight::new(job.scene, job.view);
+        let builder = MarkBuilder { scene: job.scene, passes, screen, tolerance_px, map, sight: &sight };
         let overlay = &job.options.overlay;
-        let mut wishes: Vec<Wish> = Vec::new();
-        let mut sheets: Vec<Sheet> = Vec::new();
+        let mut requests: Vec<LabelRequest> = Vec::new();
+        let mut sheets: Vec<StrokeLayer> = Vec::new();
         for (i, layer) in job.scene.layers.iter().enumerate() {
             let id = i as u32 + 1;
             match &layer.kind {
                 LayerKind::Line(l) => {
-                    sheets.push(maker.line_layer(l, id));
-                    sheets.extend(maker.distances(l, id, &mut wishes));
-                    wishes.extend(maker.line_names(l));
+                    sheets.push(builder.line_layer(l, id));
+                    sheets.extend(builder.distances(l, id, &mut requests));
+                    requests.extend(builder.line_names(l));
                 }
-                LayerKind::Area(a) => sheets.extend(maker.outlines(a, id)),
-                LayerKind::Point(p) => sheets.push(maker.points(p, id, &mut wishes)),
+                LayerKind::Area(a) => sheets.extend(builder.outlines(a, id)),
+                LayerKind::Point(p) => sheets.push(builder.points(p, id, &mut requests)),
                 _ => {}
             }
         }
-        sheets.extend(overlay.over.iter().map(|l| maker.overlay_line(l, &mut wishes)));
-        sheets.extend(overlay.points.iter().map(|p| maker.overlay_point(p, &mut wishes)));
-        let under = overlay.under.iter().map(|l| maker.overlay_line(l, &mut wishes)).collect();
-        let faces = overlay.faces.iter().flat_map(|f| passes.iter().filter_map(|p| Face::new(f, p, lens)));
-        Self { under, faces: faces.collect(), sheets, labels: Labels::place(wishes, 2.0 * lens.center) }
+        sheets.extend(overlay.over.iter().map(|l| builder.overlay_line(l, &mut requests)));
+        sheets.extend(overlay.points.iter().map(|p| builder.overlay_point(p, &mut requests)));
+        let under = overlay.under.iter().map(|l| builder.overlay_line(l, &mut requests)).collect();
+        let faces = overlay.faces.iter().flat_map(|f| passes.iter().filter_map(|p| Face::new(f, p, screen)));
+        Self { under, faces: faces.collect(), sheets, labels: Labels::place(requests, 2.0 * screen.center) }
     }
 
     /// Whether there may be any.
@@ -82,16 +88,16 @@ impl Marks {
     }
 
     /// Draws the rows from `y0` on, one band; `depth` as in [`Marks::new`].
-    pub(crate) fn draw(&self, y0: i32, lens: &Lens, depth: &[f32], color: &mut [Packed], id: &mut [u32]) {
-        let mut masks = ribbon::Masks::default();
+    pub(crate) fn draw(&self, y0: i32, screen: &Screen, depth: &[f32], color: &mut [Packed], id: &mut [u32]) {
+        let mut masks = ribbon::CoverageMasks::default();
         for sheet in &self.under {
-            sheet.draw(&mut masks, y0, lens.width, color, id);
+            sheet.draw(&mut masks, y0, screen.width, color, id);
         }
         for face in &self.faces {
-            face.draw(lens, y0, color, depth);
+            face.draw(screen, y0, color, depth);
         }
         for sheet in &self.sheets {
-            sheet.draw(&mut masks, y0, lens.width, color, id);
+            sheet.draw(&mut masks, y0, screen.width, color, id);
         }
     }
 
@@ -101,13 +107,13 @@ impl Marks {
     }
 }
 
-struct Maker<'a> {
+struct MarkBuilder<'a> {
     scene: &'a Scene,
     passes: &'a [Pass<'a>],
-    lens: &'a Lens,
+    screen: &'a Screen,
     tolerance_px: f64,
     map: DepthMap<'a>,
-    sight: &'a Sight<'a>,
+    sight: &'a LineOfSight<'a>,
 }
 
 /// Width and treatment of hidden parts of a line.
@@ -128,8 +134,8 @@ struct Marker {
     hidden: Hidden,
 }
 
-impl Maker<'_> {
-    fn line_layer(&self, layer: &LineLayer, id: u32) -> Sheet {
+impl MarkBuilder<'_> {
+    fn line_layer(&self, layer: &LineLayer, id: u32) -> StrokeLayer {
         let half_px = 0.5 * width_or_none(layer.width_px);
         let casing_px = layer.casing.map(|_| casing_of(half_px));
         let style = Style { half_px, casing_px, hidden: layer.hidden, lift_m: layer.lift_m };
@@ -137,9 +143,9 @@ impl Maker<'_> {
         self.sheet(paths, style, inks(layer.color, layer.casing, layer.hidden), id)
     }
 
-    fn outlines(&self, layer: &AreaLayer, id: u32) -> Option<Sheet> {
+    fn outlines(&self, layer: &AreaLayer, id: u32) -> Option<StrokeLayer> {
         let color = layer.outline?;
-        let mut paths: Vec<Vec<Place>> = Vec::new();
+        let mut paths: Vec<Vec<LinePoint>> = Vec::new();
         for ring in layer.features.iter().flat_map(|f| &f.rings) {
             let closed = ring.iter().chain(ring.first()).map(|xy| xy.extend(0.0));
             paths.extend(path::lay(self.scene, &closed.collect::<Vec<_>>(), layer.lift_m));
@@ -149,7 +155,7 @@ impl Maker<'_> {
         Some(self.sheet(paths, style, inks(color, None, layer.hidden), id))
     }
 
-    fn overlay_line(&self, line: &OverlayLine, wishes: &mut Vec<Wish>) -> Sheet {
+    fn overlay_line(&self, line: &OverlayLine, requests: &mut Vec<LabelRequest>) -> StrokeLayer {
         let half_px = 0.5 * width_or_none(line.width_px);
         let casing_px = line.casing.map(|_| casing_of(half_px));
         let style = Style { half_px, casing_px, hidden: line.hidden, lift_m: 0.0 };
@@ -158,14 +164,14 @@ impl Maker<'_> {
             false => vec![path::as_given(&line.points)],
         };
         if !line.label.is_empty() {
-            wishes.extend(self.rim_label(line, &paths, style));
+            requests.extend(self.rim_label(line, &paths, style));
         }
         self.sheet(paths, style, inks(line.color, line.casing, line.hidden), 0)
     }
 
     /// The text of a line at its visible end nearest to the bottom of the picture.
-    fn rim_label(&self, line: &OverlayLine, paths: &[Vec<Place>], style: Style) -> Option<Wish> {
-        let size = 2.0 * self.lens.center;
+    fn rim_label(&self, line: &OverlayLine, paths: &[Vec<LinePoint>], style: Style) -> Option<LabelRequest> {
+        let size = 2.0 * self.screen.center;
         let margin = DVec2::splat(1.5 * SMALL_PX);
         let inside = |p: DVec2| p.cmpge(margin).all() && p.cmple(size - margin).all();
         let runs = paths.iter().flat_map(|p| self.runs(p, style));
@@ -177,10 +183,10 @@ impl Maker<'_> {
         });
         let at = ends.flatten().max_by(|a, b| a.y.total_cmp(&b.y))?;
         let (text, color) = (line.label.clone(), line.color.with_alpha(255));
-        Some(Wish { text, at, marker: [2.0, 2.0], size_px: SMALL_PX, color, leader: false })
+        Some(LabelRequest { text, at, marker: [2.0, 2.0], size_px: SMALL_PX, color, leader: false })
     }
 
-    fn sheet(&self, paths: Vec<Vec<Place>>, style: Style, inks: [Ink; 3], id: u32) -> Sheet {
+    fn sheet(&self, paths: Vec<Vec<LinePoint>>, style: Style, inks: [Ink; 3], id: u32) -> StrokeLayer {
         let strokes: Vec<Vec<Stroke>> = paths
             .par_iter()
             .map(|places| {
@@ -191,16 +197,17 @@ impl Maker<'_> {
                 strokes
             })
             .collect();
-        Sheet::new(strokes.concat(), inks, id, self.lens.height as usize, BAND)
+        StrokeLayer::new(strokes.concat(), inks, id, self.screen.height as usize, BAND)
     }
 
     /// Images of a line in every pass, with the number of the pass.
-    fn runs(&self, places: &[Place], style: Style) -> Vec<(usize, Run)> {
+    fn runs(&self, places: &[LinePoint], style: Style) -> Vec<(usize, Run)> {
         let reach = style.half_px + 4.0;
         let mut runs = Vec::new();
         for (i, pass) in self.passes.iter().enumerate() {
-            let judge = Judge { pass, lens: self.lens, map: self.map, sight: self.sight, lift_m: style.lift_m };
-            for piece in path::project(pass, self.lens, places, self.tolerance_px) {
+            let judge =
+                LineVisibility { pass, screen: self.screen, map: self.map, sight: self.sight, lift_m: style.lift_m };
+            for piece in path::project(pass, self.screen, places, self.tolerance_px) {
                 runs.extend(judge.runs(&piece, reach).into_iter().map(|run| (i, run)));
             }
         }
@@ -226,7 +233,7 @@ impl Maker<'_> {
     }
 
     /// Marks at equal distances along the lines of a layer.
-    fn distances(&self, layer: &LineLayer, id: u32, wishes: &mut Vec<Wish>) -> Option<Sheet> {
+    fn distances(&self, layer: &LineLayer, id: u32, requests: &mut Vec<LabelRequest>) -> Option<StrokeLayer> {
         let markers = layer.markers?;
         let lines: Vec<_> = layer.features.iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m)).collect();
         let lengths = lines.iter().filter_map(|l| l.last().map(|p| p.along));
@@ -240,7 +247,7 @@ impl Maker<'_> {
             for at in self.mark(&place, layer.lift_m, marker, &mut strokes) {
                 let color = darker(layer.color);
                 let side = half_px + 2.0;
-                wishes.push(Wish {
+                requests.push(LabelRequest {
                     text: text.clone(),
                     at,
                     marker: [side, side],
@@ -252,12 +259,12 @@ impl Maker<'_> {
         }
         let white = Color::rgb(255, 255, 255);
         let inks = inks(white, Some(layer.color), hidden);
-        Some(Sheet::new(strokes, inks, id, self.lens.height as usize, BAND))
+        Some(StrokeLayer::new(strokes, inks, id, self.screen.height as usize, BAND))
     }
 
-    fn points(&self, layer: &PointLayer, id: u32, wishes: &mut Vec<Wish>) -> Sheet {
+    fn points(&self, layer: &PointLayer, id: u32, requests: &mut Vec<LabelRequest>) -> StrokeLayer {
         let half_px = 0.5 * width_or_none(layer.size_px);
-        let PointLook { symbol, casing, label_px } = layer.look;
+        let PointStyle { symbol, casing, label_px } = layer.style;
         let marker = Marker { symbol, half_px, casing: casing.is_some(), hidden: layer.hidden };
         let found: Vec<(Vec<Stroke>, Vec<DVec2>)> = layer
             .features
@@ -265,7 +272,7 @@ impl Maker<'_> {
             .map(|feature| {
                 let p = feature.position + DVec3::Z * layer.lift_m;
                 let mut strokes = Vec::new();
-                let place = Place { p, along: 0.0, on_ground: false };
+                let place = LinePoint { p, along: 0.0, on_ground: false };
                 let named = self.mark(&place, layer.lift_m, marker, &mut strokes);
                 (strokes, named)
             })
@@ -274,36 +281,38 @@ impl Maker<'_> {
         for (feature, (s, named)) in layer.features.iter().zip(found) {
             strokes.extend(s);
             let Some(size_px) = label_px.filter(|_| !feature.name.trim().is_empty()) else { continue };
-            wishes.extend(named.into_iter().map(|at| wish(feature.name.trim(), at, marker, size_px, layer.color)));
+            requests.extend(
+                named.into_iter().map(|at| label_request(feature.name.trim(), at, marker, size_px, layer.color)),
+            );
         }
-        Sheet::new(strokes, inks(layer.color, casing, layer.hidden), id, self.lens.height as usize, BAND)
+        StrokeLayer::new(strokes, inks(layer.color, casing, layer.hidden), id, self.screen.height as usize, BAND)
     }
 
-    fn overlay_point(&self, point: &OverlayPoint, wishes: &mut Vec<Wish>) -> Sheet {
+    fn overlay_point(&self, point: &OverlayPoint, requests: &mut Vec<LabelRequest>) -> StrokeLayer {
         let half_px = 0.5 * width_or_none(point.size_px);
         let marker = Marker { symbol: point.symbol, half_px, casing: true, hidden: point.hidden };
-        let place = Place { p: point.position, along: 0.0, on_ground: false };
+        let place = LinePoint { p: point.position, along: 0.0, on_ground: false };
         let mut strokes = Vec::new();
         let named = self.mark(&place, 0.0, marker, &mut strokes);
         if !point.label.is_empty() {
-            wishes.extend(named.into_iter().map(|at| wish(&point.label, at, marker, 13.0, point.color)));
+            requests.extend(named.into_iter().map(|at| label_request(&point.label, at, marker, 13.0, point.color)));
         }
         let casing = Some(Color::rgb(255, 255, 255));
-        Sheet::new(strokes, inks(point.color, casing, point.hidden), 0, self.lens.height as usize, BAND)
+        StrokeLayer::new(strokes, inks(point.color, casing, point.hidden), 0, self.screen.height as usize, BAND)
     }
 
     /// Draws a marker at every image of a place; returns where a name belongs.
-    fn mark(&self, place: &Place, lift_m: f64, marker: Marker, out: &mut Vec<Stroke>) -> Vec<DVec2> {
+    fn mark(&self, place: &LinePoint, lift_m: f64, marker: Marker, out: &mut Vec<Stroke>) -> Vec<DVec2> {
         let mut named = Vec::new();
         for pass in self.passes {
             let p = self.sight.on_surface(place, lift_m);
-            let Some(v) = pass.displace(p).map(|d| self.lens.view_from(d)) else { continue };
-            if !v.is_finite() || !self.lens.is_drawable(v) || pass.margins(p).iter().any(|m| !(*m >= 0.0)) {
+            let Some(v) = pass.displace(p).map(|d| self.screen.view_from(d)) else { continue };
+            if !v.is_finite() || !self.screen.is_drawable(v) || pass.margins(p).iter().any(|m| !(*m >= 0.0)) {
                 continue;
             }
-            let pixel = self.lens.pixel(v);
-            let Some(behind) = self.map.behind(self.lens, pixel, v.z) else { continue };
-            let visible = self.sight.sees(self.lens, pixel, v.z).unwrap_or(behind <= 1.5);
+            let pixel = self.screen.pixel(v);
+            let Some(behind) = self.map.behind(self.screen, pixel, v.z) else { continue };
+            let visible = self.sight.sees(self.screen, pixel, v.z).unwrap_or(behind <= 1.5);
             stamp(pixel, marker, visible, out);
             if visible || marker.hidden == Hidden::Show {
                 named.push(pixel);
@@ -330,10 +339,10 @@ fn stamp(at: DVec2, marker: Marker, visible: bool, out: &mut Vec<Stroke>) {
     }
 }
 
-fn wish(text: &str, at: DVec2, marker: Marker, size_px: f64, color: Color) -> Wish {
+fn label_request(text: &str, at: DVec2, marker: Marker, size_px: f64, color: Color) -> LabelRequest {
     let side = marker.half_px + 2.0;
     let above = symbol::top(marker.symbol) * marker.half_px + 2.5;
-    Wish { text: text.to_owned(), at, marker: [side, above], size_px, color: darker(color), leader: true }
+    LabelRequest { text: text.to_owned(), at, marker: [side, above], size_px, color: darker(color), leader: true }
 }
 
 /// A colour that reads as text.

@@ -1,9 +1,9 @@
 //! Names of lines.
 
-use super::label::Wish;
-use super::visibility::{Run, Station};
-use super::{Maker, Style, casing_of, darker, path, width_or_none};
 use crate::canvas::text_size;
+use crate::marks::label::LabelRequest;
+use crate::marks::visibility::{Run, Station};
+use crate::marks::{MarkBuilder, Style, casing_of, darker, path, width_or_none};
 use belvedere_core::DVec2;
 use belvedere_scene::{Hidden, LineLayer};
 use rayon::prelude::*;
@@ -20,9 +20,9 @@ struct Stretch {
     middle: DVec2,
 }
 
-impl Maker<'_> {
+impl MarkBuilder<'_> {
     /// Each name of a layer once, at the longest stretch of the lines that bear it.
-    pub(super) fn line_names(&self, layer: &LineLayer) -> Vec<Wish> {
+    pub(super) fn line_names(&self, layer: &LineLayer) -> Vec<LabelRequest> {
         let Some(size_px) = layer.label_px else { return Vec::new() };
         let half_px = 0.5 * width_or_none(layer.width_px);
         let style = Style { half_px, casing_px: None, hidden: layer.hidden, lift_m: layer.lift_m };
@@ -45,7 +45,7 @@ impl Maker<'_> {
         // The longer a line is seen, the sooner its name finds a place.
         names.sort_by(|a, b| b.1.length.total_cmp(&a.1.length).then(a.0.cmp(b.0)));
         let side = casing_of(half_px);
-        let wish = |(name, s): (&str, Stretch)| Wish {
+        let label_request = |(name, s): (&str, Stretch)| LabelRequest {
             text: name.to_owned(),
             at: s.middle,
             marker: [side; 2],
@@ -53,11 +53,11 @@ impl Maker<'_> {
             color: darker(layer.color),
             leader: false,
         };
-        names.into_iter().map(wish).collect()
+        names.into_iter().map(label_request).collect()
     }
 
-    fn longest(&self, places: &[path::Place], style: Style) -> Option<Stretch> {
-        let size = 2.0 * self.lens.center;
+    fn longest(&self, places: &[path::LinePoint], style: Style) -> Option<Stretch> {
+        let size = 2.0 * self.screen.center;
         // Where hidden parts are drawn like the others a name has all of the line to choose from.
         let drawn = |run: Run| match style.hidden {
             Hidden::Show => vec![run.stations],
@@ -85,8 +85,8 @@ fn within(part: &[Station], size: DVec2) -> Vec<Stretch> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::path::Place;
     use super::*;
+    use crate::marks::path::LinePoint;
     use belvedere_core::DVec3;
 
     #[test]
@@ -94,7 +94,7 @@ mod tests {
         let station = |i: i32| Station {
             pixel: DVec2::new(f64::from(i), 50.0),
             arc_px: f64::from(i) + 30.0,
-            place: Place { p: DVec3::ZERO, along: 0.0, on_ground: true },
+            place: LinePoint { p: DVec3::ZERO, along: 0.0, on_ground: true },
         };
         let line: Vec<Station> = (-30..200).map(station).collect();
         let found = within(&line, DVec2::new(100.0, 80.0));

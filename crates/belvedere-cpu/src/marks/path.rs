@@ -1,7 +1,7 @@
 //! Lines from the ground to the image.
 
-use crate::lens::Lens;
-use crate::pass::Pass;
+use crate::geometry::pass::Pass;
+use crate::geometry::screen::Screen;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, Scene};
 
@@ -16,12 +16,12 @@ pub(crate) struct PathPoint {
     pub(crate) pixel: DVec2,
     pub(crate) depth: f64,
     /// Where it is.
-    pub(crate) place: Place,
+    pub(crate) place: LinePoint,
 }
 
 /// A point of a line in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct LinePoint {
     /// Scene coordinates, lifted.
     pub(crate) p: DVec3,
     /// Length of the line from its beginning, scene units.
@@ -30,7 +30,7 @@ pub(crate) struct Place {
     pub(crate) on_ground: bool,
 }
 
-impl Place {
+impl LinePoint {
     pub(crate) fn lerp(self, other: Self, t: f64) -> Self {
         Self {
             p: self.p.lerp(other.p, t),
@@ -41,12 +41,12 @@ impl Place {
 }
 
 /// The line laid on the drawn surface: vertices and enough points between them to follow its triangles, lifted.
-pub(crate) fn drape(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<Place> {
+pub(crate) fn drape(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<LinePoint> {
     let lift = DVec3::Z * lift_m;
-    let mut out: Vec<Place> = Vec::with_capacity(points.len() * 3);
+    let mut out: Vec<LinePoint> = Vec::with_capacity(points.len() * 3);
     let mut push = |p: DVec3, on_ground: bool| {
         let along = out.last().map_or(0.0, |l| l.along + l.p.distance(p));
-        out.push(Place { p, along, on_ground });
+        out.push(LinePoint { p, along, on_ground });
     };
     let Some(hf) = scene.terrain() else {
         points.iter().for_each(|&p| push(p + lift, false));
@@ -72,20 +72,20 @@ pub(crate) fn drape(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<Place> 
 }
 
 /// The points as they are.
-pub(crate) fn as_given(points: &[DVec3]) -> Vec<Place> {
+pub(crate) fn as_given(points: &[DVec3]) -> Vec<LinePoint> {
     let mut along = 0.0;
     let mut last: Option<DVec3> = None;
     let finite = points.iter().filter(|p| p.is_finite());
     finite
         .map(|&p| {
             along += last.replace(p).map_or(0.0, |l| l.distance(p));
-            Place { p, along, on_ground: false }
+            LinePoint { p, along, on_ground: false }
         })
         .collect()
 }
 
 /// The line laid on the drawn surface whatever its heights, lifted: pieces without holes.
-pub(crate) fn lay(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<Vec<Place>> {
+pub(crate) fn lay(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<Vec<LinePoint>> {
     let Some(hf) = scene.terrain() else { return Vec::new() };
     let step = 0.9 * hf.spacing().min_element();
     let (mut pieces, mut along) = (vec![Vec::new()], 0.0);
@@ -101,8 +101,8 @@ pub(crate) fn lay(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<Vec<Place
             match (hf.surface_at(xy), pieces.last_mut()) {
                 (Some(z), Some(piece)) => {
                     let p = xy.extend(z + lift_m);
-                    along += piece.last().map_or(0.0, |l: &Place| l.p.distance(p));
-                    piece.push(Place { p, along, on_ground: true });
+                    along += piece.last().map_or(0.0, |l: &LinePoint| l.p.distance(p));
+                    piece.push(LinePoint { p, along, on_ground: true });
                 }
                 (_, last) => {
                     if last.is_some_and(|l| !l.is_empty()) {
@@ -123,14 +123,19 @@ fn is_on_ground(hf: &Heightfield, p: DVec3) -> bool {
 /// Vertex of a line with everything that clipping needs.
 #[derive(Clone, Copy)]
 struct Vertex {
-    place: Place,
+    place: LinePoint,
     v: Option<DVec3>,
     margins: [f64; 2],
 }
 
 /// Images of a polyline in one pass: pieces without a gap, each of at least two points, straight to the tolerance.
-pub(crate) fn project(pass: &Pass<'_>, lens: &Lens, points: &[Place], tolerance_px: f64) -> Vec<Vec<PathPoint>> {
-    let mut tracer = Tracer { pass, lens, tolerance_px, pieces: Vec::new(), open: false };
+pub(crate) fn project(
+    pass: &Pass<'_>,
+    screen: &Screen,
+    points: &[LinePoint],
+    tolerance_px: f64,
+) -> Vec<Vec<PathPoint>> {
+    let mut tracer = Tracer { pass, screen, tolerance_px, pieces: Vec::new(), open: false };
     let mut last: Option<Vertex> = None;
     for &p in points {
         let next = tracer.vertex(p);
@@ -145,21 +150,21 @@ pub(crate) fn project(pass: &Pass<'_>, lens: &Lens, points: &[Place], tolerance_
 
 struct Tracer<'a> {
     pass: &'a Pass<'a>,
-    lens: &'a Lens,
+    screen: &'a Screen,
     tolerance_px: f64,
     pieces: Vec<Vec<PathPoint>>,
     open: bool,
 }
 
 impl Tracer<'_> {
-    fn vertex(&self, place: Place) -> Vertex {
+    fn vertex(&self, place: LinePoint) -> Vertex {
         let p = place.p;
-        let v = self.pass.displace(p).map(|d| self.lens.view_from(d)).filter(|v| v.is_finite());
+        let v = self.pass.displace(p).map(|d| self.screen.view_from(d)).filter(|v| v.is_finite());
         Vertex { place, v, margins: self.pass.margins(p) }
     }
 
     fn segment(&mut self, a: Vertex, b: Vertex, halvings: u32) {
-        let off = |v: Option<DVec3>| v.map_or(0, |v| self.lens.outcode(v, 64.0));
+        let off = |v: Option<DVec3>| v.map_or(0, |v| self.screen.outcode(v, 64.0));
         let split = halvings > 0
             && match (a.v, b.v) {
                 (None, None) => false,
@@ -195,8 +200,8 @@ impl Tracer<'_> {
     /// Parameters of the visible part of a segment.
     fn clip(&self, a: (DVec3, [f64; 2]), b: (DVec3, [f64; 2])) -> Option<[f64; 2]> {
         let (mut s, mut t) = (0.0f64, 1.0f64);
-        let da = self.lens.clip_distances(a.0).into_iter().chain(a.1.map(|m| m.min(1e30)));
-        let db = self.lens.clip_distances(b.0).into_iter().chain(b.1.map(|m| m.min(1e30)));
+        let da = self.screen.clip_distances(a.0).into_iter().chain(a.1.map(|m| m.min(1e30)));
+        let db = self.screen.clip_distances(b.0).into_iter().chain(b.1.map(|m| m.min(1e30)));
         for (x, y) in da.zip(db) {
             match (x >= 0.0, y >= 0.0) {
                 (true, true) => {}
@@ -208,7 +213,7 @@ impl Tracer<'_> {
         (s < t).then_some([s, t])
     }
 
-    fn point(&self, v: DVec3, place: Place) -> PathPoint {
-        PathPoint { pixel: self.lens.pixel(v), depth: v.z, place }
+    fn point(&self, v: DVec3, place: LinePoint) -> PathPoint {
+        PathPoint { pixel: self.screen.pixel(v), depth: v.z, place }
     }
 }

@@ -1,6 +1,6 @@
 //! Anti-aliased ribbons and symbols: the union of strokes, never darker where they overlap.
 
-use super::symbol;
+use crate::marks::symbol;
 use crate::shade::color::{Packed, Rgb};
 use belvedere_core::DVec2;
 use belvedere_scene::Symbol;
@@ -73,7 +73,7 @@ impl Stroke {
 
 /// The strokes of a layer, sorted into bands.
 #[derive(Debug)]
-pub(crate) struct Sheet {
+pub(crate) struct StrokeLayer {
     strokes: Vec<Stroke>,
     bands: Vec<Vec<u32>>,
     inks: [Ink; 3],
@@ -84,11 +84,11 @@ pub(crate) struct Sheet {
 
 /// Coverage of a band by lane.
 #[derive(Debug, Default)]
-pub(crate) struct Masks {
+pub(crate) struct CoverageMasks {
     lanes: [Vec<f32>; 4],
 }
 
-impl Sheet {
+impl StrokeLayer {
     /// * `rows`: height of a band, pixels.
     pub(crate) fn new(strokes: Vec<Stroke>, inks: [Ink; 3], id: u32, height: usize, rows: usize) -> Self {
         let mut bands = vec![Vec::new(); height.div_ceil(rows)];
@@ -105,7 +105,7 @@ impl Sheet {
     }
 
     /// Draws the band whose first row is `y0`.
-    pub(crate) fn draw(&self, masks: &mut Masks, y0: i32, width: i32, color: &mut [Packed], id: &mut [u32]) {
+    pub(crate) fn draw(&self, masks: &mut CoverageMasks, y0: i32, width: i32, color: &mut [Packed], id: &mut [u32]) {
         let Some(band) = self.bands.get(y0 as usize / self.rows).filter(|b| !b.is_empty()) else { return };
         for lane in &mut masks.lanes {
             lane.clear();

@@ -1,9 +1,9 @@
 //! Which parts of a line the surfaces hide, steadily.
 
-use super::path::{PathPoint, Place};
-use super::sight::Sight;
-use crate::lens::Lens;
-use crate::pass::Pass;
+use crate::geometry::pass::Pass;
+use crate::geometry::screen::Screen;
+use crate::marks::line_of_sight::LineOfSight;
+use crate::marks::path::{LinePoint, PathPoint};
 use belvedere_core::DVec2;
 
 /// Hidden gaps shorter than this are closed, then visible specks shorter than this are dropped, pixels; up to twice that length
@@ -30,7 +30,7 @@ impl DepthMap<'_> {
 
     /// How far `depth` lies behind the surface seen at `pixel`, in units of the tolerance: the depth that the surface
     /// itself gains within a pixel, plus the width of a pixel on it.
-    pub(crate) fn behind(&self, lens: &Lens, pixel: DVec2, depth: f64) -> Option<f64> {
+    pub(crate) fn behind(&self, screen: &Screen, pixel: DVec2, depth: f64) -> Option<f64> {
         let (x, y) = (pixel.x.floor() as i32, pixel.y.floor() as i32);
         let surface = self.at(x, y)?;
         if !surface.is_finite() {
@@ -43,7 +43,7 @@ impl DepthMap<'_> {
             if least.is_finite() { least } else { 0.0 }
         };
         let gain = step(self.at(x - 1, y), self.at(x + 1, y)) + step(self.at(x, y - 1), self.at(x, y + 1));
-        let tolerance = gain + lens.footprint(surface) + 1e-6 * surface;
+        let tolerance = gain + screen.footprint(surface) + 1e-6 * surface;
         Some((depth - surface) / tolerance)
     }
 }
@@ -54,7 +54,7 @@ pub(crate) struct Station {
     pub(crate) pixel: DVec2,
     /// Length of the line on the image from its beginning, pixels.
     pub(crate) arc_px: f64,
-    pub(crate) place: Place,
+    pub(crate) place: LinePoint,
 }
 
 impl Station {
@@ -111,15 +111,15 @@ impl Run {
 
 /// Judges the stations of a line: by the depth buffer where that is beyond doubt, else by the line of sight itself.
 #[derive(Clone, Copy)]
-pub(crate) struct Judge<'a> {
+pub(crate) struct LineVisibility<'a> {
     pub(crate) pass: &'a Pass<'a>,
-    pub(crate) lens: &'a Lens,
+    pub(crate) screen: &'a Screen,
     pub(crate) map: DepthMap<'a>,
-    pub(crate) sight: &'a Sight<'a>,
+    pub(crate) sight: &'a LineOfSight<'a>,
     pub(crate) lift_m: f64,
 }
 
-impl Judge<'_> {
+impl LineVisibility<'_> {
     /// The parts of a piece on the image (`margin_px` around it included).
     pub(crate) fn runs(&self, piece: &[PathPoint], margin_px: f64) -> Vec<Run> {
         let mut runs = Vec::new();
@@ -139,11 +139,11 @@ impl Judge<'_> {
             let n = ((t - s) * length).ceil().clamp(1.0, 1e6) as usize;
             for i in usize::from(!run.is_empty())..=n {
                 let k = s + (t - s) * i as f64 / n as f64;
-                let (pixel, depth) = (a.pixel.lerp(b.pixel, k), between(self.lens, a.depth, b.depth, k));
+                let (pixel, depth) = (a.pixel.lerp(b.pixel, k), between(self.screen, a.depth, b.depth, k));
                 // Share of the way in the world; on the image the far half is shorter.
-                let w = if self.lens.ortho { k } else { k * a.depth / (b.depth + k * (a.depth - b.depth)) };
+                let w = if self.screen.ortho { k } else { k * a.depth / (b.depth + k * (a.depth - b.depth)) };
                 run.push(Station { pixel, arc_px: arc + k * length, place: a.place.lerp(b.place, w) });
-                verdicts.push(match self.map.behind(self.lens, pixel, depth) {
+                verdicts.push(match self.map.behind(self.screen, pixel, depth) {
                     Some(behind) if behind <= 1.0 => Some(true),
                     Some(behind) if behind > HYSTERESIS => Some(false),
                     _ => None,
@@ -197,13 +197,13 @@ impl Judge<'_> {
     }
 
     /// Whether the eye sees a place of the line; `None` if the line of sight cannot tell.
-    fn sees(&self, place: &Place) -> Option<bool> {
+    fn sees(&self, place: &LinePoint) -> Option<bool> {
         let p = self.sight.on_surface(place, self.lift_m);
-        let v = self.lens.view_from(self.pass.displace(p)?);
-        if !v.is_finite() || !self.lens.is_drawable(v) {
+        let v = self.screen.view_from(self.pass.displace(p)?);
+        if !v.is_finite() || !self.screen.is_drawable(v) {
             return None;
         }
-        self.sight.sees(self.lens, self.lens.pixel(v), v.z)
+        self.sight.sees(self.screen, self.screen.pixel(v), v.z)
     }
 
     /// Hidden stretches, their ends found by halving.
@@ -279,8 +279,8 @@ fn shrunk([a, b]: [f64; 2]) -> Option<[f64; 2]> {
 }
 
 /// Depth along a segment that is straight on the image.
-fn between(lens: &Lens, a: f64, b: f64, k: f64) -> f64 {
-    if lens.ortho { a + k * (b - a) } else { a * b / (b + k * (a - b)) }
+fn between(screen: &Screen, a: f64, b: f64, k: f64) -> f64 {
+    if screen.ortho { a + k * (b - a) } else { a * b / (b + k * (a - b)) }
 }
 
 /// Parameters of the part of a segment on the image.

@@ -1,6 +1,6 @@
 //! Shadows that boxes and meshes throw, and those that fall on them: straight rays towards the sun, on the map.
 
-use crate::exact::boxes::{Boxes, Solid};
+use crate::trace::boxes::{Boxes, Solid};
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{LayerKind, Light, Scene};
 use belvedere_sight::{Ground, MeshTree};
@@ -50,7 +50,7 @@ const fn pattern() -> [[f64; 4]; 16] {
 }
 
 /// What throws shadows beside the ground on itself.
-pub(super) struct Casters<'a> {
+pub(crate) struct Casters<'a> {
     boxes: Boxes,
     meshes: Vec<MeshTree<'a>>,
     grounds: Vec<Ground<'a>>,
@@ -64,7 +64,7 @@ pub(super) struct Casters<'a> {
 
 impl<'a> Casters<'a> {
     /// `None` where no shadows are wanted, the sun is down, or nothing but the ground throws any.
-    pub(super) fn new(scene: &'a Scene, light: &Light) -> Option<Self> {
+    pub(crate) fn new(scene: &'a Scene, light: &Light) -> Option<Self> {
         let sun = light.direction();
         if !(light.shadows && sun.z > 0.01) {
             return None;
@@ -101,7 +101,7 @@ impl<'a> Casters<'a> {
 
     /// Share of the sun that boxes and meshes leave to a pixel on the ground.
     /// * `axes`: way on the map per pixel to the right and per pixel down.
-    pub(super) fn on_ground(&self, p: DVec3, axes: [DVec2; 2]) -> f32 {
+    pub(crate) fn on_ground(&self, p: DVec3, axes: [DVec2; 2]) -> f32 {
         // Away from every caster: the box that the rays run through.
         let way = self.way(p.z, self.solid.max.z);
         let reach = (axes[0].length() + axes[1].length()) + 2.0 * SUN_RADIUS * way;
@@ -116,7 +116,7 @@ impl<'a> Casters<'a> {
 
     /// Share of the sun that everything leaves to a pixel on a surface with a normal.
     /// * `side`: of the square that the pixel covers there.
-    pub(super) fn on_surface(&self, p: DVec3, normal: DVec3, side: f64) -> f32 {
+    pub(crate) fn on_surface(&self, p: DVec3, normal: DVec3, side: f64) -> f32 {
         if normal.dot(self.sun) <= 0.0 {
             return 0.0;
         }
@@ -182,7 +182,7 @@ mod tests {
     /// The same as triangles.
     fn tower_mesh() -> LayerKind {
         let LayerKind::Boxes(b) = tower() else { panic!("boxes") };
-        let triangles = crate::box_blocks::BOX_TRIANGLES.map(|t| t.map(|k| k as u32)).to_vec();
+        let triangles = crate::geometry::box_blocks::BOX_TRIANGLES.map(|t| t.map(|k| k as u32)).to_vec();
         let mesh = Mesh::new(&b.boxes[0].corners(), triangles, MeshColors::Layer).unwrap();
         LayerKind::Mesh(MeshLayer { mesh, color: Color::rgb(200, 200, 200) })
     }

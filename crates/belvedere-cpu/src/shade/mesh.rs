@@ -1,17 +1,17 @@
 //! Colour of meshes: matt like the boxes, the same from both sides.
 
-use super::color::{Rgb, linear, smoothstep};
-use super::relief::ReliefLight;
-use crate::blocks::Found;
+use crate::geometry::block::DrawnTriangle;
+use crate::shade::color::{Rgb, linear, smoothstep};
+use crate::shade::relief::ReliefLight;
 use belvedere_core::DVec3;
 use belvedere_scene::{Light, MeshLayer, Relief};
 use glam::Vec3A;
 
 /// Share of the sun that a place with a normal sees.
-pub(super) type Sun<'s> = dyn Fn(DVec3, DVec3) -> f32 + 's;
+pub(crate) type Sun<'s> = dyn Fn(DVec3, DVec3) -> f32 + 's;
 
 /// A mesh layer ready for colouring.
-pub(super) struct MeshShade<'a> {
+pub(crate) struct MeshShade<'a> {
     layer: &'a MeshLayer,
     light: ReliefLight,
     /// Lowest height and extent upwards.
@@ -20,20 +20,20 @@ pub(super) struct MeshShade<'a> {
 }
 
 impl<'a> MeshShade<'a> {
-    pub(super) fn new(layer: &'a MeshLayer, light: &Light) -> Self {
+    pub(crate) fn new(layer: &'a MeshLayer, light: &Light) -> Self {
         let bounds = layer.mesh.bounds();
         let height = (bounds.max.z - bounds.min.z).max(1e-9);
         Self { layer, light: ReliefLight::new(Relief::Sun, light), foot: bounds.min.z, height }
     }
 
     /// True position of a sample.
-    pub(super) fn place(&self, found: &Found<'_>, weights: [f64; 3]) -> DVec3 {
+    pub(crate) fn place(&self, found: &DrawnTriangle<'_>, weights: [f64; 3]) -> DVec3 {
         let corners = self.layer.mesh.corners(found.block.origin[0] + found.parent as usize);
         corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
     }
 
     /// Colour of a sample.
-    pub(super) fn shade(&self, found: &Found<'_>, weights: [f64; 3], sun: &Sun<'_>) -> Rgb {
+    pub(crate) fn shade(&self, found: &DrawnTriangle<'_>, weights: [f64; 3], sun: &Sun<'_>) -> Rgb {
         let triangle = found.block.origin[0] + found.parent as usize;
         let [a, b, c] = found.v.map(|v| [i64::from(v.screen.x), i64::from(v.screen.y)]);
         // y runs down the image: counter-clockwise in space is clockwise here.
@@ -59,7 +59,7 @@ impl<'a> MeshShade<'a> {
     }
 
     /// See [`MeshShade::color`], at a point of the mesh.
-    pub(super) fn color_at(&self, triangle: usize, front: bool, p: DVec3, sun: &Sun<'_>) -> Rgb {
+    pub(crate) fn color_at(&self, triangle: usize, front: bool, p: DVec3, sun: &Sun<'_>) -> Rgb {
         self.color(triangle, self.layer.mesh.weights_at(triangle, p), front, p, sun)
     }
 }

@@ -1,54 +1,43 @@
 //! Colour of what a sample sees.
 
-pub(crate) mod area;
-mod batch;
 mod cast;
-mod coarse;
 pub(crate) mod color;
-mod drape;
-mod ground;
-mod lit;
+pub(crate) mod footprint;
+pub(crate) mod ground;
 mod mesh;
-mod moved;
+pub(crate) mod overlay;
 mod paint;
-mod palette;
-mod patch;
-mod print;
-mod relief;
-mod rows;
-mod seen;
-mod shadow;
+pub(crate) mod relief;
 mod sky;
-mod sky_row;
-mod spot;
-mod terrain;
-mod texture;
-mod tiles;
+mod traced;
 
-use crate::band::SKY;
-use crate::blocks::{Block, Blocks, Found, SIDE};
-use crate::box_blocks::BOX_TRIANGLES;
-use crate::grid::CELL_TRIANGLES;
-use crate::lens::{Lens, SUB};
-use crate::lod::Sparse;
-use crate::polish::Polish;
-use crate::vector::nearest;
-use area::AreaMap;
+use crate::geometry::block::{Block, DrawnTriangle};
+use crate::geometry::blocks::Blocks;
+use crate::geometry::box_blocks::BOX_TRIANGLES;
+use crate::geometry::grid::CELL_TRIANGLES;
+use crate::geometry::lod::DecimatedHeights;
+use crate::geometry::lod::SIDE;
+use crate::geometry::screen::{SUB, Screen};
+use crate::raster::band::SKY;
+use crate::raster::pixel_center::PixelCenters;
+use crate::simd::nearest;
 use belvedere_core::{DVec2, DVec3, Stage};
 use belvedere_scene::{BoxLayer, BoxShape, Heightfield, LayerKind, Relief, RenderJob};
 use cast::Casters;
 use color::{Rgb, linear, smoothstep};
 use glam::Vec3A;
+pub(crate) use ground::terrain::LightCache;
+use ground::terrain::TerrainShade;
+use ground::{surface, tiles};
+use overlay::area::AreaMap;
 pub(crate) use paint::{Painted, Samples};
 use relief::ReliefLight;
 use sky::Sky;
-pub(crate) use terrain::LightCache;
-use terrain::TerrainShade;
 
 /// Everything that colours need, made once per frame.
 pub(crate) struct Shader<'a> {
     pub(crate) sky: Sky,
-    lens: &'a Lens,
+    screen: &'a Screen,
     blocks: &'a Blocks,
     layers: Vec<LayerShade<'a>>,
     areas: Vec<AreaMap>,
@@ -89,11 +78,11 @@ pub(crate) fn ground_bytes(job: &RenderJob<'_>, hf: &Heightfield) -> u64 {
     let shadows = if job.light.shadows { nodes * 4 / 3 } else { 0 };
     let pixels = job.view.pinhole().image.map(u64::from).iter().product();
     let lit = 2 * tiles::most_bytes([hf.cols(), hf.rows()], pixels);
-    ground::means_bytes(nodes) + Sparse::bytes(nodes) + shadows + lit + if lifted { 8 * nodes } else { 0 }
+    surface::means_bytes(nodes) + DecimatedHeights::bytes(nodes) + shadows + lit + if lifted { 8 * nodes } else { 0 }
 }
 
 impl<'a> Shader<'a> {
-    pub(crate) fn new(job: &RenderJob<'a>, lens: &'a Lens, blocks: &'a Blocks, cache: &LightCache) -> Self {
+    pub(crate) fn new(job: &RenderJob<'a>, screen: &'a Screen, blocks: &'a Blocks, cache: &LightCache) -> Self {
         let layers: Vec<_> = job
             .scene
             .layers
@@ -113,7 +102,7 @@ impl<'a> Shader<'a> {
         let only_terrain = matches!((surfaces.next(), surfaces.next()), (Some(LayerShade::Terrain(_)), None));
         Self {
             sky: Sky::new(&job.scene.bounds(), job.view.pinhole()),
-            lens,
+            screen,
             blocks,
             areas: areas.collect(),
             casters: Casters::new(job.scene, job.light),
@@ -138,24 +127,24 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// Place and depth of the surface at a pixel's centre by the true map, see [`Polish::place`].
-    pub(crate) fn exact_place(
+    /// Place and depth of the surface at a pixel's centre by the true map, see [`PixelCenters::place`].
+    pub(crate) fn exact_point(
         &self,
-        polish: &Polish<'_>,
+        centers: &PixelCenters<'_>,
         prim: u32,
         near: DVec3,
         x: i32,
         y: i32,
     ) -> Option<(DVec3, f32)> {
         let found = if prim == SKY { None } else { self.blocks.find(prim) };
-        polish.place(&found?, near, DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5))
+        centers.place(&found?, near, DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5))
     }
 
     /// True position of what a sample sees, scene coordinates; NaN in the sky.
     pub(crate) fn world(&self, sample: Sample) -> DVec3 {
         let found = if sample.prim == SKY { None } else { self.blocks.find(sample.prim) };
         let Some(found) = found else { return DVec3::NAN };
-        let hit = Hit::new(&found, self.lens, sample.at);
+        let hit = SurfacePoint::new(&found, self.screen, sample.at);
         match &self.layers[found.block.layer as usize] {
             LayerShade::Terrain(t) => hit.on_ground(&found, t.hf),
             LayerShade::Boxes(b, _) => hit.on_box(&found, b).1,
@@ -204,13 +193,13 @@ fn lod(cells: f32) -> u32 {
 }
 
 /// Place of a sample inside the parent triangle.
-struct Hit {
+struct SurfacePoint {
     /// Weights of the parent's vertices.
     weights: [f64; 3],
 }
 
-impl Hit {
-    fn new(found: &Found<'_>, lens: &Lens, [xs, ys]: [i32; 2]) -> Self {
+impl SurfacePoint {
+    fn new(found: &DrawnTriangle<'_>, screen: &Screen, [xs, ys]: [i32; 2]) -> Self {
         let s = found.v.map(|v| [f64::from(v.screen.x), f64::from(v.screen.y)]);
         let p = [f64::from(xs), f64::from(ys)];
         let cross =
@@ -218,7 +207,7 @@ impl Hit {
         let area = cross(s[0], s[1], s[2]);
         let inverse = 1.0 / area;
         let mut w = [cross(p, s[1], s[2]), cross(s[0], p, s[2]), cross(s[0], s[1], p)].map(|e| (e * inverse).max(0.0));
-        if !lens.ortho {
+        if !screen.ortho {
             // Weights are linear on the image only after multiplication by nearness.
             w = std::array::from_fn(|i| w[i] * f64::from(found.v[i].screen.q));
         }
@@ -233,7 +222,7 @@ impl Hit {
     }
 
     /// Place on the ground.
-    fn on_ground(&self, found: &Found<'_>, hf: &Heightfield) -> DVec3 {
+    fn on_ground(&self, found: &DrawnTriangle<'_>, hf: &Heightfield) -> DVec3 {
         let cell = (found.parent >> 1) as usize;
         let Block { origin, step, .. } = *found.block;
         let [c, r] = [origin[0] + step * (cell % SIDE), origin[1] + step * (cell / SIDE)];
@@ -249,7 +238,7 @@ impl Hit {
     }
 
     /// The box and the place on it, and the outward normal of its face.
-    fn on_box<'b>(&self, found: &Found<'_>, layer: &'b BoxLayer) -> (&'b BoxShape, DVec3, DVec3) {
+    fn on_box<'b>(&self, found: &DrawnTriangle<'_>, layer: &'b BoxLayer) -> (&'b BoxShape, DVec3, DVec3) {
         let shape = &layer.boxes[found.block.origin[0] + (found.parent / 12) as usize];
         let corners = shape.corners();
         let p = BOX_TRIANGLES[(found.parent % 12) as usize].map(|k| corners[k]);

@@ -1,11 +1,12 @@
 //! Colours of many samples at a time.
 
-use super::batch::Batch;
-use super::color::{self, Encoder, LANES, PIXELS, Packed, Rgb};
-use super::{Hit, LayerShade, Shader};
-use crate::band::SKY;
-use crate::blocks::{CELL_BITS, Geometry, SOUP};
-use crate::vector::{self, Kernel};
+use crate::geometry::block::Geometry;
+use crate::geometry::blocks::{CELL_BITS, SOUP};
+use crate::raster::band::SKY;
+use crate::shade::color::{self, Encoder, LANES, PIXELS, Packed, Rgb};
+use crate::shade::ground::batch::Batch;
+use crate::shade::{LayerShade, Shader, SurfacePoint};
+use crate::simd::{self, Kernel};
 
 /// Samples of the picture: what was hit, its nearness, and the place on the image in fixed-point steps; slices of equal
 /// length.
@@ -19,7 +20,7 @@ pub(crate) struct Samples<'s> {
 
 impl Samples<'_> {
     #[inline(always)]
-    pub(super) fn at(&self, k: usize) -> [i32; 2] {
+    pub(crate) fn at(&self, k: usize) -> [i32; 2] {
         [self.x[k], self.y[k]]
     }
 }
@@ -40,7 +41,7 @@ impl Painted {
     }
 
     /// * `color`: linear.
-    pub(super) fn set(&mut self, k: usize, color: Rgb, id: u32) {
+    pub(crate) fn set(&mut self, k: usize, color: Rgb, id: u32) {
         self.set_root(k, color.to_array().map(|v| v.max(0.0).sqrt()), id);
     }
 
@@ -54,7 +55,7 @@ impl Painted {
 
     /// Colours of the samples with these numbers, mostly one after the other.
     #[inline(always)]
-    pub(super) fn set_roots<const N: usize>(&mut self, numbers: &[u32], root: &[[f32; N]; 3], id: u32) {
+    pub(crate) fn set_roots<const N: usize>(&mut self, numbers: &[u32], root: &[[f32; N]; 3], id: u32) {
         let (Some(&first), Some(&last)) = (numbers.first(), numbers.last()) else { return };
         // They rise.
         if (last - first) as usize + 1 == numbers.len() {
@@ -72,12 +73,12 @@ impl Painted {
 
     /// As it is kept to be drawn over.
     pub(crate) fn pack(&self, out: &mut [Packed]) {
-        vector::run(Pack { root: self.root.each_ref().map(Vec::as_slice), out });
+        simd::run(Pack { root: self.root.each_ref().map(Vec::as_slice), out });
     }
 
     /// As it is stored in pictures.
     pub(crate) fn encode(&self, out: &mut [[u8; 3]]) {
-        vector::run(Encode { root: self.root.each_ref().map(Vec::as_slice), out });
+        simd::run(Encode { root: self.root.each_ref().map(Vec::as_slice), out });
     }
 }
 
@@ -126,7 +127,7 @@ impl Kernel for Encode<'_> {
 
 /// Writes pixels, red first.
 #[inline(always)]
-pub(super) fn interleave([red, green, blue]: &[[u8; PIXELS]; 3], out: &mut [[u8; 3]]) {
+pub(crate) fn interleave([red, green, blue]: &[[u8; PIXELS]; 3], out: &mut [[u8; 3]]) {
     for (((out, r), g), b) in out.iter_mut().zip(red).zip(green).zip(blue) {
         *out = [*r, *g, *b];
     }
@@ -186,7 +187,7 @@ impl Shader<'_> {
     /// Colours of samples, in their order.
     pub(crate) fn paint(&self, samples: Samples<'_>, painted: &mut Painted) {
         painted.resize(samples.prim.len());
-        vector::run(Paint { shader: self, samples, painted });
+        simd::run(Paint { shader: self, samples, painted });
     }
 
     #[inline(always)]
@@ -200,8 +201,9 @@ impl Shader<'_> {
     #[inline(never)]
     fn paint_one(&self, samples: &Samples<'_>, k: usize, batch: &mut Batch, painted: &mut Painted) {
         let Some(found) = self.blocks.find(samples.prim[k]) else { return painted.set(k, Rgb::ZERO, 0) };
-        let (layer, depth) = (found.block.layer, self.lens.depth_of(samples.q[k]));
-        let (hit, footprint) = (Hit::new(&found, self.lens, samples.at(k)), self.lens.footprint(f64::from(depth)));
+        let (layer, depth) = (found.block.layer, self.screen.depth_of(samples.q[k]));
+        let (hit, footprint) =
+            (SurfacePoint::new(&found, self.screen, samples.at(k)), self.screen.footprint(f64::from(depth)));
         let color = match &self.layers[layer as usize] {
             LayerShade::Terrain(_) => return batch.take_odd(layer as usize, self, samples, k, painted),
             LayerShade::Boxes(b, light) => {

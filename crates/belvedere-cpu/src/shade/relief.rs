@@ -1,7 +1,7 @@
 //! Relief light on terrain.
 
-use super::color::{Rgb, linear};
-use crate::vector::nearest;
+use crate::shade::color::{Rgb, linear};
+use crate::simd::nearest;
 use belvedere_scene::{Light, Relief};
 use glam::Vec3A;
 use std::sync::LazyLock;

@@ -4,7 +4,7 @@ use crate::support::{layer, line, options, pinhole, render, scene, terrain};
 use belvedere_core::{Camera, DVec2, DVec3, View};
 use belvedere_scene::{
     Color, DistanceMarkers, Frame, Heightfield, Hidden, LayerKind, NodeState, Overlay, OverlayFace, OverlayLine,
-    OverlayPoint, Palette, PointFeature, PointLayer, PointLook, Relief, RenderOptions, Scene, Symbol,
+    OverlayPoint, Palette, PointFeature, PointLayer, PointStyle, Relief, RenderOptions, Scene, Symbol,
 };
 
 const WIDTH_PX: f64 = 4.0;
@@ -113,7 +113,7 @@ fn summits() -> PointLayer {
         features: vec![feature("Crest", 0.0, 0.0, 60.0), feature("Behind", 120.0, 150.0, 0.2)],
         color: Color::rgb(90, 20, 140),
         size_px: 12.0,
-        look: PointLook { symbol: Symbol::Triangle, label_px: Some(13.0), ..PointLook::default() },
+        style: PointStyle { symbol: Symbol::Triangle, label_px: Some(13.0), ..PointStyle::default() },
         hidden: Hidden::Cut,
         lift_m: 1.0,
     }
@@ -152,7 +152,7 @@ fn points_in_sight_have_symbol_and_name_and_hidden_ones_have_neither() {
     let through = draw(shown);
     assert!(changed(&through, &frame).iter().any(|&i| near(behind, i)), "hidden = show draws it");
     let mut unnamed = summits();
-    unnamed.look.label_px = None;
+    unnamed.style.label_px = None;
     assert!(changed(&draw(unnamed), &bare).len() < 250, "without names only the symbol is left");
 }
 

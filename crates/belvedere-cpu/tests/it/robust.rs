@@ -21,7 +21,7 @@ fn full_scene() -> Scene {
         size_px: 9.0,
         hidden: Hidden::Fade,
         lift_m: 2.0,
-        look: belvedere_scene::PointLook::default(),
+        style: belvedere_scene::PointStyle::default(),
     };
     scene(vec![
         layer("ground", LayerKind::Terrain(terrain(hf))),

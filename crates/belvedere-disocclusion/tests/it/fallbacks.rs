@@ -5,7 +5,7 @@ use belvedere_disocclusion::{
     Fallback, Solved, TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver, UnresolvedReason,
 };
 use belvedere_scene::{
-    Color, Heightfield, Hidden, Layer, LayerKind, NodeState, PointFeature, PointLayer, PointLook, Progress, Scene,
+    Color, Heightfield, Hidden, Layer, LayerKind, NodeState, PointFeature, PointLayer, PointStyle, Progress, Scene,
 };
 use belvedere_testkit::synthetic::{line_layer, terrain_layer};
 
@@ -19,8 +19,8 @@ fn scene(cols: usize, rows: usize, height: impl Fn(usize, usize) -> f64, points:
     let place = |g: &DVec2| PointFeature { name: String::new(), position: at(*g, 0.0) };
     let features = points.iter().map(place).collect();
     let color = Color::rgb(0, 0, 0);
-    let (look, hidden) = (PointLook::default(), Hidden::Fade);
-    let kind = LayerKind::Point(PointLayer { features, color, size_px: 3.0, hidden, lift_m: 1.0, look });
+    let (style, hidden) = (PointStyle::default(), Hidden::Fade);
+    let kind = LayerKind::Point(PointLayer { features, color, size_px: 3.0, hidden, lift_m: 1.0, style });
     let huts = Layer { id: "huts".into(), must_see: true, kind };
     Scene { layers: vec![terrain_layer(hf), huts], ..Scene::default() }
 }

@@ -12,7 +12,7 @@ use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
 use belvedere_core::DVec2;
 use belvedere_scene::{
     AreaLayer, AreaSurface, Color, Crs, DistanceMarkers, Drape, Heightfield, Hidden, Layer, LayerKind, LineFeature,
-    LineLayer, Palette, PointLayer, PointLook, Relief, Scene, Shading, Symbol, TerrainLayer, drape_polyline,
+    LineLayer, Palette, PointLayer, PointStyle, Relief, Scene, Shading, Symbol, TerrainLayer, drape_polyline,
 };
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -271,7 +271,7 @@ impl Loader<'_> {
             features,
             color: self.color(index, &style.color)?,
             size_px: style.size_px,
-            look: PointLook {
+            style: PointStyle {
                 symbol: match style.symbol {
                     SymbolDoc::Dot => Symbol::Dot,
                     SymbolDoc::Triangle => Symbol::Triangle,

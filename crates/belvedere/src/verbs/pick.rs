@@ -2,7 +2,7 @@
 
 use crate::{BelvedereError, Session};
 use belvedere_core::{Camera, DVec2, DVec3, View};
-use belvedere_cpu::{Seen, Tracer};
+use belvedere_cpu::{RayHit, Tracer};
 use belvedere_scene::{AreaLayer, Layer, LayerKind, LineLayer, PointLayer, Progress, Scene};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -59,7 +59,7 @@ fn named(name: &str) -> Option<String> {
 }
 
 /// The surface itself, or the last area painted there.
-fn surface(scene: &Scene, seen: &Seen) -> Option<Picked> {
+fn surface(scene: &Scene, seen: &RayHit) -> Option<Picked> {
     let layer = scene.layers.get(seen.layer)?;
     let (mut id, mut feature) = (&layer.id, None);
     if let LayerKind::Terrain(_) = layer.kind {

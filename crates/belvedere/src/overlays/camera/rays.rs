@@ -2,7 +2,7 @@
 
 use super::{Subject, line, segment_color};
 use belvedere_core::{Camera, CurvedRays, DVec2, DVec3, View};
-use belvedere_cpu::{Seen, Tracer};
+use belvedere_cpu::{RayHit, Tracer};
 use belvedere_scene::{Color, Overlay};
 
 /// Rays across the picture and from its bottom to its top.
@@ -26,7 +26,7 @@ pub(super) fn corners(view: &View) -> [DVec2; 4] {
 }
 
 /// What the rays of the fan and of the corners meet.
-pub(super) fn hits(view: &View, tracer: &Tracer<'_>) -> Vec<Seen> {
+pub(super) fn hits(view: &View, tracer: &Tracer<'_>) -> Vec<RayHit> {
     pixels(view).into_iter().chain(corners(view)).filter_map(|p| tracer.first_hit(p)).collect()
 }
 

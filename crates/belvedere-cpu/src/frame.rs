@@ -1,0 +1,127 @@
+//! What renderers have in common: checked options, the buffers of a frame, and what is drawn over the surfaces.
+
+use crate::geometry::screen::Screen;
+use crate::marks::Marks;
+use crate::raster::band::BAND;
+use crate::shade::color::{self, Packed};
+use crate::shade::ground_bytes;
+use belvedere_scene::{Frame, LayerKind, RenderError, RenderJob};
+use rayon::prelude::*;
+
+/// Runs `render` with checked options on the threads asked for.
+pub(crate) fn checked(
+    job: &RenderJob<'_>,
+    render: impl Fn(&RenderJob<'_>) -> Result<Frame, RenderError> + Sync,
+) -> Result<Frame, RenderError> {
+    let options = job.options;
+    if ![1, 4, 16].contains(&options.samples) {
+        return Err(RenderError::Samples { samples: options.samples });
+    }
+    check_memory(job)?;
+    if options.threads == 0 {
+        return render(job);
+    }
+    match rayon::ThreadPoolBuilder::new().num_threads(options.threads).build() {
+        Ok(pool) => pool.install(|| render(job)),
+        // No threads to be had: the caller's serve as well.
+        Err(_) => render(job),
+    }
+}
+
+/// The pixels of a frame in the making.
+pub(crate) struct Buffers {
+    /// Whether lines or points may be drawn over the surfaces.
+    pub(crate) open: bool,
+    /// Colours of the surfaces while they are open, else empty.
+    pub(crate) color: Vec<Packed>,
+    pub(crate) depth: Vec<f32>,
+    pub(crate) id: Vec<u32>,
+    pub(crate) world: Option<Vec<[f64; 3]>>,
+    /// The stored colours.
+    pub(crate) out: Vec<[u8; 3]>,
+}
+
+impl Buffers {
+    pub(crate) fn new(job: &RenderJob<'_>) -> Self {
+        let open = Self::reuse(job, Vec::new(), Frame::default());
+        let color = vec![Packed::default(); open.out.len()];
+        Self { open: true, color, ..open }
+    }
+
+    /// Buffers of the size of the picture in the memory of older ones; every pixel is yet to be written.
+    pub(crate) fn reuse(job: &RenderJob<'_>, mut color: Vec<Packed>, old: Frame) -> Self {
+        let n = job.view.pinhole().image.map(|s| s as usize).iter().product();
+        let Frame { color: mut out, mut depth, mut id, .. } = old;
+        let open = Marks::are_in(job);
+        if open {
+            color.resize(n, Packed::default());
+        }
+        out.resize(n, [0; 3]);
+        depth.resize(n, f32::INFINITY);
+        id.resize(n, 0);
+        let world = job.options.aux.world.then(|| vec![[f64::NAN; 3]; n]);
+        Self { open, color, depth, id, world, out }
+    }
+}
+
+/// Lines and points over the surfaces, and the stored colours.
+pub(crate) fn finish(marks: &Marks, screen: &Screen, buffers: &mut Buffers) {
+    let chunk = BAND * screen.width as usize;
+    let Buffers { depth, color, id, out, .. } = buffers;
+    let encoding = color::encoding();
+    out.par_chunks_mut(chunk).zip(color.par_chunks_mut(chunk)).zip(id.par_chunks_mut(chunk)).enumerate().for_each(
+        |(i, ((out, color), id))| {
+            marks.draw((i * BAND) as i32, screen, depth, color, id);
+            for (o, c) in out.iter_mut().zip(color.iter()) {
+                *o = c.encode(encoding);
+            }
+        },
+    );
+    marks.write_names(out, screen.width as usize);
+}
+
+/// Image of a node of the ground; four times that where cells are subdivided.
+const NODE_BYTES: u64 = 4 * 12;
+
+/// Bytes that a picture takes: the frame, the bands in work, the projected vertices and the lit ground.
+fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
+    let [width, height] = job.view.pinhole().image;
+    let samples = job.options.samples;
+    let pixels = u64::from(width) * u64::from(height);
+    let per_pixel = 3 + 4 + 4 + 6 + if job.options.aux.world { 24 } else { 0 };
+    let threads = if job.options.threads == 0 { rayon::current_num_threads() } else { job.options.threads } as u64;
+    let bands = threads * (BAND as u64) * u64::from(width) * (u64::from(samples) + 1) * 8;
+    let passes = job.view.records() as u64;
+    let drawn = |nodes: u64| {
+        // With less detail far away the picture bounds the nodes: a few per pixel, near the eye more.
+        let nodes = if job.options.lod_px > 0.0 { nodes.min(8 * pixels + (1 << 20)) } else { nodes };
+        nodes * NODE_BYTES * passes
+    };
+    let nodes: u64 = job
+        .scene
+        .layers
+        .iter()
+        .map(|l| match &l.kind {
+            LayerKind::Terrain(t) => {
+                let nodes = (t.heightfield.cols() * t.heightfield.rows()) as u64;
+                drawn(nodes) + ground_bytes(job, &t.heightfield)
+            }
+            LayerKind::Boxes(b) => b.boxes.len() as u64 * 12 * 64,
+            // A triangle on the image and, for the tracer, its share of a tree.
+            LayerKind::Mesh(m) => m.mesh.triangles().len() as u64 * 160,
+            _ => 0,
+        })
+        .sum();
+    let needed = pixels * per_pixel + bands + nodes;
+    if needed > job.options.max_bytes {
+        let mib = |b: u64| b.div_ceil(1 << 20);
+        return Err(RenderError::TooLarge {
+            width,
+            height,
+            samples,
+            needed_mib: mib(needed),
+            limit_mib: job.options.max_bytes >> 20,
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,131 @@
+//! A piece of a surface on the image.
+
+use crate::cache::lock;
+use crate::geometry::grid::{Cover, Nodes};
+use crate::geometry::pass::Pass;
+use crate::geometry::screen::{Screen, ScreenVertex};
+use std::sync::Mutex;
+
+/// A vertex of a subdivided or clipped triangle: image, and weights of vertices 1 and 2 of the parent triangle.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SoupVertex {
+    pub(crate) screen: ScreenVertex,
+    pub(crate) weights: [f32; 2],
+}
+
+/// Part of a parent triangle.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SoupTriangle {
+    pub(crate) v: [SoupVertex; 3],
+    /// `2 * (SIDE * r + c) + triangle` of drawn cell (c, r) in a terrain block, `12 * box + triangle` in a block of boxes,
+    /// the triangle in a block of a mesh; counted from the block's first.
+    pub(crate) parent: u32,
+}
+
+#[derive(Debug)]
+pub(crate) enum Geometry {
+    /// Nodes of the block row by row; every cell without void nodes draws two triangles.
+    Grid(Nodes),
+    /// Explicit triangles.
+    Soup(Vec<SoupTriangle>),
+}
+
+/// A piece of a surface layer.
+#[derive(Debug)]
+pub(crate) struct Block {
+    pub(crate) layer: u32,
+    /// First column and row (terrain), first box or first triangle (mesh).
+    pub(crate) origin: [usize; 2],
+    /// Drawn cells of a terrain block.
+    pub(crate) cells: [usize; 2],
+    /// Cells of the ground along the side of a drawn cell: node (c, r) of the block is node `origin + step * (c, r)` of
+    /// the ground. 1 = full detail.
+    pub(crate) step: usize,
+    pub(crate) geometry: Geometry,
+    /// Sides along which every second node is left out, see [`crate::geometry::lod::Span::seam`].
+    pub(crate) seam: [bool; 4],
+    /// Number of the first soup triangle.
+    pub(crate) soup_base: u32,
+    /// What the block may touch of the image.
+    pub(crate) cover: Cover,
+    pub(crate) counts: Counts,
+}
+
+/// Contribution to [`belvedere_scene::FrameStats`].
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Counts {
+    pub(crate) drawn: u64,
+    pub(crate) split: u64,
+    pub(crate) missed: u64,
+}
+
+/// Where a sample hit: a block's parent triangle and the screen triangle drawn for it.
+pub(crate) struct DrawnTriangle<'a> {
+    pub(crate) block: &'a Block,
+    pub(crate) parent: u32,
+    pub(crate) v: [SoupVertex; 3],
+}
+
+/// Memory of blocks that are no longer needed.
+#[derive(Debug, Default)]
+pub(crate) struct BufferPool {
+    nodes: Mutex<Vec<Nodes>>,
+    soup: Mutex<Vec<Vec<SoupTriangle>>>,
+}
+
+impl BufferPool {
+    pub(crate) fn nodes(&self) -> Nodes {
+        lock(&self.nodes).pop().unwrap_or_default()
+    }
+
+    pub(crate) fn soup(&self) -> Vec<SoupTriangle> {
+        lock(&self.soup).pop().unwrap_or_default()
+    }
+
+    pub(crate) fn keep(&self, geometry: Geometry) {
+        match geometry {
+            Geometry::Grid(nodes) => lock(&self.nodes).push(nodes),
+            Geometry::Soup(soup) => lock(&self.soup).push(soup),
+        }
+    }
+}
+
+impl Block {
+    /// Numbers of the row or column of cells along the north, east, south and west side if nodes were moved there, else one
+    /// that no cell has.
+    #[inline(always)]
+    pub(crate) fn seam_cells(&self) -> [u32; 4] {
+        const NONE: u32 = u32::MAX;
+        let last = [(self.cells[0] as u32).wrapping_sub(1), (self.cells[1] as u32).wrapping_sub(1)];
+        let [north, east, south, west] = self.seam;
+        [
+            if north { 0 } else { NONE },
+            if east { last[0] } else { NONE },
+            if south { last[1] } else { NONE },
+            if west { 0 } else { NONE },
+        ]
+    }
+
+    /// Explicit triangles of the boxes or triangles from number `first` on; `None` if there are none.
+    pub(crate) fn soup(layer: u32, first: usize, soup: Vec<SoupTriangle>, counts: Counts) -> Option<Self> {
+        if soup.is_empty() {
+            return None;
+        }
+        let (cover, geometry) = (cover_of(&soup), Geometry::Soup(soup));
+        let (origin, seam) = ([first, 0], [false; 4]);
+        Some(Self { layer, origin, cells: [0; 2], step: 1, geometry, seam, soup_base: 0, cover, counts })
+    }
+}
+
+/// What all blocks of a layer have in common.
+pub(crate) struct Job<'a> {
+    pub(crate) layer: u32,
+    pub(crate) pass: &'a Pass<'a>,
+    pub(crate) screen: &'a Screen,
+    pub(crate) tolerance_px: f64,
+    pub(crate) spare: &'a BufferPool,
+}
+
+pub(crate) fn cover_of(soup: &[SoupTriangle]) -> Cover {
+    soup.iter().flat_map(|t| t.v).fold(Cover::EMPTY, |cover, v| cover.including(v.screen))
+}

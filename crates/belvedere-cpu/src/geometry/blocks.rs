@@ -1,0 +1,151 @@
+//! Surfaces cut into blocks: culled, displaced and projected once per frame, ready to rasterise.
+
+use crate::cache::GroundCache;
+use crate::geometry::block::{Block, BufferPool, Counts, DrawnTriangle, Geometry, Job, SoupVertex};
+use crate::geometry::grid::{CELL_TRIANGLES, cell_weights};
+use crate::geometry::lod::{SIDE, Tree};
+use crate::geometry::pass::Pass;
+use crate::geometry::screen::Screen;
+use crate::geometry::select::{DetailSelector, Selection};
+use crate::raster::band::Band;
+use belvedere_scene::{LayerKind, RenderOptions, Scene};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// A primitive number with this bit counts soup triangles; without it, cells of grid blocks.
+pub(crate) const SOUP: u32 = 1 << 31;
+/// Bits of a grid primitive below the block number: 10 of the cell, 1 of the triangle.
+pub(crate) const CELL_BITS: u32 = 11;
+
+/// All blocks of a frame; kept between frames for its memory.
+#[derive(Debug, Default)]
+pub(crate) struct Blocks {
+    pub(crate) list: Vec<Block>,
+    /// Numbers of the blocks, nearest first.
+    order: Vec<u32>,
+    soups: Vec<(u32, u32)>,
+    pub(crate) triangles_in: u64,
+    choice: Selection,
+    spare: BufferPool,
+}
+
+impl Blocks {
+    /// Displaces, projects, subdivides and clips every surface of the scene.
+    pub(crate) fn build(
+        &mut self,
+        scene: &Scene,
+        passes: &[Pass<'_>],
+        screen: &Screen,
+        options: &RenderOptions,
+        detail: &GroundCache<(), Arc<Tree>>,
+    ) {
+        // A tolerance of zero or less would split without end.
+        let tolerance_px = if options.tolerance_px > 0.01 { options.tolerance_px } else { 0.01 };
+        self.list.drain(..).for_each(|b| self.spare.keep(b.geometry));
+        self.triangles_in = 0;
+        for (i, layer) in scene.layers.iter().enumerate() {
+            for pass in passes {
+                let job = Job { layer: i as u32, pass, screen, tolerance_px, spare: &self.spare };
+                match &layer.kind {
+                    LayerKind::Terrain(t) => {
+                        let hf = &t.heightfield;
+                        let tree = detail.get(hf, (), || Arc::new(Tree::new(hf)));
+                        let chooser =
+                            DetailSelector { hf, tree: &tree, pass, screen, tolerance_px, lod_px: options.lod_px };
+                        chooser.choose(&mut self.choice);
+                        let blocks = self.choice.list.par_iter().filter_map(|c| job.terrain_block(hf, &tree.sparse, c));
+                        self.list.par_extend(blocks);
+                    }
+                    LayerKind::Boxes(b) => self.list.extend(job.boxes(b)),
+                    LayerKind::Mesh(m) => self.list.extend(job.mesh(&m.mesh)),
+                    _ => {}
+                }
+            }
+            self.triangles_in += match &layer.kind {
+                LayerKind::Terrain(t) => 2 * ((t.heightfield.cols() - 1) * (t.heightfield.rows() - 1)) as u64,
+                LayerKind::Boxes(b) => 12 * b.boxes.len() as u64,
+                LayerKind::Mesh(m) => m.mesh.triangles().len() as u64,
+                _ => 0,
+            };
+        }
+        self.number();
+    }
+
+    /// Numbers the soup triangles and sorts the blocks by nearness.
+    fn number(&mut self) {
+        let mut base = 0;
+        self.soups.clear();
+        for (i, block) in self.list.iter_mut().enumerate() {
+            block.soup_base = base;
+            if let Geometry::Soup(soup) = &block.geometry {
+                self.soups.push((base, i as u32));
+                base += soup.len() as u32;
+            }
+        }
+        self.order.clear();
+        self.order.extend(0..self.list.len() as u32);
+        let list = &self.list;
+        self.order
+            .sort_unstable_by(|&a, &b| list[b as usize].cover.q.total_cmp(&list[a as usize].cover.q).then(a.cmp(&b)));
+    }
+
+    /// Draws everything that touches the band and is not hidden, nearest first.
+    pub(crate) fn draw(&self, band: &mut Band) {
+        for &i in &self.order {
+            let block = &self.list[i as usize];
+            let [y0, y1] = block.cover.y;
+            if y0 >> 8 >= band.y1 || y1 >> 8 < band.y0 || band.hides(block.cover.x, block.cover.q) {
+                continue;
+            }
+            match &block.geometry {
+                Geometry::Grid(nodes) => nodes.draw(i << CELL_BITS, band),
+                Geometry::Soup(soup) => {
+                    for (k, t) in soup.iter().enumerate() {
+                        band.draw(t.v.map(|v| v.screen), SOUP | (block.soup_base + k as u32));
+                    }
+                }
+            }
+            band.drew(block.cover.x);
+        }
+    }
+
+    /// Layer of a primitive number (not sky).
+    pub(crate) fn layer_of(&self, prim: u32) -> Option<u32> {
+        let block = if prim & SOUP == 0 { prim >> CELL_BITS } else { self.soup_block(prim & !SOUP)? };
+        self.list.get(block as usize).map(|b| b.layer)
+    }
+
+    fn soup_block(&self, n: u32) -> Option<u32> {
+        let at = self.soups.partition_point(|&(base, _)| base <= n).checked_sub(1)?;
+        Some(self.soups[at].1)
+    }
+
+    /// The triangle of a primitive number (not sky).
+    pub(crate) fn find(&self, prim: u32) -> Option<DrawnTriangle<'_>> {
+        if prim & SOUP != 0 {
+            let n = prim & !SOUP;
+            let block = self.list.get(self.soup_block(n)? as usize)?;
+            let Geometry::Soup(soup) = &block.geometry else { return None };
+            let t = soup.get((n - block.soup_base) as usize)?;
+            return Some(DrawnTriangle { block, parent: t.parent, v: t.v });
+        }
+        let block = self.list.get((prim >> CELL_BITS) as usize)?;
+        let Geometry::Grid(nodes) = &block.geometry else { return None };
+        let parent = prim & ((1 << CELL_BITS) - 1);
+        let (cell, triangle) = ((parent >> 1) as usize, (parent & 1) as usize);
+        let [c, r] = [cell % SIDE, cell / SIDE];
+        let weights = cell_weights(block.seam, block.cells, [c, r], triangle);
+        let corners = CELL_TRIANGLES[triangle].map(|n| nodes.at(c + (n & 1), r + (n >> 1)));
+        let v = std::array::from_fn(|i| SoupVertex { screen: corners[i], weights: weights[i] });
+        Some(DrawnTriangle { block, parent, v })
+    }
+
+    /// Sums over all blocks.
+    pub(crate) fn counts(&self) -> Counts {
+        self.list.iter().fold(Counts::default(), |a, b| Counts {
+            drawn: a.drawn + b.counts.drawn,
+            split: a.split + b.counts.split,
+            missed: a.missed + b.counts.missed,
+        })
+    }
+}

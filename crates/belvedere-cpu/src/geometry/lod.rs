@@ -1,0 +1,392 @@
+//! The ground as a tree of blocks: range of heights, and what drawing it in less detail costs.
+
+use crate::simd::{self, Kernel};
+use belvedere_core::{Aabb, DVec3};
+use belvedere_scene::{Heightfield, NodeState};
+use rayon::prelude::*;
+
+/// Drawn cells along a side of a block of ground, at every level.
+pub(crate) const SIDE: usize = 32;
+/// Nodes along a side of a block at most.
+pub(crate) const NODES: usize = SIDE + 1;
+/// Most levels; 32 * 2^20 cells.
+const LEVELS: usize = 20;
+
+/// A block at one level: cells of 2^level nodes' distance.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Span {
+    /// Lowest and highest node; empty (min > max) where all are voids.
+    pub(crate) z: [f32; 2],
+    /// Largest distance in height between the ground and the block drawn at this level, every skipped node counted; infinite
+    /// where the block cannot be drawn so (holes, sides that are no multiple of the step).
+    pub(crate) error: f32,
+    /// What is added along the north, east, south and west side when every second node is left out there, to meet a
+    /// neighbour of the next level.
+    pub(crate) seam: [f32; 4],
+}
+
+#[derive(Debug)]
+struct Level {
+    cols: usize,
+    rows: usize,
+    spans: Vec<Span>,
+}
+
+/// Blocks of all levels; level k halves the detail k times, the last has one block.
+///
+/// The two triangles of a cell keep their diagonal at every level, so the ground and a coarse version of it differ most at
+/// a node. A block's error is no less than those of the blocks under it.
+#[derive(Debug)]
+pub(crate) struct Tree {
+    levels: Vec<Level>,
+    pub(crate) sparse: DecimatedHeights,
+}
+
+/// Nodes along both axes to one of [`DecimatedHeights`].
+const EVERY: usize = 8;
+
+/// Heights of every [`EVERY`]th node along both axes: blocks in little detail find theirs side by side instead of each in a
+/// line of memory of its own.
+#[derive(Debug)]
+pub(crate) struct DecimatedHeights {
+    cols: usize,
+    heights: Vec<f32>,
+}
+
+impl DecimatedHeights {
+    fn new(hf: &Heightfield) -> Self {
+        let cols = (hf.cols() - 1) / EVERY + 1;
+        let rows = hf.heights().par_chunks(hf.cols()).step_by(EVERY);
+        let heights = rows.flat_map_iter(|row| row.iter().step_by(EVERY).copied()).collect();
+        Self { cols, heights }
+    }
+
+    /// Heights of a row of the ground from column `first` on, those of every `step`-th node and perhaps more; how many make
+    /// that step.
+    #[inline(always)]
+    pub(crate) fn row<'h>(&'h self, hf: &'h Heightfield, [first, row]: [usize; 2], step: usize) -> (&'h [f32], usize) {
+        if (first | row | step).is_multiple_of(EVERY) {
+            (&self.heights[row / EVERY * self.cols + first / EVERY..], step / EVERY)
+        } else {
+            (&hf.heights()[row * hf.cols() + first..], step)
+        }
+    }
+
+    /// Bytes for a ground of so many nodes.
+    pub(crate) fn bytes(nodes: u64) -> u64 {
+        nodes / (EVERY * EVERY) as u64 * size_of::<f32>() as u64
+    }
+}
+
+impl Tree {
+    pub(crate) fn new(hf: &Heightfield) -> Self {
+        let mut levels: Vec<Level> = Vec::new();
+        for k in 0..LEVELS {
+            let reach = SIDE << k;
+            let (cols, rows) = ((hf.cols() - 1).div_ceil(reach), (hf.rows() - 1).div_ceil(reach));
+            let finer = levels.last();
+            let span = |i: usize| match finer {
+                None => leaf(hf, [i % cols, i / cols]),
+                Some(finer) => coarser(hf, k, [i % cols, i / cols], finer),
+            };
+            let spans = (0..cols * rows).into_par_iter().with_min_len(8).map(span).collect();
+            levels.push(Level { cols, rows, spans });
+            if cols * rows == 1 {
+                break;
+            }
+        }
+        Self { levels, sparse: DecimatedHeights::new(hf) }
+    }
+
+    pub(crate) fn levels(&self) -> usize {
+        self.levels.len()
+    }
+
+    /// Blocks along both axes.
+    pub(crate) fn size(&self, level: usize) -> [usize; 2] {
+        [self.levels[level].cols, self.levels[level].rows]
+    }
+
+    pub(crate) fn span(&self, level: usize, [x, y]: [usize; 2]) -> &Span {
+        &self.levels[level].spans[y * self.levels[level].cols + x]
+    }
+
+    /// Box around the ground of a block; `None` where it is one hole.
+    pub(crate) fn bounds(&self, hf: &Heightfield, level: usize, block: [usize; 2]) -> Option<Aabb> {
+        let [z0, z1] = self.span(level, block).z;
+        let (from, to) = nodes(hf, level, block);
+        let (nw, se) = (hf.node_xy(from[0], from[1]), hf.node_xy(to[0], to[1]));
+        let min = DVec3::new(nw.x, se.y, f64::from(z0));
+        (z0 <= z1).then(|| Aabb { min, max: DVec3::new(se.x, nw.y, f64::from(z1)) })
+    }
+}
+
+/// First and last node of a block.
+pub(crate) fn nodes(hf: &Heightfield, level: usize, [x, y]: [usize; 2]) -> ([usize; 2], [usize; 2]) {
+    let reach = SIDE << level;
+    let from = [x * reach, y * reach];
+    (from, [(from[0] + reach).min(hf.cols() - 1), (from[1] + reach).min(hf.rows() - 1)])
+}
+
+fn leaf(hf: &Heightfield, block: [usize; 2]) -> Span {
+    let (from, to) = nodes(hf, 0, block);
+    let mut z = [f32::INFINITY, f32::NEG_INFINITY];
+    let mut holes = false;
+    for r in from[1]..=to[1] {
+        let row = r * hf.cols();
+        let (first, last) = (row + from[0], row + to[0]);
+        let void = |i: usize| hf.states().each().is_some_and(|s| s[i] == NodeState::Void);
+        for i in first..=last {
+            let h = hf.heights()[i];
+            if void(i) {
+                holes = true;
+            } else {
+                z = [if h < z[0] { h } else { z[0] }, if h > z[1] { h } else { z[1] }];
+            }
+        }
+    }
+    Span { z, error: 0.0, seam: if holes { [f32::INFINITY; 4] } else { seams(hf, 1, from, to) } }
+}
+
+fn coarser(hf: &Heightfield, level: usize, [x, y]: [usize; 2], finer: &Level) -> Span {
+    let mut out = Span { z: [f32::INFINITY, f32::NEG_INFINITY], error: 0.0, seam: [f32::INFINITY; 4] };
+    for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+        let (cx, cy) = (2 * x + i, 2 * y + j);
+        if cx < finer.cols && cy < finer.rows {
+            let child = &finer.spans[cy * finer.cols + cx];
+            out.z = [out.z[0].min(child.z[0]), out.z[1].max(child.z[1])];
+            out.error = out.error.max(child.error);
+            // Infinite seams tell of holes, or of an odd side.
+            if child.z[0] > child.z[1] || (level == 1 && child.seam == [f32::INFINITY; 4]) {
+                out.error = f32::INFINITY;
+            }
+        }
+    }
+    let (from, to) = nodes(hf, level, [x, y]);
+    let step = 1 << level;
+    if (to[0] - from[0]) % step != 0 || (to[1] - from[1]) % step != 0 {
+        out.error = f32::INFINITY;
+    }
+    if out.error.is_finite() {
+        let error = simd::run(Distance { hf, step, from, to });
+        out.error = if error > out.error { error } else { out.error };
+        out.seam = seams(hf, step, from, to);
+    }
+    out
+}
+
+/// Largest distance in height of the nodes of a block from the triangles drawn with every `step`-th of them.
+struct Distance<'a> {
+    hf: &'a Heightfield,
+    step: usize,
+    from: [usize; 2],
+    to: [usize; 2],
+}
+
+impl Kernel for Distance<'_> {
+    type Output = f32;
+
+    #[inline(always)]
+    fn run(self) -> f32 {
+        match self.step {
+            2 => self.largest::<2>(),
+            4 => self.largest::<4>(),
+            8 => self.largest::<8>(),
+            _ => self.largest::<16>(),
+        }
+    }
+}
+
+impl Distance<'_> {
+    /// * `N`: nodes looked at together; the step is a multiple.
+    #[inline(always)]
+    fn largest<const N: usize>(&self) -> f32 {
+        let Self { hf, step, from, to } = *self;
+        let (cols, h) = (hf.cols(), hf.heights());
+        let mut worst = [0.0f32; N];
+        for r in from[1]..=to[1] {
+            // The last row ends the cells above.
+            let first = if r < to[1] { r - (r - from[1]) % step } else { r - step };
+            let (north, south, row) = (&h[first * cols..], &h[(first + step) * cols..], &h[r * cols..]);
+            for c in (from[0]..to[0]).step_by(step) {
+                let corners = [north[c], north[c + step], south[c], south[c + step]];
+                let cell = CellLine::new(corners, r - first, step);
+                for i in (0..step).step_by(N) {
+                    cell.add::<N>(i, &row[c + i..], &mut worst);
+                }
+            }
+            let c = to[0];
+            let end = (row[c] - (north[c] + (r - first) as f32 / step as f32 * (south[c] - north[c]))).abs();
+            worst[0] = if end > worst[0] { end } else { worst[0] };
+        }
+        worst.into_iter().fold(0.0, |a, b| if b > a { b } else { a })
+    }
+}
+
+/// Heights of the two triangles of a cell along one row of the nodes that it leaves out: a line up to the diagonal, and one
+/// from there on.
+struct CellLine {
+    /// Height at the west end, and at the east end seen from the west.
+    start: [f32; 2],
+    /// Change per node.
+    slope: [f32; 2],
+    diagonal: f32,
+}
+
+impl CellLine {
+    /// * `corners`: north-west, north-east, south-west, south-east;
+    /// * `j`: rows from the north.
+    #[inline(always)]
+    fn new([nw, ne, sw, se]: [f32; 4], j: usize, step: usize) -> Self {
+        let (v, per) = (j as f32 / step as f32, 1.0 / step as f32);
+        let slope = [(se - sw) * per, (ne - nw) * per];
+        Self { start: [nw + v * (sw - nw), nw + v * (se - ne)], slope, diagonal: j as f32 }
+    }
+
+    /// Adds the distances of `N` nodes from number `i` on.
+    #[inline(always)]
+    fn add<const N: usize>(&self, i: usize, nodes: &[f32], worst: &mut [f32; N]) {
+        let Some(nodes) = nodes.first_chunk::<N>() else { return };
+        for k in 0..N {
+            let at = i as f32 + k as f32;
+            let [lower, upper] = [self.start[0] + at * self.slope[0], self.start[1] + at * self.slope[1]];
+            let off = (nodes[k] - if at <= self.diagonal { lower } else { upper }).abs();
+            worst[k] = if off > worst[k] { off } else { worst[k] };
+        }
+    }
+}
+
+/// See [`Span::seam`]: where the cells of a side are drawn in pairs with the odd node moved onto the even one before it,
+/// the surface changes most at the node left out and where the pair's new diagonal crosses the old edge.
+fn seams(hf: &Heightfield, step: usize, from: [usize; 2], to: [usize; 2]) -> [f32; 4] {
+    let h = |c: usize, r: usize| hf.heights()[r * hf.cols() + c];
+    let (wide, high) = (to[0] - from[0], to[1] - from[1]);
+    let pair = |edge: [f32; 3], inner: [f32; 3], forward: bool| {
+        let [a, m, b] = edge;
+        let kink = if forward { a + inner[2] - m - inner[1] } else { a + inner[1] - inner[0] - m };
+        (0.5 * (a + b) - m).abs().max(0.5 * kink.abs())
+    };
+    let along = |n: usize, at: &dyn Fn(usize, bool) -> f32, forward: bool| {
+        if !n.is_multiple_of(2 * step) {
+            return f32::INFINITY;
+        }
+        let three = |i: usize, inner: bool| [at(i, inner), at(i + step, inner), at(i + 2 * step, inner)];
+        (0..n).step_by(2 * step).map(|i| pair(three(i, false), three(i, true), forward)).fold(0.0, f32::max)
+    };
+    let inward = |inner: bool| if inner { step } else { 0 };
+    [
+        along(wide, &|i, inner| h(from[0] + i, from[1] + inward(inner)), true),
+        along(high, &|i, inner| h(to[0] - inward(inner), from[1] + i), false),
+        along(wide, &|i, inner| h(from[0] + i, to[1] - inward(inner)), false),
+        along(high, &|i, inner| h(from[0] + inward(inner), from[1] + i), true),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::DVec2;
+
+    fn rough(cols: usize, rows: usize, void: Option<usize>) -> Heightfield {
+        let mut seed = 5u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 40) as f32 / (1 << 24) as f32
+        };
+        let wave = |i: usize| 80.0 * ((i % cols) as f32 * 0.05).sin() * ((i / cols) as f32 * 0.07).cos();
+        let heights = (0..cols * rows).map(|i| wave(i) + random()).collect();
+        let mut states = vec![NodeState::Measured; cols * rows];
+        void.into_iter().for_each(|i| states[i] = NodeState::Void);
+        Heightfield::new(DVec2::ZERO, DVec2::ONE, cols, rows, heights, states).unwrap()
+    }
+
+    /// Height of the triangle of three nodes over a place.
+    fn over(t: [[f64; 3]; 3], [x, y]: [f64; 2]) -> Option<f64> {
+        let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+        let from = |p: [f64; 3]| [p[0] - t[0][0], p[1] - t[0][1]];
+        let (u, v, p) = (from(t[1]), from(t[2]), [x - t[0][0], y - t[0][1]]);
+        let area = cross(u, v);
+        let (b, c) = (cross(p, v) / area, cross(u, p) / area);
+        let inside = area != 0.0 && b >= -1e-9 && c >= -1e-9 && b + c <= 1.0 + 1e-9;
+        inside.then(|| t[0][2] + b * (t[1][2] - t[0][2]) + c * (t[2][2] - t[0][2]))
+    }
+
+    /// Largest distance in height between the ground and a block drawn with these seams, at nodes and between them.
+    fn distance(hf: &Heightfield, level: usize, block: [usize; 2], seam: [bool; 4]) -> f64 {
+        let ((from, to), step) = (nodes(hf, level, block), 1 << level);
+        let cells = [0, 1].map(|axis| (to[axis] - from[axis]) / step);
+        let mut worst = 0.0f64;
+        for (c, r) in (0..cells[0]).flat_map(|c| (0..cells[1]).map(move |r| (c, r))) {
+            for triangle in crate::geometry::grid::CELL_TRIANGLES {
+                let t = triangle.map(|n| {
+                    let kept = crate::geometry::grid::kept_node(seam, cells, [c + (n & 1), r + (n >> 1)]);
+                    let at = [from[0] + step * kept[0], from[1] + step * kept[1]];
+                    [at[0] as f64, at[1] as f64, f64::from(hf.heights()[at[1] * hf.cols() + at[0]])]
+                });
+                let low = [0, 1].map(|k| t.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min));
+                let high = [0, 1].map(|k| t.iter().map(|p| p[k]).fold(0.0, f64::max));
+                for j in 0..=((high[1] - low[1]) * 4.0) as usize {
+                    for i in 0..=((high[0] - low[0]) * 4.0) as usize {
+                        let p = [low[0] + 0.25 * i as f64, low[1] + 0.25 * j as f64];
+                        let Some(z) = over(t, p) else { continue };
+                        let true_z = hf.surface_at(DVec2::new(p[0], -p[1])).expect("inside");
+                        worst = worst.max((z - true_z).abs());
+                    }
+                }
+            }
+        }
+        worst
+    }
+
+    #[test]
+    fn errors_bound_the_distance_from_the_ground_with_and_without_seams() {
+        let hf = rough(257, 193, None);
+        let tree = Tree::new(&hf);
+        assert_eq!(tree.levels(), 4);
+        for (level, block) in [(0, [3, 2]), (1, [0, 0]), (1, [3, 1]), (2, [1, 0]), (2, [0, 1]), (3, [0, 0])] {
+            let span = tree.span(level, block);
+            let plain = distance(&hf, level, block, [false; 4]);
+            assert!(plain <= f64::from(span.error) + 1e-4, "level {level}: {plain} > {}", span.error);
+            assert!(f64::from(span.error) <= 1.2 * plain + 1e-4, "level {level}: {} for {plain}", span.error);
+            for side in 0..4 {
+                let seam: [bool; 4] = std::array::from_fn(|k| k == side);
+                let bound = f64::from(span.error + span.seam[side]);
+                if bound.is_finite() {
+                    let sewn = distance(&hf, level, block, seam);
+                    assert!(sewn <= bound + 1e-4, "level {level}, side {side}: {sewn} > {bound}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn heights_side_by_side_are_those_of_the_ground() {
+        for (cols, rows) in [(257, 193), (100, 65), (8, 9), (2, 2)] {
+            let hf = rough(cols, rows, None);
+            let sparse = DecimatedHeights::new(&hf);
+            assert!(DecimatedHeights::bytes((cols * rows) as u64) <= 4 * sparse.heights.len() as u64);
+            let mut apart = 0;
+            for (step, r) in [1, 2, 4, 8, 16, 32, 64].into_iter().flat_map(|step| (0..rows).map(move |r| (step, r))) {
+                for first in 0..cols {
+                    let (from, by) = sparse.row(&hf, [first, r], step);
+                    apart += usize::from(by != step);
+                    for (i, c) in (first..cols).step_by(step).enumerate() {
+                        assert_eq!(from[i * by], hf.heights()[r * cols + c], "{cols} x {rows}: {c}, {r}, step {step}");
+                    }
+                }
+            }
+            assert_eq!(apart, 4 * sparse.heights.len(), "steps of 8 to 64 from every node that is there");
+        }
+    }
+
+    #[test]
+    fn blocks_with_holes_or_odd_sides_are_drawn_in_full() {
+        let tree = Tree::new(&rough(257, 193, Some(40 * 257 + 70)));
+        assert!(tree.span(1, [1, 0]).error.is_infinite(), "a hole");
+        assert!(tree.span(1, [0, 0]).error.is_finite() && tree.span(0, [2, 1]).error == 0.0);
+        assert!(tree.span(2, [0, 0]).error.is_infinite(), "the hole again");
+        let odd = Tree::new(&rough(100, 65, None));
+        assert!(odd.span(1, [1, 0]).error.is_infinite(), "99 cells do not pair");
+        assert!(odd.span(1, [0, 0]).error.is_finite());
+    }
+}

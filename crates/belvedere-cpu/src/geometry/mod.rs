@@ -1,0 +1,17 @@
+//! Surfaces as triangles on the image: which blocks are drawn and in how much detail, displaced, projected, subdivided, clipped.
+
+pub(crate) mod block;
+pub(crate) mod blocks;
+pub(crate) mod box_blocks;
+mod displace;
+pub(crate) mod grid;
+pub(crate) mod lod;
+mod mesh_blocks;
+pub(crate) mod pass;
+mod points;
+pub(crate) mod project;
+mod refine;
+pub(crate) mod screen;
+mod select;
+mod spline_table;
+mod terrain_blocks;

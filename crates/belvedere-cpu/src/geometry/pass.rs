@@ -1,0 +1,324 @@
+//! One drawing of the scene: a record of a curved-ray chain, or the only one there is.
+
+use crate::geometry::displace::Displacer;
+use crate::geometry::lod::{DecimatedHeights, NODES};
+use crate::geometry::points::Points;
+use crate::geometry::project::Projector;
+use crate::geometry::screen::{Row, Screen, ScreenVertex};
+use belvedere_core::{Aabb, DVec2, DVec3, SpaceMap, Stage, View};
+use belvedere_scene::Heightfield;
+
+/// A view prepared for a frame.
+#[derive(Debug)]
+pub(crate) struct Pass<'a> {
+    view: &'a View,
+    record: usize,
+    displacer: Displacer<'a>,
+    projector: Option<Projector<'a>>,
+    height: HeightPx,
+}
+
+/// What the image shows of a box.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum InView {
+    /// Nothing, or nothing of this pass.
+    No,
+    /// Perhaps some of it; `None` where part of it may be beside the eye.
+    Maybe(Option<Extent>),
+}
+
+/// Where all of a box lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Extent {
+    /// Least depth, positive.
+    depth: f64,
+    /// Least and largest place on the image, pixels from its centre.
+    image: [DVec2; 2],
+}
+
+/// Columns of the ground: `count` of them from `first` on, `step` apart.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Columns {
+    first: usize,
+    step: usize,
+    count: usize,
+    /// Relative to the eye, where single precision does.
+    x: [f32; NODES],
+}
+
+impl Columns {
+    /// Their heights in a row of the ground.
+    #[inline(always)]
+    pub(crate) fn heights(&self, hf: &Heightfield, sparse: &DecimatedHeights, row: usize, out: &mut [f32; NODES]) {
+        let (from, step) = sparse.row(hf, [self.first, row], self.step);
+        match (step, from.first_chunk::<NODES>()) {
+            (1, Some(whole)) if self.count == NODES => *out = *whole,
+            _ => out.iter_mut().zip(from.iter().step_by(step)).take(self.count).for_each(|(o, h)| *o = *h),
+        }
+    }
+}
+
+impl<'a> Pass<'a> {
+    /// The passes that together draw every image of every point once.
+    pub(crate) fn all(view: &'a View) -> Vec<Self> {
+        let pass = |record| Self {
+            view,
+            record,
+            displacer: Displacer::new(view, record),
+            projector: Projector::new(view, record),
+            height: HeightPx::new(view, record),
+        };
+        (0..view.records()).map(pass).collect()
+    }
+
+    /// Displaced position; `None` where the point has no image.
+    pub(crate) fn displace(&self, p: DVec3) -> Option<DVec3> {
+        if self.is_straight() { Some(p) } else { self.displacer.point(p) }
+    }
+
+    /// Columns for [`Pass::ground_row`].
+    pub(crate) fn columns(&self, hf: &Heightfield, first: usize, step: usize, count: usize) -> Columns {
+        let mut out = Columns { first, step, count: count.min(NODES), x: [0.0; NODES] };
+        if let Some(projector) = &self.projector {
+            for (i, x) in out.x[..out.count].iter_mut().enumerate() {
+                *x = projector.relative(hf.node_xy(first + i * step, 0))[0];
+            }
+        }
+        out
+    }
+
+    /// Images of a row of nodes without holes; `false` if one of them has none, or must be clipped.
+    /// * `heights`: see [`Columns::heights`].
+    pub(crate) fn ground_row(
+        &self,
+        screen: &Screen,
+        hf: &Heightfield,
+        columns: &Columns,
+        row: usize,
+        heights: &[f32],
+        out: &mut Row<'_>,
+    ) -> bool {
+        let Columns { first, step, count: n, .. } = *columns;
+        if let Some(projector) = &self.projector {
+            let y = projector.relative(hf.node_xy(first, row))[1];
+            return projector.row(&columns.x[..n], y, heights, out);
+        }
+        let [mut x, mut y, mut z] = [[0.0f64; NODES]; 3];
+        for i in 0..n {
+            let xy = hf.node_xy(first + i * step, row);
+            (x[i], y[i], z[i]) = (xy.x, xy.y, f64::from(heights[i]));
+        }
+        let mut points = Points { x: &mut x[..n], y: &mut y[..n], z: &mut z[..n] };
+        self.displacer.row(&mut points) && screen.snap_row(&points, out)
+    }
+
+    /// Image of one node, the same as in any row; `None` if it has none, or must be clipped.
+    pub(crate) fn ground_node(
+        &self,
+        screen: &Screen,
+        hf: &Heightfield,
+        [col, row]: [usize; 2],
+    ) -> Option<ScreenVertex> {
+        let ([mut x], [mut y], [mut q]) = ([0], [0], [0.0]);
+        let mut out =
+            Row { x: std::slice::from_mut(&mut x), y: std::slice::from_mut(&mut y), q: std::slice::from_mut(&mut q) };
+        let height = [hf.heights()[row * hf.cols() + col]];
+        let whole = self.ground_row(screen, hf, &self.columns(hf, col, 1, 1), row, &height, &mut out);
+        whole.then_some(ScreenVertex { x, y, q })
+    }
+
+    /// Signed distances that must be positive for the point to belong to this pass.
+    pub(crate) fn margins(&self, p: DVec3) -> [f64; 2] {
+        if self.is_only() { [f64::INFINITY; 2] } else { self.view.record_margins(self.record, p) }
+    }
+
+    /// Whether every point of the box belongs to this pass.
+    pub(crate) fn holds(&self, bounds: &Aabb) -> bool {
+        self.is_only() || self.record_margins(bounds).is_some_and(|m| m.iter().flatten().all(|m| *m > 0.0))
+    }
+
+    /// Margins at the corners of the box before the curved rays; they are affine there.
+    fn record_margins(&self, bounds: &Aabb) -> Option<[[f64; 2]; 8]> {
+        let (Stage::CurvedRays(rays), earlier) = self.view.stages().split_last()? else { return None };
+        let before = displaced(earlier, bounds)?;
+        Some(before.corners().map(|c| rays.record_margins(self.record, c)))
+    }
+
+    /// See [`View::edge_error_px`].
+    pub(crate) fn edge_error_px(&self, a: DVec3, b: DVec3) -> f64 {
+        self.view.edge_error_px_in(self.record, a, b)
+    }
+
+    /// Where the box lies, judged by its displaced bounds.
+    pub(crate) fn in_view(&self, screen: &Screen, bounds: &Aabb) -> InView {
+        if self.is_only() {
+            let Some(b) = displaced(self.view.stages(), bounds) else { return InView::Maybe(None) };
+            let (mut code, mut depth) = (u8::MAX, f64::INFINITY);
+            let mut image = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+            for corner in b.corners() {
+                let v = screen.view_from(corner);
+                code &= screen.outcode(v, 2.0);
+                depth = depth.min(v.z);
+                let place = screen.pixel(v) - screen.center;
+                image = [image[0].min(place), image[1].max(place)];
+            }
+            return if code != 0 {
+                InView::No
+            } else {
+                InView::Maybe((depth > 0.0).then_some(Extent { depth, image }))
+            };
+        }
+        if self.record_margins(bounds).is_some_and(|all| (0..2).any(|side| all.iter().all(|m| m[side] <= 0.0))) {
+            return InView::No;
+        }
+        let Some(b) = self.view.image_box(bounds) else { return InView::Maybe(None) };
+        let size = 2.0 * screen.center;
+        let out = b.max.x < -2.0 || b.max.y < -2.0 || b.min.x > size.x + 2.0 || b.min.y > size.y + 2.0;
+        if out {
+            return InView::No;
+        }
+        let extent = Extent { depth: b.depth_min, image: [b.min - screen.center, b.max - screen.center] };
+        InView::Maybe((extent.depth > 0.0).then_some(extent))
+    }
+
+    /// Bound in pixels on what a unit of height inside the box can change on the image; infinite where unknown.
+    /// * `extent`: of the box, see [`InView::Maybe`].
+    pub(crate) fn px_per_height(&self, screen: &Screen, bounds: &Aabb, extent: Option<Extent>) -> f64 {
+        let Some(Extent { depth, image }) = extent else { return f64::INFINITY };
+        let stretch = |bend: &belvedere_core::map::spline::SplineBend| {
+            let places = bounds.corners().into_iter().chain([bounds.center()]);
+            places.map(|p| bend.jacobian(p).map_or(f64::INFINITY, |j| j.z_axis.length())).fold(0.0, f64::max)
+        };
+        let spline = self.view.stages().iter().find_map(|s| if let Stage::SplineBend(b) = s { Some(b) } else { None });
+        // What lies beyond the image is not drawn.
+        let image = image.map(|place| place.clamp(-screen.center.abs(), screen.center.abs()));
+        let height_px = self.height.most(screen, image) * spline.map_or(1.0, stretch);
+        if screen.ortho { height_px } else { height_px / depth }
+    }
+
+    pub(crate) fn is_only(&self) -> bool {
+        self.view.records() == 1
+    }
+
+    pub(crate) fn is_straight(&self) -> bool {
+        self.displacer.is_straight()
+    }
+}
+
+fn displaced(stages: &[Stage], bounds: &Aabb) -> Option<Aabb> {
+    stages.iter().try_fold(*bounds, |b, stage| stage.displaced_bounds(&b))
+}
+
+/// Pixels that a unit of height moves an image at depth 1.
+///
+/// Earth and terrain move points straight up or down. A turn shears a height by `before Z + (phi_a a_z + phi_b b_z) shift` with
+/// phi_a in 0..=1 and phi_b in -1..=0; the image of that is convex in the sum and in the pixel, so ends and corners decide. After
+/// a spline a height points anywhere.
+#[derive(Debug)]
+enum HeightPx {
+    /// Across the axis in pixels, and along it, of the ends of what a height may become.
+    Ways(Vec<(DVec2, f64)>),
+    /// Any direction, of this length.
+    Any(f64),
+}
+
+impl HeightPx {
+    fn new(view: &View, record: usize) -> Self {
+        let ph = view.pinhole();
+        let way = |d: DVec3| {
+            let depth = if ph.is_orthographic() { 0.0 } else { d.dot(ph.forward) };
+            (DVec2::new(d.dot(ph.right), d.dot(ph.down)) * ph.scale_px(), depth)
+        };
+        let splined = view.stages().iter().any(|s| matches!(s, Stage::SplineBend(_)));
+        let turn = view.curved_rays().and_then(|rays| rays.turns().get(record));
+        match (turn, splined) {
+            (None, false) => Self::Ways(vec![way(DVec3::Z)]),
+            (None, true) => Self::Any(1.0),
+            (Some(turn), false) => {
+                let (a, b) = (turn.a.gradient.z, -turn.b.gradient.z);
+                let sums = [a.min(0.0) + b.min(0.0), a.max(0.0) + b.max(0.0)];
+                Self::Ways(sums.map(|t| way(turn.before * DVec3::Z + t * turn.shift)).to_vec())
+            }
+            (Some(turn), true) => {
+                let before = turn.before.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
+                let slopes = turn.a.gradient.length() + turn.b.gradient.length();
+                Self::Any(before + turn.shift.length() * slopes)
+            }
+        }
+    }
+
+    /// At most, in a part of the image: its least and largest place, pixels from the centre.
+    fn most(&self, screen: &Screen, [min, max]: [DVec2; 2]) -> f64 {
+        let corners = [min, max, DVec2::new(min.x, max.y), DVec2::new(max.x, min.y)];
+        match self {
+            Self::Ways(ways) => {
+                let off = |c: DVec2| ways.iter().map(move |(across, depth)| (*across - c * *depth).length());
+                corners.into_iter().flat_map(off).fold(0.0, f64::max)
+            }
+            Self::Any(length) if screen.ortho => length * screen.scale,
+            Self::Any(length) => {
+                let off = |c: DVec2| (screen.scale * screen.scale + c.length_squared()).sqrt();
+                length * corners.into_iter().map(off).fold(0.0, f64::max)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
+    use belvedere_core::map::earth::EarthCurvature;
+    use belvedere_core::{CurvedRays, Pinhole, Projection};
+
+    fn views() -> Vec<View> {
+        let (eye, target) = (DVec3::new(300.0, -9000.0, 2600.0), DVec3::new(0.0, 0.0, -900.0));
+        let camera = |screen| Pinhole::look_at(eye, target, DVec3::Z, screen, [640, 360], 1.0, None).unwrap();
+        let wide = camera(Projection::Perspective { fov_y: 0.9 });
+        let turn = TurnSpec {
+            viewpoint: eye + DVec3::Z * 1200.0,
+            t0: DVec3::new(0.0, -1500.0, 0.0),
+            t1: DVec3::ZERO,
+            t2: DVec3::new(0.0, 1500.0, 0.0),
+            pencil: Pencil::Parallel { normal: -DVec3::Y },
+            m: Sharpness::Bend,
+        };
+        let rays = CurvedRays::new(&wide, Model::Modified, &[turn]).unwrap();
+        let earth = Stage::EarthCurvature(EarthCurvature { eye, radius: 6.37e6, refraction: 0.13 });
+        let flat = View::straight(camera(Projection::Orthographic { height: 6000.0 }));
+        let stages = [vec![], vec![earth.clone()], vec![earth, Stage::CurvedRays(rays)]];
+        stages.into_iter().map(|s| View::new(wide.clone(), s).unwrap()).chain([flat]).collect()
+    }
+
+    #[test]
+    fn no_height_changes_the_image_by_more_than_is_said_nor_is_much_more_said() {
+        for (k, view) in views().iter().enumerate() {
+            let screen = Screen::new(view.pinhole());
+            let pass = &Pass::all(view)[0];
+            let (mut boxes, mut loose) = (0, 0.0f64);
+            for (i, j) in (-8..8).flat_map(|i| (-6..24).map(move |j| (i, j))) {
+                let min = DVec3::new(500.0 * f64::from(i), 500.0 * f64::from(j), -200.0);
+                let bounds = Aabb { min, max: min + DVec3::new(400.0, 400.0, 300.0) };
+                let InView::Maybe(extent @ Some(_)) = pass.in_view(&screen, &bounds) else { continue };
+                let most = pass.px_per_height(&screen, &bounds, extent);
+                let mut worst = 0.0f64;
+                let image = |p: DVec3| view.displace_in(0, p).ok().and_then(|d| view.pinhole().project(d.point).ok());
+                for n in 0..64 {
+                    let at = |k: i32| f64::from(n >> (2 * k) & 3) / 3.0;
+                    let low = min + DVec3::new(400.0 * at(0), 400.0 * at(1), 270.0 * at(2));
+                    let (Some((a, _)), Some((b, _))) = (image(low), image(low + DVec3::Z * 30.0)) else { continue };
+                    if [a, b].iter().all(|p| p.cmpge(DVec2::ZERO).all() && p.cmple(2.0 * screen.center).all()) {
+                        worst = worst.max(a.distance(b) / 30.0);
+                    }
+                }
+                assert!(worst <= most * (1.0 + 1e-9), "view {k}, box {i} {j}: {worst} > {most}");
+                boxes += usize::from(worst > 0.0);
+                // Far away, where all of a box is about as deep.
+                if worst > 0.0 && j >= 10 {
+                    loose = loose.max(most / worst);
+                }
+            }
+            assert!(boxes > 60 && loose < 1.02, "view {k}: {boxes} boxes, {loose} times too much");
+        }
+    }
+}

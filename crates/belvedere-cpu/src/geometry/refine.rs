@@ -1,0 +1,225 @@
+//! Subdivision of triangles until their bent image is straight enough, and clipping.
+
+use crate::geometry::block::{SoupTriangle, SoupVertex};
+use crate::geometry::pass::Pass;
+use crate::geometry::screen::{PLANES, Screen, ScreenVertex};
+use belvedere_core::DVec3;
+
+/// An edge is halved at most this often.
+const MAX_HALVINGS: u8 = 10;
+/// The same where no bound of the error is known (beside the near plane, at the border of the domain).
+const MAX_BLIND_HALVINGS: u8 = 6;
+/// How far beyond the image a triangle whose bend is unknown is still followed.
+const MAX_MARGIN_PX: f64 = 4096.0;
+/// Level of an edge that must not be split.
+const FROZEN: u8 = u8::MAX;
+
+/// A vertex before clipping.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Corner {
+    p: DVec3,
+    /// View space after displacement; `None` without image.
+    v: Option<DVec3>,
+    /// Image, if another piece of the surface places it.
+    image: Option<ScreenVertex>,
+    margins: [f64; 2],
+    weights: [f64; 2],
+}
+
+impl Corner {
+    /// Whether the point has no image: outside the domain or behind the eye.
+    pub(crate) fn is_missing(&self) -> bool {
+        self.v.is_none_or(|v| !(v.z > 0.0))
+    }
+}
+
+/// Turns parent triangles into screen triangles.
+pub(crate) struct Refiner<'a> {
+    pass: &'a Pass<'a>,
+    screen: &'a Screen,
+    tolerance_px: f64,
+    pub(crate) out: Vec<SoupTriangle>,
+    pub(crate) splits: u64,
+}
+
+impl<'a> Refiner<'a> {
+    /// * `out`: memory to use.
+    pub(crate) fn new(pass: &'a Pass<'a>, screen: &'a Screen, tolerance_px: f64, mut out: Vec<SoupTriangle>) -> Self {
+        out.clear();
+        Self { pass, screen, tolerance_px, out, splits: 0 }
+    }
+
+    pub(crate) fn corner(&self, p: DVec3) -> Corner {
+        let v = self.pass.displace(p).map(|d| self.screen.view_from(d)).filter(|v| v.is_finite());
+        Corner { p, v, image: None, margins: self.pass.margins(p), weights: [0.0; 2] }
+    }
+
+    /// A corner whose image grid blocks share.
+    pub(crate) fn node(&self, p: DVec3, image: Option<ScreenVertex>) -> Corner {
+        Corner { image, ..self.corner(p) }
+    }
+
+    /// Draws a parent triangle; `split[i]` allows splitting the edge from corner `i` to the next.
+    /// * `weights`: of vertices 1 and 2 of the parent, per corner.
+    pub(crate) fn triangle(&mut self, mut corners: [Corner; 3], weights: [[f32; 2]; 3], split: [bool; 3], parent: u32) {
+        for (corner, weights) in corners.iter_mut().zip(weights) {
+            corner.weights = weights.map(f64::from);
+        }
+        self.refine(corners, split.map(|s| if s { 0 } else { FROZEN }), parent);
+    }
+
+    fn refine(&mut self, c: [Corner; 3], levels: [u8; 3], parent: u32) {
+        if c.iter().all(|c| c.v.is_none()) || (0..2).any(|m| c.iter().all(|c| !(c.margins[m] > 0.0))) {
+            return;
+        }
+        let errors: [f64; 3] =
+            std::array::from_fn(|i| if levels[i] == FROZEN { 0.0 } else { self.edge_error(&c[i], &c[(i + 1) % 3]) });
+        let worst = errors.iter().fold(0.0f64, |a, &b| a.max(b));
+        if self.is_off_image(&c, worst.min(MAX_MARGIN_PX)) {
+            return;
+        }
+        let split: [bool; 3] = std::array::from_fn(|i| {
+            let limit = if errors[i].is_finite() { MAX_HALVINGS } else { MAX_BLIND_HALVINGS };
+            levels[i] < limit && errors[i] > self.tolerance_px
+        });
+        if split == [false; 3] {
+            return self.emit(&c, parent);
+        }
+        self.split(c, levels, split, parent);
+    }
+
+    /// Error in pixels of drawing the edge straight; infinite where unknown, 0 where it does not matter.
+    fn edge_error(&self, a: &Corner, b: &Corner) -> f64 {
+        match (a.is_missing(), b.is_missing()) {
+            (true, true) => 0.0,
+            (false, false) => {
+                // Always in the same direction: two triangles must judge their common edge alike to the last bit.
+                let swap = a.p.to_array().partial_cmp(&b.p.to_array()) == Some(std::cmp::Ordering::Greater);
+                let (a, b) = if swap { (b, a) } else { (a, b) };
+                self.pass.edge_error_px(a.p, b.p)
+            }
+            // One end without image: halve towards the border of what can be seen.
+            _ => f64::INFINITY,
+        }
+    }
+
+    fn is_off_image(&self, c: &[Corner; 3], margin_px: f64) -> bool {
+        let code = |c: &Corner| c.v.map_or(0, |v| self.screen.outcode(v, margin_px));
+        c.iter().fold(u8::MAX, |all, c| all & code(c)) != 0
+    }
+
+    fn split(&mut self, c: [Corner; 3], levels: [u8; 3], split: [bool; 3], parent: u32) {
+        let next = |l: u8| if l == FROZEN { FROZEN } else { l + 1 };
+        let mid: [Option<Corner>; 3] = std::array::from_fn(|i| split[i].then(|| self.middle(&c[i], &c[(i + 1) % 3])));
+        self.splits += split.iter().filter(|&&s| s).count() as u64;
+        // A new inner edge has been halved as often as the most halved of its triangle.
+        let inner = levels.iter().zip(split).filter(|(_, s)| *s).map(|(&l, _)| next(l)).max().unwrap_or(0);
+        match mid {
+            [Some(m0), Some(m1), Some(m2)] => {
+                let n = levels.map(next);
+                self.refine([c[0], m0, m2], [n[0], inner, n[2]], parent);
+                self.refine([m0, c[1], m1], [n[0], n[1], inner], parent);
+                self.refine([m2, m1, c[2]], [inner, n[1], n[2]], parent);
+                self.refine([m0, m1, m2], [inner; 3], parent);
+            }
+            _ => {
+                // One or two edges: cut off corner i+1 .. or halve. Rotate so that edge 0 is split and edge 2 is not.
+                let Some(i) = (0..3).find(|&i| split[i] && !split[(i + 2) % 3]) else { return };
+                let r = |k: usize| (i + k) % 3;
+                let (a, b, d) = (c[r(0)], c[r(1)], c[r(2)]);
+                let (la, lb, ld) = (levels[r(0)], levels[r(1)], levels[r(2)]);
+                let Some(m) = mid[r(0)] else { return };
+                if let Some(n) = mid[r(1)] {
+                    self.refine([m, b, n], [next(la), next(lb), inner], parent);
+                    self.refine([a, m, n], [next(la), inner, inner], parent);
+                    self.refine([a, n, d], [inner, next(lb), ld], parent);
+                } else {
+                    self.refine([a, m, d], [next(la), inner, ld], parent);
+                    self.refine([m, b, d], [next(la), lb, inner], parent);
+                }
+            }
+        }
+    }
+
+    fn middle(&self, a: &Corner, b: &Corner) -> Corner {
+        let weights = [0, 1].map(|i| 0.5 * (a.weights[i] + b.weights[i]));
+        Corner { weights, ..self.corner(0.5 * (a.p + b.p)) }
+    }
+
+    /// Clips and draws a triangle whose edges are straight enough.
+    fn emit(&mut self, c: &[Corner; 3], parent: u32) {
+        let [Some(v0), Some(v1), Some(v2)] = c.map(|c| c.v) else { return };
+        let v = [v0, v1, v2];
+        if v.iter().all(|&v| self.screen.is_drawable(v)) && c.iter().all(|c| c.margins.iter().all(|&m| m >= 0.0)) {
+            let vertex = |i: usize| SoupVertex {
+                screen: c[i].image.unwrap_or_else(|| self.screen.snap(v[i])),
+                weights: c[i].weights.map(|w| w as f32),
+            };
+            self.out.push(SoupTriangle { v: [vertex(0), vertex(1), vertex(2)], parent });
+            return;
+        }
+        let mut polygon: Vec<ClipVertex> = (0..3)
+            .map(|i| ClipVertex { image: c[i].image, ..self.clip_vertex(v[i], c[i].weights, c[i].margins) })
+            .collect();
+        for plane in 0..PLANES + 2 {
+            if polygon.iter().all(|p| p.distance[plane] >= 0.0) {
+                continue;
+            }
+            polygon = self.clip(&polygon, plane);
+            if polygon.len() < 3 {
+                return;
+            }
+        }
+        let screen: Vec<SoupVertex> = polygon
+            .iter()
+            .map(|p| SoupVertex {
+                screen: p.image.unwrap_or_else(|| self.screen.snap(p.v)),
+                weights: p.weights.map(|w| w as f32),
+            })
+            .collect();
+        for k in 1..screen.len() - 1 {
+            self.out.push(SoupTriangle { v: [screen[0], screen[k], screen[k + 1]], parent });
+        }
+    }
+
+    fn clip_vertex(&self, v: DVec3, weights: [f64; 2], margins: [f64; 2]) -> ClipVertex {
+        let mut distance = [0.0; PLANES + 2];
+        distance[..PLANES].copy_from_slice(&self.screen.clip_distances(v));
+        distance[PLANES..].copy_from_slice(&margins.map(|m| m.min(1e30)));
+        ClipVertex { v, image: None, weights, margins, distance }
+    }
+
+    /// The part of a polygon on the positive side of a plane. New vertices are computed from the inner end towards the
+    /// outer, so that two triangles with a common edge cut it at the very same point.
+    fn clip(&self, polygon: &[ClipVertex], plane: usize) -> Vec<ClipVertex> {
+        let mut out = Vec::with_capacity(polygon.len() + 1);
+        for (i, a) in polygon.iter().enumerate() {
+            let b = &polygon[(i + 1) % polygon.len()];
+            let (a_in, b_in) = (a.distance[plane] >= 0.0, b.distance[plane] >= 0.0);
+            if a_in {
+                out.push(*a);
+            }
+            if a_in != b_in {
+                let (inner, outer) = if a_in { (a, b) } else { (b, a) };
+                let (di, d_o) = (inner.distance[plane], outer.distance[plane]);
+                let t = di / (di - d_o);
+                let lerp = |p: f64, q: f64| p + t * (q - p);
+                let weights = [0, 1].map(|k| lerp(inner.weights[k], outer.weights[k]));
+                let margins = [0, 1].map(|k| lerp(inner.margins[k].min(1e30), outer.margins[k].min(1e30)));
+                let mut cut = self.clip_vertex(inner.v + t * (outer.v - inner.v), weights, margins);
+                cut.distance[plane] = 0.0;
+                out.push(cut);
+            }
+        }
+        out
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+struct ClipVertex {
+    v: DVec3,
+    image: Option<ScreenVertex>,
+    weights: [f64; 2],
+    margins: [f64; 2],
+    distance: [f64; PLANES + 2],
+}

@@ -1,0 +1,221 @@
+//! Which blocks of the ground are drawn, and in how much detail.
+
+use crate::geometry::lod::{Tree, nodes};
+use crate::geometry::pass::{InView, Pass};
+use crate::geometry::screen::Screen;
+use belvedere_core::Aabb;
+use belvedere_scene::Heightfield;
+
+/// A block to draw.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SelectedBlock {
+    pub(crate) level: usize,
+    pub(crate) block: [usize; 2],
+    /// Whether straight edges of its cells may be too far off.
+    pub(crate) edges: bool,
+    /// Whether the pass draws all of it.
+    pub(crate) whole: bool,
+    /// Sides (north, east, south, west) along which the neighbour's edges may be split too.
+    pub(crate) judged: [bool; 4],
+    /// Sides along which the neighbour is drawn in half the detail.
+    pub(crate) seam: [bool; 4],
+    /// Pixels that a difference in height can make; infinite where unknown.
+    px_per_unit: f64,
+    dropped: bool,
+}
+
+/// What is known of a block of the tree; kept between frames for its memory.
+#[derive(Debug, Default)]
+pub(crate) struct Selection {
+    /// Per block of all levels: [`NOTHING`], [`SPLIT`] or [`FIRST`] plus the place in `list`.
+    state: Vec<u32>,
+    starts: Vec<usize>,
+    cols: Vec<usize>,
+    pub(crate) list: Vec<SelectedBlock>,
+}
+
+const NOTHING: u32 = 0;
+const SPLIT: u32 = 1;
+const FIRST: u32 = 2;
+
+/// North, east, south, west.
+const AROUND: [[isize; 2]; 4] = [[0, -1], [1, 0], [0, 1], [-1, 0]];
+
+/// The ground, the camera and what may be left out.
+pub(crate) struct DetailSelector<'a> {
+    pub(crate) hf: &'a Heightfield,
+    pub(crate) tree: &'a Tree,
+    pub(crate) pass: &'a Pass<'a>,
+    pub(crate) screen: &'a Screen,
+    /// Worst error of a bent edge drawn straight, pixels.
+    pub(crate) tolerance_px: f64,
+    /// Worst error of less detail, bend included, pixels; 0 draws every cell.
+    pub(crate) lod_px: f64,
+}
+
+impl DetailSelector<'_> {
+    /// Walks the tree from the whole ground down: leaves out what the image does not show, stops where less detail will
+    /// do, then halves what is too coarse beside a finer neighbour.
+    pub(crate) fn choose(&self, out: &mut Selection) {
+        out.clear(self.tree);
+        let top = self.tree.levels() - 1;
+        self.visit(top, [0, 0], self.pass.is_straight(), out);
+        let mut i = 0;
+        while i < out.list.len() {
+            if !out.list[i].dropped {
+                (0..4).for_each(|side| self.settle(i, side, out));
+            }
+            i += 1;
+        }
+        for i in 0..out.list.len() {
+            for side in 0..4 {
+                let SelectedBlock { level, block, edges, .. } = out.list[i];
+                let near = self.neighbour(level, block, side, out).map(|k| out.list[k]);
+                out.list[i].seam[side] = near.is_some_and(|n| n.level > level);
+                // An edge between two blocks is judged alike by both; a coarser neighbour's edges are straight enough.
+                out.list[i].judged[side] = near.map_or(edges, |n| n.level == level && (edges || n.edges)) && level == 0;
+            }
+        }
+        out.list.retain(|c| !c.dropped);
+    }
+
+    fn visit(&self, level: usize, block: [usize; 2], mut plain: bool, out: &mut Selection) {
+        let Some(bounds) = self.tree.bounds(self.hf, level, block) else { return };
+        let InView::Maybe(extent) = self.pass.in_view(self.screen, &bounds) else { return };
+        let px_per_unit = self.pass.px_per_height(self.screen, &bounds, extent);
+        let height_px = f64::from(self.tree.span(level, block).error) * px_per_unit;
+        // Where records meet, all of them must cut the same triangles.
+        let whole = self.pass.holds(&bounds);
+        let coarse = level > 0 && whole && height_px <= self.lod_px && self.lod_px > 0.0;
+        let mut bend_px = 0.0;
+        if !self.pass.is_straight() && (coarse || !plain) {
+            let (from, to) = nodes(self.hf, level, block);
+            bend_px = self.cells_error(&bounds, (to[0] - from[0]).max(to[1] - from[1]).div_ceil(1 << level));
+            plain |= bend_px / (1 << level) as f64 <= self.tolerance_px;
+        }
+        if level == 0 || (coarse && height_px + bend_px <= self.lod_px) {
+            out.add(SelectedBlock {
+                level,
+                block,
+                edges: level == 0 && !plain,
+                whole,
+                judged: [false; 4],
+                seam: [false; 4],
+                px_per_unit,
+                dropped: false,
+            });
+            return;
+        }
+        self.descend(level, block, plain, out);
+    }
+
+    fn descend(&self, level: usize, block: [usize; 2], plain: bool, out: &mut Selection) {
+        out.set(level, block, SPLIT);
+        let [cols, rows] = self.tree.size(level - 1);
+        for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+            let child = [2 * block[0] + i, 2 * block[1] + j];
+            if child[0] < cols && child[1] < rows {
+                self.visit(level - 1, child, plain, out);
+            }
+        }
+    }
+
+    /// Bound of the error of the edges of cells, `n` to a side of the box, drawn straight.
+    ///
+    /// The chord of a curve that turns by a given angle deviates in proportion to its length, so the bound of the box's
+    /// long edges, shared out over its cells with a factor 2 in hand, covers the cells' edges.
+    fn cells_error(&self, bounds: &Aabb, n: usize) -> f64 {
+        let c = bounds.corners();
+        let pairs = [(0, 7), (1, 6), (2, 5), (3, 4), (0, 1), (2, 3), (0, 2), (1, 3), (4, 7), (5, 6)];
+        let mut worst = 0.0f64;
+        for (a, b) in pairs {
+            let error = self.pass.edge_error_px(c[a], c[b]);
+            if !error.is_finite() {
+                return f64::INFINITY;
+            }
+            worst = worst.max(error);
+        }
+        worst * 2.0 / n as f64
+    }
+
+    /// Halves the neighbour beyond a side until it is at most one level coarser and the seam is close enough.
+    fn settle(&self, i: usize, side: usize, out: &mut Selection) {
+        let SelectedBlock { level, block, px_per_unit, whole, .. } = out.list[i];
+        while let Some(k) = self.neighbour(level, block, side, out) {
+            let near = out.list[k];
+            let span = self.tree.span(level, block);
+            let seam_px = f64::from(span.error + span.seam[side]) * px_per_unit;
+            if near.level <= level || (near.level == level + 1 && whole && seam_px <= self.lod_px) {
+                return;
+            }
+            out.list[k].dropped = true;
+            out.set(near.level, near.block, SPLIT);
+            self.halve(near, out);
+        }
+    }
+
+    /// The four quarters of a block, unless they are off the image. No error grows towards finer levels.
+    fn halve(&self, parent: SelectedBlock, out: &mut Selection) {
+        let level = parent.level - 1;
+        let [cols, rows] = self.tree.size(level);
+        for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+            let block = [2 * parent.block[0] + i, 2 * parent.block[1] + j];
+            if block[0] >= cols || block[1] >= rows {
+                continue;
+            }
+            let Some(bounds) = self.tree.bounds(self.hf, level, block) else { continue };
+            if let InView::Maybe(extent) = self.pass.in_view(self.screen, &bounds) {
+                let px_per_unit = self.pass.px_per_height(self.screen, &bounds, extent);
+                out.add(SelectedBlock { level, block, px_per_unit, whole: self.pass.holds(&bounds), ..parent });
+            }
+        }
+    }
+
+    /// The chosen block of the same level or a coarser one beyond a side.
+    fn neighbour(&self, level: usize, block: [usize; 2], side: usize, out: &Selection) -> Option<usize> {
+        let [cols, rows] = self.tree.size(level);
+        let x = block[0].checked_add_signed(AROUND[side][0]).filter(|x| *x < cols)?;
+        let y = block[1].checked_add_signed(AROUND[side][1]).filter(|y| *y < rows)?;
+        for up in 0..self.tree.levels() - level {
+            match out.get(level + up, [x >> up, y >> up]) {
+                NOTHING => {}
+                SPLIT => return None,
+                k => return Some((k - FIRST) as usize),
+            }
+        }
+        None
+    }
+}
+
+impl Selection {
+    fn clear(&mut self, tree: &Tree) {
+        self.list.clear();
+        self.starts.clear();
+        let mut n = 0;
+        for level in 0..tree.levels() {
+            self.starts.push(n);
+            n += tree.size(level).iter().product::<usize>();
+        }
+        self.state.clear();
+        self.state.resize(n, NOTHING);
+        self.cols = (0..tree.levels()).map(|level| tree.size(level)[0]).collect();
+    }
+
+    fn at(&self, level: usize, [x, y]: [usize; 2]) -> usize {
+        self.starts[level] + y * self.cols[level] + x
+    }
+
+    fn get(&self, level: usize, block: [usize; 2]) -> u32 {
+        self.state[self.at(level, block)]
+    }
+
+    fn set(&mut self, level: usize, block: [usize; 2], state: u32) {
+        let at = self.at(level, block);
+        self.state[at] = state;
+    }
+
+    fn add(&mut self, chosen: SelectedBlock) {
+        self.set(chosen.level, chosen.block, FIRST + self.list.len() as u32);
+        self.list.push(SelectedBlock { dropped: false, ..chosen });
+    }
+}

@@ -1,0 +1,129 @@
+//! Blocks of ground.
+
+use crate::geometry::block::{Block, Counts, Geometry, Job, cover_of};
+use crate::geometry::grid::{CELL_TRIANGLES, Cover, Nodes, cell_weights, kept_node};
+use crate::geometry::lod::{self, DecimatedHeights, NODES, SIDE};
+use crate::geometry::refine::{Corner, Refiner};
+use crate::geometry::screen::{Row, SUB, ScreenVertex};
+use crate::geometry::select::SelectedBlock;
+use belvedere_scene::{Heightfield, NodeState};
+
+impl Job<'_> {
+    /// A block of ground at its level of detail; `None` if nothing of it is on the image.
+    pub(crate) fn terrain_block(
+        &self,
+        hf: &Heightfield,
+        sparse: &DecimatedHeights,
+        chosen: &SelectedBlock,
+    ) -> Option<Block> {
+        let (origin, last) = lod::nodes(hf, chosen.level, chosen.block);
+        let step = 1 << chosen.level;
+        let mut out = Block {
+            layer: self.layer,
+            origin,
+            cells: [0, 1].map(|axis| (last[axis] - origin[axis]) / step),
+            step,
+            geometry: Geometry::Soup(Vec::new()),
+            seam: chosen.seam,
+            soup_base: 0,
+            cover: Cover::EMPTY,
+            counts: Counts::default(),
+        };
+        let careful = chosen.edges || !chosen.whole || chosen.judged.contains(&true);
+        if !careful && let Some(mut nodes) = self.project_grid(hf, sparse, &out) {
+            nodes.close_seams(chosen.seam);
+            out.cover = nodes.cover();
+            out.counts.drawn = 2 * (out.cells[0] * out.cells[1]) as u64;
+            out.geometry = Geometry::Grid(nodes);
+        } else {
+            self.refine_grid(hf, &mut out, chosen);
+        }
+        let Cover { x, y, .. } = out.cover;
+        let size = [self.screen.width * SUB, self.screen.height * SUB];
+        if x[0] > x[1] || x[1] < 0 || x[0] > size[0] || y[1] < 0 || y[0] > size[1] {
+            self.spare.keep(out.geometry);
+            return None;
+        }
+        Some(out)
+    }
+
+    /// Nodes of the block on the image, if none needs clipping.
+    fn project_grid(&self, hf: &Heightfield, sparse: &DecimatedHeights, block: &Block) -> Option<Nodes> {
+        let ([cols, rows], step) = (block.cells, block.step);
+        let mut nodes = self.spare.nodes();
+        nodes.reset(block.cells);
+        let count = cols + 1;
+        let columns = self.pass.columns(hf, block.origin[0], step, count);
+        let mut whole = true;
+        // All of them first: rows lie far apart in memory, and none has to wait for another.
+        let mut heights = [[0.0; NODES]; NODES];
+        for (r, heights) in heights[..=rows].iter_mut().enumerate() {
+            columns.heights(hf, sparse, block.origin[1] + step * r, heights);
+        }
+        for (r, heights) in heights[..=rows].iter().enumerate() {
+            let (col, row) = (block.origin[0], block.origin[1] + step * r);
+            let first = row * hf.cols() + col;
+            let states = hf.states();
+            if states.each().is_some_and(|s| s[first..=first + step * cols].contains(&NodeState::Void)) {
+                for c in 0..=cols {
+                    let at = [col + step * c, row];
+                    if hf.node(at[0], at[1]).is_none() {
+                        nodes.set(c, r, ScreenVertex::NONE);
+                    } else if let Some(image) = self.pass.ground_node(self.screen, hf, at) {
+                        nodes.set(c, r, image);
+                    } else {
+                        whole = false;
+                    }
+                }
+            } else {
+                let part = r * count..(r + 1) * count;
+                let (x, y) = (&mut nodes.x[part.clone()], &mut nodes.y[part.clone()]);
+                let mut out = Row { x, y, q: &mut nodes.q[part] };
+                whole = self.pass.ground_row(self.screen, hf, &columns, row, &heights[..count], &mut out);
+            }
+            if !whole {
+                self.spare.keep(Geometry::Grid(nodes));
+                return None;
+            }
+        }
+        Some(nodes)
+    }
+
+    fn refine_grid(&self, hf: &Heightfield, block: &mut Block, chosen: &SelectedBlock) {
+        let mut refiner = Refiner::new(self.pass, self.screen, self.tolerance_px, self.spare.soup());
+        let (cells, seam) = (block.cells, block.seam);
+        let [cols, rows] = cells;
+        let corners: Vec<Option<Corner>> = (0..(cols + 1) * (rows + 1))
+            .map(|i| {
+                let kept = kept_node(seam, cells, [i % (cols + 1), i / (cols + 1)]);
+                let at = [0, 1].map(|axis| block.origin[axis] + block.step * kept[axis]);
+                hf.node(at[0], at[1]).map(|p| refiner.node(p, self.pass.ground_node(self.screen, hf, at)))
+            })
+            .collect();
+        block.counts.missed = corners.iter().flatten().filter(|c| c.is_missing()).count() as u64;
+        for r in 0..rows {
+            for c in 0..cols {
+                let nw = r * (cols + 1) + c;
+                for (k, tri) in CELL_TRIANGLES.iter().enumerate() {
+                    let [Some(a), Some(b), Some(d)] = tri.map(|n| corners[nw + (n & 1) + (n >> 1) * (cols + 1)]) else {
+                        continue;
+                    };
+                    // Edges 0-1, 1-2, 2-0 of the triangle: north, east or west, south; the diagonal is the last.
+                    let [north, east, south, west] = chosen.judged;
+                    let side = |on_side: bool, judged: bool| if on_side { judged } else { chosen.edges };
+                    let split = if k == 0 {
+                        [side(r == 0, north), side(c + 1 == cols, east), chosen.edges]
+                    } else {
+                        [side(c == 0, west), side(r + 1 == rows, south), chosen.edges]
+                    };
+                    let weights = cell_weights(seam, cells, [c, r], k);
+                    refiner.triangle([a, b, d], weights, split, ((r * SIDE + c) as u32) << 1 | k as u32);
+                }
+            }
+        }
+        block.counts.split = refiner.splits;
+        block.counts.drawn = refiner.out.len() as u64;
+        block.cover = cover_of(&refiner.out);
+        block.geometry = Geometry::Soup(refiner.out);
+    }
+}

@@ -1,0 +1,55 @@
+//! Lines of sight to places of lines and points, through the exact tracer.
+
+use crate::geometry::screen::Screen;
+use crate::marks::path::LinePoint;
+use crate::trace::Tracer;
+use belvedere_core::{DVec2, DVec3, View};
+use belvedere_scene::{LayerKind, Scene};
+use std::sync::OnceLock;
+
+/// Terrain with more nodes is not prepared for lines of sight in every frame.
+const MAX_NODES: usize = 64 << 20;
+/// A surface nearer than a place by less than this share of its depth, or of a pixel's width there, does not hide it: rounding.
+const SLACK: f64 = 1e-6;
+const SLACK_PX: f64 = 0.05;
+
+/// Asks the surfaces themselves what hides what; prepared when first asked.
+pub(crate) struct LineOfSight<'a> {
+    scene: &'a Scene,
+    view: &'a View,
+    tracer: OnceLock<Option<Tracer<'a>>>,
+}
+
+impl<'a> LineOfSight<'a> {
+    pub(crate) fn new(scene: &'a Scene, view: &'a View) -> Self {
+        Self { scene, view, tracer: OnceLock::new() }
+    }
+
+    /// The place itself, exactly on the drawn surface if its line lies on the ground.
+    pub(crate) fn on_surface(&self, place: &LinePoint, lift_m: f64) -> DVec3 {
+        let p = place.p;
+        let height =
+            if place.on_ground { self.scene.terrain().and_then(|hf| hf.surface_at(p.truncate())) } else { None };
+        height.map_or(p, |z| p.with_z(z + lift_m))
+    }
+
+    /// Whether nothing lies before `depth` on the ray of `pixel`; `None` if it cannot be told.
+    pub(crate) fn sees(&self, screen: &Screen, pixel: DVec2, depth: f64) -> Option<bool> {
+        let tracer = self.tracer.get_or_init(|| self.prepare()).as_ref()?;
+        let slack = SLACK * depth + SLACK_PX * screen.footprint(depth);
+        Some(tracer.first_hit(pixel).is_none_or(|hit| hit.depth >= depth - slack))
+    }
+
+    fn prepare(&self) -> Option<Tracer<'a>> {
+        let nodes: usize = self
+            .scene
+            .layers
+            .iter()
+            .map(|l| match &l.kind {
+                LayerKind::Terrain(t) => t.heightfield.cols() * t.heightfield.rows(),
+                _ => 0,
+            })
+            .sum();
+        (nodes <= MAX_NODES).then(|| Tracer::new(self.scene, self.view))
+    }
+}

@@ -1,0 +1,244 @@
+//! The very place that the centre of a pixel sees.
+//!
+//! The rasteriser draws bent edges straight to within a tolerance in pixels. On ground seen under a small angle that is little on the
+//! image and much in depth. Where depths and places are asked for, the place found is moved on its surface, by Newton steps on the
+//! true map, until its image is the centre of the pixel.
+
+use crate::geometry::block::DrawnTriangle;
+use crate::geometry::box_blocks::BOX_TRIANGLES;
+use crate::geometry::pass::Pass;
+use crate::geometry::screen::Screen;
+use belvedere_core::{DVec2, DVec3};
+use belvedere_scene::{Heightfield, LayerKind, Scene};
+use glam::DMat3;
+
+/// Steps at most, and the distance from the centre that is near enough, pixels.
+const STEPS: usize = 10;
+const NEAR_PX: f64 = 2e-4;
+/// A place whose image stays farther from the centre than this is no better than the one before, pixels.
+const ACCEPTED_PX: f64 = 5e-3;
+/// Farther than this no place is moved, pixels on its surface.
+const REACH_PX: f64 = 3.0;
+
+/// A ray this far above the ground, pixels, meets nothing that less detail leaves out.
+const CLEAR_PX: f64 = 0.8;
+/// Steps of an eighth of a cell that a ray is followed at most, halvings of the step in which it goes under, and how often that is done.
+const MOST_STEPS: u32 = 128;
+const HALVINGS: usize = 10;
+const ROUNDS: usize = 4;
+
+/// A place on a surface, how far its image is from the pixel, pixels, and its depth.
+#[derive(Debug, Clone, Copy)]
+struct Solution {
+    off: f64,
+    p: DVec3,
+    depth: f64,
+}
+
+/// A ray near a place on it: the way towards the eye by unit of depth, and pixels per unit of height.
+struct Ray {
+    place: DVec3,
+    towards: DVec3,
+    px_per_z: f64,
+}
+
+/// Surfaces and maps of a frame.
+pub(crate) struct PixelCenters<'a> {
+    scene: &'a Scene,
+    passes: &'a [Pass<'a>],
+    screen: &'a Screen,
+}
+
+/// A surface to move on.
+enum Surface<'a> {
+    Ground(&'a Heightfield),
+    /// Point and unit normal.
+    Plane(DVec3, DVec3),
+}
+
+impl<'a> PixelCenters<'a> {
+    pub(crate) fn new(scene: &'a Scene, passes: &'a [Pass<'a>], screen: &'a Screen) -> Self {
+        Self { scene, passes, screen }
+    }
+
+    /// Place and depth that `pixel` sees of the surface found there, near `place`; `None` if it cannot be told better.
+    ///
+    /// Ground drawn in less detail may lack a fold of less than half a pixel that hides the place found, or have one that the true
+    /// ground has not: the ray is followed over the cells around.
+    pub(crate) fn place(&self, found: &DrawnTriangle<'_>, place: DVec3, pixel: DVec2) -> Option<(DVec3, f32)> {
+        let surface = self.surface(found)?;
+        let settled = self.settle(&surface, place, pixel);
+        let first = match surface {
+            Surface::Ground(hf) => self.first_on(hf, settled, place, pixel),
+            Surface::Plane(..) => None,
+        };
+        first.or(settled).map(|s| (s.p, s.depth as f32))
+    }
+
+    /// The first place on the ground near where Newton's steps have settled, or near `place`; `None` if none is better.
+    fn first_on(&self, hf: &Heightfield, settled: Option<Solution>, place: DVec3, pixel: DVec2) -> Option<Solution> {
+        let mut at = settled.unwrap_or(Solution { off: f64::INFINITY, p: place, depth: 0.0 });
+        for _ in 0..ROUNDS {
+            let p = self.first_near(hf, &at, pixel)?;
+            let (image, depth) = self.image(p)?;
+            at = Solution { off: image.distance(pixel), p, depth };
+            if at.off <= NEAR_PX || at.off > REACH_PX {
+                break;
+            }
+        }
+        (at.off <= ACCEPTED_PX).then_some(at)
+    }
+
+    /// Newton steps on the surface from `place` to where the image is `pixel`.
+    fn settle(&self, surface: &Surface<'_>, place: DVec3, pixel: DVec2) -> Option<Solution> {
+        // Ground in less detail lies beside the ground itself.
+        let mut p = surface.at(place)?;
+        let mut image = self.image(p)?;
+        let mut best = (image.0.distance(pixel), p, image.1);
+        let first = best.0;
+        for _ in 0..STEPS {
+            if best.0 <= NEAR_PX {
+                break;
+            }
+            let along = surface.tangents(p);
+            // Twenty pixels' thousandths: far above rounding, far below what bends.
+            let h = 0.02 * self.screen.footprint(image.1);
+            let [ex, ey] =
+                [self.image(p + h * along[0])?.0, self.image(p + h * along[1])?.0].map(|q| (q - image.0) / h);
+            let (miss, det) = (pixel - image.0, ex.perp_dot(ey));
+            let step = DVec2::new(miss.perp_dot(ey), ex.perp_dot(miss)) / det;
+            if !step.is_finite() {
+                break;
+            }
+            p = surface.at(p + step.x * along[0] + step.y * along[1])?;
+            image = self.image(p)?;
+            let off = image.0.distance(pixel);
+            if off < best.0 {
+                best = (off, p, image.1);
+            } else if off > REACH_PX {
+                break;
+            }
+        }
+        let (off, p, depth) = best;
+        (off <= ACCEPTED_PX || off < 0.1 * first).then_some(Solution { off, p, depth })
+    }
+
+    /// Where the ray of `pixel` enters the ground first near a place, as far as it stays within [`CLEAR_PX`] of the ground; `None` if
+    /// that is where Newton's steps have settled.
+    ///
+    /// The ray is taken for straight here. Where Newton's steps run to and fro over an edge of the ground, halving does not.
+    fn first_near(&self, hf: &Heightfield, start: &Solution, pixel: DVec2) -> Option<DVec3> {
+        let ray = self.ray(start.p, pixel)?;
+        // An eighth of a cell on the map.
+        let step = ray.towards * (0.125 * hf.spacing().min_element() / ray.towards.truncate().length());
+        let clear = CLEAR_PX / ray.px_per_z;
+        if !step.is_finite() || !clear.is_finite() {
+            return None;
+        }
+        let gap = |k: f64| {
+            let q = ray.place + k * step;
+            hf.surface_at(q.truncate()).map(|z| q.z - z)
+        };
+        // Towards the eye until the ray is well above the ground: the last place under it counts.
+        let settled = start.off <= NEAR_PX;
+        let mut under = if settled || gap(0.0)? >= 0.0 { None } else { Some(0.0) };
+        // Steps may be too wide for an edge that Newton's steps have settled behind.
+        for k in std::iter::once(0.02).chain((1..=MOST_STEPS).map(f64::from)) {
+            match gap(k) {
+                Some(g) if g < -1e-6 * clear => under = Some(k),
+                Some(g) if g <= clear => {}
+                _ => break,
+            }
+        }
+        if under.is_none() && !settled {
+            // The ray passes over what was found: on until it goes under.
+            under = (1..=MOST_STEPS).map(|k| -f64::from(k)).find(|&k| gap(k).is_none_or(|g| g < 0.0));
+        }
+        let mut under = under?;
+        let mut over = (under + 1.0).floor();
+        let mut ends = [gap(over)?, gap(under)?];
+        if !(ends[0] >= 0.0 && ends[1] <= 0.0) {
+            return None;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (over + under);
+            let g = gap(middle)?;
+            if g < 0.0 { (under, ends[1]) = (middle, g) } else { (over, ends[0]) = (middle, g) }
+        }
+        let share = ends[0] / (ends[0] - ends[1]);
+        let q = ray.place + (over + share * (under - over)) * step;
+        Some(q.truncate().extend(hf.surface_at(q.truncate())?))
+    }
+
+    /// The ray of a pixel near a place, straight.
+    fn ray(&self, p: DVec3, pixel: DVec2) -> Option<Ray> {
+        let here = self.image(p)?;
+        let h = 0.02 * self.screen.footprint(here.1);
+        let by = |axis: DVec3| {
+            let q = self.image(p + h * axis)?;
+            Some((q.0 - here.0).extend(q.1 - here.1) / h)
+        };
+        let change = DMat3::from_cols(by(DVec3::X)?, by(DVec3::Y)?, by(DVec3::Z)?);
+        let back = change.inverse();
+        let place = p + back * (pixel - here.0).extend(0.0);
+        Some(Ray { place, towards: back * DVec3::NEG_Z, px_per_z: change.z_axis.truncate().length() })
+    }
+
+    fn surface(&self, found: &DrawnTriangle<'_>) -> Option<Surface<'a>> {
+        let first = found.block.origin[0];
+        let corners = match &self.scene.layers.get(found.block.layer as usize)?.kind {
+            LayerKind::Terrain(t) => return Some(Surface::Ground(&t.heightfield)),
+            LayerKind::Boxes(b) => {
+                let corners = b.boxes.get(first + (found.parent / 12) as usize)?.corners();
+                BOX_TRIANGLES[(found.parent % 12) as usize].map(|k| corners[k])
+            }
+            LayerKind::Mesh(m) => m.mesh.corners(first + found.parent as usize),
+            _ => return None,
+        };
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize()?;
+        Some(Surface::Plane(corners[0], normal))
+    }
+
+    /// Pixel and depth of a place.
+    fn image(&self, p: DVec3) -> Option<(DVec2, f64)> {
+        let holds = |pass: &&Pass<'_>| pass.margins(p).iter().all(|m| *m >= 0.0);
+        let pass = if self.passes.len() == 1 { self.passes.first() } else { self.passes.iter().find(holds) };
+        let v = self.screen.view_from(pass?.displace(p)?);
+        (v.z > 0.0).then(|| (self.screen.pixel(v), v.z))
+    }
+}
+
+impl Surface<'_> {
+    /// Two directions along the surface.
+    fn tangents(&self, p: DVec3) -> [DVec3; 2] {
+        match self {
+            Self::Plane(_, normal) => {
+                let (a, b) = normal.any_orthonormal_pair();
+                [a, b]
+            }
+            Self::Ground(hf) => {
+                let g = hf.grid_from_scene(p.truncate());
+                let last = DVec2::new((hf.cols() - 2) as f64, (hf.rows() - 2) as f64);
+                let cell = g.floor().clamp(DVec2::ZERO, last);
+                let [c, r] = [cell.x as usize, cell.y as usize];
+                let f = g - cell;
+                let h = |dc: usize, dr: usize| f64::from(hf.heights()[(r + dr) * hf.cols() + c + dc]);
+                let (east, south) = if f.x > f.y {
+                    (h(1, 0) - h(0, 0), h(1, 1) - h(1, 0))
+                } else {
+                    (h(1, 1) - h(0, 1), h(0, 1) - h(0, 0))
+                };
+                let s = hf.spacing();
+                [DVec3::new(1.0, 0.0, east / s.x), DVec3::new(0.0, 1.0, -south / s.y)]
+            }
+        }
+    }
+
+    /// The surface near a point beside it.
+    fn at(&self, p: DVec3) -> Option<DVec3> {
+        match self {
+            Self::Plane(point, normal) => Some(p - normal.dot(p - *point) * *normal),
+            Self::Ground(hf) => Some(p.truncate().extend(hf.surface_at(p.truncate())?)),
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! The rasteriser.
+
+use crate::cache::{GroundCache, lock};
+use crate::frame::{Buffers, checked, finish};
+use crate::geometry::blocks::Blocks;
+use crate::geometry::lod::Tree;
+use crate::geometry::pass::Pass;
+use crate::geometry::screen::Screen;
+use crate::marks::Marks;
+use crate::raster::band::{BAND, Band, sample_offsets};
+use crate::raster::pixel_center::PixelCenters;
+use crate::raster::resolve::{Colors, Rows, resolve};
+use crate::shade::color::Packed;
+use crate::shade::{LightCache, Shader};
+use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
+
+/// Draws scenes on the processor.
+///
+/// It remembers what it computed for a ground (light, averages, levels of detail) and the memory of its last frames: keep one
+/// renderer for all frames of a film. Pictures do not depend on what it drew before.
+///
+/// ```
+/// use belvedere_core::{DVec3, Pinhole, Projection, View};
+/// use belvedere_cpu::CpuRenderer;
+/// use belvedere_scene::{Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
+///
+/// let lens = Projection::Perspective { fov_y: 0.8 };
+/// let pinhole = Pinhole::look_at(DVec3::ZERO, DVec3::Y, DVec3::Z, lens, [64, 48], 1.0, None)?;
+/// let (scene, view) = (Scene::default(), View::straight(pinhole));
+/// let (light, options, progress) = (Light::default(), RenderOptions::default(), Progress::silent());
+/// let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
+/// let frame = CpuRenderer::default().render(&job)?;
+/// assert!(frame.id.iter().all(|&id| id == 0), "nothing but sky");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Default)]
+pub struct CpuRenderer {
+    detail: GroundCache<(), Arc<Tree>>,
+    light: LightCache,
+    /// Buffers that no frame uses now; nothing in them but capacity survives.
+    scratch: Mutex<Vec<Scratch>>,
+}
+
+impl Renderer for CpuRenderer {
+    fn name(&self) -> &'static str {
+        "cpu"
+    }
+
+    fn render(&self, job: &RenderJob<'_>) -> Result<Frame, RenderError> {
+        let mut frame = Frame::default();
+        self.render_into(job, &mut frame)?;
+        Ok(frame)
+    }
+
+    fn render_into(&self, job: &RenderJob<'_>, frame: &mut Frame) -> Result<(), RenderError> {
+        let old = Mutex::new(std::mem::take(frame));
+        *frame = checked(job, |job| self.draw(job, std::mem::take(&mut *lock(&old))))?;
+        Ok(())
+    }
+}
+
+/// Memory of frames, kept for the next one.
+#[derive(Debug, Default)]
+struct Scratch {
+    blocks: Blocks,
+    color: Vec<Packed>,
+    bands: Mutex<Vec<Band>>,
+}
+
+/// Frames drawn at the same time whose memory is kept.
+const SPARE_FRAMES: usize = 2;
+
+impl CpuRenderer {
+    fn draw(&self, job: &RenderJob<'_>, frame: Frame) -> Result<Frame, RenderError> {
+        let mut scratch = lock(&self.scratch).pop().unwrap_or_default();
+        let result = self.draw_with(job, frame, &mut scratch);
+        let mut spare = lock(&self.scratch);
+        if spare.len() < SPARE_FRAMES {
+            spare.push(scratch);
+        }
+        result
+    }
+
+    fn draw_with(&self, job: &RenderJob<'_>, frame: Frame, scratch: &mut Scratch) -> Result<Frame, RenderError> {
+        let start = Instant::now();
+        job.progress.tick("project", 0.0)?;
+        let screen = Screen::new(job.view.pinhole());
+        let passes = Pass::all(job.view);
+        let Scratch { blocks, color, bands } = scratch;
+        blocks.build(job.scene, &passes, &screen, job.options, &self.detail);
+        job.progress.tick("project", 1.0)?;
+        let shader = Shader::new(job, &screen, blocks, &self.light);
+        let mut buffers = Buffers::reuse(job, std::mem::take(color), frame);
+        let centers = job.options.aux.exact.then(|| PixelCenters::new(job.scene, &passes, &screen));
+        draw_surfaces(job, &screen, blocks, (&shader, centers.as_ref()), bands, &mut buffers)?;
+        if buffers.open {
+            let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
+            let marks = Marks::new(job, &passes, &screen, tolerance_px, &buffers.depth);
+            job.progress.tick("lines", 0.0)?;
+            finish(&marks, &screen, &mut buffers);
+            job.progress.tick("lines", 1.0)?;
+        }
+        let counts = blocks.counts();
+        let stats = FrameStats {
+            triangles_in: blocks.triangles_in,
+            triangles_drawn: counts.drawn,
+            edges_split: counts.split,
+            vertices_missed: counts.missed,
+            milliseconds: start.elapsed().as_secs_f64() * 1e3,
+        };
+        *color = buffers.color;
+        let (width, height) = (screen.width as usize, screen.height as usize);
+        Ok(Frame {
+            width,
+            height,
+            color: buffers.out,
+            depth: buffers.depth,
+            id: buffers.id,
+            world: buffers.world,
+            stats,
+        })
+    }
+}
+
+fn draw_surfaces(
+    job: &RenderJob<'_>,
+    screen: &Screen,
+    blocks: &Blocks,
+    (shader, centers): (&Shader<'_>, Option<&PixelCenters<'_>>),
+    spare: &Mutex<Vec<Band>>,
+    buffers: &mut Buffers,
+) -> Result<(), RenderError> {
+    let chunk = BAND * screen.width as usize;
+    let bands = (screen.height as usize).div_ceil(BAND);
+    let done = AtomicUsize::new(0);
+    let offsets = sample_offsets(job.options.samples);
+    let mut worlds: Vec<Option<&mut [[f64; 3]]>> = match &mut buffers.world {
+        Some(w) => w.chunks_mut(chunk).map(Some).collect(),
+        None => (0..bands).map(|_| None).collect(),
+    };
+    let mut colors: Vec<Colors<'_>> = if buffers.open {
+        buffers.color.chunks_mut(chunk).map(Colors::Open).collect()
+    } else {
+        buffers.out.chunks_mut(chunk).map(Colors::Stored).collect()
+    };
+    let depth = buffers.depth.par_chunks_mut(chunk);
+    let id = buffers.id.par_chunks_mut(chunk);
+    colors.par_iter_mut().zip(depth).zip(id).zip(worlds.par_iter_mut()).enumerate().try_for_each(
+        |(i, (((color, depth), id), world))| {
+            let y0 = (i * BAND) as i32;
+            let mut band = lock(spare).pop().unwrap_or_default();
+            band.clear(y0, (y0 + BAND as i32).min(screen.height), screen.width, &offsets);
+            blocks.draw(&mut band);
+            resolve(&band, shader, screen, &mut Rows { color, depth, id, world: world.as_deref_mut(), centers });
+            lock(spare).push(band);
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            Ok(job.progress.tick("draw", done as f64 / bands as f64)?)
+        },
+    )
+}

@@ -1,0 +1,435 @@
+//! Samples of one terrain layer, shaded together: each step is a plain loop over short arrays, which compilers turn
+//! into vector instructions.
+
+use crate::geometry::block::Block;
+use crate::geometry::grid::Nodes;
+use crate::geometry::lod::SIDE;
+use crate::geometry::screen::SUB;
+use crate::shade::footprint::Footprint;
+use crate::shade::ground::lit::Colors;
+use crate::shade::ground::sample::GroundSample;
+use crate::shade::ground::terrain::TerrainShade;
+use crate::shade::ground::tiles::CELL;
+use crate::shade::{LayerShade, Painted, Samples, Shader, pixel_of};
+use crate::simd::{IntLanes, LANES, Lanes, nearest};
+use belvedere_core::DVec2;
+
+const _: () = assert!(LANES == u32::BITS as usize, "a bit per sample");
+
+/// Samples waiting to be shaded, each on one half of a cell of the ground.
+pub(crate) struct Batch {
+    len: usize,
+    layer: usize,
+    /// Where each result goes.
+    out: [u32; LANES],
+    /// Nearness of the sample.
+    near: Lanes,
+    /// Place of the sample, and the vertices of its triangle: north-west, south-east, and the one between; fixed-point steps.
+    at: [IntLanes; 2],
+    x: [IntLanes; 3],
+    y: [IntLanes; 3],
+    q: [Lanes; 3],
+    /// The north-west node, the side of the cell, and 1 in the half of the south-west node, else 0.
+    node: [IntLanes; 2],
+    step: Lanes,
+    lower: IntLanes,
+    /// Lanes whose triangle is another one.
+    odd: usize,
+    odd_lanes: [(usize, OddPlace); LANES],
+}
+
+/// Where a sample lies that is not on half a cell.
+#[derive(Clone, Copy, Default)]
+struct OddPlace {
+    node: [i32; 2],
+    at: [f32; 2],
+    cells_per_px: f32,
+}
+
+/// Where the samples of a batch lie on the ground.
+struct Places {
+    /// Columns and rows from the node.
+    u: Lanes,
+    v: Lanes,
+    /// Squared side of the square that a pixel covers, in squares of a cell.
+    cells_per_px: Lanes,
+    /// Forward distance.
+    depth: Lanes,
+}
+
+impl Batch {
+    pub(crate) fn new() -> Self {
+        let (zero, none) = ([0.0; LANES], [0; LANES]);
+        Self {
+            len: 0,
+            layer: 0,
+            out: [0; LANES],
+            near: zero,
+            at: [none; 2],
+            x: [none; 3],
+            y: [none; 3],
+            q: [zero; 3],
+            node: [none; 2],
+            step: zero,
+            lower: none,
+            odd: 0,
+            odd_lanes: [(0, OddPlace::default()); LANES],
+        }
+    }
+
+    /// Takes in samples of a block without odd triangles: those numbered `from..to`.
+    #[inline(always)]
+    pub(crate) fn take(
+        &mut self,
+        shader: &Shader<'_>,
+        (block, nodes): (&Block, &Nodes),
+        samples: &Samples<'_>,
+        [from, to]: [usize; 2],
+        painted: &mut Painted,
+    ) {
+        self.turn_to(block.layer as usize, shader, samples, painted);
+        let mut from = from;
+        while from < to {
+            if self.len == LANES {
+                self.flush(shader, samples, painted);
+            }
+            let n = (LANES - self.len).min(to - from);
+            let plain = self.take_plain((block, nodes), samples, from, n);
+            from += plain;
+            if plain < n {
+                self.push_odd(shader, samples, from);
+                from += 1;
+            }
+        }
+    }
+
+    /// Takes in samples up to the first one that does not lie on a plain half of a cell, `n` at most; the number of them.
+    #[inline(always)]
+    fn take_plain(&mut self, (block, nodes): (&Block, &Nodes), samples: &Samples<'_>, from: usize, n: usize) -> usize {
+        let (stride, step) = (block.cells[0] as u32 + 1, block.step as i32);
+        let origin = block.origin.map(|n| n as i32);
+        let mut prims = [0; LANES];
+        prims[..n].copy_from_slice(&samples.prim[from..from + n]);
+        let count = nodes.x.len().min(nodes.y.len()).min(nodes.q.len());
+        let (mut nw, mut between) = ([0u32; LANES], [0u32; LANES]);
+        let (mut columns, mut rows, mut lower) = ([0; LANES], [0; LANES], [0; LANES]);
+        let (mut odd, [north, east, south, west]) = (0u32, block.seam_cells());
+        for i in 0..LANES {
+            let cell = (prims[i] >> 1) & (SIDE * SIDE - 1) as u32;
+            let (c, r) = (cell % SIDE as u32, cell / SIDE as u32);
+            lower[i] = (prims[i] & 1) as i32;
+            nw[i] = r * stride + c;
+            between[i] = nw[i] + if lower[i] == 0 { 1 } else { stride };
+            (columns[i], rows[i]) = (origin[0] + step * c as i32, origin[1] + step * r as i32);
+            let beyond = (nw[i] + stride + 1) as usize >= count;
+            let is_odd = (c == west) | (c == east) | (r == north) | (r == south) | beyond;
+            odd |= if is_odd { 1 << i } else { 0 };
+        }
+        let n = n.min(odd.trailing_zeros() as usize);
+        let (nx, ny, nq) = (&nodes.x[..count], &nodes.y[..count], &nodes.q[..count]);
+        let lanes = self.len..self.len + n;
+        for (j, i) in lanes.clone().enumerate() {
+            let at = [nw[j] as usize, (nw[j] + stride + 1) as usize, between[j] as usize];
+            for v in 0..3 {
+                (self.x[v][i], self.y[v][i], self.q[v][i]) = (nx[at[v]], ny[at[v]], nq[at[v]]);
+            }
+            self.out[i] = (from + j) as u32;
+        }
+        self.near[lanes.clone()].copy_from_slice(&samples.q[from..from + n]);
+        self.at[0][lanes.clone()].copy_from_slice(&samples.x[from..from + n]);
+        self.at[1][lanes.clone()].copy_from_slice(&samples.y[from..from + n]);
+        self.node[0][lanes.clone()].copy_from_slice(&columns[..n]);
+        self.node[1][lanes.clone()].copy_from_slice(&rows[..n]);
+        self.lower[lanes.clone()].copy_from_slice(&lower[..n]);
+        self.step[lanes].fill(step as f32);
+        self.len += n;
+        n
+    }
+
+    /// Takes in a sample of any triangle of ground.
+    pub(crate) fn take_odd(
+        &mut self,
+        layer: usize,
+        shader: &Shader<'_>,
+        samples: &Samples<'_>,
+        k: usize,
+        painted: &mut Painted,
+    ) {
+        self.turn_to(layer, shader, samples, painted);
+        if self.len == LANES {
+            self.flush(shader, samples, painted);
+        }
+        self.push_odd(shader, samples, k);
+    }
+
+    #[inline(always)]
+    fn turn_to(&mut self, layer: usize, shader: &Shader<'_>, samples: &Samples<'_>, painted: &mut Painted) {
+        if layer != self.layer {
+            self.flush(shader, samples, painted);
+            self.layer = layer;
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn push_odd(&mut self, shader: &Shader<'_>, samples: &Samples<'_>, k: usize) {
+        let Some(found) = shader.blocks.find(samples.prim[k]) else { return };
+        let spot = GroundSample::new(&found, shader.screen, samples.at(k));
+        let (at, cells_per_px) = (spot.at.map(|v| v as f32), spot.cells_per_px() as f32);
+        self.odd_lanes[self.odd] = (self.len, OddPlace { node: GroundSample::node(&found), at, cells_per_px });
+        self.odd += 1;
+        self.out[self.len] = k as u32;
+        self.near[self.len] = samples.q[k];
+        self.len += 1;
+    }
+
+    /// Shades what is there.
+    #[inline(always)]
+    pub(crate) fn flush(&mut self, shader: &Shader<'_>, samples: &Samples<'_>, painted: &mut Painted) {
+        if self.len > 0
+            && let LayerShade::Terrain(terrain) = &shader.layers[self.layer]
+        {
+            self.shade(shader, terrain, samples, painted);
+        }
+        (self.len, self.odd) = (0, 0);
+    }
+
+    #[inline(always)]
+    fn shade(&mut self, shader: &Shader<'_>, terrain: &TerrainShade<'_>, samples: &Samples<'_>, painted: &mut Painted) {
+        let places = self.places(shader);
+        let lods = terrain.lods(shader, &places.depth, &places.cells_per_px);
+        let at = self.fixed(&places, terrain);
+        let inputs = terrain.inputs();
+        let colors = terrain.lit.colors_of(&at, &lods, self.len, &inputs);
+        let color = terrain.colors(shader, &colors, &lods, &places.depth);
+        painted.set_roots(&self.out[..self.len], &color, self.layer as u32 + 1);
+        if terrain.is_covered(shader) {
+            self.cover(shader, terrain, &places, &at, samples, painted);
+        }
+    }
+
+    /// Where the samples lie.
+    #[inline(always)]
+    fn places(&mut self, shader: &Shader<'_>) -> Places {
+        let zero = [0.0; LANES];
+        let mut out = Places { u: zero, v: zero, cells_per_px: zero, depth: zero };
+        for i in 0..LANES {
+            out.depth[i] = shader.screen.depth_of(self.near[i]);
+        }
+        if shader.screen.ortho {
+            self.q = [[1.0; LANES]; 3];
+        }
+        self.weigh(&mut out);
+        for &(lane, odd) in &self.odd_lanes[..self.odd] {
+            (self.node[0][lane], self.node[1][lane]) = (odd.node[0], odd.node[1]);
+            (out.u[lane], out.v[lane], out.cells_per_px[lane]) = (odd.at[0], odd.at[1], odd.cells_per_px);
+        }
+        out
+    }
+
+    /// Barycentric weights on the image, made those of the ground by nearness.
+    #[inline(always)]
+    fn weigh(&self, out: &mut Places) {
+        let Self { at: [xs, ys], x: [x0, x1, x2], y: [y0, y1, y2], q: [q0, q1, q2], step, lower, .. } = self;
+        for i in 0..LANES {
+            let x = [(x0[i] - xs[i]) as f32, (x1[i] - xs[i]) as f32, (x2[i] - xs[i]) as f32];
+            let y = [(y0[i] - ys[i]) as f32, (y1[i] - ys[i]) as f32, (y2[i] - ys[i]) as f32];
+            let (w0, w1, w2) = (x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]);
+            let inverse = 1.0 / (w0 + w1 + w2);
+            let (w0, w1, w2) =
+                (positive(w0 * inverse) * q0[i], positive(w1 * inverse) * q1[i], positive(w2 * inverse) * q2[i]);
+            let scale = step[i] / (w0 + w1 + w2);
+            // The vertex between lies beside the diagonal, where only one coordinate differs.
+            let (most, least) = ((w1 + w2) * scale, w1 * scale);
+            out.u[i] = if lower[i] == 0 { most } else { least };
+            out.v[i] = if lower[i] == 0 { least } else { most };
+            out.cells_per_px[i] = (step[i] * step[i] * inverse).abs() * (SUB * SUB) as f32;
+        }
+    }
+
+    /// Columns and rows on the ground, [`CELL`] steps to a cell.
+    #[inline(always)]
+    fn fixed(&self, places: &Places, terrain: &TerrainShade<'_>) -> [IntLanes; 2] {
+        let [mut columns, mut rows] = [[0; LANES]; 2];
+        let last = [terrain.hf.cols(), terrain.hf.rows()].map(|n| (n - 1) as i32 * CELL);
+        for i in 0..LANES {
+            let (c, r) = (self.node[0][i] * CELL, self.node[1][i] * CELL);
+            columns[i] = c.wrapping_add(nearest(places.u[i] * CELL as f32)).clamp(0, last[0]);
+            rows[i] = r.wrapping_add(nearest(places.v[i] * CELL as f32)).clamp(0, last[1]);
+        }
+        [columns, rows]
+    }
+
+    /// Lays pictures and areas over the lanes that they cover.
+    /// * `at`: see [`Batch::fixed`].
+    #[inline(never)]
+    fn cover(
+        &self,
+        shader: &Shader<'_>,
+        terrain: &TerrainShade<'_>,
+        places: &Places,
+        at: &[IntLanes; 2],
+        samples: &Samples<'_>,
+        painted: &mut Painted,
+    ) {
+        let [near, far] = terrain.footprints(shader, &places.depth);
+        let inputs = terrain.inputs();
+        for (i, &k) in self.out[..self.len].iter().enumerate() {
+            let k = k as usize;
+            let [c, r] = [0, 1].map(|axis| f64::from(self.node[axis][i]));
+            let g = DVec2::new(c + f64::from(places.u[i]), r + f64::from(places.v[i]));
+            let square = places.cells_per_px[i].max(near[i]).min(far[i]);
+            let ground = || terrain.lit.sample([at[0][i], at[1][i]], crate::shade::lod(square), &inputs);
+            let print = || {
+                let axes = shader
+                    .blocks
+                    .find(samples.prim[k])
+                    .map(|f| GroundSample::new(&f, shader.screen, samples.at(k)).axes());
+                let spacing = terrain.hf.spacing() * DVec2::new(1.0, -1.0);
+                let axes = axes.map_or([DVec2::NAN; 2], |axes| axes.map(|v| v * spacing));
+                Footprint::new(axes, f64::from(near[i].sqrt()) * terrain.pitch)
+            };
+            let side = f64::from(square.sqrt());
+            if let Some((c, id)) = terrain.covered(shader, g, side, print, ground, pixel_of(samples.at(k))) {
+                let c = shader.sky.through_air(c, places.depth[i]);
+                painted.set(k, c, id.unwrap_or(self.layer as u32) + 1);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn positive(v: f32) -> f32 {
+    if v > 0.0 { v } else { 0.0 }
+}
+
+impl TerrainShade<'_> {
+    /// Squared sides, in cells, of the smallest and the largest square on the ground that a pixel can cover at a depth.
+    #[inline(always)]
+    fn footprints(&self, shader: &Shader<'_>, depth: &Lanes) -> [Lanes; 2] {
+        let (mut near, mut far) = ([0.0; LANES], [0.0; LANES]);
+        let (constant, per_depth) = self.cells_per_depth(shader);
+        for i in 0..LANES {
+            let side = constant + per_depth * depth[i];
+            near[i] = side * side;
+            far[i] = 36.0 * near[i];
+        }
+        [near, far]
+    }
+
+    /// Cells across a pixel that looks straight at the ground: a constant, and that per unit of depth.
+    fn cells_per_depth(&self, shader: &Shader<'_>) -> (f32, f32) {
+        let per_px = (1.0 / (shader.screen.scale * self.pitch)) as f32;
+        if shader.screen.ortho { (per_px, 0.0) } else { (0.0, per_px) }
+    }
+
+    /// Levels of averages, 256 steps to a level. The triangle tells slant and bend, the depth keeps it sane.
+    #[inline(always)]
+    fn lods(&self, shader: &Shader<'_>, depth: &Lanes, cells_per_px: &Lanes) -> [u32; LANES] {
+        let [near, far] = self.footprints(shader, depth);
+        let mut out = [0; LANES];
+        for i in 0..LANES {
+            out[i] = crate::shade::lod(cells_per_px[i].max(near[i]).min(far[i]));
+        }
+        out
+    }
+
+    /// Square roots of the colours of lit ground through the air.
+    #[inline(always)]
+    fn colors(&self, shader: &Shader<'_>, colors: &Colors, lods: &[u32; LANES], depth: &Lanes) -> [Lanes; 3] {
+        let air = shader.sky.haze();
+        let mut out = [[0.0; LANES]; 3];
+        for i in 0..LANES {
+            let haze = shader.sky.haze_at(depth[i]);
+            let root = colors.between(i, (lods[i] & 255) as i32 as f32 * (1.0 / 256.0));
+            for k in 0..3 {
+                let c = root[k] * root[k];
+                out[k][i] = (c + haze * (air[k] - c)).sqrt();
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cache::GroundCache;
+    use crate::geometry::blocks::Blocks;
+    use crate::geometry::pass::Pass;
+    use crate::geometry::screen::Screen;
+    use crate::raster::band::{Band, SKY, sample_offsets};
+    use crate::shade::LightCache;
+    use belvedere_core::{DVec3, Pinhole, Projection, View};
+    use belvedere_scene::{
+        Heightfield, Layer, LayerKind, Light, Palette, Progress, Relief, RenderJob, RenderOptions, Scene, TerrainLayer,
+    };
+
+    fn hills() -> Scene {
+        let h =
+            |c: usize, r: usize| 40.0 * ((c as f32 * 0.06).sin() + (r as f32 * 0.045).cos()) + 0.1 * (c * r % 5) as f32;
+        let heights = (0..257 * 257).map(|i| h(i % 257, i / 257)).collect();
+        let corner = DVec2::new(-1280.0, 1280.0);
+        let terrain = TerrainLayer {
+            heightfield: Heightfield::measured(corner, DVec2::splat(10.0), 257, 257, heights).unwrap().into(),
+            drapes: Vec::new(),
+            relief: Relief::Swiss,
+            shading: None,
+            exaggeration: 1.0,
+            palette: Palette::Alpine,
+        };
+        let layer = Layer { id: "ground".into(), must_see: false, kind: LayerKind::Terrain(terrain) };
+        Scene { layers: vec![layer], ..Scene::default() }
+    }
+
+    /// Square roots of colours may differ by a step of an 8-bit picture: places of both ways are rounded apart.
+    const STEP: f32 = 1.0 / 255.0;
+
+    #[test]
+    fn samples_taken_together_are_those_of_their_triangles() {
+        let scene = hills();
+        let (light, progress) = (Light::default(), Progress::silent());
+        let options = RenderOptions { samples: 1, lod_px: 0.5, ..RenderOptions::default() };
+        // Samples in cells along the north, east, south and west side beside coarser blocks, and others.
+        let (mut odd, mut plain) = ([0; 4], 0);
+        // From all sides, for what is coarser lies farther away.
+        for (x, y) in [(100.0, -1300.0), (1300.0, 100.0), (-100.0, 1300.0), (-1300.0, -100.0)] {
+            let screen = Projection::Perspective { fov_y: 0.9 };
+            let (eye, target) = (DVec3::new(x, y, 260.0), DVec3::new(0.0, 0.0, -60.0));
+            let view = View::straight(Pinhole::look_at(eye, target, DVec3::Z, screen, [331, 160], 1.0, None).unwrap());
+            let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
+            let (screen, passes) = (Screen::new(view.pinhole()), Pass::all(&view));
+            let (mut blocks, light_cache) = (Blocks::default(), LightCache::default());
+            blocks.build(&scene, &passes, &screen, &options, &GroundCache::default());
+            let shader = Shader::new(&job, &screen, &blocks, &light_cache);
+            let mut band = Band::new(0, 160, 331, sample_offsets(1));
+            blocks.draw(&mut band);
+            let x: Vec<i32> = (0..331).map(|x| x * SUB + SUB / 2).collect();
+            for row in 0..160 {
+                let (y, from) = (vec![row * SUB + SUB / 2; 331], band.index(0, 0, row));
+                let samples = Samples { prim: &band.prim[from..][..331], q: &band.q[from..][..331], x: &x, y: &y };
+                let [mut together, mut each] = [Painted::default(), Painted::default()];
+                shader.paint(samples, &mut together);
+                shader.paint(samples, &mut each);
+                each.root.iter_mut().for_each(|plane| plane.fill(-1.0));
+                let mut batch = Batch::new();
+                for k in (0..331).filter(|k| samples.prim[*k] != SKY) {
+                    batch.take_odd(0, &shader, &samples, k, &mut each);
+                    let (block, cell) = (samples.prim[k] >> 11, (samples.prim[k] >> 1) & 1023);
+                    let (c, r, seam) = (cell % 32, cell / 32, blocks.list[block as usize].seam_cells());
+                    let beside = [r == seam[0], c == seam[1], r == seam[2], c == seam[3]];
+                    odd.iter_mut().zip(beside).for_each(|(odd, beside)| *odd += u32::from(beside));
+                    plain += u32::from(!beside.contains(&true));
+                }
+                batch.flush(&shader, &samples, &mut each);
+                assert_eq!(together.id, each.id);
+                for (plane, each) in together.root.iter().zip(&each.root) {
+                    for (k, (a, b)) in plane.iter().zip(each).enumerate().filter(|(k, _)| samples.prim[*k] != SKY) {
+                        assert!((a - b).abs() < STEP, "row {row}, column {k}: {a} {b}");
+                    }
+                }
+            }
+        }
+        assert!(odd.iter().all(|odd| *odd > 100) && plain > 40_000, "{odd:?} beside coarser blocks, {plain} others");
+    }
+}

@@ -1,0 +1,220 @@
+//! Ground that a stage moves up and down: its heights, and its light, kept from frame to frame where it did not move on.
+
+use crate::cache::GroundCache;
+use crate::shade::ground::lit::{LitGround, LitKey};
+use crate::shade::ground::surface::{MipPyramid, Surface};
+use belvedere_core::{DVec3, Stage, TerrainDisocclusion};
+use belvedere_scene::{Heightfield, NodeState};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Light falls on ground that moves by whole multiples of this share of a node's distance. A slope errs by half of that at
+/// most, far less than an 8-bit step, and ground that hardly moves has the same light in the next frame, to the last bit.
+const STEP: f64 = 1.0 / 4096.0;
+
+/// Nodes along a side of the squares that are compared.
+const SQUARE: usize = 64;
+
+/// How far beyond its own nodes the light of a place looks for its surroundings, nodes: averages over 32 nodes, made smooth
+/// from level to level.
+const SURROUNDINGS: usize = 256;
+
+/// Heights of the ground after `stages`, which move points along z alone.
+pub(crate) fn heights(hf: &Heightfield, stages: &[Stage]) -> Vec<f32> {
+    let step = hf.spacing().min_element() * STEP;
+    let rounded = |h: f32, by: f64| (f64::from(h) + (by / step).round() * step) as f32;
+    if let [Stage::TerrainDisocclusion(ground)] = stages {
+        return lifted(hf, ground, &rounded);
+    }
+    let moved = |p: DVec3| stages.iter().try_fold(p, |p, s| s.as_map().apply(p)).ok().filter(|p| p.is_finite());
+    let mut heights = hf.heights().to_vec();
+    heights.par_chunks_mut(hf.cols()).enumerate().for_each(|(r, row)| {
+        for (c, h) in row.iter_mut().enumerate() {
+            if let Some((p, q)) = hf.node(c, r).and_then(|p| Some((p, moved(p)?))) {
+                *h = rounded(*h, q.z - p.z);
+            }
+        }
+    });
+    heights
+}
+
+/// The same for one stage, whose displacement is bilinear between the nodes of a grid: a line along a row.
+fn lifted(hf: &Heightfield, ground: &TerrainDisocclusion, rounded: &(impl Fn(f32, f64) -> f32 + Sync)) -> Vec<f32> {
+    let grid = ground.grid();
+    // Place of a node between the nodes of the grid along an axis, if it is on the grid.
+    let place = |g: f64, n: usize| {
+        (g >= 0.0 && g <= (n - 1) as f64).then(|| {
+            let i = (g as usize).min(n - 2);
+            (i, g - i as f64)
+        })
+    };
+    let at = |c: usize, r: usize| grid.grid_from_scene(hf.node_xy(c, r));
+    let columns: Vec<_> = (0..hf.cols()).map(|c| place(at(c, 0).x, grid.cols())).collect();
+    let mut heights = hf.heights().to_vec();
+    let rows = heights.par_chunks_mut(hf.cols()).enumerate();
+    rows.for_each_init(Vec::new, |line: &mut Vec<f64>, (r, row)| {
+        let Some((north, v)) = place(at(0, r).y, grid.rows()) else { return };
+        let values = &grid.values()[north * grid.cols()..][..2 * grid.cols()];
+        let (north, south) = values.split_at(grid.cols());
+        line.clear();
+        line.extend(north.iter().zip(south).map(|(n, s)| n + v * (s - n)));
+        for (h, column) in row.iter_mut().zip(&columns) {
+            if let Some((i, u)) = *column {
+                *h = rounded(*h, line[i] + u * (line[i + 1] - line[i]));
+            }
+        }
+    });
+    heights
+}
+
+/// Averages and light of ground with these heights.
+#[derive(Debug, Clone)]
+pub(crate) struct DisplacedLight {
+    pub(crate) heights: Arc<Vec<f32>>,
+    pub(crate) means: Arc<MipPyramid>,
+    pub(crate) lit: Arc<LitGround>,
+}
+
+/// Averages and light of displaced ground: those of the last frame, less the tiles whose ground, or what it leans on, has other
+/// heights now. What comes out does not depend on what was there before.
+pub(crate) fn light(
+    cache: &GroundCache<LitKey, DisplacedLight>,
+    hf: &Arc<Heightfield>,
+    surface: &Surface<'_>,
+    heights: &Arc<Vec<f32>>,
+    key: LitKey,
+) -> DisplacedLight {
+    let old = cache.take(hf, &key).filter(|old| !old.lit.is_full());
+    let old = old.map(|old| (Squares::new(hf, &old.heights, heights), old));
+    let light = match old {
+        Some((changed, old)) if changed.is_empty() => old,
+        old => {
+            let means = Arc::new(MipPyramid::new(surface));
+            // Holes take the averages around them, from however far; the sun's shadows fall far.
+            let near = !key.light.shadows && hf.states().each().is_none_or(|s| !s.contains(&NodeState::Void));
+            let lit = old.filter(|_| near).and_then(|(changed, old)| {
+                let mut lit = Arc::try_unwrap(old.lit).ok()?;
+                lit.retain(|reach| !changed.touch(reach));
+                Some(lit)
+            });
+            let lit = lit.unwrap_or_else(|| LitGround::new(hf.cols(), hf.rows(), means.top()));
+            DisplacedLight { heights: heights.clone(), means, lit: Arc::new(lit) }
+        }
+    };
+    cache.put(hf, key, light.clone());
+    light
+}
+
+/// Squares of nodes, by whether two grounds differ there.
+struct Squares {
+    across: usize,
+    differ: Vec<bool>,
+}
+
+impl Squares {
+    fn new(hf: &Heightfield, a: &[f32], b: &[f32]) -> Self {
+        let (cols, across) = (hf.cols(), hf.cols().div_ceil(SQUARE));
+        let rows = a.par_chunks(cols * SQUARE).zip(b.par_chunks(cols * SQUARE));
+        let differ = rows.flat_map_iter(|(a, b)| {
+            let mut differ = vec![false; across];
+            for (a, b) in a.chunks(cols).zip(b.chunks(cols)) {
+                for ((differ, a), b) in differ.iter_mut().zip(a.chunks(SQUARE)).zip(b.chunks(SQUARE)) {
+                    *differ |= a != b;
+                }
+            }
+            differ
+        });
+        Self { across, differ: differ.collect() }
+    }
+
+    fn is_empty(&self) -> bool {
+        !self.differ.contains(&true)
+    }
+
+    /// Whether the light of places in these columns and rows, first and last, leans on a square that differs.
+    fn touch(&self, reach: [[usize; 2]; 2]) -> bool {
+        let [columns, rows] =
+            reach.map(|[from, to]| from.saturating_sub(SURROUNDINGS) / SQUARE..(to + SURROUNDINGS) / SQUARE + 1);
+        let down = self.differ.len() / self.across;
+        (rows.start..rows.end.min(down)).any(|r| {
+            let row = &self.differ[r * self.across..][..self.across];
+            row[columns.start.min(self.across)..columns.end.min(self.across)].contains(&true)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shade::ground::palette::Tint;
+    use crate::shade::ground::patch::LightingInputs;
+    use crate::shade::ground::tiles::CELL;
+    use crate::shade::relief::ReliefLight;
+    use belvedere_core::grid::Grid;
+    use belvedere_core::{DVec2, SpaceMap};
+    use belvedere_scene::{Light, Palette, Relief};
+
+    fn hills(cols: usize, rows: usize) -> Heightfield {
+        let h = |i: usize| 900.0 + 300.0 * ((i % cols) as f32 * 0.07).sin() * ((i / cols) as f32 * 0.05).cos();
+        Heightfield::measured(
+            DVec2::new(-7.0, 90.0),
+            DVec2::new(10.0, 20.0),
+            cols,
+            rows,
+            (0..cols * rows).map(h).collect(),
+        )
+        .unwrap()
+    }
+
+    #[test]
+    fn rows_are_lifted_like_their_points() {
+        let hf = hills(130, 77);
+        for (corner, spacing) in
+            [(DVec2::new(-7.0, 90.0), DVec2::new(10.0, 20.0)), (DVec2::new(103.3, -250.0), DVec2::new(37.0, 41.0))]
+        {
+            let values = (0..20 * 16).map(|i| 30.0 * f64::from(i * 7 % 11).sin()).collect();
+            let stage = TerrainDisocclusion::new(Grid::new(corner, spacing, 20, 16, values).unwrap());
+            let (got, mut moved) = (heights(&hf, &[Stage::TerrainDisocclusion(stage.clone())]), 0);
+            for (i, got) in got.into_iter().enumerate() {
+                let p = hf.node(i % 130, i / 130).unwrap();
+                let want = stage.apply(p).unwrap().z;
+                assert!((f64::from(got) - want).abs() < 0.51 * 10.0 * STEP + 1e-4, "node {i}: {got} {want}");
+                moved += u32::from((want - p.z).abs() > 1.0);
+            }
+            assert!(moved > 100, "{moved}");
+        }
+    }
+
+    #[test]
+    fn only_tiles_around_what_moved_on_are_made_again() {
+        let (hf, cache) = (Arc::new(hills(1100, 1100)), GroundCache::default());
+        let key =
+            LitKey { relief: Relief::Swiss, light: Light::default(), palette: Palette::Alpine, exaggeration: 1.0 };
+        let tint = Tint::new(&key.palette, hf.z_range());
+        let relief = ReliefLight::new(key.relief, &key.light);
+        let frame = |depth: f32| {
+            let mut heights = hf.heights().to_vec();
+            heights[700 * 1100 + 800] -= depth;
+            let surface = Surface::lifted(&hf, Arc::new(heights));
+            let DisplacedLight { means, lit, .. } = light(&cache, &hf, &surface, surface.moved().unwrap(), key.clone());
+            let before = lit.bytes();
+            let inputs = LightingInputs {
+                surface: &surface,
+                means: &means,
+                shadows: None,
+                tint: &tint,
+                light: &relief,
+                exaggeration: 1.0,
+            };
+            for i in 0..289 {
+                lit.color([i % 17 * 64 * CELL, i / 17 * 64 * CELL], 0, &inputs);
+            }
+            [before, lit.bytes()]
+        };
+        let [nothing, all] = frame(3.0);
+        assert!(nothing == 0 && frame(3.0) == [all, all], "nothing moved on");
+        let [kept, again] = frame(4.0);
+        // Those over and beside 64 + 2 (256 + 8) nodes, of 1100.
+        assert!(again == all && kept < all && kept > all * 6 / 10, "{kept} of {all}");
+    }
+}

@@ -1,0 +1,274 @@
+//! Hypsometric tints. The built-in ramps are ours: muted, lighter the higher for every kind of colour vision, so that they
+//! also read without colour.
+
+use crate::shade::color::{Rgb, linear};
+use crate::simd::nearest;
+use belvedere_scene::{Palette, Ramp};
+
+/// Steps of the table by height.
+const STEPS: usize = 1024;
+/// Ground under a ramp that lets it through.
+const GREY: [u8; 3] = [205, 205, 202];
+
+/// Tint by height, and the colours that steepness and height add.
+#[derive(Debug)]
+pub(crate) struct Tint {
+    /// One more, for the way to it: the last one again.
+    ramp: Box<[[f32; 4]; STEPS + 1]>,
+    bottom_m: f32,
+    per_m: f32,
+    rock: Rgb,
+    /// Tangent of the slope at which rock begins and has taken over.
+    rock_slope: Step,
+    snow: Rgb,
+    /// Heights at which snow begins and has taken over on gentle slopes, metres.
+    snow_m: Step,
+}
+
+type Stops = &'static [(f32, [u8; 3])];
+
+/// A step that never comes; finite: a step between infinities is NaN.
+const NEVER: [f32; 2] = [1e30, 2e30];
+/// Tangents of the slopes at which snow begins to slide off and has gone.
+const SNOW_SLOPE: Step = Step::new([0.7, 1.3]);
+
+const ALPINE: Stops = &[
+    (0.0, [101, 138, 104]),
+    (0.15, [121, 156, 110]),
+    (0.32, [148, 174, 118]),
+    (0.48, [176, 184, 128]),
+    (0.62, [195, 186, 142]),
+    (0.76, [205, 190, 158]),
+    (0.88, [214, 203, 187]),
+    (1.0, [232, 230, 228]),
+];
+const DESERT: Stops = &[
+    (0.0, [150, 112, 88]),
+    (0.2, [178, 126, 92]),
+    (0.4, [199, 150, 108]),
+    (0.6, [212, 174, 130]),
+    (0.8, [219, 197, 160]),
+    (1.0, [226, 221, 197]),
+];
+const GLACIAL: Stops = &[
+    (0.0, [128, 130, 120]),
+    (0.22, [150, 147, 136]),
+    (0.42, [170, 167, 160]),
+    (0.62, [193, 195, 196]),
+    (0.82, [212, 218, 224]),
+    (1.0, [228, 232, 237]),
+];
+/// Blue to yellow, which every kind of colour vision tells apart, in even steps of lightness.
+const CLEAR: Stops = &[
+    (0.0, [70, 92, 128]),
+    (0.2, [97, 119, 142]),
+    (0.4, [133, 144, 145]),
+    (0.6, [172, 170, 142]),
+    (0.8, [212, 199, 142]),
+    (1.0, [245, 233, 168]),
+];
+/// Not white: slopes in the light are brighter than this, and must not run into white.
+const SNOW: [u8; 3] = [229, 233, 238];
+const PLAIN: Stops = &[(0.0, GREY), (1.0, GREY)];
+
+impl Tint {
+    /// * `z_range_m`: heights that the ramp spans.
+    pub(crate) fn new(palette: &Palette, z_range_m: [f64; 2]) -> Self {
+        let [bottom, top] = z_range_m.map(|z| z as f32);
+        let span = (top - bottom).max(1e-3);
+        let palette = match palette {
+            // High ground that never comes down to the valleys is rock and ice; the rest is green below.
+            Palette::Auto if top > 5000.0 => &Palette::Glacial,
+            Palette::Auto => &Palette::Alpine,
+            p => p,
+        };
+        let built_in = |stops: Stops| (0..STEPS).map(|i| ramp_at(stops, i as f32 / (STEPS - 1) as f32)).collect();
+        let (ramp, rock, rock_slope, snow_m): (Vec<Rgb>, _, _, _) = match palette {
+            Palette::Desert => (built_in(DESERT), [148, 98, 72], [0.7, 1.6], NEVER),
+            Palette::Glacial => {
+                (built_in(GLACIAL), [112, 106, 102], [0.6, 1.15], [bottom + 0.42 * span, bottom + 0.62 * span])
+            }
+            Palette::Clear => (built_in(CLEAR), GREY, NEVER, NEVER),
+            Palette::Plain => (built_in(PLAIN), GREY, NEVER, NEVER),
+            Palette::Ramp(ramp) => (from_ramp(ramp, z_range_m), GREY, NEVER, NEVER),
+            Palette::Alpine | Palette::Auto => {
+                let line = (bottom + 0.70 * span).max(2450.0);
+                (built_in(ALPINE), [156, 149, 137], [0.66, 1.3], [line, line + 0.14 * span.max(300.0)])
+            }
+        };
+        let per_m = (STEPS - 1) as f32 / span;
+        Self {
+            ramp: Box::new(std::array::from_fn(|i| ramp[i.min(STEPS - 1)].extend(0.0).to_array())),
+            bottom_m: bottom,
+            per_m,
+            rock: linear(rock),
+            rock_slope: Step::new(rock_slope),
+            snow: linear(SNOW),
+            snow_m: Step::new(snow_m),
+        }
+    }
+
+    /// Colours of ground at heights, with the tangents of its slopes, linear: the tint, rock where it is steep, snow where
+    /// it is high and not steep.
+    #[inline(always)]
+    pub(crate) fn colors<const N: usize>(&self, height_m: &[f32; N], steep: &[f32; N]) -> [[f32; N]; 3] {
+        // The last place in the table lies just before its end.
+        const MOST: f32 = (STEPS - 1) as f32 - 0.001;
+        let (mut below, mut share, mut rock, mut snow) = ([0; N], [0.0; N], [0.0; N], [0.0; N]);
+        for i in 0..N {
+            let t = (height_m[i] - self.bottom_m) * self.per_m;
+            let t = if t > 0.0 { t } else { 0.0 };
+            let t = if t < MOST { t } else { MOST };
+            // On a step, either of the two beside it will do.
+            below[i] = nearest(t - 0.5);
+            share[i] = t - below[i] as f32;
+            rock[i] = 0.85 * self.rock_slope.at(steep[i]);
+            snow[i] = self.snow_m.at(height_m[i]) * (1.0 - SNOW_SLOPE.at(steep[i]));
+        }
+        let mut tint = [[0.0f32; 4]; N];
+        for i in 0..N {
+            let k = below[i] as usize & (STEPS - 1);
+            let (a, b) = (self.ramp[k], self.ramp[k + 1]);
+            tint[i] = std::array::from_fn(|c| a[c] + share[i] * (b[c] - a[c]));
+        }
+        let (stone, white) = (self.rock.to_array(), self.snow.to_array());
+        let mut out = [[0.0; N]; 3];
+        for (k, out) in out.iter_mut().enumerate() {
+            for i in 0..N {
+                let bare = tint[i][k] + rock[i] * (stone[k] - tint[i][k]);
+                out[i] = bare + snow[i] * (white[k] - bare);
+            }
+        }
+        out
+    }
+
+    /// One of [`Tint::colors`].
+    #[cfg(test)]
+    pub(crate) fn color(&self, height_m: f32, steep: f32) -> Rgb {
+        Rgb::from_array(self.colors(&[height_m], &[steep]).map(|[v]| v))
+    }
+}
+
+/// 0 below a value, 1 above another, smooth between.
+#[derive(Debug, Clone, Copy)]
+struct Step {
+    from: f32,
+    per: f32,
+}
+
+impl Step {
+    const fn new([from, to]: [f32; 2]) -> Self {
+        Self { from, per: 1.0 / (to - from) }
+    }
+
+    #[inline(always)]
+    fn at(self, x: f32) -> f32 {
+        let t = (x - self.from) * self.per;
+        let t = if t > 0.0 { t } else { 0.0 };
+        let t = if t < 1.0 { t } else { 1.0 };
+        t * t * (3.0 - 2.0 * t)
+    }
+}
+
+fn ramp_at(stops: Stops, t: f32) -> Rgb {
+    let i = stops.partition_point(|s| s.0 <= t).clamp(1, stops.len() - 1);
+    let ((t0, a), (t1, b)) = (stops[i - 1], stops[i]);
+    linear(a).lerp(linear(b), ((t - t0) / (t1 - t0)).clamp(0.0, 1.0))
+}
+
+/// The table of a ramp with colours of its own.
+fn from_ramp(ramp: &Ramp, [bottom, top]: [f64; 2]) -> Vec<Rgb> {
+    let stops = ramp.resolved([bottom, top]);
+    let color = |i: usize| {
+        let c = ramp.color_at(&stops, bottom + (top - bottom) * i as f64 / (STEPS - 1) as f64);
+        linear(GREY).lerp(linear([c.r, c.g, c.b]), f32::from(c.a) / 255.0)
+    };
+    (0..STEPS).map(color).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_scene::{Color, RampHeight, RampStop};
+    use std::sync::Arc;
+
+    const BUILT_IN: [Palette; 6] =
+        [Palette::Auto, Palette::Alpine, Palette::Desert, Palette::Glacial, Palette::Clear, Palette::Plain];
+
+    /// Simulations of dichromatic vision in linear RGB (Machado, Oliveira, Fernandes 2009, severity 1).
+    const PROTAN: [[f32; 3]; 3] =
+        [[0.152_286, 1.052_583, -0.204_868], [0.114_503, 0.786_281, 0.099_216], [-0.003_882, -0.048_116, 1.051_998]];
+    const DEUTAN: [[f32; 3]; 3] =
+        [[0.367_322, 0.860_646, -0.227_968], [0.280_085, 0.672_501, 0.047_413], [-0.011_82, 0.042_94, 0.968_881]];
+    const TRITAN: [[f32; 3]; 3] =
+        [[1.255_528, -0.076_749, -0.178_779], [-0.078_411, 0.930_809, 0.147_602], [0.004_733, 0.691_367, 0.303_9]];
+    const NORMAL: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+    /// CIELAB under D65 of a linear colour as seen by an eye.
+    fn lab(c: Rgb, eye: [[f32; 3]; 3]) -> Rgb {
+        let c = eye.map(|row| Rgb::from_array(row).dot(c).clamp(0.0, 1.0));
+        let xyz = [
+            (0.4124 * c[0] + 0.3576 * c[1] + 0.1805 * c[2]) / 0.9505,
+            0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2],
+            (0.0193 * c[0] + 0.1192 * c[1] + 0.9505 * c[2]) / 1.089,
+        ];
+        let [x, y, z] = xyz.map(|t: f32| if t > 0.008_856 { t.cbrt() } else { 7.787 * t + 16.0 / 116.0 });
+        Rgb::new(116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z))
+    }
+
+    #[test]
+    fn built_in_ramps_are_told_apart_by_every_kind_of_colour_vision() {
+        for (stops, least) in [(ALPINE, 3.0), (DESERT, 3.0), (GLACIAL, 3.0), (CLEAR, 8.0)] {
+            for eye in [NORMAL, PROTAN, DEUTAN, TRITAN] {
+                let classes: Vec<Rgb> = (0..=8).map(|i| lab(ramp_at(stops, i as f32 / 8.0), eye)).collect();
+                for (i, a) in classes.iter().enumerate() {
+                    for (j, b) in classes.iter().enumerate().skip(i + 1) {
+                        let far = (*a - *b).length();
+                        assert!(far >= least * (j - i) as f32 * 0.8, "classes {i} and {j}: {far} apart");
+                    }
+                }
+                let light: Vec<f32> = (0..=200).map(|i| lab(ramp_at(stops, i as f32 / 200.0), eye).x).collect();
+                assert!(light.windows(2).all(|w| w[1] > w[0] - 0.02), "lightness falls: {light:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_palette_tells_snow_from_ground_even_where_there_is_none() {
+        for palette in &BUILT_IN {
+            for range in [[0.0, 4000.0], [12.0, 12.0]] {
+                let tint = Tint::new(palette, range);
+                let snow = tint.snow_m.at(range[0] as f32);
+                assert!(snow == 0.0, "{palette:?}: {snow} of the lowest ground is snow");
+            }
+        }
+    }
+
+    #[test]
+    fn every_palette_has_colours_at_every_height() {
+        for palette in &BUILT_IN {
+            for range in [[0.0, 0.0], [-400.0, 9000.0], [300.0, 3100.0], [1e6, 1e6 + 1e-6]] {
+                let tint = Tint::new(palette, range);
+                for z in [range[0], 0.5 * (range[0] + range[1]), range[1], -1e9, 1e9] {
+                    for steep in [0.0, 0.9, 50.0] {
+                        let c = tint.color(z as f32, steep);
+                        assert!(c.min_element() > 0.02 && c.max_element() <= 1.0, "{palette:?} {range:?} at {z}: {c}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_ramp_of_its_own_colours_the_ground_as_it_says() {
+        let stop = |z: f64, c: Color| RampStop { height: RampHeight::Metres(z), color: c };
+        let (low, high) = (Color::rgb(10, 200, 30), Color::rgb(250, 20, 100));
+        let ramp = Ramp { stops: vec![stop(0.0, low), stop(1000.0, high)], ..Ramp::default() };
+        let tint = Tint::new(&Palette::Ramp(Arc::new(ramp)), [0.0, 1000.0]);
+        let near = |z: f32, c: [u8; 3]| (tint.color(z, 9.0) - linear(c)).abs().max_element() < 0.01;
+        assert!(near(0.0, [10, 200, 30]) && near(500.0, [130, 110, 65]) && near(1000.0, [250, 20, 100]));
+        let clear = Ramp { stops: vec![stop(0.0, low.with_alpha(0))], ..Ramp::default() };
+        let tint = Tint::new(&Palette::Ramp(Arc::new(clear)), [0.0, 1000.0]);
+        assert!((tint.color(5.0, 0.0) - linear(GREY)).abs().max_element() < 1e-3);
+    }
+}

@@ -1,0 +1,317 @@
+//! Cast shadows: the share of the sun's disc that every node of the ground sees.
+//!
+//! Rays of the sun that run over the ground are parallel lines on the map. Each line is swept once, away from the sun,
+//! with the height of the shadow that the ground so far throws: every node is looked at a constant number of times.
+
+use crate::shade::ground::surface::{MipPyramid, Surface};
+use belvedere_core::DVec2;
+use belvedere_scene::{Light, NodeState};
+use rayon::prelude::*;
+
+/// Half the width of the sun, radians.
+const SUN_RADIUS: f64 = 0.004_65;
+
+/// Light on the nodes of one level and its averages on coarser ones, 0 = shadow, 255 = the whole sun.
+#[derive(Debug)]
+pub(crate) struct Shadows {
+    /// Level of the finest grid.
+    first: usize,
+    levels: Vec<(usize, usize, Vec<u8>)>,
+}
+
+impl Shadows {
+    /// Shadows of the full ground, or of the finest stored averages where the ground is huge.
+    pub(crate) fn new(surface: &Surface<'_>, means: &MipPyramid, light: &Light) -> Self {
+        let hf = surface.hf;
+        let first = if means.first == 1 { 0 } else { means.first };
+        let spacing = hf.spacing() * f64::from(1u32 << first);
+        let (cols, rows, lit) = if first == 0 {
+            let solid = |i: usize| hf.states()[i] != NodeState::Void;
+            let heights = surface.heights();
+            let at = |i: usize| if solid(i) { heights[i] } else { f32::NEG_INFINITY };
+            (hf.cols(), hf.rows(), sweep([hf.cols(), hf.rows()], spacing, light, &at))
+        } else {
+            let [cols, rows] = means.size(first);
+            (cols, rows, sweep([cols, rows], spacing, light, &|i| means.node(first, i % cols, i / cols).z))
+        };
+        let mut levels = vec![(cols, rows, lit)];
+        while let Some((cols, rows, lit)) = levels.last()
+            && cols.max(rows) > &1
+        {
+            levels.push(halved(*cols, *rows, lit));
+        }
+        Self { first, levels }
+    }
+
+    /// The share of the sun that the nodes of a row of level `k` see, from column `first`.
+    pub(crate) fn share_row(&self, k: usize, row: usize, first: usize, out: &mut [f32]) {
+        let (cols, rows, lit) = &self.levels[k.saturating_sub(self.first).min(self.levels.len() - 1)];
+        if k >= self.first {
+            for (i, out) in out.iter_mut().enumerate() {
+                *out = f32::from(lit[row.min(rows - 1) * cols + (first + i).min(cols - 1)]) / 255.0;
+            }
+            return;
+        }
+        // Finer than what is stored: between its nodes.
+        let step = 1.0 / (1u32 << (self.first - k)) as f32;
+        let tap = |x: usize, n: usize| {
+            let x = ((x as f32 + 0.5) * step - 0.5).clamp(0.0, (n - 1) as f32);
+            (x as usize, (x as usize + 1).min(n - 1), x.fract())
+        };
+        let (r0, r1, v) = tap(row, *rows);
+        for (i, out) in out.iter_mut().enumerate() {
+            let (c0, c1, u) = tap(first + i, *cols);
+            let at = |c: usize, r: usize| f32::from(lit[r * cols + c]);
+            let (a, b) = (at(c0, r0) + u * (at(c1, r0) - at(c0, r0)), at(c0, r1) + u * (at(c1, r1) - at(c0, r1)));
+            *out = (a + v * (b - a)) / 255.0;
+        }
+    }
+}
+
+fn halved(cols: usize, rows: usize, fine: &[u8]) -> (usize, usize, Vec<u8>) {
+    let (w, h) = (cols.div_ceil(2), rows.div_ceil(2));
+    let at = |c: usize, r: usize| u32::from(fine[r.min(rows - 1) * cols + c.min(cols - 1)]);
+    let mean = |c: usize, r: usize| (at(c, r) + at(c + 1, r) + at(c, r + 1) + at(c + 1, r + 1) + 2) / 4;
+    (w, h, (0..w * h).map(|i| mean(i % w * 2, i / w * 2) as u8).collect())
+}
+
+/// Ground that throws a shadow: the height of the sun's ray over it, here, and how far away it is.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    height: f64,
+    far: f64,
+}
+
+/// Directions of the sweep: grid steps along the axis that the sun's rays cross fastest, and across.
+struct Lines {
+    /// Whether the sweep runs along columns (else along rows).
+    along_columns: bool,
+    /// Whether it starts at the last column or row.
+    from_end: bool,
+    /// Nodes along and across.
+    size: [usize; 2],
+    /// Shift across per step along.
+    lean: f64,
+    /// Fall of the sun's ray per step, height units, and the length of the step on the ground.
+    drop: f64,
+    step: f64,
+    /// Number across of the first line at step 0.
+    first: i64,
+    count: usize,
+}
+
+impl Lines {
+    fn new([cols, rows]: [usize; 2], spacing: DVec2, light: &Light) -> Self {
+        // Away from the sun, in columns and rows.
+        let away = DVec2::new(-light.azimuth.sin() / spacing.x, light.azimuth.cos() / spacing.y);
+        let along_columns = away.x.abs() >= away.y.abs();
+        let (main, side) = if along_columns { (away.x, away.y) } else { (away.y, away.x) };
+        let (n, across) = if along_columns { (cols, rows) } else { (rows, cols) };
+        let lean = side / main.abs();
+        let cells = if along_columns { DVec2::new(1.0, lean) } else { DVec2::new(lean, 1.0) };
+        let step = (cells * spacing).length();
+        let shift = lean * (n - 1) as f64;
+        let first = (-shift).min(0.0).floor() as i64;
+        let last = (across - 1) as i64 + (-shift).max(0.0).ceil() as i64 + 1;
+        let drop = step * light.altitude.tan();
+        Self {
+            along_columns,
+            from_end: main < 0.0,
+            size: [n, across],
+            lean,
+            drop,
+            step,
+            first,
+            count: (last - first + 1) as usize,
+        }
+    }
+
+    /// Index of the node at `t` steps from the sunny side and `j` across.
+    fn index(&self, t: usize, j: usize) -> usize {
+        let t = if self.from_end { self.size[0] - 1 - t } else { t };
+        if self.along_columns { j * self.size[0] + t } else { t * self.size[1] + j }
+    }
+
+    /// Light along line `l`, one value per step, 255 outside the grid.
+    fn light(&self, l: usize, altitude: f64, height: &(dyn Fn(usize) -> f32 + Sync), out: &mut [u8]) {
+        let wide = (altitude + SUN_RADIUS).tan() - (altitude - SUN_RADIUS).tan();
+        // The ground whose ray runs highest, and the one before it, whose shadow may still be fading out.
+        let mut edges = [Edge { height: f64::NEG_INFINITY, far: 0.0 }; 2];
+        for (t, out) in out.iter_mut().enumerate() {
+            let y = (self.first + l as i64) as f64 + self.lean * t as f64;
+            let last = (self.size[1] - 1) as f64;
+            // Lines just outside belong to the border: nodes there lie between them and the first one inside.
+            if y > -1.0 && y < last + 1.0 {
+                let y = y.clamp(0.0, last);
+                let j = (y as usize).min(self.size[1].saturating_sub(2));
+                let share = y - j as f64;
+                let [a, b] = [j, (j + 1).min(self.size[1] - 1)].map(|j| f64::from(height(self.index(t, j))));
+                // A void beside the line counts only where the line meets it.
+                let z = if share == 0.0 {
+                    a
+                } else if share == 1.0 {
+                    b
+                } else {
+                    a + share * (b - a)
+                };
+                if z > f64::NEG_INFINITY {
+                    let light = |e: Edge| {
+                        // The border of a shadow is as wide as the sun, and as a cell at least.
+                        let width = (e.far * wide).max(self.drop * (0.5 * e.far / self.step).min(1.0));
+                        if e.far > 0.0 { (0.5 + (z - e.height) / width).clamp(0.0, 1.0) } else { 1.0 }
+                    };
+                    let lights = edges.map(light);
+                    *out = (255.0 * lights[0].min(lights[1]) + 0.5) as u8;
+                    if z > edges[0].height {
+                        if lights[0] < 1.0 {
+                            edges[1] = edges[0];
+                        }
+                        edges[0] = Edge { height: z, far: 0.0 };
+                    }
+                }
+            }
+            for e in &mut edges {
+                e.height -= self.drop;
+                e.far += self.step;
+            }
+        }
+    }
+}
+
+/// Share of the sun's disc that each node of a grid sees, 0..=255; minus infinity = void.
+fn sweep(size: [usize; 2], spacing: DVec2, light: &Light, height: &(dyn Fn(usize) -> f32 + Sync)) -> Vec<u8> {
+    let mut out = vec![0u8; size[0] * size[1]];
+    if light.altitude <= 0.0 {
+        return out;
+    }
+    let altitude = light.altitude.clamp(2.0 * SUN_RADIUS, 1.55);
+    let lines = Lines::new(size, spacing, &Light { altitude, ..*light });
+    let n = lines.size[0];
+    let mut lit = vec![255u8; lines.count * n];
+    lit.par_chunks_mut(n).enumerate().for_each(|(l, row)| lines.light(l, altitude, height, row));
+    let at = |t: usize, j: usize| {
+        // Between the two lines that pass the node.
+        let y = j as f64 - lines.lean * t as f64 - lines.first as f64;
+        let (l, share) = (y as usize, (y.fract() * 256.0) as u32);
+        let [a, b] = [l, (l + 1).min(lines.count - 1)].map(|l| u32::from(lit[l * n + t]));
+        ((a * (256 - share) + b * share + 128) >> 8) as u8
+    };
+    let cols = size[0];
+    out.par_chunks_mut(cols).enumerate().for_each(|(r, row)| {
+        for (c, out) in row.iter_mut().enumerate() {
+            let (t, j) = if lines.along_columns { (c, r) } else { (r, c) };
+            *out = at(if lines.from_end { n - 1 - t } else { t }, j);
+        }
+    });
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::DVec3;
+    use belvedere_scene::Heightfield;
+
+    const N: usize = 181;
+
+    fn hills(cols: usize, rows: usize) -> Heightfield {
+        let h = |i: usize| {
+            let (x, y) = ((i % cols) as f32 * 0.11, (i / cols) as f32 * 0.13);
+            240.0 * (x.sin() * (0.7 * y).cos() + 0.4 * (2.3 * x + y).sin() + 0.2 * (5.1 * y - 3.0 * x).cos())
+        };
+        let heights = (0..cols * rows).map(h).collect();
+        Heightfield::new(
+            DVec2::ZERO,
+            DVec2::new(30.0, 20.0),
+            cols,
+            rows,
+            heights,
+            vec![NodeState::Measured; cols * rows],
+        )
+        .unwrap()
+    }
+
+    /// Least height of the sun's ray over the ground, by short steps: as share of the way gone, and in metres.
+    fn clearance(hf: &Heightfield, from: DVec3, light: &Light) -> [f64; 2] {
+        let towards = light.direction() / light.direction().truncate().length();
+        let top = hf.z_range()[1];
+        let mut least = [f64::INFINITY; 2];
+        for i in 1.. {
+            let p = from + towards * (5.0 * f64::from(i));
+            if p.z > top {
+                break;
+            }
+            let Some(z) = hf.height_at(p.truncate()) else {
+                // What lies beyond the border is not known.
+                least[0] = 0.0;
+                break;
+            };
+            least[0] = least[0].min((p.z - z) / (5.0 * f64::from(i)));
+            least[1] = least[1].min(p.z - z);
+        }
+        least
+    }
+
+    #[test]
+    fn thousands_of_nodes_are_as_dark_as_rays_towards_the_sun_say() {
+        let hf = hills(N, N);
+        let surface = Surface::of_map(&hf);
+        let means = MipPyramid::new(&surface);
+        let (mut dark, mut bright, mut wrong) = (0, 0, [0; 2]);
+        for (azimuth, altitude) in
+            [(315f64, 20f64), (10.0, 12.0), (93.0, 16.0), (200.0, 25.0), (260.0, 8.0), (45.0, 30.0)]
+        {
+            let light = Light { azimuth: azimuth.to_radians(), altitude: altitude.to_radians(), shadows: true };
+            let shadows = Shadows::new(&surface, &means, &light);
+            let lit = &shadows.levels[0].2;
+            for i in (0..N * N).step_by(7) {
+                let p = hf.node(i % N, i / N).unwrap();
+                let [share, clear] = clearance(&hf, p, &light);
+                let shadow = clear < -6.0;
+                // Where the ray just grazes the ground, cells and lines differ.
+                if !shadow && share < 0.02 {
+                    continue;
+                }
+                (dark, bright) = (dark + u32::from(shadow), bright + u32::from(!shadow));
+                wrong[usize::from(shadow)] += u32::from(shadow != (lit[i] < 128));
+            }
+        }
+        assert!(dark > 3000 && bright > 2000, "{dark} {bright}");
+        let all = wrong[0] + wrong[1];
+        assert!(all * 200 < dark + bright, "{wrong:?} of {bright} bright and {dark} dark nodes");
+    }
+
+    #[test]
+    fn a_wall_throws_its_shadow_as_far_as_its_height_over_the_tangent() {
+        // A wall of 100 m in column 20, sun in the west at 45 degrees, cells of 10 m.
+        let (cols, rows) = (60, 9);
+        let heights: Vec<f32> = (0..cols * rows).map(|i| if i % cols == 20 { 100.0 } else { 0.0 }).collect();
+        let light = Light { azimuth: 270f64.to_radians(), altitude: 45f64.to_radians(), shadows: true };
+        let lit = sweep([cols, rows], DVec2::splat(10.0), &light, &|i| heights[i]);
+        for c in 0..cols {
+            let want = if c > 20 && c < 30 { 0 } else { 255 };
+            if c != 30 {
+                assert_eq!(lit[4 * cols + c], want, "column {c}");
+            }
+        }
+        assert!((100..156).contains(&lit[4 * cols + 30]), "the border lies halfway: {}", lit[4 * cols + 30]);
+        assert!(
+            sweep([cols, rows], DVec2::splat(10.0), &Light { altitude: -0.01, ..light }, &|i| heights[i])
+                .iter()
+                .all(|&l| l == 0)
+        );
+    }
+
+    #[test]
+    fn voids_throw_no_shadow_and_the_border_softens_with_distance() {
+        let (cols, rows) = (400, 5);
+        let light = Light { azimuth: 270f64.to_radians(), altitude: 10f64.to_radians(), shadows: true };
+        let void: Vec<f32> = (0..cols * rows).map(|i| if i % cols == 20 { f32::NEG_INFINITY } else { 0.0 }).collect();
+        assert!(sweep([cols, rows], DVec2::splat(10.0), &light, &|i| void[i]).iter().all(|&l| l == 255));
+        let soft = |wall: f32| {
+            let lit = sweep([cols, rows], DVec2::splat(2.0), &light, &|i| if i % cols == 2 { wall } else { 0.0 });
+            lit[..cols].iter().filter(|&&l| l > 0 && l < 255).count()
+        };
+        assert!(soft(130.0) > soft(20.0) && soft(130.0) >= 12, "{} {}", soft(20.0), soft(130.0));
+    }
+}

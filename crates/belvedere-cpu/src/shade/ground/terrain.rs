@@ -1,0 +1,245 @@
+//! Terrain: its light, and what is laid over it.
+
+use crate::cache::GroundCache;
+use crate::shade::color::{Rgb, linear, smoothstep};
+use crate::shade::footprint::Footprint;
+use crate::shade::ground::displaced::{self, DisplacedLight};
+use crate::shade::ground::lit::{Lit, LitGround, LitKey};
+use crate::shade::ground::palette::Tint;
+use crate::shade::ground::patch::LightingInputs;
+use crate::shade::ground::shadow::Shadows;
+use crate::shade::ground::surface::{MipPyramid, Surface};
+use crate::shade::ground::texture::stipple;
+use crate::shade::ground::tiles::CELL;
+use crate::shade::overlay::area::AreaMap;
+use crate::shade::overlay::drape::DrapeMap;
+use crate::shade::relief::ReliefLight;
+use crate::shade::{Shader, lod};
+use belvedere_core::{DVec2, DVec3, Stage};
+use belvedere_scene::{AreaSurface, Heightfield, Light, RenderJob, Shading, TerrainLayer};
+use std::sync::Arc;
+
+/// A terrain layer ready for shading.
+pub(crate) struct TerrainShade<'a> {
+    pub(crate) hf: &'a Heightfield,
+    pub(crate) lit: Arc<LitGround>,
+    pub(crate) light: ReliefLight,
+    /// Side of a cell, scene units.
+    pub(crate) pitch: f64,
+    means: Arc<MipPyramid>,
+    surface: Surface<'a>,
+    shadows: Option<Arc<Shadows>>,
+    tint: Tint,
+    exaggeration: f32,
+    drapes: Vec<DrapeMap>,
+}
+
+/// Light on grounds, remembered from frame to frame.
+#[derive(Debug, Default)]
+pub(crate) struct LightCache {
+    means: GroundCache<(), Arc<MipPyramid>>,
+    shadows: GroundCache<Light, Arc<Shadows>>,
+    lit: GroundCache<LitKey, Arc<LitGround>>,
+    displaced: GroundCache<LitKey, DisplacedLight>,
+}
+
+impl<'a> TerrainShade<'a> {
+    pub(crate) fn new(layer: &'a TerrainLayer, job: &RenderJob<'a>, cache: &LightCache) -> Self {
+        let hf = &layer.heightfield;
+        let surface = lit_surface(layer, job);
+        let light = *job.light;
+        let (relief, palette) = (layer.relief, layer.palette.clone());
+        let key = LitKey { relief, light, palette, exaggeration: layer.exaggeration };
+        let unlit = |means: &MipPyramid| Arc::new(LitGround::new(hf.cols(), hf.rows(), means.top()));
+        let averages = || Arc::new(MipPyramid::new(&surface));
+        let cast = |means: &MipPyramid| Arc::new(Shadows::new(&surface, means, &light));
+        let (means, shadows, lit) = if surface.is_map() {
+            // The map's own light stays the same from frame to frame.
+            let means = cache.means.get(hf, (), averages);
+            let shadows = light.shadows.then(|| cache.shadows.get(hf, light, || cast(&means)));
+            let lit = cache.lit.take(hf, &key).filter(|lit| !lit.is_full()).unwrap_or_else(|| unlit(&means));
+            cache.lit.put(hf, key, lit.clone());
+            (means, shadows, lit)
+        } else {
+            let (means, lit) = if let Some(heights) = surface.moved() {
+                let DisplacedLight { means, lit, .. } = displaced::light(&cache.displaced, hf, &surface, heights, key);
+                (means, lit)
+            } else {
+                let means = averages();
+                let lit = unlit(&means);
+                (means, lit)
+            };
+            (means.clone(), light.shadows.then(|| cast(&means)), lit)
+        };
+        let spacing = hf.spacing();
+        Self {
+            hf,
+            lit,
+            light: ReliefLight::new(layer.relief, job.light),
+            pitch: (spacing.x * spacing.y).sqrt(),
+            means,
+            surface,
+            shadows,
+            tint: Tint::new(&layer.palette, hf.z_range()),
+            exaggeration: layer.exaggeration as f32,
+            drapes: layer.drapes.iter().filter_map(DrapeMap::new).collect(),
+        }
+    }
+
+    /// What tiles of lit ground are made from.
+    pub(crate) fn inputs(&self) -> LightingInputs<'_> {
+        LightingInputs {
+            surface: &self.surface,
+            means: &self.means,
+            shadows: self.shadows.as_deref(),
+            tint: &self.tint,
+            light: &self.light,
+            exaggeration: self.exaggeration,
+        }
+    }
+
+    /// Whether anything lies over the ground.
+    pub(crate) fn is_covered(&self, shader: &Shader<'_>) -> bool {
+        !self.drapes.is_empty() || !shader.areas.is_empty() || shader.casters.is_some()
+    }
+
+    /// Colour of the ground at a place of which a pixel covers a square of side `fp`, and the area it lies in.
+    /// * `axes`: see [`Footprint::new`].
+    pub(crate) fn shade_at(
+        &self,
+        shader: &Shader<'_>,
+        xy: DVec2,
+        fp: f64,
+        axes: [DVec2; 2],
+        depth: f64,
+        pixel: DVec2,
+    ) -> (Rgb, Option<u32>) {
+        let g = self.hf.grid_from_scene(xy);
+        let side = fp / self.pitch;
+        let last = DVec2::new((self.hf.cols() - 1) as f64, (self.hf.rows() - 1) as f64);
+        let at = (g.clamp(DVec2::ZERO, last) * f64::from(CELL)).as_ivec2().to_array();
+        let lod = lod((side * side) as f32);
+        let inputs = self.inputs();
+        let print = || Footprint::new(axes, shader.screen.footprint(depth));
+        let ground = || self.lit.sample(at, lod, &inputs);
+        self.covered(shader, g, side, print, ground, pixel.as_vec2().to_array()).unwrap_or_else(|| {
+            let root = Rgb::from_array(self.lit.color(at, lod, &inputs));
+            (root * root, None)
+        })
+    }
+
+    /// * `sun`: share of the sun that boxes and meshes leave.
+    fn light_of(&self, lit: &Lit, sun: f32) -> Rgb {
+        let left = self.light.in_shadow + (1.0 - self.light.in_shadow) * sun;
+        self.light.warm * (lit.direct * left) + self.light.cool * lit.sky
+    }
+
+    /// Share of the sun that boxes and meshes leave to a place of which a pixel covers `print`.
+    fn sun_on(&self, shader: &Shader<'_>, xy: DVec2, print: &Footprint) -> f32 {
+        let Some(casters) = &shader.casters else { return 1.0 };
+        let Some(z) = self.hf.surface_at(xy) else { return 1.0 };
+        casters.on_ground(xy.extend(z), [print.major, print.major.perp().normalize_or_zero() * print.minor])
+    }
+
+    /// Colour and area where a picture or an area covers the ground; `None` where nothing does.
+    /// * `g`: column and row;
+    /// * `cells`: side of the square that the pixel covers, cells;
+    /// * `print`: tells the patch itself;
+    /// * `ground`: tells the ground there.
+    pub(crate) fn covered(
+        &self,
+        shader: &Shader<'_>,
+        g: DVec2,
+        cells: f64,
+        print: impl FnOnce() -> Footprint,
+        ground: impl FnOnce() -> Lit,
+        pixel: [f32; 2],
+    ) -> Option<(Rgb, Option<u32>)> {
+        let spacing = self.hf.spacing();
+        let (xy, fp) = (self.hf.north_west() + DVec2::new(g.x, -g.y) * spacing, cells * self.pitch);
+        let areas = shader.areas.iter().map(|a| (a, a.depth_inside(xy) / fp));
+        let areas: Vec<_> = areas.filter(|(_, inside)| *inside > -0.5).collect();
+        if self.drapes.is_empty() && areas.is_empty() && shader.casters.is_none() {
+            return None;
+        }
+        let print = print();
+        let drapes = self.drapes.iter().map(|d| d.at(xy, &print)).filter(|(_, alpha)| *alpha > 0.0);
+        let drapes: Vec<_> = drapes.collect();
+        let sun = self.sun_on(shader, xy, &print);
+        if drapes.is_empty() && areas.is_empty() && sun >= 1.0 {
+            return None;
+        }
+        let lit = ground();
+        let mut albedo = lit.albedo();
+        let mut draped = 0.0f32;
+        for (color, alpha) in drapes {
+            albedo = albedo.lerp(color, alpha);
+            draped = draped.max(alpha);
+        }
+        // A photograph has its own light: model it only half.
+        let mut light = self.light_of(&lit, sun).lerp(Rgb::splat(0.95 * (0.5 + 0.5 * sun)), 0.5 * draped);
+        let (mut id, mut water) = (None, 0.0f32);
+        for (a, inside) in areas {
+            if inside >= 0.0 {
+                id = Some(a.layer);
+            }
+            let share = (0.5 + inside).clamp(0.0, 1.0) as f32 * a.alpha;
+            albedo = albedo.lerp(fill(a, xy, inside as f32, &print), share);
+            match a.surface {
+                AreaSurface::Water => water += share * (1.0 - water),
+                AreaSurface::Glacier => {
+                    // Snow throws light into its own shadows.
+                    light = light.lerp(Rgb::splat(1.02), 0.35 * share);
+                    water *= 1.0 - share;
+                }
+                _ => water *= 1.0 - share,
+            }
+        }
+        if water > 0.0 {
+            let down = -shader.sky.sine(pixel);
+            let mirror = 0.03 + 0.55 * (1.0 - down.clamp(0.0, 1.0)).powi(5);
+            let reflected = shader.sky.towards(0.15 + 0.5 * down.clamp(0.0, 1.0));
+            light = light.lerp(Rgb::splat(0.6 + 0.4 * sun), water);
+            return Some(((albedo * light).lerp(reflected, water * mirror), id));
+        }
+        Some((albedo * light, id))
+    }
+}
+
+/// Colour of an area at a place.
+/// * `inside`: pixels from its border.
+fn fill(area: &AreaMap, xy: DVec2, inside: f32, print: &Footprint) -> Rgb {
+    // Over the first pixel and a half.
+    let rim = if area.has_outline { 0.0 } else { 1.0 - smoothstep(0.6, 2.2, inside) };
+    match area.surface {
+        AreaSurface::Plain => area.fill,
+        // Shore line.
+        AreaSurface::Water => area.fill * (1.0 - 0.45 * rim),
+        AreaSurface::Forest => area.fill * (1.0 + 0.22 * stipple(xy, print.length())),
+        AreaSurface::Glacier => {
+            let ice = area.fill * (1.0 + 0.035 * stipple(xy, print.length()));
+            ice.lerp(linear([96, 156, 205]), 0.7 * rim)
+        }
+    }
+}
+
+/// The ground that light falls on. Light stays fixed to the map unless the ground itself was changed, else a lowered
+/// ridge keeps its old shadow.
+fn lit_surface<'a>(layer: &'a TerrainLayer, job: &RenderJob<'a>) -> Surface<'a> {
+    let (hf, stages) = (&layer.heightfield, job.view.stages());
+    let ground = stages.iter().position(|s| matches!(s, Stage::TerrainDisocclusion(_)));
+    let deformed = match layer.shading {
+        Some(Shading::Map) => return Surface::of_map(hf),
+        Some(Shading::Deformed) => stages,
+        None => match ground {
+            Some(i) => &stages[..=i],
+            None => return Surface::of_map(hf),
+        },
+    };
+    let upright = |s: &Stage| matches!(s, Stage::EarthCurvature(_) | Stage::TerrainDisocclusion(_));
+    if deformed.iter().all(upright) {
+        return Surface::lifted(hf, Arc::new(displaced::heights(hf, deformed)));
+    }
+    let moved = move |p: DVec3| deformed.iter().try_fold(p, |p, s| s.as_map().apply(p)).ok().filter(|p| p.is_finite());
+    Surface::bent(hf, Arc::new(moved))
+}

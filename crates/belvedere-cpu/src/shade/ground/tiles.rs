@@ -1,0 +1,284 @@
+//! Pictures of the ground at ever coarser levels, in tiles that are made where they are looked at.
+
+use std::ops::Range;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Fixed-point steps of a tile, of the nodes of its own level.
+pub(crate) const SPAN: u32 = SIDE as u32 * CELL as u32;
+
+/// What is kept of a node of the ground.
+pub(crate) type Node = [u8; 8];
+
+/// Cells along a side of a tile, a power of two; one more node along each side, so that no cell lies in two tiles.
+const SIDE: usize = 32;
+pub(crate) const STRIDE: usize = SIDE + 1;
+pub(crate) const NODES: usize = STRIDE * STRIDE;
+pub(crate) type Tile = [Node; NODES];
+
+/// Fixed-point steps of a cell.
+pub(crate) const CELL: i32 = 256;
+
+/// Bytes of tiles after which a frame starts anew: long flights over a huge ground must not collect all of it.
+const MOST_BYTES: usize = 192 << 20;
+
+/// Bytes of tiles that a picture makes at most, about: a node or two for each of its pixels, and tiles of which it sees a corner.
+const BYTES_PER_PIXEL: u64 = 64;
+const BYTES_OF_CORNERS: u64 = 32 << 20;
+
+#[derive(Debug)]
+struct Level {
+    nodes: [usize; 2],
+    across: usize,
+    tiles: Vec<OnceLock<Box<Tile>>>,
+}
+
+/// Nodes and tiles across and down of a level.
+fn level_size(nodes: [usize; 2], k: usize) -> ([usize; 2], [usize; 2]) {
+    let nodes = nodes.map(|n| n.div_ceil(1 << k));
+    (nodes, nodes.map(|n| (n + 1).div_ceil(SIDE)))
+}
+
+/// Bytes that the tiles of a ground take at most: all of them, or what is kept and what one more picture makes.
+pub(crate) fn most_bytes(nodes: [usize; 2], pixels: u64) -> u64 {
+    let levels = 1 + nodes[0].max(nodes[1]).next_power_of_two().trailing_zeros() as usize;
+    let tiles: usize = (0..levels).map(|k| level_size(nodes, k).1.iter().product::<usize>()).sum();
+    let all = tiles as u64 * size_of::<Tile>() as u64;
+    all.min(pixels.saturating_mul(BYTES_PER_PIXEL).saturating_add(MOST_BYTES as u64 + BYTES_OF_CORNERS))
+}
+
+/// Levels of halved detail, each with a rim of one node that repeats the border: no place needs clamping.
+#[derive(Debug)]
+pub(crate) struct Tiles {
+    levels: Vec<Level>,
+    bytes: AtomicUsize,
+}
+
+/// The nodes around a place, west and east in a row, and its way from the first towards the others in 1/256.
+pub(crate) struct Around<'a> {
+    pub(crate) north: &'a [Node; 2],
+    pub(crate) south: &'a [Node; 2],
+    pub(crate) east_share: u32,
+    pub(crate) south_share: u32,
+}
+
+impl Tiles {
+    /// No tile made yet.
+    pub(crate) fn new(nodes: [usize; 2], top: usize) -> Self {
+        let level = |k: usize| {
+            let (nodes, [across, down]) = level_size(nodes, k);
+            Level { nodes, across, tiles: (0..across * down).map(|_| OnceLock::new()).collect() }
+        };
+        Self { levels: (0..=top).map(level).collect(), bytes: AtomicUsize::new(0) }
+    }
+
+    /// The coarsest level.
+    #[inline(always)]
+    pub(crate) fn top(&self) -> usize {
+        self.levels.len() - 1
+    }
+
+    /// Columns and rows that the nodes of a tile repeat.
+    pub(crate) fn repeated(&self, k: usize, tile: [usize; 2]) -> [Repeated; 2] {
+        [0, 1].map(|axis| Repeated { from: tile[axis] * SIDE, nodes: self.levels[k].nodes[axis] })
+    }
+
+    /// Bytes of the tiles made so far.
+    #[cfg(test)]
+    pub(crate) fn bytes(&self) -> usize {
+        self.bytes.load(Ordering::Relaxed)
+    }
+
+    /// Whether so much is kept that the next frame had better start anew.
+    pub(crate) fn is_full(&self) -> bool {
+        self.bytes.load(Ordering::Relaxed) > MOST_BYTES
+    }
+
+    /// Nodes around a place; `None` off the ground.
+    /// * `at`: column and row of level 0, [`CELL`] steps to a cell;
+    /// * `make`: makes a tile from the number of its level and its column and row.
+    #[inline(always)]
+    pub(crate) fn around(
+        &self,
+        k: usize,
+        at: [i32; 2],
+        make: impl FnOnce(usize, [usize; 2]) -> Box<Tile>,
+    ) -> Option<Around<'_>> {
+        let (x, y) = (place(at[0], k as u32), place(at[1], k as u32));
+        let tile = self.tile([k as u32, x / SPAN, y / SPAN], make)?;
+        let first = first_of(x, y) as usize;
+        Some(Around {
+            north: tile[first..].first_chunk()?,
+            south: tile[first + STRIDE..].first_chunk()?,
+            east_share: x & 255,
+            south_share: y & 255,
+        })
+    }
+
+    /// A tile by its level, column and row; `None` off the ground.
+    #[inline(always)]
+    pub(crate) fn tile(
+        &self,
+        [k, column, row]: [u32; 3],
+        make: impl FnOnce(usize, [usize; 2]) -> Box<Tile>,
+    ) -> Option<&Tile> {
+        let (k, column, row) = (k as usize, column as usize, row as usize);
+        let level = self.levels.get(k)?;
+        let index = row * level.across + column;
+        let place = level.tiles.get(index)?;
+        Some(match place.get() {
+            Some(tile) => tile,
+            None => self.made(place, || make(k, [index % level.across, index / level.across])),
+        })
+    }
+
+    /// Forgets the tiles that may not be kept.
+    /// * `keep`: by the columns and rows of level 0 that a tile repeats or leans on, first and last.
+    pub(crate) fn retain(&mut self, keep: impl Fn([[usize; 2]; 2]) -> bool) {
+        for (k, level) in self.levels.iter_mut().enumerate() {
+            for (i, tile) in level.tiles.iter_mut().enumerate() {
+                let reach = [i % level.across, i / level.across].map(|i| {
+                    // Three nodes of the next level and a rim of one on either side.
+                    [(i * SIDE).saturating_sub(8) << k, ((i + 1) * SIDE + 8) << k]
+                });
+                if tile.get().is_some() && !keep(reach) {
+                    tile.take();
+                    *self.bytes.get_mut() -= size_of::<Tile>();
+                }
+            }
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn made<'a>(&self, place: &'a OnceLock<Box<Tile>>, make: impl FnOnce() -> Box<Tile>) -> &'a Tile {
+        place.get_or_init(|| {
+            self.bytes.fetch_add(size_of::<Tile>(), Ordering::Relaxed);
+            make()
+        })
+    }
+}
+
+/// Place along an axis of level `k`, [`CELL`] steps from node to node.
+/// * `at`: the same of level 0.
+#[inline(always)]
+pub(crate) fn place(at: i32, k: u32) -> u32 {
+    // Node i of level k lies at (i + 0.5) 2^k - 0.5 of level 0, and is number i + 1 with the rim.
+    ((at.wrapping_add(CELL / 2) >> (k & 31)) + CELL / 2) as u32
+}
+
+/// The north-western of the nodes around a place of a level, among those of its tile.
+#[inline(always)]
+pub(crate) fn first_of(x: u32, y: u32) -> u32 {
+    (y / CELL as u32) % SIDE as u32 * STRIDE as u32 + (x / CELL as u32) % SIDE as u32
+}
+
+/// The nodes around a place of a tile: north-west, north-east, south-west, south-east; both words of each.
+#[inline(always)]
+pub(crate) fn around(tile: &Tile, first: usize) -> Option<[[u32; 2]; 4]> {
+    let ([a, b], [c, d]) = (tile[first..].first_chunk()?, tile[first + STRIDE..].first_chunk()?);
+    Some([words(*a), words(*b), words(*c), words(*d)])
+}
+
+#[inline(always)]
+fn words([a, b, c, d, e, f, g, h]: Node) -> [u32; 2] {
+    [u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h])]
+}
+
+/// Nodes in a line, `count` of them from `first` on; those beyond the ends of the ground repeat the ones there.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Line {
+    first: isize,
+    pub(crate) count: usize,
+    /// The last node of the ground.
+    last: usize,
+}
+
+impl Line {
+    pub(crate) fn iter(self) -> impl Iterator<Item = usize> {
+        (self.first..self.first + self.count as isize).map(move |i| (i.max(0) as usize).min(self.last))
+    }
+
+    /// The first node that is there, and which of the line's nodes are there.
+    pub(crate) fn inside(self) -> (usize, Range<usize>) {
+        let from = (-self.first).max(0) as usize;
+        let to = (self.last as isize + 1 - self.first).clamp(from as isize, self.count as isize);
+        ((self.first + from as isize) as usize, from..to as usize)
+    }
+
+    /// Gives the nodes that are not there the values of those that they repeat.
+    #[inline(always)]
+    pub(crate) fn repeat(self, values: &mut [f32]) {
+        let (_, Range { start, end }) = self.inside();
+        if start < end {
+            let (first, last) = (values[start], values[end - 1]);
+            values[..start].fill(first);
+            values[end..].fill(last);
+        }
+    }
+}
+
+/// The nodes along an axis that the nodes of a tile repeat.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Repeated {
+    from: usize,
+    nodes: usize,
+}
+
+impl Repeated {
+    pub(crate) fn all(self) -> Line {
+        Line { first: self.from as isize - 1, count: STRIDE, last: self.nodes - 1 }
+    }
+
+    /// The nodes of the next coarser level over them, and one more at either end; where there is none, the last one again.
+    pub(crate) fn parents(self) -> Line {
+        Line { first: (self.from / 2) as isize - 2, count: SIDE / 2 + 3, last: self.nodes.div_ceil(2) - 1 }
+    }
+
+    /// Which of the parents lies over a node.
+    pub(crate) fn parent_of(self, node: usize) -> usize {
+        node / 2 + 2 - self.from / 2
+    }
+}
+
+/// A tile of nodes row by row.
+pub(crate) fn boxed(nodes: Vec<Node>) -> Box<Tile> {
+    nodes.into_boxed_slice().try_into().unwrap_or_else(|_| Box::new([Node::default(); NODES]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_repeat_the_ends_of_the_ground() {
+        for (from, nodes) in [(0, 5), (0, 200), (32, 33), (64, 70), (32, 32), (0, 1)] {
+            for line in [Repeated { from, nodes }.all(), Repeated { from, nodes }.parents()] {
+                let (first, inside) = line.inside();
+                let mut values = vec![-1.0; line.count];
+                inside.clone().for_each(|i| values[i] = (first + i - inside.start) as f32);
+                line.repeat(&mut values);
+                let want: Vec<f32> = line.iter().map(|i| i as f32).collect();
+                assert_eq!(values, want, "{from} of {nodes}");
+            }
+        }
+    }
+
+    #[test]
+    fn tiles_take_no_more_than_is_said() {
+        for nodes in [[70usize, 70], [300, 129], [1, 2], [1025, 40]] {
+            let top = nodes[0].max(nodes[1]).next_power_of_two().trailing_zeros() as usize;
+            let tiles = Tiles::new(nodes, top);
+            for (k, c, r) in
+                (0..=top).flat_map(|k| (0..nodes[0]).flat_map(move |c| (0..nodes[1]).map(move |r| (k, c, r))))
+            {
+                let at = [c, r].map(|i| i as i32 * CELL);
+                assert!(tiles.around(k, at, |_, _| boxed(Vec::new())).is_some());
+            }
+            let bytes = tiles.bytes.load(Ordering::Relaxed) as u64;
+            let most = most_bytes(nodes, u64::MAX);
+            assert!(bytes <= most && 2 * bytes > most, "{nodes:?}: {bytes} of {most}");
+        }
+        assert!(most_bytes([40_000, 40_000], 1 << 20) < 320 << 20, "not all of a huge ground");
+    }
+}

@@ -1,0 +1,213 @@
+//! Polygons on the ground: inside or not, and how far from the border.
+
+use crate::shade::color::{Rgb, linear};
+use belvedere_core::DVec2;
+use belvedere_scene::{AreaLayer, AreaSurface};
+
+/// An area layer ready for look-up per pixel.
+#[derive(Debug)]
+pub(crate) struct AreaMap {
+    /// Index of the layer in the scene.
+    pub(crate) layer: u32,
+    pub(crate) fill: Rgb,
+    pub(crate) alpha: f32,
+    pub(crate) surface: AreaSurface,
+    pub(crate) has_outline: bool,
+    min: DVec2,
+    cell: DVec2,
+    per_cell: DVec2,
+    size: [usize; 2],
+    /// Features that contain the centre of a cell, and edges near the cell; ranges into the two lists.
+    cells: Vec<Cell>,
+    features: Vec<u32>,
+    edges: Vec<Edge>,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Cell {
+    features: [u32; 2],
+    edges: [u32; 2],
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    a: DVec2,
+    b: DVec2,
+    feature: u32,
+}
+
+impl AreaMap {
+    /// `None` for a layer without a finite edge.
+    pub(crate) fn new(layer: u32, area: &AreaLayer) -> Option<Self> {
+        let edges = all_edges(area);
+        let first = edges.first()?.a;
+        let (mut min, mut max) = (first, first);
+        for e in &edges {
+            (min, max) = (min.min(e.a), max.max(e.a));
+        }
+        // About four cells per edge, near square.
+        let extent = (max - min).max(DVec2::splat(1e-6));
+        let pitch = (extent.x * extent.y / (4 * edges.len()) as f64).sqrt().max(extent.max_element() / 1024.0);
+        let size = [extent.x, extent.y].map(|e| (e / pitch).ceil().clamp(1.0, 1024.0) as usize);
+        let cell = DVec2::new(extent.x / size[0] as f64, extent.y / size[1] as f64);
+        let mut map = Self {
+            layer,
+            fill: linear([area.fill.r, area.fill.g, area.fill.b]),
+            alpha: f32::from(area.fill.a) / 255.0,
+            surface: area.surface,
+            has_outline: area.outline.is_some(),
+            min,
+            cell,
+            per_cell: 1.0 / cell,
+            size,
+            cells: vec![Cell::default(); size[0] * size[1]],
+            features: Vec::new(),
+            edges: Vec::new(),
+        };
+        map.sort_in(&edges);
+        Some(map)
+    }
+
+    fn sort_in(&mut self, edges: &[Edge]) {
+        let [w, h] = self.size;
+        let mut near: Vec<Vec<u32>> = vec![Vec::new(); w * h];
+        let mut crossings: Vec<Vec<(u32, f64)>> = vec![Vec::new(); h];
+        for (i, e) in edges.iter().enumerate() {
+            let (lo, hi) = ((e.a.min(e.b) - self.min) / self.cell, (e.a.max(e.b) - self.min) / self.cell);
+            let range = |lo: f64, hi: f64, n: usize| {
+                ((lo - 0.3).floor().max(0.0) as usize)..=((hi + 0.3).floor().max(0.0) as usize).min(n - 1)
+            };
+            for y in range(lo.y, hi.y, h) {
+                for x in range(lo.x, hi.x, w) {
+                    if self.passes_near(e, x, y) {
+                        near[y * w + x].push(i as u32);
+                    }
+                }
+                let yc = self.min.y + (y as f64 + 0.5) * self.cell.y;
+                if (e.a.y > yc) != (e.b.y > yc) {
+                    crossings[y].push((e.feature, e.a.x + (yc - e.a.y) / (e.b.y - e.a.y) * (e.b.x - e.a.x)));
+                }
+            }
+        }
+        for y in 0..h {
+            crossings[y].sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+            let mut inside: Vec<Vec<u32>> = vec![Vec::new(); w];
+            for pair in crossings[y].chunk_by(|a, b| a.0 == b.0).flat_map(|c| c.chunks_exact(2)) {
+                let at = |x: f64| (((x - self.min.x) / self.cell.x - 0.5).ceil().max(0.0) as usize).min(w);
+                inside[at(pair[0].1)..at(pair[1].1).max(at(pair[0].1))].iter_mut().for_each(|c| c.push(pair[0].0));
+            }
+            for (x, inside) in inside.iter().enumerate() {
+                let (f, e) = (self.features.len() as u32, self.edges.len() as u32);
+                self.features.extend(inside);
+                self.edges.extend(near[y * w + x].iter().map(|&i| edges[i as usize]));
+                self.cells[y * w + x] =
+                    Cell { features: [f, self.features.len() as u32], edges: [e, self.edges.len() as u32] };
+            }
+        }
+    }
+
+    /// Whether the edge passes through the cell grown by 0.3 cells.
+    fn passes_near(&self, e: &Edge, x: usize, y: usize) -> bool {
+        let c = self.min + DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * self.cell;
+        let normal = (e.b - e.a).perp();
+        let reach = 0.8 * (normal.x.abs() * self.cell.x + normal.y.abs() * self.cell.y);
+        normal.dot(c - e.a).abs() <= reach
+    }
+
+    /// Signed distance to the border in scene units, positive inside; capped where no border is near.
+    pub(crate) fn depth_inside(&self, p: DVec2) -> f64 {
+        let g = (p - self.min) * self.per_cell;
+        let reach = 0.3;
+        let [w, h] = self.size.map(|n| n as f64);
+        if !(g.x >= -reach && g.y >= -reach && g.x <= w + reach && g.y <= h + reach) {
+            return f64::NEG_INFINITY;
+        }
+        let (x, y) = ((g.x.max(0.0) as usize).min(self.size[0] - 1), (g.y.max(0.0) as usize).min(self.size[1] - 1));
+        let cell = self.cells[y * self.size[0] + x];
+        let list = |[a, b]: [u32; 2]| a as usize..b as usize;
+        let (features, edges) = (&self.features[list(cell.features)], &self.edges[list(cell.edges)]);
+        if edges.is_empty() {
+            return if features.is_empty() { f64::NEG_INFINITY } else { f64::INFINITY };
+        }
+        let centre = self.min + DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * self.cell;
+        let nearest = edges.iter().map(|e| distance(p, e.a, e.b)).fold(f64::INFINITY, f64::min);
+        let parity = |feature: u32| {
+            let crossed = edges.iter().filter(|e| e.feature == feature && crosses(centre, p, e.a, e.b)).count();
+            features.contains(&feature) ^ (crossed % 2 == 1)
+        };
+        let inside = features.iter().any(|&f| parity(f)) || edges.iter().any(|e| parity(e.feature));
+        if inside { nearest } else { -nearest }
+    }
+}
+
+fn all_edges(area: &AreaLayer) -> Vec<Edge> {
+    let mut edges = Vec::new();
+    for (feature, f) in area.features.iter().enumerate() {
+        for ring in &f.rings {
+            for (i, &a) in ring.iter().enumerate() {
+                let b = ring[(i + 1) % ring.len()];
+                if a != b && a.is_finite() && b.is_finite() {
+                    edges.push(Edge { a, b, feature: feature as u32 });
+                }
+            }
+        }
+    }
+    edges
+}
+
+/// Distance from `p` to the segment `a b`.
+pub(crate) fn distance(p: DVec2, a: DVec2, b: DVec2) -> f64 {
+    let d = b - a;
+    let len2 = d.length_squared();
+    let t = if len2 > 0.0 { ((p - a).dot(d) / len2).clamp(0.0, 1.0) } else { 0.0 };
+    (a + t * d - p).length()
+}
+
+/// Whether the segments `p q` and `a b` cross; an end exactly on the other's line counts for one side.
+fn crosses(p: DVec2, q: DVec2, a: DVec2, b: DVec2) -> bool {
+    let side = |o: DVec2, d: DVec2, x: DVec2| (d - o).perp_dot(x - o) > 0.0;
+    side(p, q, a) != side(p, q, b) && side(a, b, p) != side(a, b, q)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_scene::{AreaFeature, Color, Hidden};
+
+    fn layer(rings: Vec<Vec<DVec2>>) -> AreaLayer {
+        AreaLayer {
+            features: vec![AreaFeature { name: String::new(), rings }],
+            fill: Color::rgb(1, 2, 3),
+            outline: None,
+            width_px: 1.0,
+            surface: AreaSurface::Water,
+            hidden: Hidden::Cut,
+            lift_m: 0.0,
+        }
+    }
+
+    #[test]
+    fn inside_agrees_with_ray_crossing_everywhere() {
+        let star: Vec<DVec2> =
+            (0..40).map(|i| DVec2::from_angle(f64::from(i) * 0.157) * if i % 2 == 0 { 90.0 } else { 37.0 }).collect();
+        let hole: Vec<DVec2> =
+            (0..9).map(|i| DVec2::from_angle(f64::from(i) * 0.698) * 20.0 + DVec2::new(5.0, 3.0)).collect();
+        let rings = vec![star, hole];
+        let map = AreaMap::new(0, &layer(rings.clone())).unwrap();
+        let mut inside = 0;
+        for i in 0..20_000 {
+            let p = DVec2::new(
+                (f64::from(i) * 0.618_034).fract() * 220.0 - 110.0,
+                (f64::from(i) * 0.754_878).fract() * 220.0 - 110.0,
+            );
+            let odd = rings
+                .iter()
+                .flat_map(|r| (0..r.len()).map(move |k| (r[k], r[(k + 1) % r.len()])))
+                .filter(|(a, b)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x));
+            let expected = odd.count() % 2 == 1;
+            inside += u32::from(expected);
+            assert_eq!(map.depth_inside(p) > 0.0, expected, "{p}");
+        }
+        assert!(inside > 3000);
+    }
+}

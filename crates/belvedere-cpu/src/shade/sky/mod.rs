@@ -1,0 +1,418 @@
+//! Sky and haze.
+
+mod row;
+
+use crate::geometry::screen::SUB;
+use crate::shade::color::{PIXELS, Rgb, linear, smoothstep};
+use crate::simd::nearest;
+use belvedere_core::{Aabb, DVec3, Pinhole};
+
+/// Thresholds of ordered dithering, 8 x 8 (Bayer 1973), each 0..64 once.
+const BAYER: [[u8; 8]; 8] = [
+    [0, 32, 8, 40, 2, 34, 10, 42],
+    [48, 16, 56, 24, 50, 18, 58, 26],
+    [12, 44, 4, 36, 14, 46, 6, 38],
+    [60, 28, 52, 20, 62, 30, 54, 22],
+    [3, 35, 11, 43, 1, 33, 9, 41],
+    [51, 19, 59, 27, 49, 17, 57, 25],
+    [15, 47, 7, 39, 13, 45, 5, 37],
+    [63, 31, 55, 23, 61, 29, 53, 21],
+];
+
+/// What dithering adds to square roots of linear light, row by row.
+const THRESHOLDS: [f32; 64] = {
+    let mut out = [0.0; 64];
+    let mut i = 0;
+    while i < 64 {
+        out[i] = ((BAYER[i / 8][i % 8] as f32 + 0.5) / 64.0 - 0.5) / 255.0;
+        i += 1;
+    }
+    out
+};
+
+/// What none of them exceeds.
+const HALF_A_STEP: f32 = 0.5 / 255.0;
+
+/// Samples that are coloured together.
+pub(crate) const LANES: usize = 32;
+
+/// Ends of the rows of [`LANES`] pixels that are stored together.
+const PLACES: usize = PIXELS / LANES + 1;
+
+/// How far a row of samples may be off a line between its ends to be coloured along it: square roots of colours, less than half
+/// a step of an 8-bit picture, and places in the table.
+const EVEN: f32 = 0.4 / 255.0;
+const EVEN_OFF: f32 = 0.25;
+
+/// Largest share of a colour that haze takes.
+const THICKEST: f32 = 0.54;
+
+/// Steps of the table of sky colours per unit of the sine of the elevation.
+const STEPS: f32 = 512.0;
+/// Last place in it.
+const MOST: f32 = 2.0 * STEPS - 0.01;
+
+/// Colours of the air.
+#[derive(Debug)]
+pub(crate) struct Sky {
+    /// Square roots of linear colours, by the sine of the elevation from -1 to 1, and how they change to the next; last in each
+    /// how much the change has changed up to there.
+    steps: Box<[[[f32; 4]; 2]; 2 * STEPS as usize]>,
+    haze: Rgb,
+    /// Upward parts of the ray of a pixel: sine = (a + b x + c y) / |(1, d (x - cx), d (y - cy))|.
+    up: [f32; 3],
+    center: [f32; 2],
+    per_px: f32,
+    /// Whether the sine runs along a line over a row of [`LANES`] pixels, nearly.
+    even: bool,
+    /// Depth at which haze begins, and how fast it thickens, per scene unit.
+    haze_from: f32,
+    haze_per: f32,
+    /// Largest share of a colour that haze takes: none in a parallel projection, whose eye is nowhere.
+    thickest: f32,
+}
+
+impl Sky {
+    /// * `bounds`: of everything in the scene.
+    pub(crate) fn new(bounds: &Aabb, pinhole: &Pinhole) -> Self {
+        let depths = if bounds.is_empty() {
+            [0.0, 1.0]
+        } else {
+            let depth = |p: DVec3| (p - pinhole.eye).dot(pinhole.forward);
+            let near = depth(pinhole.eye.clamp(bounds.min, bounds.max)).max(0.0);
+            let far = bounds.corners().into_iter().map(depth).fold(near, f64::max);
+            [near as f32, far as f32]
+        };
+        let (center, scale) = (pinhole.center_px(), pinhole.scale_px());
+        let per_px = if pinhole.is_orthographic() { 0.0 } else { 1.0 / scale };
+        // Full contrast over the nearer part of the scene, whose depths end at these.
+        let [near, far]: [f32; 2] = depths;
+        let span = (far - near).max(1e-6);
+        // The second derivative of the sine along a row is 1.2 at most, the distance from a chord an eighth of it.
+        let off = 0.15 * (LANES as f64 * per_px).powi(2) * f64::from(STEPS);
+        Self {
+            steps: steps(),
+            haze: linear([186, 205, 224]),
+            up: [pinhole.forward.z, pinhole.right.z, pinhole.down.z].map(|v| v as f32),
+            center: [center.x as f32, center.y as f32],
+            per_px: per_px as f32,
+            even: off <= f64::from(EVEN_OFF),
+            haze_from: near + 0.22 * span,
+            haze_per: 1.0 / ((1.15 - 0.22) * span),
+            thickest: if pinhole.is_orthographic() { 0.0 } else { THICKEST },
+        }
+    }
+
+    /// Sine of the elevation that the straight ray of a pixel looks at.
+    #[inline(always)]
+    pub(crate) fn sine(&self, [x, y]: [f32; 2]) -> f32 {
+        let (x, y) = ((x - self.center[0]) * self.per_px, (y - self.center[1]) * self.per_px);
+        (self.up[0] + self.up[1] * x + self.up[2] * y) / (1.0 + x * x + y * y).sqrt()
+    }
+
+    /// Sky in the direction of a pixel, dithered by one step of an 8-bit picture so that its slow changes show no bands.
+    #[inline]
+    pub(crate) fn at(&self, pixel: [f32; 2]) -> Rgb {
+        let [x, y] = pixel.map(|v| v.max(0.0) as usize % 8);
+        // Square roots of linear light are nearly even in 8-bit steps.
+        let root = self.root(self.sine(pixel)) + Rgb::splat(THRESHOLDS[8 * y + x]);
+        root * root
+    }
+
+    /// Square roots of [`Sky::at`] for many places, fixed-point steps.
+    #[inline(always)]
+    pub(crate) fn paint(&self, x: &[i32], y: &[i32], [red, green, blue]: [&mut [f32]; 3]) {
+        debug_assert!(x.len() == y.len() && x.len() == red.len());
+        let chunks = red.chunks_mut(LANES).zip(green.chunks_mut(LANES)).zip(blue.chunks_mut(LANES));
+        let mut end = None;
+        for ((x, y), ((red, green), blue)) in x.chunks(LANES).zip(y.chunks(LANES)).zip(chunks) {
+            let out = [red, green, blue];
+            let line = match (x.first_chunk(), y.first_chunk()) {
+                (Some(x), Some(y)) if is_row(x, y) => self.line(x[0], y[0], &mut end),
+                _ => None,
+            };
+            match line {
+                Some(line) => line.paint(&thresholds(x[0], y[0]), out),
+                None => self.paint_each(x, y, out),
+            }
+        }
+    }
+
+    /// Colours along a row of [`LANES`] pixels, if they change evenly.
+    /// * `end`: where the last row ended.
+    #[inline(always)]
+    pub(crate) fn line(&self, x: i32, y: i32, end: &mut Option<(i32, Place)>) -> Option<Line> {
+        if !self.even {
+            return None;
+        }
+        // No closures: they would be compiled apart, for the oldest processors.
+        let next = x + LANES as i32 * SUB;
+        let from = match *end {
+            Some((at, place)) if at == x => place,
+            _ => self.root_at(self.place([x, y])),
+        };
+        let to = self.root_at(self.place([next, y]));
+        *end = Some((next, to));
+        from.line_to(&to)
+    }
+
+    /// Places along a row, [`LANES`] pixels apart, and what the table says there; `None` if colours do not change evenly.
+    #[inline(always)]
+    pub(crate) fn places(&self, x: i32, y: i32) -> Option<[Place; PLACES]> {
+        if !self.even {
+            return None;
+        }
+        let mut at = [0.0; PLACES.next_power_of_two()];
+        for (i, at) in at.iter_mut().enumerate() {
+            *at = self.place([x + i as i32 * LANES as i32 * SUB, y]);
+        }
+        let mut out = [Place { at: 0.0, root: [0.0; 4] }; PLACES];
+        for (out, at) in out.iter_mut().zip(at) {
+            *out = self.root_at(at);
+        }
+        Some(out)
+    }
+
+    /// What the table says at a place.
+    #[inline(always)]
+    fn root_at(&self, at: f32) -> Place {
+        // Places are not negative: this is the whole number below.
+        let below = at as i32;
+        let ([low, change], share) = (&self.steps[below as usize & (2 * STEPS as usize - 1)], at - below as f32);
+        let mut root = [0.0; 4];
+        for k in 0..4 {
+            root[k] = low[k] + share * change[k];
+        }
+        Place { at, root }
+    }
+
+    /// Place of a sample in the table.
+    #[inline(always)]
+    fn place(&self, [x, y]: [i32; 2]) -> f32 {
+        let at = (self.sine([x as f32 * (1.0 / SUB as f32), y as f32 * (1.0 / SUB as f32)]) + 1.0) * STEPS;
+        let at = if at > 0.0 { at } else { 0.0 };
+        if at < MOST { at } else { MOST }
+    }
+
+    #[inline(always)]
+    pub(crate) fn paint_each(&self, x: &[i32], y: &[i32], out: [&mut [f32]; 3]) {
+        let (mut px, mut py) = ([0; LANES], [0; LANES]);
+        px[..x.len()].copy_from_slice(x);
+        py[..y.len()].copy_from_slice(y);
+        let (mut below, mut share, mut threshold) = ([0; LANES], [0.0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
+            let at = self.place([px[i], py[i]]);
+            // On a step, either of the two beside it will do.
+            below[i] = nearest(at - 0.5);
+            share[i] = at - below[i] as f32;
+        }
+        for i in 0..LANES {
+            threshold[i] = THRESHOLDS[((py[i] >> 5) & 56 | (px[i] >> 8) & 7) as usize];
+        }
+        let mut root = [[0.0f32; 4]; LANES];
+        for i in 0..LANES {
+            let [low, change] = &self.steps[below[i] as usize & (2 * STEPS as usize - 1)];
+            for k in 0..4 {
+                root[i][k] = (low[k] + share[i] * change[k]) + threshold[i];
+            }
+        }
+        for (k, out) in out.into_iter().enumerate() {
+            let mut plane = [0.0; LANES];
+            for i in 0..LANES {
+                plane[i] = root[i][k];
+            }
+            out.copy_from_slice(&plane[..out.len()]);
+        }
+    }
+
+    /// Sky at an elevation, given its sine.
+    pub(crate) fn towards(&self, sine: f32) -> Rgb {
+        let root = self.root(sine);
+        root * root
+    }
+
+    #[inline]
+    fn root(&self, sine: f32) -> Rgb {
+        let at = ((sine + 1.0) * STEPS).clamp(0.0, MOST);
+        let [low, change] = self.steps[at as usize].map(|[r, g, b, _]| Rgb::new(r, g, b));
+        low + at.fract() * change
+    }
+
+    /// Share of a colour that haze takes at `depth`: full contrast over the nearer part of the scene, then slowly paler.
+    #[inline(always)]
+    pub(crate) fn haze_at(&self, depth: f32) -> f32 {
+        let t = (depth - self.haze_from) * self.haze_per;
+        let t = if t > 0.0 { t } else { 0.0 };
+        let t = if t < 1.0 { t } else { 1.0 };
+        self.thickest * t * t * (3.0 - 2.0 * t)
+    }
+
+    /// Linear colour of the haze.
+    pub(crate) fn haze(&self) -> Rgb {
+        self.haze
+    }
+
+    /// `color` seen through the air at `depth`.
+    pub(crate) fn through_air(&self, color: Rgb, depth: f32) -> Rgb {
+        color.lerp(self.haze, self.haze_at(depth))
+    }
+}
+
+/// A place in the table of colours, and square roots of the colour there.
+#[derive(Clone, Copy)]
+pub(crate) struct Place {
+    at: f32,
+    root: [f32; 4],
+}
+
+impl Place {
+    /// The line to a place [`LANES`] pixels further, if colours change evenly up to there.
+    #[inline(always)]
+    pub(crate) fn line_to(&self, to: &Self) -> Option<Line> {
+        let mut change = [0.0; 4];
+        for (k, change) in change.iter_mut().enumerate() {
+            *change = (to.root[k] - self.root[k]) * (1.0 / LANES as f32);
+        }
+        // A line that turns by so much, wherever it does, is nowhere farther from its chord.
+        let off = 0.25 * ((to.at - self.at).abs() + 1.0) * (to.root[3] - self.root[3]).abs();
+        (off <= EVEN).then_some(Line { from: self.root, change })
+    }
+}
+
+/// Square roots of colours along a row of pixels.
+pub(crate) struct Line {
+    from: [f32; 4],
+    change: [f32; 4],
+}
+
+impl Line {
+    /// Bounds of what [`Line::paint`] paints.
+    #[inline(always)]
+    pub(crate) fn ends(&self) -> [[f32; 2]; 3] {
+        let mut out = [[0.0; 2]; 3];
+        for (k, out) in out.iter_mut().enumerate() {
+            let (from, to) = (self.from[k], self.from[k] + (LANES - 1) as f32 * self.change[k]);
+            *out =
+                if from < to { [from - HALF_A_STEP, to + HALF_A_STEP] } else { [to - HALF_A_STEP, from + HALF_A_STEP] };
+        }
+        out
+    }
+
+    /// * `threshold`: see [`thresholds`].
+    #[inline(always)]
+    pub(crate) fn paint(&self, threshold: &[f32; LANES], out: [&mut [f32]; 3]) {
+        for (k, out) in out.into_iter().enumerate() {
+            let Some(out) = out.first_chunk_mut::<LANES>() else { return };
+            for i in 0..LANES {
+                out[i] = (self.from[k] + i as f32 * self.change[k]) + threshold[i];
+            }
+        }
+    }
+}
+
+/// What dithering adds to a row of pixels.
+/// * `x`, `y`: the first sample, fixed-point steps.
+#[inline(always)]
+pub(crate) fn thresholds(x: i32, y: i32) -> [f32; LANES] {
+    let row = &THRESHOLDS[((y >> 5) & 56) as usize..][..8];
+    let mut out = [0.0; LANES];
+    for i in 0..LANES {
+        out[i] = row[((x >> 8) as usize + i) & 7];
+    }
+    out
+}
+
+/// Whether samples are those of neighbouring pixels of a row.
+#[inline(always)]
+fn is_row(x: &[i32; LANES], y: &[i32; LANES]) -> bool {
+    let mut off = 0;
+    for i in 0..LANES {
+        off |= (x[i] - x[0] - i as i32 * SUB) | (y[i] - y[0]);
+    }
+    off == 0
+}
+
+fn steps() -> Box<[[[f32; 4]; 2]; 2 * STEPS as usize]> {
+    let at = |i: usize| roots(towards(i as f32 / STEPS - 1.0));
+    let (mut next, mut before, mut turned) = (at(0), Rgb::ZERO, 0.0);
+    Box::new(std::array::from_fn(|i| {
+        let here = std::mem::replace(&mut next, at(i + 1));
+        let change = next - here;
+        let turn = if i == 0 { 0.0 } else { (change - before).abs().max_element() };
+        before = change;
+        turned += turn;
+        [here.extend(turned - turn), change.extend(turn)].map(|v| v.to_array())
+    }))
+}
+
+fn roots(c: Rgb) -> Rgb {
+    Rgb::from_array(c.to_array().map(f32::sqrt))
+}
+
+/// The clear sky at an elevation, given its sine, linear.
+fn towards(sine: f32) -> Rgb {
+    let [zenith, middle, horizon, below] =
+        [[88, 136, 188], [140, 181, 216], [224, 232, 236], [203, 213, 220]].map(linear);
+    if sine < 0.0 {
+        return horizon.lerp(below, smoothstep(0.0, 0.25, -sine));
+    }
+    let low = 1.0 - (-sine / 0.10).exp();
+    let high = smoothstep(0.0, 0.7, sine);
+    horizon.lerp(middle, low).lerp(zenith, high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::{DVec2, Projection};
+
+    #[test]
+    fn pixels_see_the_sky_that_their_rays_point_at() {
+        let screen = Projection::Perspective { fov_y: 0.9 };
+        let up = DVec3::new(0.2, 0.1, 1.0);
+        let p = Pinhole::look_at(DVec3::ZERO, DVec3::new(3.0, 8.0, 1.0), up, screen, [80, 60], 1.0, None).unwrap();
+        let sky = Sky::new(&Aabb::EMPTY, &p);
+        assert!(!sky.even, "so wide a view is not even");
+        for i in 0..4800 {
+            let pixel = DVec2::new(f64::from(i % 80) + 0.5, f64::from(i / 80) + 0.5);
+            let t = (pixel - p.center_px()) / p.scale_px();
+            let want = (p.forward + t.x * p.right + t.y * p.down).normalize().z;
+            let pixel = [pixel.x as f32, pixel.y as f32];
+            assert!((f64::from(sky.sine(pixel)) - want).abs() < 1e-6);
+            let step = (roots(sky.at(pixel)) - roots(towards(want as f32))).abs().max_element() * 255.0;
+            assert!(step < 0.8, "{step} steps");
+            let (x, y) = ([pixel[0] as i32 * 256 + 128], [pixel[1] as i32 * 256 + 128]);
+            let ([mut r], [mut g], [mut b]) = ([0.0], [0.0], [0.0]);
+            sky.paint(&x, &y, [&mut r, &mut g, &mut b].map(std::slice::from_mut));
+            assert!((Rgb::new(r * r, g * g, b * b) - sky.at(pixel)).abs().max_element() < 1e-5);
+        }
+    }
+    #[test]
+    fn rows_of_sky_are_within_a_step_of_each_of_their_pixels() {
+        let screen = Projection::Perspective { fov_y: 0.8 };
+        for (roll, pitch) in [(0.0, 0.0), (0.0, 0.3), (0.0, -0.2), (0.05, 0.0), (0.3, 0.1), (1.5, 0.0)] {
+            let up = DVec3::new(f64::sin(roll), 0.0, f64::cos(roll));
+            let target = DVec3::new(0.0, f64::cos(pitch), f64::sin(pitch));
+            let p = Pinhole::look_at(DVec3::ZERO, target, up, screen, [1283, 720], 1.0, None).unwrap();
+            let sky = Sky::new(&Aabb::EMPTY, &p);
+            assert!(sky.even);
+            let x: Vec<i32> = (0..1283).map(|x| x * SUB + SUB / 2).collect();
+            let (mut planes, mut each) = ([(); 3].map(|()| vec![0.0f32; 1283]), [(); 3].map(|()| vec![0.0f32; 1283]));
+            let (mut worst, mut lines) = (0.0f32, 0);
+            for row in (0..720).step_by(7) {
+                let y = vec![row * SUB + SUB / 2; 1283];
+                sky.paint(&x, &y, planes.each_mut().map(Vec::as_mut_slice));
+                for (k, x) in x.chunks(LANES).enumerate() {
+                    let out = each.each_mut().map(|plane| &mut plane[k * LANES..][..x.len()]);
+                    sky.paint_each(x, &y[..x.len()], out);
+                }
+                for (a, b) in planes.iter().flatten().zip(each.iter().flatten()) {
+                    worst = worst.max((a - b).abs() * 255.0);
+                    lines += u32::from(a != b);
+                }
+            }
+            assert!(worst < 0.6, "rolled by {roll}, raised by {pitch}: {worst} steps");
+            assert!(lines > 10_000 || roll > 0.2, "most rows are even: {lines}");
+        }
+    }
+}

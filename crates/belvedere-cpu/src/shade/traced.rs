@@ -1,0 +1,60 @@
+//! Colour of what a traced ray meets.
+
+use crate::shade::ground::terrain::TerrainShade;
+use crate::shade::{LayerShade, Shaded, Shader};
+use crate::trace::{Part, RayHit};
+use belvedere_core::{DVec2, DVec3, View};
+use belvedere_scene::NodeState;
+
+impl Shader<'_> {
+    /// What the ray of `pixel` sees: `seen`, or the sky.
+    pub(crate) fn shade_hit(&self, view: &View, seen: Option<&RayHit>, pixel: DVec2) -> Shaded {
+        let Some(seen) = seen else {
+            return Shaded { color: self.sky.at(pixel.as_vec2().to_array()), id: 0, world: DVec3::NAN };
+        };
+        let layer = seen.layer as u32;
+        let footprint = self.screen.footprint(seen.depth);
+        let (color, id) = match (&self.layers[seen.layer], seen.part) {
+            (LayerShade::Terrain(t), Part::Cell(cell, upper)) => {
+                let facing = [DVec2::X * footprint, DVec2::Y * footprint];
+                let axes = t.ground_per_px(view, seen.point, cell, upper).unwrap_or(facing);
+                let fp = axes[0].perp_dot(axes[1]).abs().sqrt().clamp(footprint, 6.0 * footprint);
+                t.shade_at(self, seen.point.truncate(), fp, axes, seen.depth, pixel)
+            }
+            (LayerShade::Boxes(b, light), Part::Face(index, normal)) => match b.boxes.get(index) {
+                Some(shape) => (self.box_color(shape, light, normal, seen.point, footprint), None),
+                None => (crate::shade::Rgb::ZERO, None),
+            },
+            (LayerShade::Mesh(m), Part::Triangle(index, front)) => {
+                (m.color_at(index, front, seen.point, &|p, n| self.sun_on(p, n, footprint)), None)
+            }
+            _ => (crate::shade::Rgb::ZERO, None),
+        };
+        let color = self.sky.through_air(color, seen.depth as f32);
+        Shaded { color, id: id.unwrap_or(layer) + 1, world: seen.point }
+    }
+}
+
+impl TerrainShade<'_> {
+    /// Way on the map per pixel to the right and per pixel down, scene units: the derivative of the image along the triangle,
+    /// turned round.
+    fn ground_per_px(&self, view: &View, p: DVec3, [col, row]: [usize; 2], upper: bool) -> Option<[DVec2; 2]> {
+        let node = |c: usize, r: usize| {
+            let i = r * self.hf.cols() + c;
+            (self.hf.states().get(i)? != &NodeState::Void).then(|| f64::from(self.hf.heights()[i]))
+        };
+        let (nw, se) = (node(col, row)?, node(col + 1, row + 1)?);
+        let (east, south) = if upper {
+            let ne = node(col + 1, row)?;
+            (ne - nw, se - ne)
+        } else {
+            let sw = node(col, row + 1)?;
+            (se - sw, sw - nw)
+        };
+        let slope = DVec2::new(east, -south) / self.hf.spacing();
+        let along = view.jacobian(p).ok()?.map(|g| g.truncate() + slope * g.z);
+        let area = along[0].perp_dot(along[1]);
+        let axes = [DVec2::new(along[1].y, -along[0].y) / area, DVec2::new(-along[1].x, along[0].x) / area];
+        (area != 0.0 && axes.iter().all(|a| a.is_finite())).then_some(axes)
+    }
+}

@@ -1,0 +1,48 @@
+//! Loops compiled for the vector instructions of the machine.
+//!
+//! The program is built for the oldest processors; a kernel is compiled for newer ones as well, and the best version is
+//! picked while it runs. Only instructions differ: no operation is contracted or reordered, so all versions give the same
+//! bits.
+
+use pulp::{Arch, Simd, WithSimd};
+use std::sync::LazyLock;
+
+static ARCH: LazyLock<Arch> = LazyLock::new(Arch::new);
+
+/// Values that are computed together.
+pub(crate) const LANES: usize = 32;
+pub(crate) type Lanes = [f32; LANES];
+pub(crate) type IntLanes = [i32; LANES];
+
+/// Work worth compiling more than once. [`Kernel::run`] and all that is hot in it must be `#[inline(always)]`.
+pub(crate) trait Kernel {
+    type Output;
+    fn run(self) -> Self::Output;
+}
+
+struct With<K>(K);
+
+impl<K: Kernel> WithSimd for With<K> {
+    type Output = K::Output;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> K::Output {
+        self.0.run()
+    }
+}
+
+/// Runs the version for this machine.
+#[inline]
+pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
+    ARCH.dispatch(With(kernel))
+}
+
+/// Adding it leaves the rounded integer in the low bits of the mantissa.
+const ROUND: f32 = 12_582_912.0;
+
+/// The nearest whole number of a value between -2^22 and 2^22, any number of one beyond. Unlike `as`, which has to think of
+/// all values, it takes one addition.
+#[inline(always)]
+pub(crate) fn nearest(v: f32) -> i32 {
+    ((v + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
+}

@@ -1,0 +1,99 @@
+//! Where a ray passes the triangles of a mesh.
+
+use crate::trace::curve::Span;
+use crate::trace::root::root;
+use crate::trace::tracer::{Found, Part, Walk};
+use belvedere_core::DVec3;
+use belvedere_sight::MeshTree;
+
+/// How far outside a triangle, in weights of its corners, a bent ray still meets it: more than rounding, so that no ray slips
+/// between two triangles.
+const SLACK: f64 = 1e-9;
+/// Parts of a span that may graze a triangle are halved at most this often.
+const MAX_HALVINGS: u32 = 12;
+
+impl Walk<'_, '_> {
+    /// Whether a triangle may lie within `reach` of the segment `a b`.
+    pub(crate) fn near_mesh(&self, a: DVec3, b: DVec3, reach: f64) -> bool {
+        self.tracer.meshes.iter().any(|(_, tree)| {
+            let mut near = false;
+            tree.near(a, b, reach, &mut |_| {
+                near = true;
+                f64::NEG_INFINITY
+            });
+            near
+        })
+    }
+
+    /// Offers `take` the first hit of every mesh within a span that is all but straight.
+    pub(crate) fn meet_meshes(&self, span: &Span, (a, b): (DVec3, DVec3), reach: f64, take: &mut dyn FnMut(Found)) {
+        for (layer, tree) in &self.tracer.meshes {
+            let straight = span.is_straight() && tree.lift() == [0.0; 2];
+            let mut best: Option<(f64, usize)> = None;
+            if straight {
+                best = tree.first_crossing(a, b).map(|(t, triangle)| (span.depth_at(t), triangle));
+            } else {
+                tree.near(a, b, reach, &mut |triangle| {
+                    let found = Plane::new(self, tree, triangle).meet(span, reach).map(|depth| (depth, triangle));
+                    if let Some(found) = found.filter(|f| best.is_none_or(|b| *f < b)) {
+                        best = Some(found);
+                    }
+                    // Bounds are met a little before the curve is.
+                    best.map_or(1.0, |(depth, _)| (depth - span.depth[0]) / (span.depth[1] - span.depth[0]) + 1e-6)
+                });
+            }
+            if let Some((depth, triangle)) = best {
+                take((depth, *layer, Part::Triangle(triangle, true)));
+            }
+        }
+    }
+}
+
+/// The plane of a triangle.
+struct Plane<'w, 't, 'a> {
+    walk: &'w Walk<'t, 'a>,
+    tree: &'w MeshTree<'a>,
+    triangle: usize,
+    corner: DVec3,
+    normal: DVec3,
+}
+
+impl<'w, 't, 'a> Plane<'w, 't, 'a> {
+    fn new(walk: &'w Walk<'t, 'a>, tree: &'w MeshTree<'a>, triangle: usize) -> Self {
+        let mesh = tree.mesh();
+        Self { walk, tree, triangle, corner: mesh.corners(triangle)[0], normal: mesh.face_normal(triangle) }
+    }
+
+    fn over(&self, depth: f64) -> f64 {
+        self.walk.true_point(depth).map_or(f64::NAN, |p| self.normal.dot(p - self.corner))
+    }
+
+    /// Depth at which the span passes the triangle.
+    fn meet(&self, span: &Span, reach: f64) -> Option<f64> {
+        let [w0, w1] = span.depth;
+        self.between(span, reach, (w0, self.over(w0)), (w1, self.over(w1)), 0)
+    }
+
+    fn between(&self, span: &Span, reach: f64, start: (f64, f64), end: (f64, f64), halvings: u32) -> Option<f64> {
+        if start.1.is_nan() || end.1.is_nan() {
+            return None;
+        }
+        if (start.1 > 0.0) != (end.1 > 0.0) {
+            let depth = root(start, end, |w| self.over(w));
+            let weights = self.tree.mesh().weights_at(self.triangle, self.walk.true_point(depth)?);
+            if weights.iter().all(|w| *w >= -SLACK) {
+                return Some(depth);
+            }
+        }
+        // A span that bends, or goes over ground that does, may pass the plane more than once.
+        let least = start.1.abs().min(end.1.abs());
+        let sway = self.walk.sway(span, reach, start.0, end.0);
+        if sway == 0.0 || least > sway || halvings >= MAX_HALVINGS {
+            return None;
+        }
+        let middle = 0.5 * (start.0 + end.0);
+        let here = (middle, self.over(middle));
+        self.between(span, reach, start, here, halvings + 1)
+            .or_else(|| self.between(span, reach, here, end, halvings + 1))
+    }
+}

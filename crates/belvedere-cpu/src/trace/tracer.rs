@@ -1,0 +1,436 @@
+//! First hits of curved rays.
+
+use crate::geometry::screen::Screen;
+use crate::trace::boxes::{Boxes, Solid};
+use crate::trace::curve::{Curve, Span, Split};
+use crate::trace::root::root;
+use belvedere_core::{Aabb, Camera, DVec2, DVec3, View};
+use belvedere_scene::{Heightfield, LayerKind, NodeState, Scene};
+use belvedere_sight::{Ground, MeshTree};
+use std::ops::ControlFlow;
+
+/// Largest distance of a ray from the chord that tells where to look for its hits, pixels.
+const CHORD_PX: f64 = 1e-3;
+/// A span is halved at most this often, one without any point of the ray at most that often.
+const MAX_HALVINGS: u32 = 40;
+const MAX_HALVINGS_OF_NOTHING: u32 = 3;
+
+/// What the ray of a pixel meets first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RayHit {
+    /// Index of the layer in the scene.
+    pub layer: usize,
+    /// Depth at which it is seen, scene units.
+    pub depth: f64,
+    /// True (undisplaced) world point, scene coordinates.
+    pub point: DVec3,
+    /// Segment of the curved ray, see [`belvedere_core::Displaced::segment`].
+    pub segment: u32,
+    pub(crate) part: Part,
+}
+
+/// Part of a layer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Part {
+    /// Cell (column, row) of a terrain and whether its north-eastern triangle.
+    Cell([usize; 2], bool),
+    /// Number of a box and the outward normal of its face.
+    Face(usize, DVec3),
+    /// Number of a triangle of a mesh and whether it is seen from the side where its corners run counter-clockwise.
+    Triangle(usize, bool),
+}
+
+/// A scene made ready for rays of one view.
+///
+/// For every pixel the ray `RayPath::at` is followed by depth; nothing is subdivided, projected or rasterised. Spans of the ray that clear the
+/// ground and the boxes by more than they bend are skipped; in the others the sign of the height over the drawn surface
+/// ([`Heightfield::surface_in_cell`]), or of the distance from a box, is followed from cell to cell and its change bracketed to
+/// about 1e-12 of the depth. The maximum mipmap is that of Tevs et al. 2008; curved rays through it are ours.
+pub struct Tracer<'a> {
+    pub(crate) split: Split<'a>,
+    screen: Screen,
+    grounds: Vec<(usize, Ground<'a>)>,
+    boxes: Boxes,
+    pub(crate) meshes: Vec<(usize, MeshTree<'a>)>,
+    /// Around all boxes and meshes, wherever the ground has moved them to.
+    solid: Aabb,
+    pub(crate) range: [f64; 2],
+}
+
+impl<'a> Tracer<'a> {
+    /// Prepares terrain, boxes and meshes of `scene`: one pass over the nodes and the triangles.
+    pub fn new(scene: &'a Scene, view: &'a View) -> Self {
+        let split = Split::new(view);
+        let lift = |min: DVec2, max: DVec2| {
+            let Some(g) = split.ground.map(|g| g.grid()) else { return [0.0; 2] };
+            let [lo, hi] = g.range_over(min, max).unwrap_or([0.0; 2]);
+            let inside = [min, max].into_iter().all(|xy| g.contains(g.grid_from_scene(xy)));
+            if inside { [lo, hi] } else { [lo.min(0.0), hi.max(0.0)] }
+        };
+        let mut grounds = Vec::new();
+        let (mut solids, mut meshes) = (Vec::new(), Vec::new());
+        for (i, layer) in scene.layers.iter().enumerate() {
+            match &layer.kind {
+                LayerKind::Terrain(t) => {
+                    let lifted: Option<belvedere_sight::Lift<'_>> = split.ground.is_some().then_some(&lift);
+                    grounds.push((i, Ground::lifted(&t.heightfield, lifted)));
+                }
+                LayerKind::Boxes(b) => solids.extend(
+                    b.boxes
+                        .iter()
+                        .enumerate()
+                        .map(|(k, shape)| Solid::new(i, k, shape, |b: &Aabb| lift(b.min.truncate(), b.max.truncate()))),
+                ),
+                LayerKind::Mesh(m) => {
+                    let bounds = m.mesh.bounds();
+                    let lift =
+                        if bounds.is_empty() { [0.0; 2] } else { lift(bounds.min.truncate(), bounds.max.truncate()) };
+                    meshes.push((i, MeshTree::lifted(&m.mesh, lift)));
+                }
+                _ => {}
+            }
+        }
+        let screen = Screen::new(view.pinhole());
+        let range = [view.pinhole().near, deepest(scene, view)];
+        let boxes = Boxes::new(solids);
+        let raised = |tree: &MeshTree<'_>| {
+            let (b, lift) = (tree.mesh().bounds(), tree.lift());
+            Aabb { min: b.min + lift[0] * DVec3::Z, max: b.max + lift[1] * DVec3::Z }
+        };
+        let solid = meshes.iter().fold(boxes.bounds(), |b, (_, tree)| b.union(raised(tree)));
+        Self { split, screen, grounds, boxes, meshes, solid, range }
+    }
+
+    /// What the ray of `pixel` meets first between the near and far depth of the camera; `None` for the sky.
+    ///
+    /// Of surfaces seen at the same depth the layer listed first counts.
+    pub fn first_hit(&self, pixel: DVec2) -> Option<RayHit> {
+        let row = self.split.row(pixel.y, self.range);
+        self.hit_on(&self.split.curve(pixel, row.as_ref()), self.range[0])
+    }
+
+    /// First hit of a curve that is known to meet nothing before depth `start`.
+    pub(crate) fn hit_on(&self, curve: &Curve<'_, '_>, start: f64) -> Option<RayHit> {
+        let walk = Walk { tracer: self, curve, start };
+        let spans = curve.spans([start, self.range[1]]);
+        let (depth, layer, part) = spans.into_iter().find_map(|span| walk.span(span, 0))?;
+        let point = walk.true_point(depth)?;
+        let part = match part {
+            Part::Face(index, _) => Part::Face(index, self.face(layer, index, point)),
+            Part::Triangle(index, _) => Part::Triangle(index, self.is_front(layer, index, &|w| curve.at(w), depth)),
+            cell => cell,
+        };
+        Some(RayHit { layer, depth, point, segment: curve.segment(depth), part })
+    }
+
+    /// Whether nothing of the scene lies in a box.
+    pub(crate) fn is_empty(&self, bounds: &Aabb) -> bool {
+        let apart = bounds.min.cmpgt(self.solid.max).any() || bounds.max.cmplt(self.solid.min).any();
+        apart && self.grounds.iter().all(|(_, g)| g.is_off(bounds))
+    }
+
+    /// Finest spacing of the ground, scene units; infinite without ground.
+    pub(crate) fn cell(&self) -> f64 {
+        let spacing = self.grounds.iter().map(|(_, g)| g.heightfield().spacing().min_element());
+        spacing.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether a ray meets the side of a triangle from which its corners run counter-clockwise.
+    fn is_front(&self, layer: usize, triangle: usize, at: &impl Fn(f64) -> Option<DVec3>, depth: f64) -> bool {
+        let Some((_, tree)) = self.meshes.iter().find(|(i, _)| *i == layer) else { return true };
+        let step = 1e-6 * depth;
+        match (at(depth - step), at(depth)) {
+            (Some(before), Some(here)) => tree.mesh().face_normal(triangle).dot(here - before) <= 0.0,
+            _ => true,
+        }
+    }
+
+    fn face(&self, layer: usize, index: usize, p: DVec3) -> DVec3 {
+        let mut normal = DVec3::Z;
+        self.boxes.near(p, p, 1e-3 * p.length().max(1.0), &mut |solid, _| {
+            if solid.layer == layer && solid.index == index {
+                normal = solid.normal(p);
+                return false;
+            }
+            true
+        });
+        normal
+    }
+}
+
+/// Depth beyond which nothing of the scene is seen: the largest depth of a lattice over its bounds and a step more.
+fn deepest(scene: &Scene, view: &View) -> f64 {
+    const STEPS: usize = 24;
+    let far = view.pinhole().far.unwrap_or(f64::INFINITY);
+    let bounds = scene.bounds();
+    let near = view.pinhole().near;
+    if bounds.is_empty() {
+        return (2.0 * near).min(far);
+    }
+    let mut largest = near;
+    let mut step = 0.0f64;
+    let share = |i: usize| i as f64 / STEPS as f64;
+    for k in 0..3 {
+        let mut above: Vec<Option<f64>> = vec![None; STEPS + 1];
+        for j in 0..=STEPS {
+            let mut before: Option<f64> = None;
+            for (i, above) in above.iter_mut().enumerate() {
+                let p = bounds.min + (bounds.max - bounds.min) * DVec3::new(share(i), share(j), 0.5 * k as f64);
+                let depth = view.project(p).ok().map(|image| image.depth);
+                if let Some(d) = depth {
+                    largest = largest.max(d);
+                    for other in [before, *above].into_iter().flatten() {
+                        step = step.max((d - other).abs());
+                    }
+                }
+                (before, *above) = (depth, depth);
+            }
+        }
+    }
+    (largest + step + 1e-6 * largest).min(far).max(near * (1.0 + 1e-9))
+}
+
+/// Depth, layer and part of a hit.
+pub(crate) type Found = (f64, usize, Part);
+
+pub(crate) struct Walk<'t, 'a> {
+    pub(crate) tracer: &'t Tracer<'a>,
+    curve: &'t Curve<'t, 'a>,
+    /// Depth up to which nothing is met.
+    start: f64,
+}
+
+impl Walk<'_, '_> {
+    /// First hit within a span.
+    fn span(&self, span: Span, halvings: u32) -> Option<Found> {
+        if span.depth[1] <= self.start {
+            return None;
+        }
+        match span.chord().filter(|_| span.reach.is_finite()) {
+            Some((a, b)) => {
+                // What begins before the start need not be tried as a whole.
+                if span.depth[0] >= self.start && self.is_clear(a, b, span.reach) {
+                    return None;
+                }
+                let fine = CHORD_PX * self.tracer.screen.footprint(span.depth[0]);
+                if span.reach <= fine || halvings >= MAX_HALVINGS {
+                    return self.search(&span, (a, b), span.reach);
+                }
+            }
+            None => {
+                if halvings >= if span.has_point() { MAX_HALVINGS } else { MAX_HALVINGS_OF_NOTHING } {
+                    return None;
+                }
+            }
+        }
+        self.curve.halves(&span).into_iter().find_map(|half| self.span(half, halvings + 1))
+    }
+
+    fn is_clear(&self, a: DVec3, b: DVec3, reach: f64) -> bool {
+        let mut clear = self.tracer.grounds.iter().all(|(_, g)| g.is_clear(a, b, reach));
+        if clear {
+            self.tracer.boxes.near(a, b, reach, &mut |_, _| {
+                clear = false;
+                false
+            });
+        }
+        clear && !self.near_mesh(a, b, reach)
+    }
+
+    /// First hit within a span that is all but straight.
+    fn search(&self, span: &Span, chord: (DVec3, DVec3), reach: f64) -> Option<Found> {
+        let mut best: Option<Found> = None;
+        let mut take = |found: Found| {
+            if best.is_none_or(|b| (found.0, found.1) < (b.0, b.1)) {
+                best = Some(found);
+            }
+        };
+        for (layer, ground) in &self.tracer.grounds {
+            let mut follow = Follow { walk: self, span, chord, reach, hf: ground.heightfield(), last: None };
+            ground.walk(chord.0, chord.1, reach, &mut |cell, t0, t1| match follow.cell(cell, t0, t1) {
+                ControlFlow::Break((depth, upper)) => {
+                    take((depth, *layer, Part::Cell(cell, upper)));
+                    false
+                }
+                ControlFlow::Continue(()) => true,
+            });
+        }
+        self.tracer.boxes.near(chord.0, chord.1, reach, &mut |solid, part| {
+            if let Some(depth) = self.enter(solid, span, part) {
+                take((depth, solid.layer, Part::Face(solid.index, DVec3::Z)));
+            }
+            true
+        });
+        self.meet_meshes(span, chord, reach, &mut take);
+        best
+    }
+
+    /// How far the distance from a plane may be from linear between two depths.
+    pub(crate) fn sway(&self, span: &Span, reach: f64, w0: f64, w1: f64) -> f64 {
+        let share = (w1 - w0) / (span.depth[1] - span.depth[0]);
+        // The bow of part of a curve goes with the square of its length.
+        let bend = 4.0 * reach * share * share;
+        let Some(ground) = self.tracer.split.ground else { return bend };
+        match (self.curve.at(w0), self.curve.at(w1)) {
+            (Some(a), Some(b)) => bend + ground.edge_bound(a, b),
+            _ => bend,
+        }
+    }
+
+    /// True point at a depth, and the point before the ground is displaced.
+    pub(crate) fn true_point(&self, depth: f64) -> Option<DVec3> {
+        let p = self.curve.at(depth)?;
+        Some(p - self.tracer.split.lift(p) * DVec3::Z)
+    }
+
+    /// Depth at which the ray first passes the surface of a box.
+    fn enter(&self, solid: &Solid, span: &Span, [t0, t1]: [f64; 2]) -> Option<f64> {
+        let outside = |w: f64| self.true_point(w).map_or(f64::NAN, |p| solid.outside(p));
+        let steps = if solid.is_sheared() { 64 } else { 8 };
+        // A little more on both sides, so that the ends lie off the surface.
+        let slack = 1e-3 * (t1 - t0) + 1e-12;
+        let (t0, t1) = ((t0 - slack).max(0.0), (t1 + slack).min(1.0));
+        let place = |i: usize| {
+            let w = span.depth_at(t0 + (t1 - t0) * i as f64 / steps as f64);
+            (w, outside(w))
+        };
+        let mut before = place(0);
+        for i in 1..=steps {
+            let now = place(i);
+            if (before.1 > 0.0) != (now.1 > 0.0) && !before.1.is_nan() && !now.1.is_nan() {
+                return Some(root(before, now, outside));
+            }
+            before = now;
+        }
+        None
+    }
+}
+
+/// The height over the ground, followed along a span from cell to cell.
+struct Follow<'w, 't, 'a> {
+    walk: &'w Walk<'t, 'a>,
+    span: &'w Span,
+    chord: (DVec3, DVec3),
+    reach: f64,
+    hf: &'w Heightfield,
+    /// Where the last part ended, and whether above the ground.
+    last: Option<(f64, bool)>,
+}
+
+/// The plane of a triangle: height at the cell's north-west corner, change per column and per row.
+#[derive(Clone, Copy)]
+struct Plane {
+    corner: DVec2,
+    z: f64,
+    per_col: f64,
+    per_row: f64,
+}
+
+impl Plane {
+    /// Change of height per unit of way, along the grid's lines and summed.
+    fn steepness(&self, hf: &Heightfield) -> f64 {
+        let s = hf.spacing();
+        (self.per_col / s.x).abs() + (self.per_row / s.y).abs()
+    }
+
+    /// Height of a place over the plane.
+    fn below(&self, hf: &Heightfield, p: DVec3) -> f64 {
+        let f = hf.grid_from_scene(p.truncate()) - self.corner;
+        p.z - (self.z + f.x * self.per_col + f.y * self.per_row)
+    }
+}
+
+impl Follow<'_, '_, '_> {
+    /// Depth of a hit in the cell, and whether on its north-eastern triangle.
+    fn cell(&mut self, [col, row]: [usize; 2], t0: f64, t1: f64) -> ControlFlow<(f64, bool)> {
+        let (hf, chord) = (self.hf, self.chord);
+        let grid = |t: f64| {
+            let p = chord.0.lerp(chord.1, t);
+            hf.grid_from_scene(p.truncate()) - DVec2::new(col as f64, row as f64)
+        };
+        let (f0, f1) = (grid(t0), grid(t1));
+        let (d0, d1) = (f0.x - f0.y, f1.x - f1.y);
+        let crossing = if (d0 > 0.0) == (d1 > 0.0) { t1 } else { (t0 + (t1 - t0) * d0 / (d0 - d1)).clamp(t0, t1) };
+        for (from, to) in [(t0, crossing), (crossing, t1)] {
+            if to <= from && !(from == t0 && t0 == t1) {
+                continue;
+            }
+            let middle = grid(0.5 * (from + to));
+            let upper = middle.x > middle.y;
+            match self.plane([col, row], upper) {
+                Some(plane) => {
+                    if let Some(depth) = self.triangle(&plane, from, to) {
+                        return ControlFlow::Break((depth, upper));
+                    }
+                }
+                None => self.last = None,
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn plane(&self, [col, row]: [usize; 2], upper: bool) -> Option<Plane> {
+        let nw = row * self.hf.cols() + col;
+        let [ne, sw, se] = [nw + 1, nw + self.hf.cols(), nw + self.hf.cols() + 1];
+        let solid = |i: usize| self.hf.states()[i] != NodeState::Void;
+        if !(solid(nw) && solid(se) && solid(if upper { ne } else { sw })) {
+            return None;
+        }
+        let h = |i: usize| f64::from(self.hf.heights()[i]);
+        let (per_col, per_row) = if upper { (h(ne) - h(nw), h(se) - h(ne)) } else { (h(se) - h(sw), h(sw) - h(nw)) };
+        Some(Plane { corner: DVec2::new(col as f64, row as f64), z: h(nw), per_col, per_row })
+    }
+
+    fn triangle(&mut self, plane: &Plane, t0: f64, t1: f64) -> Option<f64> {
+        let (walk, span, hf) = (self.walk, self.span, self.hf);
+        // The chord tells where the curve within reach of it is clearly above or below.
+        if walk.tracer.split.ground.is_none() {
+            let over = |t: f64| plane.below(hf, self.chord.0.lerp(self.chord.1, t));
+            let (a, b) = (over(t0), over(t1));
+            let near = 1e-9 * self.chord.0.z.abs().max(1.0) + 1.001 * self.reach * (1.0 + plane.steepness(hf));
+            if a.abs() > near
+                && b.abs() > near
+                && (a > 0.0) == (b > 0.0)
+                && self.last.is_none_or(|(t, above)| t != t0 || above == (a > 0.0))
+            {
+                self.last = Some((t1, b > 0.0));
+                return None;
+            }
+        }
+        let depth = |t: f64| span.depth_at(t);
+        let gap = |w: f64| walk.true_point(w).map_or(f64::NAN, |p| plane.below(hf, p));
+        let (w0, w1) = (depth(t0), depth(t1));
+        let (start, end) = ((w0, gap(w0)), (w1, gap(w1)));
+        if start.1.is_nan() || end.1.is_nan() {
+            self.last = None;
+            return None;
+        }
+        let was = self.last.replace((t1, end.1 > 0.0));
+        // Between two parts that meet, rounding must not swallow the change.
+        if was.is_some_and(|(t, above)| t == t0 && above != (start.1 > 0.0)) {
+            return Some(w0);
+        }
+        if (start.1 > 0.0) != (end.1 > 0.0) {
+            return Some(root(start, end, gap));
+        }
+        self.graze(start, end, &gap, 0)
+    }
+
+    /// A part whose ends lie on one side of the surface may touch it between them if it bends, or the ground does.
+    fn graze(&self, start: (f64, f64), end: (f64, f64), gap: &dyn Fn(f64) -> f64, halvings: u32) -> Option<f64> {
+        let least = start.1.abs().min(end.1.abs());
+        let sway = self.walk.sway(self.span, self.reach, start.0, end.0);
+        if sway == 0.0 || least > sway || halvings > 12 {
+            return None;
+        }
+        let middle = 0.5 * (start.0 + end.0);
+        let here = (middle, gap(middle));
+        if here.1.is_nan() {
+            return None;
+        }
+        if (here.1 > 0.0) != (start.1 > 0.0) {
+            return Some(root(start, here, gap));
+        }
+        self.graze(start, here, gap, halvings + 1).or_else(|| self.graze(here, end, gap, halvings + 1))
+    }
+}
