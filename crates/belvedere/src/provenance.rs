@@ -97,3 +97,16 @@ impl ViewRecord {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    /// NIST's long test vector, a million times the letter a: sixteen fillings of the buffer.
+    #[test]
+    fn the_whole_file_is_hashed() {
+        let path = std::env::temp_dir().join(format!("belvedere_sha256_{}", std::process::id()));
+        std::fs::write(&path, "a".repeat(1_000_000)).expect("written");
+        let found = super::sha256(&path);
+        std::fs::remove_file(&path).expect("removed");
+        assert_eq!(found.expect("read"), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+    }
+}

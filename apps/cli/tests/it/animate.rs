@@ -84,6 +84,29 @@ fn another_scene_is_not_gone_on_with() {
     assert_eq!(files(&place.path("out")).len(), 3, "frames of the longer animation are gone");
 }
 
+/// The change lies behind the first 64 KiB of the file, in a corner that no camera of the scene depends on.
+#[test]
+fn an_animation_over_a_changed_dem_is_not_gone_on_with() {
+    const SIDE: usize = 120;
+    let dem = |corner: &str| {
+        let head = format!("ncols {SIDE}\nnrows {SIDE}\nxllcorner -6000\nyllcorner -6000\ncellsize 100\n");
+        let cells = "1000.0 ".repeat(SIDE * SIDE - 1);
+        assert!(cells.len() > 1 << 16);
+        head + &cells + corner + "\n"
+    };
+    let place = place();
+    place.write("dem.asc", &dem("1000.0"));
+    let (head, rest) = SCENE.split_at(SCENE.find("[camera]").expect("a camera"));
+    let ground = "[[layer]]\nid = 'ground'\nkind = 'terrain'\nsource = 'dem.asc'\n";
+    place.write("s.toml", &(head.lines().next().expect("a line").to_owned() + "\n" + ground + rest));
+    let args = ["animate", "s.toml", "-o", "out", "--sweep", "phi=60:62:1", "--resume"];
+    place.ok(&args);
+    place.ok(&args);
+    place.write("dem.asc", &dem("1000.5"));
+    let line = place.fails(&args);
+    assert!(line.contains("dem.asc has changed since"), "{line}");
+}
+
 #[test]
 fn a_cancelled_animation_goes_on() {
     let place = place();

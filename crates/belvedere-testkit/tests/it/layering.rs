@@ -74,6 +74,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     ("belvedere-bench", &["belvedere"], &["anyhow", "rayon", "serde"]),
     ("belvedere-gallery", &["belvedere"], &["anyhow", "plotters", "serde"]),
     ("belvedere-testkit", &["belvedere-core", "belvedere-scene"], &["glam", "rayon"]),
+    ("belvedere-mutants", &[], &["anyhow", "clap", "proc-macro2", "serde", "serde_json", "syn"]),
     (
         "belvedere-cli",
         &["belvedere", "belvedere-bench", "belvedere-gallery"],

@@ -1,0 +1,158 @@
+//! Which test notices which fault: level by level, so that an unfinished run already says much.
+
+use crate::build::Suite;
+use crate::find::Fault;
+use crate::run::{self, Ending, Usual};
+use crate::{Args, Plan};
+use anyhow::Result;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+/// What is written down, one line each.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Line {
+    /// A test without a fault.
+    Usual { suite: usize, test: String, passed: bool, seconds: f64, reached: BTreeSet<usize> },
+    /// A fault after the tests of one level.
+    Tried { fault: usize, level: usize, tests: usize, noticed_by: Option<String> },
+}
+
+/// What became of the faults.
+#[derive(Debug, Default)]
+pub(crate) struct Results {
+    /// By fault: the test that noticed it.
+    pub(crate) noticed: BTreeMap<usize, String>,
+    /// By fault: the tests that ran and noticed nothing.
+    pub(crate) tests: BTreeMap<usize, usize>,
+    /// By fault: the level that it got through.
+    pub(crate) levels: BTreeMap<usize, usize>,
+    /// Tests that fail without a fault: they were left out.
+    pub(crate) broken: Vec<String>,
+    usual: BTreeMap<(usize, String), Usual>,
+}
+
+impl Results {
+    fn take(&mut self, line: Line, suites: &[Suite]) {
+        match line {
+            Line::Usual { suite, test, passed, seconds, reached } => {
+                if !passed {
+                    self.broken.push(label(&suites[suite], &test));
+                }
+                self.usual.insert((suite, test), Usual { passed, seconds, reached });
+            }
+            Line::Tried { fault, level, tests, noticed_by } => {
+                *self.tests.entry(fault).or_default() += tests;
+                self.levels.insert(fault, level);
+                if let Some(test) = noticed_by {
+                    self.noticed.insert(fault, test);
+                }
+            }
+        }
+    }
+}
+
+fn label(suite: &Suite, test: &str) -> String {
+    let kind = if suite.kind == "lib" { "unit" } else { &suite.name };
+    format!("{} {kind} {test}", suite.package)
+}
+
+/// How far a suite is from a fault; `None` if it does not contain it.
+fn level(suite: &Suite, fault: &Fault) -> Option<usize> {
+    match suite {
+        _ if !suite.contains.contains(&fault.package) => None,
+        _ if suite.package == fault.package => Some(usize::from(suite.kind != "lib")),
+        _ => Some(if suite.of_application { 3 } else { 2 }),
+    }
+}
+
+/// Runs what was not run yet.
+pub(crate) fn hunt(plan: &Plan, home: &Path, args: &Args) -> Result<Results> {
+    let path = home.join("results.jsonl");
+    let scratch = home.join("tmp");
+    let mut results = Results::default();
+    for line in std::fs::read_to_string(&path).unwrap_or_default().lines() {
+        // The last line of an interrupted run may be cut.
+        if let Ok(line) = serde_json::from_str(line) {
+            results.take(line, &plan.suites);
+        }
+    }
+    let file = Mutex::new(std::fs::File::options().append(true).create(true).open(&path)?);
+    let note = |line: &Line| -> Result<()> {
+        let text = serde_json::to_string(line)? + "\n";
+        Ok(file.lock().expect("no panic").write_all(text.as_bytes())?)
+    };
+    for now in 0..=args.level {
+        let open: Vec<usize> = plan.chosen.iter().copied().filter(|id| !results.noticed.contains_key(id)).collect();
+        let open: Vec<usize> = open.into_iter().filter(|id| results.levels.get(id).is_none_or(|l| *l < now)).collect();
+        let concerns = |suite: &Suite| open.iter().any(|&id| level(suite, &plan.faults[id]) == Some(now));
+        let mut missing = Vec::new();
+        for (k, suite) in plan.suites.iter().enumerate().filter(|(_, s)| concerns(s)) {
+            for test in run::tests(suite)? {
+                let skipped = args.skip.iter().any(|s| label(suite, &test).contains(s));
+                if !skipped && !results.usual.contains_key(&(k, test.clone())) {
+                    missing.push((k, test));
+                }
+            }
+        }
+        eprintln!("level {now}: {} faults, {} tests to run without a fault", open.len(), missing.len());
+        let lines = in_parallel(args.jobs, &missing, |(suite, test)| {
+            let usual = run::usual(&plan.suites[*suite], test, &scratch)?;
+            let Usual { passed, seconds, reached } = usual;
+            let line = Line::Usual { suite: *suite, test: test.clone(), passed, seconds, reached };
+            note(&line)?;
+            Ok(line)
+        })?;
+        lines.into_iter().for_each(|line| results.take(line, &plan.suites));
+        let lines = in_parallel(args.jobs, &open, |&id| {
+            let line = attempt(plan, &results, id, now, &scratch)?;
+            note(&line)?;
+            Ok(line)
+        })?;
+        lines.into_iter().for_each(|line| results.take(line, &plan.suites));
+        eprintln!("level {now}: {} of {} noticed", results.noticed.len(), plan.chosen.len());
+    }
+    Ok(results)
+}
+
+/// Runs the tests of a level that come to a fault, those of its module first, then by time, until one fails.
+fn attempt(plan: &Plan, results: &Results, id: usize, now: usize, scratch: &Path) -> Result<Line> {
+    let fault = &plan.faults[id];
+    let candidate = |(suite, _): &(usize, String), usual: &Usual| {
+        usual.passed && usual.reached.contains(&id) && level(&plan.suites[*suite], fault) == Some(now)
+    };
+    let mut tests: Vec<_> = results.usual.iter().filter(|(key, usual)| candidate(key, usual)).collect();
+    let rank = |((_, test), usual): &(&(usize, String), &Usual)| (!test.starts_with(&fault.module), usual.seconds);
+    tests.sort_by(|a, b| rank(a).partial_cmp(&rank(b)).expect("times are numbers"));
+    for (k, ((suite, test), usual)) in tests.iter().enumerate() {
+        let suite = &plan.suites[*suite];
+        let late = match run::with_fault(suite, test, usual, id, scratch)? {
+            Ending::Passed => continue,
+            Ending::Failed => "",
+            Ending::Late => " (late)",
+        };
+        return Ok(Line::Tried { fault: id, level: now, tests: k, noticed_by: Some(label(suite, test) + late) });
+    }
+    Ok(Line::Tried { fault: id, level: now, tests: tests.len(), noticed_by: None })
+}
+
+/// Does something with every item on `jobs` threads; the answers in any order.
+fn in_parallel<T: Sync, R: Send>(jobs: usize, items: &[T], job: impl Fn(&T) -> Result<R> + Sync) -> Result<Vec<R>> {
+    let next = AtomicUsize::new(0);
+    let work = || -> Result<Vec<R>> {
+        let mut done = Vec::new();
+        while let Some(item) = items.get(next.fetch_add(1, Relaxed)) {
+            done.push(job(item)?);
+        }
+        Ok(done)
+    };
+    let parts: Result<Vec<Vec<R>>> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..jobs.max(1)).map(|_| scope.spawn(work)).collect();
+        threads.into_iter().map(|t| t.join().expect("no panic")).collect()
+    });
+    Ok(parts?.into_iter().flatten().collect())
+}
