@@ -125,11 +125,13 @@ fn faults_at(message: &Value, planted: &Planted) -> BTreeSet<usize> {
 
 /// Builds every test of the workspace.
 pub(crate) fn suites(tree: &Path, target: &Path, packages: &Packages) -> Result<Vec<Suite>> {
-    let args = ["test", "--offline", "--workspace", "--tests", "--no-run", "--message-format=json-render-diagnostics"];
+    let args = ["test", "--offline", "--workspace", "--tests", "--no-run", "--message-format=json"];
     let mut command = cargo(tree, target, &args);
     let out = command.args(["--exclude", env!("CARGO_PKG_NAME")]).stderr(Stdio::inherit()).output()?;
     if !out.status.success() {
-        bail!("the tests do not compile with the faults in place");
+        let errors = messages(&out.stdout).filter(|m| m["message"]["level"] == "error");
+        let text: String = errors.map(|m| m["message"]["rendered"].as_str().unwrap_or_default().to_owned()).collect();
+        bail!("the tests do not compile with the faults in place:\n{text}");
     }
     let mut suites = Vec::new();
     for message in messages(&out.stdout).filter(|m| m["reason"] == "compiler-artifact" && m["profile"]["test"] == true)
