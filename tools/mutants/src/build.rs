@@ -2,7 +2,6 @@
 
 use crate::plant::Planted;
 use anyhow::{Context, Result, bail};
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -17,7 +16,7 @@ pub(crate) struct Packages {
 }
 
 /// A program with tests.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Suite {
     /// Its package.
     pub(crate) package: String,
@@ -33,6 +32,13 @@ pub(crate) struct Suite {
     pub(crate) contains: BTreeSet<String>,
     /// Whether it belongs to an application.
     pub(crate) of_application: bool,
+}
+
+impl Suite {
+    /// Its package and name.
+    pub(crate) fn label(&self) -> String {
+        format!("{} {}", self.package, if self.kind == "lib" { "unit" } else { &self.name })
+    }
 }
 
 fn cargo(tree: &Path, target: &Path, args: &[&str]) -> Command {
@@ -123,11 +129,15 @@ fn faults_at(message: &Value, planted: &Planted) -> BTreeSet<usize> {
     if primary.is_empty() { under(false) } else { primary }
 }
 
-/// Builds every test of the workspace.
-pub(crate) fn suites(tree: &Path, target: &Path, packages: &Packages) -> Result<Vec<Suite>> {
-    let args = ["test", "--offline", "--workspace", "--tests", "--no-run", "--message-format=json"];
+/// Builds the tests of the packages `only`, of the whole workspace if there are none.
+pub(crate) fn suites(tree: &Path, target: &Path, packages: &Packages, only: &[String]) -> Result<Vec<Suite>> {
+    let args = ["test", "--offline", "--tests", "--no-run", "--message-format=json"];
     let mut command = cargo(tree, target, &args);
-    let out = command.args(["--exclude", env!("CARGO_PKG_NAME")]).stderr(Stdio::inherit()).output()?;
+    match only {
+        [] => command.args(["--workspace", "--exclude", env!("CARGO_PKG_NAME")]),
+        only => command.args(only.iter().flat_map(|p| ["-p", p])),
+    };
+    let out = command.stderr(Stdio::inherit()).output()?;
     if !out.status.success() {
         let errors = messages(&out.stdout).filter(|m| m["message"]["level"] == "error");
         let text: String = errors.map(|m| m["message"]["rendered"].as_str().unwrap_or_default().to_owned()).collect();

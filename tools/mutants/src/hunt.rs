@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 #[serde(rename_all = "snake_case")]
 enum Line {
     /// A test without a fault.
-    Usual { suite: usize, test: String, passed: bool, seconds: f64, reached: BTreeSet<usize> },
+    Usual { suite: String, test: String, passed: bool, seconds: f64, reached: BTreeSet<usize> },
     /// A fault after the tests of one level.
     Tried { fault: usize, level: usize, tests: usize, noticed_by: Option<String> },
 }
@@ -33,15 +33,15 @@ pub(crate) struct Results {
     pub(crate) levels: BTreeMap<usize, usize>,
     /// Tests that fail without a fault: they were left out.
     pub(crate) broken: Vec<String>,
-    usual: BTreeMap<(usize, String), Usual>,
+    usual: BTreeMap<(String, String), Usual>,
 }
 
 impl Results {
-    fn take(&mut self, line: Line, suites: &[Suite]) {
+    fn take(&mut self, line: Line) {
         match line {
             Line::Usual { suite, test, passed, seconds, reached } => {
                 if !passed {
-                    self.broken.push(label(&suites[suite], &test));
+                    self.broken.push(format!("{suite} {test}"));
                 }
                 self.usual.insert((suite, test), Usual { passed, seconds, reached });
             }
@@ -56,11 +56,6 @@ impl Results {
     }
 }
 
-fn label(suite: &Suite, test: &str) -> String {
-    let kind = if suite.kind == "lib" { "unit" } else { &suite.name };
-    format!("{} {kind} {test}", suite.package)
-}
-
 /// How far a suite is from a fault; `None` if it does not contain it.
 fn level(suite: &Suite, fault: &Fault) -> Option<usize> {
     match suite {
@@ -71,14 +66,14 @@ fn level(suite: &Suite, fault: &Fault) -> Option<usize> {
 }
 
 /// Runs what was not run yet.
-pub(crate) fn hunt(plan: &Plan, home: &Path, args: &Args) -> Result<Results> {
+pub(crate) fn hunt(plan: &Plan, suites: &[Suite], home: &Path, args: &Args) -> Result<Results> {
     let path = home.join("results.jsonl");
     let scratch = home.join("tmp");
     let mut results = Results::default();
     for line in std::fs::read_to_string(&path).unwrap_or_default().lines() {
         // The last line of an interrupted run may be cut.
         if let Ok(line) = serde_json::from_str(line) {
-            results.take(line, &plan.suites);
+            results.take(line);
         }
     }
     let file = Mutex::new(std::fs::File::options().append(true).create(true).open(&path)?);
@@ -91,51 +86,56 @@ pub(crate) fn hunt(plan: &Plan, home: &Path, args: &Args) -> Result<Results> {
         let open: Vec<usize> = open.into_iter().filter(|id| results.levels.get(id).is_none_or(|l| *l < now)).collect();
         let concerns = |suite: &Suite| open.iter().any(|&id| level(suite, &plan.faults[id]) == Some(now));
         let mut missing = Vec::new();
-        for (k, suite) in plan.suites.iter().enumerate().filter(|(_, s)| concerns(s)) {
+        for suite in suites.iter().filter(|s| concerns(s)) {
             for test in run::tests(suite)? {
-                let skipped = args.skip.iter().any(|s| label(suite, &test).contains(s));
-                if !skipped && !results.usual.contains_key(&(k, test.clone())) {
-                    missing.push((k, test));
+                let skipped = args.skip.iter().any(|s| format!("{} {test}", suite.label()).contains(s));
+                if !skipped && !results.usual.contains_key(&(suite.label(), test.clone())) {
+                    missing.push((suite, test));
                 }
             }
         }
         eprintln!("level {now}: {} faults, {} tests to run without a fault", open.len(), missing.len());
         let lines = in_parallel(args.jobs, &missing, |(suite, test)| {
-            let usual = run::usual(&plan.suites[*suite], test, &scratch)?;
+            let usual = run::usual(suite, test, &scratch)?;
             let Usual { passed, seconds, reached } = usual;
-            let line = Line::Usual { suite: *suite, test: test.clone(), passed, seconds, reached };
+            let line = Line::Usual { suite: suite.label(), test: test.clone(), passed, seconds, reached };
             note(&line)?;
             Ok(line)
         })?;
-        lines.into_iter().for_each(|line| results.take(line, &plan.suites));
+        lines.into_iter().for_each(|line| results.take(line));
         let lines = in_parallel(args.jobs, &open, |&id| {
-            let line = attempt(plan, &results, id, now, &scratch)?;
+            let line = attempt(plan, suites, &results, id, now, &scratch)?;
             note(&line)?;
             Ok(line)
         })?;
-        lines.into_iter().for_each(|line| results.take(line, &plan.suites));
+        lines.into_iter().for_each(|line| results.take(line));
         eprintln!("level {now}: {} of {} noticed", results.noticed.len(), plan.chosen.len());
     }
     Ok(results)
 }
 
 /// Runs the tests of a level that come to a fault, those of its module first, then by time, until one fails.
-fn attempt(plan: &Plan, results: &Results, id: usize, now: usize, scratch: &Path) -> Result<Line> {
+fn attempt(plan: &Plan, suites: &[Suite], results: &Results, id: usize, now: usize, scratch: &Path) -> Result<Line> {
     let fault = &plan.faults[id];
-    let candidate = |(suite, _): &(usize, String), usual: &Usual| {
-        usual.passed && usual.reached.contains(&id) && level(&plan.suites[*suite], fault) == Some(now)
-    };
-    let mut tests: Vec<_> = results.usual.iter().filter(|(key, usual)| candidate(key, usual)).collect();
-    let rank = |((_, test), usual): &(&(usize, String), &Usual)| (!test.starts_with(&fault.module), usual.seconds);
+    let near: BTreeMap<String, &Suite> =
+        suites.iter().filter(|s| level(s, fault) == Some(now)).map(|s| (s.label(), s)).collect();
+    let candidates = results.usual.iter().filter(|(_, usual)| usual.passed && usual.reached.contains(&id));
+    let mut tests: Vec<_> =
+        candidates.filter_map(|((suite, test), usual)| Some((*near.get(suite)?, test, usual))).collect();
+    let rank = |(_, test, usual): &(&Suite, &String, &Usual)| (!test.starts_with(&fault.module), usual.seconds);
     tests.sort_by(|a, b| rank(a).partial_cmp(&rank(b)).expect("times are numbers"));
-    for (k, ((suite, test), usual)) in tests.iter().enumerate() {
-        let suite = &plan.suites[*suite];
+    for (k, (suite, test, usual)) in tests.iter().enumerate() {
         let late = match run::with_fault(suite, test, usual, id, scratch)? {
             Ending::Passed => continue,
             Ending::Failed => "",
             Ending::Late => " (late)",
         };
-        return Ok(Line::Tried { fault: id, level: now, tests: k, noticed_by: Some(label(suite, test) + late) });
+        return Ok(Line::Tried {
+            fault: id,
+            level: now,
+            tests: k,
+            noticed_by: Some(format!("{} {test}{late}", suite.label())),
+        });
     }
     Ok(Line::Tried { fault: id, level: now, tests: tests.len(), noticed_by: None })
 }

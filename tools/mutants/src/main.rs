@@ -10,7 +10,7 @@ mod run;
 mod table;
 
 use anyhow::{Context, Result, ensure};
-use build::{Packages, Suite};
+use build::Packages;
 use clap::Parser;
 use find::Fault;
 use serde::{Deserialize, Serialize};
@@ -62,8 +62,6 @@ struct Plan {
     faults: Vec<Fault>,
     /// Numbers of those that compile, `count` of them at most.
     chosen: Vec<usize>,
-    /// The programs with tests.
-    suites: Vec<Suite>,
 }
 
 fn main() -> Result<()> {
@@ -77,12 +75,12 @@ fn main() -> Result<()> {
     if args.fresh {
         let _ = std::fs::remove_file(&path);
     }
+    let packages = build::packages(workspace)?;
     let plan: Plan = match std::fs::read(&path) {
         Ok(bytes) => {
             serde_json::from_slice(&bytes).with_context(|| format!("{}; begin with --fresh", path.display()))?
         }
         Err(_) => {
-            let packages = build::packages(workspace)?;
             let faults = draw(workspace, &packages, &args)?;
             if args.list {
                 faults.iter().for_each(|f| println!("{}", table::line(f)));
@@ -101,8 +99,10 @@ fn main() -> Result<()> {
         plan.seed,
         plan.packages.join(", ")
     );
-    eprintln!("{} faults at {}, {} suites", plan.chosen.len(), plan.commit, plan.suites.len());
-    let results = hunt::hunt(&plan, &home, &args)?;
+    eprintln!("{} faults at {}", plan.chosen.len(), plan.commit);
+    let only = if args.level < 2 { &plan.packages[..] } else { &[] };
+    let suites = build::suites(&home.join("tree"), &home.join("build"), &packages, only)?;
+    let results = hunt::hunt(&plan, &suites, &home, &args)?;
     let report = table::report(&plan, &results);
     std::fs::write(home.join("report.md"), &report)?;
     println!("{report}");
@@ -161,7 +161,6 @@ fn prepare(workspace: &Path, home: &Path, packages: &Packages, faults: Vec<Fault
         commit: String::from_utf8(commit.stdout)?.trim().to_owned(),
         chosen: compiling.into_iter().take(args.count).collect(),
         faults,
-        suites: build::suites(&tree, &target, packages)?,
     })
 }
 
