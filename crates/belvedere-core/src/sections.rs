@@ -1,6 +1,16 @@
 //! Styling sections: which representation is shown where along the deformation curve.
 
-use crate::presets::Tag;
+use serde::{Deserialize, Serialize};
+
+/// Border between two styling sections.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TagPoint {
+    /// Position on the curve as a share of its arc length, 0..=1.
+    pub u: f64,
+    /// Half width of the transition, share of the arc length, >= 0.
+    pub delta: f64,
+}
 
 /// Two lists of styling sections over common tag points, cross-faded by `beta`.
 ///
@@ -10,7 +20,7 @@ use crate::presets::Tag;
 /// Source: Pasewaldt et al. 2011, section 4.4; the monotone steps are ours (the printed ramps leave holes).
 #[derive(Debug, Clone, PartialEq)]
 pub struct StylingSections {
-    tags: Vec<Tag>,
+    tags: Vec<TagPoint>,
     start: Vec<String>,
     target: Vec<String>,
     beta: f64,
@@ -19,7 +29,7 @@ pub struct StylingSections {
 impl StylingSections {
     /// Sections `start` fading to `target`, both with one more entry than `tags`; `beta` in 0..=1 is the share of `target`.
     /// `None` if the numbers do not fit or a value is not finite.
-    pub fn new(tags: Vec<Tag>, start: Vec<String>, target: Vec<String>, beta: f64) -> Option<Self> {
+    pub fn new(tags: Vec<TagPoint>, start: Vec<String>, target: Vec<String>, beta: f64) -> Option<Self> {
         let fits = start.len() == tags.len() + 1 && target.len() == start.len();
         let finite = tags.iter().all(|t| t.u.is_finite() && t.delta.is_finite()) && (0.0..=1.0).contains(&beta);
         (fits && finite).then_some(Self { tags, start, target, beta })
@@ -42,7 +52,7 @@ impl StylingSections {
     }
 
     /// Tag points between the sections.
-    pub fn tags(&self) -> &[Tag] {
+    pub fn tags(&self) -> &[TagPoint] {
         &self.tags
     }
 
@@ -91,7 +101,7 @@ impl StylingSections {
 }
 
 /// Step from 0 to 1 at a tag, over the width of its transition.
-fn ramp(tag: &Tag, t: f64) -> f64 {
+fn ramp(tag: &TagPoint, t: f64) -> f64 {
     if tag.delta < 1e-12 || t.is_nan() {
         return if t >= tag.u { 1.0 } else { 0.0 };
     }

@@ -1,13 +1,14 @@
 //! Matching two lists of styling sections of different lengths.
 
-use super::{Preset, Tag};
+use super::Preset;
+use crate::sections::TagPoint;
 
 /// Sections of both presets that belong together; `None` = without partner.
 type Pair = (Option<usize>, Option<usize>);
 
 /// One preset's sections after matching.
 pub(super) struct Aligned {
-    pub(super) tags: Vec<Tag>,
+    pub(super) tags: Vec<TagPoint>,
     pub(super) sections: Vec<String>,
 }
 
@@ -38,8 +39,8 @@ fn extent(preset: &Preset, i: usize) -> [f64; 2] {
 }
 
 /// Border `i`; the end of the curve after the last one.
-fn border(preset: &Preset, i: usize) -> Tag {
-    preset.tags.get(i).copied().unwrap_or(Tag { u: 1.0, delta: 0.0 })
+fn border(preset: &Preset, i: usize) -> TagPoint {
+    preset.tags.get(i).copied().unwrap_or(TagPoint { u: 1.0, delta: 0.0 })
 }
 
 /// Partners by edit distance; every entry advances at least one side.
@@ -93,7 +94,7 @@ fn split(preset: &Preset, at: &[usize], other: &Preset, other_at: &[usize]) -> A
             let [from, to] = extent(preset, at[k]);
             // A border inside the section's own far transition would cut that off.
             let to = to - border(preset, at[k]).delta;
-            Tag { u: border(other, other_at[k - 1]).u.max(from).min(to), delta: 0.0 }
+            TagPoint { u: border(other, other_at[k - 1]).u.max(from).min(to), delta: 0.0 }
         })
         .collect();
     Aligned { tags, sections }

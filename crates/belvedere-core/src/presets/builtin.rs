@@ -1,6 +1,7 @@
 //! Built-in preset documents.
 
-use super::{BendFrame, DepthUnits, Ease, Preset, PresetDocument, PresetError, Tag, one_section};
+use super::{BendFrame, DepthUnits, Ease, Preset, PresetDocument, PresetError, one_section};
+use crate::sections::TagPoint;
 
 /// Names of the built-in documents; `identity` also takes an angle in degrees, as in `identity(35)`.
 pub const BUILTIN_NAMES: [&str; 7] =
@@ -109,7 +110,7 @@ fn demo() -> PresetDocument {
     let styled = |name: &str, preset: Preset, tau: f64, sections: [&str; 3]| Preset {
         name: name.to_owned(),
         tau,
-        tags: [1.0, 2.0].map(|i| Tag { u: i / 3.0, delta: 0.05 }).to_vec(),
+        tags: [1.0, 2.0].map(|i| TagPoint { u: i / 3.0, delta: 0.05 }).to_vec(),
         sections: sections.map(str::to_owned).to_vec(),
         ..preset
     };

@@ -1,9 +1,9 @@
 //! Which presets hold at a viewing angle, and what lies between them.
 
 use super::align::align;
-use super::{Ease, Preset, PresetDocument, Tag};
+use super::{Ease, Preset, PresetDocument};
 use crate::bspline::{BSpline, BSplineError};
-use crate::sections::StylingSections;
+use crate::sections::{StylingSections, TagPoint};
 
 /// The two presets around a viewing angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,7 +76,7 @@ impl Selection<'_> {
         };
         let [start, target] = align(p, q);
         let tags = start.tags.iter().zip(&target.tags);
-        let tags = tags.map(|(a, b)| Tag { u: mix(a.u, b.u), delta: mix(a.delta, b.delta) }).collect();
+        let tags = tags.map(|(a, b)| TagPoint { u: mix(a.u, b.u), delta: mix(a.delta, b.delta) }).collect();
         let fov = |preset: &Preset| preset.fov_y_deg.unwrap_or(camera_fov_y_deg);
         let has_fov = p.fov_y_deg.is_some() || q.fov_y_deg.is_some();
         let sections = StylingSections::new(tags, start.sections, target.sections, self.beta());

@@ -11,6 +11,7 @@ pub use interpolate::{InterpolatedPreset, Selection};
 
 use crate::bspline::{BSpline, BSplineError};
 use crate::map::spline::DeformationCurve;
+use crate::sections::TagPoint;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
@@ -47,16 +48,6 @@ pub enum Ease {
     Smoothstep,
 }
 
-/// Border between two styling sections.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Tag {
-    /// Place on the curve, share of its arc length, 0..=1.
-    pub u: f64,
-    /// Half width of the transition, share of the arc length, >= 0.
-    pub delta: f64,
-}
-
 /// One deformation made for one viewing angle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -86,7 +77,7 @@ pub struct Preset {
     pub knots: Option<Vec<f64>>,
     /// Borders between the styling sections, near to far.
     #[serde(default)]
-    pub tags: Vec<Tag>,
+    pub tags: Vec<TagPoint>,
     /// Representation of each section, near to far, one more than tags.
     #[serde(default = "one_section")]
     pub sections: Vec<String>,

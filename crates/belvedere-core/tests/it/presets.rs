@@ -2,8 +2,8 @@
 
 use crate::spline_figures::{bend, camera_at};
 use belvedere_core::map::spline::{PresetWarning, check_presets};
-use belvedere_core::presets::{BUILTIN_NAMES, BendFrame, DepthUnits, Ease, Preset, PresetDocument, PresetError, Tag};
-use belvedere_core::sections::StylingSections;
+use belvedere_core::presets::{BUILTIN_NAMES, BendFrame, DepthUnits, Ease, Preset, PresetDocument, PresetError};
+use belvedere_core::sections::{StylingSections, TagPoint};
 use belvedere_testkit::Random;
 use serde_json::{Value, json};
 
@@ -207,7 +207,7 @@ fn selection_is_continuous_also_where_plateaus_overlap() {
 fn presets_with_different_numbers_of_points_and_tags_interpolate() {
     let mut document = three([(20.0, 0.0), (40.0, 0.0), (80.0, 0.0)]);
     document.presets[1].control = PresetDocument::builtin("hybrid-flat-steep-flat").unwrap().presets[0].control.clone();
-    document.presets[1].tags = vec![Tag { u: 0.2, delta: 0.04 }];
+    document.presets[1].tags = vec![TagPoint { u: 0.2, delta: 0.04 }];
     document.presets[1].sections = vec!["loa0".to_owned(), "loa2".to_owned()];
     document.validate().unwrap();
     let mut last = None;
@@ -253,8 +253,11 @@ fn section_weights_are_a_partition_whatever_the_tags() {
     let mut random = Random::new(77);
     for round in 0..2000 {
         let count = random.below(5);
-        let tags: Vec<Tag> = (0..count)
-            .map(|_| Tag { u: random.range(-0.1, 1.1), delta: if random.unit() < 0.3 { 0.0 } else { random.unit() } })
+        let tags: Vec<TagPoint> = (0..count)
+            .map(|_| TagPoint {
+                u: random.range(-0.1, 1.1),
+                delta: if random.unit() < 0.3 { 0.0 } else { random.unit() },
+            })
             .collect();
         let names = |random: &mut Random| (0..=count).map(|_| ["x", "y", "z"][random.below(3)].to_owned()).collect();
         let (start, target) = (names(&mut random), names(&mut random));
@@ -278,7 +281,7 @@ fn section_weights_are_a_partition_whatever_the_tags() {
 #[test]
 fn section_weights_ramp_over_twice_delta_and_keep_the_extensions() {
     let ids = |names: [&str; 3]| names.map(str::to_owned).to_vec();
-    let tags = vec![Tag { u: 0.3, delta: 0.1 }, Tag { u: 0.7, delta: 0.0 }];
+    let tags = vec![TagPoint { u: 0.3, delta: 0.1 }, TagPoint { u: 0.7, delta: 0.0 }];
     let sections = StylingSections::new(tags, ids(["a", "b", "c"]), ids(["b", "b", "d"]), 0.25).unwrap();
     for (t, want) in [
         (-2.0, [1.0, 0.0, 0.0]),
@@ -310,7 +313,7 @@ fn check_warns_of_what_will_look_bad() {
     assert!(matches!(folds[..], [PresetWarning::Folds { data_max: 90.0, .. }]), "{folds:?}");
 
     let mut document = three([(25.0, 10.0), (42.0, 8.0), (80.0, 0.0)]);
-    document.presets[2].tags = [0.2, 0.5, 0.8].map(|u| Tag { u, delta: 0.06 }).to_vec();
+    document.presets[2].tags = [0.2, 0.5, 0.8].map(|u| TagPoint { u, delta: 0.06 }).to_vec();
     document.presets[2].sections = ["a", "b", "c", "d"].map(str::to_owned).to_vec();
     document.presets[1].control[3][1] = 0.9;
     let warnings = check_presets(&document, 1000.0, None);

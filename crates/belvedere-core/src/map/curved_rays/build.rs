@@ -1,10 +1,11 @@
 //! From a specification to a chain.
 
-use super::check::{Earlier, Forms, Surroundings, check, corner_direction, corner_pixels};
-use super::form::LinearForm;
+use super::check::{Earlier, Raw, Surroundings, corner_direction, corner_pixels, numbers};
+use super::form::{Forms, LinearForm, Part};
 use super::phi::Hinge;
+use super::remedy::report;
 use super::spec::{CurvedRaysError, Model, Sharpness, TurnSpec};
-use super::turn::{Part, Turn};
+use super::turn::Turn;
 use super::{CurvedRays, Remedy};
 use crate::Pinhole;
 use glam::{DMat3, DVec2};
@@ -18,7 +19,9 @@ pub(super) fn build(root: &Pinhole, model: Model, spec: &[TurnSpec]) -> Result<C
     let mut turns: Vec<Turn> = Vec::with_capacity(spec.len());
     for (index, turn_spec) in spec.iter().enumerate() {
         let around = Surroundings { root, turn: index + 1, part, earlier };
-        let forms = check(turn_spec, &around)?;
+        numbers(turn_spec, around.turn)?;
+        let raw = Raw::new(turn_spec, around.turn, &part)?;
+        let forms = raw.rows(turn_spec, &around).map_err(|broken| report(broken, turn_spec, &around))?;
         let hinge = hinge(model, turn_spec, &forms, &around)?;
         let ends = corner_pixels(root).map(|px| forms.end(corner_direction(px, root, &part)));
         earlier = Some(Earlier { spec: turn_spec, part, ends });

@@ -1,10 +1,8 @@
 //! Which turns are valid: the rows of the table of valid configurations, each with its own message.
 
-use super::form::LinearForm;
+use super::form::{Forms, LinearForm, Part};
 use super::phi::ViewpointValues;
-use super::remedy::report;
 use super::spec::{CurvedRaysError, Pencil, Sharpness, TurnSpec};
-use super::turn::Part;
 use crate::Pinhole;
 use glam::{DVec2, DVec3};
 
@@ -14,21 +12,6 @@ const KINK: f64 = 1e-6;
 const TOUCHING: f64 = 1e-8;
 /// Largest coordinate of a parameter; products of a few of them stay far from overflow.
 const LARGEST: f64 = 1e15;
-
-/// The forms of a turn, scaled: `h = a - b` is -1 at the viewpoint after the turn.
-#[derive(Debug, Clone)]
-pub(super) struct Forms {
-    pub(super) a: LinearForm,
-    pub(super) b: LinearForm,
-    pub(super) h: LinearForm,
-    pub(super) values: ViewpointValues,
-    /// sigma of the bend point.
-    pub(super) sigma: f64,
-    /// Whether the wedge has no width, so that the turn is a kink.
-    pub(super) kink: bool,
-    /// From the viewpoint before the turn to the one after it.
-    pub(super) baseline: DVec3,
-}
 
 /// What a turn is checked against.
 #[derive(Debug, Clone, Copy)]
@@ -82,14 +65,8 @@ impl Broken {
     }
 }
 
-/// Checks everything about a turn and returns its forms.
-pub(super) fn check(spec: &TurnSpec, around: &Surroundings<'_>) -> Result<Forms, CurvedRaysError> {
-    numbers(spec, around.turn)?;
-    let raw = Raw::new(spec, around.turn, &around.part)?;
-    raw.rows(spec, around).map_err(|broken| report(broken, spec, around))
-}
-
-fn numbers(spec: &TurnSpec, turn: usize) -> Result<(), CurvedRaysError> {
+/// Numbers that every later formula can take: finite, not astronomically large, directions not zero.
+pub(super) fn numbers(spec: &TurnSpec, turn: usize) -> Result<(), CurvedRaysError> {
     let (pencil_names, u, v) = match spec.pencil {
         Pencil::Line { point, dir } => (["line.point", "line.dir"], point, dir),
         Pencil::Parallel { normal } => (["normal", "normal"], normal, normal),
@@ -278,27 +255,6 @@ impl Forms {
         let sigma = self.sigma_on(corner_direction(pixel, around.root, &around.part));
         let limit = self.values.b1;
         if sigma < limit { Ok(()) } else { Err(Broken::EndNotReached { pixel, sigma, limit }) }
-    }
-
-    /// Depth of t1 along a ray of the part before the turn.
-    pub(super) fn bend_depth(&self, direction: DVec3) -> f64 {
-        self.values.k0 / self.h.along(direction)
-    }
-
-    /// sigma, the value of a and b where the ray meets t1.
-    pub(super) fn sigma_on(&self, direction: DVec3) -> f64 {
-        self.values.a0 + self.bend_depth(direction) * self.a.along(direction)
-    }
-
-    /// Depth of t0.
-    pub(super) fn start(&self, direction: DVec3) -> f64 {
-        -self.values.a0 / self.a.along(direction)
-    }
-
-    /// Depth of t2, along the direction that the ray has after the turn.
-    pub(super) fn end(&self, direction: DVec3) -> f64 {
-        let after = direction - self.baseline * (self.h.along(direction) / self.values.k0);
-        -self.values.b1 / self.b.along(after)
     }
 }
 

@@ -1,6 +1,6 @@
 //! From a broken row to a message with the nearest valid value.
 
-use super::check::{Broken, Raw, Surroundings, axis, corner_direction, corner_pixels};
+use super::check::{Broken, Earlier, Raw, Surroundings, axis, corner_direction, corner_pixels};
 use super::spec::{CurvedRaysError, Pencil, Remedy, TurnSpec};
 use glam::DVec3;
 
@@ -152,7 +152,7 @@ fn shrunk(broken: Broken, spec: &TurnSpec, around: &Surroundings<'_>) -> Option<
         let Ok(raw) = Raw::new(&before, around.turn - 1, &earlier.part) else { return false };
         let forms = raw.forms(&earlier.part, before.viewpoint);
         let ends = corner_pixels(around.root).map(|px| forms.end(corner_direction(px, around.root, &earlier.part)));
-        let narrow = Surroundings { earlier: Some(super::check::Earlier { ends, ..earlier }), ..*around };
+        let narrow = Surroundings { earlier: Some(Earlier { ends, ..earlier }), ..*around };
         heals(broken, &narrower(spec, t), &narrow)
     };
     smallest(valid, 1.0).map(|t| Remedy::Shrink { factor: 1.0 - t })

@@ -1,6 +1,6 @@
 //! One turn with everything derived from it.
 
-use super::form::LinearForm;
+use super::form::{Forms, LinearForm, Part};
 use super::phi::{Hinge, Phi, ViewpointValues};
 use super::spec::TurnSpec;
 use crate::Miss;
@@ -48,14 +48,6 @@ pub(super) enum Cell {
     After,
 }
 
-/// Linear map of the part of the chain before a turn.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Part {
-    pub(super) viewpoint: DVec3,
-    pub(super) linear: DMat3,
-    pub(super) inverse: DMat3,
-}
-
 /// `p q^T`.
 pub(super) fn outer(p: DVec3, q: DVec3) -> DMat3 {
     DMat3::from_cols(p * q.x, p * q.y, p * q.z)
@@ -63,7 +55,7 @@ pub(super) fn outer(p: DVec3, q: DVec3) -> DMat3 {
 
 impl Turn {
     /// Assembles a turn from valid forms.
-    pub(super) fn new(part: &Part, spec: &TurnSpec, forms: &super::check::Forms, hinge: Hinge) -> Self {
+    pub(super) fn new(part: &Part, spec: &TurnSpec, forms: &Forms, hinge: Hinge) -> Self {
         let baseline = spec.viewpoint - part.viewpoint;
         let shift = part.linear * baseline;
         let h = forms.h;

@@ -1,9 +1,7 @@
 //! A planar curve parametrised by arc length, with its curvature, turning and closest points.
 
-use crate::bspline::{BSpline, CubicSpan};
+use crate::bspline::CubicSpan;
 use glam::DVec2;
-
-use super::arc_build;
 
 /// A B-spline parametrised by its arc length `l` in 0..=[`DeformationCurve::length`], with straight extensions along its end tangents.
 ///
@@ -61,28 +59,7 @@ impl CurveFrame {
     }
 }
 
-/// A curve without extent, or one too large for its length to be a number.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error(
-    "the deformation curve is {length:e} curve units long, a finite length of at least 1e-9 is needed; move its control points"
-)]
-pub struct CurveTooShort {
-    /// Length found, curve units.
-    pub length: f64,
-}
-
 impl DeformationCurve {
-    /// Shortest accepted curve, curve units.
-    pub const MIN_LENGTH: f64 = 1e-9;
-
-    /// Arc-length parametrisation of `spline`.
-    ///
-    /// # Errors
-    /// [`CurveTooShort`] below [`DeformationCurve::MIN_LENGTH`].
-    pub fn new(spline: &BSpline) -> Result<Self, CurveTooShort> {
-        arc_build::build(spline)
-    }
-
     /// Length of the curve, curve units.
     pub fn length(&self) -> f64 {
         self.length

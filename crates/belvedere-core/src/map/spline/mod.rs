@@ -1,14 +1,15 @@
 //! View-dependent multi-perspective deformation: space is carried onto a B-spline over the reference plane.
 
-mod arc_build;
+mod arc_length;
 mod bound;
 mod check;
 mod curve;
 mod plane;
 mod resolve;
 
+pub use arc_length::CurveTooShort;
 pub use check::{PresetWarning, check_presets};
-pub use curve::{CurveFrame, CurveTooShort, DeformationCurve};
+pub use curve::{CurveFrame, DeformationCurve};
 pub use plane::{ReferencePlane, default_pivot, viewing_angle};
 pub use resolve::{ResolvedPreset, SplineError};
 

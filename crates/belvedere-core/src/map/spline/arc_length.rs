@@ -1,6 +1,6 @@
 //! Construction of the arc-length parametrisation.
 
-use super::curve::{Cell, CurveTooShort, DeformationCurve, angle, curvature_in, tangent_in};
+use super::curve::{Cell, DeformationCurve, angle, curvature_in, tangent_in};
 use crate::bspline::{BSpline, CubicSpan};
 use glam::DVec2;
 
@@ -24,6 +24,16 @@ const GAUSS: [(f64, f64); 8] = [
     (0.989_400_934_991_649_9, 0.027_152_459_411_754_096),
 ];
 
+/// A curve without extent, or one too large for its length to be a number.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "the deformation curve is {length:e} curve units long, a finite length of at least 1e-9 is needed; move its control points"
+)]
+pub struct CurveTooShort {
+    /// Length found, curve units.
+    pub length: f64,
+}
+
 fn gauss_length(span: &CubicSpan, x0: f64, x1: f64) -> f64 {
     let (mid, half) = (0.5 * (x0 + x1), 0.5 * (x1 - x0));
     let sum: f64 =
@@ -31,22 +41,31 @@ fn gauss_length(span: &CubicSpan, x0: f64, x1: f64) -> f64 {
     half * sum
 }
 
-pub(super) fn build(spline: &BSpline) -> Result<DeformationCurve, CurveTooShort> {
-    let spans = spline.spans();
-    let scale = spans.iter().flat_map(|s| s.c[1..].iter()).map(|c| c.length()).fold(0.0, f64::max);
-    let knots: Vec<Vec<f64>> = spans.iter().map(|s| split_points(s, scale)).collect();
-    let rough = |(s, k): (&CubicSpan, &Vec<f64>)| k.windows(2).map(|w| gauss_length(s, w[0], w[1])).sum::<f64>();
-    let length: f64 = spans.iter().zip(&knots).map(rough).sum();
-    if !(length >= DeformationCurve::MIN_LENGTH && length.is_finite()) {
-        return Err(CurveTooShort { length });
-    }
-    let mut builder = Builder { tolerance: TOLERANCE * length, scale, cells: Vec::new(), end: 0.0 };
-    for (index, (span, knots)) in spans.iter().zip(&knots).enumerate() {
-        for w in knots.windows(2) {
-            builder.cover(span, index, w[0], w[1], 0);
+impl DeformationCurve {
+    /// Shortest accepted curve, curve units.
+    pub const MIN_LENGTH: f64 = 1e-9;
+
+    /// Arc-length parametrisation of `spline`.
+    ///
+    /// # Errors
+    /// [`CurveTooShort`] below [`DeformationCurve::MIN_LENGTH`].
+    pub fn new(spline: &BSpline) -> Result<Self, CurveTooShort> {
+        let spans = spline.spans();
+        let scale = spans.iter().flat_map(|s| s.c[1..].iter()).map(|c| c.length()).fold(0.0, f64::max);
+        let knots: Vec<Vec<f64>> = spans.iter().map(|s| split_points(s, scale)).collect();
+        let rough = |(s, k): (&CubicSpan, &Vec<f64>)| k.windows(2).map(|w| gauss_length(s, w[0], w[1])).sum::<f64>();
+        let length: f64 = spans.iter().zip(&knots).map(rough).sum();
+        if !(length >= Self::MIN_LENGTH && length.is_finite()) {
+            return Err(CurveTooShort { length });
         }
+        let mut builder = Builder { tolerance: TOLERANCE * length, scale, cells: Vec::new(), end: 0.0 };
+        for (index, (span, knots)) in spans.iter().zip(&knots).enumerate() {
+            for w in knots.windows(2) {
+                builder.cover(span, index, w[0], w[1], 0);
+            }
+        }
+        Ok(finish(spans, builder))
     }
-    Ok(finish(spans, builder))
 }
 
 /// Parameters 0..=1 of a span between which speed and curvature are monotone and the curvature keeps its sign.
