@@ -4,11 +4,13 @@ use serde::{Deserialize, Serialize};
 
 /// Border between two styling sections.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TagPoint {
     /// Position on the curve as a share of its arc length, 0..=1.
     pub u: f64,
     /// Half width of the transition, share of the arc length, >= 0.
+    #[serde(default)]
     pub delta: f64,
 }
 

@@ -1,11 +1,10 @@
 //! Writing a file so that it is there whole or not at all.
 
 use crate::IoError;
-use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::path::Path;
+use tempfile::NamedTempFile;
 
 /// Fails at once if [`write_atomic`] could not write `path`: it exists and `overwrite` is false, it is a folder, or its
 /// folder does not exist. Ask before long work.
@@ -58,17 +57,15 @@ pub fn write_atomic(
         let mut device = OpenOptions::new().write(true).open(&target).map_err(os)?;
         return write(&mut device).and_then(|()| device.flush()).map_err(os);
     }
-    let (temporary, file) = Temporary::beside(&target).map_err(os)?;
-    let mut out = BufWriter::with_capacity(1 << 16, file);
+    let mut out = BufWriter::with_capacity(1 << 16, temporary_beside(&target).map_err(os)?);
     write(&mut out).map_err(os)?;
     let file = out.into_inner().map_err(|e| os(e.into_error()))?;
-    file.sync_all().map_err(os)?;
-    drop(file);
-    if overwrite {
-        fs::rename(&temporary.path, &target).map_err(os)?;
-    } else {
-        temporary.publish_new(&target)?;
-    }
+    file.as_file().sync_all().map_err(os)?;
+    let published = if overwrite { file.persist(&target) } else { file.persist_noclobber(&target) };
+    published.map_err(|e| match e.error.kind() {
+        io::ErrorKind::AlreadyExists => IoError::Exists { path: target.clone() },
+        _ => os(e.error),
+    })?;
     sync_folder(folder_of(&target));
     Ok(())
 }
@@ -80,50 +77,16 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// A file that removes itself.
-struct Temporary {
-    path: PathBuf,
-}
-
-impl Temporary {
-    fn beside(target: &Path) -> io::Result<(Self, File)> {
-        static COUNT: AtomicU64 = AtomicU64::new(0);
-        for _ in 0..100 {
-            let mut name = OsString::from(".");
-            // a long name plus the ending could pass the system's limit
-            name.push(target.file_name().unwrap_or_default().to_string_lossy().chars().take(40).collect::<String>());
-            name.push(format!(".{}-{}.tmp", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
-            let path = folder_of(target).join(name);
-            match OpenOptions::new().write(true).create_new(true).open(&path) {
-                Ok(file) => return Ok((Self { path }, file)),
-                Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
-                Err(e) => return Err(e),
-            }
-        }
-        Err(io::Error::new(
-            io::ErrorKind::AlreadyExists,
-            "100 temporary names are taken; remove the .tmp files beside it",
-        ))
-    }
-
-    /// Gives the file its final name unless that is taken.
-    fn publish_new(&self, target: &Path) -> Result<(), IoError> {
-        let exists = || IoError::Exists { path: target.to_owned() };
-        match fs::hard_link(&self.path, target) {
-            Ok(()) => Ok(()),
-            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => Err(exists()),
-            // a file system without links: the smallest possible gap between look and rename
-            Err(_) if fs::symlink_metadata(target).is_ok() => Err(exists()),
-            Err(_) => fs::rename(&self.path, target).map_err(|e| IoError::os(target, e)),
-        }
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        // after a rename there is nothing left to remove
-        let _ = fs::remove_file(&self.path);
-    }
+/// A hidden temporary file beside `target`, with the permissions of any new file.
+fn temporary_beside(target: &Path) -> io::Result<NamedTempFile> {
+    // a long name plus the ending could pass the system's limit
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    let prefix: String = [".", &name].concat().chars().take(40).collect();
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix).suffix(".tmp");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the umask
+    builder.tempfile_in(folder_of(target))
 }
 
 #[cfg(unix)]

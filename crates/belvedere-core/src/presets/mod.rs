@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 /// Coordinates in which the curve's slope is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum BendFrame {
     /// Slope against the optical axis: it is the angle under which the ground is seen (the paper's frame).
@@ -28,6 +29,7 @@ pub enum BendFrame {
 
 /// Unit of `s` and `e`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum DepthUnits {
     /// Scene units.
@@ -39,6 +41,7 @@ pub enum DepthUnits {
 
 /// Course of the interpolation between two presets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Ease {
     /// Proportional to the viewing angle.
@@ -50,6 +53,7 @@ pub enum Ease {
 
 /// One deformation made for one viewing angle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Preset {
     /// Name for messages, possibly empty.
@@ -88,6 +92,7 @@ pub struct Preset {
 
 /// A set of presets for the range of viewing angles, as stored in files.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PresetDocument {
     /// Format of the document, 1.

@@ -1,8 +1,8 @@
 //! One chunk: decompression, predictor, byte order, unpacking.
 
 use super::layout::{Compression, Layout, Stored};
-use super::lzw::Lzw;
 use flate2::{Decompress, FlushDecompress};
+use weezl::{BitOrder, LzwStatus, decode};
 use zune_jpeg::zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
 
 /// Decoders and buffers that are kept from chunk to chunk by one thread.
@@ -13,7 +13,7 @@ pub(super) struct Scratch {
     /// Decoded samples of the current chunk in the byte order of this machine.
     pub(super) out: Vec<u8>,
     turn: Vec<u8>,
-    lzw: Lzw,
+    lzw: Option<decode::Decoder>,
     inflate: Option<Decompress>,
     zstd: Option<ruzstd::decoding::FrameDecoder>,
 }
@@ -88,8 +88,22 @@ impl Scratch {
         {
             return Err("is compressed by the LZW variant of before 1993, which is not supported".to_owned());
         }
-        let result = self.lzw.decode(&self.raw, &mut self.out);
-        result.map_err(|e| format!("is not valid LZW ({e}); the file is damaged"))
+        // Like libtiff it stops when the chunk is full: some writers leave out the end code.
+        let new =
+            || decode::Configuration::with_tiff_size_switch(BitOrder::Msb, 8).with_yield_on_full_buffer(true).build();
+        let lzw = self.lzw.get_or_insert_with(new);
+        lzw.reset();
+        let (mut raw, mut at) = (&self.raw[..], 0);
+        while at < self.out.len() {
+            let step = lzw.decode_bytes(raw, &mut self.out[at..]);
+            (raw, at) = (&raw[step.consumed_in..], at + step.consumed_out);
+            match step.status {
+                Ok(LzwStatus::Ok) => {}
+                Ok(LzwStatus::Done | LzwStatus::NoProgress) => break,
+                Err(e) => return Err(format!("is not valid LZW ({e}); the file is damaged")),
+            }
+        }
+        Ok(at)
     }
 
     fn inflate(&mut self) -> Result<usize, String> {

@@ -7,7 +7,6 @@ mod codec;
 mod geokeys;
 mod ifd;
 mod layout;
-mod lzw;
 mod meta;
 mod read;
 mod source;

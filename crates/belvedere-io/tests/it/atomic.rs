@@ -105,6 +105,17 @@ fn outputs_that_cannot_be_are_refused_before_the_work() {
 
 #[cfg(unix)]
 #[test]
+fn outputs_have_the_permissions_of_any_new_file() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new("atomic-mode");
+    let mode = |name: &str| fs::metadata(folder.0.join(name)).unwrap().permissions().mode();
+    fs::write(folder.0.join("plain"), "x").unwrap();
+    text(&folder.0.join("ours"), false, "x").unwrap();
+    assert_eq!(mode("ours"), mode("plain"));
+}
+
+#[cfg(unix)]
+#[test]
 fn links_are_followed_and_devices_written_directly() {
     let folder = Folder::new("atomic-links");
     let (real, link) = (folder.0.join("real"), folder.0.join("link"));

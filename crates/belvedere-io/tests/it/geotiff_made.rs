@@ -1,15 +1,13 @@
 //! GeoTIFF: files made on the spot. Round trips through every layout, and headers that lie.
 
-use crate::tiff_writer::{Entry, Style};
+use crate::tiff_writer::{Entry, PLAIN, Style};
 use belvedere_io::geotiff::write_geotiff;
 use belvedere_io::{
-    Affine, CrsKind, GeoTiff, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs,
+    Affine, CrsKind, GeoTiff, IoError, Limits, Loaded, Photometric, Raster, RasterInfo, SampleType, Samples, SourceCrs,
 };
 use belvedere_scene::Progress;
 use belvedere_testkit::Random;
 use std::time::{Duration, Instant};
-
-const PLAIN: Style = Style { big_endian: false, big: false, tile: None, planar: false, compression: 1, predictor: 1 };
 
 fn open(bytes: &[u8]) -> Result<Loaded<GeoTiff>, IoError> {
     GeoTiff::from_bytes("made.tif", bytes.to_vec(), Limits::default())
@@ -180,6 +178,23 @@ fn written_files_come_back() {
         assert_eq!(back.value.read(0, &Progress::silent()).unwrap(), raster);
     }
     std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// The floating-point predictor counts bytes across the bands of a pixel; the other decoder is the reference.
+#[test]
+fn float_predictor_with_several_bands() {
+    use tiff::decoder::{Decoder, DecodingResult};
+    let folder = crate::atomic::Folder::new("predictor3-bands");
+    let path = folder.0.join("bands.tif");
+    let mut info = RasterInfo::new(&path, 37, 11, SampleType::F32);
+    (info.bands, info.photometric) = (3, Photometric::Rgb([0, 1, 2]));
+    let values: Vec<f32> = (0..37 * 11 * 3).map(|i| (i as f32 * 0.37).sin() * 10f32.powi(i % 3)).collect();
+    let raster = Raster { info, samples: Samples::F32(values.clone()), mask: None };
+    write_geotiff(&path, &raster, false).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    let theirs = Decoder::new(std::io::Cursor::new(&bytes)).and_then(|mut d| d.read_image()).unwrap();
+    assert!(matches!(theirs, DecodingResult::F32(v) if v == values));
+    assert_eq!(read(&bytes).unwrap().samples, raster.samples);
 }
 
 #[test]

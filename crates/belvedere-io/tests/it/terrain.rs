@@ -1,8 +1,13 @@
 //! Terrain: exact where it can be, measured where it is resampled, never a void that leaks.
 
 use crate::atomic::Folder;
+use crate::tiff_writer::PLAIN;
 use belvedere_io::crs::Transform;
-use belvedere_io::{CrsChoice, IoError, Limits, LoadedTerrain, TerrainRequest, hgt, load_terrain};
+use belvedere_io::geotiff::write_geotiff;
+use belvedere_io::{
+    Affine, CrsChoice, CrsKind, IoError, Limits, LoadedTerrain, Raster, RasterInfo, SampleType, Samples, SourceCrs,
+    TerrainRequest, hgt, load_terrain,
+};
 use belvedere_scene::{Crs, NodeState, Progress};
 use belvedere_testkit::data;
 use glam::DVec2;
@@ -374,6 +379,62 @@ fn feet_and_rotation_become_metres_and_axes() {
     let (terrain, _) = load(&[rotated], &TerrainRequest::default()).unwrap();
     assert!(terrain.resample_error.unwrap().max_m < 1e-3, "{:?}", terrain.resample_error);
     assert!((terrain.source_spacing_m - DVec2::new(20.0, 10.0)).abs().max_element() < 1e-6);
+}
+
+/// Heights in feet become metres, whatever the type of the samples.
+#[test]
+fn heights_in_feet_become_metres() {
+    let folder = Folder::new("terrain-height-unit");
+    let feet = [1000.0, 2000.0, 3000.0, 4000.0];
+    let xml = "<GDALMetadata><Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">ft</Item></GDALMetadata>\0";
+    let doubles = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<u64>>();
+    for (name, bits, format) in [("float32", 32, 3), ("float64", 64, 3), ("int16", 16, 2), ("uint16", 16, 1)] {
+        let pixels = feet.map(|h: f64| match (format, bits) {
+            (3, 32) => u64::from((h as f32).to_bits()),
+            (3, _) => h.to_bits(),
+            _ => h as u64,
+        });
+        let extra = [
+            (339, 3, vec![format]),
+            (33550, 12, doubles(&[10.0, 10.0, 0.0])),
+            (33922, 12, doubles(&[0.0, 0.0, 0.0, 5000.0, 9000.0, 0.0])),
+            (42112, 2, xml.bytes().map(u64::from).collect()),
+        ];
+        let path = folder.0.join(format!("{name}.tif"));
+        fs::write(&path, PLAIN.image([2, 2], 1, bits, &pixels, &extra)).unwrap();
+        let request = TerrainRequest { crs: CrsChoice::Local, ..Default::default() };
+        let terrain = load(&[path], &request).unwrap().0.heightfield;
+        for (i, ft) in feet.into_iter().enumerate() {
+            let z = terrain.node(i % 2, i / 2).unwrap().z;
+            assert!((z - 0.3048 * ft).abs() < 1e-3, "{name}: {ft} ft came out as {z} m");
+        }
+    }
+}
+
+/// Rows that run north and columns that run west: every sample keeps its position.
+#[test]
+fn flipped_rasters_keep_every_sample_at_its_position() {
+    let folder = Folder::new("terrain-flipped");
+    let (cols, rows) = (5, 4);
+    for (x_step, y_step) in [(30.0, -20.0), (30.0, 20.0), (-30.0, -20.0), (-30.0, 20.0)] {
+        let path = folder.0.join("flipped.tif");
+        let mut info = RasterInfo::new(&path, cols, rows, SampleType::F32);
+        let map = Affine([x_step, 0.0, 400_000.0, 0.0, y_step, 4_700_000.0]);
+        info.pixel_to_model = Some(map);
+        (info.crs, info.crs_kind) = (SourceCrs::Epsg(32631), CrsKind::Projected);
+        let samples = Samples::F32((0..cols * rows).map(|i| (i * i) as f32).collect());
+        write_geotiff(&path, &Raster { info, samples, mask: None }, true).unwrap();
+        let terrain = simple(path);
+        assert_eq!(terrain.resample_error, None, "the samples are the nodes");
+        let h = &terrain.heightfield;
+        assert_eq!((h.cols(), h.rows()), (cols, rows));
+        let nodes: Vec<_> = (0..cols * rows).filter_map(|i| h.node(i % cols, i / cols)).collect();
+        for i in 0..cols * rows {
+            let xy = DVec2::from(map.apply((i % cols) as f64 + 0.5, (i / cols) as f64 + 0.5));
+            let node = nodes.iter().find(|n| n.truncate().distance(xy) < 1e-6);
+            assert_eq!(node.map(|n| n.z), Some((i * i) as f64), "steps {x_step}, {y_step}: sample {i} at {xy}");
+        }
+    }
 }
 
 #[test]

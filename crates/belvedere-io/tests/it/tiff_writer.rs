@@ -16,6 +16,10 @@ pub(crate) struct Style {
     pub(crate) predictor: u64,
 }
 
+/// Little-endian classic TIFF in strips, not compressed.
+pub(crate) const PLAIN: Style =
+    Style { big_endian: false, big: false, tile: None, planar: false, compression: 1, predictor: 1 };
+
 /// A directory entry: number, type (3, 4, 12, 13, 16 or 2) and values (bits of doubles for 12, bytes for 2).
 pub(crate) type Entry = (u16, u16, Vec<u64>);
 

@@ -437,6 +437,19 @@ fn areas_and_points_on_terrain() {
 }
 
 #[test]
+fn the_outline_of_a_polygon_is_closed() {
+    let dir = tempfile::tempdir().unwrap();
+    let corners = "[[400000,4700000],[403000,4700000],[403000,4704000],[400000,4704000],[400000,4700000]]";
+    let text = format!(
+        "{{\"type\":\"Polygon\",\"crs\":{{\"properties\":{{\"name\":\"EPSG:32631\"}}}},\"coordinates\":[{corners}]}}"
+    );
+    let v = load_vectors(&write(&dir, "square.json", text)).unwrap().value;
+    let lines = lines_on_terrain(&v, Crs::Epsg(32631), None).unwrap().value;
+    assert!((length(&lines) - 14_000.0).abs() < 1e-6, "{} m of 14000", length(&lines));
+    assert_eq!(lines[0].points.first(), lines[0].points.last());
+}
+
+#[test]
 fn unknown_systems_are_refused() {
     assert!(CoordinateSystem::from_epsg(999_999).is_err());
     let dir = tempfile::tempdir().unwrap();

@@ -151,7 +151,7 @@ fn spline(
     warnings
         .extend(belvedere_core::map::spline::check_presets(&presets, distance, heights).iter().map(|w| w.to_string()));
     let document = StageDoc::SplineBend(SplineStageDoc {
-        presets: PresetsDoc::Inline(Box::new(convert(&presets).map_err(|e| fail(&["presets"], e))?)),
+        presets: PresetsDoc::Inline(Box::new(presets)),
         pivot: Some(pivot.to_array()),
         plane: Some(PlaneDoc { normal: normal.to_array(), height_m: Some(height) }),
     });
@@ -211,12 +211,6 @@ fn presets(
             document
         }
     };
-    let converted: PresetDocument = convert(&document).map_err(|e| fail(&["presets"], e))?;
-    converted.validate().map_err(|e| fail(&["presets"], e.to_string()))?;
-    Ok(converted)
-}
-
-/// The same document in the other crate's words; both have the same fields.
-fn convert<A: serde::Serialize, B: serde::de::DeserializeOwned>(document: &A) -> Result<B, String> {
-    serde_json::to_value(document).and_then(serde_json::from_value).map_err(|e| format!("presets: {e}"))
+    document.validate().map_err(|e| fail(&["presets"], e.to_string()))?;
+    Ok(document)
 }

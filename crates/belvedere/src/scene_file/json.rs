@@ -1,186 +1,148 @@
 //! JSON to [`Node`], keeping lines; refuses duplicate keys and numbers that are not finite.
+//!
+//! serde_json knows the grammar and hands every value over as the slice of the text it was read from; where the slice
+//! starts tells the line.
 
 use super::DocError;
-use super::node::{Entry, MAX_DEPTH, Node, Value};
+use super::node::{Entry, Lines, MAX_DEPTH, Node, Value, shorten};
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use serde_json::value::RawValue;
 
 /// Parses a whole JSON document.
 pub(crate) fn parse(text: &str) -> Result<Node, DocError> {
-    let mut p = Parser { bytes: text.as_bytes(), text, at: 0, line: 1 };
-    p.space();
-    let node = p.value(1)?;
-    p.space();
-    if p.at < p.bytes.len() {
-        return Err(p.fail("there is text after the end of the document"));
-    }
-    Ok(node)
+    let lines = Lines::new(text);
+    let root: &RawValue = serde_json::from_str(text).map_err(|e| syntax_error(&e, text, &lines))?;
+    Source { text, lines }.node(root.get(), 1)
 }
 
-struct Parser<'a> {
-    bytes: &'a [u8],
-    text: &'a str,
-    at: usize,
-    line: usize,
+fn syntax_error(e: &serde_json::Error, text: &str, lines: &Lines) -> DocError {
+    let at = lines.start(e.line()).saturating_add(e.column().saturating_sub(1)).min(text.len());
+    let is_letter = |b: &u8| b.is_ascii_alphabetic();
+    let start = text.as_bytes()[..at].iter().rposition(|b| !is_letter(b)).map_or(0, |i| i + 1);
+    let word = |name: &str| text.as_bytes()[start..].starts_with(name.as_bytes());
+    if ["NaN", "nan", "Infinity", "inf"].into_iter().any(word) {
+        return DocError::at(e.line(), "a number is not finite; give finite numbers");
+    }
+    DocError::at(e.line(), reason(e))
 }
 
-impl Parser<'_> {
-    fn fail(&self, what: impl Into<String>) -> DocError {
-        DocError::at(self.line, format!("not valid JSON: {}", what.into()))
-    }
+/// What is wrong, without the position that serde_json appends.
+fn reason(e: &serde_json::Error) -> String {
+    let text = e.to_string();
+    format!("not valid JSON: {}", text.rsplit_once(" at line ").map_or(text.as_str(), |(reason, _)| reason))
+}
 
-    fn peek(&self) -> Option<u8> {
-        self.bytes.get(self.at).copied()
-    }
+/// Keys and values of an object in order, duplicates included.
+struct Pairs<'a>(Vec<(String, &'a RawValue)>);
 
-    fn space(&mut self) {
-        while let Some(b) = self.peek() {
-            match b {
-                b'\n' => self.line += 1,
-                b' ' | b'\t' | b'\r' => {}
-                _ => return,
+impl<'de> Deserialize<'de> for Pairs<'de> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct PairsVisitor;
+        impl<'de> Visitor<'de> for PairsVisitor {
+            type Value = Pairs<'de>;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("an object")
             }
-            self.at += 1;
-        }
-    }
 
-    fn found(&self) -> String {
-        match self.text.get(self.at..).and_then(|t| t.chars().next()) {
-            Some(c) => format!("'{}'", c.escape_default()),
-            None => "the end of the file".into(),
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Pairs<'de>, A::Error> {
+                std::iter::from_fn(|| map.next_entry().transpose()).collect::<Result<_, _>>().map(Pairs)
+            }
         }
+        deserializer.deserialize_map(PairsVisitor)
     }
+}
 
-    fn value(&mut self, depth: usize) -> Result<Node, DocError> {
+struct Source<'a> {
+    text: &'a str,
+    lines: Lines,
+}
+
+impl<'a> Source<'a> {
+    /// `raw` is a slice of the text that holds one valid value.
+    fn node(&self, raw: &'a str, depth: usize) -> Result<Node, DocError> {
+        let line = self.lines.line(self.offset(raw));
         if depth > MAX_DEPTH {
-            return Err(DocError::at(
-                self.line,
-                format!("the document is nested more than {MAX_DEPTH} deep; flatten it"),
-            ));
+            return Err(DocError::at(line, format!("the document is nested more than {MAX_DEPTH} deep; flatten it")));
         }
-        let line = self.line;
-        let value = match self.peek() {
-            Some(b'{') => self.table(depth)?,
-            Some(b'[') => self.list(depth)?,
-            Some(b'"') => Value::Text(self.string()?),
-            Some(b'-' | b'0'..=b'9') => self.number()?,
-            _ => self.word()?,
+        let fail = |e: serde_json::Error| DocError::at(line, reason(&e));
+        let value = match raw.as_bytes().first() {
+            Some(b'{') => self.table(serde_json::from_str::<Pairs<'a>>(raw).map_err(fail)?, depth)?,
+            Some(b'[') => {
+                let items: Vec<&'a RawValue> = serde_json::from_str(raw).map_err(fail)?;
+                Value::List(items.into_iter().map(|item| self.node(item.get(), depth + 1)).collect::<Result<_, _>>()?)
+            }
+            Some(b'"') => Value::Text(serde_json::from_str(raw).map_err(fail)?),
+            Some(b't' | b'f') => Value::Bool(raw == "true"),
+            Some(b'n') => Value::Null,
+            _ => match (raw.parse::<i64>(), raw.parse::<f64>()) {
+                (Ok(i), _) => Value::Int(i),
+                (_, Ok(f)) if f.is_finite() => Value::Float(f),
+                _ => {
+                    let number = shorten(raw);
+                    return Err(DocError::at(
+                        line,
+                        format!("\"{number}\" is not a finite number; give finite numbers"),
+                    ));
+                }
+            },
         };
         Ok(Node { line, value })
     }
 
-    fn word(&mut self) -> Result<Value, DocError> {
-        let rest = &self.bytes[self.at.min(self.bytes.len())..];
-        let words = [("true", Value::Bool(true)), ("false", Value::Bool(false)), ("null", Value::Null)];
-        for (word, value) in words {
-            if rest.starts_with(word.as_bytes()) {
-                self.at += word.len();
-                return Ok(value);
-            }
-        }
-        if ["NaN", "nan", "Infinity", "inf"].iter().any(|w| rest.starts_with(w.as_bytes())) {
-            return Err(DocError::at(self.line, "a number is not finite; give finite numbers".to_owned()));
-        }
-        Err(self.fail(format!("a value was expected, found {}", self.found())))
-    }
-
-    fn list(&mut self, depth: usize) -> Result<Value, DocError> {
-        self.at += 1;
-        let mut items = Vec::new();
-        self.space();
-        if self.peek() == Some(b']') {
-            self.at += 1;
-            return Ok(Value::List(items));
-        }
-        loop {
-            self.space();
-            items.push(self.value(depth + 1)?);
-            self.space();
-            match self.peek() {
-                Some(b',') => self.at += 1,
-                Some(b']') => {
-                    self.at += 1;
-                    return Ok(Value::List(items));
-                }
-                _ => return Err(self.fail(format!("',' or ']' was expected, found {}", self.found()))),
-            }
-        }
-    }
-
-    fn table(&mut self, depth: usize) -> Result<Value, DocError> {
-        self.at += 1;
+    fn table(&self, pairs: Pairs<'a>, depth: usize) -> Result<Value, DocError> {
         let mut entries: Vec<Entry> = Vec::new();
         let mut seen = std::collections::HashSet::new();
-        self.space();
-        if self.peek() == Some(b'}') {
-            self.at += 1;
-            return Ok(Value::Table(entries));
-        }
-        loop {
-            self.space();
-            let line = self.line;
-            if self.peek() != Some(b'"') {
-                return Err(self.fail(format!("a key in quotes was expected, found {}", self.found())));
-            }
-            let key = self.string()?;
+        for (key, raw) in pairs.0 {
+            // the key ends before the colon in front of the value, possibly on an earlier line
+            let before = self.text[..self.offset(raw.get())].trim_end().trim_end_matches(':').trim_end();
+            let line = self.lines.line(before.len().saturating_sub(1));
             if !seen.insert(key.clone()) {
                 return Err(DocError::at(line, format!("key \"{key}\" is given twice; keep one")));
             }
-            self.space();
-            if self.peek() != Some(b':') {
-                return Err(self.fail(format!("':' was expected after key \"{key}\", found {}", self.found())));
-            }
-            self.at += 1;
-            self.space();
-            let value = self.value(depth + 1)?;
-            entries.push(Entry { line, key, value });
-            self.space();
-            match self.peek() {
-                Some(b',') => self.at += 1,
-                Some(b'}') => {
-                    self.at += 1;
-                    return Ok(Value::Table(entries));
-                }
-                _ => return Err(self.fail(format!("',' or '}}' was expected, found {}", self.found()))),
-            }
+            entries.push(Entry { line, key, value: self.node(raw.get(), depth + 1)? });
         }
+        Ok(Value::Table(entries))
     }
 
-    /// A string; the escapes are left to the JSON library.
-    fn string(&mut self) -> Result<String, DocError> {
-        let start = self.at;
-        self.at += 1;
-        loop {
-            match self.peek() {
-                Some(b'"') => break,
-                Some(b'\\') => self.at += 2,
-                Some(b'\n') | None => return Err(self.fail("a text is not closed")),
-                Some(_) => self.at += 1,
-            }
-        }
-        self.at += 1;
-        let raw = self.text.get(start..self.at).ok_or_else(|| self.fail("a text is not closed"))?;
-        serde_json::from_str(raw).map_err(|_| self.fail("a text holds an invalid escape or control character"))
+    /// Where a slice of the text starts, bytes.
+    fn offset(&self, slice: &str) -> usize {
+        slice.as_ptr().addr() - self.text.as_ptr().addr()
     }
+}
 
-    fn number(&mut self) -> Result<Value, DocError> {
-        let start = self.at;
-        while matches!(self.peek(), Some(b'-' | b'+' | b'.' | b'e' | b'E' | b'0'..=b'9')) {
-            self.at += 1;
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_keys_and_mistakes_stand_on_their_lines() {
+        let root = parse("{\n \"a\" :\n\n [1,\n 2.5, {\"b\": \"x\\ny\"}],\n\"c\": -0}").unwrap();
+        let Value::Table(entries) = &root.value else { panic!() };
+        assert_eq!((entries[0].line, entries[0].value.line, entries[1].line), (2, 4, 6));
+        let items = entries[0].value.list().unwrap();
+        assert_eq!(items.iter().map(|n| n.line).collect::<Vec<_>>(), [4, 5, 5]);
+        assert_eq!(entries[1].value.value, Value::Int(0));
+        assert_eq!(items[2].get("b").unwrap().value, Value::Text("x\ny".into()));
+        for (text, line, words) in [
+            ("{\n\"a\": 1\n\"b\": 2}", 3, "not valid JSON: expected `,` or `}`"),
+            ("{\"a\":\n[1, NaN]}", 2, "not finite"),
+            ("[\nnan]", 2, "not finite"),
+            ("[\n1e999]", 2, "\"1e999\" is not a finite number"),
+            ("[01]", 1, "not valid JSON: invalid number"),
+            ("{\"a\": 1,\n\"a\": 2}", 2, "key \"a\" is given twice"),
+            ("[\n\"\\ud800\"]", 2, "not valid JSON"),
+            ("[1]\n 2", 2, "not valid JSON: trailing characters"),
+            ("{\"a\": \"x", 1, "not valid JSON: EOF"),
+            ("", 1, "not valid JSON"),
+        ] {
+            let error = parse(text).unwrap_err();
+            assert!(error.to_string().contains(words), "{text}: {error}");
+            assert_eq!(error.line, Some(line), "{text}: {error}");
         }
-        let raw = &self.text[start..self.at];
-        // The JSON library knows the grammar (no leading zeros, digits after the point), the standard library rounds exactly.
-        let bad = || {
-            DocError::at(
-                self.line,
-                format!("\"{}\" is not a finite number; give finite numbers", super::node::shorten(raw)),
-            )
-        };
-        serde_json::from_str::<serde_json::Number>(raw).map_err(|_| bad())?;
-        if let Ok(i) = raw.parse::<i64>() {
-            return Ok(Value::Int(i));
-        }
-        match raw.parse::<f64>() {
-            Ok(f) if f.is_finite() => Ok(Value::Float(f)),
-            _ => Err(bad()),
+        for deep in [64, 65, 100_000] {
+            let text = "[".repeat(deep) + &"]".repeat(deep);
+            assert_eq!(parse(&text).is_ok(), deep == 64, "{deep}");
         }
     }
 }

@@ -26,12 +26,12 @@ pub(crate) use node::{Node, Value};
 pub use overlay::{AutoOrLength, AutoWord, OverlayDoc, SwitchOrLength};
 pub use palette::{PaletteDoc, PaletteName};
 pub use stages::{
-    AxisDoc, BendDoc, BendRule, CurveFrameDoc, CurveUnitsDoc, DetailDoc, EaseDoc, PlaneDoc, PresetDoc,
-    PresetDocumentDoc, PresetsDoc, RayModelDoc, RaysStageDoc, SolverMode, SplineStageDoc, StageDoc, TagDoc,
-    TerrainStageDoc, TurnDoc,
+    AxisDoc, BendDoc, BendRule, DetailDoc, PlaneDoc, PresetsDoc, RayModelDoc, RaysStageDoc, SolverMode, SplineStageDoc,
+    StageDoc, TerrainStageDoc, TurnDoc,
 };
 
 use crate::BelvedereError;
+use belvedere_core::presets::PresetDocument;
 use std::path::{Path, PathBuf};
 
 /// Largest document, bytes.
@@ -90,7 +90,7 @@ pub fn parse(path: &Path, text: &str) -> Result<SourceDocument, BelvedereError> 
 ///
 /// # Errors
 /// As [`read`].
-pub fn parse_presets(path: &Path, text: &str) -> Result<PresetDocumentDoc, BelvedereError> {
+pub fn parse_presets(path: &Path, text: &str) -> Result<PresetDocument, BelvedereError> {
     let fail = |e: DocError| BelvedereError::Scene { path: path.to_owned(), line: e.line, reason: e.to_string() };
     let root = tree(path, text).map_err(fail)?;
     de::from_node(&root).map_err(fail)

@@ -121,6 +121,29 @@ impl Node {
     }
 }
 
+/// Byte offsets of line starts.
+pub(crate) struct Lines(Vec<usize>);
+
+impl Lines {
+    pub(crate) fn new(text: &str) -> Self {
+        Self(
+            std::iter::once(0)
+                .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1))
+                .collect(),
+        )
+    }
+
+    /// Line of a byte, 1-based.
+    pub(crate) fn line(&self, offset: usize) -> usize {
+        self.0.partition_point(|&start| start <= offset).max(1)
+    }
+
+    /// First byte of a line, 1-based.
+    pub(crate) fn start(&self, line: usize) -> usize {
+        self.0.get(line.max(1) - 1).copied().unwrap_or(usize::MAX)
+    }
+}
+
 /// `text` cut to a length that fits a message.
 pub(crate) fn shorten(text: &str) -> String {
     let clean: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(61).collect();

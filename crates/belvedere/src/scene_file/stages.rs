@@ -1,5 +1,6 @@
 //! Stages of the scene document.
 
+use belvedere_core::presets::PresetDocument;
 use schemars::JsonSchema;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};
@@ -170,7 +171,7 @@ pub enum PresetsDoc {
     /// Built-in name, or path of a TOML or JSON document.
     Named(String),
     /// The document.
-    Inline(Box<PresetDocumentDoc>),
+    Inline(Box<PresetDocument>),
 }
 
 impl<'de> Deserialize<'de> for PresetsDoc {
@@ -188,130 +189,11 @@ impl<'de> Deserialize<'de> for PresetsDoc {
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PresetsDoc, A::Error> {
-                PresetDocumentDoc::deserialize(MapAccessDeserializer::new(map)).map(Box::new).map(PresetsDoc::Inline)
+                PresetDocument::deserialize(MapAccessDeserializer::new(map)).map(Box::new).map(PresetsDoc::Inline)
             }
         }
         deserializer.deserialize_any(PresetsVisitor)
     }
-}
-
-/// Frame in which curves live.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum CurveFrameDoc {
-    /// Aligned with the camera.
-    #[default]
-    Camera,
-    /// Aligned with the reference plane.
-    Plane,
-}
-
-/// Unit of `s` and `e`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum CurveUnitsDoc {
-    /// Scene units.
-    #[default]
-    Absolute,
-    /// Units of the distance from the eye to the pivot.
-    Distance,
-}
-
-/// Easing between presets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum EaseDoc {
-    /// Straight.
-    #[default]
-    Linear,
-    /// Smooth at both ends.
-    Smoothstep,
-}
-
-/// A preset document.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PresetDocumentDoc {
-    /// Version of the format; 1.
-    pub version: u32,
-    /// Frame of the curves.
-    #[serde(default)]
-    pub frame: CurveFrameDoc,
-    /// Unit of `s` and `e`.
-    #[serde(default)]
-    pub units: CurveUnitsDoc,
-    /// Whether the pivot stays where it is on screen.
-    #[serde(default = "yes")]
-    pub pin: bool,
-    /// Easing between presets.
-    #[serde(default)]
-    pub ease: EaseDoc,
-    /// Whether the curve follows the camera beyond the last preset.
-    #[serde(default)]
-    pub follow: bool,
-    /// The presets.
-    pub presets: Vec<PresetDoc>,
-}
-
-fn yes() -> bool {
-    true
-}
-
-fn one() -> f64 {
-    1.0
-}
-
-fn all_section() -> Vec<String> {
-    vec!["all".to_owned()]
-}
-
-/// One preset.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PresetDoc {
-    /// Name.
-    #[serde(default)]
-    pub name: String,
-    /// Viewing angle, degrees.
-    pub phi: f64,
-    /// Half width of its validity, degrees.
-    #[serde(default)]
-    pub tau: f64,
-    /// Depth of the near end, see `units`.
-    pub s: f64,
-    /// Depth of the far end, see `units`.
-    pub e: f64,
-    /// Start of the exchange of representations, share of the transition.
-    #[serde(default)]
-    pub a: f64,
-    /// End of the exchange of representations, share of the transition.
-    #[serde(default = "one")]
-    pub b: f64,
-    /// Control points from near to far, at least 4.
-    pub control: Vec<[f64; 2]>,
-    /// Knots; clamped and uniform by default.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub knots: Option<Vec<f64>>,
-    /// Interior tags, ascending.
-    #[serde(default)]
-    pub tags: Vec<TagDoc>,
-    /// Geometry of each section, one more than tags.
-    #[serde(default = "all_section")]
-    pub sections: Vec<String>,
-    /// Field of view at this preset, degrees.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub fov_y_deg: Option<f64>,
-}
-
-/// A tag point.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TagDoc {
-    /// Place on the curve, 0..=1.
-    pub u: f64,
-    /// Half width of the transition.
-    #[serde(default)]
-    pub delta: f64,
 }
 
 /// Model of the transition of curved rays.

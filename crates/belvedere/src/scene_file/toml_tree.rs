@@ -1,7 +1,7 @@
 //! TOML to [`Node`], keeping lines.
 
 use super::DocError;
-use super::node::{Entry, Node, Value};
+use super::node::{Entry, Lines, Node, Value};
 use toml::de::{DeTable, DeValue};
 
 /// Parses a whole TOML document.
@@ -12,23 +12,6 @@ pub(crate) fn parse(text: &str) -> Result<Node, DocError> {
         DocError::at(line, format!("not valid TOML: {}", e.message().trim().replace('\n', "; ")))
     })?;
     Ok(Node { line: 1, value: table_value(table.into_inner(), &lines, 1)? })
-}
-
-/// Byte offsets of line starts.
-struct Lines(Vec<usize>);
-
-impl Lines {
-    fn new(text: &str) -> Self {
-        Self(
-            std::iter::once(0)
-                .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1))
-                .collect(),
-        )
-    }
-
-    fn line(&self, offset: usize) -> usize {
-        self.0.partition_point(|&start| start <= offset).max(1)
-    }
 }
 
 fn table_value(table: DeTable<'_>, lines: &Lines, depth: usize) -> Result<Value, DocError> {

@@ -298,12 +298,8 @@ fn adopt(session: &mut Session, found: &Revealed) -> Result<(), BelvedereError> 
     let document = &mut session.document;
     let ahead = (found.pivot - pinhole.eye).length().max(1.0);
     document.camera = camera_document(pinhole, pinhole.eye + ahead * pinhole.forward);
-    let presets = serde_json::to_value(&found.document)
-        .map_err(|e| e.to_string())
-        .and_then(|v| serde_json::from_value(v).map_err(|e| e.to_string()))
-        .map_err(|e| BelvedereError::Usage(format!("the bend cannot be written as a document: {e}")))?;
     document.stage = vec![StageDoc::SplineBend(SplineStageDoc {
-        presets: PresetsDoc::Inline(Box::new(presets)),
+        presets: PresetsDoc::Inline(Box::new(found.document.clone())),
         pivot: Some(found.pivot.to_array()),
         plane: Some(PlaneDoc { normal: [0.0, 0.0, 1.0], height_m: Some(found.plane_height) }),
     })];
