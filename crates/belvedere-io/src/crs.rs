@@ -310,9 +310,9 @@ fn wrap_lon(lon_deg: f64) -> f64 {
     if (-180.0..=180.0).contains(&lon_deg) { lon_deg } else { (lon_deg + 180.0).rem_euclid(360.0) - 180.0 }
 }
 
-/// EPSG code of the metric system that suits a place: the WGS 84 UTM zone (326xx, 327xx), beyond 84 north and 80 south
+/// EPSG code of the metric system that suits a position: the WGS 84 UTM zone (326xx, 327xx), beyond 84 north and 80 south
 /// the polar stereographic systems 32661 and 32761. The exceptions of Norway and Svalbard are not made.
-/// `None` if the place is not on the earth.
+/// `None` if the position is not on the earth.
 pub fn utm_epsg(lon_deg: f64, lat_deg: f64) -> Option<u32> {
     if !lon_deg.is_finite() || lat_deg.is_nan() || lat_deg.abs() > 90.0 {
         return None;

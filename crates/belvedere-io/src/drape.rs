@@ -379,10 +379,10 @@ fn reproject(
     let mut pixels = vec![[0u8; 4]; width * height];
     pixels.par_chunks_exact_mut(width).enumerate().for_each_init(
         || vec![DVec2::ZERO; width],
-        |places, (r, row)| {
-            map.row(r, places);
-            for (pixel, &place) in row.iter_mut().zip(places.iter()) {
-                *pixel = picture.sample(place);
+        |positions, (r, row)| {
+            map.row(r, positions);
+            for (pixel, &position) in row.iter_mut().zip(positions.iter()) {
+                *pixel = picture.sample(position);
             }
         },
     );

@@ -5,8 +5,8 @@
 //! measured and bounded (see [`ResampleError`]). Voids stay voids unless they are filled, and filled nodes are marked.
 
 mod fill;
+mod grid_map;
 mod original;
-mod place;
 mod resample;
 mod source;
 
@@ -14,8 +14,8 @@ use crate::crs::{CoordinateSystem, Transform, utm_epsg};
 use crate::{IoError, Limits, Loaded};
 use belvedere_scene::{Crs, Heightfield, HeightfieldError, NodeState, Progress};
 use glam::DVec2;
+pub(crate) use grid_map::{Geometry, GridMap, Link};
 pub use original::{OriginalTerrain, load_original};
-pub(crate) use place::{Geometry, GridMap, Link};
 pub(crate) use source::stated_system;
 
 use resample::SceneGrid;
@@ -139,7 +139,7 @@ pub fn load_terrain(
     let merged = source::merge_aligned(sources, request.max_nodes, &mut warnings);
     let extent_deg = extent(&merged).map(|e| e.bounds);
     progress.tick("placing terrain", 0.0)?;
-    let (mut grid, resample_error) = place(&merged, &target, request, &mut warnings, progress)?;
+    let (mut grid, resample_error) = onto_scene_grid(&merged, &target, request, &mut warnings, progress)?;
     let source_spacing_m = Link::new(&merged[0], target.system.as_ref(), first)?.spacing_at_centre(&merged[0]);
     drop(merged);
     grid.trim();
@@ -354,7 +354,7 @@ fn extent(sources: &[SourceGrid]) -> Option<Extent> {
 }
 
 /// The grid of the scene: exact where possible, resampled else.
-fn place(
+fn onto_scene_grid(
     sources: &[SourceGrid],
     target: &Target,
     request: &TerrainRequest,

@@ -82,9 +82,9 @@ pub enum PresetError {
         preset: String,
         /// Index of the tag, from 0.
         index: usize,
-        /// Its place.
+        /// Its position, share of the arc length.
         u: f64,
-        /// Place of the tag before.
+        /// Position of the tag before.
         before: f64,
     },
     /// Number of sections.

@@ -32,7 +32,7 @@ impl<'a> Row<'a> {
     pub(crate) fn new(bend: &'a SplineBend, pinhole: &Pinhole, y: f64, range: [f64; 2]) -> Self {
         let (from, per_depth) = pinhole.line(DVec2::new(pinhole.center_px().x, y));
         let along = bend.curve_axes().map(|axis| per_depth.dot(axis) / bend.scale());
-        let line = [bend.curve_place(from), DVec2::from_array(along)];
+        let line = [bend.curve_position(from), DVec2::from_array(along)];
         let row = Self { bend, line, nodes: RefCell::new(Vec::new()) };
         let ends = range.map(|w| row.foot(w));
         row.nodes.borrow_mut().push(row.new_node(range, ends));

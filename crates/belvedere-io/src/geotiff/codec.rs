@@ -12,7 +12,7 @@ pub(super) struct Scratch {
     pub(super) raw: Vec<u8>,
     /// Decoded samples of the current chunk in the byte order of this machine.
     pub(super) out: Vec<u8>,
-    turn: Vec<u8>,
+    spare: Vec<u8>,
     lzw: Option<decode::Decoder>,
     inflate: Option<Decompress>,
     zstd: Option<ruzstd::decoding::FrameDecoder>,
@@ -32,7 +32,7 @@ impl Scratch {
         let predictor = if layout.compression.takes_predictor() { layout.predictor } else { 1 };
         if predictor == 3 {
             for row in self.out.chunks_exact_mut(row_bytes) {
-                undo_float_predictor(row, bands, sample, &mut self.turn);
+                undo_float_predictor(row, bands, sample, &mut self.spare);
             }
         } else if sample > 1 && big_endian != cfg!(target_endian = "big") {
             swap_bytes(&mut self.out, sample);
@@ -44,11 +44,11 @@ impl Scratch {
             Stored::Plain(_) => {}
             Stored::Packed(bits) => self.unpack(usize::from(bits), row_bytes, layout.chunk_width),
             Stored::Half => {
-                self.turn.clear();
+                self.spare.clear();
                 let halves = self.out.chunks_exact(2);
                 let widened = halves.flat_map(|b| half_to_f32(u16::from_ne_bytes([b[0], b[1]])).to_ne_bytes());
-                self.turn.extend(widened);
-                std::mem::swap(&mut self.turn, &mut self.out);
+                self.spare.extend(widened);
+                std::mem::swap(&mut self.spare, &mut self.out);
             }
         }
         Ok(())
@@ -127,10 +127,10 @@ impl Scratch {
             return Err(bad("it does not start with its marker".to_owned()));
         }
         if let Some(tables) = layout.jpeg_tables.len().checked_sub(2).and_then(|n| layout.jpeg_tables.get(..n)) {
-            self.turn.clear();
-            self.turn.extend_from_slice(tables);
-            self.turn.extend_from_slice(self.raw.get(2..).unwrap_or(&[]));
-            std::mem::swap(&mut self.turn, &mut self.raw);
+            self.spare.clear();
+            self.spare.extend_from_slice(tables);
+            self.spare.extend_from_slice(self.raw.get(2..).unwrap_or(&[]));
+            std::mem::swap(&mut self.spare, &mut self.raw);
         }
         let options = DecoderOptions::default()
             .set_strict_mode(true)
@@ -158,12 +158,12 @@ impl Scratch {
 
     fn unpack(&mut self, bits: usize, row_bytes: usize, width: usize) {
         let mask = (1u16 << bits) as u8 - 1;
-        self.turn.clear();
+        self.spare.clear();
         for row in self.out.chunks_exact(row_bytes) {
             let samples = row.iter().flat_map(|&b| (0..8 / bits).map(move |i| b >> (8 - bits * (i + 1)) & mask));
-            self.turn.extend(samples.take(width));
+            self.spare.extend(samples.take(width));
         }
-        std::mem::swap(&mut self.turn, &mut self.out);
+        std::mem::swap(&mut self.spare, &mut self.out);
     }
 }
 
@@ -233,20 +233,20 @@ fn undo_difference(row: &mut [u8], bands: usize, sample: usize) {
 }
 
 /// Floating-point predictor (Adobe TIFF technical note 3): byte planes, most significant first, differenced.
-fn undo_float_predictor(row: &mut [u8], bands: usize, sample: usize, turn: &mut Vec<u8>) {
+fn undo_float_predictor(row: &mut [u8], bands: usize, sample: usize, spare: &mut Vec<u8>) {
     for i in bands..row.len() {
         row[i] = row[i].wrapping_add(row[i - bands]);
     }
-    turn.clear();
-    turn.extend_from_slice(row);
+    spare.clear();
+    spare.extend_from_slice(row);
     let plane = row.len() / sample;
     if plane == 0 {
         return;
     }
-    for (p, bytes) in turn.chunks_exact(plane).take(sample).enumerate() {
-        let place = if cfg!(target_endian = "big") { p } else { sample - 1 - p };
+    for (p, bytes) in spare.chunks_exact(plane).take(sample).enumerate() {
+        let byte_index = if cfg!(target_endian = "big") { p } else { sample - 1 - p };
         for (cell, &byte) in row.chunks_exact_mut(sample).zip(bytes) {
-            cell[place] = byte;
+            cell[byte_index] = byte;
         }
     }
 }

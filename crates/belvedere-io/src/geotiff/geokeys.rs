@@ -26,10 +26,10 @@ impl Keys {
         let count = directory.get(3).map_or(0, |&n| n as usize);
         let mut keys = BTreeMap::new();
         for entry in directory.get(4..).unwrap_or(&[]).chunks_exact(4).take(count) {
-            let &[id, place, count, value] = entry else { continue };
+            let &[id, location, count, value] = entry else { continue };
             let value_at = value as usize;
-            let key = match u16::try_from(place).unwrap_or(0) {
-                0 if place == 0 => Some(Key::Short(value as u32)),
+            let key = match u16::try_from(location).unwrap_or(0) {
+                0 if location == 0 => Some(Key::Short(value as u32)),
                 tag::GEO_DOUBLES => doubles.get(value_at).copied().map(Key::Double),
                 tag::GEO_ASCII => {
                     text.get(value_at..value_at.saturating_add(count as usize).min(text.len())).map(|t| {

@@ -40,7 +40,7 @@ pub(super) mod tag {
 const MAX_DIRECTORIES: usize = 1024;
 const MAX_ENTRIES: u64 = 4096;
 
-/// Type, number and place of the values of a tag.
+/// Type, number and position of the values of a tag.
 #[derive(Debug, Clone, Copy)]
 struct Entry {
     kind: u16,
@@ -141,14 +141,14 @@ impl Container {
         let start = at + count_size;
         let mut entries = BTreeMap::new();
         for (i, row) in rows.chunks_exact(entry_size as usize).enumerate() {
-            let (head, place) = row.split_at(row.len() - inline as usize);
+            let (head, value) = row.split_at(row.len() - inline as usize);
             let (Some(number), Some(kind), Some(count)) = (head.get(..2), head.get(2..4), head.get(4..)) else {
                 continue;
             };
             let (number, kind, count) = (self.uint(number) as u16, self.uint(kind) as u16, self.uint(count));
             let Some(bytes) = kind_size(kind).and_then(|size| size.checked_mul(count)) else { continue };
             let inline_at = start + i as u64 * entry_size + head.len() as u64;
-            let at = if bytes <= inline { inline_at } else { self.uint(place) };
+            let at = if bytes <= inline { inline_at } else { self.uint(value) };
             entries.entry(number).or_insert(Entry { kind, count, at });
         }
         Ok(Ifd { entries, next: self.uint(next) })

@@ -72,11 +72,11 @@ fn gdal_metadata(xml: &str, info: &mut RasterInfo, warnings: &mut Vec<String>) {
         let text = text.trim();
         match attribute(head, "role") {
             Some(role @ ("scale" | "offset")) => {
-                let place = usize::from(role == "offset");
+                let slot_index = usize::from(role == "offset");
                 if let (Some(slot), Ok(value)) = (scaling.get_mut(band), text.parse::<f64>())
                     && value.is_finite()
                 {
-                    slot[place] = value;
+                    slot[slot_index] = value;
                 }
             }
             Some("unittype") if band == 0 => match text.to_ascii_lowercase().as_str() {

@@ -113,9 +113,9 @@ impl Window<'_> {
             self.copy(band, 0, chunk_row, cols.start, decoded.then_some(&scratch.out[..]));
             return Ok(());
         }
-        let places: Vec<[usize; 2]> = (0..planes).flat_map(|p| cols.clone().map(move |c| [p, c])).collect();
+        let chunks: Vec<[usize; 2]> = (0..planes).flat_map(|p| cols.clone().map(move |c| [p, c])).collect();
         // Few chunks at a time, so that wide images do not need twice their memory.
-        for part in places.chunks(4 * rayon::current_num_threads()) {
+        for part in chunks.chunks(4 * rayon::current_num_threads()) {
             let decoded: Vec<Option<Vec<u8>>> = part
                 .par_iter()
                 .map_init(Scratch::default, |scratch, &[plane, col]| {
@@ -173,8 +173,8 @@ impl Window<'_> {
                     line.iter_mut().zip(source.chunks_exact(T::SIZE)).for_each(|(s, b)| *s = T::from_ne(b));
                 }
                 (Some(source), true) => {
-                    let places = line.iter_mut().skip(plane).step_by(layout.bands);
-                    places.zip(source.chunks_exact(T::SIZE)).for_each(|(s, b)| *s = T::from_ne(b));
+                    let cells = line.iter_mut().skip(plane).step_by(layout.bands);
+                    cells.zip(source.chunks_exact(T::SIZE)).for_each(|(s, b)| *s = T::from_ne(b));
                 }
             }
         }

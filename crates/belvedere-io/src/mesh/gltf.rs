@@ -20,7 +20,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
     let buffers = buffers(path, &gltf.document, gltf.blob, limits)?;
     let mut builder =
         Builder { buffers, out: MeshFile { format: "glTF", ..MeshFile::default() }, ..Builder::default() };
-    // Every node has one place in the tree: more visits than nodes are a circle.
+    // A tree visits every node once: more visits than nodes are a cycle.
     builder.visits_left = gltf.document.nodes().count();
     let scene = gltf.document.default_scene().or_else(|| gltf.document.scenes().next());
     let nodes: Vec<Node<'_>> = match &scene {
@@ -120,19 +120,19 @@ impl Builder {
         }
         self.visits_left -= 1;
         let columns = node.transform().matrix().map(|c| c.map(f64::from));
-        let place = parent * DMat4::from_cols_array_2d(&columns);
+        let transform = parent * DMat4::from_cols_array_2d(&columns);
         if let Some(mesh) = node.mesh() {
             for primitive in mesh.primitives() {
-                self.primitive(&primitive, place)?;
+                self.primitive(&primitive, transform)?;
             }
         }
         for child in node.children() {
-            self.node(&child, place, depth + 1)?;
+            self.node(&child, transform, depth + 1)?;
         }
         Ok(())
     }
 
-    fn primitive(&mut self, primitive: &Primitive<'_>, place: DMat4) -> Result<(), String> {
+    fn primitive(&mut self, primitive: &Primitive<'_>, transform: DMat4) -> Result<(), String> {
         let (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) = primitive.mode() else {
             self.skipped += 1;
             return Ok(());
@@ -143,9 +143,9 @@ impl Builder {
         };
         let positions = self.values(&positions)?;
         let (first, count) = (self.out.positions.len(), positions.len());
-        self.out.positions.extend(positions.iter().map(|p| z_up(place.transform_point3(triple(p)))));
+        self.out.positions.extend(positions.iter().map(|p| z_up(transform.transform_point3(triple(p)))));
         let normals = primitive.get(&Semantic::Normals).map(|a| self.values(&a)).transpose()?;
-        let turn = place.inverse().transpose();
+        let turn = transform.inverse().transpose();
         self.smooth |= normals.is_some();
         self.normals.extend((0..count).map(|i| {
             let n = normals.as_ref().and_then(|n| n.get(i)).map_or(DVec3::ZERO, triple);
@@ -169,7 +169,7 @@ impl Builder {
             return Err("it has more than 4 billion vertices; split it".into());
         }
         // A mirrored node turns its triangles inside out.
-        let mirrored = place.determinant() < 0.0;
+        let mirrored = transform.determinant() < 0.0;
         for [a, b, c] in triangles(primitive.mode(), &corners) {
             let [a, b, c] = if mirrored { [a, c, b] } else { [a, b, c] };
             self.out.triangles.push([a, b, c].map(|v| v + first as u32));

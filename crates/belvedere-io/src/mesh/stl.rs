@@ -42,11 +42,11 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
 
 fn binary(bytes: &[u8]) -> Vec<[[f32; 3]; 3]> {
     let number = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
-    let place = |b: &[u8]| [number(&b[0..4]), number(&b[4..8]), number(&b[8..12])];
-    bytes.chunks_exact(TRIANGLE).map(|t| [place(&t[12..24]), place(&t[24..36]), place(&t[36..48])]).collect()
+    let position = |b: &[u8]| [number(&b[0..4]), number(&b[4..8]), number(&b[8..12])];
+    bytes.chunks_exact(TRIANGLE).map(|t| [position(&t[12..24]), position(&t[24..36]), position(&t[36..48])]).collect()
 }
 
-/// Corners at the very same place become one vertex.
+/// Corners at exactly the same position become one vertex.
 fn joined(triangles: &[[[f32; 3]; 3]]) -> MeshFile {
     let mut out = MeshFile { format: "STL", ..MeshFile::default() };
     let mut known = std::collections::HashMap::new();

@@ -67,11 +67,11 @@ impl OriginalTerrain {
             .with_min_len(4096)
             .map(|i| {
                 let at = source.model_from_index.apply((i % source.cols) as f64, (i / source.cols) as f64);
-                let place = match &transform {
+                let scene_xy = match &transform {
                     Some(t) => t.forward_one(DVec2::from(at)),
                     None => Some(DVec2::from(at)),
                 };
-                let moved = place.map(&delta).filter(|d| d.is_finite() && source.heights[i].is_finite());
+                let moved = scene_xy.map(&delta).filter(|d| d.is_finite() && source.heights[i].is_finite());
                 moved.map_or([NODATA; 2], |d| [(f64::from(source.heights[i]) + d) as f32, d as f32])
             })
             .collect();
@@ -92,7 +92,7 @@ impl OriginalTerrain {
         Raster { info, samples: Samples::F32(values), mask: None }
     }
 
-    /// Scene x, y of a place in the file's own system (degrees if that is geographic); `None` outside the domain of either system.
+    /// Scene x, y of a position in the file's own system (degrees if that is geographic); `None` outside the domain of either system.
     pub fn scene_from_model(&self, scene: Crs, model: DVec2) -> Option<DVec2> {
         match (&self.source.system, scene) {
             (Some(system), Crs::Epsg(_)) => {

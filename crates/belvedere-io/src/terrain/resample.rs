@@ -1,6 +1,6 @@
 //! Sources onto the axis-aligned grid of a scene.
 
-use super::place::{Geometry, GridMap, Link};
+use super::grid_map::{Geometry, GridMap, Link};
 use super::source::{SourceGrid, bilinear};
 use super::{ResampleError, TerrainRequest};
 use crate::IoError;

@@ -27,13 +27,13 @@ pub fn lines_on_terrain(
     scene_crs: Crs,
     terrain: Option<&Heightfield>,
 ) -> Result<Loaded<Vec<LineFeature>>, IoError> {
-    let mut joint = Joint::new(vectors, scene_crs, terrain)?;
+    let mut reprojection = Reprojection::new(vectors, scene_crs, terrain)?;
     let (mut features, mut lengths, mut lines_seen, mut lines_lost) = (Vec::new(), [0.0; 2], 0usize, 0usize);
     for feature in &vectors.features {
         for line in lines_of(feature) {
             lines_seen += 1;
             let before = features.len();
-            let projected = joint.line(&line);
+            let projected = reprojection.line(&line);
             lengths[0] += projected.dropped_m;
             lengths[1] += projected.dropped_m;
             for part in projected.parts {
@@ -59,18 +59,18 @@ pub fn lines_on_terrain(
         return Err(vectors.fail("holds points only, no line; use it as a point layer (kind = \"point\")"));
     }
     if features.is_empty() {
-        return Err(joint.all_outside("lines"));
+        return Err(reprojection.all_outside("lines"));
     }
     let [length, outside] = lengths;
     if outside > 1e-3 * length {
-        joint.warn(format!(
+        reprojection.warn(format!(
             "{:.1} of {:.1} km ({:.0} %) lie outside the terrain or over its voids and were cut off, {lines_lost} of {lines_seen} lines wholly",
             outside / 1000.0,
             length / 1000.0,
             100.0 * outside / length
         ));
     }
-    Ok(joint.done(features))
+    Ok(reprojection.done(features))
 }
 
 /// Areas of a scene from polygons, one feature each: outer ring counter-clockwise, holes clockwise, whatever the file says.
@@ -83,7 +83,7 @@ pub fn areas_on_terrain(
     scene_crs: Crs,
     terrain: Option<&Heightfield>,
 ) -> Result<Loaded<Vec<AreaFeature>>, IoError> {
-    let mut joint = Joint::new(vectors, scene_crs, terrain)?;
+    let mut reprojection = Reprojection::new(vectors, scene_crs, terrain)?;
     let ground = terrain.map(Heightfield::bounds);
     let (mut features, mut seen, mut outside, mut broken) = (Vec::new(), 0usize, 0usize, 0usize);
     for feature in &vectors.features {
@@ -92,7 +92,7 @@ pub fn areas_on_terrain(
             seen += 1;
             let mut rings: Vec<Vec<DVec2>> = Vec::new();
             for (k, ring) in polygon.iter().enumerate() {
-                match joint.ring(ring) {
+                match reprojection.ring(ring) {
                     Some(mut ring) => {
                         if (doubled_area(&ring) < 0.0) == (k == 0) {
                             ring.reverse();
@@ -120,12 +120,12 @@ pub fn areas_on_terrain(
         return Err(vectors.fail("holds no polygon; use it as a line or point layer"));
     }
     if features.is_empty() {
-        return Err(joint.all_outside("areas"));
+        return Err(reprojection.all_outside("areas"));
     }
     if outside + broken > 0 {
-        joint.warn(format!("{} of {seen} areas lie outside the terrain and were dropped", outside + broken));
+        reprojection.warn(format!("{} of {seen} areas lie outside the terrain and were dropped", outside + broken));
     }
-    Ok(joint.done(features))
+    Ok(reprojection.done(features))
 }
 
 /// Points of a scene from waypoints and points, on the ground. Points outside the terrain or on voids are dropped and counted.
@@ -138,14 +138,14 @@ pub fn points_on_terrain(
     scene_crs: Crs,
     terrain: Option<&Heightfield>,
 ) -> Result<Loaded<Vec<PointFeature>>, IoError> {
-    let mut joint = Joint::new(vectors, scene_crs, terrain)?;
+    let mut reprojection = Reprojection::new(vectors, scene_crs, terrain)?;
     let (mut features, mut seen) = (Vec::new(), 0usize);
     for feature in &vectors.features {
         let Geometry::Points(points) = &feature.geometry else { continue };
         for v in points {
             seen += 1;
-            let Some(xy) = joint.project(v.xy) else { continue };
-            joint.include(xy);
+            let Some(xy) = reprojection.project(v.xy) else { continue };
+            reprojection.include(xy);
             let z = match terrain {
                 Some(terrain) => terrain.surface_at(xy),
                 None => Some(v.z.unwrap_or(0.0)),
@@ -157,15 +157,15 @@ pub fn points_on_terrain(
         return Err(vectors.fail("holds no point; use it as a line or area layer"));
     }
     if features.is_empty() {
-        return Err(joint.all_outside("points"));
+        return Err(reprojection.all_outside("points"));
     }
     if features.len() < seen {
-        joint.warn(format!(
+        reprojection.warn(format!(
             "{} of {seen} points lie outside the terrain or on its voids and were dropped",
             seen - features.len()
         ));
     }
-    Ok(joint.done(features))
+    Ok(reprojection.done(features))
 }
 
 impl Vectors {
@@ -208,8 +208,8 @@ struct Projected {
     dropped_m: f64,
 }
 
-/// How the file's system and the scene's are joined, and what was met on the way.
-struct Joint<'a> {
+/// From the file's coordinate system to the scene's, with the extent and the warnings of what was projected.
+struct Reprojection<'a> {
     vectors: &'a Vectors,
     terrain: Option<&'a Heightfield>,
     scene_crs: Crs,
@@ -222,10 +222,10 @@ struct Joint<'a> {
     warnings: Vec<String>,
 }
 
-impl<'a> Joint<'a> {
+impl<'a> Reprojection<'a> {
     fn new(vectors: &'a Vectors, scene_crs: Crs, terrain: Option<&'a Heightfield>) -> Result<Self, IoError> {
         let fail = |e: CrsError| vectors.fail(format!("cannot be brought to {scene_crs}: {e}"));
-        let mut joint = Self {
+        let mut reprojection = Self {
             vectors,
             terrain,
             scene_crs,
@@ -237,20 +237,20 @@ impl<'a> Joint<'a> {
         };
         match CoordinateSystem::from_scene(scene_crs) {
             Err(CrsError::Local) if !vectors.crs.is_geographic() => {
-                joint.warn("coordinates are taken as they are, for the scene has no coordinate system".into());
+                reprojection.warn("coordinates are taken as they are, for the scene has no coordinate system".into());
             }
             Err(CrsError::Local) => {
                 return Err(vectors.fail("is in longitude and latitude, but the scene has no coordinate system; set crs to the terrain's EPSG code"));
             }
             Err(e) => return Err(fail(e)),
-            Ok(system) => joint.transform = Some(Transform::new(&vectors.crs, &system).map_err(fail)?),
+            Ok(system) => reprojection.transform = Some(Transform::new(&vectors.crs, &system).map_err(fail)?),
         }
-        joint
+        reprojection
             .warnings
-            .extend(joint.transform.iter().filter(|t| !t.is_identity()).filter_map(|t| t.from().datum_note()));
-        joint.near_lon = if vectors.crs.is_geographic() { joint.middle_lon() } else { None };
-        joint.near = joint.surroundings();
-        Ok(joint)
+            .extend(reprojection.transform.iter().filter(|t| !t.is_identity()).filter_map(|t| t.from().datum_note()));
+        reprojection.near_lon = if vectors.crs.is_geographic() { reprojection.middle_lon() } else { None };
+        reprojection.near = reprojection.surroundings();
+        Ok(reprojection)
     }
 
     fn warn(&mut self, text: String) {
@@ -291,7 +291,7 @@ impl<'a> Joint<'a> {
         self.vectors.crs.metres_per_unit().map_or(STEP_DEG, |m| STEP_M / m)
     }
 
-    /// The same place with a longitude at most 180 degrees from the middle of the terrain.
+    /// The same position with a longitude at most 180 degrees from the middle of the terrain.
     fn bring_near(&self, p: DVec2) -> DVec2 {
         match self.near_lon {
             Some(middle) => DVec2::new(middle + (p.x - middle + 180.0).rem_euclid(360.0) - 180.0, p.y),
@@ -356,17 +356,17 @@ impl<'a> Joint<'a> {
         let mut part: Vec<DVec3> = Vec::new();
         let mut previous: Option<(DVec2, bool)> = None;
         let near = self.near;
-        let mut visit = |joint: &mut Self, xy: DVec2, z: f64| {
+        let mut visit = |reprojection: &mut Self, xy: DVec2, z: f64| {
             let inside = near.is_none_or(|[lo, hi]| xy.cmpge(lo).all() && xy.cmple(hi).all());
-            let projected = joint.project(xy);
+            let projected = reprojection.project(xy);
             if let Some(p) = projected {
-                joint.include(p);
+                reprojection.include(p);
             }
             let kept = projected.filter(|_| inside);
             if let Some((from, was_kept)) = previous
                 && !(was_kept && kept.is_some())
             {
-                out.dropped_m += joint.metres_between(from, xy);
+                out.dropped_m += reprojection.metres_between(from, xy);
             }
             match kept {
                 Some(p) => part.push(p.extend(z)),

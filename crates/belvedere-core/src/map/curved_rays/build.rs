@@ -1,7 +1,7 @@
 //! From a specification to a chain.
 
-use super::check::{Earlier, Raw, Surroundings, corner_direction, corner_pixels, numbers};
-use super::form::{Forms, LinearForm, Part};
+use super::check::{PreviousTurn, TurnContext, UnscaledTurn, corner_direction, corner_pixels, numbers};
+use super::form::{Forms, LinearForm, StraightPart};
 use super::phi::Hinge;
 use super::remedy::report;
 use super::spec::{CurvedRaysError, Model, Sharpness, TurnSpec};
@@ -14,17 +14,17 @@ pub(super) fn build(root: &Pinhole, model: Model, spec: &[TurnSpec]) -> Result<C
     if root.is_orthographic() {
         return Err(CurvedRaysError::Orthographic);
     }
-    let mut part = Part { viewpoint: root.eye, linear: DMat3::IDENTITY, inverse: DMat3::IDENTITY };
-    let mut earlier: Option<Earlier<'_>> = None;
+    let mut part = StraightPart { viewpoint: root.eye, linear: DMat3::IDENTITY, inverse: DMat3::IDENTITY };
+    let mut previous: Option<PreviousTurn<'_>> = None;
     let mut turns: Vec<Turn> = Vec::with_capacity(spec.len());
     for (index, turn_spec) in spec.iter().enumerate() {
-        let around = Surroundings { root, turn: index + 1, part, earlier };
-        numbers(turn_spec, around.turn)?;
-        let raw = Raw::new(turn_spec, around.turn, &part)?;
-        let forms = raw.rows(turn_spec, &around).map_err(|broken| report(broken, turn_spec, &around))?;
-        let hinge = hinge(model, turn_spec, &forms, &around)?;
+        let context = TurnContext { root, turn: index + 1, part, previous };
+        numbers(turn_spec, context.turn)?;
+        let unscaled = UnscaledTurn::new(turn_spec, context.turn, &part)?;
+        let forms = unscaled.check(turn_spec, &context).map_err(|violation| report(violation, turn_spec, &context))?;
+        let hinge = hinge(model, turn_spec, &forms, &context)?;
         let ends = corner_pixels(root).map(|px| forms.end(corner_direction(px, root, &part)));
-        earlier = Some(Earlier { spec: turn_spec, part, ends });
+        previous = Some(PreviousTurn { spec: turn_spec, part, ends });
         let turn = Turn::new(&part, turn_spec, &forms, hinge);
         part = turn.part_after();
         turns.push(turn);
@@ -34,7 +34,7 @@ pub(super) fn build(root: &Pinhole, model: Model, spec: &[TurnSpec]) -> Result<C
 }
 
 /// How the rays of a turn bend.
-fn hinge(model: Model, spec: &TurnSpec, forms: &Forms, around: &Surroundings<'_>) -> Result<Hinge, CurvedRaysError> {
+fn hinge(model: Model, spec: &TurnSpec, forms: &Forms, context: &TurnContext<'_>) -> Result<Hinge, CurvedRaysError> {
     if forms.kink {
         return Ok(Hinge::Broken);
     }
@@ -43,14 +43,14 @@ fn hinge(model: Model, spec: &TurnSpec, forms: &Forms, around: &Surroundings<'_>
         Model::C2 => Hinge::C2,
         // Only a first guess: m = 1 serves where the bend point's own ray has none.
         Model::Original => Hinge::Bezier { start: forms.values.m_sigma(forms.sigma).unwrap_or(1.0) },
-        Model::Modified => Hinge::Conic { m: sharpness(spec, forms, around)? },
+        Model::Modified => Hinge::Conic { m: sharpness(spec, forms, context)? },
         Model::Circular => {
             // Our reading of beta: the angle between the planes t0 and t2, normals along the rays, by which a ray that
             // crosses both at right angles turns. Parallel planes: m = 1.
             let (n0, n2) = (forms.a.gradient.normalize(), -forms.b.gradient.normalize());
             let half_square = 0.5 * (1.0 + n0.dot(n2).clamp(-1.0, 1.0));
             if half_square < 1e-12 {
-                return Err(CurvedRaysError::SamePlanes { turn: around.turn, distance: 0.0 });
+                return Err(CurvedRaysError::SamePlanes { turn: context.turn, distance: 0.0 });
             }
             Hinge::Conic { m: 1.0 / half_square.sqrt() }
         }
@@ -58,11 +58,11 @@ fn hinge(model: Model, spec: &TurnSpec, forms: &Forms, around: &Surroundings<'_>
 }
 
 /// The one sharpness of a turn of the modified model. Computed values are not clamped.
-fn sharpness(spec: &TurnSpec, forms: &Forms, around: &Surroundings<'_>) -> Result<f64, CurvedRaysError> {
-    let root = around.root;
+fn sharpness(spec: &TurnSpec, forms: &Forms, context: &TurnContext<'_>) -> Result<f64, CurvedRaysError> {
+    let root = context.root;
     let at_pixel = |pixel: DVec2| {
-        let sigma = forms.sigma_on(corner_direction(pixel, root, &around.part));
-        forms.values.m_sigma(sigma).ok_or_else(|| end_not_reached(pixel, sigma, forms, around))
+        let sigma = forms.sigma_on(corner_direction(pixel, root, &context.part));
+        forms.values.m_sigma(sigma).ok_or_else(|| end_not_reached(pixel, sigma, forms, context))
     };
     match spec.m {
         Sharpness::Value(m) => Ok(m),
@@ -75,15 +75,15 @@ fn sharpness(spec: &TurnSpec, forms: &Forms, around: &Surroundings<'_>) -> Resul
             Ok((low * high).sqrt())
         }
         Sharpness::Bend => forms.values.m_sigma(forms.sigma).ok_or_else(|| {
-            let v = around.part.linear * (spec.t1 - around.part.viewpoint);
+            let v = context.part.linear * (spec.t1 - context.part.viewpoint);
             let pixel = root.project(root.eye + v).map_or(DVec2::ZERO, |(pixel, _)| pixel);
-            end_not_reached(pixel, forms.sigma, forms, around)
+            end_not_reached(pixel, forms.sigma, forms, context)
         }),
     }
 }
 
-fn end_not_reached(pixel: DVec2, sigma: f64, forms: &Forms, around: &Surroundings<'_>) -> CurvedRaysError {
-    let turn = around.turn;
+fn end_not_reached(pixel: DVec2, sigma: f64, forms: &Forms, context: &TurnContext<'_>) -> CurvedRaysError {
+    let turn = context.turn;
     CurvedRaysError::EndNotReached { turn, pixel, sigma, limit: forms.values.b1, remedy: Remedy::BendInPicture }
 }
 

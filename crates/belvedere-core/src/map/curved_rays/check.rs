@@ -1,6 +1,6 @@
-//! Which turns are valid: the rows of the table of valid configurations, each with its own message.
+//! Which turns are valid: one condition after the other, each with its own error.
 
-use super::form::{Forms, LinearForm, Part};
+use super::form::{Forms, LinearForm, StraightPart};
 use super::phi::ViewpointValues;
 use super::spec::{CurvedRaysError, Pencil, Sharpness, TurnSpec};
 use crate::Pinhole;
@@ -13,31 +13,31 @@ const TOUCHING: f64 = 1e-8;
 /// Largest coordinate of a parameter; products of a few of them stay far from overflow.
 const LARGEST: f64 = 1e15;
 
-/// What a turn is checked against.
+/// What a turn is checked against: the camera and the chain before it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Surroundings<'a> {
+pub(super) struct TurnContext<'a> {
     pub(super) root: &'a Pinhole,
     /// Number of the turn, from 1.
     pub(super) turn: usize,
     /// The chain before the turn.
-    pub(super) part: Part,
+    pub(super) part: StraightPart,
     /// The turn before.
-    pub(super) earlier: Option<Earlier<'a>>,
+    pub(super) previous: Option<PreviousTurn<'a>>,
 }
 
 /// The turn before the one that is checked.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Earlier<'a> {
+pub(super) struct PreviousTurn<'a> {
     pub(super) spec: &'a TurnSpec,
     /// The chain before that turn.
-    pub(super) part: Part,
+    pub(super) part: StraightPart,
     /// Depth of its t2 on the rays of the image corners.
     pub(super) ends: [f64; 4],
 }
 
-/// One broken row, measured. The order of the variants is the order of the checks.
+/// A condition that does not hold, measured. The order of the variants is the order of the checks.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Broken {
+pub(super) enum Violation {
     Order { depths: [f64; 3] },
     PreviousPastBend { past: f64 },
     ViewpointPastBend { past: f64 },
@@ -49,8 +49,9 @@ pub(super) enum Broken {
     NearPastStart { pixel: DVec2, start: f64 },
 }
 
-impl Broken {
-    pub(super) fn row(self) -> u32 {
+impl Violation {
+    /// Position in the order of the checks.
+    pub(super) fn order(self) -> u32 {
         match self {
             Self::Order { .. } => 0,
             Self::PreviousPastBend { .. } => 1,
@@ -116,7 +117,7 @@ fn normals(spec: &TurnSpec, turn: usize) -> Result<[DVec3; 3], CurvedRaysError> 
 }
 
 /// Unscaled geometry of a turn: everything is finite, nothing is known to be on the right side yet.
-pub(super) struct Raw {
+pub(super) struct UnscaledTurn {
     /// Forms of t0 and t2 that are 1 at the bend point; t1's unit form, positive beyond.
     a: LinearForm,
     b: LinearForm,
@@ -124,8 +125,8 @@ pub(super) struct Raw {
     kink: bool,
 }
 
-impl Raw {
-    pub(super) fn new(spec: &TurnSpec, turn: usize, part: &Part) -> Result<Self, CurvedRaysError> {
+impl UnscaledTurn {
+    pub(super) fn new(spec: &TurnSpec, turn: usize, part: &StraightPart) -> Result<Self, CurvedRaysError> {
         let [n0, n1, n2] = normals(spec, turn)?;
         let bend = spec.t1;
         let reach = (bend - part.viewpoint).length().max((bend - spec.viewpoint).length());
@@ -162,37 +163,37 @@ impl Raw {
         Ok(Self { a, b, t1: t1.scaled(side), kink: false })
     }
 
-    /// The rows of the table, in order.
-    pub(super) fn rows(&self, spec: &TurnSpec, around: &Surroundings<'_>) -> Result<Forms, Broken> {
-        let part = &around.part;
+    /// Checks the conditions in order and returns the scaled forms.
+    pub(super) fn check(&self, spec: &TurnSpec, context: &TurnContext<'_>) -> Result<Forms, Violation> {
+        let part = &context.part;
         let (past0, past1) = (self.t1.at(part.viewpoint), self.t1.at(spec.viewpoint));
         if past0 > 0.0 && past1 > 0.0 {
-            return Err(Broken::Order { depths: self.depths(spec, around) });
+            return Err(Violation::Order { depths: self.depths(spec, context) });
         }
         if past0 >= 0.0 {
-            return Err(Broken::PreviousPastBend { past: past0 });
+            return Err(Violation::PreviousPastBend { past: past0 });
         }
         if past1 >= 0.0 {
-            return Err(Broken::ViewpointPastBend { past: past1 });
+            return Err(Violation::ViewpointPastBend { past: past1 });
         }
         let forms = self.forms(part, spec.viewpoint);
         if !(forms.values.a0 < 0.0) {
-            return Err(Broken::PreviousPastStart { past: forms.values.a0 / forms.a.gradient.length() });
+            return Err(Violation::PreviousPastStart { past: forms.values.a0 / forms.a.gradient.length() });
         }
-        let pixels = corner_pixels(around.root);
+        let pixels = corner_pixels(context.root);
         for pixel in pixels {
-            forms.meets_bend(pixel, spec, around)?;
+            forms.meets_bend(pixel, spec, context)?;
         }
         for pixel in pixels {
-            forms.reaches_end(pixel, around)?;
+            forms.reaches_end(pixel, context)?;
         }
         for (i, pixel) in pixels.into_iter().enumerate() {
-            let start = forms.start(corner_direction(pixel, around.root, part));
-            match around.earlier {
-                Some(Earlier { ends, .. }) if !(start >= ends[i]) => {
-                    return Err(Broken::TurnsOverlap { pixel, end: ends[i], start });
+            let start = forms.start(corner_direction(pixel, context.root, part));
+            match context.previous {
+                Some(PreviousTurn { ends, .. }) if !(start >= ends[i]) => {
+                    return Err(Violation::TurnsOverlap { pixel, end: ends[i], start });
                 }
-                None if !(start > around.root.near) => return Err(Broken::NearPastStart { pixel, start }),
+                None if !(start > context.root.near) => return Err(Violation::NearPastStart { pixel, start }),
                 _ => {}
             }
         }
@@ -200,7 +201,7 @@ impl Raw {
     }
 
     /// Scaled forms; the viewpoints must not lie on t1.
-    pub(super) fn forms(&self, part: &Part, after: DVec3) -> Forms {
+    pub(super) fn forms(&self, part: &StraightPart, after: DVec3) -> Forms {
         let before = part.viewpoint;
         let h = self.t1.scaled(-1.0 / self.t1.at(after));
         let k0 = -h.at(before);
@@ -217,8 +218,8 @@ impl Raw {
     }
 
     /// Where the planes lie along the axis of the part before the turn.
-    fn depths(&self, spec: &TurnSpec, around: &Surroundings<'_>) -> [f64; 3] {
-        let (eye, axis) = (around.part.viewpoint, axis(around));
+    fn depths(&self, spec: &TurnSpec, context: &TurnContext<'_>) -> [f64; 3] {
+        let (eye, axis) = (context.part.viewpoint, axis(context));
         [(&self.a, spec.t0), (&self.t1, spec.t1), (&self.b, spec.t2)].map(|(form, point)| {
             let depth = -form.at(eye) / form.along(axis);
             if depth.is_finite() { depth } else { (point - eye).dot(axis) }
@@ -227,12 +228,12 @@ impl Raw {
 }
 
 impl Forms {
-    /// Row 3: a corner ray with `direction` per unit of depth meets t1 ahead, on the picture's side of the common line.
-    fn meets_bend(&self, pixel: DVec2, spec: &TurnSpec, around: &Surroundings<'_>) -> Result<(), Broken> {
-        let direction = corner_direction(pixel, around.root, &around.part);
+    /// A corner ray with `direction` per unit of depth meets t1 ahead, on the picture's side of the common line.
+    fn meets_bend(&self, pixel: DVec2, spec: &TurnSpec, context: &TurnContext<'_>) -> Result<(), Violation> {
+        let direction = corner_direction(pixel, context.root, &context.part);
         let slope = self.h.along(direction) / (self.h.gradient.length() * direction.length());
         if !(slope > 0.0) {
-            return Err(Broken::BendNotMet { pixel, slope });
+            return Err(Violation::BendNotMet { pixel, slope });
         }
         if self.kink {
             return Ok(());
@@ -242,34 +243,34 @@ impl Forms {
         if scaled > 0.0 {
             return Ok(());
         }
-        let s = around.part.viewpoint + self.bend_depth(direction) * direction;
+        let s = context.part.viewpoint + self.bend_depth(direction) * direction;
         let beyond = match spec.pencil {
             Pencil::Line { point, dir } => (s - point).reject_from(dir).length(),
             Pencil::Parallel { .. } => -self.a.at(s) / self.a.gradient.length(),
         };
-        Err(Broken::LineInPicture { pixel, beyond })
+        Err(Violation::LineInPicture { pixel, beyond })
     }
 
-    /// Row 4.
-    fn reaches_end(&self, pixel: DVec2, around: &Surroundings<'_>) -> Result<(), Broken> {
-        let sigma = self.sigma_on(corner_direction(pixel, around.root, &around.part));
+    /// A corner ray reaches t2.
+    fn reaches_end(&self, pixel: DVec2, context: &TurnContext<'_>) -> Result<(), Violation> {
+        let sigma = self.sigma_on(corner_direction(pixel, context.root, &context.part));
         let limit = self.values.b1;
-        if sigma < limit { Ok(()) } else { Err(Broken::EndNotReached { pixel, sigma, limit }) }
+        if sigma < limit { Ok(()) } else { Err(Violation::EndNotReached { pixel, sigma, limit }) }
     }
 }
 
 /// Unit direction of the central ray of the part before a turn.
-pub(super) fn axis(around: &Surroundings<'_>) -> DVec3 {
-    (around.part.inverse * around.root.forward).normalize()
+pub(super) fn axis(context: &TurnContext<'_>) -> DVec3 {
+    (context.part.inverse * context.root.forward).normalize()
 }
 
-/// The four image corners. All rows are affine in the pixel, so the corners decide for the whole picture.
+/// The four image corners. All conditions are affine in the pixel, so the corners decide for the whole picture.
 pub(super) fn corner_pixels(root: &Pinhole) -> [DVec2; 4] {
     let [w, h] = root.image.map(f64::from);
     [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(0.0, h), DVec2::new(w, h)]
 }
 
 /// Direction of a pixel's ray in a part of the chain, per unit of depth.
-pub(super) fn corner_direction(pixel: DVec2, root: &Pinhole, part: &Part) -> DVec3 {
+pub(super) fn corner_direction(pixel: DVec2, root: &Pinhole, part: &StraightPart) -> DVec3 {
     part.inverse * (root.unproject(pixel, 1.0) - root.eye)
 }

@@ -42,7 +42,7 @@ impl LinearForm {
 
 /// Linear map of the part of the chain before a turn.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Part {
+pub(super) struct StraightPart {
     pub(super) viewpoint: DVec3,
     pub(super) linear: DMat3,
     pub(super) inverse: DMat3,

@@ -1,54 +1,58 @@
-//! From a broken row to a message with the nearest valid value.
+//! From a violated condition to an error with the nearest valid value.
 
-use super::check::{Broken, Earlier, Raw, Surroundings, axis, corner_direction, corner_pixels};
+use super::check::{PreviousTurn, TurnContext, UnscaledTurn, Violation, axis, corner_direction, corner_pixels};
 use super::spec::{CurvedRaysError, Pencil, Remedy, TurnSpec};
 use glam::DVec3;
 
-/// The message for a broken row of a turn.
-pub(super) fn report(broken: Broken, spec: &TurnSpec, around: &Surroundings<'_>) -> CurvedRaysError {
-    let turn = around.turn;
+/// The error for a violated condition of a turn.
+pub(super) fn report(violation: Violation, spec: &TurnSpec, context: &TurnContext<'_>) -> CurvedRaysError {
+    let turn = context.turn;
     let viewpoint = turn - 1;
-    let remedy = remedy(broken, spec, around);
-    match broken {
-        Broken::Order { depths: [t0, t1, t2] } => CurvedRaysError::PlaneOrder { turn, viewpoint, t0, t1, t2, remedy },
-        Broken::PreviousPastBend { past } => CurvedRaysError::PreviousPastBend { turn, viewpoint, past, remedy },
-        Broken::ViewpointPastBend { past } => CurvedRaysError::ViewpointPastBend { turn, past, remedy },
-        Broken::PreviousPastStart { past } => CurvedRaysError::PreviousPastStart { turn, viewpoint, past, remedy },
-        Broken::BendNotMet { pixel, slope } => CurvedRaysError::BendNotMet { turn, viewpoint, pixel, slope, remedy },
-        Broken::LineInPicture { pixel, beyond } => CurvedRaysError::LineInPicture { turn, pixel, beyond, remedy },
-        Broken::EndNotReached { pixel, sigma, limit } => {
+    let remedy = remedy(violation, spec, context);
+    match violation {
+        Violation::Order { depths: [t0, t1, t2] } => {
+            CurvedRaysError::PlaneOrder { turn, viewpoint, t0, t1, t2, remedy }
+        }
+        Violation::PreviousPastBend { past } => CurvedRaysError::PreviousPastBend { turn, viewpoint, past, remedy },
+        Violation::ViewpointPastBend { past } => CurvedRaysError::ViewpointPastBend { turn, past, remedy },
+        Violation::PreviousPastStart { past } => CurvedRaysError::PreviousPastStart { turn, viewpoint, past, remedy },
+        Violation::BendNotMet { pixel, slope } => CurvedRaysError::BendNotMet { turn, viewpoint, pixel, slope, remedy },
+        Violation::LineInPicture { pixel, beyond } => CurvedRaysError::LineInPicture { turn, pixel, beyond, remedy },
+        Violation::EndNotReached { pixel, sigma, limit } => {
             CurvedRaysError::EndNotReached { turn, pixel, sigma, limit, remedy }
         }
-        Broken::TurnsOverlap { pixel, end, start } => CurvedRaysError::TurnsOverlap { turn, pixel, end, start, remedy },
-        Broken::NearPastStart { pixel, start } => {
-            CurvedRaysError::NearPastStart { pixel, near: around.root.near, start, remedy }
+        Violation::TurnsOverlap { pixel, end, start } => {
+            CurvedRaysError::TurnsOverlap { turn, pixel, end, start, remedy }
+        }
+        Violation::NearPastStart { pixel, start } => {
+            CurvedRaysError::NearPastStart { pixel, near: context.root.near, start, remedy }
         }
     }
 }
 
-fn remedy(broken: Broken, spec: &TurnSpec, around: &Surroundings<'_>) -> Remedy {
-    let healed = |candidate: &TurnSpec| heals(broken, candidate, around);
-    let found = match broken {
-        Broken::Order { depths } => {
+fn remedy(violation: Violation, spec: &TurnSpec, context: &TurnContext<'_>) -> Remedy {
+    let healed = |candidate: &TurnSpec| heals(violation, candidate, context);
+    let found = match violation {
+        Violation::Order { depths } => {
             let swapped = TurnSpec { t0: spec.t2, t2: spec.t0, ..*spec };
             if depths[0] > depths[2] && healed(&swapped) {
                 Some(Remedy::SwapPlanes)
             } else {
-                shifted_planes(spec, around, &healed)
+                shifted_planes(spec, context, &healed)
             }
         }
-        Broken::PreviousPastBend { .. } => shifted_planes(spec, around, &healed),
-        Broken::ViewpointPastBend { past } => viewpoint_back(spec, around, past, &healed),
-        Broken::PreviousPastStart { .. } => start_towards_bend(spec, &healed),
-        Broken::BendNotMet { .. } => turned_planes(spec, around, &healed),
-        Broken::LineInPicture { .. } => line_away(spec, &healed),
-        Broken::EndNotReached { .. } => smallest(|t| healed(&end_at(spec, t)), 1.0)
+        Violation::PreviousPastBend { .. } => shifted_planes(spec, context, &healed),
+        Violation::ViewpointPastBend { past } => viewpoint_back(spec, context, past, &healed),
+        Violation::PreviousPastStart { .. } => start_towards_bend(spec, &healed),
+        Violation::BendNotMet { .. } => turned_planes(spec, context, &healed),
+        Violation::LineInPicture { .. } => line_away(spec, &healed),
+        Violation::EndNotReached { .. } => smallest(|t| healed(&end_at(spec, t)), 1.0)
             .map(|t| Remedy::MovePoint { name: "t2", to: end_at(spec, t).t2 }),
-        Broken::TurnsOverlap { .. } => shrunk(broken, spec, around),
-        Broken::NearPastStart { .. } => {
-            let raw = Raw::new(spec, around.turn, &around.part).ok().map(|raw| raw.forms(&around.part, spec.viewpoint));
-            let start = raw.map(|forms| {
-                corner_pixels(around.root).map(|px| forms.start(corner_direction(px, around.root, &around.part)))
+        Violation::TurnsOverlap { .. } => shrunk(violation, spec, context),
+        Violation::NearPastStart { .. } => {
+            let start = UnscaledTurn::new(spec, context.turn, &context.part).map(|unscaled| {
+                let forms = unscaled.forms(&context.part, spec.viewpoint);
+                corner_pixels(context.root).map(|px| forms.start(corner_direction(px, context.root, &context.part)))
             });
             let near = start.map_or(0.0, |s| s.into_iter().fold(f64::INFINITY, f64::min)) * (1.0 - 1e-9);
             if near > 0.0 { Some(Remedy::Near { near }) } else { start_towards_bend(spec, &healed) }
@@ -57,10 +61,11 @@ fn remedy(broken: Broken, spec: &TurnSpec, around: &Surroundings<'_>) -> Remedy 
     found.unwrap_or(Remedy::Rebuild)
 }
 
-/// Whether a changed turn passes the broken row and all before it.
-fn heals(broken: Broken, candidate: &TurnSpec, around: &Surroundings<'_>) -> bool {
-    Raw::new(candidate, around.turn, &around.part)
-        .is_ok_and(|raw| raw.rows(candidate, around).err().is_none_or(|now| now.row() > broken.row()))
+/// Whether a changed turn meets the violated condition and all before it.
+fn heals(violation: Violation, candidate: &TurnSpec, context: &TurnContext<'_>) -> bool {
+    UnscaledTurn::new(candidate, context.turn, &context.part).is_ok_and(|unscaled| {
+        unscaled.check(candidate, context).err().is_none_or(|now| now.order() > violation.order())
+    })
 }
 
 /// Smallest `t` in (0, `end`] with `valid(t)`, to about a millionth, assuming that `valid` stays once it holds.
@@ -81,17 +86,17 @@ fn smallest(valid: impl Fn(f64) -> bool, end: f64) -> Option<f64> {
     None
 }
 
-fn shifted_planes(spec: &TurnSpec, around: &Surroundings<'_>, healed: &dyn Fn(&TurnSpec) -> bool) -> Option<Remedy> {
-    let axis = axis(around);
+fn shifted_planes(spec: &TurnSpec, context: &TurnContext<'_>, healed: &dyn Fn(&TurnSpec) -> bool) -> Option<Remedy> {
+    let axis = axis(context);
     let by = |t: f64| TurnSpec { t0: spec.t0 + t * axis, t1: spec.t1 + t * axis, t2: spec.t2 + t * axis, ..*spec };
     let reach =
-        100.0 * ((spec.t1 - around.part.viewpoint).length() + (spec.viewpoint - around.part.viewpoint).length());
+        100.0 * ((spec.t1 - context.part.viewpoint).length() + (spec.viewpoint - context.part.viewpoint).length());
     smallest(|t| healed(&by(t)), reach).map(|t| Remedy::MovePlanes { by: t * axis })
 }
 
 fn viewpoint_back(
     spec: &TurnSpec,
-    around: &Surroundings<'_>,
+    context: &TurnContext<'_>,
     past: f64,
     healed: &dyn Fn(&TurnSpec) -> bool,
 ) -> Option<Remedy> {
@@ -99,9 +104,9 @@ fn viewpoint_back(
         Pencil::Parallel { normal } => normal.normalize(),
         Pencil::Line { point, dir } => (spec.t1 - point).cross(dir).normalize(),
     };
-    let back = normal * (around.part.viewpoint - spec.t1).dot(normal).signum();
+    let back = normal * (context.part.viewpoint - spec.t1).dot(normal).signum();
     let to = |t: f64| TurnSpec { viewpoint: spec.viewpoint + t * back, ..*spec };
-    let reach = 100.0 * (past + (spec.t1 - around.part.viewpoint).length());
+    let reach = 100.0 * (past + (spec.t1 - context.part.viewpoint).length());
     smallest(|t| healed(&to(t)), reach).map(|t| Remedy::MovePoint { name: "viewpoint", to: to(t).viewpoint })
 }
 
@@ -114,8 +119,8 @@ fn end_at(spec: &TurnSpec, t: f64) -> TurnSpec {
     TurnSpec { t2: spec.t2.lerp(spec.t1, t * (1.0 - 1e-6)), ..*spec }
 }
 
-fn turned_planes(spec: &TurnSpec, around: &Surroundings<'_>, healed: &dyn Fn(&TurnSpec) -> bool) -> Option<Remedy> {
-    let axis = axis(around);
+fn turned_planes(spec: &TurnSpec, context: &TurnContext<'_>, healed: &dyn Fn(&TurnSpec) -> bool) -> Option<Remedy> {
+    let axis = axis(context);
     match spec.pencil {
         Pencil::Parallel { normal } => {
             let normal = normal.normalize();
@@ -144,16 +149,16 @@ fn line_away(spec: &TurnSpec, healed: &dyn Fn(&TurnSpec) -> bool) -> Option<Reme
 }
 
 /// Both turns get narrower by one factor; the straight parts do not depend on t0 and t2.
-fn shrunk(broken: Broken, spec: &TurnSpec, around: &Surroundings<'_>) -> Option<Remedy> {
-    let earlier = around.earlier?;
+fn shrunk(violation: Violation, spec: &TurnSpec, context: &TurnContext<'_>) -> Option<Remedy> {
+    let previous = context.previous?;
     let narrower = |s: &TurnSpec, t: f64| TurnSpec { t0: s.t0.lerp(s.t1, t), t2: s.t2.lerp(s.t1, t), ..*s };
     let valid = |t: f64| {
-        let before = narrower(earlier.spec, t);
-        let Ok(raw) = Raw::new(&before, around.turn - 1, &earlier.part) else { return false };
-        let forms = raw.forms(&earlier.part, before.viewpoint);
-        let ends = corner_pixels(around.root).map(|px| forms.end(corner_direction(px, around.root, &earlier.part)));
-        let narrow = Surroundings { earlier: Some(Earlier { ends, ..earlier }), ..*around };
-        heals(broken, &narrower(spec, t), &narrow)
+        let before = narrower(previous.spec, t);
+        let Ok(unscaled) = UnscaledTurn::new(&before, context.turn - 1, &previous.part) else { return false };
+        let forms = unscaled.forms(&previous.part, before.viewpoint);
+        let ends = corner_pixels(context.root).map(|px| forms.end(corner_direction(px, context.root, &previous.part)));
+        let narrow = TurnContext { previous: Some(PreviousTurn { ends, ..previous }), ..*context };
+        heals(violation, &narrower(spec, t), &narrow)
     };
     smallest(valid, 1.0).map(|t| Remedy::Shrink { factor: 1.0 - t })
 }

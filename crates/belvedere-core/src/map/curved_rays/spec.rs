@@ -74,7 +74,7 @@ pub enum Remedy {
     MovePoint {
         /// Its name in the scene file.
         name: &'static str,
-        /// Nearest valid place found, scene coordinates.
+        /// Nearest valid position found, scene coordinates.
         to: DVec3,
     },
     /// Move t0, t1 and t2 together.
@@ -107,11 +107,11 @@ pub enum Remedy {
 
 impl std::fmt::Display for Remedy {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let place = |p: DVec3| format!("[{:.6}, {:.6}, {:.6}]", p.x, p.y, p.z);
+        let point = |p: DVec3| format!("[{:.6}, {:.6}, {:.6}]", p.x, p.y, p.z);
         match self {
-            Self::MovePoint { name, to } => write!(f, "the nearest valid {name} is {}", place(*to)),
-            Self::MovePlanes { by } => write!(f, "move t0, t1 and t2 by at least {}", place(*by)),
-            Self::Normal { normal } => write!(f, "the nearest valid plane normal is {}", place(*normal)),
+            Self::MovePoint { name, to } => write!(f, "the nearest valid {name} is {}", point(*to)),
+            Self::MovePlanes { by } => write!(f, "move t0, t1 and t2 by at least {}", point(*by)),
+            Self::Normal { normal } => write!(f, "the nearest valid plane normal is {}", point(*normal)),
             Self::Shrink { factor } => {
                 write!(f, "multiply the distances of t0 and t2 from t1 by at most {factor:.6} in both turns")
             }

@@ -1,6 +1,6 @@
 //! One turn with everything derived from it.
 
-use super::form::{Forms, LinearForm, Part};
+use super::form::{Forms, LinearForm, StraightPart};
 use super::phi::{Hinge, Phi, ViewpointValues};
 use super::spec::TurnSpec;
 use crate::Miss;
@@ -55,7 +55,7 @@ pub(super) fn outer(p: DVec3, q: DVec3) -> DMat3 {
 
 impl Turn {
     /// Assembles a turn from valid forms.
-    pub(super) fn new(part: &Part, spec: &TurnSpec, forms: &Forms, hinge: Hinge) -> Self {
+    pub(super) fn new(part: &StraightPart, spec: &TurnSpec, forms: &Forms, hinge: Hinge) -> Self {
         let baseline = spec.viewpoint - part.viewpoint;
         let shift = part.linear * baseline;
         let h = forms.h;
@@ -87,8 +87,8 @@ impl Turn {
     }
 
     /// The part of the chain after this turn.
-    pub(super) fn part_after(&self) -> Part {
-        Part { viewpoint: self.viewpoint, linear: self.after, inverse: self.after_inverse }
+    pub(super) fn part_after(&self) -> StraightPart {
+        StraightPart { viewpoint: self.viewpoint, linear: self.after, inverse: self.after_inverse }
     }
 
     /// Cell of a point; the opposite wedge beyond the common line belongs to none.

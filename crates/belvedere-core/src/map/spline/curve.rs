@@ -229,8 +229,8 @@ impl DeformationCurve {
             (eye - p).normalize_or_zero().dot(t.perp())
         };
         let inner = self.cells.iter().filter(|c| c.l1 >= l0 && c.l0 <= l1).flat_map(|c| {
-            let place = move |k: u32| c.l0 + (c.l1 - c.l0) * f64::from(k) / 16.0;
-            (0..=16).map(place).filter(|l| (l0..=l1).contains(l))
+            let sample = move |k: u32| c.l0 + (c.l1 - c.l0) * f64::from(k) / 16.0;
+            (0..=16).map(sample).filter(|l| (l0..=l1).contains(l))
         });
         inner.map(at).fold(at(l0).min(at(l1)), f64::min)
     }

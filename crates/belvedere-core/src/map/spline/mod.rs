@@ -165,7 +165,7 @@ impl SplineBend {
     }
 
     /// Place of a bent point in the plane of [`SplineBend::curve`], curve units.
-    pub fn curve_place(&self, p_displaced: DVec3) -> DVec2 {
+    pub fn curve_position(&self, p_displaced: DVec3) -> DVec2 {
         let v = p_displaced - self.origin;
         DVec2::new(v.dot(self.out_u), v.dot(self.out_v)) / self.scale - self.shift
     }
@@ -199,7 +199,7 @@ impl SpaceMap for SplineBend {
     /// # Errors
     /// [`Miss::OutsideDomain`] where no perpendicular from the curve arrives before its centre of curvature.
     fn invert(&self, p_displaced: DVec3) -> Result<DVec3, Miss> {
-        let (l, d) = self.curve.foot(self.curve_place(finite(p_displaced)?)).ok_or(Miss::OutsideDomain)?;
+        let (l, d) = self.curve.foot(self.curve_position(finite(p_displaced)?)).ok_or(Miss::OutsideDomain)?;
         finite(self.unbent(l, d, (p_displaced - self.origin).dot(self.right)))
     }
 

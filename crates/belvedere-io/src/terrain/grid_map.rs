@@ -26,7 +26,7 @@ impl Geometry {
     }
 }
 
-/// The way between the node indices of a source and scene coordinates.
+/// Transform between the node indices of a source and scene coordinates.
 pub(crate) struct Link {
     model_from_index: Affine,
     index_from_model: Affine,
@@ -98,12 +98,12 @@ impl Link {
         }
     }
 
-    /// Spacing of an axis-aligned grid in the scene as dense as the source, from the first of a few places that have an
+    /// Spacing of an axis-aligned grid in the scene as dense as the source, from the first of a few positions that have an
     /// image.
     pub(crate) fn spacing_near(&self, size: [usize; 2]) -> Option<DVec2> {
         let size = DVec2::new((size[0] - 1) as f64, (size[1] - 1) as f64);
-        [(0.5, 0.5), (0.5, 0.25), (0.5, 0.75), (0.25, 0.5), (0.75, 0.5)].into_iter().find_map(|place| {
-            let [dc, dr] = self.jacobian(DVec2::from(place) * size)?;
+        [(0.5, 0.5), (0.5, 0.25), (0.5, 0.75), (0.25, 0.5), (0.75, 0.5)].into_iter().find_map(|share| {
+            let [dc, dr] = self.jacobian(DVec2::from(share) * size)?;
             let det = dc.perp_dot(dr).abs();
             // cells crossed per metre along x and along y, from the inverse of the jacobian
             let spacing = DVec2::new(det / dr.y.hypot(dc.y), det / dr.x.hypot(dc.x));
@@ -121,7 +121,7 @@ impl Link {
 
 /// Step of the coarsest lattice, nodes.
 const COARSEST: usize = 32;
-/// Places along each side where the lattice is checked.
+/// Positions along each side where the lattice is checked.
 const CHECKS: usize = 9;
 
 /// Image of every node of one grid in another, from a coarse lattice of exact images interpolated linearly. The lattice
@@ -203,13 +203,13 @@ fn good_enough(
 ) -> bool {
     let size = step as f64;
     let cells = |n: usize| (n - 1).div_ceil(step).max(1);
-    let spots = |n: usize| -> Vec<usize> {
+    let checked = |n: usize| -> Vec<usize> {
         let cells = cells(n);
         let count = cells.min(CHECKS);
         (0..count).map(|k| if count == 1 { 0 } else { k * (cells - 1) / (count - 1) }).collect()
     };
-    let columns = spots(cols);
-    spots(rows).iter().all(|j| {
+    let columns = checked(cols);
+    checked(rows).iter().all(|j| {
         columns.iter().all(|i| {
             let corner = DVec2::new((i * step) as f64, (j * step) as f64);
             let at = |u: f64, v: f64| exact(corner + size * DVec2::new(u, v));
