@@ -1,6 +1,6 @@
 //! Arguments.
 
-use belvedere::verbs::render::RendererChoice;
+use belvedere::RendererChoice;
 use belvedere::verbs::reveal::Technique;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;

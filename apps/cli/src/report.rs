@@ -23,7 +23,7 @@ pub(crate) fn one_line(error: &anyhow::Error) -> String {
     if error.downcast_ref::<BelvedereError>().is_some_and(BelvedereError::is_cancelled) {
         return "cancelled; nothing was written".into();
     }
-    let mut text = error.to_string();
+    let mut text = error.downcast_ref::<BelvedereError>().map_or_else(|| error.to_string(), in_options);
     for cause in error.chain().skip(1).map(ToString::to_string) {
         // Errors that show their cause themselves also name it as their source.
         if !text.contains(&cause) {
@@ -31,6 +31,44 @@ pub(crate) fn one_line(error: &anyhow::Error) -> String {
         }
     }
     text.split('\n').map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ")
+}
+
+/// An error of the library in the words of the command line: with the options that lift it.
+fn in_options(error: &BelvedereError) -> String {
+    match error {
+        BelvedereError::FieldOfView { .. } => format!("--fov: {error}"),
+        BelvedereError::Setting(_) => format!("--set: {error}"),
+        BelvedereError::Position { what, reason } => {
+            format!("{}: {reason}", if *what == "eye" { "--eye" } else { "--look" })
+        }
+        BelvedereError::EyeIsTarget => "--eye and --look are the same point; look somewhere else".into(),
+        BelvedereError::NoAnimation => {
+            format!("{error}, or give --along LAYER, --sweep phi or --turntable")
+        }
+        BelvedereError::NoSweepRange => format!("{error}; add one, or give --sweep phi=FIRST:LAST"),
+        _ => match option_for(error) {
+            Some(option) => format!("{error} ({option})"),
+            None => error.to_string(),
+        },
+    }
+}
+
+/// Options that lift an error, in words.
+fn option_for(error: &BelvedereError) -> Option<&'static str> {
+    Some(match error {
+        BelvedereError::Path { root_missing: true, .. } => "--allow-root DIR",
+        BelvedereError::Scene { source: Some(source), .. } | BelvedereError::Frame { source, .. } => {
+            return option_for(source);
+        }
+        BelvedereError::Io(belvedere::io::IoError::Exists { .. }) => "give --overwrite to replace it",
+        BelvedereError::Render(belvedere::scene::RenderError::TooLarge { .. }) => "--size, --samples, --max-mem",
+        BelvedereError::RayEnd { .. } => "give a larger --far",
+        BelvedereError::NoRayEnd => "give --far or camera.far",
+        BelvedereError::FramesThere { resumable: true, .. } => "go on with --resume, or replace them with --overwrite",
+        BelvedereError::FramesThere { .. } => "start anew with --overwrite, or choose another output",
+        BelvedereError::Interrupted { .. } => "the same command with --resume goes on from there",
+        _ => return None,
+    })
 }
 
 /// What clap found: help and version on standard output, a mistake as one line.
@@ -126,7 +164,7 @@ impl Context {
     ) -> anyhow::Result<()> {
         match out {
             Some(path) => {
-                belvedere::verbs::output::write_text(path, text, self.common.overwrite)?;
+                belvedere::output::write_text(path, text, self.common.overwrite)?;
                 if self.common.json {
                     self.print(&done(verb, &[path.to_owned()], warnings))?;
                 }

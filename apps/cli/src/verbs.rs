@@ -6,13 +6,14 @@ use crate::args::{
     TechniqueKind, Verb,
 };
 use crate::report::{Context, done, print};
+use anyhow::Context as _;
+use belvedere::picture::{self, AuxBuffer, AuxFormat, PictureOptions};
 use belvedere::scene_file::{AnimationDoc, PaletteDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{self, AnimateRequest, Film};
 use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest};
-use belvedere::verbs::render::{self, AuxBuffer, AuxFormat, RenderRequest};
-use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
-use belvedere::verbs::{check, info, measure, output, pick, points};
-use belvedere::{CameraPicture, Needs, OpenOptions, Session, scene_file};
+use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest, Viewpoint};
+use belvedere::verbs::{check, info, measure, pick, points};
+use belvedere::{CameraPicture, DataFiles, Needs, OpenOptions, Session, output, scene_file};
 use belvedere_bench::BenchRequest;
 use std::path::{Path, PathBuf};
 
@@ -79,13 +80,14 @@ fn answer(verb: &str, session: &Session, out: Option<&PathBuf>, text: &str, cont
 }
 
 /// What all pictures and frames have in common.
-fn request(args: &DrawArgs, context: &Context) -> RenderRequest {
-    let mut request = RenderRequest { straight: args.straight, compare: args.compare, ..RenderRequest::default() };
+fn request(args: &DrawArgs, context: &Context) -> PictureOptions {
+    let mut request = PictureOptions { straight: args.straight, compare: args.compare, ..PictureOptions::default() };
     request.renderer = args.renderer.into();
-    request.options.threads = context.common.threads;
-    request.options.samples = args.samples;
-    request.options.lod_px = args.lod;
-    request.options.max_bytes = context.common.max_mem.unwrap_or(request.options.max_bytes);
+    request.quality.threads = context.common.threads;
+    request.quality.samples = args.samples;
+    request.quality.lod_px = args.lod;
+    request.progress = context.progress.clone();
+    request.quality.max_bytes = context.common.max_mem.unwrap_or(request.quality.max_bytes);
     request
 }
 
@@ -110,8 +112,8 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     let overhead = args.overhead.then_some(CameraPicture::Overhead);
     request.camera = overhead.or(args.outside.map(CameraPicture::Outside));
     png_named(&args.out)?;
-    let solves = scene_file::read(&args.scene)?.document.solves_terrain();
-    let outputs = render::outputs(&args.out, &request, solves);
+    let source = scene_file::read(&args.scene)?;
+    let outputs = picture::outputs(&args.out, &request, source.document.solves_terrain());
     for path in &outputs {
         ready(Some(path), &[&args.scene], context)?;
     }
@@ -119,11 +121,11 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     // A straight picture has no use for ground that makes way.
     let unsolved = request.straight;
     let options = OpenOptions { palette, unsolved, ..context.options(Needs::Everything, args.draw.size) };
-    let session = Session::open(&args.scene, &options)?;
+    let session = Session::from_document(source, &options)?;
     for path in &outputs {
         output::check(path, session.inputs(), context.common.overwrite)?;
     }
-    let picture = render::render(&session, &request, &context.progress)?;
+    let picture = session.render(&request)?;
     let written = picture.write(&args.out, context.common.overwrite)?;
     if context.common.json {
         let mut result = done("render", &written, session.warnings());
@@ -133,6 +135,10 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     }
     context.warn(session.warnings());
     Ok(Goal::Reached)
+}
+
+fn named(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
 }
 
 fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result<Goal> {
@@ -151,14 +157,17 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
     let mode = args.mode.map(|mode| format!("mode=\"{mode}\""));
     let set: Vec<String> = args.set.into_iter().chain(mode).collect();
     let request = DisoccludeRequest {
-        dem: args.dem,
-        features: args.features,
+        data: DataFiles {
+            dem: named(&args.dem),
+            features: args.features.iter().map(|path| named(path)).collect(),
+            crs: args.crs,
+            ..DataFiles::default()
+        },
         eye: args.eye,
         look: args.look,
         fov_x_deg: args.fov,
         parameters: disocclude::parameters(&set)?,
         curved_earth: args.curved_earth,
-        crs: args.crs,
     };
     let found = disocclude::disocclude(&request, &context.options(Needs::Everything, None))?;
     let written = found.write(&files, context.common.overwrite, &context.progress)?;
@@ -176,8 +185,8 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
 }
 
 fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
-    animate::places(&args.out)?;
-    let render = request(&args.draw, context);
+    animate::outputs(&args.out)?;
+    let picture = request(&args.draw, context);
     let animation = AnimationDoc {
         along: args.along,
         sweep: args.sweep.map(|phi_deg| SweepDoc { phi_deg }),
@@ -188,11 +197,11 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
         ..AnimationDoc::default()
     };
     let request =
-        AnimateRequest { animation, render, out: args.out, resume: args.resume, overwrite: context.common.overwrite };
+        AnimateRequest { animation, picture, out: args.out, resume: args.resume, overwrite: context.common.overwrite };
     // Every frame is solved by itself.
     let options = OpenOptions { unsolved: true, ..context.options(Needs::Everything, args.draw.size) };
-    let mut session = Session::open(&args.scene, &options)?;
-    let made = animate::animate(&mut session, &request, &context.progress)?;
+    let session = Session::open(&args.scene, &options)?;
+    let made = animate::animate(&session, &request, &context.progress)?;
     context.finish();
     let mut outputs = vec![made.folder.clone()];
     let missing = match &made.film {
@@ -200,8 +209,10 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
             outputs.insert(0, path.clone());
             None
         }
-        Film::Missing(reason) => Some(reason.clone()),
-        Film::NotAsked => None,
+        Film::Missing { reason, command } => {
+            Some(format!("{reason}; install ffmpeg and go on with --resume, or run: {command}"))
+        }
+        Film::Unwanted => None,
     };
     if context.common.json {
         let mut result = done("animate", &outputs, session.warnings());
@@ -221,26 +232,34 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
     png_named(&files.out)?;
     files.before.as_deref().map_or(Ok(()), png_named)?;
     let moves = args.technique != TechniqueKind::Spline;
-    let delta = moves.then(|| render::delta_path(&files.out));
+    let delta = moves.then(|| picture::delta_path(&files.out));
     for path in files.all().into_iter().chain(delta) {
         output::check(&path, &inputs, context.common.overwrite)?;
     }
+    let viewpoint = match (args.eye, args.look.as_deref()) {
+        (None, None) => None,
+        (Some(eye), Some([x, y])) => Some(Viewpoint { eye, target: [*x, *y], target_height: None }),
+        (Some(eye), Some([x, y, z])) => Some(Viewpoint { eye, target: [*x, *y], target_height: Some(*z) }),
+        (Some(_), Some(look)) => anyhow::bail!("--look has {} numbers; give X,Y or X,Y,Z", look.len()),
+        _ => anyhow::bail!("--eye and --look belong together; give both, or neither"),
+    };
     let mut request = RevealRequest {
-        dem: args.dem,
-        features: args.features,
-        eye: args.eye,
-        look: args.look,
+        data: DataFiles {
+            dem: args.dem,
+            features: args.features,
+            crs: args.crs,
+            keep_voids: args.keep_voids,
+            palette: PaletteDoc::of(&args.palette),
+        },
+        viewpoint,
         fov_y_deg: args.fov,
         image: args.size,
         curved_earth: args.curved_earth,
-        crs: args.crs,
-        keep_voids: args.keep_voids,
-        palette: PaletteDoc::of(&args.palette),
         technique: args.technique.into(),
         ..RevealRequest::default()
     };
-    request.render.options.threads = context.common.threads;
-    request.render.options.max_bytes = context.common.max_mem.unwrap_or(request.render.options.max_bytes);
+    request.picture.quality.threads = context.common.threads;
+    request.picture.quality.max_bytes = context.common.max_mem.unwrap_or(request.picture.quality.max_bytes);
     let answer = reveal::reveal(&request, &context.options(Needs::Everything, None))?;
     let written = answer.write(&files, context.common.overwrite)?;
     if context.common.json {
@@ -286,8 +305,8 @@ fn draw_figures(args: &FiguresArgs, context: &Context) -> anyhow::Result<Goal> {
 }
 
 fn demonstrate(args: &DemoArgs, context: &Context) -> anyhow::Result<Goal> {
-    let mut request = RenderRequest::default();
-    request.options.threads = context.common.threads;
+    let mut request = PictureOptions::default();
+    request.quality.threads = context.common.threads;
     let options = context.options(Needs::Everything, args.size);
     let written = belvedere_gallery::demo(&args.out, &options, &request, context.common.overwrite)?;
     context.finish();
@@ -336,12 +355,12 @@ fn displace(args: &ProjectArgs, context: &Context) -> anyhow::Result<Goal> {
 
 fn rays(args: &RaysArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene, &args.pixels], context)?;
-    let mut session = context.open(&args.scene, Needs::View, None)?;
+    let source = scene_file::read(&args.scene)?;
+    // Where nothing says how far rays go, the layers do.
+    let needs = if args.far.or(source.document.camera.far).is_some() { Needs::View } else { Needs::Everything };
+    let session = Session::from_document(source, &context.options(needs, None))?;
     let pixels = points::read_points::<2>(&args.pixels)?;
-    if args.far.or(session.view().pinhole().far).is_none() {
-        session = context.open(&args.scene, Needs::Everything, None)?;
-    }
-    let far = points::far_depth(&session, args.far)?;
+    let far = session.ray_end(args.far)?;
     let report = points::rays(session.view(), &pixels, args.samples, far)?;
     answer("rays", &session, args.out.as_ref(), &output::json(&report)?, context)
 }
@@ -373,14 +392,15 @@ fn show(args: &ShowArgs, context: &Context) -> anyhow::Result<Goal> {
     let session = Session::open(&args.scene, &options)?;
     let named_json = args.out.as_ref().is_some_and(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")));
     let json = if args.out.is_some() { named_json } else { context.common.json };
-    let text = if json { check::document_json(session.resolved())? } else { check::document_toml(session.resolved())? };
+    let document = session.resolved().context("the scene has no document")?;
+    let text = if json { output::document_json(document)? } else { output::document_toml(document)? };
     context.deliver("show", args.out.as_deref(), &text, session.warnings())?;
     Ok(Goal::Reached)
 }
 
 fn schema(args: &SchemaArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[], context)?;
-    context.deliver("schema", args.out.as_deref(), &check::schema_json()?, &[])?;
+    context.deliver("schema", args.out.as_deref(), &output::schema_json()?, &[])?;
     Ok(Goal::Reached)
 }
 

@@ -3,9 +3,8 @@
 use crate::html::{STYLE, escape};
 use anyhow::{Context, Result};
 use belvedere::construct::{self, MeasureOptions, Measures};
-use belvedere::verbs::output;
-use belvedere::verbs::render::{self, RenderRequest, Sidecar};
-use belvedere::{CameraPicture, OpenOptions, Session, scene_file};
+use belvedere::picture;
+use belvedere::{CameraPicture, OpenOptions, PictureOptions, Session, Sidecar, output, scene_file};
 use std::path::{Path, PathBuf};
 
 /// A scene of the demo; it needs no files.
@@ -64,11 +63,12 @@ const CAMERAS: [(&str, CameraPicture); 2] =
 /// and `index.html`. Returns the files.
 ///
 /// # Errors
-/// A file that exists if `overwrite` is false, else as [`render::render`].
-pub fn demo(folder: &Path, options: &OpenOptions, request: &RenderRequest, overwrite: bool) -> Result<Vec<PathBuf>> {
+/// A file that exists if `overwrite` is false, else as [`Session::render`].
+pub fn demo(folder: &Path, options: &OpenOptions, request: &PictureOptions, overwrite: bool) -> Result<Vec<PathBuf>> {
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let index = folder.join("index.html");
-    let request = RenderRequest { compare: true, straight: false, ..request.clone() };
+    let progress = options.progress.clone();
+    let request = PictureOptions { compare: true, straight: false, progress, ..request.clone() };
     let picture_of = |name: &str| folder.join(format!("{name}.png"));
     let scene_of = |name: &str| folder.join(format!("{name}.toml"));
     output::check(&index, &[], overwrite)?;
@@ -77,8 +77,8 @@ pub fn demo(folder: &Path, options: &OpenOptions, request: &RenderRequest, overw
         output::check(&scene_of(name), &[], overwrite)?;
         let cameras = scene.cameras().iter().map(|(ending, _)| format!("{name}{ending}"));
         let solves = scene_file::parse(&scene_of(name), scene.text)?.document.solves_terrain();
-        let cameras = cameras.flat_map(|name| render::outputs(&picture_of(&name), &request, false));
-        for path in render::outputs(&picture_of(name), &request, solves).into_iter().chain(cameras) {
+        let cameras = cameras.flat_map(|name| picture::outputs(&picture_of(&name), &request, false));
+        for path in picture::outputs(&picture_of(name), &request, solves).into_iter().chain(cameras) {
             output::check(&path, &[], overwrite)?;
         }
     }
@@ -87,14 +87,14 @@ pub fn demo(folder: &Path, options: &OpenOptions, request: &RenderRequest, overw
         let DemoScene { name, text, .. } = *scene;
         output::write_text(&scene_of(name), text, overwrite)?;
         let session = Session::open(&scene_of(name), options)?;
-        let picture = render::render(&session, &request, &options.progress)?;
+        let picture = session.render(&request)?;
         // Lines of sight alone: the page needs no second opinion.
         let measures =
             construct::measure(session.scene(), session.view(), None, &MeasureOptions::default(), &options.progress)?;
         written.extend(picture.write(&picture_of(name), overwrite)?);
         for (ending, camera) in scene.cameras() {
-            let request = RenderRequest { compare: false, camera: Some(*camera), ..request.clone() };
-            let picture = render::render(&session, &request, &options.progress)?;
+            let request = PictureOptions { compare: false, camera: Some(*camera), ..request.clone() };
+            let picture = session.render(&request)?;
             written.extend(picture.write(&picture_of(&format!("{name}{ending}")), overwrite)?);
         }
         written.push(scene_of(name));
@@ -121,7 +121,7 @@ fn section(scene: &DemoScene, sidecar: &Sidecar, measures: &Measures) -> String 
             d.max_m, d.max_px
         )
     });
-    let title = escape(&sidecar.scene.title);
+    let title = escape(&sidecar.title);
     let cameras = if scene.bends_rays { cameras(name, &title) } else { String::new() };
     format!(
         "<section>\n<h2>{title}</h2>\n<p>{sentence}</p>\n<figure>\n<a href=\"{name}.png\"><img src=\"{name}.png\" \

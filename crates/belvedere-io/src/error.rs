@@ -44,7 +44,7 @@ pub enum IoError {
         reason: String,
     },
     /// An output exists and may not be replaced.
-    #[error("{}: exists already; give --overwrite to replace it", path.display())]
+    #[error("{}: exists already and may not be replaced", path.display())]
     Exists {
         /// The file.
         path: PathBuf,

@@ -463,7 +463,7 @@ impl Limits {
         }
         let mib = |b: u64| b.div_ceil(1 << 20);
         Err(format!(
-            "the raster needs {} MiB decoded, more than {} MiB; raise --max-mem or use a smaller level or window",
+            "the raster needs {} MiB decoded, more than {} MiB; allow more memory, or use a smaller level or window",
             mib(bytes),
             self.max_bytes >> 20
         ))

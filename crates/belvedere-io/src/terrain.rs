@@ -132,6 +132,17 @@ pub fn load_terrain(
     }
     let mut warnings = Vec::new();
     let sources = source::read_all(paths, request, progress, &mut warnings)?;
+    in_scene(sources, request, warnings, progress)
+}
+
+/// The terrain of a scene from sources that were read.
+fn in_scene(
+    sources: Vec<SourceGrid>,
+    request: &TerrainRequest,
+    mut warnings: Vec<String>,
+    progress: &Progress,
+) -> Result<Loaded<LoadedTerrain>, IoError> {
+    let first = &sources[0].path.clone();
     let void_samples: usize = sources.iter().map(|s| s.voids).sum();
     let samples: usize = sources.iter().map(|s| s.samples).sum();
     let descriptions = sources.iter().map(SourceGrid::describe).collect();

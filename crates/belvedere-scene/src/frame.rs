@@ -107,7 +107,7 @@ pub enum RenderError {
     Cancelled(#[from] Cancelled),
     /// Too large for the memory budget.
     #[error(
-        "picture of {width} x {height} pixels at {samples} samples needs about {needed_mib} MiB, more than {limit_mib} MiB; use a smaller --size, fewer samples, or raise --max-mem"
+        "picture of {width} x {height} pixels at {samples} samples needs about {needed_mib} MiB, more than {limit_mib} MiB; use a smaller picture, fewer samples, or more memory"
     )]
     TooLarge {
         /// Width in pixels.

@@ -115,6 +115,20 @@ pub struct TerrainLayer {
     pub palette: Palette,
 }
 
+impl TerrainLayer {
+    /// Ground in the usual style: Swiss relief, tinted by its range of heights.
+    pub fn new(heightfield: impl Into<Arc<Heightfield>>) -> Self {
+        Self {
+            heightfield: heightfield.into(),
+            drapes: Vec::new(),
+            relief: Relief::default(),
+            shading: None,
+            exaggeration: 1.0,
+            palette: Palette::default(),
+        }
+    }
+}
+
 /// One polyline of a line layer.
 #[derive(Debug, Clone, Default)]
 pub struct LineFeature {

@@ -1,7 +1,8 @@
 //! The scene: a flat list of layers in one coordinate system.
 
-use crate::{Heightfield, Layer, LayerKind};
-use belvedere_core::Aabb;
+use crate::{Color, Heightfield, Layer, LayerKind, LineFeature, LineLayer, TerrainLayer, drape_polyline};
+use belvedere_core::{Aabb, DVec2};
+use std::sync::Arc;
 
 /// Unit of all lengths of a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -48,6 +49,30 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// This scene with another layer, which nobody has to see.
+    pub fn with_layer(mut self, id: impl Into<String>, kind: LayerKind) -> Self {
+        self.layers.push(Layer { id: id.into(), must_see: false, kind });
+        self
+    }
+
+    /// This scene with ground in the usual style.
+    pub fn with_terrain(self, id: impl Into<String>, heightfield: impl Into<Arc<Heightfield>>) -> Self {
+        self.with_layer(id, LayerKind::Terrain(TerrainLayer::new(heightfield)))
+    }
+
+    /// This scene with a line that must be seen, in the usual style: laid on the ground where there is some, at height 0 in a scene
+    /// without terrain.
+    pub fn with_line(mut self, id: impl Into<String>, line: &[DVec2]) -> Self {
+        let parts = match self.terrain() {
+            Some(terrain) => drape_polyline(terrain, line).parts,
+            None => vec![line.iter().map(|p| p.extend(0.0)).collect()],
+        };
+        let features = parts.into_iter().map(|points| LineFeature { name: String::new(), points }).collect();
+        let kind = LayerKind::Line(LineLayer::new(features, Color::rgb(215, 48, 31)));
+        self.layers.push(Layer { id: id.into(), must_see: true, kind });
+        self
+    }
+
     /// The first terrain layer's heightfield.
     pub fn terrain(&self) -> Option<&Heightfield> {
         self.layers.iter().find_map(|l| match &l.kind {

@@ -1,20 +1,23 @@
-//! What can go wrong, in one sentence each.
+//! What can go wrong, as values. Texts name what was given and what is possible in the words of the library; an application
+//! adds the names of its own options.
 
 use std::path::PathBuf;
 
-/// Anything that ends a verb without a result.
+/// Anything that ends a call without a result.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BelvedereError {
     /// A mistake in a scene, preset or other text document.
-    #[error("{}{}: {reason}", path.display(), line.map(|l| format!(":{l}")).unwrap_or_default())]
+    #[error("{}{}{reason}", path.as_ref().map(|p| p.display().to_string()).unwrap_or_default(), at_line(path.is_some(), *line))]
     Scene {
-        /// The document.
-        path: PathBuf,
+        /// The document; `None` for one that was made in memory.
+        path: Option<PathBuf>,
         /// Line of the mistake, 1-based.
         line: Option<usize>,
         /// What is wrong, measured value, limit, what to do.
         reason: String,
+        /// The refusal of a file that the document names.
+        source: Option<Box<BelvedereError>>,
     },
     /// A file name that a scene may not use.
     #[error("path \"{name}\" {reason}")]
@@ -23,6 +26,8 @@ pub enum BelvedereError {
         name: String,
         /// Why it is refused and what to do.
         reason: String,
+        /// Whether another allowed folder (`OpenOptions::allow_roots`) can lift the refusal.
+        root_missing: bool,
     },
     /// Points or pixels that cannot be read.
     #[error("{}: {reason}", path.display())]
@@ -40,11 +45,84 @@ pub enum BelvedereError {
         /// Why not, and what to do.
         reason: String,
     },
-    /// A request that makes no sense.
+    /// A field of view outside (0, 180) degrees.
+    #[error("the field of view is {deg} degrees, it must lie strictly between 0 and 180")]
+    FieldOfView {
+        /// The angle given, degrees.
+        deg: f64,
+    },
+    /// The eye is the point that it looks at.
+    #[error("the eye and the point to look at are the same; look somewhere else")]
+    EyeIsTarget,
+    /// A position that cannot be found on the map.
+    #[error("{what}: {reason}")]
+    Position {
+        /// `eye` or `target`.
+        what: &'static str,
+        /// Why not, and what to do.
+        reason: String,
+    },
+    /// The eye is under the ground.
+    #[error(
+        "camera eye at height {eye_m:.1} is {:.1} under the ground ({ground_m:.1}); raise it, or give above_ground_m", ground_m - eye_m
+    )]
+    UnderGround {
+        /// Height of the eye, metres.
+        eye_m: f64,
+        /// Height of the ground there, metres.
+        ground_m: f64,
+    },
+    /// No file of routes, areas or points was given.
+    #[error("no features are given; name at least one file of routes, areas or points")]
+    NoFeatures,
+    /// A parameter of the terrain solver that does not exist or is out of range.
     #[error("{0}")]
-    Usage(String),
+    Setting(String),
+    /// A built-in scene that does not exist.
+    #[error("{0}")]
+    Builtin(String),
+    /// Rays that end before they begin.
+    #[error("rays end at depth {far}, it must be finite and beyond near = {near}")]
+    RayEnd {
+        /// Depth of the last sample, scene units.
+        far: f64,
+        /// Nearest depth of the camera, scene units.
+        near: f64,
+    },
+    /// Nothing says where rays end.
+    #[error("nothing says where rays end: the scene has no layer in front of the camera")]
+    NoRayEnd,
+    /// Too few or too many samples of rays.
+    #[error("{samples} samples of {rays} rays were asked for; at least 1 and together at most {most} are needed")]
+    RaySamples {
+        /// Samples of each ray.
+        samples: usize,
+        /// Rays.
+        rays: usize,
+        /// Most samples of all rays together.
+        most: usize,
+    },
+    /// The scene has no `[animation]`, and none was given.
+    #[error("nothing says how the camera moves; add [animation] to the scene")]
+    NoAnimation,
+    /// A sweep of the viewing angle without a range.
+    #[error("a sweep of the viewing angle needs a range, or a spline_bend stage, whose presets say one")]
+    NoSweepRange,
+    /// An animation that cannot be made.
+    #[error("{0}")]
+    Animation(String),
+    /// A folder that holds frames already.
+    #[error("{}: {reason}", folder.display())]
+    FramesThere {
+        /// The folder.
+        folder: PathBuf,
+        /// What it holds.
+        reason: String,
+        /// Whether they can be gone on with.
+        resumable: bool,
+    },
     /// An animation was cancelled between frames or in one.
-    #[error("cancelled after {done} of {frames} frames in {}; the same command with --resume goes on from there", folder.display())]
+    #[error("cancelled after {done} of {frames} frames in {}", folder.display())]
     Interrupted {
         /// Frames that are there.
         done: usize,
@@ -61,6 +139,23 @@ pub enum BelvedereError {
         /// Why not.
         source: Box<BelvedereError>,
     },
+    /// A report or document that has no text form; none of this library's has none.
+    #[error("{what} cannot be written as text: {reason}")]
+    Text {
+        /// What was to be written.
+        what: &'static str,
+        /// What the writer said.
+        reason: String,
+    },
+    /// A camera that is none.
+    #[error(transparent)]
+    Camera(#[from] belvedere_core::PinholeError),
+    /// Stages that do not go together.
+    #[error(transparent)]
+    View(#[from] belvedere_core::ViewError),
+    /// A coordinate system that cannot be used.
+    #[error(transparent)]
+    Crs(#[from] belvedere_io::crs::CrsError),
     /// A loader or writer failed.
     #[error(transparent)]
     Io(#[from] belvedere_io::IoError),
@@ -78,7 +173,20 @@ pub enum BelvedereError {
     Cancelled(#[from] belvedere_scene::Cancelled),
 }
 
+/// `:12: ` after the name of a document, nothing for one without a name.
+fn at_line(named: bool, line: Option<usize>) -> String {
+    match (named, line) {
+        (true, Some(line)) => format!(":{line}: "),
+        (true, None) => ": ".into(),
+        (false, _) => String::new(),
+    }
+}
+
 impl BelvedereError {
+    pub(crate) fn not_utf8(name: &str) -> Self {
+        Self::Path { name: name.to_owned(), reason: "is not UTF-8; rename it".into(), root_missing: false }
+    }
+
     /// Whether the work was cancelled rather than failed.
     pub fn is_cancelled(&self) -> bool {
         matches!(

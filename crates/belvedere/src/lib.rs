@@ -1,16 +1,42 @@
-//! The whole of Belvedere behind one door: scene files, sessions and the verbs of the command line.
+//! Belvedere draws pictures in which what matters is not hidden.
 //!
-//! ```no_run
-//! use belvedere::{OpenOptions, Session};
-//! let session = Session::open("scenes/massif.toml".as_ref(), &OpenOptions::default())?;
-//! let answer = belvedere::verbs::points::project(session.view(), &[[377_000.0, 4_700_500.0, 1_200.0]]);
-//! println!("{:?}", answer.points[0].pixel);
-//! # Ok::<(), belvedere::BelvedereError>(())
+//! Heights and lines made in memory, a view, a picture:
+//!
 //! ```
+//! use belvedere::core::{DVec2, DVec3, Pinhole, Projection, View};
+//! use belvedere::scene::{Heightfield, Scene};
+//! use belvedere::{PictureOptions, Session};
+//!
+//! let heights = (0..100 * 100).map(|i| 80.0 * ((i % 100) as f32 / 9.0).sin()).collect();
+//! let ground = Heightfield::measured(DVec2::new(0.0, 2970.0), DVec2::splat(30.0), 100, 100, heights)?;
+//! let path = [DVec2::new(200.0, 300.0), DVec2::new(2700.0, 2500.0)];
+//! let scene = Scene::default().with_terrain("ground", ground).with_line("path", &path);
+//! let (eye, target) = (DVec3::new(1500.0, -1500.0, 900.0), DVec3::new(1500.0, 1200.0, 0.0));
+//! let lens = Projection::Perspective { fov_y: 0.8 };
+//! let camera = Pinhole::look_at(eye, target, DVec3::Z, lens, [320, 180], 1.0, None)?;
+//! let session = Session::from_parts(scene, View::straight(camera));
+//! let picture = session.render(&PictureOptions::default())?;
+//! # let folder = tempfile::tempdir()?;
+//! # let out = folder.path().join("hills.png");
+//! picture.write(&out, false)?; // and its record beside it, hills.png.json
+//! # assert!(picture.frame.id.contains(&1) && picture.frame.id.contains(&2) && out.exists());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A scene file describes the same and more, and is opened by [`Session::open`]. Terrain and routes straight from files become a
+//! bent picture by [`verbs::reveal`], or moved ground by [`verbs::disocclude`]. Everything that a call takes or gives has its name
+//! in this crate: [`core`] (views and stages), [`scene`] (layers, frames), [`io`] (loaders), [`construct`], [`disocclusion`],
+//! [`cpu`] (renderers), [`builtin`] (generated scenes).
 
+mod camera_path;
+mod data;
 mod error;
+mod open;
+mod options;
+pub mod output;
 mod overlays;
-pub mod provenance;
+pub mod picture;
+pub mod record;
 mod resolve;
 pub mod scene_file;
 mod session;
@@ -23,9 +49,12 @@ pub use belvedere_cpu as cpu;
 pub use belvedere_disocclusion as disocclusion;
 pub use belvedere_io as io;
 pub use belvedere_scene as scene;
+pub use data::{DataFiles, LARGEST_HOLE};
 pub use error::BelvedereError;
+pub use options::{Needs, OpenOptions};
 pub use overlays::camera::CameraPicture;
-pub use session::{Needs, OpenOptions, Session};
+pub use picture::{DisplacementReport, Picture, PictureOptions, RendererChoice, Sidecar};
+pub use session::Session;
 
 /// Version of the program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

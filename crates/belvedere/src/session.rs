@@ -1,107 +1,95 @@
-//! An opened scene: everything resolved, nothing left to look up.
+//! A scene with a view and a light: everything that a picture needs, nothing left to look up.
 
 use crate::BelvedereError;
-use crate::resolve;
+use crate::resolve::terrain::{self, Solving};
+use crate::resolve::view;
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{self, Document, LayerDoc, PaletteDoc, PaletteName, SourceDocument, StageDoc};
-use belvedere_core::View;
+use crate::scene_file::{Document, OverlayDoc, SourceDocument, StageDoc};
+use belvedere_core::{Camera, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
-use belvedere_io::Limits;
-use belvedere_scene::{Light, Progress, Scene};
+use belvedere_scene::{Light, Scene};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What of a scene is wanted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Needs {
-    /// The view alone: of the layers only the terrain is read, and only if the camera or a stage stands on it.
-    View,
-    /// The view and the terrain.
-    Ground,
-    /// Every layer.
-    #[default]
-    Everything,
-}
-
-/// How to open a scene.
-#[derive(Debug, Clone, Default)]
-pub struct OpenOptions {
-    /// Folders beside that of the scene from which files may come.
-    pub allow_roots: Vec<PathBuf>,
-    /// What is wanted.
-    pub needs: Needs,
-    /// Another size of the picture than the scene's, pixels.
-    pub image: Option<[u32; 2]>,
-    /// Another seed than the scene's for whatever is generated.
-    pub seed: Option<u64>,
-    /// Another tint of terrain than the scene's.
-    pub palette: Option<PaletteDoc>,
-    /// Leaves stages that a solver would have to make out of the view: for those who want the document alone.
-    pub unsolved: bool,
-    /// Memory that the samples of one file may take, bytes; `None` = what [`Limits::default`] says.
-    pub max_bytes: Option<u64>,
-    /// Progress and cancellation.
-    pub progress: Progress,
-}
-
-impl OpenOptions {
-    /// Limits for reading files.
-    pub(crate) fn limits(&self) -> Limits {
-        self.max_bytes.map_or_else(Limits::default, |max_bytes| Limits { max_bytes })
-    }
-}
-
-/// An opened scene: layers, view and light, and what was odd on the way.
+/// Scene, view and light, from memory ([`Session::from_parts`]) or from a scene file ([`Session::open`]).
+///
+/// Clones share the scene and the renderer, with what that remembers from picture to picture.
 #[derive(Debug, Clone)]
 pub struct Session {
-    pub(crate) document: Document,
-    pub(crate) path: PathBuf,
-    pub(crate) source: SourceDocument,
-    pub(crate) roots: Roots,
-    pub(crate) scene: Scene,
+    pub(crate) scene: Arc<Scene>,
     pub(crate) view: View,
     pub(crate) light: Light,
+    pub(crate) overlay: OverlayDoc,
     pub(crate) terrain: Option<TerrainReport>,
     pub(crate) warnings: Vec<String>,
     pub(crate) inputs: Vec<PathBuf>,
-    /// One for all frames: it remembers what does not depend on the view.
-    pub(crate) rasteriser: Arc<CpuRenderer>,
+    pub(crate) description: Option<Description>,
+    pub(crate) renderer: Arc<CpuRenderer>,
+}
+
+/// The document that a session was made from.
+#[derive(Debug, Clone)]
+pub(crate) struct Description {
+    /// As written.
+    pub(crate) source: SourceDocument,
+    /// With every default filled in and every rule replaced by its value.
+    pub(crate) resolved: Document,
+    /// Where its files may lie.
+    pub(crate) roots: Roots,
 }
 
 impl Session {
-    /// Opens a scene file.
-    ///
-    /// # Errors
-    /// Every [`BelvedereError`]; mistakes in the file come with their line.
-    pub fn open(path: &Path, options: &OpenOptions) -> Result<Self, BelvedereError> {
-        Self::from_document(scene_file::read(path)?, options)
+    /// A session of layers and a view made in memory, under the default light (north-west, 45 degrees high).
+    pub fn from_parts(scene: impl Into<Arc<Scene>>, view: View) -> Self {
+        Self {
+            scene: scene.into(),
+            view,
+            light: Light::default(),
+            overlay: OverlayDoc::default(),
+            terrain: None,
+            warnings: Vec::new(),
+            inputs: Vec::new(),
+            description: None,
+            renderer: Arc::default(),
+        }
     }
 
-    /// Opens a scene from its text (TOML, or JSON if it starts with `{`); `path` says where its files are.
-    ///
-    /// # Errors
-    /// As [`Session::open`].
-    pub fn from_text(path: &Path, text: &str, options: &OpenOptions) -> Result<Self, BelvedereError> {
-        Self::from_document(scene_file::parse(path, text)?, options)
+    /// The same under another light.
+    pub fn with_light(self, light: Light) -> Self {
+        Self { light, ..self }
     }
 
-    fn from_document(mut source: SourceDocument, options: &OpenOptions) -> Result<Self, BelvedereError> {
-        if let Some(image) = options.image {
-            source.document.camera.image = image;
-        }
-        let mut allowed = options.allow_roots.clone();
-        if let Some(palette) = &options.palette {
-            let palette = located(palette, &mut allowed)?;
-            for layer in &mut source.document.layer {
-                if let LayerDoc::Terrain(terrain) = layer {
-                    terrain.style.palette = palette.clone();
-                }
-            }
-        }
-        let scene_dir = source.path().parent().map(Path::to_owned).unwrap_or_default();
-        let roots = Roots { scene_dir, allowed };
-        resolve::session(source, &roots, options)
+    /// The same with other marks over the picture.
+    pub fn with_overlay(self, overlay: OverlayDoc) -> Self {
+        Self { overlay, ..self }
+    }
+
+    /// The same scene in another view. A document that described the view before is left behind.
+    pub fn with_view(self, view: View) -> Self {
+        Self { view, terrain: None, description: None, ..self }
+    }
+
+    /// The same scene by another document of the same layers: everything that depends on camera and stages is resolved again.
+    /// Without `solving` an intent of terrain disocclusion is left out.
+    pub(crate) fn with_document(
+        &self,
+        document: Document,
+        solving: Option<&mut Solving<'_>>,
+    ) -> Result<Self, BelvedereError> {
+        let (origin, roots) = match &self.description {
+            Some(d) => (d.source.origin.clone(), d.roots.clone()),
+            None => Default::default(),
+        };
+        let source = SourceDocument { origin, document };
+        let resolved = view::resolve(&source, &roots, &self.scene, solving)?;
+        Ok(Self {
+            view: resolved.view,
+            light: resolved.light,
+            terrain: resolved.terrain,
+            description: Some(Description { source, resolved: resolved.document, roots }),
+            ..self.clone()
+        })
     }
 
     /// Layers, unit and coordinate system.
@@ -124,50 +112,82 @@ impl Session {
         self.terrain.as_ref()
     }
 
-    /// Parameters of terrain disocclusion as the scene file states them, else the usual ones.
-    ///
-    /// # Errors
-    /// [`BelvedereError::Usage`] with the parameter that is out of range.
-    pub fn terrain_settings(&self) -> Result<TerrainSettings, BelvedereError> {
-        let stated = self.source.document.stage.iter().find_map(|stage| match stage {
-            StageDoc::TerrainDisocclusion(doc) => Some(doc.clone()),
-            _ => None,
-        });
-        let settings = resolve::terrain::settings(&stated.unwrap_or_default());
-        settings.map_err(|(_, reason)| BelvedereError::Usage(reason))
-    }
-
     /// What was odd: one sentence each.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
-    /// Files that were read, the scene first.
+    /// Files that were read, the scene file first.
     pub fn inputs(&self) -> &[PathBuf] {
         &self.inputs
     }
 
-    /// The scene file.
-    pub fn path(&self) -> &Path {
-        &self.path
+    /// The scene file; `None` for a session from memory.
+    pub fn path(&self) -> Option<&Path> {
+        self.description.as_ref().and_then(|d| d.source.path())
     }
 
-    /// The document with every default filled in and every place, name and rule replaced by its value; it opens to the same view.
-    pub fn resolved(&self) -> &Document {
-        &self.document
+    /// The document with every default filled in and every position, name and rule replaced by its value; it opens to the same
+    /// view. `None` for a session from parts.
+    pub fn resolved(&self) -> Option<&Document> {
+        self.description.as_ref().map(|d| &d.resolved)
     }
-}
 
-/// The palette with the full path of its file, whose folder is allowed from now on.
-pub(crate) fn located(palette: &PaletteDoc, allowed: &mut Vec<PathBuf>) -> Result<PaletteDoc, BelvedereError> {
-    let PaletteDoc::File(name) = palette else { return Ok(palette.clone()) };
-    let names = PaletteName::ALL.map(|(name, _)| name).join(", ");
-    let path = Path::new(name).canonicalize().map_err(|e| BelvedereError::Path {
-        name: name.clone(),
-        reason: format!("is no palette ({names}) and no file of colours by height: {e}"),
-    })?;
-    allowed.extend(path.parent().map(Path::to_owned));
-    let text = path.to_str().map(str::to_owned);
-    let reason = || "is not UTF-8; rename it".to_owned();
-    text.map(PaletteDoc::File).ok_or_else(|| BelvedereError::Path { name: name.clone(), reason: reason() })
+    /// Parameters of terrain disocclusion as the document states them, else the usual ones.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Setting`] with the parameter that is out of range.
+    pub fn terrain_settings(&self) -> Result<TerrainSettings, BelvedereError> {
+        let mut stages = self.description.iter().flat_map(|d| &d.source.document.stage);
+        let stated = stages.find_map(|stage| match stage {
+            StageDoc::TerrainDisocclusion(doc) => Some(doc.clone()),
+            _ => None,
+        });
+        let settings = terrain::settings(&stated.unwrap_or_default());
+        settings.map_err(|(_, reason)| BelvedereError::Setting(reason))
+    }
+
+    /// The scene file, or the title of the scene, for reports.
+    pub(crate) fn name(&self) -> String {
+        self.path().map_or_else(|| self.scene.title.clone(), |path| path.display().to_string())
+    }
+
+    /// Names of the stages of the view, in order of application.
+    pub(crate) fn stage_names(&self) -> Vec<&'static str> {
+        self.view.stages().iter().map(|s| s.name()).collect()
+    }
+
+    /// Depth at which rays end: `far` if given, else the camera's, else the largest depth of the scene.
+    ///
+    /// # Errors
+    /// [`BelvedereError::NoRayEnd`] if there is none of them.
+    pub fn ray_end(&self, far: Option<f64>) -> Result<f64, BelvedereError> {
+        let view = &self.view;
+        if let Some(far) = far.or(view.pinhole().far) {
+            return Ok(far);
+        }
+        let bounds = self.scene.bounds();
+        let corners = bounds.corners();
+        let straight = corners.iter().map(|&c| (c - view.pinhole().eye).dot(view.pinhole().forward));
+        let bent = corners.iter().filter_map(|&c| view.project(c).ok()).map(|image| image.depth);
+        let deepest = straight.chain(bent).fold(0.0, f64::max);
+        if bounds.is_empty() || !(deepest > view.pinhole().near) {
+            return Err(BelvedereError::NoRayEnd);
+        }
+        Ok(deepest)
+    }
+
+    /// Refuses views that cannot be drawn.
+    ///
+    /// # Errors
+    /// [`BelvedereError::UnderGround`].
+    pub fn check_drawable(&self) -> Result<(), BelvedereError> {
+        let eye = self.view.pinhole().eye;
+        let moved = self.view.stages().iter().any(|s| matches!(s, belvedere_core::Stage::TerrainDisocclusion(_)));
+        let ground = self.scene.terrain().and_then(|t| t.surface_at(eye.truncate()));
+        match ground {
+            Some(ground_m) if eye.z < ground_m && !moved => Err(BelvedereError::UnderGround { eye_m: eye.z, ground_m }),
+            _ => Ok(()),
+        }
+    }
 }

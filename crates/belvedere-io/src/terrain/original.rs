@@ -1,7 +1,7 @@
 //! The heights of one file on their own grid, to be written back changed.
 
-use super::TerrainRequest;
 use super::source::{self, SourceGrid};
+use super::{LoadedTerrain, TerrainRequest};
 use crate::crs::{CoordinateSystem, Transform};
 use crate::raster::{CrsKind, Raster, RasterInfo, SampleType, Samples, SourceCrs};
 use crate::{IoError, Loaded};
@@ -45,6 +45,16 @@ impl OriginalTerrain {
     /// Heights in metres, row-major; `None` where there is no data.
     pub fn heights(&self) -> impl Iterator<Item = Option<f32>> + '_ {
         self.source.heights.iter().map(|h| h.is_finite().then_some(*h))
+    }
+
+    /// The terrain of a scene, as [`super::load_terrain`] makes it of the same file.
+    ///
+    /// # Errors
+    /// As [`super::load_terrain`].
+    pub fn in_scene(&self, request: &TerrainRequest, progress: &Progress) -> Result<Loaded<LoadedTerrain>, IoError> {
+        let mut warnings = Vec::new();
+        let source = source::within(self.source.clone(), request.max_nodes, 1.0, &mut warnings);
+        super::in_scene(vec![source], request, warnings, progress)
     }
 
     /// The heights moved by `delta` (metres, at scene x, y), and the moves themselves, as rasters on the file's own grid: 32-bit

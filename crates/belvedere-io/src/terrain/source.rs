@@ -134,29 +134,35 @@ fn read_one(
             path.display()
         ));
     }
-    let (mut cols, mut rows) = (raster.info.width, raster.info.height);
+    let (cols, rows) = (raster.info.width, raster.info.height);
     let voids = heights.iter().filter(|h| h.is_nan()).count();
     let samples = heights.len();
     let system = system_of(&raster.info, request, warnings)?;
     warn_about_frame(path, &heights, cols, rows, warnings);
     let to_model = raster.info.pixel_to_model.unwrap_or(Affine([1.0, 0.0, 0.0, 0.0, -1.0, rows as f64]));
-    let mut model_from_index = to_model.after_scale_and_shift(1.0, 1.0, 0.5, 0.5);
+    let model_from_index = to_model.after_scale_and_shift(1.0, 1.0, 0.5, 0.5);
     if raster.info.pixel_to_model.is_none() {
         warnings.push(format!("{}: it has no georeference; one pixel counts as one metre", path.display()));
     }
+    let grid = SourceGrid { path: path.to_owned(), cols, rows, heights, model_from_index, system, samples, voids };
+    Ok(within(grid, budget, factor, warnings))
+}
+
+/// A source of at most `budget` nodes; `factor` is by how much it is coarser than its file already.
+pub(super) fn within(mut grid: SourceGrid, budget: usize, factor: f64, warnings: &mut Vec<String>) -> SourceGrid {
     let mut thinned = factor;
-    if let Some(k) = thinning(cols, rows, budget) {
-        (heights, cols, rows) = thin(&heights, cols, rows, k);
-        model_from_index = model_from_index.after_scale_and_shift(k as f64, k as f64, 0.0, 0.0);
+    if let Some(k) = thinning(grid.cols, grid.rows, budget) {
+        (grid.heights, grid.cols, grid.rows) = thin(&grid.heights, grid.cols, grid.rows, k);
+        grid.model_from_index = grid.model_from_index.after_scale_and_shift(k as f64, k as f64, 0.0, 0.0);
         thinned *= k as f64;
     }
     if thinned > 1.0 {
         warnings.push(format!(
             "{}: only about every {thinned:.0}th sample along each side is used, to keep at most {budget} nodes",
-            path.display()
+            grid.path.display()
         ));
     }
-    Ok(SourceGrid { path: path.to_owned(), cols, rows, heights, model_from_index, system, samples, voids })
+    grid
 }
 
 /// The raster and by how much it is coarser than the file.

@@ -300,7 +300,7 @@ fn headers_that_lie() {
         (tile(0, 16).to_vec(), "tile width is 0"),
         (tile(16, 16).to_vec(), "lists 1 tiles, 16 are needed"),
         (tile(huge, huge).to_vec(), "cannot hold"),
-        (sparse, "--max-mem"),
+        (sparse, "allow more memory"),
         (vec![(258, 3, vec![13])], "13 bits"),
         (vec![(258, 3, vec![16]), (339, 3, vec![5])], "complex"),
         (vec![(277, 3, vec![0])], "0 samples per pixel"),

@@ -8,11 +8,11 @@ use belvedere_scene::{Color, Hidden, OverlayLine, Scene};
 const WANTED: f64 = 8.0;
 const MOST: f64 = 500.0;
 
-/// Spacing of the grid, scene units: as asked, or round; `None` without terrain or with more than 500 lines.
-pub(crate) fn spacing(scene: &Scene, asked: Option<f64>) -> Option<f64> {
+/// Spacing of the grid, scene units: as given, or round; `None` without terrain or with more than 500 lines.
+pub(crate) fn spacing(scene: &Scene, given: Option<f64>) -> Option<f64> {
     let bounds = scene.terrain()?.bounds();
     let size = (bounds.max - bounds.min).truncate();
-    let spacing = asked.unwrap_or_else(|| round_below(size.min_element() / WANTED));
+    let spacing = given.unwrap_or_else(|| round_below(size.min_element() / WANTED));
     (spacing > 0.0 && size.max_element() / spacing <= MOST).then_some(spacing)
 }
 

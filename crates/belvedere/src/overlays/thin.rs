@@ -8,9 +8,9 @@ use belvedere_scene::{Frame, Heightfield, LayerKind, Scene};
 
 /// Occlusion at which the ground is half see-through, scene units.
 const HALF_M: f64 = 20.0;
-/// Radius around a covered place in which the ground is see-through, share of the picture's width.
+/// Radius around a covered point in which the ground is see-through, share of the picture's width.
 const RADIUS: f64 = 0.02;
-/// Ground this near to a covered place stays whole, cells.
+/// Ground this near to a covered point stays whole, cells.
 const WHOLE: f64 = 1.0;
 /// Ground within this of a line of sight is cut away, cells.
 const WIDTH: f64 = 1.0;
@@ -41,12 +41,12 @@ pub(crate) fn cut(scene: &Scene, view: &View, covered: &[Covered]) -> Result<Opt
     let sight = ViewSight::new(view, &field);
     let mut heights = terrain.heights().to_vec();
     let mut line = Vec::new();
-    for place in covered {
-        let xy = DVec2::from_array(place.at);
+    for point in covered {
+        let xy = DVec2::from_array(point.at);
         let grid = field.grid_from_scene(xy);
         let Some(ground) = field.surface_at(grid) else { continue };
         line.clear();
-        sight.trace(grid, ground + delta(xy) + place.lift_m, &mut line);
+        sight.trace(grid, ground + delta(xy) + point.lift_m, &mut line);
         for pair in line.windows(2) {
             let [(a, za), (b, zb)] = [pair[0], pair[1]];
             let steps = (2.0 * (b - a).length()).ceil().clamp(1.0, 1e5) as usize;
@@ -104,11 +104,11 @@ pub(crate) fn draw(frame: &mut Frame, behind: &Frame, scene: &Scene, view: &View
 fn opacity(scene: &Scene, view: &View, covered: &[Covered], [width, height]: [usize; 2]) -> Vec<f32> {
     let mut out = vec![1.0f32; width * height];
     let radius = (RADIUS * width as f64).max(2.0);
-    for place in covered {
-        let xy = DVec2::from_array(place.at);
+    for point in covered {
+        let xy = DVec2::from_array(point.at);
         let ground = scene.terrain().and_then(|t| t.surface_at(xy)).unwrap_or(0.0);
-        let Ok(image) = view.project(xy.extend(ground + place.lift_m)) else { continue };
-        let alpha = ghost_alpha(place.over_m, HALF_M);
+        let Ok(image) = view.project(xy.extend(ground + point.lift_m)) else { continue };
+        let alpha = ghost_alpha(point.over_m, HALF_M);
         let (low, high) = (image.pixel - radius, image.pixel + radius);
         let range = |low: f64, high: f64, n: usize| low.max(0.0) as usize..(high.max(0.0) as usize).min(n);
         for y in range(low.y, high.y, height) {

@@ -1,10 +1,10 @@
 //! Layers of boxes: inline, from JSON or CSV, or built in.
 
 use super::builtin;
-use super::layers::Loader;
+use super::loader::Loader;
 use super::validate::color;
 use crate::BelvedereError;
-use crate::scene_file::{self, BoxDoc, BoxesDoc, Paths, TransformDoc};
+use crate::scene_file::{self, BoxDoc, BoxesDoc, DocError, Paths, TransformDoc};
 use belvedere_core::DVec3;
 use belvedere_scene::{BoxLayer, BoxShape, Color, LayerKind};
 use std::path::Path;
@@ -13,14 +13,10 @@ use std::path::Path;
 pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &BoxesDoc) -> Result<LayerKind, BelvedereError> {
     let default = loader.color(index, &doc.style.color)?;
     let mut boxes = match (&doc.source, &doc.boxes) {
-        (Some(name), _) if builtin::is_name(name) => {
-            let seed = loader.options.seed;
-            let kind = loader.builtins.find(name, seed, |k| matches!(k, LayerKind::Boxes(_)));
-            match kind.map_err(|e| loader.fail(index, "source", e))? {
-                LayerKind::Boxes(b) => b.boxes,
-                _ => Vec::new(),
-            }
-        }
+        (Some(name), _) if builtin::is_name(name) => loader.builtin(index, name, |kind| match kind {
+            LayerKind::Boxes(layer) => Some(layer.boxes.clone()),
+            _ => None,
+        })?,
         (Some(name), _) => {
             let path = loader.files(index, "source", &Paths::One(name.clone()))?.remove(0);
             let docs = read(&path)?;
@@ -31,7 +27,7 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &BoxesDoc) -> Re
     };
     if let Some(transform) = &doc.transform {
         check(transform).map_err(|reason| loader.fail(index, "transform", reason))?;
-        boxes.iter_mut().for_each(|b| place(b, transform));
+        boxes.iter_mut().for_each(|b| apply(b, transform));
     }
     Ok(LayerKind::Boxes(BoxLayer { boxes }))
 }
@@ -59,7 +55,7 @@ fn check(transform: &TransformDoc) -> Result<(), String> {
     Ok(())
 }
 
-fn place(shape: &mut BoxShape, transform: &TransformDoc) {
+fn apply(shape: &mut BoxShape, transform: &TransformDoc) {
     let yaw = transform.rotate_deg[2].to_radians();
     let (sin, cos) = yaw.sin_cos();
     let p = transform.scale * shape.base;
@@ -70,16 +66,15 @@ fn place(shape: &mut BoxShape, transform: &TransformDoc) {
 
 fn read(path: &Path) -> Result<Vec<BoxDoc>, BelvedereError> {
     let text = scene_file::read_text(path)?;
-    let fail = |line: Option<usize>, reason: String| BelvedereError::Scene { path: path.to_owned(), line, reason };
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
-        return csv(&text).map_err(|(line, reason)| fail(Some(line), reason));
+        return csv(&text).map_err(|e| e.in_file(path));
     }
-    let root = scene_file::tree(path, &text).map_err(|e| fail(e.line, e.to_string()))?;
-    scene_file::decode(&root).map_err(|e| fail(e.line, e.to_string()))
+    let root = scene_file::tree(path, &text).map_err(|e| e.in_file(path))?;
+    scene_file::decode(&root).map_err(|e| e.in_file(path))
 }
 
 /// `x,y,z,size_x,size_y,size_z[,yaw_deg[,color]]`; a first line of names is skipped.
-fn csv(text: &str) -> Result<Vec<BoxDoc>, (usize, String)> {
+fn csv(text: &str) -> Result<Vec<BoxDoc>, DocError> {
     let mut boxes = Vec::new();
     for (i, row) in text.lines().enumerate() {
         let cells: Vec<&str> = row.split(',').map(str::trim).collect();
@@ -89,7 +84,7 @@ fn csv(text: &str) -> Result<Vec<BoxDoc>, (usize, String)> {
         let number = |k: usize| cells.get(k).and_then(|c| c.parse::<f64>().ok()).filter(|v| v.is_finite());
         let numbers: Option<Vec<f64>> = (0..6).map(number).collect();
         let bad =
-            || (i + 1, "x,y,z,size_x,size_y,size_z[,yaw_deg[,color]] was expected; give finite numbers".to_owned());
+            || DocError::at(i + 1, "x,y,z,size_x,size_y,size_z[,yaw_deg[,color]] was expected; give finite numbers");
         let n = numbers.filter(|_| cells.len() <= 8).ok_or_else(bad)?;
         let yaw_deg = if cells.get(6).is_some_and(|c| !c.is_empty()) { number(6).ok_or_else(bad)? } else { 0.0 };
         let color = cells.get(7).filter(|c| !c.is_empty()).map(|c| (*c).to_owned());

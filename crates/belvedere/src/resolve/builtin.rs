@@ -28,13 +28,13 @@ struct Request {
 pub(super) struct Builtins(Vec<(Request, Scene)>);
 
 impl Builtins {
-    /// The first layer of `source`'s scene that `wanted` accepts (and that has the id given as `layer=`).
-    pub(super) fn find(
+    /// What `pick` takes from the first layer of `source`'s scene that it accepts (and that has the id given as `layer=`).
+    pub(super) fn find<T>(
         &mut self,
         source: &str,
         seed: Option<u64>,
-        wanted: impl Fn(&LayerKind) -> bool,
-    ) -> Result<LayerKind, String> {
+        pick: impl Fn(&LayerKind) -> Option<T>,
+    ) -> Result<T, String> {
         let (mut request, id) = parse(source)?;
         request.seed = seed.unwrap_or(request.seed);
         let at = match self.0.iter().position(|(r, _)| *r == request) {
@@ -47,8 +47,8 @@ impl Builtins {
         };
         let layers = &self.0[at].1.layers;
         let named = |l: &&belvedere_scene::Layer| id.as_ref().is_none_or(|id| *id == l.id);
-        layers.iter().filter(named).find(|l| wanted(&l.kind)).map(|l| l.kind.clone()).ok_or_else(|| {
-            let ids: Vec<&str> = layers.iter().filter(|l| wanted(&l.kind)).map(|l| l.id.as_str()).collect();
+        layers.iter().filter(named).find_map(|l| pick(&l.kind)).ok_or_else(|| {
+            let ids: Vec<&str> = layers.iter().filter(|l| pick(&l.kind).is_some()).map(|l| l.id.as_str()).collect();
             format!("{source} has no such layer of this kind; layers of this kind are: {}", ids.join(", "))
         })
     }

@@ -1,6 +1,6 @@
 //! From the camera of a document to a pinhole.
 
-use super::Ground;
+use super::ground::Ground;
 use crate::BelvedereError;
 use crate::scene_file::{CameraDoc, MapPointDoc, PointDoc, ProjectionDoc, SourceDocument};
 use belvedere_core::{DVec2, DVec3, Pinhole, PinholeError, Projection};
@@ -12,7 +12,7 @@ pub(crate) struct ResolvedCamera {
     pub(crate) pinhole: Pinhole,
     /// The given or implied point on the optical axis.
     pub(crate) look_at: Option<DVec3>,
-    /// The document with every place as `[x, y, z]`.
+    /// The document with every position as `[x, y, z]`.
     pub(crate) document: CameraDoc,
 }
 
@@ -26,9 +26,9 @@ pub(crate) fn resolve(
     spline_normal: Option<DVec3>,
 ) -> Result<ResolvedCamera, BelvedereError> {
     let doc = &source.document.camera;
-    let eye = place(source, ground, "eye", &doc.eye)?;
+    let eye = position(source, ground, "eye", &doc.eye)?;
     let look_at = match (&doc.look_at, doc.heading_deg, doc.pitch_deg) {
-        (Some(point), None, None) => Some(place(source, ground, "look_at", point)?),
+        (Some(point), None, None) => Some(position(source, ground, "look_at", point)?),
         (None, Some(_), Some(_)) => None,
         (Some(_), _, _) => {
             let key = if doc.heading_deg.is_some() { "heading_deg" } else { "pitch_deg" };
@@ -111,8 +111,13 @@ fn key_of(error: &PinholeError) -> &'static str {
     }
 }
 
-/// A place in scene coordinates; `key` is `eye` or `look_at`.
-fn place(source: &SourceDocument, ground: &Ground<'_>, key: &str, point: &PointDoc) -> Result<DVec3, BelvedereError> {
+/// A position in scene coordinates; `key` is `eye` or `look_at`.
+fn position(
+    source: &SourceDocument,
+    ground: &Ground<'_>,
+    key: &str,
+    point: &PointDoc,
+) -> Result<DVec3, BelvedereError> {
     let fail = |reason: String| source.error(&["camera", key], reason);
     let map = match point {
         PointDoc::Scene(p) => return Ok(DVec3::from_array(*p)),
@@ -120,7 +125,7 @@ fn place(source: &SourceDocument, ground: &Ground<'_>, key: &str, point: &PointD
     };
     let xy = match map {
         MapPointDoc { lon: Some(lon), lat: Some(lat), x: None, y: None, .. } => {
-            ground.place_of(*lon, *lat).map_err(|e| fail(format!("camera {key}: {e}")))?
+            ground.position_of(*lon, *lat).map_err(|e| fail(format!("camera {key}: {e}")))?
         }
         MapPointDoc { lon: None, lat: None, x: Some(x), y: Some(y), height_m: None, .. } => DVec2::new(*x, *y),
         _ => {

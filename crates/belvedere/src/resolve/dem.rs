@@ -1,9 +1,9 @@
 //! Terrain from files.
 
-use super::layers::Loader;
+use super::loader::Loader;
 use crate::BelvedereError;
 use crate::scene_file::TerrainDoc;
-use belvedere_io::terrain::{CrsChoice, TerrainRequest, load_terrain};
+use belvedere_io::terrain::{CrsChoice, TerrainRequest, load_original, load_terrain};
 use belvedere_scene::{Crs, Heightfield};
 
 /// The heights and the coordinate system they bring.
@@ -21,7 +21,7 @@ pub(super) fn load(
     };
     let source_crs = match &doc.source_crs {
         None => None,
-        Some(text) => Some(super::epsg(text).ok_or_else(|| {
+        Some(text) => Some(super::ground::epsg(text).ok_or_else(|| {
             loader.fail(index, "source_crs", format!("source_crs \"{text}\" is not known; give \"EPSG:n\""))
         })?),
     };
@@ -34,7 +34,17 @@ pub(super) fn load(
         limits: loader.options.limits(),
         ..TerrainRequest::default()
     };
-    let loaded = load_terrain(&files, &request, &loader.options.progress)?;
+    let progress = &loader.options.progress;
+    let loaded = match &files[..] {
+        [file] if loader.keep_original => {
+            let original = load_original(file, &request, progress)?;
+            loader.note(index, original.warnings);
+            let loaded = original.value.in_scene(&request, progress)?;
+            loader.original = Some(original.value);
+            loaded
+        }
+        files => load_terrain(files, &request, progress)?,
+    };
     loader.note(index, loaded.warnings);
     Ok((loaded.value.heightfield, loaded.value.crs))
 }

@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// Longest side of a picture that is kept, pixels; larger ones are read from a reduced copy if they have one.
 const MAX_SIDE: usize = 8192;
-/// Points per side at which the picture's place is fitted.
+/// Points per side at which the picture's position is fitted.
 const FIT: usize = 9;
 
 /// Reads a picture and places it by an affine map fitted to its own coordinate system.

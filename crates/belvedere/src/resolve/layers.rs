@@ -1,330 +1,382 @@
 //! From the layers of a document to the layers of a scene.
 
-use super::validate::{color, optional_color};
-use super::{Ground, builtin, vectors};
+use super::ground::{Ground, epsg};
+use super::loader::Loader;
+use super::{boxes, builtin, dem, drape, mesh, vectors};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    AreaDoc, AutoOrLength, Document, HiddenDoc, LayerDoc, LineDoc, PaletteDoc, PaletteName, Paths, PlaceDoc,
-    PointLayerDoc, ReliefDoc, RouteDoc, ShadingDoc, SourceDocument, SurfaceDoc, SymbolDoc, TerrainDoc,
+    AreaDoc, AutoOrLength, HiddenDoc, LayerDoc, LineDoc, Origin, PaletteDoc, PaletteName, Paths, PlaceDoc,
+    PointLayerDoc, ReliefDoc, RouteDoc, ShadingDoc, SurfaceDoc, SymbolDoc, TerrainDoc,
 };
-use crate::{BelvedereError, OpenOptions};
+use crate::{BelvedereError, Needs, OpenOptions};
 use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
 use belvedere_core::DVec2;
+use belvedere_io::Loaded;
+use belvedere_io::crs::CoordinateSystem;
+use belvedere_io::terrain::OriginalTerrain;
+use belvedere_io::vector::Vectors;
 use belvedere_scene::{
     AreaLayer, AreaSurface, Color, Crs, DistanceMarkers, Drape, Heightfield, Hidden, Layer, LayerKind, LineFeature,
     LineLayer, Palette, PointLayer, PointStyle, Relief, Scene, Shading, Symbol, TerrainLayer, drape_polyline,
 };
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What layers are loaded with, and what is found out on the way.
-pub(super) struct Loader<'a> {
-    pub(super) source: &'a SourceDocument,
-    pub(super) roots: &'a Roots,
-    pub(super) options: &'a OpenOptions,
-    pub(super) builtins: builtin::Builtins,
-    pub(super) inputs: Vec<PathBuf>,
-    pub(super) warnings: Vec<String>,
+/// Which layers to read.
+pub(crate) struct LayerRequest<'a> {
+    pub(crate) origin: &'a Origin,
+    pub(crate) layers: &'a [LayerDoc],
+    /// `auto`, `local` or `EPSG:n`.
+    pub(crate) crs: &'a str,
+    /// The system if `crs` is automatic and there is no terrain.
+    pub(crate) fallback_crs: Option<Crs>,
+    /// Nothing, the terrain, or every layer.
+    pub(crate) needs: Needs,
+    pub(crate) roots: &'a Roots,
+    /// Vector files that were read already.
+    pub(crate) vectors: BTreeMap<PathBuf, Loaded<Vectors>>,
+    /// Whether to keep the samples of the terrain's file as they are there.
+    pub(crate) keep_original: bool,
 }
 
-impl Loader<'_> {
-    /// An error at a key of layer `index`.
-    pub(super) fn fail(&self, index: usize, key: &str, reason: impl std::fmt::Display) -> BelvedereError {
-        let id = self.source.document.layer.get(index).map_or("", LayerDoc::id);
-        self.source.error(&["layer", &index.to_string(), key], format!("layer \"{id}\": {reason}"))
+impl<'a> LayerRequest<'a> {
+    /// Every layer.
+    pub(crate) fn new(origin: &'a Origin, layers: &'a [LayerDoc], crs: &'a str, roots: &'a Roots) -> Self {
+        let (fallback_crs, needs, vectors) = (None, Needs::Everything, BTreeMap::new());
+        Self { origin, layers, crs, fallback_crs, needs, roots, vectors, keep_original: false }
     }
+}
 
-    /// The files that a key names.
-    pub(super) fn files(&mut self, index: usize, key: &str, paths: &Paths) -> Result<Vec<PathBuf>, BelvedereError> {
-        if paths.as_slice().is_empty() {
-            return Err(self.fail(index, key, format!("{key} is an empty list; name at least one file")));
+/// Layers, and what was found out on the way.
+pub(crate) struct LoadedLayers {
+    pub(crate) layers: Vec<Layer>,
+    pub(crate) crs: Crs,
+    pub(crate) inputs: Vec<PathBuf>,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) original: Option<OriginalTerrain>,
+}
+
+/// The layers that are needed, in file order.
+pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<LoadedLayers, BelvedereError> {
+    let LayerRequest { origin, layers: docs, fallback_crs, needs, roots, vectors, keep_original, .. } = request;
+    let mut crs = stated_crs(origin, request.crs)?;
+    let mut loader = Loader {
+        origin,
+        layers: docs,
+        roots,
+        options,
+        builtins: builtin::Builtins::default(),
+        inputs: Vec::new(),
+        warnings: Vec::new(),
+        vectors,
+        keep_original,
+        original: None,
+    };
+    let mut layers: Vec<Option<Layer>> = docs.iter().map(|_| None).collect();
+    for (i, doc) in docs.iter().enumerate().filter(|_| needs != Needs::View) {
+        if let LayerDoc::Terrain(doc) = doc {
+            let (layer, found) = terrain(&mut loader, i, doc, crs)?;
+            crs.get_or_insert(found);
+            layers[i] = Some(Layer { id: doc.id.clone(), must_see: false, kind: LayerKind::Terrain(layer) });
         }
-        let found: Vec<PathBuf> = paths
-            .as_slice()
-            .iter()
-            .map(|name| self.roots.resolve(name).map_err(|e| self.fail(index, key, e)))
-            .collect::<Result<_, _>>()?;
-        self.inputs.extend(found.iter().cloned());
-        Ok(found)
     }
-
-    /// Keeps warnings, with the layer they belong to.
-    pub(super) fn note(&mut self, index: usize, warnings: Vec<String>) {
-        let id = self.source.document.layer.get(index).map_or("", LayerDoc::id);
-        self.warnings.extend(warnings.into_iter().map(|w| format!("layer \"{id}\": {w}")));
+    let crs = crs.or(fallback_crs).unwrap_or_default();
+    for (i, doc) in docs.iter().enumerate().filter(|_| needs == Needs::Everything) {
+        let ground = Ground { crs, terrain: first_terrain(&layers) };
+        if let LayerDoc::Terrain(doc) = doc {
+            let drapes = drapes(&mut loader, i, doc, &ground)?;
+            if let Some(Layer { kind: LayerKind::Terrain(t), .. }) = &mut layers[i] {
+                t.drapes = drapes;
+            }
+        } else {
+            layers[i] = layer(&mut loader, i, doc, &ground)?;
+        }
     }
+    let Loader { inputs, warnings, original, .. } = loader;
+    Ok(LoadedLayers { layers: layers.into_iter().flatten().collect(), crs, inputs, warnings, original })
+}
 
-    /// The terrain of a layer and the coordinate system it brings.
-    pub(super) fn terrain(
-        &mut self,
-        index: usize,
-        doc: &TerrainDoc,
-        wanted: Option<Crs>,
-    ) -> Result<(TerrainLayer, Crs), BelvedereError> {
-        let style = &doc.style;
-        let (heightfield, crs) = match doc.source.as_slice() {
-            [name] if builtin::is_name(name) => {
-                let seed = self.options.seed;
-                let kind = self.builtins.find(name, seed, |k| matches!(k, LayerKind::Terrain(_)));
-                match kind.map_err(|e| self.fail(index, "source", e))? {
-                    LayerKind::Terrain(t) => (t.heightfield, wanted.unwrap_or_default()),
-                    _ => return Err(self.fail(index, "source", "the built-in scene has no terrain")),
-                }
-            }
-            _ => {
-                let (heightfield, crs) = super::dem::load(self, index, doc, wanted)?;
-                (heightfield.into(), crs)
-            }
-        };
-        let layer = TerrainLayer {
-            heightfield,
-            drapes: Vec::new(),
-            relief: match style.relief {
-                ReliefDoc::Swiss => Relief::Swiss,
-                ReliefDoc::Sun => Relief::Sun,
-                ReliefDoc::None => Relief::None,
+fn first_terrain(layers: &[Option<Layer>]) -> Option<&Heightfield> {
+    layers.iter().flatten().find_map(|l| match &l.kind {
+        LayerKind::Terrain(t) => Some(&*t.heightfield),
+        _ => None,
+    })
+}
+
+/// The system that the document names; `None` = automatic.
+pub(super) fn stated_crs(origin: &Origin, text: &str) -> Result<Option<Crs>, BelvedereError> {
+    let text = text.trim();
+    if text.eq_ignore_ascii_case("auto") {
+        return Ok(None);
+    }
+    if text.eq_ignore_ascii_case("local") {
+        return Ok(Some(Crs::Local));
+    }
+    let fail = |reason: String| origin.error(&["crs"], reason);
+    let Some(code) = epsg(text) else {
+        return Err(fail(format!("crs \"{text}\" is not known; give \"auto\", \"local\" or \"EPSG:n\"")));
+    };
+    let system = CoordinateSystem::from_epsg(code).map_err(|e| fail(e.to_string()))?;
+    if !system.suits_scenes() {
+        return Err(fail(format!(
+            "crs EPSG:{code} is not projected in metres with x east and y north; give a UTM zone or another metric system, or \"auto\""
+        )));
+    }
+    Ok(Some(Crs::Epsg(code)))
+}
+
+/// The terrain of a layer and the coordinate system it brings.
+fn terrain(
+    loader: &mut Loader<'_>,
+    index: usize,
+    doc: &TerrainDoc,
+    wanted: Option<Crs>,
+) -> Result<(TerrainLayer, Crs), BelvedereError> {
+    let style = &doc.style;
+    let (heightfield, crs) = match doc.source.as_slice() {
+        [name] if builtin::is_name(name) => {
+            let heightfield = loader.builtin(index, name, |kind| match kind {
+                LayerKind::Terrain(layer) => Some(layer.heightfield.clone()),
+                _ => None,
+            })?;
+            (heightfield, wanted.unwrap_or_default())
+        }
+        _ => {
+            let (heightfield, crs) = dem::load(loader, index, doc, wanted)?;
+            (heightfield.into(), crs)
+        }
+    };
+    let layer = TerrainLayer {
+        heightfield,
+        drapes: Vec::new(),
+        relief: match style.relief {
+            ReliefDoc::Swiss => Relief::Swiss,
+            ReliefDoc::Sun => Relief::Sun,
+            ReliefDoc::None => Relief::None,
+        },
+        shading: style.shading.map(|s| match s {
+            ShadingDoc::Map => Shading::Map,
+            ShadingDoc::Deformed => Shading::Deformed,
+        }),
+        exaggeration: style.exaggeration,
+        palette: palette(loader, index, &style.palette)?,
+    };
+    Ok((layer, crs))
+}
+
+/// A palette by name or from its file.
+fn palette(loader: &mut Loader<'_>, index: usize, doc: &PaletteDoc) -> Result<Palette, BelvedereError> {
+    let name = match doc {
+        PaletteDoc::Named(name) => {
+            return Ok(match name {
+                PaletteName::Auto => Palette::Auto,
+                PaletteName::Alpine => Palette::Alpine,
+                PaletteName::Desert => Palette::Desert,
+                PaletteName::Glacial => Palette::Glacial,
+                PaletteName::Clear => Palette::Clear,
+                PaletteName::Plain => Palette::Plain,
+            });
+        }
+        PaletteDoc::File(name) => name,
+    };
+    let fail = |e: &dyn std::fmt::Display| {
+        let names = PaletteName::ALL.map(|(name, _)| name).join(", ");
+        let id = loader.id(index);
+        let reason = format!("layer \"{id}\": palette: {e}; give one of {names}, or a file of colours by height");
+        loader.origin.error(&["layer", &index.to_string(), "style", "palette"], reason)
+    };
+    let file = loader.roots.resolve(name).map_err(|e| fail(&e))?;
+    let loaded = belvedere_io::load_ramp(&file).map_err(|e| fail(&e))?;
+    loader.inputs.push(file);
+    loader.note(index, loaded.warnings);
+    Ok(Palette::Ramp(Arc::new(loaded.value)))
+}
+
+/// Pictures for a terrain that is already there.
+fn drapes(
+    loader: &mut Loader<'_>,
+    index: usize,
+    doc: &TerrainDoc,
+    ground: &Ground<'_>,
+) -> Result<Vec<Drape>, BelvedereError> {
+    let Some(paths) = &doc.drape else { return Ok(Vec::new()) };
+    let files = loader.files(index, "drape", paths)?;
+    let bounds = ground.terrain.map(Heightfield::bounds);
+    let mut drapes = Vec::new();
+    for file in files {
+        let loaded = drape::load(&file, ground.crs, bounds, loader.options.limits(), &loader.options.progress);
+        let loaded = loaded.map_err(|e| loader.fail(index, "drape", e))?;
+        loader.note(index, loaded.warnings);
+        drapes.push(loaded.value);
+    }
+    Ok(drapes)
+}
+
+/// A line layer.
+fn line(
+    loader: &mut Loader<'_>,
+    index: usize,
+    doc: &LineDoc,
+    ground: &Ground<'_>,
+) -> Result<LayerKind, BelvedereError> {
+    let features = match (&doc.source, &doc.route) {
+        (_, Some(doc)) => vec![route(loader, index, doc, ground)?],
+        (Some(Paths::One(name)), None) if builtin::is_name(name) => loader.builtin(index, name, |kind| match kind {
+            LayerKind::Line(layer) => Some(layer.features.clone()),
+            _ => None,
+        })?,
+        (Some(paths), None) => vectors::lines(loader, index, paths, ground)?,
+        (None, None) => Vec::new(),
+    };
+    if features.is_empty() {
+        return Err(loader.fail(index, "source", "no line lies on the terrain; check that the source covers it"));
+    }
+    let style = &doc.style;
+    Ok(LayerKind::Line(LineLayer {
+        features,
+        color: loader.color(index, &style.color)?,
+        width_px: style.width_px,
+        casing: loader.optional_color(index, &style.casing)?,
+        hidden: hidden(style.hidden),
+        lift_m: style.lift_m,
+        markers: style.distance_markers_m.map(|m| match m {
+            AutoOrLength::Auto(_) => DistanceMarkers::Auto,
+            AutoOrLength::Length(every) => DistanceMarkers::Every(every),
+        }),
+        label_px: style.labels.then_some(style.label_px),
+    }))
+}
+
+fn route(
+    loader: &mut Loader<'_>,
+    index: usize,
+    doc: &RouteDoc,
+    ground: &Ground<'_>,
+) -> Result<LineFeature, BelvedereError> {
+    let Some(terrain) = ground.terrain else {
+        return Err(loader.fail(index, "route", "a generated route needs a terrain layer; add one"));
+    };
+    let seed = loader.options.seed.unwrap_or(doc.seed);
+    let found = match (doc.from, doc.to) {
+        (Some(from), Some(to)) => {
+            let from = position(ground, from).map_err(|e| loader.fail(index, "route", e))?;
+            let to = position(ground, to).map_err(|e| loader.fail(index, "route", e))?;
+            least_cost_route(terrain, from, to, &RouteCost { wander: 1.5, seed, ..RouteCost::default() })
+        }
+        (None, None) => valley_route(terrain, seed),
+        _ => {
+            return Err(loader.fail(
+                index,
+                "route",
+                "a route needs both from and to, or neither for a valley of its own",
+            ));
+        }
+    };
+    let path = found.map_err(|e| loader.fail(index, "route", e))?;
+    let points = drape_polyline(terrain, &path).parts.into_iter().max_by_key(Vec::len).unwrap_or_default();
+    if points.len() < 2 {
+        return Err(loader.fail(index, "route", "the route has no length; move from and to apart"));
+    }
+    Ok(LineFeature { name: "generated route".into(), points })
+}
+
+/// An area layer.
+fn area(
+    loader: &mut Loader<'_>,
+    index: usize,
+    doc: &AreaDoc,
+    ground: &Ground<'_>,
+) -> Result<LayerKind, BelvedereError> {
+    let (features, tagged) = match &doc.source {
+        Paths::One(name) if builtin::is_name(name) => loader.builtin(index, name, |kind| match kind {
+            LayerKind::Area(layer) => Some((layer.features.clone(), Some(layer.surface))),
+            _ => None,
+        })?,
+        paths => vectors::areas(loader, index, paths, ground)?,
+    };
+    if features.is_empty() {
+        return Err(loader.fail(index, "source", "no area lies on the terrain; check that the source covers it"));
+    }
+    let style = &doc.style;
+    let stated = style.surface.map(surface);
+    let stated = stated.or(style.water.map(|water| if water { AreaSurface::Water } else { AreaSurface::Plain }));
+    let surface = stated.or(tagged).unwrap_or_default();
+    Ok(LayerKind::Area(AreaLayer {
+        features,
+        fill: match &style.color {
+            Some(color) => loader.color(index, color)?,
+            None => surface.color(),
+        },
+        outline: loader.optional_color(index, &style.outline)?,
+        width_px: style.width_px,
+        surface,
+        hidden: hidden(style.hidden),
+        lift_m: style.lift_m,
+    }))
+}
+
+/// A point layer.
+fn point(
+    loader: &mut Loader<'_>,
+    index: usize,
+    doc: &PointLayerDoc,
+    ground: &Ground<'_>,
+) -> Result<LayerKind, BelvedereError> {
+    let features = vectors::points(loader, index, &doc.source, ground)?;
+    if features.is_empty() {
+        return Err(loader.fail(index, "source", "no point lies on the terrain; check that the source covers it"));
+    }
+    let style = &doc.style;
+    Ok(LayerKind::Point(PointLayer {
+        features,
+        color: loader.color(index, &style.color)?,
+        size_px: style.size_px,
+        style: PointStyle {
+            symbol: match style.symbol {
+                SymbolDoc::Dot => Symbol::Dot,
+                SymbolDoc::Triangle => Symbol::Triangle,
+                SymbolDoc::Square => Symbol::Square,
+                SymbolDoc::Pin => Symbol::Pin,
+                SymbolDoc::Cross => Symbol::Cross,
             },
-            shading: style.shading.map(|s| match s {
-                ShadingDoc::Map => Shading::Map,
-                ShadingDoc::Deformed => Shading::Deformed,
-            }),
-            exaggeration: style.exaggeration,
-            palette: self.palette(index, &style.palette)?,
-        };
-        Ok((layer, crs))
-    }
-
-    /// A palette by name or from its file.
-    fn palette(&mut self, index: usize, doc: &PaletteDoc) -> Result<Palette, BelvedereError> {
-        let name = match doc {
-            PaletteDoc::Named(name) => {
-                return Ok(match name {
-                    PaletteName::Auto => Palette::Auto,
-                    PaletteName::Alpine => Palette::Alpine,
-                    PaletteName::Desert => Palette::Desert,
-                    PaletteName::Glacial => Palette::Glacial,
-                    PaletteName::Clear => Palette::Clear,
-                    PaletteName::Plain => Palette::Plain,
-                });
-            }
-            PaletteDoc::File(name) => name,
-        };
-        let fail = |e: String| {
-            let names = PaletteName::ALL.map(|(name, _)| name).join(", ");
-            let id = self.source.document.layer.get(index).map_or("", LayerDoc::id);
-            let reason = format!("layer \"{id}\": palette: {e}; give one of {names}, or a file of colours by height");
-            self.source.error(&["layer", &index.to_string(), "style", "palette"], reason)
-        };
-        let file = self.roots.resolve(name).map_err(|e| fail(e.to_string()))?;
-        let loaded = belvedere_io::load_ramp(&file).map_err(|e| fail(e.to_string()))?;
-        self.inputs.push(file);
-        self.note(index, loaded.warnings);
-        Ok(Palette::Ramp(Arc::new(loaded.value)))
-    }
-
-    /// Pictures for a terrain that is already there.
-    pub(super) fn drapes(
-        &mut self,
-        index: usize,
-        doc: &TerrainDoc,
-        ground: &Ground<'_>,
-    ) -> Result<Vec<Drape>, BelvedereError> {
-        let Some(paths) = &doc.drape else { return Ok(Vec::new()) };
-        let files = self.files(index, "drape", paths)?;
-        let bounds = ground.terrain.map(Heightfield::bounds);
-        let mut drapes = Vec::new();
-        for file in files {
-            let loaded = super::drape::load(&file, ground.crs, bounds, self.options.limits(), &self.options.progress);
-            let loaded = loaded.map_err(|e| self.fail(index, "drape", e))?;
-            self.note(index, loaded.warnings);
-            drapes.push(loaded.value);
-        }
-        Ok(drapes)
-    }
-
-    /// A line layer.
-    pub(super) fn line(
-        &mut self,
-        index: usize,
-        doc: &LineDoc,
-        ground: &Ground<'_>,
-    ) -> Result<LayerKind, BelvedereError> {
-        let features = match (&doc.source, &doc.route) {
-            (_, Some(route)) => vec![self.route(index, route, ground)?],
-            (Some(Paths::One(name)), None) if builtin::is_name(name) => {
-                let seed = self.options.seed;
-                let kind = self.builtins.find(name, seed, |k| matches!(k, LayerKind::Line(_)));
-                match kind.map_err(|e| self.fail(index, "source", e))? {
-                    LayerKind::Line(l) => l.features,
-                    _ => Vec::new(),
-                }
-            }
-            (Some(paths), None) => {
-                let files = self.files(index, "source", paths)?;
-                vectors::lines(self, index, &files, ground)?
-            }
-            (None, None) => Vec::new(),
-        };
-        if features.is_empty() {
-            return Err(self.fail(index, "source", "no line lies on the terrain; check that the source covers it"));
-        }
-        let style = &doc.style;
-        Ok(LayerKind::Line(LineLayer {
-            features,
-            color: self.color(index, &style.color)?,
-            width_px: style.width_px,
-            casing: self.optional_color(index, &style.casing)?,
-            hidden: hidden(style.hidden),
-            lift_m: style.lift_m,
-            markers: style.distance_markers_m.map(|m| match m {
-                AutoOrLength::Auto(_) => DistanceMarkers::Auto,
-                AutoOrLength::Length(every) => DistanceMarkers::Every(every),
-            }),
+            casing: loader.optional_color(index, &style.casing)?,
             label_px: style.labels.then_some(style.label_px),
-        }))
-    }
-
-    fn route(&mut self, index: usize, doc: &RouteDoc, ground: &Ground<'_>) -> Result<LineFeature, BelvedereError> {
-        let Some(terrain) = ground.terrain else {
-            return Err(self.fail(index, "route", "a generated route needs a terrain layer; add one"));
-        };
-        let seed = self.options.seed.unwrap_or(doc.seed);
-        let found = match (doc.from, doc.to) {
-            (Some(from), Some(to)) => {
-                let from = place(ground, from).map_err(|e| self.fail(index, "route", e))?;
-                let to = place(ground, to).map_err(|e| self.fail(index, "route", e))?;
-                least_cost_route(terrain, from, to, &RouteCost { wander: 1.5, seed, ..RouteCost::default() })
-            }
-            (None, None) => valley_route(terrain, seed),
-            _ => {
-                return Err(self.fail(
-                    index,
-                    "route",
-                    "a route needs both from and to, or neither for a valley of its own",
-                ));
-            }
-        };
-        let way = found.map_err(|e| self.fail(index, "route", e))?;
-        let points = drape_polyline(terrain, &way).parts.into_iter().max_by_key(Vec::len).unwrap_or_default();
-        if points.len() < 2 {
-            return Err(self.fail(index, "route", "the route has no length; move from and to apart"));
-        }
-        Ok(LineFeature { name: "generated route".into(), points })
-    }
-
-    /// An area layer.
-    pub(super) fn area(
-        &mut self,
-        index: usize,
-        doc: &AreaDoc,
-        ground: &Ground<'_>,
-    ) -> Result<LayerKind, BelvedereError> {
-        let (features, tagged) = match &doc.source {
-            Paths::One(name) if builtin::is_name(name) => {
-                let seed = self.options.seed;
-                let kind = self.builtins.find(name, seed, |k| matches!(k, LayerKind::Area(_)));
-                match kind.map_err(|e| self.fail(index, "source", e))? {
-                    LayerKind::Area(a) => (a.features, Some(a.surface)),
-                    _ => (Vec::new(), None),
-                }
-            }
-            paths => {
-                let files = self.files(index, "source", paths)?;
-                vectors::areas(self, index, &files, ground)?
-            }
-        };
-        if features.is_empty() {
-            return Err(self.fail(index, "source", "no area lies on the terrain; check that the source covers it"));
-        }
-        let style = &doc.style;
-        let asked = style.surface.map(surface);
-        let asked = asked.or(style.water.map(|water| if water { AreaSurface::Water } else { AreaSurface::Plain }));
-        let surface = asked.or(tagged).unwrap_or_default();
-        Ok(LayerKind::Area(AreaLayer {
-            features,
-            fill: match &style.color {
-                Some(color) => self.color(index, color)?,
-                None => surface.color(),
-            },
-            outline: self.optional_color(index, &style.outline)?,
-            width_px: style.width_px,
-            surface,
-            hidden: hidden(style.hidden),
-            lift_m: style.lift_m,
-        }))
-    }
-
-    /// A point layer.
-    pub(super) fn point(
-        &mut self,
-        index: usize,
-        doc: &PointLayerDoc,
-        ground: &Ground<'_>,
-    ) -> Result<LayerKind, BelvedereError> {
-        let files = self.files(index, "source", &doc.source)?;
-        let features = vectors::points(self, index, &files, ground)?;
-        if features.is_empty() {
-            return Err(self.fail(index, "source", "no point lies on the terrain; check that the source covers it"));
-        }
-        let style = &doc.style;
-        Ok(LayerKind::Point(PointLayer {
-            features,
-            color: self.color(index, &style.color)?,
-            size_px: style.size_px,
-            style: PointStyle {
-                symbol: match style.symbol {
-                    SymbolDoc::Dot => Symbol::Dot,
-                    SymbolDoc::Triangle => Symbol::Triangle,
-                    SymbolDoc::Square => Symbol::Square,
-                    SymbolDoc::Pin => Symbol::Pin,
-                    SymbolDoc::Cross => Symbol::Cross,
-                },
-                casing: self.optional_color(index, &style.casing)?,
-                label_px: style.labels.then_some(style.label_px),
-            },
-            hidden: hidden(style.hidden),
-            lift_m: style.lift_m,
-        }))
-    }
-
-    /// Any layer but terrain.
-    pub(super) fn layer(
-        &mut self,
-        index: usize,
-        doc: &LayerDoc,
-        ground: &Ground<'_>,
-    ) -> Result<Option<Layer>, BelvedereError> {
-        let kind = match doc {
-            LayerDoc::Terrain(_) => return Ok(None),
-            LayerDoc::Line(line) => self.line(index, line, ground)?,
-            LayerDoc::Area(area) => self.area(index, area, ground)?,
-            LayerDoc::Point(point) => self.point(index, point, ground)?,
-            LayerDoc::Boxes(boxes) => super::boxes::layer(self, index, boxes)?,
-            LayerDoc::Mesh(mesh) => super::mesh::layer(self, index, mesh, ground)?,
-            LayerDoc::City(_) | LayerDoc::Molecule(_) | LayerDoc::Volume(_) => {
-                return Err(self.fail(
-                    index,
-                    "kind",
-                    format!("layers of kind {} are not drawn by this version; remove the layer", doc.kind()),
-                ));
-            }
-        };
-        Ok(Some(Layer { id: doc.id().to_owned(), must_see: doc.must_see(), kind }))
-    }
-
-    pub(super) fn color(&self, index: usize, text: &str) -> Result<Color, BelvedereError> {
-        color("color", text).map_err(|(key, reason)| self.fail(index, key, reason))
-    }
-
-    fn optional_color(&self, index: usize, text: &str) -> Result<Option<Color>, BelvedereError> {
-        optional_color("casing", text).map_err(|(key, reason)| self.fail(index, key, reason))
-    }
+        },
+        hidden: hidden(style.hidden),
+        lift_m: style.lift_m,
+    }))
 }
 
-fn place(ground: &Ground<'_>, place: PlaceDoc) -> Result<DVec2, String> {
+/// Any layer but terrain.
+fn layer(
+    loader: &mut Loader<'_>,
+    index: usize,
+    doc: &LayerDoc,
+    ground: &Ground<'_>,
+) -> Result<Option<Layer>, BelvedereError> {
+    let kind = match doc {
+        LayerDoc::Terrain(_) => return Ok(None),
+        LayerDoc::Line(doc) => line(loader, index, doc, ground)?,
+        LayerDoc::Area(doc) => area(loader, index, doc, ground)?,
+        LayerDoc::Point(doc) => point(loader, index, doc, ground)?,
+        LayerDoc::Boxes(doc) => boxes::layer(loader, index, doc)?,
+        LayerDoc::Mesh(doc) => mesh::layer(loader, index, doc, ground)?,
+        LayerDoc::City(_) | LayerDoc::Molecule(_) | LayerDoc::Volume(_) => {
+            return Err(loader.fail(
+                index,
+                "kind",
+                format!("layers of kind {} are not drawn by this version; remove the layer", doc.kind()),
+            ));
+        }
+    };
+    Ok(Some(Layer { id: doc.id().to_owned(), must_see: doc.must_see(), kind }))
+}
+
+fn position(ground: &Ground<'_>, place: PlaceDoc) -> Result<DVec2, String> {
     match place {
         PlaceDoc::Scene(xy) => Ok(DVec2::from_array(xy)),
-        PlaceDoc::Geographic(p) => ground.place_of(p.lon, p.lat),
+        PlaceDoc::Geographic(p) => ground.position_of(p.lon, p.lat),
     }
 }
 
@@ -338,8 +390,8 @@ fn surface(doc: SurfaceDoc) -> AreaSurface {
 }
 
 /// Writes into the areas of a document what was found to cover them, and their colours.
-pub(super) fn fill_surfaces(document: &mut Document, scene: &Scene) {
-    for doc in &mut document.layer {
+pub(crate) fn fill_surfaces(layers: &mut [LayerDoc], scene: &Scene) {
+    for doc in layers {
         let LayerDoc::Area(doc) = doc else { continue };
         let layer = scene.layers.iter().find(|l| l.id == doc.id);
         let Some(LayerKind::Area(layer)) = layer.map(|l| &l.kind) else { continue };

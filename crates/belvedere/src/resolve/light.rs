@@ -1,6 +1,6 @@
 //! The light of a document: a direction, or the sun at a time.
 
-use super::Ground;
+use super::ground::Ground;
 use crate::BelvedereError;
 use crate::scene_file::{LightDoc, SourceDocument};
 use belvedere_core::DVec3;
@@ -48,10 +48,10 @@ fn from_time(
     let days = days_since_j2000(time).ok_or_else(|| {
         fail(format!("\"{time}\" is not a time; write it as 2026-07-01T15:00:00Z or with an offset such as +02:00"))
     })?;
-    let place = ground.lon_lat(eye.truncate()).ok_or_else(|| {
+    let eye = ground.lon_lat(eye.truncate()).ok_or_else(|| {
         fail("the sun at a time needs a georeferenced scene; set crs, or give azimuth_deg and altitude_deg".into())
     })?;
-    let [azimuth_deg, altitude_deg] = sun_position_deg(days, place.x, place.y);
+    let [azimuth_deg, altitude_deg] = sun_position_deg(days, eye.x, eye.y);
     if altitude_deg <= 0.0 {
         warnings.push(format!(
             "the sun stands {:.1} degrees below the horizon at {time}; the ground is lit by the sky alone",
@@ -61,7 +61,7 @@ fn from_time(
     Ok(Light { azimuth: azimuth_deg.to_radians(), altitude: altitude_deg.to_radians(), shadows: doc.shadows })
 }
 
-/// Azimuth (clockwise from north) and altitude of the sun, degrees, `days` after J2000.0 at a WGS84 place; refraction
+/// Azimuth (clockwise from north) and altitude of the sun, degrees, `days` after J2000.0 at a WGS84 position; refraction
 /// is left out. Within 0.02 degrees from 1950 to 2050.
 ///
 /// Source: low-precision formulas of the Astronomical Almanac (mean longitude, equation of centre with two terms).

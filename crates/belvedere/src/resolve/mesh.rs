@@ -1,7 +1,8 @@
 //! Mesh layers: files or built in, placed in the scene.
 
-use super::layers::Loader;
-use super::{Ground, builtin, epsg};
+use super::builtin;
+use super::ground::{Ground, epsg};
+use super::loader::Loader;
 use crate::BelvedereError;
 use crate::scene_file::{MeshDoc, Paths, TransformDoc};
 use belvedere_core::{DVec2, DVec3};
@@ -26,7 +27,7 @@ pub(super) fn layer(
         (Some(_), Some(_)) => {
             return Err(loader.fail(index, "crs", "a mesh has either transform or crs; remove one of them"));
         }
-        (Some(transform), None) => place(&mut file, transform).map_err(|e| loader.fail(index, "transform", e))?,
+        (Some(transform), None) => apply(&mut file, transform).map_err(|e| loader.fail(index, "transform", e))?,
         (None, Some(crs)) => reproject(&mut file, crs, ground.crs).map_err(|e| loader.fail(index, "crs", e))?,
         (None, None) => {}
     }
@@ -43,12 +44,10 @@ fn source(loader: &mut Loader<'_>, index: usize, doc: &MeshDoc) -> Result<MeshFi
     if let Paths::One(name) = &doc.source
         && builtin::is_name(name)
     {
-        let seed = loader.options.seed;
-        let kind = loader.builtins.find(name, seed, |k| matches!(k, LayerKind::Mesh(_)));
-        return match kind.map_err(|e| loader.fail(index, "source", e))? {
-            LayerKind::Mesh(m) => Ok(of_mesh(&m.mesh)),
-            _ => Ok(MeshFile::default()),
-        };
+        return loader.builtin(index, name, |kind| match kind {
+            LayerKind::Mesh(layer) => Some(of_mesh(&layer.mesh)),
+            _ => None,
+        });
     }
     let mut all: Option<MeshFile> = None;
     for path in loader.files(index, "source", &doc.source)? {
@@ -101,7 +100,7 @@ fn join(all: &mut MeshFile, other: MeshFile) {
 }
 
 /// Scales, turns about x, then y, then z, and moves.
-fn place(file: &mut MeshFile, transform: &TransformDoc) -> Result<(), String> {
+fn apply(file: &mut MeshFile, transform: &TransformDoc) -> Result<(), String> {
     if !(transform.scale > 0.0) {
         return Err(format!("scale is {}, it must be greater than 0", transform.scale));
     }

@@ -1,19 +1,14 @@
 //! From the turns of a document to curved rays.
 
-use super::stages::Fail;
 use crate::BelvedereError;
-use crate::scene_file::{AxisDoc, BendDoc, BendRule, RayModelDoc, RaysStageDoc, StageDoc, TurnDoc};
+use crate::scene_file::{AxisDoc, BendDoc, BendRule, RayModelDoc, RaysStageDoc, StageDoc, Table, TurnDoc};
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::{CurvedRays, DVec3, Pinhole, Stage};
 
 /// The stage behind `root`, and its document with every rule for m replaced by the number it came to.
-pub(super) fn resolve(
-    root: &Pinhole,
-    doc: &RaysStageDoc,
-    fail: &Fail<'_>,
-) -> Result<(Stage, StageDoc), BelvedereError> {
+pub(super) fn resolve(root: &Pinhole, doc: &RaysStageDoc, at: Table<'_>) -> Result<(Stage, StageDoc), BelvedereError> {
     if doc.turn.is_empty() {
-        return Err(fail(&["turn"], "curved_rays has no turn; give at least one [[stage.turn]]".into()));
+        return Err(at.error(&["turn"], "curved_rays has no turn; give at least one [[stage.turn]]"));
     }
     let specs: Vec<TurnSpec> = doc
         .turn
@@ -21,7 +16,7 @@ pub(super) fn resolve(
         .enumerate()
         .map(|(j, turn)| {
             turn_spec(turn)
-                .map_err(|(key, reason)| fail(&["turn", &j.to_string(), key], format!("turn {}: {reason}", j + 1)))
+                .map_err(|(key, reason)| at.error(&["turn", &j.to_string(), key], format!("turn {}: {reason}", j + 1)))
         })
         .collect::<Result<_, _>>()?;
     let model = match doc.model {
@@ -31,7 +26,7 @@ pub(super) fn resolve(
         RayModelDoc::C2 => Model::C2,
         RayModelDoc::Circular => Model::Circular,
     };
-    let rays = CurvedRays::new(root, model, &specs).map_err(|e| fail(&["turn"], e.to_string()))?;
+    let rays = CurvedRays::new(root, model, &specs).map_err(|e| at.error(&["turn"], e))?;
     let mut resolved = doc.clone();
     for (turn, computed) in resolved.turn.iter_mut().zip(rays.turns()) {
         // A rule may come to a number that a file may not state; then the rule stays.

@@ -1,12 +1,12 @@
 //! From the stages of a document to displacements.
 
 use super::camera::ResolvedCamera;
-use super::terrain::Solving;
-use super::{Ground, terrain};
+use super::ground::Ground;
+use super::terrain::{self, Solving};
 use crate::BelvedereError;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    self, Document, PlaneDoc, PresetsDoc, SourceDocument, SplineStageDoc, StageDoc, TerrainStageDoc,
+    self, Document, PlaneDoc, PresetsDoc, SourceDocument, SplineStageDoc, StageDoc, Table, TerrainStageDoc,
 };
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
 use belvedere_core::presets::{BUILTIN_NAMES, PresetDocument};
@@ -57,32 +57,30 @@ pub(super) fn resolve(
     let mut out = ResolvedStages { stages: Vec::new(), pinhole, documents: Vec::new(), terrain: None };
     let mut intent = None;
     for (i, stage) in context.source.document.stage.iter().enumerate() {
-        let at = i.to_string();
-        let fail = failing(context, &at);
+        let at = context.at(i);
         let (stage, document) = match stage {
             StageDoc::TerrainDisocclusion(doc) if doc.delta.is_none() => {
-                let settings = terrain::settings(doc).map_err(|(key, reason)| fail(&[key], reason))?;
+                let settings = terrain::settings(doc).map_err(|(key, reason)| at.error(&[key], reason))?;
                 out.documents.push(StageDoc::TerrainDisocclusion(terrain::document(&settings, context.scene)));
                 intent = Some((i, settings));
                 continue;
             }
-            StageDoc::TerrainDisocclusion(doc) => solved_terrain(context, doc, inputs, &fail)?,
+            StageDoc::TerrainDisocclusion(doc) => solved_terrain(context, doc, inputs, at)?,
             StageDoc::SplineBend(doc) => {
-                let (bend, document) = spline(context, doc, inputs, warnings, &fail)?;
+                let (bend, document) = spline(context, doc, inputs, warnings, at)?;
                 out.pinhole = bend.adapted_pinhole(&out.pinhole);
                 (Stage::SplineBend(bend), document)
             }
-            StageDoc::CurvedRays(doc) => super::rays::resolve(&out.pinhole, doc, &fail)?,
+            StageDoc::CurvedRays(doc) => super::rays::resolve(&out.pinhole, doc, at)?,
         };
         out.stages.push(stage);
         out.documents.push(document);
     }
     // The terrain comes first and is solved last: what it promises has to hold behind the stages that follow it.
     if let (Some((i, settings)), Some(solving)) = (intent, solving) {
-        let at = i.to_string();
         let chain = context.earth.iter().chain(&out.stages).cloned().collect();
         let base = View::new(out.pinhole.clone(), chain).map_err(|e| context.source.error(&["stage"], e))?;
-        let solved = terrain::solve(settings, context.scene, &base, solving, &failing(context, &at))?;
+        let solved = terrain::solve(settings, context.scene, &base, solving, context.at(i))?;
         warnings.extend(terrain::remarks(&solved));
         out.stages.insert(0, Stage::TerrainDisocclusion(solved.stage));
         out.terrain = Some(solved.report);
@@ -90,29 +88,25 @@ pub(super) fn resolve(
     Ok(out)
 }
 
-fn failing<'a>(context: &'a StageContext<'_>, at: &'a str) -> impl Fn(&[&str], String) -> BelvedereError + 'a {
-    move |keys, reason| {
-        let path: Vec<&str> = ["stage", at].into_iter().chain(keys.iter().copied()).collect();
-        context.source.error(&path, reason)
+impl StageContext<'_> {
+    fn at(&self, index: usize) -> Table<'_> {
+        Table { origin: &self.source.origin, list: "stage", index }
     }
 }
-
-/// Makes an error at a key of the stage.
-pub(super) type Fail<'a> = dyn Fn(&[&str], String) -> BelvedereError + 'a;
 
 /// A solved grid.
 fn solved_terrain(
     context: &StageContext<'_>,
     doc: &TerrainStageDoc,
     inputs: &mut Vec<PathBuf>,
-    fail: &Fail<'_>,
+    at: Table<'_>,
 ) -> Result<(Stage, StageDoc), BelvedereError> {
     let name = doc.delta.as_deref().unwrap_or_default();
-    let path = context.roots.resolve(name).map_err(|e| fail(&["delta"], e.to_string()))?;
+    let path = context.roots.resolve(name).map_err(|e| at.refusal(&["delta"], e))?;
     if let Some(expected) = &doc.delta_sha256 {
-        let found = crate::provenance::sha256(&path)?;
+        let found = crate::record::sha256(&path)?;
         if !found.eq_ignore_ascii_case(expected) {
-            return Err(fail(
+            return Err(at.error(
                 &["delta_sha256"],
                 format!(
                     "delta {name} has sha256 {found}, the scene says {expected}; solve it again, or correct the scene"
@@ -120,7 +114,7 @@ fn solved_terrain(
             ));
         }
     }
-    let grid = super::delta::read(&path, context.ground.crs).map_err(|reason| fail(&["delta"], reason))?;
+    let grid = super::delta::read(&path, context.ground.crs).map_err(|reason| at.error(&["delta"], reason))?;
     inputs.push(path);
     Ok((Stage::TerrainDisocclusion(TerrainDisocclusion::new(grid)), StageDoc::TerrainDisocclusion(doc.clone())))
 }
@@ -130,22 +124,22 @@ fn spline(
     doc: &SplineStageDoc,
     inputs: &mut Vec<PathBuf>,
     warnings: &mut Vec<String>,
-    fail: &Fail<'_>,
+    at: Table<'_>,
 ) -> Result<(SplineBend, StageDoc), BelvedereError> {
-    let presets = presets(context, &doc.presets, inputs, fail)?;
+    let presets = presets(context, &doc.presets, inputs, at)?;
     let pinhole = &context.camera.pinhole;
     let normal = doc.plane.as_ref().map_or(DVec3::Z, |p| DVec3::from_array(p.normal));
     let unit = normal.try_normalize().ok_or_else(|| {
-        fail(&["plane", "normal"], "plane normal is [0, 0, 0], it needs a direction; [0, 0, 1] is level ground".into())
+        at.error(&["plane", "normal"], "plane normal is [0, 0, 0], it needs a direction; [0, 0, 1] is level ground")
     })?;
     let height = match doc.plane.as_ref().and_then(|p| p.height_m) {
         Some(height) => height,
-        None => plane_point(context, fail)?.dot(unit),
+        None => plane_point(context, at)?.dot(unit),
     };
     let plane = ReferencePlane::new(normal, height)
-        .ok_or_else(|| fail(&["plane"], "the reference plane is not finite; give a normal and a height".into()))?;
+        .ok_or_else(|| at.error(&["plane"], "the reference plane is not finite; give a normal and a height"))?;
     let pivot = doc.pivot.map_or_else(|| default_pivot(pinhole, &plane), DVec3::from_array);
-    let bend = SplineBend::new(pinhole, &presets, &plane, pivot).map_err(|e| fail(&["presets"], e.to_string()))?;
+    let bend = SplineBend::new(pinhole, &presets, &plane, pivot).map_err(|e| at.error(&["presets"], e))?;
     let heights = context.ground.terrain.map(|t| t.z_range().map(|z| z - height)).filter(|_| unit == DVec3::Z);
     let distance = bend.resolved().distance;
     warnings
@@ -159,14 +153,14 @@ fn spline(
 }
 
 /// A point of the default plane: at the median height of the terrain, or at look_at.
-fn plane_point(context: &StageContext<'_>, fail: &Fail<'_>) -> Result<DVec3, BelvedereError> {
+fn plane_point(context: &StageContext<'_>, at: Table<'_>) -> Result<DVec3, BelvedereError> {
     let look_at = context.camera.look_at;
     if let Some(terrain) = context.ground.terrain {
         let over = look_at.unwrap_or(context.camera.pinhole.eye);
         return Ok(over.truncate().extend(median_height(terrain)));
     }
     look_at.ok_or_else(|| {
-        fail(&["plane"], "nothing says where the reference plane lies: there is no terrain and no look_at; give plane = { height_m = ... }".into())
+        at.error(&["plane"], "nothing says where the reference plane lies: there is no terrain and no look_at; give plane = { height_m = ... }")
     })
 }
 
@@ -191,7 +185,7 @@ fn presets(
     context: &StageContext<'_>,
     doc: &PresetsDoc,
     inputs: &mut Vec<PathBuf>,
-    fail: &Fail<'_>,
+    at: Table<'_>,
 ) -> Result<PresetDocument, BelvedereError> {
     let document = match doc {
         PresetsDoc::Inline(document) => (**document).clone(),
@@ -202,15 +196,15 @@ fn presets(
             if !looks_like_path {
                 return PresetDocument::builtin(name).map_err(|e| {
                     let hint = scene_file::suggestion(name, &BUILTIN_NAMES);
-                    fail(&["presets"], format!("{e} ({hint})"))
+                    at.error(&["presets"], format!("{e} ({hint})"))
                 });
             }
-            let path = context.roots.resolve(name).map_err(|e| fail(&["presets"], e.to_string()))?;
+            let path = context.roots.resolve(name).map_err(|e| at.refusal(&["presets"], e))?;
             let document = scene_file::parse_presets(&path, &scene_file::read_text(&path)?)?;
             inputs.push(path);
             document
         }
     };
-    document.validate().map_err(|e| fail(&["presets"], e.to_string()))?;
+    document.validate().map_err(|e| at.error(&["presets"], e))?;
     Ok(document)
 }

@@ -1,9 +1,8 @@
 //! Terrain disocclusion from an intent: parameters, solver, and the document with its defaults.
 
 use super::camera::ResolvedCamera;
-use super::stages::Fail;
 use crate::BelvedereError;
-use crate::scene_file::{DetailDoc, PointDoc, SolverMode as ModeDoc, SourceDocument, StageDoc, TerrainStageDoc};
+use crate::scene_file::{DetailDoc, PointDoc, SolverMode as ModeDoc, SourceDocument, StageDoc, Table, TerrainStageDoc};
 use belvedere_core::{DVec3, Pinhole, Stage, View};
 use belvedere_disocclusion::DisocclusionError;
 use belvedere_disocclusion::{
@@ -113,11 +112,11 @@ pub(super) fn solve(
     scene: &Scene,
     base: &View,
     solving: &mut Solving<'_>,
-    fail: &Fail<'_>,
+    at: Table<'_>,
 ) -> Result<Solved, BelvedereError> {
     let mut solver = TerrainSolver::new(settings).map_err(|e| match &e {
-        DisocclusionError::Setting { key, .. } => fail(&[*key], e.to_string()),
-        _ => fail(&[], e.to_string()),
+        DisocclusionError::Setting { key, .. } => at.error(&[*key], &e),
+        _ => at.error(&[], &e),
     })?;
     if let Some(seconds) = solving.time_step_s {
         solver = solver.with_time_step(seconds);
@@ -135,13 +134,14 @@ pub(super) fn adjust(
     warnings: &mut Vec<String>,
 ) -> Result<(), BelvedereError> {
     let wanted = source.document.stage.iter().enumerate().find_map(|(i, stage)| match stage {
-        StageDoc::TerrainDisocclusion(doc) if doc.delta.is_none() => Some((i.to_string(), doc, doc.adjust_viewpoint?)),
+        StageDoc::TerrainDisocclusion(doc) if doc.delta.is_none() => Some((i, doc, doc.adjust_viewpoint?)),
         _ => None,
     });
     // At 1 the camera stays where it is.
     let moves = wanted.filter(|(.., slider)| *slider < 1.0 && solving.time_step_s.is_none());
-    let Some((at, doc, slider)) = moves else { return Ok(()) };
-    let fail = |key: &str, reason: String| source.error(&["stage", &at, key], reason);
+    let Some((index, doc, slider)) = moves else { return Ok(()) };
+    let at = Table { origin: &source.origin, list: "stage", index };
+    let fail = |key: &str, reason: String| at.error(&[key], reason);
     let Some(target) = camera.look_at else {
         let reason =
             "adjust_viewpoint needs a place that the camera keeps looking at; give look_at in place of the angles";

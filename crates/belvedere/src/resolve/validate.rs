@@ -7,7 +7,7 @@ use crate::scene_file::{
 use std::collections::HashSet;
 
 /// Ids, ranges and combinations of keys.
-pub(super) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
+pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
     let mut ids = HashSet::new();
     for (i, layer) in source.document.layer.iter().enumerate() {
         let at = i.to_string();

@@ -1,14 +1,14 @@
 //! Lines, areas, points from files, laid on the terrain.
 
-use super::Ground;
-use super::layers::Loader;
+use super::ground::Ground;
+use super::loader::Loader;
 use crate::BelvedereError;
+use crate::scene_file::Paths;
 use belvedere_io::vector::{
     Geometry, Vectors, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain, surface_of,
 };
 use belvedere_io::{IoError, Loaded};
 use belvedere_scene::{AreaFeature, AreaSurface, Crs, Heightfield, LineFeature, PointFeature};
-use std::path::{Path, PathBuf};
 
 /// What a file of features is mostly about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,17 +21,16 @@ pub(crate) enum FeatureKind {
     Points,
 }
 
-/// Looks into a file: lines if it has any, else areas, else points.
-pub(crate) fn kind_of(path: &Path) -> Result<FeatureKind, BelvedereError> {
-    let vectors = load_vectors(path)?.value;
+/// Lines if a file has any, else areas, else points.
+pub(crate) fn kind_of(vectors: &Vectors) -> FeatureKind {
     let has = |wanted: fn(&Geometry) -> bool| vectors.features.iter().any(|f| wanted(&f.geometry));
-    Ok(if has(|g| matches!(g, Geometry::Lines(_))) {
+    if has(|g| matches!(g, Geometry::Lines(_))) {
         FeatureKind::Lines
     } else if has(|g| matches!(g, Geometry::Polygons(_))) {
         FeatureKind::Areas
     } else {
         FeatureKind::Points
-    })
+    }
 }
 
 type OnTerrain<T> = fn(&Vectors, Crs, Option<&Heightfield>) -> Result<Loaded<Vec<T>>, IoError>;
@@ -39,16 +38,16 @@ type OnTerrain<T> = fn(&Vectors, Crs, Option<&Heightfield>) -> Result<Loaded<Vec
 fn all<T>(
     loader: &mut Loader<'_>,
     index: usize,
-    files: &[PathBuf],
+    paths: &Paths,
     ground: &Ground<'_>,
     on_terrain: OnTerrain<T>,
-    mut look: impl FnMut(&Vectors),
+    mut inspect: impl FnMut(&Vectors),
 ) -> Result<Vec<T>, BelvedereError> {
     let mut features = Vec::new();
-    for file in files {
+    for file in loader.files(index, "source", paths)? {
         loader.options.progress.tick("reading features", 0.0)?;
-        let vectors = load_vectors(file)?;
-        look(&vectors.value);
+        let vectors = loader.vectors.remove(&file).map_or_else(|| load_vectors(&file), Ok)?;
+        inspect(&vectors.value);
         let found = on_terrain(&vectors.value, ground.crs, ground.terrain)?;
         loader.note(index, vectors.warnings);
         loader.note(index, found.warnings);
@@ -61,21 +60,21 @@ fn all<T>(
 pub(super) fn lines(
     loader: &mut Loader<'_>,
     index: usize,
-    files: &[PathBuf],
+    paths: &Paths,
     ground: &Ground<'_>,
 ) -> Result<Vec<LineFeature>, BelvedereError> {
-    all(loader, index, files, ground, lines_on_terrain, |_| ())
+    all(loader, index, paths, ground, lines_on_terrain, |_| ())
 }
 
 /// Areas of files, and what most of them are by their tags.
 pub(super) fn areas(
     loader: &mut Loader<'_>,
     index: usize,
-    files: &[PathBuf],
+    paths: &Paths,
     ground: &Ground<'_>,
 ) -> Result<(Vec<AreaFeature>, Option<AreaSurface>), BelvedereError> {
     let mut tagged = None;
-    let features = all(loader, index, files, ground, areas_on_terrain, |v| tagged = tagged.or(surface_of(v)))?;
+    let features = all(loader, index, paths, ground, areas_on_terrain, |v| tagged = tagged.or(surface_of(v)))?;
     Ok((features, tagged))
 }
 
@@ -83,8 +82,8 @@ pub(super) fn areas(
 pub(super) fn points(
     loader: &mut Loader<'_>,
     index: usize,
-    files: &[PathBuf],
+    paths: &Paths,
     ground: &Ground<'_>,
 ) -> Result<Vec<PointFeature>, BelvedereError> {
-    all(loader, index, files, ground, points_on_terrain, |_| ())
+    all(loader, index, paths, ground, points_on_terrain, |_| ())
 }

@@ -2,6 +2,7 @@
 
 use super::layers::LayerDoc;
 use super::stages::StageDoc;
+use belvedere_core::{DVec3, Pinhole, Projection};
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
@@ -103,6 +104,16 @@ pub enum UnitDoc {
     Voxel,
 }
 
+impl From<UnitDoc> for belvedere_scene::Unit {
+    fn from(unit: UnitDoc) -> Self {
+        match unit {
+            UnitDoc::Metre => Self::Metre,
+            UnitDoc::Angstrom => Self::Angstrom,
+            UnitDoc::Voxel => Self::Voxel,
+        }
+    }
+}
+
 /// Shape of the earth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -161,6 +172,29 @@ pub struct CameraDoc {
     /// Farthest drawn depth, scene units.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub far: Option<f64>,
+}
+
+impl CameraDoc {
+    /// The camera of a pinhole whose optical axis meets `look_at`, upright.
+    pub fn of(pinhole: &Pinhole, look_at: DVec3) -> Self {
+        let (projection, fov_y_deg, ortho_height_m) = match pinhole.projection {
+            Projection::Perspective { fov_y } => (ProjectionDoc::Perspective, fov_y.to_degrees(), None),
+            Projection::Orthographic { height } => (ProjectionDoc::Orthographic, fov(), Some(height)),
+        };
+        Self {
+            eye: PointDoc::Scene(pinhole.eye.to_array()),
+            look_at: Some(PointDoc::Scene(look_at.to_array())),
+            heading_deg: None,
+            pitch_deg: None,
+            up: up(),
+            projection,
+            fov_y_deg,
+            ortho_height_m,
+            image: pinhole.image,
+            near: pinhole.near,
+            far: pinhole.far,
+        }
+    }
 }
 
 fn up() -> [f64; 3] {

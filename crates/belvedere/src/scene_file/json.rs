@@ -3,8 +3,8 @@
 //! serde_json knows the grammar and hands every value over as the slice of the text it was read from; where the slice
 //! starts tells the line.
 
-use super::DocError;
-use super::node::{Entry, Lines, MAX_DEPTH, Node, Value, shorten};
+use super::doc_error::{DocError, shorten};
+use super::node::{Entry, Lines, MAX_DEPTH, Node, Value};
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
 

@@ -3,6 +3,7 @@
 use super::mesh::{MeshDoc, TransformDoc};
 use super::overlay::AutoOrLength;
 use super::palette::PaletteDoc;
+use super::paths::Paths;
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
@@ -76,48 +77,6 @@ impl LayerDoc {
             Self::Molecule(_) => "molecule",
             Self::Volume(_) => "volume",
         }
-    }
-}
-
-/// One path or several.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Paths {
-    /// One.
-    One(String),
-    /// Several, read as one source.
-    Many(Vec<String>),
-}
-
-impl Paths {
-    /// All of them.
-    pub fn as_slice(&self) -> &[String] {
-        match self {
-            Self::One(p) => std::slice::from_ref(p),
-            Self::Many(p) => p,
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Paths {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct PathsVisitor;
-        impl<'de> Visitor<'de> for PathsVisitor {
-            type Value = Paths;
-
-            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("a path or a list of paths")
-            }
-
-            fn visit_str<E: serde::de::Error>(self, path: &str) -> Result<Paths, E> {
-                Ok(Paths::One(path.to_owned()))
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Paths, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(Paths::Many)
-            }
-        }
-        deserializer.deserialize_any(PathsVisitor)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Layers of triangles in the scene document.
 
-use super::layers::Paths;
+use super::paths::Paths;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,7 @@
 //! Scene files: TOML or JSON to a [`Document`], with mistakes named by file, line and nearest valid key.
 
 mod de;
+mod doc_error;
 mod document;
 mod intent;
 mod json;
@@ -13,18 +14,19 @@ pub mod paths;
 mod stages;
 mod toml_tree;
 
-pub(crate) use de::{DocError, suggestion};
+pub(crate) use doc_error::{DocError, suggestion};
 pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDoc, ProjectionDoc, UnitDoc};
 pub use intent::{AnimationDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
 pub use layers::{
     AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, HiddenDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc,
-    ModelDoc, Paths, PlaceDoc, PointLayerDoc, PointStyleDoc, ReliefDoc, RouteDoc, ShadingDoc, SurfaceDoc, SymbolDoc,
+    ModelDoc, PlaceDoc, PointLayerDoc, PointStyleDoc, ReliefDoc, RouteDoc, ShadingDoc, SurfaceDoc, SymbolDoc,
     TerrainDoc, TerrainStyleDoc,
 };
 pub use mesh::{MeshDoc, MeshStyleDoc, TransformDoc};
 pub(crate) use node::{Node, Value};
 pub use overlay::{AutoOrLength, AutoWord, OverlayDoc, SwitchOrLength};
 pub use palette::{PaletteDoc, PaletteName};
+pub use paths::Paths;
 pub use stages::{
     AxisDoc, BendDoc, BendRule, DetailDoc, PlaneDoc, PresetsDoc, RayModelDoc, RaysStageDoc, SolverMode, SplineStageDoc,
     StageDoc, TerrainStageDoc, TurnDoc,
@@ -33,37 +35,82 @@ pub use stages::{
 use crate::BelvedereError;
 use belvedere_core::presets::PresetDocument;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Largest document, bytes.
 pub const MAX_BYTES: u64 = 16 << 20;
 
-/// A document and the lines of its keys, for messages about what they mean.
+/// Where a document was written: its file and the lines of its keys, for messages about what they mean.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Origin(Option<Arc<(PathBuf, Node)>>);
+
+impl Origin {
+    /// A document that was made in memory: its mistakes have no line.
+    pub(crate) const MEMORY: Self = Self(None);
+
+    /// An error at the line of the key that `keys` leads to.
+    pub(crate) fn error(&self, keys: &[&str], reason: impl std::fmt::Display) -> BelvedereError {
+        let (path, line) = self.0.as_ref().map(|o| (o.0.clone(), o.1.line_of(keys))).unzip();
+        BelvedereError::Scene { path, line, reason: reason.to_string(), source: None }
+    }
+
+    /// The same for a refused file, which stays the source of the error.
+    pub(crate) fn refusal(&self, keys: &[&str], about: &str, refused: BelvedereError) -> BelvedereError {
+        match self.error(keys, format!("{about}{refused}")) {
+            BelvedereError::Scene { path, line, reason, .. } => {
+                BelvedereError::Scene { path, line, reason, source: Some(Box::new(refused)) }
+            }
+            other => other,
+        }
+    }
+}
+
+/// A table of a document, such as a stage: makes errors at its keys.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Table<'a> {
+    pub(crate) origin: &'a Origin,
+    /// Key of the list that holds it.
+    pub(crate) list: &'a str,
+    pub(crate) index: usize,
+}
+
+impl Table<'_> {
+    fn path<T>(&self, keys: &[&str], then: impl FnOnce(&[&str]) -> T) -> T {
+        then(&[&[self.list, &self.index.to_string()], keys].concat())
+    }
+
+    /// An error at a key of the table.
+    pub(crate) fn error(&self, keys: &[&str], reason: impl std::fmt::Display) -> BelvedereError {
+        self.path(keys, |path| self.origin.error(path, reason))
+    }
+
+    /// The same for a refused file.
+    pub(crate) fn refusal(&self, keys: &[&str], refused: BelvedereError) -> BelvedereError {
+        self.path(keys, |path| self.origin.refusal(path, "", refused))
+    }
+}
+
+/// A document and where it was written.
 #[derive(Debug, Clone)]
 pub struct SourceDocument {
-    path: PathBuf,
-    root: Node,
+    pub(crate) origin: Origin,
     /// The document.
     pub document: Document,
 }
 
 impl SourceDocument {
-    /// A document that was made rather than read.
-    pub(crate) fn made(path: PathBuf, document: Document) -> Self {
-        Self { path, root: Node { line: 1, value: Value::Null }, document }
+    /// A document that was made in memory rather than read.
+    pub fn new(document: Document) -> Self {
+        Self { origin: Origin::MEMORY, document }
     }
 
-    /// File it came from.
-    pub fn path(&self) -> &Path {
-        &self.path
+    /// File it came from; `None` if it was made in memory.
+    pub fn path(&self) -> Option<&Path> {
+        self.origin.0.as_ref().map(|o| o.0.as_path())
     }
 
-    /// An error at the line of the key that `keys` leads to.
-    pub fn error(&self, keys: &[&str], reason: impl std::fmt::Display) -> BelvedereError {
-        BelvedereError::Scene {
-            path: self.path.clone(),
-            line: Some(self.root.line_of(keys)),
-            reason: reason.to_string(),
-        }
+    pub(crate) fn error(&self, keys: &[&str], reason: impl std::fmt::Display) -> BelvedereError {
+        self.origin.error(keys, reason)
     }
 }
 
@@ -80,10 +127,9 @@ pub fn read(path: &Path) -> Result<SourceDocument, BelvedereError> {
 /// # Errors
 /// As [`read`].
 pub fn parse(path: &Path, text: &str) -> Result<SourceDocument, BelvedereError> {
-    let fail = |e: DocError| BelvedereError::Scene { path: path.to_owned(), line: e.line, reason: e.to_string() };
-    let root = tree(path, text).map_err(fail)?;
-    let document = document(&root).map_err(fail)?;
-    Ok(SourceDocument { path: path.to_owned(), root, document })
+    let root = tree(path, text).map_err(|e| e.in_file(path))?;
+    let document = document(&root).map_err(|e| e.in_file(path))?;
+    Ok(SourceDocument { origin: Origin(Some(Arc::new((path.to_owned(), root)))), document })
 }
 
 /// Parses a preset document, TOML or JSON; `path` serves messages only.
@@ -91,9 +137,8 @@ pub fn parse(path: &Path, text: &str) -> Result<SourceDocument, BelvedereError> 
 /// # Errors
 /// As [`read`].
 pub fn parse_presets(path: &Path, text: &str) -> Result<PresetDocument, BelvedereError> {
-    let fail = |e: DocError| BelvedereError::Scene { path: path.to_owned(), line: e.line, reason: e.to_string() };
-    let root = tree(path, text).map_err(fail)?;
-    de::from_node(&root).map_err(fail)
+    let root = tree(path, text).map_err(|e| e.in_file(path))?;
+    de::from_node(&root).map_err(|e| e.in_file(path))
 }
 
 /// Reads a text file of at most [`MAX_BYTES`].
@@ -103,7 +148,7 @@ pub fn parse_presets(path: &Path, text: &str) -> Result<PresetDocument, Belveder
 pub fn read_text(path: &Path) -> Result<String, BelvedereError> {
     use std::io::Read;
     let os = |e| belvedere_io::IoError::os(path, e);
-    let refuse = |reason: String| BelvedereError::Scene { path: path.to_owned(), line: None, reason };
+    let refuse = |reason: String| DocError::whole(reason).in_file(path);
     let meta = std::fs::metadata(path).map_err(os)?;
     if !meta.is_file() {
         return Err(refuse("this is not a regular file; give the path of a file".into()));
@@ -210,7 +255,7 @@ fn one_of<T>(
         return Err(DocError::at(kind.line, format!("kind: a text was expected, found {}", kind.describe())));
     };
     read(name, &item.without("kind"))?.ok_or_else(|| {
-        let shown = node::shorten(name);
+        let shown = doc_error::shorten(name);
         DocError::at(kind.line, format!("\"{shown}\" is not a kind that exists here; {}", suggestion(name, kinds)))
     })
 }

@@ -1,6 +1,6 @@
 //! A document as a tree that remembers the line of every value, whatever its syntax.
 
-use super::DocError;
+use super::doc_error::{DocError, shorten};
 
 /// Deepest nesting of a document.
 pub(crate) const MAX_DEPTH: usize = 64;
@@ -142,10 +142,4 @@ impl Lines {
     pub(crate) fn start(&self, line: usize) -> usize {
         self.0.get(line.max(1) - 1).copied().unwrap_or(usize::MAX)
     }
-}
-
-/// `text` cut to a length that fits a message.
-pub(crate) fn shorten(text: &str) -> String {
-    let clean: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(61).collect();
-    if clean.chars().count() > 60 { clean.chars().take(57).chain("...".chars()).collect() } else { clean }
 }

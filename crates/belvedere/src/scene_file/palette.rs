@@ -1,8 +1,10 @@
 //! Tints of terrain.
 
+use crate::BelvedereError;
 use schemars::JsonSchema;
 use serde::de::Deserializer;
 use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
 
 /// Tint by height: a name, or a file of colours by height (GDAL colour-relief text, or GMT `.cpt`).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
@@ -25,6 +27,21 @@ impl PaletteDoc {
     pub fn of(text: &str) -> Self {
         let named = PaletteName::ALL.iter().find(|(name, _)| *name == text);
         named.map_or_else(|| Self::File(text.to_owned()), |(_, palette)| Self::Named(*palette))
+    }
+}
+
+impl PaletteDoc {
+    /// The palette with the full path of its file, whose folder is allowed from now on.
+    pub(crate) fn located(&self, allowed: &mut Vec<PathBuf>) -> Result<Self, BelvedereError> {
+        let Self::File(name) = self else { return Ok(self.clone()) };
+        let names = PaletteName::ALL.map(|(name, _)| name).join(", ");
+        let path = Path::new(name).canonicalize().map_err(|e| BelvedereError::Path {
+            name: name.clone(),
+            reason: format!("is no palette ({names}) and no file of colours by height: {e}"),
+            root_missing: false,
+        })?;
+        allowed.extend(path.parent().map(Path::to_owned));
+        path.to_str().map(|path| Self::File(path.to_owned())).ok_or_else(|| BelvedereError::not_utf8(name))
     }
 }
 

@@ -1,7 +1,53 @@
 //! Which files a scene may name: those in its own folder or below, unless the user allows more.
 
 use crate::BelvedereError;
+use schemars::JsonSchema;
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Deserializer, SeqAccess, Visitor};
+use serde::{Deserialize, Serialize};
 use std::path::{Component, Path, PathBuf};
+
+/// One path or several.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Paths {
+    /// One.
+    One(String),
+    /// Several, read as one source.
+    Many(Vec<String>),
+}
+
+impl Paths {
+    /// All of them.
+    pub fn as_slice(&self) -> &[String] {
+        match self {
+            Self::One(p) => std::slice::from_ref(p),
+            Self::Many(p) => p,
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Paths {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct PathsVisitor;
+        impl<'de> Visitor<'de> for PathsVisitor {
+            type Value = Paths;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a path or a list of paths")
+            }
+
+            fn visit_str<E: serde::de::Error>(self, path: &str) -> Result<Paths, E> {
+                Ok(Paths::One(path.to_owned()))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Paths, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(Paths::Many)
+            }
+        }
+        deserializer.deserialize_any(PathsVisitor)
+    }
+}
 
 /// Where the files of a scene may lie.
 #[derive(Debug, Clone, Default)]
@@ -21,24 +67,28 @@ impl Roots {
     /// # Errors
     /// [`BelvedereError::Path`] if the name is refused or nothing is found.
     pub fn resolve(&self, name: &str) -> Result<PathBuf, BelvedereError> {
-        let refuse = |reason: String| BelvedereError::Path { name: super::node::shorten(name), reason };
+        let refused = |reason: String, root_missing: bool| BelvedereError::Path {
+            name: super::doc_error::shorten(name),
+            reason,
+            root_missing,
+        };
+        let refuse = |reason: String| refused(reason, false);
+        let outside = "use a path below that folder, or allow another folder";
         check_name(name).map_err(refuse)?;
         let path = Path::new(name);
         let leaves = path.is_absolute() || looks_absolute(name) || path.components().any(|c| c == Component::ParentDir);
         if leaves && self.allowed.is_empty() {
-            return Err(refuse(
-                "leaves the folder of the scene file; use a path below that folder, or allow a folder with --allow-root DIR"
-                    .into(),
-            ));
+            return Err(refused(format!("leaves the folder of the scene file; {outside}"), true));
         }
         let bases = std::iter::once(&self.scene_dir).chain(self.allowed.iter().filter(|_| !path.is_absolute()));
         let Some(found) = bases.map(|base| base.join(path)).find(|p| std::fs::symlink_metadata(p).is_ok()) else {
             let folders: Vec<String> =
                 std::iter::once(&self.scene_dir).chain(&self.allowed).map(|p| shown(p)).collect();
-            return Err(refuse(format!(
-                "is not there (looked in {}); check the name, or give the folder with --allow-root DIR",
-                folders.join(", ")
-            )));
+            let folders = folders.join(", ");
+            return Err(refused(
+                format!("is not there (looked in {folders}); check the name, or allow its folder"),
+                true,
+            ));
         };
         let real = found.canonicalize().map_err(|e| refuse(format!("cannot be followed: {e}; check the name")))?;
         let inside = std::iter::once(&self.scene_dir)
@@ -48,10 +98,8 @@ impl Roots {
             })
             .any(|base| real.starts_with(base));
         if !inside {
-            return Err(refuse(format!(
-                "leads to {}, outside the folder of the scene file; use a path below that folder, or allow a folder with --allow-root DIR",
-                real.display()
-            )));
+            let real = real.display();
+            return Err(refused(format!("leads to {real}, outside the folder of the scene file; {outside}"), true));
         }
         match std::fs::metadata(&real) {
             Ok(meta) if meta.is_file() => Ok(real),
@@ -108,15 +156,12 @@ fn is_device(part: &str) -> bool {
 mod tests {
     use super::*;
 
-    fn refusal(roots: &Roots, name: &str) -> String {
-        roots.resolve(name).expect_err(name).to_string()
-    }
-
     #[test]
     fn names_that_leave_the_folder_are_refused() {
         let roots = Roots { scene_dir: env!("CARGO_MANIFEST_DIR").into(), allowed: vec![] };
         for name in ["../belvedere-core/Cargo.toml", "src/../../x", "/etc/passwd", "C:\\x", "\\\\host\\x", "..\\x"] {
-            assert!(refusal(&roots, name).contains("--allow-root"), "{name}: {}", refusal(&roots, name));
+            let refused = roots.resolve(name).expect_err(name);
+            assert!(matches!(refused, BelvedereError::Path { root_missing: true, .. }), "{name}: {refused}");
         }
         assert!(roots.resolve("Cargo.toml").is_ok());
         assert!(roots.resolve("src/lib.rs").is_ok());

@@ -1,6 +1,6 @@
-//! `check`, `show` and `schema`.
+//! `check`: what a scene holds.
 
-use crate::scene_file::{Document, StageDoc};
+use crate::scene_file::StageDoc;
 use crate::{BelvedereError, Session};
 use belvedere_scene::LayerKind;
 use serde::Serialize;
@@ -44,30 +44,12 @@ impl std::fmt::Display for CheckReport {
     }
 }
 
-/// Refuses views that cannot be drawn.
-///
-/// # Errors
-/// [`BelvedereError::Usage`] if the eye is under ground.
-pub fn drawable(session: &Session) -> Result<(), BelvedereError> {
-    let eye = session.view().pinhole().eye;
-    let lowered = session.view().stages().iter().any(|s| matches!(s, belvedere_core::Stage::TerrainDisocclusion(_)));
-    let ground = session.scene().terrain().and_then(|t| t.surface_at(eye.truncate()));
-    match ground {
-        Some(height) if eye.z < height && !lowered => Err(BelvedereError::Usage(format!(
-            "camera eye at height {:.1} is {:.1} under the ground ({height:.1}); raise it, or give above_ground_m",
-            eye.z,
-            height - eye.z
-        ))),
-        _ => Ok(()),
-    }
-}
-
 /// What an opened scene holds; that it opened is the check.
 ///
 /// # Errors
 /// [`BelvedereError`] if it could be opened but not drawn.
 pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
-    drawable(session)?;
+    session.check_drawable()?;
     let layers = session.scene().layers.iter().map(|layer| {
         let (kind, count) = match &layer.kind {
             LayerKind::Terrain(t) => ("terrain", t.heightfield.heights().len()),
@@ -80,7 +62,7 @@ pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
         CheckedLayer { id: layer.id.clone(), kind, count, must_see: layer.must_see }
     });
     Ok(CheckReport {
-        scene: session.path().display().to_string(),
+        scene: session.name(),
         crs: session.scene().crs.to_string(),
         layers: layers.collect(),
         stages: stages(session),
@@ -90,46 +72,13 @@ pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
 
 /// Names of the stages, those that are still to be solved for included.
 fn stages(session: &Session) -> Vec<&'static str> {
-    let mut names: Vec<&'static str> = session.view().stages().iter().map(|s| s.name()).collect();
-    let intent = session.resolved().stage.iter().find(|s| s.is_terrain_intent()).map(StageDoc::kind);
+    let mut names = session.stage_names();
+    let stages = session.resolved().map(|document| document.stage.as_slice()).unwrap_or_default();
+    let intent = stages.iter().find(|s| s.is_terrain_intent()).map(StageDoc::kind);
     if let Some(kind) = intent.filter(|kind| !names.contains(kind)) {
         names.insert(usize::from(names.first() == Some(&"earth")), kind);
     }
     names
-}
-
-/// A document as TOML.
-///
-/// # Errors
-/// [`BelvedereError::Usage`] if it cannot be written, which no valid document does.
-pub fn document_toml(document: &Document) -> Result<String, BelvedereError> {
-    toml::to_string(document).map_err(|e| BelvedereError::Usage(format!("the document cannot be written as TOML: {e}")))
-}
-
-/// A document as JSON, indented.
-///
-/// # Errors
-/// As [`document_toml`].
-pub fn document_json(document: &Document) -> Result<String, BelvedereError> {
-    pretty(document)
-}
-
-/// The JSON Schema of scene documents.
-///
-/// # Errors
-/// As [`document_toml`].
-pub fn schema_json() -> Result<String, BelvedereError> {
-    pretty(&schemars::schema_for!(Document))
-}
-
-/// `value` as indented JSON that ends in a newline.
-///
-/// # Errors
-/// As [`document_toml`].
-pub fn pretty<T: Serialize>(value: &T) -> Result<String, BelvedereError> {
-    let text = serde_json::to_string_pretty(value)
-        .map_err(|e| BelvedereError::Usage(format!("the document cannot be written as JSON: {e}")))?;
-    Ok(text + "\n")
 }
 
 /// A report as indented `key: value` lines for people.

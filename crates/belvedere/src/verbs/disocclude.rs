@@ -1,22 +1,23 @@
 //! `disocclude`: an elevation model in, one in which features can be seen from an eye out.
 
-use super::check::pretty;
-use super::output;
-use super::render::{self, RenderRequest};
-use super::reveal::{self, RevealRequest};
-use crate::provenance::{self, InputFile};
-use crate::resolve::terrain::{self as intent, Solving};
-use crate::scene_file::{self, StageDoc, TerrainStageDoc};
+use crate::data::DataFiles;
+use crate::output::{self, pretty};
+use crate::picture::{self, PictureOptions};
+use crate::record::{self, InputFile};
+use crate::resolve::ground::earth_radius;
+use crate::resolve::terrain as intent;
+use crate::scene_file::{self, CameraDoc, EarthDoc, StageDoc, TerrainStageDoc};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, TerrainDisocclusion, View};
-use belvedere_disocclusion::{Solved, TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver};
+use belvedere_disocclusion::{Solved, TerrainMemory, TerrainReport, TerrainSolver};
+use belvedere_io::IoError;
 use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::geotiff::write_geotiff;
-use belvedere_io::terrain::{OriginalTerrain, TerrainRequest, load_original};
-use belvedere_scene::{Crs, Layer, LayerKind, Progress};
+use belvedere_io::terrain::OriginalTerrain;
+use belvedere_scene::{Crs, Layer, LayerKind, Progress, Scene};
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Sides of the picture that the field of view belongs to, pixels.
 const IMAGE: [u32; 2] = [1280, 720];
@@ -26,13 +27,11 @@ const VISIBLE_LENGTH: f64 = 0.99;
 /// What to show, and from where.
 #[derive(Debug, Clone, Default)]
 pub struct DisoccludeRequest {
-    /// Elevation model: one file.
-    pub dem: PathBuf,
-    /// Files of routes, areas or points.
-    pub features: Vec<PathBuf>,
+    /// Elevation model (one file) and features; holes stay holes.
+    pub data: DataFiles,
     /// Eye: x, y in the system of the elevation model (degrees if geographic), z metres over its datum.
     pub eye: [f64; 3],
-    /// Place looked at, x, y likewise.
+    /// Point looked at, x, y likewise.
     pub look: [f64; 2],
     /// Full horizontal field of view, degrees, in (0, 180).
     pub fov_x_deg: f64,
@@ -40,35 +39,33 @@ pub struct DisoccludeRequest {
     pub parameters: TerrainStageDoc,
     /// Lets the ground fall away with the distance.
     pub curved_earth: bool,
-    /// Coordinate system to solve in; automatic if left out.
-    pub crs: Option<String>,
 }
 
 /// Parameters of the solver from `key=value` texts, keys and values as in scene files.
 ///
 /// # Errors
-/// [`BelvedereError::Usage`] with the nearest key that exists.
+/// [`BelvedereError::Setting`] with the nearest key that exists.
 pub fn parameters(texts: &[String]) -> Result<TerrainStageDoc, BelvedereError> {
     let mut toml = String::new();
     for text in texts {
         let Some((key, value)) = text.split_once('=') else {
-            return Err(BelvedereError::Usage(format!("--set {text} has no value; give key=value, such as w=0.6")));
+            return Err(BelvedereError::Setting(format!("{text} has no value; give key=value, such as w=0.6")));
         };
         let (key, value) = (key.trim(), value.trim());
         let plain = value.parse::<f64>().is_ok() && !value.eq_ignore_ascii_case("infinity");
         let value = if plain || value.starts_with('"') { value.to_owned() } else { format!("{value:?}") };
         toml += &format!("{key} = {value}\n");
     }
-    let fail = |e: scene_file::DocError| BelvedereError::Usage(format!("--set: {e}"));
-    let tree = scene_file::tree(Path::new("set.toml"), &toml).map_err(fail)?;
+    let fail = |e: scene_file::DocError| BelvedereError::Setting(e.to_string());
+    let tree = scene_file::tree(std::path::Path::new("settings.toml"), &toml).map_err(fail)?;
     let document: TerrainStageDoc = scene_file::decode(&tree).map_err(fail)?;
     match (&document.delta, &document.delta_sha256) {
         (None, None) => Ok(document),
-        _ => Err(BelvedereError::Usage("--set: delta is what is solved for; leave it out".into())),
+        _ => Err(BelvedereError::Setting("delta is what is solved for; leave it out".into())),
     }
 }
 
-/// What was found.
+/// A solution.
 pub struct Disoccluded {
     /// Terrain and features.
     pub session: Session,
@@ -110,30 +107,35 @@ pub struct DisoccludeFiles {
 impl DisoccludeFiles {
     /// Every file that will be written.
     pub fn all(&self) -> Vec<PathBuf> {
-        let asked = [&self.report, &self.displacement, &self.features].into_iter().flatten().cloned();
-        let pictures = self.picture.iter().flat_map(|p| render::outputs(p, &RenderRequest::default(), true));
-        std::iter::once(self.out.clone()).chain(asked).chain(pictures).collect()
+        let others = [&self.report, &self.displacement, &self.features].into_iter().flatten().cloned();
+        let pictures = self.picture.iter().flat_map(|p| picture::outputs(p, &PictureOptions::default(), true));
+        std::iter::once(self.out.clone()).chain(others).chain(pictures).collect()
     }
 }
 
 /// Solves for the features in a level picture from the eye.
 ///
 /// # Errors
-/// [`BelvedereError::Usage`] for an impossible eye, look or field of view; [`BelvedereError::Construct`]; those of the loaders.
+/// [`BelvedereError::FieldOfView`], [`BelvedereError::Position`], [`BelvedereError::EyeIsTarget`], [`BelvedereError::Setting`],
+/// [`BelvedereError::Disocclusion`]; those of the loaders.
 pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Disoccluded, BelvedereError> {
-    let settings = intent::settings(&request.parameters).map_err(|(_, reason)| BelvedereError::Usage(reason))?;
+    let settings = intent::settings(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
     let solver = TerrainSolver::new(settings)?;
-    let progress = &options.progress;
-    let original = load_original(&request.dem, &TerrainRequest::default(), progress)?;
-    let mut session = open(request, options)?;
-    session.warnings.extend(original.value.georeference_note());
-    let asked = Asked::new(request, &original.value, &session)?;
-    let view = asked.view(asked.target.extend(asked.eye.z), None)?;
-    let mut memory = TerrainMemory::default();
-    let solving = Solving { memory: &mut memory, time_step_s: None, progress };
-    let solved = solver.solve(&session.scene, &view, solving.memory, solving.progress)?;
-    session.warnings.extend(intent::remarks(&solved));
-    show(&mut session, &asked, &solved, solver.settings())?;
+    let mut data = DataFiles { keep_voids: true, ..request.data.clone() }.load(true, options)?;
+    let dem = &request.data.dem;
+    let original = data.original.take().ok_or_else(|| IoError::format(dem, "is no file; give an elevation model"))?;
+    data.warnings.extend(original.georeference_note());
+    let camera = LevelCamera::new(request, &original, &data.scene)?;
+    let view = camera.view(camera.target.extend(camera.eye.z), None)?;
+    let solved = solver.solve(&data.scene, &view, &mut TerrainMemory::default(), &options.progress)?;
+    data.warnings.extend(intent::remarks(&solved));
+    let ground = data.scene.terrain().and_then(|t| t.surface_at(camera.target));
+    let look_at = camera.target.extend(ground.unwrap_or(camera.eye.z));
+    let view = camera.view(look_at, Some(Stage::TerrainDisocclusion(solved.stage.clone())))?;
+    let stage = StageDoc::TerrainDisocclusion(intent::document(solver.settings(), &data.scene));
+    let earth = if request.curved_earth { EarthDoc::Curved } else { EarthDoc::Flat };
+    let camera = CameraDoc::of(view.pinhole(), look_at);
+    let session = Session { terrain: Some(solved.report.clone()), ..data.session(view, camera, vec![stage], earth) };
     let record = Record {
         program: format!("belvedere {}", crate::VERSION),
         crs: session.scene.crs.to_string(),
@@ -142,89 +144,54 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
         fov_x_deg: request.fov_x_deg,
         earth: if request.curved_earth { "curved" } else { "flat" },
         layers: session.scene.layers.iter().map(|l| l.id.clone()).collect(),
-        inputs: provenance::inputs(session.inputs())?,
+        inputs: record::inputs(session.inputs())?,
         warnings: session.warnings.clone(),
     };
-    Ok(Disoccluded { session, solved, original: original.value, record })
+    Ok(Disoccluded { session, solved, original, record })
 }
 
-/// Puts the solution into the session: its picture looks down on the place looked at.
-fn show(
-    session: &mut Session,
-    asked: &Asked,
-    solved: &Solved,
-    settings: &TerrainSettings,
-) -> Result<(), BelvedereError> {
-    let ground = session.scene.terrain().and_then(|t| t.surface_at(asked.target));
-    let look_at = asked.target.extend(ground.unwrap_or(asked.eye.z));
-    let stage = Stage::TerrainDisocclusion(solved.stage.clone());
-    session.view = asked.view(look_at, Some(stage))?;
-    session.document.camera = reveal::camera_document(session.view.pinhole(), look_at);
-    session.document.stage = vec![StageDoc::TerrainDisocclusion(intent::document(settings, &session.scene))];
-    session.terrain = Some(solved.report.clone());
-    Ok(())
-}
-
-/// Terrain and features; holes stay holes.
-fn open(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Session, BelvedereError> {
-    let name = |p: &PathBuf| p.to_string_lossy().into_owned();
-    let request = RevealRequest {
-        dem: name(&request.dem),
-        features: request.features.iter().map(name).collect(),
-        curved_earth: request.curved_earth,
-        crs: request.crs.clone(),
-        keep_voids: true,
-        ..RevealRequest::default()
-    };
-    reveal::load(&request, options)
-}
-
-/// Eye and place looked at in the scene.
-struct Asked {
+/// Eye and point looked at, in the scene.
+struct LevelCamera {
     eye: DVec3,
     target: DVec2,
     fov_x: f64,
     earth: Option<Stage>,
 }
 
-impl Asked {
-    fn new(request: &DisoccludeRequest, original: &OriginalTerrain, session: &Session) -> Result<Self, BelvedereError> {
-        let fov = request.fov_x_deg;
-        if !(fov > 0.0 && fov < 180.0) {
-            return Err(BelvedereError::Usage(format!(
-                "--fov is {fov}, it must lie strictly between 0 and 180 degrees"
-            )));
+impl LevelCamera {
+    fn new(request: &DisoccludeRequest, original: &OriginalTerrain, scene: &Scene) -> Result<Self, BelvedereError> {
+        let deg = request.fov_x_deg;
+        if !(deg > 0.0 && deg < 180.0) {
+            return Err(BelvedereError::FieldOfView { deg });
         }
-        let place = |what: &str, [x, y]: [f64; 2]| {
-            original.scene_from_model(session.scene.crs, DVec2::new(x, y)).ok_or_else(|| {
-                BelvedereError::Usage(format!(
-                    "--{what} {x},{y} is no place in the system of the elevation model ({}); give x,y in that system",
+        let position = |what: &'static str, [x, y]: [f64; 2]| {
+            original.scene_from_model(scene.crs, DVec2::new(x, y)).ok_or_else(|| BelvedereError::Position {
+                what,
+                reason: format!(
+                    "{x},{y} is no position in the system of the elevation model ({}); give x,y in that system",
                     original.system_name()
-                ))
+                ),
             })
         };
         let [x, y, z] = request.eye;
-        let eye = place("eye", [x, y])?.extend(z);
-        let target = place("look", request.look)?;
+        let eye = position("eye", [x, y])?.extend(z);
+        let target = position("target", request.look)?;
         if eye.truncate().distance(target) < 1e-6 {
-            return Err(BelvedereError::Usage("--eye and --look are the same place; look somewhere else".into()));
+            return Err(BelvedereError::EyeIsTarget);
         }
-        let earth = request.curved_earth.then(|| {
-            let radius = crate::resolve::earth_radius(&session.scene);
-            Stage::EarthCurvature(EarthCurvature { eye, radius, refraction: EarthCurvature::REFRACTION })
-        });
-        Ok(Self { eye, target, fov_x: fov.to_radians(), earth })
+        let radius = request.curved_earth.then(|| earth_radius(scene));
+        let refraction = EarthCurvature::REFRACTION;
+        let earth = radius.map(|radius| Stage::EarthCurvature(EarthCurvature { eye, radius, refraction }));
+        Ok(Self { eye, target, fov_x: deg.to_radians(), earth })
     }
 
-    /// What the eye sees towards `look_at`. Level, it asks for what lies above or below the picture as well, for the ground
-    /// moves up and down.
+    /// The view of `look_at`. A level one includes what lies above or below the picture as well, for the ground moves up and down.
     fn view(&self, look_at: DVec3, ground: Option<Stage>) -> Result<View, BelvedereError> {
-        let usage = |e: &dyn std::fmt::Display| BelvedereError::Usage(e.to_string());
         let [width, height] = IMAGE.map(f64::from);
         let fov_y = 2.0 * ((0.5 * self.fov_x).tan() * height / width).atan();
         let lens = Projection::Perspective { fov_y };
-        let pinhole = Pinhole::look_at(self.eye, look_at, DVec3::Z, lens, IMAGE, 1.0, None).map_err(|e| usage(&e))?;
-        View::new(pinhole, self.earth.iter().cloned().chain(ground).collect()).map_err(|e| usage(&e))
+        let pinhole = Pinhole::look_at(self.eye, look_at, DVec3::Z, lens, IMAGE, 1.0, None)?;
+        Ok(View::new(pinhole, self.earth.iter().cloned().chain(ground).collect())?)
     }
 }
 
@@ -268,10 +235,10 @@ impl Disoccluded {
         )
     }
 
-    /// Writes the displaced elevation model and whatever else is asked for.
+    /// Writes the displaced elevation model and the other files.
     ///
     /// # Errors
-    /// [`BelvedereError::Io`]; those of [`render::render`] for the picture.
+    /// [`BelvedereError::Io`]; those of [`Session::render`] for the picture.
     pub fn write(
         &self,
         files: &DisoccludeFiles,
@@ -291,8 +258,8 @@ impl Disoccluded {
             written.push(path.clone());
         }
         if let Some(path) = &files.picture {
-            let request = RenderRequest { compare: true, ..RenderRequest::default() };
-            written.extend(render::render(&self.session, &request, progress)?.write(path, overwrite)?);
+            let pair = PictureOptions { compare: true, progress: progress.clone(), ..PictureOptions::default() };
+            written.extend(self.session.render(&pair)?.write(path, overwrite)?);
         }
         if let Some(path) = &files.report {
             let mut report = serde_json::to_value(self.report()).unwrap_or_default();
@@ -314,18 +281,14 @@ fn moved_features(session: &Session, stage: &TerrainDisocclusion) -> Result<Valu
     let scene = &session.scene;
     let to_wgs84 = match scene.crs {
         Crs::Local => None,
-        crs => {
-            let system = CoordinateSystem::from_scene(crs).map_err(|e| BelvedereError::Usage(e.to_string()))?;
-            let wgs84 = CoordinateSystem::wgs84().map_err(|e| BelvedereError::Usage(e.to_string()))?;
-            Some(Transform::new(&system, &wgs84).map_err(|e| BelvedereError::Usage(e.to_string()))?)
-        }
+        crs => Some(Transform::new(&CoordinateSystem::from_scene(crs)?, &CoordinateSystem::wgs84()?)?),
     };
     let geographic = |p: DVec3| {
         let xy = to_wgs84.as_ref().map_or(Some(p.truncate()), |t| t.forward_one(p.truncate()))?;
         Some([xy.x, xy.y, p.z])
     };
     let moved = |p: DVec3| p + stage.delta_at(p) * DVec3::Z;
-    // A place outside the domain of the system is left out, from both lists alike.
+    // A point outside the domain of the system is left out, from both lists alike.
     let both = |points: &[DVec3]| -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
         points.iter().filter_map(|p| Some((geographic(moved(*p))?, geographic(*p)?))).unzip()
     };

@@ -274,7 +274,7 @@ fn mesh(path: &Path) -> Result<FileInfo, BelvedereError> {
 }
 
 fn built_in(name: &str) -> Result<FileInfo, BelvedereError> {
-    let (scene, camera) = builtin::scene(name).map_err(BelvedereError::Usage)?;
+    let (scene, camera) = builtin::scene(name).map_err(BelvedereError::Builtin)?;
     let b = scene.bounds();
     Ok(FileInfo::Builtin(BuiltinInfo {
         path: name.to_owned(),

@@ -1,7 +1,6 @@
 //! `measure`: what a scene's picture shows of what must be seen.
 
-use super::render::RendererChoice;
-use crate::{BelvedereError, Session};
+use crate::{BelvedereError, RendererChoice, Session};
 pub use belvedere_construct::MeasureOptions;
 use belvedere_construct::Measures;
 use belvedere_disocclusion::TerrainReport;
@@ -32,20 +31,20 @@ pub struct MeasureReport {
 /// Visible share of every feature that must be seen, straight and bent, by line of sight and by depth buffer drawn by `renderer`.
 ///
 /// # Errors
-/// [`BelvedereError::Construct`] if nothing must be seen, [`BelvedereError::Usage`] if the view cannot be drawn.
+/// [`BelvedereError::Construct`] if nothing must be seen, [`BelvedereError::UnderGround`].
 pub fn measure(
     session: &Session,
     options: &MeasureOptions,
     renderer: RendererChoice,
     progress: &Progress,
 ) -> Result<MeasureReport, BelvedereError> {
-    super::check::drawable(session)?;
-    let renderer = renderer.renderer(session);
+    session.check_drawable()?;
+    let renderer = renderer.of(session);
     let measures = belvedere_construct::measure(session.scene(), session.view(), Some(renderer), options, progress)?;
     Ok(MeasureReport {
-        scene: session.path().display().to_string(),
+        scene: session.name(),
         crs: session.scene().crs.to_string(),
-        stages: session.view().stages().iter().map(|s| s.name()).collect(),
+        stages: session.stage_names(),
         renderer: renderer.name(),
         terrain: session.terrain_report().cloned(),
         measures,

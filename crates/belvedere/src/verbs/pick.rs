@@ -18,7 +18,7 @@ pub struct PickReport {
 /// What is seen at one pixel.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Picked {
-    /// True (undisplaced) world point: of the surface, of the line at the place nearest to the pixel, or of the point; scene coordinates.
+    /// True (undisplaced) world point: of the surface, of the line where it is nearest to the pixel, or of the point; scene coordinates.
     pub point: [f64; 3],
     /// Depth at which it is seen, scene units.
     pub depth: f64,
@@ -36,9 +36,9 @@ pub struct Picked {
 /// they are painted on. Pixels outside the image are answered as far as the camera has rays there.
 ///
 /// # Errors
-/// [`BelvedereError::Usage`] if the eye is under ground, [`BelvedereError::Cancelled`].
+/// [`BelvedereError::UnderGround`], [`BelvedereError::Cancelled`].
 pub fn pick(session: &Session, pixels: &[[f64; 2]], progress: &Progress) -> Result<PickReport, BelvedereError> {
-    super::check::drawable(session)?;
+    session.check_drawable()?;
     let (scene, view) = (session.scene(), session.view());
     progress.tick("prepare", 0.0)?;
     let tracer = Tracer::new(scene, view);
@@ -98,15 +98,15 @@ struct Marks<'a> {
 /// A feature: its name and the images of its vertices, lifted.
 struct Path<'a> {
     name: &'a str,
-    places: Vec<(DVec3, Option<(DVec2, f64)>)>,
+    vertices: Vec<(DVec3, Option<(DVec2, f64)>)>,
 }
 
 impl<'a> Marks<'a> {
     fn new(scene: &'a Scene, view: &'a View) -> Self {
         let path = |name: &'a str, points: &[DVec3], lift: f64| {
             let image = |p: DVec3| view.project(p).ok().map(|i| (i.pixel, i.depth));
-            let places = points.iter().map(|p| *p + lift * DVec3::Z).map(|p| (p, image(p))).collect();
-            Path { name, places }
+            let vertices = points.iter().map(|p| *p + lift * DVec3::Z).map(|p| (p, image(p))).collect();
+            Path { name, vertices }
         };
         let lines = |l: &'a LineLayer| l.features.iter().map(|f| path(&f.name, &f.points, l.lift_m)).collect();
         let points = |l: &'a PointLayer| l.features.iter().map(|f| path(&f.name, &[f.position], l.lift_m)).collect();
@@ -152,10 +152,10 @@ impl Path<'_> {
                 best = Some((p, distance));
             }
         };
-        if let [(p, Some((at, _)))] = self.places.as_slice() {
+        if let [(p, Some((at, _)))] = self.vertices.as_slice() {
             take(*p, at.distance(pixel));
         }
-        for pair in self.places.windows(2) {
+        for pair in self.vertices.windows(2) {
             let [(p, Some((a, near))), (q, Some((b, far)))] = [pair[0], pair[1]] else { continue };
             let along = b - a;
             let length = along.length_squared();

@@ -1,7 +1,7 @@
 //! Points to pixels and back: `project`, `rays`, `displace`.
 
+use crate::BelvedereError;
 use crate::scene_file::{Node, Value, json_points};
-use crate::{BelvedereError, Session};
 use belvedere_core::{Camera, DVec2, DVec3, Miss, View};
 use serde::Serialize;
 use std::io::Read;
@@ -116,19 +116,14 @@ pub fn displace(view: &View, points: &[[f64; 3]]) -> DisplaceReport {
 /// `samples` world points of each pixel's ray, equidistant in depth from the near depth to `far`.
 ///
 /// # Errors
-/// [`BelvedereError::Usage`] if `far` does not lie beyond the near depth or there are too many samples.
+/// [`BelvedereError::RayEnd`] if `far` does not lie beyond the near depth, [`BelvedereError::RaySamples`].
 pub fn rays(view: &View, pixels: &[[f64; 2]], samples: usize, far: f64) -> Result<RaysReport, BelvedereError> {
     let near = view.pinhole().near;
     if !(far > near && far.is_finite()) {
-        return Err(BelvedereError::Usage(format!(
-            "rays end at depth {far}, it must be finite and beyond near = {near}; give a larger --far"
-        )));
+        return Err(BelvedereError::RayEnd { far, near });
     }
     if samples == 0 || samples.saturating_mul(pixels.len().max(1)) > MAX_SAMPLES {
-        return Err(BelvedereError::Usage(format!(
-            "{samples} samples of {} rays were asked for; at least 1 and together at most {MAX_SAMPLES} are needed",
-            pixels.len()
-        )));
+        return Err(BelvedereError::RaySamples { samples, rays: pixels.len(), most: MAX_SAMPLES });
     }
     let last = (samples - 1).max(1) as f64;
     let one = |pixel: &[f64; 2]| {
@@ -148,29 +143,6 @@ pub fn rays(view: &View, pixels: &[[f64; 2]], samples: usize, far: f64) -> Resul
         (0..samples).map(sample).collect()
     };
     Ok(RaysReport { rays: pixels.iter().map(one).collect() })
-}
-
-/// Depth at which rays end: `far` if given, else the camera's, else the largest depth of the scene.
-///
-/// # Errors
-/// [`BelvedereError::Usage`] if there is none of them.
-pub fn far_depth(session: &Session, far: Option<f64>) -> Result<f64, BelvedereError> {
-    let view = session.view();
-    if let Some(far) = far.or(view.pinhole().far) {
-        return Ok(far);
-    }
-    let bounds = session.scene().bounds();
-    let corners = bounds.corners();
-    let straight = corners.iter().map(|&c| (c - view.pinhole().eye).dot(view.pinhole().forward));
-    let bent = corners.iter().filter_map(|&c| view.project(c).ok()).map(|image| image.depth);
-    let deepest = straight.chain(bent).fold(0.0, f64::max);
-    if bounds.is_empty() || !(deepest > view.pinhole().near) {
-        return Err(BelvedereError::Usage(
-            "nothing says where rays end: the scene has no layer in front of the camera; give --far or camera.far"
-                .into(),
-        ));
-    }
-    Ok(deepest)
 }
 
 /// Reads `[[x, y, z], ...]` or `[[x, y], ...]`: `N` finite numbers per element.

@@ -1,53 +1,56 @@
 //! `reveal`: terrain and routes in, a picture in which the routes are visible out.
 
-use super::check::{document_toml, pretty};
-use super::output;
-use super::render::{self, Picture, RenderRequest};
+use crate::data::DataFiles;
+use crate::output::{self, document_toml, pretty};
+use crate::picture::{DisplacementReport, Picture, PictureOptions, TerrainRecord};
+use crate::resolve::ground::{Ground, earth_radius};
 use crate::resolve::terrain::Solving;
-use crate::resolve::vectors::{FeatureKind, kind_of};
-use crate::scene_file::TerrainStageDoc;
-use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LineDoc, LineStyleDoc, PaletteDoc, Paths, PlaneDoc,
-    PointDoc, PointLayerDoc, PointStyleDoc, PresetsDoc, ProjectionDoc, SourceDocument, SplineStageDoc, StageDoc,
-    TerrainDoc, TerrainStyleDoc, UnitDoc,
+    CameraDoc, Document, EarthDoc, LayerDoc, PaletteDoc, Paths, PlaneDoc, PresetsDoc, SplineStageDoc, StageDoc,
+    TerrainStageDoc,
 };
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::{Goal, MeasureOptions, RevealMemory, RevealOptions, RevealReport, Revealed};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::{TerrainMemory, TerrainReport};
 use belvedere_io::png::{self, Channels};
-use belvedere_scene::{Crs, Progress};
+use belvedere_scene::{Crs, Progress, Scene};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+
+/// Size of the picture unless given, pixels.
+const IMAGE: [u32; 2] = [1280, 720];
+/// Full vertical field of view unless given, degrees.
+const FOV_Y_DEG: f64 = 45.0;
 
 /// What to reveal, and from where.
 #[derive(Debug, Clone, Default)]
 pub struct RevealRequest {
-    /// Terrain: a file, or `builtin:massif?seed=7`.
-    pub dem: String,
-    /// Routes, areas or points: files, or `builtin:massif?seed=7`.
-    pub features: Vec<String>,
-    /// Eye: x, y in the scene's system or degrees if small enough for a georeferenced scene, z metres.
-    pub eye: Option<[f64; 3]>,
-    /// Point to look at: x, y as for the eye; z metres, else the ground.
-    pub look: Option<Vec<f64>>,
+    /// Terrain and features.
+    pub data: DataFiles,
+    /// Where to look from; chosen if left out.
+    pub viewpoint: Option<Viewpoint>,
     /// Full vertical field of view, degrees.
     pub fov_y_deg: Option<f64>,
     /// Picture size, pixels.
     pub image: Option<[u32; 2]>,
     /// Earth shape.
     pub curved_earth: bool,
-    /// Coordinate system of the scene; automatic if left out.
-    pub crs: Option<String>,
-    /// Leaves holes of the terrain open.
-    pub keep_voids: bool,
-    /// Tint of the terrain by height.
-    pub palette: PaletteDoc,
     /// What bends the picture.
     pub technique: Technique,
     /// Quality of the pictures.
-    pub render: RenderRequest,
+    pub picture: PictureOptions,
+}
+
+/// An eye and what it looks at; x, y in the scene's system, or degrees if small enough for a georeferenced scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Viewpoint {
+    /// x, y, and z in metres.
+    pub eye: [f64; 3],
+    /// x, y of the point looked at.
+    pub target: [f64; 2],
+    /// Its height, metres; the ground's if left out.
+    pub target_height: Option<f64>,
 }
 
 /// What bends the picture.
@@ -104,34 +107,40 @@ struct ReportFile<'a> {
     shares: Option<FinalShares>,
     #[serde(skip_serializing_if = "Option::is_none")]
     disocclusion: Option<&'a TerrainReport>,
-    displacement: Option<render::DisplacementReport>,
-    view: &'a crate::provenance::ViewRecord,
+    displacement: Option<DisplacementReport>,
+    view: &'a crate::record::ViewRecord,
     crs: String,
-    terrain: Option<render::TerrainRecord>,
-    inputs: &'a [crate::provenance::InputFile],
+    terrain: Option<TerrainRecord>,
+    inputs: &'a [crate::record::InputFile],
     scene_warnings: &'a [String],
 }
 
 /// Chooses a view (unless given) and a bend, and draws both pictures.
 ///
 /// # Errors
-/// [`BelvedereError::Construct`] if no view is possible, else as [`Session::open`] and [`render::render`].
+/// [`BelvedereError::FieldOfView`], [`BelvedereError::Position`], [`BelvedereError::Construct`] if no view is possible, else as
+/// [`Session::open`] and [`Session::render`].
 pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnswer, BelvedereError> {
-    if let Some(fov) = request.fov_y_deg.filter(|fov| !(*fov > 0.0 && *fov < 180.0)) {
-        return Err(BelvedereError::Usage(format!("--fov is {fov}, it must lie strictly between 0 and 180 degrees")));
+    let fov_y_deg = request.fov_y_deg.unwrap_or(FOV_Y_DEG);
+    if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
+        return Err(BelvedereError::FieldOfView { deg: fov_y_deg });
     }
-    let mut session = load(request, options)?;
-    let base = base_view(request, &session)?;
-    let image = request.image.unwrap_or([1280, 720]);
+    let data = request.data.load(false, options)?;
+    let base = base_view(request, &data.scene)?;
     let search = RevealOptions {
-        image,
-        fov_y: request.fov_y_deg.unwrap_or(45.0).to_radians(),
-        earth_radius: request.curved_earth.then(|| crate::resolve::earth_radius(&session.scene)),
+        image: request.image.unwrap_or(IMAGE),
+        fov_y: fov_y_deg.to_radians(),
+        earth_radius: request.curved_earth.then(|| earth_radius(&data.scene)),
         ..RevealOptions::default()
     };
     let mut memory = RevealMemory::default();
-    let found = belvedere_construct::reveal(&session.scene, base.as_ref(), &search, &mut memory, &options.progress)?;
-    adopt(&mut session, &found)?;
+    let found = belvedere_construct::reveal(&data.scene, base.as_ref(), &search, &mut memory, &options.progress)?;
+    let pinhole = found.straight.pinhole();
+    let ahead = (found.pivot - pinhole.eye).length().max(1.0);
+    let camera = CameraDoc::of(pinhole, pinhole.eye + ahead * pinhole.forward);
+    let earth = if request.curved_earth { EarthDoc::Curved } else { EarthDoc::Flat };
+    let mut session = data.session(found.view.clone(), camera, vec![spline_stage(&found)], earth);
+    session.warnings.extend(found.report.warnings.iter().cloned());
     let with_terrain = match request.technique {
         Technique::Spline => None,
         Technique::Auto if found.report.bent.visible >= ENOUGH => None,
@@ -144,11 +153,18 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     };
     let mut shares = None;
     if let Some(technique) = with_terrain {
-        let found = make_way(&mut session, technique, &options.progress)?;
-        missed = found.visible_bent.filter(|v| *v < ENOUGH).map(shortfall).into_iter().collect();
-        shares = Some(found);
+        session = disoccluded(&session, technique, &options.progress)?;
+        let reached = final_shares(&session, technique, &options.progress)?;
+        missed = reached.visible_bent.filter(|v| *v < ENOUGH).map(shortfall).into_iter().collect();
+        shares = Some(reached);
     }
-    let picture = draw(&session, request, &options.progress)?;
+    let pair = PictureOptions {
+        compare: true,
+        straight: false,
+        progress: options.progress.clone(),
+        ..request.picture.clone()
+    };
+    let picture = session.render(&pair)?;
     Ok(RevealAnswer { session, picture, report: found.report, shares, missed })
 }
 
@@ -156,16 +172,19 @@ fn shortfall(visible: f64) -> String {
     format!("{:.1} % of what is in the picture is visible, {:.0} % were wanted", 100.0 * visible, 100.0 * ENOUGH)
 }
 
-/// Lets the ground make way in the picture that was found, and judges the whole.
-fn make_way(session: &mut Session, technique: Technique, progress: &Progress) -> Result<FinalShares, BelvedereError> {
-    let mut document = session.document.clone();
+/// The session with ground that makes way, beside the spline or in its place.
+fn disoccluded(session: &Session, technique: Technique, progress: &Progress) -> Result<Session, BelvedereError> {
+    let Some(mut document) = session.resolved().cloned() else { return Ok(session.clone()) };
     if technique == Technique::Terrain {
         document.stage.clear();
     }
     document.stage.insert(0, StageDoc::TerrainDisocclusion(TerrainStageDoc::default()));
     let mut memory = TerrainMemory::default();
-    let mut solving = Solving { memory: &mut memory, time_step_s: None, progress };
-    crate::resolve::look_again(session, document, Some(&mut solving))?;
+    session.with_document(document, Some(&mut Solving { memory: &mut memory, time_step_s: None, progress }))
+}
+
+/// Judges the whole chain of stages.
+fn final_shares(session: &Session, technique: Technique, progress: &Progress) -> Result<FinalShares, BelvedereError> {
     let measures =
         belvedere_construct::measure(&session.scene, &session.view, None, &MeasureOptions::default(), progress)?;
     let all = measures.lines.as_ref().or(measures.areas.as_ref()).or(measures.points.as_ref());
@@ -174,18 +193,6 @@ fn make_way(session: &mut Session, technique: Technique, progress: &Progress) ->
         visible_straight: all.and_then(|m| m.straight.sight.share),
         visible_bent: all.and_then(|m| m.bent.sight.share),
     })
-}
-
-/// Largest hole that is filled, share of the ground: what would be made up in a larger one is no ground.
-pub const LARGEST_HOLE: f64 = 0.03;
-
-/// The terrain and the features as a session; holes are filled unless they are large or to be kept.
-pub(super) fn load(request: &RevealRequest, options: &OpenOptions) -> Result<Session, BelvedereError> {
-    let (document, roots) = document(request)?;
-    let source = SourceDocument::made(PathBuf::from("reveal.toml"), document);
-    let mut session = crate::resolve::session(source, &roots, options)?;
-    session.inputs.remove(0);
-    Ok(session)
 }
 
 impl RevealAnswer {
@@ -251,8 +258,8 @@ impl RevealAnswer {
             output::write_text(path, &pretty(&report)?, overwrite)?;
             written.push(path.clone());
         }
-        if let Some(path) = &files.scene {
-            let document = beside(self.session.resolved(), path);
+        if let (Some(path), Some(document)) = (&files.scene, self.session.resolved()) {
+            let document = beside(document, path);
             output::write_text(path, &document_toml(&document)?, overwrite)?;
             written.push(path.clone());
         }
@@ -288,170 +295,31 @@ impl RevealFiles {
     }
 }
 
-fn draw(session: &Session, request: &RevealRequest, progress: &Progress) -> Result<Picture, BelvedereError> {
-    render::render(session, &RenderRequest { compare: true, straight: false, ..request.render.clone() }, progress)
-}
-
-/// Puts what was found into the session and its document.
-fn adopt(session: &mut Session, found: &Revealed) -> Result<(), BelvedereError> {
-    let pinhole = found.straight.pinhole();
-    let document = &mut session.document;
-    let ahead = (found.pivot - pinhole.eye).length().max(1.0);
-    document.camera = camera_document(pinhole, pinhole.eye + ahead * pinhole.forward);
-    document.stage = vec![StageDoc::SplineBend(SplineStageDoc {
+/// The spline that was found as a stage of a document.
+fn spline_stage(found: &Revealed) -> StageDoc {
+    StageDoc::SplineBend(SplineStageDoc {
         presets: PresetsDoc::Inline(Box::new(found.document.clone())),
         pivot: Some(found.pivot.to_array()),
         plane: Some(PlaneDoc { normal: [0.0, 0.0, 1.0], height_m: Some(found.plane_height) }),
-    })];
-    session.view = found.view.clone();
-    session.warnings.extend(found.report.warnings.iter().cloned());
-    Ok(())
-}
-
-pub(super) fn camera_document(pinhole: &Pinhole, look_at: DVec3) -> CameraDoc {
-    let (projection, fov_y_deg, ortho_height_m) = match pinhole.projection {
-        Projection::Perspective { fov_y } => (ProjectionDoc::Perspective, fov_y.to_degrees(), None),
-        Projection::Orthographic { height } => (ProjectionDoc::Orthographic, 45.0, Some(height)),
-    };
-    CameraDoc {
-        eye: PointDoc::Scene(pinhole.eye.to_array()),
-        look_at: Some(PointDoc::Scene(look_at.to_array())),
-        heading_deg: None,
-        pitch_deg: None,
-        up: [0.0, 0.0, 1.0],
-        projection,
-        fov_y_deg,
-        ortho_height_m,
-        image: pinhole.image,
-        near: pinhole.near,
-        far: pinhole.far,
-    }
-}
-
-/// The camera asked for.
-fn base_view(request: &RevealRequest, session: &Session) -> Result<Option<View>, BelvedereError> {
-    let (eye, look) = match (request.eye, &request.look) {
-        (None, None) => return Ok(None),
-        (Some(eye), Some(look)) => (eye, look),
-        _ => return Err(BelvedereError::Usage("--eye and --look belong together; give both, or neither".into())),
-    };
-    let ground = crate::resolve::Ground { crs: session.scene.crs, terrain: session.scene.terrain() };
-    let place = |x: f64, y: f64| {
-        let degrees = matches!(session.scene.crs, Crs::Epsg(_)) && x.abs() <= 360.0 && y.abs() <= 90.0;
-        if degrees { ground.place_of(x, y).map_err(BelvedereError::Usage) } else { Ok(DVec2::new(x, y)) }
-    };
-    let eye = place(eye[0], eye[1])?.extend(eye[2]);
-    let target = match look[..] {
-        [x, y] => {
-            let xy = place(x, y)?;
-            xy.extend(ground.height_at(xy).map_err(|e| BelvedereError::Usage(format!("--look: {e}")))?)
-        }
-        [x, y, z] => place(x, y)?.extend(z),
-        _ => return Err(BelvedereError::Usage(format!("--look has {} numbers; give X,Y or X,Y,Z", look.len()))),
-    };
-    let lens = Projection::Perspective { fov_y: request.fov_y_deg.unwrap_or(45.0).to_radians() };
-    let pinhole = Pinhole::look_at(eye, target, DVec3::Z, lens, request.image.unwrap_or([1280, 720]), 1.0, None)
-        .map_err(|e| BelvedereError::Usage(e.to_string()))?;
-    Ok(Some(View::straight(pinhole)))
-}
-
-/// A document of the terrain and the features, and the folders they lie in.
-fn document(request: &RevealRequest) -> Result<(Document, Roots), BelvedereError> {
-    let mut roots = Roots::default();
-    let dem = locate(&request.dem, &mut roots)?;
-    let palette = crate::session::located(&request.palette, &mut roots.allowed)?;
-    let mut layer = vec![LayerDoc::Terrain(TerrainDoc {
-        id: "ground".into(),
-        source: Paths::One(dem),
-        fill_voids: !request.keep_voids,
-        largest_hole: (!request.keep_voids).then_some(LARGEST_HOLE),
-        source_crs: None,
-        nodata: None,
-        drape: None,
-        style: TerrainStyleDoc { palette, ..TerrainStyleDoc::default() },
-    })];
-    if request.features.is_empty() {
-        return Err(BelvedereError::Usage(
-            "no features are given; name at least one file of routes, areas or points".into(),
-        ));
-    }
-    for (i, name) in request.features.iter().enumerate() {
-        let source = locate(name, &mut roots)?;
-        layer.push(feature_layer(format!("features{}", i + 1), source)?);
-    }
-    let camera = PointDoc::Scene([0.0; 3]);
-    let ahead = PointDoc::Scene([0.0, 1.0, 0.0]);
-    let camera = CameraDoc { eye: camera, look_at: Some(ahead), ..camera_default() };
-    let title = "Revealed".to_owned();
-    let document = Document {
-        format: 1,
-        title,
-        crs: request.crs.clone().unwrap_or_else(|| "auto".into()),
-        unit: UnitDoc::Metre,
-        earth: if request.curved_earth { EarthDoc::Curved } else { EarthDoc::Flat },
-        camera,
-        overlay: None,
-        light: None,
-        layer,
-        stage: Vec::new(),
-        constructor: None,
-        animation: None,
-    };
-    Ok((document, roots))
-}
-
-fn camera_default() -> CameraDoc {
-    CameraDoc {
-        eye: PointDoc::Scene([0.0; 3]),
-        look_at: None,
-        heading_deg: None,
-        pitch_deg: None,
-        up: [0.0, 0.0, 1.0],
-        projection: ProjectionDoc::Perspective,
-        fov_y_deg: 45.0,
-        ortho_height_m: None,
-        image: [1280, 720],
-        near: 1.0,
-        far: None,
-    }
-}
-
-/// The absolute path of a file that the user named, whose folder is then allowed; built-in names stay.
-fn locate(name: &str, roots: &mut Roots) -> Result<String, BelvedereError> {
-    if name.starts_with("builtin:") {
-        return Ok(name.to_owned());
-    }
-    let path = Path::new(name).canonicalize().map_err(|e| belvedere_io::IoError::os(name, e))?;
-    if let Some(folder) = path.parent() {
-        roots.allowed.push(folder.to_owned());
-    }
-    path.to_str()
-        .map(str::to_owned)
-        .ok_or_else(|| BelvedereError::Path { name: name.to_owned(), reason: "is not UTF-8; rename it".into() })
-}
-
-/// Lines if the file has any, else areas, else points.
-fn feature_layer(id: String, source: String) -> Result<LayerDoc, BelvedereError> {
-    let paths = Paths::One(source.clone());
-    let line = || LineDoc {
-        id: id.clone(),
-        source: Some(paths.clone()),
-        route: None,
-        must_see: true,
-        style: LineStyleDoc::default(),
-    };
-    if source.starts_with("builtin:") {
-        return Ok(LayerDoc::Line(line()));
-    }
-    Ok(match kind_of(Path::new(&source))? {
-        FeatureKind::Lines => LayerDoc::Line(line()),
-        FeatureKind::Areas => {
-            LayerDoc::Area(AreaDoc { id, source: paths, must_see: true, style: AreaStyleDoc::default() })
-        }
-        FeatureKind::Points => {
-            LayerDoc::Point(PointLayerDoc { id, source: paths, must_see: true, style: PointStyleDoc::default() })
-        }
     })
+}
+
+/// The given camera.
+fn base_view(request: &RevealRequest, scene: &Scene) -> Result<Option<View>, BelvedereError> {
+    let Some(Viewpoint { eye, target, target_height }) = request.viewpoint else { return Ok(None) };
+    let ground = Ground::of(scene);
+    let wrong = |what| move |reason| BelvedereError::Position { what, reason };
+    let position = |[x, y]: [f64; 2]| {
+        let degrees = matches!(scene.crs, Crs::Epsg(_)) && x.abs() <= 360.0 && y.abs() <= 90.0;
+        if degrees { ground.position_of(x, y) } else { Ok(DVec2::new(x, y)) }
+    };
+    let [x, y, z] = eye;
+    let eye = position([x, y]).map_err(wrong("eye"))?.extend(z);
+    let xy = position(target).map_err(wrong("target"))?;
+    let height = target_height.map_or_else(|| ground.height_at(xy), Ok).map_err(wrong("target"))?;
+    let lens = Projection::Perspective { fov_y: request.fov_y_deg.unwrap_or(FOV_Y_DEG).to_radians() };
+    let image = request.image.unwrap_or(IMAGE);
+    Ok(Some(View::straight(Pinhole::look_at(eye, xy.extend(height), DVec3::Z, lens, image, 1.0, None)?)))
 }
 
 /// The document with sources relative to the folder of `path` where they lie below it.

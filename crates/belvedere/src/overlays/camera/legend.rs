@@ -1,7 +1,7 @@
 //! What the colours of a picture of the camera mean, and how long things are.
 
 use super::super::{INK, PAPER, length, round_below};
-use super::CameraFigure;
+use super::subject::CameraFigure;
 use belvedere_core::DVec2;
 use belvedere_cpu::canvas::{Canvas, text_size};
 

@@ -1,6 +1,7 @@
 //! The deformation curve with its control points, the reference plane and the pivot.
 
-use super::{CURVE, DARK, PLANE, Subject, line, point, rays};
+use super::rays;
+use super::subject::{CURVE, DARK, PLANE, Subject, line, point};
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::{DVec2, DVec3, SpaceMap};
 use belvedere_scene::{Color, Hidden, Overlay, OverlayFace, OverlayLine, Symbol};

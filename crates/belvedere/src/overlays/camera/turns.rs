@@ -1,6 +1,7 @@
 //! Viewpoints and transition planes of curved rays.
 
-use super::{Subject, line, point, rays, segment_color};
+use super::rays;
+use super::subject::{Subject, line, point, segment_color};
 use belvedere_core::map::curved_rays::LinearForm;
 use belvedere_core::{Camera, CurvedRays, DVec2, DVec3};
 use belvedere_scene::{Color, Overlay, OverlayFace, Symbol};

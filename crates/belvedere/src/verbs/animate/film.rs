@@ -11,12 +11,17 @@ use std::time::Duration;
 /// How the film was made, or why it was not.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Film {
-    /// None was asked for.
-    NotAsked,
+    /// The output is a folder of frames.
+    Unwanted,
     /// It is there.
     Made(PathBuf),
-    /// Why there is none, and what to do; the frames are there.
-    Missing(String),
+    /// Why there is none; the frames are there.
+    Missing {
+        /// What is wrong.
+        reason: String,
+        /// The command that makes it of the frames.
+        command: String,
+    },
 }
 
 /// Encoders in order of preference; the second is in every build of the program.
@@ -32,18 +37,18 @@ pub(super) fn make(
     progress: &Progress,
 ) -> Result<Film, BelvedereError> {
     let pattern = folder.join(frame_name(0).replace("00000", "%05d"));
-    let by_hand = format!("ffmpeg -framerate {fps} -i {} -pix_fmt yuv420p {}", pattern.display(), out.display());
+    let command = format!("ffmpeg -framerate {fps} -i {} -pix_fmt yuv420p {}", pattern.display(), out.display());
     let temporary = out.with_extension(format!("{}.tmp.mp4", std::process::id()));
     let mut complaint = String::new();
     for encoder in ENCODERS {
-        let mut command = Command::new("ffmpeg");
-        command.args(["-nostdin", "-hide_banner", "-loglevel", "error", "-y", "-framerate", &fps.to_string()]);
-        command.args(["-start_number", "0", "-i"]).arg(&pattern).args(["-frames:v", &frames.to_string()]);
+        let mut ffmpeg = Command::new("ffmpeg");
+        ffmpeg.args(["-nostdin", "-hide_banner", "-loglevel", "error", "-y", "-framerate", &fps.to_string()]);
+        ffmpeg.args(["-start_number", "0", "-i"]).arg(&pattern).args(["-frames:v", &frames.to_string()]);
         // Encoders want even sides.
-        command.args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2"]).args(encoder);
-        command.args(["-pix_fmt", "yuv420p", "-movflags", "+faststart", "-map_metadata", "-1"]);
-        command.args(["-fflags", "+bitexact", "-flags:v", "+bitexact"]).arg(&temporary);
-        let ran = run(&mut command, progress);
+        ffmpeg.args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2"]).args(encoder);
+        ffmpeg.args(["-pix_fmt", "yuv420p", "-movflags", "+faststart", "-map_metadata", "-1"]);
+        ffmpeg.args(["-fflags", "+bitexact", "-flags:v", "+bitexact"]).arg(&temporary);
+        let ran = run(&mut ffmpeg, progress);
         match ran {
             Ok((true, _)) => {
                 std::fs::rename(&temporary, out).map_err(|e| belvedere_io::IoError::os(out, e))?;
@@ -51,11 +56,11 @@ pub(super) fn make(
             }
             Ok((false, said)) => complaint = said,
             Err(Failure::Absent) => {
-                return Ok(Film::Missing(format!(
-                    "there is no ffmpeg program on the PATH, so {} was not made; the frames are in {}; install ffmpeg and go on with --resume, or run: {by_hand}",
-                    out.display(),
-                    folder.display()
-                )));
+                let (out, folder) = (out.display(), folder.display());
+                let reason = format!(
+                    "there is no ffmpeg program on the PATH, so {out} was not made; the frames are in {folder}"
+                );
+                return Ok(Film::Missing { reason, command });
             }
             Err(Failure::Cancelled) => {
                 let _ = std::fs::remove_file(&temporary);
@@ -66,11 +71,8 @@ pub(super) fn make(
         let _ = std::fs::remove_file(&temporary);
     }
     let last = complaint.lines().rfind(|l| !l.trim().is_empty()).unwrap_or("it gave no reason").trim();
-    Ok(Film::Missing(format!(
-        "ffmpeg could not make {} ({last}); the frames are in {}",
-        out.display(),
-        folder.display()
-    )))
+    let reason = format!("ffmpeg could not make {} ({last}); the frames are in {}", out.display(), folder.display());
+    Ok(Film::Missing { reason, command })
 }
 
 enum Failure {

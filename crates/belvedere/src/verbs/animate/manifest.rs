@@ -1,10 +1,10 @@
 //! What a folder of frames holds, so that an interrupted animation can go on.
 
-use super::plan::Plan;
-use crate::provenance::{self, InputFile, ViewRecord};
-use crate::scene_file::AnimationDoc;
-use crate::verbs::render::{DisplacementReport, RenderRequest};
-use crate::verbs::{check, output};
+use crate::camera_path::CameraPath;
+use crate::output;
+use crate::picture::{DisplacementReport, PictureOptions};
+use crate::record::{self, InputFile, ViewRecord};
+use crate::scene_file::{AnimationDoc, Document};
 use crate::{BelvedereError, Session};
 use belvedere_disocclusion::TerrainReport;
 use serde::{Deserialize, Serialize};
@@ -83,7 +83,7 @@ pub struct FrameTerrain {
     pub hidden_in_guard: f64,
     /// Points that cannot be shown.
     pub unresolved: usize,
-    /// Whether all that is asked for is guaranteed to be seen in this frame, see [`TerrainReport::guaranteed`].
+    /// Whether all that is required is guaranteed to be seen in this frame, see [`TerrainReport::guaranteed`].
     #[serde(default)]
     pub guaranteed: bool,
     /// Root mean square displacement, metres.
@@ -121,26 +121,25 @@ pub fn frame_name(frame: usize) -> String {
 
 impl Manifest {
     /// The manifest of an animation of which no frame is there.
-    pub(super) fn new(session: &Session, plan: &Plan, request: &RenderRequest) -> Result<Self, BelvedereError> {
-        let mut document = session.resolved().clone();
-        document.animation = None;
+    pub(super) fn new(session: &Session, path: &CameraPath, request: &PictureOptions) -> Result<Self, BelvedereError> {
+        let document = session.resolved().map(|document| Document { animation: None, ..document.clone() });
         Ok(Self {
             program: format!("belvedere {}", crate::VERSION),
-            scene_sha256: provenance::sha256_of(output::json(&document)?.as_bytes()),
-            inputs: provenance::inputs(session.inputs())?,
+            scene_sha256: record::sha256_of(output::json(&document)?.as_bytes()),
+            inputs: record::inputs(session.inputs())?,
             settings: Settings {
-                animation: plan.animation.clone(),
-                fps: plan.fps,
+                animation: path.animation.clone(),
+                fps: path.fps,
                 image: session.view().pinhole().image,
-                samples: request.options.samples,
-                tolerance_px: request.options.tolerance_px,
-                lod_px: request.options.lod_px,
-                renderer: request.renderer.name().to_owned(),
+                samples: request.quality.samples,
+                tolerance_px: request.quality.tolerance_px,
+                lod_px: request.quality.lod_px,
+                renderer: request.renderer.of(session).name().to_owned(),
                 straight: request.straight,
                 compare: request.compare,
             },
             done: 0,
-            frames: vec![None; plan.len()],
+            frames: vec![None; path.len()],
         })
     }
 
@@ -204,13 +203,13 @@ impl Manifest {
     /// Writes the manifest into its folder.
     pub(super) fn write(&self, folder: &Path) -> Result<PathBuf, BelvedereError> {
         let path = folder.join(NAME);
-        output::write_text(&path, &check::pretty(self)?, true)?;
+        output::write_text(&path, &output::pretty(self)?, true)?;
         Ok(path)
     }
 }
 
 impl FrameRecord {
     fn is_whole(&self, folder: &Path) -> bool {
-        provenance::sha256(&folder.join(&self.file)).is_ok_and(|found| found == self.sha256)
+        record::sha256(&folder.join(&self.file)).is_ok_and(|found| found == self.sha256)
     }
 }

@@ -2,16 +2,16 @@
 
 mod film;
 mod manifest;
-mod plan;
 
 pub use film::Film;
 pub use manifest::{FrameRecord, FrameTerrain, Manifest, Settings, frame_name};
 
-use super::render::{self, RenderRequest};
-use super::{check, output};
-use crate::provenance::{self, ViewRecord};
+use crate::camera_path::CameraPath;
+use crate::output;
+use crate::picture::{self, PictureOptions};
+use crate::record::{self, ViewRecord};
 use crate::resolve::terrain::Solving;
-use crate::scene_file::AnimationDoc;
+use crate::scene_file::{AnimationDoc, Document};
 use crate::{BelvedereError, Session};
 use belvedere_disocclusion::TerrainMemory;
 use belvedere_scene::Progress;
@@ -25,7 +25,7 @@ pub struct AnimateRequest {
     /// at 0 degrees per second stand for the scene's own or the default; so does a step of 0.
     pub animation: AnimationDoc,
     /// How each frame is drawn; buffers are not written.
-    pub render: RenderRequest,
+    pub picture: PictureOptions,
     /// A film (`.mp4`), with its frames in the folder beside it, or a folder of frames.
     pub out: PathBuf,
     /// Goes on with the frames that are there.
@@ -51,7 +51,7 @@ pub struct Animation {
 ///
 /// # Errors
 /// [`BelvedereError::Output`] for films of other kinds.
-pub fn places(out: &Path) -> Result<(PathBuf, Option<PathBuf>), BelvedereError> {
+pub fn outputs(out: &Path) -> Result<(PathBuf, Option<PathBuf>), BelvedereError> {
     let ending = out.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     match ending.as_str() {
         "mp4" => Ok((out.with_extension("frames"), Some(out.to_owned()))),
@@ -74,20 +74,16 @@ pub fn places(out: &Path) -> Result<(PathBuf, Option<PathBuf>), BelvedereError> 
 ///
 /// # Errors
 /// [`BelvedereError::Interrupted`] if cancelled, [`BelvedereError::Frame`] for a frame that cannot be drawn,
-/// [`BelvedereError::Output`] if the folder holds another animation.
-pub fn animate(
-    session: &mut Session,
-    request: &AnimateRequest,
-    progress: &Progress,
-) -> Result<Animation, BelvedereError> {
-    let (folder, film) = places(&request.out)?;
+/// [`BelvedereError::FramesThere`] if the folder holds another animation.
+pub fn animate(session: &Session, request: &AnimateRequest, progress: &Progress) -> Result<Animation, BelvedereError> {
+    let (folder, film) = outputs(&request.out)?;
     if let Some(film) = &film {
         output::check(film, session.inputs(), request.overwrite || request.resume)?;
     }
-    let plan = plan::plan(session, &request.animation)?;
-    let mut manifest = Manifest::new(session, &plan, &request.render)?;
+    let path = CameraPath::new(session, &request.animation)?;
+    let mut manifest = Manifest::new(session, &path, &request.picture)?;
     claim(&mut manifest, &folder, request)?;
-    rehearse(session, &plan, progress)?;
+    check_all(session, &path, progress)?;
     std::fs::create_dir_all(&folder).map_err(|e| belvedere_io::IoError::os(&folder, e))?;
     let interrupted = |manifest: &Manifest| BelvedereError::Interrupted {
         done: manifest.done,
@@ -95,13 +91,13 @@ pub fn animate(
         folder: folder.clone(),
     };
     manifest.write(&folder)?;
-    let drawn = match draw_missing(session, &plan, &mut manifest, &folder, request, progress) {
+    let drawn = match draw_missing(session, &path, &mut manifest, &folder, request, progress) {
         Err(e) if e.is_cancelled() => return Err(interrupted(&manifest)),
         drawn => drawn?,
     };
     let film = match film {
-        None => Film::NotAsked,
-        Some(out) => match film::make(&out, &folder, plan.len(), plan.fps, progress) {
+        None => Film::Unwanted,
+        Some(out) => match film::make(&out, &folder, path.len(), path.fps, progress) {
             Err(e) if e.is_cancelled() => return Err(interrupted(&manifest)),
             film => film?,
         },
@@ -111,9 +107,11 @@ pub fn animate(
 
 /// Decides what becomes of what the folder holds.
 fn claim(manifest: &mut Manifest, folder: &Path, request: &AnimateRequest) -> Result<(), BelvedereError> {
-    let refuse = |reason: String| Err(BelvedereError::Output { path: folder.to_owned(), reason });
+    let refuse =
+        |reason: String, resumable| Err(BelvedereError::FramesThere { folder: folder.to_owned(), reason, resumable });
     if std::fs::metadata(folder).is_ok_and(|m| !m.is_dir()) {
-        return refuse("is a file; give a folder for the frames, or a film named .mp4".into());
+        let reason = "is a file; give a folder for the frames, or a film named .mp4".into();
+        return Err(BelvedereError::Output { path: folder.to_owned(), reason });
     }
     if request.overwrite && !request.resume {
         // Frames of a longer animation before this one would end up in its film.
@@ -125,80 +123,60 @@ fn claim(manifest: &mut Manifest, folder: &Path, request: &AnimateRequest) -> Re
     }
     match (Manifest::read(folder)?, request.resume) {
         (Some(earlier), true) => match manifest.differs_from(&earlier) {
-            Some(reason) => refuse(format!(
-                "cannot be gone on with: {reason}; start anew with --overwrite, or choose another output"
-            )),
+            Some(reason) => refuse(format!("cannot be gone on with: {reason}"), false),
             None => {
                 manifest.keep(&earlier, folder);
                 Ok(())
             }
         },
-        (Some(earlier), false) => refuse(format!(
-            "holds {} of {} frames of an animation; go on with --resume, or replace them with --overwrite",
-            earlier.done,
-            earlier.frames.len()
-        )),
-        (None, _) if folder.join(frame_name(0)).exists() => {
-            refuse("holds frames without their record; replace them with --overwrite, or choose another output".into())
+        (Some(earlier), false) => {
+            refuse(format!("holds {} of {} frames of an animation", earlier.done, earlier.frames.len()), true)
         }
+        (None, _) if folder.join(frame_name(0)).exists() => refuse("holds frames without their record".into(), false),
         (None, _) => Ok(()),
     }
 }
 
 /// Resolves the view of every frame.
-fn rehearse(session: &mut Session, plan: &plan::Plan, progress: &Progress) -> Result<(), BelvedereError> {
-    for frame in 0..plan.len() {
-        progress.tick("looking along the way", frame as f64 / plan.len() as f64)?;
-        look(session, plan, frame, None)?;
+fn check_all(session: &Session, path: &CameraPath, progress: &Progress) -> Result<(), BelvedereError> {
+    for frame in 0..path.len() {
+        progress.tick("checking the camera's path", frame as f64 / path.len() as f64)?;
+        path.session(session, frame, None)?;
     }
     Ok(())
 }
 
-fn look(
-    session: &mut Session,
-    plan: &plan::Plan,
-    frame: usize,
-    solving: Option<&mut Solving<'_>>,
-) -> Result<(), BelvedereError> {
-    let failed = |e: BelvedereError| match e.is_cancelled() {
-        true => e,
-        false => BelvedereError::Frame { frame, source: Box::new(e) },
-    };
-    crate::resolve::look_again(session, plan.document(frame), solving).map_err(failed)?;
-    check::drawable(session).map_err(failed)
-}
-
 /// Draws what the manifest lacks, in order; the number of frames drawn.
 fn draw_missing(
-    session: &mut Session,
-    plan: &plan::Plan,
+    session: &Session,
+    path: &CameraPath,
     manifest: &mut Manifest,
     folder: &Path,
     request: &AnimateRequest,
     progress: &Progress,
 ) -> Result<usize, BelvedereError> {
-    let missing: Vec<usize> = (0..plan.len()).filter(|&f| manifest.frames[f].is_none()).collect();
+    let missing: Vec<usize> = (0..path.len()).filter(|&f| manifest.frames[f].is_none()).collect();
     // What a solver remembers depends on every frame before: those that are there are solved again, not drawn.
-    let solves = session.resolved().solves_terrain();
+    let solves = session.resolved().is_some_and(Document::solves_terrain);
     let last = missing.last().map_or(0, |f| f + 1);
     let work: Vec<usize> = if solves { (0..last).collect() } else { missing.clone() };
     let quiet = progress.unheard();
     let mut memory = TerrainMemory::default();
     let started = Instant::now();
     for (step, &frame) in work.iter().enumerate() {
-        let share = manifest.done as f64 / plan.len() as f64;
-        progress.tick(&remaining(frame, plan.len(), step, work.len(), started), share)?;
-        let mut solving = Solving { memory: &mut memory, time_step_s: Some(1.0 / plan.fps), progress: &quiet };
-        look(session, plan, frame, Some(&mut solving))?;
+        let share = manifest.done as f64 / path.len() as f64;
+        progress.tick(&remaining(frame, path.len(), step, work.len(), started), share)?;
+        let mut solving = Solving { memory: &mut memory, time_step_s: Some(1.0 / path.fps), progress: &quiet };
+        let session = path.session(session, frame, Some(&mut solving))?;
         if manifest.frames[frame].is_some() {
             continue;
         }
-        let picture = render::draw(session, &request.render, manifest.inputs.clone(), &quiet)?;
+        let picture = picture::draw(&session, &request.picture, manifest.inputs.clone(), &quiet)?;
         let file = frame_name(frame);
-        let path = folder.join(&file);
-        picture.write_png(&path, true)?;
+        let out = folder.join(&file);
+        picture.write_png(&out, true)?;
         let record = FrameRecord {
-            sha256: provenance::sha256(&path)?,
+            sha256: record::sha256(&out)?,
             file,
             view: ViewRecord::of(session.view()),
             displacement: picture.sidecar.displacement,

@@ -1,15 +1,19 @@
-//! Where the camera is in every frame.
+//! Where the camera of an animation is in every frame.
 
+use crate::resolve::terrain::Solving;
 use crate::resolve::{stages, validate};
 use crate::scene_file::{
     self, AnimationDoc, CameraDoc, Document, PointDoc, PresetsDoc, RaysStageDoc, StageDoc, SweepDoc, TurntableDoc,
 };
+use crate::session::Description;
 use crate::{BelvedereError, Session};
 use belvedere_construct::{Flight, FlightOptions};
 use belvedere_core::{DVec2, DVec3, Stage};
-use belvedere_scene::{LayerKind, LineFeature};
+use belvedere_disocclusion::TerrainMemory;
+use belvedere_scene::{LayerKind, LineFeature, Progress, Scene};
 use glam::DQuat;
 use serde::Deserialize;
+use std::path::Path;
 
 /// Frames per second unless stated.
 const FPS: f64 = 25.0;
@@ -27,73 +31,57 @@ struct Pose {
     turn: f64,
 }
 
-/// The cameras of all frames.
+/// The cameras of all frames of an animation.
 #[derive(Debug, Clone)]
-pub(super) struct Plan {
+pub(crate) struct CameraPath {
     /// The resolved scene.
     base: Document,
     poses: Vec<Pose>,
     /// What the camera turns about; `None` where the pivot of a spline travels with the camera.
     pivot: Option<DVec3>,
     /// Frames per second.
-    pub(super) fps: f64,
+    pub(crate) fps: f64,
     /// The animation with every default filled in.
-    pub(super) animation: AnimationDoc,
+    pub(crate) animation: AnimationDoc,
 }
 
-/// The scene's own animation, replaced in part or whole by what was asked for.
-pub(super) fn merged(session: &Session, asked: &AnimationDoc) -> Result<AnimationDoc, BelvedereError> {
-    let mut doc = session.resolved().animation.clone().unwrap_or_default();
-    if asked.along.is_some() || asked.camera.is_some() || asked.sweep.is_some() || asked.turntable.is_some() {
+/// The scene's own animation, replaced in part or whole by the one given.
+fn merged(scene: &Document, given: &AnimationDoc) -> AnimationDoc {
+    let mut doc = scene.animation.clone().unwrap_or_default();
+    if given.along.is_some() || given.camera.is_some() || given.sweep.is_some() || given.turntable.is_some() {
         let (sweep, turntable) = (doc.sweep.take(), doc.turntable.take());
-        (doc.along, doc.camera) = (asked.along.clone(), asked.camera.clone());
-        // A bare --sweep or --turntable asks for the scene's own, else for the default.
-        doc.sweep = asked.sweep.clone().map(|s| if s.phi_deg[0] != s.phi_deg[1] { s } else { sweep.unwrap_or(s) });
-        doc.turntable = asked.turntable.clone().map(|t| if t.deg_per_s != 0.0 { t } else { turntable.unwrap_or(t) });
+        (doc.along, doc.camera) = (given.along.clone(), given.camera.clone());
+        // A sweep or turn without numbers stands for the scene's own, else for the default.
+        doc.sweep = given.sweep.clone().map(|s| if s.phi_deg[0] != s.phi_deg[1] { s } else { sweep.unwrap_or(s) });
+        doc.turntable = given.turntable.clone().map(|t| if t.deg_per_s != 0.0 { t } else { turntable.unwrap_or(t) });
     }
-    doc.frames = asked.frames.or(doc.frames);
-    doc.fps = asked.fps.or(doc.fps);
-    doc.speed_mps = asked.speed_mps.or(doc.speed_mps);
-    Ok(doc)
+    doc.frames = given.frames.or(doc.frames);
+    doc.fps = given.fps.or(doc.fps);
+    doc.speed_mps = given.speed_mps.or(doc.speed_mps);
+    doc
 }
 
-/// The frames of an animation, and its document with every default filled in.
-pub(super) fn plan(session: &Session, asked: &AnimationDoc) -> Result<Plan, BelvedereError> {
-    let mut animation = merged(session, asked)?;
-    let fps = animation.fps.unwrap_or(FPS);
-    animation.fps = Some(fps);
-    if [&animation.along, &animation.camera].into_iter().all(Option::is_none)
-        && animation.sweep.is_none()
-        && animation.turntable.is_none()
-    {
-        return Err(BelvedereError::Usage(
-            "nothing says how the camera moves: give --along LAYER, --sweep phi or --turntable, or add [animation] to the scene".into(),
-        ));
+impl Session {
+    /// The session at a time of its scene's own `[animation]`, seconds from the start: in the frame nearest to it.
+    ///
+    /// Ground that makes way is solved for that frame alone; in a film the frames before it count as well.
+    ///
+    /// # Errors
+    /// [`BelvedereError::NoAnimation`] without an `[animation]`, [`BelvedereError::Frame`] if there is no such view.
+    pub fn frame_at(&self, time_s: f64) -> Result<Self, BelvedereError> {
+        let path = CameraPath::new(self, &AnimationDoc::default())?;
+        let frame = ((time_s * path.fps).round().max(0.0) as usize).min(path.len() - 1);
+        let (mut memory, progress) = (TerrainMemory::default(), Progress::silent());
+        let time_step_s = Some(1.0 / path.fps);
+        path.session(self, frame, Some(&mut Solving { memory: &mut memory, time_step_s, progress: &progress }))
     }
-    defaults(session, &mut animation)?;
-    validate::animation(&animation).map_err(|(_, reason)| BelvedereError::Usage(format!("animation: {reason}")))?;
-    let (poses, pivot) = if let Some(layer) = animation.along.clone() {
-        (along(session, &layer, &mut animation)?, None)
-    } else if let Some(file) = animation.camera.clone() {
-        (through_cameras(session, &file, &mut animation)?, Some(DVec3::ZERO))
-    } else {
-        let pivot = pivot(session)?;
-        let poses = match animation.sweep.clone() {
-            Some(sweep) => sweep_phi(session, pivot, sweep, &mut animation)?,
-            None => turntable(session, pivot, &mut animation)?,
-        };
-        (poses, Some(pivot))
-    };
-    Ok(Plan { base: session.resolved().clone(), poses, pivot, fps, animation })
 }
 
-/// Ranges that a bare `--sweep` or `--turntable` leaves open.
-fn defaults(session: &Session, animation: &mut AnimationDoc) -> Result<(), BelvedereError> {
+/// Ranges that a sweep or turn without numbers leaves open.
+fn defaults(scene: &Document, animation: &mut AnimationDoc) -> Result<(), BelvedereError> {
     if let Some(SweepDoc { phi_deg: [first, last, step] }) = &mut animation.sweep {
         if *first == 0.0 && *last == 0.0 {
-            [*first, *last] = preset_range(session.resolved()).ok_or_else(|| {
-                BelvedereError::Usage("--sweep phi needs a spline_bend stage, whose presets say the range; add one, or give phi=FIRST:LAST".into())
-            })?;
+            [*first, *last] = preset_range(scene).ok_or(BelvedereError::NoSweepRange)?;
         }
         if *step == 0.0 {
             *step = (*last - *first).abs() / f64::from(animation.frames.unwrap_or(FRAMES).max(2) - 1);
@@ -119,14 +107,65 @@ fn preset_range(document: &Document) -> Option<[f64; 2]> {
     (low < high).then(|| [low.max(0.0), high.min(90.0)])
 }
 
-impl Plan {
+impl CameraPath {
+    /// The path of the session's own animation, replaced in part or whole by `given`.
+    ///
+    /// # Errors
+    /// [`BelvedereError::NoAnimation`], [`BelvedereError::NoSweepRange`], [`BelvedereError::Animation`].
+    pub(crate) fn new(session: &Session, given: &AnimationDoc) -> Result<Self, BelvedereError> {
+        let Some(Description { resolved: scene, roots, .. }) = &session.description else {
+            return Err(BelvedereError::NoAnimation);
+        };
+        let mut animation = merged(scene, given);
+        let fps = *animation.fps.get_or_insert(FPS);
+        if [&animation.along, &animation.camera].into_iter().all(Option::is_none)
+            && animation.sweep.is_none()
+            && animation.turntable.is_none()
+        {
+            return Err(BelvedereError::NoAnimation);
+        }
+        defaults(scene, &mut animation)?;
+        validate::animation(&animation)
+            .map_err(|(_, reason)| BelvedereError::Animation(format!("animation: {reason}")))?;
+        let (poses, pivot) = if let Some(layer) = animation.along.clone() {
+            (along(session, scene, &layer, &mut animation)?, None)
+        } else if let Some(file) = animation.camera.clone() {
+            (through_cameras(scene, &roots.resolve(&file)?, &mut animation)?, Some(DVec3::ZERO))
+        } else {
+            let pivot = pivot(session, scene)?;
+            let poses = match animation.sweep.clone() {
+                Some(sweep) => sweep_phi(session, scene, pivot, sweep, &mut animation)?,
+                None => turntable(session, scene, pivot, &mut animation)?,
+            };
+            (poses, Some(pivot))
+        };
+        Ok(Self { base: scene.clone(), poses, pivot, fps, animation })
+    }
+
     /// Number of frames.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.poses.len()
     }
 
+    /// The session in a frame.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Frame`] if its camera or stages are impossible; cancellation as it is.
+    pub(crate) fn session(
+        &self,
+        session: &Session,
+        frame: usize,
+        solving: Option<&mut Solving<'_>>,
+    ) -> Result<Session, BelvedereError> {
+        let resolved = session.with_document(self.document(frame), solving);
+        resolved.and_then(|session| session.check_drawable().map(|()| session)).map_err(|e| match e.is_cancelled() {
+            true => e,
+            false => BelvedereError::Frame { frame, source: Box::new(e) },
+        })
+    }
+
     /// The resolved scene of a frame.
-    pub(super) fn document(&self, frame: usize) -> Document {
+    fn document(&self, frame: usize) -> Document {
         let pose = &self.poses[frame];
         let mut document = self.base.clone();
         document.camera = CameraDoc {
@@ -151,9 +190,14 @@ impl Plan {
     }
 }
 
-fn along(session: &Session, id: &str, animation: &mut AnimationDoc) -> Result<Vec<Pose>, BelvedereError> {
-    let usage = |reason: String| BelvedereError::Usage(format!("along \"{id}\": {reason}"));
-    let route = route(session, id)?;
+fn along(
+    session: &Session,
+    scene: &Document,
+    id: &str,
+    animation: &mut AnimationDoc,
+) -> Result<Vec<Pose>, BelvedereError> {
+    let fail = |reason: String| BelvedereError::Animation(format!("along \"{id}\": {reason}"));
+    let route = route(session.scene(), id)?;
     let length = route.windows(2).map(|w| w[0].distance(w[1])).sum();
     let usual = FlightOptions::for_length(length);
     let options = FlightOptions {
@@ -161,11 +205,11 @@ fn along(session: &Session, id: &str, animation: &mut AnimationDoc) -> Result<Ve
         above_m: *animation.above_m.get_or_insert(usual.above_m),
         ahead_m: *animation.ahead_m.get_or_insert(usual.ahead_m),
     };
-    let flight = Flight::along(&route, session.scene().terrain(), &options).map_err(|e| usage(e.to_string()))?;
+    let flight = Flight::along(&route, session.scene().terrain(), &options).map_err(|e| fail(e.to_string()))?;
     let start = *animation.start_m.get_or_insert(0.0);
     let left = flight.length_m() - start;
     if !(left > 0.0) {
-        return Err(usage(format!("start_m is {start}, the route is {:.1} long; begin earlier", flight.length_m())));
+        return Err(fail(format!("start_m is {start}, the route is {:.1} long; begin earlier", flight.length_m())));
     }
     let fps = animation.fps.unwrap_or(FPS);
     let per_frame = match animation.speed_mps {
@@ -175,7 +219,7 @@ fn along(session: &Session, id: &str, animation: &mut AnimationDoc) -> Result<Ve
     let possible = (left / per_frame * (1.0 + 1e-12)).floor() as u32 + 1;
     let frames = match (animation.frames, animation.speed_mps) {
         (Some(n), Some(speed)) if n > possible => {
-            return Err(usage(format!(
+            return Err(fail(format!(
                 "{n} frames at {speed} metres per second need more than the {left:.1} left of the route; give at most {possible}"
             )));
         }
@@ -184,7 +228,7 @@ fn along(session: &Session, id: &str, animation: &mut AnimationDoc) -> Result<Ve
     };
     animation.frames = Some(checked(frames)?);
     animation.speed_mps = Some(per_frame * fps);
-    let fov_y_deg = session.resolved().camera.fov_y_deg;
+    let fov_y_deg = scene.camera.fov_y_deg;
     let pose = |i: u32| {
         let (eye, look_at) = flight.at(start + f64::from(i) * per_frame);
         Pose { eye, look_at, up: DVec3::Z, fov_y_deg, turn: 0.0 }
@@ -197,20 +241,19 @@ fn checked(frames: u32) -> Result<u32, BelvedereError> {
     if frames <= most {
         return Ok(frames);
     }
-    Err(BelvedereError::Usage(format!(
+    Err(BelvedereError::Animation(format!(
         "the animation would have {frames} frames, at most {most} are drawn; make it faster or shorter"
     )))
 }
 
 /// The longest line of a layer, with the others that go on where it ends.
-fn route(session: &Session, id: &str) -> Result<Vec<DVec2>, BelvedereError> {
-    let scene = session.scene();
+fn route(scene: &Scene, id: &str) -> Result<Vec<DVec2>, BelvedereError> {
     let lines = |kind: &LayerKind| matches!(kind, LayerKind::Line(_));
     let known: Vec<&str> = scene.layers.iter().filter(|l| lines(&l.kind)).map(|l| l.id.as_str()).collect();
     let layer = scene.layers.iter().find(|l| l.id == id);
     let Some(LayerKind::Line(layer)) = layer.map(|l| &l.kind) else {
         let hint = if known.is_empty() { "the scene has none".to_owned() } else { scene_file::suggestion(id, &known) };
-        return Err(BelvedereError::Usage(format!("along: \"{id}\" is no line layer of the scene; {hint}")));
+        return Err(BelvedereError::Animation(format!("along: \"{id}\" is no line layer of the scene; {hint}")));
     };
     let gap = scene.terrain().map_or(1.0, |t| 20.0 * t.spacing().max_element());
     Ok(chain(&layer.features, gap))
@@ -227,9 +270,9 @@ fn chain(features: &[LineFeature], gap: f64) -> Vec<DVec2> {
     let Some(longest) = (0..rest.len()).max_by(|a, b| length(&rest[*a]).total_cmp(&length(&rest[*b]))) else {
         return Vec::new();
     };
-    let mut way = rest.swap_remove(longest);
+    let mut chain = rest.swap_remove(longest);
     loop {
-        let (head, tail) = (way[0], way[way.len() - 1]);
+        let (head, tail) = (chain[0], chain[chain.len() - 1]);
         // Distance, line, whether it goes to the tail, whether it is turned round.
         let mut best: Option<(f64, usize, bool, bool)> = None;
         for (i, line) in rest.iter().enumerate() {
@@ -245,14 +288,14 @@ fn chain(features: &[LineFeature], gap: f64) -> Vec<DVec2> {
                 }
             }
         }
-        let Some((_, i, to_tail, turned)) = best else { return way };
+        let Some((_, i, to_tail, turned)) = best else { return chain };
         let mut line = rest.swap_remove(i);
         if turned {
             line.reverse();
         }
-        let (mut first, second) = if to_tail { (way, line) } else { (line, way) };
+        let (mut first, second) = if to_tail { (chain, line) } else { (line, chain) };
         first.extend(second);
-        way = first;
+        chain = first;
     }
 }
 
@@ -274,15 +317,14 @@ fn z_up() -> [f64; 3] {
 /// Eye, look_at, up and field of view of a saved camera, as one vector of numbers.
 type Numbers = [f64; 10];
 
-fn through_cameras(session: &Session, file: &str, animation: &mut AnimationDoc) -> Result<Vec<Pose>, BelvedereError> {
-    let path = session.roots.resolve(file)?;
-    let fail = |reason: String| BelvedereError::Points { path: path.clone(), reason };
-    let tree = scene_file::json_points(&scene_file::read_text(&path)?).map_err(|e| fail(e.to_string()))?;
+fn through_cameras(scene: &Document, path: &Path, animation: &mut AnimationDoc) -> Result<Vec<Pose>, BelvedereError> {
+    let fail = |reason: String| BelvedereError::Points { path: path.to_owned(), reason };
+    let tree = scene_file::json_points(&scene_file::read_text(path)?).map_err(|e| fail(e.to_string()))?;
     let saved: Vec<SavedCamera> = scene_file::decode(&tree).map_err(|e| fail(e.to_string()))?;
     if saved.is_empty() {
         return Err(fail("holds no camera; give a list of { eye, look_at }".into()));
     }
-    let own = session.resolved().camera.fov_y_deg;
+    let own = scene.camera.fov_y_deg;
     let keys: Vec<Numbers> = saved
         .iter()
         .map(|c| {
@@ -319,23 +361,24 @@ fn at(keys: &[Numbers], t: f64) -> Numbers {
     })
 }
 
-/// The point about which the camera turns: the pivot of a spline, else the place looked at.
-fn pivot(session: &Session) -> Result<DVec3, BelvedereError> {
+/// The point about which the camera turns: the pivot of a spline, else the point looked at.
+fn pivot(session: &Session, scene: &Document) -> Result<DVec3, BelvedereError> {
     let of_spline = session.view().stages().iter().find_map(|s| match s {
         Stage::SplineBend(bend) => Some(bend.pivot()),
         _ => None,
     });
-    let looked_at = match session.resolved().camera.look_at {
+    let looked_at = match scene.camera.look_at {
         Some(PointDoc::Scene(p)) => Some(DVec3::from_array(p)),
         _ => None,
     };
     of_spline.or(looked_at).ok_or_else(|| {
-        BelvedereError::Usage("nothing says what the camera turns about: give the scene's camera a look_at".into())
+        BelvedereError::Animation("nothing says what the camera turns about: give the scene's camera a look_at".into())
     })
 }
 
 fn sweep_phi(
     session: &Session,
+    scene: &Document,
     pivot: DVec3,
     sweep: SweepDoc,
     animation: &mut AnimationDoc,
@@ -347,16 +390,16 @@ fn sweep_phi(
     // The scene's own step unless the number of frames says otherwise.
     let step = if f64::from(frames) == needed { sweep.phi_deg[2].copysign(last - first) } else { step };
     let pinhole = session.view().pinhole();
-    let normal = stages::plane_normal(session.resolved()).and_then(DVec3::try_normalize).unwrap_or(DVec3::Z);
+    let normal = stages::plane_normal(scene).and_then(DVec3::try_normalize).unwrap_or(DVec3::Z);
     let level = |v: DVec3| (v - v.dot(normal) * normal).try_normalize();
     // Looking straight down, what is up in the picture is ahead.
     let ahead = level(pinhole.forward).filter(|_| pinhole.forward.dot(normal).abs() < 0.999_999);
     let ahead = ahead.or_else(|| level(-pinhole.down)).unwrap_or(DVec3::Y);
     let distance = pinhole.eye.distance(pivot);
     if !(distance > 0.0) {
-        return Err(BelvedereError::Usage("the eye is the pivot itself; move it away".into()));
+        return Err(BelvedereError::Animation("the eye is the pivot itself; move it away".into()));
     }
-    let fov_y_deg = session.resolved().camera.fov_y_deg;
+    let fov_y_deg = scene.camera.fov_y_deg;
     let pose = |i: u32| {
         let (sin, cos) = (first + f64::from(i) * step).clamp(0.0, 90.0).to_radians().sin_cos();
         let (eye, up) = (pivot + distance * (sin * normal - cos * ahead), sin * ahead + cos * normal);
@@ -365,13 +408,18 @@ fn sweep_phi(
     Ok((0..frames).map(pose).collect())
 }
 
-fn turntable(session: &Session, pivot: DVec3, animation: &mut AnimationDoc) -> Result<Vec<Pose>, BelvedereError> {
+fn turntable(
+    session: &Session,
+    scene: &Document,
+    pivot: DVec3,
+    animation: &mut AnimationDoc,
+) -> Result<Vec<Pose>, BelvedereError> {
     let rate = animation.turntable.as_ref().map_or(0.0, |t| t.deg_per_s);
     let fps = animation.fps.unwrap_or(FPS);
     let once = (360.0 / rate.abs() * fps).round().clamp(1.0, 1e9) as u32;
     let frames = checked(animation.frames.unwrap_or(once))?;
     animation.frames = Some(frames);
-    let (camera, pinhole) = (&session.resolved().camera, session.view().pinhole());
+    let (camera, pinhole) = (&scene.camera, session.view().pinhole());
     let ahead = pinhole.eye + pinhole.eye.distance(pivot).max(1.0) * pinhole.forward;
     let pose = |i: u32| {
         let turn = (rate * f64::from(i) / fps).to_radians();
@@ -384,12 +432,12 @@ fn turntable(session: &Session, pivot: DVec3, animation: &mut AnimationDoc) -> R
 
 /// Curved rays turn with the camera.
 fn turn_rays(rays: &mut RaysStageDoc, pivot: DVec3, turn: DQuat) {
-    let place = |p: &mut [f64; 3]| *p = (pivot + turn * (DVec3::from_array(*p) - pivot)).to_array();
+    let position = |p: &mut [f64; 3]| *p = (pivot + turn * (DVec3::from_array(*p) - pivot)).to_array();
     let direction = |v: &mut [f64; 3]| *v = (turn * DVec3::from_array(*v)).to_array();
     for t in &mut rays.turn {
-        [&mut t.viewpoint, &mut t.t0, &mut t.t1, &mut t.t2].into_iter().for_each(place);
+        [&mut t.viewpoint, &mut t.t0, &mut t.t1, &mut t.t2].into_iter().for_each(position);
         if let Some(line) = &mut t.line {
-            place(&mut line.point);
+            position(&mut line.point);
             direction(&mut line.dir);
         }
         t.normal.iter_mut().for_each(direction);

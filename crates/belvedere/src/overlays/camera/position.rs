@@ -1,11 +1,11 @@
-//! Where a picture of the camera is taken from.
+//! From where a picture of the camera is taken.
 
-use super::CameraPicture;
+use super::subject::CameraPicture;
 use crate::{BelvedereError, Session};
 use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, PinholeError, Projection, View};
 use belvedere_scene::Overlay;
 
-/// Room around what is shown from above, as a share.
+/// Margin around what is shown from above, as a share.
 const MARGIN: f64 = 1.12;
 /// Vertical field of view from outside, radians.
 const FOV_Y: f64 = 0.7;
@@ -18,11 +18,10 @@ pub(super) fn view(session: &Session, picture: CameraPicture, overlay: &Overlay)
     let shown = Aabb::of(points.iter().copied());
     let pinhole = match picture {
         CameraPicture::Overhead => overhead(&shown, subject.image),
-        CameraPicture::Outside(Some(places)) => outside(places.map(DVec3::from_array), subject.image),
+        CameraPicture::Outside(Some(eye_and_target)) => outside(eye_and_target.map(DVec3::from_array), subject.image),
         CameraPicture::Outside(None) => outside(beside(&shown, &points, subject), subject.image),
     };
-    let pinhole = pinhole.map_err(|e| BelvedereError::Usage(format!("picture of the camera: {e}")))?;
-    Ok(View::straight(pinhole))
+    Ok(View::straight(pinhole?))
 }
 
 fn overhead(shown: &Aabb, image: [u32; 2]) -> Result<Pinhole, PinholeError> {
@@ -36,9 +35,9 @@ fn overhead(shown: &Aabb, image: [u32; 2]) -> Result<Pinhole, PinholeError> {
     Pinhole::look_at(eye, below, DVec3::Y, projection, image, 1e-3 * height, None)
 }
 
-fn outside([eye, look]: [DVec3; 2], image: [u32; 2]) -> Result<Pinhole, PinholeError> {
-    let near = (1e-4 * eye.distance(look)).max(1e-3);
-    Pinhole::look_at(eye, look, DVec3::Z, Projection::Perspective { fov_y: FOV_Y }, image, near, None)
+fn outside([eye, target]: [DVec3; 2], image: [u32; 2]) -> Result<Pinhole, PinholeError> {
+    let near = (1e-4 * eye.distance(target)).max(1e-3);
+    Pinhole::look_at(eye, target, DVec3::Z, Projection::Perspective { fov_y: FOV_Y }, image, near, None)
 }
 
 /// From the right of the camera and above, as near as lets everything be seen.
@@ -51,16 +50,16 @@ fn beside(shown: &Aabb, points: &[DVec3], subject: &Pinhole) -> [DVec3; 2] {
     let size = DVec2::from(subject.image.map(f64::from));
     let mut best = [middle + from * reach * 4.0, middle];
     for i in 0..60 {
-        let places = [middle + from * reach * 4.0 * 0.96f64.powi(i), middle];
-        let Ok(camera) = outside(places, subject.image) else { break };
+        let nearer = [middle + from * reach * 4.0 * 0.96f64.powi(i), middle];
+        let Ok(camera) = outside(nearer, subject.image) else { break };
         let fits = |p: &DVec3| {
-            let seen = camera.project(*p).ok().map(|(pixel, _)| pixel / size);
-            seen.is_some_and(|s| (0.04..=0.96).contains(&s.x) && (0.08..=0.95).contains(&s.y))
+            let image = camera.project(*p).ok().map(|(pixel, _)| pixel / size);
+            image.is_some_and(|s| (0.04..=0.96).contains(&s.x) && (0.08..=0.95).contains(&s.y))
         };
         if !points.iter().all(fits) {
             break;
         }
-        best = places;
+        best = nearer;
     }
     best
 }

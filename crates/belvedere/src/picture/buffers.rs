@@ -1,6 +1,6 @@
 //! Buffers beside a picture as channels of one OpenEXR file.
 
-use super::render::AuxBuffer;
+use super::options::AuxBuffer;
 use crate::BelvedereError;
 use belvedere_core::{DVec3, View};
 use belvedere_io::open_exr::{self, Channel};
@@ -45,6 +45,6 @@ pub(super) fn write(
     if buffers.contains(&AuxBuffer::Id) {
         channels.push(("id".into(), Channel::Uint(frame.id.clone())));
     }
-    let place = origin.map(|v| format!("{v}")).join(" ");
-    Ok(open_exr::write(path, overwrite, frame.width, frame.height, channels, &[("worldOrigin", &place)])?)
+    let origin_text = origin.map(|v| format!("{v}")).join(" ");
+    Ok(open_exr::write(path, overwrite, frame.width, frame.height, channels, &[("worldOrigin", &origin_text)])?)
 }

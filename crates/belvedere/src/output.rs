@@ -1,6 +1,7 @@
 //! Outputs: never over an input, never over an existing file unasked, never half written.
 
 use crate::BelvedereError;
+use crate::scene_file::Document;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -23,10 +24,10 @@ pub fn check(path: &Path, inputs: &[PathBuf], overwrite: bool) -> Result<(), Bel
 /// `value` as JSON, one line, ending in a newline; numbers round-trip exactly.
 ///
 /// # Errors
-/// [`BelvedereError::Usage`] if a map has keys that are no texts, which no report has.
+/// [`BelvedereError::Text`] if a map has keys that are no texts, which no report has.
 pub fn json<T: Serialize>(value: &T) -> Result<String, BelvedereError> {
-    let text = serde_json::to_string(value)
-        .map_err(|e| BelvedereError::Usage(format!("the report cannot be written as JSON: {e}")))?;
+    let text =
+        serde_json::to_string(value).map_err(|e| BelvedereError::Text { what: "the report", reason: e.to_string() })?;
     Ok(text + "\n")
 }
 
@@ -36,4 +37,38 @@ pub fn json<T: Serialize>(value: &T) -> Result<String, BelvedereError> {
 /// [`BelvedereError::Io`].
 pub fn write_text(path: &Path, text: &str, overwrite: bool) -> Result<(), BelvedereError> {
     Ok(belvedere_io::atomic::write_atomic(path, overwrite, |out| out.write_all(text.as_bytes()))?)
+}
+
+/// A document as TOML.
+///
+/// # Errors
+/// [`BelvedereError::Text`], which no valid document gives.
+pub fn document_toml(document: &Document) -> Result<String, BelvedereError> {
+    toml::to_string(document).map_err(|e| BelvedereError::Text { what: "the document", reason: e.to_string() })
+}
+
+/// A document as JSON, indented.
+///
+/// # Errors
+/// As [`document_toml`].
+pub fn document_json(document: &Document) -> Result<String, BelvedereError> {
+    pretty(document)
+}
+
+/// The JSON Schema of scene documents.
+///
+/// # Errors
+/// As [`document_toml`].
+pub fn schema_json() -> Result<String, BelvedereError> {
+    pretty(&schemars::schema_for!(Document))
+}
+
+/// `value` as indented JSON, ending in a newline.
+///
+/// # Errors
+/// As [`json`].
+pub fn pretty<T: Serialize>(value: &T) -> Result<String, BelvedereError> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|e| BelvedereError::Text { what: "the document", reason: e.to_string() })?;
+    Ok(text + "\n")
 }

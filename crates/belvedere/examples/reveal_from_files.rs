@@ -1,0 +1,27 @@
+//! An elevation model and a route to a picture in which the route is visible.
+//!
+//! `cargo run --example reveal_from_files -- dem.tif route.gpx out.png`; without arguments on generated ground.
+
+use belvedere::verbs::reveal::{RevealFiles, RevealRequest, reveal};
+use belvedere::{DataFiles, OpenOptions};
+use std::path::PathBuf;
+
+/// Draws the picture and says how much of the route it shows, straight and bent.
+pub fn run(dem: &str, route: &str, out: PathBuf, image: [u32; 2]) -> Result<String, Box<dyn std::error::Error>> {
+    let data = DataFiles { dem: dem.into(), features: vec![route.into()], ..DataFiles::default() };
+    let request = RevealRequest { data, image: Some(image), ..RevealRequest::default() };
+    let answer = reveal(&request, &OpenOptions::default())?;
+    answer.write(&RevealFiles { out, ..RevealFiles::default() }, true)?;
+    Ok(answer.summary())
+}
+
+#[allow(clippy::print_stdout, reason = "a program, not a library")]
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let given: Vec<String> = std::env::args().skip(1).collect();
+    let [dem, route, out] = match &given[..] {
+        [dem, route, out] => [dem.as_str(), route, out],
+        _ => ["builtin:massif?seed=7", "builtin:massif?seed=7", "revealed.png"],
+    };
+    println!("{}", run(dem, route, out.into(), [1280, 720])?);
+    Ok(())
+}

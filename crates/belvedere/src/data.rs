@@ -1,0 +1,136 @@
+//! Terrain and features straight from their files, without a scene file.
+
+use crate::resolve::vectors::{FeatureKind, kind_of};
+use crate::resolve::{self, LayerRequest};
+use crate::scene_file::paths::Roots;
+use crate::scene_file::{
+    AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LineDoc, LineStyleDoc, Origin, PaletteDoc, Paths,
+    PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, TerrainDoc, TerrainStyleDoc, UnitDoc,
+};
+use crate::session::Description;
+use crate::{BelvedereError, OpenOptions, Session};
+use belvedere_core::View;
+use belvedere_io::terrain::OriginalTerrain;
+use belvedere_io::vector::load_vectors;
+use belvedere_scene::Scene;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Largest hole that is filled, share of the ground: what would be made up in a larger one is no ground.
+pub const LARGEST_HOLE: f64 = 0.03;
+
+/// Files of a terrain and of what must be seen on it.
+#[derive(Debug, Clone, Default)]
+pub struct DataFiles {
+    /// Terrain: a file, or `builtin:massif?seed=7`.
+    pub dem: String,
+    /// Routes, areas or points: files, or `builtin:massif?seed=7`.
+    pub features: Vec<String>,
+    /// Coordinate system of the scene; automatic if left out.
+    pub crs: Option<String>,
+    /// Leaves holes of the terrain open; else those of at most [`LARGEST_HOLE`] are filled.
+    pub keep_voids: bool,
+    /// Tint of the terrain by height.
+    pub palette: PaletteDoc,
+}
+
+/// What the files hold.
+pub(crate) struct Data {
+    pub(crate) scene: Arc<Scene>,
+    pub(crate) warnings: Vec<String>,
+    /// Samples of the terrain's file as they are there, if they were to be kept.
+    pub(crate) original: Option<OriginalTerrain>,
+    inputs: Vec<PathBuf>,
+    layers: Vec<LayerDoc>,
+    roots: Roots,
+}
+
+impl DataFiles {
+    /// Reads the files, each once.
+    pub(crate) fn load(&self, keep_original: bool, options: &OpenOptions) -> Result<Data, BelvedereError> {
+        let mut roots = Roots::default();
+        let dem = locate(&self.dem, &mut roots)?;
+        let palette = self.palette.located(&mut roots.allowed)?;
+        let mut layers = vec![LayerDoc::Terrain(TerrainDoc {
+            id: "ground".into(),
+            source: Paths::One(dem),
+            fill_voids: !self.keep_voids,
+            largest_hole: (!self.keep_voids).then_some(LARGEST_HOLE),
+            source_crs: None,
+            nodata: None,
+            drape: None,
+            style: TerrainStyleDoc { palette, ..TerrainStyleDoc::default() },
+        })];
+        if self.features.is_empty() {
+            return Err(BelvedereError::NoFeatures);
+        }
+        let mut vectors = BTreeMap::new();
+        for (i, name) in self.features.iter().enumerate() {
+            let source = locate(name, &mut roots)?;
+            let mut kind = FeatureKind::Lines;
+            if !source.starts_with("builtin:") {
+                let read = load_vectors(Path::new(&source))?;
+                kind = kind_of(&read.value);
+                vectors.insert(PathBuf::from(&source), read);
+            }
+            layers.push(feature_layer(format!("features{}", i + 1), Paths::One(source), kind));
+        }
+        let crs = self.crs.as_deref().unwrap_or("auto");
+        let request =
+            LayerRequest { vectors, keep_original, ..LayerRequest::new(&Origin::MEMORY, &layers, crs, &roots) };
+        let loaded = resolve::load(request, options)?;
+        let (inputs, warnings, original) = (loaded.inputs, loaded.warnings, loaded.original);
+        let scene = Scene { title: "Revealed".into(), crs: loaded.crs, layers: loaded.layers, ..Scene::default() };
+        resolve::fill_surfaces(&mut layers, &scene);
+        Ok(Data { scene: Arc::new(scene), warnings, original, inputs, layers, roots })
+    }
+}
+
+impl Data {
+    /// A session of the data in a view, which camera and stages describe.
+    pub(crate) fn session(self, view: View, camera: CameraDoc, stage: Vec<StageDoc>, earth: EarthDoc) -> Session {
+        let document = Document {
+            format: 1,
+            title: self.scene.title.clone(),
+            crs: self.scene.crs.to_string(),
+            unit: UnitDoc::Metre,
+            earth,
+            camera,
+            overlay: None,
+            light: None,
+            layer: self.layers,
+            stage,
+            constructor: None,
+            animation: None,
+        };
+        let (source, resolved) = (SourceDocument::new(document.clone()), document);
+        Session {
+            warnings: self.warnings,
+            inputs: self.inputs,
+            description: Some(Description { source, resolved, roots: self.roots }),
+            ..Session::from_parts(self.scene, view)
+        }
+    }
+}
+
+/// The absolute path of a file that the user named, whose folder is then allowed; built-in names stay.
+fn locate(name: &str, roots: &mut Roots) -> Result<String, BelvedereError> {
+    if name.starts_with("builtin:") {
+        return Ok(name.to_owned());
+    }
+    let path = Path::new(name).canonicalize().map_err(|e| belvedere_io::IoError::os(name, e))?;
+    roots.allowed.extend(path.parent().map(Path::to_owned));
+    path.to_str().map(str::to_owned).ok_or_else(|| BelvedereError::not_utf8(name))
+}
+
+fn feature_layer(id: String, source: Paths, kind: FeatureKind) -> LayerDoc {
+    let must_see = true;
+    match kind {
+        FeatureKind::Lines => {
+            LayerDoc::Line(LineDoc { id, source: Some(source), route: None, must_see, style: LineStyleDoc::default() })
+        }
+        FeatureKind::Areas => LayerDoc::Area(AreaDoc { id, source, must_see, style: AreaStyleDoc::default() }),
+        FeatureKind::Points => LayerDoc::Point(PointLayerDoc { id, source, must_see, style: PointStyleDoc::default() }),
+    }
+}

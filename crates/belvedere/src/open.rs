@@ -1,0 +1,123 @@
+//! From a scene file, or a document made in memory, to a session.
+
+use crate::resolve::terrain::Solving;
+use crate::resolve::{self, LayerRequest, validate, view};
+use crate::scene_file::paths::Roots;
+use crate::scene_file::{
+    self, ConstructorKind, Document, EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc,
+};
+use crate::session::Description;
+use crate::{BelvedereError, Needs, OpenOptions, Session};
+use belvedere_disocclusion::TerrainMemory;
+use belvedere_io::crs::utm_epsg;
+use belvedere_scene::{Crs, Scene};
+use std::path::Path;
+
+impl Session {
+    /// Opens a scene file.
+    ///
+    /// # Errors
+    /// Every [`BelvedereError`]; mistakes in the file come with their line.
+    pub fn open(path: &Path, options: &OpenOptions) -> Result<Self, BelvedereError> {
+        Self::from_document(scene_file::read(path)?, options)
+    }
+
+    /// Opens a scene from its text (TOML, or JSON if it starts with `{`); `path` says where its files are.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn from_text(path: &Path, text: &str, options: &OpenOptions) -> Result<Self, BelvedereError> {
+        Self::from_document(scene_file::parse(path, text)?, options)
+    }
+
+    /// Opens a document that was read already, or made in memory; the files that the latter names are looked for in the current
+    /// folder.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn from_document(mut source: SourceDocument, options: &OpenOptions) -> Result<Self, BelvedereError> {
+        let document = &mut source.document;
+        let mut allowed = options.allow_roots.clone();
+        document.camera.image = options.image.unwrap_or(document.camera.image);
+        if let Some(palette) = &options.palette {
+            let palette = palette.located(&mut allowed)?;
+            for layer in &mut document.layer {
+                if let LayerDoc::Terrain(terrain) = layer {
+                    terrain.style.palette = palette.clone();
+                }
+            }
+        }
+        validate::document(&source)?;
+        refuse_constructor(&source)?;
+        let scene_dir = source.path().and_then(Path::parent).map(Path::to_owned).unwrap_or_default();
+        let roots = Roots { scene_dir, allowed };
+        let document = &source.document;
+        let request = LayerRequest {
+            needs: needs(document, options),
+            fallback_crs: crs_of_eye(document),
+            ..LayerRequest::new(&source.origin, &document.layer, &document.crs, &roots)
+        };
+        let loaded = resolve::load(request, options)?;
+        let scene =
+            Scene { title: document.title.clone(), crs: loaded.crs, unit: document.unit.into(), layers: loaded.layers };
+        resolve::fill_surfaces(&mut source.document.layer, &scene);
+        let mut memory = TerrainMemory::default();
+        let mut solving = Solving { memory: &mut memory, time_step_s: None, progress: &options.progress };
+        let resolved = view::resolve(&source, &roots, &scene, (!options.unsolved).then_some(&mut solving))?;
+        let file = source.path().map(Path::to_owned);
+        Ok(Self {
+            light: resolved.light,
+            overlay: source.document.overlay.clone().unwrap_or_default(),
+            terrain: resolved.terrain,
+            warnings: loaded.warnings.into_iter().chain(resolved.warnings).collect(),
+            inputs: file.into_iter().chain(loaded.inputs).chain(resolved.inputs).collect(),
+            description: Some(Description { source, resolved: resolved.document, roots }),
+            ..Self::from_parts(scene, resolved.view)
+        })
+    }
+}
+
+/// A picture without what the scene asks for would mislead.
+fn refuse_constructor(source: &SourceDocument) -> Result<(), BelvedereError> {
+    match &source.document.constructor {
+        Some(doc) if doc.kind != ConstructorKind::Manual => Err(source.error(
+            &["constructor", "kind"],
+            "this version has no constructors; give the stages themselves and remove [constructor], or set kind = \"manual\"",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// What has to be read for what is wanted.
+fn needs(document: &Document, options: &OpenOptions) -> Needs {
+    match options.needs {
+        _ if document.solves_terrain() && !options.unsolved => Needs::Everything,
+        Needs::View if ground_is_needed(document) => Needs::Ground,
+        needs => needs,
+    }
+}
+
+/// Whether the view cannot be resolved without the terrain.
+fn ground_is_needed(doc: &Document) -> bool {
+    let points = [Some(&doc.camera.eye), doc.camera.look_at.as_ref()];
+    let stands = |p: &PointDoc| matches!(p, PointDoc::Map(m) if m.above_ground_m.is_some());
+    let geographic = |p: &PointDoc| matches!(p, PointDoc::Map(m) if m.lon.is_some());
+    let spline_floats = doc.stage.iter().any(|s| match s {
+        StageDoc::SplineBend(spline) => spline.plane.as_ref().is_none_or(|p| p.height_m.is_none()),
+        StageDoc::TerrainDisocclusion(_) => true,
+        StageDoc::CurvedRays(_) => false,
+    });
+    let needs_crs = points.into_iter().flatten().any(geographic)
+        || doc.earth == EarthDoc::Curved
+        || doc.light.as_ref().is_some_and(|l| l.time.is_some());
+    let automatic = doc.crs.trim().eq_ignore_ascii_case("auto");
+    points.into_iter().flatten().any(stands) || spline_floats || (automatic && needs_crs)
+}
+
+/// The UTM zone of an eye given by longitude and latitude: what `auto` means without terrain.
+fn crs_of_eye(doc: &Document) -> Option<Crs> {
+    match doc.camera.eye {
+        PointDoc::Map(MapPointDoc { lon: Some(lon), lat: Some(lat), .. }) => utm_epsg(lon, lat).map(Crs::Epsg),
+        _ => None,
+    }
+}

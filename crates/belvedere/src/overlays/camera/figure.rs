@@ -1,0 +1,36 @@
+//! The picture of the camera, put together.
+
+use super::subject::{CameraFigure, CameraPicture, DARK, Subject};
+use super::{position, rays, spline, turns};
+use crate::{BelvedereError, Session};
+use belvedere_core::Stage;
+use belvedere_cpu::Tracer;
+use belvedere_scene::Overlay;
+
+/// Draws the camera of a session.
+///
+/// # Errors
+/// [`BelvedereError::NoRayEnd`], [`BelvedereError::Camera`] if eye and target of the figure are no camera.
+pub(crate) fn figure(session: &Session, picture: CameraPicture) -> Result<CameraFigure, BelvedereError> {
+    let view = session.view();
+    let reach = session.ray_end(None)?;
+    let tracer = Tracer::new(session.scene(), view);
+    let hits = rays::hits(view, &tracer);
+    let far = if hits.is_empty() { reach } else { hits.iter().fold(0.0f64, |m, h| m.max(h.depth)).min(reach) * 1.02 };
+    let bounds = session.scene().bounds();
+    let extent = if bounds.is_empty() { far } else { (bounds.max - bounds.min).truncate().max_element() };
+    let subject = Subject { view, tracer, far, extent };
+    let mut overlay = Overlay::default();
+    let mut legend = vec![(DARK, "eye and image".to_owned())];
+    subject.eye(&mut overlay);
+    rays::draw(&subject, &mut overlay, &mut legend);
+    for stage in view.stages() {
+        match stage {
+            Stage::SplineBend(bend) => spline::draw(&subject, bend, &mut overlay, &mut legend),
+            Stage::CurvedRays(rays) => turns::draw(&subject, rays, &mut overlay, &mut legend),
+            Stage::EarthCurvature(_) | Stage::TerrainDisocclusion(_) => {}
+        }
+    }
+    let view = position::view(session, picture, &overlay)?;
+    Ok(CameraFigure { view, overlay, legend })
+}

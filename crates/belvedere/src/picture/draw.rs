@@ -1,0 +1,149 @@
+//! From a session to its picture: layers, marks over them, the straight picture beside the bent one.
+
+use super::displacement::{self, DisplacementReport};
+use super::options::{AuxBuffer, PictureOptions};
+use super::sidecar::{OverlayRecord, Picture, Sidecar, TerrainRecord};
+use crate::overlays::{badge, camera, ghost, grid, heat, thin};
+use crate::record::{self, InputFile, ViewRecord};
+use crate::scene_file::SwitchOrLength;
+use crate::{BelvedereError, CameraPicture, Session};
+use belvedere_core::View;
+use belvedere_cpu::canvas::Canvas;
+use belvedere_scene::{Aux, Frame, Progress, RenderJob, RenderOptions};
+use std::time::Instant;
+
+impl Session {
+    /// Draws the session's view, or its camera.
+    ///
+    /// # Errors
+    /// [`BelvedereError::UnderGround`], [`BelvedereError::Render`], [`BelvedereError::Io`] if an input has gone,
+    /// [`BelvedereError::Cancelled`].
+    pub fn render(&self, options: &PictureOptions) -> Result<Picture, BelvedereError> {
+        draw(self, options, record::inputs(self.inputs())?, &options.progress)
+    }
+}
+
+/// As [`Session::render`], with the record of the inputs at hand.
+pub(crate) fn draw(
+    session: &Session,
+    request: &PictureOptions,
+    inputs: Vec<InputFile>,
+    progress: &Progress,
+) -> Result<Picture, BelvedereError> {
+    session.check_drawable()?;
+    let started = Instant::now();
+    let drawn = match request.camera {
+        Some(picture) => draw_camera(session, request, picture, progress)?,
+        None => draw_view(session, request, progress)?,
+    };
+    let Drawn { view, frame, straight, overlay } = drawn;
+    let render_ms = started.elapsed().as_secs_f64() * 1e3;
+    let displacement = view.is_bent().then(|| displacement::measure(&view, &frame));
+    let sidecar = Sidecar {
+        program: format!("belvedere {}", crate::VERSION),
+        renderer: request.renderer.of(session).name(),
+        note: displacement.map(|d| note(&view, &d)),
+        stages: view.stages().iter().map(|s| s.name()).collect(),
+        overlay,
+        displacement,
+        terrain: session.scene().terrain().map(TerrainRecord::of),
+        disocclusion: session.terrain_report().filter(|_| !request.straight).cloned(),
+        view: ViewRecord::of(&view),
+        scene: session.resolved().cloned(),
+        title: session.scene().title.clone(),
+        inputs,
+        warnings: session.warnings().to_vec(),
+        stats: frame.stats.clone(),
+        render_ms,
+    };
+    let (aux, aux_format, crs) = (request.aux.clone(), request.aux_format, session.scene().crs);
+    Ok(Picture { frame, straight, sidecar, aux, aux_format, view, crs })
+}
+
+/// Pictures with everything over them.
+struct Drawn {
+    view: View,
+    frame: Frame,
+    straight: Option<Frame>,
+    overlay: OverlayRecord,
+}
+
+fn draw_view(session: &Session, request: &PictureOptions, progress: &Progress) -> Result<Drawn, BelvedereError> {
+    let scene = session.scene();
+    let view = if request.straight { session.view().straightened() } else { session.view().clone() };
+    let wanted = &session.overlay;
+    let (heatmap, ghost) = (request.heatmap || wanted.heatmap, (request.ghost || wanted.ghost) && view.is_bent());
+    let grid = request.grid.or(match wanted.grid {
+        Some(SwitchOrLength::Length(spacing)) => Some(Some(spacing)),
+        Some(SwitchOrLength::Switch(true)) => Some(None),
+        Some(SwitchOrLength::Switch(false)) | None => None,
+    });
+    let grid_spacing = grid.and_then(|spacing| grid::spacing(scene, spacing));
+    let world = request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
+    let exact = !request.aux.is_empty();
+    let mut options = RenderOptions { aux: Aux { world, exact }, ..request.quality.clone() };
+    options.overlay.under.extend(grid_spacing.map(|spacing| grid::lines(scene, spacing)).into_iter().flatten());
+    let draw = |view: &View| {
+        let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
+        request.renderer.of(session).render(&job)
+    };
+    let mut frame = draw(&view)?;
+    if let Some(covered) =
+        session.terrain_report().map(|r| &r.covered[..]).filter(|c| !c.is_empty() && !request.straight)
+        && let Some(cut) = thin::cut(scene, &view, covered)?
+    {
+        let job = RenderJob { scene: &cut, view: &view, light: session.light(), options: &options, progress };
+        let behind = request.renderer.of(session).render(&job)?;
+        thin::draw(&mut frame, &behind, scene, &view, covered);
+    }
+    let straight = if request.compare || ghost { Some(draw(&view.straightened())?) } else { None };
+    let mut heatmap_max = None;
+    if heatmap {
+        // Names and lines are read on the colours, not through them.
+        let aux = Aux { world: true, exact: false };
+        let options = RenderOptions { marks: false, aux, ..request.quality.clone() };
+        let job = RenderJob { scene, view: &view, light: session.light(), options: &options, progress };
+        let bare = request.renderer.of(session).render(&job)?;
+        heatmap_max = Some(heat::paint(&mut frame, &bare, &view));
+    }
+    if let Some(straight) = straight.as_ref().filter(|_| ghost) {
+        ghost::draw(&mut frame, straight, scene);
+    }
+    let mark = view.is_bent() && wanted.mark && !request.no_mark && badge::fits(frame.width, frame.height);
+    let mut canvas = Canvas::new(&mut frame.color, frame.width);
+    if let Some(most) = heatmap_max {
+        heat::legend(&mut canvas, most);
+    }
+    if mark {
+        badge::draw(&mut canvas);
+    }
+    let overlay = OverlayRecord { mark, grid: grid_spacing, heatmap_max, ghost, camera: None };
+    Ok(Drawn { view, frame, straight: straight.filter(|_| request.compare), overlay })
+}
+
+fn draw_camera(
+    session: &Session,
+    request: &PictureOptions,
+    picture: CameraPicture,
+    progress: &Progress,
+) -> Result<Drawn, BelvedereError> {
+    let figure = camera::figure(session, picture)?;
+    let options = RenderOptions { overlay: figure.overlay.clone(), ..request.quality.clone() };
+    let (scene, view, light) = (session.scene(), &figure.view, session.light());
+    let job = RenderJob { scene, view, light, options: &options, progress };
+    let mut frame = request.renderer.of(session).render(&job)?;
+    let title = if scene.title.is_empty() { "The camera" } else { &scene.title };
+    camera::draw_legend(&mut Canvas::new(&mut frame.color, frame.width), &figure, title);
+    let overlay = OverlayRecord { camera: Some(picture.name()), ..OverlayRecord::default() };
+    Ok(Drawn { view: figure.view, frame, straight: None, overlay })
+}
+
+fn note(view: &View, d: &DisplacementReport) -> String {
+    let names: Vec<&str> = view.stages().iter().map(|s| s.name()).filter(|n| *n != "earth").collect();
+    format!(
+        "bent view ({}): what is shown is displaced by up to {:.1} scene units ({:.0} px); not to scale, not for navigation",
+        names.join(", "),
+        d.max_m,
+        d.max_px
+    )
+}

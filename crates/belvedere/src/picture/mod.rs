@@ -1,0 +1,14 @@
+//! Pictures with a record of where they come from.
+
+mod buffers;
+mod displacement;
+mod draw;
+mod options;
+mod sidecar;
+mod write;
+
+pub use displacement::DisplacementReport;
+pub(crate) use draw::draw;
+pub use options::{AuxBuffer, AuxFormat, PictureOptions, RendererChoice};
+pub use sidecar::{OverlayRecord, Picture, Sidecar, TerrainRecord};
+pub use write::{delta_path, outputs, side_by_side};

@@ -1,0 +1,101 @@
+//! A finished picture and the record beside it.
+
+use super::displacement::DisplacementReport;
+use super::options::{AuxBuffer, AuxFormat};
+use crate::record::{InputFile, ViewRecord};
+use crate::scene_file::Document;
+use belvedere_core::View;
+use belvedere_disocclusion::TerrainReport;
+use belvedere_scene::{Crs, Frame, FrameStats, Heightfield, NodeState};
+use serde::Serialize;
+
+/// What of the ground is measured, and what is not.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TerrainRecord {
+    /// Nodes of the grid.
+    pub nodes: usize,
+    /// Nodes without a height: holes, and the rim outside the data.
+    pub void_nodes: usize,
+    /// Nodes whose height was made up to close a hole.
+    pub filled_nodes: usize,
+    /// Share of made-up nodes, 0..=1.
+    pub filled_share: f64,
+}
+
+impl TerrainRecord {
+    pub(super) fn of(terrain: &Heightfield) -> Self {
+        let count = |state| terrain.states().iter().filter(|s| **s == state).count();
+        let filled_share = terrain.share_of(NodeState::Filled);
+        let [void_nodes, filled_nodes] = [NodeState::Void, NodeState::Filled].map(count);
+        Self { nodes: terrain.states().len(), void_nodes, filled_nodes, filled_share }
+    }
+}
+
+/// What was drawn over the layers of a picture.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct OverlayRecord {
+    /// Whether the words "bent view" stand in the picture.
+    pub mark: bool,
+    /// Spacing of the grid, scene units.
+    pub grid: Option<f64>,
+    /// Displacement at the upper end of the colours, scene units.
+    pub heatmap_max: Option<f64>,
+    /// Whether the straight picture shows through.
+    pub ghost: bool,
+    /// If this is a picture of the camera: from where.
+    pub camera: Option<&'static str>,
+}
+
+/// The record beside a picture.
+#[derive(Debug, Clone, Serialize)]
+pub struct Sidecar {
+    /// Program and version.
+    pub program: String,
+    /// Renderer that drew it.
+    pub renderer: &'static str,
+    /// What is special about the picture, if it is bent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+    /// Stages in order of application.
+    pub stages: Vec<&'static str>,
+    /// What was drawn over the layers.
+    pub overlay: OverlayRecord,
+    /// How far things were moved; `None` for a straight picture.
+    pub displacement: Option<DisplacementReport>,
+    /// What of the ground is made up; `None` without terrain.
+    pub terrain: Option<TerrainRecord>,
+    /// What the solver of terrain disocclusion came to; `None` if none ran.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub disocclusion: Option<TerrainReport>,
+    /// The camera in numbers.
+    pub view: ViewRecord,
+    /// The resolved scene: opens to the same view; `None` for one that was made in memory.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scene: Option<Document>,
+    /// Title of the scene.
+    #[serde(skip)]
+    pub title: String,
+    /// Files that were read.
+    pub inputs: Vec<InputFile>,
+    /// What was odd.
+    pub warnings: Vec<String>,
+    /// Counts of the renderer.
+    pub stats: FrameStats,
+    /// Wall time of drawing, milliseconds.
+    pub render_ms: f64,
+}
+
+/// A finished picture and its record.
+#[derive(Debug, Clone)]
+pub struct Picture {
+    /// The picture (the bent one of a pair).
+    pub frame: Frame,
+    /// The straight one of a pair.
+    pub straight: Option<Frame>,
+    /// The record.
+    pub sidecar: Sidecar,
+    pub(crate) aux: Vec<AuxBuffer>,
+    pub(crate) aux_format: AuxFormat,
+    pub(crate) view: View,
+    pub(crate) crs: Crs,
+}

@@ -1,0 +1,196 @@
+//! Pictures, records and buffers as files.
+
+use super::buffers;
+use super::options::{AuxBuffer, AuxFormat, PictureOptions};
+use super::sidecar::Picture;
+use crate::BelvedereError;
+use crate::output;
+use crate::overlays::badge;
+use crate::record;
+use crate::scene_file::StageDoc;
+use belvedere_core::Stage;
+use belvedere_io::png::{self, Channels};
+use belvedere_scene::Frame;
+use std::path::{Path, PathBuf};
+
+/// Width of the white gap between two pictures side by side, pixels.
+const GAP: usize = 8;
+
+/// File of the solved displacement of the ground, written beside a picture whose scene asks for it by an intent.
+pub fn delta_path(out: &Path) -> PathBuf {
+    out.with_extension("delta.tif")
+}
+
+/// Files that [`Picture::write`] makes for `out`.
+///
+/// * `solves`: whether the scene asks for terrain disocclusion by an intent, see [`Document::solves_terrain`](crate::scene_file::Document::solves_terrain).
+pub fn outputs(out: &Path, request: &PictureOptions, solves: bool) -> Vec<PathBuf> {
+    let sidecar = sibling(out, ".json");
+    let aux: Vec<PathBuf> = match request.aux_format {
+        AuxFormat::Npy => request.aux.iter().map(|a| aux_path(out, *a)).collect(),
+        AuxFormat::Exr => request.aux.first().map(|_| out.with_extension("exr")).into_iter().collect(),
+    };
+    let delta = (solves && !request.straight && request.camera.is_none()).then(|| delta_path(out));
+    [out.to_owned(), sidecar].into_iter().chain(delta).chain(aux).collect()
+}
+
+impl Picture {
+    /// Writes the picture, its record and its buffers, each in one piece.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`].
+    pub fn write(&self, out: &Path, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
+        let mut written = vec![out.to_owned(), sibling(out, ".json")];
+        let solved = self.with_delta(out, overwrite, &mut written)?;
+        let this = solved.as_ref().unwrap_or(self);
+        this.write_png(out, overwrite)?;
+        output::write_text(&written[1], &output::pretty(&this.sidecar)?, overwrite)?;
+        if self.aux_format == AuxFormat::Exr && !self.aux.is_empty() {
+            let path = out.with_extension("exr");
+            buffers::write(&self.frame, &self.view, &self.aux, &path, overwrite)?;
+            written.push(path);
+            return Ok(written);
+        }
+        for aux in &self.aux {
+            let path = aux_path(out, *aux);
+            self.write_aux(*aux, &path, overwrite)?;
+            written.push(path);
+        }
+        Ok(written)
+    }
+
+    /// Writes the solved displacement of the ground beside the picture; the record then names it in place of the intent.
+    fn with_delta(
+        &self,
+        out: &Path,
+        overwrite: bool,
+        written: &mut Vec<PathBuf>,
+    ) -> Result<Option<Self>, BelvedereError> {
+        let solved = self.view.stages().iter().find_map(|s| match s {
+            Stage::TerrainDisocclusion(terrain) => Some(terrain),
+            _ => None,
+        });
+        let (Some(solved), Some(_)) = (solved, &self.sidecar.disocclusion) else { return Ok(None) };
+        let path = delta_path(out);
+        crate::resolve::delta::write(&path, solved.grid(), self.crs, overwrite)?;
+        let mut this = self.clone();
+        for stage in this.sidecar.scene.iter_mut().flat_map(|scene| &mut scene.stage) {
+            if let StageDoc::TerrainDisocclusion(doc) = stage {
+                doc.delta = path.file_name().and_then(|n| n.to_str()).map(str::to_owned);
+                doc.delta_sha256 = Some(record::sha256(&path)?);
+            }
+        }
+        written.push(path);
+        Ok(Some(this))
+    }
+
+    /// Writes the picture alone. Its bytes depend on scene, request and inputs only, not on threads or time.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`].
+    pub fn write_png(&self, out: &Path, overwrite: bool) -> Result<(), BelvedereError> {
+        let (width, height, pixels) = self.pixels();
+        let text = self.text()?;
+        let text: Vec<(&str, &str)> = text.iter().map(|(k, v)| (*k, v.as_str())).collect();
+        Ok(png::write(out, overwrite, width, height, Channels::Rgb, pixels.as_flattened(), &text)?)
+    }
+
+    /// Width, height and colours; a pair stands side by side.
+    pub fn pixels(&self) -> (usize, usize, Vec<[u8; 3]>) {
+        let Some(straight) = &self.straight else {
+            return (self.frame.width, self.frame.height, self.frame.color.clone());
+        };
+        let titles = ["straight".to_owned(), self.bent_title()];
+        let right = straight.width + GAP;
+        badge::titled(side_by_side(straight, &self.frame), &[(&titles[0], 0), (&titles[1], right)])
+    }
+
+    fn bent_title(&self) -> String {
+        match self.sidecar.displacement {
+            Some(d) => format!("bent: what is seen moved by up to {:.0} m, {:.0} px", d.max_m, d.max_px),
+            None => "the same camera".into(),
+        }
+    }
+
+    /// Keywords and texts that go into the picture: the record without what differs from run to run.
+    fn text(&self) -> Result<Vec<(&'static str, String)>, BelvedereError> {
+        let mut text = vec![("Software", self.sidecar.program.clone())];
+        if !self.sidecar.title.is_empty() {
+            text.push(("Title", self.sidecar.title.clone()));
+        }
+        if let Some(note) = &self.sidecar.note {
+            text.push(("Comment", note.clone()));
+        }
+        if let Some(scene) = &self.sidecar.scene {
+            text.push(("belvedere:scene", output::json(scene)?));
+        }
+        text.push(("belvedere:inputs", output::json(&self.sidecar.inputs)?));
+        text.push(("belvedere:displacement", output::json(&self.sidecar.displacement)?));
+        Ok(text)
+    }
+
+    fn write_aux(&self, aux: AuxBuffer, path: &Path, overwrite: bool) -> Result<(), BelvedereError> {
+        let (w, h) = (self.frame.width, self.frame.height);
+        let world = self.frame.world.as_deref().unwrap_or_default();
+        match aux {
+            AuxBuffer::Depth => npy(path, overwrite, "<f4", &[h, w], self.frame.depth.iter().map(|v| v.to_le_bytes())),
+            AuxBuffer::Id => npy(path, overwrite, "<u4", &[h, w], self.frame.id.iter().map(|v| v.to_le_bytes())),
+            AuxBuffer::World => {
+                npy(path, overwrite, "<f8", &[h, w, 3], world.iter().flatten().map(|v| v.to_le_bytes()))
+            }
+            AuxBuffer::Displacement => {
+                let moved = world.iter().flat_map(|p| buffers::displacement(&self.view, *p));
+                npy(path, overwrite, "<f8", &[h, w, 3], moved.map(|v| v.to_le_bytes()))
+            }
+        }
+    }
+}
+
+/// `left` beside `right`, of the same height.
+pub fn side_by_side(left: &Frame, right: &Frame) -> (usize, usize, Vec<[u8; 3]>) {
+    let width = left.width + GAP + right.width;
+    let height = left.height.min(right.height);
+    let mut pixels = Vec::with_capacity(width * height);
+    for row in 0..height {
+        pixels.extend_from_slice(&left.color[row * left.width..(row + 1) * left.width]);
+        pixels.extend(std::iter::repeat_n([255; 3], GAP));
+        pixels.extend_from_slice(&right.color[row * right.width..(row + 1) * right.width]);
+    }
+    (width, height, pixels)
+}
+
+fn sibling(out: &Path, ending: &str) -> PathBuf {
+    let mut name = out.as_os_str().to_owned();
+    name.push(ending);
+    PathBuf::from(name)
+}
+
+fn aux_path(out: &Path, aux: AuxBuffer) -> PathBuf {
+    out.with_extension(format!("{}.npy", aux.name()))
+}
+
+/// Writes an array in NPY format 1.0, little endian, row-major.
+fn npy<const B: usize>(
+    path: &Path,
+    overwrite: bool,
+    kind: &str,
+    shape: &[usize],
+    values: impl Iterator<Item = [u8; B]>,
+) -> Result<(), BelvedereError> {
+    let shape: Vec<String> = shape.iter().map(usize::to_string).collect();
+    let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}), }}", shape.join(", "));
+    // Data starts at a multiple of 64 bytes: 10 bytes before the header, its newline at the end.
+    while (10 + header.len() + 1) % 64 != 0 {
+        header.push(' ');
+    }
+    header.push('\n');
+    Ok(belvedere_io::atomic::write_atomic(path, overwrite, |out| {
+        out.write_all(b"\x93NUMPY\x01\x00")?;
+        out.write_all(&(header.len() as u16).to_le_bytes())?;
+        out.write_all(header.as_bytes())?;
+        for value in values {
+            out.write_all(&value)?;
+        }
+        Ok(())
+    })?)
+}

@@ -1,0 +1,103 @@
+//! Positions on the map: the scene's coordinate system, its terrain, and the shape of the earth.
+
+use crate::scene_file::EarthDoc;
+use belvedere_core::{DVec2, DVec3, EarthCurvature, Stage};
+use belvedere_io::crs::{CoordinateSystem, Transform, gaussian_radius_m};
+use belvedere_scene::{Crs, Heightfield, Scene};
+
+/// Mean radius of the earth for scenes without georeference, metres.
+const MEAN_EARTH_RADIUS_M: f64 = 6_371_008.8;
+
+/// The code of `EPSG:n`.
+pub(super) fn epsg(text: &str) -> Option<u32> {
+    let text = text.trim();
+    text.get(..5).filter(|p| p.eq_ignore_ascii_case("epsg:")).and_then(|_| text[5..].trim().parse().ok())
+}
+
+/// Radius of the earth at the middle of a scene, metres.
+pub(crate) fn earth_radius(scene: &Scene) -> f64 {
+    let middle = scene.bounds().center().truncate();
+    Ground::of(scene).lon_lat(middle).map_or(MEAN_EARTH_RADIUS_M, |lon_lat| gaussian_radius_m(lon_lat.y))
+}
+
+/// The stage of an earth shape seen from `eye`, and what was odd about it.
+pub(crate) fn earth(shape: EarthDoc, ground: &Ground<'_>, eye: DVec3) -> (Option<Stage>, Option<String>) {
+    if shape == EarthDoc::Flat {
+        return (None, None);
+    }
+    let radius = ground.lon_lat(eye.truncate()).map(|lon_lat| gaussian_radius_m(lon_lat.y));
+    let warning = radius.is_none().then(|| {
+        format!("earth = \"curved\" in a scene without georeference: the mean radius {MEAN_EARTH_RADIUS_M} m is used")
+    });
+    let radius = radius.unwrap_or(MEAN_EARTH_RADIUS_M);
+    let stage = EarthCurvature { eye, radius, refraction: EarthCurvature::REFRACTION };
+    (Some(Stage::EarthCurvature(stage)), warning)
+}
+
+/// The scene's coordinate system and its undeformed terrain.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ground<'a> {
+    /// Coordinate system of the scene.
+    pub(crate) crs: Crs,
+    /// The first terrain.
+    pub(crate) terrain: Option<&'a Heightfield>,
+}
+
+impl<'a> Ground<'a> {
+    /// That of a scene.
+    pub(crate) fn of(scene: &'a Scene) -> Self {
+        Self { crs: scene.crs, terrain: scene.terrain() }
+    }
+
+    /// Scene position of a WGS84 position.
+    pub(crate) fn position_of(&self, lon: f64, lat: f64) -> Result<DVec2, String> {
+        if !((-180.0..=360.0).contains(&lon) && (-90.0..=90.0).contains(&lat)) {
+            return Err(format!(
+                "lon {lon}, lat {lat} is not on the earth; lon in -180..=360 and lat in -90..=90 are needed"
+            ));
+        }
+        self.wgs84()?
+            .forward_one(DVec2::new(lon, lat))
+            .ok_or_else(|| format!("lon {lon}, lat {lat} lies outside the domain of {}; choose another crs", self.crs))
+    }
+
+    /// Longitude and latitude (WGS84 degrees) of a scene position; `None` without georeference or outside its domain.
+    pub(crate) fn lon_lat(&self, xy: DVec2) -> Option<DVec2> {
+        self.wgs84().ok()?.inverse_one(xy)
+    }
+
+    fn wgs84(&self) -> Result<Transform, String> {
+        if self.crs == Crs::Local {
+            return Err(
+                "lon and lat need a georeferenced scene, this one is local; give [x, y, z], or set crs = \"EPSG:n\""
+                    .into(),
+            );
+        }
+        let to = CoordinateSystem::from_scene(self.crs).map_err(|e| e.to_string())?;
+        let from = CoordinateSystem::wgs84().map_err(|e| e.to_string())?;
+        Transform::new(&from, &to).map_err(|e| e.to_string())
+    }
+
+    /// Bilinear height of the undeformed terrain.
+    pub(crate) fn height_at(&self, xy: DVec2) -> Result<f64, String> {
+        let Some(terrain) = self.terrain else {
+            return Err("above_ground_m needs a terrain layer; add one, or give the height".into());
+        };
+        if let Some(height) = terrain.height_at(xy) {
+            return Ok(height);
+        }
+        let b = terrain.bounds();
+        let inside = (b.min.x..=b.max.x).contains(&xy.x) && (b.min.y..=b.max.y).contains(&xy.y);
+        Err(if inside {
+            format!(
+                "the terrain has a hole at ({:.1}, {:.1}), so there is no ground to stand on; give the height, or set fill_voids = true",
+                xy.x, xy.y
+            )
+        } else {
+            format!(
+                "({:.1}, {:.1}) lies outside the terrain (x {:.1}..{:.1}, y {:.1}..{:.1}), so there is no ground to stand on; move it inside, or give the height",
+                xy.x, xy.y, b.min.x, b.max.x, b.min.y, b.max.y
+            )
+        })
+    }
+}

@@ -1,0 +1,82 @@
+//! What reading layers has in common: files, built-in scenes, warnings, errors with their line.
+
+use super::builtin;
+use super::validate::{color, optional_color};
+use crate::scene_file::paths::Roots;
+use crate::scene_file::{LayerDoc, Origin, Paths};
+use crate::{BelvedereError, OpenOptions};
+use belvedere_io::Loaded;
+use belvedere_io::terrain::OriginalTerrain;
+use belvedere_io::vector::Vectors;
+use belvedere_scene::{Color, LayerKind};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// What layers are loaded with, and what is found out on the way.
+pub(super) struct Loader<'a> {
+    pub(super) origin: &'a Origin,
+    pub(super) layers: &'a [LayerDoc],
+    pub(super) roots: &'a Roots,
+    pub(super) options: &'a OpenOptions,
+    pub(super) builtins: builtin::Builtins,
+    pub(super) inputs: Vec<PathBuf>,
+    pub(super) warnings: Vec<String>,
+    /// Vector files that were read already.
+    pub(super) vectors: BTreeMap<PathBuf, Loaded<Vectors>>,
+    /// Whether the samples of the terrain's file are kept as they are there, and where.
+    pub(super) keep_original: bool,
+    pub(super) original: Option<OriginalTerrain>,
+}
+
+impl Loader<'_> {
+    /// An error at a key of layer `index`.
+    pub(super) fn fail(&self, index: usize, key: &str, reason: impl std::fmt::Display) -> BelvedereError {
+        self.origin.error(&["layer", &index.to_string(), key], format!("layer \"{}\": {reason}", self.id(index)))
+    }
+
+    /// The path of a file that a key names.
+    pub(super) fn file(&self, index: usize, key: &str, name: &str) -> Result<PathBuf, BelvedereError> {
+        let about = format!("layer \"{}\": ", self.id(index));
+        self.roots.resolve(name).map_err(|e| self.origin.refusal(&["layer", &index.to_string(), key], &about, e))
+    }
+
+    pub(super) fn id(&self, index: usize) -> &str {
+        self.layers.get(index).map_or("", LayerDoc::id)
+    }
+
+    /// What `pick` takes from a layer of a built-in scene.
+    pub(super) fn builtin<T>(
+        &mut self,
+        index: usize,
+        name: &str,
+        pick: impl Fn(&LayerKind) -> Option<T>,
+    ) -> Result<T, BelvedereError> {
+        let found = self.builtins.find(name, self.options.seed, pick);
+        found.map_err(|e| self.fail(index, "source", e))
+    }
+
+    /// The files that a key names.
+    pub(super) fn files(&mut self, index: usize, key: &str, paths: &Paths) -> Result<Vec<PathBuf>, BelvedereError> {
+        if paths.as_slice().is_empty() {
+            return Err(self.fail(index, key, format!("{key} is an empty list; name at least one file")));
+        }
+        let found: Vec<PathBuf> =
+            paths.as_slice().iter().map(|name| self.file(index, key, name)).collect::<Result<_, _>>()?;
+        self.inputs.extend(found.iter().cloned());
+        Ok(found)
+    }
+
+    /// Keeps warnings, with the layer they belong to.
+    pub(super) fn note(&mut self, index: usize, warnings: Vec<String>) {
+        let id = self.layers.get(index).map_or("", LayerDoc::id);
+        self.warnings.extend(warnings.into_iter().map(|w| format!("layer \"{id}\": {w}")));
+    }
+
+    pub(super) fn color(&self, index: usize, text: &str) -> Result<Color, BelvedereError> {
+        color("color", text).map_err(|(key, reason)| self.fail(index, key, reason))
+    }
+
+    pub(super) fn optional_color(&self, index: usize, text: &str) -> Result<Option<Color>, BelvedereError> {
+        optional_color("casing", text).map_err(|(key, reason)| self.fail(index, key, reason))
+    }
+}

@@ -1,0 +1,54 @@
+//! What depends on camera and stages: the view, the light, and the document with every rule replaced by its value.
+
+use super::ground::{Ground, earth};
+use super::terrain::Solving;
+use super::{camera, light, stages, terrain};
+use crate::BelvedereError;
+use crate::scene_file::paths::Roots;
+use crate::scene_file::{Document, SourceDocument};
+use belvedere_core::View;
+use belvedere_disocclusion::TerrainReport;
+use belvedere_scene::{Light, Scene};
+use std::path::PathBuf;
+
+/// What depends on camera and stages.
+pub(crate) struct ResolvedView {
+    /// The document with every default filled in and every rule replaced by its value.
+    pub(crate) document: Document,
+    pub(crate) view: View,
+    pub(crate) light: Light,
+    /// What the terrain solver came to, if it ran.
+    pub(crate) terrain: Option<TerrainReport>,
+    pub(crate) inputs: Vec<PathBuf>,
+    pub(crate) warnings: Vec<String>,
+}
+
+/// Resolves camera, stages and light over a scene. Without `solving` an intent of terrain disocclusion is left out.
+pub(crate) fn resolve(
+    source: &SourceDocument,
+    roots: &Roots,
+    scene: &Scene,
+    mut solving: Option<&mut Solving<'_>>,
+) -> Result<ResolvedView, BelvedereError> {
+    let (mut inputs, mut warnings) = (Vec::new(), Vec::new());
+    let ground = Ground::of(scene);
+    let shape = source.document.earth;
+    let mut camera = camera::resolve(source, &ground, stages::plane_normal(&source.document))?;
+    if let Some(solving) = solving.as_deref_mut() {
+        let before = earth(shape, &ground, camera.pinhole.eye).0.into_iter().collect();
+        terrain::adjust(source, scene, &mut camera, before, solving, &mut warnings)?;
+    }
+    let (earth, odd) = earth(shape, &ground, camera.pinhole.eye);
+    warnings.extend(odd);
+    let mut chain: Vec<_> = earth.into_iter().collect();
+    let context = stages::StageContext { source, roots, scene, ground: &ground, camera: &camera, earth: &chain };
+    let resolved = stages::resolve(&context, solving, &mut inputs, &mut warnings)?;
+    chain.extend(resolved.stages);
+    let view = View::new(resolved.pinhole, chain).map_err(|e| source.error(&["stage"], e))?;
+    let light = light::resolve(source, &ground, view.pinhole().eye, &mut warnings)?;
+    let mut document = source.document.clone();
+    document.crs = scene.crs.to_string();
+    document.camera = camera.document;
+    document.stage = resolved.documents;
+    Ok(ResolvedView { document, view, light, terrain: resolved.terrain, inputs, warnings })
+}

@@ -1,0 +1,5 @@
+//! The library as a program meets it: its examples, and the names of everything it hands out.
+
+mod examples;
+mod names;
+mod sessions;
