@@ -226,7 +226,7 @@ impl Transform {
     /// From one system to another.
     ///
     /// # Errors
-    /// None today: what cannot be transformed is refused when the system is made. Kept for grids to come.
+    /// None today: systems that cannot be transformed are refused earlier. Transforms by grid files would need it.
     pub fn new(from: &CoordinateSystem, to: &CoordinateSystem) -> Result<Self, CrsError> {
         Ok(Self { from: from.clone(), to: to.clone(), identity: from == to })
     }

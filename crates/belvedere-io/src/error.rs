@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// A value and the oddities met on the way to it.
+/// A value and the warnings of reading it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loaded<T> {
     /// The value.

@@ -15,7 +15,7 @@ pub(super) struct Aligned {
 /// Both presets' sections, split so that there are equally many and like stands beside like.
 ///
 /// The cheapest edit is taken: the same id 0, another id 1, a section without partner 0.5 + its length. Where a section has no
-/// partner the other preset's neighbouring section is split in two of the same id, with a border of no width: nothing is seen of it.
+/// partner the other preset's neighbouring section is split in two of the same id, with a border of no width, which changes no weight.
 pub(super) fn align(p: &Preset, q: &Preset) -> [Aligned; 2] {
     let pairs = pair(p, q);
     let indices = |side: fn(&Pair) -> Option<usize>| -> Vec<usize> {

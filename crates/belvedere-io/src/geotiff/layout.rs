@@ -53,7 +53,7 @@ impl Compression {
         matches!(self, Self::Lzw | Self::Deflate | Self::Zstd)
     }
 
-    /// More decoded bytes than this per stored byte cannot come from an honest encoder.
+    /// Decoded bytes per stored byte at most; a file that claims more is damaged or hostile.
     fn max_ratio(self) -> u64 {
         match self {
             Self::None => 1,

@@ -37,7 +37,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
             return Err(IoError::format(path, "a face names a vertex that there is not; it is damaged"));
         }
         out.triangles.extend(mesh.indices.chunks_exact(3).map(|t| [t[0] + first, t[1] + first, t[2] + first]));
-        // One normal per corner in the file; where corners of a vertex differ, none is kept: the edge is meant to be seen.
+        // One normal per corner in the file; where the corners of a vertex differ, the file means a sharp edge and none is kept.
         normals.resize(out.positions.len(), DVec3::ZERO);
         smooth |= corner_normals(&mesh, &mut normals[first as usize..]);
         let painted_here = mesh.vertex_color.len() == 3 * count;

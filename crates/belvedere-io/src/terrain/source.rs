@@ -319,7 +319,7 @@ fn looks_geographic(info: &RasterInfo, to_model: &Affine) -> bool {
     corners.iter().all(|p| p[0].abs() <= 360.0 && p[1].abs() <= 90.0) && step_x < 0.1 && step_y < 0.1
 }
 
-/// A frame of one value around the data may be voids that nobody declared: said, never guessed.
+/// Warns about a frame of one value around the data: it may be voids that the file does not declare, or sea, so the heights stay.
 fn warn_about_frame(path: &Path, heights: &[f32], cols: usize, rows: usize, warnings: &mut Vec<String>) {
     let border = |i: usize| {
         let (c, r) = (i % cols, i / cols);

@@ -171,7 +171,7 @@ impl CurvedRays {
     pub fn record_margins(&self, record: usize, p: DVec3) -> [f64; 2] {
         let beyond = record.checked_sub(1).and_then(|k| self.separators.get(k)).map_or(f64::INFINITY, |y| y.at(p));
         let before = self.separators.get(record).map_or(f64::INFINITY, |y| -y.at(p));
-        // NaN compares with nothing: such a point is kept by no record.
+        // comparisons with NaN are false, so a margin of NaN would not clip: such a point is outside all records
         [beyond, before].map(|d| if d.is_nan() { f64::NEG_INFINITY } else { d })
     }
 
@@ -243,7 +243,7 @@ impl CurvedRays {
         for (index, turn) in self.turns.iter().enumerate() {
             let Ok(cell) = turn.cell(p) else { continue };
             let held = match cell {
-                // The straight part before a turn is the one after the turn before, seen there.
+                // already visited as the straight part after the turn before
                 Cell::Before => index == 0,
                 Cell::Wedge => true,
                 Cell::After => self.turns.get(index + 1).is_none_or(|next| matches!(next.cell(p), Ok(Cell::Before))),
