@@ -3,6 +3,7 @@
 use super::noise::DIRECTIONS;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{BoxShape, Heightfield};
+use belvedere_sight::clip_segment;
 use rayon::prelude::*;
 
 /// Where to stand and look.
@@ -52,18 +53,7 @@ fn sees(terrain: &Heightfield, boxes: &[BoxShape], eye: DVec3, p: DVec3) -> bool
 fn crosses(b: &BoxShape, eye: DVec3, p: DVec3) -> bool {
     let half = DVec3::new(0.5 * b.size.x, 0.5 * b.size.y, 0.0);
     let (lo, hi) = (b.base - half, b.base + half + DVec3::Z * b.size.z);
-    let (mut enter, mut leave) = (0.0f64, 1.0f64);
-    for k in 0..3 {
-        let d = p[k] - eye[k];
-        if d == 0.0 {
-            if eye[k] < lo[k] || eye[k] > hi[k] {
-                return false;
-            }
-            continue;
-        }
-        let (t0, t1) = ((lo[k] - eye[k]) / d, (hi[k] - eye[k]) / d);
-        (enter, leave) = (enter.max(t0.min(t1)), leave.min(t0.max(t1)));
-    }
+    let [enter, leave] = clip_segment(eye.to_array(), (p - eye).to_array(), [lo.to_array(), hi.to_array()]);
     enter < leave
 }
 

@@ -1,7 +1,7 @@
 //! The ground in the solver's coordinates.
 
 use belvedere_core::DVec2;
-use belvedere_scene::{Heightfield, NodeState};
+use belvedere_scene::{CellTriangle, Heightfield, NodeState};
 
 /// Terrain that cannot be solved on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -106,7 +106,7 @@ impl Field {
         g.x >= 0.0 && g.y >= 0.0 && g.x <= (self.cols - 1) as f64 && g.y <= (self.rows - 1) as f64
     }
 
-    /// Height of the drawn surface (two triangles per cell, split from north-west to south-east) at grid coordinates;
+    /// Height of the drawn surface (see [`CellTriangle`]) at grid coordinates;
     /// `None` outside the grid and in triangles with a void among their nodes.
     pub fn surface_at(&self, g: DVec2) -> Option<f64> {
         if !self.contains(g) {
@@ -115,20 +115,9 @@ impl Field {
         let (col, row) = ((g.x as usize).min(self.cols - 2), (g.y as usize).min(self.rows - 2));
         let (u, v) = (g.x - col as f64, g.y - row as f64);
         let nw = row * self.cols + col;
-        let (ne, sw, se) = (nw + 1, nw + self.cols, nw + self.cols + 1);
-        let triangle = |nodes: [usize; 3], weights: [f64; 3]| {
-            let solid = nodes.iter().all(|&n| !self.void[n]);
-            solid.then(|| nodes.iter().zip(weights).map(|(&n, w)| w * self.heights[n]).sum())
-        };
-        let upper = || triangle([nw, ne, se], [1.0 - u, u - v, v]);
-        let lower = || triangle([nw, sw, se], [1.0 - v, v - u, u]);
-        if u > v {
-            upper()
-        } else if v > u {
-            lower()
-        } else {
-            upper().or_else(lower)
-        }
+        let height = |i: usize| (!self.void[i]).then(|| self.heights[i]);
+        let corners = [nw, nw + 1, nw + self.cols, nw + self.cols + 1].map(height);
+        CellTriangle::surface(corners, DVec2::new(u, v))
     }
 
     /// Scene x, y of grid coordinates.

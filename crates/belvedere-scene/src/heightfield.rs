@@ -1,5 +1,6 @@
 //! Terrain heights on a regular metric grid with holes.
 
+use crate::cell::CellTriangle;
 use belvedere_core::{Aabb, DVec2, DVec3};
 use std::ops::Index;
 
@@ -288,24 +289,16 @@ impl Heightfield {
 
     /// Height of the drawn surface inside cell (`col`, `row`) at fractions `u` (east) and `v` (south) of the cell, 0..=1.
     ///
-    /// Every cell is two triangles that share the diagonal from its north-west to its south-east node; a triangle
-    /// with a void among its nodes is a hole (`None`). Renderers and lines of sight both stand on this surface.
+    /// Every cell is two triangles, see [`CellTriangle`]; a triangle with a void among its nodes is a hole (`None`).
+    /// Renderers and lines of sight both stand on this surface.
     ///
     /// # Panics
     /// If the cell is not in the grid: `col + 1 < cols` and `row + 1 < rows` are needed.
     pub fn surface_in_cell(&self, col: usize, row: usize, u: f64, v: f64) -> Option<f64> {
         let nw = row * self.cols + col;
-        let (ne, sw, se) = (nw + 1, nw + self.cols, nw + self.cols + 1);
-        // The diagonal and the cell's border belong to both triangles that meet there.
-        let upper = || self.triangle_height([nw, ne, se], [1.0 - u, u - v, v]);
-        let lower = || self.triangle_height([nw, sw, se], [1.0 - v, v - u, u]);
-        if u > v {
-            upper()
-        } else if v > u {
-            lower()
-        } else {
-            upper().or_else(lower)
-        }
+        let height = |i: usize| (!self.is_void(i)).then(|| f64::from(self.heights[i]));
+        let corners = [nw, nw + 1, nw + self.cols, nw + self.cols + 1].map(height);
+        CellTriangle::surface(corners, DVec2::new(u, v))
     }
 
     /// Height of the drawn surface (two triangles per cell, see [`Heightfield::surface_in_cell`]) at a scene
@@ -313,11 +306,6 @@ impl Heightfield {
     pub fn surface_at(&self, xy: DVec2) -> Option<f64> {
         let ([c, r], f) = self.cell_at(xy)?;
         self.surface_in_cell(c, r, f.x, f.y)
-    }
-
-    fn triangle_height(&self, nodes: [usize; 3], weights: [f64; 3]) -> Option<f64> {
-        let solid = nodes.iter().all(|&n| !self.is_void(n));
-        solid.then(|| nodes.iter().zip(weights).map(|(&n, w)| w * f64::from(self.heights[n])).sum())
     }
 
     /// Share of nodes in `state`, 0..=1.

@@ -1,6 +1,7 @@
 //! What is looked at: terrain, lines, areas, points, boxes and meshes as plain data, never view-dependent;
 //! and the contract between pictures and whoever needs them ([`Renderer`], [`RenderJob`], [`Frame`]).
 
+pub mod cell;
 pub mod drape;
 pub mod frame;
 pub mod heightfield;
@@ -12,6 +13,7 @@ pub mod progress;
 pub mod ramp;
 pub mod scene;
 
+pub use cell::CellTriangle;
 pub use drape::{Draped, drape_polyline};
 pub use frame::{Aux, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer};
 pub use heightfield::{Heightfield, HeightfieldError, NodeState, States};

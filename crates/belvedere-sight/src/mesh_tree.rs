@@ -1,6 +1,7 @@
 //! A mesh made ready for rays and lines of sight: a tree of bounds over its triangles.
 
-use belvedere_core::DVec3;
+use crate::clip_segment;
+use belvedere_core::{Aabb, DVec3};
 use belvedere_scene::Mesh;
 use glam::Vec3A;
 use obvhs::Boundable;
@@ -55,9 +56,15 @@ impl<'a> MeshTree<'a> {
         self.mesh
     }
 
-    /// Range of the vertical displacement that the tree allows for.
-    pub fn lift(&self) -> [f64; 2] {
-        self.lift
+    /// Whether the mesh stands where it was put.
+    pub fn is_still(&self) -> bool {
+        self.lift == [0.0; 2]
+    }
+
+    /// Around the mesh, wherever it is displaced to.
+    pub fn bounds(&self) -> Aabb {
+        let b = self.mesh.bounds();
+        Aabb { min: b.min + self.lift[0] * DVec3::Z, max: b.max + self.lift[1] * DVec3::Z }
     }
 
     /// Visits the triangles whose bounds come within `reach` (scene units) of the straight segment `a b`, the nearer ones to `a` rather
@@ -135,22 +142,10 @@ impl Segment {
 
     /// Parameter at which the segment enters a box.
     fn enter(&self, bounds: &Bounds) -> Option<f64> {
-        let (lo, hi) = (bounds.min.as_dvec3() + self.grow[0], bounds.max.as_dvec3() + self.grow[1]);
-        let (mut t0, mut t1) = (0.0f64, 1.0f64);
-        for axis in 0..3 {
-            let (p, d) = (self.a[axis], self.along[axis]);
-            if d == 0.0 {
-                if !(lo[axis] <= p && p <= hi[axis]) {
-                    return None;
-                }
-                continue;
-            }
-            let (s0, s1) = ((lo[axis] - p) / d, (hi[axis] - p) / d);
-            // Rounding of the quotients must not lose a box that is only just touched.
-            t0 = t0.max(s0.min(s1) - 1e-12);
-            t1 = t1.min(s0.max(s1) + 1e-12);
-        }
-        (t0 <= t1).then_some(t0)
+        let (low, high) = (bounds.min.as_dvec3() + self.grow[0], bounds.max.as_dvec3() + self.grow[1]);
+        let [t0, t1] = clip_segment(self.a.to_array(), self.along.to_array(), [low.to_array(), high.to_array()]);
+        // Rounding of the quotients must not lose a box that is only just touched.
+        (t0 - 1e-12 <= t1 + 1e-12).then_some(t0 - 1e-12)
     }
 }
 
@@ -177,7 +172,7 @@ mod tests {
         Mesh::new(&positions, triangles, MeshColors::Layer).unwrap()
     }
 
-    fn places() -> Vec<(DVec3, DVec3)> {
+    fn segments() -> Vec<(DVec3, DVec3)> {
         let corner = DVec3::new(5e5, 4.7e6, 0.0);
         (0..400)
             .map(|i| {
@@ -193,7 +188,7 @@ mod tests {
         let mesh = heap(3000);
         let tree = MeshTree::new(&mesh);
         let mut hits = 0;
-        for (a, b) in places() {
+        for (a, b) in segments() {
             let all = (0..mesh.triangles().len()).filter_map(|i| Some((tree.crossing(i, a, b)?, i)));
             let expected = all.min_by(|x, y| x.partial_cmp(y).unwrap());
             hits += usize::from(expected.is_some());
@@ -207,7 +202,7 @@ mod tests {
         let mesh = heap(500);
         for (reach, lift) in [(2.5, [0.0, 0.0]), (0.0, [-4.0, 3.0])] {
             let tree = MeshTree::lifted(&mesh, lift);
-            for (a, b) in places().into_iter().take(60) {
+            for (a, b) in segments().into_iter().take(60) {
                 let mut seen = vec![false; mesh.triangles().len()];
                 tree.near(a, b, reach, &mut |t| {
                     seen[t] = true;

@@ -1,14 +1,14 @@
 //! Lines of sight along straight and curved rays, past terrain, boxes and meshes.
 
-use crate::{Ground, MeshTree};
-use belvedere_core::{Camera, DVec2, DVec3, View};
-use belvedere_scene::{BoxShape, LayerKind, Scene};
+use crate::{BoxTree, Ground, Lift, MeshTree};
+use belvedere_core::{Aabb, Camera, DVec2, DVec3, View};
+use belvedere_scene::{LayerKind, Scene};
 
 /// Everything of a scene that can stand in the way.
 pub struct Obstacles<'a> {
-    grounds: Vec<Ground<'a>>,
-    boxes: Vec<Block>,
-    meshes: Vec<MeshTree<'a>>,
+    grounds: Vec<(usize, Ground<'a>)>,
+    boxes: BoxTree,
+    meshes: Vec<(usize, MeshTree<'a>)>,
 }
 
 /// How lines of sight are walked.
@@ -23,78 +23,69 @@ pub struct SightOptions {
     pub guard_m: f64,
 }
 
-/// One upright box, ready for segment tests.
-struct Block {
-    center: DVec3,
-    half: DVec3,
-    sin_cos: (f64, f64),
-    reach: f64,
-}
-
-impl Block {
-    fn new(shape: &BoxShape) -> Self {
-        let half = 0.5 * shape.size;
-        Self {
-            center: shape.base + DVec3::Z * half.z,
-            half,
-            sin_cos: shape.yaw.sin_cos(),
-            reach: half.truncate().length(),
-        }
-    }
-
-    fn local(&self, p: DVec3) -> DVec3 {
-        let ((sin, cos), d) = (self.sin_cos, p - self.center);
-        DVec3::new(cos * d.x + sin * d.y, cos * d.y - sin * d.x, d.z)
-    }
-
-    /// How deep inside the box the segment runs: distance from the middle of its inner part to the nearest side or top.
-    fn depth_inside(&self, a: DVec3, b: DVec3) -> Option<f64> {
-        let (la, lb) = (self.local(a), self.local(b));
-        let (mut t0, mut t1) = (0.0f64, 1.0f64);
-        for axis in 0..3 {
-            let (p, d, h) = (la[axis], lb[axis] - la[axis], self.half[axis]);
-            if d == 0.0 {
-                if p.abs() >= h {
-                    return None;
-                }
-                continue;
-            }
-            let (s0, s1) = ((-h - p) / d, (h - p) / d);
-            t0 = t0.max(s0.min(s1));
-            t1 = t1.min(s0.max(s1));
-        }
-        if t0 >= t1 {
-            return None;
-        }
-        let middle = la.lerp(lb, 0.5 * (t0 + t1));
-        let sides = self.half - middle.abs();
-        Some(sides.x.min(sides.y).min(self.half.z - middle.z).max(0.0))
-    }
-}
-
 impl<'a> Obstacles<'a> {
-    /// Collects terrain, boxes and meshes of `scene`.
+    /// Prepares terrain, boxes and meshes of `scene`: one pass over the nodes and the triangles.
     pub fn new(scene: &'a Scene) -> Self {
-        let mut out = Self { grounds: Vec::new(), boxes: Vec::new(), meshes: Vec::new() };
-        for layer in &scene.layers {
+        Self::lifted(scene, None)
+    }
+
+    /// The same where the ground, and what stands on it, may be displaced vertically.
+    pub fn lifted(scene: &'a Scene, lift: Option<Lift<'_>>) -> Self {
+        let (mut grounds, mut boxes, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
+        for (i, layer) in scene.layers.iter().enumerate() {
             match &layer.kind {
-                LayerKind::Terrain(t) => out.grounds.push(Ground::new(&t.heightfield)),
-                LayerKind::Boxes(b) => out.boxes.extend(b.boxes.iter().map(Block::new)),
-                LayerKind::Mesh(m) => out.meshes.push(MeshTree::new(&m.mesh)),
+                LayerKind::Terrain(t) => grounds.push((i, Ground::lifted(&t.heightfield, lift))),
+                LayerKind::Boxes(b) => boxes.extend(b.boxes.iter().enumerate().map(|(k, shape)| ([i, k], shape))),
+                LayerKind::Mesh(m) => {
+                    let b = m.mesh.bounds();
+                    let lift = lift.filter(|_| !b.is_empty()).map(|lift| lift(b.min.truncate(), b.max.truncate()));
+                    meshes.push((i, MeshTree::lifted(&m.mesh, lift.unwrap_or([0.0; 2]))));
+                }
                 LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) => {}
             }
         }
-        out
+        Self { grounds, boxes: BoxTree::new(boxes, lift), meshes }
     }
 
-    /// The terrain layers.
-    pub fn grounds(&self) -> &[Ground<'a>] {
+    /// The terrain layers, each with its index in the scene.
+    pub fn grounds(&self) -> &[(usize, Ground<'a>)] {
         &self.grounds
+    }
+
+    /// The boxes of all layers.
+    pub fn boxes(&self) -> &BoxTree {
+        &self.boxes
+    }
+
+    /// The meshes, each with the index of its layer in the scene.
+    pub fn meshes(&self) -> &[(usize, MeshTree<'a>)] {
+        &self.meshes
+    }
+
+    /// Around all boxes and meshes, wherever the ground has moved them to.
+    pub fn solid_bounds(&self) -> Aabb {
+        self.meshes.iter().fold(self.boxes.bounds(), |b, (_, tree)| b.union(tree.bounds()))
+    }
+
+    /// Whether every curve within `reach` (scene units, >= 0) of the straight segment `a b`, point by point, meets nothing.
+    /// Never wrongly true, see [`Ground::is_clear`].
+    pub fn is_clear(&self, a: DVec3, b: DVec3, reach: f64) -> bool {
+        let near_mesh = |tree: &MeshTree<'_>| {
+            let mut near = false;
+            tree.near(a, b, reach, &mut |_| {
+                near = true;
+                f64::NEG_INFINITY
+            });
+            near
+        };
+        self.grounds.iter().all(|(_, g)| g.is_clear(a, b, reach))
+            && self.boxes.near(a, b, reach, &mut |_, _| false)
+            && !self.meshes.iter().any(|(_, tree)| near_mesh(tree))
     }
 
     /// Height of `p` over the highest terrain below or above it; `None` beside all terrain.
     pub fn above_ground(&self, p: DVec3) -> Option<f64> {
-        let heights = self.grounds.iter().filter_map(|g| g.heightfield().surface_at(p.truncate()));
+        let heights = self.grounds.iter().filter_map(|(_, g)| g.heightfield().surface_at(p.truncate()));
         heights.map(|h| p.z - h).min_by(f64::total_cmp)
     }
 
@@ -102,27 +93,19 @@ impl<'a> Obstacles<'a> {
     /// for a surface has no depth.
     pub fn min_gap(&self, a: DVec3, b: DVec3, cap: f64, floor: f64) -> f64 {
         let mut best = cap;
-        for ground in &self.grounds {
+        for (_, ground) in &self.grounds {
             best = ground.min_gap(a, b, best, floor);
             if best < floor {
                 return best;
             }
         }
-        let (low, high) = (a.min(b), a.max(b));
-        for block in &self.boxes {
-            let near = |axis: usize, r: f64| low[axis] < block.center[axis] + r && high[axis] > block.center[axis] - r;
-            if near(0, block.reach)
-                && near(1, block.reach)
-                && near(2, block.half.z)
-                && let Some(depth) = block.depth_inside(a, b)
-            {
+        self.boxes.near(a, b, 0.0, &mut |shape, _| {
+            if let Some(depth) = shape.depth_inside(a, b) {
                 best = best.min(-depth.max(f64::MIN_POSITIVE));
-                if best < floor {
-                    return best;
-                }
             }
-        }
-        if best > -f64::MIN_POSITIVE && self.meshes.iter().any(|m| m.first_crossing(a, b).is_some()) {
+            best >= floor
+        });
+        if best > -f64::MIN_POSITIVE && self.meshes.iter().any(|(_, m)| m.first_crossing(a, b).is_some()) {
             best = -f64::MIN_POSITIVE;
         }
         best

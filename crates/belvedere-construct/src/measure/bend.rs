@@ -87,7 +87,7 @@ pub(super) fn measure_bend(
     straight: &View,
     features: &[SampledFeature],
 ) -> BendMeasure {
-    let plane = obstacles.grounds().first().map(|g| median_height(g.heightfield()));
+    let plane = obstacles.grounds().first().map(|(_, g)| median_height(g.heightfield()));
     let mut out = Sums::default();
     for p in ground_points(scene, features) {
         let image = straight.project(p).ok().filter(|i| in_frame(straight, i.pixel, i.depth));

@@ -5,9 +5,11 @@ use crate::geometry::screen::{SUB, ScreenVertex};
 use crate::raster::band::Band;
 use crate::raster::cells::CellRow;
 use crate::simd::{self, Kernel};
+use belvedere_scene::CellTriangle;
 
-/// The node numbers (bit 0 east, bit 1 south) of the two triangles of a cell, split north-west to south-east.
-pub(crate) const CELL_TRIANGLES: [[usize; 3]; 2] = [[0, 1, 3], [0, 2, 3]];
+/// The node numbers (bit 0 east, bit 1 south) of the two triangles of a cell.
+pub(crate) const CELL_TRIANGLES: [[usize; 3]; 2] =
+    [CellTriangle::NorthEast.corners(), CellTriangle::SouthWest.corners()];
 
 /// Images of the nodes of a block, row by row, coordinate by coordinate.
 #[derive(Debug, Default)]

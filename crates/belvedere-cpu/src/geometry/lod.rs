@@ -3,14 +3,13 @@
 use crate::simd::{self, Kernel};
 use belvedere_core::{Aabb, DVec3};
 use belvedere_scene::{Heightfield, NodeState};
+use belvedere_sight::Pyramid;
 use rayon::prelude::*;
 
 /// Drawn cells along a side of a block of ground, at every level.
 pub(crate) const SIDE: usize = 32;
 /// Nodes along a side of a block at most.
 pub(crate) const NODES: usize = SIDE + 1;
-/// Most levels; 32 * 2^20 cells.
-const LEVELS: usize = 20;
 
 /// A block at one level: cells of 2^level nodes' distance.
 #[derive(Debug, Clone, Copy)]
@@ -25,20 +24,13 @@ pub(crate) struct Span {
     pub(crate) seam: [f32; 4],
 }
 
-#[derive(Debug)]
-struct Level {
-    cols: usize,
-    rows: usize,
-    spans: Vec<Span>,
-}
-
 /// Blocks of all levels; level k halves the detail k times, the last has one block.
 ///
 /// The two triangles of a cell keep their diagonal at every level, so the ground and a coarse version of it differ most at
 /// a node. A block's error is no less than those of the blocks under it.
 #[derive(Debug)]
 pub(crate) struct Tree {
-    levels: Vec<Level>,
+    spans: Pyramid<Span>,
     pub(crate) sparse: DecimatedHeights,
 }
 
@@ -80,35 +72,22 @@ impl DecimatedHeights {
 
 impl Tree {
     pub(crate) fn new(hf: &Heightfield) -> Self {
-        let mut levels: Vec<Level> = Vec::new();
-        for k in 0..LEVELS {
-            let reach = SIDE << k;
-            let (cols, rows) = ((hf.cols() - 1).div_ceil(reach), (hf.rows() - 1).div_ceil(reach));
-            let finer = levels.last();
-            let span = |i: usize| match finer {
-                None => leaf(hf, [i % cols, i / cols]),
-                Some(finer) => coarser(hf, k, [i % cols, i / cols], finer),
-            };
-            let spans = (0..cols * rows).into_par_iter().with_min_len(8).map(span).collect();
-            levels.push(Level { cols, rows, spans });
-            if cols * rows == 1 {
-                break;
-            }
-        }
-        Self { levels, sparse: DecimatedHeights::new(hf) }
+        let cells = [hf.cols() - 1, hf.rows() - 1];
+        let parent = |level, block, children: &[Span]| coarser(hf, level, block, children);
+        Self { spans: Pyramid::new(cells, SIDE, |block| leaf(hf, block), parent), sparse: DecimatedHeights::new(hf) }
     }
 
     pub(crate) fn levels(&self) -> usize {
-        self.levels.len()
+        self.spans.levels()
     }
 
     /// Blocks along both axes.
     pub(crate) fn size(&self, level: usize) -> [usize; 2] {
-        [self.levels[level].cols, self.levels[level].rows]
+        self.spans.size(level)
     }
 
-    pub(crate) fn span(&self, level: usize, [x, y]: [usize; 2]) -> &Span {
-        &self.levels[level].spans[y * self.levels[level].cols + x]
+    pub(crate) fn span(&self, level: usize, block: [usize; 2]) -> &Span {
+        self.spans.block(level, block)
     }
 
     /// Box around the ground of a block; `None` where it is one hole.
@@ -148,21 +127,17 @@ fn leaf(hf: &Heightfield, block: [usize; 2]) -> Span {
     Span { z, error: 0.0, seam: if holes { [f32::INFINITY; 4] } else { seams(hf, 1, from, to) } }
 }
 
-fn coarser(hf: &Heightfield, level: usize, [x, y]: [usize; 2], finer: &Level) -> Span {
+fn coarser(hf: &Heightfield, level: usize, block: [usize; 2], children: &[Span]) -> Span {
     let mut out = Span { z: [f32::INFINITY, f32::NEG_INFINITY], error: 0.0, seam: [f32::INFINITY; 4] };
-    for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-        let (cx, cy) = (2 * x + i, 2 * y + j);
-        if cx < finer.cols && cy < finer.rows {
-            let child = &finer.spans[cy * finer.cols + cx];
-            out.z = [out.z[0].min(child.z[0]), out.z[1].max(child.z[1])];
-            out.error = out.error.max(child.error);
-            // Infinite seams tell of holes, or of an odd side.
-            if child.z[0] > child.z[1] || (level == 1 && child.seam == [f32::INFINITY; 4]) {
-                out.error = f32::INFINITY;
-            }
+    for child in children {
+        out.z = [out.z[0].min(child.z[0]), out.z[1].max(child.z[1])];
+        out.error = out.error.max(child.error);
+        // Infinite seams tell of holes, or of an odd side.
+        if child.z[0] > child.z[1] || (level == 1 && child.seam == [f32::INFINITY; 4]) {
+            out.error = f32::INFINITY;
         }
     }
-    let (from, to) = nodes(hf, level, [x, y]);
+    let (from, to) = nodes(hf, level, block);
     let step = 1 << level;
     if (to[0] - from[0]) % step != 0 || (to[1] - from[1]) % step != 0 {
         out.error = f32::INFINITY;

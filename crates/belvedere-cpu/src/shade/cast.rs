@@ -1,9 +1,8 @@
 //! Shadows that boxes and meshes throw, and those that fall on them: straight rays towards the sun, on the map.
 
-use crate::trace::boxes::{Boxes, Solid};
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{LayerKind, Light, Scene};
-use belvedere_sight::{Ground, MeshTree};
+use belvedere_sight::Obstacles;
 
 /// Half the width of the sun, radians.
 const SUN_RADIUS: f64 = 0.004_65;
@@ -51,9 +50,7 @@ const fn pattern() -> [[f64; 4]; 16] {
 
 /// What throws shadows beside the ground on itself.
 pub(crate) struct Casters<'a> {
-    boxes: Boxes,
-    meshes: Vec<MeshTree<'a>>,
-    grounds: Vec<Ground<'a>>,
+    obstacles: Obstacles<'a>,
     /// Around all boxes and meshes, and highest place of everything.
     solid: Aabb,
     top: f64,
@@ -69,34 +66,18 @@ impl<'a> Casters<'a> {
         if !(light.shadows && sun.z > 0.01) {
             return None;
         }
-        let (mut solids, mut meshes, mut grounds) = (Vec::new(), Vec::new(), Vec::new());
-        let mut solid = Aabb::EMPTY;
-        for (i, layer) in scene.layers.iter().enumerate() {
-            match &layer.kind {
-                LayerKind::Boxes(b) => {
-                    solids.extend(b.boxes.iter().enumerate().map(|(k, s)| Solid::new(i, k, s, |_: &Aabb| [0.0; 2])));
-                }
-                LayerKind::Mesh(m) => {
-                    solid = solid.union(m.mesh.bounds());
-                    meshes.push(MeshTree::new(&m.mesh));
-                }
-                _ => {}
-            }
+        if !scene.layers.iter().any(|l| matches!(l.kind, LayerKind::Boxes(_) | LayerKind::Mesh(_))) {
+            return None;
         }
-        let boxes = Boxes::new(solids);
-        let solid = solid.union(boxes.bounds());
+        let obstacles = Obstacles::new(scene);
+        let solid = obstacles.solid_bounds();
         if solid.is_empty() {
             return None;
         }
-        let mut top = solid.max.z;
-        for layer in &scene.layers {
-            if let LayerKind::Terrain(t) = &layer.kind {
-                top = top.max(t.heightfield.z_range()[1]);
-                grounds.push(Ground::new(&t.heightfield));
-            }
-        }
+        let highest = obstacles.grounds().iter().map(|(_, g)| g.heightfield().z_range()[1]);
+        let top = highest.fold(solid.max.z, f64::max);
         let (u, v) = sun.any_orthonormal_pair();
-        Some(Self { boxes, meshes, grounds, solid, top, sun, across: [SUN_RADIUS * u, SUN_RADIUS * v] })
+        Some(Self { obstacles, solid, top, sun, across: [SUN_RADIUS * u, SUN_RADIUS * v] })
     }
 
     /// Share of the sun that boxes and meshes leave to a pixel on the ground.
@@ -147,13 +128,9 @@ impl<'a> Casters<'a> {
     fn sees(&self, p: DVec3, sun: DVec3, over_ground: bool) -> bool {
         let to = |top: f64| p + self.way(p.z, top).max(0.0) * sun;
         let end = to(self.solid.max.z);
-        let mut free = true;
-        self.boxes.near(p, end, 0.0, &mut |_, _| {
-            free = false;
-            false
-        });
-        free && self.meshes.iter().all(|tree| tree.first_crossing(p, end).is_none())
-            && (!over_ground || self.grounds.iter().all(|g| g.sees(p, to(self.top))))
+        self.obstacles.boxes().near(p, end, 0.0, &mut |_, _| false)
+            && self.obstacles.meshes().iter().all(|(_, tree)| tree.first_crossing(p, end).is_none())
+            && (!over_ground || self.obstacles.grounds().iter().all(|(_, g)| g.sees(p, to(self.top))))
     }
 }
 

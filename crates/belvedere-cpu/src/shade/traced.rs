@@ -4,7 +4,7 @@ use crate::shade::ground::terrain::TerrainShade;
 use crate::shade::{LayerShade, Shaded, Shader};
 use crate::trace::{Part, RayHit};
 use belvedere_core::{DVec2, DVec3, View};
-use belvedere_scene::NodeState;
+use belvedere_scene::{CellTriangle, NodeState};
 
 impl Shader<'_> {
     /// What the ray of `pixel` sees: `seen`, or the sky.
@@ -15,9 +15,9 @@ impl Shader<'_> {
         let layer = seen.layer as u32;
         let footprint = self.screen.footprint(seen.depth);
         let (color, id) = match (&self.layers[seen.layer], seen.part) {
-            (LayerShade::Terrain(t), Part::Cell(cell, upper)) => {
+            (LayerShade::Terrain(t), Part::Cell(cell, triangle)) => {
                 let facing = [DVec2::X * footprint, DVec2::Y * footprint];
-                let axes = t.ground_per_px(view, seen.point, cell, upper).unwrap_or(facing);
+                let axes = t.ground_per_px(view, seen.point, cell, triangle).unwrap_or(facing);
                 let fp = axes[0].perp_dot(axes[1]).abs().sqrt().clamp(footprint, 6.0 * footprint);
                 t.shade_at(self, seen.point.truncate(), fp, axes, seen.depth, pixel)
             }
@@ -38,20 +38,20 @@ impl Shader<'_> {
 impl TerrainShade<'_> {
     /// Way on the map per pixel to the right and per pixel down, scene units: the derivative of the image along the triangle,
     /// turned round.
-    fn ground_per_px(&self, view: &View, p: DVec3, [col, row]: [usize; 2], upper: bool) -> Option<[DVec2; 2]> {
-        let node = |c: usize, r: usize| {
-            let i = r * self.hf.cols() + c;
-            (self.hf.states().get(i)? != &NodeState::Void).then(|| f64::from(self.hf.heights()[i]))
-        };
-        let (nw, se) = (node(col, row)?, node(col + 1, row + 1)?);
-        let (east, south) = if upper {
-            let ne = node(col + 1, row)?;
-            (ne - nw, se - ne)
-        } else {
-            let sw = node(col, row + 1)?;
-            (se - sw, sw - nw)
-        };
-        let slope = DVec2::new(east, -south) / self.hf.spacing();
+    fn ground_per_px(
+        &self,
+        view: &View,
+        p: DVec3,
+        [col, row]: [usize; 2],
+        triangle: CellTriangle,
+    ) -> Option<[DVec2; 2]> {
+        let nw = row * self.hf.cols() + col;
+        let nodes = [nw, nw + 1, nw + self.hf.cols(), nw + self.hf.cols() + 1];
+        if triangle.corners().iter().any(|&k| self.hf.states()[nodes[k]] == NodeState::Void) {
+            return None;
+        }
+        let per_cell = triangle.slope(nodes.map(|i| f64::from(self.hf.heights()[i])));
+        let slope = DVec2::new(per_cell.x, -per_cell.y) / self.hf.spacing();
         let along = view.jacobian(p).ok()?.map(|g| g.truncate() + slope * g.z);
         let area = along[0].perp_dot(along[1]);
         let axes = [DVec2::new(along[1].y, -along[0].y) / area, DVec2::new(-along[1].x, along[0].x) / area];

@@ -13,22 +13,10 @@ const SLACK: f64 = 1e-9;
 const MAX_HALVINGS: u32 = 12;
 
 impl Walk<'_, '_> {
-    /// Whether a triangle may lie within `reach` of the segment `a b`.
-    pub(crate) fn near_mesh(&self, a: DVec3, b: DVec3, reach: f64) -> bool {
-        self.tracer.meshes.iter().any(|(_, tree)| {
-            let mut near = false;
-            tree.near(a, b, reach, &mut |_| {
-                near = true;
-                f64::NEG_INFINITY
-            });
-            near
-        })
-    }
-
     /// Offers `take` the first hit of every mesh within a span that is all but straight.
     pub(crate) fn meet_meshes(&self, span: &Span, (a, b): (DVec3, DVec3), reach: f64, take: &mut dyn FnMut(Found)) {
-        for (layer, tree) in &self.tracer.meshes {
-            let straight = span.is_straight() && tree.lift() == [0.0; 2];
+        for (layer, tree) in self.tracer.obstacles.meshes() {
+            let straight = span.is_straight() && tree.is_still();
             let mut best: Option<(f64, usize)> = None;
             if straight {
                 best = tree.first_crossing(a, b).map(|(t, triangle)| (span.depth_at(t), triangle));

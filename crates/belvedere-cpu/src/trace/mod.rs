@@ -1,7 +1,6 @@
 //! First hits of curved rays on the surfaces themselves, without subdivision.
 
 pub(crate) mod beam;
-pub(crate) mod boxes;
 mod curve;
 mod meshes;
 mod root;

@@ -1,12 +1,11 @@
 //! First hits of curved rays.
 
 use crate::geometry::screen::Screen;
-use crate::trace::boxes::{Boxes, Solid};
 use crate::trace::curve::{Curve, Span, Split};
 use crate::trace::root::root;
 use belvedere_core::{Aabb, Camera, DVec2, DVec3, View};
-use belvedere_scene::{Heightfield, LayerKind, NodeState, Scene};
-use belvedere_sight::{Ground, MeshTree};
+use belvedere_scene::{CellTriangle, Heightfield, NodeState, Scene};
+use belvedere_sight::{GridLine, Lift, Obstacles, UprightBox};
 use std::ops::ControlFlow;
 
 /// Largest distance of a ray from the chord that tells where to look for its hits, pixels.
@@ -32,8 +31,8 @@ pub struct RayHit {
 /// Part of a layer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Part {
-    /// Cell (column, row) of a terrain and whether its north-eastern triangle.
-    Cell([usize; 2], bool),
+    /// Cell (column, row) of a terrain, and which of its triangles.
+    Cell([usize; 2], CellTriangle),
     /// Number of a box and the outward normal of its face.
     Face(usize, DVec3),
     /// Number of a triangle of a mesh and whether it is seen from the side where its corners run counter-clockwise.
@@ -49,9 +48,7 @@ pub(crate) enum Part {
 pub struct Tracer<'a> {
     pub(crate) split: Split<'a>,
     screen: Screen,
-    grounds: Vec<(usize, Ground<'a>)>,
-    boxes: Boxes,
-    pub(crate) meshes: Vec<(usize, MeshTree<'a>)>,
+    pub(crate) obstacles: Obstacles<'a>,
     /// Around all boxes and meshes, wherever the ground has moved them to.
     solid: Aabb,
     pub(crate) range: [f64; 2],
@@ -67,38 +64,11 @@ impl<'a> Tracer<'a> {
             let inside = [min, max].into_iter().all(|xy| g.contains(g.grid_from_scene(xy)));
             if inside { [lo, hi] } else { [lo.min(0.0), hi.max(0.0)] }
         };
-        let mut grounds = Vec::new();
-        let (mut solids, mut meshes) = (Vec::new(), Vec::new());
-        for (i, layer) in scene.layers.iter().enumerate() {
-            match &layer.kind {
-                LayerKind::Terrain(t) => {
-                    let lifted: Option<belvedere_sight::Lift<'_>> = split.ground.is_some().then_some(&lift);
-                    grounds.push((i, Ground::lifted(&t.heightfield, lifted)));
-                }
-                LayerKind::Boxes(b) => solids.extend(
-                    b.boxes
-                        .iter()
-                        .enumerate()
-                        .map(|(k, shape)| Solid::new(i, k, shape, |b: &Aabb| lift(b.min.truncate(), b.max.truncate()))),
-                ),
-                LayerKind::Mesh(m) => {
-                    let bounds = m.mesh.bounds();
-                    let lift =
-                        if bounds.is_empty() { [0.0; 2] } else { lift(bounds.min.truncate(), bounds.max.truncate()) };
-                    meshes.push((i, MeshTree::lifted(&m.mesh, lift)));
-                }
-                _ => {}
-            }
-        }
-        let screen = Screen::new(view.pinhole());
+        let lift: Option<Lift<'_>> = if split.ground.is_some() { Some(&lift) } else { None };
+        let obstacles = Obstacles::lifted(scene, lift);
         let range = [view.pinhole().near, deepest(scene, view)];
-        let boxes = Boxes::new(solids);
-        let raised = |tree: &MeshTree<'_>| {
-            let (b, lift) = (tree.mesh().bounds(), tree.lift());
-            Aabb { min: b.min + lift[0] * DVec3::Z, max: b.max + lift[1] * DVec3::Z }
-        };
-        let solid = meshes.iter().fold(boxes.bounds(), |b, (_, tree)| b.union(raised(tree)));
-        Self { split, screen, grounds, boxes, meshes, solid, range }
+        let (screen, solid) = (Screen::new(view.pinhole()), obstacles.solid_bounds());
+        Self { split, screen, obstacles, solid, range }
     }
 
     /// What the ray of `pixel` meets first between the near and far depth of the camera; `None` for the sky.
@@ -126,18 +96,18 @@ impl<'a> Tracer<'a> {
     /// Whether nothing of the scene lies in a box.
     pub(crate) fn is_empty(&self, bounds: &Aabb) -> bool {
         let apart = bounds.min.cmpgt(self.solid.max).any() || bounds.max.cmplt(self.solid.min).any();
-        apart && self.grounds.iter().all(|(_, g)| g.is_off(bounds))
+        apart && self.obstacles.grounds().iter().all(|(_, g)| g.is_off(bounds))
     }
 
     /// Finest spacing of the ground, scene units; infinite without ground.
     pub(crate) fn cell(&self) -> f64 {
-        let spacing = self.grounds.iter().map(|(_, g)| g.heightfield().spacing().min_element());
+        let spacing = self.obstacles.grounds().iter().map(|(_, g)| g.heightfield().spacing().min_element());
         spacing.fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a ray meets the side of a triangle from which its corners run counter-clockwise.
     fn is_front(&self, layer: usize, triangle: usize, at: &impl Fn(f64) -> Option<DVec3>, depth: f64) -> bool {
-        let Some((_, tree)) = self.meshes.iter().find(|(i, _)| *i == layer) else { return true };
+        let Some((_, tree)) = self.obstacles.meshes().iter().find(|(i, _)| *i == layer) else { return true };
         let step = 1e-6 * depth;
         match (at(depth - step), at(depth)) {
             (Some(before), Some(here)) => tree.mesh().face_normal(triangle).dot(here - before) <= 0.0,
@@ -147,9 +117,9 @@ impl<'a> Tracer<'a> {
 
     fn face(&self, layer: usize, index: usize, p: DVec3) -> DVec3 {
         let mut normal = DVec3::Z;
-        self.boxes.near(p, p, 1e-3 * p.length().max(1.0), &mut |solid, _| {
-            if solid.layer == layer && solid.index == index {
-                normal = solid.normal(p);
+        self.obstacles.boxes().near(p, p, 1e-3 * p.length().max(1.0), &mut |shape, _| {
+            if shape.layer == layer && shape.index == index {
+                normal = shape.normal(p);
                 return false;
             }
             true
@@ -209,7 +179,7 @@ impl Walk<'_, '_> {
         match span.chord().filter(|_| span.reach.is_finite()) {
             Some((a, b)) => {
                 // What begins before the start need not be tried as a whole.
-                if span.depth[0] >= self.start && self.is_clear(a, b, span.reach) {
+                if span.depth[0] >= self.start && self.tracer.obstacles.is_clear(a, b, span.reach) {
                     return None;
                 }
                 let fine = CHORD_PX * self.tracer.screen.footprint(span.depth[0]);
@@ -226,17 +196,6 @@ impl Walk<'_, '_> {
         self.curve.halves(&span).into_iter().find_map(|half| self.span(half, halvings + 1))
     }
 
-    fn is_clear(&self, a: DVec3, b: DVec3, reach: f64) -> bool {
-        let mut clear = self.tracer.grounds.iter().all(|(_, g)| g.is_clear(a, b, reach));
-        if clear {
-            self.tracer.boxes.near(a, b, reach, &mut |_, _| {
-                clear = false;
-                false
-            });
-        }
-        clear && !self.near_mesh(a, b, reach)
-    }
-
     /// First hit within a span that is all but straight.
     fn search(&self, span: &Span, chord: (DVec3, DVec3), reach: f64) -> Option<Found> {
         let mut best: Option<Found> = None;
@@ -245,19 +204,19 @@ impl Walk<'_, '_> {
                 best = Some(found);
             }
         };
-        for (layer, ground) in &self.tracer.grounds {
+        for (layer, ground) in self.tracer.obstacles.grounds() {
             let mut follow = Follow { walk: self, span, chord, reach, hf: ground.heightfield(), last: None };
             ground.walk(chord.0, chord.1, reach, &mut |cell, t0, t1| match follow.cell(cell, t0, t1) {
-                ControlFlow::Break((depth, upper)) => {
-                    take((depth, *layer, Part::Cell(cell, upper)));
+                ControlFlow::Break((depth, triangle)) => {
+                    take((depth, *layer, Part::Cell(cell, triangle)));
                     false
                 }
                 ControlFlow::Continue(()) => true,
             });
         }
-        self.tracer.boxes.near(chord.0, chord.1, reach, &mut |solid, part| {
-            if let Some(depth) = self.enter(solid, span, part) {
-                take((depth, solid.layer, Part::Face(solid.index, DVec3::Z)));
+        self.tracer.obstacles.boxes().near(chord.0, chord.1, reach, &mut |shape, part| {
+            if let Some(depth) = self.enter(shape, span, part) {
+                take((depth, shape.layer, Part::Face(shape.index, DVec3::Z)));
             }
             true
         });
@@ -284,9 +243,9 @@ impl Walk<'_, '_> {
     }
 
     /// Depth at which the ray first passes the surface of a box.
-    fn enter(&self, solid: &Solid, span: &Span, [t0, t1]: [f64; 2]) -> Option<f64> {
-        let outside = |w: f64| self.true_point(w).map_or(f64::NAN, |p| solid.outside(p));
-        let steps = if solid.is_sheared() { 64 } else { 8 };
+    fn enter(&self, shape: &UprightBox, span: &Span, [t0, t1]: [f64; 2]) -> Option<f64> {
+        let outside = |w: f64| self.true_point(w).map_or(f64::NAN, |p| shape.outside(p));
+        let steps = if shape.is_sheared() { 64 } else { 8 };
         // A little more on both sides, so that the ends lie off the surface.
         let slack = 1e-3 * (t1 - t0) + 1e-12;
         let (t0, t1) = ((t0 - slack).max(0.0), (t1 + slack).min(1.0));
@@ -322,45 +281,35 @@ struct Follow<'w, 't, 'a> {
 struct Plane {
     corner: DVec2,
     z: f64,
-    per_col: f64,
-    per_row: f64,
+    slope: DVec2,
 }
 
 impl Plane {
     /// Change of height per unit of way, along the grid's lines and summed.
     fn steepness(&self, hf: &Heightfield) -> f64 {
-        let s = hf.spacing();
-        (self.per_col / s.x).abs() + (self.per_row / s.y).abs()
+        let per_unit = (self.slope / hf.spacing()).abs();
+        per_unit.x + per_unit.y
     }
 
     /// Height of a place over the plane.
     fn below(&self, hf: &Heightfield, p: DVec3) -> f64 {
         let f = hf.grid_from_scene(p.truncate()) - self.corner;
-        p.z - (self.z + f.x * self.per_col + f.y * self.per_row)
+        p.z - (self.z + f.x * self.slope.x + f.y * self.slope.y)
     }
 }
 
 impl Follow<'_, '_, '_> {
-    /// Depth of a hit in the cell, and whether on its north-eastern triangle.
-    fn cell(&mut self, [col, row]: [usize; 2], t0: f64, t1: f64) -> ControlFlow<(f64, bool)> {
-        let (hf, chord) = (self.hf, self.chord);
-        let grid = |t: f64| {
-            let p = chord.0.lerp(chord.1, t);
-            hf.grid_from_scene(p.truncate()) - DVec2::new(col as f64, row as f64)
-        };
-        let (f0, f1) = (grid(t0), grid(t1));
-        let (d0, d1) = (f0.x - f0.y, f1.x - f1.y);
-        let crossing = if (d0 > 0.0) == (d1 > 0.0) { t1 } else { (t0 + (t1 - t0) * d0 / (d0 - d1)).clamp(t0, t1) };
-        for (from, to) in [(t0, crossing), (crossing, t1)] {
+    /// Depth of a hit in the cell, and the triangle that is hit.
+    fn cell(&mut self, cell: [usize; 2], t0: f64, t1: f64) -> ControlFlow<(f64, CellTriangle)> {
+        let [a, b] = [self.chord.0, self.chord.1].map(|p| self.hf.grid_from_scene(p.truncate()));
+        for (triangle, [from, to]) in GridLine::between(a, b).by_triangle(cell, [t0, t1]) {
             if to <= from && !(from == t0 && t0 == t1) {
                 continue;
             }
-            let middle = grid(0.5 * (from + to));
-            let upper = middle.x > middle.y;
-            match self.plane([col, row], upper) {
+            match self.plane(cell, triangle) {
                 Some(plane) => {
                     if let Some(depth) = self.triangle(&plane, from, to) {
-                        return ControlFlow::Break((depth, upper));
+                        return ControlFlow::Break((depth, triangle));
                     }
                 }
                 None => self.last = None,
@@ -369,16 +318,13 @@ impl Follow<'_, '_, '_> {
         ControlFlow::Continue(())
     }
 
-    fn plane(&self, [col, row]: [usize; 2], upper: bool) -> Option<Plane> {
+    fn plane(&self, [col, row]: [usize; 2], triangle: CellTriangle) -> Option<Plane> {
         let nw = row * self.hf.cols() + col;
-        let [ne, sw, se] = [nw + 1, nw + self.hf.cols(), nw + self.hf.cols() + 1];
-        let solid = |i: usize| self.hf.states()[i] != NodeState::Void;
-        if !(solid(nw) && solid(se) && solid(if upper { ne } else { sw })) {
-            return None;
-        }
-        let h = |i: usize| f64::from(self.hf.heights()[i]);
-        let (per_col, per_row) = if upper { (h(ne) - h(nw), h(se) - h(ne)) } else { (h(se) - h(sw), h(sw) - h(nw)) };
-        Some(Plane { corner: DVec2::new(col as f64, row as f64), z: h(nw), per_col, per_row })
+        let nodes = [nw, nw + 1, nw + self.hf.cols(), nw + self.hf.cols() + 1];
+        let solid = triangle.corners().iter().all(|&k| self.hf.states()[nodes[k]] != NodeState::Void);
+        let heights = nodes.map(|i| f64::from(self.hf.heights()[i]));
+        let slope = triangle.slope(heights);
+        solid.then(|| Plane { corner: DVec2::new(col as f64, row as f64), z: heights[0], slope })
     }
 
     fn triangle(&mut self, plane: &Plane, t0: f64, t1: f64) -> Option<f64> {
