@@ -5,9 +5,7 @@
 
 mod cells;
 mod error;
-mod field;
 mod greedy;
-mod line_of_sight;
 mod metrics;
 mod points;
 mod register;
@@ -17,14 +15,13 @@ mod solve;
 mod viewpoint;
 pub mod visibility_qp;
 
+pub use belvedere_sight::{Field, FieldError};
 pub use cells::{Cells, NO_CELL};
 pub use error::DisocclusionError;
-pub use field::{Field, FieldError};
 pub use greedy::{
     Affine, Blocks, EyeError, GreedyCounters, LeftOut, Naive, Pieces, Price, Wedge, blended, check_eye, in_view,
     scale_to_clear, shift_to_clear,
 };
-pub use line_of_sight::{SightSample, guard_tau, sight_samples};
 pub use metrics::{Deformation, FrameChange, TerrainMetrics, terrain_metrics};
 pub use points::{PointKind, ReferencePoint, Unusable, UnusableReason, candidate_points, reference_points};
 pub use settings::{Detail, LONGEST_SMOOTHING_M, SolverMode, TerrainSettings, stated_spacing};

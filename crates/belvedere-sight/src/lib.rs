@@ -2,6 +2,9 @@
 
 mod boxes;
 mod clip;
+mod crossings;
+mod displaced;
+mod field;
 mod ground;
 mod line;
 mod mesh_tree;
@@ -10,8 +13,11 @@ mod pyramid;
 
 pub use boxes::{BoxTree, UprightBox};
 pub use clip::clip_segment;
+pub use crossings::{AT_NODE, SightLine, SightSample, guard_tau, sight_samples};
+pub use displaced::{DisplacedGround, Excess, SightVertex};
+pub use field::{Field, FieldError};
 pub use ground::{Ground, Lift};
-pub use line::GridLine;
+pub use line::{Edge, EdgeFamily, GridLine, floor};
 pub use mesh_tree::MeshTree;
 pub use obstacles::{Obstacles, SightOptions};
 pub use pyramid::Pyramid;

@@ -65,4 +65,115 @@ impl GridLine {
         let cut = if across == 0.0 { t1 } else { ((start.y - start.x) / across).clamp(t0, t1) };
         [[t0, cut], [cut, t1]].map(|part| (CellTriangle::at(start + 0.5 * (part[0] + part[1]) * self.dir), part))
     }
+
+    /// Visits where a part of the line crosses a family of edges of the triangles over a grid of `nodes` (columns, rows):
+    /// with the parameter, the point and the edge.
+    ///
+    /// * `slack`: how far beyond the ends of the part a line of the grid may lie to be counted all the same, cells.
+    #[inline]
+    pub fn crossings(
+        &self,
+        nodes: [usize; 2],
+        family: EdgeFamily,
+        [from, to]: [f64; 2],
+        slack: f64,
+        mut visit: impl FnMut(f64, DVec2, Edge),
+    ) {
+        let (start, dir) = (family.coordinate(self.start), family.coordinate(self.dir));
+        if dir == 0.0 {
+            return;
+        }
+        let [a, b] = [from, to].map(|t| family.coordinate(self.at(t)));
+        let (mut k, last) = (-floor(slack - a.min(b)), floor(a.max(b) + slack));
+        while k <= last {
+            let t = (k - start) / dir;
+            let mut at = self.at(t);
+            match family {
+                EdgeFamily::Columns => at.x = k,
+                EdgeFamily::Rows => at.y = k,
+                EdgeFamily::Diagonals => {}
+            }
+            if let Some(edge) = Edge::crossed(nodes, family, k, at) {
+                visit(t, at, edge);
+            }
+            k += 1.0;
+        }
+    }
+}
+
+/// Edges of triangles that lie on parallel lines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EdgeFamily {
+    /// On lines x = k.
+    Columns,
+    /// On lines y = k.
+    Rows,
+    /// On lines x - y = k.
+    Diagonals,
+}
+
+impl EdgeFamily {
+    /// All three.
+    pub const ALL: [Self; 3] = [Self::Columns, Self::Rows, Self::Diagonals];
+
+    /// What is whole on the lines of the family.
+    #[inline]
+    pub fn coordinate(self, p: DVec2) -> f64 {
+        match self {
+            Self::Columns => p.x,
+            Self::Rows => p.y,
+            Self::Diagonals => p.x - p.y,
+        }
+    }
+}
+
+/// A place on an edge between two nodes of a grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edge {
+    /// The northern or western end, row-major.
+    pub first: usize,
+    /// The other end.
+    pub second: usize,
+    /// Share of the other end, 0..=1.
+    pub weight: f64,
+}
+
+impl Edge {
+    /// The edge at a point of line `k` of a family; the nearest one on the line if the point lies beside the grid. `None` on
+    /// diagonals without edges, those of the north-east and south-west corners.
+    #[inline]
+    pub fn crossed(nodes: [usize; 2], family: EdgeFamily, k: f64, at: DVec2) -> Option<Self> {
+        let last = nodes.map(|n| (n - 1) as f64);
+        // The coordinate that runs along the edges, and where the first and the last of them begin.
+        let (along, first, end) = match family {
+            EdgeFamily::Columns => (at.y, 0.0, last[1] - 1.0),
+            EdgeFamily::Rows => (at.x, 0.0, last[0] - 1.0),
+            EdgeFamily::Diagonals => (at.x, k.max(0.0), last[0].min(last[1] + k) - 1.0),
+        };
+        if first > end {
+            return None;
+        }
+        let start = floor(along).clamp(first, end);
+        let (col, row, step) = match family {
+            EdgeFamily::Columns => (k.clamp(0.0, last[0]), start, nodes[0]),
+            EdgeFamily::Rows => (start, k.clamp(0.0, last[1]), 1),
+            EdgeFamily::Diagonals => (start, start - k, nodes[0] + 1),
+        };
+        let first = row as usize * nodes[0] + col as usize;
+        Some(Self { first, second: first + step, weight: (along - start).clamp(0.0, 1.0) })
+    }
+
+    /// Value there of a field given at the nodes.
+    #[inline]
+    pub fn of(&self, values: &[f64]) -> f64 {
+        let [a, b] = [self.first, self.second].map(|n| values[n]);
+        a + self.weight * (b - a)
+    }
+}
+
+/// Largest whole number up to `x`, a coordinate; where there is no instruction for it, `f64::floor` is a call.
+#[inline]
+pub fn floor(x: f64) -> f64 {
+    let whole = x as i64 as f64;
+    if whole > x { whole - 1.0 } else { whole }
 }

@@ -14,8 +14,9 @@ pub struct Pyramid<T> {
 #[derive(Debug, Clone)]
 struct Level<T> {
     size: [usize; 2],
-    /// Cells along a side of a block.
+    /// Cells along a side of a block, and one over them.
     side: f64,
+    per_cell: f64,
     blocks: Vec<T>,
 }
 
@@ -41,7 +42,7 @@ impl<T: Copy + Send + Sync> Pyramid<T> {
                 }
             };
             let blocks = (0..size[0] * size[1]).into_par_iter().with_min_len(8).map(value).collect();
-            out.levels.push(Level { size, side: width as f64, blocks });
+            out.levels.push(Level { size, side: width as f64, per_cell: 1.0 / width as f64, blocks });
             if size == [1, 1] {
                 return out;
             }
@@ -92,8 +93,8 @@ impl<T: Copy + Send + Sync> Pyramid<T> {
     /// The block of a level that holds a point in grid coordinates, or the nearest one.
     #[inline]
     pub fn block_at(&self, level: usize, at: DVec2) -> [usize; 2] {
-        let Level { size, side, .. } = self.levels[level];
-        let index = |x: f64, n: usize| ((x / side).max(0.0) as usize).min(n - 1);
+        let Level { size, per_cell, .. } = self.levels[level];
+        let index = |x: f64, n: usize| ((x * per_cell).max(0.0) as usize).min(n - 1);
         [index(at.x, size[0]), index(at.y, size[1])]
     }
 
@@ -101,8 +102,11 @@ impl<T: Copy + Send + Sync> Pyramid<T> {
     #[inline]
     pub fn fold<A>(&self, level: usize, first: [usize; 2], last: [usize; 2], init: A, add: impl Fn(A, &T) -> A) -> A {
         let Level { size, blocks, .. } = &self.levels[level];
-        let rows = (first[1]..=last[1]).flat_map(|row| &blocks[row * size[0] + first[0]..=row * size[0] + last[0]]);
-        rows.fold(init, add)
+        let mut sum = init;
+        for row in first[1]..=last[1] {
+            sum = blocks[row * size[0] + first[0]..=row * size[0] + last[0]].iter().fold(sum, &add);
+        }
+        sum
     }
 }
 

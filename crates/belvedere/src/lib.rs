@@ -49,6 +49,7 @@ pub use belvedere_cpu as cpu;
 pub use belvedere_disocclusion as disocclusion;
 pub use belvedere_io as io;
 pub use belvedere_scene as scene;
+pub use belvedere_sight as sight;
 pub use data::{DataFiles, LARGEST_HOLE};
 pub use error::BelvedereError;
 pub use options::{Needs, OpenOptions};

@@ -49,10 +49,9 @@ pub(crate) fn profile(area: &Area, solved: &Solved) -> Result<Option<Pixels>> {
 fn worst(area: &Area) -> Option<&ReferencePoint> {
     let (field, eye) = (&area.field, area.eye());
     let to = field.grid_from_scene(eye.truncate());
-    let mut samples = Vec::new();
-    let mut excess = |p: &ReferencePoint| {
-        belvedere::disocclusion::sight_samples(field, p.grid, to, true, &mut samples);
-        let guard = belvedere::disocclusion::guard_tau(p.grid, to, area.settings.guard);
+    let excess = |p: &ReferencePoint| {
+        let samples = belvedere::sight::sight_samples(field, p.grid, to, true);
+        let guard = belvedere::sight::guard_tau(p.grid, to, area.settings.guard);
         let from = p.ground + p.lift;
         let over =
             samples.iter().filter(|s| s.tau > guard).map(|s| s.of(field.heights()) - (from + s.tau * (eye.z - from)));

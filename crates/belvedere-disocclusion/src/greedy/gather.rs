@@ -1,9 +1,9 @@
 //! What the ground is like where a line of sight crosses the grid.
 
-use super::super::line_of_sight::{AT_NODE, SightLine};
 use super::super::register::{LANES, NTH, UNITS, load, split, store};
 use super::Blocks;
 use super::blocks::Node;
+use belvedere_sight::{AT_NODE, SightLine};
 use pulp::Simd;
 
 /// Crossings of a line of sight with one family of lines of the grid, and the ground there; one array for each quantity.

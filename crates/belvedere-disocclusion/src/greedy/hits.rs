@@ -1,10 +1,10 @@
 //! The ground over a line of sight, exactly.
 
-use super::super::line_of_sight::{SightLine, SightSample};
 use super::super::{Cells, Field, NO_CELL};
 use super::Pieces;
 use super::scan::{High, UNSURE};
 use super::trace::Sight;
+use belvedere_sight::{EdgeFamily, SightLine, SightSample};
 
 /// Ground over a line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,7 +86,7 @@ impl Hits<'_> {
     }
 
     fn hit(&self, high: &High) -> Option<Hit> {
-        let s: SightSample = self.line.crossing(usize::from(high.family), f64::from(high.line))?;
+        let s: SightSample = self.line.crossing(EdgeFamily::ALL[usize::from(high.family)], f64::from(high.line))?;
         let cell = self.cells.labels()[s.nearest()];
         if cell == NO_CELL || s.rho >= self.below {
             return None;

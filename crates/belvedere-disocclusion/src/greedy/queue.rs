@@ -1,6 +1,5 @@
 //! The order in which points are followed, and what each of them does to the ground.
 
-use super::super::line_of_sight::SightLine;
 use super::super::{Cells, Field, ReferencePoint, TerrainSettings};
 use super::blocks::by_cell;
 use super::equations::{Affine, Price, blended, scale_to_clear, shift_to_clear};
@@ -8,6 +7,7 @@ use super::hits::{Hit, Hits};
 use super::trace::{Lowered, Room, Sampler, Target};
 use super::{BACKWARD, Blocks, CLEARANCE, GreedyCounters, NEAR, Naive};
 use belvedere_core::{DVec2, DVec3};
+use belvedere_sight::SightLine;
 use std::collections::BinaryHeap;
 
 /// Heights that differ by less than this share of the relief are equal.

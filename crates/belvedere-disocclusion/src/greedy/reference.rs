@@ -1,9 +1,10 @@
 //! The greedy pass in its most obvious form, for tests: everything is looked at again after every change.
 
-use super::super::{Cells, Field, ReferencePoint, SightSample, TerrainSettings, guard_tau, sight_samples};
+use super::super::{Cells, Field, ReferencePoint, TerrainSettings};
 use super::trace::cell_at;
 use super::{Affine, GreedyCounters, Price, blended};
 use belvedere_core::{DVec2, DVec3};
+use belvedere_sight::{SightSample, guard_tau, sight_samples};
 
 /// One change of a cell, nearer to the eye than `below`.
 struct Change {
@@ -101,8 +102,7 @@ impl<'a> Reference<'a> {
         let p = &self.points[point];
         let own = cell_at(self.field, self.cells, p.grid);
         let z = self.at(own, self.metres(p.grid)).of(p.ground - self.field.datum()) + p.lift;
-        let mut samples = Vec::new();
-        sight_samples(self.field, p.grid, self.eye, false, &mut samples);
+        let samples = sight_samples(self.field, p.grid, self.eye, false);
         let slack = 1e-12 * (self.field.relief() + self.eye_z.abs());
         let nearer = samples.iter().filter(|s| s.rho < below);
         let all = nearer.map(|s| {

@@ -1,19 +1,18 @@
+use super::super::PointKind;
 use super::super::cells::tests::{field_of, noise};
-use super::super::line_of_sight::SightLine;
-use super::super::{PointKind, sight_samples};
 use super::hits::{Hit, Hits};
 use super::reference::Reference;
 use super::scan::High;
 use super::trace::{Lowered, Room, Sampler, Sight, Skipping};
 use super::*;
+use belvedere_sight::{SightLine, guard_tau, sight_samples};
 
 /// Leaves out nothing.
 struct Every<'a>(&'a Field);
 
 impl Sampler for Every<'_> {
     fn samples(&self, _: &SightLine<'_>, sight: &Sight, _: &Lowered, _: &mut Room, out: &mut Vec<High>) {
-        let mut samples = Vec::new();
-        sight_samples(self.0, sight.from, sight.eye, false, &mut samples);
+        let samples = sight_samples(self.0, sight.from, sight.eye, false);
         out.extend(samples.iter().map(|s| {
             let [a, b] = s.nodes.map(|n| n as usize);
             // At a node the line that is not looked along.
@@ -192,7 +191,7 @@ fn afterwards_the_tracer_sees_every_point_that_was_resolved() {
         let slow = Reference::run(&case.field, &case.cells, &settings, case.eye, &case.points);
         let own = |p: &ReferencePoint| {
             let g = case.field.grid_from_scene(case.eye.truncate());
-            (1.0 - crate::guard_tau(p.grid, g, settings.guard)) * ((p.grid - g) * case.field.spacing()).length()
+            (1.0 - guard_tau(p.grid, g, settings.guard)) * ((p.grid - g) * case.field.spacing()).length()
         };
         let hidden: Vec<usize> = (0..case.points.len())
             .filter(|&p| !slow.unresolved[p] && !slow.over(p, own(&case.points[p])).is_empty())

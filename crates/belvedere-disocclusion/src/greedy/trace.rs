@@ -1,6 +1,5 @@
 //! What hides a point.
 
-use super::super::line_of_sight::{SightLine, guard_tau};
 use super::super::{Cells, Field, NO_CELL, ReferencePoint};
 use super::ceilings::Ceilings;
 use super::gather::Crossings;
@@ -8,6 +7,7 @@ use super::scan::{High, Scan, UNSURE, merge};
 use super::under::Under;
 use super::{Affine, Blocks, CLEARANCE, CLEARANCE_GROWS, Pieces};
 use belvedere_core::DVec2;
+use belvedere_sight::{SightLine, guard_tau};
 use pulp::{Arch, Simd, WithSimd};
 
 /// Of all heights in use.

@@ -1,10 +1,10 @@
 //! Ground under a line of sight in blocks: parts of the line that clear them are passed.
 
-use super::super::line_of_sight::SightLine;
 use super::super::register::{LANES, Lane, NTH, indices, load, split, store};
 use super::blocks::SIDE;
 use super::trace::Sight;
 use belvedere_core::DVec2;
+use belvedere_sight::SightLine;
 use pulp::Simd;
 
 /// Blocks, and how high each may be.
@@ -19,7 +19,7 @@ impl Under<'_> {
     /// The parts of a line of sight, from where its point's own ground ends, over blocks that may be higher than it, in order.
     #[inline(always)]
     pub(super) fn near<S: Simd>(&self, simd: S, plan: &SightLine<'_>, sight: &Sight, out: &mut Vec<[f64; 2]>) {
-        let (t0, t1) = plan.span();
+        let [t0, t1] = plan.span();
         let line = Line::new(sight, plan.dir(), [t0.max(sight.guard), t1]);
         if line.ends[0] >= t1 {
             return;

@@ -1,13 +1,12 @@
 //! What a deformed ground is judged by.
 
 mod change;
-mod ray;
 
 use super::visibility_qp::LinesOfSight;
 use super::{Cells, Field, ReferencePoint};
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
-use ray::Drawn;
+use belvedere_sight::{DisplacedGround, Excess, SightVertex};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -97,6 +96,30 @@ impl Shown {
     }
 }
 
+/// Lines of sight over the displaced ground.
+struct Judge<'a> {
+    ground: DisplacedGround<'a>,
+    guard: f64,
+    sight: &'a dyn LinesOfSight,
+}
+
+impl<'a> Judge<'a> {
+    fn new(field: &'a Field, delta: &'a Grid, guard: f64, sight: &'a dyn LinesOfSight) -> Self {
+        Self { ground: DisplacedGround::new(field, delta), guard, sight }
+    }
+
+    /// The line of sight of a point `lift` above the ground at grid coordinates; `None` where there is no ground.
+    fn line(&self, g: DVec2, lift: f64) -> Option<Vec<SightVertex>> {
+        let mut line = Vec::new();
+        self.sight.trace(g, self.ground.height_at(g)? + lift, &mut line);
+        Some(line)
+    }
+
+    fn excess(&self, line: &[SightVertex]) -> Excess {
+        self.ground.excess(line, self.guard)
+    }
+}
+
 /// Largest height of the ground over the line of sight of each point, negative where it is seen; `None` beside the ground.
 pub(super) fn excesses(
     field: &Field,
@@ -105,26 +128,26 @@ pub(super) fn excesses(
     sight: &dyn LinesOfSight,
     points: &[ReferencePoint],
 ) -> Vec<Option<f64>> {
-    let drawn = Drawn::new(field, delta, guard);
-    points.par_iter().map(|p| drawn.line(p.grid, p.lift, sight).map(|line| over(drawn.excess(&line)))).collect()
+    let judge = Judge::new(field, delta, guard, sight);
+    points.par_iter().map(|p| judge.line(p.grid, p.lift).map(|line| over(judge.excess(&line).over))).collect()
 }
 
-/// Where the drawn ground hides places at grid coordinates with a lift, and by how much it rises over their lines of sight there.
+/// Where the drawn ground hides points at grid coordinates with a lift, and by how much it rises over their lines of sight there.
 ///
-/// * `guard`: ground nearer than this to a place does not hide it, cells.
+/// * `guard`: ground nearer than this to a point does not hide it, cells.
 pub(super) fn hiding(
     field: &Field,
     delta: &Grid,
     guard: f64,
     sight: &dyn LinesOfSight,
-    places: &[(DVec2, f64)],
+    points: &[(DVec2, f64)],
 ) -> Vec<Option<(DVec2, f64)>> {
-    let drawn = Drawn::new(field, delta, guard);
+    let judge = Judge::new(field, delta, guard, sight);
     let of = |&(g, lift): &(DVec2, f64)| {
-        let worst = drawn.worst(&drawn.line(g, lift, sight)?);
+        let worst = judge.excess(&judge.line(g, lift)?);
         (worst.over > TOUCH && worst.over.is_finite()).then_some((worst.at, worst.over))
     };
-    places.par_iter().map(of).collect()
+    points.par_iter().map(of).collect()
 }
 
 /// What rises over a line of sight; any negative number if that is rounding.
@@ -132,7 +155,7 @@ fn over(excess: f64) -> f64 {
     if excess > TOUCH { excess } else { -1.0 }
 }
 
-/// What hides a place.
+/// What hides a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Hides {
     /// Ground that rises so far over its line of sight; infinite if it has none.
@@ -143,10 +166,10 @@ pub(super) enum Hides {
 
 /// Each dense point on the ground, by its index, and what hides it.
 fn dense(of: &Deformation<'_>) -> Vec<(usize, Option<Hides>)> {
-    let drawn = Drawn::new(of.field, of.delta, of.guard);
+    let judge = Judge::new(of.field, of.delta, of.guard, of.sight);
     let judged = |(i, p): (usize, &ReferencePoint)| {
-        let line = drawn.line(p.grid, p.lift, of.sight)?;
-        let (over, near) = (drawn.excess(&line), drawn.near_excess(&line));
+        let line = judge.line(p.grid, p.lift)?;
+        let (over, near) = (judge.excess(&line).over, judge.ground.near_excess(&line, of.guard));
         let hides = match (over > TOUCH, near > TOUCH) {
             (true, _) => Some(Hides::Ground(over)),
             (false, true) => Some(Hides::InGuard(near)),

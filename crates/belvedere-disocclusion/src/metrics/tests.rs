@@ -73,8 +73,9 @@ fn rays_find_what_a_hundred_thousand_steps_find() {
             // On grid lines and nodes, too.
             let p = if k % 4 == 0 { p.round() } else { p };
             let eye = field.scene_from_grid(eye_grid).extend(1250.0 + r(4, 100.0));
-            let drawn = Drawn::new(&field, &delta, 1.5);
-            let ours = drawn.excess(&drawn.line(p, 1.0, &sight(&field, eye)).unwrap());
+            let sight = sight(&field, eye);
+            let judge = Judge::new(&field, &delta, 1.5, &sight);
+            let ours = judge.excess(&judge.line(p, 1.0).unwrap()).over;
             let height = |g: DVec2| field.surface_at(g).map(|h| h + delta.sample(field.scene_from_grid(g)).unwrap());
             let (z, guard) = (height(p).unwrap() + 1.0, 1.5 / (eye_grid - p).length());
             let steps = 100_000;

@@ -5,7 +5,6 @@
 //! program is convex and its solution is the only one. Not in the paper.
 
 mod alone;
-mod bent;
 mod bundle;
 mod cholesky;
 mod dual;
@@ -18,11 +17,12 @@ mod row;
 mod seen;
 mod solver;
 mod surface;
+mod view_rays;
 mod walk;
 
-pub use bent::ViewSight;
 pub use problem::{
     Candidate, Certificate, LinesOfSight, QpError, QpOptions, QpProblem, QpResult, Reason, SolvedRow, StraightSight,
     Unresolved,
 };
 pub use solver::QpSolver;
+pub use view_rays::ViewSight;

@@ -2,11 +2,13 @@
 
 use crate::smooth::Between;
 use belvedere_core::DVec2;
+use belvedere_scene::CellTriangle;
+use belvedere_sight::Pyramid;
 
 /// Cells per side of the smallest block whose bound follows the displacement.
 const BLOCK: usize = 8;
-/// Cells per side of the blocks that bound the undisplaced ground, smallest first; the last is [`BLOCK`].
-const STILL: [usize; 3] = [2, 4, BLOCK];
+/// Cells per side of the smallest block that bounds the undisplaced ground.
+const FINEST: usize = 2;
 
 /// Nodes of the solver over the field.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,37 +43,6 @@ impl Lattice {
     }
 }
 
-/// Highest values of blocks, of blocks of blocks, ...
-#[derive(Debug, Clone)]
-struct Level {
-    cols: usize,
-    rows: usize,
-    /// Cells per side of a block.
-    size: usize,
-    /// One over `size`.
-    scale: f64,
-    highest: Vec<f64>,
-}
-
-impl Level {
-    /// Highest value around the box of `a` and `b`, from the finest level whose blocks are as large as the box.
-    fn bound(levels: &[Self], a: DVec2, b: DVec2) -> f64 {
-        let (lo, hi) = (a.min(b), a.max(b));
-        let extent = (hi - lo).max_element();
-        let level = levels.iter().find(|l| l.size as f64 >= extent).unwrap_or(&levels[levels.len() - 1]);
-        let index = |v: f64, n: usize| ((v * level.scale).max(0.0) as usize).min(n - 1);
-        let (x0, x1) = (index(lo.x, level.cols), index(hi.x, level.cols));
-        let (y0, y1) = (index(lo.y, level.rows), index(hi.y, level.rows));
-        let mut most = f64::NEG_INFINITY;
-        for y in y0..=y1 {
-            for v in &level.highest[y * level.cols + x0..=y * level.cols + x1] {
-                most = most.max(*v);
-            }
-        }
-        most
-    }
-}
-
 /// Heights that do not move, a displacement that does, and bounds on their sum.
 #[derive(Debug, Clone)]
 pub(super) struct Surface {
@@ -84,28 +55,14 @@ pub(super) struct Surface {
     pub(super) u: Vec<f64>,
     /// For each cell of the lattice the value at its first node and the factors of x, y and xy, both 0..=1 in the cell.
     pub(super) patches: Vec<[f64; 4]>,
-    still: Vec<Level>,
-    levels: Vec<Level>,
+    /// Highest undisplaced ground of blocks of 2, 4, .. cells, and highest displaced ground of blocks of [`BLOCK`], ..
+    still: Pyramid<f64>,
+    displaced: Pyramid<f64>,
 }
 
 impl Surface {
     pub(super) fn new(heights: &[f64], cols: usize, rows: usize, lattice: Lattice) -> Self {
-        let (mut c, mut r) = ((cols - 1).div_ceil(BLOCK).max(1), (rows - 1).div_ceil(BLOCK).max(1));
-        let mut levels = Vec::new();
-        let mut size = BLOCK;
-        loop {
-            levels.push(Level {
-                cols: c,
-                rows: r,
-                size,
-                scale: 1.0 / size as f64,
-                highest: vec![f64::INFINITY; c * r],
-            });
-            if c == 1 && r == 1 {
-                break;
-            }
-            (c, r, size) = (c.div_ceil(2), r.div_ceil(2), size * 2);
-        }
+        let cells = [cols - 1, rows - 1];
         let mut out = Self {
             cols,
             rows,
@@ -114,8 +71,8 @@ impl Surface {
             lattice,
             u: vec![0.0; lattice.cols * lattice.rows],
             patches: vec![[0.0; 4]; (lattice.cols.max(2) - 1) * (lattice.rows.max(2) - 1)],
-            still: Vec::new(),
-            levels,
+            still: Pyramid::new(cells, FINEST, |_| 0.0, |_, _, _| 0.0),
+            displaced: Pyramid::new(cells, BLOCK, |_| 0.0, |_, _, _| 0.0),
         };
         out.bound_heights();
         out.displace(&out.u.clone());
@@ -129,21 +86,15 @@ impl Surface {
     }
 
     fn bound_heights(&mut self) {
-        let range = |[low, high]: [f64; 2], h: &f64| [low.min(*h), high.max(*h)];
-        self.range = self.heights.iter().fold([f64::INFINITY, f64::NEG_INFINITY], range);
-        self.still.clear();
-        for size in STILL {
-            let (cols, rows) = ((self.cols - 1).div_ceil(size).max(1), (self.rows - 1).div_ceil(size).max(1));
-            let highest = (0..cols * rows).map(|b| self.highest(b % cols * size, b / cols * size, size)).collect();
-            self.still.push(Level { cols, rows, size, scale: 1.0 / size as f64, highest });
-        }
-    }
-
-    /// Highest vertex of the block at (x, y).
-    fn highest(&self, x: usize, y: usize, size: usize) -> f64 {
-        let (x1, y1) = ((x + size).min(self.cols - 1), (y + size).min(self.rows - 1));
-        let rows = (y..=y1).flat_map(|y| &self.heights[y * self.cols + x..=y * self.cols + x1]);
-        rows.fold(f64::NEG_INFINITY, |m, h| m.max(*h))
+        let (cols, rows, heights) = (self.cols, self.rows, &self.heights);
+        self.range =
+            heights.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], h| [low.min(*h), high.max(*h)]);
+        let highest = |[x, y]: [usize; 2]| {
+            let (x, y) = (x * FINEST, y * FINEST);
+            let (x1, y1) = ((x + FINEST).min(cols - 1), (y + FINEST).min(rows - 1));
+            most((y..=y1).flat_map(|y| &heights[y * cols + x..=y * cols + x1]))
+        };
+        self.still.renew(highest, |children| most(children));
     }
 
     /// Takes `u` and renews the bounds.
@@ -164,46 +115,25 @@ impl Surface {
             let to = (((block + 1) * BLOCK) as f64 / step).ceil() as usize;
             (from.min(n - 1), to.min(n - 1))
         };
-        let still = &self.still[STILL.len() - 1];
-        let base = &mut self.levels[0];
-        for by in 0..base.rows {
-            let (y0, y1) = span(by, lattice.step.y, lattice.rows);
-            for bx in 0..base.cols {
-                let (x0, x1) = span(bx, lattice.step.x, lattice.cols);
-                let mut most = f64::NEG_INFINITY;
-                for y in y0..=y1 {
-                    for v in &u[y * lattice.cols + x0..=y * lattice.cols + x1] {
-                        most = most.max(*v);
-                    }
-                }
-                base.highest[by * base.cols + bx] = still.highest[by * base.cols + bx] + most;
-            }
-        }
-        for k in 1..self.levels.len() {
-            let (finer, coarser) = self.levels.split_at_mut(k);
-            let (fine, coarse) = (&finer[k - 1], &mut coarser[0]);
-            for y in 0..coarse.rows {
-                for x in 0..coarse.cols {
-                    let mut most = f64::NEG_INFINITY;
-                    for fy in 2 * y..(2 * y + 2).min(fine.rows) {
-                        for fx in 2 * x..(2 * x + 2).min(fine.cols) {
-                            most = most.max(fine.highest[fy * fine.cols + fx]);
-                        }
-                    }
-                    coarse.highest[y * coarse.cols + x] = most;
-                }
-            }
-        }
+        let still = &self.still;
+        let level = still.level_of(BLOCK as f64);
+        let highest = |block: [usize; 2]| {
+            let ((x0, x1), (y0, y1)) =
+                (span(block[0], lattice.step.x, lattice.cols), span(block[1], lattice.step.y, lattice.rows));
+            let moved = most((y0..=y1).flat_map(|y| &u[y * lattice.cols + x0..=y * lattice.cols + x1]));
+            still.block(level, block) + moved
+        };
+        self.displaced.renew(highest, |children| most(children));
     }
 
     /// Nothing between `a` and `b` (grid) is higher.
     pub(super) fn bound(&self, a: DVec2, b: DVec2) -> f64 {
-        Level::bound(&self.levels, a, b)
+        bound(&self.displaced, usize::MAX, a, b)
     }
 
     /// Nothing of the undisplaced ground between `a` and `b` (grid) is higher.
     pub(super) fn still_bound(&self, a: DVec2, b: DVec2) -> f64 {
-        Level::bound(&self.still, a, b)
+        bound(&self.still, self.still.level_of(BLOCK as f64), a, b)
     }
 
     /// Nothing of the displacement in a box (least and greatest corner, grid) is higher; and the factor of xy there that is farthest
@@ -217,7 +147,7 @@ impl Surface {
             let y = [low.y, high.y].map(|y| (y - row as f64).clamp(0.0, 1.0));
             for col in index(low.x, cols)..=index(high.x, cols) {
                 let x = [low.x, high.x].map(|x| (x - col as f64).clamp(0.0, 1.0));
-                let [c, cx, cy, cxy] = self.patches[row * cols + col];
+                let [c, cx, cy, cxy] = self.patch(col, row);
                 for (x, y) in [(x[0], y[0]), (x[1], y[0]), (x[0], y[1]), (x[1], y[1])] {
                     most = most.max(c + x * cx + y * (cy + x * cxy));
                 }
@@ -227,6 +157,11 @@ impl Surface {
         (most, twist / (self.lattice.step.x * self.lattice.step.y))
     }
 
+    /// The displacement over a cell of the lattice, see [`Self::patches`].
+    pub(super) fn patch(&self, col: usize, row: usize) -> [f64; 4] {
+        self.patches[row * (self.lattice.cols.max(2) - 1) + col]
+    }
+
     /// Height of the undisplaced triangles at grid position `g` (clamped into the grid).
     #[inline]
     pub(super) fn ground(&self, g: DVec2) -> f64 {
@@ -234,13 +169,21 @@ impl Surface {
             (g.x.max(0.0) as usize).min(self.cols.saturating_sub(2)),
             (g.y.max(0.0) as usize).min(self.rows.saturating_sub(2)),
         );
-        let (a, b) = ((g.x - col as f64).clamp(0.0, 1.0), (g.y - row as f64).clamp(0.0, 1.0));
-        let h = |x: usize, y: usize| self.heights[(row + y) * self.cols + col + x];
-        // Split from north-west to south-east.
-        if a >= b {
-            h(0, 0) + a * (h(1, 0) - h(0, 0)) + b * (h(1, 1) - h(1, 0))
-        } else {
-            h(0, 0) + b * (h(0, 1) - h(0, 0)) + a * (h(1, 1) - h(0, 1))
-        }
+        let fractions = (g - DVec2::new(col as f64, row as f64)).clamp(DVec2::ZERO, DVec2::ONE);
+        let nw = row * self.cols + col;
+        let corners = [nw, nw + 1, nw + self.cols, nw + self.cols + 1].map(|i| self.heights[i]);
+        CellTriangle::at(fractions).height(corners, fractions)
     }
+}
+
+fn most<'v>(values: impl IntoIterator<Item = &'v f64>) -> f64 {
+    values.into_iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v))
+}
+
+/// Highest value around the box of `a` and `b`, by blocks as large as the box but of level `coarsest` at most.
+fn bound(blocks: &Pyramid<f64>, coarsest: usize, a: DVec2, b: DVec2) -> f64 {
+    let (low, high) = (a.min(b), a.max(b));
+    let level = blocks.level_of((high - low).max_element()).min(coarsest);
+    let [first, last] = [low, high].map(|g| blocks.block_at(level, g));
+    blocks.fold(level, first, last, f64::NEG_INFINITY, |m, v| m.max(*v))
 }

@@ -1,7 +1,9 @@
 //! Where the ground comes too close to a line of sight.
 
 use super::surface::Surface;
+use crate::smooth::Between;
 use belvedere_core::DVec2;
+use belvedere_sight::{EdgeFamily, GridLine, floor};
 
 /// A straight part of a line of sight, from the point that must be seen towards the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,16 +66,13 @@ pub(super) const LEAF: f64 = 8.0;
 /// Longest part whose crossings are visited without asking the finest bounds, cells.
 const FINE: f64 = 3.0;
 
-/// Largest whole number up to `x`, a coordinate; where there is no instruction for it, `f64::floor` is a call.
-#[inline]
-fn floor(x: f64) -> f64 {
-    let whole = x as i64 as f64;
-    if whole > x { whole - 1.0 } else { whole }
-}
-
 impl Chord {
+    fn plan(&self) -> GridLine {
+        GridLine::between(self.ends[0], self.ends[1])
+    }
+
     fn at(&self, t: f64) -> DVec2 {
-        self.ends[0] + t * (self.ends[1] - self.ends[0])
+        self.plan().at(t)
     }
 
     fn mix(v: [f64; 2], t: f64) -> f64 {
@@ -82,21 +81,9 @@ impl Chord {
 
     /// Part of the chord over the grid of `surface` and at least `guard` away from `point`.
     pub(super) fn part(&self, surface: &Surface, point: DVec2, guard: f64) -> Option<[f64; 2]> {
-        let (mut from, mut to) = (0.0f64, 1.0f64);
-        let d = self.ends[1] - self.ends[0];
-        let last = [(surface.cols - 1) as f64, (surface.rows - 1) as f64];
-        for (axis, last) in last.into_iter().enumerate() {
-            let (p, d) = (self.ends[0][axis], d[axis]);
-            if d == 0.0 {
-                if !(0.0..=last).contains(&p) {
-                    return None;
-                }
-                continue;
-            }
-            let (a, b) = ((0.0 - p) / d, (last - p) / d);
-            from = from.max(a.min(b));
-            to = to.min(a.max(b));
-        }
+        let line = self.plan();
+        let [mut from, to] = line.over([surface.cols, surface.rows], 0.0)?;
+        let d = line.dir;
         let to_point = self.ends[0] - point;
         let (square, half) = (d.length_squared(), to_point.dot(d));
         if square > 0.0 {
@@ -274,48 +261,10 @@ impl Chord {
     }
 
     /// Calls `visit` with parameter, position and undisplaced ground of every kink of the drawn ground along a part.
-    fn crossings(&self, surface: &Surface, [a, b]: [f64; 2], visit: &mut impl FnMut(f64, DVec2, f64)) {
-        let (p, d) = (self.ends[0], self.ends[1] - self.ends[0]);
-        let (ga, gb) = (self.at(a), self.at(b));
-        let (cols, rows) = (surface.cols, surface.rows);
-        let heights = &surface.heights;
-        let lines = |from: f64, to: f64| {
-            let (lo, hi) = (-floor(-from.min(to)), floor(from.max(to)));
-            (0..(hi - lo + 1.0).max(0.0) as usize).map(move |k| lo + k as f64)
-        };
-        if d.x != 0.0 {
-            for x in lines(ga.x, gb.x) {
-                let t = (x - p.x) / d.x;
-                let y = (p.y + t * d.y).clamp(0.0, (rows - 1) as f64);
-                let (col, row) = ((x.max(0.0) as usize).min(cols - 1), (y as usize).min(rows.saturating_sub(2)));
-                let (f, i) = (y - row as f64, row * cols + col);
-                visit(t, DVec2::new(x, y), heights[i] + f * (heights[i + cols] - heights[i]));
-            }
-        }
-        if d.y != 0.0 {
-            for y in lines(ga.y, gb.y) {
-                let t = (y - p.y) / d.y;
-                let x = (p.x + t * d.x).clamp(0.0, (cols - 1) as f64);
-                let (col, row) = ((x as usize).min(cols.saturating_sub(2)), (y.max(0.0) as usize).min(rows - 1));
-                let (f, i) = (x - col as f64, row * cols + col);
-                visit(t, DVec2::new(x, y), heights[i] + f * (heights[i + 1] - heights[i]));
-            }
-        }
-        if d.x != d.y {
-            let last = [(cols - 1) as f64, (rows - 1) as f64];
-            for k in lines(ga.x - ga.y, gb.x - gb.y) {
-                // First and last edge of the diagonal. Those of the north-east and south-west corners have none.
-                let (first, end) = (k.max(0.0), last[0].min(last[1] + k) - 1.0);
-                if first > end {
-                    continue;
-                }
-                let t = (k - (p.x - p.y)) / (d.x - d.y);
-                let g = p + t * d;
-                let start = floor(g.x).clamp(first, end);
-                let f = (g.x - start).clamp(0.0, 1.0);
-                let i = (start - k) as usize * cols + start as usize;
-                visit(t, g, heights[i] + f * (heights[i + cols + 1] - heights[i]));
-            }
+    fn crossings(&self, surface: &Surface, part: [f64; 2], visit: &mut impl FnMut(f64, DVec2, f64)) {
+        for family in EdgeFamily::ALL {
+            let nodes = [surface.cols, surface.rows];
+            self.plan().crossings(nodes, family, part, 0.0, |t, at, edge| visit(t, at, edge.of(&surface.heights)));
         }
     }
 }
@@ -330,14 +279,10 @@ impl Gap {
     /// For the cell at parameter `inside`.
     fn new(chord: &Chord, surface: &Surface, inside: f64, clearance: &Clearance) -> Self {
         let step = surface.lattice.step;
-        let (nodes, _) = surface.lattice.weights(chord.at(inside));
-        let [nw, ne, sw, se] = nodes.map(|n| surface.u[n as usize]);
-        let corner = DVec2::new(
-            (nodes[0] as usize % surface.lattice.cols) as f64,
-            (nodes[0] as usize / surface.lattice.cols) as f64,
-        );
+        let Between { col, row, .. } = surface.lattice.between(chord.at(inside));
+        let [nw, x, y, xy] = surface.patch(col as usize, row as usize);
+        let corner = DVec2::new(f64::from(col), f64::from(row));
         let (p, d) = (chord.ends[0] / step - corner, (chord.ends[1] - chord.ends[0]) / step);
-        let [x, y, xy] = [ne - nw, sw - nw, se - sw - ne + nw];
         let z = chord.z;
         let c = [
             nw + x * p.x + y * p.y + xy * p.x * p.y - z[0],

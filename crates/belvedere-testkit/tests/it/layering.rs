@@ -7,7 +7,7 @@ use std::process::Command;
 const RULES: &[(&str, &[&str], &[&str])] = &[
     ("belvedere-core", &[], &["glam", "schemars", "serde", "thiserror"]),
     ("belvedere-scene", &["belvedere-core"], &["glam", "rayon", "serde", "thiserror"]),
-    ("belvedere-sight", &["belvedere-core", "belvedere-scene"], &["glam", "obvhs", "rayon"]),
+    ("belvedere-sight", &["belvedere-core", "belvedere-scene"], &["glam", "obvhs", "rayon", "thiserror"]),
     ("belvedere-builtin", &["belvedere-core", "belvedere-scene", "belvedere-sight"], &["rayon", "thiserror"]),
     (
         "belvedere-io",

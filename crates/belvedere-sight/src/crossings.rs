@@ -1,10 +1,10 @@
 //! Where a line of sight meets the edges of the ground's triangles.
 
-use super::Field;
+use crate::{Edge, EdgeFamily, Field, GridLine};
 use belvedere_core::DVec2;
 
 /// Lines that come closer to a node than this pass through it, cells.
-pub(super) const AT_NODE: f64 = 1e-9;
+pub const AT_NODE: f64 = 1e-9;
 
 /// One crossing of the line of sight from a point P to the eye V with an edge of the ground.
 ///
@@ -30,7 +30,7 @@ impl SightSample {
     }
 
     /// Whether both are the same node, met on two lines of the grid.
-    pub(super) fn same_node(&self, other: &Self) -> bool {
+    fn same_node(&self, other: &Self) -> bool {
         self.weight == 0.0 && other.weight == 0.0 && self.nodes == other.nodes
     }
 
@@ -51,192 +51,73 @@ pub fn guard_tau(from: DVec2, eye: DVec2, guard: f64) -> f64 {
 /// Crossings of the line of sight with the lines x = int and y = int, from the point to the eye, each once.
 ///
 /// * `from`, `eye`: grid coordinates; either may lie beside the grid, where nothing is crossed;
-/// * `diagonals`: also with the cells' north-west to south-east diagonals, where the drawn surface has its kinks;
-/// * `out` is overwritten.
+/// * `diagonals`: also with the cells' north-west to south-east diagonals, where the drawn surface has its kinks.
 ///
 /// Where an end of an edge is void there is no ground and no sample. A point under the eye has no samples.
-pub fn sight_samples(field: &Field, from: DVec2, eye: DVec2, diagonals: bool, out: &mut Vec<SightSample>) {
-    out.clear();
-    if let Some(mut walk) = SightWalk::new(field, from, eye, diagonals) {
-        let (_, end) = walk.line.span;
-        walk.samples_to(end, out);
+pub fn sight_samples(field: &Field, from: DVec2, eye: DVec2, diagonals: bool) -> Vec<SightSample> {
+    let mut out = Vec::new();
+    let Some(line) = SightLine::new(field, from, eye) else { return out };
+    let families = if diagonals { &EdgeFamily::ALL[..] } else { &EdgeFamily::ALL[..2] };
+    for &family in families {
+        line.line
+            .crossings(field.nodes(), family, line.span, AT_NODE, |tau, _, edge| out.extend(line.sample(tau, edge)));
     }
+    out.sort_by(|a, b| a.tau.total_cmp(&b.tau));
+    out.dedup_by(|next, sample| sample.same_node(next));
+    out
 }
 
-/// A line of sight over the grid, in plan.
-pub(super) struct SightLine<'a> {
+/// A line of sight over the grid, in plan, from the point to the eye.
+pub struct SightLine<'a> {
     field: &'a Field,
-    from: DVec2,
-    dir: DVec2,
+    line: GridLine,
     plan_m: f64,
-    span: (f64, f64),
-}
-
-/// A line of sight on its way from the point to the eye.
-struct SightWalk<'a> {
-    line: SightLine<'a>,
-    crossings: [Crossings; 3],
-}
-
-impl<'a> SightWalk<'a> {
-    /// `None` if the line does not meet the grid.
-    fn new(field: &'a Field, from: DVec2, eye: DVec2, diagonals: bool) -> Option<Self> {
-        let line = SightLine::new(field, from, eye)?;
-        let (dir, span) = (line.dir, line.span);
-        let diagonal = if diagonals { dir.x - dir.y } else { 0.0 };
-        let crossings = [
-            Crossings::new(from.x, dir.x, span),
-            Crossings::new(from.y, dir.y, span),
-            Crossings::new(from.x - from.y, diagonal, span),
-        ];
-        Some(Self { line, crossings })
-    }
-
-    /// Appends the crossings from where the walk is up to `tau`.
-    #[inline(always)]
-    fn samples_to(&mut self, end: f64, out: &mut Vec<SightSample>) {
-        loop {
-            let next = self.crossings.each_ref().map(|c| c.tau);
-            let family = if next[1] < next[0] { 1 } else { 0 };
-            let family = if next[2] < next[family] { 2 } else { family };
-            let tau = next[family];
-            // Beside the span there are none, so the last may lie beyond its end by rounding.
-            if tau == f64::INFINITY || (tau > end && end < self.line.span.1) {
-                return;
-            }
-            let k = self.crossings[family].advance();
-            let Some(sample) = self.line.at(family, k, tau) else { continue };
-            if !out.last().is_some_and(|s| s.same_node(&sample)) {
-                out.push(sample);
-            }
-        }
-    }
+    span: [f64; 2],
 }
 
 impl<'a> SightLine<'a> {
     /// `None` if the line does not meet the grid.
-    pub(super) fn new(field: &'a Field, from: DVec2, eye: DVec2) -> Option<Self> {
-        let dir = eye - from;
-        let span = over(field, from, dir)?;
-        Some(Self { field, from, dir, plan_m: (dir * field.spacing()).length(), span })
+    pub fn new(field: &'a Field, from: DVec2, eye: DVec2) -> Option<Self> {
+        let line = GridLine::between(from, eye);
+        let span = line.over(field.nodes(), 0.0)?;
+        Some(Self { field, line, plan_m: (line.dir * field.spacing()).length(), span })
     }
 
     /// The part of the line over the grid.
-    pub(super) fn span(&self) -> (f64, f64) {
+    pub fn span(&self) -> [f64; 2] {
         self.span
     }
 
     /// Where the line of sight starts, cells.
-    pub(super) fn from(&self) -> DVec2 {
-        self.from
+    pub fn from(&self) -> DVec2 {
+        self.line.start
     }
 
     /// From the point to the eye, cells.
-    pub(super) fn dir(&self) -> DVec2 {
-        self.dir
+    pub fn dir(&self) -> DVec2 {
+        self.line.dir
     }
 
-    /// The crossing with line `k` of a family (0: x = k, 1: y = k).
-    #[inline(always)]
-    pub(super) fn crossing(&self, family: usize, k: f64) -> Option<SightSample> {
-        self.at(family, k, (k - self.from[family]) / self.dir[family])
+    /// The crossing with line `k` of a family.
+    #[inline]
+    pub fn crossing(&self, family: EdgeFamily, k: f64) -> Option<SightSample> {
+        let tau = (k - family.coordinate(self.line.start)) / family.coordinate(self.line.dir);
+        self.sample(tau, Edge::crossed(self.field.nodes(), family, k, self.line.at(tau))?)
     }
 
-    #[inline(always)]
-    fn at(&self, family: usize, k: f64, tau: f64) -> Option<SightSample> {
+    #[inline]
+    fn sample(&self, tau: f64, Edge { first, second, weight }: Edge) -> Option<SightSample> {
         if !(tau > 0.0 && tau < 1.0) {
             return None;
         }
-        let (nodes, weight) = self.edge(family, k, tau);
-        let void = nodes.iter().any(|&n| self.field.void()[n as usize]);
-        (!void).then_some(SightSample { tau, nodes, weight, rho: (1.0 - tau) * self.plan_m })
-    }
-
-    /// The edge crossed at `tau` on line `k` of a family (x, y, x - y), and the share of its second node.
-    #[inline(always)]
-    fn edge(&self, family: usize, k: f64, tau: f64) -> ([u32; 2], f64) {
-        let cols = self.field.cols();
-        let last = DVec2::new((cols - 1) as f64, (self.field.rows() - 1) as f64);
-        // What runs along the edge: y on a line x = k, else x.
-        let axis = usize::from(family == 0);
-        let along = (self.from[axis] + tau * self.dir[axis]).clamp(0.0, last[axis]);
-        let near = along.round();
-        let at_node = (along - near).abs() <= AT_NODE;
-        let start = if at_node { near } else { along.floor() };
-        let (corner, step) = match family {
-            0 => (DVec2::new(k, start), cols),
-            1 => (DVec2::new(start, k), 1),
-            _ => (DVec2::new(start, start - k), cols + 1),
+        let (nodes, weight) = match weight {
+            w if w <= AT_NODE => ([first; 2], 0.0),
+            w if w >= 1.0 - AT_NODE => ([second; 2], 0.0),
+            w => ([first, second], w),
         };
-        let corner = corner.clamp(DVec2::ZERO, last);
-        let node = corner.y as usize * cols + corner.x as usize;
-        if at_node { ([node as u32; 2], 0.0) } else { ([node as u32, (node + step) as u32], along - start) }
-    }
-}
-
-/// The part of a line over the grid.
-fn over(field: &Field, from: DVec2, dir: DVec2) -> Option<(f64, f64)> {
-    if !(from.is_finite() && dir.is_finite()) {
-        return None;
-    }
-    let (mut t0, mut t1) = (0.0f64, 1.0f64);
-    for (axis, last) in [field.cols() - 1, field.rows() - 1].into_iter().enumerate() {
-        let (p, d) = (from[axis], dir[axis]);
-        if d == 0.0 {
-            if !(0.0..=last as f64).contains(&p) {
-                return None;
-            }
-            continue;
-        }
-        let (s0, s1) = (-p / d, (last as f64 - p) / d);
-        t0 = t0.max(s0.min(s1));
-        t1 = t1.min(s0.max(s1));
-    }
-    (t0 <= t1).then_some((t0, t1))
-}
-
-/// Crossings with one family of parallel lines, by rising tau.
-struct Crossings {
-    start: f64,
-    step: f64,
-    /// The next line and the last one, and the next one's tau (infinite after the last).
-    k: f64,
-    last: f64,
-    tau: f64,
-}
-
-impl Crossings {
-    fn new(start: f64, step: f64, (t0, t1): (f64, f64)) -> Self {
-        if step == 0.0 {
-            return Self { start, step, k: 0.0, last: 0.0, tau: f64::INFINITY };
-        }
-        let end = start + t1 * step;
-        let last = if step > 0.0 { (end + AT_NODE).floor() } else { (end - AT_NODE).ceil() };
-        let mut out = Self { start, step, k: 0.0, last, tau: 0.0 };
-        out.k = out.first_from(t0);
-        out.set();
-        out
-    }
-
-    #[inline(always)]
-    fn first_from(&self, tau: f64) -> f64 {
-        let at = self.start + tau * self.step;
-        if self.step > 0.0 { (at - AT_NODE).ceil() } else { (at + AT_NODE).floor() }
-    }
-
-    #[inline(always)]
-    fn set(&mut self) {
-        let over = if self.step > 0.0 { self.k > self.last } else { self.k < self.last };
-        self.tau = if over { f64::INFINITY } else { (self.k - self.start) / self.step };
-    }
-
-    /// The line crossed now; goes on to the next one.
-    #[inline(always)]
-    fn advance(&mut self) -> f64 {
-        let k = self.k;
-        self.k += self.step.signum();
-        self.set();
-        k
+        let solid = nodes.iter().all(|&n| !self.field.void()[n]);
+        let nodes = nodes.map(|n| n as u32);
+        solid.then_some(SightSample { tau, nodes, weight, rho: (1.0 - tau) * self.plan_m })
     }
 }
 
@@ -254,9 +135,7 @@ mod tests {
     }
 
     fn samples(field: &Field, from: [f64; 2], eye: [f64; 2], diagonals: bool) -> Vec<SightSample> {
-        let mut out = Vec::new();
-        sight_samples(field, DVec2::from(from), DVec2::from(eye), diagonals, &mut out);
-        out
+        sight_samples(field, DVec2::from(from), DVec2::from(eye), diagonals)
     }
 
     /// Number of crossings of one axis, by counting integers strictly between.

@@ -1,9 +1,9 @@
-//! The ground in the solver's coordinates.
+//! The ground in grid coordinates, lowered by the curvature of the earth: what terrain disocclusion is solved on.
 
 use belvedere_core::DVec2;
 use belvedere_scene::{CellTriangle, Heightfield, NodeState};
 
-/// Terrain that cannot be solved on.
+/// Terrain that has no heights.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FieldError {
@@ -39,10 +39,10 @@ impl Field {
     /// [`FieldError::Empty`].
     pub fn new(hf: &Heightfield, drop: impl Fn(DVec2) -> f64) -> Result<Self, FieldError> {
         let (cols, rows) = (hf.cols(), hf.rows());
-        let place = |i: usize| hf.node_xy(i % cols, i / cols);
+        let node = |i: usize| hf.node_xy(i % cols, i / cols);
         let void: Vec<bool> = hf.states().iter().map(|s| *s == NodeState::Void).collect();
         let mut heights: Vec<f64> =
-            hf.heights().iter().enumerate().map(|(i, h)| f64::from(*h) - drop(place(i))).collect();
+            hf.heights().iter().enumerate().map(|(i, h)| f64::from(*h) - drop(node(i))).collect();
         let solid = heights.iter().zip(&void).filter(|(_, v)| !**v).map(|(h, _)| *h);
         let range = solid.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], h| [lo.min(h), hi.max(h)]);
         if range[0] > range[1] {
@@ -64,6 +64,11 @@ impl Field {
     /// Rows.
     pub fn rows(&self) -> usize {
         self.rows
+    }
+
+    /// Columns and rows.
+    pub fn nodes(&self) -> [usize; 2] {
+        [self.cols, self.rows]
     }
 
     /// Scene x, y of node (0, 0).

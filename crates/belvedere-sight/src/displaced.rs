@@ -1,0 +1,134 @@
+//! The displaced ground, and lines of sight over it.
+
+use crate::{Field, GridLine};
+use belvedere_core::DVec2;
+use belvedere_core::grid::Grid;
+
+/// Steps along a line over one triangle are at most this long, cells; the surface is bent only by the displacement.
+const STEP: f64 = 0.25;
+
+/// Ground with a vertical displacement, as it is drawn: two triangles per cell plus the bilinear displacement.
+pub struct DisplacedGround<'a> {
+    field: &'a Field,
+    delta: &'a Grid,
+    /// Nothing is higher than this.
+    highest: f64,
+}
+
+/// A vertex of a line of sight: grid coordinates and height.
+pub type SightVertex = (DVec2, f64);
+
+/// The ground that rises most over a line of sight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Excess {
+    /// By how much, scene units; any negative number if it is below the line everywhere, infinite if there is no line.
+    pub over: f64,
+    /// Where, grid coordinates; the start of the line where nothing rises over it.
+    pub at: DVec2,
+}
+
+impl<'a> DisplacedGround<'a> {
+    /// * `delta`: displacement upwards, scene units; 0 beside its grid.
+    pub fn new(field: &'a Field, delta: &'a Grid) -> Self {
+        let highest = field.datum() + field.relief() + delta.range()[1].max(0.0);
+        Self { field, delta, highest }
+    }
+
+    fn displacement(&self, g: DVec2) -> f64 {
+        self.delta.sample(self.field.scene_from_grid(g)).unwrap_or(0.0)
+    }
+
+    /// Height at grid coordinates; `None` beside the grid and in holes.
+    pub fn height_at(&self, g: DVec2) -> Option<f64> {
+        Some(self.field.surface_at(g)? + self.displacement(g))
+    }
+
+    /// The ground that rises most over a line of sight, from the point to the eye.
+    ///
+    /// * `guard`: ground nearer than this to the point does not count, cells.
+    pub fn excess(&self, line: &[SightVertex], guard: f64) -> Excess {
+        let [(at, _), _, ..] = *line else { return Excess { over: f64::INFINITY, at: DVec2::ZERO } };
+        let mut worst = Excess { over: -1.0, at };
+        for pair in line.windows(2) {
+            if let Some(from) = beyond(at, guard, pair[0], pair[1]) {
+                self.along(from, pair[1], &mut worst);
+            }
+        }
+        worst
+    }
+
+    /// As [`Self::excess`], of the ground nearer than the guard; negative if there is no line.
+    pub fn near_excess(&self, line: &[SightVertex], guard: f64) -> f64 {
+        let mut worst = Excess { over: -1.0, at: DVec2::ZERO };
+        for pair in line.windows(2) {
+            let leaves = beyond(line[0].0, guard, pair[0], pair[1]);
+            if leaves != Some(pair[0]) {
+                self.along(pair[0], leaves.unwrap_or(pair[1]), &mut worst);
+            }
+            if leaves.is_some() {
+                break;
+            }
+        }
+        worst.over
+    }
+
+    /// The same along a straight part of a line, where that is more than `worst`.
+    fn along(&self, from: SightVertex, to: SightVertex, worst: &mut Excess) {
+        let (line, height) = (GridLine::between(from.0, to.0), (from.1, to.1 - from.1));
+        let Some([mut t, last]) = line.over(self.field.nodes(), 0.0) else { return };
+        // Enough to step over a border in spite of rounding.
+        let nudge = 1e-9 * line.dir.abs().max_element().recip().min(1e9);
+        let cells = self.field.nodes().map(|n| n - 1);
+        while t < last {
+            // Above everything, and rising from here.
+            if height.1 >= 0.0 && height.0 + t * height.1 > self.highest {
+                break;
+            }
+            let (cell, leave) = line.block(1.0, cells, t + nudge);
+            let leave = leave.max(t + nudge).min(last);
+            self.in_cell(&line, height, cell, [t, leave], worst);
+            t = if leave > t { leave } else { last };
+        }
+    }
+
+    /// The same over one cell.
+    fn in_cell(&self, line: &GridLine, (z, dz): (f64, f64), cell: [usize; 2], part: [f64; 2], worst: &mut Excess) {
+        let cols = self.field.cols();
+        let nw = cell[1] * cols + cell[0];
+        let nodes = [nw, nw + 1, nw + cols, nw + cols + 1];
+        let heights = nodes.map(|i| self.field.heights()[i]);
+        let top = heights.into_iter().fold(f64::NEG_INFINITY, f64::max) + self.delta.range()[1].max(0.0);
+        let low = (z + part[0] * dz).min(z + part[1] * dz);
+        if top - low <= worst.over {
+            return;
+        }
+        let corner = DVec2::new(cell[0] as f64, cell[1] as f64);
+        for (triangle, [from, to]) in line.by_triangle(cell, part) {
+            if to <= from || triangle.corners().iter().any(|&k| self.field.void()[nodes[k]]) {
+                continue;
+            }
+            let slope = triangle.slope(heights);
+            let count = ((to - from) * line.dir.length() / STEP).ceil().max(1.0) as usize;
+            for k in 0..=count {
+                let t = from + (to - from) * k as f64 / count as f64;
+                let at = line.at(t);
+                let over = heights[0] + slope.dot(at - corner) + self.displacement(at) - (z + t * dz);
+                if over > worst.over {
+                    *worst = Excess { over, at };
+                }
+            }
+        }
+    }
+}
+
+/// The start of the part of a straight line from `a` to `b` that lies beyond `guard` cells of `p`.
+fn beyond(p: DVec2, guard: f64, a: SightVertex, b: SightVertex) -> Option<SightVertex> {
+    if a.0.distance(p) >= guard {
+        return Some(a);
+    }
+    let (d, f) = (b.0 - a.0, a.0 - p);
+    // |f + t d| = guard, the crossing outwards.
+    let (aa, bb, cc) = (d.length_squared(), f.dot(d), f.length_squared() - guard * guard);
+    let t = (-bb + (bb * bb - aa * cc).max(0.0).sqrt()) / aa;
+    (t.is_finite() && t <= 1.0).then(|| (a.0 + t * d, a.1 + t * (b.1 - a.1)))
+}
