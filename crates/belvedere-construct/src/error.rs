@@ -62,9 +62,6 @@ pub enum ConstructError {
         /// Eyes tried.
         tried: usize,
     },
-    /// Terrain disocclusion could not do its work.
-    #[error(transparent)]
-    Disocclusion(#[from] belvedere_disocclusion::DisocclusionError),
     /// A pinhole could not be made.
     #[error(transparent)]
     Pinhole(#[from] PinholeError),

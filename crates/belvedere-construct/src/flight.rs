@@ -10,7 +10,7 @@ pub struct FlightOptions {
     pub behind_m: f64,
     /// Height of the eye over the ground below it and over the walker, whichever is higher, scene units, > 0.
     pub above_m: f64,
-    /// Distance in plan from the walker to the place looked at, scene units, > 0.
+    /// Distance in plan from the walker to the point looked at, scene units, > 0.
     pub ahead_m: f64,
 }
 
@@ -27,7 +27,9 @@ impl FlightOptions {
 #[non_exhaustive]
 pub enum FlightError {
     /// The route has no length.
-    #[error("the route to fly along is {length_m:.3} long with {points} points; give one with at least 2 places apart")]
+    #[error(
+        "the route to fly along is {length_m:.3} long with {points} points; give one with at least 2 distinct points"
+    )]
     Short {
         /// Length, scene units.
         length_m: f64,
@@ -57,7 +59,7 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// Follows `route` (scene x, y; at least two places) over `terrain`.
+    /// Follows `route` (scene x, y; at least two points) over `terrain`.
     ///
     /// The route is smoothed over about `behind_m`; the heading is that from the eye's side of the walker to the far side,
     /// unwrapped and smoothed again, so that hairpins turn the camera gently. The eye's height is a sliding maximum of the
@@ -72,8 +74,8 @@ impl Flight {
         if let Some((name, value)) = named.into_iter().find(|(_, v)| !(*v > 0.0 && v.is_finite())) {
             return Err(FlightError::Option { name, value });
         }
-        let way = Way::new(route);
-        let length_m = way.length();
+        let path = Route::new(route);
+        let length_m = path.length();
         if !(length_m > 1e-3) {
             return Err(FlightError::Short { length_m, points: route.len() });
         }
@@ -84,19 +86,19 @@ impl Flight {
         // Everything is tabulated beyond both ends, as far as the smoothing and looking around reach.
         let pad = nodes(4.0 * behind + options.ahead_m);
         let table = Table { step, pad, len: steps + 1 + 2 * pad };
-        let smooth_way: Vec<DVec2> = smooth(&table.map(|s| way.at(s)), nodes(behind / 3.0));
-        let heading = headings(&smooth_way, nodes(0.5 * behind), nodes(0.5 * options.ahead_m), nodes(behind / 3.0));
+        let smoothed: Vec<DVec2> = smooth(&table.map(|s| path.at(s)), nodes(behind / 3.0));
+        let heading = headings(&smoothed, nodes(0.5 * behind), nodes(0.5 * options.ahead_m), nodes(behind / 3.0));
         let direction = |i: usize| DVec2::from_angle(heading[i]);
-        let eyes: Vec<DVec2> = (0..table.len).map(|i| smooth_way[i] - behind * direction(i)).collect();
+        let eyes: Vec<DVec2> = (0..table.len).map(|i| smoothed[i] - behind * direction(i)).collect();
         let ground = Ground { terrain, reach: behind / 8.0 };
-        let walker: Vec<f64> = ground.filled(&smooth_way, Ground::at);
+        let walker: Vec<f64> = ground.filled(&smoothed, Ground::at);
         let around: Vec<f64> = ground.filled(&eyes, Ground::highest_around);
         let needed: Vec<f64> = walker.iter().zip(&around).map(|(a, b)| a.max(*b) + options.above_m).collect();
         let window = nodes(0.75 * behind);
         let height = smooth(&sliding_max(&needed, 3 * (window / 3)), window / 3);
         let level = smooth(&walker, nodes(behind / 3.0));
         let eye = table.cut(|i| eyes[i].extend(height[i]));
-        let target = table.cut(|i| (smooth_way[i] + options.ahead_m * direction(i)).extend(level[i]));
+        let target = table.cut(|i| (smoothed[i] + options.ahead_m * direction(i)).extend(level[i]));
         Ok(Self { length_m, step, eye, target })
     }
 
@@ -105,7 +107,7 @@ impl Flight {
         self.length_m
     }
 
-    /// Eye and place looked at when the walker has come `walked_m` along the route (held at its ends).
+    /// Eye and point looked at when the walker has come `walked_m` along the route (held at its ends).
     pub fn at(&self, walked_m: f64) -> (DVec3, DVec3) {
         let t = (walked_m.clamp(0.0, self.length_m) / self.step).max(0.0);
         (cubic(&self.eye, t), cubic(&self.target, t))
@@ -113,12 +115,12 @@ impl Flight {
 }
 
 /// A polyline by arc length; beyond its ends it goes on mirrored through them.
-struct Way {
+struct Route {
     points: Vec<DVec2>,
     along: Vec<f64>,
 }
 
-impl Way {
+impl Route {
     fn new(route: &[DVec2]) -> Self {
         let mut points: Vec<DVec2> = route.iter().copied().filter(|p| p.is_finite()).collect();
         points.dedup();
@@ -193,13 +195,13 @@ fn sliding_max(values: &[f64], reach: usize) -> Vec<f64> {
     (0..values.len()).map(|i| values[window(i)].iter().copied().fold(f64::NEG_INFINITY, f64::max)).collect()
 }
 
-/// Angle from a place `before` nodes back to one `after` nodes on, unwrapped and smoothed.
-fn headings(way: &[DVec2], before: usize, after: usize, reach: usize) -> Vec<f64> {
-    let last = way.len() - 1;
+/// Angle from the point `before` nodes back to one `after` nodes on, unwrapped and smoothed.
+fn headings(path: &[DVec2], before: usize, after: usize, reach: usize) -> Vec<f64> {
+    let last = path.len() - 1;
     let mut angle = 0.0f64;
-    let raw: Vec<f64> = (0..way.len())
+    let raw: Vec<f64> = (0..path.len())
         .map(|i| {
-            let d = way[(i + after).min(last)] - way[i.saturating_sub(before)];
+            let d = path[(i + after).min(last)] - path[i.saturating_sub(before)];
             if d.length() > 1e-6 {
                 let turn = (d.to_angle() - angle).rem_euclid(std::f64::consts::TAU);
                 angle += if turn > std::f64::consts::PI { turn - std::f64::consts::TAU } else { turn };
@@ -217,10 +219,10 @@ struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    /// Heights by `of`; where there is no ground that of the nearest place along the way that has some, 0 without any.
-    fn filled(&self, way: &[DVec2], of: impl Fn(&Self, DVec2) -> Option<f64>) -> Vec<f64> {
-        let known: Vec<Option<f64>> = way.iter().map(|p| of(self, *p)).collect();
-        let mut out: Vec<f64> = Vec::with_capacity(way.len());
+    /// Heights by `of`; where there is no ground that of the nearest point along the path that has some, 0 without any.
+    fn filled(&self, path: &[DVec2], of: impl Fn(&Self, DVec2) -> Option<f64>) -> Vec<f64> {
+        let known: Vec<Option<f64>> = path.iter().map(|p| of(self, *p)).collect();
+        let mut out: Vec<f64> = Vec::with_capacity(path.len());
         let mut last = known.iter().flatten().next().copied().unwrap_or(0.0);
         for k in known {
             last = k.unwrap_or(last);

@@ -1,16 +1,14 @@
-//! From intent to stages, and the metrics that judge them.
+//! From an intent to the stages of a view, and the measures that judge them.
 //!
 //! [`measure()`] says what a picture shows of the features it is made for; [`reveal()`] chooses a view and a bend that
 //! show more of them.
 
-mod constructor;
 mod error;
 pub mod flight;
 pub mod measure;
 pub mod reveal;
 mod samples;
 
-pub use constructor::{Constructed, Constructor};
 pub use error::ConstructError;
 pub use flight::{Flight, FlightError, FlightOptions};
 pub use measure::{MeasureOptions, Measures, measure};

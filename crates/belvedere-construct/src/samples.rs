@@ -4,7 +4,7 @@ use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{AreaFeature, Heightfield, Layer, LayerKind, LineFeature, Scene};
 use serde::Serialize;
 
-/// What the amounts of a feature count.
+/// What the amounts of a feature measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Amount {
@@ -88,11 +88,11 @@ fn sample_layer(terrain: Option<&Heightfield>, index: usize, layer: &Layer, spac
         }
         LayerKind::Area(a) => {
             let sampled = |f: &AreaFeature| {
-                let place = |xy: DVec2, amount: f64| {
+                let on_surface = |xy: DVec2, amount: f64| {
                     let ground = terrain.map_or(Some(0.0), |hf| hf.surface_at(xy))?;
                     Some(Sample { p_world: xy.extend(ground + a.lift_m), lift: a.lift_m, amount })
                 };
-                area_samples(f, spacing, &place)
+                area_samples(f, spacing, &on_surface)
             };
             a.features.iter().enumerate().map(|(i, f)| feature(i, &f.name, Amount::Area, sampled(f))).collect()
         }
@@ -130,7 +130,7 @@ fn along(points: &[DVec3], spacing: f64, make: impl Fn(DVec3, f64) -> Sample) ->
     out
 }
 
-fn area_samples(f: &AreaFeature, spacing: f64, place: &dyn Fn(DVec2, f64) -> Option<Sample>) -> Vec<Sample> {
+fn area_samples(f: &AreaFeature, spacing: f64, on_surface: &dyn Fn(DVec2, f64) -> Option<Sample>) -> Vec<Sample> {
     let rim: Vec<DVec2> = f.rings.iter().flatten().copied().filter(|p| p.is_finite()).collect();
     let Some(&first) = rim.first() else { return Vec::new() };
     let (low, high) = rim.iter().fold((first, first), |(lo, hi), &p| (lo.min(p), hi.max(p)));
@@ -141,14 +141,16 @@ fn area_samples(f: &AreaFeature, spacing: f64, place: &dyn Fn(DVec2, f64) -> Opt
     for ring in &f.rings {
         let closed: Vec<DVec3> = ring.iter().chain(ring.first()).map(|p| p.extend(0.0)).collect();
         let band = |p: DVec3, length: f64| Sample { p_world: p, lift: 0.0, amount: 0.5 * step * length };
-        out.extend(along(&closed, spacing, band).into_iter().filter_map(|s| place(s.p_world.truncate(), s.amount)));
+        out.extend(
+            along(&closed, spacing, band).into_iter().filter_map(|s| on_surface(s.p_world.truncate(), s.amount)),
+        );
     }
     let (cols, rows) = ((extent.x / step).ceil() as usize, (extent.y / step).ceil() as usize);
     for row in 0..rows {
         for col in 0..cols {
             let p = low + step * DVec2::new(col as f64 + 0.5, row as f64 + 0.5);
             if inside(&f.rings, p) {
-                out.extend(place(p, step * step));
+                out.extend(on_surface(p, step * step));
             }
         }
     }
@@ -161,4 +163,30 @@ fn inside(rings: &[Vec<DVec2>], p: DVec2) -> bool {
     let count: usize =
         rings.iter().map(|r| (0..r.len()).filter(|&i| crosses(r[i], r[(i + 1) % r.len()])).count()).sum();
     count % 2 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_side_of_a_rim_is_sampled_alike_whether_the_ring_repeats_its_first_point_or_not() {
+        let open = [[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]].map(DVec2::from).to_vec();
+        let closed = open.iter().chain(open.first()).copied().collect();
+        for ring in [open, closed] {
+            let feature = AreaFeature { name: String::new(), rings: vec![ring] };
+            let flat = |xy: DVec2, amount: f64| Some(Sample { p_world: xy.extend(0.0), lift: 0.0, amount });
+            let samples = area_samples(&feature, 5.0, &flat);
+            let side = |on: &dyn Fn(DVec3) -> bool| {
+                let on_side: Vec<f64> = samples.iter().filter(|s| on(s.p_world)).map(|s| s.amount).collect();
+                (on_side.len(), on_side.iter().sum::<f64>())
+            };
+            let sides =
+                [side(&|p| p.y == 0.0), side(&|p| p.x == 100.0), side(&|p| p.y == 100.0), side(&|p| p.x == 0.0)];
+            // Every 5 along 100, each for a band of half a lattice step of 4 x 5.
+            assert!(sides.iter().all(|(n, area)| *n == 20 && (area - 1000.0).abs() < 1e-9), "{sides:?}");
+            let inner: f64 = samples.iter().map(|s| s.amount).sum::<f64>() - 4000.0;
+            assert!((inner - 1e4).abs() < 1e-6, "{inner}");
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! Lines of sight along straight and curved rays, past terrain, boxes and meshes.
 
 use crate::{BoxTree, Ground, Lift, MeshTree};
-use belvedere_core::{Aabb, Camera, DVec2, DVec3, View};
+use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{LayerKind, Scene};
 
 /// Everything of a scene that can stand in the way.

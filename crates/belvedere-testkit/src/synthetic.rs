@@ -1,6 +1,6 @@
 //! Small seeded mountains and an independent, slow renderer.
 
-use belvedere_core::{Camera, DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, View};
+use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, View};
 use belvedere_scene::{
     Color, Frame, FrameStats, Heightfield, Hidden, Layer, LayerKind, LineFeature, LineLayer, NodeState, Palette,
     PointFeature, PointLayer, Relief, RenderError, RenderJob, Renderer, Scene, TerrainLayer,

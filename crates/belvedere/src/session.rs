@@ -5,7 +5,7 @@ use crate::resolve::terrain::{self, Solving};
 use crate::resolve::view;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{Document, OverlayDoc, SourceDocument, StageDoc};
-use belvedere_core::{Camera, View};
+use belvedere_core::View;
 use belvedere_cpu::CpuRenderer;
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
 use belvedere_scene::{Light, Scene};

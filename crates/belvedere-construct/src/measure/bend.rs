@@ -1,8 +1,8 @@
 //! What the bends do to the picture as a whole: how far they carry the ground, how they stretch it, whether it folds.
 
-use super::Judged;
+use super::image::SampleImage;
 use crate::samples::SampledFeature;
-use belvedere_core::{Camera, DVec2, DVec3, SpaceMap, View};
+use belvedere_core::{DVec2, DVec3, SpaceMap, View};
 use belvedere_scene::{Heightfield, Scene};
 use belvedere_sight::Obstacles;
 use serde::Serialize;
@@ -34,15 +34,16 @@ pub struct BendMeasure {
     pub anisotropy_mean_straight: f64,
 }
 
-pub(super) struct Moved {
+/// How far the bends carry samples: scene units, and pixels.
+pub(super) struct Displacement {
     pub(super) max: f64,
     pub(super) rms: f64,
     pub(super) max_px: f64,
 }
 
 /// How far samples in either picture are carried.
-pub(super) fn moved(straight: &[(f64, Judged)], bent: &[(f64, Judged)]) -> Moved {
-    let mut out = Moved { max: 0.0, rms: 0.0, max_px: 0.0 };
+pub(super) fn displacement(straight: &[(f64, SampleImage)], bent: &[(f64, SampleImage)]) -> Displacement {
+    let mut out = Displacement { max: 0.0, rms: 0.0, max_px: 0.0 };
     let mut weight = 0.0;
     for ((amount, s), (_, b)) in straight.iter().zip(bent).filter(|((_, s), (_, b))| s.in_frame || b.in_frame) {
         let (Some(from), Some(to)) = (s.displaced, b.displaced) else { continue };

@@ -1,9 +1,9 @@
 //! Method (b): draw the picture and compare each sample's depth with the depth buffer.
 
-use super::Judged;
+use super::image::{DepthTest, SampleImage};
 use crate::ConstructError;
 use crate::samples::{Sample, SampledFeature};
-use belvedere_core::{Camera, CurvedRays, DVec2, DVec3, Pinhole, Stage, View};
+use belvedere_core::{CurvedRays, DVec2, DVec3, Pinhole, Stage, View};
 use belvedere_scene::{Aux, Frame, Heightfield, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
 
 pub(super) struct Job<'a> {
@@ -12,15 +12,6 @@ pub(super) struct Job<'a> {
     pub(super) light: &'a Light,
     pub(super) scale: Option<u32>,
     pub(super) progress: &'a Progress,
-}
-
-/// What the depth buffer says of a sample.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Buffered {
-    /// Nothing was drawn in front of the sample's ground.
-    pub(crate) seen: bool,
-    /// What was drawn lies behind the ground: a hole, or a wrong depth.
-    pub(crate) missed: bool,
 }
 
 /// How a plane through a sample shows up in the depth buffer: `depth(pixel) = depth + gradient . (pixel - at)`.
@@ -34,9 +25,9 @@ struct Footprint {
 
 impl Job<'_> {
     /// The same view on a finer image.
-    fn enlarged(&self, view: &View, judged: &[Vec<Judged>]) -> Result<View, ConstructError> {
+    fn enlarged(&self, view: &View, images: &[Vec<SampleImage>]) -> Result<View, ConstructError> {
         let pinhole = view.pinhole();
-        let mut depths: Vec<f64> = judged.iter().flatten().filter(|j| j.in_frame).map(|j| j.depth).collect();
+        let mut depths: Vec<f64> = images.iter().flatten().filter(|j| j.in_frame).map(|j| j.depth).collect();
         depths.sort_by(f64::total_cmp);
         let scale = self.scale.unwrap_or_else(|| {
             let cell = self.scene.terrain().map_or(f64::INFINITY, |hf| hf.spacing().min_element());
@@ -59,15 +50,15 @@ impl Job<'_> {
         }
     }
 
-    /// Fills in [`Judged::in_buffer`].
-    pub(super) fn judge(
+    /// Fills in [`SampleImage::in_buffer`].
+    pub(super) fn test(
         &self,
         view: &View,
         features: &[SampledFeature],
-        judged: &mut [Vec<Judged>],
+        images: &mut [Vec<SampleImage>],
     ) -> Result<(), ConstructError> {
         let original = view.pinhole().image[0];
-        let enlarged = self.enlarged(view, judged)?;
+        let enlarged = self.enlarged(view, images)?;
         let view = &enlarged;
         let aux = Aux { exact: true, ..Aux::default() };
         let options = RenderOptions { samples: 1, lod_px: 0.0, aux, ..RenderOptions::default() };
@@ -84,9 +75,9 @@ impl Job<'_> {
         }
         let terrain = self.scene.terrain();
         let finer = width as f64 / f64::from(original);
-        for (feature, row) in features.iter().zip(judged) {
+        for (feature, row) in features.iter().zip(images) {
             for (sample, j) in feature.samples.iter().zip(row.iter_mut()).filter(|(_, j)| j.in_frame) {
-                let finer = Judged { pixel: finer * j.pixel, ..*j };
+                let finer = SampleImage { pixel: finer * j.pixel, ..*j };
                 j.in_buffer = Some(in_buffer(view, terrain, sample, &finer, &frame));
             }
         }
@@ -97,7 +88,7 @@ impl Job<'_> {
 /// Whether the depths around the sample's pixel belong to the ground the sample stands on, or to something behind it.
 ///
 /// The four nearest pixel centres vote, each with its bilinear weight and with its own expected depth.
-fn in_buffer(view: &View, terrain: Option<&Heightfield>, sample: &Sample, j: &Judged, frame: &Frame) -> Buffered {
+fn in_buffer(view: &View, terrain: Option<&Heightfield>, sample: &Sample, j: &SampleImage, frame: &Frame) -> DepthTest {
     let plane = terrain.and_then(|hf| footprint(view, hf, sample)).unwrap_or(Footprint {
         at: j.pixel,
         depth: j.depth,
@@ -125,7 +116,7 @@ fn in_buffer(view: &View, terrain: Option<&Heightfield>, sample: &Sample, j: &Ju
         }
         missed &= drawn > expected + tolerance + 1e-3 * j.depth;
     }
-    Buffered { seen: seen >= 0.5, missed: missed && terrain.is_some() }
+    DepthTest { seen: seen >= 0.5, missed: missed && terrain.is_some() }
 }
 
 /// Image of the tangent plane of the drawn ground under `sample`, by differences over a tenth of a cell.

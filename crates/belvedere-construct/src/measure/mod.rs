@@ -3,17 +3,17 @@
 
 pub(crate) mod bend;
 mod buffer;
+mod image;
 mod report;
 
 pub use bend::BendMeasure;
 pub use report::{Clearance, FeatureMeasure, Measures, MethodShare, Visibility};
 
 use crate::ConstructError;
-use crate::samples::{Sample, SampledFeature, default_spacing, sample_features};
-use belvedere_core::{Camera, DVec2, DVec3, View};
+use crate::samples::{SampledFeature, default_spacing, sample_features};
+use belvedere_core::View;
 use belvedere_scene::{Light, Progress, Renderer, Scene};
 use belvedere_sight::{Obstacles, SightOptions};
-use rayon::prelude::*;
 
 /// How to measure.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,38 +40,6 @@ impl Default for MeasureOptions {
     }
 }
 
-/// Where a view shows one sample, and whether.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Judged {
-    pub(crate) pixel: DVec2,
-    pub(crate) depth: f64,
-    pub(crate) in_frame: bool,
-    pub(crate) folded: bool,
-    /// The sample after all stages, scene coordinates.
-    pub(crate) displaced: Option<DVec3>,
-    /// By line of sight; `None` outside the frame.
-    pub(crate) clearance: Option<f64>,
-    /// By the depth buffer; `None` outside the frame or without a renderer.
-    pub(crate) in_buffer: Option<buffer::Buffered>,
-}
-
-impl Judged {
-    pub(crate) const UNSEEN: Self = Self {
-        pixel: DVec2::ZERO,
-        depth: 0.0,
-        in_frame: false,
-        folded: false,
-        displaced: None,
-        clearance: None,
-        in_buffer: None,
-    };
-
-    /// Seen by line of sight.
-    pub(crate) fn visible(&self) -> bool {
-        self.clearance.is_some_and(|c| c >= 0.0)
-    }
-}
-
 /// Measures what `view` shows of the layers that must be seen, and what the same camera shows without its bends.
 ///
 /// Method (a) follows the curved ray of every sample through the undisplaced terrain and boxes. Method (b), if a
@@ -94,16 +62,16 @@ pub fn measure(
     let sight = sight_options(scene, options);
     let straight_view = view.straightened();
     progress.tick("lines of sight, straight", 0.0)?;
-    let mut straight = judge_all(&obstacles, &straight_view, &features, &sight);
+    let mut straight = image::all(&obstacles, &straight_view, &features, &sight);
     progress.tick("lines of sight, bent", 0.2)?;
-    let mut bent = if view.is_bent() { judge_all(&obstacles, view, &features, &sight) } else { straight.clone() };
+    let mut bent = if view.is_bent() { image::all(&obstacles, view, &features, &sight) } else { straight.clone() };
     if let Some(renderer) = renderer {
         progress.tick("pictures for the depth test", 0.6)?;
         let light = Light::default();
         let job = buffer::Job { scene, renderer, light: &light, scale: options.buffer_scale, progress };
-        job.judge(&straight_view, &features, &mut straight)?;
+        job.test(&straight_view, &features, &mut straight)?;
         if view.is_bent() {
-            job.judge(view, &features, &mut bent)?;
+            job.test(view, &features, &mut bent)?;
         } else {
             bent.clone_from(&straight);
         }
@@ -117,41 +85,6 @@ pub fn measure(
 pub(crate) fn sight_options(scene: &Scene, options: &MeasureOptions) -> SightOptions {
     let cell = scene.terrain().map_or(0.0, |hf| hf.spacing().max_element());
     SightOptions { chord_m: options.chord_m, cap_m: options.cap_m, guard_m: options.guard_m.unwrap_or(1.5 * cell) }
-}
-
-/// Judges every sample by line of sight, in parallel.
-pub(crate) fn judge_all(
-    obstacles: &Obstacles<'_>,
-    view: &View,
-    features: &[SampledFeature],
-    sight: &SightOptions,
-) -> Vec<Vec<Judged>> {
-    features.iter().map(|f| f.samples.par_iter().map(|s| judge(obstacles, view, s, sight)).collect()).collect()
-}
-
-pub(crate) fn judge(obstacles: &Obstacles<'_>, view: &View, sample: &Sample, sight: &SightOptions) -> Judged {
-    let Ok(image) = view.project(sample.p_world) else { return Judged::UNSEEN };
-    let displaced = view.displace(sample.p_world).ok().map(|d| d.point);
-    let pinhole = view.pinhole();
-    let in_range = image.depth >= pinhole.near && pinhole.far.is_none_or(|far| image.depth <= far);
-    let in_frame = in_range && pinhole.contains(image.pixel);
-    let clearance = in_frame.then(|| {
-        if image.folded {
-            // Orientation is reversed there: the picture shows the ground from below.
-            -sight.cap_m.max(f64::MIN_POSITIVE)
-        } else {
-            obstacles.clearance(view, (sample.p_world, sample.lift), (image.pixel, image.depth), sight)
-        }
-    });
-    Judged {
-        pixel: image.pixel,
-        depth: image.depth,
-        in_frame,
-        folded: image.folded,
-        displaced,
-        clearance,
-        in_buffer: None,
-    }
 }
 
 fn warnings(obstacles: &Obstacles<'_>, view: &View, features: &[SampledFeature]) -> Vec<String> {

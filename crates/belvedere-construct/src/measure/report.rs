@@ -1,7 +1,7 @@
 //! Figures of a measure, ready to be written as JSON.
 
-use super::bend::BendMeasure;
-use super::{Judged, bend};
+use super::bend::{BendMeasure, displacement};
+use super::image::SampleImage;
 use crate::samples::{Amount, SampledFeature};
 use serde::Serialize;
 
@@ -36,7 +36,7 @@ pub struct FeatureMeasure {
     pub name: String,
     /// What amounts count.
     pub unit: Amount,
-    /// Points judged.
+    /// Points images.
     pub samples: usize,
     /// Length, area or count of the whole feature.
     pub total: f64,
@@ -99,8 +99,8 @@ pub struct Clearance {
 
 pub(super) fn summarise(
     features: &[SampledFeature],
-    straight: &[Vec<Judged>],
-    bent: &[Vec<Judged>],
+    straight: &[Vec<SampleImage>],
+    bent: &[Vec<SampleImage>],
     near_miss: f64,
     bend: BendMeasure,
     warnings: Vec<String>,
@@ -125,19 +125,19 @@ pub(super) fn summarise(
 
 fn summarise_group(
     features: &[SampledFeature],
-    straight: &[Vec<Judged>],
-    bent: &[Vec<Judged>],
+    straight: &[Vec<SampleImage>],
+    bent: &[Vec<SampleImage>],
     members: &[usize],
     near_miss: f64,
 ) -> FeatureMeasure {
     let first = &features[members[0]];
     let samples = members.iter().flat_map(|&i| features[i].samples.iter());
-    let rows = |judged: &[Vec<Judged>]| -> Vec<(f64, Judged)> {
-        let pairs = members.iter().flat_map(|&i| features[i].samples.iter().zip(&judged[i]));
+    let rows = |images: &[Vec<SampleImage>]| -> Vec<(f64, SampleImage)> {
+        let pairs = members.iter().flat_map(|&i| features[i].samples.iter().zip(&images[i]));
         pairs.map(|(s, j)| (s.amount, *j)).collect()
     };
     let (straight_rows, bent_rows) = (rows(straight), rows(bent));
-    let moved = bend::moved(&straight_rows, &bent_rows);
+    let displacement = displacement(&straight_rows, &bent_rows);
     FeatureMeasure {
         layer: first.layer_id.clone(),
         feature: first.feature,
@@ -147,9 +147,9 @@ fn summarise_group(
         total: samples.map(|s| s.amount).sum(),
         straight: visibility(&straight_rows, near_miss),
         bent: visibility(&bent_rows, near_miss),
-        displacement_max: moved.max,
-        displacement_rms: moved.rms,
-        displacement_max_px: moved.max_px,
+        displacement_max: displacement.max,
+        displacement_rms: displacement.rms,
+        displacement_max_px: displacement.max_px,
     }
 }
 
@@ -157,21 +157,22 @@ fn ratio(part: f64, whole: f64) -> Option<f64> {
     (whole > 0.0).then(|| part / whole)
 }
 
-fn visibility(rows: &[(f64, Judged)], near_miss: f64) -> Visibility {
-    let framed: Vec<&(f64, Judged)> = rows.iter().filter(|(_, j)| j.in_frame).collect();
+fn visibility(rows: &[(f64, SampleImage)], near_miss: f64) -> Visibility {
+    let framed: Vec<&(f64, SampleImage)> = rows.iter().filter(|(_, j)| j.in_frame).collect();
     // From 0.0, for the sum of nothing is -0.0.
-    let sum = |keep: &dyn Fn(&Judged) -> bool| framed.iter().filter(|(_, j)| keep(j)).fold(0.0, |sum, (a, _)| sum + a);
-    let sharp = |j: &Judged| j.clearance.is_some_and(|c| c.abs() >= near_miss);
+    let sum =
+        |keep: &dyn Fn(&SampleImage) -> bool| framed.iter().filter(|(_, j)| keep(j)).fold(0.0, |sum, (a, _)| sum + a);
+    let sharp = |j: &SampleImage| j.clearance.is_some_and(|c| c.abs() >= near_miss);
     let in_frame = sum(&|_| true);
     let clear_cut = sum(&sharp);
-    let method = |seen: &dyn Fn(&Judged) -> bool| MethodShare {
+    let method = |seen: &dyn Fn(&SampleImage) -> bool| MethodShare {
         visible: sum(seen),
         share: ratio(sum(seen), in_frame),
         share_without_near_misses: ratio(sum(&|j| sharp(j) && seen(j)), clear_cut),
     };
-    let sight = method(&Judged::visible);
+    let sight = method(&SampleImage::visible);
     let has_buffer = framed.iter().any(|(_, j)| j.in_buffer.is_some());
-    let buffer = has_buffer.then(|| method(&|j: &Judged| j.in_buffer.is_some_and(|b| b.seen)));
+    let buffer = has_buffer.then(|| method(&|j: &SampleImage| j.in_buffer.is_some_and(|b| b.seen)));
     let difference = buffer.and_then(|b| {
         let (a, b) = (sight.share_without_near_misses?, b.share_without_near_misses?);
         Some((a - b).abs())
@@ -191,7 +192,7 @@ fn visibility(rows: &[(f64, Judged)], near_miss: f64) -> Visibility {
     }
 }
 
-fn clearances(framed: &[&(f64, Judged)]) -> Option<Clearance> {
+fn clearances(framed: &[&(f64, SampleImage)]) -> Option<Clearance> {
     let mut all: Vec<f64> = framed.iter().filter_map(|(_, j)| j.clearance).collect();
     all.sort_by(f64::total_cmp);
     Some(Clearance { min: *all.first()?, median: *all.get(all.len() / 2)?, max: *all.last()? })

@@ -1,7 +1,7 @@
 //! Candidate cameras around the features.
 
-use super::RevealOptions;
-use super::judge::Judge;
+use super::evaluate::Evaluator;
+use super::options::RevealOptions;
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection};
 
 /// Eyes are tried in this many directions.
@@ -13,7 +13,7 @@ const DISTANCES: [f64; 4] = [1.12, 0.85, 0.62, 0.45];
 /// Middle shares of the features that the picture is centred on: all of them, or the denser half.
 const CORES: [f64; 2] = [0.98, 0.6];
 
-/// A camera to be judged, with what is known about it before.
+/// A camera to be evaluated, with what is known about it before.
 #[derive(Debug, Clone)]
 pub(crate) struct Eye {
     pub(crate) pinhole: Pinhole,
@@ -21,9 +21,9 @@ pub(crate) struct Eye {
     pub(crate) heading_deg: f64,
 }
 
-/// All cameras worth judging: eyes in a ring of directions, at several distances and pitches.
-pub(crate) fn candidates(judge: &Judge<'_>, options: &RevealOptions) -> Vec<Eye> {
-    let points: Vec<(DVec2, f64)> = judge.samples.iter().map(|s| (s.p_world.truncate(), s.p_world.z)).collect();
+/// All cameras worth evaluating: eyes in a ring of directions, at several distances and pitches.
+pub(crate) fn candidates(evaluator: &Evaluator<'_>, options: &RevealOptions) -> Vec<Eye> {
+    let points: Vec<(DVec2, f64)> = evaluator.samples.iter().map(|s| (s.p_world.truncate(), s.p_world.z)).collect();
     let mut out = Vec::new();
     for direction in 0..DIRECTIONS {
         let heading = std::f64::consts::TAU * direction as f64 / DIRECTIONS as f64;
@@ -34,7 +34,7 @@ pub(crate) fn candidates(judge: &Judge<'_>, options: &RevealOptions) -> Vec<Eye>
             for fov_y in [options.fov_y, 0.75 * options.fov_y] {
                 for pitch in PITCHES.map(|p| p * 0.5 * fov_y) {
                     for share in DISTANCES {
-                        let eye = place(judge, options, &extent, [forward, right], (fov_y, pitch, share));
+                        let eye = camera(evaluator, options, &extent, [forward, right], (fov_y, pitch, share));
                         out.extend(eye.map(|pinhole| Eye { pinhole, heading_deg: heading.to_degrees() }));
                     }
                 }
@@ -73,9 +73,9 @@ impl Extent {
     }
 }
 
-/// A camera that looks at the middle of the extent, if its eye is a place to look from.
-fn place(
-    judge: &Judge<'_>,
+/// A camera that looks at the middle of the extent, if its eye lies near the terrain and clear of it.
+fn camera(
+    evaluator: &Evaluator<'_>,
     options: &RevealOptions,
     extent: &Extent,
     [forward, _right]: [DVec2; 2],
@@ -83,18 +83,18 @@ fn place(
 ) -> Option<Pinhole> {
     let [width, height] = options.image.map(f64::from);
     let half_tan_x = (0.5 * fov_y).tan() * width / height;
-    let cell = judge.heightfield.spacing().max_element();
+    let cell = evaluator.heightfield.spacing().max_element();
     // Wide enough for the width, and far enough that the depth of the features fits between the eye and the horizon.
     let wide = extent.half_width / half_tan_x + 0.4 * extent.half_depth;
     let distance = share * wide.max(1.5 * extent.half_depth).max(30.0 * cell);
     let target = extent.center.extend(extent.z);
     let eye = target - distance * pitch.cos() * forward.extend(0.0) + DVec3::Z * distance * pitch.sin();
-    let bounds = judge.heightfield.bounds();
+    let bounds = evaluator.heightfield.bounds();
     let outside = (eye - eye.clamp(bounds.min, bounds.max)).truncate().length();
     if outside > 0.5 * (bounds.max - bounds.min).truncate().max_element() {
         return None;
     }
-    let clearance = judge.obstacles.above_ground(eye).unwrap_or(f64::INFINITY);
+    let clearance = evaluator.obstacles.above_ground(eye).unwrap_or(f64::INFINITY);
     // Summits near the eye must not fill the picture: clear the highest ground around by a little.
     if clearance < (0.01 * distance).max(2.0 * cell) {
         return None;

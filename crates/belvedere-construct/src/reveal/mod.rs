@@ -1,15 +1,17 @@
 //! Chooses a view and a bend that show more of the features than a straight picture can.
 //!
-//! The view: eyes all around the features, judged by line of sight alone. The bend: a B-spline over the mean ground
+//! The view: eyes all around the features, evaluated by line of sight alone. The bend: a B-spline over the mean ground
 //! that turns the ground with the features towards the eye and lets the background sink back to a horizon
 //! (Pasewaldt et al. 2011; their presets are drawn by hand, the choice by visible length is ours).
 
+mod evaluate;
 mod eyes;
-mod judge;
+mod options;
 mod search;
 mod shape;
 
-pub use judge::Appraisal;
+pub use evaluate::Evaluation;
+pub use options::RevealOptions;
 pub use shape::BendShape;
 
 use crate::ConstructError;
@@ -17,46 +19,16 @@ use crate::samples::{SampledFeature, default_spacing, sample_features};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{DVec3, EarthCurvature, Stage, View};
 use belvedere_scene::{Progress, Scene};
+use evaluate::Evaluator;
 use eyes::Eye;
-use judge::Judge;
 use rayon::prelude::*;
-use search::{BendSearch, Tried, stride_for};
+use search::{BendSearch, Candidate, stride_for};
 use serde::Serialize;
-
-/// What to look for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RevealOptions {
-    /// Picture size, pixels; used when no view is given.
-    pub image: [u32; 2],
-    /// Widest vertical field of view to try, radians; used when no view is given.
-    pub fov_y: f64,
-    /// Earth's radius (scene units) if the ground is to fall away with the distance; used when no view is given.
-    pub earth_radius: Option<f64>,
-    /// Visible share of the in-frame length to reach, 0..=1.
-    pub goal_share: f64,
-    /// The bent picture is to show at least this many times the share of the straight one.
-    pub goal_gain: f64,
-    /// Samples of the features that each candidate is judged by.
-    pub samples_per_try: usize,
-}
-
-impl Default for RevealOptions {
-    fn default() -> Self {
-        Self {
-            image: [1280, 720],
-            fov_y: 45f64.to_radians(),
-            earth_radius: None,
-            goal_share: 0.75,
-            goal_gain: 1.5,
-            samples_per_try: 220,
-        }
-    }
-}
 
 /// What an earlier call found: the next search for the same scene starts there. Same inputs and same memory, same result.
 #[derive(Debug, Clone, Default)]
 pub struct RevealMemory {
-    start: Option<search::Start>,
+    start: Option<search::SearchStart>,
 }
 
 /// Whether the goals were reached. Missing one is a result, not an error.
@@ -92,9 +64,9 @@ pub struct RevealReport {
     /// Length (areas: area, points: count) of all features.
     pub total: f64,
     /// The picture without the bend.
-    pub straight: Appraisal,
+    pub straight: Evaluation,
     /// The picture with it.
-    pub bent: Appraisal,
+    pub bent: Evaluation,
     /// Visible share bent over visible share straight; `None` if the straight picture shows nothing.
     pub gain: Option<f64>,
     /// Whether the goals were reached.
@@ -105,9 +77,9 @@ pub struct RevealReport {
     pub facing: f64,
     /// Smallest factor by which the bend squeezes lengths over the terrain in the picture; 0 = fold.
     pub squeeze: f64,
-    /// Eyes judged; 0 if the view was given.
+    /// Eyes evaluated; 0 if the view was given.
     pub eyes_tried: usize,
-    /// Bends judged.
+    /// Bends evaluated.
     pub bends_tried: usize,
     /// Oddities, one sentence each.
     pub warnings: Vec<String>,
@@ -118,7 +90,7 @@ pub struct RevealReport {
 /// * `base`: a camera, with earth curvature at most; its other stages are left out.
 /// * `memory`: where the search of an earlier frame ended.
 ///
-/// Everything is judged by line of sight along the rays, so no renderer is needed; [`crate::measure()`] with a renderer
+/// Everything is evaluated by line of sight along the rays, so no renderer is needed; [`crate::measure()`] with a renderer
 /// is the independent check. Deterministic, whatever the number of threads.
 ///
 /// # Errors
@@ -134,26 +106,26 @@ pub fn reveal(
     let heightfield = scene.terrain().ok_or(ConstructError::NoTerrain)?;
     let features = usable_features(scene, heightfield)?;
     progress.tick("preparing lines of sight", 0.0)?;
-    let judge = Judge::new(scene, heightfield, &features, 4 * options.samples_per_try);
+    let evaluator = Evaluator::new(scene, heightfield, &features, 4 * options.samples_per_try);
     let mut eyes_tried = 0;
     let bases = match base {
-        Some(view) => vec![given_view(&judge, view)?],
+        Some(view) => vec![given_view(&evaluator, view)?],
         None => {
-            let eyes = eyes::candidates(&judge, options);
+            let eyes = eyes::candidates(&evaluator, options);
             eyes_tried = eyes.len();
-            promising_views(&judge, eyes, options, progress)?
+            promising_views(&evaluator, eyes, options, progress)?
         }
     };
-    let (chosen, mut bends_tried) = best_bend_of_all(&judge, &bases, options, memory, progress)?;
-    progress.tick("polishing the bend", 0.8)?;
+    let (chosen, mut bends_tried) = best_bend_of_all(&evaluator, &bases, options, memory, progress)?;
+    progress.tick("refining the bend", 0.8)?;
     let (base_view, straight) = &bases[chosen.view];
-    let mut search = BendSearch::new(&judge, base_view, *straight, stride_for(judge.samples.len(), options));
+    let mut search = BendSearch::new(&evaluator, base_view, *straight, stride_for(evaluator.samples.len(), options));
     let (start, best) = search.refine(&chosen.start, 8).ok_or(ConstructError::NoView { tried: eyes_tried })?;
     bends_tried += search.tried;
     memory.start = Some(start);
-    progress.tick("polishing the bend", 1.0)?;
+    progress.tick("refining the bend", 1.0)?;
     let total = features.iter().flat_map(|f| &f.samples).map(|s| s.amount).sum();
-    Ok(finish(&judge, base_view, best, options, Counts { total, eyes_tried, bends_tried }))
+    Ok(finish(&evaluator, base_view, best, options, Counts { total, eyes_tried, bends_tried }))
 }
 
 struct Counts {
@@ -181,14 +153,14 @@ fn usable_features(scene: &Scene, hf: &belvedere_scene::Heightfield) -> Result<V
     Ok(features)
 }
 
-fn given_view(judge: &Judge<'_>, view: &View) -> Result<(View, Appraisal), ConstructError> {
+fn given_view(evaluator: &Evaluator<'_>, view: &View) -> Result<(View, Evaluation), ConstructError> {
     let base = view.straightened();
-    if let Some(height) = judge.obstacles.above_ground(base.pinhole().eye)
+    if let Some(height) = evaluator.obstacles.above_ground(base.pinhole().eye)
         && height <= 0.0
     {
         return Err(ConstructError::EyeUnderGround { below_m: -height, raise_m: 1.0 - height });
     }
-    let straight = judge.appraise(&base, 1);
+    let straight = evaluator.evaluate(&base, 1);
     if straight.in_frame < 0.02 {
         return Err(ConstructError::OutOfFrame { in_frame_share: 100.0 * straight.in_frame, needed: 2.0 });
     }
@@ -200,17 +172,17 @@ const VIEWS_KEPT: usize = 10;
 /// Views whose bend is improved before one is chosen.
 const VIEWS_REFINED: usize = 3;
 
-/// Judges every eye by its straight picture and keeps the best, not two from nearly the same direction.
+/// Evaluates every eye by its straight picture and keeps the best, not two from nearly the same direction.
 fn promising_views(
-    judge: &Judge<'_>,
+    evaluator: &Evaluator<'_>,
     eyes: Vec<Eye>,
     options: &RevealOptions,
     progress: &Progress,
-) -> Result<Vec<(View, Appraisal)>, ConstructError> {
+) -> Result<Vec<(View, Evaluation)>, ConstructError> {
     progress.tick("looking from all around", 0.1)?;
     let tried = eyes.len();
-    let stride = 2 * stride_for(judge.samples.len(), options);
-    let mut judged: Vec<(f64, Eye, View, Appraisal)> = eyes
+    let stride = 2 * stride_for(evaluator.samples.len(), options);
+    let mut evaluated: Vec<(f64, Eye, View, Evaluation)> = eyes
         .into_par_iter()
         .filter_map(|eye| {
             let stages = options.earth_radius.map(|radius| {
@@ -218,13 +190,13 @@ fn promising_views(
                 Stage::EarthCurvature(EarthCurvature { eye: eye.pinhole.eye, radius, refraction })
             });
             let view = View::new(eye.pinhole.clone(), stages.into_iter().collect()).ok()?;
-            let a = judge.appraise(&view, stride);
+            let a = evaluator.evaluate(&view, stride);
             Some((straight_score(&a, eye.heading_deg, options), eye, view, a))
         })
         .collect();
-    judged.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut kept: Vec<(f64, View, Appraisal)> = Vec::new();
-    for (_, eye, view, a) in judged {
+    evaluated.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut kept: Vec<(f64, View, Evaluation)> = Vec::new();
+    for (_, eye, view, a) in evaluated {
         let crowd = kept.iter().filter(|k| (k.0 - eye.heading_deg).abs() < 20.0).count();
         if a.in_frame > 0.05 && crowd < 2 && kept.len() < VIEWS_KEPT {
             kept.push((eye.heading_deg, view, a));
@@ -237,7 +209,7 @@ fn promising_views(
 }
 
 /// How promising a straight picture is: it should look natural, hold the features, and hide a good deal of them.
-fn straight_score(a: &Appraisal, heading_deg: f64, options: &RevealOptions) -> f64 {
+fn straight_score(a: &Evaluation, heading_deg: f64, options: &RevealOptions) -> f64 {
     let most = 0.85 * (options.goal_share / options.goal_gain).min(0.6);
     let hidden = 3.0 * (a.visible - most).max(0.0) + 1.5 * (0.25 - a.visible).max(0.0);
     // Light comes from the north-west: looking north shows the shaded side of the relief as readers of maps know it.
@@ -248,28 +220,28 @@ fn straight_score(a: &Appraisal, heading_deg: f64, options: &RevealOptions) -> f
         - 1.2 * (0.8 - a.attainable).max(0.0)
 }
 
-struct Chosen {
+struct Best {
     view: usize,
-    start: search::Start,
+    start: search::SearchStart,
     score: f64,
 }
 
 fn best_bend_of_all(
-    judge: &Judge<'_>,
-    bases: &[(View, Appraisal)],
+    evaluator: &Evaluator<'_>,
+    bases: &[(View, Evaluation)],
     options: &RevealOptions,
     memory: &RevealMemory,
     progress: &Progress,
-) -> Result<(Chosen, usize), ConstructError> {
-    let stride = stride_for(judge.samples.len(), options);
-    let (mut found, mut tried): (Vec<Chosen>, usize) = (Vec::new(), 0);
+) -> Result<(Best, usize), ConstructError> {
+    let stride = stride_for(evaluator.samples.len(), options);
+    let (mut found, mut tried): (Vec<Best>, usize) = (Vec::new(), 0);
     for (view, (base, straight)) in bases.iter().enumerate() {
         progress.tick("bending the picture", 0.3 + 0.3 * view as f64 / bases.len() as f64)?;
-        let mut search = BendSearch::new(judge, base, *straight, stride);
+        let mut search = BendSearch::new(evaluator, base, *straight, stride);
         let remembered = memory.start.as_ref().and_then(|start| search.refine(start, 0));
         let view_score = straight_score(straight, 0.0, options);
         let best = search.coarse().into_iter().chain(remembered).max_by(|a, b| a.1.score.total_cmp(&b.1.score));
-        found.extend(best.map(|(start, t)| Chosen { view, start, score: t.score + view_score }));
+        found.extend(best.map(|(start, t)| Best { view, start, score: t.score + view_score }));
         tried += search.tried;
     }
     found.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -277,9 +249,9 @@ fn best_bend_of_all(
     for (i, chosen) in found.iter_mut().enumerate() {
         progress.tick("bending the picture", 0.6 + 0.2 * i as f64 / VIEWS_REFINED as f64)?;
         let (base, straight) = &bases[chosen.view];
-        let mut search = BendSearch::new(judge, base, *straight, stride);
+        let mut search = BendSearch::new(evaluator, base, *straight, stride);
         if let Some((start, better)) = search.refine(&chosen.start, 3) {
-            *chosen = Chosen { start, score: better.score + straight_score(straight, 0.0, options), ..*chosen };
+            *chosen = Best { start, score: better.score + straight_score(straight, 0.0, options), ..*chosen };
         }
         tried += search.tried;
     }
@@ -287,9 +259,15 @@ fn best_bend_of_all(
     best.map(|b| (b, tried)).ok_or(ConstructError::NoView { tried: bases.len() })
 }
 
-fn finish(judge: &Judge<'_>, base: &View, best: Tried, options: &RevealOptions, counts: Counts) -> Revealed {
-    let straight = judge.appraise(base, 1);
-    let bent = judge.appraise(&best.built.view, 1);
+fn finish(
+    evaluator: &Evaluator<'_>,
+    base: &View,
+    best: Candidate,
+    options: &RevealOptions,
+    counts: Counts,
+) -> Revealed {
+    let straight = evaluator.evaluate(base, 1);
+    let bent = evaluator.evaluate(&best.built.view, 1);
     let gain = (straight.visible > 0.0).then(|| bent.visible / straight.visible);
     let mut missed = Vec::new();
     if bent.visible < options.goal_share {
@@ -337,7 +315,7 @@ fn finish(judge: &Judge<'_>, base: &View, best: Tried, options: &RevealOptions, 
         straight: base.clone(),
         document: best.built.document,
         pivot: best.built.pivot,
-        plane_height: judge.plane.height(),
+        plane_height: evaluator.plane.height(),
         report,
     }
 }

@@ -1,22 +1,22 @@
 //! Looks for the bend that shows most of the features without spoiling the picture.
 
-use super::RevealOptions;
-use super::judge::{Appraisal, Judge, quantile};
-use super::shape::{BendShape, Built};
+use super::evaluate::{Evaluation, Evaluator, quantile};
+use super::options::RevealOptions;
+use super::shape::{BendShape, BuiltBend};
 use belvedere_core::{Projection, View};
 use rayon::prelude::*;
 
-/// A bend that was judged.
-pub(crate) struct Tried {
+/// A bend that was evaluated.
+pub(crate) struct Candidate {
     pub(crate) shape: BendShape,
-    pub(crate) built: Built,
+    pub(crate) built: BuiltBend,
     pub(crate) squeeze: f64,
     pub(crate) facing: f64,
     pub(crate) score: f64,
 }
 
-/// What the free parameters of a shape are measured in.
-struct Frame {
+/// Distances and angles that the free parameters of a shape are multiples of.
+struct Scales {
     /// Distances along the heading of the near end, the middle and the far end of the features in the picture.
     features: [f64; 3],
     half_fov: f64,
@@ -26,7 +26,7 @@ struct Frame {
 
 /// The free parameters of a shape, each about 0..=1.
 #[derive(Debug, Clone, Copy)]
-struct Knobs {
+struct ShapeParameters {
     middle: f64,
     far: f64,
     near: f64,
@@ -35,7 +35,7 @@ struct Knobs {
     fall_length: f64,
 }
 
-impl Knobs {
+impl ShapeParameters {
     const fn get(&self) -> [f64; 6] {
         [self.middle, self.far, self.near, self.pivot, self.fall_from, self.fall_length]
     }
@@ -44,14 +44,14 @@ impl Knobs {
         Self { middle, far, near, pivot, fall_from, fall_length }
     }
 
-    fn shape(&self, frame: &Frame) -> BendShape {
+    fn shape(&self, scales: &Scales) -> BendShape {
         let lerp = |a: f64, b: f64, t: f64| a + (b - a) * t;
-        let [first, middle, last] = frame.features;
+        let [first, middle, last] = scales.features;
         let depth = (last - first).max(0.1 * middle);
         // Equal steps are equal factors: 6 to 75 degrees.
         let angle = 6f64.to_radians() * (75f64 / 6.0).powf(self.middle.clamp(0.0, 1.0));
         let far = lerp(0.02, 0.25, self.far.clamp(0.0, 1.0)).min(angle);
-        let straight = (frame.pitch + frame.half_fov).clamp(0.1, 1.0);
+        let straight = (scales.pitch + scales.half_fov).clamp(0.1, 1.0);
         let start = lerp(first - 0.2 * depth, last + 0.3 * depth, self.fall_from).max(0.3 * middle);
         let length = (lerp(0.25, 2.0, self.fall_length) * depth).max(0.2 * depth);
         let nearest = (first - 0.9 * depth).max(0.12 * middle).min(0.8 * first);
@@ -68,20 +68,20 @@ impl Knobs {
 
 /// The search for one camera.
 pub(crate) struct BendSearch<'a, 'b> {
-    judge: &'b Judge<'a>,
+    evaluator: &'b Evaluator<'a>,
     base: &'b View,
-    frame: Frame,
-    straight: Appraisal,
+    scales: Scales,
+    straight: Evaluation,
     stride: usize,
-    /// Bends judged so far.
+    /// Bends evaluated so far.
     pub(crate) tried: usize,
 }
 
 impl<'a, 'b> BendSearch<'a, 'b> {
-    pub(crate) fn new(judge: &'b Judge<'a>, base: &'b View, straight: Appraisal, stride: usize) -> Self {
+    pub(crate) fn new(evaluator: &'b Evaluator<'a>, base: &'b View, straight: Evaluation, stride: usize) -> Self {
         let pinhole = base.pinhole();
-        let heading = super::shape::heading(pinhole, &judge.plane);
-        let mut along: Vec<f64> = judge
+        let heading = super::shape::heading(pinhole, &evaluator.plane);
+        let mut along: Vec<f64> = evaluator
             .samples
             .iter()
             .filter(|s| base.pinhole().project(s.p_world).is_ok_and(|(px, _)| pinhole.contains(px)))
@@ -95,35 +95,36 @@ impl<'a, 'b> BendSearch<'a, 'b> {
         };
         let pitch = (-pinhole.forward.z).asin();
         let features = [at(0.03), at(0.5), at(0.97)];
-        let frame = Frame { features, half_fov, pitch, straight_in_frame: straight.in_frame };
-        Self { judge, base, frame, straight, stride, tried: 0 }
+        let scales = Scales { features, half_fov, pitch, straight_in_frame: straight.in_frame };
+        Self { evaluator, base, scales, straight, stride, tried: 0 }
     }
 
-    fn judge(&self, knobs: &Knobs, stride: usize) -> Option<Tried> {
-        let shape = knobs.shape(&self.frame);
-        let built = shape.build(self.base, &self.judge.plane).ok()?;
-        let (squeeze, facing) = self.judge.fold_and_facing(&built.view);
+    fn evaluate(&self, parameters: &ShapeParameters, stride: usize) -> Option<Candidate> {
+        let shape = parameters.shape(&self.scales);
+        let built = shape.build(self.base, &self.evaluator.plane).ok()?;
+        let (squeeze, facing) = self.evaluator.fold_and_facing(&built.view);
         if squeeze < 0.25 || facing < 0.004 {
             return None;
         }
-        let appraisal = self.judge.appraise(&built.view, stride);
-        let score = self.score(&shape, &appraisal, squeeze, facing);
-        Some(Tried { shape, built, squeeze, facing, score })
+        let evaluation = self.evaluator.evaluate(&built.view, stride);
+        let score = self.score(&shape, &evaluation, squeeze, facing);
+        Some(Candidate { shape, built, squeeze, facing, score })
     }
 
-    fn score(&self, shape: &BendShape, a: &Appraisal, squeeze: f64, facing: f64) -> f64 {
-        let lost = (self.frame.straight_in_frame * 0.97 - a.in_frame).max(0.0) / self.frame.straight_in_frame.max(1e-9);
+    fn score(&self, shape: &BendShape, a: &Evaluation, squeeze: f64, facing: f64) -> f64 {
+        let lost =
+            (self.scales.straight_in_frame * 0.97 - a.in_frame).max(0.0) / self.scales.straight_in_frame.max(1e-9);
         let gain = a.visible / self.straight.visible.max(0.05);
-        // The goals first, then as much as possible, then looks.
+        // The goals first, then as much as possible, then how natural it looks.
         let goals = 8.0 * (0.79 - a.visible).max(0.0)
             + (0.88 - a.visible).max(0.0)
             + 2.0 * (1.6 - gain).max(0.0)
             + 6.0 * lost
             + 30.0 * (lost - 0.04).max(0.0);
-        let bend = (shape.middle - self.frame.pitch).abs() + 0.3 * (shape.middle - shape.near).abs();
+        let bend = (shape.middle - self.scales.pitch).abs() + 0.3 * (shape.middle - shape.near).abs();
         let sky = (0.10 - a.skyline).max(0.0) + (a.skyline - 0.20).max(0.0);
         // Turning per distance: ground that tips over a kink looks broken.
-        let kink = (shape.middle - shape.far).abs() * self.frame.features[1] / (shape.fall[1] - shape.fall[0]);
+        let kink = (shape.middle - shape.far).abs() * self.scales.features[1] / (shape.fall[1] - shape.fall[0]);
         let fill = (0.45 - a.spread).max(0.0) + 2.0 * (a.spread - 0.85).max(0.0);
         // Above nine tenths a gentler bend is worth more than the last bit.
         0.5 * a.visible + 0.5 * a.visible.min(0.9)
@@ -138,30 +139,30 @@ impl<'a, 'b> BendSearch<'a, 'b> {
             - 4.0 * (0.03 - facing).max(0.0)
     }
 
-    fn best_of(&mut self, knobs: &[Knobs], stride: usize) -> Option<(Knobs, Tried)> {
-        self.tried += knobs.len();
-        let judged: Vec<Option<Tried>> = knobs.par_iter().map(|k| self.judge(k, stride)).collect();
-        let pairs = knobs.iter().copied().zip(judged).filter_map(|(k, t)| Some((k, t?)));
+    fn best_of(&mut self, all: &[ShapeParameters], stride: usize) -> Option<(ShapeParameters, Candidate)> {
+        self.tried += all.len();
+        let evaluated: Vec<Option<Candidate>> = all.par_iter().map(|k| self.evaluate(k, stride)).collect();
+        let pairs = all.iter().copied().zip(evaluated).filter_map(|(k, t)| Some((k, t?)));
         // The first of equals, so that the answer does not depend on threads.
         pairs.reduce(|best, next| if next.1.score > best.1.score { next } else { best })
     }
 
-    /// A coarse look over the whole range of bends.
-    pub(crate) fn coarse(&mut self) -> Option<(Start, Tried)> {
+    /// The best of a coarse lattice over the whole range of bends.
+    pub(crate) fn coarse(&mut self) -> Option<(SearchStart, Candidate)> {
         let mut grid = Vec::new();
         for middle in [0.4, 0.6, 0.75, 0.9] {
             for (pivot, fall_from) in [(0.35, 0.35), (0.55, 0.6), (0.7, 0.85)] {
                 for fall_length in [0.25, 0.7] {
-                    grid.push(Knobs { middle, far: 0.2, near: 0.2, pivot, fall_from, fall_length });
+                    grid.push(ShapeParameters { middle, far: 0.2, near: 0.2, pivot, fall_from, fall_length });
                 }
             }
         }
         let stride = self.stride * 2;
-        self.best_of(&grid, stride).map(|(k, t)| (Start(k), t))
+        self.best_of(&grid, stride).map(|(k, t)| (SearchStart(k), t))
     }
 
-    /// Improves a start by ever smaller steps of one or two knobs.
-    pub(crate) fn refine(&mut self, start: &Start, rounds: usize) -> Option<(Start, Tried)> {
+    /// Improves a start by ever smaller steps of one or two parameters.
+    pub(crate) fn refine(&mut self, start: &SearchStart, rounds: usize) -> Option<(SearchStart, Candidate)> {
         let stride = self.stride;
         let mut best = self.best_of(&[start.0], stride)?;
         let mut step = 0.2;
@@ -172,7 +173,7 @@ impl<'a, 'b> BendSearch<'a, 'b> {
                 for sign in [-1.0, 1.0] {
                     let mut next = at;
                     next[i] = (next[i] + sign * step).clamp(-0.2, 1.2);
-                    around.push(Knobs::of(next));
+                    around.push(ShapeParameters::of(next));
                 }
             }
             // Steeper ground needs an earlier fall to keep the horizon, and the other way round.
@@ -180,20 +181,20 @@ impl<'a, 'b> BendSearch<'a, 'b> {
                 let mut next = at;
                 next[0] += sign * step;
                 next[4] -= sign * step;
-                around.push(Knobs::of(next));
+                around.push(ShapeParameters::of(next));
             }
             match self.best_of(&around, stride) {
                 Some(found) if found.1.score > best.1.score + 1e-6 => best = found,
                 _ => step *= 0.5,
             }
         }
-        Some((Start(best.0), best.1))
+        Some((SearchStart(best.0), best.1))
     }
 }
 
 /// Where a search begins; opaque to its callers.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Start(Knobs);
+pub(crate) struct SearchStart(ShapeParameters);
 
 /// Default options that the search and the choice of views share.
 pub(crate) fn stride_for(samples: usize, options: &RevealOptions) -> usize {

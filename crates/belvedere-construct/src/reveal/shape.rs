@@ -1,4 +1,4 @@
-//! The bend of a panorama as a handful of angles and places, and the preset document it stands for.
+//! The bend of a panorama as a handful of angles and distances, and the preset document it stands for.
 
 use crate::ConstructError;
 use belvedere_core::map::spline::{ReferencePlane, SplineBend, viewing_angle};
@@ -20,7 +20,7 @@ pub struct BendShape {
     pub middle: f64,
     /// Angle under which the far end of the curve is seen, radians, > 0; behind it the ground goes on straight, to a horizon.
     pub far: f64,
-    /// Distance along the heading, from the eye, of the point that keeps its place in the picture, scene units.
+    /// Distance along the heading, from the eye, of the point that stays where it is in the picture, scene units.
     pub pivot: f64,
     /// Distances along the heading, from the eye, between which the angle changes from `near` to `middle`, scene units.
     pub rise: [f64; 2],
@@ -32,7 +32,7 @@ pub struct BendShape {
 const CONTROL_POINTS: usize = 10;
 
 /// A bend built for one camera.
-pub(crate) struct Built {
+pub(crate) struct BuiltBend {
     pub(crate) document: PresetDocument,
     pub(crate) pivot: DVec3,
     pub(crate) view: View,
@@ -49,14 +49,14 @@ impl BendShape {
     }
 
     /// The preset document and the stage for `base`, whose earlier stages are kept.
-    pub(crate) fn build(&self, base: &View, plane: &ReferencePlane) -> Result<Built, ConstructError> {
+    pub(crate) fn build(&self, base: &View, plane: &ReferencePlane) -> Result<BuiltBend, ConstructError> {
         let pinhole = base.pinhole();
         let pivot = pivot_point(pinhole, plane, self.pivot);
         let document = self.document(pinhole, plane, pivot);
         let bend = SplineBend::new(pinhole, &document, plane, pivot)?;
         let mut stages = base.stages().to_vec();
         stages.push(Stage::SplineBend(bend));
-        Ok(Built { document, pivot, view: View::new(pinhole.clone(), stages)? })
+        Ok(BuiltBend { document, pivot, view: View::new(pinhole.clone(), stages)? })
     }
 
     /// Slopes of the curve against the optical axis: (distance along the heading, slope), by rising distance.

@@ -8,8 +8,7 @@ pub use pinhole::{Pinhole, PinholeError, Projection};
 pub use ray_path::{RayPath, RayPoint};
 pub use view::{ImageBox, View, ViewError};
 
-use crate::Miss;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 /// Image of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,14 +21,4 @@ pub struct Projected {
     pub segment: u32,
     /// Whether a stage folded over at the point.
     pub folded: bool,
-}
-
-/// Anything with a forward projection and rays.
-///
-/// Law: `project(ray(px).at(d)) == (px, d)`, unless an earlier cell of a curved-ray chain also sees the point.
-pub trait Camera {
-    /// Image of a world point.
-    fn project(&self, p_world: DVec3) -> Result<Projected, Miss>;
-    /// The (curved) ray of a pixel.
-    fn ray(&self, pixel: DVec2) -> RayPath<'_>;
 }

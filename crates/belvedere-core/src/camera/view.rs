@@ -1,6 +1,6 @@
 //! A view: a pinhole behind a chain of displacements.
 
-use super::{Camera, Pinhole, Projected, RayPath};
+use super::{Pinhole, Projected, RayPath};
 use crate::{Aabb, CurvedRays, Displaced, Miss, SpaceMap, Stage};
 use glam::{DVec2, DVec3};
 
@@ -112,6 +112,18 @@ impl View {
     pub fn straightened(&self) -> Self {
         let stages = self.stages.iter().filter(|s| matches!(s, Stage::EarthCurvature(_))).cloned().collect();
         Self { pinhole: self.pinhole.clone(), stages }
+    }
+
+    /// Image of a world point.
+    ///
+    /// Law: `project(ray(px).at(d)) == (px, d)`, unless an earlier cell of a curved-ray chain also sees the point.
+    pub fn project(&self, p_world: DVec3) -> Result<Projected, Miss> {
+        self.photograph(self.displace(p_world)?)
+    }
+
+    /// The (curved) ray of a pixel.
+    pub fn ray(&self, pixel: DVec2) -> RayPath<'_> {
+        RayPath::new(self, pixel)
     }
 
     /// `p_world` after all stages, before the pinhole.
@@ -315,14 +327,4 @@ fn stretch(map: &dyn SpaceMap, a: DVec3, b: DVec3) -> f64 {
     let norm =
         |p| map.jacobian(p).map_or(f64::INFINITY, |j| j.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt());
     norm(a).max(norm(b))
-}
-
-impl Camera for View {
-    fn project(&self, p_world: DVec3) -> Result<Projected, Miss> {
-        self.photograph(self.displace(p_world)?)
-    }
-
-    fn ray(&self, pixel: DVec2) -> RayPath<'_> {
-        RayPath::new(self, pixel)
-    }
 }

@@ -5,7 +5,7 @@ use crate::spline_figures::{bend, camera_at};
 use belvedere_core::bspline::BSpline;
 use belvedere_core::map::spline::{ReferencePlane, SplineBend, default_pivot, viewing_angle};
 use belvedere_core::presets::{BendFrame, DepthUnits, PresetDocument};
-use belvedere_core::{Aabb, Camera, DVec2, DVec3, Pinhole, Projection, SpaceMap, Stage, View};
+use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, Projection, SpaceMap, Stage, View};
 use belvedere_testkit::Random;
 use belvedere_testkit::laws::{CameraCase, Continuity, Joint, MapCase, Similarity};
 

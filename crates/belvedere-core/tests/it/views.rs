@@ -1,7 +1,7 @@
 //! Views: pinholes of both kinds, the earth's curvature, and stages in a chain.
 
 use belvedere_core::map::curved_rays::{CurvedRays, Model, Pencil, Sharpness, TurnSpec};
-use belvedere_core::{Aabb, Camera, DVec2, DVec3, EarthCurvature, Miss, Pinhole, Projection, Stage, View, ViewError};
+use belvedere_core::{Aabb, DVec2, DVec3, EarthCurvature, Miss, Pinhole, Projection, Stage, View, ViewError};
 use belvedere_testkit::Random;
 use belvedere_testkit::laws::{CameraCase, Continuity, MapCase, Similarity};
 

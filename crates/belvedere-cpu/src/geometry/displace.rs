@@ -133,7 +133,7 @@ mod tests {
     use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
     use belvedere_core::map::spline::{ReferencePlane, SplineBend, default_pivot};
     use belvedere_core::presets::PresetDocument;
-    use belvedere_core::{Camera, Pinhole, Projection};
+    use belvedere_core::{Pinhole, Projection};
 
     fn camera() -> Pinhole {
         let screen = Projection::Perspective { fov_y: 0.9 };

@@ -2,7 +2,7 @@
 
 use crate::trace::row::Row;
 use belvedere_core::map::curved_rays::{RayPiece, Shape};
-use belvedere_core::{Camera, DVec2, DVec3, EarthCurvature, RayPath, SplineBend, Stage, TerrainDisocclusion, View};
+use belvedere_core::{DVec2, DVec3, EarthCurvature, RayPath, SplineBend, Stage, TerrainDisocclusion, View};
 
 /// Spans that a ray of unknown shape is first looked at in.
 const SPANS: usize = 8;

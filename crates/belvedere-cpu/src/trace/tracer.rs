@@ -3,7 +3,7 @@
 use crate::geometry::screen::Screen;
 use crate::trace::curve::{Curve, Span, Split};
 use crate::trace::root::root;
-use belvedere_core::{Aabb, Camera, DVec2, DVec3, View};
+use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{CellTriangle, Heightfield, NodeState, Scene};
 use belvedere_sight::{GridLine, Lift, Obstacles, UprightBox};
 use std::ops::ControlFlow;

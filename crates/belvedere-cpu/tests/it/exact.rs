@@ -7,7 +7,7 @@ use belvedere_core::map::curved_rays::{Model, Pencil, Shape, Sharpness, TurnSpec
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{
-    Camera, CurvedRays, DVec2, DVec3, EarthCurvature, Pinhole, Projection, SplineBend, Stage, TerrainDisocclusion, View,
+    CurvedRays, DVec2, DVec3, EarthCurvature, Pinhole, Projection, SplineBend, Stage, TerrainDisocclusion, View,
 };
 use belvedere_cpu::{ExactRenderer, Tracer};
 use belvedere_scene::{

@@ -2,7 +2,7 @@
 
 use crate::support::{hills, layer, line, options, pinhole, render, scene, terrain};
 use crate::support_views::views;
-use belvedere_core::{Camera, DVec2, DVec3, View};
+use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Color, Frame, Heightfield, Hidden, LayerKind, LineLayer, Scene};
 
 const LIFT_M: f64 = 2.0;

@@ -4,7 +4,7 @@ use crate::real_data::andorra;
 use crate::support::{hills, layer, options, pinhole, render, scene, show, terrain};
 use crate::support_views::{spline_over, turns, views};
 use belvedere_core::map::curved_rays::Model;
-use belvedere_core::{Camera, DVec2, DVec3, View};
+use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Aux, Frame, Heightfield, LayerKind, RenderOptions, Scene};
 
 const LOD_PX: f64 = 0.5;

@@ -1,7 +1,7 @@
 //! Where lines go into hiding, points with names, and what belongs to no layer.
 
 use crate::support::{layer, line, options, pinhole, render, scene, terrain};
-use belvedere_core::{Camera, DVec2, DVec3, View};
+use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{
     Color, DistanceMarkers, Frame, Heightfield, Hidden, LayerKind, NodeState, Overlay, OverlayFace, OverlayLine,
     OverlayPoint, Palette, PointFeature, PointLayer, PointStyle, Relief, RenderOptions, Scene, Symbol,

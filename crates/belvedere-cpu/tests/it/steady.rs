@@ -2,7 +2,7 @@
 
 use crate::real_data::andorra;
 use crate::support::{Random, hills, layer, options, pinhole, render, scene, terrain};
-use belvedere_core::{Camera, DVec2, DVec3, Pinhole, View};
+use belvedere_core::{DVec2, DVec3, Pinhole, View};
 use belvedere_scene::{Aux, Frame, Heightfield, LayerKind, RenderOptions, Scene};
 
 const IMAGE: [u32; 2] = [240, 160];

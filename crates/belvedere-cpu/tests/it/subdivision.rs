@@ -2,7 +2,7 @@
 
 use crate::support::{Random, hills, layer, options, pinhole, render, scene, terrain};
 use crate::support_views::{small_planet, spline, views};
-use belvedere_core::{Camera, DVec2, DVec3, View};
+use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Frame, Heightfield, LayerKind, NodeState, RenderOptions, Scene};
 
 fn ground(hf: Heightfield) -> Scene {

@@ -1,6 +1,6 @@
 //! What the picture shows.
 
-use belvedere_core::{Camera, DVec3, View};
+use belvedere_core::{DVec3, View};
 
 /// Points this share of the picture beside it still count, so that what moves into it is worked for.
 const BESIDE: f64 = 0.05;

@@ -2,7 +2,7 @@
 
 use super::problem::LinesOfSight;
 use crate::Field;
-use belvedere_core::{Camera, DVec2, DVec3, Stage, View};
+use belvedere_core::{DVec2, DVec3, Stage, View};
 
 /// A chord leaves the ray that it stands for by less than this in height, metres; the usual margin is twenty times that.
 const BOW: f64 = 0.05;

@@ -1,5 +1,5 @@
 use belvedere_construct::{default_spacing, sample_features};
-use belvedere_core::{Camera, DVec2, DVec3, View};
+use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{BoxLayer, BoxShape, Color, Heightfield, Layer, LayerKind, NodeState, Scene};
 use belvedere_sight::{Ground, Obstacles, SightOptions};
 use belvedere_testkit::synthetic::{camera, march, mountains, on_a_small_planet, scene};

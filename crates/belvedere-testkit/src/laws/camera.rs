@@ -2,7 +2,7 @@
 
 use super::{Similarity, hostile_points};
 use crate::Random;
-use belvedere_core::{Camera, DVec2, DVec3, Miss, View};
+use belvedere_core::{DVec2, DVec3, Miss, View};
 
 /// A camera under test and where to try it.
 pub struct CameraCase {

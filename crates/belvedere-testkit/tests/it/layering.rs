@@ -49,8 +49,8 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     ),
     (
         "belvedere-construct",
-        &["belvedere-core", "belvedere-disocclusion", "belvedere-scene", "belvedere-sight"],
-        &["glam", "rayon", "serde", "thiserror", "tracing"],
+        &["belvedere-core", "belvedere-scene", "belvedere-sight"],
+        &["glam", "rayon", "serde", "thiserror"],
     ),
     (
         "belvedere-cpu",

@@ -1,6 +1,6 @@
 //! Ground that still covers what must be seen, drawn see-through.
 
-use belvedere_core::{Camera, DVec2, SpaceMap, Stage, View};
+use belvedere_core::{DVec2, SpaceMap, Stage, View};
 use belvedere_disocclusion::DisocclusionError;
 use belvedere_disocclusion::visibility_qp::{LinesOfSight, ViewSight};
 use belvedere_disocclusion::{Covered, Field, ghost_alpha};

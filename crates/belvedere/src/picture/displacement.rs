@@ -1,6 +1,6 @@
 //! How far a picture moves what it shows.
 
-use belvedere_core::{Camera, DVec2, View};
+use belvedere_core::{DVec2, View};
 use belvedere_scene::Frame;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! `pick`: what is seen at a pixel.
 
 use crate::{BelvedereError, Session};
-use belvedere_core::{Camera, DVec2, DVec3, View};
+use belvedere_core::{DVec2, DVec3, View};
 use belvedere_cpu::{RayHit, Tracer};
 use belvedere_scene::{AreaLayer, Layer, LayerKind, LineLayer, PointLayer, Progress, Scene};
 use rayon::prelude::*;

@@ -2,7 +2,7 @@
 
 use crate::BelvedereError;
 use crate::scene_file::{Node, Value, json_points};
-use belvedere_core::{Camera, DVec2, DVec3, Miss, View};
+use belvedere_core::{DVec2, DVec3, Miss, View};
 use serde::Serialize;
 use std::io::Read;
 use std::path::Path;

@@ -210,7 +210,7 @@ impl RevealAnswer {
                 100.0 * bent
             );
         }
-        let percent = |a: &belvedere_construct::reveal::Appraisal| 100.0 * a.visible;
+        let percent = |a: &belvedere_construct::reveal::Evaluation| 100.0 * a.visible;
         format!(
             "visible in the straight picture: {:.1} %, in the bent one: {:.1} %",
             percent(&self.report.straight),

@@ -38,7 +38,7 @@ const MARGIN_PX: f64 = 1e-6;
 ///
 /// ```
 /// use belvedere_core::map::curved_rays::{CurvedRays, Model, Pencil, Sharpness, TurnSpec};
-/// use belvedere_core::{Camera, DVec2, DVec3, Pinhole, Projection, Stage, View};
+/// use belvedere_core::{DVec2, DVec3, Pinhole, Projection, Stage, View};
 ///
 /// let perspective = Projection::Perspective { fov_y: 45f64.to_radians() };
 /// let eye = Pinhole::look_at(DVec3::ZERO, DVec3::Y, DVec3::Z, perspective, [1280, 720], 1.0, None)?;

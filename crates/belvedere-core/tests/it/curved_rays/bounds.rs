@@ -2,7 +2,7 @@
 
 use super::cameras::{self, Spec};
 use belvedere_core::map::curved_rays::Model;
-use belvedere_core::{Aabb, Camera, DVec2, DVec3, View};
+use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_testkit::Random;
 use belvedere_testkit::laws::Similarity;
 

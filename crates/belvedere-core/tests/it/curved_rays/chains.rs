@@ -2,7 +2,7 @@
 
 use super::cameras::{self, Spec, pinhole};
 use belvedere_core::map::curved_rays::{CurvedRays, Model, Pencil, Sharpness, TurnSpec};
-use belvedere_core::{Camera, DVec2, DVec3, Miss, SpaceMap, Stage, View};
+use belvedere_core::{DVec2, DVec3, Miss, SpaceMap, Stage, View};
 use belvedere_testkit::Random;
 use belvedere_testkit::laws::Similarity;
 use glam::DQuat;

@@ -2,7 +2,7 @@
 
 use super::cameras::{self, Spec};
 use belvedere_core::map::curved_rays::{CurvedRays, Model, TurnSpec};
-use belvedere_core::{Aabb, Camera, DVec2, DVec3, SpaceMap};
+use belvedere_core::{Aabb, DVec2, DVec3, SpaceMap};
 use belvedere_testkit::laws::{CameraCase, Continuity, Joint, MapCase, Similarity};
 
 /// A box that the picture sees, from before the first turn to past the last.

@@ -5,7 +5,7 @@
 
 use super::cameras::{self, Spec, pinhole};
 use belvedere_core::map::curved_rays::{Model, Pencil, TurnSpec};
-use belvedere_core::{Camera, DVec2, DVec3, View};
+use belvedere_core::{DVec2, DVec3, View};
 use belvedere_testkit::Random;
 use belvedere_testkit::laws::Similarity;
 

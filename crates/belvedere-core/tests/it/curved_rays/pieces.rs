@@ -2,7 +2,7 @@
 
 use super::cameras::{self, Spec};
 use belvedere_core::map::curved_rays::{Model, RayPiece, Shape};
-use belvedere_core::{Camera, DVec2, DVec3, View};
+use belvedere_core::{DVec2, DVec3, View};
 use belvedere_testkit::laws::Similarity;
 
 const MODELS: [Model; 5] = [Model::Modified, Model::Original, Model::C0, Model::C2, Model::Circular];

@@ -1,7 +1,7 @@
 //! The second example scene of the scene-file documentation.
 
 use belvedere_core::map::curved_rays::{CurvedRays, Model, Pencil, Sharpness, TurnSpec};
-use belvedere_core::{Camera, DVec2, DVec3, Pinhole, Projection, Stage, View};
+use belvedere_core::{DVec2, DVec3, Pinhole, Projection, Stage, View};
 use belvedere_testkit::Random;
 
 pub(super) fn root() -> Pinhole {

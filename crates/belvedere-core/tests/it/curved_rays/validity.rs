@@ -2,7 +2,7 @@
 
 use super::cameras::{self, pinhole};
 use belvedere_core::map::curved_rays::{CurvedRays, CurvedRaysError as E, Model, Pencil, Remedy, Sharpness, TurnSpec};
-use belvedere_core::{Camera, DVec2, DVec3, Pinhole, Projection, Stage, View};
+use belvedere_core::{DVec2, DVec3, Pinhole, Projection, Stage, View};
 use belvedere_testkit::laws::Similarity;
 
 fn root() -> Pinhole {

@@ -1,7 +1,7 @@
 //! A fan of rays, each as [`View::ray`] gives it, up to the surface that it meets.
 
 use super::subject::{Subject, line, segment_color};
-use belvedere_core::{Camera, CurvedRays, DVec2, DVec3, View};
+use belvedere_core::{CurvedRays, DVec2, DVec3, View};
 use belvedere_cpu::{RayHit, Tracer};
 use belvedere_scene::{Color, Overlay};
 

@@ -3,7 +3,7 @@
 use super::rays;
 use super::subject::{Subject, line, point, segment_color};
 use belvedere_core::map::curved_rays::LinearForm;
-use belvedere_core::{Camera, CurvedRays, DVec2, DVec3};
+use belvedere_core::{CurvedRays, DVec2, DVec3};
 use belvedere_scene::{Color, Overlay, OverlayFace, Symbol};
 
 /// Depths tried along a corner's ray before the crossing with a plane is halved.

@@ -1,16 +1,16 @@
-//! How good a picture is: what it shows of the features, and whether it looks like a picture of mountains.
+//! How good a picture would be: what it shows of the features, and whether it fills the image as a straight one does.
 
 use crate::measure::bend::{facing, median_height, nodes};
 use crate::samples::{Sample, SampledFeature};
 use belvedere_core::map::spline::ReferencePlane;
-use belvedere_core::{Camera, DVec2, DVec3, Stage, View};
+use belvedere_core::{DVec2, DVec3, Stage, View};
 use belvedere_scene::{Heightfield, Scene};
 use belvedere_sight::{Obstacles, SightOptions};
 use serde::Serialize;
 
 /// What one candidate picture comes to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Appraisal {
+pub struct Evaluation {
     /// Share of the features' amount inside the image, 0..=1.
     pub in_frame: f64,
     /// Share inside the image and at least 4 % of its width or height away from its border.
@@ -24,14 +24,14 @@ pub struct Appraisal {
     pub spread: f64,
     /// Length in the image of everything inside it, in image widths.
     pub drawn: f64,
-    /// Share of the image below the skyline that ground of the data covers, judged by a grid of rays.
+    /// Share of the image below the skyline that ground of the data covers, by a grid of rays.
     pub covered: f64,
-    /// Mean place of the upper edge of the ground, share of the image height from the top; 1 = no ground in the image.
+    /// Mean position of the upper edge of the ground, share of the image height from the top; 1 = no ground in the image.
     pub skyline: f64,
 }
 
-/// A scene prepared for judging many views.
-pub(crate) struct Judge<'a> {
+/// A scene prepared for evaluating many views.
+pub(crate) struct Evaluator<'a> {
     pub(crate) obstacles: Obstacles<'a>,
     pub(crate) heightfield: &'a Heightfield,
     pub(crate) plane: ReferencePlane,
@@ -40,7 +40,7 @@ pub(crate) struct Judge<'a> {
     cell: f64,
 }
 
-impl<'a> Judge<'a> {
+impl<'a> Evaluator<'a> {
     pub(crate) fn new(
         scene: &'a Scene,
         heightfield: &'a Heightfield,
@@ -57,8 +57,8 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Judges `view`; `stride` > 1 looks at every stride-th sample only.
-    pub(crate) fn appraise(&self, view: &View, stride: usize) -> Appraisal {
+    /// Evaluates `view`; `stride` > 1 looks at every stride-th sample only.
+    pub(crate) fn evaluate(&self, view: &View, stride: usize) -> Evaluation {
         // Only whether a sample is seen counts, and a quarter of a cell is exact enough to choose by.
         let sight = SightOptions { chord_m: 0.05 * self.cell, cap_m: 0.0, guard_m: 1.5 * self.cell };
         let pinhole = view.pinhole();
@@ -89,7 +89,7 @@ impl<'a> Judge<'a> {
         let depth_ratio = quantile(&distances, 0.97) / quantile(&distances, 0.03).max(1e-9);
         let skyline = self.skyline(view);
         let [width, height] = pinhole.image.map(f64::from);
-        Appraisal {
+        Evaluation {
             in_frame: if all > 0.0 { framed / all } else { 0.0 },
             in_margin: if all > 0.0 { inner / all } else { 0.0 },
             visible: if framed > 0.0 { seen / framed } else { 0.0 },

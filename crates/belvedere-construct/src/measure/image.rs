@@ -1,0 +1,74 @@
+//! Where a view shows the samples of features, and whether by line of sight.
+
+use crate::samples::{Sample, SampledFeature};
+use belvedere_core::{DVec2, DVec3, View};
+use belvedere_sight::{Obstacles, SightOptions};
+use rayon::prelude::*;
+
+/// Where a view shows one sample, and whether.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SampleImage {
+    pub(super) pixel: DVec2,
+    pub(super) depth: f64,
+    pub(super) in_frame: bool,
+    pub(super) folded: bool,
+    /// The sample after all stages, scene coordinates.
+    pub(super) displaced: Option<DVec3>,
+    /// By line of sight; `None` outside the frame.
+    pub(super) clearance: Option<f64>,
+    /// By the depth buffer; `None` outside the frame or without a renderer.
+    pub(super) in_buffer: Option<DepthTest>,
+}
+
+impl SampleImage {
+    pub(super) const UNSEEN: Self = Self {
+        pixel: DVec2::ZERO,
+        depth: 0.0,
+        in_frame: false,
+        folded: false,
+        displaced: None,
+        clearance: None,
+        in_buffer: None,
+    };
+
+    /// Seen by line of sight.
+    pub(super) fn visible(&self) -> bool {
+        self.clearance.is_some_and(|c| c >= 0.0)
+    }
+}
+
+/// What the depth buffer says of a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct DepthTest {
+    /// Nothing was drawn in front of the sample's ground.
+    pub(super) seen: bool,
+    /// What was drawn lies behind the ground: a hole, or a wrong depth.
+    pub(super) missed: bool,
+}
+
+/// The images of all samples, in parallel.
+pub(super) fn all(
+    obstacles: &Obstacles<'_>,
+    view: &View,
+    features: &[SampledFeature],
+    sight: &SightOptions,
+) -> Vec<Vec<SampleImage>> {
+    features.iter().map(|f| f.samples.par_iter().map(|s| image(obstacles, view, s, sight)).collect()).collect()
+}
+
+fn image(obstacles: &Obstacles<'_>, view: &View, sample: &Sample, sight: &SightOptions) -> SampleImage {
+    let Ok(at) = view.project(sample.p_world) else { return SampleImage::UNSEEN };
+    let displaced = view.displace(sample.p_world).ok().map(|d| d.point);
+    let pinhole = view.pinhole();
+    let in_range = at.depth >= pinhole.near && pinhole.far.is_none_or(|far| at.depth <= far);
+    let in_frame = in_range && pinhole.contains(at.pixel);
+    let clearance = in_frame.then(|| {
+        if at.folded {
+            // Orientation is reversed there: the picture shows the ground from below.
+            -sight.cap_m.max(f64::MIN_POSITIVE)
+        } else {
+            obstacles.clearance(view, (sample.p_world, sample.lift), (at.pixel, at.depth), sight)
+        }
+    });
+    SampleImage { pixel: at.pixel, depth: at.depth, in_frame, folded: at.folded, displaced, clearance, in_buffer: None }
+}
