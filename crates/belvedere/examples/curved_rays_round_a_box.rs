@@ -1,7 +1,7 @@
 //! A camera whose rays bend over a building, so that it sees the ground behind.
 
 use belvedere::core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
-use belvedere::core::{Camera, CurvedRays, DVec2, DVec3, Pinhole, Projection, Stage, View};
+use belvedere::core::{CurvedRays, DVec2, DVec3, Pinhole, Projection, Stage, View};
 use belvedere::scene::{BoxLayer, BoxShape, Color, Heightfield, LayerKind, Progress, Scene};
 use belvedere::verbs::pick::pick;
 use belvedere::{BelvedereError, PictureOptions, Session};
