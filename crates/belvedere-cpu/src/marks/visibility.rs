@@ -297,3 +297,33 @@ fn on_image(a: DVec2, b: DVec2, map: DepthMap<'_>, margin: f64) -> Option<[f64; 
     }
     (s < t).then_some([s, t])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::marks::path;
+    use belvedere_core::{DVec3, Pinhole, Projection, View};
+    use belvedere_scene::Scene;
+
+    #[test]
+    fn shares_along_a_line_are_those_of_perspective() {
+        let lens = Projection::Perspective { fov_y: 0.9 };
+        let pinhole = Pinhole::look_at(DVec3::ZERO, DVec3::Y, DVec3::Z, lens, [320, 240], 1.0, None).unwrap();
+        let (scene, view) = (Scene::default(), View::straight(pinhole));
+        let (screen, passes, depth) = (Screen::new(view.pinhole()), Pass::all(&view), vec![f32::INFINITY; 320 * 240]);
+        let (sight, map) = (LineOfSight::new(&scene, &view), DepthMap { depth: &depth, width: 320, height: 240 });
+        let visibility = LineVisibility { pass: &passes[0], screen: &screen, map, sight: &sight, lift_m: 0.0 };
+        // From near to forty times as far.
+        let line = path::as_given(&[DVec3::new(-20.0, 50.0, -5.0), DVec3::new(600.0, 2000.0, -40.0)]);
+        let pieces = path::project(&passes[0], &screen, &line, 0.5);
+        let runs: Vec<Run> = pieces.iter().flat_map(|piece| visibility.runs(piece, 0.0)).collect();
+        let stations: Vec<&Station> = runs.iter().flat_map(|run| &run.stations).collect();
+        assert!(stations.len() > 50, "{}", stations.len());
+        for s in stations {
+            let image = screen.pixel(screen.view_from(s.place.p));
+            assert!(image.distance(s.pixel) < 1e-6, "{image} is drawn at {}", s.pixel);
+            let along = s.place.p.distance(line[0].p);
+            assert!((s.place.along - along).abs() < 1e-6, "{} of {along}", s.place.along);
+        }
+    }
+}

@@ -315,7 +315,7 @@ impl Lit {
 mod tests {
     use super::*;
     use crate::shade::ground::palette::Tint;
-    use crate::shade::ground::rows::Planes;
+    use crate::shade::ground::planes::Planes;
     use crate::shade::ground::surface::{MipPyramid, Surface};
     use crate::shade::ground::tiles::CELL;
     use belvedere_core::DVec2;

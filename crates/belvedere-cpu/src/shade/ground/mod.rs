@@ -5,6 +5,7 @@ mod displaced;
 pub(crate) mod lit;
 mod palette;
 mod patch;
+mod planes;
 mod rows;
 pub(crate) mod sample;
 mod shadow;

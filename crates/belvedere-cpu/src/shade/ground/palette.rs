@@ -245,6 +245,16 @@ mod tests {
     }
 
     #[test]
+    fn snow_slides_off_steep_ground() {
+        let tint = Tint::new(&Palette::Alpine, [1000.0, 4800.0]);
+        let snow = |steep: f32| tint.color(4800.0, steep);
+        assert!((snow(0.3) - tint.snow).abs().max_element() < 0.02, "gentle: {}", snow(0.3));
+        for steep in [1.4, 3.0, 50.0] {
+            assert!(snow(steep).max_element() < 0.6 * tint.snow.min_element(), "tangent {steep}: {}", snow(steep));
+        }
+    }
+
+    #[test]
     fn every_palette_has_colours_at_every_height() {
         for palette in &BUILT_IN {
             for range in [[0.0, 0.0], [-400.0, 9000.0], [300.0, 3100.0], [1e6, 1e6 + 1e-6]] {

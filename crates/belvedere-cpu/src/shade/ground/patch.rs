@@ -2,7 +2,8 @@
 //! compilers turn into vector instructions.
 
 use crate::shade::ground::palette::Tint;
-use crate::shade::ground::rows::{Between, Planes};
+use crate::shade::ground::planes::Planes;
+use crate::shade::ground::rows::Between;
 use crate::shade::ground::shadow::Shadows;
 use crate::shade::ground::surface::{MipPyramid, Surface};
 use crate::shade::ground::tiles::Line;

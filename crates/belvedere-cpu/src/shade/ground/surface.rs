@@ -2,7 +2,7 @@
 //!
 //! Only averages are kept: full detail is always at hand in the heights themselves.
 
-use crate::shade::ground::rows::{CHUNK, Inner, Inside, Planes};
+use crate::shade::ground::planes::{CHUNK, Inner, Inside, Planes};
 use crate::simd;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, NodeState};
@@ -95,7 +95,7 @@ impl<'a> Surface<'a> {
             out.set(c - first, near.unwrap_or_else(|| self.node(c, row)));
         }
         if !whole.is_empty() {
-            simd::run(Inside { surface: self, row, columns: whole, first, out });
+            simd::run(Inside { hf: self.hf, heights: &self.heights, row, columns: whole, first, out });
         }
     }
 
@@ -165,7 +165,7 @@ impl<'a> Surface<'a> {
             }
         }
         if !whole.is_empty() {
-            simd::run(Inner { surface: self, side, row, columns: whole, first, out });
+            simd::run(Inner { hf: self.hf, heights: &self.heights, side, row, columns: whole, first, out });
         }
     }
 
