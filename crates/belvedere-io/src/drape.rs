@@ -409,3 +409,18 @@ fn world_file(path: &Path) -> Result<Option<Affine>, IoError> {
     }
     Ok(None)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_between_pixels_are_rounded_to_the_nearest() {
+        let pixels = vec![[10, 20, 30, 255], [11, 10, 30, 255]];
+        let model_from_pixel = Affine([1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+        let picture = Picture { pixels, width: 2, height: 1, model_from_pixel };
+        assert_eq!(picture.sample(DVec2::new(0.9375, 0.5)), [10, 16, 30, 255], "10.44 and 15.63");
+        assert_eq!(picture.sample(DVec2::new(1.0625, 0.5)), [11, 14, 30, 255], "10.56 and 14.37");
+        assert_eq!(picture.sample(DVec2::new(2.0625, 0.5)), [0; 4], "outside");
+    }
+}

@@ -152,6 +152,42 @@ fn well_known_text_of_the_usual_kinds() {
     assert_eq!(system.epsg(), None);
 }
 
+/// The codes are those of the EPSG register.
+#[test]
+fn systems_without_a_code_are_known_by_their_usual_names() {
+    let geographic =
+        r#"DATUM["D",SPHEROID["S",6378137,298.257]],PRIMEM["Greenwich",0],UNIT["Degree",0.0174532925199433]"#;
+    for (name, code) in [
+        ("GCS_WGS_1984", 4326),
+        ("GCS_North_American_1983", 4269),
+        ("GCS_North_American_1927", 4267),
+        ("GCS_ETRS_1989", 4258),
+        ("WGS_1984_Web_Mercator_Auxiliary_Sphere", 3857),
+        ("CH1903+_LV95", 2056),
+        ("British_National_Grid", 27700),
+        ("RGF_1993_Lambert_93", 2154),
+        ("ETRS_1989_LAEA", 3035),
+        ("WGS_1984_UTM_Zone_60S", 32760),
+        ("ETRS_1989_UTM_Zone_28N", 25828),
+        ("ETRS_1989_UTM_Zone_38N", 25838),
+        ("NAD_1983_UTM_Zone_23N", 26923),
+        ("NAD_1927_UTM_Zone_22N", 26722),
+    ] {
+        let system = CoordinateSystem::from_wkt(&format!("GEOGCS[\"{name}\",{geographic}]")).unwrap();
+        assert_eq!(system.epsg(), Some(code), "{name}");
+    }
+    let system = CoordinateSystem::from_wkt(&format!("GEOGCS[\"WGS_1984_UTM_Zone_61N\",{geographic}]")).unwrap();
+    assert_eq!(system.epsg(), None);
+    // What GDAL writes for the web's Mercator: the parameters would give the ellipsoidal projection.
+    let text = format!(
+        r#"PROJCS["Web",GEOGCS["G",{geographic}],PROJECTION["Mercator_1SP"],UNIT["metre",1],EXTENSION["PROJ4","+proj=merc +a=6378137 +b=6378137 +units=m +no_defs"]]"#
+    );
+    let (from, p) = (CoordinateSystem::wgs84().unwrap(), DVec2::new(8.0, 46.0));
+    let got = Transform::new(&from, &CoordinateSystem::from_wkt(&text).unwrap()).unwrap().forward_one(p).unwrap();
+    let wanted = Transform::between_epsg(4326, 3857).unwrap().forward_one(p).unwrap();
+    assert!((got - wanted).length() < 1e-6, "{got} {wanted}");
+}
+
 #[test]
 fn broken_well_known_text_is_one_sentence() {
     let deep = "A[".repeat(100_000);

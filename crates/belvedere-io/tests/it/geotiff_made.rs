@@ -316,6 +316,8 @@ fn headers_that_lie() {
         let error = survive(&with(&changes), wanted).expect_err(wanted);
         assert!(error.contains(wanted), "{error} does not say {wanted}");
     }
+    let lost = open(&PLAIN.image([4, 3], 1, 8, &[7; 12], &[(330, 4, vec![999_999])])).unwrap();
+    assert!(lost.warnings.iter().any(|w| w.contains("an overview is ignored")), "{:?}", lost.warnings);
     let looped = PLAIN.file(&base, &[0; 64], 8);
     assert!(survive(&looped, "loop").unwrap_err().contains("loop"));
     let nowhere = [b"II\x2a\0".as_slice(), &[255; 4]].concat();

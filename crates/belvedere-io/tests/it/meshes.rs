@@ -92,6 +92,20 @@ fn write(folder: &Path, name: &str, bytes: &[u8]) -> std::path::PathBuf {
 }
 
 #[test]
+fn a_vertex_keeps_its_normal_where_its_corners_agree() {
+    let folder = tempfile::tempdir().expect("folder");
+    let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvn 0 0 2\nvn 1 0 1\n";
+    let text = format!("{corners}f 1//1 2//1 3//1\nf 2//1 4//1 3//2\n");
+    let path = write(folder.path(), "two.obj", text.as_bytes());
+    let mesh = load_mesh(&path, &Limits::default()).expect("a mesh").value;
+    let of =
+        |p: DVec3| mesh.normals.as_ref().expect("normals")[mesh.positions.iter().position(|q| *q == p).expect("it")];
+    assert_eq!(of(DVec3::X), DVec3::Z, "both corners say so");
+    assert_eq!(of(DVec3::new(1.0, 1.0, 0.0)), DVec3::Z, "its only corner says so");
+    assert_eq!(of(DVec3::Y), DVec3::ZERO, "its corners differ");
+}
+
+#[test]
 fn truncated_and_mangled_files_end_in_one_line_or_a_mesh() {
     let folder = tempfile::tempdir().expect("folder");
     let mut seed = 5u64;
