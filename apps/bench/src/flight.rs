@@ -1,4 +1,4 @@
-//! What a picture of a flight over terrain that makes way costs: solved for every picture, and solved beside the drawing.
+//! What a frame of a flight over disoccluded terrain costs: solved for every frame, and solved in the background.
 
 use crate::clock::{Stopwatch, median, quantile};
 use crate::scene::ground;
@@ -19,11 +19,11 @@ use std::sync::Arc;
 const RATE: f64 = 25.0;
 const STEP_M: f64 = 3.0;
 
-/// A way to come by the ground of the pictures.
+/// How the ground of the pictures is made, and what that costs.
 #[derive(Debug, Clone, Serialize)]
 pub struct FlightCost {
-    /// `solved and judged for every picture`, or `solved beside the drawing`.
-    pub way: &'static str,
+    /// `solved and judged for every picture`, or `solved in the background`.
+    pub method: &'static str,
     /// Pictures after the first.
     pub pictures: usize,
     /// Reference points in the picture, on average.
@@ -38,7 +38,7 @@ pub struct FlightCost {
     pub hidden: f64,
 }
 
-/// Flies both ways over ground of `nodes` x `nodes` nodes.
+/// Flies over ground of `nodes` x `nodes` nodes.
 pub(crate) fn fly(nodes: usize, image: [u32; 2], pictures: usize) -> Result<Vec<FlightCost>> {
     let scene = Arc::new(with_route(ground(nodes)?)?);
     let views = views(&scene, image, pictures + 1)?;
@@ -50,7 +50,7 @@ pub(crate) fn fly(nodes: usize, image: [u32; 2], pictures: usize) -> Result<Vec<
         Ok(Ground { stage: Stage::TerrainDisocclusion(solved.stage), points: solved.report.points, lag: 0, hidden })
     })?;
     let mut live = LiveTerrain::new(solver.clone(), scene.clone());
-    let beside = time("solved beside the drawing", &scene, &views, |view| {
+    let beside = time("solved in the background", &scene, &views, |view| {
         let frame = live.frame(view)?;
         let hidden = frame.hidden as f64 / frame.points.max(1) as f64;
         Ok(Ground { stage: Stage::TerrainDisocclusion(frame.stage), points: frame.points, lag: frame.lag, hidden })
@@ -67,7 +67,7 @@ struct Ground {
 
 /// The first picture warms up.
 fn time(
-    way: &'static str,
+    method: &'static str,
     scene: &Scene,
     views: &[View],
     mut ground: impl FnMut(&View) -> Result<Ground>,
@@ -94,15 +94,15 @@ fn time(
     let pictures = waits.len();
     let both = |times: Vec<f64>| [median(times.clone()), quantile(times, 0.95)];
     let points = points as f64 / pictures.max(1) as f64;
-    Ok(FlightCost { way, pictures, points, ground_ms: both(waits), picture_ms: both(wholes), lag, hidden })
+    Ok(FlightCost { method, pictures, points, ground_ms: both(waits), picture_ms: both(wholes), lag, hidden })
 }
 
 /// A route along the valleys that must be seen.
 fn with_route(mut scene: Scene) -> Result<Scene> {
     let Some(terrain) = scene.terrain() else { return Ok(scene) };
-    let way = valley_route(terrain, 7)?;
+    let route = valley_route(terrain, 7)?;
     let feature = |points| LineFeature { name: "route".into(), points };
-    let features = drape_polyline(terrain, &way).parts.into_iter().map(feature).collect();
+    let features = drape_polyline(terrain, &route).parts.into_iter().map(feature).collect();
     let line = LineLayer::new(features, Color::rgb(215, 48, 31));
     scene.layers.push(Layer { id: "route".into(), must_see: true, kind: LayerKind::Line(line) });
     Ok(scene)

@@ -66,7 +66,7 @@ pub struct BenchReport {
     pub frames: Vec<FrameCost>,
     /// Projection alone.
     pub projection: Vec<ProjectionCost>,
-    /// A flight over terrain that is solved for every picture, or beside the drawing.
+    /// A flight over terrain that is solved for every picture, or in the background.
     pub flight: Vec<FlightCost>,
     /// The smooth pass of terrain disocclusion by cosine transforms, and by the paper's factorisation.
     pub smooth: Vec<SmoothCost>,
@@ -149,10 +149,11 @@ impl std::fmt::Display for BenchReport {
             )?;
         }
         for cost in &self.flight {
-            let FlightCost { way, pictures, points, ground_ms: [g50, g95], picture_ms: [p50, p95], lag, hidden } = cost;
+            let FlightCost { method, pictures, points, ground_ms: [g50, g95], picture_ms: [p50, p95], lag, hidden } =
+                cost;
             writeln!(
                 f,
-                "flight, {points:.0} points, {way}: ground after {g50:.1} ms (95 % {g95:.1}), picture after {p50:.1} ms \
+                "flight, {points:.0} points, {method}: ground after {g50:.1} ms (95 % {g95:.1}), picture after {p50:.1} ms \
                  (95 % {p95:.1}), {lag} pictures late at most, {:.1} % hidden at most ({pictures} pictures)",
                 100.0 * hidden
             )?;

@@ -85,7 +85,7 @@ pub(crate) enum Verb {
 /// The figures.
 #[derive(Debug, Args)]
 pub(crate) struct FiguresArgs {
-    /// Which figures, separated by commas: terrain
+    /// Which figures, separated by commas: terrain, algorithms
     #[arg(value_parser = parse_figures)]
     pub(crate) what: FigureKinds,
     /// Scene files with a camera and features that must be seen, in place of the built-in areas
@@ -100,6 +100,8 @@ pub(crate) struct FiguresArgs {
 pub(crate) enum FigureKind {
     /// Terrain disocclusion: Deng et al. 2013
     Terrain,
+    /// Charts of docs/algorithms
+    Algorithms,
 }
 
 /// Figures of one paper or several.
@@ -108,7 +110,8 @@ pub(crate) struct FigureKinds(pub(crate) Vec<FigureKind>);
 
 fn parse_figures(text: &str) -> Result<FigureKinds, String> {
     let kind = |name: &str| {
-        FigureKind::from_str(name.trim(), false).map_err(|_| format!("\"{name}\" is none; possible: terrain"))
+        FigureKind::from_str(name.trim(), false)
+            .map_err(|_| format!("\"{name}\" is none; possible: terrain, algorithms"))
     };
     Ok(FigureKinds(text.split(',').map(kind).collect::<Result<_, _>>()?))
 }

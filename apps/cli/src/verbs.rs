@@ -285,21 +285,19 @@ fn measure_scene(args: &MeasureArgs, context: &Context) -> anyhow::Result<Goal> 
 }
 
 fn draw_figures(args: &FiguresArgs, context: &Context) -> anyhow::Result<Goal> {
+    let (options, overwrite) = (context.options(Needs::Everything, None), context.common.overwrite);
     let mut written = Vec::new();
+    if args.what.0.contains(&FigureKind::Algorithms) {
+        written.extend(belvedere_gallery::algorithm_figures(&args.out, &options, overwrite)?);
+    }
     if args.what.0.contains(&FigureKind::Terrain) {
-        let options = context.options(Needs::Everything, None);
-        written.extend(belvedere_gallery::terrain_figures(
-            &args.out,
-            &args.scenes,
-            &options,
-            context.common.overwrite,
-        )?);
+        written.extend(belvedere_gallery::terrain_figures(&args.out, &args.scenes, &options, overwrite)?);
     }
     context.finish();
     if context.common.json {
         context.print(&done("figures", &written, &[]))?;
-    } else if !context.common.quiet {
-        print(&format!("open {}\n", args.out.join("index.html").display()))?;
+    } else if let Some(last) = written.last().filter(|_| !context.common.quiet) {
+        print(&format!("open {}\n", last.display()))?;
     }
     Ok(Goal::Reached)
 }

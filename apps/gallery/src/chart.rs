@@ -3,41 +3,36 @@
 use crate::sheet::Pixels;
 use anyhow::{Result, anyhow};
 use belvedere::cpu::canvas;
+pub(crate) use plotters::prelude::SeriesLabelPosition;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 
-const WIDTH: u32 = 1280;
-const HEIGHT: u32 = 560;
+/// Size of charts of a page of their own, pixels.
+pub(crate) const WIDE: [u32; 2] = [1280, 560];
 const LETTERS: &str = "sans-serif";
 
 /// How a curve is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Look {
+pub(crate) enum Style {
     /// Filled down to the axis.
-    Ground,
+    Filled,
     Line,
     Dashes,
     Dots,
 }
 
-/// An upper corner.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Corner {
-    Left,
-    Right,
-}
-
 /// Values of one kind.
 pub(crate) struct Curve {
+    /// In the legend; empty = not there.
     name: String,
     points: Vec<(f64, f64)>,
     color: RGBColor,
-    look: Look,
+    style: Style,
 }
 
 impl Curve {
-    pub(crate) fn new(name: &str, points: Vec<(f64, f64)>, [r, g, b]: [u8; 3], look: Look) -> Self {
-        Self { name: name.into(), points, color: RGBColor(r, g, b), look }
+    pub(crate) fn new(name: &str, points: Vec<(f64, f64)>, [r, g, b]: [u8; 3], style: Style) -> Self {
+        Self { name: name.into(), points, color: RGBColor(r, g, b), style }
     }
 }
 
@@ -46,21 +41,22 @@ pub(crate) struct Chart {
     pub(crate) title: String,
     pub(crate) x: String,
     pub(crate) y: String,
-    /// Where the names of the curves stand.
-    pub(crate) names: Corner,
+    /// Where the legend stands.
+    pub(crate) legend: SeriesLabelPosition,
     pub(crate) curves: Vec<Curve>,
 }
 
-/// The chart as a picture.
-pub(crate) fn draw(chart: &Chart) -> Result<Pixels> {
+/// The chart as a picture of `width` x `height` pixels.
+pub(crate) fn draw(chart: &Chart, [width, height]: [u32; 2]) -> Result<Pixels> {
     register_font(LETTERS, FontStyle::Normal, canvas::FONT_BYTES).map_err(|_| anyhow!("the font cannot be read"))?;
-    let mut bytes = vec![255u8; (WIDTH * HEIGHT * 3) as usize];
-    plot(chart, &mut bytes).map_err(|e| anyhow!("the chart \"{}\" cannot be drawn: {e}", chart.title))?;
-    Ok((WIDTH as usize, HEIGHT as usize, bytes.as_chunks::<3>().0.to_vec()))
+    let mut bytes = vec![255u8; (width * height * 3) as usize];
+    plot(chart, (width, height), &mut bytes)
+        .map_err(|e| anyhow!("the chart \"{}\" cannot be drawn: {e}", chart.title))?;
+    Ok((width as usize, height as usize, bytes.as_chunks::<3>().0.to_vec()))
 }
 
-fn plot(chart: &Chart, bytes: &mut [u8]) -> Result<(), Box<dyn std::error::Error>> {
-    let area = BitMapBackend::with_buffer(bytes, (WIDTH, HEIGHT)).into_drawing_area();
+fn plot(chart: &Chart, size: (u32, u32), bytes: &mut [u8]) -> Result<(), Box<dyn std::error::Error>> {
+    let area = BitMapBackend::with_buffer(bytes, size).into_drawing_area();
     area.fill(&WHITE)?;
     let all = || chart.curves.iter().flat_map(|c| &c.points).filter(|p| p.0.is_finite() && p.1.is_finite());
     let (mut x, mut y) = ([f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]);
@@ -71,7 +67,8 @@ fn plot(chart: &Chart, bytes: &mut [u8]) -> Result<(), Box<dyn std::error::Error
     let room = 0.04 * (y[1] - y[0]);
     let low = if y[0] >= 0.0 && y[0] < 0.2 * y[1] { 0.0 } else { y[0] - room };
     // Dots on the frame would be cut in two.
-    let side = if chart.curves.iter().any(|c| c.look == Look::Dots) { 0.04 * (x[1] - x[0]) } else { 0.0 };
+    let side = if chart.curves.iter().any(|c| c.style == Style::Dots) { 0.04 * (x[1] - x[0]) } else { 0.0 };
+    let label = |v: &f64| format!("{}", (v * 1e6).round() / 1e6);
     let mut axes = ChartBuilder::on(&area)
         .caption(&chart.title, (LETTERS, 20))
         .margin(14)
@@ -83,22 +80,25 @@ fn plot(chart: &Chart, bytes: &mut [u8]) -> Result<(), Box<dyn std::error::Error
         .y_desc(&chart.y)
         .label_style((LETTERS, 15))
         .axis_desc_style((LETTERS, 16))
-        .x_label_formatter(&|v| format!("{v}"))
-        .y_label_formatter(&|v| format!("{v}"))
+        .x_label_formatter(&label)
+        .y_label_formatter(&label)
         .light_line_style(WHITE)
         .bold_line_style(RGBColor(226, 226, 222))
         .draw()?;
     for curve in &chart.curves {
         let (color, points) = (curve.color, curve.points.clone());
-        let drawn = match curve.look {
-            Look::Ground => {
+        let drawn = match curve.style {
+            Style::Filled => {
                 axes.draw_series(AreaSeries::new(points, low, color.mix(0.75)).border_style(color.stroke_width(2)))?
             }
-            Look::Line => axes.draw_series(LineSeries::new(points, color.stroke_width(3)))?,
-            Look::Dashes => axes.draw_series(DashedLineSeries::new(points, 10, 7, color.stroke_width(2)))?,
-            Look::Dots => axes.draw_series(points.iter().map(|p| Circle::new(*p, 6, color.filled())))?,
+            Style::Line => axes.draw_series(LineSeries::new(points, color.stroke_width(3)))?,
+            Style::Dashes => axes.draw_series(DashedLineSeries::new(points, 10, 7, color.stroke_width(2)))?,
+            Style::Dots => axes.draw_series(points.iter().map(|p| Circle::new(*p, 6, color.filled())))?,
         };
-        let dots = curve.look == Look::Dots;
+        let dots = curve.style == Style::Dots;
+        if curve.name.is_empty() {
+            continue;
+        }
         drawn.label(&curve.name).legend(move |(x, y)| {
             let box_of = |half: i32| {
                 Rectangle::new(
@@ -113,10 +113,7 @@ fn plot(chart: &Chart, bytes: &mut [u8]) -> Result<(), Box<dyn std::error::Error
         .label_font((LETTERS, 15))
         .background_style(WHITE.mix(0.85))
         .border_style(RGBColor(200, 200, 196))
-        .position(match chart.names {
-            Corner::Left => SeriesLabelPosition::UpperLeft,
-            Corner::Right => SeriesLabelPosition::UpperRight,
-        })
+        .position(chart.legend.clone())
         .draw()?;
     area.present()?;
     Ok(())

@@ -54,7 +54,7 @@ impl DemoScene {
     }
 }
 
-/// Pictures of a camera whose rays bend: ending of the name and place.
+/// Pictures of a camera whose rays bend: ending of the name and kind of picture.
 const CAMERAS: [(&str, CameraPicture); 2] =
     [("_camera", CameraPicture::Outside(None)), ("_overhead", CameraPicture::Overhead)];
 

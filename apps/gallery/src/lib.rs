@@ -1,10 +1,13 @@
-//! Pages and figures made with Belvedere: the demo, and the figures of the papers drawn again on open data.
+//! Pages and figures made with Belvedere: the demo, the figures of the papers drawn again on open data, and those of
+//! docs/algorithms.
 
+mod algorithms;
 mod chart;
 mod demo;
 mod html;
 mod sheet;
 mod terrain;
 
+pub use algorithms::figures as algorithm_figures;
 pub use demo::{DemoScene, SCENES, demo};
 pub use terrain::figures as terrain_figures;

@@ -1,8 +1,11 @@
 //! Pictures of one size in rows, a caption of two lines under each.
 
+use anyhow::Result;
 use belvedere::core::DVec2;
 use belvedere::cpu::canvas::Canvas;
+use belvedere::io::png::{self, Channels};
 use belvedere::scene::{Color, Frame};
+use std::path::Path;
 
 /// Between pictures, pixels.
 const GAP: usize = 10;
@@ -20,6 +23,13 @@ pub(crate) struct Panel {
     /// Second line of the caption.
     pub(crate) note: String,
     pub(crate) frame: Frame,
+}
+
+/// Writes a picture as PNG; `comment` goes into the file.
+pub(crate) fn write(path: &Path, (width, height, pixels): Pixels, comment: &str, overwrite: bool) -> Result<()> {
+    let program = format!("belvedere {}", belvedere::VERSION);
+    let text = [("Software", program.as_str()), ("Comment", comment)];
+    Ok(png::write(path, overwrite, width, height, Channels::Rgb, pixels.as_flattened(), &text)?)
 }
 
 /// Lays out panels, `columns` to a row.

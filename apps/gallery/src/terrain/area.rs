@@ -12,6 +12,9 @@ use belvedere::scene::{Frame, Progress, RenderJob, RenderOptions, Renderer, Scen
 use belvedere::{OpenOptions, Session};
 use std::path::{Path, PathBuf};
 
+/// Size of a picture of a sheet, pixels.
+pub(crate) const TILE: [u32; 2] = [640, 360];
+
 /// An area and what is known of it before anything is solved.
 pub(crate) struct Area {
     /// Start of the names of its files.

@@ -29,7 +29,7 @@ pub(crate) struct EyeResult {
     pub(crate) unresolved: usize,
 }
 
-/// A row per height: the eye above the same place, looking at the same one.
+/// A row per height: the eye above the same point, looking in the same direction.
 pub(crate) fn eyes(area: &Area) -> Result<Vec<EyeRow>> {
     let camera = area.view.pinhole();
     let foot = camera.eye.truncate();
@@ -37,7 +37,7 @@ pub(crate) fn eyes(area: &Area) -> Result<Vec<EyeRow>> {
     let mut rows = Vec::new();
     for above in HEIGHTS {
         area.progress.tick("heights of the eye", rows.len() as f64 / HEIGHTS.len() as f64)?;
-        // The direction in plan stays, so the same features are asked for.
+        // The direction in plan stays, so the same features are in view.
         let eye = foot.extend(ground + above);
         let ahead = camera.forward.truncate().normalize_or_zero().extend(camera.forward.z);
         let target = eye + ahead.normalize_or(DVec3::X);

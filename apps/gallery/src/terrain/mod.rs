@@ -1,49 +1,28 @@
 //! `figures terrain`: the figures and tables of Deng et al. 2013, drawn again on open data.
 
-mod area;
+pub(crate) mod area;
 mod cells;
 mod eyes;
 mod page;
 mod pictures;
-mod profile;
+pub(crate) mod profile;
 mod sweeps;
 mod timing;
 
-use crate::sheet::Pixels;
+use crate::sheet::{self, Pixels};
 use anyhow::{Context, Result, bail};
 use area::Area;
 use belvedere::OpenOptions;
-use belvedere::disocclusion::TerrainReport;
-use belvedere::io::png::{self, Channels};
 use belvedere::output::{self, pretty};
+use page::AreaRecord;
 use pictures::Solutions;
-use serde::Serialize;
 use std::path::{Path, PathBuf};
-
-/// Size of the two pictures side by side, pixels.
-const PAIR: [u32; 2] = [960, 540];
-/// Size of a picture of a sheet, pixels.
-const TILE: [u32; 2] = [640, 360];
 
 /// Areas that are drawn if no scene is given; they need no files.
 const BUILTIN: [(&str, &str); 2] = [
     ("massif_terrain", include_str!("../../../../scenes/massif_terrain.toml")),
     ("massif_lake_terrain", include_str!("../../../../scenes/massif_lake_terrain.toml")),
 ];
-
-/// What one area comes to.
-#[derive(Debug, Clone, Serialize)]
-struct AreaRecord {
-    name: String,
-    title: String,
-    pictures: Vec<String>,
-    modes: Vec<TerrainReport>,
-    w: Vec<sweeps::Trial>,
-    eta: Vec<sweeps::Trial>,
-    eyes: Vec<eyes::EyeRow>,
-    timing: timing::Timing,
-    warnings: Vec<String>,
-}
 
 /// Draws the figures of terrain disocclusion into `folder`, which is made if need be, for the areas of `scenes` (two built-in ones
 /// if there are none): pictures, `figures.json` with every report, and `index.html`. Returns the files.
@@ -85,10 +64,7 @@ fn figures_of(area: &Area, folder: &Path, overwrite: bool, written: &mut Vec<Pat
     let mut pictures = Vec::new();
     let mut keep = |what: &str, pixels: Pixels| -> Result<()> {
         let path = area::picture(folder, &area.name, what);
-        let (width, height, pixels) = pixels;
-        let text = [("Software", format!("belvedere {}", belvedere::VERSION)), ("Comment", NOTE.to_owned())];
-        let text = text.each_ref().map(|(k, v)| (*k, v.as_str()));
-        png::write(&path, overwrite, width, height, Channels::Rgb, pixels.as_flattened(), &text)?;
+        sheet::write(&path, pixels, NOTE, overwrite)?;
         pictures.extend(path.file_name().map(|n| n.to_string_lossy().into_owned()));
         written.push(path);
         Ok(())

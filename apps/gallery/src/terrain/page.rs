@@ -1,14 +1,29 @@
 //! The page that shows figures and tables.
 
-use super::AreaRecord;
 use super::eyes::EyeRow;
+use super::sweeps::Trial;
 use super::timing::{PAPER_CELLS, PAPER_SOLVE, Timing};
 use crate::html::{STYLE, escape};
 use belvedere::disocclusion::{SolverMode, TerrainReport};
+use serde::Serialize;
 use std::fmt::Write;
 
 const TABLES: &str = "table{border-collapse:collapse;margin:.6rem 0 1.4rem;font-size:.9rem}td,th{padding:.2rem .7rem;\
 text-align:right;border-bottom:1px solid #8884}th:first-child,td:first-child{text-align:left}";
+
+/// What one area comes to.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct AreaRecord {
+    pub(crate) name: String,
+    pub(crate) title: String,
+    pub(crate) pictures: Vec<String>,
+    pub(crate) modes: Vec<TerrainReport>,
+    pub(crate) w: Vec<Trial>,
+    pub(crate) eta: Vec<Trial>,
+    pub(crate) eyes: Vec<EyeRow>,
+    pub(crate) timing: Timing,
+    pub(crate) warnings: Vec<String>,
+}
 
 /// What a picture shows, by the ending of its name.
 const CAPTIONS: [(&str, &str); 6] = [

@@ -1,12 +1,14 @@
 //! Perspective beside occlusion-free, and the way from one to the other: cells, naive ground, final ground.
 
-use super::area::Area;
-use super::{PAIR, TILE};
+use super::area::{Area, TILE};
 use crate::sheet::{Panel, Pixels, sheet};
 use anyhow::Result;
 use belvedere::core::TerrainDisocclusion;
 use belvedere::disocclusion::{Solved, SolverMode, TerrainReport};
 use belvedere::scene::Scene;
+
+/// Size of the two pictures side by side, pixels.
+const PAIR: [u32; 2] = [960, 540];
 
 /// Solutions of the area's own parameters that several figures share.
 pub(crate) struct Solutions {

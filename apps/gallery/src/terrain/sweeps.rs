@@ -1,7 +1,6 @@
 //! Pictures over the smoothness weight w and the price of discontinuities eta, mode paper.
 
-use super::TILE;
-use super::area::Area;
+use super::area::{Area, TILE};
 use super::pictures::figures;
 use crate::sheet::{Panel, Pixels, sheet};
 use anyhow::Result;

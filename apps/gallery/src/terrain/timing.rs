@@ -1,7 +1,7 @@
 //! What the steps cost, for as many points as the paper had.
 
 use super::area::Area;
-use crate::chart::{self, Chart, Corner, Curve, Look};
+use crate::chart::{self, Chart, Curve, SeriesLabelPosition, Style};
 use crate::sheet::Pixels;
 use anyhow::Result;
 use belvedere::core::DVec2;
@@ -85,17 +85,17 @@ pub(crate) fn plot(timing: &Timing) -> Result<Option<Pixels>> {
     }
     let of = |ms: fn(&GreedyTime) -> f64| timing.greedy.iter().map(|g| (g.points as f64, ms(g))).collect::<Vec<_>>();
     let curves = vec![
-        Curve::new("paper (2.33 GHz, 2012)", of(|g| g.paper_ms), [200, 90, 60], Look::Dots),
-        Curve::new("here", of(|g| g.ms), [30, 90, 170], Look::Dots),
+        Curve::new("paper (2.33 GHz, 2012)", of(|g| g.paper_ms), [200, 90, 60], Style::Dots),
+        Curve::new("here", of(|g| g.ms), [30, 90, 170], Style::Dots),
     ];
     let chart = Chart {
         title: "Lines of sight and parameters of the greedy pass".into(),
         x: "reference points in view".into(),
         y: "wall time, ms".into(),
-        names: Corner::Left,
+        legend: SeriesLabelPosition::UpperLeft,
         curves,
     };
-    Ok(Some(chart::draw(&chart)?))
+    Ok(Some(chart::draw(&chart, chart::WIDE)?))
 }
 
 fn summits(area: &Area) -> impl Iterator<Item = DVec2> + '_ {
