@@ -23,7 +23,10 @@ pub(crate) fn one_line(error: &anyhow::Error) -> String {
     if error.downcast_ref::<BelvedereError>().is_some_and(BelvedereError::is_cancelled) {
         return "cancelled; nothing was written".into();
     }
-    let mut text = error.downcast_ref::<BelvedereError>().map_or_else(|| error.to_string(), in_options);
+    let mut text = error.to_string();
+    if let Some(library) = error.downcast_ref::<BelvedereError>().filter(|e| e.to_string() == text) {
+        text = in_options(library);
+    }
     for cause in error.chain().skip(1).map(ToString::to_string) {
         // Errors that show their cause themselves also name it as their source.
         if !text.contains(&cause) {
@@ -46,27 +49,26 @@ fn in_options(error: &BelvedereError) -> String {
             format!("{error}, or give --along LAYER, --sweep phi or --turntable")
         }
         BelvedereError::NoSweepRange => format!("{error}; add one, or give --sweep phi=FIRST:LAST"),
-        _ => match option_for(error) {
-            Some(option) => format!("{error} ({option})"),
-            None => error.to_string(),
-        },
+        _ => format!("{error}{}", option_for(error).unwrap_or_default()),
     }
 }
 
-/// Options that lift an error, in words.
+/// The end of a sentence: which options lift an error.
 fn option_for(error: &BelvedereError) -> Option<&'static str> {
     Some(match error {
-        BelvedereError::Path { root_missing: true, .. } => "--allow-root DIR",
+        BelvedereError::Path { root_missing: true, .. } => " with --allow-root DIR",
         BelvedereError::Scene { source: Some(source), .. } | BelvedereError::Frame { source, .. } => {
             return option_for(source);
         }
-        BelvedereError::Io(belvedere::io::IoError::Exists { .. }) => "give --overwrite to replace it",
-        BelvedereError::Render(belvedere::scene::RenderError::TooLarge { .. }) => "--size, --samples, --max-mem",
-        BelvedereError::RayEnd { .. } => "give a larger --far",
-        BelvedereError::NoRayEnd => "give --far or camera.far",
-        BelvedereError::FramesThere { resumable: true, .. } => "go on with --resume, or replace them with --overwrite",
-        BelvedereError::FramesThere { .. } => "start anew with --overwrite, or choose another output",
-        BelvedereError::Interrupted { .. } => "the same command with --resume goes on from there",
+        BelvedereError::Io(belvedere::io::IoError::Exists { .. }) => "; give --overwrite to replace it",
+        BelvedereError::Render(belvedere::scene::RenderError::TooLarge { .. }) => " (--size, --samples, --max-mem)",
+        BelvedereError::RayEnd { .. } => "; give a larger --far",
+        BelvedereError::NoRayEnd => "; give --far or camera.far",
+        BelvedereError::FramesThere { resumable: true, .. } => {
+            "; go on with --resume, or replace them with --overwrite"
+        }
+        BelvedereError::FramesThere { .. } => "; start anew with --overwrite, or choose another output",
+        BelvedereError::Interrupted { .. } => "; the same command with --resume goes on from there",
         _ => return None,
     })
 }

@@ -43,7 +43,7 @@ pub fn run(folder: &Path) -> Result<[Option<String>; 2], Box<dyn std::error::Err
     let straight = Session::from_parts(scene, View::straight(camera.clone()));
     let bent = straight.clone().with_view(View::new(camera, vec![Stage::CurvedRays(rays)])?);
     bent.render(&PictureOptions::default())?.write(&folder.join("round_a_box.png"), true)?;
-    let behind = DVec3::new(0.0, 200.0, 0.0);
+    let behind = DVec3::new(0.0, 260.0, 0.0);
     Ok([layer_at(&straight, behind)?, layer_at(&bent, behind)?])
 }
 

@@ -98,7 +98,7 @@ fn bad_points_name_their_index() {
         ("{}", "a list of [x, y, z] was expected, found a table"),
         ("[[1, 2, 1e999]]", "line 1: \"1e999\" is not a finite number; give finite numbers"),
         ("[[1, 2, NaN]]", "line 1: a number is not finite; give finite numbers"),
-        ("[[1, 2", "line 1: not valid JSON: ',' or ']' was expected, found the end of the file"),
+        ("[[1, 2", "line 1: not valid JSON: EOF while parsing a list"),
     ] {
         place.write("p.json", text);
         assert_eq!(place.fails(&["project", "s.toml", "--points", "p.json"]), format!("belvedere: p.json: {expected}"));

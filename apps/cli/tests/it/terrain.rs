@@ -178,8 +178,8 @@ fn bad_input_is_one_clear_line() {
     };
     let (eye, look) = ("8.022,46.002,1500", "8.024,46.03");
     assert!(fails("way.geojson", "8.022,46.002,900", look, &[]).contains("below the ground"));
-    assert!(fails("way.geojson", "800,46.002,900", look, &[]).contains("no place in the system"));
-    assert!(fails("way.geojson", eye, "8.022,46.002", &[]).contains("same place"));
+    assert!(fails("way.geojson", "800,46.002,900", look, &[]).contains("no position in the system"));
+    assert!(fails("way.geojson", eye, "8.022,46.002", &[]).contains("same point"));
     assert!(fails("way.geojson", eye, look, &["--fov", "180"]).contains("strictly between 0 and 180"));
     assert!(fails("way.geojson", eye, look, &["--set", "margn_m=2"]).contains("margin_m"));
     assert!(fails("way.geojson", eye, look, &["--set", "w"]).contains("key=value"));

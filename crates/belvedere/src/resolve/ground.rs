@@ -15,23 +15,26 @@ pub(super) fn epsg(text: &str) -> Option<u32> {
 }
 
 /// Radius of the earth at the middle of a scene, metres.
-pub(crate) fn earth_radius(scene: &Scene) -> f64 {
-    let middle = scene.bounds().center().truncate();
-    Ground::of(scene).lon_lat(middle).map_or(MEAN_EARTH_RADIUS_M, |lon_lat| gaussian_radius_m(lon_lat.y))
+pub(crate) fn earth_radius(scene: &Scene, warnings: &mut Vec<String>) -> f64 {
+    radius_at(&Ground::of(scene), scene.bounds().center().truncate(), warnings)
 }
 
-/// The stage of an earth shape seen from `eye`, and what was odd about it.
-pub(crate) fn earth(shape: EarthDoc, ground: &Ground<'_>, eye: DVec3) -> (Option<Stage>, Option<String>) {
-    if shape == EarthDoc::Flat {
-        return (None, None);
-    }
-    let radius = ground.lon_lat(eye.truncate()).map(|lon_lat| gaussian_radius_m(lon_lat.y));
-    let warning = radius.is_none().then(|| {
-        format!("earth = \"curved\" in a scene without georeference: the mean radius {MEAN_EARTH_RADIUS_M} m is used")
-    });
-    let radius = radius.unwrap_or(MEAN_EARTH_RADIUS_M);
-    let stage = EarthCurvature { eye, radius, refraction: EarthCurvature::REFRACTION };
-    (Some(Stage::EarthCurvature(stage)), warning)
+/// The stage of an earth shape seen from `eye`.
+pub(crate) fn earth(shape: EarthDoc, ground: &Ground<'_>, eye: DVec3, warnings: &mut Vec<String>) -> Option<Stage> {
+    (shape == EarthDoc::Curved).then(|| {
+        let (radius, refraction) = (radius_at(ground, eye.truncate(), warnings), EarthCurvature::REFRACTION);
+        Stage::EarthCurvature(EarthCurvature { eye, radius, refraction })
+    })
+}
+
+fn radius_at(ground: &Ground<'_>, xy: DVec2, warnings: &mut Vec<String>) -> f64 {
+    let radius = ground.lon_lat(xy).map(|lon_lat| gaussian_radius_m(lon_lat.y));
+    radius.unwrap_or_else(|| {
+        warnings.push(format!(
+            "earth = \"curved\" in a scene without georeference: the mean radius {MEAN_EARTH_RADIUS_M} m is used"
+        ));
+        MEAN_EARTH_RADIUS_M
+    })
 }
 
 /// The scene's coordinate system and its undeformed terrain.

@@ -35,12 +35,10 @@ pub(crate) fn resolve(
     let shape = source.document.earth;
     let mut camera = camera::resolve(source, &ground, stages::plane_normal(&source.document))?;
     if let Some(solving) = solving.as_deref_mut() {
-        let before = earth(shape, &ground, camera.pinhole.eye).0.into_iter().collect();
+        let before = earth(shape, &ground, camera.pinhole.eye, &mut Vec::new()).into_iter().collect();
         terrain::adjust(source, scene, &mut camera, before, solving, &mut warnings)?;
     }
-    let (earth, odd) = earth(shape, &ground, camera.pinhole.eye);
-    warnings.extend(odd);
-    let mut chain: Vec<_> = earth.into_iter().collect();
+    let mut chain: Vec<_> = earth(shape, &ground, camera.pinhole.eye, &mut warnings).into_iter().collect();
     let context = stages::StageContext { source, roots, scene, ground: &ground, camera: &camera, earth: &chain };
     let resolved = stages::resolve(&context, solving, &mut inputs, &mut warnings)?;
     chain.extend(resolved.stages);

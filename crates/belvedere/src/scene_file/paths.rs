@@ -73,7 +73,7 @@ impl Roots {
             root_missing,
         };
         let refuse = |reason: String| refused(reason, false);
-        let outside = "use a path below that folder, or allow another folder";
+        let outside = "use a path below that folder, or allow a folder";
         check_name(name).map_err(refuse)?;
         let path = Path::new(name);
         let leaves = path.is_absolute() || looks_absolute(name) || path.components().any(|c| c == Component::ParentDir);

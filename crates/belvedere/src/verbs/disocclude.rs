@@ -14,7 +14,7 @@ use belvedere_io::IoError;
 use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::geotiff::write_geotiff;
 use belvedere_io::terrain::OriginalTerrain;
-use belvedere_scene::{Crs, Layer, LayerKind, Progress, Scene};
+use belvedere_scene::{Crs, Layer, LayerKind, Progress};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -124,8 +124,9 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
     let mut data = DataFiles { keep_voids: true, ..request.data.clone() }.load(true, options)?;
     let dem = &request.data.dem;
     let original = data.original.take().ok_or_else(|| IoError::format(dem, "is no file; give an elevation model"))?;
+    let radius = request.curved_earth.then(|| earth_radius(&data.scene, &mut data.warnings));
     data.warnings.extend(original.georeference_note());
-    let camera = LevelCamera::new(request, &original, &data.scene)?;
+    let camera = LevelCamera::new(request, &original, data.scene.crs, radius)?;
     let view = camera.view(camera.target.extend(camera.eye.z), None)?;
     let solved = solver.solve(&data.scene, &view, &mut TerrainMemory::default(), &options.progress)?;
     data.warnings.extend(intent::remarks(&solved));
@@ -159,13 +160,18 @@ struct LevelCamera {
 }
 
 impl LevelCamera {
-    fn new(request: &DisoccludeRequest, original: &OriginalTerrain, scene: &Scene) -> Result<Self, BelvedereError> {
+    fn new(
+        request: &DisoccludeRequest,
+        original: &OriginalTerrain,
+        crs: Crs,
+        earth_radius: Option<f64>,
+    ) -> Result<Self, BelvedereError> {
         let deg = request.fov_x_deg;
         if !(deg > 0.0 && deg < 180.0) {
             return Err(BelvedereError::FieldOfView { deg });
         }
         let position = |what: &'static str, [x, y]: [f64; 2]| {
-            original.scene_from_model(scene.crs, DVec2::new(x, y)).ok_or_else(|| BelvedereError::Position {
+            original.scene_from_model(crs, DVec2::new(x, y)).ok_or_else(|| BelvedereError::Position {
                 what,
                 reason: format!(
                     "{x},{y} is no position in the system of the elevation model ({}); give x,y in that system",
@@ -179,9 +185,8 @@ impl LevelCamera {
         if eye.truncate().distance(target) < 1e-6 {
             return Err(BelvedereError::EyeIsTarget);
         }
-        let radius = request.curved_earth.then(|| earth_radius(scene));
         let refraction = EarthCurvature::REFRACTION;
-        let earth = radius.map(|radius| Stage::EarthCurvature(EarthCurvature { eye, radius, refraction }));
+        let earth = earth_radius.map(|radius| Stage::EarthCurvature(EarthCurvature { eye, radius, refraction }));
         Ok(Self { eye, target, fov_x: deg.to_radians(), earth })
     }
 

@@ -125,12 +125,12 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
         return Err(BelvedereError::FieldOfView { deg: fov_y_deg });
     }
-    let data = request.data.load(false, options)?;
+    let mut data = request.data.load(false, options)?;
     let base = base_view(request, &data.scene)?;
     let search = RevealOptions {
         image: request.image.unwrap_or(IMAGE),
         fov_y: fov_y_deg.to_radians(),
-        earth_radius: request.curved_earth.then(|| earth_radius(&data.scene)),
+        earth_radius: request.curved_earth.then(|| earth_radius(&data.scene, &mut data.warnings)),
         ..RevealOptions::default()
     };
     let mut memory = RevealMemory::default();
