@@ -42,7 +42,7 @@ fn writes_new_files_and_replaces_only_when_told() {
     text(&path, false, "one").unwrap();
     let error = text(&path, false, "two").unwrap_err();
     assert!(matches!(error, IoError::Exists { .. }));
-    assert!(error.to_string().contains("--overwrite") && error.to_string().contains("out.png"), "{error}");
+    assert!(error.to_string().contains("out.png: exists already and may not be replaced"), "{error}");
     assert_eq!(fs::read_to_string(&path).unwrap(), "one");
     text(&path, true, "three").unwrap();
     assert_eq!(fs::read_to_string(&path).unwrap(), "three");
