@@ -3,8 +3,9 @@
 use crate::clock::{Stopwatch, median};
 use anyhow::Result;
 use belvedere::core::DVec2;
-use belvedere::disocclusion::{
-    ConjugateGradients, ElevationRows, Hierarchy, Smoother, TerrainSettings, grid_weight, row_weight,
+use belvedere::disocclusion::TerrainSettings;
+use belvedere::disocclusion::internals::{
+    ConjugateGradients, ElevationRows, Hierarchy, Smoother, grid_weight, row_weight,
 };
 use serde::Serialize;
 
@@ -76,7 +77,7 @@ fn cost(grid: &Hierarchy, nodes: usize, count: usize, rounds: usize) -> Result<S
 #[cfg(feature = "sparse")]
 fn sparse(n: usize, shift: f64, rows: &ElevationRows, wanted: &[f64], ours: &[f64]) -> Result<Option<SparseCost>> {
     let watch = Stopwatch::start();
-    let mut factor = belvedere::disocclusion::Cholesky::new(n, n, shift, rows)?;
+    let mut factor = belvedere::disocclusion::internals::Cholesky::new(n, n, shift, rows)?;
     let factor_ms = watch.wall_ms();
     let mut theirs = wanted.to_vec();
     let watch = Stopwatch::start();

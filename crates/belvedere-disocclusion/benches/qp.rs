@@ -8,8 +8,9 @@
 mod ground;
 
 use belvedere_core::DVec2;
-use belvedere_disocclusion::visibility_qp::{Candidate, QpOptions, QpProblem, QpSolver, StraightSight};
-use belvedere_disocclusion::{Hierarchy, Smoother, TerrainSettings, Wedge, grid_weight, stated_spacing};
+use belvedere_disocclusion::TerrainSettings;
+use belvedere_disocclusion::internals::{Candidate, QpOptions, QpProblem, QpSolver, StraightSight};
+use belvedere_disocclusion::internals::{Hierarchy, Smoother, Wedge, grid_weight, stated_spacing};
 use ground::{NODES, cpu_ms, exponent, fractal, points, route};
 use std::time::Instant;
 

@@ -1,9 +1,12 @@
 //! What can go wrong before terrain is solved. A place that cannot be made visible is a result, not an error.
 
-use crate::visibility_qp::QpError;
-use crate::{EyeError, FieldError, SmoothError};
 use belvedere_core::grid::GridError;
 use belvedere_scene::Cancelled;
+
+pub use crate::in_view::EyeError;
+pub use crate::smooth::SmoothError;
+pub use crate::visibility_qp::QpError;
+pub use belvedere_sight::FieldError;
 
 /// Terrain that could not be solved at all.
 #[derive(Debug, thiserror::Error)]

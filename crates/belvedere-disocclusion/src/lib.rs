@@ -1,40 +1,68 @@
 //! Terrain that makes way: the ground moves as little as possible so that what must be seen is seen.
 //!
 //! After Deng et al. 2013 (*Occlusion-free mountain navigation*): a greedy pass and a smooth one; and a quadratic program
-//! that guarantees what those two only try.
+//! that guarantees what those two only try. [`TerrainSolver`] goes from [`TerrainSettings`] and a scene to a displacement and a
+//! [`TerrainReport`].
+
+// The inside is public for the feature `internals` only.
+#![cfg_attr(not(feature = "internals"), allow(unreachable_pub, unused_imports, dead_code))]
 
 mod cells;
-mod error;
+pub mod error;
+pub mod ghost;
 mod greedy;
+mod in_view;
 mod metrics;
 mod points;
-mod register;
 mod settings;
 mod smooth;
 mod solve;
 mod viewpoint;
-pub mod visibility_qp;
+mod visibility_qp;
 
-pub use belvedere_sight::{Field, FieldError};
-pub use cells::{Cells, NO_CELL};
 pub use error::DisocclusionError;
-pub use greedy::{
-    Affine, Blocks, EyeError, GreedyCounters, LeftOut, Naive, Pieces, Price, Wedge, blended, check_eye, in_view,
-    scale_to_clear, shift_to_clear,
-};
-pub use metrics::{Deformation, FrameChange, TerrainMetrics, terrain_metrics};
-pub use points::{PointKind, ReferencePoint, Unusable, UnusableReason, candidate_points, reference_points};
-pub use settings::{Detail, LONGEST_SMOOTHING_M, SolverMode, TerrainSettings, stated_spacing};
-#[cfg(feature = "sparse")]
-pub use smooth::Cholesky;
-pub use smooth::{
-    Between, ConjugateGradients, Convergence, Dct, ElevationRows, Green, Hierarchy, Real, SmoothError, SmoothMemory,
-    SmoothPass, Smoothed, Smoother, grid_weight, laplacian, row_weight, temporal_weight,
-};
-pub use solve::{
-    Covered, Fallback, LiveFrame, LiveTerrain, QpReport, Solved, TerrainMemory, TerrainReport, TerrainSolver,
-    TerrainTimes, UnresolvedReason, UnresolvedRun,
-};
-pub use viewpoint::{
-    AdjustedViewpoint, ViewpointEnergy, ViewpointOptions, adjust_viewpoint, ghost_alpha, height_slope,
-};
+pub use settings::{Detail, SolverMode, TerrainSettings};
+pub use solve::{LiveFrame, LiveTerrain, Solved, TerrainMemory, TerrainReport, TerrainSolver};
+pub use viewpoint::{AdjustedViewpoint, ViewpointOptions};
+
+use belvedere_sight::Field;
+use cells::{Cells, NO_CELL};
+use greedy::{BlockMaxima, GreedyCounters, Naive};
+use in_view::{LeftOut, Wedge, check_eye, in_view};
+use metrics::{Deformation, TerrainMetrics};
+use points::{PointKind, ReferencePoint, Unusable, UnusableReason, candidate_points, reference_points};
+use settings::stated_spacing;
+use smooth::{Hierarchy, SmoothPass, Smoother, grid_weight, temporal_weight};
+use viewpoint::{ViewpointEnergy, adjust_viewpoint, height_slope};
+
+/// What a [`TerrainReport`] is made of.
+pub mod report {
+    pub use crate::greedy::GreedyCounters;
+    pub use crate::metrics::{FrameChange, TerrainMetrics};
+    pub use crate::points::PointKind;
+    pub use crate::solve::{Covered, Fallback, QpReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
+}
+
+/// The inside of the solver, for measurements, figures and tests. Not stable: any name may change or go without notice.
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::cells::{Cells, NO_CELL};
+    pub use crate::greedy::{BlockMaxima, Naive};
+    pub use crate::in_view::{EyeError, LeftOut, Wedge, check_eye, in_view};
+    pub use crate::metrics::{Deformation, terrain_metrics};
+    pub use crate::points::{ReferencePoint, Unusable, UnusableReason, reference_points};
+    pub use crate::settings::{LONGEST_SMOOTHING_M, stated_spacing};
+    #[cfg(feature = "sparse")]
+    pub use crate::smooth::Cholesky;
+    pub use crate::smooth::{
+        Between, ConjugateGradients, Convergence, ElevationRows, Green, Hierarchy, SmoothPass, Smoothed, Smoother,
+        grid_weight, laplacian, row_weight, temporal_weight,
+    };
+    pub use crate::viewpoint::{ViewpointEnergy, adjust_viewpoint, height_slope};
+    pub use crate::visibility_qp::{
+        Candidate, Certificate, LinesOfSight, QpError, QpOptions, QpProblem, QpResult, QpSolver, Reason, SolvedRow,
+        StraightSight, Unresolved, ViewSight,
+    };
+    pub use belvedere_sight::Field;
+}

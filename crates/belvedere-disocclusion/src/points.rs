@@ -2,7 +2,7 @@
 
 use super::{Field, TerrainSettings};
 use belvedere_core::DVec2;
-use belvedere_scene::{LayerKind, Scene};
+use belvedere_scene::{AreaFeature, Layer, LayerKind, LineFeature, Scene};
 
 /// Points along one line or rim, and inside one area, at most; a longer feature gets wider spacing.
 const MOST_POINTS: f64 = 50_000.0;
@@ -81,61 +81,79 @@ pub fn reference_points(
     settings: &TerrainSettings,
     spacing: f64,
 ) -> (Vec<ReferencePoint>, Vec<Unusable>) {
-    sorted(Sorter::new(field, false), scene, settings, spacing)
+    collect_points(PointCollector::new(field, false), scene, settings, spacing)
 }
 
 /// Points that the quadratic program looks after: as [`reference_points`] `settings.candidates` apart, but each on the nearest bend
 /// of the drawn line that is no farther than half of that: its own corner, or an edge of the ground's mesh. Between two bends line and
 /// ground are straight, so a line is hidden first at a bend.
-pub fn candidate_points(scene: &Scene, field: &Field, settings: &TerrainSettings) -> Vec<ReferencePoint> {
-    sorted(Sorter::new(field, true), scene, settings, settings.candidates).0
+pub(super) fn candidate_points(scene: &Scene, field: &Field, settings: &TerrainSettings) -> Vec<ReferencePoint> {
+    collect_points(PointCollector::new(field, true), scene, settings, settings.candidates).0
 }
 
-fn sorted(
-    mut out: Sorter<'_>,
+/// A feature that must be seen, with all that its points depend on besides the ground and the parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct RequiredFeature {
+    layer: usize,
+    feature: usize,
+    lift_m: f64,
+    shape: Shape,
+}
+
+/// Scene x, y.
+#[derive(Debug, Clone, PartialEq)]
+enum Shape {
+    Line(Vec<DVec2>),
+    Area(Vec<Vec<DVec2>>),
+    Point(DVec2),
+}
+
+/// The features of all layers that must be seen. Corners that are not finite are left out.
+pub(super) fn required_features(scene: &Scene) -> Vec<RequiredFeature> {
+    let finite = |points: &mut dyn Iterator<Item = DVec2>| points.filter(|p| p.is_finite()).collect::<Vec<_>>();
+    let of_layer = |(layer, content): (usize, &Layer)| {
+        let (lift_m, shapes): (f64, Vec<Shape>) = match &content.kind {
+            LayerKind::Line(l) => {
+                let line = |f: &LineFeature| Shape::Line(finite(&mut f.points.iter().map(|p| p.truncate())));
+                (l.lift_m, l.features.iter().map(line).collect())
+            }
+            LayerKind::Area(a) => {
+                let ring = |r: &Vec<DVec2>| finite(&mut r.iter().copied());
+                let area = |f: &AreaFeature| Shape::Area(f.rings.iter().map(ring).collect());
+                (a.lift_m, a.features.iter().map(area).collect())
+            }
+            LayerKind::Point(p) => (p.lift_m, p.features.iter().map(|f| Shape::Point(f.position.truncate())).collect()),
+            LayerKind::Terrain(_) | LayerKind::Boxes(_) | LayerKind::Mesh(_) => (0.0, Vec::new()),
+        };
+        shapes.into_iter().enumerate().map(move |(feature, shape)| RequiredFeature { layer, feature, lift_m, shape })
+    };
+    scene.must_see().flat_map(of_layer).collect()
+}
+
+fn collect_points(
+    mut out: PointCollector<'_>,
     scene: &Scene,
     settings: &TerrainSettings,
     spacing: f64,
 ) -> (Vec<ReferencePoint>, Vec<Unusable>) {
     let field = out.field;
-    for (layer, content) in scene.must_see() {
-        out.layer = layer;
-        match &content.kind {
-            LayerKind::Line(l) => {
-                out.lift = settings.lift_m.unwrap_or(l.lift_m);
-                for (feature, f) in l.features.iter().enumerate() {
-                    out.feature = feature;
-                    let path = to_grid(field, f.points.iter().map(|p| p.truncate()));
-                    out.along(&path, spacing, 0.0, PointKind::Line);
-                }
+    let to_grid = |points: &Vec<DVec2>| points.iter().map(|p| field.grid_from_scene(*p)).collect::<Vec<_>>();
+    for required in &required_features(scene) {
+        (out.layer, out.feature) = (required.layer, required.feature);
+        out.lift = settings.lift_m.unwrap_or(required.lift_m);
+        match &required.shape {
+            Shape::Line(points) => {
+                out.along(&to_grid(points), spacing, 0.0, PointKind::Line);
             }
-            LayerKind::Area(a) => {
-                out.lift = settings.lift_m.unwrap_or(a.lift_m);
-                for (feature, f) in a.features.iter().enumerate() {
-                    out.feature = feature;
-                    let rings: Vec<Vec<DVec2>> = f.rings.iter().map(|r| to_grid(field, r.iter().copied())).collect();
-                    out.area(&rings, spacing);
-                }
-            }
-            LayerKind::Point(p) => {
-                out.lift = settings.lift_m.unwrap_or(p.lift_m);
-                for (feature, f) in p.features.iter().enumerate() {
-                    out.feature = feature;
-                    out.put(field.grid_from_scene(f.position.truncate()), 0.0, PointKind::Landmark);
-                }
-            }
-            LayerKind::Terrain(_) | LayerKind::Boxes(_) | LayerKind::Mesh(_) => {}
+            Shape::Area(rings) => out.area(&rings.iter().map(to_grid).collect::<Vec<_>>(), spacing),
+            Shape::Point(p) => out.put(field.grid_from_scene(*p), 0.0, PointKind::Landmark),
         }
     }
     (out.usable, out.unusable)
 }
 
-fn to_grid(field: &Field, points: impl Iterator<Item = DVec2>) -> Vec<DVec2> {
-    points.filter(|p| p.is_finite()).map(|p| field.grid_from_scene(p)).collect()
-}
-
 /// Puts points where they belong.
-struct Sorter<'a> {
+struct PointCollector<'a> {
     field: &'a Field,
     /// Whether points along paths move to bends.
     bends: bool,
@@ -146,7 +164,7 @@ struct Sorter<'a> {
     unusable: Vec<Unusable>,
 }
 
-impl<'a> Sorter<'a> {
+impl<'a> PointCollector<'a> {
     fn new(field: &'a Field, bends: bool) -> Self {
         Self { field, bends, layer: 0, feature: 0, lift: 0.0, usable: Vec::new(), unusable: Vec::new() }
     }

@@ -1,6 +1,7 @@
 //! The parameters of terrain disocclusion and their defaults.
 
 use belvedere_core::DVec2;
+use belvedere_scene::Heightfield;
 
 /// Longest smoothing of mode qp where no `w` is stated, metres: about the width of a valley floor. On ground wider than 32 km
 /// w = 0.3 would spread every displacement over the next ridge.
@@ -112,6 +113,16 @@ impl TerrainSettings {
         self.w.unwrap_or(usual)
     }
 
+    /// [`Self::smoothness`] on a terrain.
+    pub fn smoothness_on(&self, terrain: &Heightfield) -> f64 {
+        self.smoothness(stated_spacing(terrain.cols(), terrain.rows(), terrain.spacing()))
+    }
+
+    /// Cells to keep on a terrain: as stated, else one for 1600 nodes, at least one.
+    pub fn cells_on(&self, terrain: &Heightfield) -> usize {
+        self.cells.unwrap_or_else(|| default_cells(terrain.heights().len()))
+    }
+
     /// Wavelength over 2 pi at which the smoothing halves a displacement, metres.
     pub fn smoothing_length(&self, stated_m: f64) -> f64 {
         stated_m / self.smoothness(stated_m).sqrt()
@@ -121,6 +132,11 @@ impl TerrainSettings {
     pub fn detail(&self) -> Detail {
         self.detail.unwrap_or(if self.mode == SolverMode::Qp { Detail::Plain } else { Detail::Scaled })
     }
+}
+
+/// Cells to keep by default on terrain with so many nodes.
+pub(super) fn default_cells(nodes: usize) -> usize {
+    (nodes / 1600).max(1)
 }
 
 /// Spacing of 129 nodes along the longer side of terrain with `cols` x `rows` nodes `spacing` apart, scene units.

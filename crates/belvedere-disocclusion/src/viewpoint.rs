@@ -102,9 +102,9 @@ pub fn adjust_viewpoint(
     let slope = energy.slope();
     let mut search = Search { user, target, ground, energy, options, slider, start, asked: [0, 1] };
     let cost = search.cost(DVec3::ZERO, Some(start)).unwrap_or(f64::INFINITY);
-    let mut best = Place { q: DVec3::ZERO, cost, slope };
-    if let Some(place) = search.scan().and_then(|q| search.exact(q)).filter(|p| p.cost < best.cost) {
-        best = place;
+    let mut best = Trial { q: DVec3::ZERO, cost, slope };
+    if let Some(trial) = search.scan().and_then(|q| search.exact(q)).filter(|p| p.cost < best.cost) {
+        best = trial;
     }
     let q = search.descend(best).q;
     let eye = search.eye(q);
@@ -114,7 +114,7 @@ pub fn adjust_viewpoint(
 
 /// A place of the box whose energy was asked for.
 #[derive(Clone, Copy)]
-struct Place {
+struct Trial {
     q: DVec3,
     cost: f64,
     slope: Option<f64>,
@@ -157,11 +157,11 @@ impl Search<'_> {
         Some((1.0 - self.slider) * energy / self.start + self.slider * q.length_squared() + barrier)
     }
 
-    fn exact(&mut self, q: DVec3) -> Option<Place> {
+    fn exact(&mut self, q: DVec3) -> Option<Trial> {
         self.asked[1] += 1;
         let energy = self.energy.energy(self.eye(q));
         let slope = self.energy.slope();
-        self.cost(q, energy).map(|cost| Place { q, cost, slope })
+        self.cost(q, energy).map(|cost| Trial { q, cost, slope })
     }
 
     /// The best place of a lattice over the box by the cheap energy, compared with the cheap energy of the middle.
@@ -194,7 +194,7 @@ impl Search<'_> {
     }
 
     /// Projected gradient with halving steps; never ends higher than it began.
-    fn descend(&mut self, mut place: Place) -> Place {
+    fn descend(&mut self, mut place: Trial) -> Trial {
         let mut reach = 0.5;
         for _ in 0..self.options.steps {
             let Some(gradient) = self.gradient(place) else { break };
@@ -223,7 +223,7 @@ impl Search<'_> {
 
     /// Gradient of the cost by one-sided differences into the box; the energy's part along the height by the envelope
     /// theorem where it is offered.
-    fn gradient(&mut self, place: Place) -> Option<DVec3> {
+    fn gradient(&mut self, place: Trial) -> Option<DVec3> {
         const STEP: f64 = 0.02;
         if !place.cost.is_finite() {
             return None;
@@ -244,10 +244,4 @@ impl Search<'_> {
         }
         Some(gradient)
     }
-}
-
-/// Opacity of ground that still covers a line of sight by `slack_m` metres, `1 / (1 + s / s0)`: 1 without slack, 1/2 at
-/// `half_m` (> 0).
-pub fn ghost_alpha(slack_m: f64, half_m: f64) -> f64 {
-    1.0 / (1.0 + slack_m.max(0.0) / half_m)
 }

@@ -55,16 +55,8 @@ pub fn guard_tau(from: DVec2, eye: DVec2, guard: f64) -> f64 {
 ///
 /// Where an end of an edge is void there is no ground and no sample. A point under the eye has no samples.
 pub fn sight_samples(field: &Field, from: DVec2, eye: DVec2, diagonals: bool) -> Vec<SightSample> {
-    let mut out = Vec::new();
-    let Some(line) = SightLine::new(field, from, eye) else { return out };
     let families = if diagonals { &EdgeFamily::ALL[..] } else { &EdgeFamily::ALL[..2] };
-    for &family in families {
-        line.line
-            .crossings(field.nodes(), family, line.span, AT_NODE, |tau, _, edge| out.extend(line.sample(tau, edge)));
-    }
-    out.sort_by(|a, b| a.tau.total_cmp(&b.tau));
-    out.dedup_by(|next, sample| sample.same_node(next));
-    out
+    SightLine::new(field, from, eye).map_or_else(Vec::new, |line| line.samples(&[line.span], families))
 }
 
 /// A line of sight over the grid, in plan, from the point to the eye.
@@ -98,11 +90,15 @@ impl<'a> SightLine<'a> {
         self.line.dir
     }
 
-    /// The crossing with line `k` of a family.
-    #[inline]
-    pub fn crossing(&self, family: EdgeFamily, k: f64) -> Option<SightSample> {
-        let tau = (k - family.coordinate(self.line.start)) / family.coordinate(self.line.dir);
-        self.sample(tau, Edge::crossed(self.field.nodes(), family, k, self.line.at(tau))?)
+    /// Crossings of parts of the line (shares of the way, in order) with families of edges, each once.
+    pub fn samples(&self, parts: &[[f64; 2]], families: &[EdgeFamily]) -> Vec<SightSample> {
+        let (nodes, mut out) = (self.field.nodes(), Vec::new());
+        for (&part, &family) in parts.iter().flat_map(|part| families.iter().map(move |family| (part, family))) {
+            self.line.crossings(nodes, family, part, AT_NODE, |tau, _, edge| out.extend(self.sample(tau, edge)));
+        }
+        out.sort_by(|a, b| a.tau.total_cmp(&b.tau));
+        out.dedup_by(|next, sample| sample.same_node(next));
+        out
     }
 
     #[inline]

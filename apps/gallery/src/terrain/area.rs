@@ -4,10 +4,10 @@ use anyhow::{Context, Result};
 use belvedere::core::grid::Grid;
 use belvedere::core::{DVec3, Pinhole, Stage, TerrainDisocclusion, View};
 use belvedere::cpu::CpuRenderer;
-use belvedere::disocclusion::{
-    Blocks, Cells, Field, Naive, ReferencePoint, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver,
-    Wedge, in_view, reference_points,
+use belvedere::disocclusion::internals::{
+    BlockMaxima, Cells, Field, Naive, ReferencePoint, Wedge, in_view, reference_points,
 };
+use belvedere::disocclusion::{Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver};
 use belvedere::scene::{Frame, Progress, RenderJob, RenderOptions, Renderer, Scene};
 use belvedere::{OpenOptions, Session};
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ pub(crate) struct Area {
     pub(crate) settings: TerrainSettings,
     pub(crate) field: Field,
     pub(crate) cells: Cells,
-    pub(crate) blocks: Blocks,
+    pub(crate) blocks: BlockMaxima,
     /// Reference points in view.
     pub(crate) points: Vec<ReferencePoint>,
     pub(crate) progress: Progress,
@@ -47,7 +47,7 @@ impl Area {
         let cells = Cells::new(&field, settings.cells.unwrap_or_else(|| Cells::default_count(&field)));
         let view = View::straight(session.view().pinhole().clone());
         let name = path.file_stem().map_or_else(|| "area".into(), |s| s.to_string_lossy().into_owned());
-        let blocks = Blocks::new(&field, &cells);
+        let blocks = BlockMaxima::new(&field);
         let points = in_frame(session.scene(), &field, &settings, view.pinhole());
         let progress = options.progress.clone();
         Ok(Self { name, session, view, settings, field, cells, blocks, points, progress })
@@ -66,7 +66,7 @@ impl Area {
 
     /// The greedy pass alone, on the points in view.
     pub(crate) fn naive(&self, settings: &TerrainSettings) -> Naive {
-        Naive::new(&self.field, &self.cells, &self.blocks, settings, self.eye(), &self.points)
+        Naive::new(&self.field, &self.cells, Some(&self.blocks), settings, self.eye(), &self.points)
     }
 
     /// The ground as the greedy pass leaves it.

@@ -1,7 +1,7 @@
 //! A drape of the cells: mountains in colours that neighbours do not share.
 
 use super::area::Area;
-use belvedere::disocclusion::NO_CELL;
+use belvedere::disocclusion::internals::NO_CELL;
 use belvedere::scene::{Drape, LayerKind, Palette, Scene};
 
 /// Opacity of the colours over the relief.

@@ -5,7 +5,8 @@ use crate::chart::{self, Chart, Curve, SeriesLabelPosition, Style};
 use crate::sheet::Pixels;
 use anyhow::Result;
 use belvedere::core::{DVec2, TerrainDisocclusion};
-use belvedere::disocclusion::{ReferencePoint, Solved};
+use belvedere::disocclusion::Solved;
+use belvedere::disocclusion::internals::ReferencePoint;
 use belvedere::sight::{guard_tau, sight_samples};
 
 /// Samples along the line, besides its ends.

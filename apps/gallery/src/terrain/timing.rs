@@ -5,10 +5,10 @@ use crate::chart::{self, Chart, Curve, SeriesLabelPosition, Style};
 use crate::sheet::Pixels;
 use anyhow::Result;
 use belvedere::core::DVec2;
-use belvedere::disocclusion::{
-    Cells, Hierarchy, Naive, ReferencePoint, SmoothPass, SolverMode, TerrainSettings, Wedge, in_view, reference_points,
-    stated_spacing,
+use belvedere::disocclusion::internals::{
+    Cells, Hierarchy, Naive, ReferencePoint, SmoothPass, Wedge, in_view, reference_points, stated_spacing,
 };
+use belvedere::disocclusion::{SolverMode, TerrainSettings};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -70,7 +70,7 @@ pub(crate) fn timing(area: &Area) -> Result<Timing> {
     for (count, paper_ms) in PAPER {
         let Some(points) = evenly(&many, count) else { continue };
         area.progress.tick("times", greedy.len() as f64 / PAPER.len() as f64)?;
-        let run = || drop(Naive::new(field, &area.cells, &area.blocks, &settings, area.eye(), &points));
+        let run = || drop(Naive::new(field, &area.cells, Some(&area.blocks), &settings, area.eye(), &points));
         greedy.push(GreedyTime { points: count, ms: median(run), paper_ms });
     }
     let exponent = exponent(&greedy);

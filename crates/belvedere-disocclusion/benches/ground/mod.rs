@@ -2,7 +2,8 @@
 #![allow(missing_docs)]
 
 use belvedere_core::DVec2;
-use belvedere_disocclusion::{Field, PointKind, ReferencePoint, Wedge, in_view};
+use belvedere_disocclusion::internals::{Field, ReferencePoint, Wedge, in_view};
+use belvedere_disocclusion::report::PointKind;
 use belvedere_scene::{Heightfield, NodeState};
 
 pub(crate) const NODES: usize = 1025;

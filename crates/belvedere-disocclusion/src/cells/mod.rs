@@ -9,6 +9,7 @@ mod regions;
 mod tables;
 
 use super::Field;
+use belvedere_core::DVec2;
 use neighbours::Neighbours;
 use persistence::Persistence;
 use rayon::prelude::*;
@@ -54,7 +55,7 @@ impl Cells {
 
     /// Cells wanted by default: one for 1600 nodes, at least one.
     pub fn default_count(field: &Field) -> usize {
-        (field.heights().len() / 1600).max(1)
+        crate::settings::default_cells(field.heights().len())
     }
 
     /// Number of cells, at least 1.
@@ -92,6 +93,16 @@ impl Cells {
     /// the datum; (0, the highest) if there is none.
     pub fn higher(&self, cell: usize, h: f64) -> (f64, f64) {
         self.tables.higher(cell, h)
+    }
+
+    /// The cell of the node with data that is nearest to a point on the ground, grid coordinates.
+    pub(super) fn cell_at(&self, field: &Field, g: DVec2) -> usize {
+        let (col, row) = ((g.x as usize).min(field.cols() - 2), (g.y as usize).min(field.rows() - 2));
+        let label = |(c, r): (usize, usize)| self.labels[r * field.cols() + c];
+        let away = |(c, r): (usize, usize)| (DVec2::new(c as f64, r as f64) - g).length_squared();
+        let corners = [(col, row), (col + 1, row), (col, row + 1), (col + 1, row + 1)];
+        let solid = corners.into_iter().filter(|corner| label(*corner) != NO_CELL);
+        label(solid.min_by(|&a, &b| away(a).total_cmp(&away(b))).unwrap_or((col, row))) as usize
     }
 
     /// Number of nodes of a cell, at least 1.

@@ -4,101 +4,71 @@
 
 /// What is done to the heights of a piece of ground: `z = scale h + shift` with h its original height; (1) to (4).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Affine {
+pub(super) struct Affine {
     /// Factor, 0..=1.
-    pub scale: f64,
+    pub(super) scale: f64,
     /// Displacement, scene units, <= 0.
-    pub shift: f64,
+    pub(super) shift: f64,
 }
 
 impl Affine {
     /// Nothing is done.
-    pub const IDENTITY: Self = Self { scale: 1.0, shift: 0.0 };
+    pub(super) const IDENTITY: Self = Self { scale: 1.0, shift: 0.0 };
 
     /// The height of what was `h` high.
-    pub fn of(&self, h: f64) -> f64 {
+    pub(super) fn of(&self, h: f64) -> f64 {
         self.scale * h + self.shift
-    }
-
-    /// Makes no height >= 0 less high than either.
-    #[inline(always)]
-    pub(super) fn larger(self, other: &Self) -> Self {
-        let of = |a: f64, b: f64| if a > b { a } else { b };
-        Self { scale: of(self.scale, other.scale), shift: of(self.shift, other.shift) }
     }
 }
 
 /// (5): the factor that brings ground of height `z` down to a line of sight of height `limit`.
 ///
 /// The height of the line stands above the fraction bar: the other way round the ground would rise.
-pub fn scale_to_clear(limit: f64, z: f64) -> f64 {
+pub(super) fn scale_to_clear(limit: f64, z: f64) -> f64 {
     limit / z
 }
 
 /// (6): the displacement that does the same.
-pub fn shift_to_clear(limit: f64, z: f64) -> f64 {
+pub(super) fn shift_to_clear(limit: f64, z: f64) -> f64 {
     limit - z
 }
 
 /// (7): scaling by `scale` with share `lambda` and displacement by `shift` with share `1 - lambda`, after `now`.
 ///
 /// It lies between the two, so what either of them clears is clear for every `lambda` in 0..=1.
-pub fn blended(now: Affine, scale: f64, shift: f64, lambda: f64) -> Affine {
+pub(super) fn blended(now: Affine, scale: f64, shift: f64, lambda: f64) -> Affine {
     let factor = 1.0 + (scale - 1.0) * lambda;
     Affine { scale: factor * now.scale, shift: factor * now.shift + (1.0 - lambda) * shift }
 }
 
-/// What a blend is judged by.
+/// Everything that the cost (10) of a blend depends on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Price<'a> {
+pub(super) struct BlendCost<'a> {
     /// What is done to the hit piece so far.
-    pub now: Affine,
+    pub(super) now: Affine,
     /// [`scale_to_clear`] of the hit.
-    pub scale: f64,
+    pub(super) scale: f64,
     /// [`shift_to_clear`] of the hit.
-    pub shift: f64,
+    pub(super) shift: f64,
     /// Share of the cell that is higher than the line of sight at the hit.
-    pub higher_share: f64,
+    pub(super) higher_share: f64,
     /// Mean original height of that part.
-    pub higher_mean: f64,
+    pub(super) higher_mean: f64,
     /// Mean original height of the cell.
-    pub mean: f64,
+    pub(super) mean: f64,
     /// For each neighbour its share of the cell's border and what is done to it.
-    pub neighbours: &'a [(f64, Affine)],
+    pub(super) neighbours: &'a [(f64, Affine)],
     /// Weight of (9).
-    pub eta: f64,
+    pub(super) eta: f64,
     /// Weight of displacements in (9).
-    pub mu: f64,
+    pub(super) mu: f64,
     /// Weight of displacements in (8).
-    pub mu_dev: f64,
+    pub(super) mu_dev: f64,
 }
 
-impl Price<'_> {
-    /// (8): how much the ground is changed: the higher part by scaling, the rest by displacement.
-    ///
-    /// The height in it is the mean of the higher part, and displacements weigh `mu_dev`; with 1 it is the printed formula.
-    pub fn deviation(&self, total: Affine) -> f64 {
-        let (kappa, high) = (self.higher_share, self.higher_mean);
-        kappa * (high * (1.0 - total.scale)).powi(2) + self.mu_dev * (1.0 - kappa) * total.shift.powi(2)
-    }
-
-    /// (9): the steps at the borders of the cell.
-    pub fn discontinuity(&self, total: Affine) -> f64 {
-        let step = |&(share, other): &(f64, Affine)| {
-            let (ds, dt) = (total.scale - other.scale, total.shift - other.shift);
-            share * ((self.mean * ds).powi(2) + self.mu * dt * dt)
-        };
-        self.neighbours.iter().map(step).sum()
-    }
-
-    /// (10): what (7) with `lambda` costs.
-    pub fn of(&self, lambda: f64) -> f64 {
-        let total = blended(self.now, self.scale, self.shift, lambda);
-        self.deviation(total) + self.eta * self.discontinuity(total)
-    }
-
+impl BlendCost<'_> {
     /// The `lambda` in 0..=1 of least cost. (10) is a parabola in it, so this is its vertex; 0 where nothing depends on it.
-    pub fn best_lambda(&self) -> f64 {
+    pub(super) fn best_lambda(&self) -> f64 {
         let Affine { scale: a, shift: b } = self.now;
         // scale = a + p lambda, shift = e + q lambda.
         let (p, q, e) = (a * (self.scale - 1.0), b * (self.scale - 1.0) - self.shift, b + self.shift);
@@ -113,6 +83,33 @@ impl Price<'_> {
         }
         let lambda = -linear / square;
         if lambda.is_finite() { lambda.clamp(0.0, 1.0) } else { 0.0 }
+    }
+}
+
+/// (8), (9) and (10) as sums; [`BlendCost::best_lambda`] minimises them in closed form.
+#[cfg(test)]
+impl BlendCost<'_> {
+    /// (8): how much the ground is changed: the higher part by scaling, the rest by displacement.
+    ///
+    /// The height in it is the mean of the higher part, and displacements weigh `mu_dev`; with 1 it is the printed formula.
+    pub(super) fn deviation(&self, total: Affine) -> f64 {
+        let (kappa, high) = (self.higher_share, self.higher_mean);
+        kappa * (high * (1.0 - total.scale)).powi(2) + self.mu_dev * (1.0 - kappa) * total.shift.powi(2)
+    }
+
+    /// (9): the steps at the borders of the cell.
+    pub(super) fn discontinuity(&self, total: Affine) -> f64 {
+        let step = |&(share, other): &(f64, Affine)| {
+            let (ds, dt) = (total.scale - other.scale, total.shift - other.shift);
+            share * ((self.mean * ds).powi(2) + self.mu * dt * dt)
+        };
+        self.neighbours.iter().map(step).sum()
+    }
+
+    /// (10): what (7) with `lambda` costs.
+    pub(super) fn of(&self, lambda: f64) -> f64 {
+        let total = blended(self.now, self.scale, self.shift, lambda);
+        self.deviation(total) + self.eta * self.discontinuity(total)
     }
 }
 
@@ -136,7 +133,7 @@ mod tests {
             let mut r = random(i);
             let neighbours: Vec<(f64, Affine)> =
                 (0..5).map(|_| (0.2, Affine { scale: r(0.3, 1.0), shift: r(-400.0, 0.0) })).collect();
-            let price = Price {
+            let cost = BlendCost {
                 now: Affine { scale: r(0.3, 1.0), shift: r(-300.0, 0.0) },
                 scale: r(0.2, 1.0),
                 shift: r(-500.0, 0.0),
@@ -148,9 +145,8 @@ mod tests {
                 mu: r(0.0, 20.0),
                 mu_dev: r(0.1, 20.0),
             };
-            let ours = price.best_lambda();
-            let searched =
-                (0..=4000).map(|k| f64::from(k) / 4000.0).min_by(|&x, &y| price.of(x).total_cmp(&price.of(y)));
+            let ours = cost.best_lambda();
+            let searched = (0..=4000).map(|k| f64::from(k) / 4000.0).min_by(|&x, &y| cost.of(x).total_cmp(&cost.of(y)));
             assert!((ours - searched.unwrap()).abs() <= 0.5 / 4000.0 + 1e-9, "case {i}: {ours} {searched:?}");
             inside += usize::from(ours > 0.0 && ours < 1.0);
         }
@@ -175,7 +171,7 @@ mod tests {
 
     #[test]
     fn nothing_to_weigh_means_displacement() {
-        let price = Price {
+        let cost = BlendCost {
             now: Affine::IDENTITY,
             scale: 1.0,
             shift: 0.0,
@@ -187,6 +183,6 @@ mod tests {
             mu: 10.0,
             mu_dev: 10.0,
         };
-        assert_eq!(price.best_lambda(), 0.0);
+        assert_eq!(cost.best_lambda(), 0.0);
     }
 }

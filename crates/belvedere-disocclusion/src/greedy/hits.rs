@@ -1,12 +1,50 @@
-//! The ground over a line of sight, exactly.
+//! The ground over a line of sight.
 
-use super::super::{Cells, Field, NO_CELL};
-use super::Pieces;
-use super::scan::{High, UNSURE};
-use super::trace::Sight;
-use belvedere_sight::{EdgeFamily, SightLine, SightSample};
+use super::super::{Cells, Field, NO_CELL, ReferencePoint};
+use super::blocks::BlockMaxima;
+use super::transform::CellTransform;
+use belvedere_core::DVec2;
+use belvedere_sight::{EdgeFamily, SightLine, guard_tau};
 
-/// Ground over a line of sight.
+/// Lines of sight clear the ground by this share of the relief, less near their points.
+pub(super) const CLEARANCE: f64 = 1e-3;
+/// Part of the line of sight in which the clearance grows from nothing.
+const CLEARANCE_GROWS: f64 = 0.05;
+
+/// A reference point as the greedy pass sees it. Heights are over the datum.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Target {
+    grid: DVec2,
+    /// Height of the untouched ground.
+    original: f64,
+    lift: f64,
+    pub(super) cell: usize,
+    /// Distance to the eye in plan, scene units.
+    pub(super) rho: f64,
+    /// Scene units per cell along its line of sight.
+    pub(super) per_cell: f64,
+    /// Distance to the eye, at which the ground that counts as the point's own ends, see [`guard_tau`].
+    pub(super) own: f64,
+}
+
+impl Target {
+    /// * `eye`: grid coordinates; `guard`: cells.
+    pub(super) fn new(field: &Field, cells: &Cells, point: &ReferencePoint, eye: DVec2, guard: f64) -> Self {
+        let length = (eye - point.grid).length();
+        let rho = ((eye - point.grid) * field.spacing()).length();
+        Self {
+            grid: point.grid,
+            original: point.ground - field.datum(),
+            lift: point.lift,
+            cell: cells.cell_at(field, point.grid),
+            rho,
+            per_cell: if length > 0.0 { rho / length } else { 0.0 },
+            own: (1.0 - guard_tau(point.grid, eye, guard)) * rho,
+        }
+    }
+}
+
+/// Ground over a line of sight. Heights are over the datum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Hit {
     /// Cell of the nearer node.
@@ -21,80 +59,42 @@ pub(super) struct Hit {
     pub(super) z: f64,
 }
 
-/// Finds hits among what may be hits.
-pub(super) struct Hits<'a> {
+/// Finds the ground over lines of sight.
+pub(super) struct Tracer<'a> {
     pub(super) field: &'a Field,
-    pub(super) line: &'a SightLine<'a>,
     pub(super) cells: &'a Cells,
-    pub(super) pieces: &'a [Pieces],
-    pub(super) sight: &'a Sight,
-    /// Only ground that is nearer to the eye counts,
-    pub(super) below: f64,
-    /// and heights that differ by more than this.
+    /// `None`: every crossing is looked at.
+    pub(super) blocks: Option<&'a BlockMaxima>,
+    /// Eye in grid coordinates, and its height over the datum.
+    pub(super) eye: (DVec2, f64),
+    /// Heights that differ by less are equal.
     pub(super) slack: f64,
 }
 
-impl Hits<'_> {
-    /// Those hits, in order, on which it depends what is done to their cells: of each cell the first one, the one that stands
-    /// out most, the one whose height must be scaled down most, and possibly others.
-    pub(super) fn find(&self, high: &[High], out: &mut Vec<Hit>) {
+impl Tracer<'_> {
+    /// The ground over the line of sight of a point, from the point to the eye; only what is nearer to the eye than `below` counts.
+    pub(super) fn hits(&self, target: &Target, below: f64, transforms: &[CellTransform], out: &mut Vec<Hit>) {
         out.clear();
-        for run in high.chunk_by(|a, b| a.cell == b.cell) {
-            match self.pieces.get(run[0].cell as usize) {
-                Some(pieces) => self.telling(run, pieces, |h| out.extend(self.hit(h))),
-                None => out.extend(run.iter().filter_map(|h| self.hit(h))),
-            }
-        }
-        // Where columns and rows are crossed at once, rounding may have put them the wrong way round.
-        out.sort_by(|a, b| b.rho.total_cmp(&a.rho));
-    }
-
-    /// Gives out those of one cell, one after the other along the line, that may tell what is done to it.
-    fn telling(&self, run: &[High], pieces: &Pieces, mut give: impl FnMut(&High)) {
-        let Sight { doubt, rho, .. } = *self.sight;
-        // `None` where rounding decides between two rings.
-        let excess = |h: &High| {
-            let distances = [h.tau + UNSURE, h.tau - UNSURE].map(|t| (1.0 - t) * rho);
-            let (affine, exact) = pieces.between(distances);
-            exact.then(|| affine.of(h.h) - h.limit)
+        let Self { field, cells, slack, eye: (eye, eye_z), .. } = *self;
+        let Some(line) = SightLine::new(field, target.grid, eye) else { return };
+        let z = transforms[target.cell].at(target.rho).of(target.original) + target.lift;
+        let clearance = CLEARANCE * field.relief();
+        let parts = match self.blocks {
+            Some(blocks) => blocks.parts_to_check(&line, 1.0 - below / target.rho, [z - clearance, eye_z - clearance]),
+            None => vec![line.span()],
         };
-        let (mut most, mut least) = (f64::NEG_INFINITY, f64::INFINITY);
-        for h in run.iter().filter(|h| self.sight.comparable(h)) {
-            if let Some(e) = excess(h) {
-                most = most.max(e);
-                least = least.min(h.limit / (h.limit + e));
+        let samples = line.samples(&parts, &[EdgeFamily::Columns, EdgeFamily::Rows]);
+        for s in samples.iter().filter(|s| s.rho < below) {
+            let original = s.of(field.heights()) - field.datum();
+            let limit = (1.0 - s.tau) * z + s.tau * eye_z - clearance * (s.tau / CLEARANCE_GROWS).min(1.0);
+            let cell = cells.labels()[s.nearest()];
+            // Ground is only ever lowered.
+            if original > limit + slack && cell != NO_CELL {
+                let z = transforms[cell as usize].at(s.rho).of(original);
+                if z > limit + slack {
+                    out.push(Hit { cell: cell as usize, rho: s.rho, limit, original, z });
+                }
             }
         }
-        // Heights are larger than `low`.
-        let ratios = least * (1.0 + 4.0 * doubt / self.sight.low);
-        let mut first = true;
-        for h in run {
-            let Some(e) = excess(h) else {
-                give(h);
-                continue;
-            };
-            if e < -doubt {
-                continue;
-            }
-            let extreme = e + 2.0 * doubt >= most || h.limit <= ratios * (h.limit + e);
-            let counts = self.sight.comparable(h);
-            if first || extreme || !counts {
-                give(h);
-                first &= !counts || e <= 2.0 * doubt;
-            }
-        }
-    }
-
-    fn hit(&self, high: &High) -> Option<Hit> {
-        let s: SightSample = self.line.crossing(EdgeFamily::ALL[usize::from(high.family)], f64::from(high.line))?;
-        let cell = self.cells.labels()[s.nearest()];
-        if cell == NO_CELL || s.rho >= self.below {
-            return None;
-        }
-        let (original, limit) = (s.of(self.field.heights()) - self.field.datum(), self.sight.limit(s.tau));
-        let z = self.pieces[cell as usize].at(s.rho).of(original);
-        // Ground is only ever lowered.
-        let over = original > limit + self.slack && z > limit + self.slack;
-        over.then_some(Hit { cell: cell as usize, rho: s.rho, limit, original, z })
     }
 }

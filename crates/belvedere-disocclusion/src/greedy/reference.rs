@@ -1,8 +1,8 @@
 //! The greedy pass in its most obvious form, for tests: everything is looked at again after every change.
 
 use super::super::{Cells, Field, ReferencePoint, TerrainSettings};
-use super::trace::cell_at;
-use super::{Affine, GreedyCounters, Price, blended};
+use super::GreedyCounters;
+use super::equations::{Affine, BlendCost, blended};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_sight::{SightSample, guard_tau, sight_samples};
 
@@ -100,7 +100,7 @@ impl<'a> Reference<'a> {
     /// Samples over the line of sight: (cell, distance, limit, height).
     pub(super) fn over(&self, point: usize, below: f64) -> Vec<(usize, f64, f64, f64)> {
         let p = &self.points[point];
-        let own = cell_at(self.field, self.cells, p.grid);
+        let own = self.cells.cell_at(self.field, p.grid);
         let z = self.at(own, self.metres(p.grid)).of(p.ground - self.field.datum()) + p.lift;
         let samples = sight_samples(self.field, p.grid, self.eye, false);
         let slack = 1e-12 * (self.field.relief() + self.eye_z.abs());
@@ -118,7 +118,7 @@ impl<'a> Reference<'a> {
         let over = self.over(point, below);
         let Some(&(cell, at, ..)) = over.first() else { return false };
         let g = self.points[point].grid;
-        let own = cell_at(self.field, self.cells, g);
+        let own = self.cells.cell_at(self.field, g);
         let per_cell = self.metres(g) / (g - self.eye).length();
         let mut reach = f64::INFINITY;
         if cell == own {
@@ -131,7 +131,7 @@ impl<'a> Reference<'a> {
             reach = below;
         } else {
             self.counters.regular += 1;
-            let on_it = |i: usize| cell_at(self.field, self.cells, self.points[i].grid) == cell;
+            let on_it = |i: usize| self.cells.cell_at(self.field, self.points[i].grid) == cell;
             let finished = |i: usize| !self.queue.iter().any(|q| q.1 == i && q.3);
             let farther = |i: usize| {
                 let d = self.metres(self.points[i].grid);
@@ -150,7 +150,7 @@ impl<'a> Reference<'a> {
         self.change(cell, reach, &over.iter().copied().filter(|o| o.0 == cell).collect::<Vec<_>>());
         for i in 0..self.points.len() {
             let p = self.points[i].grid;
-            if i != point && cell_at(self.field, self.cells, p) == cell && self.metres(p) < reach {
+            if i != point && self.cells.cell_at(self.field, p) == cell && self.metres(p) < reach {
                 self.put(i);
             }
         }
@@ -172,10 +172,10 @@ impl<'a> Reference<'a> {
             ids.iter().zip(shares).map(|(&n, &w)| (w, self.at(n as usize, worst.1))).collect();
         let TerrainSettings { eta, mu, mu_dev, .. } = *self.settings;
         let mean = self.cells.mean_height(cell);
-        let price =
-            Price { now, scale, shift, higher_share, higher_mean, mean, neighbours: &neighbours, eta, mu, mu_dev };
+        let cost =
+            BlendCost { now, scale, shift, higher_share, higher_mean, mean, neighbours: &neighbours, eta, mu, mu_dev };
         let low = over.iter().any(|o| o.3 <= 1e-3 * self.field.relief() || o.2 <= 0.0);
-        let (scale, lambda) = if low { (1.0, 0.0) } else { (scale, price.best_lambda()) };
+        let (scale, lambda) = if low { (1.0, 0.0) } else { (scale, cost.best_lambda()) };
         let new = below < f64::INFINITY && !self.changes.iter().any(|c| c.cell == cell && c.below == below);
         self.counters.splits += usize::from(new);
         self.changes.push(Change { cell, below, scale, shift, lambda });

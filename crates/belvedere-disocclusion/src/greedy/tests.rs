@@ -1,44 +1,12 @@
-use super::super::PointKind;
 use super::super::cells::tests::{field_of, noise};
-use super::hits::{Hit, Hits};
+use super::super::in_view::EyeError;
+use super::super::{Cells, Field, ReferencePoint, TerrainSettings};
+use super::super::{LeftOut, NO_CELL, PointKind, Wedge, check_eye, in_view};
+use super::hits::{Hit, Target, Tracer};
 use super::reference::Reference;
-use super::scan::High;
-use super::trace::{Lowered, Room, Sampler, Sight, Skipping};
+use super::transform::CellTransform;
 use super::*;
-use belvedere_sight::{SightLine, guard_tau, sight_samples};
-
-/// Leaves out nothing.
-struct Every<'a>(&'a Field);
-
-impl Sampler for Every<'_> {
-    fn samples(&self, _: &SightLine<'_>, sight: &Sight, _: &Lowered, _: &mut Room, out: &mut Vec<High>) {
-        let samples = sight_samples(self.0, sight.from, sight.eye, false);
-        out.extend(samples.iter().map(|s| {
-            let [a, b] = s.nodes.map(|n| n as usize);
-            // At a node the line that is not looked along.
-            let column = if a == b { sight.from.x != sight.eye.x } else { b == a + self.0.cols() };
-            let line = if column { a % self.0.cols() } else { a / self.0.cols() } as u32;
-            let h = s.of(self.0.heights()) - self.0.datum();
-            High { tau: s.tau, h, limit: sight.limit(s.tau), cell: NO_CELL, family: u8::from(!column), line }
-        }));
-    }
-}
-
-/// What the pass takes from hits: of each cell the first one's place, the largest excess, the smallest scale, and whether
-/// scaling makes sense.
-fn telling(hits: &[Hit], low: f64) -> Vec<(usize, [f64; 3], bool)> {
-    let mut cells: Vec<usize> = hits.iter().map(|h| h.cell).collect();
-    let mut seen = std::collections::BTreeSet::new();
-    cells.retain(|c| seen.insert(*c));
-    let of = |cell: usize| {
-        let mine = || hits.iter().filter(|h| h.cell == cell);
-        let first = mine().map(|h| h.rho).fold(0.0, f64::max);
-        let excess = mine().map(|h| h.z - h.limit).fold(0.0, f64::max);
-        let scale = mine().map(|h| h.limit / h.z).fold(1.0, f64::min);
-        (cell, [first, excess, scale], mine().any(|h| h.z <= low || h.limit <= 0.0))
-    };
-    cells.into_iter().map(of).collect()
-}
+use belvedere_core::{DVec2, DVec3};
 
 /// Smooth seeded mountains of about 900 m over a valley, a share `void` of the nodes without data.
 fn mountains(cols: usize, rows: usize, spacing: DVec2, seed: u64, void: f64) -> Field {
@@ -96,7 +64,7 @@ impl Case {
     }
 
     fn naive(&self, settings: &TerrainSettings) -> Naive {
-        Naive::new(&self.field, &self.cells, &Blocks::new(&self.field, &self.cells), settings, self.eye, &self.points)
+        Naive::new(&self.field, &self.cells, Some(&BlockMaxima::new(&self.field)), settings, self.eye, &self.points)
     }
 
     /// Eyes inside, outside, above a node, on a grid line and low, over square and oblong nodes, with and without voids.
@@ -150,7 +118,7 @@ fn the_fast_pass_does_what_the_obvious_one_does() {
 }
 
 #[test]
-fn it_makes_no_difference_what_is_left_out() {
+fn skipping_low_blocks_changes_nothing() {
     let settings = TerrainSettings::default();
     let mut hits = 0;
     for seed in 0..80usize {
@@ -171,14 +139,11 @@ fn it_makes_no_difference_what_is_left_out() {
             _ => [r(4) * cols as f64, r(5) * rows as f64],
         };
         let case = Case::new(field, 1 + (40.0 * r(6)) as usize, [at[0], at[1], 1950.0 + 700.0 * r(7)], 60);
-        let blocks = Blocks::new(&case.field, &case.cells);
-        let mut every = queue::Pass::new(&case.field, &case.cells, &blocks, &settings, case.eye, &case.points);
-        every.run(&Every(&case.field));
-        let (every, naive) = (every.finish(), case.naive(&settings));
+        let every = Naive::new(&case.field, &case.cells, None, &settings, case.eye, &case.points);
+        let naive = case.naive(&settings);
         assert_eq!((naive.counters(), naive.unresolved()), (every.counters(), every.unresolved()), "seed {seed}");
         let moved = |n: &Naive| n.displacement(&case.field, &case.cells);
-        let far = moved(&naive).iter().zip(moved(&every)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(far <= 1e-9 * case.field.relief(), "seed {seed}: {far}");
+        assert_eq!(moved(&naive), moved(&every), "seed {seed}");
         hits += naive.counters().hits;
     }
     assert!(hits > 500, "{hits}");
@@ -191,7 +156,8 @@ fn afterwards_the_tracer_sees_every_point_that_was_resolved() {
         let slow = Reference::run(&case.field, &case.cells, &settings, case.eye, &case.points);
         let own = |p: &ReferencePoint| {
             let g = case.field.grid_from_scene(case.eye.truncate());
-            (1.0 - guard_tau(p.grid, g, settings.guard)) * ((p.grid - g) * case.field.spacing()).length()
+            (1.0 - belvedere_sight::guard_tau(p.grid, g, settings.guard))
+                * ((p.grid - g) * case.field.spacing()).length()
         };
         let hidden: Vec<usize> = (0..case.points.len())
             .filter(|&p| !slow.unresolved[p] && !slow.over(p, own(&case.points[p])).is_empty())
@@ -214,71 +180,29 @@ fn ground_is_never_raised_and_traces_are_bounded() {
     }
 }
 
-#[test]
-fn what_is_left_out_tells_nothing_now_and_after_more_was_lowered() {
-    let case = &Case::all()[2];
-    let (field, cells, blocks) = (&case.field, &case.cells, Blocks::new(&case.field, &case.cells));
-    let eye = (field.grid_from_scene(case.eye.truncate()), case.eye.z - field.datum());
-    let lowered = |rounds: usize| {
-        let mut ground = Lowered::new(field, &blocks, cells.len(), eye.0);
-        for round in 0..rounds {
-            for cell in (0..cells.len()).filter(|i| (i + round) % 3 > 0) {
-                ground.change(cell, f64::INFINITY, |a| Affine {
-                    scale: 0.9 * a.scale,
-                    shift: a.shift - 5.0 * cell as f64,
-                });
-            }
-            ground.change(round, 1200.0, |a| Affine { shift: a.shift - 40.0, ..a });
-        }
-        ground.settle(&blocks);
-        ground
+/// The hits of a line of sight to the eye over untouched ground, which are the same whether low blocks are skipped or not.
+fn hits(field: &Field, cells: &Cells, [from, eye]: [DVec2; 2], [foot, top]: [f64; 2]) -> usize {
+    let point = ReferencePoint {
+        layer: 0,
+        feature: 0,
+        along_m: 0.0,
+        grid: from,
+        ground: field.datum(),
+        lift: foot,
+        kind: PointKind::Line,
     };
-    let grounds: Vec<Lowered> = (0..3).map(lowered).collect();
-    let (mut some, mut all, mut room) = (Vec::new(), Vec::new(), Room::default());
-    let (mut of_some, mut of_all) = (Vec::new(), Vec::new());
-    let mut kept = vec![0; grounds.len()];
-    for (then, kept) in kept.iter_mut().enumerate() {
-        let (mut total, mut high) = (0, 0);
-        for p in &case.points {
-            let target = trace::Target::new(field, cells, p, eye.0, 1.5);
-            let below = target.below();
-            let sight = target.sight(field, &grounds[0].pieces, eye, below);
-            let line = SightLine::new(field, sight.from, sight.eye).unwrap();
-            some.clear();
-            all.clear();
-            Skipping { blocks: &blocks }.samples(&line, &sight, &grounds[then], &mut room, &mut some);
-            Every(field).samples(&line, &sight, &grounds[then], &mut room, &mut all);
-            for now in &grounds[then..] {
-                let hits = Hits { field, cells, pieces: &now.pieces, line: &line, sight: &sight, below, slack: 1e-9 };
-                hits.find(&some, &mut of_some);
-                hits.find(&all, &mut of_all);
-                assert_eq!(telling(&of_some, sight.low), telling(&of_all, sight.low));
-                high += of_all.len();
-            }
-            *kept += some.len();
-            total += all.len();
-        }
-        assert!(high > 30 && *kept * 2 < total, "{then}: {high} too high, {kept} kept of {total}");
-    }
-    assert!(kept.is_sorted_by(|a, b| a > b), "{kept:?}");
-}
-
-/// Whether nothing that is left out of a line of sight over untouched ground tells anything; how much is over the line.
-fn told_alike(field: &Field, cells: &Cells, blocks: &Blocks, [from, eye]: [DVec2; 2], height: [f64; 2]) -> usize {
-    let ground = Lowered::new(field, blocks, cells.len(), eye);
-    let rho = ((eye - from) * field.spacing()).length();
-    let sight = Sight { from, eye, rho, height, guard: 0.0, clearance: 1.0, low: 1.0, doubt: 1e-3 };
-    let (mut some, mut all, mut room) = (Vec::new(), Vec::new(), Room::default());
-    let line = SightLine::new(field, from, eye).unwrap();
-    Skipping { blocks }.samples(&line, &sight, &ground, &mut room, &mut some);
-    Every(field).samples(&line, &sight, &ground, &mut room, &mut all);
-    let hits =
-        Hits { field, cells, pieces: &ground.pieces, line: &line, sight: &sight, below: f64::INFINITY, slack: 1e-9 };
-    let (mut of_some, mut of_all) = (Vec::new(), Vec::new());
-    hits.find(&some, &mut of_some);
-    hits.find(&all, &mut of_all);
-    assert_eq!(telling(&of_some, sight.low), telling(&of_all, sight.low), "{from} to {eye}");
-    of_all.len()
+    let blocks = BlockMaxima::new(field);
+    let transforms = vec![CellTransform::default(); cells.len()];
+    let find = |blocks: Option<&BlockMaxima>| {
+        let target = Target::new(field, cells, &point, eye, 0.0);
+        let tracer = Tracer { field, cells, blocks, eye: (eye, top), slack: 1e-9 };
+        let mut out: Vec<Hit> = Vec::new();
+        tracer.hits(&target, f64::INFINITY, &transforms, &mut out);
+        out
+    };
+    let (every, found) = (find(None), find(Some(&blocks)));
+    assert_eq!(every, found, "{from} to {eye}");
+    found.len()
 }
 
 #[test]
@@ -286,12 +210,11 @@ fn a_hill_within_one_block_is_found_by_lines_through_corners_of_blocks() {
     let hill = |c: usize, r: usize| if (18..=22).contains(&c) && (18..=22).contains(&r) { 300.0 } else { 0.0 };
     let field = field_of(41, 41, DVec2::splat(30.0), hill);
     let cells = Cells::new(&field, 2);
-    let blocks = Blocks::new(&field, &cells);
     let places = [0.0, 8.0, 16.0, 20.0, 24.0, 32.0, 40.0];
     let corners: Vec<DVec2> = places.iter().flat_map(|&x| places.map(|y| DVec2::new(x, y))).collect();
     let mut high = 0;
     for (&from, &eye) in corners.iter().flat_map(|a| corners.iter().map(move |b| (a, b))).filter(|(a, b)| a != b) {
-        high += told_alike(&field, &cells, &blocks, [from, eye], [40.0, 90.0]);
+        high += hits(&field, &cells, [from, eye], [40.0, 90.0]);
     }
     assert!(high > 1000, "{high}");
 }
@@ -301,26 +224,24 @@ fn a_line_of_sight_meets_level_ground_where_it_goes_down_into_it_and_leaves_it()
     let plateau = |c: usize, _| if (12..=52).contains(&c) { 300.0 } else { 0.0 };
     let field = field_of(65, 33, DVec2::splat(30.0), plateau);
     let cells = Cells::new(&field, 1);
-    let blocks = Blocks::new(&field, &cells);
     let mut high = 0;
     for k in 0..40 {
         let [a, b] = [DVec2::new(2.0, 3.0 + 0.7 * f64::from(k)), DVec2::new(62.0, 29.0 - 0.6 * f64::from(k))];
         let [foot, head] = [40.0 + 5.0 * f64::from(k), 420.0 + 17.0 * f64::from(k)];
-        high += told_alike(&field, &cells, &blocks, [a, b], [foot, head]);
-        high += told_alike(&field, &cells, &blocks, [a, b], [head, foot]);
+        high += hits(&field, &cells, [a, b], [foot, head]);
+        high += hits(&field, &cells, [a, b], [head, foot]);
     }
     assert!(high > 500, "{high}");
 }
 
 #[test]
-fn what_is_left_out_tells_nothing_where_lines_run_along_the_grid_and_beside_it() {
+fn low_blocks_hide_nothing_where_lines_run_along_the_grid_and_beside_it() {
     let places = [0.0, 4.0, 16.0, 33.5, 64.0, 66.0];
     let mut high = 0;
     // Beside voids too: there is ground at a node with data, although not on all edges from it.
     for void in [0.0, 0.1] {
         let field = mountains(70, 67, DVec2::splat(30.0), 9, void);
         let cells = Cells::new(&field, 3);
-        let blocks = Blocks::new(&field, &cells);
         for from in places.iter().flat_map(|&x| places.map(|y| DVec2::new(x, y))) {
             let nearly = DVec2::new(from.x + 40.0, from.y + 3e-7);
             for eye in [
@@ -332,7 +253,7 @@ fn what_is_left_out_tells_nothing_where_lines_run_along_the_grid_and_beside_it()
             ] {
                 // Up to the eye and down to it.
                 for height in [[300.0, 500.0], [500.0, 40.0]] {
-                    high += told_alike(&field, &cells, &blocks, [from, eye], height);
+                    high += hits(&field, &cells, [from, eye], height);
                 }
             }
         }
@@ -357,7 +278,7 @@ fn a_point_on_the_far_slope_is_cleared_by_lowering_what_is_nearer() {
     let eye = eye(&field, 20.0, 60.0, 1250.0);
     let points: Vec<ReferencePoint> = (0..12).map(|i| point(&field, 20.0, 14.0 - f64::from(i)).unwrap()).collect();
     let settings = TerrainSettings::default();
-    let naive = Naive::new(&field, &cells, &Blocks::new(&field, &cells), &settings, eye, &points);
+    let naive = Naive::new(&field, &cells, Some(&BlockMaxima::new(&field)), &settings, eye, &points);
     let c = *naive.counters();
     assert!(c.regular == 0 && c.backfacing > 0 && c.splits > 0 && c.unresolved == 0, "{c:?}");
     let farthest = naive.displacement_at(&field, &cells, &points[11]);
@@ -406,7 +327,7 @@ fn mirrored_and_transposed_scenes_give_mirrored_and_transposed_ground() {
             route(&base, 70).iter().map(|p| ReferencePoint { grid: map(p.grid), ..*p }).collect();
         let g = map(at);
         let naive =
-            Naive::new(field, &cells, &Blocks::new(field, &cells), &settings, eye(field, g.x, g.y, 2100.0), &points);
+            Naive::new(field, &cells, Some(&BlockMaxima::new(field)), &settings, eye(field, g.x, g.y, 2100.0), &points);
         (naive.displacement(field, &cells), *naive.counters())
     };
     // Points inside cells may lie on the other triangle: give them the same height.
@@ -433,7 +354,7 @@ fn flat_and_smallest_grounds_stay_as_they_are() {
         let naive = Naive::new(
             &field,
             &cells,
-            &Blocks::new(&field, &cells),
+            Some(&BlockMaxima::new(&field)),
             &settings,
             eye(&field, 25.0, 18.0, 900.0),
             &points,
@@ -454,7 +375,7 @@ fn what_the_pass_cannot_clear_is_named_and_stays_within_the_relief() {
     let points: Vec<ReferencePoint> = (0..9).map(|i| point(&field, 53.5, 2.0 + 2.0 * f64::from(i)).unwrap()).collect();
     let eye = eye(&field, 5.5, 10.5, 505.0);
     let settings = TerrainSettings::default();
-    let naive = Naive::new(&field, &cells, &Blocks::new(&field, &cells), &settings, eye, &points);
+    let naive = Naive::new(&field, &cells, Some(&BlockMaxima::new(&field)), &settings, eye, &points);
     let u = naive.displacement(&field, &cells);
     assert!(u.iter().all(|u| u.is_finite() && *u >= -2.0 * field.relief()));
     let slow = Reference::run(&field, &cells, &settings, eye, &points);
@@ -467,7 +388,7 @@ fn a_point_under_the_eye_has_no_line_of_sight() {
     let cells = Cells::new(&field, 1);
     let points = [point(&field, 10.0, 10.0).unwrap()];
     let eye = eye(&field, 10.0, 10.0, 1500.0);
-    let naive = Naive::new(&field, &cells, &Blocks::new(&field, &cells), &TerrainSettings::default(), eye, &points);
+    let naive = Naive::new(&field, &cells, Some(&BlockMaxima::new(&field)), &TerrainSettings::default(), eye, &points);
     assert_eq!(naive.counters().hits, 0);
     let left_out = in_view(&field, &points, &Wedge::all_around(eye.truncate()), 1.5).1;
     assert_eq!(left_out, [(0, LeftOut::TooNear)]);

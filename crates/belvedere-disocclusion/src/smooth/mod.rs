@@ -6,13 +6,10 @@
 #[cfg(feature = "sparse")]
 mod cholesky;
 mod conjugate;
-mod dct;
+mod cosine;
 mod elevation;
 mod green;
 mod hierarchy;
-mod lanes;
-mod line;
-mod packs;
 mod pass;
 mod products;
 mod smoother;
@@ -21,11 +18,9 @@ mod temporal;
 #[cfg(feature = "sparse")]
 pub use cholesky::Cholesky;
 pub use conjugate::{ConjugateGradients, Convergence};
-pub use dct::Dct;
 pub use elevation::{ElevationRows, row_weight};
 pub use green::{Between, Green};
 pub use hierarchy::Hierarchy;
-pub use line::Real;
 pub use pass::{SmoothPass, Smoothed};
 pub use smoother::{SmoothError, Smoother, grid_weight, laplacian};
-pub use temporal::{SmoothMemory, temporal_weight};
+pub use temporal::temporal_weight;

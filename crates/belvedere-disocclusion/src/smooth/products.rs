@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::smoother::eigenvalue;
+use super::cosine::eigenvalue;
 
 /// Rows are padded to this many values, a multiple of every machine's registers.
 const PAD: usize = 8;

@@ -1,8 +1,6 @@
 //! H = L^2 + (w^2 + g^2) I and its inverse.
 
-use super::dct::Dct;
-use super::line::Real;
-use super::packs::Packs;
+use super::cosine::{CosineTransform, eigenvalue};
 use super::products::{self, Products};
 
 /// A smooth pass that cannot be set up.
@@ -44,33 +42,17 @@ pub fn grid_weight(w: f64, longer: usize) -> f64 {
 /// the number of neighbours), the rows are those of equations (12), (13) and (15). Diagonal under the cosine transform:
 /// `H = C^T diag((ex_i + ey_j)^2 + w^2 + g^2) C`.
 #[derive(Debug, Clone)]
-pub struct Smoother<T: Real = f64> {
-    dct: Dct<T>,
-    fast: Fast,
-    ex: Vec<T>,
-    ey: Vec<T>,
+pub struct Smoother {
+    transform: CosineTransform,
+    /// For small grids.
+    products: Option<Products>,
+    ex: Vec<f64>,
+    ey: Vec<f64>,
     w: f64,
     g: f64,
 }
 
-/// The quickest way for a size, in f64.
-#[derive(Debug, Clone)]
-enum Fast {
-    Products(Box<Products>),
-    Packs(Packs),
-    None,
-}
-
-impl Fast {
-    fn new(cols: usize, rows: usize) -> Self {
-        if cols.max(rows) <= products::MOST {
-            return Self::Products(Box::new(Products::new(cols, rows)));
-        }
-        Packs::new(cols, rows).map_or(Self::None, Self::Packs)
-    }
-}
-
-impl<T: Real> Smoother<T> {
+impl Smoother {
     /// * `cols`, `rows`: the grid, both >= 1.
     /// * `w`, `g`: smoothness and temporal weight on this grid (see [`grid_weight`]).
     ///
@@ -83,9 +65,9 @@ impl<T: Real> Smoother<T> {
         if !(0.0..=1e9).contains(&g) {
             return Err(SmoothError::Temporal { g });
         }
-        let e = |n: usize| (0..n).map(|k| T::of(eigenvalue(k, n))).collect();
-        let fast = if T::doubles(&mut []).is_some() { Fast::new(cols, rows) } else { Fast::None };
-        Ok(Self { dct: Dct::new(cols, rows), fast, ex: e(cols), ey: e(rows), w, g })
+        let e = |n: usize| (0..n).map(|k| eigenvalue(k, n)).collect();
+        let products = (cols.max(rows) <= products::MOST).then(|| Products::new(cols, rows));
+        Ok(Self { transform: CosineTransform::new(cols, rows), products, ex: e(cols), ey: e(rows), w, g })
     }
 
     /// Columns.
@@ -119,63 +101,48 @@ impl<T: Real> Smoother<T> {
     }
 
     /// Eigenvalues of the one-dimensional Laplacians, `2 cos(pi k / n) - 2`: along x (columns) and y (rows).
-    pub fn eigenvalues(&self) -> (&[T], &[T]) {
+    pub fn eigenvalues(&self) -> (&[f64], &[f64]) {
         (&self.ex, &self.ey)
-    }
-
-    /// The cosine transform that makes H diagonal.
-    pub fn dct(&mut self) -> &mut Dct<T> {
-        &mut self.dct
     }
 
     /// H^-1, in place: `rhs` (row-major) becomes the solution.
     ///
     /// # Panics
     /// If `rhs` has another size than the grid.
-    pub fn solve(&mut self, rhs: &mut [T]) {
+    pub fn solve(&mut self, rhs: &mut [f64]) {
         assert_eq!(rhs.len(), self.ex.len() * self.ey.len(), "values of a grid");
         let shift = self.shift();
-        match (&mut self.fast, T::doubles(rhs)) {
-            (Fast::Products(fast), Some(rhs)) => fast.solve(rhs, shift),
-            (Fast::Packs(fast), Some(rhs)) => fast.solve(rhs, shift),
-            _ => self.solve_by_lines(rhs),
+        match &mut self.products {
+            Some(products) => products.solve(rhs, shift),
+            None => self.solve_by_transform(rhs),
         }
     }
 
-    /// H^-1, in place, whatever the size of the grid; what [`Self::solve`] is judged by.
-    pub fn solve_by_lines(&mut self, rhs: &mut [T]) {
-        let (ex, ey, shift) = (&self.ex, &self.ey, T::of(self.shift()));
-        self.dct.filter(rhs, |k, spectrum| {
-            for (x, ey) in spectrum.iter_mut().zip(ey) {
-                let e = ex[k] + *ey;
-                *x = *x / (e * e + shift);
-            }
+    /// H^-1, in place, by Fourier transforms whatever the size of the grid.
+    pub fn solve_by_transform(&mut self, rhs: &mut [f64]) {
+        let (ex, ey, shift) = (&self.ex, &self.ey, self.shift());
+        self.transform.filter(rhs, |k, l| {
+            let e = ex[k] + ey[l];
+            1.0 / (e * e + shift)
         });
     }
 
     /// H x into `out`, by the stencil; `work` is used up. All three have the size of the grid.
-    pub fn apply(&self, x: &[T], work: &mut [T], out: &mut [T]) {
-        let shift = T::of(self.shift());
+    pub fn apply(&self, x: &[f64], work: &mut [f64], out: &mut [f64]) {
+        let shift = self.shift();
         laplacian(self.cols(), x, work);
         laplacian(self.cols(), work, out);
         for (o, x) in out.iter_mut().zip(x) {
-            *o = *o + shift * *x;
+            *o += shift * *x;
         }
     }
-}
-
-/// k-th eigenvalue of the Laplacian of n nodes in a line with mirrored ends.
-pub(super) fn eigenvalue(k: usize, n: usize) -> f64 {
-    // 2 cos(x) - 2 without its cancellation at small x.
-    let s = (std::f64::consts::FRAC_PI_2 * k as f64 / n as f64).sin();
-    -4.0 * s * s
 }
 
 /// L x into `out`: sum of the neighbours minus their number times the value, for a grid of `cols` columns, row-major.
 ///
 /// # Panics
 /// If the sizes differ or are no multiple of `cols`.
-pub fn laplacian<T: Real>(cols: usize, x: &[T], out: &mut [T]) {
+pub fn laplacian(cols: usize, x: &[f64], out: &mut [f64]) {
     assert!(cols > 0 && x.len().is_multiple_of(cols) && x.len() == out.len(), "values of a grid");
     let rows = x.len() / cols;
     for (r, line) in out.chunks_exact_mut(cols).enumerate() {
@@ -186,8 +153,8 @@ pub fn laplacian<T: Real>(cols: usize, x: &[T], out: &mut [T]) {
         }
         for c in 1..cols {
             let step = here[c] - here[c - 1];
-            line[c - 1] = line[c - 1] + step;
-            line[c] = line[c] - step;
+            line[c - 1] += step;
+            line[c] -= step;
         }
     }
 }

@@ -4,7 +4,7 @@ use super::super::visibility_qp::Candidate;
 use super::super::{
     AdjustedViewpoint, SolverMode, TerrainSettings, ViewpointEnergy, ViewpointOptions, adjust_viewpoint, height_slope,
 };
-use super::{Seen, TerrainMemory, TerrainSolver};
+use super::{PointsInView, TerrainMemory, TerrainSolver};
 use crate::DisocclusionError;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Stage, View};
 use belvedere_scene::{Progress, Scene};
@@ -14,7 +14,7 @@ const ROUGH_NODES: usize = 33;
 
 /// What the picture of the given eye asks for: an eye must not win by looking away.
 #[derive(Debug, Clone)]
-pub(super) struct Asked {
+pub(super) struct RequiredPoints {
     pub(super) points: Vec<usize>,
     pub(super) candidates: Vec<Candidate>,
 }
@@ -37,7 +37,7 @@ impl TerrainSolver {
     ) -> Result<Option<AdjustedViewpoint>, DisocclusionError> {
         let exact = TerrainSettings { mode: SolverMode::Qp, ..self.settings.clone() };
         let rough = TerrainSettings { solver_nodes: ROUGH_NODES, candidates: exact.spacing, ..exact.clone() };
-        let mut moves = Moves {
+        let mut moves = EyeEnergy {
             scene,
             base,
             target,
@@ -60,7 +60,7 @@ impl TerrainSolver {
 struct Level {
     solver: TerrainSolver,
     memory: TerrainMemory,
-    asked: Asked,
+    asked: RequiredPoints,
 }
 
 impl Level {
@@ -72,20 +72,21 @@ impl Level {
     ) -> Result<Self, DisocclusionError> {
         let solver = TerrainSolver::new(settings)?;
         let straight = straight(base, base.pinhole().clone())?;
-        let ran = solver.run(scene, &straight, &mut TerrainMemory::default(), None, progress)?;
-        let seen = Seen::new(&ran.field, &ran.prepared, &straight, &solver.settings, false);
-        let asked = Asked { points: seen.points.clone(), candidates: seen.candidates.clone() };
-        drop(seen);
-        Ok(Self { solver, memory: TerrainMemory::holding(ran.prepared), asked })
+        let frame_result = solver.run(scene, &straight, &mut TerrainMemory::default(), None, progress)?;
+        let in_view =
+            PointsInView::new(&frame_result.field, &frame_result.prepared, &straight, &solver.settings, false);
+        let asked = RequiredPoints { points: in_view.points.clone(), candidates: in_view.candidates.clone() };
+        drop(in_view);
+        Ok(Self { solver, memory: TerrainMemory::holding(frame_result.prepared), asked })
     }
 
     /// Energy and its slope along the height.
     fn energy(&mut self, scene: &Scene, view: &View, progress: &Progress) -> Result<(f64, f64), DisocclusionError> {
-        let ran = self.solver.run(scene, view, &mut self.memory, Some(&self.asked), progress)?;
-        let rows = ran.done.rows.iter().filter(|r| r.candidate.is_some());
+        let frame_result = self.solver.run(scene, view, &mut self.memory, Some(&self.asked), progress)?;
+        let rows = frame_result.done.rows.iter().filter(|r| r.candidate.is_some());
         let slope = height_slope(rows.map(|r| (r.multiplier, r.tau)));
-        let energy = ran.done.qp.map_or(0.0, |qp| qp.energy);
-        self.memory = TerrainMemory::holding(ran.prepared);
+        let energy = frame_result.done.qp.map_or(0.0, |qp| qp.energy);
+        self.memory = TerrainMemory::holding(frame_result.prepared);
         Ok((energy, slope))
     }
 }
@@ -100,7 +101,7 @@ fn straight(base: &View, pinhole: Pinhole) -> Result<View, DisocclusionError> {
     Ok(View::new(pinhole, earth.collect())?)
 }
 
-struct Moves<'a> {
+struct EyeEnergy<'a> {
     scene: &'a Scene,
     base: &'a View,
     target: DVec3,
@@ -111,7 +112,7 @@ struct Moves<'a> {
     progress: &'a Progress,
 }
 
-impl Moves<'_> {
+impl EyeEnergy<'_> {
     fn view(&self, eye: DVec3) -> Option<View> {
         let from = self.base.pinhole();
         let up = -from.down;
@@ -134,7 +135,7 @@ impl Moves<'_> {
     }
 }
 
-impl ViewpointEnergy for Moves<'_> {
+impl ViewpointEnergy for EyeEnergy<'_> {
     fn coarse(&mut self, eye: DVec3) -> Option<f64> {
         self.ask(eye, false).map(|(energy, _)| energy)
     }

@@ -3,7 +3,7 @@
 use super::super::metrics::excesses;
 use super::super::visibility_qp::ViewSight;
 use super::super::{Field, ReferencePoint};
-use super::{TerrainMemory, TerrainSolver, bent};
+use super::{TerrainMemory, TerrainSolver, in_picture};
 use crate::DisocclusionError;
 use belvedere_core::{TerrainDisocclusion, View};
 use belvedere_scene::{Cancelled, Progress, Scene};
@@ -111,7 +111,7 @@ impl LiveTerrain {
         let nearest = 3.0 * self.guard * field.spacing().max_element();
         let shown = |p: &&ReferencePoint| {
             let at = field.scene_from_grid(p.grid);
-            at.distance(eye) > nearest && bent::in_frame(base, at.extend(p.ground + p.lift))
+            at.distance(eye) > nearest && in_picture::holds(base, at.extend(p.ground + p.lift))
         };
         let points: Vec<ReferencePoint> = ground.points.iter().filter(shown).copied().collect();
         let sight = ViewSight::new(base, field);

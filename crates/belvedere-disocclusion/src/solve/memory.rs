@@ -3,10 +3,11 @@
 use super::super::settings::MOST_W;
 use super::super::visibility_qp::{QpOptions, QpSolver};
 use super::super::{
-    Blocks, Cells, Field, Hierarchy, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings, Unusable,
+    BlockMaxima, Cells, Field, Hierarchy, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings, Unusable,
     candidate_points, grid_weight, reference_points, stated_spacing, temporal_weight,
 };
 use crate::DisocclusionError;
+use crate::points::{RequiredFeature, required_features};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Heightfield, Scene};
 use std::collections::BTreeMap;
@@ -33,7 +34,9 @@ struct Last {
 #[derive(Debug, Clone)]
 pub(super) struct Prepared {
     settings: TerrainSettings,
-    pace: Pace,
+    ground: Arc<Heightfield>,
+    features: Vec<RequiredFeature>,
+    weights: Weights,
     pub(super) level: Arc<Field>,
     pub(super) grid: Hierarchy,
     pub(super) points: Vec<ReferencePoint>,
@@ -43,7 +46,7 @@ pub(super) struct Prepared {
     /// Points every fifth of a cell, by which the result is judged.
     check: Vec<ReferencePoint>,
     /// Of modes with a greedy pass.
-    pub(super) cells: Option<Arc<(Cells, Blocks)>>,
+    pub(super) cells: Option<Arc<(Cells, BlockMaxima)>>,
     /// Of modes with a greedy pass.
     pub(super) smooth: Option<SmoothPass>,
     /// Of modes with a quadratic program: the one of frames without a frame before.
@@ -62,14 +65,14 @@ pub(super) struct Program {
 
 /// Smoothness and temporal weight on the solver's grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Pace {
+pub(super) struct Weights {
     /// w.
     pub(super) w: f64,
     /// gamma; 0 for single pictures.
     pub(super) g: f64,
 }
 
-impl Pace {
+impl Weights {
     /// Both for 129 nodes, on the terrain that will be solved on.
     pub(super) fn new(settings: &TerrainSettings, terrain: &Heightfield, frame: Option<[f64; 2]>) -> Self {
         let w = settings.smoothness(stated_spacing(terrain.cols(), terrain.rows(), terrain.spacing()));
@@ -98,21 +101,22 @@ impl TerrainMemory {
     pub(super) fn prepared_for(
         &mut self,
         scene: &Scene,
-        heightfield: &Heightfield,
+        heightfield: &Arc<Heightfield>,
         settings: &TerrainSettings,
-        pace: Pace,
+        weights: Weights,
     ) -> Result<Prepared, DisocclusionError> {
+        let features = required_features(scene);
         let fits = |p: &Prepared| {
             p.settings == *settings
-                && p.pace == pace
-                && (p.level.cols(), p.level.rows()) == (heightfield.cols(), heightfield.rows())
-                && (p.level.north_west(), p.level.spacing()) == (heightfield.north_west(), heightfield.spacing())
+                && p.weights == weights
+                && p.features == features
+                && (Arc::ptr_eq(&p.ground, heightfield) || p.ground == *heightfield)
         };
         match self.prepared.take().filter(fits) {
             Some(prepared) => Ok(prepared),
             None => {
                 self.last = None;
-                Prepared::new(scene, heightfield, settings, pace)
+                Prepared::new(scene, features, heightfield, settings, weights)
             }
         }
     }
@@ -121,7 +125,7 @@ impl TerrainMemory {
     pub(super) fn last_for(&self, view: &View, prepared: &Prepared) -> Option<Vec<f64>> {
         let field = &prepared.level;
         let size = DVec2::new((field.cols() - 1) as f64, (field.rows() - 1) as f64) * field.spacing();
-        let last = self.last.as_ref().filter(|_| prepared.pace.g > 0.0)?;
+        let last = self.last.as_ref().filter(|_| prepared.weights.g > 0.0)?;
         let near = last.eye.distance(view.pinhole().eye) <= JUMP_SHARE * size.length();
         let turned = last.forward.dot(view.pinhole().forward) < JUMP_COS;
         (near && !turned).then(|| last.coarse.clone())
@@ -146,9 +150,10 @@ impl TerrainMemory {
 impl Prepared {
     fn new(
         scene: &Scene,
-        heightfield: &Heightfield,
+        features: Vec<RequiredFeature>,
+        heightfield: &Arc<Heightfield>,
         settings: &TerrainSettings,
-        pace: Pace,
+        weights: Weights,
     ) -> Result<Self, DisocclusionError> {
         let level = Field::new(heightfield, |_| 0.0)?;
         let grid = Hierarchy::new(level.cols(), level.rows(), settings.solver_nodes);
@@ -159,7 +164,7 @@ impl Prepared {
         let cells = (settings.mode != SolverMode::Qp).then(|| {
             let keep = settings.cells.unwrap_or_else(|| Cells::default_count(&level));
             let cells = Cells::new(&level, keep);
-            let blocks = Blocks::new(&level, &cells);
+            let blocks = BlockMaxima::new(&level);
             Arc::new((cells, blocks))
         });
         let smooth = match &cells {
@@ -168,18 +173,20 @@ impl Prepared {
                     |&i: &u32| DVec2::new((i as usize % level.cols()) as f64, (i as usize / level.cols()) as f64);
                 let rows: Vec<DVec2> =
                     points.iter().map(|p| p.grid).chain(parts.0.summits().iter().map(summit)).collect();
-                Some(SmoothPass::new(grid.clone(), pace.w, settings.rows_weight, &rows)?)
+                Some(SmoothPass::new(grid.clone(), weights.w, settings.rows_weight, &rows)?)
             }
             None => None,
         };
-        let made = |pace| {
-            program(&level, &grid, pace, options(settings, false)).map(|solver| Program { solver, foreign: false })
+        let made = |weights| {
+            program(&level, &grid, weights, options(settings, false)).map(|solver| Program { solver, foreign: false })
         };
-        let still = with_qp.then(|| made(Pace { g: 0.0, ..pace })).transpose()?;
-        let moving = (with_qp && pace.g > 0.0).then(|| made(pace)).transpose()?;
+        let still = with_qp.then(|| made(Weights { g: 0.0, ..weights })).transpose()?;
+        let moving = (with_qp && weights.g > 0.0).then(|| made(weights)).transpose()?;
         Ok(Self {
             settings: settings.clone(),
-            pace,
+            ground: heightfield.clone(),
+            features,
+            weights,
             level: Arc::new(level),
             grid,
             points,
@@ -194,13 +201,13 @@ impl Prepared {
     }
 
     /// Points every fifth of a cell that the picture shows.
-    pub(super) fn dense_in_view(&self, seen: &super::Seen<'_>) -> Vec<ReferencePoint> {
-        seen.indices(&self.check).0.into_iter().map(|i| self.check[i]).collect()
+    pub(super) fn dense_in_view(&self, in_view: &super::PointsInView<'_>) -> Vec<ReferencePoint> {
+        in_view.indices(&self.check).0.into_iter().map(|i| self.check[i]).collect()
     }
 
     /// Weights on the solver's grid.
-    pub(super) fn weights(&self) -> Pace {
-        self.pace.on(&self.grid)
+    pub(super) fn weights(&self) -> Weights {
+        self.weights.on(&self.grid)
     }
 }
 
@@ -218,10 +225,10 @@ pub(super) fn options(settings: &TerrainSettings, from_guard: bool) -> QpOptions
 pub(super) fn program(
     field: &Field,
     grid: &Hierarchy,
-    pace: Pace,
+    weights: Weights,
     options: QpOptions,
 ) -> Result<QpSolver, DisocclusionError> {
-    let Pace { w, g } = pace.on(grid);
+    let Weights { w, g } = weights.on(grid);
     let smoother = Smoother::new(grid.cols(), grid.rows(), w, g)?;
     Ok(QpSolver::new(field, grid, smoother, options))
 }

@@ -1,15 +1,15 @@
 //! Settings and memory to a stage and its report.
 
 mod adjust;
-mod bent;
-mod coming;
 mod drawn;
+mod entering;
 mod fallback;
+mod in_picture;
 mod live;
 mod memory;
 mod passes;
+mod points_in_view;
 mod report;
-mod seen;
 
 pub use fallback::Fallback;
 pub use live::{LiveFrame, LiveTerrain};
@@ -19,13 +19,13 @@ pub use report::{Covered, QpReport, TerrainReport, TerrainTimes, UnresolvedReaso
 use super::visibility_qp::{SolvedRow, Unresolved};
 use super::{Detail, Field, Hierarchy, SolverMode, TerrainSettings, check_eye};
 use crate::DisocclusionError;
-use adjust::Asked;
+use adjust::RequiredPoints;
 use belvedere_core::grid::{Grid, GridError};
 use belvedere_core::{DVec2, EarthCurvature, SpaceMap, Stage, TerrainDisocclusion, View};
-use belvedere_scene::{Progress, Scene};
-use memory::{Pace, Prepared};
+use belvedere_scene::{Heightfield, LayerKind, Progress, Scene};
+use memory::{Prepared, Weights};
 use passes::Passes;
-use seen::Seen;
+use points_in_view::PointsInView;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -84,18 +84,18 @@ impl TerrainSolver {
         memory: &mut TerrainMemory,
         progress: &Progress,
     ) -> Result<Solved, DisocclusionError> {
-        let ran = self.run(scene, base, memory, None, progress)?;
+        let frame_result = self.run(scene, base, memory, None, progress)?;
         progress.tick("figures of the displaced terrain", 0.95)?;
         let began = Instant::now();
-        let delta = ran.delta()?;
-        let Ran { prepared, field, done, times } = ran;
+        let delta = frame_result.delta()?;
+        let SolvedFrame { prepared, field, done, times } = frame_result;
         let field: &Field = &field;
         let previous = memory.before(&prepared).map(|u| on_grid(field, &prepared.grid, u)).transpose()?;
         let context = report::Context {
             settings: &self.settings,
             field,
             prepared: &prepared,
-            seen: &Seen::new(field, &prepared, base, &self.settings, false),
+            in_view: &PointsInView::new(field, &prepared, base, &self.settings, false),
             delta: &delta,
             previous: previous.as_ref(),
         };
@@ -112,10 +112,10 @@ impl TerrainSolver {
         memory: &mut TerrainMemory,
         progress: &Progress,
     ) -> Result<(TerrainDisocclusion, Arc<Field>), DisocclusionError> {
-        let ran = self.run(scene, base, memory, None, progress)?;
-        let stage = TerrainDisocclusion::new(ran.delta()?);
-        memory.keep(ran.prepared, base, ran.done.coarse);
-        Ok((stage, ran.field))
+        let frame_result = self.run(scene, base, memory, None, progress)?;
+        let stage = TerrainDisocclusion::new(frame_result.delta()?);
+        memory.keep(frame_result.prepared, base, frame_result.done.coarse);
+        Ok((stage, frame_result.field))
     }
 
     /// The passes of one frame, without figures; the memory lends what it has prepared. `asked` stands for what `base` shows.
@@ -124,17 +124,17 @@ impl TerrainSolver {
         scene: &Scene,
         base: &View,
         memory: &mut TerrainMemory,
-        asked: Option<&Asked>,
+        asked: Option<&RequiredPoints>,
         progress: &Progress,
-    ) -> Result<Ran, DisocclusionError> {
-        let heightfield = scene.terrain().ok_or(DisocclusionError::NoTerrain)?;
+    ) -> Result<SolvedFrame, DisocclusionError> {
+        let heightfield = ground(scene).ok_or(DisocclusionError::NoTerrain)?;
         if scene.must_see().next().is_none() {
             return Err(DisocclusionError::NothingToSee { layers: scene.layers.len() });
         }
         let began = Instant::now();
         progress.tick("cells and points of the terrain", 0.0)?;
-        let pace = Pace::new(&self.settings, heightfield, self.frame());
-        let mut prepared = memory.prepared_for(scene, heightfield, &self.settings, pace)?;
+        let weights = Weights::new(&self.settings, heightfield, self.frame());
+        let mut prepared = memory.prepared_for(scene, heightfield, &self.settings, weights)?;
         let earth = base.stages().iter().find_map(|s| match s {
             Stage::EarthCurvature(earth) => Some(*earth),
             _ => None,
@@ -148,9 +148,9 @@ impl TerrainSolver {
             *memory = TerrainMemory::holding(prepared);
             return Err(e.into());
         }
-        let mut seen = Seen::new(&field, &prepared, base, &self.settings, self.frame().is_some());
+        let mut in_view = PointsInView::new(&field, &prepared, base, &self.settings, self.frame().is_some());
         if let Some(asked) = asked {
-            (seen.points, seen.candidates) = (asked.points.clone(), asked.candidates.clone());
+            (in_view.points, in_view.candidates) = (asked.points.clone(), asked.candidates.clone());
         }
         let mut times = TerrainTimes { prepare_ms: since(began), ..TerrainTimes::default() };
         let last = memory.last_for(base, &prepared);
@@ -158,28 +158,36 @@ impl TerrainSolver {
             settings: &self.settings,
             field: &field,
             lowered: earth.is_some(),
-            pace,
+            weights,
             frame: self.frame(),
             eye,
             last: last.as_deref(),
             progress,
         };
-        let done = passes.run(&mut prepared, &seen, &mut times)?;
-        drop(seen);
-        Ok(Ran { prepared, field, done, times })
+        let done = passes.run(&mut prepared, &in_view, &mut times)?;
+        drop(in_view);
+        Ok(SolvedFrame { prepared, field, done, times })
     }
 }
 
+/// The heights that are solved on.
+fn ground(scene: &Scene) -> Option<&Arc<Heightfield>> {
+    scene.layers.iter().find_map(|l| match &l.kind {
+        LayerKind::Terrain(t) => Some(&t.heightfield),
+        _ => None,
+    })
+}
+
 /// A frame before its figures.
-struct Ran {
+struct SolvedFrame {
     prepared: Prepared,
     /// The ground as the eye sees it.
     field: Arc<Field>,
-    done: Done,
+    done: Outcome,
     times: TerrainTimes,
 }
 
-impl Ran {
+impl SolvedFrame {
     /// The displacement over the scene.
     fn delta(&self) -> Result<Grid, GridError> {
         match &self.done.full {
@@ -227,7 +235,7 @@ fn drop_at(earth: &EarthCurvature, p: DVec2) -> f64 {
 }
 
 /// What the passes came to.
-struct Done {
+struct Outcome {
     /// Displacement at the nodes of the solver's grid.
     coarse: Vec<f64>,
     /// Displacement at every node of the terrain, where that is more than the solver's grid can hold.

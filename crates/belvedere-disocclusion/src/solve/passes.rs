@@ -1,11 +1,11 @@
 //! The passes of one frame, in the order of the mode.
 
 use super::super::visibility_qp::{QpOptions, QpProblem, QpResult};
-use super::super::{Blocks, Field, Hierarchy, Naive, ReferencePoint, Smoother, SolverMode, TerrainSettings};
+use super::super::{BlockMaxima, Field, Hierarchy, Naive, ReferencePoint, Smoother, SolverMode, TerrainSettings};
 use super::drawn::Drawn;
 use super::fallback::{self, Fallback};
-use super::memory::{self, Pace, Prepared};
-use super::{Done, QpReport, Seen, TerrainTimes, scales, since};
+use super::memory::{self, Prepared, Weights};
+use super::{Outcome, PointsInView, QpReport, TerrainTimes, scales, since};
 use crate::DisocclusionError;
 use belvedere_core::DVec3;
 use belvedere_scene::Progress;
@@ -19,7 +19,7 @@ struct Finer<'a> {
     /// The undisplaced ground with its change of detail, at every node.
     ground: &'a [f64],
     detail: Option<&'a [f64]>,
-    pace: Pace,
+    weights: Weights,
     options: QpOptions,
 }
 
@@ -29,7 +29,7 @@ pub(super) struct Passes<'a> {
     pub(super) field: &'a Field,
     /// Whether that lies lower than the data say, for the earth is curved.
     pub(super) lowered: bool,
-    pub(super) pace: Pace,
+    pub(super) weights: Weights,
     /// Seconds between frames and time constant of coherence; `None` for single pictures.
     pub(super) frame: Option<[f64; 2]>,
     pub(super) eye: DVec3,
@@ -42,10 +42,10 @@ impl Passes<'_> {
     pub(super) fn run(
         &self,
         prepared: &mut Prepared,
-        seen: &Seen<'_>,
+        in_view: &PointsInView<'_>,
         times: &mut TerrainTimes,
-    ) -> Result<Done, DisocclusionError> {
-        let mut done = Done {
+    ) -> Result<Outcome, DisocclusionError> {
+        let mut done = Outcome {
             coarse: vec![0.0; prepared.grid.nodes()],
             full: None,
             fine: None,
@@ -58,10 +58,10 @@ impl Passes<'_> {
         };
         let mut detail = None;
         if prepared.cells.is_some() {
-            detail = self.paper(prepared, seen, &mut done, times)?;
+            detail = self.paper(prepared, in_view, &mut done, times)?;
         }
         if prepared.still.is_some() {
-            self.guarantee(prepared, seen, &mut detail, &mut done, times)?;
+            self.guarantee(prepared, in_view, &mut detail, &mut done, times)?;
         }
         let fine = done.fine.take();
         done.full = match (fine, detail) {
@@ -84,8 +84,8 @@ impl Passes<'_> {
     fn paper(
         &self,
         prepared: &mut Prepared,
-        seen: &Seen<'_>,
-        done: &mut Done,
+        in_view: &PointsInView<'_>,
+        done: &mut Outcome,
         times: &mut TerrainTimes,
     ) -> Result<Option<Vec<f64>>, DisocclusionError> {
         let Some(parts) = prepared.cells.clone() else { return Ok(None) };
@@ -94,15 +94,15 @@ impl Passes<'_> {
         let began = Instant::now();
         let field = self.field;
         // On a curved earth the ground under the points, and what bounds it, differs with the eye.
-        let own = self.lowered.then(|| Blocks::new(field, cells));
+        let own = self.lowered.then(|| BlockMaxima::new(field));
         let point = |&i: &usize| {
             let p = prepared.points[i];
             ReferencePoint { ground: field.surface_at(p.grid).unwrap_or(p.ground), ..p }
         };
-        let points: Vec<ReferencePoint> = seen.points.iter().map(point).collect();
-        let naive = Naive::new(field, cells, own.as_ref().unwrap_or(blocks), self.settings, self.eye, &points);
+        let points: Vec<ReferencePoint> = in_view.points.iter().map(point).collect();
+        let naive = Naive::new(field, cells, Some(own.as_ref().unwrap_or(blocks)), self.settings, self.eye, &points);
         done.greedy = Some(*naive.counters());
-        done.greedy_unresolved = naive.unresolved().iter().map(|&k| seen.points[k]).collect();
+        done.greedy_unresolved = naive.unresolved().iter().map(|&k| in_view.points[k]).collect();
         times.greedy_ms = since(began);
         self.progress.tick("smooth pass", 0.4)?;
         let began = Instant::now();
@@ -121,11 +121,11 @@ impl Passes<'_> {
     }
 
     /// What the quadratic program stays near to; `None` = no displacement.
-    fn target(&self, prepared: &Prepared, done: &Done) -> Result<Option<Vec<f64>>, DisocclusionError> {
-        let Pace { w, g } = prepared.weights();
+    fn target(&self, prepared: &Prepared, done: &Outcome) -> Result<Option<Vec<f64>>, DisocclusionError> {
+        let Weights { w, g } = prepared.weights();
         Ok(match (self.settings.mode, self.last) {
             (SolverMode::PaperQp, _) => Some(done.coarse.clone()),
-            (_, Some(last)) if self.pace.g > 0.0 => {
+            (_, Some(last)) if self.weights.g > 0.0 => {
                 let mut u: Vec<f64> = last.iter().map(|u| g * g * u).collect();
                 let mut smoother: Smoother = Smoother::new(prepared.grid.cols(), prepared.grid.rows(), w, g)?;
                 smoother.solve(&mut u);
@@ -139,16 +139,16 @@ impl Passes<'_> {
     fn guarantee(
         &self,
         prepared: &mut Prepared,
-        seen: &Seen<'_>,
+        in_view: &PointsInView<'_>,
         detail: &mut Option<Vec<f64>>,
-        done: &mut Done,
+        done: &mut Outcome,
         times: &mut TerrainTimes,
     ) -> Result<(), DisocclusionError> {
         self.progress.tick("quadratic program", 0.5)?;
         let began = Instant::now();
         let target = self.target(prepared, done)?;
         let warm = self.last.is_some() && prepared.moving.is_some();
-        let pace = if warm { self.pace } else { Pace { g: 0.0, ..self.pace } };
+        let weights = if warm { self.weights } else { Weights { g: 0.0, ..self.weights } };
         let Some(program) = (if warm { &mut prepared.moving } else { &mut prepared.still }) else { return Ok(()) };
         let qp = &mut program.solver;
         let mut ground: Cow<'_, [f64]> = match &detail {
@@ -160,8 +160,8 @@ impl Passes<'_> {
         if foreign || program.foreign {
             qp.set_heights(&ground)?;
         }
-        let (asked, sight) = (&seen.candidates[..], &*seen.sight);
-        let wider = [asked, &seen.coming[..]].concat();
+        let (asked, sight) = (&in_view.candidates[..], &*in_view.sight);
+        let wider = [asked, &in_view.entering[..]].concat();
         let mut problem = QpProblem { candidates: &wider, sight, target: target.as_deref(), ceilings: None };
         qp.set_options(memory::options(self.settings, false));
         let mut result = qp.solve(&problem)?;
@@ -204,7 +204,7 @@ impl Passes<'_> {
         done.coarse.clone_from(&result.u);
         if fallback::stuck(&result) > 0 {
             let options = memory::options(self.settings, from_guard);
-            let grids = Finer { coarse: &prepared.grid, ground: &ground, detail: detail.as_deref(), pace, options };
+            let grids = Finer { coarse: &prepared.grid, ground: &ground, detail: detail.as_deref(), weights, options };
             result = self.on_finer_grids(&grids, &problem, result, done)?;
         }
         done.qp = Some(QpReport {
@@ -213,7 +213,7 @@ impl Passes<'_> {
             active: result.active.len(),
             added: result.added,
             kept: result.kept,
-            candidates: seen.candidates.len(),
+            candidates: in_view.candidates.len(),
             energy: result.energy,
         });
         done.qp_unresolved = result.unresolved;
@@ -227,9 +227,9 @@ impl Passes<'_> {
         grids: &Finer<'_>,
         problem: &QpProblem<'_>,
         mut best: QpResult,
-        done: &mut Done,
+        done: &mut Outcome,
     ) -> Result<QpResult, DisocclusionError> {
-        let Finer { coarse, ground, detail, pace, options } = *grids;
+        let Finer { coarse, ground, detail, weights, options } = *grids;
         for nodes in fallback::finer(coarse, self.field) {
             if fallback::stuck(&best) == 0 {
                 break;
@@ -237,7 +237,7 @@ impl Passes<'_> {
             self.progress.tick("quadratic program on a finer grid", 0.7)?;
             let grid = Hierarchy::new(self.field.cols(), self.field.rows(), nodes);
             let target = problem.target.map(|t| fallback::resampled(coarse, t, &grid));
-            let mut finer = memory::program(self.field, &grid, pace, options)?;
+            let mut finer = memory::program(self.field, &grid, weights, options)?;
             finer.set_heights(ground)?;
             let problem = QpProblem { target: target.as_deref(), ..*problem };
             let mut next = finer.solve(&problem)?;

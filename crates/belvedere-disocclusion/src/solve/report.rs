@@ -7,7 +7,7 @@ use super::super::{
     Unusable, UnusableReason, stated_spacing,
 };
 use super::memory::{CHECK_CELLS, Prepared};
-use super::{Done, Fallback, Seen, since};
+use super::{Fallback, Outcome, PointsInView, since};
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
 use serde::Serialize;
@@ -182,17 +182,17 @@ pub(super) struct Context<'a> {
     pub(super) settings: &'a TerrainSettings,
     pub(super) field: &'a Field,
     pub(super) prepared: &'a Prepared,
-    pub(super) seen: &'a Seen<'a>,
+    pub(super) in_view: &'a PointsInView<'a>,
     /// The solution.
     pub(super) delta: &'a Grid,
     /// That of the frame before.
     pub(super) previous: Option<&'a Grid>,
 }
 
-pub(super) fn report(c: &Context<'_>, done: &Done, mut times: TerrainTimes, began: Instant) -> TerrainReport {
-    let (field, prepared, seen, guard) = (c.field, c.prepared, c.seen, c.settings.guard);
-    let points: Vec<ReferencePoint> = seen.points.iter().map(|&i| prepared.points[i]).collect();
-    let dense = prepared.dense_in_view(seen);
+pub(super) fn report(c: &Context<'_>, done: &Outcome, mut times: TerrainTimes, began: Instant) -> TerrainReport {
+    let (field, prepared, in_view, guard) = (c.field, c.prepared, c.in_view, c.settings.guard);
+    let points: Vec<ReferencePoint> = in_view.points.iter().map(|&i| prepared.points[i]).collect();
+    let dense = prepared.dense_in_view(in_view);
     let of = Deformation {
         field,
         delta: c.delta,
@@ -200,13 +200,13 @@ pub(super) fn report(c: &Context<'_>, done: &Done, mut times: TerrainTimes, bega
         cells: prepared.cells.as_ref().map(|parts| &parts.0),
         points: &points,
         dense: &dense,
-        sight: &*seen.sight,
+        sight: &*in_view.sight,
         guard,
     };
     let judgement = judged(&of);
     let metrics = judgement.metrics;
     let before = |points: &[ReferencePoint]| {
-        super::level(field).map_or(1.0, |level| shown(field, &level, guard, &*seen.sight, points).share)
+        super::level(field).map_or(1.0, |level| shown(field, &level, guard, &*in_view.sight, points).share)
     };
     let (unresolved, hidden) = (unresolved(c, done, &judgement), hidden(c, &judgement, &dense));
     let (guards, qp_met) = (c.settings.mode != SolverMode::Paper, done.qp_unresolved.is_empty());
@@ -218,7 +218,7 @@ pub(super) fn report(c: &Context<'_>, done: &Done, mut times: TerrainTimes, bega
         smoothing_length_m: c.settings.smoothing_length(stated_m),
         solver_grid: [prepared.grid.cols(), prepared.grid.rows()],
         points: points.len(),
-        asked: seen.candidates.len(),
+        asked: in_view.candidates.len(),
         metrics,
         visible_before: before(&points),
         visible_dense_before: before(&dense),
@@ -226,7 +226,7 @@ pub(super) fn report(c: &Context<'_>, done: &Done, mut times: TerrainTimes, bega
         qp: done.qp,
         fallbacks: done.fallbacks.clone(),
         guaranteed: guards
-            && !seen.candidates.is_empty()
+            && !in_view.candidates.is_empty()
             && qp_met
             && metrics.visible == 1.0
             && metrics.visible_dense - metrics.hidden_in_guard >= AGREES,
@@ -244,7 +244,7 @@ fn covered(c: &Context<'_>, dense: &[ReferencePoint]) -> Vec<Covered> {
     if c.settings.slack_price.is_none() {
         return Vec::new();
     }
-    let over = excesses(c.field, c.delta, c.settings.guard, &*c.seen.sight, dense);
+    let over = excesses(c.field, c.delta, c.settings.guard, &*c.in_view.sight, dense);
     let place = |(p, over): (&ReferencePoint, Option<f64>)| {
         let over_m = over.filter(|o| *o > 0.0 && o.is_finite())?;
         Some(Covered { at: c.field.scene_from_grid(p.grid).to_array(), lift_m: p.lift, over_m })
@@ -271,9 +271,9 @@ fn hidden(c: &Context<'_>, judgement: &Judged, dense: &[ReferencePoint]) -> Vec<
     runs.out
 }
 
-fn unresolved(c: &Context<'_>, done: &Done, judgement: &Judged) -> Vec<UnresolvedRun> {
+fn unresolved(c: &Context<'_>, done: &Outcome, judgement: &Judged) -> Vec<UnresolvedRun> {
     let mut runs = Runs::new(c.field, c.settings.spacing);
-    let asked = |u: &&Unusable| c.seen.wedge.contains(c.field.scene_from_grid(u.grid));
+    let asked = |u: &&Unusable| c.in_view.wedge.contains(c.field.scene_from_grid(u.grid));
     for u in c.prepared.unusable.iter().filter(asked) {
         let reason = match u.reason {
             UnusableReason::OutsideDem => UnresolvedReason::OutsideDem,
@@ -281,7 +281,7 @@ fn unresolved(c: &Context<'_>, done: &Done, judgement: &Judged) -> Vec<Unresolve
         };
         runs.add((u.layer, u.feature, u.kind, u.along_m, u.grid), reason);
     }
-    for &i in &c.seen.too_near {
+    for &i in &c.in_view.too_near {
         runs.put(&c.prepared.points[i], UnresolvedReason::NearerThanGuard);
     }
     if c.settings.mode == SolverMode::Paper {
@@ -308,7 +308,7 @@ fn unresolved(c: &Context<'_>, done: &Done, judgement: &Judged) -> Vec<Unresolve
         named.extend(id.checked_sub(dense));
     }
     for &(k, over_m) in &judgement.points {
-        let i = c.seen.points[k];
+        let i = c.in_view.points[k];
         if c.settings.slack_price.is_none() && !named.contains(&i) {
             let reason = match c.settings.mode {
                 _ if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,

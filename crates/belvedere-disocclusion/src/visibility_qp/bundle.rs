@@ -1,10 +1,10 @@
 //! Lines of sight of neighbours, followed as one as long as no ground comes near.
 
-use super::super::register::LANES;
-use super::alone::Alone;
+use super::candidate_line::CandidateLine;
 use super::lanes::Lanes;
+use super::register::LANES;
 use super::rise::Rise;
-use super::seen::Seen;
+use super::single_line::SingleLine;
 use super::surface::Surface;
 use super::walk::{Chord, Clearance, LEAF, Touch, fade};
 use belvedere_core::DVec2;
@@ -26,7 +26,7 @@ const WISH: f64 = 2.0;
 /// Lines of sight that are followed as one.
 #[derive(Debug, Clone)]
 pub(super) enum Bundle {
-    Alone(Alone),
+    SingleLine(SingleLine),
     Together(Together),
 }
 
@@ -55,7 +55,7 @@ type Line = (usize, Chord, [f64; 2]);
 
 impl Bundle {
     /// Bundles of all candidates, in their order; `straight` lines may share one.
-    pub(super) fn all(seen: &[Seen], straight: bool) -> Vec<Self> {
+    pub(super) fn all(seen: &[CandidateLine], straight: bool) -> Vec<Self> {
         let mut out: Vec<Self> = Vec::new();
         let mut first = 0;
         for i in 1..=seen.len() {
@@ -63,7 +63,7 @@ impl Bundle {
             if !(straight && near && i - first < MOST) {
                 out.push(match first..i {
                     members if members.len() > 1 => Self::Together(Together { members, room: -1.0, near: Vec::new() }),
-                    _ => Self::Alone(Alone::new(first, &seen[first])),
+                    _ => Self::SingleLine(SingleLine::new(first, &seen[first])),
                 });
                 first = i;
             }
@@ -72,24 +72,29 @@ impl Bundle {
     }
 
     /// The displacement changed: takes what the ground rose and the lines sank at most from the room.
-    pub(super) fn moved(&mut self, seen: &[Seen], rise: &Rise) {
+    pub(super) fn moved(&mut self, seen: &[CandidateLine], rise: &Rise) {
         match self {
-            Self::Alone(one) => one.moved(seen, rise),
+            Self::SingleLine(one) => one.moved(seen, rise),
             Self::Together(all) => all.moved(seen, rise),
         }
     }
 
     /// All places where the asked clearance is missed. Where there is room left nothing is looked at.
-    pub(super) fn walk(&mut self, seen: &[Seen], surface: &Surface, clearance: &Clearance) -> Vec<(usize, Touch)> {
+    pub(super) fn walk(
+        &mut self,
+        seen: &[CandidateLine],
+        surface: &Surface,
+        clearance: &Clearance,
+    ) -> Vec<(usize, Touch)> {
         match self {
-            Self::Alone(one) => one.walk(seen, surface, clearance),
+            Self::SingleLine(one) => one.walk(seen, surface, clearance),
             Self::Together(all) => all.walk(seen, surface, clearance),
         }
     }
 }
 
 impl Together {
-    fn moved(&mut self, seen: &[Seen], rise: &Rise) {
+    fn moved(&mut self, seen: &[CandidateLine], rise: &Rise) {
         if self.room <= 0.0 {
             return;
         }
@@ -104,7 +109,7 @@ impl Together {
         self.room -= sank + to_eye.map(|c| rise.along(points, [c.ends[1]; 2])).fold(0.0, f64::max);
     }
 
-    fn walk(&mut self, seen: &[Seen], surface: &Surface, clearance: &Clearance) -> Vec<(usize, Touch)> {
+    fn walk(&mut self, seen: &[CandidateLine], surface: &Surface, clearance: &Clearance) -> Vec<(usize, Touch)> {
         let (known, mut touches) = (self.room > 0.0, Vec::new());
         if known && self.near.iter().all(|n| n.room > 0.0) {
             return touches;

@@ -1,6 +1,6 @@
 //! Neighbouring lines of sight abreast, one per lane of a register: a bound of what they miss, by which most are let pass.
 
-use super::super::register::{LANES, Lane, indices, load, split, store};
+use super::register::{LANES, Lane, indices, load, split, store};
 use super::surface::Surface;
 use super::walk::{Chord, Clearance};
 use pulp::{Arch, Simd, WithSimd};

@@ -4,17 +4,18 @@
 //! would come too close to a line of sight, and to a ceiling for every node. That a point is seen is linear in u, so the
 //! program is convex and its solution is the only one. Not in the paper.
 
-mod alone;
 mod bundle;
+mod candidate_line;
 mod cholesky;
 mod dual;
 mod lanes;
 mod metric;
-mod pool;
 mod problem;
+mod register;
 mod rise;
 mod row;
-mod seen;
+mod rows_in_play;
+mod single_line;
 mod solver;
 mod surface;
 mod view_rays;

@@ -6,7 +6,7 @@ use belvedere_core::DVec2;
 
 /// What a row asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Asks {
+pub(super) enum Constraint {
     /// A node does not rise above its ceiling.
     Ceiling(u32),
     /// The ground at `at` (grid) stays below the line of sight of a candidate; `tau` = share of the way to the eye.
@@ -20,7 +20,7 @@ pub(super) struct Row {
     pub(super) weights: [f64; 8],
     pub(super) len: usize,
     pub(super) bound: f64,
-    pub(super) asks: Asks,
+    pub(super) constraint: Constraint,
     /// The same as bilinear values at one or two points, with their factors.
     pub(super) points: [(f64, Between); 2],
 }
@@ -30,11 +30,11 @@ impl Row {
     pub(super) fn ceiling(node: u32, at: Between, bound: f64) -> Self {
         let (mut nodes, mut weights) = ([0; 8], [0.0; 8]);
         (nodes[0], weights[0]) = (node, 1.0);
-        Self { nodes, weights, len: 1, bound, asks: Asks::Ceiling(node), points: [(1.0, at), (0.0, at)] }
+        Self { nodes, weights, len: 1, bound, constraint: Constraint::Ceiling(node), points: [(1.0, at), (0.0, at)] }
     }
 
     pub(super) fn is_ceiling(&self) -> bool {
-        matches!(self.asks, Asks::Ceiling(_))
+        matches!(self.constraint, Constraint::Ceiling(_))
     }
 
     pub(super) fn entries(&self) -> impl Iterator<Item = (u32, f64)> {

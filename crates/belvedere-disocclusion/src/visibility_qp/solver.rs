@@ -1,12 +1,12 @@
 //! Rows are found where they are missed, a few per round, until none is missed.
 
 use super::bundle::Bundle;
+use super::candidate_line::CandidateLine;
 use super::metric::Metric;
-use super::pool::{IDLE, Kept, New, Place, Pool};
 use super::problem::{QpError, QpOptions, QpProblem, QpResult, Reason, Unresolved};
 use super::rise::Rise;
 use super::row::Row;
-use super::seen::Seen;
+use super::rows_in_play::{IDLE, NewRow, RememberedRow, RowKey, RowsInPlay};
 use super::surface::{Lattice, Surface};
 use super::walk::{Clearance, Touch, fade};
 use crate::Field;
@@ -31,16 +31,16 @@ pub struct QpSolver {
     metric: Metric,
     surface: Surface,
     options: QpOptions,
-    kept: Vec<Kept>,
+    kept: Vec<RememberedRow>,
 }
 
 /// What one frame works with.
 struct Frame<'a> {
     problem: QpProblem<'a>,
     target: Vec<f64>,
-    seen: Vec<Seen>,
+    seen: Vec<CandidateLine>,
     bundles: Vec<Bundle>,
-    pool: Pool,
+    pool: RowsInPlay,
     clearance: Clearance,
     /// Inverse price of slack, 0 = none.
     soft: f64,
@@ -96,11 +96,11 @@ impl QpSolver {
             length(what, values.unwrap_or(&self.surface.u), nodes)?;
         }
         self.check_eye(problem)?;
-        let mut lines = Seen::all(problem, &self.surface);
+        let mut lines = CandidateLine::all(problem, &self.surface);
         let mut out = self.pass(problem, &lines);
         if problem.sight.straight().is_none() {
             for _ in 0..10 {
-                if Seen::follow_up(&mut lines, problem, &self.surface, 0.1 * self.options.tolerance) == 0 {
+                if CandidateLine::follow_up(&mut lines, problem, &self.surface, 0.1 * self.options.tolerance) == 0 {
                     break;
                 }
                 let next = self.pass(problem, &lines);
@@ -125,7 +125,7 @@ impl QpSolver {
     }
 
     /// Solves with these lines of sight.
-    fn pass(&mut self, problem: &QpProblem, lines: &[Seen]) -> QpResult {
+    fn pass(&mut self, problem: &QpProblem, lines: &[CandidateLine]) -> QpResult {
         let o = self.options;
         let nodes = self.surface.u.len();
         let mut frame = Frame {
@@ -133,12 +133,12 @@ impl QpSolver {
             target: problem.target.map_or_else(|| vec![0.0; nodes], <[f64]>::to_vec),
             seen: lines.to_vec(),
             bundles: Vec::new(),
-            pool: Pool::default(),
+            pool: RowsInPlay::default(),
             clearance: self.clearance(),
             soft: o.slack_price.map_or(0.0, |price| 1.0 / price),
         };
         let mut out = QpResult::default();
-        frame.drop_unseen(o.guard, &mut out.unresolved);
+        frame.drop_without_line(o.guard, &mut out.unresolved);
         frame.bundles = Bundle::all(&frame.seen, problem.sight.straight().is_some());
         self.take_up(&mut frame);
         out.kept = frame.pool.rows.len();
@@ -189,9 +189,9 @@ impl QpSolver {
             frame.seen.iter().enumerate().map(|(k, s)| (frame.problem.candidates[s.index].id, k)).collect();
         let mut new = Vec::with_capacity(self.kept.len());
         for kept in &self.kept {
-            let row = match kept.place {
-                Place::Ceiling(node) => Some(self.ceiling_row(frame, node)),
-                Place::Sight { id, at } => {
+            let row = match kept.key {
+                RowKey::Ceiling(node) => Some(self.ceiling_row(frame, node)),
+                RowKey::Sight { id, at } => {
                     by_id.get(&id).and_then(|&k| frame.seen[k].follow(&self.surface, at, &frame.clearance))
                 }
             };
@@ -210,10 +210,10 @@ impl QpSolver {
         Row::ceiling(node, at, self.ceiling(frame, node as usize))
     }
 
-    fn new_row(&self, frame: &Frame, row: Row, (multiplier, idle): (f64, u32)) -> New {
+    fn new_row(&self, frame: &Frame, row: Row, (multiplier, idle): (f64, u32)) -> NewRow {
         let excess = row.at(&frame.target) - row.bound;
         let soft = if row.is_ceiling() { 0.0 } else { frame.soft };
-        New { row, excess, soft, multiplier, idle }
+        NewRow { row, excess, soft, multiplier, idle }
     }
 
     /// Adds rows that had no multiplier so far.
@@ -297,7 +297,7 @@ impl QpSolver {
 
 impl Frame<'_> {
     /// Sets aside what cannot be seen at all.
-    fn drop_unseen(&mut self, guard: f64, unresolved: &mut Vec<Unresolved>) {
+    fn drop_without_line(&mut self, guard: f64, unresolved: &mut Vec<Unresolved>) {
         let candidates = self.problem.candidates;
         self.seen.retain(|s| {
             let reason = match s {
@@ -333,7 +333,7 @@ impl Frame<'_> {
         let mut bought = BTreeMap::<_, f64>::new();
         if self.soft > 0.0 {
             for (i, row) in self.pool.rows.iter().enumerate() {
-                if let super::row::Asks::Sight { candidate, at, .. } = row.asks {
+                if let super::row::Constraint::Sight { candidate, at, .. } = row.constraint {
                     let slack = bought.entry(key(at, self.problem.candidates[candidate].grid)).or_default();
                     *slack = slack.max(self.pool.slack(i));
                 }

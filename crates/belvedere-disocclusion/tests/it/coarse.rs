@@ -1,9 +1,8 @@
 //! Cells of hundreds of metres: what the program holds for seen is seen on the ground that is drawn, or is named.
 
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
-use belvedere_disocclusion::{
-    Detail, SolverMode, TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver, UnresolvedReason,
-};
+use belvedere_disocclusion::report::UnresolvedReason;
+use belvedere_disocclusion::{Detail, SolverMode, TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver};
 use belvedere_scene::{Heightfield, NodeState, Progress, Scene};
 use belvedere_testkit::Random;
 use belvedere_testkit::synthetic::{line_layer, terrain_layer};

@@ -1,9 +1,8 @@
 //! What is done, and said, where rows contradict each other on the solver's grid.
 
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
-use belvedere_disocclusion::{
-    Fallback, Solved, TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver, UnresolvedReason,
-};
+use belvedere_disocclusion::report::{Fallback, UnresolvedReason};
+use belvedere_disocclusion::{Solved, TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver};
 use belvedere_scene::{
     Color, Heightfield, Hidden, Layer, LayerKind, NodeState, PointFeature, PointLayer, PointStyle, Progress, Scene,
 };

@@ -1,9 +1,11 @@
 //! Integration tests of belvedere-disocclusion.
 
 mod coarse;
-mod coming;
+
+mod entering;
 mod fallbacks;
 mod live;
+mod memory;
 mod qp;
 mod smooth;
 mod smoothing;

@@ -1,7 +1,8 @@
 //! The smoothing in force, as the report prints it.
 
 use belvedere_core::{DVec2, View};
-use belvedere_disocclusion::{LONGEST_SMOOTHING_M, TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver};
+use belvedere_disocclusion::internals::LONGEST_SMOOTHING_M;
+use belvedere_disocclusion::{TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver};
 use belvedere_scene::{Heightfield, NodeState, Progress, Scene};
 use belvedere_testkit::synthetic::{camera, line_layer, terrain_layer, trail};
 

@@ -2,11 +2,13 @@
 
 use belvedere_core::DVec3;
 use belvedere_core::grid::Grid;
-use belvedere_disocclusion::visibility_qp::StraightSight;
-use belvedere_disocclusion::{
-    Blocks, Cells, Deformation, Field, Hierarchy, Naive, ReferencePoint, Smoother, TerrainMetrics, TerrainSettings,
-    Wedge, check_eye, grid_weight, in_view, reference_points, terrain_metrics,
+use belvedere_disocclusion::TerrainSettings;
+use belvedere_disocclusion::internals::StraightSight;
+use belvedere_disocclusion::internals::{
+    BlockMaxima, Cells, Deformation, Field, Hierarchy, Naive, ReferencePoint, Smoother, Wedge, check_eye, grid_weight,
+    in_view, reference_points, terrain_metrics,
 };
+use belvedere_disocclusion::report::TerrainMetrics;
 use belvedere_scene::Scene;
 use belvedere_testkit::synthetic::{camera, scene};
 
@@ -34,8 +36,8 @@ impl Case {
     }
 
     fn naive(&self, settings: &TerrainSettings) -> Vec<f64> {
-        let blocks = Blocks::new(&self.field, &self.cells);
-        let naive = Naive::new(&self.field, &self.cells, &blocks, settings, self.eye, &self.points);
+        let blocks = BlockMaxima::new(&self.field);
+        let naive = Naive::new(&self.field, &self.cells, Some(&blocks), settings, self.eye, &self.points);
         naive.displacement(&self.field, &self.cells)
     }
 

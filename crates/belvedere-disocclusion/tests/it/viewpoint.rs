@@ -1,7 +1,11 @@
-//! Viewpoint adjustment on energies that are known in closed form.
+//! Viewpoint adjustment on energies that are known in closed form, and on solved ground.
 
-use belvedere_core::{DVec2, DVec3};
-use belvedere_disocclusion::{ViewpointEnergy, ViewpointOptions, adjust_viewpoint, ghost_alpha, height_slope};
+use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, View};
+use belvedere_disocclusion::ghost::opacity;
+use belvedere_disocclusion::internals::{ViewpointEnergy, adjust_viewpoint, height_slope};
+use belvedere_disocclusion::{TerrainMemory, TerrainSettings, TerrainSolver, ViewpointOptions};
+use belvedere_scene::{Heightfield, Progress, Scene};
+use belvedere_testkit::synthetic::{line_layer, terrain_layer};
 
 const USER: DVec3 = DVec3::new(0.0, -1000.0, 500.0);
 const TARGET: DVec3 = DVec3::new(0.0, 0.0, 100.0);
@@ -117,7 +121,46 @@ fn the_envelope_theorem_is_the_derivative_and_saves_evaluations() {
 
 #[test]
 fn ghosts_fade_with_slack() {
-    assert_eq!(ghost_alpha(0.0, 5.0), 1.0);
-    assert_eq!(ghost_alpha(5.0, 5.0), 0.5);
-    assert!(ghost_alpha(1e6, 5.0) < 1e-5 && ghost_alpha(-1.0, 5.0) == 1.0);
+    assert_eq!(opacity(0.0, 5.0), 1.0);
+    assert_eq!(opacity(5.0, 5.0), 0.5);
+    assert!(opacity(1e6, 5.0) < 1e-5 && opacity(-1.0, 5.0) == 1.0);
+}
+
+/// A ridge 20 km and a lowland route 30 km north of the eye, on an earth that has dropped by 70 m there.
+fn far_ridge() -> (Scene, DVec3) {
+    let n = 81usize;
+    let height = |i: usize| {
+        let y = (n - 1 - i / n) as f64 * 500.0;
+        (300.0 * (-((y - 22_000.0) / 2000.0).powi(2)).exp()) as f32
+    };
+    let heights = (0..n * n).map(height).collect();
+    let hf = Heightfield::measured(DVec2::new(0.0, 40_000.0), DVec2::splat(500.0), n, n, heights).unwrap();
+    let route = (0..=20).map(|i| DVec3::new(15_000.0 + 500.0 * f64::from(i), 32_000.0, 0.0)).collect();
+    let scene = Scene { layers: vec![terrain_layer(hf), line_layer("route", route)], ..Scene::default() };
+    (scene, DVec3::new(20_000.0, 2000.0, 500.0))
+}
+
+#[test]
+fn energies_of_the_adjustment_are_those_of_the_round_earth_under_each_eye() {
+    let (scene, user) = far_ridge();
+    let target = DVec3::new(20_000.0, 32_000.0, 0.0);
+    let lens = Projection::Perspective { fov_y: 60f64.to_radians() };
+    let view = |eye: DVec3, earth: bool| {
+        let pinhole = Pinhole::look_at(eye, target, DVec3::Z, lens, [640, 480], 1.0, None).unwrap();
+        let stage = EarthCurvature { eye, radius: 6.371e6, refraction: EarthCurvature::REFRACTION };
+        View::new(pinhole, if earth { vec![Stage::EarthCurvature(stage)] } else { Vec::new() }).unwrap()
+    };
+    let solver = TerrainSolver::new(TerrainSettings::default()).unwrap();
+    let energy = |base: &View| {
+        let solved = solver.solve(&scene, base, &mut TerrainMemory::default(), &Progress::silent()).unwrap();
+        solved.report.qp.unwrap().energy
+    };
+    let options = ViewpointOptions { slider: 0.1, distance: 0.3, ..ViewpointOptions::default() };
+    let found = solver.adjust(&scene, &view(user, true), target, &options, &Progress::silent()).unwrap().unwrap();
+    assert!(found.moved_m > 100.0, "the camera stays: {found:?}");
+    for (eye, theirs) in [(user, found.energy[0]), (found.eye, found.energy[1])] {
+        let (round, flat) = (energy(&view(eye, true)), energy(&view(eye, false)));
+        assert!((theirs - round).abs() < 0.01 * round, "{theirs} is not the energy {round} at {eye}");
+        assert!((flat - round).abs() > 0.1 * round, "the earth makes no difference: {flat} and {round} at {eye}");
+    }
 }

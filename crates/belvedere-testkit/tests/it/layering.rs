@@ -45,7 +45,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     (
         "belvedere-disocclusion",
         &["belvedere-core", "belvedere-scene", "belvedere-sight"],
-        &["glam", "pulp", "rayon", "rsparse", "rustfft", "serde", "thiserror", "tracing"],
+        &["glam", "pulp", "rayon", "rsparse", "rustdct", "serde", "thiserror", "tracing"],
     ),
     (
         "belvedere-construct",

@@ -6,8 +6,7 @@ use crate::scene_file::{DetailDoc, PointDoc, SolverMode as ModeDoc, SourceDocume
 use belvedere_core::{DVec3, Pinhole, Stage, View};
 use belvedere_disocclusion::DisocclusionError;
 use belvedere_disocclusion::{
-    Cells, Detail, Field, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver, ViewpointOptions,
-    stated_spacing,
+    Detail, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver, ViewpointOptions,
 };
 use belvedere_scene::{Progress, Scene};
 
@@ -72,8 +71,6 @@ pub(crate) fn settings(doc: &TerrainStageDoc) -> Result<TerrainSettings, (&'stat
 
 /// The document with every default filled in.
 pub(crate) fn document(settings: &TerrainSettings, scene: &Scene) -> TerrainStageDoc {
-    let nodes = || scene.terrain().and_then(|t| Field::new(t, |_| 0.0).ok()).map(|f| Cells::default_count(&f));
-    let smoothness = || scene.terrain().map(|t| settings.smoothness(stated_spacing(t.cols(), t.rows(), t.spacing())));
     TerrainStageDoc {
         delta: None,
         delta_sha256: None,
@@ -82,14 +79,14 @@ pub(crate) fn document(settings: &TerrainSettings, scene: &Scene) -> TerrainStag
             SolverMode::PaperQp => ModeDoc::PaperQp,
             SolverMode::Qp => ModeDoc::Qp,
         }),
-        cells: settings.cells.or_else(nodes).map(|n| n as f64),
+        cells: settings.cells.or_else(|| scene.terrain().map(|t| settings.cells_on(t))).map(|n| n as f64),
         spacing: Some(settings.spacing),
         lift_m: settings.lift_m,
         guard: Some(settings.guard),
         eta: Some(settings.eta),
         mu: Some(settings.mu),
         mu_dev: Some(settings.mu_dev),
-        w: settings.w.or_else(smoothness),
+        w: settings.w.or_else(|| scene.terrain().map(|t| settings.smoothness_on(t))),
         rows_weight: Some(settings.rows_weight),
         gamma_time_s: Some(settings.gamma_time_s),
         solver_nodes: Some(settings.solver_nodes as u32),

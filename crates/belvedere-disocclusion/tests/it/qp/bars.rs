@@ -5,8 +5,9 @@
 use belvedere_builtin::valley_route;
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
-use belvedere_disocclusion::visibility_qp::{Candidate, QpOptions, QpProblem, QpSolver, StraightSight};
-use belvedere_disocclusion::{Field, Hierarchy, Smoother, TerrainSettings, grid_weight, stated_spacing};
+use belvedere_disocclusion::TerrainSettings;
+use belvedere_disocclusion::internals::{Candidate, QpOptions, QpProblem, QpSolver, StraightSight};
+use belvedere_disocclusion::internals::{Field, Hierarchy, Smoother, grid_weight, stated_spacing};
 use belvedere_io::vector::{lines_on_terrain, load_vectors};
 use belvedere_io::{TerrainRequest, load_terrain};
 use belvedere_scene::{Heightfield, Progress};

@@ -4,8 +4,10 @@ use belvedere_core::grid::Grid;
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, SplineBend, Stage, View};
-use belvedere_disocclusion::visibility_qp::{Candidate, LinesOfSight, QpOptions, QpProblem, QpSolver, ViewSight};
-use belvedere_disocclusion::{Field, Hierarchy, Smoother, TerrainSettings};
+use belvedere_disocclusion::TerrainSettings;
+use belvedere_disocclusion::internals::{Candidate, LinesOfSight, QpOptions, QpProblem, QpSolver, ViewSight};
+use belvedere_disocclusion::internals::{Hierarchy, Smoother};
+use belvedere_sight::Field;
 use belvedere_testkit::synthetic::mountains;
 
 fn pinhole() -> Pinhole {

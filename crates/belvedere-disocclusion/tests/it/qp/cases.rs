@@ -2,10 +2,10 @@
 
 use belvedere_core::DVec2;
 use belvedere_disocclusion::TerrainSettings;
-use belvedere_disocclusion::visibility_qp::{
+use belvedere_disocclusion::internals::{
     Candidate, QpError, QpOptions, QpProblem, QpResult, QpSolver, Reason, StraightSight,
 };
-use belvedere_disocclusion::{Field, Hierarchy, Smoother};
+use belvedere_disocclusion::internals::{Field, Hierarchy, Smoother};
 use belvedere_scene::{Heightfield, NodeState};
 
 fn field(cols: usize, rows: usize, height: impl Fn(usize, usize) -> f64) -> Field {

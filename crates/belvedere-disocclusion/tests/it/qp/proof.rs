@@ -1,10 +1,9 @@
 //! Rows that contradict each other, and the proof of it.
 
 use belvedere_core::DVec2;
-use belvedere_disocclusion::visibility_qp::{
-    Candidate, QpOptions, QpProblem, QpResult, QpSolver, Reason, StraightSight,
-};
-use belvedere_disocclusion::{Field, Hierarchy, Smoother, TerrainSettings};
+use belvedere_disocclusion::TerrainSettings;
+use belvedere_disocclusion::internals::{Candidate, QpOptions, QpProblem, QpResult, QpSolver, Reason, StraightSight};
+use belvedere_disocclusion::internals::{Field, Hierarchy, Smoother};
 use belvedere_scene::{Heightfield, NodeState};
 
 const COLS: usize = 97;

@@ -2,8 +2,8 @@
 
 use super::reference::{DenseRow, Small};
 use belvedere_core::DVec2;
-use belvedere_disocclusion::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult, QpSolver, StraightSight};
-use belvedere_disocclusion::{Field, Hierarchy, Smoother};
+use belvedere_disocclusion::internals::{Candidate, QpOptions, QpProblem, QpResult, QpSolver, StraightSight};
+use belvedere_disocclusion::internals::{Field, Hierarchy, Smoother};
 use belvedere_scene::{Heightfield, NodeState};
 
 /// Hills between a path and an eye.

@@ -1,7 +1,8 @@
 //! The paper's own way to solve the smooth pass, against ours.
 
 use belvedere_core::DVec2;
-use belvedere_disocclusion::{Cholesky, ConjugateGradients, ElevationRows, Hierarchy, SmoothError, Smoother};
+use belvedere_disocclusion::error::SmoothError;
+use belvedere_disocclusion::internals::{Cholesky, ConjugateGradients, ElevationRows, Hierarchy, Smoother};
 
 use super::support::{apart, numbers};
 
@@ -10,7 +11,7 @@ fn a_sparse_factor_agrees_with_the_cosine_transform() {
     for (cols, rows, w, g) in [(33, 25, 0.6, 1.2), (24, 41, 0.1, 0.0), (1, 9, 0.3, 0.0), (65, 65, 0.3, 0.0)] {
         let b = numbers(1, cols * rows);
         let mut ours = b.clone();
-        let mut smoother = Smoother::<f64>::new(cols, rows, w, g).unwrap();
+        let mut smoother = Smoother::new(cols, rows, w, g).unwrap();
         smoother.solve(&mut ours);
         let mut theirs = b.clone();
         Cholesky::new(cols, rows, smoother.shift(), &ElevationRows::default()).unwrap().solve(&mut theirs);

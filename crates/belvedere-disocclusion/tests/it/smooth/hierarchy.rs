@@ -1,7 +1,7 @@
 //! The solver's grid over the terrain's.
 
 use belvedere_core::DVec2;
-use belvedere_disocclusion::Hierarchy;
+use belvedere_disocclusion::internals::Hierarchy;
 
 use super::support::{apart, numbers};
 

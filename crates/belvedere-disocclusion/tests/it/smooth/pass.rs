@@ -1,9 +1,8 @@
 //! The smooth pass: against the paper's absolute form, over time, and with detail.
 
-use belvedere_core::{DVec2, DVec3};
-use belvedere_disocclusion::{
-    ConjugateGradients, ElevationRows, Hierarchy, SmoothMemory, SmoothPass, Smoother, grid_weight, row_weight,
-    temporal_weight,
+use belvedere_core::DVec2;
+use belvedere_disocclusion::internals::{
+    ConjugateGradients, ElevationRows, Hierarchy, SmoothPass, Smoother, grid_weight, row_weight, temporal_weight,
 };
 
 use super::support::{Dense, apart, laplacian_rows, numbers};
@@ -175,21 +174,6 @@ fn the_temporal_weight_is_the_papers_at_thirty_frames_and_free_of_the_frame_rate
     for frames in [6, 24] {
         assert!((after(frames) - expected).abs() < 1e-9, "{frames}: {} {expected}", after(frames));
     }
-}
-
-#[test]
-fn a_jump_forgets_and_a_step_remembers() {
-    let mut memory = SmoothMemory::default();
-    let (eye, forward, size) = (DVec3::new(0.0, 0.0, 900.0), DVec3::Y, [2, 1]);
-    assert_eq!(memory.previous(eye, forward, 1000.0, size), None);
-    memory.remember(eye, forward, size, vec![1.0, 2.0]);
-    let turned = |deg: f64| DVec3::new(deg.to_radians().sin(), deg.to_radians().cos(), 0.0);
-    assert_eq!(memory.previous(eye + DVec3::X * 49.0, turned(19.0), 1000.0, size), Some(&[1.0, 2.0][..]));
-    assert_eq!(memory.previous(eye + DVec3::X * 51.0, forward, 1000.0, size), None);
-    assert_eq!(memory.previous(eye, turned(21.0), 1000.0, size), None);
-    assert_eq!(memory.previous(eye, forward, 1000.0, [1, 2]), None);
-    memory.clear();
-    assert_eq!(memory, SmoothMemory::default());
 }
 
 #[test]

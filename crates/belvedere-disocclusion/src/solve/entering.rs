@@ -15,7 +15,7 @@ const STEEPEST: f64 = 2.0;
 
 /// Straight lines to one eye, which end over it for places beside the picture.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct ComingSight<'a> {
+pub(super) struct EnteringSight<'a> {
     pub(super) straight: StraightSight,
     pub(super) field: &'a Field,
     pub(super) wedge: Wedge,
@@ -27,7 +27,7 @@ pub(super) fn beside(wedge: &Wedge) -> Option<Wedge> {
     (wider > wedge.half_angle && wedge.heading != DVec2::ZERO).then_some(Wedge { half_angle: wider, ..*wedge })
 }
 
-impl ComingSight<'_> {
+impl EnteringSight<'_> {
     /// How far over the eye the line of sight of a place ends, scene units; 0 in the picture.
     ///
     /// The third power lets near and far ground give way alike: the former hides by steep slopes, the latter by gentle ones.
@@ -38,7 +38,7 @@ impl ComingSight<'_> {
     }
 }
 
-impl LinesOfSight for ComingSight<'_> {
+impl LinesOfSight for EnteringSight<'_> {
     fn trace(&self, grid: DVec2, z: f64, out: &mut Vec<(DVec2, f64)>) {
         let StraightSight { eye, z: top } = self.straight;
         out.extend([(grid, z), (eye, top + self.over_eye(grid))]);

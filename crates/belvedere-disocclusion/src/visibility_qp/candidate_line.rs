@@ -1,7 +1,7 @@
 //! The candidates of one frame with their lines of sight, and the rows that follow from them.
 
 use super::problem::QpProblem;
-use super::row::{Asks, Row};
+use super::row::{Constraint, Row};
 use super::surface::Surface;
 use super::walk::{Chord, Clearance, Touch, fade};
 use belvedere_core::DVec2;
@@ -13,7 +13,7 @@ const FOLLOW: f64 = 2.5;
 
 /// A candidate with its line of sight.
 #[derive(Debug, Clone)]
-pub(super) struct Seen {
+pub(super) struct CandidateLine {
     /// Index among the candidates.
     pub(super) index: usize,
     pub(super) grid: DVec2,
@@ -24,7 +24,7 @@ pub(super) struct Seen {
     weights: [f64; 4],
 }
 
-impl Seen {
+impl CandidateLine {
     /// Lines of sight of all candidates, which are displaced as the surface is unless lines are straight. A candidate
     /// without a line has no chords.
     pub(super) fn all(problem: &QpProblem, surface: &Surface) -> Vec<Self> {
@@ -90,8 +90,8 @@ impl Seen {
         }
         let bound = touch.z - rest * self.displacement(&surface.u) - touch.ground - margin * fade(touch.tau);
         let points = [(1.0, surface.lattice.between(touch.at)), (-rest, surface.lattice.between(self.grid))];
-        let asks = Asks::Sight { candidate: self.index, at: touch.at, tau: touch.tau };
-        Row { nodes, weights, len: 8, bound, asks, points }
+        let constraint = Constraint::Sight { candidate: self.index, at: touch.at, tau: touch.tau };
+        Row { nodes, weights, len: 8, bound, constraint, points }
     }
 
     /// The row of this candidate where the ground comes nearest to its line around `at`.

@@ -2,13 +2,13 @@
 
 use super::super::visibility_qp::{Candidate, LinesOfSight, StraightSight, ViewSight};
 use super::super::{Field, LeftOut, ReferencePoint, TerrainSettings, Wedge, in_view};
-use super::bent;
-use super::coming::{self, ComingSight};
+use super::entering::{self, EnteringSight};
+use super::in_picture;
 use super::memory::{self, Prepared};
 use belvedere_core::{Stage, View};
 
 /// What of the features the picture is asked to show.
-pub(super) struct Seen<'a> {
+pub(super) struct PointsInView<'a> {
     field: &'a Field,
     base: &'a View,
     pub(super) wedge: Wedge,
@@ -21,13 +21,13 @@ pub(super) struct Seen<'a> {
     /// Dense points and, after them, the reference points.
     pub(super) candidates: Vec<Candidate>,
     /// Of films, what lies beside the picture, likewise.
-    pub(super) coming: Vec<Candidate>,
+    pub(super) entering: Vec<Candidate>,
     pub(super) sight: Box<dyn LinesOfSight + 'a>,
     /// Whether lines of sight do not run straight to the eye: later stages bend them, or the picture is a parallel one.
     bent: bool,
 }
 
-impl<'a> Seen<'a> {
+impl<'a> PointsInView<'a> {
     /// * `film`: asks by degrees for what lies beside the picture.
     pub(super) fn new(
         field: &'a Field,
@@ -41,24 +41,25 @@ impl<'a> Seen<'a> {
         let eye = base.pinhole().eye;
         let wedge = if bent { Wedge::all_around(eye.truncate()) } else { Wedge::of_pinhole(base.pinhole()) };
         let straight = StraightSight { eye: field.grid_from_scene(eye.truncate()), z: eye.z };
-        let wider = coming::beside(&wedge).filter(|_| film);
+        let wider = entering::beside(&wedge).filter(|_| film);
         let sight: Box<dyn LinesOfSight + 'a> = match (bent, &wider) {
             (true, _) => Box::new(ViewSight::new(base, field)),
-            (false, Some(_)) => Box::new(ComingSight { straight, field, wedge }),
+            (false, Some(_)) => Box::new(EnteringSight { straight, field, wedge }),
             (false, None) => Box::new(straight),
         };
         let (guard, ahead_m) = (settings.guard, settings.ahead_m);
-        let (points, too_near, candidates, coming) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let mut seen = Self { field, base, wedge, guard, ahead_m, points, too_near, candidates, coming, sight, bent };
-        (seen.points, seen.too_near) = seen.indices(&prepared.points);
-        seen.candidates = seen.candidates_of(prepared, &seen.points);
+        let (points, too_near, candidates, entering) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut in_view =
+            Self { field, base, wedge, guard, ahead_m, points, too_near, candidates, entering, sight, bent };
+        (in_view.points, in_view.too_near) = in_view.indices(&prepared.points);
+        in_view.candidates = in_view.candidates_of(prepared, &in_view.points);
         if let Some(wider) = wider {
-            let narrow = std::mem::replace(&mut seen.wedge, wider);
-            let (points, _) = seen.indices(&prepared.points);
-            seen.coming = coming::others(seen.candidates_of(prepared, &points), &seen.candidates);
-            seen.wedge = narrow;
+            let narrow = std::mem::replace(&mut in_view.wedge, wider);
+            let (points, _) = in_view.indices(&prepared.points);
+            in_view.entering = entering::others(in_view.candidates_of(prepared, &points), &in_view.candidates);
+            in_view.wedge = narrow;
         }
-        seen
+        in_view
     }
 
     /// Dense points in the wedge and, after them, these reference points.
@@ -74,13 +75,14 @@ impl<'a> Seen<'a> {
     pub(super) fn indices(&self, points: &[ReferencePoint]) -> (Vec<usize>, Vec<usize>) {
         let near = memory::ahead(self.field, points, self.wedge.eye, self.ahead_m);
         let in_frame = |p: &ReferencePoint| {
-            !self.bent || bent::shows(self.base, self.field.scene_from_grid(p.grid).extend(p.ground + p.lift))
+            !self.bent
+                || in_picture::nearly_holds(self.base, self.field.scene_from_grid(p.grid).extend(p.ground + p.lift))
         };
         let (inside, outside) = in_view(self.field, points, &self.wedge, self.guard);
         let inside = inside.into_iter().filter(|&i| near[i] && in_frame(&points[i])).collect();
         // The wedge knows no height: most of what lies that near is below the picture.
         let shown = |p: &ReferencePoint| {
-            bent::in_frame(self.base, self.field.scene_from_grid(p.grid).extend(p.ground + p.lift))
+            in_picture::holds(self.base, self.field.scene_from_grid(p.grid).extend(p.ground + p.lift))
         };
         let too_near =
             |&(i, why): &(usize, LeftOut)| (why == LeftOut::TooNear && near[i] && shown(&points[i])).then_some(i);

@@ -6,7 +6,7 @@ use belvedere_core::{DVec3, View};
 const BESIDE: f64 = 0.05;
 
 /// Whether a bent picture shows a place, its margin included; the height does not count, for the ground moves.
-pub(super) fn shows(view: &View, p: DVec3) -> bool {
+pub(super) fn nearly_holds(view: &View, p: DVec3) -> bool {
     let Ok(image) = view.project(p) else { return false };
     let [width, height] = view.pinhole().image.map(f64::from);
     let inside = |x: f64, size: f64, beside: f64| (-beside * size..=(1.0 + beside) * size).contains(&x);
@@ -14,6 +14,6 @@ pub(super) fn shows(view: &View, p: DVec3) -> bool {
 }
 
 /// Whether a place lies in the picture as it is.
-pub(super) fn in_frame(view: &View, p: DVec3) -> bool {
+pub(super) fn holds(view: &View, p: DVec3) -> bool {
     view.project(p).is_ok_and(|image| image.depth >= view.pinhole().near && view.pinhole().contains(image.pixel))
 }

@@ -3,15 +3,15 @@
 use super::dual::Dual;
 use super::metric::Metric;
 use super::problem::{Certificate, SolvedRow};
-use super::row::{Asks, Row};
+use super::row::{Constraint, Row};
 use belvedere_core::DVec2;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// A row remembered between frames.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Kept {
-    pub(super) place: Place,
+pub(super) struct RememberedRow {
+    pub(super) key: RowKey,
     pub(super) multiplier: f64,
     /// Frames without a multiplier.
     pub(super) idle: u32,
@@ -19,7 +19,7 @@ pub(super) struct Kept {
 
 /// Where to find a row again.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Place {
+pub(super) enum RowKey {
     Ceiling(u32),
     Sight { id: u32, at: DVec2 },
 }
@@ -29,7 +29,7 @@ pub(super) const IDLE: u32 = 3;
 
 /// A row to be added.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct New {
+pub(super) struct NewRow {
     pub(super) row: Row,
     /// By how much the target exceeds it.
     pub(super) excess: f64,
@@ -42,15 +42,15 @@ pub(super) struct New {
 }
 
 #[derive(Debug, Default)]
-pub(super) struct Pool {
+pub(super) struct RowsInPlay {
     pub(super) rows: Vec<Row>,
     dual: Dual,
     idle: Vec<u32>,
 }
 
-impl Pool {
+impl RowsInPlay {
     /// Adds rows.
-    pub(super) fn extend(&mut self, new: Vec<New>, metric: &Metric) {
+    pub(super) fn extend(&mut self, new: Vec<NewRow>, metric: &Metric) {
         let known = self.rows.len();
         self.rows.extend(new.iter().map(|n| n.row));
         let rows = &self.rows;
@@ -96,17 +96,17 @@ impl Pool {
     }
 
     /// What to remember for the next frame.
-    pub(super) fn kept(&self, id: impl Fn(usize) -> u32) -> Vec<Kept> {
+    pub(super) fn kept(&self, id: impl Fn(usize) -> u32) -> Vec<RememberedRow> {
         let mut out = Vec::new();
         for (i, row) in self.rows.iter().enumerate() {
             let multiplier = self.dual.multiplier(i);
             let idle = if multiplier > 0.0 { 0 } else { self.idle[i] + 1 };
             if idle < IDLE {
-                let place = match row.asks {
-                    Asks::Ceiling(node) => Place::Ceiling(node),
-                    Asks::Sight { candidate, at, .. } => Place::Sight { id: id(candidate), at },
+                let key = match row.constraint {
+                    Constraint::Ceiling(node) => RowKey::Ceiling(node),
+                    Constraint::Sight { candidate, at, .. } => RowKey::Sight { id: id(candidate), at },
                 };
-                out.push(Kept { place, multiplier, idle });
+                out.push(RememberedRow { key, multiplier, idle });
             }
         }
         // What leaves first comes last, so that most of the factor stays.
@@ -118,10 +118,10 @@ impl Pool {
     pub(super) fn active(&self, id: impl Fn(usize) -> u32) -> Vec<SolvedRow> {
         let held = (0..self.rows.len()).filter(|&i| self.dual.multiplier(i) > 0.0);
         held.map(|i| {
-            let Row { nodes, weights, bound, asks, .. } = self.rows[i];
-            let (candidate, at, tau) = match asks {
-                Asks::Ceiling(_) => (None, DVec2::ZERO, 0.0),
-                Asks::Sight { candidate, at, tau } => (Some(id(candidate)), at, tau),
+            let Row { nodes, weights, bound, constraint, .. } = self.rows[i];
+            let (candidate, at, tau) = match constraint {
+                Constraint::Ceiling(_) => (None, DVec2::ZERO, 0.0),
+                Constraint::Sight { candidate, at, tau } => (Some(id(candidate)), at, tau),
             };
             let (multiplier, slack) = (self.dual.multiplier(i), self.dual.slack(i));
             SolvedRow { candidate, at, tau, nodes, weights, bound, multiplier, slack }
@@ -146,7 +146,7 @@ impl Pool {
                 }
                 bound += m * row.bound;
                 total += m;
-                if let Asks::Sight { candidate, .. } = row.asks {
+                if let Constraint::Sight { candidate, .. } = row.constraint {
                     rows.push((id(candidate), m));
                 }
             }

@@ -1,7 +1,7 @@
 //! A line of sight that is followed by itself: one that bends, or one without neighbours.
 
+use super::candidate_line::CandidateLine;
 use super::rise::Rise;
-use super::seen::Seen;
 use super::surface::Surface;
 use super::walk::{Clearance, Touch};
 
@@ -10,20 +10,20 @@ const AMPLE: f64 = 8.0;
 
 /// The line of one candidate.
 #[derive(Debug, Clone)]
-pub(super) struct Alone {
+pub(super) struct SingleLine {
     member: usize,
     /// For each chord, by how much the ground may rise against it before a place can be missed; negative if that is not known.
     rooms: Vec<f64>,
 }
 
-impl Alone {
+impl SingleLine {
     /// * `member`: index of the candidate.
-    pub(super) fn new(member: usize, seen: &Seen) -> Self {
+    pub(super) fn new(member: usize, seen: &CandidateLine) -> Self {
         Self { member, rooms: vec![-1.0; seen.chords.len()] }
     }
 
     /// The displacement changed: takes what the ground rose and the line sank at most from the rooms.
-    pub(super) fn moved(&mut self, seen: &[Seen], rise: &Rise) {
+    pub(super) fn moved(&mut self, seen: &[CandidateLine], rise: &Rise) {
         let seen = &seen[self.member];
         let sank = (-seen.displacement(rise.change)).max(0.0);
         for (room, chord) in self.rooms.iter_mut().zip(seen.chords.iter()).filter(|(room, _)| **room > 0.0) {
@@ -33,7 +33,12 @@ impl Alone {
     }
 
     /// All places where the asked clearance is missed, but for chords with room left.
-    pub(super) fn walk(&mut self, seen: &[Seen], surface: &Surface, clearance: &Clearance) -> Vec<(usize, Touch)> {
+    pub(super) fn walk(
+        &mut self,
+        seen: &[CandidateLine],
+        surface: &Surface,
+        clearance: &Clearance,
+    ) -> Vec<(usize, Touch)> {
         let (seen, member, mut touches) = (&seen[self.member], self.member, Vec::new());
         for (room, chord) in self.rooms.iter_mut().zip(seen.line(seen.displacement(&surface.u))) {
             if *room > 0.0 {
@@ -92,9 +97,9 @@ mod tests {
             })
             .collect();
         let problem = QpProblem { candidates: &candidates, sight: &Bowed, target: None, ceilings: None };
-        let seen = Seen::all(&problem, &surface);
+        let seen = CandidateLine::all(&problem, &surface);
         let clearance = Clearance { margin: 1.0, tolerance: 0.2, guard: 1.5 };
-        let fresh = || (0..seen.len()).map(|k| Alone::new(k, &seen[k])).collect::<Vec<_>>();
+        let fresh = || (0..seen.len()).map(|k| SingleLine::new(k, &seen[k])).collect::<Vec<_>>();
         let (mut lines, mut touches, mut roomy) = (fresh(), 0, 0);
         for round in 0..40 {
             for (line, mut anew) in lines.iter_mut().zip(fresh()) {

@@ -8,19 +8,10 @@ pub(super) const LANES: usize = 8;
 /// A number for each place; registers with fewer take the first ones.
 pub(super) type Lane = [f64; LANES];
 
-/// The number of each place.
-pub(super) const NTH: Lane = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-
 /// The first register of a lane.
 #[inline(always)]
 pub(super) fn load<S: Simd>(lane: &Lane) -> S::f64s {
     S::as_simd_f64s(lane).0[0]
-}
-
-/// The first numbers of many, of which there must be enough.
-#[inline(always)]
-pub(super) fn load_from<S: Simd>(numbers: &[f64]) -> S::f64s {
-    S::as_simd_f64s(&numbers[..S::F64_LANES]).0[0]
 }
 
 /// A register as numbers; the others are 0.

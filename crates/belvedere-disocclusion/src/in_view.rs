@@ -1,6 +1,6 @@
-//! Where the ground is looked at from, and what of it is in view.
+//! Which points a picture can show, in plan, and where its eye may be.
 
-use super::super::{Field, ReferencePoint};
+use crate::{Field, ReferencePoint};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection};
 
 /// Points nearer than this many guards to the eye are left out.
