@@ -53,6 +53,20 @@ fn pictures_tables_and_trends_of_an_area() {
 }
 
 #[test]
+fn charts_of_the_documents_are_drawn() {
+    let place = Place::new();
+    place.ok(&["figures", "algorithms", "-o", "charts"]);
+    let committed = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/images/algorithms");
+    let names: Vec<_> = std::fs::read_dir(committed).expect("folder").map(|e| e.expect("entry").file_name()).collect();
+    assert_eq!(names.len(), 6);
+    for name in names {
+        let bytes = read(&place.path("charts").join(&name));
+        assert!(bytes.starts_with(b"\x89PNG") && (20_000..80_000).contains(&bytes.len()), "{name:?}: {}", bytes.len());
+    }
+    assert!(place.fails(&["figures", "algorithms", "-o", "charts"]).contains("curved-rays.png"));
+}
+
+#[test]
 fn unknown_figures_and_scenes_of_one_name_are_refused() {
     let place = Place::new();
     assert!(place.fails(&["figures", "terrane", "-o", "figures"]).contains("terrain"));
