@@ -75,7 +75,7 @@ impl TerrainSolver {
     /// * `memory`: that of the frame before, of the same scene; new where there is none.
     ///
     /// # Errors
-    /// [`DisocclusionError::NoTerrain`], [`DisocclusionError::NothingToSee`], [`DisocclusionError::Eye`], [`DisocclusionError::Terrain`],
+    /// [`DisocclusionError::NoTerrain`], [`DisocclusionError::NothingToSee`], [`DisocclusionError::Eye`], [`DisocclusionError::Field`],
     /// [`DisocclusionError::Cancelled`]. What cannot be made visible is no error: the report names it.
     pub fn solve(
         &self,

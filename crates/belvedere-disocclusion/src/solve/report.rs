@@ -26,7 +26,7 @@ pub struct TerrainReport {
     /// Smoothness weight in force, for a solver's grid of 129 nodes.
     pub w: f64,
     /// Wavelength over 2 pi at which the smoothing halves a displacement; in mode qp at most
-    /// [`LONGEST_SMOOTHING_M`](super::super::LONGEST_SMOOTHING_M) unless w was stated.
+    /// `LONGEST_SMOOTHING_M` unless w was stated.
     pub smoothing_length_m: f64,
     /// Columns and rows of the solver's grid.
     pub solver_grid: [usize; 2],
