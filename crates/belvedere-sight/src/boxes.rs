@@ -35,6 +35,7 @@ impl UprightBox {
         }
     }
 
+    #[inline]
     fn local(&self, p: DVec3) -> DVec3 {
         let ((sin, cos), d) = (self.sin_cos, p - self.center);
         DVec3::new(cos * d.x + sin * d.y, cos * d.y - sin * d.x, d.z)
@@ -87,6 +88,7 @@ impl UprightBox {
     }
 }
 
+#[inline]
 fn clip(start: DVec3, dir: DVec3, bounds: &Aabb, reach: f64) -> Option<[f64; 2]> {
     let grown = [bounds.min - reach, bounds.max + reach].map(|corner| corner.to_array());
     let part = clip_segment(start.to_array(), dir.to_array(), grown);

@@ -18,6 +18,10 @@ pub fn clip_segment<const N: usize>(start: [f64; N], dir: [f64; N], [low, high]:
         let (s0, s1) = ((low[axis] - p) / d, (high[axis] - p) / d);
         t0 = t0.max(s0.min(s1));
         t1 = t1.min(s0.max(s1));
+        // Most boxes are missed, and most of these along the first axis already.
+        if t0 > t1 {
+            break;
+        }
     }
     [t0, t1]
 }
