@@ -52,3 +52,15 @@ impl Aabb {
         0.5 * (self.min + self.max)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_centre_is_the_mean_of_the_corners() {
+        let bounds = Aabb { min: DVec3::new(-1.0, 2.0, 10.0), max: DVec3::new(3.0, 8.0, 11.0) };
+        assert_eq!(bounds.center(), DVec3::new(1.0, 5.0, 10.5));
+        assert_eq!(bounds.corners().into_iter().sum::<DVec3>() / 8.0, bounds.center());
+    }
+}

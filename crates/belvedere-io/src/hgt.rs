@@ -135,4 +135,21 @@ mod tests {
             assert_eq!(side_of(bad), None, "{bad}");
         }
     }
+
+    #[test]
+    fn the_largest_tile_comes_out_of_an_archive_and_a_byte_more_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("N42E001.hgt.zip");
+        let pack = |bytes: usize| {
+            let mut archive = zip::ZipWriter::new(File::create(&path).unwrap());
+            let options = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Deflated);
+            archive.start_file("N42E001.hgt", options).unwrap();
+            std::io::Write::write_all(&mut archive, &vec![0; bytes]).unwrap();
+            archive.finish().unwrap();
+            read(&path, &Limits::default())
+        };
+        assert_eq!(pack(25_934_402).unwrap().value.info.width, 3601);
+        let error = pack(25_934_403).unwrap_err().to_string();
+        assert!(error.contains("not a whole tile"), "{error}");
+    }
 }

@@ -510,4 +510,20 @@ mod tests {
         let raster = Raster { info, samples, mask: None };
         assert_eq!(raster.to_rgba().unwrap(), [[199, 100, 0, 128], [9, 9, 9, 0]]);
     }
+
+    #[test]
+    fn an_inverted_grey_is_the_negative() {
+        let mut info = RasterInfo::new("x", 3, 1, SampleType::U8);
+        info.photometric = Photometric::GrayInverted;
+        let raster = Raster { info, samples: Samples::U8(vec![0, 100, 255]), mask: None };
+        assert_eq!(raster.to_rgba().unwrap(), [[255, 255, 255, 255], [155, 155, 155, 255], [0, 0, 0, 255]]);
+    }
+
+    #[test]
+    fn what_just_fits_is_allowed() {
+        let limits = Limits { max_bytes: 3 << 20 };
+        assert_eq!(limits.check(3 << 20), Ok(()));
+        let text = limits.check((3 << 20) + 1).unwrap_err();
+        assert!(text.contains("needs 4 MiB") && text.contains("more than 3 MiB"), "{text}");
+    }
 }

@@ -93,3 +93,24 @@ fn displaced_boxes_contain_the_images_of_their_points() {
         assert!(map.displaced_bounds(&Aabb { min: DVec3::ZERO, max: DVec3::INFINITY }).is_none());
     }
 }
+
+#[test]
+fn an_edge_across_a_corner_of_the_curve_has_a_bound_only_on_the_curve_itself() {
+    // Straight, a corner of 45 degrees half way, straight.
+    let text = r#"{"version": 1, "units": "absolute", "presets": [{"phi": 36, "s": 100, "e": 1100,
+        "control": [[0,0],[0.2,0],[0.4,0],[0.5,0],[0.5,0],[0.5,0],[0.6,0.1],[0.8,0.3],[1,0.5]]}]}"#;
+    let document: PresetDocument = serde_json::from_str(text).unwrap();
+    let map = bend(&document, &camera_at(36.0, 1000.0));
+    assert_eq!(map.curve().corners().len(), 1);
+    let (corner, l0, l1) =
+        (map.curve().corners()[0], map.coordinates(DVec3::ZERO).l, map.coordinates(1000.0 * DVec3::Y).l);
+    let at = |l: f64, d: f64| DVec3::new(0.0, 1000.0 * (corner + l - l0) / (l1 - l0), d);
+    let (before, after) = (at(-0.05, 0.0), at(0.05, 0.0));
+    let (truth, bound) = (sampled_error(&map, before, after), map.edge_bound(before, after));
+    assert!(truth > 1.0 && bound >= truth && bound < 10.0 * truth, "bound {bound}, truth {truth}");
+    for d in [-1.0, 1.0] {
+        assert_eq!(map.edge_bound(at(-0.05, d), at(0.05, d)), f64::INFINITY);
+        assert!(map.edge_bound(at(-0.05, d), at(-0.01, d)) < 1e-9, "before the corner");
+        assert!(map.edge_bound(at(0.01, d), at(0.05, d)) < 1e-9, "after it");
+    }
+}

@@ -257,3 +257,22 @@ fn triangles(mode: Mode, corners: &[u32]) -> Vec<[u32; 3]> {
         _ => corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// glTF 2.0, 3.6.2.2: a normalised integer c is max(c / largest, -1).
+    #[test]
+    fn stored_numbers() {
+        let stored = |kind, bytes: &[u8]| [false, true].map(|normalized| number(kind, normalized, bytes));
+        assert_eq!(stored(DataType::I8, &[127]), [127.0, 1.0]);
+        assert_eq!(stored(DataType::I8, &[128]), [-128.0, -1.0]);
+        assert_eq!(stored(DataType::U8, &[255]), [255.0, 1.0]);
+        assert_eq!(stored(DataType::I16, &32_767i16.to_le_bytes()), [32_767.0, 1.0]);
+        assert_eq!(stored(DataType::I16, &(-32_768i16).to_le_bytes()), [-32_768.0, -1.0]);
+        assert_eq!(stored(DataType::U16, &65_535u16.to_le_bytes()), [65_535.0, 1.0]);
+        assert_eq!(stored(DataType::U32, &70_000u32.to_le_bytes()), [70_000.0; 2]);
+        assert_eq!(stored(DataType::F32, &0.5f32.to_le_bytes()), [0.5; 2]);
+    }
+}

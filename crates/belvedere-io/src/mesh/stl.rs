@@ -15,11 +15,12 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
     // Many binary files begin with the word that marks text: the size tells.
     let declared = bytes.get(80..HEAD).and_then(|b| b.try_into().ok()).map_or(0, |b| u32::from_le_bytes(b) as usize);
     let is_binary = bytes.len() >= HEAD && bytes.len() - HEAD == declared.saturating_mul(TRIANGLE);
+    let text = bytes.trim_ascii_start();
     let mut warnings = Vec::new();
     let triangles = if is_binary {
         binary(&bytes[HEAD..])
-    } else if bytes.trim_ascii_start().starts_with(b"solid") {
-        let mut text = Cursor::new(bytes);
+    } else if text.starts_with(b"solid") {
+        let mut text = Cursor::new(text);
         let mesh = stl_io::read_stl(&mut text).map_err(|e| bad(format!("{e}; it is damaged or no STL file")))?;
         let corner = |i: usize| mesh.vertices[i].0;
         mesh.faces.iter().map(|f| f.vertices.map(corner)).collect()

@@ -101,4 +101,13 @@ mod tests {
         assert_eq!(doubled_area(&square(1e7, 1e7, 1.0, true)), -8.0);
         assert_eq!(doubled_area(&[]), 0.0);
     }
+
+    #[test]
+    fn a_ring_that_pokes_out_of_another_is_no_hole_of_it() {
+        for tip in [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y] {
+            let mut poking = square(0.0, 0.0, 2.0, false);
+            poking.push(12.0 * tip);
+            assert_eq!(nest(&[square(0.0, 0.0, 10.0, false), poking]), [[0], [1]], "towards {tip}");
+        }
+    }
 }

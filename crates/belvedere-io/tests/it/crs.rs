@@ -242,3 +242,26 @@ fn gaussian_radius_is_the_mean_of_the_two_curvatures() {
     assert!((gaussian_radius_m(90.0) - 6_399_593.626).abs() < 0.01);
     assert!(gaussian_radius_m(f64::NAN).is_finite());
 }
+
+#[test]
+fn the_code_of_a_system_is_its_own_whatever_its_name_and_brackets() {
+    let datum =
+        r#"DATUM["D",SPHEROID["S",6378137,298.257,AUTHORITY["EPSG","7019"]]],UNIT["Degree",0.0174532925199433]"#;
+    let system = |id: &str| format!("GEOGCS[\"ours\",{datum},{id}]");
+    for (id, code) in [
+        (r#"AUTHORITY["EPSG","4258"]"#, Some(4258)),
+        (r#"AUTHORITY["EPSG",4258]"#, Some(4258)),
+        (r#"ID["EPSG",4258]"#, Some(4258)),
+        (r#"AUTHORITY["ESRI","4258"]"#, None),
+        (r#"AUTHORITY["EPSG","none"]"#, None),
+    ] {
+        let text = system(id);
+        let round = text.replace('[', "(").replace(']', ")");
+        for text in [&text, &round] {
+            assert_eq!(CoordinateSystem::from_wkt(text).unwrap().epsg(), code, "{text}");
+        }
+    }
+    let wrapped = |n: usize| format!("{}{}{}", "BOUNDCRS[".repeat(n), system(r#"ID["EPSG",4258]"#), "]".repeat(n));
+    assert_eq!(CoordinateSystem::from_wkt(&wrapped(20)).unwrap().epsg(), Some(4258));
+    assert!(CoordinateSystem::from_wkt(&wrapped(40)).unwrap_err().to_string().contains("nested"));
+}

@@ -326,3 +326,24 @@ fn headers_that_lie() {
         assert!(survive(bytes, "not a TIFF").is_err());
     }
 }
+
+#[test]
+fn one_band_where_nothing_else_is_said() {
+    let entries = |at: u64| -> Vec<Entry> {
+        let tags = [(256, 4), (257, 3), (258, 8), (259, 1), (262, 1), (273, at), (278, 3), (279, 12)];
+        tags.map(|(number, value)| (number, 4, vec![value])).to_vec()
+    };
+    let body: Vec<u8> = (0..12).collect();
+    let at = PLAIN.body_at(&entries(0)) as u64;
+    let raster = read(&PLAIN.file(&entries(at), &body, 0)).unwrap();
+    assert_eq!((raster.info.bands, raster.samples), (1, Samples::U8(body)));
+}
+
+#[test]
+fn predictors_that_do_not_exist_are_refused() {
+    for predictor in [0, 4, 34_892] {
+        let style = Style { compression: 8, predictor, ..PLAIN };
+        let error = read(&style.image([4, 3], 1, 8, &[7; 12], &[])).unwrap_err();
+        assert!(error.contains(&format!("predictor {predictor} does not go")), "{error}");
+    }
+}

@@ -234,3 +234,44 @@ fn vertices_that_are_not_finite_cost_their_triangles_only() {
         Err(e) => assert_eq!(e.to_string().lines().count(), 1),
     }
 }
+
+#[test]
+fn text_stl_may_begin_with_blanks() {
+    let folder = tempfile::tempdir().expect("folder");
+    let text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+    for before in ["", "\n", " \t"] {
+        let path = write(folder.path(), "t.stl", format!("{before}{text}").as_bytes());
+        let mesh = load_mesh(&path, &Limits::default()).unwrap_or_else(|e| panic!("{before:?}: {e}")).value;
+        assert_eq!(mesh.positions.len(), 3);
+    }
+}
+
+#[test]
+fn gltf_accessors_stay_inside_their_bytes() {
+    let folder = tempfile::tempdir().expect("folder");
+    let numbers = [1f32, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0].map(f32::to_le_bytes).concat();
+    for (count, length, whole) in [(3, 36, true), (3, 35, false), (4, 36, false), (1, 8, false), (0, 36, false)] {
+        let text = format!(
+            r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+            "accessors":[{{"bufferView":0,"componentType":5126,"count":{count},"type":"VEC3","min":[0,0,0],"max":[1,1,0]}}],
+            "bufferViews":[{{"buffer":0,"byteLength":{length}}}],
+            "buffers":[{{"byteLength":36,"uri":"data:application/octet-stream;base64,{}"}}]}}"#,
+            base64(&numbers)
+        );
+        let read = load_mesh(&write(folder.path(), "t.gltf", text.as_bytes()), &Limits::default());
+        assert_eq!(read.is_ok(), whole, "{count} vertices in {length} bytes: {read:?}");
+    }
+}
+
+#[test]
+fn files_too_large_for_the_memory_are_refused_before_they_are_read() {
+    let folder = tempfile::tempdir().expect("folder");
+    let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n# {}\n", "x".repeat(1 << 20));
+    let path = write(folder.path(), "t.obj", text.as_bytes());
+    // A mesh takes a few times the bytes of its file.
+    let read = |mib: u64| load_mesh(&path, &Limits { max_bytes: mib << 20 });
+    assert!(read(10).is_ok());
+    let error = read(2).expect_err("refused").to_string();
+    assert!(error.contains("the mesh needs") && error.contains("allow more memory"), "{error}");
+}

@@ -568,3 +568,25 @@ fn the_number_of_threads_does_not_matter() {
     };
     assert_eq!(run(1), run(5));
 }
+
+#[test]
+fn only_coordinates_that_can_be_degrees_are_taken_for_degrees() {
+    let folder = Folder::new("terrain-degrees");
+    let path = folder.0.join("unknown.asc");
+    // 40 x 40 nodes; west, south and step.
+    for (x, y, step, degrees) in [
+        (10.0, 45.0, 0.05, true),
+        (359.0, 45.0, 0.05, false),
+        (-361.0, 45.0, 0.05, false),
+        (10.0, 89.0, 0.05, false),
+        (10.0, -91.0, 0.05, false),
+        (10.0, 45.0, 0.2, false),
+    ] {
+        write_asc(&path, 40, 40, x, y, step, &|c, r| (c + r) as f64);
+        let warned = match load(std::slice::from_ref(&path), &TerrainRequest::default()) {
+            Ok((_, warnings)) => warnings.iter().any(|w| w.contains("look like degrees")),
+            Err(e) => panic!("{x} {y} {step}: {e}"),
+        };
+        assert_eq!(warned, degrees, "{x} {y} {step}");
+    }
+}

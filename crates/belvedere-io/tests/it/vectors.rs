@@ -457,3 +457,48 @@ fn unknown_systems_are_refused() {
     assert!(lines_on_terrain(&v, Crs::Epsg(999_999), None).is_err());
     assert!(load_vectors(Path::new("/")).is_err());
 }
+
+/// What is left out of a file does not lend its name to what follows.
+#[test]
+fn gpx_elements_begin_anew_and_what_is_left_out_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let point = |name: &str, lon: f64| format!("<{name} lat=\"42.5\" lon=\"{lon}\"/>");
+    let [one, two, bad] = [point("trkpt", 1.5), point("trkpt", 1.6), point("trkpt", 999.0)];
+    let [three, four] = [point("rtept", 1.5), point("rtept", 1.6)];
+    let text = format!(
+        "<gpx><trkseg>{one}{two}</trkseg>\
+         <trk><name>short</name><desc>one point</desc><trkseg>{one}</trkseg></trk>\
+         <trk>{one}{two}</trk><rte>{three}{four}</rte>\
+         <trk><trkseg>{one}{two}{bad}</trkseg><trkseg></trkseg></trk>\
+         <wpt lat=\"95\" lon=\"1\"><name>nowhere</name><sym>Flag</sym></wpt>{}</gpx>",
+        point("wpt", 1.7)
+    );
+    let Loaded { value, warnings } = load_vectors(&write(&dir, "a.gpx", text)).unwrap();
+    let counts: Vec<usize> = value.features.iter().map(|f| f.geometry.vertices().count()).collect();
+    assert_eq!(counts, [2, 2, 1], "a route, a track and a waypoint");
+    for feature in &value.features {
+        assert!(feature.name.is_empty() && feature.properties.keys().eq(["kind"]), "{feature:?}");
+    }
+    let told =
+        ["2 points without a valid", "1 segments without points", "1 tracks, segments or routes of a single point"];
+    assert_eq!(warnings.len(), told.len(), "{warnings:?}");
+    assert!(warnings.iter().zip(told).all(|(w, t)| w.contains(t)), "{warnings:?}");
+}
+
+#[test]
+fn a_whole_turn_of_longitude_changes_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    for (middle, turn, epsg) in [(1.5, -360.0, 32631), (-1.5, 360.0, 32630)] {
+        let terrain = plane(to_utm(middle, 42.5, epsg), 51, |_, _| false);
+        let line = |turn: f64| {
+            let [a, b] = [middle - 0.01, middle + 0.01].map(|lon| lon + turn);
+            let v = geojson_line(&dir, &format!("[[{a:.2},42.5],[{b:.2},42.5]]"));
+            lines_on_terrain(&v, Crs::Epsg(epsg), Some(&terrain)).unwrap().value
+        };
+        let (here, around) = (line(0.0), line(turn));
+        // 0.02 degrees of the parallel, within the scale of UTM.
+        assert!((length(&here) - 1643.0).abs() < 3.0, "{} m", length(&here));
+        assert!((length(&here) - length(&around)).abs() < 1e-3, "{} m at {turn}", length(&around));
+        assert!(here[0].points[0].distance(around[0].points[0]) < 1e-3);
+    }
+}

@@ -161,3 +161,16 @@ fn boxes_that_meet_the_common_line_have_no_image() {
     assert_eq!(view.image_box(&around_line), None);
     assert_eq!(view.edge_error_px(DVec3::new(-80.0, 60.0, 0.0), DVec3::new(-90.0, 130.0, 0.0)), f64::INFINITY);
 }
+
+#[test]
+fn boxes_without_points_or_without_end_have_no_bounds() {
+    for spec in specs() {
+        let rays = spec.rays(Model::Modified, &Similarity::IDENTITY);
+        assert_eq!(rays.displaced_bounds(&Aabb::EMPTY), None);
+        let (low, high) = (DVec3::new(-5.0, 100.0, -5.0), DVec3::new(5.0, 120.0, 5.0));
+        assert_eq!(rays.displaced_bounds(&Aabb { min: high, max: low }), None, "turned inside out");
+        assert_eq!(rays.displaced_bounds(&Aabb { min: low, max: DVec3::INFINITY }), None);
+        assert_eq!(rays.displaced_bounds(&Aabb { min: DVec3::NEG_INFINITY, max: high }), None);
+        assert_eq!(rays.displaced_bounds(&Aabb { min: low, max: DVec3::new(5.0, f64::NAN, 5.0) }), None);
+    }
+}

@@ -342,3 +342,33 @@ fn hostile_specifications_never_panic() {
     }
     assert!(accepted > 50, "only {accepted} valid cameras");
 }
+
+#[test]
+fn a_viewpoint_past_a_bend_plane_through_a_line_is_moved_back_square_to_it() {
+    // The bend plane of the corner is y = 100.
+    for x in [70.0, -20.0] {
+        let turn = TurnSpec { viewpoint: DVec3::new(x, 110.0, 5.0), ..corner() };
+        let e = error(&[turn]);
+        let E::ViewpointPastBend { past, remedy: Remedy::MovePoint { name: "viewpoint", to }, .. } = e else {
+            panic!("{e}")
+        };
+        assert!((past - 10.0).abs() < 1e-9, "{past}");
+        assert!((to.x - x).abs() < 1e-9 && (to.z - 5.0).abs() < 1e-9 && to.y <= 100.0, "{to}");
+        healed_or_later(&turn, &Remedy::MovePoint { name: "viewpoint", to }, &error(&[turn]));
+    }
+}
+
+#[test]
+fn how_near_a_bend_point_may_come_to_a_plane_grows_with_the_farther_viewpoint() {
+    let limit = |viewpoint: DVec3| {
+        let e = error(&[TurnSpec { viewpoint, t0: side().t1, ..side() }]);
+        let E::BendOnPlane { limit, .. } = e else { panic!("{e}") };
+        limit
+    };
+    // The eye is 75 away from the bend point.
+    let at = |distance: f64| side().t1 + distance * DVec3::new(0.6, -0.8, 0.0);
+    let near = limit(at(20.0));
+    assert!(near > 0.0 && near < 1e-6 * 75.0, "{near}");
+    assert!((limit(at(60.0)) - near).abs() < 1e-12 * near);
+    assert!((limit(at(750.0)) / near - 10.0).abs() < 1e-9);
+}
