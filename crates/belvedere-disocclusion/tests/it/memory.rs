@@ -76,6 +76,32 @@ fn other_ground_or_features_of_the_same_size_begin_anew() {
 }
 
 #[test]
+fn other_parameters_begin_anew() {
+    let hf = mountains(NODES, 3);
+    let route = trail(&hf);
+    let scene = scene(hf, route);
+    let solver = |settings: TerrainSettings| TerrainSolver::new(settings).unwrap();
+    let plain = TerrainSettings { gamma_time_s: 5.0, ..TerrainSettings::default() };
+    let first = solver(plain.clone());
+    let mut kept = TerrainMemory::default();
+    let before = solve(&first, &scene, &view(0.0, 0.0), &mut kept);
+    // A margin is a parameter of the rows, a time step weighs the frame before.
+    let others = [
+        ("margin", solver(TerrainSettings { margin_m: 25.0, ..plain.clone() })),
+        ("time step", solver(plain).with_time_step(0.04)),
+    ];
+    for (what, other) in others {
+        let two = |mut memory: TerrainMemory| {
+            solve(&other, &scene, &view(0.0, 0.0), &mut memory);
+            solve(&other, &scene, &view(5.0, 0.0), &mut memory)
+        };
+        let fresh = two(TerrainMemory::default());
+        assert_ne!(fresh.stage, before.stage, "{what} makes no difference");
+        assert_eq!(two(kept.clone()).stage, fresh.stage, "other {what}");
+    }
+}
+
+#[test]
 fn a_turn_or_a_leap_of_the_view_forgets_the_frame_before() {
     let hf = mountains(NODES, 3);
     let route = trail(&hf);

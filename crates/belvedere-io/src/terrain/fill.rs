@@ -196,4 +196,18 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn holes_beside_every_border_are_filled_with_the_plane_around_them() {
+        let (cols, rows) = (15, 15);
+        let plane = |i: usize| 100.0 + 3.0 * (i % cols) as f32 - 2.0 * (i / cols) as f32;
+        // One node of ground is left between a hole and its border.
+        let holes = [(1..3, 6..9), (12..14, 6..9), (6..9, 1..3), (6..9, 12..14)];
+        let inside = |i: usize| holes.iter().any(|(cs, rs)| cs.contains(&(i % cols)) && rs.contains(&(i / cols)));
+        let mut heights: Vec<f32> = (0..cols * rows).map(|i| if inside(i) { f32::NAN } else { plane(i) }).collect();
+        fill(cols, rows, &mut heights, &Progress::silent()).unwrap();
+        for (i, h) in heights.iter().enumerate() {
+            assert!((h - plane(i)).abs() < 0.05, "node {}, {}: {h} of {}", i % cols, i / cols, plane(i));
+        }
+    }
 }

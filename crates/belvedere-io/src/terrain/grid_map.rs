@@ -245,6 +245,16 @@ mod tests {
     }
 
     #[test]
+    fn a_local_scene_is_in_metres_whatever_the_source_counts_in() {
+        let feet = CoordinateSystem::from_epsg(2230).unwrap();
+        let map = Affine([100.0, 0.0, 0.0, 0.0, -100.0, 0.0]);
+        let link = Link::of(map, Some(&feet), [2, 2], None, Path::new("x")).unwrap();
+        let p = link.scene_from_index(DVec2::new(39.37, 0.0)).unwrap();
+        assert!((p - DVec2::new(1200.0, 0.0)).length() < 1e-9, "{p}");
+        assert!((link.index_from_scene(p).unwrap() - DVec2::new(39.37, 0.0)).length() < 1e-12);
+    }
+
+    #[test]
     fn beyond_all_numbers_there_is_no_position() {
         let link = Link::of(Affine([10.0, 0.0, 0.0, 0.0, -10.0, 0.0]), None, [2, 2], None, Path::new("x")).unwrap();
         assert_eq!(link.scene_from_index(DVec2::new(3.0, 4.0)), Some(DVec2::new(30.0, -40.0)));

@@ -580,6 +580,8 @@ fn only_coordinates_that_can_be_degrees_are_taken_for_degrees() {
         (-361.0, 45.0, 0.05, false),
         (10.0, 89.0, 0.05, false),
         (10.0, -91.0, 0.05, false),
+        (-360.01, 45.0, 0.05, false),
+        (10.0, 88.045, 0.05, false),
         (10.0, 45.0, 0.2, false),
     ] {
         write_asc(&path, 40, 40, x, y, step, &|c, r| (c + r) as f64);
