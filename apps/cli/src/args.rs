@@ -1,6 +1,11 @@
 //! Arguments.
 
+use crate::parse::{
+    parse_bytes, parse_eye, parse_lod, parse_outside, parse_place, parse_size, parse_spacing, parse_sweep,
+    parse_threads,
+};
 use belvedere::RendererChoice;
+use belvedere::scene_file::SurfaceDoc;
 use belvedere::verbs::reveal::Technique;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -195,6 +200,12 @@ pub(crate) struct RevealArgs {
     /// (GDAL colour-relief text, GMT .cpt)
     #[arg(long, value_name = "NAME|FILE", default_value = "auto")]
     pub(crate) palette: String,
+    /// Leave the sea ground as any other
+    #[arg(long)]
+    pub(crate) no_sea: bool,
+    /// What areas are drawn as, instead of what their properties and names say
+    #[arg(long, value_enum, value_name = "STYLE")]
+    pub(crate) area_style: Option<AreaStyleKind>,
     /// What bends the picture
     #[arg(long, value_enum, default_value = "spline")]
     pub(crate) technique: TechniqueKind,
@@ -250,6 +261,9 @@ pub(crate) struct DisoccludeArgs {
     /// The ground before and after from the eye, side by side; its record lies beside it
     #[arg(long, value_name = "OUT.png")]
     pub(crate) picture: Option<PathBuf>,
+    /// What areas of the picture are drawn as, instead of what their properties and names say
+    #[arg(long, value_enum, value_name = "STYLE")]
+    pub(crate) area_style: Option<AreaStyleKind>,
     /// Let the ground fall away with the distance
     #[arg(long)]
     pub(crate) curved_earth: bool,
@@ -328,7 +342,7 @@ pub(crate) struct RenderArgs {
     /// The straight picture's ridges and routes, faintly over the bent one
     #[arg(long, conflicts_with = "straight")]
     pub(crate) ghost: bool,
-    /// Without the words "bent view" in the corner
+    /// Without the mark in the corner that says that the view is bent, and by how much
     #[arg(long)]
     pub(crate) no_mark: bool,
     /// Picture of the camera itself from above: rays, planes, viewpoints, curve
@@ -341,6 +355,12 @@ pub(crate) struct RenderArgs {
     /// colours by height (GDAL colour-relief text, GMT .cpt)
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) palette: Option<String>,
+    /// Leave the sea ground as any other
+    #[arg(long)]
+    pub(crate) no_sea: bool,
+    /// What the areas of all layers are drawn as, instead of what the scene says; auto = what properties and names say
+    #[arg(long, value_enum, value_name = "STYLE")]
+    pub(crate) area_style: Option<AreaStyleKind>,
 }
 
 /// What makes no sense for pictures of the camera.
@@ -498,6 +518,39 @@ impl From<TechniqueKind> for Technique {
     }
 }
 
+/// What areas are drawn as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum AreaStyleKind {
+    /// What properties and names say, else outline
+    Auto,
+    /// A line, and a light fill that everything shows through
+    Outline,
+    /// A grey fill
+    Plain,
+    /// Water: flat, with a shore line
+    Water,
+    /// Forest
+    Forest,
+    /// Ice
+    Glacier,
+    /// A line, and a light green fill that everything shows through
+    Park,
+}
+
+impl From<AreaStyleKind> for SurfaceDoc {
+    fn from(kind: AreaStyleKind) -> Self {
+        match kind {
+            AreaStyleKind::Auto => Self::Auto,
+            AreaStyleKind::Outline => Self::Outline,
+            AreaStyleKind::Plain => Self::Plain,
+            AreaStyleKind::Water => Self::Water,
+            AreaStyleKind::Forest => Self::Forest,
+            AreaStyleKind::Glacier => Self::Glacier,
+            AreaStyleKind::Park => Self::Park,
+        }
+    }
+}
+
 /// Renderers of this version.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum RendererKind {
@@ -507,94 +560,4 @@ pub(crate) enum RendererKind {
     Cpu,
     /// Every sample along its own curved ray: slower, no subdivision error, the reference for the others
     Exact,
-}
-
-/// Most worker threads: far above what helps, far below what a system refuses to start.
-const MAX_THREADS: usize = 1024;
-
-/// A number of threads.
-fn parse_threads(text: &str) -> Result<usize, String> {
-    text.parse().ok().filter(|n| *n <= MAX_THREADS).ok_or_else(|| format!("give a whole number in 0..={MAX_THREADS}"))
-}
-
-/// An error in pixels.
-fn parse_lod(text: &str) -> Result<f64, String> {
-    let px = text.parse().ok().filter(|px| (0.0..=64.0).contains(px));
-    px.ok_or_else(|| "give an error in pixels in 0..=64; 0 draws every cell".into())
-}
-
-/// Width and height of `1280x720`.
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let sides = text.split_once(['x', 'X']).map(|(w, h)| [w.trim().parse(), h.trim().parse()]);
-    match sides {
-        Some([Ok(w), Ok(h)]) => Ok([w, h]),
-        _ => Err("give width and height in pixels, such as 1280x720".into()),
-    }
-}
-
-/// `phi`, `phi=25:80` or `phi=25:80:0.5`; zeros stand for what is not given.
-fn parse_sweep(text: &str) -> Result<[f64; 3], String> {
-    let wrong = || "give phi, or phi=FIRST:LAST[:STEP] in degrees, such as phi=25:80".to_owned();
-    if text == "phi" {
-        return Ok([0.0; 3]);
-    }
-    let range = text.strip_prefix("phi=").ok_or_else(wrong)?;
-    let numbers: Option<Vec<f64>> =
-        range.split(':').map(|t| t.trim().parse().ok().filter(|v: &f64| v.is_finite())).collect();
-    match numbers.as_deref() {
-        Some([first, last]) if first != last => Ok([*first, *last, 0.0]),
-        Some([first, last, step]) if first != last && *step > 0.0 => Ok([*first, *last, *step]),
-        _ => Err(wrong()),
-    }
-}
-
-/// Three numbers of `1.5,42.5,2400`.
-fn parse_eye(text: &str) -> Result<[f64; 3], String> {
-    let numbers: Vec<f64> =
-        text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
-    numbers.try_into().map_err(|_| "give X,Y,Z".into())
-}
-
-/// A length in scene units.
-fn parse_spacing(text: &str) -> Result<f64, String> {
-    text.trim().parse().ok().filter(|v: &f64| *v > 0.0 && v.is_finite()).ok_or("give a length greater than 0".into())
-}
-
-/// `auto`, or six numbers.
-fn parse_outside(text: &str) -> Result<Outside, String> {
-    if text.trim() == "auto" {
-        return Ok(None);
-    }
-    let v: Vec<f64> = text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
-    match v[..] {
-        [a, b, c, d, e, f] => Ok(Some([[a, b, c], [d, e, f]])),
-        _ => Err("give auto, or eye and target as X,Y,Z,X,Y,Z".into()),
-    }
-}
-
-/// Two numbers of `1.5,42.5`.
-fn parse_place(text: &str) -> Result<[f64; 2], String> {
-    let numbers: Vec<f64> =
-        text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
-    numbers.try_into().map_err(|_| "give X,Y".into())
-}
-
-/// Bytes of `512MiB`, `2GB`, `100000`.
-fn parse_bytes(text: &str) -> Result<u64, String> {
-    let split = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
-    let (number, unit) = text.split_at(split);
-    let scale = match unit.trim().to_ascii_lowercase().as_str() {
-        "" | "b" => 1.0,
-        "k" | "kib" => 1024.0,
-        "kb" => 1e3,
-        "m" | "mib" => 1024.0 * 1024.0,
-        "mb" => 1e6,
-        "g" | "gib" => 1024.0 * 1024.0 * 1024.0,
-        "gb" => 1e9,
-        _ => return Err("give a size such as 800MiB or 2GiB".into()),
-    };
-    match number.parse::<f64>() {
-        Ok(n) if n * scale >= 1024.0 * 1024.0 && n * scale <= 1e15 => Ok((n * scale) as u64),
-        _ => Err("give a size of at least 1MiB, such as 800MiB or 2GiB".into()),
-    }
 }

@@ -140,6 +140,8 @@ impl Context {
             image,
             seed: self.common.seed,
             palette: None,
+            area_style: None,
+            sea: None,
             unsolved: false,
             max_bytes: self.common.max_mem,
             progress: self.progress.clone(),

@@ -120,7 +120,9 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     let palette = args.palette.as_deref().map(PaletteDoc::of);
     // A straight picture has no use for ground that makes way.
     let unsolved = request.straight;
-    let options = OpenOptions { palette, unsolved, ..context.options(Needs::Everything, args.draw.size) };
+    let (area_style, sea) = (args.area_style.map(Into::into), args.no_sea.then_some(false));
+    let options =
+        OpenOptions { palette, area_style, sea, unsolved, ..context.options(Needs::Everything, args.draw.size) };
     let session = Session::from_document(source, &options)?;
     for path in &outputs {
         output::check(path, session.inputs(), context.common.overwrite)?;
@@ -161,6 +163,7 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
             dem: named(&args.dem),
             features: args.features.iter().map(|path| named(path)).collect(),
             crs: args.crs,
+            area_style: args.area_style.map(Into::into),
             ..DataFiles::default()
         },
         eye: args.eye,
@@ -250,6 +253,8 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
             crs: args.crs,
             keep_voids: args.keep_voids,
             palette: PaletteDoc::of(&args.palette),
+            no_sea: args.no_sea,
+            area_style: args.area_style.map(Into::into),
         },
         viewpoint,
         fov_y_deg: args.fov,

@@ -188,25 +188,56 @@ pub struct AreaFeature {
 /// What covers an area.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AreaSurface {
+    /// Unknown: an outline, and a light fill that everything shows through.
+    #[default]
+    Outline,
     /// Nothing but its colour; the relief shows through.
     Plain,
     /// Water: flat, without relief shading, with a shore line.
-    #[default]
     Water,
+    /// The sea: as water, under all other areas, with a coast line.
+    Sea,
     /// Forest: the relief with a quiet stipple.
     Forest,
     /// Ice: bright, the relief softened, with a blue rim.
     Glacier,
+    /// A park or reserve: an outline, and a light green fill that everything shows through.
+    Park,
 }
 
 impl AreaSurface {
     /// Fill where none is given.
     pub fn color(self) -> Color {
         match self {
+            Self::Outline => Color::rgb(250, 244, 226).with_alpha(52),
             Self::Plain => Color::rgb(205, 205, 202).with_alpha(128),
             Self::Water => Color::rgb(74, 144, 200),
+            Self::Sea => Color::rgb(64, 128, 180),
             Self::Forest => Color::rgb(78, 112, 78).with_alpha(150),
             Self::Glacier => Color::rgb(226, 238, 247).with_alpha(225),
+            Self::Park => Color::rgb(88, 166, 84).with_alpha(64),
+        }
+    }
+
+    /// Outline where none is given; `None` = no line beside what the surface itself has at its edge.
+    pub fn outline(self) -> Option<Color> {
+        match self {
+            Self::Outline => Some(Color::rgb(110, 68, 128)),
+            Self::Park => Some(Color::rgb(38, 106, 52)),
+            _ => None,
+        }
+    }
+
+    /// Its name in scene files and records.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Outline => "outline",
+            Self::Plain => "plain",
+            Self::Water => "water",
+            Self::Sea => "sea",
+            Self::Forest => "forest",
+            Self::Glacier => "glacier",
+            Self::Park => "park",
         }
     }
 }

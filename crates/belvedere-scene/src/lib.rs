@@ -12,6 +12,7 @@ pub mod overlay;
 pub mod progress;
 pub mod ramp;
 pub mod scene;
+pub mod sea;
 
 pub use cell::CellTriangle;
 pub use drape::{Draped, drape_polyline};
@@ -27,3 +28,4 @@ pub use overlay::{DistanceMarkers, Overlay, OverlayFace, OverlayLine, OverlayPoi
 pub use progress::{Cancelled, Progress};
 pub use ramp::{Ramp, RampHeight, RampStop};
 pub use scene::{Crs, Scene, Unit};
+pub use sea::Sea;

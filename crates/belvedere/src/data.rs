@@ -1,11 +1,12 @@
 //! Terrain and features straight from their files, without a scene file.
 
+use crate::record::AreaRecord;
 use crate::resolve::vectors::{FeatureKind, kind_of};
 use crate::resolve::{self, LayerRequest};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
     AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LineDoc, LineStyleDoc, Origin, PaletteDoc, Paths,
-    PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, TerrainDoc, TerrainStyleDoc, UnitDoc,
+    PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, UnitDoc,
 };
 use crate::session::Description;
 use crate::{BelvedereError, OpenOptions, Session};
@@ -33,6 +34,10 @@ pub struct DataFiles {
     pub keep_voids: bool,
     /// Tint of the terrain by height.
     pub palette: PaletteDoc,
+    /// Leaves the sea ground as any other.
+    pub no_sea: bool,
+    /// What areas are drawn as; automatic if left out.
+    pub area_style: Option<SurfaceDoc>,
 }
 
 /// What the files hold.
@@ -41,6 +46,7 @@ pub(crate) struct Data {
     pub(crate) warnings: Vec<String>,
     /// Samples of the terrain's file as they are there, if they were to be kept.
     pub(crate) original: Option<OriginalTerrain>,
+    areas: Vec<AreaRecord>,
     inputs: Vec<PathBuf>,
     layers: Vec<LayerDoc>,
     roots: Roots,
@@ -60,7 +66,7 @@ impl DataFiles {
             source_crs: None,
             nodata: None,
             drape: None,
-            style: TerrainStyleDoc { palette, ..TerrainStyleDoc::default() },
+            style: TerrainStyleDoc { palette, sea: !self.no_sea, ..TerrainStyleDoc::default() },
         })];
         if self.features.is_empty() {
             return Err(BelvedereError::NoFeatures);
@@ -79,11 +85,12 @@ impl DataFiles {
         let crs = self.crs.as_deref().unwrap_or("auto");
         let request =
             LayerRequest { vectors, keep_original, ..LayerRequest::new(&Origin::MEMORY, &layers, crs, &roots) };
-        let loaded = resolve::load(request, options)?;
-        let (inputs, warnings, original) = (loaded.inputs, loaded.warnings, loaded.original);
+        let options = OpenOptions { area_style: self.area_style.or(options.area_style), ..options.clone() };
+        let loaded = resolve::load(request, &options)?;
+        let (inputs, warnings, areas, original) = (loaded.inputs, loaded.warnings, loaded.areas, loaded.original);
         let scene = Scene { title: "Revealed".into(), crs: loaded.crs, layers: loaded.layers, ..Scene::default() };
         resolve::fill_surfaces(&mut layers, &scene);
-        Ok(Data { scene: Arc::new(scene), warnings, original, inputs, layers, roots })
+        Ok(Data { scene: Arc::new(scene), warnings, original, areas, inputs, layers, roots })
     }
 }
 
@@ -107,6 +114,7 @@ impl Data {
         let (source, resolved) = (SourceDocument::new(document.clone()), document);
         Session {
             warnings: self.warnings,
+            areas: self.areas,
             inputs: self.inputs,
             description: Some(Description { source, resolved, roots: self.roots }),
             ..Session::from_parts(self.scene, view)

@@ -47,6 +47,15 @@ impl Session {
                 }
             }
         }
+        for layer in &mut document.layer {
+            match (layer, options) {
+                (LayerDoc::Area(area), OpenOptions { area_style: Some(kind), .. }) => {
+                    resolve::restyle(&mut area.style, *kind);
+                }
+                (LayerDoc::Terrain(terrain), OpenOptions { sea: Some(sea), .. }) => terrain.style.sea = *sea,
+                _ => {}
+            }
+        }
         validate::document(&source)?;
         refuse_constructor(&source)?;
         let scene_dir = source.path().and_then(Path::parent).map(Path::to_owned).unwrap_or_default();
@@ -67,6 +76,7 @@ impl Session {
         let file = source.path().map(Path::to_owned);
         Ok(Self {
             light: resolved.light,
+            areas: loaded.areas,
             overlay: source.document.overlay.clone().unwrap_or_default(),
             terrain: resolved.terrain,
             warnings: loaded.warnings.into_iter().chain(resolved.warnings).collect(),

@@ -1,6 +1,6 @@
 //! How a scene is opened.
 
-use crate::scene_file::PaletteDoc;
+use crate::scene_file::{PaletteDoc, SurfaceDoc};
 use belvedere_io::Limits;
 use belvedere_scene::Progress;
 use std::path::PathBuf;
@@ -30,6 +30,10 @@ pub struct OpenOptions {
     pub seed: Option<u64>,
     /// Another tint of terrain than the scene's.
     pub palette: Option<PaletteDoc>,
+    /// Whether the sea is drawn as such, whatever the scene says.
+    pub sea: Option<bool>,
+    /// What the areas of all layers are drawn as, whatever scene and files say; `Some(Auto)` = what the files say.
+    pub area_style: Option<SurfaceDoc>,
     /// Leaves stages that a solver would have to make out of the view: for those who want the document alone.
     pub unsolved: bool,
     /// Memory that the samples of one file may take, bytes; `None` = what [`Limits::default`] says.

@@ -57,6 +57,19 @@ pub(crate) fn inputs(paths: &[PathBuf]) -> Result<Vec<InputFile>, BelvedereError
         .collect()
 }
 
+/// What the areas of a layer are drawn as, and why.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct AreaRecord {
+    /// Id of the layer.
+    pub layer: String,
+    /// What covers them: water, forest, glacier, park, outline, plain.
+    pub kind: &'static str,
+    /// Number of areas.
+    pub areas: usize,
+    /// Who says so.
+    pub why: String,
+}
+
 /// The pinhole in numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ViewRecord {

@@ -1,6 +1,7 @@
 //! A scene with a view and a light: everything that a picture needs, nothing left to look up.
 
 use crate::BelvedereError;
+use crate::record::AreaRecord;
 use crate::resolve::terrain::{self, Solving};
 use crate::resolve::view;
 use crate::scene_file::paths::Roots;
@@ -23,6 +24,7 @@ pub struct Session {
     pub(crate) overlay: OverlayDoc,
     pub(crate) terrain: Option<TerrainReport>,
     pub(crate) warnings: Vec<String>,
+    pub(crate) areas: Vec<AreaRecord>,
     pub(crate) inputs: Vec<PathBuf>,
     pub(crate) description: Option<Description>,
     pub(crate) renderer: Arc<CpuRenderer>,
@@ -49,6 +51,7 @@ impl Session {
             overlay: OverlayDoc::default(),
             terrain: None,
             warnings: Vec::new(),
+            areas: Vec::new(),
             inputs: Vec::new(),
             description: None,
             renderer: Arc::default(),
@@ -115,6 +118,11 @@ impl Session {
     /// What was odd: one sentence each.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// What the areas of each layer are drawn as, and why; nothing for a session from parts.
+    pub fn areas(&self) -> &[AreaRecord] {
+        &self.areas
     }
 
     /// Files that were read, the scene file first.

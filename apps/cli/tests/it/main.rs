@@ -1,6 +1,7 @@
 //! The command line as a user meets it: the built program, its exit codes, its one line about failures.
 
 mod animate;
+mod areas;
 mod bad_scenes;
 mod exact;
 mod figures;

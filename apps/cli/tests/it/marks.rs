@@ -51,6 +51,10 @@ fn bent_pictures_say_so_unless_told_not_to() {
     let (bare, without) = drawn(&place, "b.png", &["--no-mark"]);
     assert_eq!((&marked["overlay"]["mark"], &bare["overlay"]["mark"]), (&true.into(), &false.into()));
     assert_ne!(with, without);
+    let said = marked["overlay"]["mark_words"].as_str().expect("words");
+    let metres: f64 = said.split(' ').rev().nth(1).and_then(|n| n.parse().ok()).expect("a number");
+    let most = marked["displacement"]["max_m"].as_f64().expect("a number");
+    assert!(said.starts_with("bent view: moved by up to ") && metres >= most && metres < 1.02 * most, "{said}: {most}");
     let (straight, _) = drawn(&place, "c.png", &["--straight"]);
     assert_eq!(straight["overlay"]["mark"], false);
     place.write("s.toml", &SCENE.replace("[camera]", "[overlay]\nmark = false\n[camera]"));

@@ -4,7 +4,7 @@ use belvedere_core::DVec2;
 
 /// The longer side of a pixel's print on the ground is at most this many times what it is where the ground faces the eye:
 /// slivers of triangles would say anything.
-const LONGEST: f64 = 24.0;
+pub(crate) const LONGEST: f64 = 24.0;
 
 /// The patch of the map that a pixel covers: an ellipse by its axes.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +36,13 @@ impl Footprint {
         self.major.length()
     }
 
+    /// Width of the print along a unit vector.
+    pub(crate) fn along(&self, direction: DVec2) -> f64 {
+        let length = self.length();
+        let (u, v) = (self.major.dot(direction), self.major.perp_dot(direction) / length * self.minor);
+        (u * u + v * v).sqrt()
+    }
+
     /// How many squares side by side along the longer axis cover the print, `most` at most, and their side.
     pub(crate) fn samples(&self, most: usize) -> (usize, f64) {
         let n = ((self.length() / self.minor - 1e-6).ceil() as usize).clamp(1, most);
@@ -57,6 +64,9 @@ mod tests {
             let print = Footprint::new([to_map(on_image.rotate(DVec2::X)), to_map(on_image.rotate(DVec2::Y))], 1.0);
             assert!((print.length() - 10.0).abs() < 1e-9 && (print.minor - 2.0).abs() < 1e-9, "{print:?}");
             assert!(print.major.perp_dot(on_map).abs() < 1e-9);
+            let wide = [on_map, on_map.perp(), (on_map + on_map.perp()).normalize()].map(|d| print.along(d));
+            let want = [10.0, 2.0, 52f64.sqrt()];
+            assert!(wide.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-9), "{wide:?}");
             let is = |(n, side): (usize, f64), want: (usize, f64)| n == want.0 && (side - want.1).abs() < 1e-9;
             assert!(is(print.samples(16), (5, 2.0)) && is(print.samples(2), (2, 5.0)), "{print:?}");
         }

@@ -22,7 +22,7 @@ use crate::raster::band::SKY;
 use crate::raster::pixel_center::PixelCenters;
 use crate::simd::nearest;
 use belvedere_core::{DVec2, DVec3, Stage};
-use belvedere_scene::{BoxLayer, BoxShape, Heightfield, LayerKind, Relief, RenderJob};
+use belvedere_scene::{AreaSurface, BoxLayer, BoxShape, Heightfield, LayerKind, Relief, RenderJob};
 use cast::Casters;
 use color::{Rgb, linear, smoothstep};
 use glam::Vec3A;
@@ -78,7 +78,9 @@ pub(crate) fn ground_bytes(job: &RenderJob<'_>, hf: &Heightfield) -> u64 {
     let shadows = if job.light.shadows { nodes * 4 / 3 } else { 0 };
     let pixels = job.view.pinhole().image.map(u64::from).iter().product();
     let lit = 2 * tiles::most_bytes([hf.cols(), hf.rows()], pixels);
-    surface::means_bytes(nodes) + DecimatedHeights::bytes(nodes) + shadows + lit + if lifted { 8 * nodes } else { 0 }
+    let means = surface::means_bytes(nodes);
+    // Lifted ground is tinted by the averages of the map.
+    means + DecimatedHeights::bytes(nodes) + shadows + lit + if lifted { 8 * nodes + means } else { 0 }
 }
 
 impl<'a> Shader<'a> {
@@ -98,13 +100,16 @@ impl<'a> Shader<'a> {
             LayerKind::Area(a) => AreaMap::new(i as u32, a),
             _ => None,
         });
+        // The sea lies under all other areas.
+        let mut areas: Vec<AreaMap> = areas.collect();
+        areas.sort_by_key(|a| a.surface != AreaSurface::Sea);
         let mut surfaces = layers.iter().filter(|l| !matches!(l, LayerShade::Other));
         let only_terrain = matches!((surfaces.next(), surfaces.next()), (Some(LayerShade::Terrain(_)), None));
         Self {
             sky: Sky::new(&job.scene.bounds(), job.view.pinhole()),
             screen,
             blocks,
-            areas: areas.collect(),
+            areas,
             casters: Casters::new(job.scene, job.light),
             layers,
             only_terrain,

@@ -31,12 +31,12 @@ pub(crate) struct SceneGrid {
 }
 
 impl SceneGrid {
-    /// Cuts rows and columns off the border that hold no height at all.
-    pub(super) fn trim(&mut self) {
+    /// Cuts rows and columns off the border that hold no height at all; how many at the west and the north.
+    pub(super) fn trim(&mut self) -> [usize; 2] {
         let (cols, rows) = (self.cols, self.rows);
         let has = |c: usize, r: usize| self.heights[r * cols + c].is_finite();
         let full_row = |r: &usize| (0..cols).any(|c| has(c, *r));
-        let Some(top) = (0..rows).find(full_row) else { return };
+        let Some(top) = (0..rows).find(full_row) else { return [0; 2] };
         let bottom = (0..rows).rev().find(full_row).unwrap_or(top);
         let full_col = |c: &usize| (top..=bottom).any(|r| has(*c, r));
         let left = (0..cols).find(full_col).unwrap_or(0);
@@ -53,12 +53,13 @@ impl SceneGrid {
         };
         let ((left, right), (top, bottom)) = (widen(left, right, cols), widen(top, bottom, rows));
         if (left, top, right + 1, bottom + 1) == (0, 0, cols, rows) {
-            return;
+            return [0; 2];
         }
         let kept = |r: usize| self.heights[r * cols + left..=r * cols + right].iter().copied();
         self.heights = (top..=bottom).flat_map(kept).collect();
         self.geometry.north_west = self.geometry.scene_from_index(DVec2::new(left as f64, top as f64));
         (self.cols, self.rows) = (right - left + 1, bottom - top + 1);
+        [left, top]
     }
 }
 

@@ -46,7 +46,8 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
             "{reason}, but the file's system is {system}; add a \"crs\" member with its EPSG code"
         )));
     }
-    let value = Vectors { path: path.into(), format: "GeoJSON", crs, features: reader.features };
+    let layer = root.get("name").and_then(Value::as_str).map(shorten).unwrap_or_default();
+    let value = Vectors { path: path.into(), format: "GeoJSON", layer, crs, features: reader.features };
     Ok(Loaded { value, warnings })
 }
 

@@ -1,14 +1,14 @@
 //! Lines, areas and points: GPX, GeoJSON and shapefiles, and how they come to lie on the terrain.
 
+mod area_kind;
 mod geojson;
 mod gpx;
 mod on_terrain;
 mod rings;
 mod shapefile;
-mod surface;
 
+pub use area_kind::{AreaKind, area_kind};
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
-pub use surface::surface_of;
 
 use crate::crs::CoordinateSystem;
 use crate::{IoError, Loaded};
@@ -70,6 +70,8 @@ pub struct Vectors {
     pub path: PathBuf,
     /// Format, for messages: "GPX", "GeoJSON" or "shapefile".
     pub format: &'static str,
+    /// Name of the layer that the file states, possibly empty.
+    pub layer: String,
     /// Coordinate system of every vertex.
     pub crs: CoordinateSystem,
     /// Features, in file order.

@@ -1,12 +1,12 @@
 //! The mark of bent pictures, and titles under pairs.
 
-use super::{INK, PAPER};
+use super::{INK, PAPER, length_above};
 use belvedere_core::DVec2;
 use belvedere_cpu::canvas::{Canvas, text_size};
-use belvedere_scene::Color;
+use belvedere_scene::{Color, Unit};
 
-/// Words of the mark.
-pub(crate) const WORDS: &str = "bent view";
+/// The shortest words of the mark.
+const WORDS: &str = "bent view";
 /// Smallest picture that has room for the mark, pixels.
 const SMALLEST: [f64; 2] = [160.0, 90.0];
 const LETTERS_PX: f64 = 12.0;
@@ -18,12 +18,27 @@ pub(crate) fn fits(width: usize, height: usize) -> bool {
     width as f64 >= SMALLEST[0] && height as f64 >= SMALLEST[1]
 }
 
-/// Draws the mark into the lower right corner: a ray that bends over a hill, and two words.
-pub(crate) fn draw(canvas: &mut Canvas<'_>) {
+/// Room that the mark takes beside its words, and its distance from the rim of the picture, pixels.
+const BESIDE: f64 = 46.0;
+const MARGIN: f64 = 10.0;
+
+/// What the mark of a picture says: how far at most what is seen was moved, in the longest words that fit.
+/// * `moved`: scene units.
+pub(crate) fn words(width: usize, moved: f64, unit: Unit) -> String {
+    let most = match unit {
+        Unit::Metre => length_above(moved),
+        _ => format!("{moved:.1} scene units"),
+    };
+    let room = width as f64 - 2.0 * MARGIN - BESIDE;
+    let all = [format!("{WORDS}: moved by up to {most}"), format!("bent by up to {most}")];
+    all.into_iter().find(|words| text_size(LETTERS_PX, words).width <= room).unwrap_or_else(|| WORDS.to_owned())
+}
+
+/// Draws the mark into the lower right corner: a ray that bends over a hill, and its words.
+pub(crate) fn draw(canvas: &mut Canvas<'_>, words: &str) {
     let size = canvas.size();
-    let words = text_size(LETTERS_PX, WORDS);
-    let box_size = DVec2::new(28.0 + words.width + 18.0, 24.0);
-    let lo = size - box_size - 10.0;
+    let box_size = DVec2::new(BESIDE + text_size(LETTERS_PX, words).width, 24.0);
+    let lo = size - box_size - MARGIN;
     canvas.rect(lo, lo + box_size, 5.0, PAPER);
     let at = |x: f64, y: f64| lo + DVec2::new(8.0 + x, 4.0 + y);
     let hill: Vec<DVec2> = (0..=14)
@@ -41,7 +56,7 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>) {
         .collect();
     canvas.line(&ray, 1.8, Color::rgb(213, 94, 0));
     canvas.disc(ray[0], 2.2, INK);
-    canvas.text(lo + DVec2::new(36.0, 0.5 * box_size.y + 0.36 * LETTERS_PX), LETTERS_PX, WORDS, INK, None);
+    canvas.text(lo + DVec2::new(36.0, 0.5 * box_size.y + 0.36 * LETTERS_PX), LETTERS_PX, words, INK, None);
 }
 
 /// Adds a strip with titles under pictures that stand side by side: text and left edge of each. Narrow pictures stay as they are.
@@ -58,4 +73,22 @@ pub(crate) fn titled(
         canvas.text(DVec2::new(*left as f64 + 8.0, height as f64 + 19.0), 14.0, text, INK, None);
     }
     (width, height + STRIP, pixels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mark_says_how_far_in_the_longest_words_that_fit() {
+        let said = |width, moved| words(width, moved, Unit::Metre);
+        assert_eq!(said(1280, 341.2), "bent view: moved by up to 342 m");
+        assert_eq!(said(1280, 0.0), "bent view: moved by up to 0 m");
+        assert_eq!(said(200, 341.2), "bent by up to 342 m");
+        assert_eq!(said(160, 12_345.6), "bent view");
+        assert_eq!(words(1280, 3.04, Unit::Angstrom), "bent view: moved by up to 3.0 scene units");
+        for width in [160, 200, 320, 640] {
+            assert!(text_size(LETTERS_PX, &said(width, 99_999.0)).width + BESIDE + 2.0 * MARGIN <= width as f64);
+        }
+    }
 }

@@ -32,6 +32,16 @@ fn length(value: f64) -> String {
     }
 }
 
+/// A length that nothing measured passes: metres rounded up to three digits, tenths below 10 m.
+fn length_above(metres: f64) -> String {
+    if !(metres > 0.0 && metres.is_finite()) {
+        return "0 m".into();
+    }
+    let step = 10f64.powf((metres.log10().floor() - 2.0).max(0.0)).max(if metres < 10.0 { 0.1 } else { 1.0 });
+    let up = (metres / step - 1e-9).ceil() * step;
+    if metres < 10.0 { format!("{up:.1} m") } else { format!("{up:.0} m") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -40,6 +50,11 @@ mod tests {
     fn lengths_are_round_and_readable() {
         assert_eq!([0.7, 1.0, 4.9, 5.0, 99.0, 1234.0].map(round_below), [0.5, 1.0, 2.0, 5.0, 50.0, 1000.0]);
         assert_eq!([round_below(0.0), round_below(f64::NAN), round_below(f64::INFINITY)], [0.0; 3]);
+        assert_eq!(
+            [0.01, 3.11, 99.2, 100.0, 341.2, 1234.0].map(length_above),
+            ["0.1 m", "3.2 m", "100 m", "100 m", "342 m", "1240 m"]
+        );
+        assert_eq!([0.0, f64::NAN, -3.0].map(length_above), ["0 m"; 3].map(str::to_owned));
         assert_eq!([0.25, 37.4, 2500.0, 30_000.0].map(length), ["0.25 m", "37 m", "2.5 km", "30 km"]);
     }
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// show may have moved farther.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct DisplacementReport {
-    /// Largest, scene units.
+    /// Largest, scene units; looked for pixel by pixel around the largest samples.
     pub max_m: f64,
     /// Root mean square, scene units.
     pub rms_m: f64,
@@ -22,34 +22,51 @@ pub struct DisplacementReport {
     pub samples: usize,
 }
 
+/// Samples around which every pixel is looked at.
+const LARGEST: usize = 24;
+
+/// Where the ground that a pixel shows went.
+struct Moved {
+    pixel: [usize; 2],
+    by_m: f64,
+    by_px: Option<f64>,
+    folded: bool,
+}
+
+fn at_pixel(view: &View, straight: &View, frame: &Frame, [col, row]: [usize; 2]) -> Option<Moved> {
+    let depth = f64::from(frame.depth[row * frame.width + col]);
+    let pixel = DVec2::new(col as f64 + 0.5, row as f64 + 0.5);
+    let seen = view.ray(pixel).at(if depth.is_finite() { depth } else { -1.0 }).ok()?;
+    let (bent, plain) = (view.displace(seen.point).ok()?, straight.displace(seen.point).ok()?);
+    let by_px = straight.project(seen.point).ok().map(|image| image.pixel.distance(pixel));
+    Some(Moved { pixel: [col, row], by_m: bent.point.distance(plain.point), by_px, folded: bent.folded })
+}
+
 /// Samples the ground in view: where it would be without bends, in space and on the image.
 pub(super) fn measure(view: &View, frame: &Frame) -> DisplacementReport {
     let straight = view.straightened();
     let step = (frame.width.max(frame.height) / 128).max(1);
-    let mut report = DisplacementReport::default();
-    let (mut sum_m, mut sum_px, mut in_both, mut folded) = (0.0, 0.0, 0usize, 0usize);
-    for row in (step / 2..frame.height).step_by(step) {
-        for col in (step / 2..frame.width).step_by(step) {
-            let depth = f64::from(frame.depth[row * frame.width + col]);
-            let pixel = DVec2::new(col as f64 + 0.5, row as f64 + 0.5);
-            let Ok(seen) = view.ray(pixel).at(if depth.is_finite() { depth } else { -1.0 }) else { continue };
-            let (Ok(bent), Ok(plain)) = (view.displace(seen.point), straight.displace(seen.point)) else { continue };
-            let moved = bent.point.distance(plain.point);
-            report.samples += 1;
-            report.max_m = report.max_m.max(moved);
-            sum_m += moved * moved;
-            folded += usize::from(bent.folded);
-            if let Ok(image) = straight.project(seen.point) {
-                let moved_px = image.pixel.distance(pixel);
-                in_both += 1;
-                report.max_px = report.max_px.max(moved_px);
-                sum_px += moved_px * moved_px;
-            }
+    let rows = (step / 2..frame.height).step_by(step);
+    let pixels = rows.flat_map(|row| (step / 2..frame.width).step_by(step).map(move |col| [col, row]));
+    let mut all: Vec<Moved> = pixels.filter_map(|at| at_pixel(view, &straight, frame, at)).collect();
+    let mean = |sum: f64, count: usize| if count == 0 { 0.0 } else { sum / count as f64 };
+    let on_image: Vec<f64> = all.iter().filter_map(|m| m.by_px).collect();
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+    let mut report = DisplacementReport {
+        max_m: largest(&mut all.iter().map(|m| m.by_m)),
+        rms_m: mean(all.iter().map(|m| m.by_m * m.by_m).sum(), all.len()).sqrt(),
+        max_px: largest(&mut on_image.iter().copied()),
+        rms_px: mean(on_image.iter().map(|px| px * px).sum(), on_image.len()).sqrt(),
+        folded_share: mean(all.iter().filter(|m| m.folded).count() as f64, all.len()),
+        samples: all.len(),
+    };
+    all.sort_by(|a, b| b.by_m.total_cmp(&a.by_m));
+    for [col, row] in all.iter().take(LARGEST).map(|m| m.pixel) {
+        let around = |at: usize, end: usize| at.saturating_sub(step)..(at + step + 1).min(end);
+        for row in around(row, frame.height) {
+            let near = around(col, frame.width).filter_map(|col| at_pixel(view, &straight, frame, [col, row]));
+            report.max_m = largest(&mut near.map(|m| m.by_m).chain([report.max_m]));
         }
     }
-    let mean = |sum: f64, count: usize| if count == 0 { 0.0 } else { sum / count as f64 };
-    report.rms_m = mean(sum_m, report.samples).sqrt();
-    report.rms_px = mean(sum_px, in_both).sqrt();
-    report.folded_share = mean(folded as f64, report.samples);
     report
 }

@@ -36,9 +36,8 @@ pub(crate) fn draw(
         Some(picture) => draw_camera(session, request, picture, progress)?,
         None => draw_view(session, request, progress)?,
     };
-    let Drawn { view, frame, straight, overlay } = drawn;
+    let Drawn { view, frame, straight, overlay, displacement } = drawn;
     let render_ms = started.elapsed().as_secs_f64() * 1e3;
-    let displacement = view.is_bent().then(|| displacement::measure(&view, &frame));
     let sidecar = Sidecar {
         program: format!("belvedere {}", crate::VERSION),
         renderer: request.renderer.of(session).name(),
@@ -47,6 +46,7 @@ pub(crate) fn draw(
         overlay,
         displacement,
         terrain: session.scene().terrain().map(TerrainRecord::of),
+        areas: session.areas().to_vec(),
         disocclusion: session.terrain_report().filter(|_| !request.straight).cloned(),
         view: ViewRecord::of(&view),
         scene: session.resolved().cloned(),
@@ -66,6 +66,7 @@ struct Drawn {
     frame: Frame,
     straight: Option<Frame>,
     overlay: OverlayRecord,
+    displacement: Option<DisplacementReport>,
 }
 
 fn draw_view(session: &Session, request: &PictureOptions, progress: &Progress) -> Result<Drawn, BelvedereError> {
@@ -109,16 +110,20 @@ fn draw_view(session: &Session, request: &PictureOptions, progress: &Progress) -
     if let Some(straight) = straight.as_ref().filter(|_| ghost) {
         ghost::draw(&mut frame, straight, scene);
     }
-    let mark = view.is_bent() && wanted.mark && !request.no_mark && badge::fits(frame.width, frame.height);
+    let displacement = view.is_bent().then(|| displacement::measure(&view, &frame));
+    let mark = displacement
+        .filter(|_| wanted.mark && !request.no_mark && badge::fits(frame.width, frame.height))
+        .map(|moved| badge::words(frame.width, moved.max_m, scene.unit));
     let mut canvas = Canvas::new(&mut frame.color, frame.width);
     if let Some(most) = heatmap_max {
         heat::legend(&mut canvas, most);
     }
-    if mark {
-        badge::draw(&mut canvas);
+    if let Some(words) = &mark {
+        badge::draw(&mut canvas, words);
     }
-    let overlay = OverlayRecord { mark, grid: grid_spacing, heatmap_max, ghost, camera: None };
-    Ok(Drawn { view, frame, straight: straight.filter(|_| request.compare), overlay })
+    let overlay =
+        OverlayRecord { mark: mark.is_some(), mark_words: mark, grid: grid_spacing, heatmap_max, ghost, camera: None };
+    Ok(Drawn { view, frame, straight: straight.filter(|_| request.compare), overlay, displacement })
 }
 
 fn draw_camera(
@@ -135,7 +140,8 @@ fn draw_camera(
     let title = if scene.title.is_empty() { "The camera" } else { &scene.title };
     camera::draw_legend(&mut Canvas::new(&mut frame.color, frame.width), &figure, title);
     let overlay = OverlayRecord { camera: Some(picture.name()), ..OverlayRecord::default() };
-    Ok(Drawn { view: figure.view, frame, straight: None, overlay })
+    let displacement = figure.view.is_bent().then(|| displacement::measure(&figure.view, &frame));
+    Ok(Drawn { view: figure.view, frame, straight: None, overlay, displacement })
 }
 
 fn note(view: &View, d: &DisplacementReport) -> String {

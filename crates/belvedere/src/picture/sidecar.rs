@@ -2,7 +2,7 @@
 
 use super::displacement::DisplacementReport;
 use super::options::{AuxBuffer, AuxFormat};
-use crate::record::{InputFile, ViewRecord};
+use crate::record::{AreaRecord, InputFile, ViewRecord};
 use crate::scene_file::Document;
 use belvedere_core::View;
 use belvedere_disocclusion::TerrainReport;
@@ -32,10 +32,13 @@ impl TerrainRecord {
 }
 
 /// What was drawn over the layers of a picture.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct OverlayRecord {
-    /// Whether the words "bent view" stand in the picture.
+    /// Whether the picture bears the mark of bent ones.
     pub mark: bool,
+    /// What that says: how far at most what is seen was moved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mark_words: Option<String>,
     /// Spacing of the grid, scene units.
     pub grid: Option<f64>,
     /// Displacement at the upper end of the colours, scene units.
@@ -64,6 +67,9 @@ pub struct Sidecar {
     pub displacement: Option<DisplacementReport>,
     /// What of the ground is made up; `None` without terrain.
     pub terrain: Option<TerrainRecord>,
+    /// What areas were drawn as, and why.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub areas: Vec<AreaRecord>,
     /// What the solver of terrain disocclusion came to; `None` if none ran.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub disocclusion: Option<TerrainReport>,

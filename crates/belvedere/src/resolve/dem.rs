@@ -31,6 +31,7 @@ pub(super) fn load(
         largest_hole: doc.largest_hole.unwrap_or(1.0),
         source_crs,
         nodata: doc.nodata,
+        sea: doc.style.sea,
         limits: loader.options.limits(),
         ..TerrainRequest::default()
     };

@@ -2,11 +2,12 @@
 
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
-use super::{boxes, builtin, dem, drape, mesh, vectors};
+use super::{areas, boxes, builtin, dem, drape, mesh, sea, vectors};
+use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    AreaDoc, AutoOrLength, HiddenDoc, LayerDoc, LineDoc, Origin, PaletteDoc, PaletteName, Paths, PlaceDoc,
-    PointLayerDoc, ReliefDoc, RouteDoc, ShadingDoc, SurfaceDoc, SymbolDoc, TerrainDoc,
+    AutoOrLength, HiddenDoc, LayerDoc, LineDoc, Origin, PaletteDoc, PaletteName, Paths, PlaceDoc, PointLayerDoc,
+    ReliefDoc, RouteDoc, ShadingDoc, SymbolDoc, TerrainDoc,
 };
 use crate::{BelvedereError, Needs, OpenOptions};
 use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
@@ -16,8 +17,8 @@ use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
 use belvedere_scene::{
-    AreaLayer, AreaSurface, Color, Crs, DistanceMarkers, Drape, Heightfield, Hidden, Layer, LayerKind, LineFeature,
-    LineLayer, Palette, PointLayer, PointStyle, Relief, Scene, Shading, Symbol, TerrainLayer, drape_polyline,
+    Crs, DistanceMarkers, Drape, Heightfield, Hidden, Layer, LayerKind, LineFeature, LineLayer, Palette, PointLayer,
+    PointStyle, Relief, Shading, Symbol, TerrainLayer, drape_polyline,
 };
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -54,6 +55,8 @@ pub(crate) struct LoadedLayers {
     pub(crate) crs: Crs,
     pub(crate) inputs: Vec<PathBuf>,
     pub(crate) warnings: Vec<String>,
+    /// What the areas were taken for.
+    pub(crate) areas: Vec<AreaRecord>,
     pub(crate) original: Option<OriginalTerrain>,
 }
 
@@ -69,6 +72,7 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
         builtins: builtin::Builtins::default(),
         inputs: Vec::new(),
         warnings: Vec::new(),
+        areas: Vec::new(),
         vectors,
         keep_original,
         original: None,
@@ -93,8 +97,17 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
             layers[i] = layer(&mut loader, i, doc, &ground)?;
         }
     }
-    let Loader { inputs, warnings, original, .. } = loader;
-    Ok(LoadedLayers { layers: layers.into_iter().flatten().collect(), crs, inputs, warnings, original })
+    // Layers keep their numbers: the sea comes last, and is drawn under all other areas.
+    if needs == Needs::Everything {
+        for (i, doc) in docs.iter().enumerate() {
+            if let (LayerDoc::Terrain(doc), Some(Layer { kind: LayerKind::Terrain(t), .. })) = (doc, &layers[i]) {
+                let sea = sea::layer(&mut loader, doc, t);
+                layers.push(sea);
+            }
+        }
+    }
+    let Loader { inputs, warnings, areas, original, .. } = loader;
+    Ok(LoadedLayers { layers: layers.into_iter().flatten().collect(), crs, inputs, warnings, areas, original })
 }
 
 fn first_terrain(layers: &[Option<Layer>]) -> Option<&Heightfield> {
@@ -281,41 +294,6 @@ fn route(
     Ok(LineFeature { name: "generated route".into(), points })
 }
 
-/// An area layer.
-fn area(
-    loader: &mut Loader<'_>,
-    index: usize,
-    doc: &AreaDoc,
-    ground: &Ground<'_>,
-) -> Result<LayerKind, BelvedereError> {
-    let (features, tagged) = match &doc.source {
-        Paths::One(name) if builtin::is_name(name) => loader.builtin(index, name, |kind| match kind {
-            LayerKind::Area(layer) => Some((layer.features.clone(), Some(layer.surface))),
-            _ => None,
-        })?,
-        paths => vectors::areas(loader, index, paths, ground)?,
-    };
-    if features.is_empty() {
-        return Err(loader.fail(index, "source", "no area lies on the terrain; check that the source covers it"));
-    }
-    let style = &doc.style;
-    let stated = style.surface.map(surface);
-    let stated = stated.or(style.water.map(|water| if water { AreaSurface::Water } else { AreaSurface::Plain }));
-    let surface = stated.or(tagged).unwrap_or_default();
-    Ok(LayerKind::Area(AreaLayer {
-        features,
-        fill: match &style.color {
-            Some(color) => loader.color(index, color)?,
-            None => surface.color(),
-        },
-        outline: loader.optional_color(index, &style.outline)?,
-        width_px: style.width_px,
-        surface,
-        hidden: hidden(style.hidden),
-        lift_m: style.lift_m,
-    }))
-}
-
 /// A point layer.
 fn point(
     loader: &mut Loader<'_>,
@@ -358,7 +336,7 @@ fn layer(
     let kind = match doc {
         LayerDoc::Terrain(_) => return Ok(None),
         LayerDoc::Line(doc) => line(loader, index, doc, ground)?,
-        LayerDoc::Area(doc) => area(loader, index, doc, ground)?,
+        LayerDoc::Area(doc) => areas::layer(loader, index, doc, ground)?,
         LayerDoc::Point(doc) => point(loader, index, doc, ground)?,
         LayerDoc::Boxes(doc) => boxes::layer(loader, index, doc)?,
         LayerDoc::Mesh(doc) => mesh::layer(loader, index, doc, ground)?,
@@ -380,35 +358,7 @@ fn position(ground: &Ground<'_>, place: PlaceDoc) -> Result<DVec2, String> {
     }
 }
 
-fn surface(doc: SurfaceDoc) -> AreaSurface {
-    match doc {
-        SurfaceDoc::Plain => AreaSurface::Plain,
-        SurfaceDoc::Water => AreaSurface::Water,
-        SurfaceDoc::Forest => AreaSurface::Forest,
-        SurfaceDoc::Glacier => AreaSurface::Glacier,
-    }
-}
-
-/// Writes into the areas of a document what was found to cover them, and their colours.
-pub(crate) fn fill_surfaces(layers: &mut [LayerDoc], scene: &Scene) {
-    for doc in layers {
-        let LayerDoc::Area(doc) = doc else { continue };
-        let layer = scene.layers.iter().find(|l| l.id == doc.id);
-        let Some(LayerKind::Area(layer)) = layer.map(|l| &l.kind) else { continue };
-        doc.style.water = None;
-        doc.style.surface = Some(match layer.surface {
-            AreaSurface::Plain => SurfaceDoc::Plain,
-            AreaSurface::Water => SurfaceDoc::Water,
-            AreaSurface::Forest => SurfaceDoc::Forest,
-            AreaSurface::Glacier => SurfaceDoc::Glacier,
-        });
-        let Color { r, g, b, a } = layer.fill;
-        let alpha = if a == 255 { String::new() } else { format!("{a:02x}") };
-        doc.style.color.get_or_insert_with(|| format!("#{r:02x}{g:02x}{b:02x}{alpha}"));
-    }
-}
-
-fn hidden(doc: HiddenDoc) -> Hidden {
+pub(super) fn hidden(doc: HiddenDoc) -> Hidden {
     match doc {
         HiddenDoc::Show => Hidden::Show,
         HiddenDoc::Fade => Hidden::Fade,

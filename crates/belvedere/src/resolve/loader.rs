@@ -2,6 +2,7 @@
 
 use super::builtin;
 use super::validate::{color, optional_color};
+use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{LayerDoc, Origin, Paths};
 use crate::{BelvedereError, OpenOptions};
@@ -21,6 +22,8 @@ pub(super) struct Loader<'a> {
     pub(super) builtins: builtin::Builtins,
     pub(super) inputs: Vec<PathBuf>,
     pub(super) warnings: Vec<String>,
+    /// What areas were taken for.
+    pub(super) areas: Vec<AreaRecord>,
     /// Vector files that were read already.
     pub(super) vectors: BTreeMap<PathBuf, Loaded<Vectors>>,
     /// Whether the samples of the terrain's file are kept as they are there, and where.

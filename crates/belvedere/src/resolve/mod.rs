@@ -1,5 +1,6 @@
 //! From a document to a scene and a view.
 
+mod areas;
 mod boxes;
 pub(crate) mod builtin;
 mod camera;
@@ -12,10 +13,12 @@ mod light;
 mod loader;
 mod mesh;
 mod rays;
+mod sea;
 pub(crate) mod stages;
 pub(crate) mod terrain;
 pub(crate) mod validate;
 pub(crate) mod vectors;
 pub(crate) mod view;
 
-pub(crate) use layers::{LayerRequest, fill_surfaces, load};
+pub(crate) use areas::{fill_surfaces, restyle};
+pub(crate) use layers::{LayerRequest, load};

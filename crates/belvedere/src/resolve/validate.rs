@@ -101,7 +101,7 @@ fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
             if l.style.surface.is_some() && l.style.water.is_some() {
                 return Err(("surface", "surface and water are both given; surface says all, remove water".into()));
             }
-            optional_color("outline", &l.style.outline)?;
+            l.style.outline.as_deref().map_or(Ok(()), |c| optional_color("outline", c).map(|_| ()))?;
             width(l.style.width_px)?;
             lift(l.style.lift_m)
         }

@@ -5,7 +5,7 @@ use super::loader::Loader;
 use crate::BelvedereError;
 use crate::scene_file::Paths;
 use belvedere_io::vector::{
-    Geometry, Vectors, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain, surface_of,
+    AreaKind, Geometry, Vectors, area_kind, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain,
 };
 use belvedere_io::{IoError, Loaded};
 use belvedere_scene::{AreaFeature, AreaSurface, Crs, Heightfield, LineFeature, PointFeature};
@@ -66,16 +66,19 @@ pub(super) fn lines(
     all(loader, index, paths, ground, lines_on_terrain, |_| ())
 }
 
-/// Areas of files, and what most of them are by their tags.
+/// Areas of files, and what they are: what the first file says that knows.
 pub(super) fn areas(
     loader: &mut Loader<'_>,
     index: usize,
+    id: &str,
     paths: &Paths,
     ground: &Ground<'_>,
-) -> Result<(Vec<AreaFeature>, Option<AreaSurface>), BelvedereError> {
-    let mut tagged = None;
-    let features = all(loader, index, paths, ground, areas_on_terrain, |v| tagged = tagged.or(surface_of(v)))?;
-    Ok((features, tagged))
+) -> Result<(Vec<AreaFeature>, AreaKind), BelvedereError> {
+    let mut kinds: Vec<AreaKind> = Vec::new();
+    let features = all(loader, index, paths, ground, areas_on_terrain, |v| kinds.push(area_kind(v, &[id])))?;
+    let known = kinds.iter().position(|k| k.surface != AreaSurface::Outline).unwrap_or(0);
+    let nothing = || AreaKind { surface: AreaSurface::Outline, why: "there are none".into() };
+    Ok((features, kinds.into_iter().nth(known).unwrap_or_else(nothing)))
 }
 
 /// Points of files, on the ground.

@@ -119,13 +119,17 @@ pub struct TerrainStyleDoc {
     /// Normals used for the shading; by default `deformed` under terrain disocclusion, else `map`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shading: Option<ShadingDoc>,
-    /// Tint by height.
+    /// Tint by height; the heights are the true ones, wherever bends move the ground.
     pub palette: PaletteDoc,
+    /// Whether the sea is drawn as such: connected ground at one height, 0 or the lowest below 0, that reaches the edge of the
+    /// terrain, covers a square kilometre (or a twentieth of the terrain) and has a low shore; and voids at the edge whose
+    /// shore is low, which become ground at 0.
+    pub sea: bool,
 }
 
 impl Default for TerrainStyleDoc {
     fn default() -> Self {
-        Self { relief: ReliefDoc::Swiss, exaggeration: 1.0, shading: None, palette: PaletteDoc::default() }
+        Self { relief: ReliefDoc::Swiss, exaggeration: 1.0, shading: None, palette: PaletteDoc::default(), sea: true }
     }
 }
 
@@ -301,6 +305,11 @@ pub struct AreaDoc {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SurfaceDoc {
+    /// What the source says: properties as OpenStreetMap, Natural Earth, glacier inventories, CORINE and the World Database on
+    /// Protected Areas write them, else words in the names of layer and file, else `outline`.
+    Auto,
+    /// Unknown: a line, and a light fill that everything shows through.
+    Outline,
     /// Nothing but its colour.
     Plain,
     /// Water: flat, with a shore line.
@@ -309,6 +318,8 @@ pub enum SurfaceDoc {
     Forest,
     /// Ice.
     Glacier,
+    /// A park or reserve: a line, and a light green fill that everything shows through.
+    Park,
 }
 
 /// How areas are drawn.
@@ -318,15 +329,15 @@ pub struct AreaStyleDoc {
     /// Fill, `#rrggbb` or `#rrggbbaa`; by default that of the surface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub color: Option<String>,
-    /// Outline colour, or `none`.
-    pub outline: String,
+    /// Outline colour, or `none`; by default that of the surface.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outline: Option<String>,
     /// Outline width on screen, pixels, in (0, 100].
     pub width_px: f64,
     /// Whether it is water: flat, without relief shading. `surface` says more.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub water: Option<bool>,
-    /// What covers the ground; by default what the tags of the source say (as OpenStreetMap and Natural Earth write
-    /// them), else water.
+    /// What covers the ground, `auto` by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<SurfaceDoc>,
     /// What happens to hidden parts of the outline.
@@ -339,7 +350,7 @@ impl Default for AreaStyleDoc {
     fn default() -> Self {
         Self {
             color: None,
-            outline: "none".into(),
+            outline: None,
             width_px: 1.5,
             water: None,
             surface: None,

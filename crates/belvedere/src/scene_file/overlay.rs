@@ -10,7 +10,7 @@ pub struct OverlayDoc {
     /// Lines of the coordinate system on the ground: `true` for a round spacing, or the spacing in scene units, > 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<SwitchOrLength>,
-    /// The words "bent view" in a corner of pictures that anything but the earth's curvature bends.
+    /// A mark in a corner of pictures that anything but the earth's curvature bends: "bent view", and how far at most what is seen was moved.
     pub mark: bool,
     /// Colours for how far the bend moves what is seen.
     pub heatmap: bool,

@@ -201,6 +201,7 @@ mod tests {
             let inputs = LightingInputs {
                 surface: &surface,
                 means: &means,
+                map: None,
                 shadows: None,
                 tint: &tint,
                 light: &relief,

@@ -315,11 +315,13 @@ impl Lit {
 mod tests {
     use super::*;
     use crate::shade::ground::palette::Tint;
+    use crate::shade::ground::patch::GroundShape;
     use crate::shade::ground::planes::Planes;
     use crate::shade::ground::surface::{MipPyramid, Surface};
     use crate::shade::ground::tiles::CELL;
     use belvedere_core::DVec2;
     use belvedere_scene::{Heightfield, Light, NodeState, Palette, Relief};
+    use std::sync::Arc;
 
     fn hills(cols: usize, rows: usize) -> Heightfield {
         let h = |i: usize| {
@@ -339,6 +341,7 @@ mod tests {
         let inputs = LightingInputs {
             surface: &surface,
             means: &means,
+            map: None,
             shadows: None,
             tint: &tint,
             light: &light,
@@ -385,6 +388,40 @@ mod tests {
     }
 
     #[test]
+    fn tints_are_those_of_the_map_wherever_the_ground_went() {
+        let hf = hills(150, 131);
+        // A bowl of 900 m, which would carry summits into the green of the valleys.
+        let bowl = |i: usize| 900.0 * (-0.001 * ((i % 150) as f32 - 70.0).powi(2)).exp();
+        let sunken = hf.heights().iter().enumerate().map(|(i, h)| h - bowl(i)).collect();
+        let (map, moved) = (Surface::of_map(&hf), Surface::lifted(&hf, Arc::new(sunken)));
+        let (map_means, moved_means) = (MipPyramid::new(&map), MipPyramid::new(&moved));
+        let tint = Tint::new(&Palette::Alpine, hf.z_range());
+        let light = ReliefLight::new(Relief::Swiss, &Light::default());
+        let inputs = |surface, means, map| LightingInputs {
+            surface,
+            means,
+            map,
+            shadows: None,
+            tint: &tint,
+            light: &light,
+            exaggeration: 1.0,
+        };
+        let undisplaced = GroundShape { surface: &map, means: &map_means };
+        let (there, here) = (inputs(&moved, &moved_means, Some(undisplaced)), inputs(&map, &map_means, None));
+        let ground = |means: &MipPyramid| LitGround::new(150, 131, means.top());
+        let (moved_ground, map_ground) = (ground(&moved_means), ground(&map_means));
+        let mut other_light = 0;
+        for i in 0..8000i32 {
+            let at = [i * 7919 % (149 * CELL), i * 104_729 % (130 * CELL)];
+            let lod = (i * 37 % 1800) as u32;
+            let (a, b) = (moved_ground.sample(at, lod, &there), map_ground.sample(at, lod, &here));
+            assert_eq!(a.root, b.root, "{at:?}, level {lod} / 256");
+            other_light += u32::from((a.direct - b.direct).abs() > 0.05);
+        }
+        assert!(other_light > 1000, "{other_light} places in another light");
+    }
+
+    #[test]
     fn weights_are_whole_and_sum_up_everywhere() {
         let hf = hills(70, 70);
         let (surface, light) = (Surface::of_map(&hf), ReliefLight::new(Relief::None, &Light::default()));
@@ -393,6 +430,7 @@ mod tests {
         let inputs = LightingInputs {
             surface: &surface,
             means: &means,
+            map: None,
             shadows: None,
             tint: &tint,
             light: &light,

@@ -14,10 +14,19 @@ use crate::simd::{self, Kernel, LANES, Lanes};
 pub(crate) struct LightingInputs<'a> {
     pub(crate) surface: &'a Surface<'a>,
     pub(crate) means: &'a MipPyramid,
+    /// The undisplaced ground, where light falls on another: heights and slopes of the tint are the true ones.
+    pub(crate) map: Option<GroundShape<'a>>,
     pub(crate) shadows: Option<&'a Shadows>,
     pub(crate) tint: &'a Tint,
     pub(crate) light: &'a ReliefLight,
     pub(crate) exaggeration: f32,
+}
+
+/// A ground and its averages.
+#[derive(Clone, Copy)]
+pub(crate) struct GroundShape<'a> {
+    pub(crate) surface: &'a Surface<'a>,
+    pub(crate) means: &'a MipPyramid,
 }
 
 /// What nodes look like.
@@ -36,6 +45,8 @@ struct Shapes {
     shape: [Vec<f32>; 3],
     /// Height of the near surroundings and what the wider ones ask for, see [`MipPyramid::openness`].
     near: [Vec<f32>; 2],
+    /// The undisplaced shape, where the other is displaced.
+    map: Option<[Vec<f32>; 3]>,
     /// Share of the sun that no shadow takes.
     sun: Vec<f32>,
 }
@@ -43,10 +54,11 @@ struct Shapes {
 const NOTHING: Lanes = [0.0; LANES];
 
 impl Shapes {
-    fn new(nodes: usize) -> Self {
+    fn new(nodes: usize, displaced: bool) -> Self {
         let n = nodes.next_multiple_of(LANES);
         let plane = || vec![0.0; n];
-        Self { shape: [plane(), plane(), plane()], near: [plane(), plane()], sun: vec![1.0; n] }
+        let shape = || [plane(), plane(), plane()];
+        Self { shape: shape(), near: [plane(), plane()], map: displaced.then(shape), sun: vec![1.0; n] }
     }
 }
 
@@ -58,15 +70,32 @@ pub(crate) struct Patch {
 impl Patch {
     /// The nodes where rows and columns meet.
     pub(crate) fn new(m: &LightingInputs<'_>, k: usize, columns: Line, rows: Line) -> Self {
-        let mut shapes = Shapes::new(columns.count * rows.count);
+        let mut shapes = Shapes::new(columns.count * rows.count, m.map.is_some());
         let (first, inside) = columns.inside();
-        let mut row = Row::new(m, k, first, inside.len());
+        let lit = GroundShape { surface: m.surface, means: m.means };
+        let mut row = Row::new(lit, k, first, inside.len());
+        let mut map_row = m.map.map(|map| Row::new(map, k, first, inside.len()));
+        let mut unused = [0; 2].map(|_| vec![0.0; columns.count]);
         for (n, r) in rows.iter().enumerate() {
             let all = n * columns.count..(n + 1) * columns.count;
-            row.fill(m, k, r, &mut shapes, all.start + inside.start);
-            let Shapes { shape: [x, y, z], near: [height, asked], sun } = &mut shapes;
-            for plane in [x, y, z, height, asked, sun] {
+            let at = all.start + inside.start;
+            let places = at..at + inside.len();
+            let Shapes { shape, near: [height, asked], map, sun } = &mut shapes;
+            if let Some(shadows) = m.shadows {
+                shadows.share_row(k, r, first, &mut sun[places.clone()]);
+            }
+            let [x, y, z] = shape.each_mut().map(|plane| &mut plane[places.clone()]);
+            row.fill(k, r, [x, y, z, &mut height[places.clone()], &mut asked[places.clone()]]);
+            for plane in shape.iter_mut().chain([height, asked, sun]) {
                 columns.repeat(&mut plane[all.clone()]);
+            }
+            if let (Some(row), Some(shape)) = (&mut map_row, map) {
+                let [x, y, z] = shape.each_mut().map(|plane| &mut plane[places.clone()]);
+                let [height, asked] = unused.each_mut().map(|plane| &mut plane[..inside.len()]);
+                row.fill(k, r, [x, y, z, height, asked]);
+                for plane in shape {
+                    columns.repeat(&mut plane[all.clone()]);
+                }
             }
         }
         Self { nodes: simd::run(LightUp { m, shapes: &shapes }) }
@@ -94,8 +123,9 @@ impl LitNodes {
     }
 }
 
-/// A row of nodes in the making, from column `first` on.
-struct Row {
+/// A row of nodes of a ground in the making, from column `first` on.
+struct Row<'a> {
+    ground: GroundShape<'a>,
     first: usize,
     shape: Planes,
     near: Planes,
@@ -103,29 +133,23 @@ struct Row {
     between: Option<Between>,
 }
 
-impl Row {
-    fn new(m: &LightingInputs<'_>, k: usize, first: usize, n: usize) -> Self {
-        let between = (k < m.means.first).then(|| Between::new(m.means, k, first, n));
-        Self { first, shape: Planes::new(n), near: Planes::new(n), between }
+impl<'a> Row<'a> {
+    fn new(ground: GroundShape<'a>, k: usize, first: usize, n: usize) -> Self {
+        let between = (k < ground.means.first).then(|| Between::new(ground.means, k, first, n));
+        Self { ground, first, shape: Planes::new(n), near: Planes::new(n), between }
     }
 
-    /// Writes row `row` of level `k` from place `at` on.
-    fn fill(&mut self, m: &LightingInputs<'_>, k: usize, row: usize, to: &mut Shapes, at: usize) {
-        let Self { first, shape, near, between } = self;
-        let places = at..at + shape.w.len();
-        if let Some(shadows) = m.shadows {
-            shadows.share_row(k, row, *first, &mut to.sun[places.clone()]);
-        }
+    /// Writes row `row` of level `k`: dz/dx, dz/dy, height, and what [`Shapes`] wants to know of the surroundings.
+    fn fill(&mut self, k: usize, row: usize, to: [&mut [f32]; 5]) {
+        let Self { ground: GroundShape { surface, means }, first, shape, near, between } = self;
         let surroundings = if let Some(between) = between {
-            m.surface.mean_row(k, row, *first, shape);
-            between.row(m.means, row, near);
+            surface.mean_row(k, row, *first, shape);
+            between.row(means, row, near);
             near
         } else {
-            m.means.row(k, row, *first, shape);
+            means.row(k, row, *first, shape);
             &*shape
         };
-        let Shapes { shape: [x, y, z], near: [height, asked], .. } = to;
-        let to = [x, y, z, height, asked].map(|plane| &mut plane[places.clone()]);
         simd::run(Join { shape, surroundings, to });
     }
 }
@@ -168,14 +192,19 @@ impl Kernel for LightUp<'_> {
 
     #[inline(always)]
     fn run(self) -> Vec<LitNodes> {
-        let Shapes { shape: [x, y, z], near: [height, asked], sun } = self.shapes;
+        let Shapes { shape, near: [height, asked], map, sun } = self.shapes;
+        let [x, y, z] = shape;
+        let [map_x, map_y, map_z] = map.as_ref().unwrap_or(shape);
         let mut out = Vec::with_capacity(x.len() / LANES);
         for n in (0..x.len()).step_by(LANES) {
             let (Some(x), Some(y), Some(z)) = (lanes(x, n), lanes(y, n), lanes(z, n)) else { break };
             let (Some(height), Some(asked), Some(sun)) = (lanes(height, n), lanes(asked, n), lanes(sun, n)) else {
                 break;
             };
-            out.push(light_up(self.m, [x, y, z], [height, asked], sun));
+            let (Some(map_x), Some(map_y), Some(map_z)) = (lanes(map_x, n), lanes(map_y, n), lanes(map_z, n)) else {
+                break;
+            };
+            out.push(light_up(self.m, [x, y, z], [height, asked], [map_x, map_y, map_z], sun));
         }
         out
     }
@@ -187,18 +216,24 @@ fn lanes(plane: &[f32], n: usize) -> Option<&Lanes> {
 }
 
 #[inline(always)]
-fn light_up(m: &LightingInputs<'_>, [x, y, z]: [&Lanes; 3], near: [&Lanes; 2], sun: &Lanes) -> LitNodes {
+fn light_up(
+    m: &LightingInputs<'_>,
+    [x, y, z]: [&Lanes; 3],
+    near: [&Lanes; 2],
+    [map_x, map_y, map_z]: [&Lanes; 3],
+    sun: &Lanes,
+) -> LitNodes {
     let openness = m.means.openness();
     let (mut open, mut steep, mut normal) = (NOTHING, NOTHING, [NOTHING; 3]);
     for i in 0..LANES {
         open[i] = openness.at(z[i], near[0][i], near[1][i]);
-        steep[i] = (x[i] * x[i] + y[i] * y[i]).sqrt();
+        steep[i] = (map_x[i] * map_x[i] + map_y[i] * map_y[i]).sqrt();
         let (a, b) = (x[i] * -m.exaggeration, y[i] * -m.exaggeration);
         let scale = 1.0 / (a * a + b * b + 1.0).sqrt();
         (normal[0][i], normal[1][i], normal[2][i]) = (a * scale, b * scale, scale);
     }
     let [direct, sky] = m.light.parts_of(&normal, &open, sun);
-    let mut root = m.tint.colors(z, &steep);
+    let mut root = m.tint.colors(map_z, &steep);
     for plane in &mut root {
         for v in plane {
             *v = v.sqrt();

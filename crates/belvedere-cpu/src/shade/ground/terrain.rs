@@ -2,11 +2,11 @@
 
 use crate::cache::GroundCache;
 use crate::shade::color::{Rgb, linear, smoothstep};
-use crate::shade::footprint::Footprint;
+use crate::shade::footprint::{Footprint, LONGEST};
 use crate::shade::ground::displaced::{self, DisplacedLight};
 use crate::shade::ground::lit::{Lit, LitGround, LitKey};
 use crate::shade::ground::palette::Tint;
-use crate::shade::ground::patch::LightingInputs;
+use crate::shade::ground::patch::{GroundShape, LightingInputs};
 use crate::shade::ground::shadow::Shadows;
 use crate::shade::ground::surface::{MipPyramid, Surface};
 use crate::shade::ground::texture::stipple;
@@ -28,6 +28,8 @@ pub(crate) struct TerrainShade<'a> {
     pub(crate) pitch: f64,
     means: Arc<MipPyramid>,
     surface: Surface<'a>,
+    /// The undisplaced ground and its averages, where light falls on a displaced one.
+    map: Option<(Surface<'a>, Arc<MipPyramid>)>,
     shadows: Option<Arc<Shadows>>,
     tint: Tint,
     exaggeration: f32,
@@ -52,6 +54,11 @@ impl<'a> TerrainShade<'a> {
         let key = LitKey { relief, light, palette, exaggeration: layer.exaggeration };
         let unlit = |means: &MipPyramid| Arc::new(LitGround::new(hf.cols(), hf.rows(), means.top()));
         let averages = || Arc::new(MipPyramid::new(&surface));
+        let map = (!surface.is_map()).then(|| {
+            let map = Surface::of_map(hf);
+            let means = cache.means.get(hf, (), || Arc::new(MipPyramid::new(&map)));
+            (map, means)
+        });
         let cast = |means: &MipPyramid| Arc::new(Shadows::new(&surface, means, &light));
         let (means, shadows, lit) = if surface.is_map() {
             // The map's own light stays the same from frame to frame.
@@ -79,6 +86,7 @@ impl<'a> TerrainShade<'a> {
             pitch: (spacing.x * spacing.y).sqrt(),
             means,
             surface,
+            map,
             shadows,
             tint: Tint::new(&layer.palette, hf.z_range()),
             exaggeration: layer.exaggeration as f32,
@@ -91,6 +99,7 @@ impl<'a> TerrainShade<'a> {
         LightingInputs {
             surface: &self.surface,
             means: &self.means,
+            map: self.map.as_ref().map(|(surface, means)| GroundShape { surface, means }),
             shadows: self.shadows.as_deref(),
             tint: &self.tint,
             light: &self.light,
@@ -157,12 +166,15 @@ impl<'a> TerrainShade<'a> {
     ) -> Option<(Rgb, Option<u32>)> {
         let spacing = self.hf.spacing();
         let (xy, fp) = (self.hf.north_west() + DVec2::new(g.x, -g.y) * spacing, cells * self.pitch);
-        let areas = shader.areas.iter().map(|a| (a, a.depth_inside(xy) / fp));
-        let areas: Vec<_> = areas.filter(|(_, inside)| *inside > -0.5).collect();
+        // No print is longer; how many pixels there are to a border the print itself tells, which looks along the ground.
+        let areas = shader.areas.iter().map(|a| (a, a.border(xy)));
+        let areas: Vec<_> = areas.filter(|(_, border)| border.inside > -0.5 * LONGEST * fp).collect();
         if self.drapes.is_empty() && areas.is_empty() && shader.casters.is_none() {
             return None;
         }
         let print = print();
+        let areas = areas.into_iter().map(|(a, border)| (a, border.inside / print.along(border.across)));
+        let areas: Vec<_> = areas.filter(|(_, inside)| *inside > -0.5).collect();
         let drapes = self.drapes.iter().map(|d| d.at(xy, &print)).filter(|(_, alpha)| *alpha > 0.0);
         let drapes: Vec<_> = drapes.collect();
         let sun = self.sun_on(shader, xy, &print);
@@ -186,7 +198,7 @@ impl<'a> TerrainShade<'a> {
             let share = (0.5 + inside).clamp(0.0, 1.0) as f32 * a.alpha;
             albedo = albedo.lerp(fill(a, xy, inside as f32, &print), share);
             match a.surface {
-                AreaSurface::Water => water += share * (1.0 - water),
+                AreaSurface::Water | AreaSurface::Sea => water += share * (1.0 - water),
                 AreaSurface::Glacier => {
                     // Snow throws light into its own shadows.
                     light = light.lerp(Rgb::splat(1.02), 0.35 * share);
@@ -212,9 +224,9 @@ fn fill(area: &AreaMap, xy: DVec2, inside: f32, print: &Footprint) -> Rgb {
     // Over the first pixel and a half.
     let rim = if area.has_outline { 0.0 } else { 1.0 - smoothstep(0.6, 2.2, inside) };
     match area.surface {
-        AreaSurface::Plain => area.fill,
+        AreaSurface::Plain | AreaSurface::Outline | AreaSurface::Park => area.fill,
         // Shore line.
-        AreaSurface::Water => area.fill * (1.0 - 0.45 * rim),
+        AreaSurface::Water | AreaSurface::Sea => area.fill * (1.0 - 0.45 * rim),
         AreaSurface::Forest => area.fill * (1.0 + 0.22 * stipple(xy, print.length())),
         AreaSurface::Glacier => {
             let ice = area.fill * (1.0 + 0.035 * stipple(xy, print.length()));
@@ -223,7 +235,7 @@ fn fill(area: &AreaMap, xy: DVec2, inside: f32, print: &Footprint) -> Rgb {
     }
 }
 
-/// The ground that light falls on. Light stays fixed to the map unless the ground itself was changed, else a lowered
+/// The ground that light falls on; its tint is always that of the map. Light stays fixed to the map unless the ground itself was changed, else a lowered
 /// ridge keeps its old shadow.
 fn lit_surface<'a>(layer: &'a TerrainLayer, job: &RenderJob<'a>) -> Surface<'a> {
     let (hf, stages) = (&layer.heightfield, job.view.stages());

@@ -36,6 +36,15 @@ struct Edge {
     feature: u32,
 }
 
+/// Where a place lies from a border.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Border {
+    /// Distance, scene units, positive inside.
+    pub(crate) inside: f64,
+    /// Unit vector along the way to it.
+    pub(crate) across: DVec2,
+}
+
 impl AreaMap {
     /// `None` for a layer without a finite edge.
     pub(crate) fn new(layer: u32, area: &AreaLayer) -> Option<Self> {
@@ -114,29 +123,32 @@ impl AreaMap {
         normal.dot(c - e.a).abs() <= reach
     }
 
-    /// Signed distance to the border in scene units, positive inside; capped where no border is near.
-    pub(crate) fn depth_inside(&self, p: DVec2) -> f64 {
+    /// The border that is nearest; as far as can be where none is near.
+    pub(crate) fn border(&self, p: DVec2) -> Border {
+        let far = |inside: f64| Border { inside, across: DVec2::X };
         let g = (p - self.min) * self.per_cell;
         let reach = 0.3;
         let [w, h] = self.size.map(|n| n as f64);
         if !(g.x >= -reach && g.y >= -reach && g.x <= w + reach && g.y <= h + reach) {
-            return f64::NEG_INFINITY;
+            return far(f64::NEG_INFINITY);
         }
         let (x, y) = ((g.x.max(0.0) as usize).min(self.size[0] - 1), (g.y.max(0.0) as usize).min(self.size[1] - 1));
         let cell = self.cells[y * self.size[0] + x];
         let list = |[a, b]: [u32; 2]| a as usize..b as usize;
         let (features, edges) = (&self.features[list(cell.features)], &self.edges[list(cell.edges)]);
         if edges.is_empty() {
-            return if features.is_empty() { f64::NEG_INFINITY } else { f64::INFINITY };
+            return far(if features.is_empty() { f64::NEG_INFINITY } else { f64::INFINITY });
         }
         let centre = self.min + DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * self.cell;
-        let nearest = edges.iter().map(|e| distance(p, e.a, e.b)).fold(f64::INFINITY, f64::min);
+        let ways = edges.iter().map(|e| way_to(p, e.a, e.b));
+        let nearest = ways.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared())).unwrap_or(DVec2::INFINITY);
         let parity = |feature: u32| {
             let crossed = edges.iter().filter(|e| e.feature == feature && crosses(centre, p, e.a, e.b)).count();
             features.contains(&feature) ^ (crossed % 2 == 1)
         };
         let inside = features.iter().any(|&f| parity(f)) || edges.iter().any(|e| parity(e.feature));
-        if inside { nearest } else { -nearest }
+        let depth = nearest.length();
+        Border { inside: if inside { depth } else { -depth }, across: nearest.normalize_or(DVec2::X) }
     }
 }
 
@@ -157,10 +169,15 @@ fn all_edges(area: &AreaLayer) -> Vec<Edge> {
 
 /// Distance from `p` to the segment `a b`.
 pub(crate) fn distance(p: DVec2, a: DVec2, b: DVec2) -> f64 {
+    way_to(p, a, b).length()
+}
+
+/// From `p` to the nearest point of the segment `a b`.
+fn way_to(p: DVec2, a: DVec2, b: DVec2) -> DVec2 {
     let d = b - a;
     let len2 = d.length_squared();
     let t = if len2 > 0.0 { ((p - a).dot(d) / len2).clamp(0.0, 1.0) } else { 0.0 };
-    (a + t * d - p).length()
+    a + t * d - p
 }
 
 /// Whether the segments `p q` and `a b` cross; an end exactly on the other's line counts for one side.
@@ -206,7 +223,7 @@ mod tests {
                 .filter(|(a, b)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x));
             let expected = odd.count() % 2 == 1;
             inside += u32::from(expected);
-            assert_eq!(map.depth_inside(p) > 0.0, expected, "{p}");
+            assert_eq!(map.border(p).inside > 0.0, expected, "{p}");
         }
         assert!(inside > 3000);
     }

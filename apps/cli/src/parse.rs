@@ -1,0 +1,93 @@
+//! Values of arguments.
+
+use crate::args::Outside;
+
+/// Most worker threads: far above what helps, far below what a system refuses to start.
+const MAX_THREADS: usize = 1024;
+
+/// A number of threads.
+pub(crate) fn parse_threads(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|n| *n <= MAX_THREADS).ok_or_else(|| format!("give a whole number in 0..={MAX_THREADS}"))
+}
+
+/// An error in pixels.
+pub(crate) fn parse_lod(text: &str) -> Result<f64, String> {
+    let px = text.parse().ok().filter(|px| (0.0..=64.0).contains(px));
+    px.ok_or_else(|| "give an error in pixels in 0..=64; 0 draws every cell".into())
+}
+
+/// Width and height of `1280x720`.
+pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X']).map(|(w, h)| [w.trim().parse(), h.trim().parse()]);
+    match sides {
+        Some([Ok(w), Ok(h)]) => Ok([w, h]),
+        _ => Err("give width and height in pixels, such as 1280x720".into()),
+    }
+}
+
+/// `phi`, `phi=25:80` or `phi=25:80:0.5`; zeros stand for what is not given.
+pub(crate) fn parse_sweep(text: &str) -> Result<[f64; 3], String> {
+    let wrong = || "give phi, or phi=FIRST:LAST[:STEP] in degrees, such as phi=25:80".to_owned();
+    if text == "phi" {
+        return Ok([0.0; 3]);
+    }
+    let range = text.strip_prefix("phi=").ok_or_else(wrong)?;
+    let numbers: Option<Vec<f64>> =
+        range.split(':').map(|t| t.trim().parse().ok().filter(|v: &f64| v.is_finite())).collect();
+    match numbers.as_deref() {
+        Some([first, last]) if first != last => Ok([*first, *last, 0.0]),
+        Some([first, last, step]) if first != last && *step > 0.0 => Ok([*first, *last, *step]),
+        _ => Err(wrong()),
+    }
+}
+
+/// Three numbers of `1.5,42.5,2400`.
+pub(crate) fn parse_eye(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Vec<f64> =
+        text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
+    numbers.try_into().map_err(|_| "give X,Y,Z".into())
+}
+
+/// A length in scene units.
+pub(crate) fn parse_spacing(text: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(|v: &f64| *v > 0.0 && v.is_finite()).ok_or("give a length greater than 0".into())
+}
+
+/// `auto`, or six numbers.
+pub(crate) fn parse_outside(text: &str) -> Result<Outside, String> {
+    if text.trim() == "auto" {
+        return Ok(None);
+    }
+    let v: Vec<f64> = text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
+    match v[..] {
+        [a, b, c, d, e, f] => Ok(Some([[a, b, c], [d, e, f]])),
+        _ => Err("give auto, or eye and target as X,Y,Z,X,Y,Z".into()),
+    }
+}
+
+/// Two numbers of `1.5,42.5`.
+pub(crate) fn parse_place(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Vec<f64> =
+        text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
+    numbers.try_into().map_err(|_| "give X,Y".into())
+}
+
+/// Bytes of `512MiB`, `2GB`, `100000`.
+pub(crate) fn parse_bytes(text: &str) -> Result<u64, String> {
+    let split = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let (number, unit) = text.split_at(split);
+    let scale = match unit.trim().to_ascii_lowercase().as_str() {
+        "" | "b" => 1.0,
+        "k" | "kib" => 1024.0,
+        "kb" => 1e3,
+        "m" | "mib" => 1024.0 * 1024.0,
+        "mb" => 1e6,
+        "g" | "gib" => 1024.0 * 1024.0 * 1024.0,
+        "gb" => 1e9,
+        _ => return Err("give a size such as 800MiB or 2GiB".into()),
+    };
+    match number.parse::<f64>() {
+        Ok(n) if n * scale >= 1024.0 * 1024.0 && n * scale <= 1e15 => Ok((n * scale) as u64),
+        _ => Err("give a size of at least 1MiB, such as 800MiB or 2GiB".into()),
+    }
+}

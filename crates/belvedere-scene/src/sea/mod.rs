@@ -1,0 +1,234 @@
+//! The sea of a ground: found by the heights alone, as areas are drawn.
+//!
+//! Sea is a connected stretch of ground at one height, see [`Sea::of`]. Land below sea level is no sea: its heights differ.
+
+mod coast;
+
+use crate::{Heightfield, NodeState};
+use belvedere_core::DVec2;
+use std::collections::VecDeque;
+
+/// Heights that differ by less are the same, metres.
+const SAME_M: f32 = 0.01;
+/// Fewest nodes of a sea that have sea all around them.
+const FEWEST: usize = 100;
+/// Least area of a sea, square metres, or, on smaller grounds, least share of the ground.
+const LEAST_M2: f64 = 1e6;
+const LEAST_SHARE: f64 = 0.05;
+/// A shore is at most as high as a node is wide, within these limits, metres.
+const SHORE_M: [f64; 2] = [10.0, 100.0];
+
+/// The sea of a ground.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sea {
+    /// Its height, metres.
+    pub level_m: f64,
+    /// Its area, square metres.
+    pub area_m2: f64,
+    /// Its coasts: closed rings of scene positions, of which every second one encloses land. They run outside the ground where
+    /// the sea reaches its edge.
+    pub coasts: Vec<Vec<DVec2>>,
+}
+
+impl Sea {
+    /// The sea of a ground, if there is any. Sea is every stretch of nodes
+    /// * at one height, to a centimetre: 0, or below 0 the lowest height of the ground;
+    /// * joined along rows and columns by nodes that have no other height around them, at least 100 of them;
+    /// * that reaches the edge of the ground, or voids that do;
+    /// * of at least a square kilometre, or a twentieth of the ground;
+    /// * with a shore: half the nodes beside it stand less than the spacing of the nodes over it (10 m at least, 100 m at most).
+    ///   What steps up to the land is no sea but a frame of undeclared voids.
+    pub fn of(ground: &Heightfield) -> Option<Self> {
+        let lowest = ground.z_range()[0];
+        let levels = [Some(0.0), (lowest < -f64::from(SAME_M)).then_some(lowest)];
+        levels.into_iter().flatten().filter(|level| *level >= lowest).find_map(|level| {
+            let nodes = nodes_at(ground, level as f32)?;
+            let spacing = ground.spacing();
+            let area_m2 = nodes.iter().filter(|sea| **sea).count() as f64 * spacing.x * spacing.y;
+            Some(Self { level_m: level, area_m2, coasts: coast::rings(ground, &nodes, level) })
+        })
+    }
+}
+
+/// Nodes around a node, itself left out.
+fn around(i: usize, [cols, rows]: [usize; 2]) -> impl Iterator<Item = usize> {
+    let (c, r) = (i % cols, i / cols);
+    let rows = r.saturating_sub(1)..(r + 2).min(rows);
+    rows.flat_map(move |r| (c.saturating_sub(1)..(c + 2).min(cols)).map(move |c| r * cols + c)).filter(move |k| *k != i)
+}
+
+/// The nodes beside it in its row and column.
+fn beside(i: usize, [cols, rows]: [usize; 2]) -> impl Iterator<Item = usize> {
+    let (c, r) = (i % cols, i / cols);
+    [(c > 0).then(|| i - 1), (c + 1 < cols).then(|| i + 1), (r > 0).then(|| i - cols), (r + 1 < rows).then(|| i + cols)]
+        .into_iter()
+        .flatten()
+}
+
+/// Marks what is joined with `first` along rows and columns and not marked yet; the nodes in the order of finding.
+fn flood(first: usize, size: [usize; 2], marked: &mut [bool], belongs: impl Fn(usize) -> bool) -> Vec<usize> {
+    let (mut found, mut next) = (Vec::new(), VecDeque::from([first]));
+    marked[first] = true;
+    while let Some(i) = next.pop_front() {
+        found.push(i);
+        for k in beside(i, size) {
+            if !marked[k] && belongs(k) {
+                marked[k] = true;
+                next.push_back(k);
+            }
+        }
+    }
+    found
+}
+
+/// The nodes of the sea at a level.
+fn nodes_at(ground: &Heightfield, level: f32) -> Option<Vec<bool>> {
+    let size @ [cols, rows] = [ground.cols(), ground.rows()];
+    let (heights, states) = (ground.heights(), ground.states());
+    let is_void = |i: usize| states[i] == NodeState::Void;
+    let level_at = |i: usize| !is_void(i) && (heights[i] - level).abs() <= SAME_M;
+    let on_rim =
+        |i: usize| i < cols || i >= cols * (rows - 1) || i.is_multiple_of(cols) || (i + 1).is_multiple_of(cols);
+    let rim = || (0..heights.len()).filter(|i| on_rim(*i));
+    let mut outside = vec![false; heights.len()];
+    for i in rim() {
+        if is_void(i) && !outside[i] {
+            flood(i, size, &mut outside, is_void);
+        }
+    }
+    let at_edge = |i: usize| on_rim(i) || around(i, size).any(|k| outside[k]);
+    let solid = |i: usize| level_at(i) && around(i, size).all(|k| level_at(k) || is_void(k));
+    let measured = (0..heights.len()).filter(|i| !is_void(*i)).count();
+    let cell = ground.spacing().x * ground.spacing().y;
+    let highest = (ground.spacing().element_sum() / 2.0).clamp(SHORE_M[0], SHORE_M[1]) as f32;
+    let (mut seen, mut sea, mut any) = (vec![false; heights.len()], vec![false; heights.len()], false);
+    for first in 0..heights.len() {
+        if seen[first] || !solid(first) {
+            continue;
+        }
+        let mut part = flood(first, size, &mut seen, solid);
+        if part.len() < FEWEST || !part.iter().any(|i| at_edge(*i)) {
+            continue;
+        }
+        // The nodes between solid ones and the shore.
+        let inner = part.len();
+        let mut own = vec![false; heights.len()];
+        part.iter().for_each(|i| own[*i] = true);
+        for n in 0..inner {
+            for k in around(part[n], size).filter(|k| level_at(*k)) {
+                if !std::mem::replace(&mut own[k], true) {
+                    part.push(k);
+                }
+            }
+        }
+        let wide = part.len() as f64 * cell >= LEAST_M2 || part.len() as f64 >= LEAST_SHARE * measured as f64;
+        let shore = part.iter().flat_map(|i| around(*i, size)).filter(|k| !is_void(*k) && !level_at(*k));
+        let mut shore: Vec<f32> = shore.map(|k| heights[k] - level).collect();
+        let middle = shore.len() / 2;
+        if !wide || shore.is_empty() || *shore.select_nth_unstable_by(middle, f32::total_cmp).1 > highest {
+            continue;
+        }
+        any = true;
+        part.iter().for_each(|i| sea[*i] = true);
+    }
+    any.then_some(sea)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ground of `side` squared nodes 30 m apart.
+    fn ground(side: usize, height: impl Fn(usize, usize) -> f32) -> Heightfield {
+        let heights = (0..side * side).map(|i| height(i % side, i / side)).collect();
+        Heightfield::measured(DVec2::new(0.0, 3000.0), DVec2::splat(30.0), side, side, heights).unwrap()
+    }
+
+    fn with_voids(side: usize, height: impl Fn(usize, usize) -> f32) -> Heightfield {
+        let heights: Vec<f32> = (0..side * side).map(|i| height(i % side, i / side)).collect();
+        let state = |h: &f32| if h.is_nan() { NodeState::Void } else { NodeState::Measured };
+        let states = heights.iter().map(state).collect();
+        Heightfield::new(DVec2::ZERO, DVec2::splat(30.0), side, side, heights, states).unwrap()
+    }
+
+    /// Land that rises from column `shore` on, `step` m a node.
+    fn coast(shore: usize, step: f32) -> impl Fn(usize, usize) -> f32 {
+        move |c, r| if c < shore { 0.0 } else { step * (c - shore + 1) as f32 + 0.1 * (r % 3) as f32 }
+    }
+
+    /// Whether a place lies in the sea.
+    fn contains(sea: &Sea, p: DVec2) -> bool {
+        let crossed = sea.coasts.iter().flat_map(|r| r.iter().zip(r.iter().cycle().skip(1)));
+        let crossed =
+            crossed.filter(|(a, b)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x));
+        crossed.count() % 2 == 1
+    }
+
+    #[test]
+    fn level_ground_at_0_that_reaches_the_edge_is_sea_with_its_islands() {
+        let island = |c: usize, r: usize| c.abs_diff(25) + r.abs_diff(50) < 6;
+        let hf = ground(101, |c, r| if island(c, r) { 7.0 } else { coast(60, 4.0)(c, r) });
+        let sea = Sea::of(&hf).expect("sea");
+        assert_eq!(sea.level_m, 0.0);
+        for i in 0..101 * 101 {
+            let p = hf.node(i % 101, i / 101).unwrap();
+            assert_eq!(contains(&sea, p.truncate()), p.z == 0.0, "node {i} at {p}");
+        }
+        assert_eq!(sea.area_m2, hf.heights().iter().filter(|h| **h == 0.0).count() as f64 * 900.0);
+    }
+
+    #[test]
+    fn what_is_not_constant_or_small_or_inland_or_framed_is_land() {
+        let wide = coast(60, 4.0);
+        // A polder: below 0, and its heights differ.
+        let polder = ground(101, |c, r| wide(c, r) - 4.0 - 0.1 * ((c * 7 + r * 3) % 5) as f32);
+        // A lake at 0 behind a dike.
+        let lake = ground(101, |c, r| if c == 0 || r == 0 || r == 100 { 3.0 } else { wide(c, r) });
+        let small = ground(101, coast(4, 4.0));
+        // A frame of undeclared voids around land 150 m high.
+        let frame = ground(101, |c, r| if c.min(r).min(100 - c).min(100 - r) < 20 { 0.0 } else { 150.0 + c as f32 });
+        let inland = ground(101, |c, r| 400.0 + wide(c, r));
+        let level = ground(101, |_, _| 0.0);
+        // Noise of whole metres around 0.
+        let flats = ground(101, |c, r| ((c * 7919 + r * 104_729) % 3) as f32 - 1.0);
+        for (what, hf) in [
+            ("polder", polder),
+            ("lake", lake),
+            ("small", small),
+            ("frame", frame),
+            ("inland", inland),
+            ("level", level),
+            ("flats", flats),
+        ] {
+            assert_eq!(Sea::of(&hf), None, "{what}");
+        }
+    }
+
+    #[test]
+    fn a_level_sea_below_0_is_the_lowest_of_the_ground() {
+        let caspian = ground(101, |c, r| coast(60, 4.0)(c, r) - 28.0);
+        assert_eq!(Sea::of(&caspian).map(|s| s.level_m), Some(-28.0));
+        // A plain at -4 m beside a deeper hollow is land.
+        let hollow = ground(101, |c, r| if c == 90 { -9.0 - r as f32 } else { coast(60, 4.0)(c, r) - 4.0 });
+        assert_eq!(Sea::of(&hollow), None);
+    }
+
+    #[test]
+    fn voids_outside_the_data_are_an_edge_and_voids_inside_it_are_none() {
+        let shore = coast(60, 4.0);
+        let rim = with_voids(101, |c, r| if c < 9 || r < 9 { f32::NAN } else { shore(c, r) });
+        let sea = Sea::of(&rim).expect("sea beside the rim");
+        assert!(contains(&sea, rim.node_xy(30, 50)) && !contains(&sea, rim.node_xy(80, 50)));
+        let lake = with_voids(101, |c, r| {
+            let dike = c == 0 || r == 0 || r == 100;
+            if (20..25).contains(&c) && r == 50 {
+                f32::NAN
+            } else if dike {
+                3.0
+            } else {
+                shore(c, r)
+            }
+        });
+        assert_eq!(Sea::of(&lake), None);
+    }
+}

@@ -1,0 +1,111 @@
+//! Area layers: what covers them, and why.
+
+use super::ground::Ground;
+use super::layers::hidden;
+use super::loader::Loader;
+use super::{builtin, vectors};
+use crate::BelvedereError;
+use crate::record::AreaRecord;
+use crate::scene_file::{AreaDoc, AreaStyleDoc, LayerDoc, Paths, SurfaceDoc};
+use belvedere_io::vector::AreaKind;
+use belvedere_scene::{AreaLayer, AreaSurface, Color, LayerKind, Scene};
+
+/// An area layer.
+pub(super) fn layer(
+    loader: &mut Loader<'_>,
+    index: usize,
+    doc: &AreaDoc,
+    ground: &Ground<'_>,
+) -> Result<LayerKind, BelvedereError> {
+    let (features, found) = match &doc.source {
+        Paths::One(name) if builtin::is_name(name) => {
+            let (features, surface) = loader.builtin(index, name, |kind| match kind {
+                LayerKind::Area(layer) => Some((layer.features.clone(), layer.surface)),
+                _ => None,
+            })?;
+            (features, AreaKind { surface, why: format!("{name} says so") })
+        }
+        paths => vectors::areas(loader, index, &doc.id, paths, ground)?,
+    };
+    if features.is_empty() {
+        return Err(loader.fail(index, "source", "no area lies on the terrain; check that the source covers it"));
+    }
+    let style = &doc.style;
+    let stated = stated(loader, style);
+    if stated.is_none() && found.surface == AreaSurface::Outline {
+        let remark = format!("{}: drawn as outlines; surface says what they are", found.why);
+        loader.note(index, vec![remark]);
+    }
+    let AreaKind { surface, why } = stated.unwrap_or(found);
+    loader.areas.push(AreaRecord { layer: doc.id.clone(), kind: surface.name(), areas: features.len(), why });
+    Ok(LayerKind::Area(AreaLayer {
+        features,
+        fill: match &style.color {
+            Some(color) => loader.color(index, color)?,
+            None => surface.color(),
+        },
+        outline: match &style.outline {
+            Some(color) => loader.optional_color(index, color)?,
+            None => surface.outline(),
+        },
+        width_px: style.width_px,
+        surface,
+        hidden: hidden(style.hidden),
+        lift_m: style.lift_m,
+    }))
+}
+
+/// What options or the scene say.
+fn stated(loader: &Loader<'_>, style: &AreaStyleDoc) -> Option<AreaKind> {
+    let by_option = loader.options.area_style.and_then(surface);
+    let by_option = by_option.map(|s| (s, format!("asked for: area style {}", s.name())));
+    let by_key = style.surface.and_then(surface).map(|s| (s, format!("the scene says surface = \"{}\"", s.name())));
+    let by_water = style.water.map(|water| {
+        let surface = if water { AreaSurface::Water } else { AreaSurface::Plain };
+        (surface, format!("the scene says water = {water}"))
+    });
+    by_option.or(by_key).or(by_water).map(|(surface, why)| AreaKind { surface, why })
+}
+
+/// `None` = to be found out.
+fn surface(doc: SurfaceDoc) -> Option<AreaSurface> {
+    Some(match doc {
+        SurfaceDoc::Auto => return None,
+        SurfaceDoc::Outline => AreaSurface::Outline,
+        SurfaceDoc::Plain => AreaSurface::Plain,
+        SurfaceDoc::Water => AreaSurface::Water,
+        SurfaceDoc::Forest => AreaSurface::Forest,
+        SurfaceDoc::Glacier => AreaSurface::Glacier,
+        SurfaceDoc::Park => AreaSurface::Park,
+    })
+}
+
+/// The style of an area layer under another kind than its own: colours are those of the kind.
+pub(crate) fn restyle(style: &mut AreaStyleDoc, kind: SurfaceDoc) {
+    (style.surface, style.water, style.color, style.outline) = (Some(kind), None, None, None);
+}
+
+/// Writes into the areas of a document what was found to cover them, and their colours.
+pub(crate) fn fill_surfaces(layers: &mut [LayerDoc], scene: &Scene) {
+    for doc in layers {
+        let LayerDoc::Area(doc) = doc else { continue };
+        let layer = scene.layers.iter().find(|l| l.id == doc.id);
+        let Some(LayerKind::Area(layer)) = layer.map(|l| &l.kind) else { continue };
+        doc.style.water = None;
+        doc.style.surface = Some(match layer.surface {
+            AreaSurface::Outline => SurfaceDoc::Outline,
+            AreaSurface::Plain => SurfaceDoc::Plain,
+            AreaSurface::Water | AreaSurface::Sea => SurfaceDoc::Water,
+            AreaSurface::Forest => SurfaceDoc::Forest,
+            AreaSurface::Glacier => SurfaceDoc::Glacier,
+            AreaSurface::Park => SurfaceDoc::Park,
+        });
+        doc.style.color.get_or_insert_with(|| hex(layer.fill));
+        doc.style.outline.get_or_insert_with(|| layer.outline.map_or_else(|| "none".into(), hex));
+    }
+}
+
+fn hex(Color { r, g, b, a }: Color) -> String {
+    let alpha = if a == 255 { String::new() } else { format!("{a:02x}") };
+    format!("#{r:02x}{g:02x}{b:02x}{alpha}")
+}
