@@ -75,7 +75,7 @@ fn areas_are_what_they_say_they_are_and_the_record_says_why() {
 fn reveal_takes_the_style_of_areas_too() {
     let place = Place::new();
     let geographic =
-        ground(0, 400.0).replace("500000", "8.0").replace("4500000", "46.0").replace("cellsize 30", "cellsize 0.001");
+        ground(0, 400.0).replace("4500000", "46.0").replace("500000", "8.0").replace("cellsize 30", "cellsize 0.001");
     place.write("dem.asc", &geographic);
     place.write("a.geojson", r#"{"type":"Polygon","coordinates":[[[8.02,46.02],[8.04,46.02],[8.03,46.04]]]}"#);
     let kind = |more: &[&str]| {
