@@ -271,6 +271,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         let mut result = done("reveal", &written, answer.session.warnings());
         result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
         result["shares"] = serde_json::from_str(&output::json(&answer.shares)?)?;
+        result["hidden"] = serde_json::from_str(&output::json(&answer.hidden)?)?;
         context.print(&result)?;
     } else if !context.common.quiet {
         context.finish();

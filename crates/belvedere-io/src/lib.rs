@@ -12,6 +12,7 @@ pub mod open_exr;
 pub mod png;
 pub mod ramp;
 pub mod raster;
+mod recognise;
 pub mod terrain;
 pub mod vector;
 
@@ -21,6 +22,7 @@ pub use geotiff::GeoTiff;
 pub use mesh::{MeshFile, load_mesh};
 pub use ramp::load_ramp;
 pub use raster::{Affine, Alpha, CrsKind, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, SourceCrs};
+pub use recognise::{Unread, recognise};
 pub use terrain::{CrsChoice, LoadedTerrain, ResampleError, TerrainRequest, load_terrain};
 pub use vector::{
     Geometry, VectorFeature, Vectors, Vertex, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain,

@@ -136,7 +136,7 @@ pub fn load_terrain(
         return Err(IoError::format(first, format!("max_nodes is {}, at least 4 are needed", request.max_nodes)));
     }
     let mut warnings = Vec::new();
-    let sources = source::read_all(paths, request, progress, &mut warnings)?;
+    let sources = source::read_all(paths, request, progress, &mut warnings).map_err(crate::recognise::explain)?;
     in_scene(sources, request, warnings, progress)
 }
 

@@ -6,11 +6,16 @@ const SIDE: usize = 64;
 
 /// Hills between lon 8.0 and 8.064, without data where `hole` says so.
 fn hills(hole: impl Fn(usize, usize) -> bool) -> String {
+    ranges(hole, 1000.0, 250.0)
+}
+
+/// Ranges of hills `rise` m over and under `middle`.
+fn ranges(hole: impl Fn(usize, usize) -> bool, middle: f64, rise: f64) -> String {
     let mut text =
         format!("ncols {SIDE}\nnrows {SIDE}\nxllcorner 8.0\nyllcorner 46.0\ncellsize 0.001\nNODATA_value -9999\n");
     for row in 0..SIDE {
         for col in 0..SIDE {
-            let height = 1000.0 + 250.0 * (0.35 * row as f64).sin() + 40.0 * (0.2 * col as f64).sin();
+            let height = middle + rise * (0.35 * row as f64).sin() + 40.0 * (0.2 * col as f64).sin();
             text += &if hole(row, col) { "-9999 ".to_owned() } else { format!("{height:.1} ") };
         }
         text += "\n";
@@ -109,6 +114,42 @@ fn info_says_what_it_reads() {
     place.write("x.docx", "v 0 0 0");
     assert!(place.fails(&["info", "x.docx"]).contains("features as GPX, GeoJSON or shapefile"));
     assert!(place.fails(&["info", "none.docx"]).contains("No such file"));
+}
+
+#[test]
+fn files_of_formats_that_are_not_read_yet_are_named() {
+    let place = place(|_, _| false);
+    place.write("block.json", "{\"type\": \"CityJSON\", \"version\": \"2.0\"}");
+    place.write("dna.pdb", "HEADER    DNA\n");
+    for (file, format) in [("block.json", "CityJSON"), ("dna.pdb", "PDB")] {
+        let found = place.json(&["info", file, "--json"]);
+        assert_eq!((&found["files"][0]["kind"], &found["files"][0]["format"]), (&"unread".into(), &format.into()));
+        assert!(found["files"][0]["note"].as_str().is_some_and(|note| note.starts_with("not read by this version")));
+        let line = place.fails(&["reveal", "dem.asc", file, "-o", "out.png"]);
+        assert!(line.contains(&format!("is {format} (")) && line.contains("does not read"), "{line}");
+        assert!(place.fails(&["reveal", file, "way.geojson", "-o", "out.png"]).contains("does not read"), "{format}");
+    }
+}
+
+#[test]
+fn what_a_revealing_picture_still_hides_is_listed() {
+    let place = place(|_, _| false);
+    let hidden = |view: [&str; 4]| {
+        let args = ["reveal", "dem.asc", "way.geojson", "-o", "out.png", "--size", "64x48", "--overwrite", "--json"];
+        let result = place.json(&[&args[..], &view, &["--report", "report.json"]].concat());
+        let report: serde_json::Value = serde_json::from_slice(&super::read(&place.path("report.json"))).expect("JSON");
+        assert_eq!(report["hidden"], result["hidden"]);
+        report["hidden"].as_array().expect("a list").clone()
+    };
+    assert_eq!(hidden(["--eye", "8.03,46.04,9000", "--look", "8.03,46.041,1000"]).len(), 0, "from above");
+    // Walls of 3 km that no spline bends out of the way.
+    place.write("dem.asc", &ranges(|_, _| false, 2000.0, 1500.0));
+    let low = hidden(["--eye", "8.03,46.002,3400", "--look", "8.03,46.035"]);
+    assert!(!low.is_empty());
+    for run in &low {
+        assert_eq!((&run["layer_id"], &run["reason"]), (&"features1".into(), &"covered".into()), "{run}");
+        assert!(run["to_m"].as_f64() > run["from_m"].as_f64() && run["over_m"].as_f64() > Some(0.0), "{run}");
+    }
 }
 
 #[test]

@@ -3,10 +3,12 @@
 
 pub(crate) mod bend;
 mod buffer;
+mod hidden;
 mod image;
 mod report;
 
 pub use bend::BendMeasure;
+pub use hidden::{HiddenReason, HiddenRun, hidden};
 pub use report::{Clearance, FeatureMeasure, Measures, MethodShare, Visibility};
 
 use crate::ConstructError;

@@ -11,6 +11,7 @@ pub use area_kind::{AreaKind, area_kind};
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
 
 use crate::crs::CoordinateSystem;
+use crate::recognise::explain;
 use crate::{IoError, Loaded};
 use glam::DVec2;
 use std::collections::BTreeMap;
@@ -96,6 +97,10 @@ impl Vectors {
 /// # Errors
 /// [`IoError`]: unreadable, none of the formats, broken, without any vertex, or in an unknown coordinate system.
 pub fn load_vectors(path: &Path) -> Result<Loaded<Vectors>, IoError> {
+    load_known(path).map_err(explain)
+}
+
+fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
     let size = std::fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     if size > MAX_BYTES {
         let mib = size >> 20;

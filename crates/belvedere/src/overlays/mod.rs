@@ -37,7 +37,7 @@ fn length_above(metres: f64) -> String {
     if !(metres > 0.0 && metres.is_finite()) {
         return "0 m".into();
     }
-    let step = 10f64.powf((metres.log10().floor() - 2.0).max(0.0)).max(if metres < 10.0 { 0.1 } else { 1.0 });
+    let step = if metres < 10.0 { 0.1 } else { 10f64.powf((metres.log10().floor() - 2.0).max(0.0)) };
     let up = (metres / step - 1e-9).ceil() * step;
     if metres < 10.0 { format!("{up:.1} m") } else { format!("{up:.0} m") }
 }

@@ -26,6 +26,21 @@ pub enum FileInfo {
     Mesh(MeshInfo),
     /// A built-in scene.
     Builtin(BuiltinInfo),
+    /// A known format that this version does not read.
+    Unread(UnreadInfo),
+}
+
+/// A file of a known format that this version does not read.
+#[derive(Debug, Clone, Serialize)]
+pub struct UnreadInfo {
+    /// The file.
+    pub path: String,
+    /// Format.
+    pub format: &'static str,
+    /// What such files hold.
+    pub holds: &'static str,
+    /// That it is not read, and what to do.
+    pub note: String,
 }
 
 /// Triangles.
@@ -171,6 +186,11 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
         return built_in(name);
     }
     let path = Path::new(name);
+    if let Some(known) = belvedere_io::recognise(path)? {
+        let note = format!("not read by this version; {}", known.meanwhile);
+        let (path, format, holds) = (name.to_owned(), known.format, known.holds);
+        return Ok(FileInfo::Unread(UnreadInfo { path, format, holds, note }));
+    }
     let ends = |list: &[&str]| path.extension().is_some_and(|e| list.iter().any(|l| e.eq_ignore_ascii_case(l)));
     if ends(&["gpx", "geojson", "json", "shp"]) {
         return features(path);
@@ -179,7 +199,6 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
         return mesh(path);
     }
     if !ends(&["tif", "tiff", "hgt", "zip", "asc", "grd", "txt"]) {
-        std::fs::metadata(path).map_err(|e| belvedere_io::IoError::os(path, e))?;
         return Err(belvedere_io::IoError::format(
             path,
             "it is of no kind that this version reads: terrain and pictures as GeoTIFF, SRTM .hgt (also .zip) or ESRI ASCII, features as GPX, GeoJSON or shapefile (.shp), meshes as OBJ, PLY, STL, glTF or GLB",

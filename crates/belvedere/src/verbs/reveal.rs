@@ -10,6 +10,7 @@ use crate::scene_file::{
     TerrainStageDoc,
 };
 use crate::{BelvedereError, OpenOptions, Session};
+use belvedere_construct::measure::HiddenRun;
 use belvedere_construct::{Goal, MeasureOptions, RevealMemory, RevealOptions, RevealReport, Revealed};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::{TerrainMemory, TerrainReport};
@@ -93,6 +94,8 @@ pub struct RevealAnswer {
     pub report: RevealReport,
     /// What the picture shows where the ground makes way.
     pub shares: Option<FinalShares>,
+    /// What of the features in the picture stays hidden, part by part.
+    pub hidden: Vec<HiddenRun>,
     missed: Vec<String>,
 }
 
@@ -107,6 +110,8 @@ struct ReportFile<'a> {
     shares: Option<FinalShares>,
     #[serde(skip_serializing_if = "Option::is_none")]
     disocclusion: Option<&'a TerrainReport>,
+    /// What of the features in the picture stays hidden.
+    hidden: &'a [HiddenRun],
     displacement: Option<DisplacementReport>,
     view: &'a crate::record::ViewRecord,
     crs: String,
@@ -158,6 +163,12 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
         missed = reached.visible_bent.filter(|v| *v < ENOUGH).map(shortfall).into_iter().collect();
         shares = Some(reached);
     }
+    let hidden = belvedere_construct::measure::hidden(
+        &session.scene,
+        &session.view,
+        &MeasureOptions::default(),
+        &options.progress,
+    )?;
     let pair = PictureOptions {
         compare: true,
         straight: false,
@@ -165,7 +176,7 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
         ..request.picture.clone()
     };
     let picture = session.render(&pair)?;
-    Ok(RevealAnswer { session, picture, report: found.report, shares, missed })
+    Ok(RevealAnswer { session, picture, report: found.report, shares, hidden, missed })
 }
 
 fn shortfall(visible: f64) -> String {
@@ -248,6 +259,7 @@ impl RevealAnswer {
                 report: Some(&self.report).filter(|_| !self.shares.is_some_and(|s| s.technique == Technique::Terrain)),
                 shares: self.shares,
                 disocclusion: self.session.terrain_report(),
+                hidden: &self.hidden,
                 displacement: sidecar.displacement,
                 view: &sidecar.view,
                 crs: self.session.scene.crs.to_string(),
