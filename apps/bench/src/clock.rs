@@ -6,22 +6,24 @@ use std::time::Instant;
 const LEAST_MS: f64 = 1e-3;
 
 /// Measures one piece of work.
-pub(crate) struct Stopwatch {
+pub struct Stopwatch {
     wall: Instant,
     cpu_ms: Option<f64>,
 }
 
 impl Stopwatch {
-    pub(crate) fn start() -> Self {
+    /// Begins now.
+    pub fn start() -> Self {
         Self { cpu_ms: cpu_ms(), wall: Instant::now() }
     }
 
-    pub(crate) fn wall_ms(&self) -> f64 {
+    /// Wall time since the start, milliseconds.
+    pub fn wall_ms(&self) -> f64 {
         self.wall.elapsed().as_secs_f64() * 1e3
     }
 
     /// Processor time since the start, milliseconds; `None` where the system does not tell.
-    pub(crate) fn cpu_ms(&self) -> Option<f64> {
+    pub fn cpu_ms(&self) -> Option<f64> {
         self.cpu_ms.zip(cpu_ms()).map(|(a, b)| (b - a).max(LEAST_MS))
     }
 }
@@ -53,12 +55,13 @@ pub(crate) fn processor() -> String {
 }
 
 /// The value that `share` of all values do not exceed; 0 without values.
-pub(crate) fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+pub fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let last = values.len().saturating_sub(1);
     values.get((last as f64 * share).ceil() as usize).copied().unwrap_or(0.0)
 }
 
-pub(crate) fn median(values: Vec<f64>) -> f64 {
+/// Middle value; 0 without values.
+pub fn median(values: Vec<f64>) -> f64 {
     quantile(values, 0.5)
 }

@@ -3,10 +3,10 @@
 //! Cases are drawn in turn, forth and back, so that a busy machine disturbs all of them alike; ratios are medians of ratios of
 //! frames of one round. Processor time of all threads counts where the system tells it (Linux), wall time elsewhere.
 
-mod clock;
+pub mod clock;
 mod flight;
 mod frames;
-mod scene;
+pub mod scene;
 mod smooth;
 
 pub use flight::FlightCost;

@@ -8,10 +8,13 @@ use belvedere::core::{CurvedRays, DVec2, DVec3, Pinhole, Projection, SplineBend,
 use belvedere::scene::{Heightfield, Layer, LayerKind, Palette, Relief, Scene, TerrainLayer};
 
 /// A view and what bends it.
-pub(crate) type NamedView = (&'static str, View);
+pub type NamedView = (&'static str, View);
 
 /// Ridges on 10 km of ground, `nodes` x `nodes` nodes.
-pub(crate) fn ground(nodes: usize) -> Result<Scene> {
+///
+/// # Errors
+/// Fewer than two nodes.
+pub fn ground(nodes: usize) -> Result<Scene> {
     let extent = 10_240.0;
     let (half, spacing, step) = (0.5 * extent, extent / (nodes - 1) as f64, 10.24 / (nodes - 1) as f64);
     let height = |i: usize| {
@@ -20,9 +23,13 @@ pub(crate) fn ground(nodes: usize) -> Result<Scene> {
         (180.0 * (1..6).map(ridge).sum::<f64>()) as f32
     };
     let heights = (0..nodes * nodes).map(height).collect();
-    let heightfield = Heightfield::measured(DVec2::new(-half, half), DVec2::splat(spacing), nodes, nodes, heights);
+    Ok(scene_of(Heightfield::measured(DVec2::new(-half, half), DVec2::splat(spacing), nodes, nodes, heights)?))
+}
+
+/// A scene of one ground.
+pub fn scene_of(heightfield: Heightfield) -> Scene {
     let terrain = TerrainLayer {
-        heightfield: heightfield?.into(),
+        heightfield: heightfield.into(),
         drapes: Vec::new(),
         relief: Relief::Swiss,
         shading: None,
@@ -30,11 +37,14 @@ pub(crate) fn ground(nodes: usize) -> Result<Scene> {
         palette: Palette::Alpine,
     };
     let layer = Layer { id: "ground".into(), must_see: false, kind: LayerKind::Terrain(terrain) };
-    Ok(Scene { layers: vec![layer], ..Scene::default() })
+    Scene { layers: vec![layer], ..Scene::default() }
 }
 
 /// The straight view and the bent ones, all of the ground in the picture.
-pub(crate) fn views(image: [u32; 2]) -> Result<[NamedView; 3]> {
+///
+/// # Errors
+/// An image without pixels.
+pub fn views(image: [u32; 2]) -> Result<[NamedView; 3]> {
     let eye = DVec3::new(0.0, -11_500.0, 6_000.0);
     let lens = Projection::Perspective { fov_y: 50f64.to_radians() };
     let target = DVec3::new(0.0, 0.0, -900.0);

@@ -255,7 +255,7 @@ pub(crate) struct DisoccludeArgs {
     /// Displacement, on the same grid
     #[arg(long, value_name = "D.tif")]
     pub(crate) displacement: Option<PathBuf>,
-    /// Features on the displaced ground, their true places as properties
+    /// Features on the displaced ground, their true positions as properties
     #[arg(long, value_name = "OUT.geojson")]
     pub(crate) features_out: Option<PathBuf>,
     /// The ground before and after from the eye, side by side; its record lies beside it
@@ -348,7 +348,7 @@ pub(crate) struct RenderArgs {
     /// Picture of the camera itself from above: rays, planes, viewpoints, curve
     #[arg(long, conflicts_with_all = CAMERA_CONFLICTS)]
     pub(crate) overhead: bool,
-    /// The same from a place of its own: eye and point to look at, or auto
+    /// The same from an eye of its own: eye and point to look at, or auto
     #[arg(long, value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true, conflicts_with_all = CAMERA_CONFLICTS, conflicts_with = "overhead", value_parser = parse_outside)]
     pub(crate) outside: Option<Outside>,
     /// Tint of the terrain by height instead of the scene's: auto, alpine, desert, glacial, clear, plain, or a file of

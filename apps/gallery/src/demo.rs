@@ -1,6 +1,6 @@
 //! `demo`: the built-in scenes, straight and bent side by side, and their cameras, with a page that shows them.
 
-use crate::html::{STYLE, escape};
+use crate::html::{self, escape};
 use anyhow::{Context, Result};
 use belvedere::construct::{self, MeasureOptions, Measures};
 use belvedere::picture;
@@ -123,9 +123,10 @@ fn section(scene: &DemoScene, sidecar: &Sidecar, measures: &Measures) -> String 
     });
     let title = escape(&sidecar.title);
     let cameras = if scene.bends_rays { cameras(name, &title) } else { String::new() };
+    let says = format!("{title}: two pictures from the same camera. Left, {straight}. Right, {bent}.");
+    let picture = html::picture(&format!("{name}.png"), &says);
     format!(
-        "<section>\n<h2>{title}</h2>\n<p>{sentence}</p>\n<figure>\n<a href=\"{name}.png\"><img src=\"{name}.png\" \
-         alt=\"{title}: two pictures from the same camera. Left, {straight}. Right, {bent}.\"></a>\n\
+        "<section>\n<h2>{title}</h2>\n<p>{sentence}</p>\n<figure>\n{picture}\n\
          <figcaption><span>{straight}</span><span>{bent}</span></figcaption>\n</figure>\n\
          {cameras}<p class=\"small\">{moved}<a href=\"{name}.toml\">Scene</a> · <a href=\"{name}.png.json\">record</a></p>\n</section>\n",
     )
@@ -133,22 +134,22 @@ fn section(scene: &DemoScene, sidecar: &Sidecar, measures: &Measures) -> String 
 
 /// The camera of a scene from outside and from above.
 fn cameras(name: &str, title: &str) -> String {
+    let says = format!("The camera of {title} from outside: its rays on the terrain");
+    let outside = html::picture(&format!("{name}_camera.png"), &says);
+    let overhead = html::picture(&format!("{name}_overhead.png"), "The same from above");
     format!(
-        "<figure class=\"pair\">\n<a href=\"{name}_camera.png\"><img src=\"{name}_camera.png\" alt=\"The camera of {title} from outside: its rays on the terrain\"></a>\n\
-         <a href=\"{name}_overhead.png\"><img src=\"{name}_overhead.png\" alt=\"The same from above\"></a>\n\
+        "<figure class=\"pair\">\n{outside}\n{overhead}\n\
          <figcaption><span>the camera that sees this, from beside</span><span>and from above</span></figcaption>\n</figure>\n"
     )
 }
 
 fn page(sections: &str) -> String {
-    format!(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>Belvedere: straight and bent</title>\n\
-         <style>{STYLE}</style>\n</head>\n<body>\n<h1>Belvedere {}</h1>\n\
+    let body = format!(
+        "<h1>Belvedere {}</h1>\n\
          <p>Left, an ordinary picture. Right, the same camera with its view bent so that what matters is no longer hidden; \
          dashes mark where the route runs behind something. Bent pictures are not to scale and not for navigation.</p>\n\
-         {sections}<p class=\"small\">Change a scene and draw it again: <code>belvedere render street.toml -o mine.png --compare</code></p>\n\
-         </body>\n</html>\n",
+         {sections}<p class=\"small\">Change a scene and draw it again: <code>belvedere render street.toml -o mine.png --compare</code></p>\n",
         belvedere::VERSION
-    )
+    );
+    html::page("Belvedere: straight and bent", "", &body)
 }

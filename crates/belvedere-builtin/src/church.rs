@@ -81,13 +81,13 @@ impl Builder {
     fn apse(&mut self) {
         const SIDES: usize = 12;
         let (radius, wall) = (7.0, 10.0);
-        let place = |i: usize, r: f64, z: f64| {
+        let at = |i: usize, r: f64, z: f64| {
             let angle = FRAC_PI_2 - PI * i as f64 / SIDES as f64;
             DVec3::new(NAVE[1] + r * angle.cos(), -r * angle.sin(), z)
         };
         for i in 0..SIDES {
             self.face(
-                &[place(i, radius, 0.0), place(i + 1, radius, 0.0), place(i + 1, radius, wall), place(i, radius, wall)],
+                &[at(i, radius, 0.0), at(i + 1, radius, 0.0), at(i + 1, radius, wall), at(i, radius, wall)],
                 WALL,
             );
             // A quarter of a sphere in rings.
@@ -97,7 +97,7 @@ impl Builder {
             };
             for k in 0..4 {
                 let ((r0, z0), (r1, z1)) = (ring(k), ring(k + 1));
-                self.face(&[place(i, r0, z0), place(i + 1, r0, z0), place(i + 1, r1, z1), place(i, r1, z1)], COPPER);
+                self.face(&[at(i, r0, z0), at(i + 1, r0, z0), at(i + 1, r1, z1), at(i, r1, z1)], COPPER);
             }
         }
     }

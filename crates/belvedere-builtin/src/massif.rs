@@ -141,7 +141,7 @@ struct Forces {
     talus: Vec<f64>,
 }
 
-/// Share of the full uplift at a place (in sides of the massif, 0..1): long crests with gaps, never 0.
+/// Share of the full uplift at a point (in sides of the massif, 0..1): long crests with gaps, never 0.
 fn uplift_share(seed: u64, p: DVec2) -> f64 {
     let warp = Noise::new(seed ^ 11);
     let bent = p + 0.12 * DVec2::new(warp.fbm(p * 3.0, 3), warp.fbm(p * 3.0 + DVec2::splat(9.7), 3));
@@ -165,7 +165,7 @@ fn forces(seed: u64, n: usize, lift_m: f64, k: f64) -> Forces {
     }
 }
 
-/// Valley mouths: one stretch on each side, at seeded places.
+/// Valley mouths: one stretch on each side, at seeded positions.
 fn outlets(seed: u64, n: usize) -> Vec<bool> {
     let mut random = Random::new(seed ^ 15);
     let mut outlet = vec![false; n * n];

@@ -279,7 +279,7 @@ const WINDOW_M: f64 = 24_000.0;
 
 /// A route for terrain that has none: through the valleys of its most mountainous part, 10 to 30 km long where the terrain allows.
 ///
-/// Of 48 seeded places the one with the greatest relief and the fewest voids is taken; the ends are low ground on opposite sides of it.
+/// Of 48 seeded windows the one with the greatest relief and the fewest voids is taken; the ends are low ground on opposite sides of it.
 /// Same terrain and seed, same route.
 ///
 /// # Errors
@@ -289,9 +289,9 @@ const WINDOW_M: f64 = 24_000.0;
 pub fn valley_route(terrain: &Heightfield, seed: u64) -> Result<Vec<DVec2>, RouteError> {
     let cost = RouteCost { wander: 1.5, seed, ..RouteCost::default() };
     let mut random = Random::new(seed ^ 0x7661_6c6c);
-    let mut places: Vec<(f64, Window)> = (0..48).map(|_| seeded_place(terrain, &mut random)).collect();
-    places.sort_by(|a, b| b.0.total_cmp(&a.0));
-    for (_, window) in places.into_iter().take(4) {
+    let mut windows: Vec<(f64, Window)> = (0..48).map(|_| seeded_window(terrain, &mut random)).collect();
+    windows.sort_by(|a, b| b.0.total_cmp(&a.0));
+    for (_, window) in windows.into_iter().take(4) {
         let open = vec![false; window.cols * window.rows];
         for ends in low_ends(terrain, window, &mut random) {
             if let Ok(route) = route_in(terrain, window, ends, &cost, &open) {
@@ -306,8 +306,8 @@ pub fn valley_route(terrain: &Heightfield, seed: u64) -> Result<Vec<DVec2>, Rout
     })
 }
 
-/// A window at a seeded place and its worth: relief, less for voids.
-fn seeded_place(terrain: &Heightfield, random: &mut Random) -> (f64, Window) {
+/// A window at a seeded position and its worth: relief, less for voids.
+fn seeded_window(terrain: &Heightfield, random: &mut Random) -> (f64, Window) {
     let nodes = |count: usize, spacing: f64| count.min((WINDOW_M / spacing) as usize + 1).max(2.min(count));
     let (cols, rows) = (nodes(terrain.cols(), terrain.spacing().x), nodes(terrain.rows(), terrain.spacing().y));
     let col = (random.unit() * (terrain.cols() - cols + 1) as f64) as usize;
@@ -327,7 +327,7 @@ fn seeded_place(terrain: &Heightfield, random: &mut Random) -> (f64, Window) {
     ((hi - lo).max(0.0) * (1.0 - 3.0 * voids / count).max(0.0), window)
 }
 
-/// Pairs of low places on opposite sides of the window, the seeded favourite first.
+/// Pairs of low nodes on opposite sides of the window, the seeded favourite first.
 fn low_ends(terrain: &Heightfield, window: Window, random: &mut Random) -> Vec<[DVec2; 2]> {
     let lowest = |cols: [f64; 2], rows: [f64; 2]| {
         let span = |range: [f64; 2], n: usize| (range[0] * n as f64) as usize..((range[1] * n as f64) as usize).min(n);

@@ -90,7 +90,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     Ok(Frame { width, height, color: buffers.out, depth: buffers.depth, id: buffers.id, world: buffers.world, stats })
 }
 
-/// Colour, depth, id and place.
+/// Colour, depth, id and world point.
 type Pixel = (Packed, f32, u32, [f64; 3]);
 
 struct Picture<'a> {

@@ -256,7 +256,7 @@ impl Heightfield {
         DVec2::new((xy.x - self.north_west.x) / self.spacing.x, (self.north_west.y - xy.y) / self.spacing.y)
     }
 
-    /// The cell (column, row) of a scene position and the place within it, 0..=1 each; `None` outside the grid.
+    /// The cell (column, row) of a scene position and the position within it, 0..=1 each; `None` outside the grid.
     fn cell_at(&self, xy: DVec2) -> Option<([usize; 2], DVec2)> {
         let g = self.grid_from_scene(xy);
         let last = DVec2::new((self.cols - 1) as f64, (self.rows - 1) as f64);

@@ -172,7 +172,7 @@ impl Mesh {
         (b - a).cross(c - a).normalize_or(DVec3::Z)
     }
 
-    /// Unit normal at a place of a triangle given by the weights of its corners, on the side of [`Mesh::face_normal`].
+    /// Unit normal at a point of a triangle given by the weights of its corners, on the side of [`Mesh::face_normal`].
     pub fn normal_at(&self, triangle: usize, weights: [f64; 3]) -> DVec3 {
         let face = self.face_normal(triangle);
         let Some(normals) = &self.normals else { return face };
@@ -184,7 +184,7 @@ impl Mesh {
         smooth.normalize_or(face)
     }
 
-    /// Colour at a place of a triangle given by the weights of its corners; `None` = the layer's.
+    /// Colour at a point of a triangle given by the weights of its corners; `None` = the layer's.
     pub fn color_at(&self, triangle: usize, weights: [f64; 3]) -> Option<Color> {
         match &self.colors {
             MeshColors::Layer => None,

@@ -127,7 +127,7 @@ impl EdgeFamily {
     }
 }
 
-/// A place on an edge between two nodes of a grid.
+/// A point on an edge between two nodes of a grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edge {
     /// The northern or western end, row-major.

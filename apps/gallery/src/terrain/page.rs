@@ -3,7 +3,7 @@
 use super::eyes::EyeRow;
 use super::sweeps::Trial;
 use super::timing::{PAPER_CELLS, PAPER_SOLVE, Timing};
-use crate::html::{STYLE, escape};
+use crate::html::{self, escape};
 use belvedere::disocclusion::{SolverMode, TerrainReport};
 use serde::Serialize;
 use std::fmt::Write;
@@ -40,16 +40,15 @@ pub(crate) fn page(records: &[AreaRecord]) -> String {
     for record in records {
         sections += &section(record);
     }
-    format!(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>Belvedere: terrain that makes way</title>\n\
-         <style>{STYLE}{TABLES}</style>\n</head>\n<body>\n<h1>Terrain that makes way</h1>\n\
+    let body = format!(
+        "<h1>Terrain that makes way</h1>\n\
          <p>The figures and tables of Deng et al. 2013, <i>Occlusion-free mountain navigation</i>, on open data; the paper's own \
          elevation models and routes are not public, so kinds and trends can be compared, not single values. Displaced ground is \
          not to scale and not for navigation. Every figure is in <a href=\"figures.json\">figures.json</a>.</p>\n\
-         {sections}<p class=\"small\">belvedere {}</p>\n</body>\n</html>\n",
+         {sections}<p class=\"small\">belvedere {}</p>\n",
         belvedere::VERSION
-    )
+    );
+    html::page("Belvedere: terrain that makes way", TABLES, &body)
 }
 
 fn section(record: &AreaRecord) -> String {
@@ -57,11 +56,7 @@ fn section(record: &AreaRecord) -> String {
     let mut out = format!("<section>\n<h2>{}</h2>\n", escape(title));
     for picture in &record.pictures {
         let caption = CAPTIONS.iter().find(|(what, _)| picture.ends_with(&format!("_{what}.png"))).map_or("", |c| c.1);
-        let _ = writeln!(
-            out,
-            "<p>{caption}</p>\n<figure><a href=\"{p}\"><img src=\"{p}\" alt=\"{caption}\"></a></figure>",
-            p = escape(picture)
-        );
+        let _ = writeln!(out, "<p>{caption}</p>\n<figure>{}</figure>", html::picture(&escape(picture), caption));
     }
     out += &modes(record);
     out += &eyes(&record.eyes);

@@ -275,7 +275,7 @@ mod tests {
         Heightfield::new(DVec2::ZERO, DVec2::ONE, cols, rows, heights, states).unwrap()
     }
 
-    /// Height of the triangle of three nodes over a place.
+    /// Height of the triangle of three nodes over a position.
     fn over(t: [[f64; 3]; 3], [x, y]: [f64; 2]) -> Option<f64> {
         let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
         let from = |p: [f64; 3]| [p[0] - t[0][0], p[1] - t[0][1]];

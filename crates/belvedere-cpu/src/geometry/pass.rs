@@ -32,7 +32,7 @@ pub(crate) enum InView {
 pub(crate) struct Extent {
     /// Least depth, positive.
     depth: f64,
-    /// Least and largest place on the image, pixels from its centre.
+    /// Least and largest position on the image, pixels from its centre.
     image: [DVec2; 2],
 }
 
@@ -159,8 +159,8 @@ impl<'a> Pass<'a> {
                 let v = screen.view_from(corner);
                 code &= screen.outcode(v, 2.0);
                 depth = depth.min(v.z);
-                let place = screen.pixel(v) - screen.center;
-                image = [image[0].min(place), image[1].max(place)];
+                let at = screen.pixel(v) - screen.center;
+                image = [image[0].min(at), image[1].max(at)];
             }
             return if code != 0 {
                 InView::No
@@ -186,12 +186,12 @@ impl<'a> Pass<'a> {
     pub(crate) fn px_per_height(&self, screen: &Screen, bounds: &Aabb, extent: Option<Extent>) -> f64 {
         let Some(Extent { depth, image }) = extent else { return f64::INFINITY };
         let stretch = |bend: &belvedere_core::map::spline::SplineBend| {
-            let places = bounds.corners().into_iter().chain([bounds.center()]);
-            places.map(|p| bend.jacobian(p).map_or(f64::INFINITY, |j| j.z_axis.length())).fold(0.0, f64::max)
+            let points = bounds.corners().into_iter().chain([bounds.center()]);
+            points.map(|p| bend.jacobian(p).map_or(f64::INFINITY, |j| j.z_axis.length())).fold(0.0, f64::max)
         };
         let spline = self.view.stages().iter().find_map(|s| if let Stage::SplineBend(b) = s { Some(b) } else { None });
         // What lies beyond the image is not drawn.
-        let image = image.map(|place| place.clamp(-screen.center.abs(), screen.center.abs()));
+        let image = image.map(|at| at.clamp(-screen.center.abs(), screen.center.abs()));
         let height_px = self.height.most(screen, image) * spline.map_or(1.0, stretch);
         if screen.ortho { height_px } else { height_px / depth }
     }
@@ -247,7 +247,7 @@ impl HeightPx {
         }
     }
 
-    /// At most, in a part of the image: its least and largest place, pixels from the centre.
+    /// At most, in a part of the image: its least and largest position, pixels from the centre.
     fn most(&self, screen: &Screen, [min, max]: [DVec2; 2]) -> f64 {
         let corners = [min, max, DVec2::new(min.x, max.y), DVec2::new(max.x, min.y)];
         match self {

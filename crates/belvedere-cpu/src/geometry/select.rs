@@ -27,7 +27,7 @@ pub(crate) struct SelectedBlock {
 /// What is known of a block of the tree; kept between frames for its memory.
 #[derive(Debug, Default)]
 pub(crate) struct Selection {
-    /// Per block of all levels: [`NOTHING`], [`SPLIT`] or [`FIRST`] plus the place in `list`.
+    /// Per block of all levels: [`NOTHING`], [`SPLIT`] or [`FIRST`] plus the index in `list`.
     state: Vec<u32>,
     starts: Vec<usize>,
     cols: Vec<usize>,

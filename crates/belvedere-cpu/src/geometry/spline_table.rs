@@ -6,12 +6,12 @@ use belvedere_core::{DVec2, DVec3, SpaceMap};
 
 /// Pieces of the curve between its ends.
 const PIECES: usize = 512;
-/// Largest accepted error of a place on the curve, curve units, and of a unit normal. The eye is about a curve unit away
+/// Largest accepted error of a point on the curve, curve units, and of a unit normal. The eye is about a curve unit away
 /// from the curve, so both stay far below 0.01 pixel.
 const PLACE_ERROR: f64 = 1e-7;
 const NORMAL_ERROR: f64 = 1e-6;
 
-/// Cubic pieces of equal length along the curve for its place and its normal, ours; pieces that are not close enough (at
+/// Cubic pieces of equal length along the curve for its point and its normal, ours; pieces that are not close enough (at
 /// corners of the curve) fall back on the stage itself.
 #[derive(Debug)]
 pub(crate) struct SplineTable<'a> {
@@ -28,7 +28,7 @@ pub(crate) struct SplineTable<'a> {
     pieces: Vec<Piece>,
 }
 
-/// `c[0] + c[1] t + c[2] t^2 + c[3] t^3`, t = 0..1: place (u, v) relative to the pivot in scene units, normal (u, v).
+/// `c[0] + c[1] t + c[2] t^2 + c[3] t^3`, t = 0..1: point (u, v) relative to the pivot in scene units, normal (u, v).
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     c: [[f64; 4]; 4],

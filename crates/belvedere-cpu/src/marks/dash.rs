@@ -42,7 +42,7 @@ pub(crate) fn dashes(part: &[Station], width: f64, half: f64, out: &mut Vec<Stro
     let mut dash: Vec<Station> = Vec::new();
     for (pair, &period) in part.windows(2).zip(&periods) {
         let (a, b) = (pair[0], pair[1]);
-        for (on, [s, t]) in pieces([a.place.along, b.place.along], period) {
+        for (on, [s, t]) in pieces([a.on_line.along, b.on_line.along], period) {
             if !on {
                 trace(&dash, half, Lane::Hidden, out);
                 dash.clear();
@@ -69,7 +69,7 @@ fn periods(part: &[Station], wanted_px: f64) -> Vec<f64> {
                 hi += 1;
             }
             let px = (part[hi].arc_px - part[lo].arc_px).max(1e-6);
-            let units = (part[hi].place.along - part[lo].place.along).max(1e-9);
+            let units = (part[hi].on_line.along - part[lo].on_line.along).max(1e-9);
             (wanted_px * units / px).log2().ceil().clamp(-60.0, 60.0).exp2()
         })
         .collect()
@@ -113,8 +113,8 @@ mod tests {
         let part: Vec<Station> = (0..=n)
             .map(|i| {
                 let along = from + i as f64 / px_per_unit;
-                let place = LinePoint { p: DVec3::X * along, along, on_ground: false };
-                Station { pixel: DVec2::new(along * px_per_unit, 10.0), arc_px: i as f64, place }
+                let on_line = LinePoint { p: DVec3::X * along, along, on_ground: false };
+                Station { pixel: DVec2::new(along * px_per_unit, 10.0), arc_px: i as f64, on_line }
             })
             .collect();
         let mut strokes = Vec::new();

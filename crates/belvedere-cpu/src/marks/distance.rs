@@ -28,7 +28,7 @@ fn round(value: f64) -> f64 {
 }
 
 /// Places at multiples of `every` along the draped line, the beginning left out, with their texts.
-pub(crate) fn places(line: &[LinePoint], every: f64) -> Vec<(LinePoint, String)> {
+pub(crate) fn marks(line: &[LinePoint], every: f64) -> Vec<(LinePoint, String)> {
     let mut out = Vec::new();
     let mut next = every;
     for pair in line.windows(2) {
@@ -59,10 +59,10 @@ mod tests {
         // Up a slope of 3 in 4: 5 units of way for 4 across.
         let at = |x: f64| LinePoint { p: DVec3::new(x, 0.0, 0.75 * x), along: 1.25 * x, on_ground: true };
         let line: Vec<LinePoint> = (0..=64).map(|i| at(f64::from(i) * 62.5)).collect();
-        let marks = places(&line, 1000.0);
+        let marks = marks(&line, 1000.0);
         assert_eq!(marks.len(), 5);
-        for (i, (place, name)) in marks.iter().enumerate() {
-            assert!((place.p.x - 800.0 * (i + 1) as f64).abs() < 1e-9, "{place:?}");
+        for (i, (on_line, name)) in marks.iter().enumerate() {
+            assert!((on_line.p.x - 800.0 * (i + 1) as f64).abs() < 1e-9, "{on_line:?}");
             assert_eq!(*name, format!("{} km", i + 1));
         }
         assert_eq!(spacing(DistanceMarkers::Auto, [700.0, 4300.0].into_iter()), Some(500.0));

@@ -1,4 +1,4 @@
-//! Lines of sight to places of lines and points, through the exact tracer.
+//! Lines of sight to points of lines and point layers, through the exact tracer.
 
 use crate::geometry::screen::Screen;
 use crate::marks::path::LinePoint;
@@ -9,11 +9,11 @@ use std::sync::OnceLock;
 
 /// Terrain with more nodes is not prepared for lines of sight in every frame.
 const MAX_NODES: usize = 64 << 20;
-/// A surface nearer than a place by less than this share of its depth, or of a pixel's width there, does not hide it: rounding.
+/// A surface nearer than a point by less than this share of its depth, or of a pixel's width there, does not hide it: rounding.
 const SLACK: f64 = 1e-6;
 const SLACK_PX: f64 = 0.05;
 
-/// Asks the surfaces themselves what hides what; prepared when first asked.
+/// Asks the surfaces themselves what hides what; prepared when first needed.
 pub(crate) struct LineOfSight<'a> {
     scene: &'a Scene,
     view: &'a View,
@@ -25,11 +25,11 @@ impl<'a> LineOfSight<'a> {
         Self { scene, view, tracer: OnceLock::new() }
     }
 
-    /// The place itself, exactly on the drawn surface if its line lies on the ground.
-    pub(crate) fn on_surface(&self, place: &LinePoint, lift_m: f64) -> DVec3 {
-        let p = place.p;
+    /// The point itself, exactly on the drawn surface if its line lies on the ground.
+    pub(crate) fn on_surface(&self, on_line: &LinePoint, lift_m: f64) -> DVec3 {
+        let p = on_line.p;
         let height =
-            if place.on_ground { self.scene.terrain().and_then(|hf| hf.surface_at(p.truncate())) } else { None };
+            if on_line.on_ground { self.scene.terrain().and_then(|hf| hf.surface_at(p.truncate())) } else { None };
         height.map_or(p, |z| p.with_z(z + lift_m))
     }
 

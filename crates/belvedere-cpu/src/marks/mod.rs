@@ -189,9 +189,9 @@ impl MarkBuilder<'_> {
     fn sheet(&self, paths: Vec<Vec<LinePoint>>, style: Style, inks: [Ink; 3], id: u32) -> StrokeLayer {
         let strokes: Vec<Vec<Stroke>> = paths
             .par_iter()
-            .map(|places| {
+            .map(|line| {
                 let mut strokes = Vec::new();
-                for (_, run) in self.runs(places, style) {
+                for (_, run) in self.runs(line, style) {
                     self.strokes(&run, style, &mut strokes);
                 }
                 strokes
@@ -201,13 +201,13 @@ impl MarkBuilder<'_> {
     }
 
     /// Images of a line in every pass, with the number of the pass.
-    fn runs(&self, places: &[LinePoint], style: Style) -> Vec<(usize, Run)> {
+    fn runs(&self, line: &[LinePoint], style: Style) -> Vec<(usize, Run)> {
         let reach = style.half_px + 4.0;
         let mut runs = Vec::new();
         for (i, pass) in self.passes.iter().enumerate() {
             let judge =
                 LineVisibility { pass, screen: self.screen, map: self.map, sight: self.sight, lift_m: style.lift_m };
-            for piece in path::project(pass, self.screen, places, self.tolerance_px) {
+            for piece in path::project(pass, self.screen, line, self.tolerance_px) {
                 runs.extend(judge.runs(&piece, reach).into_iter().map(|run| (i, run)));
             }
         }
@@ -243,8 +243,8 @@ impl MarkBuilder<'_> {
         let hidden = if layer.hidden == Hidden::Show { Hidden::Show } else { Hidden::Cut };
         let marker = Marker { symbol: Symbol::Dot, half_px, casing: true, hidden };
         let mut strokes = Vec::new();
-        for (place, text) in lines.iter().flat_map(|l| distance::places(l, every)) {
-            for at in self.mark(&place, layer.lift_m, marker, &mut strokes) {
+        for (on_line, text) in lines.iter().flat_map(|l| distance::marks(l, every)) {
+            for at in self.mark(&on_line, layer.lift_m, marker, &mut strokes) {
                 let color = darker(layer.color);
                 let side = half_px + 2.0;
                 requests.push(LabelRequest {
@@ -272,8 +272,8 @@ impl MarkBuilder<'_> {
             .map(|feature| {
                 let p = feature.position + DVec3::Z * layer.lift_m;
                 let mut strokes = Vec::new();
-                let place = LinePoint { p, along: 0.0, on_ground: false };
-                let named = self.mark(&place, layer.lift_m, marker, &mut strokes);
+                let on_line = LinePoint { p, along: 0.0, on_ground: false };
+                let named = self.mark(&on_line, layer.lift_m, marker, &mut strokes);
                 (strokes, named)
             })
             .collect();
@@ -291,9 +291,9 @@ impl MarkBuilder<'_> {
     fn overlay_point(&self, point: &OverlayPoint, requests: &mut Vec<LabelRequest>) -> StrokeLayer {
         let half_px = 0.5 * width_or_none(point.size_px);
         let marker = Marker { symbol: point.symbol, half_px, casing: true, hidden: point.hidden };
-        let place = LinePoint { p: point.position, along: 0.0, on_ground: false };
+        let on_line = LinePoint { p: point.position, along: 0.0, on_ground: false };
         let mut strokes = Vec::new();
-        let named = self.mark(&place, 0.0, marker, &mut strokes);
+        let named = self.mark(&on_line, 0.0, marker, &mut strokes);
         if !point.label.is_empty() {
             requests.extend(named.into_iter().map(|at| label_request(&point.label, at, marker, 13.0, point.color)));
         }
@@ -301,11 +301,11 @@ impl MarkBuilder<'_> {
         StrokeLayer::new(strokes, inks(point.color, casing, point.hidden), 0, self.screen.height as usize, BAND)
     }
 
-    /// Draws a marker at every image of a place; returns where a name belongs.
-    fn mark(&self, place: &LinePoint, lift_m: f64, marker: Marker, out: &mut Vec<Stroke>) -> Vec<DVec2> {
+    /// Draws a marker at every image of a point; returns where a name belongs.
+    fn mark(&self, on_line: &LinePoint, lift_m: f64, marker: Marker, out: &mut Vec<Stroke>) -> Vec<DVec2> {
         let mut named = Vec::new();
         for pass in self.passes {
-            let p = self.sight.on_surface(place, lift_m);
+            let p = self.sight.on_surface(on_line, lift_m);
             let Some(v) = pass.displace(p).map(|d| self.screen.view_from(d)) else { continue };
             if !v.is_finite() || !self.screen.is_drawable(v) || pass.margins(p).iter().any(|m| !(*m >= 0.0)) {
                 continue;

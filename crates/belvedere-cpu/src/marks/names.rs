@@ -56,14 +56,14 @@ impl MarkBuilder<'_> {
         names.into_iter().map(label_request).collect()
     }
 
-    fn longest(&self, places: &[path::LinePoint], style: Style) -> Option<Stretch> {
+    fn longest(&self, line: &[path::LinePoint], style: Style) -> Option<Stretch> {
         let size = 2.0 * self.screen.center;
         // Where hidden parts are drawn like the others a name has all of the line to choose from.
         let drawn = |run: Run| match style.hidden {
             Hidden::Show => vec![run.stations],
             _ => run.parts().into_iter().filter(|(visible, _)| *visible).map(|(_, part)| part).collect(),
         };
-        let parts = self.runs(places, style).into_iter().flat_map(|(_, run)| drawn(run));
+        let parts = self.runs(line, style).into_iter().flat_map(|(_, run)| drawn(run));
         parts.flat_map(|part| within(&part, size)).max_by(|a, b| a.length.total_cmp(&b.length))
     }
 }
@@ -94,7 +94,7 @@ mod tests {
         let station = |i: i32| Station {
             pixel: DVec2::new(f64::from(i), 50.0),
             arc_px: f64::from(i) + 30.0,
-            place: LinePoint { p: DVec3::ZERO, along: 0.0, on_ground: true },
+            on_line: LinePoint { p: DVec3::ZERO, along: 0.0, on_ground: true },
         };
         let line: Vec<Station> = (-30..200).map(station).collect();
         let found = within(&line, DVec2::new(100.0, 80.0));

@@ -16,7 +16,7 @@ pub(crate) struct PathPoint {
     pub(crate) pixel: DVec2,
     pub(crate) depth: f64,
     /// Where it is.
-    pub(crate) place: LinePoint,
+    pub(crate) on_line: LinePoint,
 }
 
 /// A point of a line in the world.
@@ -123,7 +123,7 @@ fn is_on_ground(hf: &Heightfield, p: DVec3) -> bool {
 /// Vertex of a line with everything that clipping needs.
 #[derive(Clone, Copy)]
 struct Vertex {
-    place: LinePoint,
+    on_line: LinePoint,
     v: Option<DVec3>,
     margins: [f64; 2],
 }
@@ -157,10 +157,10 @@ struct Tracer<'a> {
 }
 
 impl Tracer<'_> {
-    fn vertex(&self, place: LinePoint) -> Vertex {
-        let p = place.p;
+    fn vertex(&self, on_line: LinePoint) -> Vertex {
+        let p = on_line.p;
         let v = self.pass.displace(p).map(|d| self.screen.view_from(d)).filter(|v| v.is_finite());
-        Vertex { place, v, margins: self.pass.margins(p) }
+        Vertex { on_line, v, margins: self.pass.margins(p) }
     }
 
     fn segment(&mut self, a: Vertex, b: Vertex, halvings: u32) {
@@ -169,12 +169,12 @@ impl Tracer<'_> {
             && match (a.v, b.v) {
                 (None, None) => false,
                 (Some(_), Some(_)) => {
-                    off(a.v) & off(b.v) == 0 && self.pass.edge_error_px(a.place.p, b.place.p) > self.tolerance_px
+                    off(a.v) & off(b.v) == 0 && self.pass.edge_error_px(a.on_line.p, b.on_line.p) > self.tolerance_px
                 }
                 _ => true,
             };
         if split {
-            let m = self.vertex(a.place.lerp(b.place, 0.5));
+            let m = self.vertex(a.on_line.lerp(b.on_line, 0.5));
             self.segment(a, m, halvings - 1);
             self.segment(m, b, halvings - 1);
             return;
@@ -188,9 +188,9 @@ impl Tracer<'_> {
             return;
         };
         if !self.open || s > 0.0 {
-            self.pieces.push(vec![self.point(va.lerp(vb, s), a.place.lerp(b.place, s))]);
+            self.pieces.push(vec![self.point(va.lerp(vb, s), a.on_line.lerp(b.on_line, s))]);
         }
-        let end = self.point(va.lerp(vb, t), a.place.lerp(b.place, t));
+        let end = self.point(va.lerp(vb, t), a.on_line.lerp(b.on_line, t));
         if let Some(piece) = self.pieces.last_mut() {
             piece.push(end);
         }
@@ -213,7 +213,7 @@ impl Tracer<'_> {
         (s < t).then_some([s, t])
     }
 
-    fn point(&self, v: DVec3, place: LinePoint) -> PathPoint {
-        PathPoint { pixel: self.screen.pixel(v), depth: v.z, place }
+    fn point(&self, v: DVec3, on_line: LinePoint) -> PathPoint {
+        PathPoint { pixel: self.screen.pixel(v), depth: v.z, on_line }
     }
 }

@@ -48,13 +48,13 @@ impl DepthMap<'_> {
     }
 }
 
-/// A place on a line about a pixel from the next.
+/// A point on a line about a pixel from the next.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Station {
     pub(crate) pixel: DVec2,
     /// Length of the line on the image from its beginning, pixels.
     pub(crate) arc_px: f64,
-    pub(crate) place: LinePoint,
+    pub(crate) on_line: LinePoint,
 }
 
 impl Station {
@@ -62,7 +62,7 @@ impl Station {
         Self {
             pixel: self.pixel.lerp(other.pixel, t),
             arc_px: self.arc_px + t * (other.arc_px - self.arc_px),
-            place: self.place.lerp(other.place, t),
+            on_line: self.on_line.lerp(other.on_line, t),
         }
     }
 }
@@ -142,7 +142,7 @@ impl LineVisibility<'_> {
                 let (pixel, depth) = (a.pixel.lerp(b.pixel, k), between(self.screen, a.depth, b.depth, k));
                 // Share of the way in the world; on the image the far half is shorter.
                 let w = if self.screen.ortho { k } else { k * a.depth / (b.depth + k * (a.depth - b.depth)) };
-                run.push(Station { pixel, arc_px: arc + k * length, place: a.place.lerp(b.place, w) });
+                run.push(Station { pixel, arc_px: arc + k * length, on_line: a.on_line.lerp(b.on_line, w) });
                 verdicts.push(match self.map.behind(self.screen, pixel, depth) {
                     Some(behind) if behind <= 1.0 => Some(true),
                     Some(behind) if behind > HYSTERESIS => Some(false),
@@ -180,14 +180,14 @@ impl LineVisibility<'_> {
             states.push(state);
         }
         let differs = |i: usize, j: usize| verdicts[i].is_none() || verdicts[i] != verdicts[j];
-        let mut asked = vec![false; n];
+        let mut tested = vec![false; n];
         let mut open: Vec<usize> =
             (0..n).filter(|&i| differs(i, i.saturating_sub(1)) || differs(i, (i + 1).min(n - 1))).collect();
         while let Some(i) = open.pop() {
-            if std::mem::replace(&mut asked[i], true) {
+            if std::mem::replace(&mut tested[i], true) {
                 continue;
             }
-            let Some(visible) = self.sees(&stations[i].place) else { continue };
+            let Some(visible) = self.sees(&stations[i].on_line) else { continue };
             states[i] = visible;
             if verdicts[i] != Some(visible) {
                 open.extend([i.checked_sub(1), Some(i + 1).filter(|&j| j < n)].into_iter().flatten());
@@ -196,9 +196,9 @@ impl LineVisibility<'_> {
         states
     }
 
-    /// Whether the eye sees a place of the line; `None` if the line of sight cannot tell.
-    fn sees(&self, place: &LinePoint) -> Option<bool> {
-        let p = self.sight.on_surface(place, self.lift_m);
+    /// Whether the eye sees a point of the line; `None` if the line of sight cannot tell.
+    fn sees(&self, on_line: &LinePoint) -> Option<bool> {
+        let p = self.sight.on_surface(on_line, self.lift_m);
         let v = self.screen.view_from(self.pass.displace(p)?);
         if !v.is_finite() || !self.screen.is_drawable(v) {
             return None;
@@ -230,7 +230,7 @@ impl LineVisibility<'_> {
         let (mut lo, mut hi) = (0.0, 1.0);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (lo + hi);
-            match self.sees(&a.place.lerp(b.place, middle)) {
+            match self.sees(&a.on_line.lerp(b.on_line, middle)) {
                 Some(visible) if visible == visible_at_a => lo = middle,
                 Some(_) => hi = middle,
                 None => break,
@@ -320,10 +320,10 @@ mod tests {
         let stations: Vec<&Station> = runs.iter().flat_map(|run| &run.stations).collect();
         assert!(stations.len() > 50, "{}", stations.len());
         for s in stations {
-            let image = screen.pixel(screen.view_from(s.place.p));
+            let image = screen.pixel(screen.view_from(s.on_line.p));
             assert!(image.distance(s.pixel) < 1e-6, "{image} is drawn at {}", s.pixel);
-            let along = s.place.p.distance(line[0].p);
-            assert!((s.place.along - along).abs() < 1e-6, "{} of {along}", s.place.along);
+            let along = s.on_line.p.distance(line[0].p);
+            assert!((s.on_line.along - along).abs() < 1e-6, "{} of {along}", s.on_line.along);
         }
     }
 }

@@ -1,7 +1,7 @@
-//! The very place that the centre of a pixel sees.
+//! The very point that the centre of a pixel sees.
 //!
 //! The rasteriser draws bent edges straight to within a tolerance in pixels. On ground seen under a small angle that is little on the
-//! image and much in depth. Where depths and places are asked for, the place found is moved on its surface, by Newton steps on the
+//! image and much in depth. Where depths and points are wanted, the point found is moved on its surface, by Newton steps on the
 //! true map, until its image is the centre of the pixel.
 
 use crate::geometry::block::DrawnTriangle;
@@ -15,9 +15,9 @@ use glam::DMat3;
 /// Steps at most, and the distance from the centre that is near enough, pixels.
 const STEPS: usize = 10;
 const NEAR_PX: f64 = 2e-4;
-/// A place whose image stays farther from the centre than this is no better than the one before, pixels.
+/// A point whose image stays farther from the centre than this is no better than the one before, pixels.
 const ACCEPTED_PX: f64 = 5e-3;
-/// Farther than this no place is moved, pixels on its surface.
+/// Farther than this no point is moved, pixels on its surface.
 const REACH_PX: f64 = 3.0;
 
 /// A ray this far above the ground, pixels, meets nothing that less detail leaves out.
@@ -27,7 +27,7 @@ const MOST_STEPS: u32 = 128;
 const HALVINGS: usize = 10;
 const ROUNDS: usize = 4;
 
-/// A place on a surface, how far its image is from the pixel, pixels, and its depth.
+/// A point on a surface, how far its image is from the pixel, pixels, and its depth.
 #[derive(Debug, Clone, Copy)]
 struct Solution {
     off: f64,
@@ -35,9 +35,9 @@ struct Solution {
     depth: f64,
 }
 
-/// A ray near a place on it: the way towards the eye by unit of depth, and pixels per unit of height.
+/// A ray near a point on it: the way towards the eye by unit of depth, and pixels per unit of height.
 struct Ray {
-    place: DVec3,
+    near: DVec3,
     towards: DVec3,
     px_per_z: f64,
 }
@@ -61,23 +61,23 @@ impl<'a> PixelCenters<'a> {
         Self { scene, passes, screen }
     }
 
-    /// Place and depth that `pixel` sees of the surface found there, near `place`; `None` if it cannot be told better.
+    /// Point and depth that `pixel` sees of the surface found there, near `near`; `None` if it cannot be told better.
     ///
-    /// Ground drawn in less detail may lack a fold of less than half a pixel that hides the place found, or have one that the true
+    /// Ground drawn in less detail may lack a fold of less than half a pixel that hides the point found, or have one that the true
     /// ground has not: the ray is followed over the cells around.
-    pub(crate) fn place(&self, found: &DrawnTriangle<'_>, place: DVec3, pixel: DVec2) -> Option<(DVec3, f32)> {
+    pub(crate) fn exact(&self, found: &DrawnTriangle<'_>, near: DVec3, pixel: DVec2) -> Option<(DVec3, f32)> {
         let surface = self.surface(found)?;
-        let settled = self.settle(&surface, place, pixel);
+        let settled = self.settle(&surface, near, pixel);
         let first = match surface {
-            Surface::Ground(hf) => self.first_on(hf, settled, place, pixel),
+            Surface::Ground(hf) => self.first_on(hf, settled, near, pixel),
             Surface::Plane(..) => None,
         };
         first.or(settled).map(|s| (s.p, s.depth as f32))
     }
 
-    /// The first place on the ground near where Newton's steps have settled, or near `place`; `None` if none is better.
-    fn first_on(&self, hf: &Heightfield, settled: Option<Solution>, place: DVec3, pixel: DVec2) -> Option<Solution> {
-        let mut at = settled.unwrap_or(Solution { off: f64::INFINITY, p: place, depth: 0.0 });
+    /// The first point on the ground near where Newton's steps have settled, or near `near`; `None` if none is better.
+    fn first_on(&self, hf: &Heightfield, settled: Option<Solution>, near: DVec3, pixel: DVec2) -> Option<Solution> {
+        let mut at = settled.unwrap_or(Solution { off: f64::INFINITY, p: near, depth: 0.0 });
         for _ in 0..ROUNDS {
             let p = self.first_near(hf, &at, pixel)?;
             let (image, depth) = self.image(p)?;
@@ -89,10 +89,10 @@ impl<'a> PixelCenters<'a> {
         (at.off <= ACCEPTED_PX).then_some(at)
     }
 
-    /// Newton steps on the surface from `place` to where the image is `pixel`.
-    fn settle(&self, surface: &Surface<'_>, place: DVec3, pixel: DVec2) -> Option<Solution> {
+    /// Newton steps on the surface from `near` to where the image is `pixel`.
+    fn settle(&self, surface: &Surface<'_>, near: DVec3, pixel: DVec2) -> Option<Solution> {
         // Ground in less detail lies beside the ground itself.
-        let mut p = surface.at(place)?;
+        let mut p = surface.at(near)?;
         let mut image = self.image(p)?;
         let mut best = (image.0.distance(pixel), p, image.1);
         let first = best.0;
@@ -123,7 +123,7 @@ impl<'a> PixelCenters<'a> {
         (off <= ACCEPTED_PX || off < 0.1 * first).then_some(Solution { off, p, depth })
     }
 
-    /// Where the ray of `pixel` enters the ground first near a place, as far as it stays within [`CLEAR_PX`] of the ground; `None` if
+    /// Where the ray of `pixel` enters the ground first near a point, as far as it stays within [`CLEAR_PX`] of the ground; `None` if
     /// that is where Newton's steps have settled.
     ///
     /// The ray is taken for straight here. Where Newton's steps run to and fro over an edge of the ground, halving does not.
@@ -136,10 +136,10 @@ impl<'a> PixelCenters<'a> {
             return None;
         }
         let gap = |k: f64| {
-            let q = ray.place + k * step;
+            let q = ray.near + k * step;
             hf.surface_at(q.truncate()).map(|z| q.z - z)
         };
-        // Towards the eye until the ray is well above the ground: the last place under it counts.
+        // Towards the eye until the ray is well above the ground: the last point under it counts.
         let settled = start.off <= NEAR_PX;
         let mut under = if settled || gap(0.0)? >= 0.0 { None } else { Some(0.0) };
         // Steps may be too wide for an edge that Newton's steps have settled behind.
@@ -166,11 +166,11 @@ impl<'a> PixelCenters<'a> {
             if g < 0.0 { (under, ends[1]) = (middle, g) } else { (over, ends[0]) = (middle, g) }
         }
         let share = ends[0] / (ends[0] - ends[1]);
-        let q = ray.place + (over + share * (under - over)) * step;
+        let q = ray.near + (over + share * (under - over)) * step;
         Some(q.truncate().extend(hf.surface_at(q.truncate())?))
     }
 
-    /// The ray of a pixel near a place, straight.
+    /// The ray of a pixel near a point, straight.
     fn ray(&self, p: DVec3, pixel: DVec2) -> Option<Ray> {
         let here = self.image(p)?;
         let h = 0.02 * self.screen.footprint(here.1);
@@ -180,8 +180,8 @@ impl<'a> PixelCenters<'a> {
         };
         let change = DMat3::from_cols(by(DVec3::X)?, by(DVec3::Y)?, by(DVec3::Z)?);
         let back = change.inverse();
-        let place = p + back * (pixel - here.0).extend(0.0);
-        Some(Ray { place, towards: back * DVec3::NEG_Z, px_per_z: change.z_axis.truncate().length() })
+        let near = p + back * (pixel - here.0).extend(0.0);
+        Some(Ray { near, towards: back * DVec3::NEG_Z, px_per_z: change.z_axis.truncate().length() })
     }
 
     fn surface(&self, found: &DrawnTriangle<'_>) -> Option<Surface<'a>> {
@@ -199,7 +199,7 @@ impl<'a> PixelCenters<'a> {
         Some(Surface::Plane(corners[0], normal))
     }
 
-    /// Pixel and depth of a place.
+    /// Pixel and depth of a point.
     fn image(&self, p: DVec3) -> Option<(DVec2, f64)> {
         let holds = |pass: &&Pass<'_>| pass.margins(p).iter().all(|m| *m >= 0.0);
         let pass = if self.passes.len() == 1 { self.passes.first() } else { self.passes.iter().find(holds) };

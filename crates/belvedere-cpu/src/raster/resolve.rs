@@ -14,7 +14,7 @@ pub(crate) struct Rows<'a, 'c> {
     pub(crate) depth: &'a mut [f32],
     pub(crate) id: &'a mut [u32],
     pub(crate) world: Option<&'a mut [[f64; 3]]>,
-    /// Makes depth and place exact, if asked for.
+    /// Makes depth and world point exact, if wanted.
     pub(crate) centers: Option<&'a PixelCenters<'a>>,
 }
 
@@ -64,7 +64,7 @@ struct RowColors {
 
 impl RowColors {
     /// Colours columns of a row.
-    /// * `at`: places of the samples at the pixels' centres; `out`: the pixels among those of the band.
+    /// * `at`: positions of the samples at the pixels' centres; `out`: the pixels among those of the band.
     #[allow(clippy::too_many_arguments, reason = "what is seen, where, by whom, and where it goes")]
     fn paint(
         &mut self,

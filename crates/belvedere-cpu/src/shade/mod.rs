@@ -132,7 +132,7 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// Place and depth of the surface at a pixel's centre by the true map, see [`PixelCenters::place`].
+    /// Point and depth of the surface at a pixel's centre by the true map, see [`PixelCenters::exact`].
     pub(crate) fn exact_point(
         &self,
         centers: &PixelCenters<'_>,
@@ -142,7 +142,7 @@ impl<'a> Shader<'a> {
         y: i32,
     ) -> Option<(DVec3, f32)> {
         let found = if prim == SKY { None } else { self.blocks.find(prim) };
-        centers.place(&found?, near, DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5))
+        centers.exact(&found?, near, DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5))
     }
 
     /// True position of what a sample sees, scene coordinates; NaN in the sky.

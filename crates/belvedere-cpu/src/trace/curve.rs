@@ -12,7 +12,7 @@ const ALIKE: f64 = 1e-12;
 /// A view in two parts: the smooth displacements, which bend rays, and the displacement of the ground, which moves the ground instead.
 ///
 /// Earth curvature and terrain disocclusion both move points of a vertical line alike, so their order does not matter and the
-/// latter may be left on the ground: there it is a height per place, kinks and all, and no curve has to follow it.
+/// latter may be left on the ground: there it is a height per point of the map, kinks and all, and no curve has to follow it.
 pub(crate) struct Split<'a> {
     pub(crate) view: &'a View,
     smooth: View,
@@ -88,7 +88,7 @@ impl<'a> Split<'a> {
         Self { view, smooth, ground, earth, bend, kind }
     }
 
-    /// Height by which the ground at a place is displaced.
+    /// Height by which the ground at a point is displaced.
     pub(crate) fn lift(&self, p: DVec3) -> f64 {
         self.ground.map_or(0.0, |g| g.delta_at(p))
     }
@@ -255,11 +255,11 @@ impl Curve<'_, '_> {
         let across = node.depth.map(|w| lateral[0] + w * lateral[1]);
         match node.ends {
             [Some(a), Some(b)] => {
-                let ends = [row.place(a, across[0]), row.place(b, across[1])];
+                let ends = [row.world_point(a, across[0]), row.world_point(b, across[1])];
                 Some(self.finished(node.depth, ends, node.reach, i))
             }
             [a, b] => {
-                let ends = [a.map(|p| row.place(p, across[0])), b.map(|p| row.place(p, across[1]))];
+                let ends = [a.map(|p| row.world_point(p, across[0])), b.map(|p| row.world_point(p, across[1]))];
                 Some(Span { depth: node.depth, ends, reach: f64::INFINITY, at: i })
             }
         }

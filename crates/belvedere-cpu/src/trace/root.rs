@@ -1,6 +1,6 @@
 //! Where a function changes its sign.
 
-/// Place in `[a.0, b.0]` where `f` changes its sign, to 1e-13 of itself; `a` and `b` are places with values of `f` of different sign.
+/// Argument in `[a.0, b.0]` where `f` changes its sign, to 1e-13 of itself; `a` and `b` are arguments with values of `f` of different sign.
 ///
 /// Regula falsi that halves the weight of an end kept twice (Illinois), and halves the bracket where that is too slow.
 pub(crate) fn root(mut a: (f64, f64), mut b: (f64, f64), f: impl Fn(f64) -> f64) -> f64 {

@@ -23,7 +23,7 @@ pub(crate) struct Node {
 /// The rays of a row.
 pub(crate) struct Row<'a> {
     bend: &'a SplineBend,
-    /// In the plane of the curve: place at depth 0 and change per unit of depth, curve units.
+    /// In the plane of the curve: position at depth 0 and change per unit of depth, curve units.
     line: [DVec2; 2],
     nodes: RefCell<Vec<Node>>,
 }
@@ -49,8 +49,8 @@ impl<'a> Row<'a> {
         self.nodes.borrow()[i as usize]
     }
 
-    /// World point of a place of the row and a distance across, before other stages are undone.
-    pub(crate) fn place(&self, [l, d]: CurvePoint, across: f64) -> DVec3 {
+    /// World point of a point of the row and a distance across, before other stages are undone.
+    pub(crate) fn world_point(&self, [l, d]: CurvePoint, across: f64) -> DVec3 {
         self.bend.unbent(l, d, across)
     }
 

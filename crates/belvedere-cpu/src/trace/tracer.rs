@@ -249,13 +249,13 @@ impl Walk<'_, '_> {
         // A little more on both sides, so that the ends lie off the surface.
         let slack = 1e-3 * (t1 - t0) + 1e-12;
         let (t0, t1) = ((t0 - slack).max(0.0), (t1 + slack).min(1.0));
-        let place = |i: usize| {
+        let at = |i: usize| {
             let w = span.depth_at(t0 + (t1 - t0) * i as f64 / steps as f64);
             (w, outside(w))
         };
-        let mut before = place(0);
+        let mut before = at(0);
         for i in 1..=steps {
-            let now = place(i);
+            let now = at(i);
             if (before.1 > 0.0) != (now.1 > 0.0) && !before.1.is_nan() && !now.1.is_nan() {
                 return Some(root(before, now, outside));
             }
@@ -291,7 +291,7 @@ impl Plane {
         per_unit.x + per_unit.y
     }
 
-    /// Height of a place over the plane.
+    /// Height of a point over the plane.
     fn below(&self, hf: &Heightfield, p: DVec3) -> f64 {
         let f = hf.grid_from_scene(p.truncate()) - self.corner;
         p.z - (self.z + f.x * self.slope.x + f.y * self.slope.y)

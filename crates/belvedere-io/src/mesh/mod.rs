@@ -55,7 +55,7 @@ pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoErr
     }
     let odd = drop_not_finite(mesh);
     if mesh.triangles.is_empty() {
-        return Err(IoError::format(path, "no triangle of the mesh lies at finite places; repair it"));
+        return Err(IoError::format(path, "no triangle of the mesh has finite vertices only; repair it"));
     }
     if odd > 0 {
         loaded

@@ -4,7 +4,7 @@ use super::{Continuity, Similarity, hostile_points};
 use crate::Random;
 use belvedere_core::{Aabb, DMat3, DVec3, SpaceMap};
 
-/// A place where a map is put together from two pieces, and a direction across it.
+/// A point where a map is put together from two pieces, and a direction across it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Joint {
     /// Point on the joint, scene units.
@@ -60,7 +60,7 @@ impl<M: SpaceMap> MapCase<M> {
         self
     }
 
-    /// Names places where continuity must be measured.
+    /// Names points where continuity must be measured.
     pub fn joints(mut self, joints: impl IntoIterator<Item = Joint>) -> Self {
         self.joints.extend(joints);
         self

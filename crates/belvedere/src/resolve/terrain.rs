@@ -141,7 +141,7 @@ pub(super) fn adjust(
     let fail = |key: &str, reason: String| at.error(&[key], reason);
     let Some(target) = camera.look_at else {
         let reason =
-            "adjust_viewpoint needs a place that the camera keeps looking at; give look_at in place of the angles";
+            "adjust_viewpoint needs a point that the camera keeps looking at; give look_at in place of the angles";
         return Err(fail("adjust_viewpoint", reason.into()));
     };
     let settings = settings(doc).map_err(|(key, reason)| fail(key, reason))?;

@@ -213,7 +213,7 @@ fn near() -> f64 {
     1.0
 }
 
-/// A place: `[x, y, z]` in the scene's system, or a table with two horizontal and one vertical key.
+/// A position: `[x, y, z]` in the scene's system, or a table with two horizontal and one vertical key.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum PointDoc {
@@ -223,7 +223,7 @@ pub enum PointDoc {
     Map(MapPointDoc),
 }
 
-/// A place on the map: `lon` and `lat` (WGS84 degrees) with `height_m` or `above_ground_m`, or `x` and `y` with `above_ground_m`.
+/// A position on the map: `lon` and `lat` (WGS84 degrees) with `height_m` or `above_ground_m`, or `x` and `y` with `above_ground_m`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MapPointDoc {

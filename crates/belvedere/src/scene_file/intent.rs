@@ -89,7 +89,7 @@ pub struct AnimationDoc {
     /// Along a route: height of the eye over the ground below it and under the walker, metres; 500 by default, less for routes below 10 km.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub above_m: Option<f64>,
-    /// Along a route: distance of the place looked at ahead of the walker, metres; 1500 by default, less for routes below 10 km.
+    /// Along a route: distance of the target ahead of the walker, metres; 1500 by default, less for routes below 10 km.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ahead_m: Option<f64>,
 }

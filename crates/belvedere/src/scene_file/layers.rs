@@ -205,7 +205,7 @@ pub struct RouteDoc {
     pub seed: u64,
 }
 
-/// A place without a height: `[x, y]` or `{ lon, lat }`.
+/// A position without a height: `[x, y]` or `{ lon, lat }`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum PlaceDoc {
@@ -215,7 +215,7 @@ pub enum PlaceDoc {
     Geographic(LonLatDoc),
 }
 
-/// A place in WGS84 degrees.
+/// A position in WGS84 degrees.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LonLatDoc {

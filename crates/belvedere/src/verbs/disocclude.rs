@@ -281,7 +281,7 @@ impl Disoccluded {
 }
 
 /// Features on the displaced ground: GeoJSON in WGS 84 (scene coordinates without georeference), heights those of the displaced
-/// ground, the true places as the property `true_coordinates`.
+/// ground, the true positions as the property `true_coordinates`.
 fn moved_features(session: &Session, stage: &TerrainDisocclusion) -> Result<Value, BelvedereError> {
     let scene = &session.scene;
     let to_wgs84 = match scene.crs {

@@ -333,11 +333,16 @@ mod tests {
             .unwrap()
     }
 
-    fn with_making(hf: &Heightfield, test: impl Fn(&LitGround, &LightingInputs<'_>)) {
+    fn with_inputs(
+        hf: &Heightfield,
+        palette: &Palette,
+        relief: Relief,
+        test: impl Fn(&LitGround, &LightingInputs<'_>),
+    ) {
         let surface = Surface::of_map(hf);
         let means = MipPyramid::new(&surface);
-        let tint = Tint::new(&Palette::Alpine, hf.z_range());
-        let light = ReliefLight::new(Relief::Swiss, &Light::default());
+        let tint = Tint::new(palette, hf.z_range());
+        let light = ReliefLight::new(relief, &Light::default());
         let inputs = LightingInputs {
             surface: &surface,
             means: &means,
@@ -358,7 +363,7 @@ mod tests {
     #[test]
     fn interpolated_light_is_that_of_the_interpolated_ground() {
         let hf = hills(150, 131);
-        with_making(&hf, |ground, m| {
+        with_inputs(&hf, &Palette::Alpine, Relief::Swiss, |ground, m| {
             let mut row = Planes::new(150);
             let (mut worst, mut sum, mut n) = (0.0f32, 0.0, 0.0);
             for r in 1..129 {
@@ -424,35 +429,24 @@ mod tests {
     #[test]
     fn weights_are_whole_and_sum_up_everywhere() {
         let hf = hills(70, 70);
-        let (surface, light) = (Surface::of_map(&hf), ReliefLight::new(Relief::None, &Light::default()));
-        let means = MipPyramid::new(&surface);
-        let tint = Tint::new(&Palette::Plain, hf.z_range());
-        let inputs = LightingInputs {
-            surface: &surface,
-            means: &means,
-            map: None,
-            shadows: None,
-            tint: &tint,
-            light: &light,
-            exaggeration: 1.0,
-        };
-        let ground = LitGround::new(70, 70, means.top());
-        let (want, color) = (ground.sample([0, 0], 0, &inputs), ground.color([0, 0], 0, &inputs));
-        for i in 0..20_000i32 {
-            let at = [i * 7919 % (69 * CELL + 1), i * 104_729 % (69 * CELL + 1)];
-            let lod = (i * 37 % 2300) as u32;
-            assert_eq!(ground.sample(at, lod, &inputs), want, "{at:?}");
-            assert_eq!(ground.color(at, lod, &inputs), color, "{at:?}");
-        }
-        for at in [[i32::MAX; 2], [-5 * CELL, 0], [0, 900 * CELL], [i32::MIN; 2]] {
-            assert_eq!(ground.color(at, 0, &inputs), [0.0; 3], "off the ground: {at:?}");
-        }
+        with_inputs(&hf, &Palette::Plain, Relief::None, |ground, m| {
+            let (want, color) = (ground.sample([0, 0], 0, m), ground.color([0, 0], 0, m));
+            for i in 0..20_000i32 {
+                let at = [i * 7919 % (69 * CELL + 1), i * 104_729 % (69 * CELL + 1)];
+                let lod = (i * 37 % 2300) as u32;
+                assert_eq!(ground.sample(at, lod, m), want, "{at:?}");
+                assert_eq!(ground.color(at, lod, m), color, "{at:?}");
+            }
+            for at in [[i32::MAX; 2], [-5 * CELL, 0], [0, 900 * CELL], [i32::MIN; 2]] {
+                assert_eq!(ground.color(at, 0, m), [0.0; 3], "off the ground: {at:?}");
+            }
+        });
     }
 
     #[test]
     fn averages_match_the_mean_of_what_they_stand_for() {
         let hf = hills(257, 257);
-        with_making(&hf, |ground, m| {
+        with_inputs(&hf, &Palette::Alpine, Relief::Swiss, |ground, m| {
             // A place at the middle of a node of level 5, against the mean over its 32 x 32 nodes.
             let (c, r, side) = (96, 64, 32i32);
             let mut mean = [0.0f32; 8];
@@ -474,7 +468,7 @@ mod tests {
     #[test]
     fn levels_pass_into_each_other() {
         let hf = hills(150, 131);
-        with_making(&hf, |ground, m| {
+        with_inputs(&hf, &Palette::Alpine, Relief::Swiss, |ground, m| {
             let (mut worst, mut sum, mut n) = (0.0f32, 0.0, 0.0);
             for i in 0..20_000i32 {
                 let at = [i * 7919 % (149 * CELL), i * 104_729 % (130 * CELL)];

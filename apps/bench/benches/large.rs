@@ -3,18 +3,17 @@
 //! place not seen before. Each ground lives in a process of its own, so that its memory is its own; they draw the frames in
 //! turn, so that a busy machine disturbs all of them alike.
 //!
-//! `cargo bench -p belvedere-cpu --bench large -- [NODES..]`, 4097 and 16385 if left out.
+//! `cargo bench -p belvedere-bench --bench large -- [NODES..]`, 4097 and 16385 if left out.
 #![allow(missing_docs, clippy::print_stdout)]
 
-mod support;
-
-use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
-use belvedere_cpu::CpuRenderer;
-use belvedere_scene::{Frame, Heightfield, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
+use belvedere::core::{DVec2, DVec3, Pinhole, Projection, View};
+use belvedere::cpu::CpuRenderer;
+use belvedere::scene::{Frame, Heightfield, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
+use belvedere_bench::clock::{Stopwatch, median, quantile};
+use belvedere_bench::scene::scene_of;
 use rayon::prelude::*;
 use std::io::{BufRead, BufReader, Lines, Write};
 use std::process::{Child, ChildStdout, Command, Stdio};
-use support::{cpu_ms, median, scene};
 
 const SPACING_M: f64 = 10.0;
 const ALONE: &str = "--alone";
@@ -67,7 +66,8 @@ fn ground(nodes: usize) -> Scene {
         let y = half - r as f64 * SPACING_M;
         row.iter_mut().enumerate().for_each(|(c, h)| *h = height(c as f64 * SPACING_M - half, y));
     });
-    scene(Heightfield::measured(DVec2::new(-half, half), DVec2::splat(SPACING_M), nodes, nodes, heights))
+    let ground = Heightfield::measured(DVec2::new(-half, half), DVec2::splat(SPACING_M), nodes, nodes, heights);
+    scene_of(ground.expect("well formed"))
 }
 
 /// Draws the view at each angle that is asked for, and answers with milliseconds of processor time, triangles drawn, and
@@ -80,9 +80,9 @@ fn answer(nodes: usize) {
     for line in std::io::stdin().lines() {
         let view = view(line.ok().and_then(|l| l.parse().ok()).expect("an angle"));
         let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
-        let before = cpu_ms();
+        let watch = Stopwatch::start();
         renderer.render_into(&job, &mut frame).expect("drawn");
-        let ms = cpu_ms() - before;
+        let ms = watch.cpu_ms().unwrap_or_else(|| watch.wall_ms());
         println!("{ms} {} {} {}", frame.stats.triangles_drawn, status_mib("VmRSS"), status_mib("VmHWM"));
     }
 }
@@ -114,13 +114,6 @@ impl Ground {
     }
 }
 
-/// Share of the values that are smaller.
-fn quantile(values: &[f64], share: f64) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted[((sorted.len() - 1) as f64 * share).round() as usize]
-}
-
 fn report(flight: Flight, grounds: &mut [Ground]) {
     let mut figures: Vec<Vec<[f64; 4]>> = vec![Vec::new(); grounds.len()];
     for i in 1..=flight.frames {
@@ -138,11 +131,11 @@ fn report(flight: Flight, grounds: &mut [Ground]) {
             "  {0} x {0}: {1:.1} ms cpu per frame (95 %: {2:.1}, worst {3:.1}), {4:.2} of the first ground, \
              {5:.0} triangles drawn, resident {6:.0} MiB, most {7:.0} MiB",
             ground.nodes,
-            median(&ms),
-            quantile(&ms, 0.95),
-            quantile(&ms, 1.0),
-            median(&ratios),
-            median(&column(k, 1)),
+            median(ms.clone()),
+            quantile(ms.clone(), 0.95),
+            quantile(ms, 1.0),
+            median(ratios),
+            median(column(k, 1)),
             last[2],
             last[3]
         );
