@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 /// The work was cancelled; nothing was kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -15,6 +16,7 @@ type Report = dyn Fn(&str, f64) + Send + Sync;
 pub struct Progress {
     report: Option<Arc<Report>>,
     cancelled: Arc<AtomicBool>,
+    deadline: Option<Instant>,
 }
 
 impl std::fmt::Debug for Progress {
@@ -31,12 +33,17 @@ impl Progress {
 
     /// `report(stage, done)` is called with the name of the current work and the share done, 0..=1.
     pub fn new(report: impl Fn(&str, f64) + Send + Sync + 'static) -> Self {
-        Self { report: Some(Arc::new(report)), cancelled: Arc::default() }
+        Self { report: Some(Arc::new(report)), ..Self::default() }
     }
 
     /// Progress that nobody listens to but that is cancelled together with this one: for a part of the work.
     pub fn unheard(&self) -> Self {
-        Self { report: None, cancelled: Arc::clone(&self.cancelled) }
+        Self { report: None, ..self.clone() }
+    }
+
+    /// The same with a moment at which the work should end with the best it has; an earlier one of this progress stays.
+    pub fn until(&self, deadline: Instant) -> Self {
+        Self { deadline: Some(self.deadline.map_or(deadline, |d| d.min(deadline))), ..self.clone() }
     }
 
     /// Flag to set from elsewhere (a signal handler, a button) to cancel.
@@ -47,6 +54,16 @@ impl Progress {
     /// Whether the work should stop.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Whether work that can end with something less good should do so: it is cancelled, or its time is up.
+    pub fn should_end(&self) -> bool {
+        self.is_cancelled() || self.is_late()
+    }
+
+    /// Whether the time is up.
+    pub fn is_late(&self) -> bool {
+        self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 
     /// Reports `done` (0..=1) of `stage`.

@@ -211,9 +211,8 @@ impl Prepared {
     }
 }
 
-/// Ground is cleared as near as this to a place, cells. On steep ground half a percent of the length is hidden by what is nearer;
-/// showing that too would move a fiftieth more ground.
-const CLEARED_CELLS: f64 = 0.6;
+/// Ground is cleared as near as this to a place, cells: ground right before a place hides it too.
+const CLEARED_CELLS: f64 = 0.05;
 
 /// How near the quadratic program clears the ground: at once, or from the guard on where rows nearer than that contradict others.
 pub(super) fn options(settings: &TerrainSettings, from_guard: bool) -> QpOptions {

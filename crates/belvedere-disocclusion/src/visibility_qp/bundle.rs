@@ -6,7 +6,7 @@ use super::register::LANES;
 use super::rise::Rise;
 use super::single_line::SingleLine;
 use super::surface::Surface;
-use super::walk::{Chord, Clearance, LEAF, Touch, fade};
+use super::walk::{Chord, Clearance, LEAF, Touch};
 use belvedere_core::DVec2;
 use std::ops::Range;
 
@@ -228,7 +228,7 @@ impl Fan {
                 continue;
             }
             let (low, high) = self.bounds(a, b);
-            let left = self.lowest(a, b) - clearance.margin * fade(b) - surface.bound(low, high);
+            let left = self.lowest(a, b) - clearance.margin * clearance.share(b) - surface.bound(low, high);
             let short = b - a <= longest;
             if left >= WISH || (short && left >= 0.0) {
                 *room = room.min(left);
@@ -250,7 +250,7 @@ impl Fan {
         for k in 0..pieces as usize {
             let part = [place(k as f64), place(k as f64 + 1.0)];
             let (low, high) = self.bounds(part[0], part[1]);
-            let line = self.lowest(part[0], part[1]) - clearance.margin * fade(part[1]);
+            let line = self.lowest(part[0], part[1]) - clearance.margin * clearance.share(part[1]);
             let left = line - surface.still_bound(low, high) - surface.displaced_bound([low, high]).0;
             if left >= SOME {
                 *room = room.min(left);

@@ -3,7 +3,7 @@
 use super::problem::QpProblem;
 use super::row::{Constraint, Row};
 use super::surface::Surface;
-use super::walk::{Chord, Clearance, Touch, fade};
+use super::walk::{Chord, Clearance, Touch};
 use belvedere_core::DVec2;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -80,7 +80,7 @@ impl CandidateLine {
     }
 
     /// `f(x) + B_x u - (1 - tau) B_P u <= z(x) - margin`, z(x) of the line of the undisplaced candidate.
-    pub(super) fn row(&self, surface: &Surface, touch: &Touch, margin: f64) -> Row {
+    pub(super) fn row(&self, surface: &Surface, touch: &Touch, clearance: &Clearance) -> Row {
         let (x_nodes, x_weights) = surface.lattice.weights(touch.at);
         let rest = 1.0 - touch.tau;
         let (mut nodes, mut weights) = ([0; 8], [0.0; 8]);
@@ -88,7 +88,10 @@ impl CandidateLine {
             (nodes[k], weights[k]) = (x_nodes[k], x_weights[k]);
             (nodes[k + 4], weights[k + 4]) = (self.nodes[k], -rest * self.weights[k]);
         }
-        let bound = touch.z - rest * self.displacement(&surface.u) - touch.ground - margin * fade(touch.tau);
+        let bound = touch.z
+            - rest * self.displacement(&surface.u)
+            - touch.ground
+            - clearance.margin * clearance.share(touch.tau);
         let points = [(1.0, surface.lattice.between(touch.at)), (-rest, surface.lattice.between(self.grid))];
         let constraint = Constraint::Sight { candidate: self.index, at: touch.at, tau: touch.tau };
         Row { nodes, weights, len: 8, bound, constraint, points }
@@ -111,7 +114,7 @@ impl CandidateLine {
                 });
             }
         }
-        best.map(|touch| self.row(surface, &touch, clearance.margin))
+        best.map(|touch| self.row(surface, &touch, clearance))
     }
 }
 

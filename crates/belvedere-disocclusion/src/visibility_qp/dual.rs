@@ -62,6 +62,12 @@ impl Dual {
         self.m[row] * self.scale[row]
     }
 
+    /// What was given of a row: inverse weight of its slack, and its excess.
+    pub(super) fn terms(&self, row: usize) -> [f64; 2] {
+        let scale = self.scale[row];
+        [self.soft[row] / (scale * scale), self.excess[row] / scale]
+    }
+
     /// Slack of a soft row, >= 0, in units of the row.
     pub(super) fn slack(&self, row: usize) -> f64 {
         self.m[row] * self.soft[row] / self.scale[row]
@@ -72,19 +78,20 @@ impl Dual {
     ///
     /// Rows are met to within `tolerance`, in units of the rows. When only a few rows joined a solution, descending keeps
     /// most of the factor.
-    pub(super) fn solve(&mut self, tolerance: f64) {
+    ///
+    /// * `go_on`: asked between steps; false stops with the feasible multipliers so far.
+    pub(super) fn solve(&mut self, tolerance: f64, go_on: &(dyn Fn() -> bool + Sync)) -> bool {
         let begin: Vec<f64> = self.m.iter().map(|m| m.max(0.0)).collect();
         let few = self.solved > 0 && 4 * (self.len() - self.solved) < self.order.len();
-        if few || !self.pivot_blocks(tolerance) {
-            self.descend(begin, tolerance);
-        }
+        let met = (!few && self.pivot_blocks(tolerance, go_on)) || self.descend(begin, tolerance, go_on);
         self.solved = self.len();
+        met
     }
 
-    fn pivot_blocks(&mut self, tolerance: f64) -> bool {
+    fn pivot_blocks(&mut self, tolerance: f64, go_on: &(dyn Fn() -> bool + Sync)) -> bool {
         let (mut fewest, mut patience) = (usize::MAX, 4);
         let mut gradient = Vec::new();
-        while patience > 0 {
+        while patience > 0 && go_on() {
             self.m = self.solution();
             self.gradient(&mut gradient);
             let wrong: Vec<usize> = (0..self.len())
@@ -108,13 +115,16 @@ impl Dual {
 
     /// From the feasible multipliers `m`: add rows that are missed, walk to the solution on the active rows, and drop on
     /// the way what reaches zero. The objective never rises.
-    fn descend(&mut self, m: Vec<f64>, tolerance: f64) {
+    fn descend(&mut self, m: Vec<f64>, tolerance: f64, go_on: &(dyn Fn() -> bool + Sync)) -> bool {
         let now: Vec<usize> = (0..self.len()).filter(|&i| self.active[i] != (m[i] > 0.0)).collect();
         self.exchange(&now);
         self.m = m;
         let mut gradient = Vec::new();
         let mut block = 16usize;
         for _ in 0..40 * (self.len() + 10) {
+            if !go_on() {
+                break;
+            }
             let target = self.solution();
             let mut step = 1.0f64;
             for &i in &self.order {
@@ -145,13 +155,14 @@ impl Dual {
             let mut wrong: Vec<usize> =
                 (0..self.len()).filter(|&i| !self.active[i] && gradient[i] < -tolerance * self.scale[i]).collect();
             if wrong.is_empty() {
-                break;
+                return true;
             }
             wrong.sort_by(|&a, &b| gradient[a].total_cmp(&gradient[b]));
             wrong.truncate(block);
             wrong.sort_unstable();
             self.exchange(&wrong);
         }
+        false
     }
 
     fn exchange(&mut self, rows: &[usize]) {
@@ -262,7 +273,7 @@ mod tests {
         for i in 0..n {
             dual.push(&(0..=i).map(|j| k(i, j)).collect::<Vec<_>>(), 0.0, c(i), 0.0);
         }
-        dual.solve(1e-9);
+        assert!(dual.solve(1e-9, &|| true));
         let mut active = 0;
         for i in 0..n {
             let m = dual.multiplier(i);

@@ -16,8 +16,8 @@ pub(super) struct Lanes {
     /// Heights at the points and what they rise by to the eye.
     z: [Lane; 2],
     part: [Lane; 2],
-    /// Clearance without its tolerance.
-    asked: f64,
+    /// Clearance without its tolerance: at the point, and by how much more far from it.
+    asked: [f64; 2],
 }
 
 impl Lanes {
@@ -38,7 +38,7 @@ impl Lanes {
             per: d.map(|d| d.map(|d| 1.0 / d)),
             z: [each(&|c, _| c.z[0]), each(&|c, _| c.z[1] - c.z[0])],
             part: [each(&|_, part| part[0]), each(&|_, part| part[1])],
-            asked: clearance.margin - clearance.tolerance,
+            asked: [clearance.near, 1.0 - clearance.near].map(|s| s * (clearance.margin - clearance.tolerance)),
         }
     }
 
@@ -81,7 +81,7 @@ struct Register<S: Simd> {
     per: [S::f64s; 3],
     z: [S::f64s; 2],
     part: [S::f64s; 2],
-    asked: S::f64s,
+    asked: [S::f64s; 2],
 }
 
 /// Where lines are at some parameters of theirs.
@@ -106,7 +106,7 @@ impl<S: Simd> Register<S> {
             per: three(&lanes.per),
             z: two(&lanes.z),
             part: two(&lanes.part),
-            asked: simd.splat_f64s(lanes.asked),
+            asked: lanes.asked.map(|asked| simd.splat_f64s(asked)),
         }
     }
 
@@ -220,7 +220,7 @@ impl<S: Simd> Register<S> {
         let line = simd.mul_add_e_f64s(place.t, self.z[1], self.z[0]);
         let share = simd.min_f64s(simd.mul_f64s(simd.splat_f64s(5.0), place.t), simd.splat_f64s(1.0));
         let over = simd.sub_f64s(simd.add_f64s(ground, u), line);
-        let missing = simd.mul_add_e_f64s(self.asked, share, over);
+        let missing = simd.mul_add_e_f64s(self.asked[1], share, simd.add_f64s(self.asked[0], over));
         let after = simd.less_than_or_equal_f64s(within[0], place.t);
         let counts = simd.and_m64s(after, simd.less_than_or_equal_f64s(place.t, within[1]));
         *most = simd.select_f64s(counts, simd.max_f64s(missing, *most), *most);
@@ -241,7 +241,6 @@ impl<S: Simd> Register<S> {
 #[cfg(test)]
 mod tests {
     use super::super::surface::Lattice;
-    use super::super::walk::fade;
     use super::*;
     use belvedere_core::DVec2;
 
@@ -252,7 +251,7 @@ mod tests {
 
     #[test]
     fn lines_abreast_miss_what_each_of_them_misses_alone() {
-        let clearance = Clearance { margin: 1.0, tolerance: 0.2, guard: 1.5 };
+        let clearance = Clearance { margin: 1.0, tolerance: 0.2, near: 0.3, guard: 1.5 };
         // Whole steps of the solver's grid, and others.
         for (cols, rows, nodes) in [(33, 25, [5, 4]), (40, 31, [6, 8]), (12, 12, [12, 12]), (9, 7, [1, 2])] {
             let step =
@@ -291,7 +290,7 @@ mod tests {
                             let at = chord.ends[0] + t * (chord.ends[1] - chord.ends[0]);
                             let line = chord.z[0] + t * (chord.z[1] - chord.z[0]);
                             let ground = surface.ground(at) + surface.lattice.at(&surface.u, at);
-                            ground - line + (clearance.margin - clearance.tolerance) * fade(t)
+                            ground - line + (clearance.margin - clearance.tolerance) * clearance.share(t)
                         };
                         // Kinks, and the ends of lines; what lies at the end of a part counts in one of its neighbours.
                         let mut all = f64::NEG_INFINITY;

@@ -16,6 +16,11 @@ impl Metric {
         Self { smoother, green }
     }
 
+    /// Nodes of the grid.
+    pub(super) fn nodes(&self) -> usize {
+        self.smoother.cols() * self.smoother.rows()
+    }
+
     /// `H^-1 v` in place.
     pub(super) fn solve(&mut self, v: &mut [f64]) {
         self.smoother.solve(v);

@@ -9,6 +9,7 @@ mod candidate_line;
 mod cholesky;
 mod dual;
 mod lanes;
+mod matrix_free;
 mod metric;
 mod problem;
 mod register;

@@ -51,10 +51,13 @@ impl LinesOfSight for StraightSight {
 pub struct QpOptions {
     /// Ground nearer than this to a candidate cannot hide it, cells.
     pub guard: f64,
-    /// Clearance asked of lines of sight, metres; fades to 0 over the fifth of the way next to the candidate.
+    /// Clearance asked of lines of sight, metres; fades over the fifth of the way next to the candidate.
     pub margin: f64,
     /// How much of that clearance may lack, metres, fading likewise; > 0.
     pub tolerance: f64,
+    /// Share of both that is left at the candidate itself, 0..=1, of candidates at least `margin` above the ground; with the lowest
+    /// lift it becomes less. At 0 rows next to candidates must be met to the millimetre, and there are twice as many.
+    pub near: f64,
     /// Most a node may rise, metres.
     pub ceiling: f64,
     /// How far a node may exceed its ceiling, metres, > 0.
@@ -73,6 +76,7 @@ impl QpOptions {
             guard: settings.guard,
             margin: settings.margin_m,
             tolerance: (0.2 * settings.margin_m).max(1e-3),
+            near: 0.5,
             ceiling: settings.rise_limit_m + 0.25,
             ceiling_tolerance: 0.24,
             slack_price: settings.slack_price,
@@ -174,6 +178,8 @@ pub struct QpResult {
     pub energy: f64,
     /// Wall time, milliseconds.
     pub milliseconds: f64,
+    /// Whether it was told to end before its end: what is missed may be more than is named.
+    pub stopped: bool,
 }
 
 /// A frame that cannot be solved at all.

@@ -1,12 +1,14 @@
 //! The rows in play with their multipliers.
 
 use super::dual::Dual;
+use super::matrix_free::MatrixFree;
 use super::metric::Metric;
 use super::problem::{Certificate, SolvedRow};
 use super::row::{Constraint, Row};
 use belvedere_core::DVec2;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A row remembered between frames.
 #[derive(Debug, Clone, Copy)]
@@ -35,46 +37,128 @@ pub(super) struct NewRow {
     pub(super) excess: f64,
     /// Inverse price of its slack, 0 = none.
     pub(super) soft: f64,
+    /// By how much it may be missed where there are too many rows for an exact solution, metres.
+    pub(super) allowed: f64,
     /// Multiplier to begin with.
     pub(super) multiplier: f64,
     /// Frames without one.
     pub(super) idle: u32,
 }
 
+/// With more rows than this no matrix over all of them is made. Below it the active set is quicker, and exact.
+const MOST_EXACT: usize = 2000;
+/// Cycles of the solver without a matrix in rounds that need not be exact, and in the others.
+const CYCLES: [usize; 2] = [2, 10];
+
+#[derive(Debug)]
+enum Multipliers {
+    ActiveSet(Dual),
+    MatrixFree(Box<MatrixFree>),
+}
+
+impl Default for Multipliers {
+    fn default() -> Self {
+        Self::ActiveSet(Dual::default())
+    }
+}
+
 #[derive(Debug, Default)]
 pub(super) struct RowsInPlay {
     pub(super) rows: Vec<Row>,
-    dual: Dual,
+    allowed: Vec<f64>,
+    multipliers: Multipliers,
     idle: Vec<u32>,
+}
+
+/// How well rows are to be met.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Accuracy {
+    /// Metres, by the active set.
+    pub(super) exact: f64,
+    /// Metres that suffice in this round where there is no matrix; 0 = what each row allows.
+    pub(super) enough: f64,
 }
 
 impl RowsInPlay {
     /// Adds rows.
     pub(super) fn extend(&mut self, new: Vec<NewRow>, metric: &Metric) {
+        if self.rows.len() + new.len() > MOST_EXACT {
+            self.drop_matrix(metric);
+        }
         let known = self.rows.len();
         self.rows.extend(new.iter().map(|n| n.row));
-        let rows = &self.rows;
-        let products = |k: usize| {
-            let mut out = Vec::with_capacity(known + k + 1);
-            Arch::new().dispatch(Products { row: &rows[known + k], rows: &rows[..=known + k], metric, out: &mut out });
-            out
-        };
-        let products: Vec<Vec<f64>> = (0..new.len()).into_par_iter().with_min_len(4).map(products).collect();
-        for (new, products) in new.into_iter().zip(products) {
-            self.dual.push(&products, new.soft, new.excess, new.multiplier);
-            self.idle.push(new.idle);
+        self.allowed.extend(new.iter().map(|n| n.allowed));
+        self.idle.extend(new.iter().map(|n| n.idle));
+        match &mut self.multipliers {
+            Multipliers::ActiveSet(dual) => extend(dual, &self.rows, known, &new, metric),
+            Multipliers::MatrixFree(free) => {
+                for NewRow { row, excess, soft, allowed, multiplier, .. } in new {
+                    free.push(&row, row.product(&row, metric), allowed, [soft, excess, multiplier]);
+                }
+            }
         }
     }
 
-    pub(super) fn solve(&mut self, tolerance: f64) {
-        self.dual.solve(tolerance);
+    /// Nodes that have a ceiling.
+    pub(super) fn ceilings(&self) -> BTreeSet<u32> {
+        let node = |row: &Row| match row.constraint {
+            Constraint::Ceiling(node) => Some(node),
+            Constraint::Sight { .. } => None,
+        };
+        self.rows.iter().filter_map(node).collect()
+    }
+
+    /// Goes on without a matrix.
+    fn drop_matrix(&mut self, metric: &Metric) {
+        let Multipliers::ActiveSet(dual) = &self.multipliers else { return };
+        let mut free = MatrixFree::default();
+        for (i, row) in self.rows.iter().enumerate() {
+            let [soft, excess] = dual.terms(i);
+            free.push(row, row.product(row, metric), self.allowed[i], [soft, excess, dual.multiplier(i)]);
+        }
+        self.multipliers = Multipliers::MatrixFree(Box::new(free));
+    }
+
+    /// Whether there are too many rows for a matrix over all of them.
+    pub(super) fn is_matrix_free(&self) -> bool {
+        matches!(self.multipliers, Multipliers::MatrixFree(_))
+    }
+
+    /// Finds the multipliers. Answers whether all rows are met as asked.
+    ///
+    /// * `go_on`: asked between steps; false stops with the best so far.
+    pub(super) fn solve(
+        &mut self,
+        metric: &mut Metric,
+        Accuracy { exact, enough }: Accuracy,
+        go_on: &(dyn Fn() -> bool + Sync),
+    ) -> bool {
+        match &mut self.multipliers {
+            Multipliers::ActiveSet(dual) => dual.solve(exact, go_on),
+            Multipliers::MatrixFree(free) => free.solve(metric, enough, CYCLES[usize::from(enough == 0.0)], go_on),
+        }
+    }
+
+    fn multiplier(&self, row: usize) -> f64 {
+        match &self.multipliers {
+            Multipliers::ActiveSet(dual) => dual.multiplier(row),
+            Multipliers::MatrixFree(free) => free.multiplier(row),
+        }
+    }
+
+    /// By how much the solution misses a row, metres; 0 where it is exact.
+    pub(super) fn missed(&self, row: usize) -> f64 {
+        match &self.multipliers {
+            Multipliers::ActiveSet(_) => 0.0,
+            Multipliers::MatrixFree(free) => free.missed(row),
+        }
     }
 
     /// `u = target - H^-1 A^T m`.
     pub(super) fn displacement(&self, metric: &mut Metric, target: &[f64], u: &mut [f64]) {
         u.fill(0.0);
         for (i, row) in self.rows.iter().enumerate() {
-            let m = self.dual.multiplier(i);
+            let m = self.multiplier(i);
             if m > 0.0 {
                 for (node, w) in row.entries() {
                     u[node as usize] -= w * m;
@@ -88,18 +172,24 @@ impl RowsInPlay {
     }
 
     pub(super) fn energy(&self) -> f64 {
-        self.dual.energy()
+        match &self.multipliers {
+            Multipliers::ActiveSet(dual) => dual.energy(),
+            Multipliers::MatrixFree(free) => free.energy(),
+        }
     }
 
     pub(super) fn slack(&self, row: usize) -> f64 {
-        self.dual.slack(row)
+        match &self.multipliers {
+            Multipliers::ActiveSet(dual) => dual.slack(row),
+            Multipliers::MatrixFree(free) => free.slack(row),
+        }
     }
 
     /// What to remember for the next frame.
     pub(super) fn kept(&self, id: impl Fn(usize) -> u32) -> Vec<RememberedRow> {
         let mut out = Vec::new();
         for (i, row) in self.rows.iter().enumerate() {
-            let multiplier = self.dual.multiplier(i);
+            let multiplier = self.multiplier(i);
             let idle = if multiplier > 0.0 { 0 } else { self.idle[i] + 1 };
             if idle < IDLE {
                 let key = match row.constraint {
@@ -116,14 +206,14 @@ impl RowsInPlay {
 
     /// Rows with a multiplier.
     pub(super) fn active(&self, id: impl Fn(usize) -> u32) -> Vec<SolvedRow> {
-        let held = (0..self.rows.len()).filter(|&i| self.dual.multiplier(i) > 0.0);
+        let held = (0..self.rows.len()).filter(|&i| self.multiplier(i) > 0.0);
         held.map(|i| {
             let Row { nodes, weights, bound, constraint, .. } = self.rows[i];
             let (candidate, at, tau) = match constraint {
                 Constraint::Ceiling(_) => (None, DVec2::ZERO, 0.0),
                 Constraint::Sight { candidate, at, tau } => (Some(id(candidate)), at, tau),
             };
-            let (multiplier, slack) = (self.dual.multiplier(i), self.dual.slack(i));
+            let (multiplier, slack) = (self.multiplier(i), self.slack(i));
             SolvedRow { candidate, at, tau, nodes, weights, bound, multiplier, slack }
         })
         .collect()
@@ -136,10 +226,10 @@ impl RowsInPlay {
         ceiling: impl Fn(usize) -> f64,
         id: impl Fn(usize) -> u32,
     ) -> Option<Certificate> {
-        let mut sum = std::collections::BTreeMap::<u32, f64>::new();
+        let mut sum = BTreeMap::<u32, f64>::new();
         let (mut bound, mut total, mut rows) = (0.0, 0.0, Vec::new());
         for (i, row) in self.rows.iter().enumerate() {
-            let m = self.dual.multiplier(i);
+            let m = self.multiplier(i);
             if m > 0.0 {
                 for (node, w) in row.entries() {
                     *sum.entry(node).or_default() += m * w;
@@ -155,6 +245,19 @@ impl RowsInPlay {
             sum.iter().map(|(&node, &g)| if g > 0.0 { -g * depth } else { g * ceiling(node as usize) }).sum();
         let gap = (least - bound) / total;
         (gap > 0.0).then(|| Certificate { depth, gap, rows: rows.iter().map(|(i, m)| (*i, m / total)).collect() })
+    }
+}
+
+/// Adds the rows from `known` on to the dual with their products with all rows before them.
+fn extend(dual: &mut Dual, rows: &[Row], known: usize, new: &[NewRow], metric: &Metric) {
+    let products = |k: usize| {
+        let mut out = Vec::with_capacity(known + k + 1);
+        Arch::new().dispatch(Products { row: &rows[known + k], rows: &rows[..=known + k], metric, out: &mut out });
+        out
+    };
+    let products: Vec<Vec<f64>> = (0..new.len()).into_par_iter().with_min_len(4).map(products).collect();
+    for (new, products) in new.iter().zip(products) {
+        dual.push(&products, new.soft, new.excess, new.multiplier);
     }
 }
 

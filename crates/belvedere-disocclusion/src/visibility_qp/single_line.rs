@@ -98,7 +98,7 @@ mod tests {
             .collect();
         let problem = QpProblem { candidates: &candidates, sight: &Bowed, target: None, ceilings: None };
         let seen = CandidateLine::all(&problem, &surface);
-        let clearance = Clearance { margin: 1.0, tolerance: 0.2, guard: 1.5 };
+        let clearance = Clearance { margin: 1.0, tolerance: 0.2, near: 0.3, guard: 1.5 };
         let fresh = || (0..seen.len()).map(|k| SingleLine::new(k, &seen[k])).collect::<Vec<_>>();
         let (mut lines, mut touches, mut roomy) = (fresh(), 0, 0);
         for round in 0..40 {

@@ -5,13 +5,15 @@ use super::candidate_line::CandidateLine;
 use super::metric::Metric;
 use super::problem::{QpError, QpOptions, QpProblem, QpResult, Reason, Unresolved};
 use super::rise::Rise;
+use super::row::Constraint;
 use super::row::Row;
-use super::rows_in_play::{IDLE, NewRow, RememberedRow, RowKey, RowsInPlay};
+use super::rows_in_play::{Accuracy, IDLE, NewRow, RememberedRow, RowKey, RowsInPlay};
 use super::surface::{Lattice, Surface};
-use super::walk::{Clearance, Touch, fade};
+use super::walk::{Clearance, Touch};
 use crate::Field;
 use crate::smooth::{Between, Hierarchy, Smoother};
 use belvedere_core::DVec2;
+use belvedere_scene::Progress;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -24,6 +26,17 @@ const CEILING_ROUNDS: usize = 40;
 const DEPTH: f64 = 4.0;
 /// Price of slack where rows contradict each other.
 const LAST_PRICE: f64 = 1e3;
+/// New rows per round at most.
+const MOST_NEW: usize = 2000;
+/// While something is missed by more than this, metres, rounds without a matrix only meet rows to within a share of it, and at
+/// most to some metres.
+const FINE: f64 = 0.4;
+const ROUGH_SHARE: f64 = 0.05;
+const ROUGH: f64 = 3.0;
+/// Rounds without a new row in which rows or ceilings may still be missed.
+const STALLED: usize = 6;
+/// Rows stand for what is missed as near as this to them, steps of the solver's grid.
+const KNOWN: f64 = 0.5;
 
 /// The program over one terrain. Remembers rows, multipliers and displacement between frames.
 #[derive(Debug, Clone)]
@@ -44,6 +57,7 @@ struct Frame<'a> {
     clearance: Clearance,
     /// Inverse price of slack, 0 = none.
     soft: f64,
+    progress: &'a Progress,
 }
 
 impl QpSolver {
@@ -71,9 +85,12 @@ impl QpSolver {
         self.options = options;
     }
 
-    fn clearance(&self) -> Clearance {
-        let QpOptions { margin, tolerance, guard, .. } = self.options;
-        Clearance { margin, tolerance, guard }
+    /// Candidates low above the ground leave less of the margin: the ground right before them is as high as theirs.
+    fn clearance(&self, problem: &QpProblem) -> Clearance {
+        let QpOptions { margin, tolerance, near, guard, .. } = self.options;
+        let lowest = problem.candidates.iter().map(|c| c.lift).fold(f64::INFINITY, f64::min);
+        let near = if margin > 0.0 { near * (lowest / margin).clamp(0.0, 1.0) } else { near };
+        Clearance { margin, tolerance, near, guard }
     }
 
     /// Forgets the frames before.
@@ -90,6 +107,14 @@ impl QpSolver {
     /// # Errors
     /// Every [`QpError`].
     pub fn solve(&mut self, problem: &QpProblem) -> Result<QpResult, QpError> {
+        self.solve_with(problem, &Progress::silent())
+    }
+
+    /// As [`Self::solve`]; tells how far it is, and ends with the best so far when it should.
+    ///
+    /// # Errors
+    /// Every [`QpError`].
+    pub fn solve_with(&mut self, problem: &QpProblem, progress: &Progress) -> Result<QpResult, QpError> {
         let begin = Instant::now();
         let nodes = self.surface.u.len();
         for (what, values) in [("the target", problem.target), ("the ceiling", problem.ceilings)] {
@@ -97,13 +122,15 @@ impl QpSolver {
         }
         self.check_eye(problem)?;
         let mut lines = CandidateLine::all(problem, &self.surface);
-        let mut out = self.pass(problem, &lines);
+        let mut out = self.pass(problem, &lines, progress);
         if problem.sight.straight().is_none() {
             for _ in 0..10 {
-                if CandidateLine::follow_up(&mut lines, problem, &self.surface, 0.1 * self.options.tolerance) == 0 {
+                if out.stopped
+                    || CandidateLine::follow_up(&mut lines, problem, &self.surface, 0.1 * self.options.tolerance) == 0
+                {
                     break;
                 }
-                let next = self.pass(problem, &lines);
+                let next = self.pass(problem, &lines, progress);
                 let (rounds, added) = (out.rounds + next.rounds, out.added + next.added);
                 out = QpResult { rounds, added, kept: out.kept, ..next };
             }
@@ -125,7 +152,7 @@ impl QpSolver {
     }
 
     /// Solves with these lines of sight.
-    fn pass(&mut self, problem: &QpProblem, lines: &[CandidateLine]) -> QpResult {
+    fn pass(&mut self, problem: &QpProblem, lines: &[CandidateLine], progress: &Progress) -> QpResult {
         let o = self.options;
         let nodes = self.surface.u.len();
         let mut frame = Frame {
@@ -134,8 +161,9 @@ impl QpSolver {
             seen: lines.to_vec(),
             bundles: Vec::new(),
             pool: RowsInPlay::default(),
-            clearance: self.clearance(),
+            clearance: self.clearance(problem),
             soft: o.slack_price.map_or(0.0, |price| 1.0 / price),
+            progress,
         };
         let mut out = QpResult::default();
         frame.drop_without_line(o.guard, &mut out.unresolved);
@@ -144,28 +172,34 @@ impl QpSolver {
         out.kept = frame.pool.rows.len();
         let depth = self.depth(&frame);
         let mut missed = Vec::new();
+        let (mut enough, mut stalled, mut first) = (ROUGH, 0, 0.0f64);
         while out.rounds < o.rounds {
-            self.settle(&mut frame);
+            let settled = self.settle(&mut frame, enough);
             missed = frame.missed(&self.surface);
             out.rounds += 1;
-            let new = frame.thinned(&self.surface, &missed, out.rounds);
-            let deepest = self.surface.u.iter().copied().fold(0.0, f64::min);
-            if new.is_empty() && deepest >= -depth {
-                // Rows that had to become soft are missed still, though none more would help.
-                let forced = frame.soft > 0.0 && o.slack_price.is_none();
-                if !forced {
-                    missed.clear();
-                }
+            out.stopped = progress.should_end();
+            if out.stopped {
                 break;
             }
+            let worst = missed.iter().map(|(_, touch)| touch.excess).fold(0.0, f64::max);
+            first = first.max(worst);
+            frame.tell(out.rounds, worst, first);
+            enough = if worst > FINE { (ROUGH_SHARE * worst).min(ROUGH) } else { 0.0 };
+            let deepest = self.surface.u.iter().copied().fold(0.0, f64::min);
             if deepest < -depth && frame.soft == 0.0 {
                 self.soften(&mut frame);
                 continue;
             }
-            if new.is_empty() {
+            let new = frame.thinned(&self.surface, &missed, out.rounds);
+            stalled = if new.is_empty() { stalled + 1 } else { 0 };
+            if new.is_empty() && (settled || stalled > STALLED) {
                 break;
             }
             self.push(&mut frame, new);
+        }
+        if o.slack_price.is_some() {
+            // What is still missed was left hidden at its price.
+            missed.clear();
         }
         self.report(&frame, &missed, depth, &mut out);
         self.kept = frame.pool.kept(|i| problem.candidates[i].id);
@@ -213,7 +247,12 @@ impl QpSolver {
     fn new_row(&self, frame: &Frame, row: Row, (multiplier, idle): (f64, u32)) -> NewRow {
         let excess = row.at(&frame.target) - row.bound;
         let soft = if row.is_ceiling() { 0.0 } else { frame.soft };
-        NewRow { row, excess, soft, multiplier, idle }
+        let allowed = match row.constraint {
+            Constraint::Ceiling(_) => self.options.ceiling_tolerance,
+            Constraint::Sight { tau, .. } => frame.clearance.tolerance * frame.clearance.share(tau),
+        };
+        // The walks find what is missed by more than is allowed.
+        NewRow { row, excess, soft, allowed: 0.5 * allowed, multiplier, idle }
     }
 
     /// Adds rows that had no multiplier so far.
@@ -229,21 +268,32 @@ impl QpSolver {
         self.push(frame, rows);
     }
 
-    /// Solves with the rows in play and adds ceilings until no node rises above its own.
-    fn settle(&mut self, frame: &mut Frame) {
+    /// Solves with the rows in play and adds ceilings until no node rises above its own; without a matrix it adds them once, for
+    /// the next round. Answers whether rows and ceilings are met as they must be in the end.
+    fn settle(&mut self, frame: &mut Frame, enough: f64) -> bool {
         let mut u = vec![0.0; frame.target.len()];
+        let mut settled = false;
+        let progress = frame.progress;
         for _ in 0..CEILING_ROUNDS {
-            frame.pool.solve(EXACT);
+            let accuracy = Accuracy { exact: EXACT, enough };
+            let met = frame.pool.solve(&mut self.metric, accuracy, &|| !progress.should_end());
             frame.pool.displacement(&mut self.metric, &frame.target, &mut u);
             let risen = self.risen(frame, &u);
             if risen.is_empty() {
+                settled = met && (enough == 0.0 || !frame.pool.is_matrix_free());
                 break;
             }
-            let rows: Vec<Row> = risen.into_iter().map(|node| self.ceiling_row(frame, node)).collect();
+            let known = frame.pool.ceilings();
+            let new = risen.into_iter().filter(|node| !known.contains(node));
+            let rows: Vec<Row> = new.map(|node| self.ceiling_row(frame, node)).collect();
             self.push(frame, rows);
+            if frame.pool.is_matrix_free() || progress.should_end() {
+                break;
+            }
         }
         frame.moved(&self.surface, &u);
         self.surface.displace(&u);
+        settled
     }
 
     /// Nodes above their ceiling, by more than the tolerance, and by more than their neighbours.
@@ -281,7 +331,9 @@ impl QpSolver {
         let forced = frame.soft > 0.0 && self.options.slack_price.is_none();
         if forced {
             for row in &out.active {
-                if let (Some(id), true) = (row.candidate, row.slack > frame.clearance.tolerance * fade(row.tau)) {
+                if let (Some(id), true) =
+                    (row.candidate, row.slack > frame.clearance.tolerance * frame.clearance.share(row.tau))
+                {
                     let lacks = worst.entry(id).or_default();
                     *lacks = lacks.max(row.slack);
                 }
@@ -321,37 +373,58 @@ impl Frame<'_> {
     /// All places where the asked clearance is missed; first the index in `seen`. Where lines still have room they are not
     /// followed.
     fn missed(&mut self, surface: &Surface) -> Vec<(usize, Touch)> {
-        let (seen, clearance) = (&self.seen, &self.clearance);
-        self.bundles.par_iter_mut().with_min_len(8).flat_map_iter(|b| b.walk(seen, surface, clearance)).collect()
+        let (seen, clearance, progress) = (&self.seen, &self.clearance, self.progress);
+        let walk = |b: &mut Bundle| if progress.should_end() { Vec::new() } else { b.walk(seen, surface, clearance) };
+        self.bundles.par_iter_mut().with_min_len(8).flat_map_iter(walk).collect()
     }
 
-    /// Rows for the worst of each bunch of neighbours; bunches get smaller from round to round.
+    /// Rows for the worst of each bunch of neighbours; bunches get smaller from round to round, but are never so small that there
+    /// are too many rows. What is missed no more than the rows beside it brings none: those are to be met first.
     fn thinned(&self, surface: &Surface, missed: &[(usize, Touch)], round: usize) -> Vec<Row> {
-        let fine = if self.soft > 0.0 { 0.5 } else { 0.5f64.powi(round as i32 / 3 - 1).max(1.0 / 32.0) };
-        let size = surface.lattice.step * fine;
-        let key = |at: DVec2, grid: DVec2| [at / size, grid / size].map(|v| (v.x.floor() as i64, v.y.floor() as i64));
-        let mut bought = BTreeMap::<_, f64>::new();
-        if self.soft > 0.0 {
+        let step = surface.lattice.step;
+        let key = |at: DVec2, grid: DVec2, size: DVec2| {
+            [at / size, grid / size].map(|v| (v.x.floor() as i64, v.y.floor() as i64))
+        };
+        let candidates = self.problem.candidates;
+        let mut known = BTreeMap::<_, f64>::new();
+        if self.soft > 0.0 || self.pool.is_matrix_free() {
             for (i, row) in self.pool.rows.iter().enumerate() {
-                if let super::row::Constraint::Sight { candidate, at, .. } = row.constraint {
-                    let slack = bought.entry(key(at, self.problem.candidates[candidate].grid)).or_default();
-                    *slack = slack.max(self.pool.slack(i));
+                if let Constraint::Sight { candidate, at, .. } = row.constraint {
+                    let lacks = known.entry(key(at, candidates[candidate].grid, KNOWN * step)).or_default();
+                    *lacks = lacks.max(self.pool.slack(i) + self.pool.missed(i));
                 }
             }
         }
-        let mut best: BTreeMap<_, (usize, Touch)> = BTreeMap::new();
-        for (k, touch) in missed {
-            let key = key(touch.at, self.seen[*k].grid);
-            let slack = bought.get(&key).copied().unwrap_or(0.0);
-            if self.soft > 0.0 && touch.excess <= 1.1 * slack + self.clearance.tolerance {
-                continue;
+        let spare = if self.soft > 0.0 { self.clearance.tolerance } else { 0.0 };
+        let is_new = |(k, touch): &&(usize, Touch)| {
+            let known = known.get(&key(touch.at, self.seen[*k].grid, KNOWN * step));
+            known.is_none_or(|known| touch.excess > 1.1 * known + spare)
+        };
+        let new: Vec<&(usize, Touch)> = missed.iter().filter(is_new).collect();
+        let fine = if self.soft > 0.0 { KNOWN } else { 0.5f64.powi(round as i32 / 3 - 1).max(1.0 / 32.0) };
+        let mut size = fine * step;
+        loop {
+            let mut best: BTreeMap<_, &(usize, Touch)> = BTreeMap::new();
+            for touch in &new {
+                let slot = best.entry(key(touch.1.at, self.seen[touch.0].grid, size)).or_insert(touch);
+                if touch.1.excess > slot.1.excess {
+                    *slot = touch;
+                }
             }
-            let slot = best.entry(key).or_insert((*k, *touch));
-            if touch.excess > slot.1.excess {
-                *slot = (*k, *touch);
+            if best.len() <= MOST_NEW {
+                return best.into_values().map(|(k, t)| self.seen[*k].row(surface, t, &self.clearance)).collect();
             }
+            size *= 2.0;
         }
-        best.into_values().map(|(k, t)| self.seen[k].row(surface, &t, self.clearance.margin)).collect()
+    }
+
+    /// Says how far the rounds are: what is missed falls from round to round.
+    fn tell(&self, round: usize, worst: f64, first: f64) {
+        let tolerance = self.clearance.tolerance;
+        let left = (worst.max(tolerance) / tolerance).ln() / (first.max(2.0 * tolerance) / tolerance).ln();
+        let stage = format!("quadratic program, round {round}, {} rows, {worst:.1} m missed", self.pool.rows.len());
+        // Whether to stop is asked at the end of each round.
+        let _ = self.progress.tick(&stage, 0.5 + 0.4 * (1.0 - left));
     }
 }
 

@@ -23,13 +23,17 @@ pub(super) struct Clearance {
     pub(super) margin: f64,
     /// What may lack of it, metres far from the point.
     pub(super) tolerance: f64,
+    /// Share of both that counts at the point, 0..=1.
+    pub(super) near: f64,
     /// Ground nearer than this to the point does not count, cells.
     pub(super) guard: f64,
 }
 
-/// Share of the margin that counts at `tau`.
-pub(super) fn fade(tau: f64) -> f64 {
-    (5.0 * tau).clamp(0.0, 1.0)
+impl Clearance {
+    /// Share of margin and tolerance that counts at `tau`: all of it but for the fifth of the way next to the point.
+    pub(super) fn share(&self, tau: f64) -> f64 {
+        self.near + (1.0 - self.near) * (5.0 * tau).clamp(0.0, 1.0)
+    }
 }
 
 /// A place where the ground comes too close.
@@ -99,7 +103,7 @@ impl Chord {
     pub(super) fn ends_of(&self, surface: &Surface, part: [f64; 2], clearance: &Clearance) -> [Result<Touch, f64>; 2] {
         part.map(|t| {
             let end = self.place(surface, t, clearance);
-            let missing = end.excess - clearance.tolerance * fade(end.tau);
+            let missing = end.excess - clearance.tolerance * clearance.share(end.tau);
             if missing > 0.0 { Ok(end) } else { Err(-missing) }
         })
     }
@@ -122,7 +126,7 @@ impl Chord {
             let [a, b] = stack[depth];
             let (ga, gb) = (self.at(a), self.at(b));
             let lowest = Self::mix(self.z, a).min(Self::mix(self.z, b))
-                - clearance.margin * fade(Self::mix(self.tau, a).max(Self::mix(self.tau, b)));
+                - clearance.margin * clearance.share(Self::mix(self.tau, a).max(Self::mix(self.tau, b)));
             let left = lowest - surface.bound(ga, gb);
             if left >= 0.0 {
                 *room = room.min(left);
@@ -244,7 +248,7 @@ impl Chord {
 
     fn touch(&self, surface: &Surface, t: f64, at: DVec2, ground: f64, clearance: &Clearance) -> Touch {
         let (z, tau) = (Self::mix(self.z, t), Self::mix(self.tau, t));
-        let excess = ground + surface.lattice.at(&surface.u, at) - z + clearance.margin * fade(tau);
+        let excess = ground + surface.lattice.at(&surface.u, at) - z + clearance.margin * clearance.share(tau);
         Touch { at, tau, ground, z, excess }
     }
 
@@ -304,7 +308,7 @@ impl Gap {
             most = most.max(self.at(top));
         }
         let tau = Chord::mix(chord.tau, a).max(Chord::mix(chord.tau, b));
-        most + self.clearance.margin * fade(tau)
+        most + self.clearance.margin * self.clearance.share(tau)
     }
 
     /// Excess beyond the tolerance at `t`.
@@ -316,7 +320,7 @@ impl Gap {
     #[inline]
     fn judge(&self, chord: &Chord, t: f64, at: DVec2, ground: f64, found: &mut Found) -> f64 {
         let tau = Chord::mix(chord.tau, t);
-        let share = fade(tau);
+        let share = self.clearance.share(tau);
         let excess = ground + self.at(t) + self.clearance.margin * share;
         let missing = excess - self.clearance.tolerance * share;
         if missing <= 0.0 {

@@ -33,6 +33,7 @@ fn points() -> Vec<(DVec2, f64)> {
 
 fn exact() -> QpOptions {
     QpOptions {
+        near: 0.0,
         guard: 1.5,
         margin: 1.0,
         tolerance: 1e-7,

@@ -1,0 +1,364 @@
+//! The dual program without its matrix, for thousands of rows.
+//!
+//! `min 1/2 m^T (K + S) m - c^T m` over `m >= 0` by the proximal method of multipliers (Rockafellar 1976): each cycle adds
+//! `near (m - m_before)^2 / 2` per row and solves what is then well conditioned by a primal-dual active set (Hintermueller, Ito, Kunisch
+//! 2002). Equations on a face are solved by conjugate gradients; a product with K is one solve of the smoother, and Cholesky
+//! factors of crowds of neighbouring rows precondition.
+
+use super::cholesky::Cholesky;
+use super::metric::Metric;
+use super::row::Row;
+use rayon::prelude::*;
+
+/// First proximal weight of a cycle, share of a row's own square; it falls and rises within limits.
+const NEARNESS: f64 = 1e-2;
+const NEARNESS_RANGE: [f64; 2] = [1e-5, 1.0];
+const NEARER: f64 = 8.0;
+const FARTHER: f64 = 0.25;
+/// Changes of the face per cycle, and how many in a row may come without fewer rows changing.
+const NEWTON_STEPS: usize = 40;
+const PATIENCE: usize = 5;
+/// Conjugate gradient steps on a face while many rows change, and afterwards.
+const CONJUGATE_STEPS: [usize; 2] = [25, 60];
+/// Faces are solved to this share of what rows may be missed by.
+const EXACT: f64 = 0.2;
+/// Neighbouring rows with a common factor.
+const CROWD: usize = 96;
+/// Of so many neighbouring rows only the most missed one joins a face at a time: those beside it are mostly met with it.
+const GROUP: usize = 8;
+/// A pivot below this share of its diagonal counts as dependent.
+const DEPENDENT: f64 = 1e-6;
+
+/// Rows with their multipliers, per unit of the row.
+#[derive(Debug, Clone, Default)]
+pub(super) struct MatrixFree {
+    rows: Vec<Row>,
+    /// `a H^-1 a` of each row.
+    square: Vec<f64>,
+    /// Inverse price of slack, 0 = none.
+    soft: Vec<f64>,
+    excess: Vec<f64>,
+    /// What a row may be missed by in the end, metres.
+    allowed: Vec<f64>,
+    m: Vec<f64>,
+    /// `K m`, of the rows at the last solution.
+    product: Vec<f64>,
+    nearness: f64,
+    /// Neighbours follow each other.
+    order: Vec<usize>,
+    /// Values at the nodes of the solver's grid.
+    nodes: Vec<f64>,
+}
+
+/// What one cycle solves: `(K + diagonal) m = wanted` on the face, m = 0 off it.
+struct Equations {
+    wanted: Vec<f64>,
+    diagonal: Vec<f64>,
+    /// Diagonal of `K + diagonal`.
+    whole: Vec<f64>,
+    face: Vec<bool>,
+    crowds: Vec<Crowd>,
+}
+
+/// Rows of a face with the factor of their block of the matrix.
+struct Crowd {
+    members: Vec<usize>,
+    factor: Cholesky,
+}
+
+impl MatrixFree {
+    /// Adds a row.
+    ///
+    /// * `square`: its product with itself;
+    /// * `allowed`: what it may be missed by;
+    /// * `soft`, `excess`, `begin`: inverse price of its slack, excess at zero multipliers, multiplier to begin with.
+    pub(super) fn push(&mut self, row: &Row, square: f64, allowed: f64, [soft, excess, begin]: [f64; 3]) {
+        self.rows.push(*row);
+        self.square.push(square.max(f64::MIN_POSITIVE));
+        self.soft.push(soft);
+        self.excess.push(excess);
+        self.allowed.push(allowed);
+        self.m.push(begin);
+    }
+
+    pub(super) fn multiplier(&self, row: usize) -> f64 {
+        self.m[row]
+    }
+
+    /// Slack of a soft row, >= 0, metres.
+    pub(super) fn slack(&self, row: usize) -> f64 {
+        self.m[row] * self.soft[row]
+    }
+
+    /// By how much a row is missed, slack apart; negative where it has room, infinite before the first solution.
+    pub(super) fn missed(&self, row: usize) -> f64 {
+        self.product.get(row).map_or(f64::INFINITY, |product| self.excess[row] - product - self.slack(row))
+    }
+
+    /// `1/2 m^T (K + S) m`.
+    pub(super) fn energy(&self) -> f64 {
+        let of = |(i, product): (usize, &f64)| 0.5 * self.m[i] * (product + self.slack(i));
+        self.product.iter().enumerate().map(of).sum()
+    }
+
+    /// Cycles until no row is missed by more than it may be, or by `enough` if that is more. Answers whether that was reached.
+    ///
+    /// * `cycles`: at most;
+    /// * `go_on`: asked between steps; false stops with the best so far.
+    pub(super) fn solve(
+        &mut self,
+        metric: &mut Metric,
+        enough: f64,
+        cycles: usize,
+        go_on: &(dyn Fn() -> bool + Sync),
+    ) -> bool {
+        if self.product.len() < self.m.len() {
+            self.product = self.times(metric, &self.m.clone());
+        }
+        self.nearness = NEARNESS;
+        self.order = (0..self.rows.len()).collect();
+        self.order.sort_by_cached_key(|&i| crowd_key(&self.rows[i]));
+        for _ in 0..cycles {
+            if self.met(enough) || !go_on() {
+                break;
+            }
+            self.cycle(metric, go_on);
+        }
+        self.met(enough)
+    }
+
+    fn met(&self, enough: f64) -> bool {
+        (0..self.m.len()).all(|i| self.missed(i) <= self.allowed[i].max(enough))
+    }
+
+    /// One proximal step; without progress the multipliers stay and the next step is nearer.
+    fn cycle(&mut self, metric: &mut Metric, go_on: &(dyn Fn() -> bool + Sync)) {
+        let n = self.m.len();
+        let near: Vec<f64> = self.square.iter().map(|square| self.nearness * square).collect();
+        let mut equations = Equations {
+            wanted: (0..n).map(|i| self.excess[i] + near[i] * self.m[i]).collect(),
+            diagonal: (0..n).map(|i| self.soft[i] + near[i]).collect(),
+            whole: (0..n).map(|i| self.square[i] + self.soft[i] + near[i]).collect(),
+            face: self.m.iter().map(|m| *m > 0.0).collect(),
+            crowds: Vec::new(),
+        };
+        let mut changed = self.turn(&mut equations);
+        let mut best = (self.objective(&equations), self.m.clone(), self.product.clone());
+        let (mut improved, mut fewest, mut patience) = (false, usize::MAX, PATIENCE);
+        for _ in 0..NEWTON_STEPS {
+            let held = equations.face.iter().filter(|f| **f).count();
+            let many = 20 * changed > held;
+            if many || equations.crowds.is_empty() {
+                equations.crowds = self.crowds(metric, &equations);
+            }
+            self.on_the_face(metric, &equations, CONJUGATE_STEPS[usize::from(!many)]);
+            changed = self.turn(&mut equations);
+            if self.m.iter().any(|m| *m < 0.0) {
+                self.m.iter_mut().for_each(|m| *m = m.max(0.0));
+                self.product = self.times(metric, &self.m.clone());
+            }
+            let objective = self.objective(&equations);
+            if objective < best.0 {
+                best = (objective, self.m.clone(), self.product.clone());
+                improved = true;
+            }
+            if changed < fewest {
+                (fewest, patience) = (changed, PATIENCE);
+            } else {
+                patience -= 1;
+            }
+            if changed == 0 || patience == 0 || !go_on() {
+                break;
+            }
+        }
+        let change = if improved && patience > 0 { FARTHER } else { NEARER };
+        self.nearness = (change * self.nearness).clamp(NEARNESS_RANGE[0], NEARNESS_RANGE[1]);
+        (_, self.m, self.product) = best;
+    }
+
+    fn objective(&self, e: &Equations) -> f64 {
+        let of = |i: usize| self.m[i] * (0.5 * (self.product[i] + e.diagonal[i] * self.m[i]) - e.wanted[i]);
+        (0..self.m.len()).map(of).sum()
+    }
+
+    /// Rows without a multiplier leave the face, and of each group the one that is missed most joins it. Answers how many changed.
+    fn turn(&self, e: &mut Equations) -> usize {
+        let mut changed = 0;
+        for group in self.order.chunks(GROUP) {
+            let mut worst = (0.0, None);
+            for &i in group {
+                if e.face[i] {
+                    if self.m[i] <= 0.0 {
+                        e.face[i] = false;
+                        changed += 1;
+                    }
+                    continue;
+                }
+                let over = e.wanted[i] - self.product[i] - e.diagonal[i] * self.m[i];
+                if over > (EXACT * self.allowed[i]).max(worst.0) {
+                    worst = (over, Some(i));
+                }
+            }
+            if let (_, Some(i)) = worst {
+                e.face[i] = true;
+                changed += 1;
+            }
+        }
+        changed
+    }
+
+    /// Preconditioned conjugate gradients from the multipliers as they are. They may become negative.
+    fn on_the_face(&mut self, metric: &mut Metric, e: &Equations, steps: usize) {
+        let n = self.m.len();
+        if (0..n).any(|i| !e.face[i] && self.m[i] != 0.0) {
+            (0..n).filter(|&i| !e.face[i]).for_each(|i| self.m[i] = 0.0);
+            self.product = self.times(metric, &self.m.clone());
+        }
+        let mut residual: Vec<f64> = (0..n)
+            .map(|i| if e.face[i] { e.wanted[i] - self.product[i] - e.diagonal[i] * self.m[i] } else { 0.0 })
+            .collect();
+        let mut z = e.precondition(&residual);
+        let mut p = z.clone();
+        let mut square: f64 = residual.iter().zip(&z).map(|(r, z)| r * z).sum();
+        for _ in 0..steps {
+            if !(square > 0.0) || (0..n).all(|i| residual[i].abs() <= EXACT * self.allowed[i]) {
+                break;
+            }
+            let kp = self.times(metric, &p);
+            let curvature: f64 = (0..n).map(|i| p[i] * (kp[i] + e.diagonal[i] * p[i])).sum();
+            if !(curvature > 0.0) {
+                break;
+            }
+            let rate = square / curvature;
+            for i in 0..n {
+                self.m[i] += rate * p[i];
+                self.product[i] += rate * kp[i];
+                if e.face[i] {
+                    residual[i] -= rate * (kp[i] + e.diagonal[i] * p[i]);
+                }
+            }
+            z = e.precondition(&residual);
+            let next: f64 = residual.iter().zip(&z).map(|(r, z)| r * z).sum();
+            let share = next / square;
+            square = next;
+            p.iter_mut().zip(&z).for_each(|(p, z)| *p = z + share * *p);
+        }
+    }
+
+    /// `K v`.
+    fn times(&mut self, metric: &mut Metric, v: &[f64]) -> Vec<f64> {
+        self.nodes.clear();
+        self.nodes.resize(metric.nodes(), 0.0);
+        for (row, v) in self.rows.iter().zip(v).filter(|(_, v)| **v != 0.0) {
+            for (node, w) in row.entries() {
+                self.nodes[node as usize] += w * v;
+            }
+        }
+        metric.solve(&mut self.nodes);
+        let nodes = &self.nodes;
+        self.rows.par_iter().with_min_len(2048).map(|row| row.at(nodes)).collect()
+    }
+
+    /// Factors of the rows of the face, neighbours together.
+    fn crowds(&self, metric: &Metric, e: &Equations) -> Vec<Crowd> {
+        let held: Vec<usize> = self.order.iter().copied().filter(|&i| e.face[i]).collect();
+        let crowd = |members: &[usize]| {
+            let mut factor = Cholesky::default();
+            for (k, &i) in members.iter().enumerate() {
+                let products = members[..k].iter().map(|&j| self.rows[i].product(&self.rows[j], metric));
+                factor.push(products, e.whole[i], DEPENDENT);
+            }
+            Crowd { members: members.to_vec(), factor }
+        };
+        held.par_chunks(CROWD).map(crowd).collect()
+    }
+}
+
+impl Equations {
+    fn precondition(&self, residual: &[f64]) -> Vec<f64> {
+        let solved = |crowd: &Crowd| {
+            let mut x: Vec<f64> = crowd.members.iter().map(|&i| residual[i]).collect();
+            crowd.factor.solve(&mut x);
+            x
+        };
+        let parts: Vec<Vec<f64>> = self.crowds.par_iter().with_min_len(8).map(solved).collect();
+        // Rows that joined since the factors were made stand for themselves.
+        let mut out: Vec<f64> = residual.iter().zip(&self.whole).map(|(r, whole)| r / whole).collect();
+        for (crowd, x) in self.crowds.iter().zip(parts) {
+            for (&i, x) in crowd.members.iter().zip(x) {
+                out[i] = if self.face[i] { x } else { 0.0 };
+            }
+        }
+        out
+    }
+}
+
+/// Orders rows so that neighbours, in point and ground, mostly follow each other.
+fn crowd_key(row: &Row) -> u64 {
+    let [(_, ground), (_, point)] = row.points;
+    let parts = [point.col, point.row, ground.col, ground.row];
+    (0..13).rev().fold(0, |key, bit| parts.iter().fold(key, |key, v| (key << 1) | u64::from((v >> bit) & 1)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::dual::Dual;
+    use super::*;
+    use crate::smooth::{Between, Smoother};
+
+    /// A displacement of one node, or of one against another.
+    fn row(k: usize, nodes: usize) -> Row {
+        let node = |i: usize| Between::node((i % (nodes * nodes)) as u32, nodes, nodes);
+        let (a, b) = (k * 37 + k / 7, k * 53 + 11);
+        let mut row = Row::ceiling((a % (nodes * nodes)) as u32, node(a), 0.0);
+        if k % 3 > 0 {
+            let share = -0.1 * (k % 7) as f64;
+            (row.nodes[1], row.weights[1], row.len) = ((b % (nodes * nodes)) as u32, share, 2);
+            row.points[1] = (share, node(b));
+        }
+        row
+    }
+
+    #[test]
+    fn multipliers_are_those_of_the_active_set() {
+        let nodes = 25;
+        let mut metric = Metric::new(Smoother::new(nodes, nodes, 0.4, 0.0).unwrap());
+        for soft in [0.0, 0.05] {
+            let (mut free, mut dual, mut rows) = (MatrixFree::default(), Dual::default(), Vec::<Row>::new());
+            for k in 0..300 {
+                let row = row(k, nodes);
+                rows.push(row);
+                let products: Vec<f64> = rows.iter().map(|other| row.product(other, &metric)).collect();
+                let excess = ((k * 7919) % 13) as f64 - 6.0;
+                free.push(&row, products[k], 1e-7, [soft, excess, 0.0]);
+                dual.push(&products, soft, excess, 0.0);
+            }
+            assert!(free.solve(&mut metric, 0.0, 40, &|| true));
+            assert!(dual.solve(1e-9, &|| true));
+            let (mut held, mut largest) = (0, 0.0f64);
+            for k in 0..rows.len() {
+                held += usize::from(dual.multiplier(k) > 0.0);
+                largest = largest.max(dual.multiplier(k));
+            }
+            let apart = (free.energy() - dual.energy()).abs() / dual.energy();
+            assert!(apart < 1e-6, "energies {} and {}", free.energy(), dual.energy());
+            let off = |k: usize| (free.multiplier(k) - dual.multiplier(k)).abs();
+            let off = (0..rows.len()).map(off).fold(0.0, f64::max) / largest;
+            assert!(off < 1e-3 && held > 30 && held < 250, "{held} held, multipliers {off} apart");
+        }
+    }
+
+    #[test]
+    fn it_stops_when_told_to() {
+        let nodes = 25;
+        let mut metric = Metric::new(Smoother::new(nodes, nodes, 0.4, 0.0).unwrap());
+        let mut free = MatrixFree::default();
+        for k in 0..200 {
+            let row = row(k, nodes);
+            let square = row.product(&row, &metric);
+            free.push(&row, square, 1e-9, [0.0, 5.0, 0.0]);
+        }
+        assert!(!free.solve(&mut metric, 0.0, 40, &|| false));
+        assert!(free.solve(&mut metric, 0.0, 40, &|| true));
+    }
+}
