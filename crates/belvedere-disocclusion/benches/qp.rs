@@ -35,7 +35,7 @@ fn fly(g: f64, nodes: usize, count: usize) -> f64 {
     let candidates: Vec<Candidate> =
         dense.map(|(i, p)| Candidate { id: i as u32, grid: p.grid, lift: p.lift }).collect();
     let w =
-        grid_weight(settings.smoothness(stated_spacing(field.cols(), field.rows(), field.spacing())), hierarchy.cols());
+        grid_weight(settings.smoothness(stated_spacing(field.cols(), field.rows(), field.spacing())), hierarchy.intervals());
     let smoother = Smoother::new(hierarchy.cols(), hierarchy.rows(), w, g * w).expect("in range");
     let mut solver = QpSolver::new(&field, &hierarchy, smoother, QpOptions::of(&settings));
     let mut last: Option<Vec<f64>> = None;

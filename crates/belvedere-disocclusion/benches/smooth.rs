@@ -18,7 +18,7 @@ fn solves(c: &mut Criterion) {
     {
         let mut group = c.benchmark_group(name);
         for n in [65, 129, 257, 513, 1025] {
-            let mut smoother = Smoother::new(n, n, grid_weight(0.6, n), 0.0).expect("in range");
+            let mut smoother = Smoother::new(n, n, grid_weight(0.6, (n - 1) as f64), 0.0).expect("in range");
             let mut x: Vec<f64> = (0..n * n).map(number).collect();
             group.bench_function(BenchmarkId::from_parameter(n), |b| b.iter(|| solve(&mut smoother, &mut x)));
         }

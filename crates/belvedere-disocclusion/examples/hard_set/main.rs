@@ -1,6 +1,6 @@
 //! The hard set: every range of the data collection and seeded ones of 90 m, a route from corner to corner, three eyes.
 //!
-//! `cargo run --release -p belvedere-disocclusion --example hard_set [RANGE] [CASE]` (parts of names). One line per case, with
+//! `cargo run --release -p belvedere-disocclusion --example hard_set [RANGE] [CASE] [rounds]` (parts of names). One line per case, with
 //! what is asked of it: `seen` by the independent test >= 0.995 or something unresolved with its reason, raised at most 0.5 m over
 //! the limit, 5 s of processor time per 3000 candidates, 400 MiB. At the end the growth of time against rows.
 
@@ -63,13 +63,21 @@ fn eyes(ground: &Heightfield) -> Result<Vec<(&'static str, View)>, Failure> {
     ])
 }
 
+/// Prints every round if `rounds` is given.
+fn progress() -> Progress {
+    match std::env::args().nth(3) {
+        Some(_) => Progress::new(|stage, done| println!("    {:3.0} % {stage}", 100.0 * done)),
+        None => Progress::silent(),
+    }
+}
+
 /// Prints the line of a case; answers rows and seconds.
 fn solve(label: &str, range: &Range, layers: &[Layer], view: &View) -> Result<Option<(f64, f64)>, Failure> {
     let layers = std::iter::once(range.terrain()).chain(layers.iter().cloned()).collect();
     let scene = Scene { crs: range.crs, layers, ..Scene::default() };
     let solver = TerrainSolver::new(TerrainSettings::default())?;
     let cost = Cost::begin();
-    let solved = match solver.solve(&scene, view, &mut TerrainMemory::default(), &Progress::silent()) {
+    let solved = match solver.solve(&scene, view, &mut TerrainMemory::default(), &progress()) {
         Ok(solved) => solved,
         Err(failure) => {
             println!("{label}: {failure}");

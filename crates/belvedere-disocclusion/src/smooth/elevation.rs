@@ -57,8 +57,8 @@ impl ElevationRows {
     }
 }
 
-/// Weight of an elevation row on a grid of `longer` nodes along its longer side, from the one stated for 129 nodes: it
+/// Weight of an elevation row on a grid of so many intervals along its longer side, from the one stated for 128: it
 /// goes with the spacing, the square root of the way of [`super::grid_weight`].
-pub fn row_weight(weight: f64, longer: usize) -> f64 {
-    weight * 128.0 / (longer.max(2) - 1) as f64
+pub fn row_weight(weight: f64, intervals: f64) -> f64 {
+    weight * 128.0 / intervals
 }

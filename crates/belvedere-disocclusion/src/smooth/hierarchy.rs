@@ -2,7 +2,7 @@
 
 use belvedere_core::DVec2;
 
-/// A coarse grid over a fine one: corners coincide, steps need not be whole. Values between coarse nodes are bilinear.
+/// A coarse grid over a fine one: first corners coincide, values between coarse nodes are bilinear.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hierarchy {
     fine: [usize; 2],
@@ -13,6 +13,8 @@ pub struct Hierarchy {
 }
 
 impl Hierarchy {
+    /// Corners coincide, steps need not be whole.
+    ///
     /// * `cols`, `rows`: nodes of the fine grid, >= 1.
     /// * `nodes`: coarse nodes along the longer side, >= 2; the fine grid itself if that has fewer.
     pub fn new(cols: usize, rows: usize, nodes: usize) -> Self {
@@ -21,11 +23,33 @@ impl Hierarchy {
         let count = |n: usize| (n.max(1) - 1) * cells;
         let coarse = [cols, rows].map(|n| count(n).div_ceil(longer) + 1);
         let step = |n: usize, m: usize| if m > 1 { (n - 1) as f64 / (m - 1) as f64 } else { 1.0 };
-        let step = DVec2::new(step(cols, coarse[0]), step(rows, coarse[1]));
+        Self::with([cols, rows], coarse, DVec2::new(step(cols, coarse[0]), step(rows, coarse[1])))
+    }
+
+    /// Every coarse node is a fine one, or lies beside the fine grid: the last ones may, by less than a step.
+    ///
+    /// A displacement of the coarse nodes bends fine cells nowhere but at their edges, so that it hides nothing once it is
+    /// taken at the fine nodes.
+    ///
+    /// * `nodes`: coarse nodes along the longer side, about.
+    pub fn whole(cols: usize, rows: usize, nodes: usize) -> Self {
+        let longer = cols.max(rows).max(2) - 1;
+        let step = (longer as f64 / (nodes.max(2) - 1) as f64).round().max(1.0) as usize;
+        let coarse = [cols, rows].map(|n| (n.max(1) - 1).div_ceil(step) + 1);
+        Self::with([cols, rows], coarse, DVec2::splat(step as f64))
+    }
+
+    fn with([cols, rows]: [usize; 2], coarse: [usize; 2], step: DVec2) -> Self {
         let axis = |n: usize, m: usize, step: f64| (0..n).map(|i| cell(i as f64 / step, m)).collect();
         let across = axis(cols, coarse[0], step.x);
         let down = axis(rows, coarse[1], step.y);
         Self { fine: [cols, rows], coarse, step, across, down }
+    }
+
+    /// Steps along the longer side of the fine grid, > 0; not whole where the last nodes lie beside it.
+    pub fn intervals(&self) -> f64 {
+        let along = |axis: usize| (self.fine[axis].max(2) - 1) as f64 / self.step[axis];
+        along(usize::from(self.fine[1] > self.fine[0]))
     }
 
     /// Coarse columns.

@@ -40,10 +40,10 @@ impl SmoothPass {
     /// # Errors
     /// [`SmoothError`] if `w` is out of range.
     pub fn new(hierarchy: Hierarchy, w: f64, rows_weight: f64, points: &[DVec2]) -> Result<Self, SmoothError> {
-        let longer = hierarchy.cols().max(hierarchy.rows());
-        let smoother = Smoother::new(hierarchy.cols(), hierarchy.rows(), grid_weight(w, longer), 0.0)?;
+        let intervals = hierarchy.intervals();
+        let smoother = Smoother::new(hierarchy.cols(), hierarchy.rows(), grid_weight(w, intervals), 0.0)?;
         let points: Vec<DVec2> = points.iter().copied().filter(|p| p.is_finite() && rows_weight > 0.0).collect();
-        let rows = ElevationRows::new(&hierarchy, points.iter().copied(), row_weight(rows_weight, longer));
+        let rows = ElevationRows::new(&hierarchy, points.iter().copied(), row_weight(rows_weight, intervals));
         Ok(Self { hierarchy, smoother, rows, points, cg: ConjugateGradients::default() })
     }
 

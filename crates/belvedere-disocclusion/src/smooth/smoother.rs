@@ -31,10 +31,10 @@ pub enum SmoothError {
     },
 }
 
-/// Weight on a grid of `longer` nodes along its longer side from the weight stated for 129 nodes: w goes with the square
+/// Weight on a grid of so many intervals along the longer side from the weight stated for 128: w goes with the square
 /// of the spacing, because L does.
-pub fn grid_weight(w: f64, longer: usize) -> f64 {
-    let ratio = 128.0 / (longer.max(2) - 1) as f64;
+pub fn grid_weight(w: f64, intervals: f64) -> f64 {
+    let ratio = 128.0 / intervals;
     w * ratio * ratio
 }
 

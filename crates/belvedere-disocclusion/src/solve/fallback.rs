@@ -34,11 +34,14 @@ pub(super) fn stuck(result: &QpResult) -> usize {
     result.unresolved.iter().filter(|u| open(&u.reason)).count()
 }
 
-/// Sizes of the grids to try after `grid`.
-pub(super) fn finer(grid: &Hierarchy, field: &Field) -> impl Iterator<Item = usize> {
-    let longer = field.cols().max(field.rows()).min(MOST_NODES);
-    std::iter::successors(Some(grid.cols().max(grid.rows())), move |n| (*n < longer).then(|| (2 * n - 1).min(longer)))
-        .skip(1)
+/// The grids to try after `grid`: each has about half the step of the one before.
+pub(super) fn finer(grid: &Hierarchy, field: &Field) -> impl Iterator<Item = Hierarchy> {
+    let [cols, rows] = field.nodes();
+    let half = move |grid: &Hierarchy| {
+        let next = Hierarchy::whole(cols, rows, 2 * grid.cols().max(grid.rows()) - 1);
+        (next.step().x < grid.step().x && next.cols().max(next.rows()) <= MOST_NODES).then_some(next)
+    };
+    std::iter::successors(Some(grid.clone()), half).skip(1)
 }
 
 /// Ground whose bumps over what the solver's grid can hold are cut down around the rows that were bought, by less and less

@@ -80,8 +80,8 @@ impl Weights {
     }
 
     fn on(self, grid: &Hierarchy) -> Self {
-        let longer = grid.cols().max(grid.rows());
-        Self { w: grid_weight(self.w, longer), g: grid_weight(self.g, longer) }
+        let intervals = grid.intervals();
+        Self { w: grid_weight(self.w, intervals), g: grid_weight(self.g, intervals) }
     }
 }
 
@@ -156,7 +156,7 @@ impl Prepared {
         weights: Weights,
     ) -> Result<Self, DisocclusionError> {
         let level = Field::new(heightfield, |_| 0.0)?;
-        let grid = Hierarchy::new(level.cols(), level.rows(), settings.solver_nodes);
+        let grid = Hierarchy::whole(level.cols(), level.rows(), settings.solver_nodes);
         let (points, unusable) = reference_points(scene, &level, settings, settings.spacing);
         let with_qp = settings.mode != SolverMode::Paper;
         let dense = if with_qp { candidate_points(scene, &level, settings) } else { Vec::new() };

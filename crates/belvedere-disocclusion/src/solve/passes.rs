@@ -164,18 +164,18 @@ impl Passes<'_> {
         let wider = [asked, &in_view.entering[..]].concat();
         let mut problem = QpProblem { candidates: &wider, sight, target: target.as_deref(), ceilings: None };
         qp.set_options(memory::options(self.settings, false));
-        let mut result = qp.solve(&problem)?;
+        let mut result = qp.solve_with(&problem, self.progress)?;
         if fallback::stuck(&result) > 0 && wider.len() > asked.len() {
             // What the picture does not show yet is not to cost it anything.
             problem = QpProblem { candidates: asked, ..problem };
-            result = qp.solve(&problem)?;
+            result = qp.solve_with(&problem, self.progress)?;
         }
         if fallback::stuck(&result) > 0 {
             let cut = fallback::cut_detail(self.field, &ground, &prepared.grid, &result.active);
             let lower: Vec<f64> = ground.iter().zip(&cut).map(|(h, c)| h + c).collect();
             qp.set_heights(&lower)?;
             foreign = true;
-            let next = qp.solve(&problem)?;
+            let next = qp.solve_with(&problem, self.progress)?;
             if fallback::stuck(&next) < fallback::stuck(&result) {
                 (result, ground) = (next, lower.into());
                 let before = detail.take().unwrap_or_else(|| vec![0.0; cut.len()]);
@@ -188,7 +188,7 @@ impl Passes<'_> {
         let mut from_guard = false;
         if fallback::stuck(&result) > 0 {
             qp.set_options(memory::options(self.settings, true));
-            let next = qp.solve(&problem)?;
+            let next = qp.solve_with(&problem, self.progress)?;
             from_guard = fallback::stuck(&next) < fallback::stuck(&result);
             if from_guard {
                 result = next;
@@ -230,17 +230,17 @@ impl Passes<'_> {
         done: &mut Outcome,
     ) -> Result<QpResult, DisocclusionError> {
         let Finer { coarse, ground, detail, weights, options } = *grids;
-        for nodes in fallback::finer(coarse, self.field) {
+        for grid in fallback::finer(coarse, self.field) {
             if fallback::stuck(&best) == 0 {
                 break;
             }
             self.progress.tick("quadratic program on a finer grid", 0.7)?;
-            let grid = Hierarchy::new(self.field.cols(), self.field.rows(), nodes);
+            let nodes = grid.cols().max(grid.rows());
             let target = problem.target.map(|t| fallback::resampled(coarse, t, &grid));
             let mut finer = memory::program(self.field, &grid, weights, options)?;
             finer.set_heights(ground)?;
             let problem = QpProblem { target: target.as_deref(), ..*problem };
-            let mut next = finer.solve(&problem)?;
+            let mut next = finer.solve_with(&problem, self.progress)?;
             if let Some(detail) = detail {
                 next = Drawn { field: self.field, grid: &grid, detail, options }
                     .agree(&mut finer, ground, &problem, next)?;

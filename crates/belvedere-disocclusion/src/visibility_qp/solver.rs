@@ -184,13 +184,14 @@ impl QpSolver {
             let worst = missed.iter().map(|(_, touch)| touch.excess).fold(0.0, f64::max);
             first = first.max(worst);
             frame.tell(out.rounds, worst, first);
-            enough = if worst > FINE { (ROUGH_SHARE * worst).min(ROUGH) } else { 0.0 };
             let deepest = self.surface.u.iter().copied().fold(0.0, f64::min);
             if deepest < -depth && frame.soft == 0.0 {
                 self.soften(&mut frame);
                 continue;
             }
             let new = frame.thinned(&self.surface, &missed, out.rounds);
+            let worst = new.iter().map(|row| row.at(&self.surface.u) - row.bound).fold(0.0, f64::max);
+            enough = if worst > FINE { (ROUGH_SHARE * worst).min(ROUGH) } else { 0.0 };
             stalled = if new.is_empty() { stalled + 1 } else { 0 };
             if new.is_empty() && (settled || stalled > STALLED) {
                 break;

@@ -65,7 +65,7 @@ impl Case {
     /// The naive ground smoothed, without elevation and temporal rows.
     fn smooth(&self, settings: &TerrainSettings, naive: &[f64]) -> TerrainMetrics {
         let grid = Hierarchy::new(self.field.cols(), self.field.rows(), 81);
-        let w = grid_weight(settings.w.unwrap(), grid.cols().max(grid.rows()));
+        let w = grid_weight(settings.w.unwrap(), grid.intervals());
         let mut u: Vec<f64> = grid.restrict(naive).into_iter().map(|u| w * w * u).collect();
         Smoother::new(grid.cols(), grid.rows(), w, 0.0).unwrap().solve(&mut u);
         self.judge(settings, [grid.cols(), grid.rows()], u)

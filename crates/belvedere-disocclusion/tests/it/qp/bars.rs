@@ -101,7 +101,7 @@ fn solver(place: &Place) -> (QpSolver, Hierarchy) {
     let hierarchy = Hierarchy::new(place.field.cols(), place.field.rows(), settings.solver_nodes);
     let (cols, rows) = (hierarchy.cols(), hierarchy.rows());
     let stated_m = stated_spacing(place.field.cols(), place.field.rows(), place.field.spacing());
-    let smoother = Smoother::new(cols, rows, grid_weight(settings.smoothness(stated_m), cols.max(rows)), 0.0).unwrap();
+    let smoother = Smoother::new(cols, rows, grid_weight(settings.smoothness(stated_m), hierarchy.intervals()), 0.0).unwrap();
     (QpSolver::new(&place.field, &hierarchy, smoother, QpOptions::of(&settings)), hierarchy)
 }
 

@@ -24,6 +24,27 @@ fn sizes_follow_the_step_also_when_it_does_not_divide() {
 }
 
 #[test]
+fn whole_steps_put_every_node_on_the_fine_grid_or_beside_it() {
+    for (cols, rows, nodes, step) in
+        [(401, 343, 129, 3.0), (1025, 1025, 129, 8.0), (1201, 600, 129, 9.0), (152, 187, 129, 1.0), (2, 9, 2, 8.0)]
+    {
+        let h = Hierarchy::whole(cols, rows, nodes);
+        assert_eq!(h.step(), DVec2::splat(step), "{cols} x {rows}");
+        let over = |n: usize, m: usize| (m - 1) as f64 * step - (n - 1) as f64;
+        for over in [over(cols, h.cols()), over(rows, h.rows())] {
+            assert!((0.0..step).contains(&over), "{cols} x {rows}: {over} cells beside");
+        }
+        assert!((h.intervals() - (cols.max(rows) - 1) as f64 / step).abs() < 1e-12);
+        let plane: Vec<f64> = (0..cols * rows).map(|i| (i % cols) as f64 - 2.0 * (i / cols) as f64).collect();
+        let coarse = h.restrict(&vec![7.0; cols * rows]);
+        assert!(coarse.iter().all(|v| (v - 7.0).abs() < 1e-12));
+        let at_nodes = |i: usize| step * ((i % h.cols()) as f64 - 2.0 * (i / h.cols()) as f64);
+        let spread = h.prolong(&(0..h.nodes()).map(at_nodes).collect::<Vec<_>>());
+        assert!(apart(&spread, &plane) < 1e-9, "planes are reproduced");
+    }
+}
+
+#[test]
 fn planes_are_reproduced_and_rows_agree_with_spreading() {
     for (cols, rows, nodes) in [(41, 33, 11), (40, 31, 7), (9, 5, 9), (2, 2, 2), (1, 8, 4), (3, 50, 2)] {
         let h = Hierarchy::new(cols, rows, nodes);

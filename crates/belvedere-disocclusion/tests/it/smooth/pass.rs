@@ -53,7 +53,7 @@ fn displacements_are_the_papers_absolute_form_with_detail_vectors() {
     let mut pass = SmoothPass::new(hierarchy.clone(), w, weight, &places).unwrap();
     let found = pass.run(&naive, Some([dt, time]), Some(&last));
 
-    let (w, weight) = (grid_weight(w, cols), row_weight(weight, cols));
+    let (w, weight) = (grid_weight(w, (cols - 1) as f64), row_weight(weight, (cols - 1) as f64));
     let g = temporal_weight(w, dt, time);
     let moved = |u: &[f64]| -> Vec<f64> { ground.iter().zip(u).map(|(f, u)| f + u).collect() };
     let mut literal = Literal::new(n);
