@@ -32,10 +32,11 @@ fn fly(g: f64, nodes: usize, count: usize) -> f64 {
     let eye = field.scene_from_grid(start);
     let wedge = Wedge { heading: DVec2::Y, half_angle: 35f64.to_radians(), ..Wedge::all_around(eye) };
     let dense = points(&field, &route, &wedge, count).into_iter().enumerate();
-    let candidates: Vec<Candidate> =
-        dense.map(|(i, p)| Candidate { id: i as u32, grid: p.grid, lift: p.lift }).collect();
-    let w =
-        grid_weight(settings.smoothness(stated_spacing(field.cols(), field.rows(), field.spacing())), hierarchy.intervals());
+    let candidates: Vec<Candidate> = dense.map(|(i, p)| Candidate::new(i as u32, p.grid, p.lift)).collect();
+    let w = grid_weight(
+        settings.smoothness(stated_spacing(field.cols(), field.rows(), field.spacing())),
+        hierarchy.intervals(),
+    );
     let smoother = Smoother::new(hierarchy.cols(), hierarchy.rows(), w, g * w).expect("in range");
     let mut solver = QpSolver::new(&field, &hierarchy, smoother, QpOptions::of(&settings));
     let mut last: Option<Vec<f64>> = None;

@@ -1,17 +1,14 @@
 //! What a deformed ground is judged by.
 
 mod change;
+mod judge;
+
+pub(super) use judge::{Hides, Judge, Verdict, Written, share_seen, still};
 
 use super::visibility_qp::LinesOfSight;
 use super::{Cells, Field, ReferencePoint};
-use belvedere_core::DVec2;
-use belvedere_core::grid::Grid;
-use belvedere_sight::{DisplacedGround, Excess, SightVertex};
-use rayon::prelude::*;
+use belvedere_core::grid::{Grid, GridError};
 use serde::Serialize;
-
-/// Rays that run this far under the ground are still clear: rounding. Scene units.
-const TOUCH: f64 = 1e-6;
 
 /// A displacement of the ground, and what it was made for.
 #[derive(Clone, Copy)]
@@ -30,7 +27,7 @@ pub struct Deformation<'a> {
     pub dense: &'a [ReferencePoint],
     /// How points are seen.
     pub sight: &'a dyn LinesOfSight,
-    /// Ground nearer than this to a point does not hide it, cells.
+    /// What only ground nearer than this to a point hides is told apart, cells.
     pub guard: f64,
 }
 
@@ -39,9 +36,9 @@ pub struct Deformation<'a> {
 pub struct TerrainMetrics {
     /// Share of the reference points that are seen, 0..=1; 1 without points in view.
     pub visible: f64,
-    /// Share of the dense points that are seen, 0..=1; 1 without points in view.
+    /// Share of the dense points that are seen, over the ground as it is drawn and as it is written, 0..=1; 1 without points in view.
     pub visible_dense: f64,
-    /// Share of the dense points that are seen but for ground nearer to them than the guard, 0..=1.
+    /// Share of the dense points that nothing hides but ground nearer to them than the guard, 0..=1.
     pub hidden_in_guard: f64,
     /// How far the ground rises over the line of sight that it hides most; 0 if nothing is hidden.
     pub hidden_worst_m: f64,
@@ -72,161 +69,44 @@ pub struct FrameChange {
     pub max_m: f64,
 }
 
-/// Share of points that the displaced ground shows.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Shown {
-    /// 0..=1; 1 without points on the ground.
-    pub(super) share: f64,
-    /// As [`TerrainMetrics::hidden_worst_m`].
-    pub(super) worst_m: f64,
-}
-
-impl Shown {
-    /// * `over`: of each point on the ground, see [`excesses`].
-    fn of(over: impl Iterator<Item = f64>) -> Self {
-        let (mut points, mut hidden, mut worst_m) = (0usize, 0usize, 0.0f64);
-        for over in over {
-            points += 1;
-            hidden += usize::from(over > 0.0);
-            if over.is_finite() {
-                worst_m = worst_m.max(over);
-            }
-        }
-        Self { share: 1.0 - hidden as f64 / points.max(1) as f64, worst_m }
-    }
-}
-
-/// Lines of sight over the displaced ground.
-struct Judge<'a> {
-    ground: DisplacedGround<'a>,
-    guard: f64,
-    sight: &'a dyn LinesOfSight,
-}
-
-impl<'a> Judge<'a> {
-    fn new(field: &'a Field, delta: &'a Grid, guard: f64, sight: &'a dyn LinesOfSight) -> Self {
-        Self { ground: DisplacedGround::new(field, delta), guard, sight }
-    }
-
-    /// The line of sight of a point `lift` above the ground at grid coordinates; `None` where there is no ground.
-    fn line(&self, g: DVec2, lift: f64) -> Option<Vec<SightVertex>> {
-        let mut line = Vec::new();
-        self.sight.trace(g, self.ground.height_at(g)? + lift, &mut line);
-        Some(line)
-    }
-
-    fn excess(&self, line: &[SightVertex]) -> Excess {
-        self.ground.excess(line, self.guard)
-    }
-}
-
-/// Largest height of the ground over the line of sight of each point, negative where it is seen; `None` beside the ground.
-pub(super) fn excesses(
-    field: &Field,
-    delta: &Grid,
-    guard: f64,
-    sight: &dyn LinesOfSight,
-    points: &[ReferencePoint],
-) -> Vec<Option<f64>> {
-    let judge = Judge::new(field, delta, guard, sight);
-    points.par_iter().map(|p| judge.line(p.grid, p.lift).map(|line| over(judge.excess(&line).over))).collect()
-}
-
-/// Where the drawn ground hides points at grid coordinates with a lift, and by how much it rises over their lines of sight there.
+/// Judges a displacement by lines of sight over the ground as it is drawn and as it is written, and by what it does to the nodes.
+/// Shares no sampling with the solvers.
 ///
-/// * `guard`: ground nearer than this to a point does not hide it, cells.
-pub(super) fn hiding(
-    field: &Field,
-    delta: &Grid,
-    guard: f64,
-    sight: &dyn LinesOfSight,
-    points: &[(DVec2, f64)],
-) -> Vec<Option<(DVec2, f64)>> {
-    let judge = Judge::new(field, delta, guard, sight);
-    let of = |&(g, lift): &(DVec2, f64)| {
-        let worst = judge.excess(&judge.line(g, lift)?);
-        (worst.over > TOUCH && worst.over.is_finite()).then_some((worst.at, worst.over))
-    };
-    points.par_iter().map(of).collect()
-}
-
-/// What rises over a line of sight; any negative number if that is rounding.
-fn over(excess: f64) -> f64 {
-    if excess > TOUCH { excess } else { -1.0 }
-}
-
-/// What hides a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Hides {
-    /// Ground that rises so far over its line of sight; infinite if it has none.
-    Ground(f64),
-    /// Only ground nearer to it than the guard.
-    InGuard(f64),
-}
-
-/// Each dense point on the ground, by its index, and what hides it.
-fn dense(of: &Deformation<'_>) -> Vec<(usize, Option<Hides>)> {
-    let judge = Judge::new(of.field, of.delta, of.guard, of.sight);
-    let judged = |(i, p): (usize, &ReferencePoint)| {
-        let line = judge.line(p.grid, p.lift)?;
-        let (over, near) = (judge.excess(&line).over, judge.ground.near_excess(&line, of.guard));
-        let hides = match (over > TOUCH, near > TOUCH) {
-            (true, _) => Some(Hides::Ground(over)),
-            (false, true) => Some(Hides::InGuard(near)),
-            (false, false) => None,
-        };
-        Some((i, hides))
-    };
-    of.dense.par_iter().enumerate().filter_map(judged).collect()
-}
-
-/// Judges points by lines of sight against the drawn surface, two triangles per cell plus the displacement.
-pub(super) fn shown(
-    field: &Field,
-    delta: &Grid,
-    guard: f64,
-    sight: &dyn LinesOfSight,
-    points: &[ReferencePoint],
-) -> Shown {
-    Shown::of(excesses(field, delta, guard, sight, points).into_iter().flatten())
-}
-
-/// Judges a displacement by lines of sight against the drawn surface, and by what it does to the nodes. Shares no sampling
-/// with the solvers.
-pub fn terrain_metrics(of: &Deformation<'_>) -> TerrainMetrics {
-    judged(of).metrics
+/// # Errors
+/// [`GridError`] if a node moves by no finite number.
+pub fn terrain_metrics(of: &Deformation<'_>) -> Result<TerrainMetrics, GridError> {
+    Ok(judged(of)?.metrics)
 }
 
 /// A judgement, point by point.
 pub(super) struct Judged {
     pub(super) metrics: TerrainMetrics,
-    /// Reference points that are hidden, by their index, and how far the ground rises over their lines.
-    pub(super) points: Vec<(usize, f64)>,
+    /// Reference points that are hidden, by their index.
+    pub(super) points: Vec<(usize, Hides)>,
     /// Dense points that are hidden, by their index.
     pub(super) dense: Vec<(usize, Hides)>,
 }
 
 /// As [`terrain_metrics`], and which points are hidden.
-pub(super) fn judged(of: &Deformation<'_>) -> Judged {
-    let over = excesses(of.field, of.delta, of.guard, of.sight, of.points);
-    let hidden = over.iter().enumerate().filter_map(|(i, over)| Some((i, (*over)?)).filter(|(_, over)| *over > 0.0));
-    let dense = dense(of);
-    let metrics = figures(of, Shown::of(over.iter().copied().flatten()), &dense);
-    let dense = dense.into_iter().filter_map(|(i, hides)| Some((i, hides?))).collect();
-    Judged { metrics, points: hidden.collect(), dense }
+pub(super) fn judged(of: &Deformation<'_>) -> Result<Judged, GridError> {
+    let u = change::at_nodes(of.field, of.delta);
+    let written = Written::new(of.field, &u)?;
+    let judge = Judge::new(of.field, of.delta, of.sight).and(&written);
+    let [points, dense] = [of.points, of.dense].map(|points| judge.judge(points, of.guard));
+    let hidden = |all: &[Verdict]| -> Vec<(usize, Hides)> {
+        all.iter().enumerate().filter_map(|(i, verdict)| Some((i, verdict.hides()?))).collect()
+    };
+    let metrics = figures(of, &u, &points, &dense);
+    Ok(Judged { metrics, points: hidden(&points), dense: hidden(&dense) })
 }
 
-fn figures(of: &Deformation<'_>, points: Shown, dense: &[(usize, Option<Hides>)]) -> TerrainMetrics {
-    let in_guard = dense.iter().filter(|d| matches!(d.1, Some(Hides::InGuard(_)))).count();
-    let hidden_in_guard = in_guard as f64 / of.dense.len().max(1) as f64;
-    let dense = Shown::of(dense.iter().map(|d| match d.1 {
-        Some(Hides::Ground(over)) => over,
-        _ => -1.0,
-    }));
-    let u = change::at_nodes(of.field, of.delta);
-    let steps = change::steps(of.field, of.cells, &u);
-    let normals = change::normals(of.field, &u);
-    let size = change::size(of.field, &u);
+fn figures(of: &Deformation<'_>, u: &[f64], points: &[Verdict], dense: &[Verdict]) -> TerrainMetrics {
+    let on_ground = dense.iter().filter(|v| **v != Verdict::NoGround).count().max(1) as f64;
+    let in_guard = dense.iter().filter(|v| matches!(v, Verdict::Hidden(Hides::InGuard(_)))).count() as f64;
+    let over = points.iter().chain(dense).filter_map(|v| v.hides()).map(Hides::over);
+    let steps = change::steps(of.field, of.cells, u);
+    let normals = change::normals(of.field, u);
+    let size = change::size(of.field, u);
     let frame = of.previous.map(|before| {
         let before = change::at_nodes(of.field, before);
         let moved: Vec<f64> = u.iter().zip(&before).map(|(a, b)| a - b).collect();
@@ -234,10 +114,10 @@ fn figures(of: &Deformation<'_>, points: Shown, dense: &[(usize, Option<Hides>)]
         FrameChange { rms_m: change.rms, max_m: change.max }
     });
     TerrainMetrics {
-        visible: points.share,
-        visible_dense: dense.share,
-        hidden_in_guard,
-        hidden_worst_m: points.worst_m.max(dense.worst_m),
+        visible: share_seen(points),
+        visible_dense: share_seen(dense),
+        hidden_in_guard: in_guard / on_ground,
+        hidden_worst_m: over.filter(|over| over.is_finite()).fold(0.0, f64::max),
         rms_m: size.rms,
         max_m: size.max,
         raised_max_m: size.raised,

@@ -58,6 +58,7 @@ fn judge(scene: &Scene, field: &Field, delta: &Grid, eye: DVec3) -> TerrainMetri
         sight: &sight,
         guard,
     })
+    .unwrap()
 }
 
 #[test]
@@ -74,8 +75,7 @@ fn rays_find_what_a_hundred_thousand_steps_find() {
             let p = if k % 4 == 0 { p.round() } else { p };
             let eye = field.scene_from_grid(eye_grid).extend(1250.0 + r(4, 100.0));
             let sight = sight(&field, eye);
-            let judge = Judge::new(&field, &delta, 1.5, &sight);
-            let ours = judge.excess(&judge.line(p, 1.0).unwrap()).over;
+            let ours = Judge::new(&field, &delta, &sight).excess(p, 1.0, 1.5).unwrap().over;
             let height = |g: DVec2| field.surface_at(g).map(|h| h + delta.sample(field.scene_from_grid(g)).unwrap());
             let (z, guard) = (height(p).unwrap() + 1.0, 1.5 / (eye_grid - p).length());
             let steps = 100_000;
@@ -121,7 +121,7 @@ fn what_only_ground_inside_the_guard_hides_is_counted_by_itself() {
     let scene = line(&field, &[[19.0, 10.0], [19.4, 10.0]]);
     let eye = field.scene_from_grid(DVec2::new(35.0, 10.0)).extend(600.0);
     let still = judge(&scene, &field, &delta_of(&field, 2, |_, _| 0.0), eye);
-    assert_eq!((still.visible, still.visible_dense, still.hidden_in_guard), (1.0, 1.0, 1.0));
+    assert_eq!((still.visible, still.visible_dense, still.hidden_in_guard), (0.0, 0.0, 1.0));
     let lowered = judge(&scene, &field, &delta_of(&field, 41, |x, _| if x == 20.0 { -10.0 } else { 0.0 }), eye);
     assert_eq!((lowered.visible_dense, lowered.hidden_in_guard), (1.0, 0.0));
     // Hidden by something beyond the guard as well, it is hidden.
@@ -168,7 +168,7 @@ fn steps_between_cells_and_frames_are_those_of_the_displacement() {
         sight: &sight,
         guard: 1.5,
     };
-    let metrics = terrain_metrics(&of);
+    let metrics = terrain_metrics(&of).unwrap();
     assert_eq!((metrics.border_step_m, metrics.step_p999_m), (Some(30.0), 30.0));
     let frame = metrics.frame.unwrap();
     let (low, high) = (cut as f64 / 31.0, 1.0 - cut as f64 / 31.0);

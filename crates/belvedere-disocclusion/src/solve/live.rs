@@ -1,6 +1,6 @@
 //! Solving beside the drawing: a picture waits for its ground only where that would fall too far behind.
 
-use super::super::metrics::excesses;
+use super::super::metrics::{Hides, Judge};
 use super::super::visibility_qp::ViewSight;
 use super::super::{Field, ReferencePoint};
 use super::{TerrainMemory, TerrainSolver, in_picture};
@@ -115,8 +115,8 @@ impl LiveTerrain {
         };
         let points: Vec<ReferencePoint> = ground.points.iter().filter(shown).copied().collect();
         let sight = ViewSight::new(base, field);
-        let over = excesses(field, ground.stage.grid(), self.guard, &sight, &points);
-        let hidden: Vec<f64> = over.into_iter().flatten().filter(|over| *over > 0.0).collect();
+        let verdicts = Judge::new(field, ground.stage.grid(), &sight).judge(&points, self.guard);
+        let hidden: Vec<f64> = verdicts.into_iter().filter_map(|v| v.hides().map(Hides::over)).collect();
         LiveFrame {
             stage: ground.stage.clone(),
             lag: self.frame - ground.frame,

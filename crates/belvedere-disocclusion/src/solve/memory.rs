@@ -1,11 +1,12 @@
 //! What is prepared once per terrain and what is remembered between frames.
 
 use super::super::settings::MOST_W;
-use super::super::visibility_qp::{QpOptions, QpSolver};
+use super::super::visibility_qp::{Candidate, QpOptions, QpSolver};
 use super::super::{
     BlockMaxima, Cells, Field, Hierarchy, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings, Unusable,
     candidate_points, grid_weight, reference_points, stated_spacing, temporal_weight,
 };
+use super::agreement::FACETED;
 use crate::DisocclusionError;
 use crate::points::{RequiredFeature, required_features};
 use belvedere_core::{DVec2, DVec3, View};
@@ -203,6 +204,19 @@ impl Prepared {
     /// Points every fifth of a cell that the picture shows.
     pub(super) fn dense_in_view(&self, in_view: &super::PointsInView<'_>) -> Vec<ReferencePoint> {
         in_view.indices(&self.check).0.into_iter().map(|i| self.check[i]).collect()
+    }
+
+    /// The same as candidates, whose ids follow those of all others.
+    pub(super) fn check_in_view(&self, in_view: &super::PointsInView<'_>) -> Vec<Candidate> {
+        let first = self.dense.len() + self.points.len();
+        let of = |i: usize| Candidate::new((first + i) as u32, self.check[i].grid, self.check[i].lift);
+        in_view.indices(&self.check).0.into_iter().map(of).collect()
+    }
+
+    /// The point behind the id of a candidate: of the dense points, the reference points, or those by which the result is judged.
+    pub(super) fn candidate(&self, id: u32) -> Option<&ReferencePoint> {
+        let all = self.dense.iter().chain(&self.points).chain(&self.check);
+        all.skip((id & !FACETED) as usize).next()
     }
 
     /// Weights on the solver's grid.

@@ -1,7 +1,7 @@
 //! Settings and memory to a stage and its report.
 
 mod adjust;
-mod drawn;
+mod agreement;
 mod entering;
 mod fallback;
 mod in_picture;
@@ -99,7 +99,7 @@ impl TerrainSolver {
             delta: &delta,
             previous: previous.as_ref(),
         };
-        let report = report::report(&context, &done, times, began);
+        let report = report::report(&context, &done, times, began)?;
         memory.keep(prepared, base, done.coarse);
         Ok(Solved { stage: TerrainDisocclusion::new(delta), report })
     }
@@ -219,12 +219,6 @@ fn spread(field: &Field, [cols, rows]: [usize; 2], step: DVec2, values: &[f64]) 
     Grid::new(field.scene_from_grid(-step), step * field.spacing(), cols + 2, rows + 2, padded.collect())
 }
 
-/// No displacement at all.
-fn level(field: &Field) -> Option<Grid> {
-    let step = DVec2::new((field.cols() - 1) as f64, (field.rows() - 1) as f64);
-    spread(field, [2, 2], step, &[0.0; 4]).ok()
-}
-
 fn since(began: Instant) -> f64 {
     began.elapsed().as_secs_f64() * 1e3
 }
@@ -248,6 +242,8 @@ struct Outcome {
     greedy_unresolved: Vec<usize>,
     qp: Option<QpReport>,
     qp_unresolved: Vec<Unresolved>,
+    /// Whether the program was told to end before its end.
+    stopped: bool,
     /// Rows of the quadratic program with a multiplier.
     rows: Vec<SolvedRow>,
 }

@@ -1,8 +1,8 @@
 //! The passes of one frame, in the order of the mode.
 
-use super::super::visibility_qp::{QpOptions, QpProblem, QpResult};
+use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult};
 use super::super::{BlockMaxima, Field, Hierarchy, Naive, ReferencePoint, Smoother, SolverMode, TerrainSettings};
-use super::drawn::Drawn;
+use super::agreement::Agreement;
 use super::fallback::{self, Fallback};
 use super::memory::{self, Prepared, Weights};
 use super::{Outcome, PointsInView, QpReport, TerrainTimes, scales, since};
@@ -21,6 +21,8 @@ struct Finer<'a> {
     detail: Option<&'a [f64]>,
     weights: Weights,
     options: QpOptions,
+    /// Points by which the result is judged.
+    check: &'a [Candidate],
 }
 
 pub(super) struct Passes<'a> {
@@ -54,6 +56,7 @@ impl Passes<'_> {
             greedy_unresolved: Vec::new(),
             qp: None,
             qp_unresolved: Vec::new(),
+            stopped: false,
             rows: Vec::new(),
         };
         let mut detail = None;
@@ -149,6 +152,8 @@ impl Passes<'_> {
         let target = self.target(prepared, done)?;
         let warm = self.last.is_some() && prepared.moving.is_some();
         let weights = if warm { self.weights } else { Weights { g: 0.0, ..self.weights } };
+        // Films are judged frame by frame, not mended: what one frame asks for and the next does not would make the ground jump.
+        let check = if self.frame.is_some() { Vec::new() } else { prepared.check_in_view(in_view) };
         let Some(program) = (if warm { &mut prepared.moving } else { &mut prepared.still }) else { return Ok(()) };
         let qp = &mut program.solver;
         let mut ground: Cow<'_, [f64]> = match &detail {
@@ -165,12 +170,13 @@ impl Passes<'_> {
         let mut problem = QpProblem { candidates: &wider, sight, target: target.as_deref(), ceilings: None };
         qp.set_options(memory::options(self.settings, false));
         let mut result = qp.solve_with(&problem, self.progress)?;
+        self.progress.tick("quadratic program", 0.9)?;
         if fallback::stuck(&result) > 0 && wider.len() > asked.len() {
             // What the picture does not show yet is not to cost it anything.
             problem = QpProblem { candidates: asked, ..problem };
             result = qp.solve_with(&problem, self.progress)?;
         }
-        if fallback::stuck(&result) > 0 {
+        if self.stuck(&result) {
             let cut = fallback::cut_detail(self.field, &ground, &prepared.grid, &result.active);
             let lower: Vec<f64> = ground.iter().zip(&cut).map(|(h, c)| h + c).collect();
             qp.set_heights(&lower)?;
@@ -186,7 +192,7 @@ impl Passes<'_> {
             }
         }
         let mut from_guard = false;
-        if fallback::stuck(&result) > 0 {
+        if self.stuck(&result) {
             qp.set_options(memory::options(self.settings, true));
             let next = qp.solve_with(&problem, self.progress)?;
             from_guard = fallback::stuck(&next) < fallback::stuck(&result);
@@ -195,16 +201,18 @@ impl Passes<'_> {
                 done.fallbacks.push(Fallback::Guard);
             }
         }
-        program.foreign = foreign;
-        if let (Some(detail), 0) = (&detail, fallback::stuck(&result)) {
-            let options = memory::options(self.settings, from_guard);
-            let drawn = Drawn { field: self.field, grid: &prepared.grid, detail, options };
-            result = drawn.agree(qp, &ground, &problem, result)?;
+        let options = memory::options(self.settings, from_guard);
+        if fallback::stuck(&result) == 0 && (self.frame.is_none() || detail.is_some()) {
+            let (field, grid, detail) = (self.field, &prepared.grid, detail.as_deref());
+            let agreement = Agreement { field, grid, detail, check: &check, options, progress: self.progress };
+            result = agreement.reach(qp, &ground, &problem, result)?;
+            foreign = true;
         }
+        program.foreign = foreign;
         done.coarse.clone_from(&result.u);
-        if fallback::stuck(&result) > 0 {
-            let options = memory::options(self.settings, from_guard);
-            let grids = Finer { coarse: &prepared.grid, ground: &ground, detail: detail.as_deref(), weights, options };
+        if self.stuck(&result) {
+            let (coarse, detail) = (&prepared.grid, detail.as_deref());
+            let grids = Finer { coarse, ground: &ground, detail, weights, options, check: &check };
             result = self.on_finer_grids(&grids, &problem, result, done)?;
         }
         done.qp = Some(QpReport {
@@ -216,11 +224,18 @@ impl Passes<'_> {
             candidates: in_view.candidates.len(),
             energy: result.energy,
         });
+        done.stopped = result.stopped;
         done.qp_unresolved = result.unresolved;
         done.rows = result.active;
         times.qp_ms = since(began);
         Ok(())
     }
+
+    /// Whether another way out is worth trying.
+    fn stuck(&self, result: &QpResult) -> bool {
+        fallback::stuck(result) > 0 && !self.progress.should_end()
+    }
+
     /// Solves again on finer and finer grids until nothing is missed any more; answers the best result.
     fn on_finer_grids(
         &self,
@@ -229,9 +244,9 @@ impl Passes<'_> {
         mut best: QpResult,
         done: &mut Outcome,
     ) -> Result<QpResult, DisocclusionError> {
-        let Finer { coarse, ground, detail, weights, options } = *grids;
+        let Finer { coarse, ground, detail, weights, options, check } = *grids;
         for grid in fallback::finer(coarse, self.field) {
-            if fallback::stuck(&best) == 0 {
+            if !self.stuck(&best) {
                 break;
             }
             self.progress.tick("quadratic program on a finer grid", 0.7)?;
@@ -241,9 +256,10 @@ impl Passes<'_> {
             finer.set_heights(ground)?;
             let problem = QpProblem { target: target.as_deref(), ..*problem };
             let mut next = finer.solve_with(&problem, self.progress)?;
-            if let Some(detail) = detail {
-                next = Drawn { field: self.field, grid: &grid, detail, options }
-                    .agree(&mut finer, ground, &problem, next)?;
+            if fallback::stuck(&next) == 0 {
+                let (field, progress) = (self.field, self.progress);
+                next = Agreement { field, grid: &grid, detail, check, options, progress }
+                    .reach(&mut finer, ground, &problem, next)?;
             }
             if fallback::stuck(&next) < fallback::stuck(&best) {
                 done.fine = Some((grid, next.u.clone()));

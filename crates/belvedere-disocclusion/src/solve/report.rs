@@ -1,6 +1,6 @@
 //! What a displacement achieves and what it costs, ready for JSON.
 
-use super::super::metrics::{Hides, Judged, excesses, judged, shown};
+use super::super::metrics::{Hides, Judge, Judged, judged, share_seen, still};
 use super::super::visibility_qp::{Reason, Unresolved};
 use super::super::{
     Deformation, Field, GreedyCounters, PointKind, ReferencePoint, SolverMode, TerrainMetrics, TerrainSettings,
@@ -8,6 +8,7 @@ use super::super::{
 };
 use super::memory::{CHECK_CELLS, Prepared};
 use super::{Fallback, Outcome, PointsInView, since};
+use crate::DisocclusionError;
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
 use serde::Serialize;
@@ -16,7 +17,7 @@ use std::time::Instant;
 
 /// Share of the length in view that must be seen for a promise to be kept: places between two candidates may lie a little under
 /// the line of sight.
-const AGREES: f64 = 0.99;
+const AGREES: f64 = 0.995;
 
 /// Everything about a solved displacement. Lengths in scene units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -47,8 +48,9 @@ pub struct TerrainReport {
     pub qp: Option<QpReport>,
     /// Ways out of contradicting rows that were taken, in their order; empty as a rule.
     pub fallbacks: Vec<Fallback>,
-    /// Whether every reference point and candidate in view is guaranteed to be seen in this picture, and the judge agrees: of the
-    /// length in view at least 0.99 is seen, past ground nearer than the guard as well. Where nothing is asked for nothing is guaranteed.
+    /// Whether every candidate in view is guaranteed to be seen in this picture, and the judge agrees: of the length in view at
+    /// least 0.995 is seen ([`TerrainMetrics::visible_dense`]); `hidden` names the rest. Where nothing is asked for nothing is
+    /// guaranteed.
     pub guaranteed: bool,
     /// What cannot be seen, and why.
     pub unresolved: Vec<UnresolvedRun>,
@@ -189,7 +191,12 @@ pub(super) struct Context<'a> {
     pub(super) previous: Option<&'a Grid>,
 }
 
-pub(super) fn report(c: &Context<'_>, done: &Outcome, mut times: TerrainTimes, began: Instant) -> TerrainReport {
+pub(super) fn report(
+    c: &Context<'_>,
+    done: &Outcome,
+    mut times: TerrainTimes,
+    began: Instant,
+) -> Result<TerrainReport, DisocclusionError> {
     let (field, prepared, in_view, guard) = (c.field, c.prepared, c.in_view, c.settings.guard);
     let points: Vec<ReferencePoint> = in_view.points.iter().map(|&i| prepared.points[i]).collect();
     let dense = prepared.dense_in_view(in_view);
@@ -203,11 +210,11 @@ pub(super) fn report(c: &Context<'_>, done: &Outcome, mut times: TerrainTimes, b
         sight: &*in_view.sight,
         guard,
     };
-    let judgement = judged(&of);
+    let judgement = judged(&of)?;
     let metrics = judgement.metrics;
-    let before = |points: &[ReferencePoint]| {
-        super::level(field).map_or(1.0, |level| shown(field, &level, guard, &*in_view.sight, points).share)
-    };
+    let still = still(field)?;
+    let undisplaced = Judge::new(field, &still, &*in_view.sight);
+    let before = |points: &[ReferencePoint]| share_seen(&undisplaced.judge(points, guard));
     let (unresolved, hidden) = (unresolved(c, done, &judgement), hidden(c, &judgement, &dense));
     let (guards, qp_met) = (c.settings.mode != SolverMode::Paper, done.qp_unresolved.is_empty());
     let stated_m = stated_spacing(field.cols(), field.rows(), field.spacing());
@@ -228,28 +235,28 @@ pub(super) fn report(c: &Context<'_>, done: &Outcome, mut times: TerrainTimes, b
         guaranteed: guards
             && !in_view.candidates.is_empty()
             && qp_met
-            && metrics.visible == 1.0
-            && metrics.visible_dense - metrics.hidden_in_guard >= AGREES,
+            && !done.stopped
+            && metrics.visible_dense >= AGREES,
         unresolved,
         hidden,
-        covered: covered(c, &dense),
+        covered: covered(c, &judgement, &dense),
         times,
     };
     times.report_ms = since(began);
     out.times = times;
-    out
+    Ok(out)
 }
 
-fn covered(c: &Context<'_>, dense: &[ReferencePoint]) -> Vec<Covered> {
+fn covered(c: &Context<'_>, judgement: &Judged, dense: &[ReferencePoint]) -> Vec<Covered> {
     if c.settings.slack_price.is_none() {
         return Vec::new();
     }
-    let over = excesses(c.field, c.delta, c.settings.guard, &*c.in_view.sight, dense);
-    let place = |(p, over): (&ReferencePoint, Option<f64>)| {
-        let over_m = over.filter(|o| *o > 0.0 && o.is_finite())?;
-        Some(Covered { at: c.field.scene_from_grid(p.grid).to_array(), lift_m: p.lift, over_m })
+    let place = |&(i, hides): &(usize, Hides)| {
+        let (p, over_m) = (&dense[i], hides.over());
+        let at = c.field.scene_from_grid(p.grid).to_array();
+        over_m.is_finite().then_some(Covered { at, lift_m: p.lift, over_m })
     };
-    dense.iter().zip(over).filter_map(place).collect()
+    judgement.dense.iter().filter_map(place).collect()
 }
 
 /// Dense points that are hidden although no place that is named stands for them.
@@ -292,8 +299,6 @@ fn unresolved(c: &Context<'_>, done: &Outcome, judgement: &Judged) -> Vec<Unreso
     let dense = c.prepared.dense.len();
     let mut named: BTreeSet<usize> = done.greedy_unresolved.iter().copied().collect();
     for Unresolved { id, reason } in &done.qp_unresolved {
-        let id = *id as usize;
-        let point = if id < dense { c.prepared.dense.get(id) } else { c.prepared.points.get(id - dense) };
         let reason = match reason {
             Reason::TooNear => UnresolvedReason::NearerThanGuard,
             Reason::NoLine => UnresolvedReason::NoLineOfSight,
@@ -302,13 +307,13 @@ fn unresolved(c: &Context<'_>, done: &Outcome, judgement: &Judged) -> Vec<Unreso
             }
             Reason::NotSettled { lacks } => UnresolvedReason::NotSettled { lacks_m: *lacks },
         };
-        if let Some(point) = point {
+        if let Some(point) = c.prepared.candidate(*id) {
             runs.put(point, reason);
         }
-        named.extend(id.checked_sub(dense));
+        named.extend((*id as usize).checked_sub(dense));
     }
-    for &(k, over_m) in &judgement.points {
-        let i = c.in_view.points[k];
+    for &(k, hides) in &judgement.points {
+        let (i, over_m) = (c.in_view.points[k], hides.over());
         if c.settings.slack_price.is_none() && !named.contains(&i) {
             let reason = match c.settings.mode {
                 _ if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,

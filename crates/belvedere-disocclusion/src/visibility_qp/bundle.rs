@@ -59,7 +59,8 @@ impl Bundle {
         let mut out: Vec<Self> = Vec::new();
         let mut first = 0;
         for i in 1..=seen.len() {
-            let near = i < seen.len() && (seen[i].grid - seen[first].grid).abs().max_element() <= SPREAD;
+            let plain = i < seen.len() && seen[i].is_plain() && seen[first].is_plain();
+            let near = plain && (seen[i].grid - seen[first].grid).abs().max_element() <= SPREAD;
             if !(straight && near && i - first < MOST) {
                 out.push(match first..i {
                     members if members.len() > 1 => Self::Together(Together { members, room: -1.0, near: Vec::new() }),

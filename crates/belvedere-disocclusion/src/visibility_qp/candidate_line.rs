@@ -1,6 +1,6 @@
 //! The candidates of one frame with their lines of sight, and the rows that follow from them.
 
-use super::problem::QpProblem;
+use super::problem::{Candidate, QpProblem};
 use super::row::{Constraint, Row};
 use super::surface::Surface;
 use super::walk::{Chord, Clearance, Touch};
@@ -22,6 +22,7 @@ pub(super) struct CandidateLine {
     reference: f64,
     nodes: [u32; 4],
     weights: [f64; 4],
+    faceted: bool,
 }
 
 impl CandidateLine {
@@ -29,9 +30,9 @@ impl CandidateLine {
     /// without a line has no chords.
     pub(super) fn all(problem: &QpProblem, surface: &Surface) -> Vec<Self> {
         let of = |index: usize| {
-            let grid = problem.candidates[index].grid;
-            let (nodes, weights) = surface.lattice.weights(grid);
-            let mut seen = Self { index, grid, chords: Arc::new([]), reference: 0.0, nodes, weights };
+            let Candidate { grid, faceted, .. } = problem.candidates[index];
+            let (nodes, weights) = surface.lattice.weights_over(grid, faceted);
+            let mut seen = Self { index, grid, chords: Arc::new([]), reference: 0.0, nodes, weights, faceted };
             if problem.sight.straight().is_none() {
                 seen.reference = seen.displacement(&surface.u);
             }
@@ -59,11 +60,16 @@ impl CandidateLine {
         let mut line = Vec::new();
         let lift = problem.candidates[self.index].lift;
         problem.sight.trace(self.grid, surface.ground(self.grid) + lift + self.reference, &mut line);
-        self.chords = chords(&line);
+        self.chords = chords(&line, self.faceted);
     }
 
     pub(super) fn displacement(&self, u: &[f64]) -> f64 {
         (0..4).map(|k| self.weights[k] * u[self.nodes[k] as usize]).sum()
+    }
+
+    /// Whether it may be followed together with its neighbours.
+    pub(super) fn is_plain(&self) -> bool {
+        !self.faceted
     }
 
     /// Plan distance to the eye, cells.
@@ -81,7 +87,7 @@ impl CandidateLine {
 
     /// `f(x) + B_x u - (1 - tau) B_P u <= z(x) - margin`, z(x) of the line of the undisplaced candidate.
     pub(super) fn row(&self, surface: &Surface, touch: &Touch, clearance: &Clearance) -> Row {
-        let (x_nodes, x_weights) = surface.lattice.weights(touch.at);
+        let (x_nodes, x_weights) = surface.lattice.weights_over(touch.at, self.faceted);
         let rest = 1.0 - touch.tau;
         let (mut nodes, mut weights) = ([0; 8], [0.0; 8]);
         for k in 0..4 {
@@ -92,7 +98,8 @@ impl CandidateLine {
             - rest * self.displacement(&surface.u)
             - touch.ground
             - clearance.margin * clearance.share(touch.tau);
-        let points = [(1.0, surface.lattice.between(touch.at)), (-rest, surface.lattice.between(self.grid))];
+        let [ground, point] = [touch.at, self.grid].map(|g| surface.lattice.betweens(g, self.faceted));
+        let points = [ground[0], ground[1], (-rest * point[0].0, point[0].1), (-rest * point[1].0, point[1].1)];
         let constraint = Constraint::Sight { candidate: self.index, at: touch.at, tau: touch.tau };
         Row { nodes, weights, len: 8, bound, constraint, points }
     }
@@ -119,7 +126,7 @@ impl CandidateLine {
 }
 
 /// Chords of a polyline; its share of the way is measured in plan.
-fn chords(line: &[(DVec2, f64)]) -> Arc<[Chord]> {
+fn chords(line: &[(DVec2, f64)], faceted: bool) -> Arc<[Chord]> {
     let length = |p: &[(DVec2, f64)]| (p[1].0 - p[0].0).length();
     let total: f64 = line.windows(2).map(length).sum();
     if !(total > 0.0 && line.iter().all(|(g, z)| g.is_finite() && z.is_finite())) {
@@ -130,7 +137,7 @@ fn chords(line: &[(DVec2, f64)]) -> Arc<[Chord]> {
         .map(|p| {
             let from = way / total;
             way += length(p);
-            Chord { ends: [p[0].0, p[1].0], z: [p[0].1, p[1].1], tau: [from, way / total] }
+            Chord { ends: [p[0].0, p[1].0], z: [p[0].1, p[1].1], tau: [from, way / total], faceted }
         })
         .collect()
 }

@@ -273,7 +273,12 @@ mod tests {
                 let lines: Vec<(usize, Chord, [f64; 2])> = (0..1 + case % LANES)
                     .filter_map(|k| {
                         let point = (first + 0.3 * k as f64).min(last);
-                        let chord = Chord { ends: [point, eye], z: [20.0 * r(5), 60.0 * r(6)], tau: [0.0, 1.0] };
+                        let chord = Chord {
+                            ends: [point, eye],
+                            z: [20.0 * r(5), 60.0 * r(6)],
+                            tau: [0.0, 1.0],
+                            faceted: false,
+                        };
                         Some((k, chord, chord.part(&surface, point, clearance.guard)?))
                     })
                     .collect();
@@ -289,7 +294,7 @@ mod tests {
                         let missing = |t: f64| {
                             let at = chord.ends[0] + t * (chord.ends[1] - chord.ends[0]);
                             let line = chord.z[0] + t * (chord.z[1] - chord.z[0]);
-                            let ground = surface.ground(at) + surface.lattice.at(&surface.u, at);
+                            let ground = surface.ground(at) + surface.displacement(at, false);
                             ground - line + (clearance.margin - clearance.tolerance) * clearance.share(t)
                         };
                         // Kinks, and the ends of lines; what lies at the end of a part counts in one of its neighbours.

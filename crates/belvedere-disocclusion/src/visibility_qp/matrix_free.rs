@@ -295,7 +295,7 @@ impl Equations {
 
 /// Orders rows so that neighbours, in point and ground, mostly follow each other.
 fn crowd_key(row: &Row) -> u64 {
-    let [(_, ground), (_, point)] = row.points;
+    let [(_, ground), _, (_, point), _] = row.points;
     let parts = [point.col, point.row, ground.col, ground.row];
     (0..13).rev().fold(0, |key, bit| parts.iter().fold(key, |key, v| (key << 1) | u64::from((v >> bit) & 1)))
 }

@@ -12,6 +12,16 @@ pub struct Candidate {
     pub grid: DVec2,
     /// Height over the ground at which it must be seen, metres.
     pub lift: f64,
+    /// Over which ground: with the bilinear displacement, or with that of the nodes of the terrain and flat triangles between them, as
+    /// files hold it. The latter is exact if the steps of the solver's grid are whole.
+    pub faceted: bool,
+}
+
+impl Candidate {
+    /// Over ground with the bilinear displacement.
+    pub fn new(id: u32, grid: DVec2, lift: f64) -> Self {
+        Self { id, grid, lift, faceted: false }
+    }
 }
 
 /// How points are seen.

@@ -21,8 +21,8 @@ pub(super) struct Row {
     pub(super) len: usize,
     pub(super) bound: f64,
     pub(super) constraint: Constraint,
-    /// The same as bilinear values at one or two points, with their factors.
-    pub(super) points: [(f64, Between); 2],
+    /// The same as bilinear values at points, with their factors: two for the ground sample, two for the point that must be seen.
+    pub(super) points: [(f64, Between); 4],
 }
 
 impl Row {
@@ -30,7 +30,14 @@ impl Row {
     pub(super) fn ceiling(node: u32, at: Between, bound: f64) -> Self {
         let (mut nodes, mut weights) = ([0; 8], [0.0; 8]);
         (nodes[0], weights[0]) = (node, 1.0);
-        Self { nodes, weights, len: 1, bound, constraint: Constraint::Ceiling(node), points: [(1.0, at), (0.0, at)] }
+        Self {
+            nodes,
+            weights,
+            len: 1,
+            bound,
+            constraint: Constraint::Ceiling(node),
+            points: [(1.0, at), (0.0, at), (0.0, at), (0.0, at)],
+        }
     }
 
     pub(super) fn is_ceiling(&self) -> bool {

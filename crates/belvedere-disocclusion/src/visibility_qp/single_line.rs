@@ -94,6 +94,7 @@ mod tests {
                 id,
                 grid: DVec2::new(1.0 + 0.5 * f64::from(id), 38.0 - 0.3 * f64::from(id)),
                 lift: 2.0,
+                faceted: id % 3 == 0,
             })
             .collect();
         let problem = QpProblem { candidates: &candidates, sight: &Bowed, target: None, ceilings: None };

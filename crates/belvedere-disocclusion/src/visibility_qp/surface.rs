@@ -37,9 +37,29 @@ impl Lattice {
         Between { col: col as u32, row: row as u32, x: s.x - col as f64, y: s.y - row as f64 }
     }
 
-    pub(super) fn at(&self, u: &[f64], g: DVec2) -> f64 {
-        let (nodes, weights) = self.weights(g);
-        (0..4).map(|k| weights[k] * u[nodes[k] as usize]).sum()
+    /// How far a displacement that is flat on the triangles of the field lies over the bilinear one at `g`, per unit of the latter's
+    /// factor of xy in a cell of the lattice.
+    pub(super) fn facet(&self, g: DVec2) -> f64 {
+        let inside = g - g.floor();
+        (inside.min_element() - inside.x * inside.y) / (self.step.x * self.step.y)
+    }
+
+    /// As [`Self::weights`] for `faceted` ground too.
+    pub(super) fn weights_over(&self, g: DVec2, faceted: bool) -> ([u32; 4], [f64; 4]) {
+        let (nodes, [nw, ne, sw, se]) = self.weights(g);
+        let facet = if faceted { self.facet(g) } else { 0.0 };
+        (nodes, [nw + facet, ne - facet, sw - facet, se + facet])
+    }
+
+    /// The same as bilinear values at two points with their factors: what two points opposite each other have in common is bilinear
+    /// but for the factor of xy.
+    pub(super) fn betweens(&self, g: DVec2, faceted: bool) -> [(f64, Between); 2] {
+        let at = self.between(g);
+        if !faceted {
+            return [(1.0, at), (0.0, at)];
+        }
+        let away = self.facet(g).sqrt();
+        [away, -away].map(|d| (0.5, Between { x: at.x + d, y: at.y + d, ..at }))
     }
 }
 
@@ -162,6 +182,12 @@ impl Surface {
         self.patches[row * (self.lattice.cols.max(2) - 1) + col]
     }
 
+    /// The displacement at grid position `g`.
+    pub(super) fn displacement(&self, g: DVec2, faceted: bool) -> f64 {
+        let (nodes, weights) = self.lattice.weights_over(g, faceted);
+        (0..4).map(|k| weights[k] * self.u[nodes[k] as usize]).sum()
+    }
+
     /// Height of the undisplaced triangles at grid position `g` (clamped into the grid).
     #[inline]
     pub(super) fn ground(&self, g: DVec2) -> f64 {
@@ -186,4 +212,39 @@ fn bound(blocks: &Pyramid<f64>, coarsest: usize, a: DVec2, b: DVec2) -> f64 {
     let level = blocks.level_of((high - low).max_element()).min(coarsest);
     let [first, last] = [low, high].map(|g| blocks.block_at(level, g));
     blocks.fold(level, first, last, f64::NEG_INFINITY, |m, v| m.max(*v))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cells::tests::noise;
+    use crate::smooth::{Green, Smoother};
+
+    #[test]
+    fn facets_are_flat_between_the_values_at_the_nodes() {
+        let (cols, rows, step) = (13, 10, DVec2::splat(3.0));
+        let lattice = Lattice { cols: 5, rows: 4, step };
+        let mut surface = Surface::new(&vec![0.0; cols * rows], cols, rows, lattice);
+        surface.displace(&(0..20).map(|i| -90.0 * noise(i, 5)).collect::<Vec<_>>());
+        let green = Green::new(&Smoother::new(5, 4, 0.7, 0.0).unwrap());
+        let mut most = 0.0f64;
+        for k in 0..400 {
+            let g = DVec2::new(12.0 * noise(k, 1), 9.0 * noise(k, 2));
+            let corner = g.floor();
+            let node = |x: f64, y: f64| surface.displacement(corner + DVec2::new(x, y), false);
+            let corners = [node(0.0, 0.0), node(1.0, 0.0), node(0.0, 1.0), node(1.0, 1.0)];
+            let flat = CellTriangle::at(g - corner).height(corners, g - corner);
+            let facet = surface.displacement(g, true);
+            assert!((facet - flat).abs() < 1e-9, "{g}: {facet} and {flat}");
+            most = most.max((facet - surface.displacement(g, false)).abs());
+            // What the metric takes for the same.
+            let (nodes, weights) = lattice.weights_over(g, true);
+            let far = lattice.between(DVec2::new(7.3, 2.2));
+            let entry = |j: u32| green.between(Between::node(j, 5, 4), far);
+            let expected: f64 = (0..4).map(|j| weights[j] * entry(nodes[j])).sum();
+            let found: f64 = lattice.betweens(g, true).iter().map(|(f, b)| f * green.between(*b, far)).sum();
+            assert!((found - expected).abs() < 1e-12 * green.entry(0, 0), "{g}: {found} and {expected}");
+        }
+        assert!(most > 0.5, "{most}");
+    }
 }

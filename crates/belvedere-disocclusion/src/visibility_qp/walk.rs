@@ -1,6 +1,6 @@
 //! Where the ground comes too close to a line of sight.
 
-use super::surface::Surface;
+use super::surface::{Lattice, Surface};
 use crate::smooth::Between;
 use belvedere_core::DVec2;
 use belvedere_sight::{EdgeFamily, GridLine, floor};
@@ -14,6 +14,8 @@ pub(super) struct Chord {
     pub(super) z: [f64; 2],
     /// Share of the way to the eye there: 0 at the point, 1 at the eye.
     pub(super) tau: [f64; 2],
+    /// Over ground with flat triangles, see [`super::Candidate::faceted`].
+    pub(super) faceted: bool,
 }
 
 /// Clearance asked of lines of sight.
@@ -186,7 +188,7 @@ impl Chord {
     }
 
     /// Within one cell of the solver's grid.
-    fn in_cell(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap, found: &mut Found) {
+    fn in_cell(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap<'_>, found: &mut Found) {
         let (ga, gb) = (self.at(a), self.at(b));
         let over = surface.still_bound(ga, gb) + gap.most(self, [a, b]);
         if over <= 0.0 {
@@ -208,11 +210,14 @@ impl Chord {
     }
 
     /// Within a short piece: every kink, and the tops between kinks.
-    fn in_piece(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap, found: &mut Found) {
+    fn in_piece(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap<'_>, found: &mut Found) {
         let mut nearest = f64::NEG_INFINITY;
         self.crossings(surface, [a, b], &mut |t, at, ground| {
             nearest = nearest.max(gap.judge(self, t, at, ground, found));
         });
+        if self.faceted {
+            return;
+        }
         // Between two kinks the displaced ground may bulge.
         let span = 1.0 / (self.ends[1] - self.ends[0]).abs().max_element();
         let bulge = -0.25 * gap.c[2] * span * span;
@@ -227,7 +232,7 @@ impl Chord {
     }
 
     /// The top of the displaced ground between neighbouring kinks of a part.
-    fn between(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap, found: &mut Found) {
+    fn between(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap<'_>, found: &mut Found) {
         let mut kinks = vec![(a, surface.ground(self.at(a))), (b, surface.ground(self.at(b)))];
         self.crossings(surface, [a, b], &mut |t, _, ground| kinks.push((t, ground)));
         kinks.sort_by(|x, y| x.0.total_cmp(&y.0));
@@ -248,7 +253,7 @@ impl Chord {
 
     fn touch(&self, surface: &Surface, t: f64, at: DVec2, ground: f64, clearance: &Clearance) -> Touch {
         let (z, tau) = (Self::mix(self.z, t), Self::mix(self.tau, t));
-        let excess = ground + surface.lattice.at(&surface.u, at) - z + clearance.margin * clearance.share(tau);
+        let excess = ground + surface.displacement(at, self.faceted) - z + clearance.margin * clearance.share(tau);
         Touch { at, tau, ground, z, excess }
     }
 
@@ -274,14 +279,17 @@ impl Chord {
 }
 
 /// Displacement minus line of sight along a chord within one cell of the solver's grid, a quadratic of the parameter.
-struct Gap {
+struct Gap<'a> {
     c: [f64; 3],
+    /// Factor of xy of the displacement, where the ground is faceted; else 0.
+    twist: f64,
+    lattice: &'a Lattice,
     clearance: Clearance,
 }
 
-impl Gap {
+impl<'a> Gap<'a> {
     /// For the cell at parameter `inside`.
-    fn new(chord: &Chord, surface: &Surface, inside: f64, clearance: &Clearance) -> Self {
+    fn new(chord: &Chord, surface: &'a Surface, inside: f64, clearance: &Clearance) -> Self {
         let step = surface.lattice.step;
         let Between { col, row, .. } = surface.lattice.between(chord.at(inside));
         let [nw, x, y, xy] = surface.patch(col as usize, row as usize);
@@ -293,7 +301,8 @@ impl Gap {
             x * d.x + y * d.y + xy * (p.x * d.y + p.y * d.x) - (z[1] - z[0]),
             xy * d.x * d.y,
         ];
-        Self { c, clearance: *clearance }
+        let twist = if chord.faceted { xy } else { 0.0 };
+        Self { c, twist, lattice: &surface.lattice, clearance: *clearance }
     }
 
     fn at(&self, t: f64) -> f64 {
@@ -308,7 +317,9 @@ impl Gap {
             most = most.max(self.at(top));
         }
         let tau = Chord::mix(chord.tau, a).max(Chord::mix(chord.tau, b));
-        most + self.clearance.margin * self.clearance.share(tau)
+        // Nowhere is a facet higher over the bilinear displacement than in the middle of a diagonal.
+        let facet = self.twist.max(0.0) * self.lattice.facet(DVec2::splat(0.5));
+        most + facet + self.clearance.margin * self.clearance.share(tau)
     }
 
     /// Excess beyond the tolerance at `t`.
@@ -321,7 +332,8 @@ impl Gap {
     fn judge(&self, chord: &Chord, t: f64, at: DVec2, ground: f64, found: &mut Found) -> f64 {
         let tau = Chord::mix(chord.tau, t);
         let share = self.clearance.share(tau);
-        let excess = ground + self.at(t) + self.clearance.margin * share;
+        let facet = if self.twist == 0.0 { 0.0 } else { self.twist * self.lattice.facet(at) };
+        let excess = ground + self.at(t) + facet + self.clearance.margin * share;
         let missing = excess - self.clearance.tolerance * share;
         if missing <= 0.0 {
             found.room = found.room.min(-missing);
@@ -334,7 +346,6 @@ impl Gap {
 
 #[cfg(test)]
 mod tests {
-    use super::super::surface::Lattice;
     use super::*;
 
     #[test]
@@ -354,7 +365,7 @@ mod tests {
         }
         let mut visited = 0;
         for [a, b] in ends.iter().flat_map(|&[a, b]| [[a, b], [b, a]]) {
-            let chord = Chord { ends: [a.into(), b.into()], z: [0.0; 2], tau: [0.0, 1.0] };
+            let chord = Chord { ends: [a.into(), b.into()], z: [0.0; 2], tau: [0.0, 1.0], faceted: false };
             chord.crossings(&surface, [0.0, 1.0], &mut |t, at, ground| {
                 visited += 1;
                 assert!((at - chord.at(t)).length() < 1e-12, "{a:?} to {b:?} at {t}");

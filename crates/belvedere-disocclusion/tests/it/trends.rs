@@ -60,6 +60,7 @@ impl Case {
             sight: &sight,
             guard: settings.guard,
         })
+        .unwrap()
     }
 
     /// The naive ground smoothed, without elevation and temporal rows.

@@ -101,7 +101,8 @@ fn solver(place: &Place) -> (QpSolver, Hierarchy) {
     let hierarchy = Hierarchy::new(place.field.cols(), place.field.rows(), settings.solver_nodes);
     let (cols, rows) = (hierarchy.cols(), hierarchy.rows());
     let stated_m = stated_spacing(place.field.cols(), place.field.rows(), place.field.spacing());
-    let smoother = Smoother::new(cols, rows, grid_weight(settings.smoothness(stated_m), hierarchy.intervals()), 0.0).unwrap();
+    let smoother =
+        Smoother::new(cols, rows, grid_weight(settings.smoothness(stated_m), hierarchy.intervals()), 0.0).unwrap();
     (QpSolver::new(&place.field, &hierarchy, smoother, QpOptions::of(&settings)), hierarchy)
 }
 
@@ -122,7 +123,7 @@ fn keeps_its_promise(place: Option<Place>, far: f64) {
             .iter()
             .enumerate()
             .filter(|(_, p)| in_frame(p))
-            .map(|(i, p)| Candidate { id: i as u32, grid: *p, lift: 1.0 })
+            .map(|(i, p)| Candidate::new(i as u32, *p, 1.0))
             .collect();
         let sight = StraightSight { eye: at, z };
         let got =

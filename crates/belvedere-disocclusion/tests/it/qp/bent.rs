@@ -32,7 +32,7 @@ fn points_are_seen_along_the_rays_of_a_spline() {
     let candidates: Vec<Candidate> = (0..240)
         .map(|i| DVec2::new(45.0 + 0.2 * f64::from(i), 20.0 + 0.37 * f64::from(i % 200)))
         .enumerate()
-        .map(|(i, grid)| Candidate { id: i as u32, grid, lift: 1.0 })
+        .map(|(i, grid)| Candidate::new(i as u32, grid, 1.0))
         .collect();
     let sight = ViewSight::new(&view, &field);
     assert!(sight.straight().is_none());

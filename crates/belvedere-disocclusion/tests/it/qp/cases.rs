@@ -23,7 +23,7 @@ fn solver(field: &Field, nodes: [usize; 2], options: QpOptions) -> QpSolver {
 
 fn ask(solver: &mut QpSolver, points: &[DVec2], eye: DVec2, z: f64) -> Result<QpResult, QpError> {
     let candidates: Vec<Candidate> =
-        points.iter().enumerate().map(|(i, p)| Candidate { id: i as u32, grid: *p, lift: 1.0 }).collect();
+        points.iter().enumerate().map(|(i, p)| Candidate::new(i as u32, *p, 1.0)).collect();
     let sight = StraightSight { eye, z };
     solver.solve(&QpProblem { candidates: &candidates, sight: &sight, target: None, ceilings: None })
 }

@@ -22,7 +22,7 @@ fn posts() -> Field {
 /// One point behind every post.
 fn candidates() -> Vec<Candidate> {
     let behind = |k: u32| DVec2::new(5.0 * f64::from(k) + 2.5, 16.0);
-    (0..15).map(|k| Candidate { id: 100 + k, grid: behind(k), lift: 1.0 }).collect()
+    (0..15).map(|k| Candidate::new(100 + k, behind(k), 1.0)).collect()
 }
 
 fn solver(field: &Field) -> QpSolver {

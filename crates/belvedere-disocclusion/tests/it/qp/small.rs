@@ -51,11 +51,8 @@ fn solver(small: &Small, options: QpOptions) -> QpSolver {
 }
 
 fn solve(solver: &mut QpSolver, eye: DVec2, target: Option<&[f64]>) -> QpResult {
-    let candidates: Vec<Candidate> = points()
-        .iter()
-        .enumerate()
-        .map(|(i, (grid, lift))| Candidate { id: i as u32, grid: *grid, lift: *lift })
-        .collect();
+    let candidates: Vec<Candidate> =
+        points().iter().enumerate().map(|(i, (grid, lift))| Candidate::new(i as u32, *grid, *lift)).collect();
     let sight = StraightSight { eye, z: EYE_Z };
     solver.solve(&QpProblem { candidates: &candidates, sight: &sight, target, ceilings: None }).unwrap()
 }

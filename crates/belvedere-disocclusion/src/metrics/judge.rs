@@ -1,0 +1,149 @@
+//! What the displaced ground hides, by lines of sight over it: as it is drawn, and as it is written.
+
+use super::super::visibility_qp::LinesOfSight;
+use super::super::{Field, ReferencePoint};
+use belvedere_core::DVec2;
+use belvedere_core::grid::{Grid, GridError};
+use belvedere_sight::{DisplacedGround, Excess, SightVertex};
+use rayon::prelude::*;
+
+/// Rays that run this far under the ground are still clear: rounding. Scene units.
+const TOUCH: f64 = 1e-6;
+
+/// The ground with its displacement taken at the nodes, in single precision: what a file holds of it.
+pub(crate) struct Written {
+    field: Field,
+    still: Grid,
+}
+
+impl Written {
+    /// * `u`: displacement of every node.
+    pub(crate) fn new(field: &Field, u: &[f64]) -> Result<Self, GridError> {
+        let heights = field.heights().iter().zip(u).map(|(h, u)| f64::from((h + u) as f32)).collect();
+        Ok(Self { field: field.with_heights(heights), still: still(field)? })
+    }
+}
+
+impl Written {
+    /// Heights at the nodes; nothing displaces them any more.
+    pub(crate) fn field(&self) -> &Field {
+        &self.field
+    }
+}
+
+/// No displacement at all.
+pub(crate) fn still(field: &Field) -> Result<Grid, GridError> {
+    // One cell more on every side, so that rounding leaves nothing beside it.
+    let size = DVec2::new((field.cols() + 1) as f64, (field.rows() + 1) as f64) * field.spacing();
+    Grid::new(field.scene_from_grid(DVec2::NEG_ONE), size, 2, 2, vec![0.0; 4])
+}
+
+/// What hides a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Hides {
+    /// Ground that rises so far over its line of sight; infinite if it has none.
+    Ground(f64),
+    /// Only ground nearer to it than the guard.
+    InGuard(f64),
+}
+
+impl Hides {
+    /// How far the ground rises over the line of sight.
+    pub(crate) fn over(self) -> f64 {
+        match self {
+            Self::Ground(over) | Self::InGuard(over) => over,
+        }
+    }
+}
+
+/// What becomes of a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Verdict {
+    /// It lies beside the ground or in a hole.
+    NoGround,
+    Seen,
+    Hidden(Hides),
+}
+
+impl Verdict {
+    /// What hides the point, if something does.
+    pub(crate) fn hides(self) -> Option<Hides> {
+        match self {
+            Self::Hidden(hides) => Some(hides),
+            Self::NoGround | Self::Seen => None,
+        }
+    }
+}
+
+/// Share of the points on the ground that are seen, 0..=1; 1 if there are none.
+pub(crate) fn share_seen(verdicts: &[Verdict]) -> f64 {
+    let on_ground = verdicts.iter().filter(|v| **v != Verdict::NoGround).count();
+    let hidden = verdicts.iter().filter(|v| v.hides().is_some()).count();
+    1.0 - hidden as f64 / on_ground.max(1) as f64
+}
+
+/// Judges points over one or more grounds: what one of them hides is hidden. No ground is too near to hide a point.
+pub(crate) struct Judge<'a> {
+    grounds: Vec<DisplacedGround<'a>>,
+    sight: &'a dyn LinesOfSight,
+}
+
+impl<'a> Judge<'a> {
+    /// Over the ground as it is drawn.
+    pub(crate) fn new(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
+        Self { grounds: vec![DisplacedGround::new(field, delta)], sight }
+    }
+
+    /// And over the ground as it is written.
+    pub(crate) fn and(mut self, written: &'a Written) -> Self {
+        self.grounds.push(DisplacedGround::new(&written.field, &written.still));
+        self
+    }
+
+    /// What rises most over the line of sight of a point at grid coordinates, `lift` above the ground; `None` beside the ground.
+    ///
+    /// * `guard`: ground nearer than this does not count, cells.
+    pub(super) fn excess(&self, g: DVec2, lift: f64, guard: f64) -> Option<Excess> {
+        let mut line = Vec::new();
+        let mut worst: Option<Excess> = None;
+        for ground in &self.grounds {
+            line.clear();
+            self.trace(ground, g, lift, &mut line)?;
+            let excess = ground.excess(&line, guard);
+            if worst.is_none_or(|w| excess.over > w.over) {
+                worst = Some(excess);
+            }
+        }
+        worst
+    }
+
+    fn trace(&self, ground: &DisplacedGround<'_>, g: DVec2, lift: f64, out: &mut Vec<SightVertex>) -> Option<()> {
+        self.sight.trace(g, ground.height_at(g)? + lift, out);
+        Some(())
+    }
+
+    /// The place that hides a point most, with how far it rises over the line; `None` where it is seen, has no line, or no ground.
+    pub(crate) fn hiding(&self, points: &[(DVec2, f64)]) -> Vec<Option<(DVec2, f64)>> {
+        let of = |&(g, lift): &(DVec2, f64)| {
+            let worst = self.excess(g, lift, 0.0)?;
+            (worst.over > TOUCH && worst.over.is_finite()).then_some((worst.at, worst.over))
+        };
+        points.par_iter().map(of).collect()
+    }
+
+    /// What becomes of each point.
+    ///
+    /// * `guard`: what only ground nearer than this hides, cells, is told apart.
+    pub(crate) fn judge(&self, points: &[ReferencePoint], guard: f64) -> Vec<Verdict> {
+        let over = |p: &ReferencePoint, guard| self.excess(p.grid, p.lift, guard).map(|e| e.over);
+        let of = |p: &ReferencePoint| match over(p, 0.0) {
+            None => Verdict::NoGround,
+            Some(near) if !(near > TOUCH) => Verdict::Seen,
+            Some(near) => Verdict::Hidden(match over(p, guard) {
+                Some(far) if far > TOUCH => Hides::Ground(far),
+                _ => Hides::InGuard(near),
+            }),
+        };
+        points.par_iter().map(of).collect()
+    }
+}

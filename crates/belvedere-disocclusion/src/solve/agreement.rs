@@ -1,0 +1,138 @@
+//! The quadratic program agrees with the judge.
+//!
+//! The program looks after candidates, over ground of triangles plus a displacement that is bilinear between the nodes of its own
+//! grid. What it leaves hidden all the same lies between two candidates; or it is hidden by ground that is drawn or written otherwise:
+//! a file holds triangles between displaced nodes, and where detail moves too, both are drawn as one displacement that is bilinear
+//! between the nodes of the terrain, on cells of hundreds of metres other ground by many metres. So both grounds are judged. Hidden
+//! places become candidates; and where ground rises over the line of sight of a candidate, the program is told that it stands so
+//! much higher there.
+
+use super::super::metrics::{Judge, Written, still};
+use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult, QpSolver};
+use super::super::{Field, Hierarchy};
+use super::{at_every_node, fallback, on_grid};
+use crate::DisocclusionError;
+use belvedere_core::DVec2;
+use belvedere_scene::Progress;
+use std::collections::BTreeSet;
+
+/// Judgements at most.
+const ROUNDS: usize = 8;
+/// In the ids of candidates over faceted ground.
+pub(super) const FACETED: u32 = 1 << 31;
+/// Room left over what was found, metres: the places that hide nothing yet are not to come up in the next round.
+const ROOM_M: f64 = 0.25;
+
+/// Ground nearer than this to a point is not told to stand higher, cells: the point would stand on it.
+const NEAR: f64 = 1.5;
+
+/// What the program is to agree on with the judge.
+pub(super) struct Agreement<'a> {
+    pub(super) field: &'a Field,
+    /// The solver's grid.
+    pub(super) grid: &'a Hierarchy,
+    /// Change of detail at every node.
+    pub(super) detail: Option<&'a [f64]>,
+    /// Points by which the result is judged.
+    pub(super) check: &'a [Candidate],
+    pub(super) options: QpOptions,
+    pub(super) progress: &'a Progress,
+}
+
+/// A point that is hidden.
+struct Found {
+    candidate: Candidate,
+    /// Where ground hides it most, and by how much, metres.
+    at: DVec2,
+    over: f64,
+}
+
+impl Agreement<'_> {
+    /// Solves until nothing is hidden that the program holds for seen, or nothing more is gained. Answers the best result.
+    ///
+    /// * `qp`: knows `ground`, the undisplaced one with its change of detail; `result`: its solution.
+    pub(super) fn reach(
+        &self,
+        qp: &mut QpSolver,
+        ground: &[f64],
+        problem: &QpProblem<'_>,
+        result: QpResult,
+    ) -> Result<QpResult, DisocclusionError> {
+        // At a price the program leaves places covered.
+        if self.options.slack_price.is_some() {
+            return Ok(result);
+        }
+        let mut told = ground.to_vec();
+        let mut asked = problem.candidates.to_vec();
+        let mut known: BTreeSet<u32> = asked.iter().map(|c| c.id).collect();
+        let mut found = self.hidden(problem, &result)?;
+        let (mut best, mut fewest) = (result, found.len());
+        for _ in 1..ROUNDS {
+            if found.is_empty() || self.progress.should_end() {
+                break;
+            }
+            let before = told.clone();
+            for Found { candidate, at, over } in &found {
+                if known.insert(candidate.id) {
+                    asked.push(*candidate);
+                } else if candidate.grid.distance(*at) > self.options.guard.max(NEAR) {
+                    for node in self.around(*at) {
+                        told[node] = told[node].max(before[node] + over + ROOM_M);
+                    }
+                }
+            }
+            qp.set_heights(&told)?;
+            let next = qp.solve_with(&QpProblem { candidates: &asked, ..*problem }, self.progress)?;
+            if next.stopped || fallback::stuck(&next) > fallback::stuck(&best) {
+                break;
+            }
+            found = self.hidden(problem, &next)?;
+            let (rounds, added) = (best.rounds + next.rounds, best.added + next.added);
+            if found.len() < fewest {
+                fewest = found.len();
+                best = QpResult { rounds, added, kept: best.kept, ..next };
+            } else {
+                (best.rounds, best.added) = (rounds, added);
+            }
+        }
+        Ok(best)
+    }
+
+    /// Points that a solution leaves hidden though it does not name them.
+    fn hidden(&self, problem: &QpProblem<'_>, result: &QpResult) -> Result<Vec<Found>, DisocclusionError> {
+        self.progress.tick("what the displaced ground hides", 0.9)?;
+        let smooth = self.grid.prolong(&result.u);
+        let (delta, at_nodes) = match self.detail {
+            Some(detail) => {
+                let full: Vec<f64> = smooth.iter().zip(detail).map(|(a, b)| a + b).collect();
+                (at_every_node(self.field, &full)?, full)
+            }
+            None => (on_grid(self.field, self.grid, &result.u)?, smooth),
+        };
+        let written = Written::new(self.field, &at_nodes)?;
+        let (still, named) = (still(self.field)?, result.unresolved.iter().map(|u| u.id & !FACETED));
+        let named: BTreeSet<u32> = named.collect();
+        let judged = self.check.iter().chain(problem.candidates).filter(|c| !named.contains(&c.id));
+        let judged: Vec<Candidate> = judged.copied().collect();
+        let places: Vec<(DVec2, f64)> = judged.iter().map(|c| (c.grid, c.lift)).collect();
+        let drawn = Judge::new(self.field, &delta, problem.sight).hiding(&places);
+        let written = Judge::new(written.field(), &still, problem.sight).hiding(&places);
+        let mut found = Vec::new();
+        for (candidate, hiding) in judged.iter().zip(drawn) {
+            found.extend(hiding.map(|(at, over)| Found { candidate: *candidate, at, over }));
+        }
+        for (candidate, hiding) in judged.iter().zip(written) {
+            let candidate = Candidate { id: candidate.id | FACETED, faceted: true, ..*candidate };
+            found.extend(hiding.map(|(at, over)| Found { candidate, at, over }));
+        }
+        Ok(found)
+    }
+
+    /// Nodes of the cell around a place.
+    fn around(&self, at: DVec2) -> [usize; 4] {
+        let index = |v: f64, n: usize| (v.max(0.0) as usize).min(n.saturating_sub(2));
+        let (cols, rows) = (self.field.cols(), self.field.rows());
+        let nw = index(at.y, rows) * cols + index(at.x, cols);
+        [nw, nw + 1, nw + cols, nw + cols + 1]
+    }
+}
