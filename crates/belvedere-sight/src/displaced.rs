@@ -3,14 +3,17 @@
 use crate::{Field, GridLine};
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
+use belvedere_scene::CellTriangle;
 
 /// Steps along a line over one triangle are at most this long, cells; the surface is bent only by the displacement.
 const STEP: f64 = 0.25;
 
-/// Ground with a vertical displacement, as it is drawn: two triangles per cell plus the bilinear displacement.
+/// Ground with a vertical displacement: two triangles per cell, whose nodes are displaced, as it is rasterised and written; or plus the
+/// bilinear displacement, as it is traced.
 pub struct DisplacedGround<'a> {
     field: &'a Field,
     delta: &'a Grid,
+    faceted: bool,
     /// Nothing is higher than this.
     highest: f64,
 }
@@ -28,10 +31,17 @@ pub struct Excess {
 }
 
 impl<'a> DisplacedGround<'a> {
+    /// Triangles plus the bilinear displacement.
+    ///
     /// * `delta`: displacement upwards, scene units; 0 beside its grid.
     pub fn new(field: &'a Field, delta: &'a Grid) -> Self {
         let highest = field.datum() + field.relief() + delta.range()[1].max(0.0);
-        Self { field, delta, highest }
+        Self { field, delta, faceted: false, highest }
+    }
+
+    /// Flat triangles between the displaced nodes; likewise.
+    pub fn faceted(field: &'a Field, delta: &'a Grid) -> Self {
+        Self { faceted: true, ..Self::new(field, delta) }
     }
 
     fn displacement(&self, g: DVec2) -> f64 {
@@ -40,7 +50,18 @@ impl<'a> DisplacedGround<'a> {
 
     /// Height at grid coordinates; `None` beside the grid and in holes.
     pub fn height_at(&self, g: DVec2) -> Option<f64> {
-        Some(self.field.surface_at(g)? + self.displacement(g))
+        let still = self.field.surface_at(g)?;
+        if !self.faceted {
+            return Some(still + self.displacement(g));
+        }
+        let corner = g.floor().min(DVec2::new((self.field.cols() - 2) as f64, (self.field.rows() - 2) as f64));
+        let [col, row] = [corner.x as usize, corner.y as usize];
+        Some(still + CellTriangle::at(g - corner).height(self.at_corners([col, row]), g - corner))
+    }
+
+    /// Displacement of the corners of a cell: north-west, north-east, south-west, south-east.
+    fn at_corners(&self, [col, row]: [usize; 2]) -> [f64; 4] {
+        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| self.displacement(DVec2::new((col + x) as f64, (row + y) as f64)))
     }
 
     /// The ground that rises most over a line of sight, from the point to the eye.
@@ -103,16 +124,25 @@ impl<'a> DisplacedGround<'a> {
             return;
         }
         let corner = DVec2::new(cell[0] as f64, cell[1] as f64);
+        let heights = if self.faceted {
+            let moved = self.at_corners(cell);
+            std::array::from_fn(|k| heights[k] + moved[k])
+        } else {
+            heights
+        };
         for (triangle, [from, to]) in line.by_triangle(cell, part) {
             if to <= from || triangle.corners().iter().any(|&k| self.field.void()[nodes[k]]) {
                 continue;
             }
             let slope = triangle.slope(heights);
-            let count = ((to - from) * line.dir.length() / STEP).ceil().max(1.0) as usize;
+            // What is flat is highest over the line at an end.
+            let steps = if self.faceted { 1.0 } else { (to - from) * line.dir.length() / STEP };
+            let count = steps.ceil().max(1.0) as usize;
             for k in 0..=count {
                 let t = from + (to - from) * k as f64 / count as f64;
                 let at = line.at(t);
-                let over = heights[0] + slope.dot(at - corner) + self.displacement(at) - (z + t * dz);
+                let moved = if self.faceted { 0.0 } else { self.displacement(at) };
+                let over = heights[0] + slope.dot(at - corner) + moved - (z + t * dz);
                 if over > worst.over {
                     *worst = Excess { over, at };
                 }

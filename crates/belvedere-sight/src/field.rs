@@ -56,17 +56,6 @@ impl Field {
         Ok(Self { cols, rows, north_west: hf.north_west(), spacing: hf.spacing(), heights, void, range })
     }
 
-    /// The same ground with other heights.
-    ///
-    /// # Panics
-    /// If there is not one height per node.
-    pub fn with_heights(&self, heights: Vec<f64>) -> Self {
-        assert_eq!(heights.len(), self.heights.len(), "one height per node");
-        let solid = heights.iter().zip(&self.void).filter(|(_, v)| !**v).map(|(h, _)| *h);
-        let range = solid.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], h| [lo.min(h), hi.max(h)]);
-        Self { heights, range, void: self.void.clone(), ..*self }
-    }
-
     /// Columns.
     pub fn cols(&self) -> usize {
         self.cols

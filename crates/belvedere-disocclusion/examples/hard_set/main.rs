@@ -97,7 +97,7 @@ fn solve(label: &str, range: &Range, layers: &[Layer], view: &View) -> Result<Op
         qp.active,
         qp.rounds,
         seconds * 3000.0 / qp.candidates.max(1) as f64,
-        r.metrics.visible_dense - r.metrics.hidden_in_guard,
+        r.metrics.visible_dense,
         r.metrics.hidden_worst_m,
         r.metrics.raised_max_m,
         r.metrics.rms_m,

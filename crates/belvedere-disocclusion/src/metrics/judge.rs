@@ -1,4 +1,4 @@
-//! What the displaced ground hides, by lines of sight over it: as it is drawn, and as it is written.
+//! What the displaced ground hides, by lines of sight over it: as it is rasterised and written, and as it is traced.
 
 use super::super::visibility_qp::LinesOfSight;
 use super::super::{Field, ReferencePoint};
@@ -9,27 +9,6 @@ use rayon::prelude::*;
 
 /// Rays that run this far under the ground are still clear: rounding. Scene units.
 const TOUCH: f64 = 1e-6;
-
-/// The ground with its displacement taken at the nodes, in single precision: what a file holds of it.
-pub(crate) struct Written {
-    field: Field,
-    still: Grid,
-}
-
-impl Written {
-    /// * `u`: displacement of every node.
-    pub(crate) fn new(field: &Field, u: &[f64]) -> Result<Self, GridError> {
-        let heights = field.heights().iter().zip(u).map(|(h, u)| f64::from((h + u) as f32)).collect();
-        Ok(Self { field: field.with_heights(heights), still: still(field)? })
-    }
-}
-
-impl Written {
-    /// Heights at the nodes; nothing displaces them any more.
-    pub(crate) fn field(&self) -> &Field {
-        &self.field
-    }
-}
 
 /// No displacement at all.
 pub(crate) fn still(field: &Field) -> Result<Grid, GridError> {
@@ -89,15 +68,19 @@ pub(crate) struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
-    /// Over the ground as it is drawn.
-    pub(crate) fn new(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
+    /// Over facets between displaced nodes, as ground is rasterised and written.
+    pub(crate) fn faceted(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
+        Self { grounds: vec![DisplacedGround::faceted(field, delta)], sight }
+    }
+
+    /// Over ground plus the bilinear displacement, as it is traced.
+    pub(crate) fn bilinear(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
         Self { grounds: vec![DisplacedGround::new(field, delta)], sight }
     }
 
-    /// And over the ground as it is written.
-    pub(crate) fn and(mut self, written: &'a Written) -> Self {
-        self.grounds.push(DisplacedGround::new(&written.field, &written.still));
-        self
+    /// Over both.
+    pub(crate) fn of_both(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
+        Self { grounds: vec![DisplacedGround::faceted(field, delta), DisplacedGround::new(field, delta)], sight }
     }
 
     /// What rises most over the line of sight of a point at grid coordinates, `lift` above the ground; `None` beside the ground.

@@ -3,11 +3,11 @@
 mod change;
 mod judge;
 
-pub(super) use judge::{Hides, Judge, Verdict, Written, share_seen, still};
+pub(super) use judge::{Hides, Judge, Verdict, share_seen, still};
 
 use super::visibility_qp::LinesOfSight;
 use super::{Cells, Field, ReferencePoint};
-use belvedere_core::grid::{Grid, GridError};
+use belvedere_core::grid::Grid;
 use serde::Serialize;
 
 /// A displacement of the ground, and what it was made for.
@@ -27,6 +27,8 @@ pub struct Deformation<'a> {
     pub dense: &'a [ReferencePoint],
     /// How points are seen.
     pub sight: &'a dyn LinesOfSight,
+    /// Whether ground that is traced is judged too, or only what is rasterised and written, as of films.
+    pub traced: bool,
     /// What only ground nearer than this to a point hides is told apart, cells.
     pub guard: f64,
 }
@@ -71,11 +73,8 @@ pub struct FrameChange {
 
 /// Judges a displacement by lines of sight over the ground as it is drawn and as it is written, and by what it does to the nodes.
 /// Shares no sampling with the solvers.
-///
-/// # Errors
-/// [`GridError`] if a node moves by no finite number.
-pub fn terrain_metrics(of: &Deformation<'_>) -> Result<TerrainMetrics, GridError> {
-    Ok(judged(of)?.metrics)
+pub fn terrain_metrics(of: &Deformation<'_>) -> TerrainMetrics {
+    judged(of).metrics
 }
 
 /// A judgement, point by point.
@@ -88,16 +87,15 @@ pub(super) struct Judged {
 }
 
 /// As [`terrain_metrics`], and which points are hidden.
-pub(super) fn judged(of: &Deformation<'_>) -> Result<Judged, GridError> {
+pub(super) fn judged(of: &Deformation<'_>) -> Judged {
     let u = change::at_nodes(of.field, of.delta);
-    let written = Written::new(of.field, &u)?;
-    let judge = Judge::new(of.field, of.delta, of.sight).and(&written);
+    let judge = if of.traced { Judge::of_both } else { Judge::faceted }(of.field, of.delta, of.sight);
     let [points, dense] = [of.points, of.dense].map(|points| judge.judge(points, of.guard));
     let hidden = |all: &[Verdict]| -> Vec<(usize, Hides)> {
         all.iter().enumerate().filter_map(|(i, verdict)| Some((i, verdict.hides()?))).collect()
     };
     let metrics = figures(of, &u, &points, &dense);
-    Ok(Judged { metrics, points: hidden(&points), dense: hidden(&dense) })
+    Judged { metrics, points: hidden(&points), dense: hidden(&dense) }
 }
 
 fn figures(of: &Deformation<'_>, u: &[f64], points: &[Verdict], dense: &[Verdict]) -> TerrainMetrics {

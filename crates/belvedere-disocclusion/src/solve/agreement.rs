@@ -1,13 +1,13 @@
 //! The quadratic program agrees with the judge.
 //!
 //! The program looks after candidates, over ground of triangles plus a displacement that is bilinear between the nodes of its own
-//! grid. What it leaves hidden all the same lies between two candidates; or it is hidden by ground that is drawn or written otherwise:
-//! a file holds triangles between displaced nodes, and where detail moves too, both are drawn as one displacement that is bilinear
-//! between the nodes of the terrain, on cells of hundreds of metres other ground by many metres. So both grounds are judged. Hidden
-//! places become candidates; and where ground rises over the line of sight of a candidate, the program is told that it stands so
-//! much higher there.
+//! grid, or flat on the terrain's triangles, as files hold it. What it leaves hidden all the same lies between two candidates; or the
+//! ground hides it that is not its own: at first it looks at that of files. So both grounds are judged, and hidden places become
+//! candidates over the ground that hides them. Where detail moves too, both are drawn as one displacement that is bilinear between the
+//! nodes of the terrain, on cells of hundreds of metres other ground by many metres. Where such ground rises over the line of sight of a
+//! candidate, the program is told that it stands so much higher there.
 
-use super::super::metrics::{Judge, Written, still};
+use super::super::metrics::Judge;
 use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult, QpSolver};
 use super::super::{Field, Hierarchy};
 use super::{at_every_node, fallback, on_grid};
@@ -18,8 +18,8 @@ use std::collections::BTreeSet;
 
 /// Judgements at most.
 const ROUNDS: usize = 8;
-/// In the ids of candidates over faceted ground.
-pub(super) const FACETED: u32 = 1 << 31;
+/// In the ids of candidates over ground with the bilinear displacement.
+pub(super) const BILINEAR: u32 = 1 << 31;
 /// Room left over what was found, metres: the places that hide nothing yet are not to come up in the next round.
 const ROOM_M: f64 = 0.25;
 
@@ -101,28 +101,26 @@ impl Agreement<'_> {
     /// Points that a solution leaves hidden though it does not name them.
     fn hidden(&self, problem: &QpProblem<'_>, result: &QpResult) -> Result<Vec<Found>, DisocclusionError> {
         self.progress.tick("what the displaced ground hides", 0.9)?;
-        let smooth = self.grid.prolong(&result.u);
-        let (delta, at_nodes) = match self.detail {
+        let delta = match self.detail {
             Some(detail) => {
-                let full: Vec<f64> = smooth.iter().zip(detail).map(|(a, b)| a + b).collect();
-                (at_every_node(self.field, &full)?, full)
+                let smooth = self.grid.prolong(&result.u);
+                at_every_node(self.field, &smooth.iter().zip(detail).map(|(a, b)| a + b).collect::<Vec<_>>())?
             }
-            None => (on_grid(self.field, self.grid, &result.u)?, smooth),
+            None => on_grid(self.field, self.grid, &result.u)?,
         };
-        let written = Written::new(self.field, &at_nodes)?;
-        let (still, named) = (still(self.field)?, result.unresolved.iter().map(|u| u.id & !FACETED));
-        let named: BTreeSet<u32> = named.collect();
+        let named: BTreeSet<u32> = result.unresolved.iter().map(|u| u.id & !BILINEAR).collect();
         let judged = self.check.iter().chain(problem.candidates).filter(|c| !named.contains(&c.id));
         let judged: Vec<Candidate> = judged.copied().collect();
         let places: Vec<(DVec2, f64)> = judged.iter().map(|c| (c.grid, c.lift)).collect();
-        let drawn = Judge::new(self.field, &delta, problem.sight).hiding(&places);
-        let written = Judge::new(written.field(), &still, problem.sight).hiding(&places);
+        let over = |judge: Judge<'_>| judge.hiding(&places);
+        let facets = over(Judge::faceted(self.field, &delta, problem.sight));
+        let bilinear = over(Judge::bilinear(self.field, &delta, problem.sight));
         let mut found = Vec::new();
-        for (candidate, hiding) in judged.iter().zip(drawn) {
+        for (candidate, hiding) in judged.iter().zip(facets) {
             found.extend(hiding.map(|(at, over)| Found { candidate: *candidate, at, over }));
         }
-        for (candidate, hiding) in judged.iter().zip(written) {
-            let candidate = Candidate { id: candidate.id | FACETED, faceted: true, ..*candidate };
+        for (candidate, hiding) in judged.iter().zip(bilinear) {
+            let candidate = Candidate { id: candidate.id | BILINEAR, faceted: false, ..*candidate };
             found.extend(hiding.map(|(at, over)| Found { candidate, at, over }));
         }
         Ok(found)

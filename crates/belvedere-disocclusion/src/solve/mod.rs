@@ -97,6 +97,7 @@ impl TerrainSolver {
             prepared: &prepared,
             in_view: &PointsInView::new(field, &prepared, base, &self.settings, false),
             delta: &delta,
+            traced: self.frame().is_none(),
             previous: previous.as_ref(),
         };
         let report = report::report(&context, &done, times, began)?;

@@ -187,6 +187,8 @@ pub(super) struct Context<'a> {
     pub(super) in_view: &'a PointsInView<'a>,
     /// The solution.
     pub(super) delta: &'a Grid,
+    /// See [`Deformation::traced`].
+    pub(super) traced: bool,
     /// That of the frame before.
     pub(super) previous: Option<&'a Grid>,
 }
@@ -208,12 +210,13 @@ pub(super) fn report(
         points: &points,
         dense: &dense,
         sight: &*in_view.sight,
+        traced: c.traced,
         guard,
     };
-    let judgement = judged(&of)?;
+    let judgement = judged(&of);
     let metrics = judgement.metrics;
     let still = still(field)?;
-    let undisplaced = Judge::new(field, &still, &*in_view.sight);
+    let undisplaced = Judge::faceted(field, &still, &*in_view.sight);
     let before = |points: &[ReferencePoint]| share_seen(&undisplaced.judge(points, guard));
     let (unresolved, hidden) = (unresolved(c, done, &judgement), hidden(c, &judgement, &dense));
     let (guards, qp_met) = (c.settings.mode != SolverMode::Paper, done.qp_unresolved.is_empty());

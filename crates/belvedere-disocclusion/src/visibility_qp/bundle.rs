@@ -59,8 +59,8 @@ impl Bundle {
         let mut out: Vec<Self> = Vec::new();
         let mut first = 0;
         for i in 1..=seen.len() {
-            let plain = i < seen.len() && seen[i].is_plain() && seen[first].is_plain();
-            let near = plain && (seen[i].grid - seen[first].grid).abs().max_element() <= SPREAD;
+            let alike = i < seen.len() && seen[i].faceted == seen[first].faceted;
+            let near = alike && (seen[i].grid - seen[first].grid).abs().max_element() <= SPREAD;
             if !(straight && near && i - first < MOST) {
                 out.push(match first..i {
                     members if members.len() > 1 => Self::Together(Together { members, room: -1.0, near: Vec::new() }),
@@ -151,7 +151,8 @@ impl Together {
             let before = touches.len();
             near.room = f64::INFINITY;
             // Between two kinks the displaced ground may bulge; and registers round differently.
-            let bulge = 0.25 * surface.displaced_bound(near.corners).1 + ROUNDING;
+            let bulge =
+                if lines[0].1.faceted { 0.0 } else { 0.25 * surface.displaced_bound(near.corners).1 } + ROUNDING;
             for ((k, chord, whole), most) in lines.iter().zip(most) {
                 if most + bulge <= 0.0 {
                     near.room = near.room.min(-most - bulge);
@@ -252,7 +253,9 @@ impl Fan {
             let part = [place(k as f64), place(k as f64 + 1.0)];
             let (low, high) = self.bounds(part[0], part[1]);
             let line = self.lowest(part[0], part[1]) - clearance.margin * clearance.share(part[1]);
-            let left = line - surface.still_bound(low, high) - surface.displaced_bound([low, high]).0;
+            // Facets may lie over the bilinear displacement.
+            let (displaced, twist) = surface.displaced_bound([low, high]);
+            let left = line - surface.still_bound(low, high) - displaced - 0.25 * twist;
             if left >= SOME {
                 *room = room.min(left);
             } else {

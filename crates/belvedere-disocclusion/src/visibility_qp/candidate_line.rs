@@ -22,7 +22,7 @@ pub(super) struct CandidateLine {
     reference: f64,
     nodes: [u32; 4],
     weights: [f64; 4],
-    faceted: bool,
+    pub(super) faceted: bool,
 }
 
 impl CandidateLine {
@@ -65,11 +65,6 @@ impl CandidateLine {
 
     pub(super) fn displacement(&self, u: &[f64]) -> f64 {
         (0..4).map(|k| self.weights[k] * u[self.nodes[k] as usize]).sum()
-    }
-
-    /// Whether it may be followed together with its neighbours.
-    pub(super) fn is_plain(&self) -> bool {
-        !self.faceted
     }
 
     /// Plan distance to the eye, cells.

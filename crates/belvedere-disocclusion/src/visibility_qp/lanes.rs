@@ -1,7 +1,7 @@
 //! Neighbouring lines of sight abreast, one per lane of a register: a bound of what they miss, by which most are let pass.
 
 use super::register::{LANES, Lane, indices, load, split, store};
-use super::surface::Surface;
+use super::surface::{Surface, facet_in_cell};
 use super::walk::{Chord, Clearance};
 use pulp::{Arch, Simd, WithSimd};
 
@@ -18,10 +18,12 @@ pub(super) struct Lanes {
     part: [Lane; 2],
     /// Clearance without its tolerance: at the point, and by how much more far from it.
     asked: [f64; 2],
+    /// See [`Chord::faceted`].
+    faceted: bool,
 }
 
 impl Lanes {
-    /// * `lines`: with the parts of them that count; not empty, at most [`LANES`].
+    /// * `lines`: with the parts of them that count; not empty, at most [`LANES`], all over the same kind of ground.
     pub(super) fn new(lines: &[(usize, Chord, [f64; 2])], clearance: &Clearance) -> Self {
         let each = |of: &dyn Fn(&Chord, [f64; 2]) -> f64| -> Lane {
             std::array::from_fn(|l| {
@@ -39,6 +41,7 @@ impl Lanes {
             z: [each(&|c, _| c.z[0]), each(&|c, _| c.z[1] - c.z[0])],
             part: [each(&|_, part| part[0]), each(&|_, part| part[1])],
             asked: [clearance.near, 1.0 - clearance.near].map(|s| s * (clearance.margin - clearance.tolerance)),
+            faceted: lines[0].1.faceted,
         }
     }
 
@@ -82,6 +85,7 @@ struct Register<S: Simd> {
     z: [S::f64s; 2],
     part: [S::f64s; 2],
     asked: [S::f64s; 2],
+    faceted: bool,
 }
 
 /// Where lines are at some parameters of theirs.
@@ -107,6 +111,7 @@ impl<S: Simd> Register<S> {
             z: two(&lanes.z),
             part: two(&lanes.part),
             asked: lanes.asked.map(|asked| simd.splat_f64s(asked)),
+            faceted: lanes.faceted,
         }
     }
 
@@ -170,6 +175,7 @@ impl<S: Simd> Register<S> {
         let cols = simd.splat_f64s(surface.cols as f64);
         // The diagonals of the corners are nodes of the other families.
         let limits = [[0.0, last[0]], [0.0, last[1]], [1.0 - last[1], last[0] - 1.0]][FAMILY];
+        let none = simd.splat_f64s(0.0);
         let [first, end] = self.range(FAMILY, 1.0, within);
         let (mut k, until) = (first.max(limits[0]), end.min(limits[1]));
         let stride = [surface.cols, 1, surface.cols + 1][FAMILY];
@@ -196,14 +202,25 @@ impl<S: Simd> Register<S> {
             }
             let (from, to) = (load::<S>(&from), load::<S>(&to));
             let ground = simd.mul_add_e_f64s(share, simd.sub_f64s(to, from), from);
-            self.judge(surface, Place { t, x, y }, ground, within, most);
+            let facet =
+                if FAMILY == 2 && self.faceted { simd.sub_f64s(share, simd.mul_f64s(share, share)) } else { none };
+            self.judge(surface, Place { t, x, y }, [ground, facet], within, most);
             k += 1.0;
         }
     }
 
     /// Takes places within the parts into account.
+    ///
+    /// * `facet`: how far facets lie over the bilinear displacement, per factor of xy in a cell of the field.
     #[inline(always)]
-    fn judge(&self, surface: &Surface, place: Place<S>, ground: S::f64s, within: [S::f64s; 2], most: &mut S::f64s) {
+    fn judge(
+        &self,
+        surface: &Surface,
+        place: Place<S>,
+        [ground, facet]: [S::f64s; 2],
+        within: [S::f64s; 2],
+        most: &mut S::f64s,
+    ) {
         let (simd, lattice) = (self.simd, &surface.lattice);
         let last = [lattice.cols, lattice.rows].map(|n| (n.max(2) - 2) as f64);
         let per = [lattice.step.x, lattice.step.y].map(|step| simd.splat_f64s(1.0 / step));
@@ -217,6 +234,7 @@ impl<S: Simd> Register<S> {
         }
         let [c, cx, cy, cxy] = [0, 1, 2, 3].map(|k| load::<S>(&patch[k]));
         let u = simd.mul_add_e_f64s(y, simd.mul_add_e_f64s(x, cxy, cy), simd.mul_add_e_f64s(x, cx, c));
+        let u = simd.mul_add_e_f64s(simd.mul_f64s(facet, cxy), simd.mul_f64s(per[0], per[1]), u);
         let line = simd.mul_add_e_f64s(place.t, self.z[1], self.z[0]);
         let share = simd.min_f64s(simd.mul_f64s(simd.splat_f64s(5.0), place.t), simd.splat_f64s(1.0));
         let over = simd.sub_f64s(simd.add_f64s(ground, u), line);
@@ -230,11 +248,15 @@ impl<S: Simd> Register<S> {
     #[inline(always)]
     fn judge_between(&self, surface: &Surface, t: S::f64s, within: [S::f64s; 2], most: &mut S::f64s) {
         let place = Place { t, x: self.at(0, t), y: self.at(1, t) };
-        let (x, y, mut ground) = (store::<S>(place.x), store::<S>(place.y), [0.0; LANES]);
+        let (x, y) = (store::<S>(place.x), store::<S>(place.y));
+        let (mut ground, mut facet) = ([0.0; LANES], [0.0; LANES]);
         for l in 0..S::F64_LANES {
             ground[l] = surface.ground([x[l], y[l]].into());
+            if self.faceted {
+                facet[l] = facet_in_cell([x[l], y[l]].into());
+            }
         }
-        self.judge(surface, place, load::<S>(&ground), within, most);
+        self.judge(surface, place, [load::<S>(&ground), load::<S>(&facet)], within, most);
     }
 }
 
@@ -253,7 +275,14 @@ mod tests {
     fn lines_abreast_miss_what_each_of_them_misses_alone() {
         let clearance = Clearance { margin: 1.0, tolerance: 0.2, near: 0.3, guard: 1.5 };
         // Whole steps of the solver's grid, and others.
-        for (cols, rows, nodes) in [(33, 25, [5, 4]), (40, 31, [6, 8]), (12, 12, [12, 12]), (9, 7, [1, 2])] {
+        for (cols, rows, nodes, faceted) in [
+            (33, 25, [5, 4], false),
+            (33, 25, [5, 4], true),
+            (40, 31, [6, 8], false),
+            (12, 12, [12, 12], false),
+            (12, 12, [12, 12], true),
+            (9, 7, [1, 2], false),
+        ] {
             let step =
                 DVec2::new((cols - 1) as f64 / (nodes[0] - 1).max(1) as f64, (rows - 1) as f64 / (nodes[1] - 1) as f64);
             let heights: Vec<f64> = (0..cols * rows).map(|i| 40.0 * number(i * i)).collect();
@@ -273,12 +302,8 @@ mod tests {
                 let lines: Vec<(usize, Chord, [f64; 2])> = (0..1 + case % LANES)
                     .filter_map(|k| {
                         let point = (first + 0.3 * k as f64).min(last);
-                        let chord = Chord {
-                            ends: [point, eye],
-                            z: [20.0 * r(5), 60.0 * r(6)],
-                            tau: [0.0, 1.0],
-                            faceted: false,
-                        };
+                        let chord =
+                            Chord { ends: [point, eye], z: [20.0 * r(5), 60.0 * r(6)], tau: [0.0, 1.0], faceted };
                         Some((k, chord, chord.part(&surface, point, clearance.guard)?))
                     })
                     .collect();
@@ -294,7 +319,7 @@ mod tests {
                         let missing = |t: f64| {
                             let at = chord.ends[0] + t * (chord.ends[1] - chord.ends[0]);
                             let line = chord.z[0] + t * (chord.z[1] - chord.z[0]);
-                            let ground = surface.ground(at) + surface.displacement(at, false);
+                            let ground = surface.ground(at) + surface.displacement(at, faceted);
                             ground - line + (clearance.margin - clearance.tolerance) * clearance.share(t)
                         };
                         // Kinks, and the ends of lines; what lies at the end of a part counts in one of its neighbours.

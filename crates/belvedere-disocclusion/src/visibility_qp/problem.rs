@@ -13,7 +13,7 @@ pub struct Candidate {
     /// Height over the ground at which it must be seen, metres.
     pub lift: f64,
     /// Over which ground: with the bilinear displacement, or with that of the nodes of the terrain and flat triangles between them, as
-    /// files hold it. The latter is exact if the steps of the solver's grid are whole.
+    /// it is rasterised and as files hold it. The latter is exact if the steps of the solver's grid are whole.
     pub faceted: bool,
 }
 
@@ -21,6 +21,11 @@ impl Candidate {
     /// Over ground with the bilinear displacement.
     pub fn new(id: u32, grid: DVec2, lift: f64) -> Self {
         Self { id, grid, lift, faceted: false }
+    }
+
+    /// Over ground of facets.
+    pub fn faceted(id: u32, grid: DVec2, lift: f64) -> Self {
+        Self { id, grid, lift, faceted: true }
     }
 }
 

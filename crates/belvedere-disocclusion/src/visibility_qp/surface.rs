@@ -10,6 +10,13 @@ const BLOCK: usize = 8;
 /// Cells per side of the smallest block that bounds the undisplaced ground.
 const FINEST: usize = 2;
 
+/// How far a displacement that is flat on the triangles of the field lies over the bilinear one at `g`, per unit of the latter's
+/// factor of xy in the cell of the field.
+pub(super) fn facet_in_cell(g: DVec2) -> f64 {
+    let inside = g - g.floor();
+    inside.min_element() - inside.x * inside.y
+}
+
 /// Nodes of the solver over the field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Lattice {
@@ -40,8 +47,7 @@ impl Lattice {
     /// How far a displacement that is flat on the triangles of the field lies over the bilinear one at `g`, per unit of the latter's
     /// factor of xy in a cell of the lattice.
     pub(super) fn facet(&self, g: DVec2) -> f64 {
-        let inside = g - g.floor();
-        (inside.min_element() - inside.x * inside.y) / (self.step.x * self.step.y)
+        facet_in_cell(g) / (self.step.x * self.step.y)
     }
 
     /// As [`Self::weights`] for `faceted` ground too.

@@ -162,8 +162,8 @@ pub(super) fn adjust(
     Ok(())
 }
 
-/// Share of the length in view from which on it is said that ground inside the guard hides it.
-const WORTH_SAYING: f64 = 0.01;
+/// Share of the length in view from which on it is said that it stays hidden.
+const WORTH_SAYING: f64 = 0.005;
 
 /// What a user should know of a solution: one sentence each.
 pub(crate) fn remarks(solved: &Solved) -> Vec<String> {
@@ -183,21 +183,11 @@ pub(crate) fn remarks(solved: &Solved) -> Vec<String> {
             why.join(", ")
         ));
     }
-    let (hidden, guard) = (report.metrics.hidden_in_guard, report.parameters.guard);
+    let hidden = 1.0 - report.metrics.visible_dense;
     if hidden > WORTH_SAYING && report.parameters.mode != SolverMode::Paper {
         out.push(format!(
-            "terrain_disocclusion: {:.1} % of the features in view count as visible although ground nearer to them than {guard} cells \
-             hides them; guard = 0 clears that ground too",
-            100.0 * hidden
-        ));
-    }
-    let between = 1.0 - report.metrics.visible_dense;
-    if between > WORTH_SAYING && points == 0 && report.parameters.mode != SolverMode::Paper {
-        out.push(format!(
-            "terrain_disocclusion: {:.1} % of the features in view is hidden between places that are seen, which stand {} cells apart; \
-             `hidden` in the report names the parts, a smaller candidates shows more of them",
-            100.0 * between,
-            report.parameters.candidates
+            "terrain_disocclusion: {:.1} % of the length in view stays hidden, by {:.1} m of ground at most; the report names the parts              under `unresolved` and `hidden`",
+            100.0 * hidden, report.metrics.hidden_worst_m
         ));
     }
     if report.asked == 0 {

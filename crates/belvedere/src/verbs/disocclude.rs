@@ -22,7 +22,7 @@ use std::path::PathBuf;
 /// Sides of the picture that the field of view belongs to, pixels.
 const IMAGE: [u32; 2] = [1280, 720];
 /// Share of the length in view that is wanted visible.
-const VISIBLE_LENGTH: f64 = 0.99;
+const VISIBLE_LENGTH: f64 = 0.995;
 
 /// What to show, and from where.
 #[derive(Debug, Clone, Default)]
@@ -217,10 +217,10 @@ impl Disoccluded {
                 r.points
             ));
         }
-        let length = r.metrics.visible_dense - r.metrics.hidden_in_guard;
+        let length = r.metrics.visible_dense;
         if length < VISIBLE_LENGTH {
             out.push(format!(
-                "{:.2} % of the length in view is visible, {:.0} % were wanted",
+                "{:.2} % of the length in view is visible, {:.1} % were wanted",
                 100.0 * length,
                 100.0 * VISIBLE_LENGTH
             ));

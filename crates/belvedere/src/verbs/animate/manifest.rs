@@ -78,7 +78,7 @@ pub struct FrameTerrain {
     pub visible: f64,
     /// Visible share of the features in view.
     pub visible_dense: f64,
-    /// Share of them that is hidden by ground nearer to them than the guard alone.
+    /// Share of them that nothing hides but ground nearer to them than the guard.
     #[serde(default)]
     pub hidden_in_guard: f64,
     /// Points that cannot be shown.
