@@ -1,8 +1,8 @@
 //! Arguments.
 
 use crate::parse::{
-    parse_bytes, parse_eye, parse_lod, parse_outside, parse_place, parse_size, parse_spacing, parse_sweep,
-    parse_threads,
+    parse_bytes, parse_eye, parse_lod, parse_outside, parse_place, parse_seconds, parse_size, parse_spacing,
+    parse_sweep, parse_threads,
 };
 use belvedere::RendererChoice;
 use belvedere::scene_file::SurfaceDoc;
@@ -41,6 +41,9 @@ pub(crate) struct Common {
     /// Memory for one picture, and for the samples of one file, such as 2GiB or 800MiB
     #[arg(long, global = true, value_name = "SIZE", value_parser = parse_bytes)]
     pub(crate) max_mem: Option<u64>,
+    /// Time for solving the ground of one picture; when it is up the best so far is taken, and said so
+    #[arg(long, global = true, value_name = "SECONDS", value_parser = parse_seconds)]
+    pub(crate) time_limit: Option<f64>,
     /// Seed of whatever is generated, instead of the scene's
     #[arg(long, global = true, value_name = "N")]
     pub(crate) seed: Option<u64>,

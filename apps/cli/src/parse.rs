@@ -10,6 +10,12 @@ pub(crate) fn parse_threads(text: &str) -> Result<usize, String> {
     text.parse().ok().filter(|n| *n <= MAX_THREADS).ok_or_else(|| format!("give a whole number in 0..={MAX_THREADS}"))
 }
 
+/// A time.
+pub(crate) fn parse_seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.trim().parse().ok().filter(|s: &f64| *s > 0.0 && *s <= 1e9);
+    seconds.ok_or_else(|| "give seconds greater than 0, such as 20".into())
+}
+
 /// An error in pixels.
 pub(crate) fn parse_lod(text: &str) -> Result<f64, String> {
     let px = text.parse().ok().filter(|px| (0.0..=64.0).contains(px));

@@ -10,6 +10,8 @@ use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+/// Off a terminal, time between two lines.
+const BETWEEN_LINES: Duration = Duration::from_secs(10);
 /// Work shorter than this shows no progress bar.
 const QUIET_FOR: Duration = Duration::from_millis(500);
 
@@ -106,8 +108,15 @@ impl Context {
     /// Installs Ctrl-C (once: stop cleanly; twice: stop at once) and the progress bar.
     pub(crate) fn new(common: Common) -> Self {
         let bar: Arc<Mutex<Option<indicatif::ProgressBar>>> = Arc::default();
-        let show = std::io::stderr().is_terminal() && !common.quiet;
-        let progress = if show { with_bar(Arc::clone(&bar)) } else { Progress::silent() };
+        let progress = match (common.quiet, std::io::stderr().is_terminal()) {
+            (true, _) => Progress::silent(),
+            (false, true) => with_bar(Arc::clone(&bar)),
+            (false, false) => with_lines(),
+        };
+        let progress = match common.time_limit {
+            Some(seconds) => progress.limited(Duration::from_secs_f64(seconds)),
+            None => progress,
+        };
         let flag = progress.cancel_flag();
         // Without a handler Ctrl-C still ends the process, only less politely.
         let _ = ctrlc::set_handler(move || {
@@ -209,12 +218,27 @@ fn with_bar(slot: Arc<Mutex<Option<indicatif::ProgressBar>>>) -> Progress {
         let Ok(mut slot) = slot.lock() else { return };
         let bar = slot.get_or_insert_with(|| {
             let bar = indicatif::ProgressBar::new(1000);
-            if let Ok(style) = indicatif::ProgressStyle::with_template("{msg:24} [{bar:40}] {percent:>3} %") {
+            if let Ok(style) =
+                indicatif::ProgressStyle::with_template("[{bar:30}] {percent:>3} %, about {eta} left: {msg}")
+            {
                 bar.set_style(style);
             }
             bar
         });
         bar.set_message(stage.to_owned());
         bar.set_position((done.clamp(0.0, 1.0) * 1000.0) as u64);
+    })
+}
+
+/// Off a terminal: a line from time to time.
+fn with_lines() -> Progress {
+    let said = Mutex::new(Instant::now());
+    Progress::new(move |stage, done| {
+        if let Ok(mut said) = said.lock()
+            && said.elapsed() >= BETWEEN_LINES
+        {
+            *said = Instant::now();
+            complain(&format!("{:.0} %: {stage}", 100.0 * done));
+        }
     })
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The work was cancelled; nothing was kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -16,6 +16,7 @@ type Report = dyn Fn(&str, f64) + Send + Sync;
 pub struct Progress {
     report: Option<Arc<Report>>,
     cancelled: Arc<AtomicBool>,
+    limit: Option<Duration>,
     deadline: Option<Instant>,
 }
 
@@ -41,9 +42,16 @@ impl Progress {
         Self { report: None, ..self.clone() }
     }
 
-    /// The same with a moment at which the work should end with the best it has; an earlier one of this progress stays.
-    pub fn until(&self, deadline: Instant) -> Self {
-        Self { deadline: Some(self.deadline.map_or(deadline, |d| d.min(deadline))), ..self.clone() }
+    /// The same with a limit of time for each piece of work that can end with the best it has: see [`Progress::begin`].
+    pub fn limited(self, limit: Duration) -> Self {
+        Self { limit: Some(limit), ..self }
+    }
+
+    /// The same for a piece of work that begins now, to which the limit of time applies from here on; inside such a piece nothing
+    /// changes.
+    pub fn begin(&self) -> Self {
+        let deadline = || self.limit.and_then(|limit| Instant::now().checked_add(limit));
+        Self { deadline: self.deadline.or_else(deadline), ..self.clone() }
     }
 
     /// Flag to set from elsewhere (a signal handler, a button) to cancel.
@@ -75,5 +83,23 @@ impl Progress {
             report(stage, done);
         }
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_applies_from_the_beginning_of_a_piece_of_work() {
+        let progress = Progress::silent().limited(Duration::ZERO);
+        assert!(!progress.should_end());
+        let work = progress.begin();
+        assert!(work.is_late() && work.should_end() && !work.is_cancelled());
+        assert!(work.tick("work", 0.5).is_ok(), "time that is up is no reason to lose everything");
+        let longer = Progress::silent().limited(Duration::from_secs(3600)).begin();
+        assert!(!longer.begin().should_end());
+        longer.cancel_flag().store(true, Ordering::Relaxed);
+        assert!(longer.should_end() && longer.tick("work", 0.5).is_err());
     }
 }

@@ -95,6 +95,7 @@ impl Agreement<'_> {
                 (best.rounds, best.added) = (rounds, added);
             }
         }
+        best.stopped |= self.progress.is_late() && fewest > 0;
         Ok(best)
     }
 

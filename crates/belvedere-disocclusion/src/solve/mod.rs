@@ -133,6 +133,7 @@ impl TerrainSolver {
             return Err(DisocclusionError::NothingToSee { layers: scene.layers.len() });
         }
         let began = Instant::now();
+        let progress = &progress.begin();
         progress.tick("cells and points of the terrain", 0.0)?;
         let weights = Weights::new(&self.settings, heightfield, self.frame());
         let mut prepared = memory.prepared_for(scene, heightfield, &self.settings, weights)?;

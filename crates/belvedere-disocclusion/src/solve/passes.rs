@@ -224,7 +224,7 @@ impl Passes<'_> {
             candidates: in_view.candidates.len(),
             energy: result.energy,
         });
-        done.stopped = result.stopped;
+        done.stopped = result.stopped || (fallback::stuck(&result) > 0 && self.progress.is_late());
         done.qp_unresolved = result.unresolved;
         done.rows = result.active;
         times.qp_ms = since(began);

@@ -52,6 +52,8 @@ pub struct TerrainReport {
     /// least 0.995 is seen ([`TerrainMetrics::visible_dense`]); `hidden` names the rest. Where nothing is asked for nothing is
     /// guaranteed.
     pub guaranteed: bool,
+    /// Whether the solver was out of time and ended with the best it had.
+    pub out_of_time: bool,
     /// What cannot be seen, and why.
     pub unresolved: Vec<UnresolvedRun>,
     /// What else the judge finds hidden of the length in view, and why: places between two that were looked after.
@@ -240,6 +242,7 @@ pub(super) fn report(
             && qp_met
             && !done.stopped
             && metrics.visible_dense >= AGREES,
+        out_of_time: done.stopped,
         unresolved,
         hidden,
         covered: covered(c, &judgement, &dense),

@@ -183,6 +183,12 @@ pub(crate) fn remarks(solved: &Solved) -> Vec<String> {
             why.join(", ")
         ));
     }
+    if report.out_of_time {
+        out.push(
+            "terrain_disocclusion: the solver was out of time and ended with the best ground it had; give it more time"
+                .into(),
+        );
+    }
     let hidden = 1.0 - report.metrics.visible_dense;
     if hidden > WORTH_SAYING && report.parameters.mode != SolverMode::Paper {
         out.push(format!(
