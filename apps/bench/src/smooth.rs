@@ -54,8 +54,8 @@ fn cost(grid: &Hierarchy, nodes: usize, count: usize, rounds: usize) -> Result<S
     let number = |i: usize| (i as f64 * 0.618_033_988_749_895).fract();
     let n = grid.cols();
     let points = (0..count).map(|i| DVec2::new(number(i), number(7 * i + 3)) * (nodes - 1) as f64);
-    let rows = ElevationRows::new(grid, points, row_weight(1.0, n));
-    let mut smoother = Smoother::new(n, n, grid_weight(W, n), 0.0)?;
+    let rows = ElevationRows::new(grid, points, row_weight(1.0, grid.intervals()));
+    let mut smoother = Smoother::new(n, n, grid_weight(W, grid.intervals()), 0.0)?;
     let mut wanted: Vec<f64> = (0..n * n).map(|i| -300.0 * smoother.shift() * number(i)).collect();
     rows.add_wanted(|i| -200.0 * number(i), &mut wanted);
     let (mut ours, mut cg, mut times) = (Vec::new(), ConjugateGradients::default(), Vec::new());
