@@ -361,3 +361,16 @@ impl Layer {
         }
     }
 }
+
+impl LayerKind {
+    /// Name of a line, area or point by its index; `None` if there is no such feature or it has no name.
+    pub fn feature_name(&self, index: usize) -> Option<&str> {
+        let name = match self {
+            Self::Line(l) => &l.features.get(index)?.name,
+            Self::Area(a) => &a.features.get(index)?.name,
+            Self::Point(p) => &p.features.get(index)?.name,
+            Self::Terrain(_) | Self::Boxes(_) | Self::Mesh(_) => return None,
+        };
+        Some(name.as_str()).filter(|name| !name.is_empty())
+    }
+}

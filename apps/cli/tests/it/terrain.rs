@@ -61,25 +61,21 @@ fn everything_asked_for_is_visible_on_the_grid_of_the_input() {
     assert!(super::read(&place.path("p.png")).starts_with(b"\x89PNG") && place.path("p.png.json").exists());
     assert!(number(&r["visible_before"]) < 0.8, "the hills hide much: {r}");
     assert_eq!(number(&r["visible"]), 1.0, "{r}");
-    assert!(number(&r["visible_dense"]) >= 0.99, "{r}");
-    // On ground as steep as this a sixth is hidden by what lies within 0.6 cells. The judge counts that, so nothing is promised.
-    let seen = |r: &serde_json::Value| number(&r["visible_dense"]) - number(&r["hidden_in_guard"]);
-    assert!(seen(&r) > 0.7 && seen(&r) < 0.99 && r["guaranteed"] == false, "{r}");
-    assert!(r["warnings"].to_string().contains("guard = 0 clears that ground too"), "{}", r["warnings"]);
+    // However steep the ground is, and however near to the way.
+    let seen = |r: &serde_json::Value| number(&r["visible_dense"]);
+    assert!(seen(&r) >= 0.995 && r["guaranteed"] == true && r["unresolved"] == serde_json::json!([]), "{r}");
+    assert!(!r["warnings"].to_string().contains("stays hidden"), "{}", r["warnings"]);
     assert!(number(&r["raised_max_m"]) <= 0.5, "{r}");
     assert!(number(&r["rms_m"]) > 0.5);
     let strict = ["disocclude", "dem.asc", "way.geojson", "-o", "strict.tif", "--strict"];
     let strict = place.run(&[&strict[..], &VIEW].concat());
+    assert_eq!(strict.status.code(), Some(0), "{}", String::from_utf8_lossy(&strict.stderr));
+    // What is smoothed as in the paper may hide it again, and the same judge says so.
+    let paper = report(&holed(), &["--mode", "paper", "--set", "w=0.05"]);
+    assert!(seen(&paper) < 0.995 && paper["guaranteed"] == false, "{paper}");
+    let strict = ["disocclude", "dem.asc", "way.geojson", "-o", "paper.tif", "--strict", "--mode", "paper"];
+    let strict = place.run(&[&strict[..], &["--set", "w=0.05"], &VIEW].concat());
     assert_eq!(strict.status.code(), Some(1), "{}", String::from_utf8_lossy(&strict.stderr));
-    // Without a guard the same ground is cleared for little more, and then it is.
-    let clear = report(&holed(), &["--set", "guard=0", "--set", "candidates=0.1"]);
-    assert_eq!((number(&clear["visible"]), number(&clear["hidden_in_guard"])), (1.0, 0.0), "{clear}");
-    assert!(
-        seen(&clear) >= 0.99 && clear["guaranteed"] == true && clear["unresolved"] == serde_json::json!([]),
-        "{clear}"
-    );
-    assert!(number(&clear["rms_m"]) < 1.05 * number(&r["rms_m"]), "{} and {}", clear["rms_m"], r["rms_m"]);
-    assert!(!clear["warnings"].to_string().contains("guard"), "{}", clear["warnings"]);
     for key in ["hidden_worst_m", "max_m", "normal_mean_deg", "normal_p95_deg", "step_p999_m", "smoothing_length_m"] {
         assert!(number(&r[key]) >= 0.0, "{key}");
     }
@@ -274,9 +270,9 @@ fn a_film_of_giving_ground_goes_on_to_the_same_bytes() {
     for frame in 0..4 {
         let terrain = &record["frames"][frame]["terrain"];
         assert_eq!(number(&terrain["visible"]), 1.0, "frame {frame}: {record}");
-        // Steep ground close to the way hides some of it.
-        let seen = number(&terrain["visible_dense"]) - number(&terrain["hidden_in_guard"]);
-        assert_eq!(terrain["guaranteed"], seen >= 0.99, "frame {frame}: {record}");
+        // Films are not solved again for what lies between two candidates.
+        let seen = number(&terrain["visible_dense"]);
+        assert_eq!(terrain["guaranteed"], seen >= 0.995, "frame {frame}: {record}");
         assert!(terrain["unresolved"] == 0 && seen > 0.9, "frame {frame}: {record}");
     }
 }
@@ -294,15 +290,16 @@ fn andorra_is_shown_with_a_progressive_bend_and_terrain() {
 #[test]
 fn a_straight_picture_asks_nothing_of_the_ground() {
     let place = place(|r, c| Some(hills(r, c)));
-    place.write("s.toml", &scene(""));
+    place.write("s.toml", &scene("rise_limit_m = 0\nslack_price = 0.01"));
     let record = |more: &[&str]| -> serde_json::Value {
         place.ok(&[&["render", "s.toml", "-o", "p.png", "--overwrite"][..], more].concat());
         serde_json::from_slice(&super::read(&place.path("p.png.json"))).expect("JSON")
     };
-    // What the solver has to say about ground inside the guard.
-    assert!(record(&[])["warnings"].to_string().contains("guard = 0"));
+    // What the solver has to say about the ground.
+    let bent = record(&[]);
+    assert!(bent["warnings"].to_string().contains("under `covered`"), "{}", bent["warnings"]);
     let straight = record(&["--straight"]);
-    assert!(!straight["warnings"].to_string().contains("guard"), "{straight}");
+    assert!(!straight["warnings"].to_string().contains("stays hidden"), "{straight}");
     assert!(straight["disocclusion"].is_null() && straight["stages"] == serde_json::json!([]), "{straight}");
 }
 

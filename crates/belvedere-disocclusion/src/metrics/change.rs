@@ -52,6 +52,27 @@ fn quantile(values: &mut [f64], share: f64) -> f64 {
     *values.select_nth_unstable_by(k, f64::total_cmp).1
 }
 
+/// How far the lowest ground after lies below the lowest before; 0 if it does not.
+pub(super) fn sunk_below(field: &Field, u: &[f64]) -> f64 {
+    let after = field.heights().iter().zip(u).zip(field.void()).filter(|(_, void)| !**void).map(|((h, u), _)| h + u);
+    (field.datum() - after.fold(f64::INFINITY, f64::min)).max(0.0)
+}
+
+/// The steepest way between two neighbours with data along the lines of the grid, degrees: before and after.
+pub(super) fn steepest(field: &Field, u: &[f64]) -> [f64; 2] {
+    let (cols, h, d) = (field.cols(), field.heights(), field.spacing());
+    let mut steepest = [0.0f64; 2];
+    for i in 0..u.len() {
+        let east = (i % cols + 1 < cols).then_some((i + 1, d.x));
+        let south = (i + cols < u.len()).then_some((i + cols, d.y));
+        for (j, step) in east.into_iter().chain(south).filter(|(j, _)| !field.void()[i] && !field.void()[*j]) {
+            let (before, moved) = (h[j] - h[i], u[j] - u[i]);
+            steepest = [steepest[0].max(before.abs() / step), steepest[1].max((before + moved).abs() / step)];
+        }
+    }
+    steepest.map(|slope| slope.atan().to_degrees())
+}
+
 /// Angles between the normals before and after, from central differences (one-sided at rims and voids).
 pub(super) fn normals(field: &Field, u: &[f64]) -> Normals {
     let (cols, rows, d) = (field.cols(), field.rows(), field.spacing());

@@ -50,6 +50,12 @@ pub struct TerrainMetrics {
     pub max_m: f64,
     /// Largest displacement upwards; 0 if there is none.
     pub raised_max_m: f64,
+    /// How far the lowest ground lies below the lowest before; 0 if it does not.
+    pub sunk_below_m: f64,
+    /// The steepest way between two neighbouring nodes before, degrees.
+    pub steepest_before_deg: f64,
+    /// And after.
+    pub steepest_deg: f64,
     /// Mean angle between the normals before and after, degrees.
     pub normal_mean_deg: f64,
     /// The angle that 95 of 100 nodes stay below, degrees.
@@ -105,6 +111,7 @@ fn figures(of: &Deformation<'_>, u: &[f64], points: &[Verdict], dense: &[Verdict
     let steps = change::steps(of.field, of.cells, u);
     let normals = change::normals(of.field, u);
     let size = change::size(of.field, u);
+    let [steepest_before_deg, steepest_deg] = change::steepest(of.field, u);
     let frame = of.previous.map(|before| {
         let before = change::at_nodes(of.field, before);
         let moved: Vec<f64> = u.iter().zip(&before).map(|(a, b)| a - b).collect();
@@ -119,6 +126,9 @@ fn figures(of: &Deformation<'_>, u: &[f64], points: &[Verdict], dense: &[Verdict
         rms_m: size.rms,
         max_m: size.max,
         raised_max_m: size.raised,
+        sunk_below_m: change::sunk_below(of.field, u),
+        steepest_before_deg,
+        steepest_deg,
         normal_mean_deg: normals.mean.to_degrees(),
         normal_p95_deg: normals.p95.to_degrees(),
         border_step_m: steps.border,

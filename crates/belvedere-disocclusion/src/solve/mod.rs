@@ -14,7 +14,7 @@ mod report;
 pub use fallback::Fallback;
 pub use live::{LiveFrame, LiveTerrain};
 pub use memory::TerrainMemory;
-pub use report::{Covered, QpReport, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
+pub use report::{Covered, FeatureCost, QpReport, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
 
 use super::visibility_qp::{SolvedRow, Unresolved};
 use super::{Detail, Field, Hierarchy, SolverMode, TerrainSettings, check_eye};

@@ -1,7 +1,7 @@
 //! What a displacement achieves and what it costs, ready for JSON.
 
 use super::super::metrics::{Hides, Judge, Judged, judged, share_seen, still};
-use super::super::visibility_qp::{Reason, Unresolved};
+use super::super::visibility_qp::{Reason, SolvedRow, Unresolved};
 use super::super::{
     Deformation, Field, GreedyCounters, PointKind, ReferencePoint, SolverMode, TerrainMetrics, TerrainSettings,
     Unusable, UnusableReason, stated_spacing,
@@ -12,7 +12,7 @@ use crate::DisocclusionError;
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
 use serde::Serialize;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Instant;
 
 /// Share of the length in view that must be seen for a promise to be kept: places between two candidates may lie a little under
@@ -46,6 +46,8 @@ pub struct TerrainReport {
     pub greedy: Option<GreedyCounters>,
     /// The quadratic program; `None` in mode paper.
     pub qp: Option<QpReport>,
+    /// Features that the ground moves for most, at most three, the most expensive first; empty in mode paper.
+    pub costliest: Vec<FeatureCost>,
     /// Ways out of contradicting rows that were taken, in their order; empty as a rule.
     pub fallbacks: Vec<Fallback>,
     /// Whether every candidate in view is guaranteed to be seen in this picture, and the judge agrees: of the length in view at
@@ -74,6 +76,17 @@ pub struct Covered {
     pub lift_m: f64,
     /// How far the ground rises over its line of sight.
     pub over_m: f64,
+}
+
+/// What a feature costs.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FeatureCost {
+    /// Index of the layer in the scene.
+    pub layer: usize,
+    /// Index of the feature in its layer.
+    pub feature: usize,
+    /// Share of the energy that its lines of sight ask for, 0..=1.
+    pub share: f64,
 }
 
 /// Figures of the quadratic program.
@@ -236,6 +249,7 @@ pub(super) fn report(
         visible_dense_before: before(&dense),
         greedy: done.greedy,
         qp: done.qp,
+        costliest: costliest(prepared, &done.rows),
         fallbacks: done.fallbacks.clone(),
         guaranteed: guards
             && !in_view.candidates.is_empty()
@@ -263,6 +277,25 @@ fn covered(c: &Context<'_>, judgement: &Judged, dense: &[ReferencePoint]) -> Vec
         over_m.is_finite().then_some(Covered { at, lift_m: p.lift, over_m })
     };
     judgement.dense.iter().filter_map(place).collect()
+}
+
+/// The energy is half the sum of multipliers times what their rows ask for.
+fn costliest(prepared: &Prepared, rows: &[SolvedRow]) -> Vec<FeatureCost> {
+    let mut of = BTreeMap::<(usize, usize), f64>::new();
+    let mut all = 0.0;
+    for row in rows {
+        let asked = row.multiplier * (-row.bound).max(0.0);
+        if let Some(point) = row.candidate.and_then(|id| prepared.candidate(id)) {
+            *of.entry((point.layer, point.feature)).or_default() += asked;
+            all += asked;
+        }
+    }
+    let mut out: Vec<FeatureCost> =
+        of.into_iter().map(|((layer, feature), asked)| FeatureCost { layer, feature, share: asked / all }).collect();
+    out.retain(|cost| cost.share > 0.0);
+    out.sort_by(|a, b| b.share.total_cmp(&a.share));
+    out.truncate(3);
+    out
 }
 
 /// Dense points that are hidden although no place that is named stands for them.

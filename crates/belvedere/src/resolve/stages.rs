@@ -81,7 +81,7 @@ pub(super) fn resolve(
         let chain = context.earth.iter().chain(&out.stages).cloned().collect();
         let base = View::new(out.pinhole.clone(), chain).map_err(|e| context.source.error(&["stage"], e))?;
         let solved = terrain::solve(settings, context.scene, &base, solving, context.at(i))?;
-        warnings.extend(terrain::remarks(&solved));
+        warnings.extend(terrain::remarks(&solved, context.scene));
         out.stages.insert(0, Stage::TerrainDisocclusion(solved.stage));
         out.terrain = Some(solved.report);
     }

@@ -5,8 +5,9 @@ use crate::BelvedereError;
 use crate::scene_file::{DetailDoc, PointDoc, SolverMode as ModeDoc, SourceDocument, StageDoc, Table, TerrainStageDoc};
 use belvedere_core::{DVec3, Pinhole, Stage, View};
 use belvedere_disocclusion::DisocclusionError;
+use belvedere_disocclusion::report::FeatureCost;
 use belvedere_disocclusion::{
-    Detail, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver, ViewpointOptions,
+    Detail, Solved, SolverMode, TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver, ViewpointOptions,
 };
 use belvedere_scene::{Progress, Scene};
 
@@ -164,9 +165,13 @@ pub(super) fn adjust(
 
 /// Share of the length in view from which on it is said that it stays hidden.
 const WORTH_SAYING: f64 = 0.005;
+/// Ground below the lowest by more than this share of the relief looks like no ground, nor do slopes by so many degrees beyond the
+/// terrain's own.
+const IMPLAUSIBLE_SHARE: f64 = 0.2;
+const IMPLAUSIBLE_DEG: f64 = 5.0;
 
 /// What a user should know of a solution: one sentence each.
-pub(crate) fn remarks(solved: &Solved) -> Vec<String> {
+pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<String> {
     let report = &solved.report;
     let mut out = Vec::new();
     let points: usize = report.unresolved.iter().map(|r| r.points).sum();
@@ -192,14 +197,52 @@ pub(crate) fn remarks(solved: &Solved) -> Vec<String> {
     let hidden = 1.0 - report.metrics.visible_dense;
     if hidden > WORTH_SAYING && report.parameters.mode != SolverMode::Paper {
         out.push(format!(
-            "terrain_disocclusion: {:.1} % of the length in view stays hidden, by {:.1} m of ground at most; the report names the parts              under `unresolved` and `hidden`",
-            100.0 * hidden, report.metrics.hidden_worst_m
+            "terrain_disocclusion: {:.1} % of the length in view stays hidden, by {:.1} m of ground at most; the report names the parts \
+             under {}",
+            100.0 * hidden,
+            report.metrics.hidden_worst_m,
+            if report.parameters.slack_price.is_some() { "`covered`" } else { "`unresolved` and `hidden`" }
         ));
     }
+    out.extend(implausible(report, scene));
     if report.asked == 0 {
         out.push(nothing_asked(report.parameters.ahead_m));
     }
     out
+}
+
+/// That the ground moved farther than any ground looks like, and for what.
+fn implausible(report: &TerrainReport, scene: &Scene) -> Option<String> {
+    let m = &report.metrics;
+    let relief = scene.terrain().map_or(0.0, |t| t.z_range()[1] - t.z_range()[0]);
+    let mut what = Vec::new();
+    if m.sunk_below_m > IMPLAUSIBLE_SHARE * relief {
+        what.push(format!(
+            "the ground sinks to {:.0} m below the lowest of the terrain, whose relief is {relief:.0} m",
+            m.sunk_below_m
+        ));
+    }
+    if m.steepest_deg > m.steepest_before_deg + IMPLAUSIBLE_DEG {
+        what.push(format!(
+            "slopes become as steep as {:.0} degrees, those of the terrain are {:.0} at most",
+            m.steepest_deg, m.steepest_before_deg
+        ));
+    }
+    if what.is_empty() {
+        return None;
+    }
+    let name = |cost: &FeatureCost| {
+        let layer = &scene.layers[cost.layer];
+        let name = layer.kind.feature_name(cost.feature);
+        let name = name.map_or_else(|| format!("feature {}", cost.feature), |n| format!("\"{n}\""));
+        format!("{name} of layer \"{}\" ({:.0} %)", layer.id, 100.0 * cost.share)
+    };
+    let costly: Vec<String> = report.costliest.iter().map(name).collect();
+    let most = if costly.is_empty() { String::new() } else { format!("; most of it for {}", costly.join(", ")) };
+    Some(format!(
+        "terrain_disocclusion: {}{most}; look from higher up or elsewhere (adjust_viewpoint = 0.5 lets the eye move), or leave some out",
+        what.join(", and ")
+    ))
 }
 
 /// That there was nothing to do, and why.

@@ -129,7 +129,7 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
     let camera = LevelCamera::new(request, &original, data.scene.crs, radius)?;
     let view = camera.view(camera.target.extend(camera.eye.z), None)?;
     let solved = solver.solve(&data.scene, &view, &mut TerrainMemory::default(), &options.progress)?;
-    data.warnings.extend(intent::remarks(&solved));
+    data.warnings.extend(intent::remarks(&solved, &data.scene));
     let ground = data.scene.terrain().and_then(|t| t.surface_at(camera.target));
     let look_at = camera.target.extend(ground.unwrap_or(camera.eye.z));
     let view = camera.view(look_at, Some(Stage::TerrainDisocclusion(solved.stage.clone())))?;
