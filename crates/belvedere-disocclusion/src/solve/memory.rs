@@ -215,8 +215,8 @@ impl Prepared {
 
     /// The point behind the id of a candidate: of the dense points, the reference points, or those by which the result is judged.
     pub(super) fn candidate(&self, id: u32) -> Option<&ReferencePoint> {
-        let all = self.dense.iter().chain(&self.points).chain(&self.check);
-        all.skip((id & !BILINEAR) as usize).next()
+        let mut all = self.dense.iter().chain(&self.points).chain(&self.check);
+        all.nth((id & !BILINEAR) as usize)
     }
 
     /// Weights on the solver's grid.

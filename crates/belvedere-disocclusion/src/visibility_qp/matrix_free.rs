@@ -5,9 +5,10 @@
 //! 2002). Equations on a face are solved by conjugate gradients; a product with K is one solve of the smoother, and Cholesky
 //! factors of crowds of neighbouring rows precondition.
 
-use super::cholesky::Cholesky;
+use super::cholesky::{Cholesky, dot};
 use super::metric::Metric;
 use super::row::Row;
+use pulp::Arch;
 use rayon::prelude::*;
 
 /// First proximal weight of a cycle, share of a row's own square; it falls and rises within limits.
@@ -209,84 +210,125 @@ impl MatrixFree {
 
     /// Preconditioned conjugate gradients from the multipliers as they are. They may become negative.
     fn on_the_face(&mut self, metric: &mut Metric, e: &Equations, steps: usize) {
-        let n = self.m.len();
-        if (0..n).any(|i| !e.face[i] && self.m[i] != 0.0) {
-            (0..n).filter(|&i| !e.face[i]).for_each(|i| self.m[i] = 0.0);
+        let left = (0..self.m.len()).filter(|&i| !e.face[i] && self.m[i] != 0.0).count();
+        if left > 0 {
+            self.m.iter_mut().zip(&e.face).filter(|(_, face)| !**face).for_each(|(m, _)| *m = 0.0);
             self.product = self.times(metric, &self.m.clone());
         }
-        let mut residual: Vec<f64> = (0..n)
-            .map(|i| if e.face[i] { e.wanted[i] - self.product[i] - e.diagonal[i] * self.m[i] } else { 0.0 })
-            .collect();
-        let mut z = e.precondition(&residual);
+        // All rows of the face, neighbours following each other.
+        let held: Vec<usize> = self.order.iter().copied().filter(|&i| e.face[i]).collect();
+        let mut residual: Vec<f64> =
+            held.iter().map(|&i| e.wanted[i] - self.product[i] - e.diagonal[i] * self.m[i]).collect();
+        let preconditioner = Preconditioner::new(e, &held);
+        let mut z = preconditioner.apply(&residual);
         let mut p = z.clone();
-        let mut square: f64 = residual.iter().zip(&z).map(|(r, z)| r * z).sum();
+        let mut square = dot(&residual, &z);
         for _ in 0..steps {
-            if !(square > 0.0) || (0..n).all(|i| residual[i].abs() <= EXACT * self.allowed[i]) {
+            let done = held.iter().zip(&residual).all(|(&i, r)| r.abs() <= EXACT * self.allowed[i]);
+            if !(square > 0.0) || done {
                 break;
             }
-            let kp = self.times(metric, &p);
-            let curvature: f64 = (0..n).map(|i| p[i] * (kp[i] + e.diagonal[i] * p[i])).sum();
+            let mut kp = self.times_on(metric, &held, &p);
+            for ((kp, p), &i) in kp.iter_mut().zip(&p).zip(&held) {
+                *kp += e.diagonal[i] * p;
+            }
+            let curvature = dot(&p, &kp);
             if !(curvature > 0.0) {
                 break;
             }
             let rate = square / curvature;
-            for i in 0..n {
-                self.m[i] += rate * p[i];
-                self.product[i] += rate * kp[i];
-                if e.face[i] {
-                    residual[i] -= rate * (kp[i] + e.diagonal[i] * p[i]);
-                }
+            for (k, &i) in held.iter().enumerate() {
+                self.m[i] += rate * p[k];
+                residual[k] -= rate * kp[k];
             }
-            z = e.precondition(&residual);
-            let next: f64 = residual.iter().zip(&z).map(|(r, z)| r * z).sum();
+            z = preconditioner.apply(&residual);
+            let next = dot(&residual, &z);
             let share = next / square;
             square = next;
             p.iter_mut().zip(&z).for_each(|(p, z)| *p = z + share * *p);
         }
+        self.product = self.times(metric, &self.m.clone());
     }
 
     /// `K v`.
     fn times(&mut self, metric: &mut Metric, v: &[f64]) -> Vec<f64> {
-        self.nodes.clear();
-        self.nodes.resize(metric.nodes(), 0.0);
-        for (row, v) in self.rows.iter().zip(v).filter(|(_, v)| **v != 0.0) {
-            for (node, w) in row.entries() {
-                self.nodes[node as usize] += w * v;
-            }
-        }
-        metric.solve(&mut self.nodes);
+        self.spread(metric, v.iter().copied().enumerate());
         let nodes = &self.nodes;
         self.rows.par_iter().with_min_len(2048).map(|row| row.at(nodes)).collect()
     }
 
+    /// The same of some rows for them alone.
+    fn times_on(&mut self, metric: &mut Metric, held: &[usize], v: &[f64]) -> Vec<f64> {
+        self.spread(metric, held.iter().copied().zip(v.iter().copied()));
+        let (rows, nodes) = (&self.rows, &self.nodes);
+        held.par_iter().with_min_len(2048).map(|&i| rows[i].at(nodes)).collect()
+    }
+
+    /// `H^-1 A^T v` at the nodes.
+    fn spread(&mut self, metric: &mut Metric, v: impl Iterator<Item = (usize, f64)>) {
+        self.nodes.clear();
+        self.nodes.resize(metric.nodes(), 0.0);
+        for (i, v) in v.filter(|(_, v)| *v != 0.0) {
+            for (node, w) in self.rows[i].entries() {
+                self.nodes[node as usize] += w * v;
+            }
+        }
+        metric.solve(&mut self.nodes);
+    }
     /// Factors of the rows of the face, neighbours together.
     fn crowds(&self, metric: &Metric, e: &Equations) -> Vec<Crowd> {
         let held: Vec<usize> = self.order.iter().copied().filter(|&i| e.face[i]).collect();
         let crowd = |members: &[usize]| {
             let mut factor = Cholesky::default();
-            for (k, &i) in members.iter().enumerate() {
-                let products = members[..k].iter().map(|&j| self.rows[i].product(&self.rows[j], metric));
-                factor.push(products, e.whole[i], DEPENDENT);
-            }
+            Arch::new().dispatch(
+                #[inline(always)]
+                || {
+                    for (k, &i) in members.iter().enumerate() {
+                        let products = members[..k].iter().map(|&j| self.rows[i].product(&self.rows[j], metric));
+                        factor.push(products, e.whole[i], DEPENDENT);
+                    }
+                },
+            );
             Crowd { members: members.to_vec(), factor }
         };
         held.par_chunks(CROWD).map(crowd).collect()
     }
 }
 
-impl Equations {
-    fn precondition(&self, residual: &[f64]) -> Vec<f64> {
+/// Solves by crowds, for the rows of a face in their order.
+struct Preconditioner<'e> {
+    crowds: &'e [Crowd],
+    /// For each row its position on the face, if it is there.
+    position: Vec<Option<u32>>,
+    /// Diagonal of the rows of the face.
+    whole: Vec<f64>,
+}
+
+impl<'e> Preconditioner<'e> {
+    fn new(e: &'e Equations, held: &[usize]) -> Self {
+        let mut position = vec![None; e.face.len()];
+        held.iter().enumerate().for_each(|(k, &i)| position[i] = Some(k as u32));
+        Self { crowds: &e.crowds, position, whole: held.iter().map(|&i| e.whole[i]).collect() }
+    }
+
+    fn apply(&self, residual: &[f64]) -> Vec<f64> {
         let solved = |crowd: &Crowd| {
-            let mut x: Vec<f64> = crowd.members.iter().map(|&i| residual[i]).collect();
-            crowd.factor.solve(&mut x);
+            let of = |&i: &usize| self.position[i].map_or(0.0, |k| residual[k as usize]);
+            let mut x: Vec<f64> = crowd.members.iter().map(of).collect();
+            Arch::new().dispatch(
+                #[inline(always)]
+                || crowd.factor.solve(&mut x),
+            );
             x
         };
-        let parts: Vec<Vec<f64>> = self.crowds.par_iter().with_min_len(8).map(solved).collect();
+        let parts: Vec<Vec<f64>> = self.crowds.par_iter().with_min_len(16).map(solved).collect();
         // Rows that joined since the factors were made stand for themselves.
         let mut out: Vec<f64> = residual.iter().zip(&self.whole).map(|(r, whole)| r / whole).collect();
         for (crowd, x) in self.crowds.iter().zip(parts) {
             for (&i, x) in crowd.members.iter().zip(x) {
-                out[i] = if self.face[i] { x } else { 0.0 };
+                if let Some(k) = self.position[i] {
+                    out[k as usize] = x;
+                }
             }
         }
         out
