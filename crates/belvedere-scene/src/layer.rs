@@ -2,6 +2,7 @@
 
 use crate::{DistanceMarkers, Heightfield, MeshLayer, PointStyle, Ramp};
 use belvedere_core::{Aabb, DVec2, DVec3};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// sRGB colour with straight alpha, 8 bits per channel.
@@ -30,7 +31,9 @@ impl Color {
 }
 
 /// What happens to the parts of a line, area outline or point that the terrain hides.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum Hidden {
     /// Drawn as if nothing were in front.
     Show,
@@ -44,7 +47,9 @@ pub enum Hidden {
 }
 
 /// Relief shading of terrain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum Relief {
     /// Several light directions blended as in Swiss relief maps.
     #[default]
@@ -56,7 +61,9 @@ pub enum Relief {
 }
 
 /// Normals used to shade terrain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum Shading {
     /// Undisplaced normals: light stays fixed to the map.
     #[default]

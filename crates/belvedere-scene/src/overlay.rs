@@ -2,14 +2,18 @@
 
 use crate::{Color, Hidden};
 use belvedere_core::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// Shape of a point marker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum Symbol {
     /// A disc.
     #[default]
     Dot,
     /// A triangle with its tip up: a summit.
+    #[serde(alias = "peak")]
     Triangle,
     /// An upright square.
     Square,

@@ -2,10 +2,13 @@
 
 use crate::{Color, Heightfield, Layer, LayerKind, LineFeature, LineLayer, TerrainLayer, drape_polyline};
 use belvedere_core::{Aabb, DVec2};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Unit of all lengths of a scene.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum Unit {
     /// Metres.
     #[default]

@@ -6,14 +6,14 @@ use crate::resolve::{self, LayerRequest};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
     AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LineDoc, LineStyleDoc, Origin, PaletteDoc, Paths,
-    PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, UnitDoc,
+    PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc,
 };
 use crate::session::Description;
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_core::View;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::load_vectors;
-use belvedere_scene::Scene;
+use belvedere_scene::{Scene, Unit};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -101,7 +101,7 @@ impl Data {
             format: 1,
             title: self.scene.title.clone(),
             crs: self.scene.crs.to_string(),
-            unit: UnitDoc::Metre,
+            unit: Unit::Metre,
             earth,
             camera,
             overlay: None,

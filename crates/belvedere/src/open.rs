@@ -68,7 +68,7 @@ impl Session {
         };
         let loaded = resolve::load(request, options)?;
         let scene =
-            Scene { title: document.title.clone(), crs: loaded.crs, unit: document.unit.into(), layers: loaded.layers };
+            Scene { title: document.title.clone(), crs: loaded.crs, unit: document.unit, layers: loaded.layers };
         resolve::fill_surfaces(&mut source.document.layer, &scene);
         let mut memory = TerrainMemory::default();
         let mut solving = Solving { memory: &mut memory, time_step_s: None, progress: &options.progress };

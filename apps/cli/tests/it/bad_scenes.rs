@@ -99,6 +99,14 @@ fn stages_are_checked_with_their_line() {
     place.write("s.toml", &with(crossed));
     let line = place.fails(&["check", "s.toml"]);
     assert!(line.starts_with("belvedere: s.toml:") && line.contains("t0"), "{line}");
+    for (m, why) in [
+        ("'midd'", "\"midd\" is not one of the choices; did you mean \"mid\"?"),
+        ("true", "a number in [0.2, 20], \"bend\", \"left\" or \"mid\" was expected, found true"),
+    ] {
+        place.write("s.toml", &with(&format!("{crossed}\nm = {m}")));
+        let line = place.fails(&["check", "s.toml"]);
+        assert!(line.contains(&format!(":13: stage 1.turn.0.m: {why}")), "{line}");
+    }
 }
 
 #[test]

@@ -1,7 +1,6 @@
 //! Area layers: what covers them, and why.
 
 use super::ground::Ground;
-use super::layers::hidden;
 use super::loader::Loader;
 use super::{builtin, vectors};
 use crate::BelvedereError;
@@ -50,7 +49,7 @@ pub(super) fn layer(
         },
         width_px: style.width_px,
         surface,
-        hidden: hidden(style.hidden),
+        hidden: style.hidden,
         lift_m: style.lift_m,
     }))
 }

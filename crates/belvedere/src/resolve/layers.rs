@@ -6,8 +6,8 @@ use super::{areas, boxes, builtin, dem, drape, mesh, sea, vectors};
 use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    AutoOrLength, HiddenDoc, LayerDoc, LineDoc, Origin, PaletteDoc, PaletteName, Paths, PlaceDoc, PointLayerDoc,
-    ReliefDoc, RouteDoc, ShadingDoc, SymbolDoc, TerrainDoc,
+    AutoOrLength, LayerDoc, LineDoc, Origin, PaletteDoc, PaletteName, Paths, PlaceDoc, PointLayerDoc, RouteDoc,
+    TerrainDoc,
 };
 use crate::{BelvedereError, Needs, OpenOptions};
 use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
@@ -17,8 +17,8 @@ use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
 use belvedere_scene::{
-    Crs, DistanceMarkers, Drape, Heightfield, Hidden, Layer, LayerKind, LineFeature, LineLayer, Palette, PointLayer,
-    PointStyle, Relief, Shading, Symbol, TerrainLayer, drape_polyline,
+    Crs, DistanceMarkers, Drape, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Palette, PointLayer,
+    PointStyle, TerrainLayer, drape_polyline,
 };
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -163,15 +163,8 @@ fn terrain(
     let layer = TerrainLayer {
         heightfield,
         drapes: Vec::new(),
-        relief: match style.relief {
-            ReliefDoc::Swiss => Relief::Swiss,
-            ReliefDoc::Sun => Relief::Sun,
-            ReliefDoc::None => Relief::None,
-        },
-        shading: style.shading.map(|s| match s {
-            ShadingDoc::Map => Shading::Map,
-            ShadingDoc::Deformed => Shading::Deformed,
-        }),
+        relief: style.relief,
+        shading: style.shading,
         exaggeration: style.exaggeration,
         palette: palette(loader, index, &style.palette)?,
     };
@@ -251,7 +244,7 @@ fn line(
         color: loader.color(index, &style.color)?,
         width_px: style.width_px,
         casing: loader.optional_color(index, &style.casing)?,
-        hidden: hidden(style.hidden),
+        hidden: style.hidden,
         lift_m: style.lift_m,
         markers: style.distance_markers_m.map(|m| match m {
             AutoOrLength::Auto(_) => DistanceMarkers::Auto,
@@ -311,17 +304,11 @@ fn point(
         color: loader.color(index, &style.color)?,
         size_px: style.size_px,
         style: PointStyle {
-            symbol: match style.symbol {
-                SymbolDoc::Dot => Symbol::Dot,
-                SymbolDoc::Triangle => Symbol::Triangle,
-                SymbolDoc::Square => Symbol::Square,
-                SymbolDoc::Pin => Symbol::Pin,
-                SymbolDoc::Cross => Symbol::Cross,
-            },
+            symbol: style.symbol,
             casing: loader.optional_color(index, &style.casing)?,
             label_px: style.labels.then_some(style.label_px),
         },
-        hidden: hidden(style.hidden),
+        hidden: style.hidden,
         lift_m: style.lift_m,
     }))
 }
@@ -355,14 +342,5 @@ fn position(ground: &Ground<'_>, place: PlaceDoc) -> Result<DVec2, String> {
     match place {
         PlaceDoc::Scene(xy) => Ok(DVec2::from_array(xy)),
         PlaceDoc::Geographic(p) => ground.position_of(p.lon, p.lat),
-    }
-}
-
-pub(super) fn hidden(doc: HiddenDoc) -> Hidden {
-    match doc {
-        HiddenDoc::Show => Hidden::Show,
-        HiddenDoc::Fade => Hidden::Fade,
-        HiddenDoc::Dash => Hidden::Dash,
-        HiddenDoc::Cut => Hidden::Cut,
     }
 }

@@ -1,7 +1,7 @@
 //! From the turns of a document to curved rays.
 
 use crate::BelvedereError;
-use crate::scene_file::{AxisDoc, BendDoc, BendRule, RayModelDoc, RaysStageDoc, StageDoc, Table, TurnDoc};
+use crate::scene_file::{AxisDoc, RaysStageDoc, StageDoc, Table, TurnDoc};
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::{CurvedRays, DVec3, Pinhole, Stage};
 
@@ -19,19 +19,12 @@ pub(super) fn resolve(root: &Pinhole, doc: &RaysStageDoc, at: Table<'_>) -> Resu
                 .map_err(|(key, reason)| at.error(&["turn", &j.to_string(), key], format!("turn {}: {reason}", j + 1)))
         })
         .collect::<Result<_, _>>()?;
-    let model = match doc.model {
-        RayModelDoc::Modified => Model::Modified,
-        RayModelDoc::Original => Model::Original,
-        RayModelDoc::C0 => Model::C0,
-        RayModelDoc::C2 => Model::C2,
-        RayModelDoc::Circular => Model::Circular,
-    };
-    let rays = CurvedRays::new(root, model, &specs).map_err(|e| at.error(&["turn"], e))?;
+    let rays = CurvedRays::new(root, doc.model, &specs).map_err(|e| at.error(&["turn"], e))?;
     let mut resolved = doc.clone();
     for (turn, computed) in resolved.turn.iter_mut().zip(rays.turns()) {
         // A rule may come to a number that a file may not state; then the rule stays.
-        if let Some(m) = computed.m.filter(|m| model == Model::Modified && (0.2..=20.0).contains(m)) {
-            turn.m = BendDoc::Number(m);
+        if let Some(m) = computed.m.filter(|m| doc.model == Model::Modified && (0.2..=20.0).contains(m)) {
+            turn.m = Sharpness::Value(m);
         }
     }
     Ok((Stage::CurvedRays(rays), StageDoc::CurvedRays(resolved)))
@@ -50,21 +43,17 @@ fn turn_spec(doc: &TurnDoc) -> Result<TurnSpec, (&'static str, String)> {
                 .into(),
         )),
     };
-    let m = match doc.m {
-        BendDoc::Number(m) if !(0.2..=20.0).contains(&m) => {
-            return Err(("m", format!("m is {m}, it must lie in 0.2..=20; or give \"bend\", \"left\" or \"mid\"")));
-        }
-        BendDoc::Number(m) => Sharpness::Value(m),
-        BendDoc::Rule(BendRule::Bend) => Sharpness::Bend,
-        BendDoc::Rule(BendRule::Left) => Sharpness::Left,
-        BendDoc::Rule(BendRule::Mid) => Sharpness::Mid,
-    };
+    if let Sharpness::Value(m) = doc.m
+        && !(0.2..=20.0).contains(&m)
+    {
+        return Err(("m", format!("m is {m}, it must lie in 0.2..=20; or give \"bend\", \"left\" or \"mid\"")));
+    }
     Ok(TurnSpec {
         viewpoint: DVec3::from_array(doc.viewpoint),
         t0: DVec3::from_array(doc.t0),
         t1: DVec3::from_array(doc.t1),
         t2: DVec3::from_array(doc.t2),
         pencil,
-        m,
+        m: doc.m,
     })
 }

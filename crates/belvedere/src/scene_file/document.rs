@@ -3,6 +3,7 @@
 use super::layers::LayerDoc;
 use super::stages::StageDoc;
 use belvedere_core::{DVec3, Pinhole, Projection};
+use belvedere_scene::Unit;
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
@@ -23,7 +24,7 @@ pub struct Document {
     pub crs: String,
     /// Unit of all lengths.
     #[schemars(default)]
-    pub unit: UnitDoc,
+    pub unit: Unit,
     /// `flat`, or `curved` for the drop of the ground with distance (refraction 0.13).
     #[schemars(default)]
     pub earth: EarthDoc,
@@ -67,7 +68,7 @@ pub(super) struct Head {
     #[serde(default = "auto")]
     pub(super) crs: String,
     #[serde(default)]
-    pub(super) unit: UnitDoc,
+    pub(super) unit: Unit,
     #[serde(default)]
     pub(super) earth: EarthDoc,
     pub(super) camera: CameraDoc,
@@ -89,29 +90,6 @@ fn one() -> u32 {
 
 fn auto() -> String {
     "auto".into()
-}
-
-/// Unit of length of a scene.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum UnitDoc {
-    /// Metres.
-    #[default]
-    Metre,
-    /// Angstrom, for molecules.
-    Angstrom,
-    /// Voxel edges, for volumes.
-    Voxel,
-}
-
-impl From<UnitDoc> for belvedere_scene::Unit {
-    fn from(unit: UnitDoc) -> Self {
-        match unit {
-            UnitDoc::Metre => Self::Metre,
-            UnitDoc::Angstrom => Self::Angstrom,
-            UnitDoc::Voxel => Self::Voxel,
-        }
-    }
 }
 
 /// Shape of the earth.

@@ -4,6 +4,7 @@ use super::mesh::{MeshDoc, TransformDoc};
 use super::overlay::AutoOrLength;
 use super::palette::PaletteDoc;
 use super::paths::Paths;
+use belvedere_scene::{Hidden, Relief, Shading, Symbol};
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
@@ -113,12 +114,12 @@ pub struct TerrainDoc {
 #[serde(deny_unknown_fields, default)]
 pub struct TerrainStyleDoc {
     /// Relief shading.
-    pub relief: ReliefDoc,
+    pub relief: Relief,
     /// Vertical exaggeration of the shading only, in (0, 100].
     pub exaggeration: f64,
     /// Normals used for the shading; by default `deformed` under terrain disocclusion, else `map`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub shading: Option<ShadingDoc>,
+    pub shading: Option<Shading>,
     /// Tint by height; the heights are the true ones, wherever bends move the ground.
     pub palette: PaletteDoc,
     /// Whether the sea is drawn as such: connected ground at one height, 0 or the lowest below 0, that reaches the edge of the
@@ -129,45 +130,8 @@ pub struct TerrainStyleDoc {
 
 impl Default for TerrainStyleDoc {
     fn default() -> Self {
-        Self { relief: ReliefDoc::Swiss, exaggeration: 1.0, shading: None, palette: PaletteDoc::default(), sea: true }
+        Self { relief: Relief::Swiss, exaggeration: 1.0, shading: None, palette: PaletteDoc::default(), sea: true }
     }
-}
-
-/// Relief shading.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ReliefDoc {
-    /// Several light directions, as in Swiss relief maps.
-    Swiss,
-    /// The scene's light.
-    Sun,
-    /// None.
-    None,
-}
-
-/// Normals used for shading.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ShadingDoc {
-    /// Those of the map.
-    Map,
-    /// Those of the deformed ground.
-    Deformed,
-}
-
-/// What happens to the parts that the terrain hides.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum HiddenDoc {
-    /// Drawn as if nothing were in front.
-    Show,
-    /// Drawn faintly.
-    Fade,
-    /// Drawn dashed and thinner.
-    #[default]
-    Dash,
-    /// Not drawn.
-    Cut,
 }
 
 /// Polylines on the ground: from a file, or a valley route found by least cost.
@@ -258,7 +222,7 @@ pub struct LineStyleDoc {
     /// Colour of the casing, or `none`.
     pub casing: String,
     /// What happens to hidden parts.
-    pub hidden: HiddenDoc,
+    pub hidden: Hidden,
     /// Height above ground at which the line is drawn and judged visible, metres, in [0, 1000].
     pub lift_m: f64,
     /// Marks along each line at this distance over the ground, metres, > 0, or `auto`.
@@ -276,7 +240,7 @@ impl Default for LineStyleDoc {
             color: "#d7301f".into(),
             width_px: 3.0,
             casing: "#ffffff".into(),
-            hidden: HiddenDoc::Dash,
+            hidden: Hidden::Dash,
             lift_m: 1.0,
             distance_markers_m: None,
             labels: false,
@@ -341,22 +305,14 @@ pub struct AreaStyleDoc {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<SurfaceDoc>,
     /// What happens to hidden parts of the outline.
-    pub hidden: HiddenDoc,
+    pub hidden: Hidden,
     /// Height above ground at which it is judged visible, metres, in [0, 1000].
     pub lift_m: f64,
 }
 
 impl Default for AreaStyleDoc {
     fn default() -> Self {
-        Self {
-            color: None,
-            outline: None,
-            width_px: 1.5,
-            water: None,
-            surface: None,
-            hidden: HiddenDoc::Cut,
-            lift_m: 1.0,
-        }
+        Self { color: None, outline: None, width_px: 1.5, water: None, surface: None, hidden: Hidden::Cut, lift_m: 1.0 }
     }
 }
 
@@ -376,24 +332,6 @@ pub struct PointLayerDoc {
     pub style: PointStyleDoc,
 }
 
-/// Shape of a point marker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum SymbolDoc {
-    /// A disc.
-    #[default]
-    Dot,
-    /// A triangle: a summit.
-    #[serde(alias = "peak")]
-    Triangle,
-    /// A square.
-    Square,
-    /// A drop that stands on its tip.
-    Pin,
-    /// A diagonal cross.
-    Cross,
-}
-
 /// How points are drawn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -401,7 +339,7 @@ pub struct PointStyleDoc {
     /// `#rrggbb` or `#rrggbbaa`.
     pub color: String,
     /// Shape.
-    pub symbol: SymbolDoc,
+    pub symbol: Symbol,
     /// Colour of the rim, or `none`.
     pub casing: String,
     /// Whether names are written, as far as they do not overlap; earlier points first.
@@ -411,7 +349,7 @@ pub struct PointStyleDoc {
     /// Diameter on screen, pixels, in (0, 200].
     pub size_px: f64,
     /// What happens to hidden points.
-    pub hidden: HiddenDoc,
+    pub hidden: Hidden,
     /// Height above ground, metres, in [0, 1000].
     pub lift_m: f64,
 }
@@ -420,12 +358,12 @@ impl Default for PointStyleDoc {
     fn default() -> Self {
         Self {
             color: "#6a3d9a".into(),
-            symbol: SymbolDoc::Dot,
+            symbol: Symbol::Dot,
             casing: "#ffffff".into(),
             labels: false,
             label_px: 13.0,
             size_px: 8.0,
-            hidden: HiddenDoc::Fade,
+            hidden: Hidden::Fade,
             lift_m: 1.0,
         }
     }

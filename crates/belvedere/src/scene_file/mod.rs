@@ -15,12 +15,11 @@ mod stages;
 mod toml_tree;
 
 pub(crate) use doc_error::{DocError, suggestion};
-pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDoc, ProjectionDoc, UnitDoc};
+pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDoc, ProjectionDoc};
 pub use intent::{AnimationDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
 pub use layers::{
-    AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, HiddenDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc,
-    ModelDoc, PlaceDoc, PointLayerDoc, PointStyleDoc, ReliefDoc, RouteDoc, ShadingDoc, SurfaceDoc, SymbolDoc,
-    TerrainDoc, TerrainStyleDoc,
+    AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc, ModelDoc,
+    PlaceDoc, PointLayerDoc, PointStyleDoc, RouteDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc,
 };
 pub use mesh::{MeshDoc, MeshStyleDoc, TransformDoc};
 pub(crate) use node::{Node, Value};
@@ -28,8 +27,8 @@ pub use overlay::{AutoOrLength, AutoWord, OverlayDoc, SwitchOrLength};
 pub use palette::{PaletteDoc, PaletteName};
 pub use paths::Paths;
 pub use stages::{
-    AxisDoc, BendDoc, BendRule, DetailDoc, PlaneDoc, PresetsDoc, RayModelDoc, RaysStageDoc, SolverMode, SplineStageDoc,
-    StageDoc, TerrainStageDoc, TurnDoc,
+    AxisDoc, DetailDoc, PlaneDoc, PresetsDoc, RaysStageDoc, SolverMode, SplineStageDoc, StageDoc, TerrainStageDoc,
+    TurnDoc,
 };
 
 use crate::BelvedereError;

@@ -1,5 +1,6 @@
 //! Stages of the scene document.
 
+use belvedere_core::map::curved_rays::{Model, Sharpness};
 use belvedere_core::presets::PresetDocument;
 use schemars::JsonSchema;
 use serde::de::value::MapAccessDeserializer;
@@ -196,30 +197,13 @@ impl<'de> Deserialize<'de> for PresetsDoc {
     }
 }
 
-/// Model of the transition of curved rays.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum RayModelDoc {
-    /// Conic arcs in perspective.
-    #[default]
-    Modified,
-    /// Bezier arcs.
-    Original,
-    /// Broken lines.
-    C0,
-    /// Curvature-continuous rays.
-    C2,
-    /// Circular arcs.
-    Circular,
-}
-
 /// Curved rays.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RaysStageDoc {
     /// Model of the transition.
     #[serde(default)]
-    pub model: RayModelDoc,
+    pub model: Model,
     /// The turns, in ray order; at least one.
     pub turn: Vec<TurnDoc>,
 }
@@ -244,7 +228,7 @@ pub struct TurnDoc {
     pub normal: Option<[f64; 3]>,
     /// Bending: a number in [0.2, 20], `bend`, `left` or `mid`.
     #[serde(default)]
-    pub m: BendDoc,
+    pub m: Sharpness,
 }
 
 /// A line.
@@ -255,58 +239,4 @@ pub struct AxisDoc {
     pub point: [f64; 3],
     /// Its direction, not zero.
     pub dir: [f64; 3],
-}
-
-/// The bending of a turn.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum BendDoc {
-    /// The number itself.
-    Number(f64),
-    /// A rule.
-    Rule(BendRule),
-}
-
-impl Default for BendDoc {
-    fn default() -> Self {
-        Self::Rule(BendRule::Bend)
-    }
-}
-
-/// Rule for the bending of a turn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum BendRule {
-    /// That of the ray through the bend point.
-    Bend,
-    /// That of the left-most ray.
-    Left,
-    /// Half way between the extremes at the image corners.
-    Mid,
-}
-
-impl<'de> Deserialize<'de> for BendDoc {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct BendVisitor;
-        impl Visitor<'_> for BendVisitor {
-            type Value = BendDoc;
-
-            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("a number in [0.2, 20], \"bend\", \"left\" or \"mid\"")
-            }
-
-            fn visit_f64<E: serde::de::Error>(self, m: f64) -> Result<BendDoc, E> {
-                Ok(BendDoc::Number(m))
-            }
-
-            fn visit_i64<E: serde::de::Error>(self, m: i64) -> Result<BendDoc, E> {
-                Ok(BendDoc::Number(m as f64))
-            }
-
-            fn visit_str<E: serde::de::Error>(self, rule: &str) -> Result<BendDoc, E> {
-                BendRule::deserialize(serde::de::value::StrDeserializer::new(rule)).map(BendDoc::Rule)
-            }
-        }
-        deserializer.deserialize_any(BendVisitor)
-    }
 }

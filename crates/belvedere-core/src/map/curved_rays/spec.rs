@@ -1,9 +1,13 @@
 //! What a user says about a curved ray camera, and what can be wrong with it.
 
 use glam::{DVec2, DVec3};
+use serde::de::{Deserializer, Error, Visitor};
+use serde::{Deserialize, Serialize};
 
 /// Shape of the rays inside the transitions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum Model {
     /// Conic arcs of constant sharpness m per turn (Cui et al. 2010, modified model).
     #[default]
@@ -36,10 +40,10 @@ pub enum Pencil {
 }
 
 /// Sharpness m of a turn in the modified model: small = wide arc, large = nearly a kink.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum Sharpness {
-    /// A number in 0.2..=20.
-    Value(f64),
     /// The ray through the bend point (the point given for t1) is exactly the paper's Bezier arc.
     #[default]
     Bend,
@@ -47,6 +51,44 @@ pub enum Sharpness {
     Left,
     /// Geometric mean of the extremes over the four image corners.
     Mid,
+    /// A number in 0.2..=20.
+    #[serde(untagged)]
+    Value(f64),
+}
+
+impl<'de> Deserialize<'de> for Sharpness {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct SharpnessVisitor;
+        impl Visitor<'_> for SharpnessVisitor {
+            type Value = Sharpness;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a number in [0.2, 20], \"bend\", \"left\" or \"mid\"")
+            }
+
+            fn visit_f64<E: Error>(self, m: f64) -> Result<Sharpness, E> {
+                Ok(Sharpness::Value(m))
+            }
+
+            fn visit_i64<E: Error>(self, m: i64) -> Result<Sharpness, E> {
+                Ok(Sharpness::Value(m as f64))
+            }
+
+            fn visit_u64<E: Error>(self, m: u64) -> Result<Sharpness, E> {
+                Ok(Sharpness::Value(m as f64))
+            }
+
+            fn visit_str<E: Error>(self, rule: &str) -> Result<Sharpness, E> {
+                match rule {
+                    "bend" => Ok(Sharpness::Bend),
+                    "left" => Ok(Sharpness::Left),
+                    "mid" => Ok(Sharpness::Mid),
+                    _ => Err(E::unknown_variant(rule, &["bend", "left", "mid"])),
+                }
+            }
+        }
+        deserializer.deserialize_any(SharpnessVisitor)
+    }
 }
 
 /// One turn: from viewpoint `j - 1` to viewpoint `j` through planes t0, t1, t2.
