@@ -74,7 +74,7 @@ fn png_named(path: &Path) -> anyhow::Result<()> {
 }
 
 fn answer(verb: &str, session: &Session, out: Option<&PathBuf>, text: &str, context: &Context) -> anyhow::Result<Goal> {
-    ready(out, &session.inputs().iter().map(PathBuf::as_path).collect::<Vec<_>>(), context)?;
+    ready(out, &session.inputs().iter().map(|file| file.path.as_path()).collect::<Vec<_>>(), context)?;
     context.deliver(verb, out.map(PathBuf::as_path), text, session.warnings())?;
     Ok(Goal::Reached)
 }
@@ -125,7 +125,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         OpenOptions { palette, area_style, sea, unsolved, ..context.options(Needs::Everything, args.draw.size) };
     let session = Session::from_document(source, &options)?;
     for path in &outputs {
-        output::check(path, session.inputs(), context.common.overwrite)?;
+        output::check(path, &session.input_paths(), context.common.overwrite)?;
     }
     let picture = session.render(&request)?;
     let written = picture.write(&args.out, context.common.overwrite)?;

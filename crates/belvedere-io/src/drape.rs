@@ -103,7 +103,7 @@ pub fn load_drape(
     if drape.pixels.iter().all(|p| p[3] == 0) {
         warnings.push(format!("{}: nothing but transparent pixels lies over the terrain", path.display()));
     }
-    Ok(Loaded { value: drape, warnings })
+    Ok(Loaded::new(drape, warnings))
 }
 
 fn warn_about_reduction(path: &Path, picture: &Picture, full: Affine, warnings: &mut Vec<String>) {

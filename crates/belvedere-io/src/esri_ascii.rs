@@ -3,7 +3,7 @@
 //! Header: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or `yllcenter`, `cellsize` (or `dx`, `dy`),
 //! `NODATA_value` (-9999 if missing); then the rows, the northernmost first. Source: ESRI, ASCII raster format.
 
-use crate::{Affine, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs};
+use crate::{Affine, InputFile, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs};
 use std::fs;
 use std::path::Path;
 
@@ -33,7 +33,7 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     let bad = |reason: String| IoError::format(path, reason);
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     limits.check(length).map_err(bad)?;
-    let bytes = fs::read(path).map_err(|e| IoError::os(path, e))?;
+    let (bytes, file) = InputFile::read(path)?;
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
     let mut words = text.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()).peekable();
     let header = header(&mut words).map_err(bad)?;
@@ -68,7 +68,7 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     info.pixel_to_model = Some(Affine([dx, 0.0, left, 0.0, -dy, bottom + rows as f64 * dy]));
     info.nodata = Some(header.nodata.unwrap_or(DEFAULT_NODATA));
     info.crs = prj_beside(path)?;
-    Ok(Loaded { value: Raster { info, samples: Samples::F32(values), mask: None }, warnings })
+    Ok(Loaded::new(Raster { info, samples: Samples::F32(values), mask: None }, warnings).with_file(file))
 }
 
 fn too_few(cols: usize, rows: usize, found: usize) -> String {

@@ -3,11 +3,11 @@
 //! A square of big-endian 16-bit heights of one degree by one degree, north-west first; rows and columns on both edges
 //! are shared with the neighbours. The name gives the south-west corner: `N42E001.hgt`. Source: NASA, SRTM user's guide.
 
-use crate::{Affine, CrsKind, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs};
+use crate::{Affine, CrsKind, InputFile, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs};
 use rayon::prelude::*;
 use std::ffi::OsStr;
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{Cursor, Read};
 use std::path::Path;
 
 /// Stored value of a void.
@@ -22,7 +22,7 @@ const MAX_SIDE: usize = 3601;
 /// holds no or more than one tile, or the tile passes the limit.
 pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     let zipped = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("zip"));
-    let (name, bytes) = if zipped { unzip(path)? } else { plain(path)? };
+    let Tile { name, bytes, file } = if zipped { unzip(path)? } else { plain(path)? };
     let bad = |reason: String| IoError::format(path, reason);
     let Some([lon, lat]) = corner(&name).or_else(|| corner(&file_name(path))) else {
         return Err(bad(format!(
@@ -45,34 +45,42 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     info.crs_kind = CrsKind::Geographic;
     info.vertical_epsg = Some(5773);
     info.nodata = Some(f64::from(VOID));
-    Ok(Loaded::clean(Raster { info, samples: Samples::I16(samples), mask: None }))
+    Ok(Loaded::clean(Raster { info, samples: Samples::I16(samples), mask: None }).with_file(file))
 }
 
 fn file_name(path: &Path) -> String {
     path.file_name().map(OsStr::to_string_lossy).unwrap_or_default().into_owned()
 }
 
-fn plain(path: &Path) -> Result<(String, Vec<u8>), IoError> {
+/// A tile as stored.
+struct Tile {
+    name: String,
+    bytes: Vec<u8>,
+    file: InputFile,
+}
+
+fn plain(path: &Path) -> Result<Tile, IoError> {
     let os = |e| IoError::os(path, e);
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(os)?;
     // one byte more than the largest tile tells that it is none
     file.take(max_bytes() + 1).read_to_end(&mut bytes).map_err(os)?;
-    Ok((file_name(path), bytes))
+    let file = InputFile::of(path, &bytes);
+    Ok(Tile { name: file_name(path), bytes, file })
 }
 
 fn max_bytes() -> u64 {
     2 * (MAX_SIDE as u64).pow(2)
 }
 
-fn unzip(path: &Path) -> Result<(String, Vec<u8>), IoError> {
+fn unzip(path: &Path) -> Result<Tile, IoError> {
     let bad = |reason: String| IoError::format(path, reason);
     let broken = |e: zip::result::ZipError| match e {
         zip::result::ZipError::Io(e) if e.kind() != std::io::ErrorKind::UnexpectedEof => IoError::os(path, e),
         e => bad(format!("the archive cannot be read ({e}); get it again")),
     };
-    let file = File::open(path).map_err(|e| IoError::os(path, e))?;
-    let mut archive = zip::ZipArchive::new(BufReader::new(file)).map_err(broken)?;
+    let (packed, file) = InputFile::read(path)?;
+    let mut archive = zip::ZipArchive::new(Cursor::new(packed)).map_err(broken)?;
     let names = archive.file_names().flatten();
     let tiles: Vec<String> =
         names.filter(|n| n.to_ascii_lowercase().ends_with(".hgt")).map(|n| n.into_owned()).collect();
@@ -88,7 +96,7 @@ fn unzip(path: &Path) -> Result<(String, Vec<u8>), IoError> {
         .take(max_bytes() + 1)
         .read_to_end(&mut bytes)
         .map_err(|e| bad(format!("{tile} in the archive cannot be unpacked ({e}); get it again")))?;
-    Ok((file_name(Path::new(tile)), bytes))
+    Ok(Tile { name: file_name(Path::new(tile)), bytes, file })
 }
 
 /// Longitude and latitude of the south-west corner by the name.

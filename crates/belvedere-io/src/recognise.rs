@@ -1,6 +1,6 @@
 //! Files that are known and not read yet: told by their first bytes, else by their names.
 
-use crate::IoError;
+use crate::{IoError, mesh, terrain, vector};
 use std::io::Read;
 use std::path::Path;
 
@@ -117,8 +117,9 @@ const ENDINGS: [(&str, Unread); 34] = [
 ];
 
 /// Endings of files that loaders read; they say themselves what is wrong with one.
-const READ: [&str; 15] =
-    ["gpx", "geojson", "shp", "obj", "ply", "stl", "gltf", "glb", "tif", "tiff", "hgt", "zip", "asc", "grd", "txt"];
+fn read_endings() -> impl Iterator<Item = &'static &'static str> {
+    [terrain::ENDINGS, vector::ENDINGS, mesh::ENDINGS].into_iter().flatten()
+}
 
 /// What a file is, if its format is known and not read yet; `None` for what loaders read, and for what nobody knows.
 ///
@@ -126,7 +127,7 @@ const READ: [&str; 15] =
 /// [`IoError::Os`].
 pub fn recognise(path: &Path) -> Result<Option<Unread>, IoError> {
     let file = std::fs::File::open(path).map_err(|e| IoError::os(path, e))?;
-    if path.extension().is_some_and(|e| READ.iter().any(|read| e.eq_ignore_ascii_case(read))) {
+    if path.extension().is_some_and(|e| read_endings().any(|read| e.eq_ignore_ascii_case(read))) {
         return Ok(None);
     }
     let mut head = Vec::new();

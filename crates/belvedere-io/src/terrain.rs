@@ -116,6 +116,9 @@ pub struct LoadedTerrain {
 /// Widest extent east to west from the middle for which a UTM zone is chosen by itself, degrees of the equator.
 const UTM_MAX_HALF_WIDTH_DEG: f64 = 20.0;
 
+/// Endings of the files that [`load_terrain`] reads.
+pub const ENDINGS: &[&str] = &["tif", "tiff", "hgt", "zip", "asc", "grd", "txt"];
+
 /// Resampling errors above this are worth a warning; below it they are within what global elevation models promise, metres.
 const WARN_P99_M: f64 = 16.0;
 
@@ -135,18 +138,17 @@ pub fn load_terrain(
     if request.max_nodes < 4 {
         return Err(IoError::format(first, format!("max_nodes is {}, at least 4 are needed", request.max_nodes)));
     }
-    let mut warnings = Vec::new();
-    let sources = source::read_all(paths, request, progress, &mut warnings).map_err(crate::recognise::explain)?;
-    in_scene(sources, request, warnings, progress)
+    let sources = source::read_all(paths, request, progress).map_err(crate::recognise::explain)?;
+    in_scene(sources, request, progress)
 }
 
 /// The terrain of a scene from sources that were read.
 fn in_scene(
-    sources: Vec<SourceGrid>,
+    sources: Loaded<Vec<SourceGrid>>,
     request: &TerrainRequest,
-    mut warnings: Vec<String>,
     progress: &Progress,
 ) -> Result<Loaded<LoadedTerrain>, IoError> {
+    let Loaded { value: sources, mut warnings, files } = sources;
     let first = &sources[0].path.clone();
     let void_samples: usize = sources.iter().map(|s| s.voids).sum();
     let samples: usize = sources.iter().map(|s| s.samples).sum();
@@ -200,7 +202,7 @@ fn in_scene(
         extent_deg,
     };
     progress.tick("placing terrain", 1.0)?;
-    Ok(Loaded { value, warnings })
+    Ok(Loaded { value, warnings, files })
 }
 
 fn warn_about_voids(path: &Path, voids: usize, share: f64, filled: f64, left_open: usize, warnings: &mut Vec<String>) {

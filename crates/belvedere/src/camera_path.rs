@@ -319,7 +319,7 @@ type Numbers = [f64; 10];
 
 fn through_cameras(scene: &Document, path: &Path, animation: &mut AnimationDoc) -> Result<Vec<Pose>, BelvedereError> {
     let fail = |reason: String| BelvedereError::Points { path: path.to_owned(), reason };
-    let tree = scene_file::json_points(&scene_file::read_text(path)?).map_err(|e| fail(e.to_string()))?;
+    let tree = scene_file::json_points(&scene_file::read_text(path)?.0).map_err(|e| fail(e.to_string()))?;
     let saved: Vec<SavedCamera> = scene_file::decode(&tree).map_err(|e| fail(e.to_string()))?;
     if saved.is_empty() {
         return Err(fail("holds no camera; give a list of { eye, look_at }".into()));

@@ -1,6 +1,6 @@
 //! Terrain and features straight from their files, without a scene file.
 
-use crate::record::AreaRecord;
+use crate::record::{AreaRecord, InputFile};
 use crate::resolve::vectors::{FeatureKind, kind_of};
 use crate::resolve::{self, LayerRequest};
 use crate::scene_file::paths::Roots;
@@ -47,7 +47,7 @@ pub(crate) struct Data {
     /// Samples of the terrain's file as they are there, if they were to be kept.
     pub(crate) original: Option<OriginalTerrain>,
     areas: Vec<AreaRecord>,
-    inputs: Vec<PathBuf>,
+    inputs: Vec<InputFile>,
     layers: Vec<LayerDoc>,
     roots: Roots,
 }

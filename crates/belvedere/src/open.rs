@@ -73,7 +73,7 @@ impl Session {
         let mut memory = TerrainMemory::default();
         let mut solving = Solving { memory: &mut memory, time_step_s: None, progress: &options.progress };
         let resolved = view::resolve(&source, &roots, &scene, (!options.unsolved).then_some(&mut solving))?;
-        let file = source.path().map(Path::to_owned);
+        let file = source.input().cloned();
         Ok(Self {
             light: resolved.light,
             areas: loaded.areas,

@@ -1,60 +1,27 @@
-//! Where a picture comes from: hashes of what was read.
+//! Where a picture comes from: what was read, and from where it is seen.
 
 use crate::BelvedereError;
 use belvedere_core::{Projection, View};
+pub use belvedere_io::InputFile;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
-use std::io::Read;
-use std::path::{Path, PathBuf};
-
-/// sha256 of a file, lower-case hexadecimal.
-///
-/// # Errors
-/// [`BelvedereError::Io`].
-pub(crate) fn sha256(path: &Path) -> Result<String, BelvedereError> {
-    let os = |e| belvedere_io::IoError::os(path, e);
-    let mut file = std::fs::File::open(path).map_err(os)?;
-    let mut hasher = Sha256::new();
-    let mut buffer = vec![0u8; 1 << 16];
-    loop {
-        let read = file.read(&mut buffer).map_err(os)?;
-        if read == 0 {
-            return Ok(hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect());
-        }
-        hasher.update(&buffer[..read]);
-    }
-}
-
-/// sha256 of bytes, lower-case hexadecimal.
-pub(crate) fn sha256_of(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-/// One file that was read.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct InputFile {
-    /// Its path, as found.
-    pub path: String,
-    /// Its size, bytes.
-    pub bytes: u64,
-    /// Its sha256, hexadecimal.
-    pub sha256: String,
-}
 
 /// The record of every file, in order, each once.
 ///
 /// # Errors
-/// [`BelvedereError::Io`].
-pub(crate) fn inputs(paths: &[PathBuf]) -> Result<Vec<InputFile>, BelvedereError> {
-    let mut seen = std::collections::HashSet::new();
-    paths
-        .iter()
-        .filter(|p| seen.insert((*p).clone()))
-        .map(|path| {
-            let bytes = std::fs::metadata(path).map_err(|e| belvedere_io::IoError::os(path, e))?.len();
-            Ok(InputFile { path: path.display().to_string(), bytes, sha256: sha256(path)? })
-        })
-        .collect()
+/// [`BelvedereError::Io`] for a file that was read twice and had changed in between.
+pub(crate) fn inputs(files: &[InputFile]) -> Result<Vec<InputFile>, BelvedereError> {
+    let mut out: Vec<InputFile> = Vec::with_capacity(files.len());
+    for file in files {
+        match out.iter().find(|known| known.path == file.path) {
+            None => out.push(file.clone()),
+            Some(known) if known == file => {}
+            Some(_) => {
+                let reason = "it changed while it was being read; let its writer finish and run this again";
+                return Err(belvedere_io::IoError::format(&file.path, reason).into());
+            }
+        }
+    }
+    Ok(out)
 }
 
 /// What the areas of a layer are drawn as, and why.
@@ -113,13 +80,15 @@ impl ViewRecord {
 
 #[cfg(test)]
 mod tests {
-    /// NIST's long test vector, a million times the letter a: sixteen fillings of the buffer.
+    use super::*;
+    use std::path::Path;
+
     #[test]
-    fn the_whole_file_is_hashed() {
-        let path = std::env::temp_dir().join(format!("belvedere_sha256_{}", std::process::id()));
-        std::fs::write(&path, "a".repeat(1_000_000)).expect("written");
-        let found = super::sha256(&path);
-        std::fs::remove_file(&path).expect("removed");
-        assert_eq!(found.expect("read"), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+    fn a_file_that_changed_between_two_readings_is_refused() {
+        let [a, b, changed] =
+            [("a", "1"), ("b", "1"), ("a", "2")].map(|(p, c)| InputFile::of(Path::new(p), c.as_bytes()));
+        assert_eq!(inputs(&[b.clone(), a.clone(), b.clone()]).expect("unchanged"), [b, a.clone()]);
+        let refused = inputs(&[a, changed]).expect_err("changed").to_string();
+        assert!(refused.starts_with("a: it changed while it was being read"), "{refused}");
     }
 }

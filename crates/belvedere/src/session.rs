@@ -1,7 +1,7 @@
 //! A scene with a view and a light: everything that a picture needs, nothing left to look up.
 
 use crate::BelvedereError;
-use crate::record::AreaRecord;
+use crate::record::{AreaRecord, InputFile};
 use crate::resolve::terrain::{self, Solving};
 use crate::resolve::view;
 use crate::scene_file::paths::Roots;
@@ -25,7 +25,7 @@ pub struct Session {
     pub(crate) terrain: Option<TerrainReport>,
     pub(crate) warnings: Vec<String>,
     pub(crate) areas: Vec<AreaRecord>,
-    pub(crate) inputs: Vec<PathBuf>,
+    pub(crate) inputs: Vec<InputFile>,
     pub(crate) description: Option<Description>,
     pub(crate) renderer: Arc<CpuRenderer>,
 }
@@ -126,8 +126,13 @@ impl Session {
     }
 
     /// Files that were read, the scene file first.
-    pub fn inputs(&self) -> &[PathBuf] {
+    pub fn inputs(&self) -> &[InputFile] {
         &self.inputs
+    }
+
+    /// Their paths.
+    pub fn input_paths(&self) -> Vec<PathBuf> {
+        self.inputs.iter().map(|file| file.path.clone()).collect()
     }
 
     /// The scene file; `None` for a session from memory.

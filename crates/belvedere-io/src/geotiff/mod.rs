@@ -15,7 +15,7 @@ mod write;
 pub use write::write_geotiff;
 
 use crate::raster::{Limits, Raster, RasterInfo, SampleType, Samples};
-use crate::{IoError, Loaded};
+use crate::{InputFile, IoError, Loaded};
 use belvedere_scene::Progress;
 use ifd::{Container, Ifd, tag};
 use layout::Layout;
@@ -77,7 +77,17 @@ impl GeoTiff {
         add_levels(&container, others.iter().chain(&subs), &mut levels, &mut warnings)?;
         info.overviews = levels.iter().skip(1).map(|l| [l.layout.width, l.layout.height]).collect();
         let warnings = warnings.into_iter().map(|w| format!("{}: {w}", path.display())).collect();
-        Ok(Loaded { value: Self { container, info, limits, levels }, warnings })
+        Ok(Loaded::new(Self { container, info, limits, levels }, warnings))
+    }
+
+    /// Path, size and sha256 of the file. Hashing takes as long as a fast reading: ask once.
+    ///
+    /// # Errors
+    /// [`IoError`] if a part cannot be read.
+    pub fn input(&self) -> Result<InputFile, IoError> {
+        let (path, source) = (&self.info.path, &self.container.source);
+        let sha256 = source.sha256().map_err(|reason| IoError::format(path, reason))?;
+        Ok(InputFile { path: path.clone(), bytes: source.len(), sha256 })
     }
 
     /// The full image.

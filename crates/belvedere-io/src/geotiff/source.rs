@@ -1,9 +1,13 @@
 //! Bytes of a file at a position, from disk or memory.
 
+use crate::input;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
+
+/// Files up to this size are read once, whole; larger ones where their parts are wanted, bytes.
+const WHOLE: u64 = 512 << 20;
 
 /// Where the bytes come from. Reads may come from many threads.
 #[derive(Debug)]
@@ -25,7 +29,12 @@ impl Source {
         if meta.is_dir() {
             return Err(std::io::Error::other("is a folder, not a file"));
         }
-        Ok(Self { len: meta.len(), inner: Inner::File(Mutex::new(file)) })
+        if meta.len() > WHOLE {
+            return Ok(Self { len: meta.len(), inner: Inner::File(Mutex::new(file)) });
+        }
+        let mut bytes = Vec::with_capacity(meta.len() as usize);
+        file.take(meta.len()).read_to_end(&mut bytes)?;
+        Ok(Self::bytes(bytes))
     }
 
     pub(super) fn bytes(bytes: Vec<u8>) -> Self {
@@ -34,6 +43,23 @@ impl Source {
 
     pub(super) fn len(&self) -> u64 {
         self.len
+    }
+
+    /// sha256 of all the bytes.
+    pub(super) fn sha256(&self) -> Result<String, String> {
+        match &self.inner {
+            Inner::Bytes(bytes) => Ok(input::sha256(bytes)),
+            Inner::File(_) => {
+                let (mut at, mut part) = (0, Vec::new());
+                input::sha256_of_chunks(|buffer| {
+                    let count = (self.len - at).min(buffer.len() as u64);
+                    self.read_into(at, count, "a part of the file", &mut part)?;
+                    buffer[..part.len()].copy_from_slice(&part);
+                    at += count;
+                    Ok(part.len())
+                })
+            }
+        }
     }
 
     /// Replaces the content of `out` by `count` bytes from `at` on. `what` names them in the message.
@@ -66,5 +92,22 @@ impl Source {
         let mut out = Vec::new();
         self.read_into(at, count, what, &mut out)?;
         Ok(out)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_read_in_parts_is_hashed_whole() {
+        let path = std::env::temp_dir().join(format!("belvedere_source_{}", std::process::id()));
+        std::fs::write(&path, "a".repeat(1_000_000)).expect("written");
+        let file = File::open(&path).expect("opened");
+        let parts = Source { len: 1_000_000, inner: Inner::File(Mutex::new(file)) };
+        let (parts, whole) = (parts.sha256(), Source::open(&path).expect("opened").sha256());
+        std::fs::remove_file(&path).expect("removed");
+        assert_eq!(parts.expect("read"), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+        assert_eq!(whole.expect("read"), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
     }
 }

@@ -43,7 +43,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
     if skipped > 0 {
         warnings.push(format!("{}: {skipped} parts that are no plain triangles are left out", path.display()));
     }
-    Ok(Loaded { value: out, warnings })
+    Ok(Loaded::new(out, warnings))
 }
 
 fn buffers(

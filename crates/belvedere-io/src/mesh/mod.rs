@@ -5,7 +5,7 @@ mod obj;
 mod ply;
 mod stl;
 
-use crate::{IoError, Limits, Loaded};
+use crate::{InputFile, IoError, Limits, Loaded};
 use belvedere_scene::{Color, MeshColors};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -45,7 +45,7 @@ pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoErr
         _ => return Err(IoError::format(path, "it is no mesh that this version reads: OBJ, PLY, STL, glTF or GLB")),
     };
     let bytes = read_bytes(path, limits)?;
-    let mut loaded = read(path, &bytes, limits)?;
+    let mut loaded = read(path, &bytes, limits)?.with_file(InputFile::of(path, &bytes));
     let mesh = &mut loaded.value;
     if mesh.triangles.is_empty() {
         return Err(IoError::format(

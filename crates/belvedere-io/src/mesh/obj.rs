@@ -59,7 +59,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
         (false, true) => MeshColors::PerTriangle(per_triangle),
         _ => MeshColors::Layer,
     };
-    Ok(Loaded { value: out, warnings })
+    Ok(Loaded::new(out, warnings))
 }
 
 /// Fills in the normals of vertices whose corners agree; whether there are any.

@@ -38,7 +38,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
         ));
         binary(&bytes[HEAD..HEAD + declared * TRIANGLE])
     };
-    Ok(Loaded { value: joined(&triangles), warnings })
+    Ok(Loaded::new(joined(&triangles), warnings))
 }
 
 fn binary(bytes: &[u8]) -> Vec<[[f32; 3]; 3]> {

@@ -70,7 +70,7 @@ pub fn read(text: &str) -> Result<Loaded<Ramp>, String> {
     for slice in &slices {
         header.stops(slice, &height, &mut ramp.stops);
     }
-    Ok(Loaded { value: ramp, warnings })
+    Ok(Loaded::new(ramp, warnings))
 }
 
 impl Header {

@@ -37,7 +37,7 @@ pub fn read(text: &str) -> Result<Loaded<Ramp>, String> {
     if ramp.stops.is_empty() {
         return Err("it holds no line of the form \"height red green blue\"; give a colour-relief text".into());
     }
-    Ok(Loaded { value: ramp, warnings })
+    Ok(Loaded::new(ramp, warnings))
 }
 
 fn height(word: &str) -> Result<RampHeight, String> {

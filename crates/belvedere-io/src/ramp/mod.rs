@@ -4,7 +4,7 @@ mod colors;
 pub mod cpt;
 pub mod gdal;
 
-use crate::{IoError, Loaded};
+use crate::{InputFile, IoError, Loaded};
 use belvedere_scene::Ramp;
 use std::io::Read;
 use std::path::Path;
@@ -33,7 +33,7 @@ pub fn load_ramp(path: &Path) -> Result<Loaded<Ramp>, IoError> {
     for w in &mut loaded.warnings {
         *w = format!("{}: {w}", path.display());
     }
-    Ok(loaded)
+    Ok(loaded.with_file(InputFile::of(path, &bytes)))
 }
 
 /// A message about a line, which counts from 1.

@@ -29,11 +29,10 @@ pub fn load_original(
     request: &TerrainRequest,
     progress: &Progress,
 ) -> Result<Loaded<OriginalTerrain>, IoError> {
-    let mut warnings = Vec::new();
     let whole = TerrainRequest { max_nodes: usize::MAX, ..request.clone() };
-    let mut sources = source::read_all(&[path.to_owned()], &whole, progress, &mut warnings)?;
+    let Loaded { value: mut sources, warnings, files } = source::read_all(&[path.to_owned()], &whole, progress)?;
     let source = sources.pop().ok_or_else(|| IoError::format(path, "holds no raster; give an elevation model"))?;
-    Ok(Loaded { value: OriginalTerrain { source }, warnings })
+    Ok(Loaded { value: OriginalTerrain { source }, warnings, files })
 }
 
 impl OriginalTerrain {
@@ -54,7 +53,7 @@ impl OriginalTerrain {
     pub fn in_scene(&self, request: &TerrainRequest, progress: &Progress) -> Result<Loaded<LoadedTerrain>, IoError> {
         let mut warnings = Vec::new();
         let source = source::within(self.source.clone(), request.max_nodes, 1.0, &mut warnings);
-        super::in_scene(vec![source], request, warnings, progress)
+        super::in_scene(Loaded::new(vec![source], warnings), request, progress)
     }
 
     /// The heights moved by `delta` (metres, at scene x, y), and the moves themselves, as rasters on the file's own grid: 32-bit

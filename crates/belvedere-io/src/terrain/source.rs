@@ -2,7 +2,7 @@
 
 use super::{CrsChoice, TerrainRequest};
 use crate::crs::CoordinateSystem;
-use crate::{Affine, GeoTiff, IoError, Photometric, Raster, RasterInfo, Samples, SourceCrs, esri_ascii, hgt};
+use crate::{Affine, GeoTiff, IoError, Loaded, Photometric, Raster, RasterInfo, Samples, SourceCrs, esri_ascii, hgt};
 use belvedere_scene::Progress;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -98,14 +98,16 @@ pub(super) fn read_all(
     paths: &[PathBuf],
     request: &TerrainRequest,
     progress: &Progress,
-    warnings: &mut Vec<String>,
-) -> Result<Vec<SourceGrid>, IoError> {
+) -> Result<Loaded<Vec<SourceGrid>>, IoError> {
     // several sources share the budget of nodes
     let budget = (request.max_nodes / paths.len()).max(4);
-    let mut out = Vec::with_capacity(paths.len());
+    let mut out = Loaded::clean(Vec::with_capacity(paths.len()));
     for (i, path) in paths.iter().enumerate() {
         progress.tick("reading terrain", i as f64 / paths.len() as f64)?;
-        out.push(read_one(path, request, budget, progress, warnings)?);
+        let one = read_one(path, request, budget, progress)?;
+        out.value.push(one.value);
+        out.warnings.extend(one.warnings);
+        out.files.extend(one.files);
     }
     Ok(out)
 }
@@ -115,9 +117,8 @@ fn read_one(
     request: &TerrainRequest,
     budget: usize,
     progress: &Progress,
-    warnings: &mut Vec<String>,
-) -> Result<SourceGrid, IoError> {
-    let (mut raster, factor) = read_raster(path, request, budget, progress, warnings)?;
+) -> Result<Loaded<SourceGrid>, IoError> {
+    let Loaded { value: (mut raster, factor), mut warnings, files } = read_raster(path, request, budget, progress)?;
     if let Some(nodata) = request.nodata {
         raster.info.nodata = Some(nodata);
     }
@@ -137,15 +138,15 @@ fn read_one(
     let (cols, rows) = (raster.info.width, raster.info.height);
     let voids = heights.iter().filter(|h| h.is_nan()).count();
     let samples = heights.len();
-    let system = system_of(&raster.info, request, warnings)?;
-    warn_about_frame(path, &heights, cols, rows, warnings);
+    let system = system_of(&raster.info, request, &mut warnings)?;
+    warn_about_frame(path, &heights, cols, rows, &mut warnings);
     let to_model = raster.info.pixel_to_model.unwrap_or(Affine([1.0, 0.0, 0.0, 0.0, -1.0, rows as f64]));
     let model_from_index = to_model.after_scale_and_shift(1.0, 1.0, 0.5, 0.5);
     if raster.info.pixel_to_model.is_none() {
         warnings.push(format!("{}: it has no georeference; one pixel counts as one metre", path.display()));
     }
     let grid = SourceGrid { path: path.to_owned(), cols, rows, heights, model_from_index, system, samples, voids };
-    Ok(within(grid, budget, factor, warnings))
+    Ok(Loaded { value: within(grid, budget, factor, &mut warnings), warnings, files })
 }
 
 /// A source of at most `budget` nodes; `factor` is by how much it is coarser than its file already.
@@ -171,15 +172,14 @@ fn read_raster(
     request: &TerrainRequest,
     budget: usize,
     progress: &Progress,
-    warnings: &mut Vec<String>,
-) -> Result<(Raster, f64), IoError> {
+) -> Result<Loaded<(Raster, f64)>, IoError> {
     let mut magic = [0u8; 4];
     let mut file = File::open(path).map_err(|e| IoError::os(path, e))?;
     let got = file.read(&mut magic).map_err(|e| IoError::os(path, e))?;
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let magic = &magic[..got];
     if matches!(magic, b"II*\0" | b"MM\0*" | b"II+\0" | b"MM\0+") {
-        return read_tiff(path, request, budget, progress, warnings);
+        return read_tiff(path, request, budget, progress);
     }
     let loaded = match extension.as_str() {
         "hgt" => hgt::read(path, &request.limits)?,
@@ -190,8 +190,7 @@ fn read_raster(
             return Err(IoError::format(path, reason));
         }
     };
-    warnings.extend(loaded.warnings);
-    Ok((loaded.value, 1.0))
+    Ok(loaded.map(|raster| (raster, 1.0)))
 }
 
 fn read_tiff(
@@ -199,19 +198,17 @@ fn read_tiff(
     request: &TerrainRequest,
     budget: usize,
     progress: &Progress,
-    warnings: &mut Vec<String>,
-) -> Result<(Raster, f64), IoError> {
-    let loaded = GeoTiff::open(path, request.limits)?;
-    warnings.extend(loaded.warnings);
-    let tiff = loaded.value;
+) -> Result<Loaded<(Raster, f64)>, IoError> {
+    let Loaded { value: tiff, warnings, .. } = GeoTiff::open(path, request.limits)?;
     check_shape(tiff.info())?;
     let nodes = |level: usize| tiff.level_info(level).map_or(usize::MAX, |i| i.width.saturating_mul(i.height));
     let levels = tiff.levels();
     // the largest level within the budget, else the smallest there is
     let level = (0..levels).find(|&l| nodes(l) <= budget).unwrap_or(levels - 1);
-    let raster = tiff.read(level, progress)?;
+    let (raster, file) = rayon::join(|| tiff.read(level, progress), || tiff.input());
+    let raster = raster?;
     let factor = tiff.info().width as f64 / raster.info.width as f64;
-    Ok((raster, factor))
+    Ok(Loaded::new((raster, factor), warnings).with_file(file?))
 }
 
 fn check_shape(info: &RasterInfo) -> Result<(), IoError> {

@@ -48,7 +48,7 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
     }
     let layer = root.get("name").and_then(Value::as_str).map(shorten).unwrap_or_default();
     let value = Vectors { path: path.into(), format: "GeoJSON", layer, crs, features: reader.features };
-    Ok(Loaded { value, warnings })
+    Ok(Loaded::new(value, warnings))
 }
 
 /// The system, and whether the file states one.

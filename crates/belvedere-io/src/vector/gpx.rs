@@ -55,7 +55,7 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
     warn(parser.single_points, "tracks, segments or routes of a single point were dropped, a line needs 2");
     let crs = CoordinateSystem::wgs84().map_err(|e| IoError::format(path, e.to_string()))?;
     let value = Vectors { path: path.into(), format: "GPX", layer: String::new(), crs, features: parser.features };
-    Ok(Loaded { value, warnings })
+    Ok(Loaded::new(value, warnings))
 }
 
 impl Parser {

@@ -12,11 +12,13 @@ pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
 
 use crate::crs::CoordinateSystem;
 use crate::recognise::explain;
-use crate::{IoError, Loaded};
+use crate::{InputFile, IoError, Loaded};
 use glam::DVec2;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+/// Endings of the files that [`load_vectors`] reads, beside `.json`, which may be anything.
+pub const ENDINGS: &[&str] = &["gpx", "geojson", "shp"];
 /// Largest file read, bytes.
 const MAX_BYTES: u64 = 1 << 30;
 /// Most characters kept of one property.
@@ -109,9 +111,9 @@ fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
             format!("is {mib} MiB large, the limit is 1024 MiB; cut out the part you need"),
         ));
     }
-    let bytes = std::fs::read(path).map_err(|e| IoError::os(path, e))?;
+    let (bytes, file) = InputFile::read(path)?;
     if bytes.starts_with(&shapefile::MAGIC) {
-        return shapefile::load(path, &bytes);
+        return Ok(shapefile::load(path, &bytes)?.with_file(file));
     }
     let named = |ext: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ext));
     if named("shp") {
@@ -131,7 +133,7 @@ fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
         }
     };
     warnings.extend(loaded.warnings);
-    Ok(Loaded { value: loaded.value, warnings })
+    Ok(Loaded::new(loaded.value, warnings).with_file(file))
 }
 
 /// UTF-8 (with or without byte order mark), UTF-16 with byte order mark, else Latin-1 with a warning.

@@ -258,7 +258,7 @@ impl<'a> Reprojection<'a> {
     }
 
     fn done<T>(self, value: T) -> Loaded<T> {
-        Loaded { value, warnings: self.warnings }
+        Loaded::new(value, self.warnings)
     }
 
     fn middle_lon(&self) -> Option<f64> {

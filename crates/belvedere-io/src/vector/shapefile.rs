@@ -43,10 +43,8 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError
     }
     let crs = system_of(path, &features, &mut warnings)?;
     let warnings = warnings.into_iter().map(|w| format!("{}: {w}", path.display())).collect();
-    Ok(Loaded {
-        value: Vectors { path: path.into(), format: "shapefile", layer: String::new(), crs, features },
-        warnings,
-    })
+    let value = Vectors { path: path.into(), format: "shapefile", layer: String::new(), crs, features };
+    Ok(Loaded::new(value, warnings))
 }
 
 /// The file beside `path` with another extension, in small or capital letters.

@@ -73,7 +73,7 @@ fn assert_extent(v: &Vectors, expected: [f64; 4], file: &str) {
 fn assert_rows(rows: &[Row], format: &str) {
     for &(file, features, named, vertices, extent) in rows {
         let Some(path) = data(file) else { continue };
-        let Loaded { value, warnings } = load_vectors(&path).unwrap();
+        let Loaded { value, warnings, .. } = load_vectors(&path).unwrap();
         assert_eq!(value.format, format, "{file}");
         assert_eq!(value.features.len(), features, "{file}");
         assert_eq!(value.features.iter().filter(|f| !f.name.is_empty()).count(), named, "{file}: names");
@@ -104,7 +104,7 @@ fn every_shapefile_of_the_collection() {
 fn every_gpx_of_the_collection() {
     for &(file, lines, waypoints, vertices, extent) in GPX {
         let Some(path) = data(file) else { continue };
-        let Loaded { value, warnings } = load_vectors(&path).unwrap();
+        let Loaded { value, warnings, .. } = load_vectors(&path).unwrap();
         let line_counts: Vec<usize> = value
             .features
             .iter()
@@ -192,9 +192,10 @@ fn geojson_states_its_system_or_is_in_degrees() {
 #[test]
 fn other_and_broken_files_are_one_clear_error() {
     let dir = tempfile::tempdir().unwrap();
-    let cases: [(&str, &[u8], &str); 11] = [
+    let cases: [(&str, &[u8], &str); 12] = [
         ("empty.gpx", b"", "is empty"),
-        ("a.kml", b"<kml><Document/></kml>", "<kml>"),
+        ("a.kml", b"<kml><Document/></kml>", "is KML (map features), which this version does not read"),
+        ("b.gpx", b"<kml><Document/></kml>", "<kml>"),
         ("a.gpx", b"<gpx><trk><trkseg>", "ends inside <trkseg>"),
         ("a.gpx", b"<gpx><trk></gpx>", "well-formed"),
         ("a.gpx", b"<?xml version='1.0'?>", "no XML element"),
@@ -473,7 +474,7 @@ fn gpx_elements_begin_anew_and_what_is_left_out_is_told() {
          <wpt lat=\"95\" lon=\"1\"><name>nowhere</name><sym>Flag</sym></wpt>{}</gpx>",
         point("wpt", 1.7)
     );
-    let Loaded { value, warnings } = load_vectors(&write(&dir, "a.gpx", text)).unwrap();
+    let Loaded { value, warnings, .. } = load_vectors(&write(&dir, "a.gpx", text)).unwrap();
     let counts: Vec<usize> = value.features.iter().map(|f| f.geometry.vertices().count()).collect();
     assert_eq!(counts, [2, 2, 1], "a route, a track and a waypoint");
     for feature in &value.features {

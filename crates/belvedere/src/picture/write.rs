@@ -6,7 +6,6 @@ use super::sidecar::Picture;
 use crate::BelvedereError;
 use crate::output;
 use crate::overlays::badge;
-use crate::record;
 use crate::scene_file::StageDoc;
 use belvedere_core::Stage;
 use belvedere_io::png::{self, Channels};
@@ -77,7 +76,7 @@ impl Picture {
         for stage in this.sidecar.scene.iter_mut().flat_map(|scene| &mut scene.stage) {
             if let StageDoc::TerrainDisocclusion(doc) = stage {
                 doc.delta = path.file_name().and_then(|n| n.to_str()).map(str::to_owned);
-                doc.delta_sha256 = Some(record::sha256(&path)?);
+                doc.delta_sha256 = Some(belvedere_io::sha256_of_file(&path)?);
             }
         }
         written.push(path);

@@ -6,6 +6,7 @@ use super::validate::color;
 use crate::BelvedereError;
 use crate::scene_file::{self, BoxDoc, BoxesDoc, DocError, Paths, TransformDoc};
 use belvedere_core::DVec3;
+use belvedere_io::InputFile;
 use belvedere_scene::{BoxLayer, BoxShape, Color, LayerKind};
 use std::path::Path;
 
@@ -19,7 +20,8 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &BoxesDoc) -> Re
         })?,
         (Some(name), _) => {
             let path = loader.files(index, "source", &Paths::One(name.clone()))?.remove(0);
-            let docs = read(&path)?;
+            let (docs, file) = read(&path)?;
+            loader.inputs.push(file);
             shapes(&docs, default).map_err(|reason| belvedere_io::IoError::format(path, reason))?
         }
         (None, Some(docs)) => shapes(docs, default).map_err(|reason| loader.fail(index, "boxes", reason))?,
@@ -64,13 +66,14 @@ fn apply(shape: &mut BoxShape, transform: &TransformDoc) {
     shape.yaw += yaw;
 }
 
-fn read(path: &Path) -> Result<Vec<BoxDoc>, BelvedereError> {
-    let text = scene_file::read_text(path)?;
-    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
-        return csv(&text).map_err(|e| e.in_file(path));
-    }
-    let root = scene_file::tree(path, &text).map_err(|e| e.in_file(path))?;
-    scene_file::decode(&root).map_err(|e| e.in_file(path))
+fn read(path: &Path) -> Result<(Vec<BoxDoc>, InputFile), BelvedereError> {
+    let (text, file) = scene_file::read_text(path)?;
+    let boxes = if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
+        csv(&text)
+    } else {
+        scene_file::tree(path, &text).and_then(|root| scene_file::decode(&root))
+    };
+    Ok((boxes.map_err(|e| e.in_file(path))?, file))
 }
 
 /// `x,y,z,size_x,size_y,size_z[,yaw_deg[,color]]`; a first line of names is skipped.

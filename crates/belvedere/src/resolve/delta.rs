@@ -8,9 +8,9 @@ use belvedere_io::{Affine, CrsKind, Limits, Raster, RasterInfo, SampleType, Samp
 use belvedere_scene::{Crs, Progress};
 use std::path::Path;
 
-/// Reads a grid of height changes: one band, in the scene's coordinate system, no-data = 0.
-pub(super) fn read(path: &Path, crs: Crs) -> Result<Grid, String> {
-    let file = GeoTiff::open(path, Limits::default()).map_err(|e| e.to_string())?.value;
+/// The grid of height changes in a GeoTIFF: one band, in the scene's coordinate system, no-data = 0.
+pub(super) fn read(path: &Path, bytes: Vec<u8>, crs: Crs) -> Result<Grid, String> {
+    let file = GeoTiff::from_bytes(path, bytes, Limits::default()).map_err(|e| e.to_string())?.value;
     let info = file.info();
     let shown = path.display();
     if info.bands != 1 {

@@ -39,13 +39,12 @@ pub(super) fn load(
     let loaded = match &files[..] {
         [file] if loader.keep_original => {
             let original = load_original(file, &request, progress)?;
-            loader.note(index, original.warnings);
             let loaded = original.value.in_scene(&request, progress)?;
-            loader.original = Some(original.value);
+            loader.original = Some(loader.take(index, original));
             loaded
         }
         files => load_terrain(files, &request, progress)?,
     };
-    loader.note(index, loaded.warnings);
-    Ok((loaded.value.heightfield, loaded.value.crs))
+    let terrain = loader.take(index, loaded);
+    Ok((terrain.heightfield, terrain.crs))
 }

@@ -44,9 +44,11 @@ pub(super) fn load(
             return Err(format!("{shown}: the picture does not overlap the terrain; choose one that covers it"));
         }
     }
-    let raster = file.read(level, progress).map_err(|e| e.to_string())?;
+    let (raster, input) = rayon::join(|| file.read(level, progress), || file.input());
+    let (raster, input) = (raster.map_err(|e| e.to_string())?, input.map_err(|e| e.to_string())?);
     let pixels = raster.to_rgba().map_err(|e| format!("{shown}: {e}"))?;
-    Ok(Loaded { value: Drape { pixels, width: info.width, height: info.height, pixel_from_scene }, warnings })
+    Ok(Loaded::new(Drape { pixels, width: info.width, height: info.height, pixel_from_scene }, warnings)
+        .with_file(input))
 }
 
 fn overlaps(corners: &[[f64; 2]; 2], transform: Option<&Transform>, min: DVec2, max: DVec2) -> bool {

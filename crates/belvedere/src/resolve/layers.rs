@@ -12,10 +12,10 @@ use crate::scene_file::{
 use crate::{BelvedereError, Needs, OpenOptions};
 use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
 use belvedere_core::DVec2;
-use belvedere_io::Loaded;
 use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
+use belvedere_io::{InputFile, Loaded};
 use belvedere_scene::{
     Crs, DistanceMarkers, Drape, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Palette, PointLayer,
     PointStyle, TerrainLayer, drape_polyline,
@@ -53,7 +53,7 @@ impl<'a> LayerRequest<'a> {
 pub(crate) struct LoadedLayers {
     pub(crate) layers: Vec<Layer>,
     pub(crate) crs: Crs,
-    pub(crate) inputs: Vec<PathBuf>,
+    pub(crate) inputs: Vec<InputFile>,
     pub(crate) warnings: Vec<String>,
     /// What the areas were taken for.
     pub(crate) areas: Vec<AreaRecord>,
@@ -194,9 +194,7 @@ fn palette(loader: &mut Loader<'_>, index: usize, doc: &PaletteDoc) -> Result<Pa
     };
     let file = loader.roots.resolve(name).map_err(|e| fail(&e))?;
     let loaded = belvedere_io::load_ramp(&file).map_err(|e| fail(&e))?;
-    loader.inputs.push(file);
-    loader.note(index, loaded.warnings);
-    Ok(Palette::Ramp(Arc::new(loaded.value)))
+    Ok(Palette::Ramp(Arc::new(loader.take(index, loaded))))
 }
 
 /// Pictures for a terrain that is already there.
@@ -213,8 +211,7 @@ fn drapes(
     for file in files {
         let loaded = drape::load(&file, ground.crs, bounds, loader.options.limits(), &loader.options.progress);
         let loaded = loaded.map_err(|e| loader.fail(index, "drape", e))?;
-        loader.note(index, loaded.warnings);
-        drapes.push(loaded.value);
+        drapes.push(loader.take(index, loaded));
     }
     Ok(drapes)
 }

@@ -6,9 +6,9 @@ use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{LayerDoc, Origin, Paths};
 use crate::{BelvedereError, OpenOptions};
-use belvedere_io::Loaded;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
+use belvedere_io::{InputFile, Loaded};
 use belvedere_scene::{Color, LayerKind};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ pub(super) struct Loader<'a> {
     pub(super) roots: &'a Roots,
     pub(super) options: &'a OpenOptions,
     pub(super) builtins: builtin::Builtins,
-    pub(super) inputs: Vec<PathBuf>,
+    pub(super) inputs: Vec<InputFile>,
     pub(super) warnings: Vec<String>,
     /// What areas were taken for.
     pub(super) areas: Vec<AreaRecord>,
@@ -59,14 +59,18 @@ impl Loader<'_> {
     }
 
     /// The files that a key names.
-    pub(super) fn files(&mut self, index: usize, key: &str, paths: &Paths) -> Result<Vec<PathBuf>, BelvedereError> {
+    pub(super) fn files(&self, index: usize, key: &str, paths: &Paths) -> Result<Vec<PathBuf>, BelvedereError> {
         if paths.as_slice().is_empty() {
             return Err(self.fail(index, key, format!("{key} is an empty list; name at least one file")));
         }
-        let found: Vec<PathBuf> =
-            paths.as_slice().iter().map(|name| self.file(index, key, name)).collect::<Result<_, _>>()?;
-        self.inputs.extend(found.iter().cloned());
-        Ok(found)
+        paths.as_slice().iter().map(|name| self.file(index, key, name)).collect()
+    }
+
+    /// The value of what was read for a layer; its warnings and files are kept.
+    pub(super) fn take<T>(&mut self, index: usize, loaded: Loaded<T>) -> T {
+        self.note(index, loaded.warnings);
+        self.inputs.extend(loaded.files);
+        loaded.value
     }
 
     /// Keeps warnings, with the layer they belong to.

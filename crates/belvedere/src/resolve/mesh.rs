@@ -53,10 +53,10 @@ fn source(loader: &mut Loader<'_>, index: usize, doc: &MeshDoc) -> Result<MeshFi
     for path in loader.files(index, "source", &doc.source)? {
         loader.options.progress.tick("reading meshes", 0.0)?;
         let loaded = load_mesh(&path, &loader.options.limits())?;
-        loader.note(index, loaded.warnings);
+        let file = loader.take(index, loaded);
         match &mut all {
-            Some(all) => join(all, loaded.value),
-            None => all = Some(loaded.value),
+            Some(all) => join(all, file),
+            None => all = Some(file),
         }
     }
     Ok(all.unwrap_or_default())

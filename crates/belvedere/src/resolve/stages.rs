@@ -12,8 +12,8 @@ use belvedere_core::map::spline::{ReferencePlane, default_pivot};
 use belvedere_core::presets::{BUILTIN_NAMES, PresetDocument};
 use belvedere_core::{DVec3, Pinhole, SplineBend, Stage, TerrainDisocclusion, View};
 use belvedere_disocclusion::TerrainReport;
+use belvedere_io::InputFile;
 use belvedere_scene::Scene;
-use std::path::PathBuf;
 
 /// Normal of the reference plane of the first spline stage.
 pub(crate) fn plane_normal(document: &Document) -> Option<DVec3> {
@@ -50,7 +50,7 @@ pub(super) struct StageContext<'a> {
 pub(super) fn resolve(
     context: &StageContext<'_>,
     solving: Option<&mut Solving<'_>>,
-    inputs: &mut Vec<PathBuf>,
+    inputs: &mut Vec<InputFile>,
     warnings: &mut Vec<String>,
 ) -> Result<ResolvedStages, BelvedereError> {
     let pinhole = context.camera.pinhole.clone();
@@ -98,13 +98,14 @@ impl StageContext<'_> {
 fn solved_terrain(
     context: &StageContext<'_>,
     doc: &TerrainStageDoc,
-    inputs: &mut Vec<PathBuf>,
+    inputs: &mut Vec<InputFile>,
     at: Table<'_>,
 ) -> Result<(Stage, StageDoc), BelvedereError> {
     let name = doc.delta.as_deref().unwrap_or_default();
     let path = context.roots.resolve(name).map_err(|e| at.refusal(&["delta"], e))?;
+    let (bytes, file) = InputFile::read(&path)?;
     if let Some(expected) = &doc.delta_sha256 {
-        let found = crate::record::sha256(&path)?;
+        let found = &file.sha256;
         if !found.eq_ignore_ascii_case(expected) {
             return Err(at.error(
                 &["delta_sha256"],
@@ -114,15 +115,15 @@ fn solved_terrain(
             ));
         }
     }
-    let grid = super::delta::read(&path, context.ground.crs).map_err(|reason| at.error(&["delta"], reason))?;
-    inputs.push(path);
+    let grid = super::delta::read(&path, bytes, context.ground.crs).map_err(|reason| at.error(&["delta"], reason))?;
+    inputs.push(file);
     Ok((Stage::TerrainDisocclusion(TerrainDisocclusion::new(grid)), StageDoc::TerrainDisocclusion(doc.clone())))
 }
 
 fn spline(
     context: &StageContext<'_>,
     doc: &SplineStageDoc,
-    inputs: &mut Vec<PathBuf>,
+    inputs: &mut Vec<InputFile>,
     warnings: &mut Vec<String>,
     at: Table<'_>,
 ) -> Result<(SplineBend, StageDoc), BelvedereError> {
@@ -184,7 +185,7 @@ fn median_height(terrain: &belvedere_scene::Heightfield) -> f64 {
 fn presets(
     context: &StageContext<'_>,
     doc: &PresetsDoc,
-    inputs: &mut Vec<PathBuf>,
+    inputs: &mut Vec<InputFile>,
     at: Table<'_>,
 ) -> Result<PresetDocument, BelvedereError> {
     let document = match doc {
@@ -200,8 +201,9 @@ fn presets(
                 });
             }
             let path = context.roots.resolve(name).map_err(|e| at.refusal(&["presets"], e))?;
-            let document = scene_file::parse_presets(&path, &scene_file::read_text(&path)?)?;
-            inputs.push(path);
+            let (text, file) = scene_file::read_text(&path)?;
+            let document = scene_file::parse_presets(&path, &text)?;
+            inputs.push(file);
             document
         }
     };

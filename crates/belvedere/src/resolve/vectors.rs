@@ -47,11 +47,10 @@ fn all<T>(
     for file in loader.files(index, "source", paths)? {
         loader.options.progress.tick("reading features", 0.0)?;
         let vectors = loader.vectors.remove(&file).map_or_else(|| load_vectors(&file), Ok)?;
-        inspect(&vectors.value);
-        let found = on_terrain(&vectors.value, ground.crs, ground.terrain)?;
-        loader.note(index, vectors.warnings);
-        loader.note(index, found.warnings);
-        features.extend(found.value);
+        let vectors = loader.take(index, vectors);
+        inspect(&vectors);
+        let found = on_terrain(&vectors, ground.crs, ground.terrain)?;
+        features.extend(loader.take(index, found));
     }
     Ok(features)
 }

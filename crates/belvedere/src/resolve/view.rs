@@ -8,8 +8,8 @@ use crate::scene_file::paths::Roots;
 use crate::scene_file::{Document, SourceDocument};
 use belvedere_core::View;
 use belvedere_disocclusion::TerrainReport;
+use belvedere_io::InputFile;
 use belvedere_scene::{Light, Scene};
-use std::path::PathBuf;
 
 /// What depends on camera and stages.
 pub(crate) struct ResolvedView {
@@ -19,7 +19,7 @@ pub(crate) struct ResolvedView {
     pub(crate) light: Light,
     /// What the terrain solver came to, if it ran.
     pub(crate) terrain: Option<TerrainReport>,
-    pub(crate) inputs: Vec<PathBuf>,
+    pub(crate) inputs: Vec<InputFile>,
     pub(crate) warnings: Vec<String>,
 }
 

@@ -33,7 +33,8 @@ pub use stages::{
 
 use crate::BelvedereError;
 use belvedere_core::presets::PresetDocument;
-use std::path::{Path, PathBuf};
+use belvedere_io::InputFile;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Largest document, bytes.
@@ -41,7 +42,7 @@ pub const MAX_BYTES: u64 = 16 << 20;
 
 /// Where a document was written: its file and the lines of its keys, for messages about what they mean.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Origin(Option<Arc<(PathBuf, Node)>>);
+pub(crate) struct Origin(Option<Arc<(InputFile, Node)>>);
 
 impl Origin {
     /// A document that was made in memory: its mistakes have no line.
@@ -49,7 +50,7 @@ impl Origin {
 
     /// An error at the line of the key that `keys` leads to.
     pub(crate) fn error(&self, keys: &[&str], reason: impl std::fmt::Display) -> BelvedereError {
-        let (path, line) = self.0.as_ref().map(|o| (o.0.clone(), o.1.line_of(keys))).unzip();
+        let (path, line) = self.0.as_ref().map(|o| (o.0.path.clone(), o.1.line_of(keys))).unzip();
         BelvedereError::Scene { path, line, reason: reason.to_string(), source: None }
     }
 
@@ -105,7 +106,12 @@ impl SourceDocument {
 
     /// File it came from; `None` if it was made in memory.
     pub fn path(&self) -> Option<&Path> {
-        self.origin.0.as_ref().map(|o| o.0.as_path())
+        self.input().map(|file| file.path.as_path())
+    }
+
+    /// The same with the hash of its text.
+    pub(crate) fn input(&self) -> Option<&InputFile> {
+        self.origin.0.as_ref().map(|o| &o.0)
     }
 
     pub(crate) fn error(&self, keys: &[&str], reason: impl std::fmt::Display) -> BelvedereError {
@@ -118,7 +124,8 @@ impl SourceDocument {
 /// # Errors
 /// [`BelvedereError::Scene`] with the line of the mistake; [`BelvedereError::Io`] if the file cannot be read.
 pub fn read(path: &Path) -> Result<SourceDocument, BelvedereError> {
-    parse(path, &read_text(path)?)
+    let (text, file) = read_text(path)?;
+    parse_as(file, &text)
 }
 
 /// Parses the text of a scene file; `path` serves messages only.
@@ -126,9 +133,13 @@ pub fn read(path: &Path) -> Result<SourceDocument, BelvedereError> {
 /// # Errors
 /// As [`read`].
 pub fn parse(path: &Path, text: &str) -> Result<SourceDocument, BelvedereError> {
-    let root = tree(path, text).map_err(|e| e.in_file(path))?;
-    let document = document(&root).map_err(|e| e.in_file(path))?;
-    Ok(SourceDocument { origin: Origin(Some(Arc::new((path.to_owned(), root)))), document })
+    parse_as(InputFile::of(path, text.as_bytes()), text)
+}
+
+fn parse_as(file: InputFile, text: &str) -> Result<SourceDocument, BelvedereError> {
+    let root = tree(&file.path, text).map_err(|e| e.in_file(&file.path))?;
+    let document = document(&root).map_err(|e| e.in_file(&file.path))?;
+    Ok(SourceDocument { origin: Origin(Some(Arc::new((file, root)))), document })
 }
 
 /// Parses a preset document, TOML or JSON; `path` serves messages only.
@@ -144,7 +155,7 @@ pub fn parse_presets(path: &Path, text: &str) -> Result<PresetDocument, Belveder
 ///
 /// # Errors
 /// [`BelvedereError::Scene`] if it is too large or not UTF-8, [`BelvedereError::Io`] if it cannot be read.
-pub fn read_text(path: &Path) -> Result<String, BelvedereError> {
+pub(crate) fn read_text(path: &Path) -> Result<(String, InputFile), BelvedereError> {
     use std::io::Read;
     let os = |e| belvedere_io::IoError::os(path, e);
     let refuse = |reason: String| DocError::whole(reason).in_file(path);
@@ -165,10 +176,11 @@ pub fn read_text(path: &Path) -> Result<String, BelvedereError> {
     if bytes.len() as u64 > MAX_BYTES {
         return Err(too_large(bytes.len() as u64));
     }
+    let file = InputFile::of(path, &bytes);
     let text = String::from_utf8(bytes).map_err(|e| {
         refuse(format!("byte {} is not UTF-8 text; save the document as UTF-8", e.utf8_error().valid_up_to()))
     })?;
-    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
+    Ok((text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text), file))
 }
 
 /// Parses TOML or JSON into a tree.

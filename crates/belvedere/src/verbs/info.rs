@@ -4,7 +4,7 @@ use crate::BelvedereError;
 use crate::resolve::builtin;
 use belvedere_core::DVec2;
 use belvedere_io::terrain::{TerrainRequest, load_terrain};
-use belvedere_io::vector::{Geometry, load_vectors};
+use belvedere_io::vector::{self, Geometry, load_vectors};
 use belvedere_io::{GeoTiff, Limits};
 use belvedere_scene::{NodeState, Progress};
 use serde::Serialize;
@@ -192,13 +192,13 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
         return Ok(FileInfo::Unread(UnreadInfo { path, format, holds, note }));
     }
     let ends = |list: &[&str]| path.extension().is_some_and(|e| list.iter().any(|l| e.eq_ignore_ascii_case(l)));
-    if ends(&["gpx", "geojson", "json", "shp"]) {
+    if ends(vector::ENDINGS) || ends(&["json"]) {
         return features(path);
     }
     if ends(belvedere_io::mesh::ENDINGS) {
         return mesh(path);
     }
-    if !ends(&["tif", "tiff", "hgt", "zip", "asc", "grd", "txt"]) {
+    if !ends(belvedere_io::terrain::ENDINGS) {
         return Err(belvedere_io::IoError::format(
             path,
             "it is of no kind that this version reads: terrain and pictures as GeoTIFF, SRTM .hgt (also .zip) or ESRI ASCII, features as GPX, GeoJSON or shapefile (.shp), meshes as OBJ, PLY, STL, glTF or GLB",

@@ -54,3 +54,24 @@ fn frames_of_an_animation_are_sessions() {
     let still = Session::from_parts(hills(), view(200.0)).frame_at(0.0);
     assert!(matches!(still, Err(BelvedereError::NoAnimation)));
 }
+
+#[test]
+fn the_record_of_a_picture_is_of_what_was_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let (dem, scene) = (folder.path().join("dem.asc"), folder.path().join("s.toml"));
+    let text = "format = 1\n[camera]\neye = [50.0, -100.0, 80.0]\nlook_at = [50.0, 50.0, 0.0]\nimage = [32, 24]\n\
+        [[layer]]\nid = 'ground'\nkind = 'terrain'\nsource = 'dem.asc'\n";
+    let grid = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 100\n1 2\n3 4\n";
+    std::fs::write(&dem, grid).unwrap();
+    std::fs::write(&scene, text).unwrap();
+    let session = Session::open(&scene, &OpenOptions::default()).unwrap();
+    std::fs::write(&dem, "something else").unwrap();
+    std::fs::remove_file(&scene).unwrap();
+    let inputs = session.render(&PictureOptions::default()).unwrap().sidecar.inputs;
+    let found: Vec<(&Path, u64, &str)> =
+        inputs.iter().map(|i| (i.path.as_path(), i.bytes, i.sha256.as_str())).collect();
+    let hash = |text: &str| belvedere::io::sha256(text.as_bytes());
+    let [of_scene, of_dem] = [hash(text), hash(grid)];
+    let dem = dem.canonicalize().unwrap();
+    assert_eq!(found, [(&*scene, text.len() as u64, &*of_scene), (&*dem, grid.len() as u64, &*of_dem)]);
+}

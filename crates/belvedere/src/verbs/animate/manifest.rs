@@ -125,7 +125,7 @@ impl Manifest {
         let document = session.resolved().map(|document| Document { animation: None, ..document.clone() });
         Ok(Self {
             program: format!("belvedere {}", crate::VERSION),
-            scene_sha256: record::sha256_of(output::json(&document)?.as_bytes()),
+            scene_sha256: belvedere_io::sha256(output::json(&document)?.as_bytes()),
             inputs: record::inputs(session.inputs())?,
             settings: Settings {
                 animation: path.animation.clone(),
@@ -177,7 +177,7 @@ impl Manifest {
         // The scene file itself counts by what it means, not by its comments.
         let read = |m: &Self| m.inputs.iter().skip(1).map(|i| (i.path.clone(), i.sha256.clone())).collect::<Vec<_>>();
         if let Some((_, (path, _))) = read(earlier).into_iter().zip(read(self)).find(|(a, b)| a.1 != b.1) {
-            return Some(format!("{path} has changed since"));
+            return Some(format!("{} has changed since", path.display()));
         }
         (self.scene_sha256 != earlier.scene_sha256).then(|| "the scene has changed since".into())
     }
@@ -210,6 +210,6 @@ impl Manifest {
 
 impl FrameRecord {
     fn is_whole(&self, folder: &Path) -> bool {
-        record::sha256(&folder.join(&self.file)).is_ok_and(|found| found == self.sha256)
+        belvedere_io::sha256_of_file(&folder.join(&self.file)).is_ok_and(|found| found == self.sha256)
     }
 }

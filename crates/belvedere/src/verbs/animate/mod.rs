@@ -9,7 +9,7 @@ pub use manifest::{FrameRecord, FrameTerrain, Manifest, Settings, frame_name};
 use crate::camera_path::CameraPath;
 use crate::output;
 use crate::picture::{self, PictureOptions};
-use crate::record::{self, ViewRecord};
+use crate::record::ViewRecord;
 use crate::resolve::terrain::Solving;
 use crate::scene_file::{AnimationDoc, Document};
 use crate::{BelvedereError, Session};
@@ -78,7 +78,7 @@ pub fn outputs(out: &Path) -> Result<(PathBuf, Option<PathBuf>), BelvedereError>
 pub fn animate(session: &Session, request: &AnimateRequest, progress: &Progress) -> Result<Animation, BelvedereError> {
     let (folder, film) = outputs(&request.out)?;
     if let Some(film) = &film {
-        output::check(film, session.inputs(), request.overwrite || request.resume)?;
+        output::check(film, &session.input_paths(), request.overwrite || request.resume)?;
     }
     let path = CameraPath::new(session, &request.animation)?;
     let mut manifest = Manifest::new(session, &path, &request.picture)?;
@@ -176,7 +176,7 @@ fn draw_missing(
         let out = folder.join(&file);
         picture.write_png(&out, true)?;
         let record = FrameRecord {
-            sha256: record::sha256(&out)?,
+            sha256: belvedere_io::sha256_of_file(&out)?,
             file,
             view: ViewRecord::of(session.view()),
             displacement: picture.sidecar.displacement,

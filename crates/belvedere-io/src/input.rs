@@ -1,0 +1,88 @@
+//! Files that were read: path, size and sha256 of what was found in them, so that nobody has to open them again to tell.
+
+use crate::IoError;
+use serde::{Deserialize, Serialize, Serializer};
+use sha2::{Digest, Sha256};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// One file that was read.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct InputFile {
+    /// Its path, as found.
+    #[serde(serialize_with = "displayed")]
+    pub path: PathBuf,
+    /// Its size, bytes.
+    pub bytes: u64,
+    /// Its sha256, hexadecimal.
+    pub sha256: String,
+}
+
+fn displayed<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.display())
+}
+
+impl InputFile {
+    /// The record of a file with this content.
+    pub fn of(path: &Path, content: &[u8]) -> Self {
+        Self { path: path.to_owned(), bytes: content.len() as u64, sha256: sha256(content) }
+    }
+
+    /// The content of a whole file, and its record.
+    ///
+    /// # Errors
+    /// [`IoError::Os`].
+    pub fn read(path: &Path) -> Result<(Vec<u8>, Self), IoError> {
+        let content = std::fs::read(path).map_err(|e| IoError::os(path, e))?;
+        let record = Self::of(path, &content);
+        Ok((content, record))
+    }
+}
+
+/// sha256 of bytes, lower-case hexadecimal.
+pub fn sha256(bytes: &[u8]) -> String {
+    hexadecimal(Sha256::new_with_prefix(bytes))
+}
+
+/// sha256 of a file, such as one that was written, lower-case hexadecimal.
+///
+/// # Errors
+/// [`IoError::Os`].
+pub fn sha256_of_file(path: &Path) -> Result<String, IoError> {
+    let os = |e| IoError::os(path, e);
+    let mut file = std::fs::File::open(path).map_err(os)?;
+    sha256_of_chunks(|buffer| file.read(buffer)).map_err(os)
+}
+
+/// sha256 of all that `next` puts into its buffer until it puts nothing.
+pub(crate) fn sha256_of_chunks<E>(mut next: impl FnMut(&mut [u8]) -> Result<usize, E>) -> Result<String, E> {
+    let (mut hasher, mut buffer) = (Sha256::new(), vec![0u8; 1 << 16]);
+    loop {
+        match next(&mut buffer)? {
+            0 => return Ok(hexadecimal(hasher)),
+            read => hasher.update(&buffer[..read]),
+        }
+    }
+}
+
+fn hexadecimal(hasher: Sha256) -> String {
+    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// NIST's long test vector, a million times the letter a: sixteen fillings of the buffer.
+    #[test]
+    fn the_whole_file_is_hashed() {
+        let path = std::env::temp_dir().join(format!("belvedere_sha256_{}", std::process::id()));
+        std::fs::write(&path, "a".repeat(1_000_000)).expect("written");
+        let (streamed, read) = (sha256_of_file(&path), InputFile::read(&path));
+        std::fs::remove_file(&path).expect("removed");
+        let expected = "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0";
+        assert_eq!(streamed.expect("read"), expected);
+        let record = read.expect("read").1;
+        assert_eq!((record.bytes, record.sha256.as_str()), (1_000_000, expected));
+    }
+}
