@@ -500,11 +500,11 @@ pub(crate) struct SchemaArgs {
 /// What bends a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum TechniqueKind {
-    /// A spline, and terrain that makes way where that leaves something hidden
+    /// A spline, and terrain disocclusion where that leaves something hidden
     Auto,
     /// A spline over the mean ground
     Spline,
-    /// Terrain that makes way
+    /// Terrain disocclusion
     Terrain,
     /// Spline and terrain
     Both,

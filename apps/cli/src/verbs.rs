@@ -118,7 +118,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         ready(Some(path), &[&args.scene], context)?;
     }
     let palette = args.palette.as_deref().map(PaletteDoc::of);
-    // A straight picture has no use for ground that makes way.
+    // A straight picture needs no solved ground.
     let unsolved = request.straight;
     let (area_style, sea) = (args.area_style.map(Into::into), args.no_sea.then_some(false));
     let options =

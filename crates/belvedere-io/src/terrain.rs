@@ -175,7 +175,7 @@ fn in_scene(
         );
         return Err(IoError::format(first, reason));
     }
-    let Closing { states, left_open, sea, open } = states(&mut grid, sea, request, progress)?;
+    let ClosedHoles { states, left_open, sea, open } = states(&mut grid, sea, request, progress)?;
     let heightfield =
         Heightfield::new(grid.geometry.north_west, grid.geometry.spacing, grid.cols, grid.rows, grid.heights, states)
             .map_err(|e: HeightfieldError| IoError::format(first, e.to_string()))?;
@@ -226,7 +226,7 @@ fn warn_about_voids(path: &Path, voids: usize, share: f64, filled: f64, left_ope
 }
 
 /// What became of holes.
-struct Closing {
+struct ClosedHoles {
     states: Vec<NodeState>,
     /// How many were too large to be filled.
     left_open: usize,
@@ -242,7 +242,7 @@ fn states(
     sea: Vec<usize>,
     request: &TerrainRequest,
     progress: &Progress,
-) -> Result<Closing, IoError> {
+) -> Result<ClosedHoles, IoError> {
     let mut states: Vec<NodeState> =
         grid.heights.iter().map(|h| if h.is_finite() { NodeState::Measured } else { NodeState::Void }).collect();
     let mut left_open = 0;
@@ -262,7 +262,7 @@ fn states(
     for h in grid.heights.iter_mut().filter(|h| !h.is_finite()) {
         *h = 0.0;
     }
-    Ok(Closing { states, left_open, sea: sea.len(), open })
+    Ok(ClosedHoles { states, left_open, sea: sea.len(), open })
 }
 
 /// CRS of the scene; `system` is `None` for a local one.

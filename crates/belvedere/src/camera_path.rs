@@ -64,7 +64,7 @@ fn merged(scene: &Document, given: &AnimationDoc) -> AnimationDoc {
 impl Session {
     /// The session at a time of its scene's own `[animation]`, seconds from the start: in the frame nearest to it.
     ///
-    /// Ground that makes way is solved for that frame alone; in a film the frames before it count as well.
+    /// Terrain disocclusion is solved for that frame alone; in a film the frames before it count as well.
     ///
     /// # Errors
     /// [`BelvedereError::NoAnimation`] without an `[animation]`, [`BelvedereError::Frame`] if there is no such view.

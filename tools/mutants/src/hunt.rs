@@ -2,7 +2,7 @@
 
 use crate::build::Suite;
 use crate::find::Fault;
-use crate::run::{self, Ending, Usual};
+use crate::run::{self, Baseline, Ending};
 use crate::{Args, Plan};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 #[serde(rename_all = "snake_case")]
 enum Line {
     /// A test without a fault.
-    Usual { suite: String, test: String, passed: bool, seconds: f64, reached: BTreeSet<usize> },
+    Baseline { suite: String, test: String, passed: bool, seconds: f64, reached: BTreeSet<usize> },
     /// A fault after the tests of one level.
     Tried { fault: usize, level: usize, tests: usize, noticed_by: Option<String> },
 }
@@ -33,17 +33,17 @@ pub(crate) struct Results {
     pub(crate) levels: BTreeMap<usize, usize>,
     /// Tests that fail without a fault: they were left out.
     pub(crate) broken: Vec<String>,
-    usual: BTreeMap<(String, String), Usual>,
+    usual: BTreeMap<(String, String), Baseline>,
 }
 
 impl Results {
     fn take(&mut self, line: Line) {
         match line {
-            Line::Usual { suite, test, passed, seconds, reached } => {
+            Line::Baseline { suite, test, passed, seconds, reached } => {
                 if !passed {
                     self.broken.push(format!("{suite} {test}"));
                 }
-                self.usual.insert((suite, test), Usual { passed, seconds, reached });
+                self.usual.insert((suite, test), Baseline { passed, seconds, reached });
             }
             Line::Tried { fault, level, tests, noticed_by } => {
                 *self.tests.entry(fault).or_default() += tests;
@@ -97,8 +97,8 @@ pub(crate) fn hunt(plan: &Plan, suites: &[Suite], home: &Path, args: &Args) -> R
         eprintln!("level {now}: {} faults, {} tests to run without a fault", open.len(), missing.len());
         let lines = in_parallel(args.jobs, &missing, |(suite, test)| {
             let usual = run::usual(suite, test, &scratch)?;
-            let Usual { passed, seconds, reached } = usual;
-            let line = Line::Usual { suite: suite.label(), test: test.clone(), passed, seconds, reached };
+            let Baseline { passed, seconds, reached } = usual;
+            let line = Line::Baseline { suite: suite.label(), test: test.clone(), passed, seconds, reached };
             note(&line)?;
             Ok(line)
         })?;
@@ -122,7 +122,7 @@ fn attempt(plan: &Plan, suites: &[Suite], results: &Results, id: usize, now: usi
     let candidates = results.usual.iter().filter(|(_, usual)| usual.passed && usual.reached.contains(&id));
     let mut tests: Vec<_> =
         candidates.filter_map(|((suite, test), usual)| Some((*near.get(suite)?, test, usual))).collect();
-    let rank = |(_, test, usual): &(&Suite, &String, &Usual)| (!test.starts_with(&fault.module), usual.seconds);
+    let rank = |(_, test, usual): &(&Suite, &String, &Baseline)| (!test.starts_with(&fault.module), usual.seconds);
     tests.sort_by(|a, b| rank(a).partial_cmp(&rank(b)).expect("times are numbers"));
     for (k, (suite, test, usual)) in tests.iter().enumerate() {
         let late = match run::with_fault(suite, test, usual, id, scratch)? {

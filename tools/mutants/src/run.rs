@@ -25,7 +25,7 @@ pub(crate) enum Ending {
 
 /// One test alone, as it is without a fault.
 #[derive(Debug, Clone)]
-pub(crate) struct Usual {
+pub(crate) struct Baseline {
     pub(crate) passed: bool,
     pub(crate) seconds: f64,
     /// Faults whose code it comes to.
@@ -41,13 +41,13 @@ pub(crate) fn tests(suite: &Suite) -> Result<Vec<String>> {
 }
 
 /// Runs a test without a fault and notes what it comes to.
-pub(crate) fn usual(suite: &Suite, test: &str, scratch: &Path) -> Result<Usual> {
+pub(crate) fn usual(suite: &Suite, test: &str, scratch: &Path) -> Result<Baseline> {
     let temporary = Temporary::new(scratch)?;
     let record = temporary.0.join("reached");
     let started = Instant::now();
     let ending = run(suite, test, &temporary, (REACHED, &record.display().to_string()), Duration::from_secs(1800))?;
     let text = std::fs::read_to_string(&record).unwrap_or_default();
-    Ok(Usual {
+    Ok(Baseline {
         passed: ending == Ending::Passed,
         seconds: started.elapsed().as_secs_f64(),
         reached: text.lines().filter_map(|l| l.parse().ok()).collect(),
@@ -55,7 +55,7 @@ pub(crate) fn usual(suite: &Suite, test: &str, scratch: &Path) -> Result<Usual> 
 }
 
 /// Runs a test with a fault switched on.
-pub(crate) fn with_fault(suite: &Suite, test: &str, usual: &Usual, fault: usize, scratch: &Path) -> Result<Ending> {
+pub(crate) fn with_fault(suite: &Suite, test: &str, usual: &Baseline, fault: usize, scratch: &Path) -> Result<Ending> {
     let limit = Duration::from_secs_f64(PATIENCE.0 * usual.seconds) + PATIENCE.1;
     run(suite, test, &Temporary::new(scratch)?, (SWITCH, &fault.to_string()), limit)
 }

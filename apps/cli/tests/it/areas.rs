@@ -1,7 +1,7 @@
 //! What areas and sea level are drawn as, and what the record says about it.
 
 use super::Place;
-use super::looks::pixels;
+use super::light_and_tints::pixels;
 
 const SIDE: usize = 64;
 

@@ -5,7 +5,7 @@ mod areas;
 mod bad_scenes;
 mod exact;
 mod figures;
-mod looks;
+mod light_and_tints;
 mod marks;
 mod meshes;
 mod numbers;

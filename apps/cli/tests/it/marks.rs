@@ -36,7 +36,7 @@ fn record(place: &Place, picture: &str) -> serde_json::Value {
 /// The record of a picture drawn with these arguments, and its pixels, compressed.
 fn drawn(place: &Place, name: &str, args: &[&str]) -> (serde_json::Value, Vec<u8>) {
     place.ok(&[&["render", "s.toml", "-o", name][..], args].concat());
-    (record(place, name), super::looks::pixels(&super::read(&place.path(name))))
+    (record(place, name), super::light_and_tints::pixels(&super::read(&place.path(name))))
 }
 
 fn height(png: &[u8]) -> u32 {

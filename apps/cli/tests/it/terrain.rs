@@ -344,13 +344,13 @@ fn at_a_price_ground_stays_and_is_drawn_see_through() {
     place.write("s.toml", &scene("solver_nodes = 33\nslack_price = 0.01").replace("[64, 36]", "[160, 90]"));
     place.ok(&["render", "s.toml", "-o", "p.png"]);
     // The records name the folders, which differ.
-    let again = super::looks::pixels(&super::read(&place.path("p.png")));
-    assert!(again == super::looks::pixels(&picture), "same scene, same pixels");
+    let again = super::light_and_tints::pixels(&super::read(&place.path("p.png")));
+    assert!(again == super::light_and_tints::pixels(&picture), "same scene, same pixels");
     let record: serde_json::Value = serde_json::from_slice(&super::read(&place.path("p.png.json"))).expect("JSON");
     place.write("solid.json", &record["scene"].to_string());
     place.ok(&["render", "solid.json", "-o", "solid.png"]);
-    let solid = super::looks::pixels(&super::read(&place.path("solid.png")));
-    assert!(solid != super::looks::pixels(&picture), "nothing shows through");
+    let solid = super::light_and_tints::pixels(&super::read(&place.path("solid.png")));
+    assert!(solid != super::light_and_tints::pixels(&picture), "nothing shows through");
 }
 
 #[test]

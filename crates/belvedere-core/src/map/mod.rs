@@ -45,7 +45,7 @@ pub trait SpaceMap {
 pub enum Stage {
     /// The ground falls away with the distance as on a sphere (`earth = "curved"`).
     EarthCurvature(earth::EarthCurvature),
-    /// The ground makes way for a route (Deng et al. 2013).
+    /// The ground moves so that routes are seen (Deng et al. 2013).
     TerrainDisocclusion(terrain::TerrainDisocclusion),
     /// Space is carried onto a B-spline over the reference plane (Pasewaldt et al. 2011).
     SplineBend(spline::SplineBend),

@@ -1,7 +1,7 @@
 //! A piece of a surface on the image.
 
 use crate::cache::lock;
-use crate::geometry::grid::{Cover, Nodes};
+use crate::geometry::grid::{Nodes, ScreenExtent};
 use crate::geometry::pass::Pass;
 use crate::geometry::screen::{Screen, ScreenVertex};
 use std::sync::Mutex;
@@ -47,7 +47,7 @@ pub(crate) struct Block {
     /// Number of the first soup triangle.
     pub(crate) soup_base: u32,
     /// What the block may touch of the image.
-    pub(crate) cover: Cover,
+    pub(crate) cover: ScreenExtent,
     pub(crate) counts: Counts,
 }
 
@@ -126,6 +126,6 @@ pub(crate) struct Job<'a> {
     pub(crate) spare: &'a BufferPool,
 }
 
-pub(crate) fn cover_of(soup: &[SoupTriangle]) -> Cover {
-    soup.iter().flat_map(|t| t.v).fold(Cover::EMPTY, |cover, v| cover.including(v.screen))
+pub(crate) fn cover_of(soup: &[SoupTriangle]) -> ScreenExtent {
+    soup.iter().flat_map(|t| t.v).fold(ScreenExtent::EMPTY, |cover, v| cover.including(v.screen))
 }

@@ -18,7 +18,7 @@ pub(crate) struct Nodes {
     pub(crate) y: Vec<i32>,
     pub(crate) q: Vec<f32>,
     /// What each row of nodes covers.
-    spans: Vec<Cover>,
+    spans: Vec<ScreenExtent>,
     /// Cells along both axes.
     cells: [usize; 2],
     /// Whether some nodes have no image.
@@ -27,13 +27,13 @@ pub(crate) struct Nodes {
 
 /// What a block covers at most: fixed-point positions and the largest nearness.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Cover {
+pub(crate) struct ScreenExtent {
     pub(crate) x: [i32; 2],
     pub(crate) y: [i32; 2],
     pub(crate) q: f32,
 }
 
-impl Cover {
+impl ScreenExtent {
     pub(crate) const EMPTY: Self = Self { x: [i32::MAX, i32::MIN], y: [i32::MAX, i32::MIN], q: f32::NEG_INFINITY };
 
     pub(crate) fn including(self, v: ScreenVertex) -> Self {
@@ -93,15 +93,15 @@ impl Nodes {
     }
 
     /// What the nodes cover; to be called once all are set.
-    pub(crate) fn cover(&mut self) -> Cover {
+    pub(crate) fn cover(&mut self) -> ScreenExtent {
         self.spans.clear();
         if !self.holes {
             return simd::run(Around(self));
         }
-        let mut all = Cover::EMPTY;
+        let mut all = ScreenExtent::EMPTY;
         for r in 0..=self.cells[1] {
             let on = (0..=self.cells[0]).map(|c| self.at(c, r)).filter(|v| !v.is_none());
-            let row = on.fold(Cover::EMPTY, Cover::including);
+            let row = on.fold(ScreenExtent::EMPTY, ScreenExtent::including);
             self.spans.push(row);
             all = all.with(row);
         }
@@ -142,15 +142,15 @@ impl Nodes {
 struct Around<'a>(&'a mut Nodes);
 
 impl Kernel for Around<'_> {
-    type Output = Cover;
+    type Output = ScreenExtent;
 
     #[inline(always)]
-    fn run(self) -> Cover {
+    fn run(self) -> ScreenExtent {
         let Nodes { x, y, q, spans, cells, .. } = self.0;
         let stride = cells[0] + 1;
-        let mut all = Cover::EMPTY;
+        let mut all = ScreenExtent::EMPTY;
         for ((x, y), q) in x.chunks(stride).zip(y.chunks(stride)).zip(q.chunks(stride)) {
-            let row = Cover { x: range(x), y: range(y), q: largest(q) };
+            let row = ScreenExtent { x: range(x), y: range(y), q: largest(q) };
             spans.push(row);
             all = all.with(row);
         }
@@ -199,7 +199,7 @@ impl Kernel for Draw<'_> {
         let [cols, rows] = nodes.cells;
         let (top, bottom, right) = (band.y0 * SUB, band.y1 * SUB, band.width * SUB);
         for r in 0..rows {
-            let Cover { x, y, q } = nodes.spans[r].with(nodes.spans[r + 1]);
+            let ScreenExtent { x, y, q } = nodes.spans[r].with(nodes.spans[r + 1]);
             if y[0] >= bottom || y[1] < top || x[0] >= right || x[1] < 0 || band.hides(x, q) {
                 continue;
             }

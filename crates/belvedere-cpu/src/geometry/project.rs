@@ -19,7 +19,7 @@ const CHUNK: usize = 64;
 
 /// The chain of a view in single precision, for one record of its curved rays.
 ///
-/// Agrees with [`View`] to 0.01 px: curved earth around the eye, ground that makes way, one turn of conic arcs, pinhole.
+/// Agrees with [`View`] to 0.01 px: curved earth around the eye, terrain disocclusion, one turn of conic arcs, pinhole.
 #[derive(Debug)]
 pub(crate) struct Projector<'a> {
     eye: DVec3,

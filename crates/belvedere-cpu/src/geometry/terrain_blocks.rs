@@ -1,7 +1,7 @@
 //! Blocks of ground.
 
 use crate::geometry::block::{Block, Counts, Geometry, Job, cover_of};
-use crate::geometry::grid::{CELL_TRIANGLES, Cover, Nodes, cell_weights, kept_node};
+use crate::geometry::grid::{CELL_TRIANGLES, Nodes, ScreenExtent, cell_weights, kept_node};
 use crate::geometry::lod::{self, DecimatedHeights, NODES, SIDE};
 use crate::geometry::refine::{Corner, Refiner};
 use crate::geometry::screen::{Row, SUB, ScreenVertex};
@@ -26,7 +26,7 @@ impl Job<'_> {
             geometry: Geometry::Soup(Vec::new()),
             seam: chosen.seam,
             soup_base: 0,
-            cover: Cover::EMPTY,
+            cover: ScreenExtent::EMPTY,
             counts: Counts::default(),
         };
         let careful = chosen.edges || !chosen.whole || chosen.judged.contains(&true);
@@ -38,7 +38,7 @@ impl Job<'_> {
         } else {
             self.refine_grid(hf, &mut out, chosen);
         }
-        let Cover { x, y, .. } = out.cover;
+        let ScreenExtent { x, y, .. } = out.cover;
         let size = [self.screen.width * SUB, self.screen.height * SUB];
         if x[0] > x[1] || x[1] < 0 || x[0] > size[0] || y[1] < 0 || y[0] > size[1] {
             self.spare.keep(out.geometry);

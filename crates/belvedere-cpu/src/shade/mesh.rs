@@ -7,7 +7,7 @@ use belvedere_core::DVec3;
 use belvedere_scene::{Light, MeshLayer, Relief};
 use glam::Vec3A;
 
-/// Share of the sun that a place with a normal sees.
+/// Share of the sun that a point with a normal sees.
 pub(crate) type Sun<'s> = dyn Fn(DVec3, DVec3) -> f32 + 's;
 
 /// A mesh layer ready for colouring.

@@ -254,7 +254,7 @@ impl SurfacePoint {
     }
 }
 
-/// How much of a pixel the edge of a box covers, at a place on its surface relative to its centre.
+/// How much of a pixel the edge of a box covers, at a point on its surface relative to its centre.
 fn edge_share(shape: &BoxShape, from_centre: DVec3, footprint: f64) -> f32 {
     let local = DVec2::from_angle(-shape.yaw).rotate(from_centre.truncate()).extend(from_centre.z);
     let mut inside = (0.5 * shape.size - local.abs()).to_array();

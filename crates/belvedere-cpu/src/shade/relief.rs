@@ -18,7 +18,7 @@ const SWISS_ALTITUDE: f64 = 0.68;
 const GENTLE: f32 = 1.2;
 const GENTLE_SLOPE: f32 = 0.25;
 
-/// How much more a Swiss relief makes of the openness of a place than the sky does.
+/// How much more a Swiss relief makes of the openness of a point than the sky does.
 const FORM: f32 = 2.0;
 
 /// What a cast shadow leaves of the direct light of a Swiss relief, whose light is a drawing rather than a sun.

@@ -6,7 +6,7 @@ use super::{areas, boxes, builtin, dem, drape, mesh, sea, vectors};
 use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    AutoOrLength, LayerDoc, LineDoc, Origin, PaletteDoc, PaletteName, Paths, PlaceDoc, PointLayerDoc, RouteDoc,
+    AutoOrLength, LayerDoc, LineDoc, Origin, PaletteDoc, PaletteName, Paths, PointLayerDoc, PositionDoc, RouteDoc,
     TerrainDoc,
 };
 use crate::{BelvedereError, Needs, OpenOptions};
@@ -335,9 +335,9 @@ fn layer(
     Ok(Some(Layer { id: doc.id().to_owned(), must_see: doc.must_see(), kind }))
 }
 
-fn position(ground: &Ground<'_>, place: PlaceDoc) -> Result<DVec2, String> {
-    match place {
-        PlaceDoc::Scene(xy) => Ok(DVec2::from_array(xy)),
-        PlaceDoc::Geographic(p) => ground.position_of(p.lon, p.lat),
+fn position(ground: &Ground<'_>, position: PositionDoc) -> Result<DVec2, String> {
+    match position {
+        PositionDoc::Scene(xy) => Ok(DVec2::from_array(xy)),
+        PositionDoc::Geographic(p) => ground.position_of(p.lon, p.lat),
     }
 }

@@ -57,7 +57,7 @@ fn terrain_intent(source: &SourceDocument) -> Result<(), BelvedereError> {
         if !layers.iter().any(LayerDoc::must_see) {
             return Err(fail(
                 &["kind"],
-                "terrain_disocclusion needs features to make way for; set must_see = true for at least one layer",
+                "terrain_disocclusion needs features that must be seen; set must_see = true for at least one layer",
             ));
         }
         super::terrain::check(doc).map_err(|(key, reason)| fail(&[key], &reason))?;

@@ -51,7 +51,7 @@ pub struct Document {
 }
 
 impl Document {
-    /// Whether ground has to make way before anything can be drawn: the scene names what must be seen, not how far the ground moves.
+    /// Whether terrain disocclusion has to be solved before anything can be drawn: the scene names what must be seen, not how far the ground moves.
     pub fn solves_terrain(&self) -> bool {
         self.stage.iter().any(StageDoc::is_terrain_intent)
     }

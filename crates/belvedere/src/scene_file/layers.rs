@@ -160,10 +160,10 @@ pub struct LineDoc {
 pub struct RouteDoc {
     /// Start.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub from: Option<PlaceDoc>,
+    pub from: Option<PositionDoc>,
     /// End.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub to: Option<PlaceDoc>,
+    pub to: Option<PositionDoc>,
     /// Seed of its small random windings.
     #[serde(default)]
     pub seed: u64,
@@ -172,7 +172,7 @@ pub struct RouteDoc {
 /// A position without a height: `[x, y]` or `{ lon, lat }`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
-pub enum PlaceDoc {
+pub enum PositionDoc {
     /// Scene x and y.
     Scene([f64; 2]),
     /// WGS84 degrees.
@@ -189,25 +189,25 @@ pub struct LonLatDoc {
     pub lat: f64,
 }
 
-impl<'de> Deserialize<'de> for PlaceDoc {
+impl<'de> Deserialize<'de> for PositionDoc {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct PlaceVisitor;
-        impl<'de> Visitor<'de> for PlaceVisitor {
-            type Value = PlaceDoc;
+        struct PositionVisitor;
+        impl<'de> Visitor<'de> for PositionVisitor {
+            type Value = PositionDoc;
 
             fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 f.write_str("[x, y] or { lon, lat }")
             }
 
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<PlaceDoc, A::Error> {
-                <[f64; 2]>::deserialize(SeqAccessDeserializer::new(seq)).map(PlaceDoc::Scene)
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<PositionDoc, A::Error> {
+                <[f64; 2]>::deserialize(SeqAccessDeserializer::new(seq)).map(PositionDoc::Scene)
             }
 
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PlaceDoc, A::Error> {
-                LonLatDoc::deserialize(MapAccessDeserializer::new(map)).map(PlaceDoc::Geographic)
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PositionDoc, A::Error> {
+                LonLatDoc::deserialize(MapAccessDeserializer::new(map)).map(PositionDoc::Geographic)
             }
         }
-        deserializer.deserialize_any(PlaceVisitor)
+        deserializer.deserialize_any(PositionVisitor)
     }
 }
 

@@ -19,7 +19,7 @@ pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDo
 pub use intent::{AnimationDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
 pub use layers::{
     AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc, ModelDoc,
-    PlaceDoc, PointLayerDoc, PointStyleDoc, RouteDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc,
+    PointLayerDoc, PointStyleDoc, PositionDoc, RouteDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc,
 };
 pub use mesh::{MeshDoc, MeshStyleDoc, TransformDoc};
 pub(crate) use node::{Node, Value};

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 #[serde(tag = "kind", rename_all = "snake_case")]
 #[expect(clippy::large_enum_variant, reason = "a scene has a handful of stages")]
 pub enum StageDoc {
-    /// The ground makes way for a route.
+    /// The ground moves so that required features are seen.
     TerrainDisocclusion(TerrainStageDoc),
     /// Space is carried onto a B-spline over the reference plane.
     SplineBend(SplineStageDoc),

@@ -58,12 +58,12 @@ pub struct Viewpoint {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Technique {
-    /// A spline, and terrain that makes way as well where that leaves something hidden.
+    /// A spline, and terrain disocclusion as well where that leaves something hidden.
     Auto,
     /// A spline.
     #[default]
     Spline,
-    /// Terrain that makes way.
+    /// Terrain disocclusion.
     Terrain,
     /// Both.
     Both,
@@ -92,7 +92,7 @@ pub struct RevealAnswer {
     pub picture: Picture,
     /// Figures of the search for a view and a spline.
     pub report: RevealReport,
-    /// What the picture shows where the ground makes way.
+    /// What the picture shows under terrain disocclusion.
     pub shares: Option<FinalShares>,
     /// What of the features in the picture stays hidden, part by part.
     pub hidden: Vec<HiddenRun>,
@@ -103,7 +103,7 @@ pub struct RevealAnswer {
 #[derive(Debug, Clone, Serialize)]
 struct ReportFile<'a> {
     program: String,
-    /// The spline; left out where only the ground makes way.
+    /// The spline; left out where only the ground moves.
     #[serde(flatten)]
     report: Option<&'a RevealReport>,
     #[serde(flatten)]
@@ -183,7 +183,7 @@ fn shortfall(visible: f64) -> String {
     format!("{:.1} % of what is in the picture is visible, {:.0} % were wanted", 100.0 * visible, 100.0 * ENOUGH)
 }
 
-/// The session with ground that makes way, beside the spline or in its place.
+/// The session with terrain disocclusion, beside the spline or in its place.
 fn disoccluded(session: &Session, technique: Technique, progress: &Progress) -> Result<Session, BelvedereError> {
     let Some(mut document) = session.resolved().cloned() else { return Ok(session.clone()) };
     if technique == Technique::Terrain {

@@ -35,19 +35,19 @@ pub(crate) struct Batch {
     lower: IntLanes,
     /// Lanes whose triangle is another one.
     odd: usize,
-    odd_lanes: [(usize, OddPlace); LANES],
+    odd_lanes: [(usize, OffGridPoint); LANES],
 }
 
 /// Where a sample lies that is not on half a cell.
 #[derive(Clone, Copy, Default)]
-struct OddPlace {
+struct OffGridPoint {
     node: [i32; 2],
     at: [f32; 2],
     cells_per_px: f32,
 }
 
 /// Where the samples of a batch lie on the ground.
-struct Places {
+struct SamplePositions {
     /// Columns and rows from the node.
     u: Lanes,
     v: Lanes,
@@ -73,7 +73,7 @@ impl Batch {
             step: zero,
             lower: none,
             odd: 0,
-            odd_lanes: [(0, OddPlace::default()); LANES],
+            odd_lanes: [(0, OffGridPoint::default()); LANES],
         }
     }
 
@@ -176,7 +176,7 @@ impl Batch {
         let Some(found) = shader.blocks.find(samples.prim[k]) else { return };
         let spot = GroundSample::new(&found, shader.screen, samples.at(k));
         let (at, cells_per_px) = (spot.at.map(|v| v as f32), spot.cells_per_px() as f32);
-        self.odd_lanes[self.odd] = (self.len, OddPlace { node: GroundSample::node(&found), at, cells_per_px });
+        self.odd_lanes[self.odd] = (self.len, OffGridPoint { node: GroundSample::node(&found), at, cells_per_px });
         self.odd += 1;
         self.out[self.len] = k as u32;
         self.near[self.len] = samples.q[k];
@@ -196,23 +196,23 @@ impl Batch {
 
     #[inline(always)]
     fn shade(&mut self, shader: &Shader<'_>, terrain: &TerrainShade<'_>, samples: &Samples<'_>, painted: &mut Painted) {
-        let places = self.places(shader);
-        let lods = terrain.lods(shader, &places.depth, &places.cells_per_px);
-        let at = self.fixed(&places, terrain);
+        let positions = self.positions(shader);
+        let lods = terrain.lods(shader, &positions.depth, &positions.cells_per_px);
+        let at = self.fixed(&positions, terrain);
         let inputs = terrain.inputs();
         let colors = terrain.lit.colors_of(&at, &lods, self.len, &inputs);
-        let color = terrain.colors(shader, &colors, &lods, &places.depth);
+        let color = terrain.colors(shader, &colors, &lods, &positions.depth);
         painted.set_roots(&self.out[..self.len], &color, self.layer as u32 + 1);
         if terrain.is_covered(shader) {
-            self.cover(shader, terrain, &places, &at, samples, painted);
+            self.cover(shader, terrain, &positions, &at, samples, painted);
         }
     }
 
     /// Where the samples lie.
     #[inline(always)]
-    fn places(&mut self, shader: &Shader<'_>) -> Places {
+    fn positions(&mut self, shader: &Shader<'_>) -> SamplePositions {
         let zero = [0.0; LANES];
-        let mut out = Places { u: zero, v: zero, cells_per_px: zero, depth: zero };
+        let mut out = SamplePositions { u: zero, v: zero, cells_per_px: zero, depth: zero };
         for i in 0..LANES {
             out.depth[i] = shader.screen.depth_of(self.near[i]);
         }
@@ -229,7 +229,7 @@ impl Batch {
 
     /// Barycentric weights on the image, made those of the ground by nearness.
     #[inline(always)]
-    fn weigh(&self, out: &mut Places) {
+    fn weigh(&self, out: &mut SamplePositions) {
         let Self { at: [xs, ys], x: [x0, x1, x2], y: [y0, y1, y2], q: [q0, q1, q2], step, lower, .. } = self;
         for i in 0..LANES {
             let x = [(x0[i] - xs[i]) as f32, (x1[i] - xs[i]) as f32, (x2[i] - xs[i]) as f32];
@@ -249,13 +249,13 @@ impl Batch {
 
     /// Columns and rows on the ground, [`CELL`] steps to a cell.
     #[inline(always)]
-    fn fixed(&self, places: &Places, terrain: &TerrainShade<'_>) -> [IntLanes; 2] {
+    fn fixed(&self, positions: &SamplePositions, terrain: &TerrainShade<'_>) -> [IntLanes; 2] {
         let [mut columns, mut rows] = [[0; LANES]; 2];
         let last = [terrain.hf.cols(), terrain.hf.rows()].map(|n| (n - 1) as i32 * CELL);
         for i in 0..LANES {
             let (c, r) = (self.node[0][i] * CELL, self.node[1][i] * CELL);
-            columns[i] = c.wrapping_add(nearest(places.u[i] * CELL as f32)).clamp(0, last[0]);
-            rows[i] = r.wrapping_add(nearest(places.v[i] * CELL as f32)).clamp(0, last[1]);
+            columns[i] = c.wrapping_add(nearest(positions.u[i] * CELL as f32)).clamp(0, last[0]);
+            rows[i] = r.wrapping_add(nearest(positions.v[i] * CELL as f32)).clamp(0, last[1]);
         }
         [columns, rows]
     }
@@ -267,18 +267,18 @@ impl Batch {
         &self,
         shader: &Shader<'_>,
         terrain: &TerrainShade<'_>,
-        places: &Places,
+        positions: &SamplePositions,
         at: &[IntLanes; 2],
         samples: &Samples<'_>,
         painted: &mut Painted,
     ) {
-        let [near, far] = terrain.footprints(shader, &places.depth);
+        let [near, far] = terrain.footprints(shader, &positions.depth);
         let inputs = terrain.inputs();
         for (i, &k) in self.out[..self.len].iter().enumerate() {
             let k = k as usize;
             let [c, r] = [0, 1].map(|axis| f64::from(self.node[axis][i]));
-            let g = DVec2::new(c + f64::from(places.u[i]), r + f64::from(places.v[i]));
-            let square = places.cells_per_px[i].max(near[i]).min(far[i]);
+            let g = DVec2::new(c + f64::from(positions.u[i]), r + f64::from(positions.v[i]));
+            let square = positions.cells_per_px[i].max(near[i]).min(far[i]);
             let ground = || terrain.lit.sample([at[0][i], at[1][i]], crate::shade::lod(square), &inputs);
             let print = || {
                 let axes = shader
@@ -291,7 +291,7 @@ impl Batch {
             };
             let side = f64::from(square.sqrt());
             if let Some((c, id)) = terrain.covered(shader, g, side, print, ground, pixel_of(samples.at(k))) {
-                let c = shader.sky.through_air(c, places.depth[i]);
+                let c = shader.sky.through_air(c, positions.depth[i]);
                 painted.set(k, c, id.unwrap_or(self.layer as u32) + 1);
             }
         }
@@ -382,7 +382,7 @@ mod tests {
         Scene { layers: vec![layer], ..Scene::default() }
     }
 
-    /// Square roots of colours may differ by a step of an 8-bit picture: places of both ways are rounded apart.
+    /// Square roots of colours may differ by a step of an 8-bit picture: points of both ways are rounded apart.
     const STEP: f32 = 1.0 / 255.0;
 
     #[test]

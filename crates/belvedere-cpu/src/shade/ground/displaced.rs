@@ -15,7 +15,7 @@ const STEP: f64 = 1.0 / 4096.0;
 /// Nodes along a side of the squares that are compared.
 const SQUARE: usize = 64;
 
-/// How far beyond its own nodes the light of a place looks for its surroundings, nodes: averages over 32 nodes, made smooth
+/// How far beyond its own nodes the light of a point looks for its surroundings, nodes: averages over 32 nodes, made smooth
 /// from level to level.
 const SURROUNDINGS: usize = 256;
 
@@ -131,7 +131,7 @@ impl Squares {
         !self.differ.contains(&true)
     }
 
-    /// Whether the light of places in these columns and rows, first and last, leans on a square that differs.
+    /// Whether the light of points in these columns and rows, first and last, leans on a square that differs.
     fn touch(&self, reach: [[usize; 2]; 2]) -> bool {
         let [columns, rows] =
             reach.map(|[from, to]| from.saturating_sub(SURROUNDINGS) / SQUARE..(to + SURROUNDINGS) / SQUARE + 1);

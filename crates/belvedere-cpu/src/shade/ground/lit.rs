@@ -6,7 +6,7 @@
 
 use crate::shade::color::Rgb;
 use crate::shade::ground::patch::{LightingInputs, Patch};
-use crate::shade::ground::tiles::{self, Around, Node, Tile, Tiles};
+use crate::shade::ground::tiles::{self, FourNodes, Node, Tile, Tiles};
 use crate::shade::ground::upsample::CoarseColors;
 use crate::shade::relief::ReliefLight;
 use crate::simd::{self, IntLanes, Kernel, LANES, Lanes, nearest};
@@ -21,7 +21,7 @@ const BRIGHTEST: f32 = 1.25;
 /// What a weighted sum gives for square root 1 of linear light.
 const ONE: f32 = 256.0 * 255.0 / BRIGHTEST;
 
-/// Colour and light at a place of the ground.
+/// Colour and light at a point of the ground.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Lit {
     /// Square roots of linear light.
@@ -72,7 +72,7 @@ impl LitGround {
         self.parts.retain(&keep);
     }
 
-    /// Square roots of the lit colour around `n` places, see [`LitGround::color`].
+    /// Square roots of the lit colour around `n` points, see [`LitGround::color`].
     /// * `at`: columns and rows, [`tiles::CELL`] steps to a cell.
     #[inline(always)]
     pub(crate) fn colors_of(
@@ -86,7 +86,7 @@ impl LitGround {
         let (mut k, mut x, mut y, mut first) = ([0; LANES], [0; LANES], [0; LANES], [0; LANES]);
         for i in 0..LANES {
             k[i] = least(lods[i] >> 8, top);
-            (x[i], y[i]) = (tiles::place(at[0][i], k[i]), tiles::place(at[1][i], k[i]));
+            (x[i], y[i]) = (tiles::level_position(at[0][i], k[i]), tiles::level_position(at[1][i], k[i]));
             first[i] = tiles::first_of(x[i], y[i]);
         }
         let mut nodes = [[[0; LANES]; 2]; 4];
@@ -113,7 +113,7 @@ impl LitGround {
         out
     }
 
-    /// Square roots of the lit colour around a place.
+    /// Square roots of the lit colour around a point.
     /// * `lod`: level of averages, 256 steps to a level.
     pub(crate) fn color(&self, at: [i32; 2], lod: u32, inputs: &LightingInputs<'_>) -> [f32; 3] {
         let places = [0, 1].map(|axis| [at[axis]; LANES]);
@@ -121,7 +121,7 @@ impl LitGround {
         colors.between(0, (lod & 255) as f32 / 256.0)
     }
 
-    /// Colour and light around a place, see [`LitGround::color`].
+    /// Colour and light around a point, see [`LitGround::color`].
     pub(crate) fn sample(&self, at: [i32; 2], lod: u32, inputs: &LightingInputs<'_>) -> Lit {
         let lod = lod.min((self.parts.top() as u32) << 8);
         let (k, share) = ((lod >> 8) as usize, lod & 255);
@@ -175,14 +175,14 @@ fn least(a: u32, b: u32) -> u32 {
     if a < b { a } else { b }
 }
 
-/// Square roots of the colours of two levels, place by place: red and blue in 16 bits each, and green.
+/// Square roots of the colours of two levels, point by point: red and blue in 16 bits each, and green.
 pub(crate) struct Colors {
     fine: [[u32; LANES]; 2],
     coarse: [[u32; LANES]; 2],
 }
 
 impl Colors {
-    /// Square roots of linear red, green, blue at place `i`, a share of the way to the coarser level.
+    /// Square roots of linear red, green, blue at point `i`, a share of the way to the coarser level.
     #[inline(always)]
     pub(crate) fn between(&self, i: usize, share: f32) -> [f32; 3] {
         let (even, odd) = ([self.fine[0][i], self.coarse[0][i]], [self.fine[1][i], self.coarse[1][i]]);
@@ -201,7 +201,7 @@ fn between(fine: u32, coarse: u32, share: f32) -> f32 {
 }
 
 /// Adds the values of four nodes, weighted with whole numbers that sum up to `total`.
-fn add(around: &Around<'_>, total: u32, sum: &mut [u16; 8]) {
+fn add(around: &FourNodes<'_>, total: u32, sum: &mut [u16; 8]) {
     let (u, v) = (around.east_share, around.south_share);
     let (east, south, both) = ((u * total) >> 8, (v * total) >> 8, (u * v * total) >> 16);
     let weights = [total + both - east - south, east - both, south - both, both];
@@ -447,7 +447,7 @@ mod tests {
     fn averages_match_the_mean_of_what_they_stand_for() {
         let hf = hills(257, 257);
         with_inputs(&hf, &Palette::Alpine, Relief::Swiss, |ground, m| {
-            // A place at the middle of a node of level 5, against the mean over its 32 x 32 nodes.
+            // A point at the middle of a node of level 5, against the mean over its 32 x 32 nodes.
             let (c, r, side) = (96, 64, 32i32);
             let mut mean = [0.0f32; 8];
             let values = |lit: Lit, color: Rgb| {

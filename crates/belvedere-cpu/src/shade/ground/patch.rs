@@ -3,7 +3,7 @@
 
 use crate::shade::ground::palette::Tint;
 use crate::shade::ground::planes::Planes;
-use crate::shade::ground::rows::Between;
+use crate::shade::ground::rows::RefinedRows;
 use crate::shade::ground::shadow::Shadows;
 use crate::shade::ground::surface::{MipPyramid, Surface};
 use crate::shade::ground::tiles::Line;
@@ -79,18 +79,18 @@ impl Patch {
         for (n, r) in rows.iter().enumerate() {
             let all = n * columns.count..(n + 1) * columns.count;
             let at = all.start + inside.start;
-            let places = at..at + inside.len();
+            let range = at..at + inside.len();
             let Shapes { shape, near: [height, asked], map, sun } = &mut shapes;
             if let Some(shadows) = m.shadows {
-                shadows.share_row(k, r, first, &mut sun[places.clone()]);
+                shadows.share_row(k, r, first, &mut sun[range.clone()]);
             }
-            let [x, y, z] = shape.each_mut().map(|plane| &mut plane[places.clone()]);
-            row.fill(k, r, [x, y, z, &mut height[places.clone()], &mut asked[places.clone()]]);
+            let [x, y, z] = shape.each_mut().map(|plane| &mut plane[range.clone()]);
+            row.fill(k, r, [x, y, z, &mut height[range.clone()], &mut asked[range.clone()]]);
             for plane in shape.iter_mut().chain([height, asked, sun]) {
                 columns.repeat(&mut plane[all.clone()]);
             }
             if let (Some(row), Some(shape)) = (&mut map_row, map) {
-                let [x, y, z] = shape.each_mut().map(|plane| &mut plane[places.clone()]);
+                let [x, y, z] = shape.each_mut().map(|plane| &mut plane[range.clone()]);
                 let [height, asked] = unused.each_mut().map(|plane| &mut plane[..inside.len()]);
                 row.fill(k, r, [x, y, z, height, asked]);
                 for plane in shape {
@@ -130,21 +130,21 @@ struct Row<'a> {
     shape: Planes,
     near: Planes,
     /// The surroundings of levels finer than those stored.
-    between: Option<Between>,
+    refined: Option<RefinedRows>,
 }
 
 impl<'a> Row<'a> {
     fn new(ground: GroundShape<'a>, k: usize, first: usize, n: usize) -> Self {
-        let between = (k < ground.means.first).then(|| Between::new(ground.means, k, first, n));
-        Self { ground, first, shape: Planes::new(n), near: Planes::new(n), between }
+        let refined = (k < ground.means.first).then(|| RefinedRows::new(ground.means, k, first, n));
+        Self { ground, first, shape: Planes::new(n), near: Planes::new(n), refined }
     }
 
     /// Writes row `row` of level `k`: dz/dx, dz/dy, height, and what [`Shapes`] wants to know of the surroundings.
     fn fill(&mut self, k: usize, row: usize, to: [&mut [f32]; 5]) {
-        let Self { ground: GroundShape { surface, means }, first, shape, near, between } = self;
-        let surroundings = if let Some(between) = between {
+        let Self { ground: GroundShape { surface, means }, first, shape, near, refined } = self;
+        let surroundings = if let Some(refined) = refined {
             surface.mean_row(k, row, *first, shape);
-            between.row(means, row, near);
+            refined.row(means, row, near);
             near
         } else {
             means.row(k, row, *first, shape);

@@ -31,7 +31,7 @@ impl Planes {
         (x[i], y[i], z[i], self.w[i]) = (v.x, v.y, v.z, v.w);
     }
 
-    /// The same places of all planes.
+    /// The same points of all planes.
     #[inline(always)]
     pub(crate) fn part(&mut self, places: Range<usize>) -> [&mut [f32]; 4] {
         let [x, y, z] = &mut self.xyz;

@@ -5,7 +5,7 @@ use crate::shade::ground::surface::{MipPyramid, tap};
 use crate::simd::{self, Kernel};
 
 /// Averages of the finest stored level at nodes of a finer one, row after row.
-pub(crate) struct Between {
+pub(crate) struct RefinedRows {
     /// Nodes of the finer level to one of the stored.
     step: f32,
     /// Nodes west and east of each column, and the share of the way.
@@ -14,7 +14,7 @@ pub(crate) struct Between {
     lines: [(usize, Planes); 2],
 }
 
-impl Between {
+impl RefinedRows {
     /// * `k`: the finer level, of whose columns there are `n` from `first` on.
     pub(crate) fn new(means: &MipPyramid, k: usize, first: usize, n: usize) -> Self {
         let step = 1.0 / (1u32 << (means.first - k)) as f32;
@@ -80,9 +80,9 @@ mod tests {
         let means = MipPyramid::new(&Surface::of_map(&hf));
         assert_eq!(means.first, 1);
         let (first, n) = (5, 70);
-        let (mut between, mut out) = (Between::new(&means, 0, first, n), Planes::new(n));
+        let (mut refined, mut out) = (RefinedRows::new(&means, 0, first, n), Planes::new(n));
         for row in (0..rows).chain((0..rows).rev()).chain([40, 3, 3, 4, 60, 0]) {
-            between.row(&means, row, &mut out);
+            refined.row(&means, row, &mut out);
             for i in 0..n {
                 let want = means.at(1, (first + i) as f32, row as f32);
                 assert!((out.get(i) - want).abs().max_element() < 1e-3, "{row}, {i}: {} {want}", out.get(i));

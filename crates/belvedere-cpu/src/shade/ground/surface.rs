@@ -16,7 +16,7 @@ const MOST_NODES: usize = 1 << 23;
 /// Grounds up to this many nodes store averages from level 1 up.
 const SMALL_GROUND: usize = 17 << 20;
 
-/// Levels over which the surroundings of a place are averaged, and their share in its openness.
+/// Levels over which the surroundings of a point are averaged, and their share in its openness.
 const SURROUNDINGS: [(usize, f32); 2] = [(3, 0.5), (5, 0.5)];
 /// Share of the nearest surroundings, those of the finest stored level.
 const NEAR_SHARE: f32 = 0.3;
@@ -179,7 +179,7 @@ impl<'a> Surface<'a> {
     }
 
     /// [`Surface::mean_row`] of any nodes, from column `first`.
-    /// * `places`: where they go.
+    /// * `points`: where they go.
     fn mean_of_each(&self, k: usize, row: usize, first: usize, out: &mut Planes, places: Range<usize>) {
         let (cols, rows, side) = (self.hf.cols(), self.hf.rows(), 1 << k);
         let (from, to) = (first * side, ((first + places.len()) * side).min(cols));
@@ -357,7 +357,7 @@ impl MipPyramid {
         [level.cols, level.rows]
     }
 
-    /// How open places are, see [`Openness::at`].
+    /// How open points are, see [`Openness::at`].
     #[inline(always)]
     pub(crate) fn openness(&self) -> Openness {
         let per_m =
@@ -369,7 +369,7 @@ impl MipPyramid {
     }
 }
 
-/// Weights of the surroundings of a place, per unit of height.
+/// Weights of the surroundings of a point, per unit of height.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Openness {
     near: f32,
@@ -377,7 +377,7 @@ pub(crate) struct Openness {
 }
 
 impl Openness {
-    /// How far a place at `height` stands above its surroundings at three scales, as the share of the sky that they leave:
+    /// How far a point at `height` stands above its surroundings at three scales, as the share of the sky that they leave:
     /// about 0.8..=1.2, 1 on level ground. Our stand-in for sky visibility.
     /// * `near`, `asked`: height and what the surroundings ask for, of the finest stored level there.
     #[inline(always)]

@@ -112,7 +112,7 @@ impl<'a> TerrainShade<'a> {
         !self.drapes.is_empty() || !shader.areas.is_empty() || shader.casters.is_some()
     }
 
-    /// Colour of the ground at a place of which a pixel covers a square of side `fp`, and the area it lies in.
+    /// Colour of the ground at a point of which a pixel covers a square of side `fp`, and the area it lies in.
     /// * `axes`: see [`Footprint::new`].
     pub(crate) fn shade_at(
         &self,
@@ -143,7 +143,7 @@ impl<'a> TerrainShade<'a> {
         self.light.warm * (lit.direct * left) + self.light.cool * lit.sky
     }
 
-    /// Share of the sun that boxes and meshes leave to a place of which a pixel covers `print`.
+    /// Share of the sun that boxes and meshes leave to a point of which a pixel covers `print`.
     fn sun_on(&self, shader: &Shader<'_>, xy: DVec2, print: &Footprint) -> f32 {
         let Some(casters) = &shader.casters else { return 1.0 };
         let Some(z) = self.hf.surface_at(xy) else { return 1.0 };
@@ -218,7 +218,7 @@ impl<'a> TerrainShade<'a> {
     }
 }
 
-/// Colour of an area at a place.
+/// Colour of an area at a point.
 /// * `inside`: pixels from its border.
 fn fill(area: &AreaMap, xy: DVec2, inside: f32, print: &Footprint) -> Rgb {
     // Over the first pixel and a half.

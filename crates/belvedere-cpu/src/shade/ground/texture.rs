@@ -5,7 +5,7 @@ use belvedere_core::DVec2;
 /// Size of the grain, pixels: much finer would shimmer.
 const GRAIN_PX: f64 = 6.0;
 
-/// A stipple in -1..=1 at a place of the map.
+/// A stipple in -1..=1 at a point of the map.
 /// * `px`: longest way on the map that a pixel covers there, scene units.
 ///
 /// Two grains of sizes a power of two apart fade into each other, so that the grain neither grows nor jumps when the

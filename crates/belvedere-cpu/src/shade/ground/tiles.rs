@@ -54,8 +54,8 @@ pub(crate) struct Tiles {
     bytes: AtomicUsize,
 }
 
-/// The nodes around a place, west and east in a row, and its way from the first towards the others in 1/256.
-pub(crate) struct Around<'a> {
+/// The nodes around a point, west and east in a row, and its way from the first towards the others in 1/256.
+pub(crate) struct FourNodes<'a> {
     pub(crate) north: &'a [Node; 2],
     pub(crate) south: &'a [Node; 2],
     pub(crate) east_share: u32,
@@ -79,8 +79,8 @@ impl Tiles {
     }
 
     /// Columns and rows that the nodes of a tile repeat.
-    pub(crate) fn repeated(&self, k: usize, tile: [usize; 2]) -> [Repeated; 2] {
-        [0, 1].map(|axis| Repeated { from: tile[axis] * SIDE, nodes: self.levels[k].nodes[axis] })
+    pub(crate) fn repeated(&self, k: usize, tile: [usize; 2]) -> [RepeatedNodes; 2] {
+        [0, 1].map(|axis| RepeatedNodes { from: tile[axis] * SIDE, nodes: self.levels[k].nodes[axis] })
     }
 
     /// Bytes of the tiles made so far.
@@ -94,7 +94,7 @@ impl Tiles {
         self.bytes.load(Ordering::Relaxed) > MOST_BYTES
     }
 
-    /// Nodes around a place; `None` off the ground.
+    /// Nodes around a point; `None` off the ground.
     /// * `at`: column and row of level 0, [`CELL`] steps to a cell;
     /// * `make`: makes a tile from the number of its level and its column and row.
     #[inline(always)]
@@ -103,11 +103,11 @@ impl Tiles {
         k: usize,
         at: [i32; 2],
         make: impl FnOnce(usize, [usize; 2]) -> Box<Tile>,
-    ) -> Option<Around<'_>> {
-        let (x, y) = (place(at[0], k as u32), place(at[1], k as u32));
+    ) -> Option<FourNodes<'_>> {
+        let (x, y) = (level_position(at[0], k as u32), level_position(at[1], k as u32));
         let tile = self.tile([k as u32, x / SPAN, y / SPAN], make)?;
         let first = first_of(x, y) as usize;
-        Some(Around {
+        Some(FourNodes {
             north: tile[first..].first_chunk()?,
             south: tile[first + STRIDE..].first_chunk()?,
             east_share: x & 255,
@@ -159,21 +159,21 @@ impl Tiles {
     }
 }
 
-/// Place along an axis of level `k`, [`CELL`] steps from node to node.
+/// Position along an axis of level `k`, [`CELL`] steps from node to node.
 /// * `at`: the same of level 0.
 #[inline(always)]
-pub(crate) fn place(at: i32, k: u32) -> u32 {
+pub(crate) fn level_position(at: i32, k: u32) -> u32 {
     // Node i of level k lies at (i + 0.5) 2^k - 0.5 of level 0, and is number i + 1 with the rim.
     ((at.wrapping_add(CELL / 2) >> (k & 31)) + CELL / 2) as u32
 }
 
-/// The north-western of the nodes around a place of a level, among those of its tile.
+/// The north-western of the nodes around a point of a level, among those of its tile.
 #[inline(always)]
 pub(crate) fn first_of(x: u32, y: u32) -> u32 {
     (y / CELL as u32) % SIDE as u32 * STRIDE as u32 + (x / CELL as u32) % SIDE as u32
 }
 
-/// The nodes around a place of a tile: north-west, north-east, south-west, south-east; both words of each.
+/// The nodes around a point of a tile: north-west, north-east, south-west, south-east; both words of each.
 #[inline(always)]
 pub(crate) fn around(tile: &Tile, first: usize) -> Option<[[u32; 2]; 4]> {
     let ([a, b], [c, d]) = (tile[first..].first_chunk()?, tile[first + STRIDE..].first_chunk()?);
@@ -220,12 +220,12 @@ impl Line {
 
 /// The nodes along an axis that the nodes of a tile repeat.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Repeated {
+pub(crate) struct RepeatedNodes {
     from: usize,
     nodes: usize,
 }
 
-impl Repeated {
+impl RepeatedNodes {
     pub(crate) fn all(self) -> Line {
         Line { first: self.from as isize - 1, count: STRIDE, last: self.nodes - 1 }
     }
@@ -253,7 +253,7 @@ mod tests {
     #[test]
     fn lines_repeat_the_ends_of_the_ground() {
         for (from, nodes) in [(0, 5), (0, 200), (32, 33), (64, 70), (32, 32), (0, 1)] {
-            for line in [Repeated { from, nodes }.all(), Repeated { from, nodes }.parents()] {
+            for line in [RepeatedNodes { from, nodes }.all(), RepeatedNodes { from, nodes }.parents()] {
                 let (first, inside) = line.inside();
                 let mut values = vec![-1.0; line.count];
                 inside.clone().for_each(|i| values[i] = (first + i - inside.start) as f32);

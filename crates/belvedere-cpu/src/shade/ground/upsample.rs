@@ -1,13 +1,13 @@
 //! Lit colours of a level, brought to the nodes of the next finer one.
 
 use crate::shade::ground::patch::{LightingInputs, Patch};
-use crate::shade::ground::tiles::{NODES, Repeated, STRIDE};
+use crate::shade::ground::tiles::{NODES, RepeatedNodes, STRIDE};
 use crate::simd::{LANES, Lanes};
 
 /// Nodes along a side: half as many as those of a tile, and two more around.
 const SIDE: usize = STRIDE / 2 + 3;
 
-/// Weights of the node over a finer one, and of those before and after it, for the finer one's place: even or odd. Between
+/// Weights of the node over a finer one, and of those before and after it, for the finer one's position: even or odd. Between
 /// such nodes, a line errs from one between coarse nodes by as much at the coarse nodes as halfway to the next fine ones, and
 /// by less than anywhere else.
 const WEIGHTS: [[f32; 3]; 2] = [[0.1875, 0.875, -0.0625], [-0.0625, 0.875, 0.1875]];
@@ -16,7 +16,7 @@ const WEIGHTS: [[f32; 3]; 2] = [[0.1875, 0.875, -0.0625], [-0.0625, 0.875, 0.187
 pub(crate) struct CoarseColors {
     /// Rows of [`SIDE`], plane by plane.
     planes: [Vec<f32>; 3],
-    fine: [Repeated; 2],
+    fine: [RepeatedNodes; 2],
 }
 
 /// The same at the nodes of the tile, padded to whole lanes.
@@ -25,7 +25,7 @@ pub(crate) struct FineColors([Vec<f32>; 3]);
 impl CoarseColors {
     /// * `k`: the level;
     /// * `fine`: columns and rows of the tile.
-    pub(crate) fn new(m: &LightingInputs<'_>, k: usize, fine: [Repeated; 2]) -> Self {
+    pub(crate) fn new(m: &LightingInputs<'_>, k: usize, fine: [RepeatedNodes; 2]) -> Self {
         let patch = Patch::new(m, k, fine[0].parents(), fine[1].parents());
         let mut planes = [0; 3].map(|_| Vec::with_capacity(SIDE * SIDE + LANES));
         for nodes in patch.nodes() {
@@ -74,7 +74,7 @@ fn between_rows(rows: &[f32], [a, b, c]: [f32; 3]) -> [f32; SIDE] {
 }
 
 #[inline(always)]
-fn finer_row(columns: &Repeated, row: &[f32; SIDE], out: &mut [f32]) {
+fn finer_row(columns: &RepeatedNodes, row: &[f32; SIDE], out: &mut [f32]) {
     const N: usize = SIDE - 2;
     let [mut even, mut odd] = [[0.0; N]; 2];
     let [[a, b, c], [d, e, f]] = WEIGHTS;

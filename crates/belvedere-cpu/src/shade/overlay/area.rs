@@ -36,7 +36,7 @@ struct Edge {
     feature: u32,
 }
 
-/// Where a place lies from a border.
+/// Where a point lies from a border.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Border {
     /// Distance, scene units, positive inside.

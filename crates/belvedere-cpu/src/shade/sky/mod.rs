@@ -37,10 +37,10 @@ const HALF_A_STEP: f32 = 0.5 / 255.0;
 pub(crate) const LANES: usize = 32;
 
 /// Ends of the rows of [`LANES`] pixels that are stored together.
-const PLACES: usize = PIXELS / LANES + 1;
+const POINTS: usize = PIXELS / LANES + 1;
 
 /// How far a row of samples may be off a line between its ends to be coloured along it: square roots of colours, less than half
-/// a step of an 8-bit picture, and places in the table.
+/// a step of an 8-bit picture, and positions in the table.
 const EVEN: f32 = 0.4 / 255.0;
 const EVEN_OFF: f32 = 0.25;
 
@@ -49,7 +49,7 @@ const THICKEST: f32 = 0.54;
 
 /// Steps of the table of sky colours per unit of the sine of the elevation.
 const STEPS: f32 = 512.0;
-/// Last place in it.
+/// Last position in it.
 const MOST: f32 = 2.0 * STEPS - 0.01;
 
 /// Colours of the air.
@@ -119,7 +119,7 @@ impl Sky {
         root * root
     }
 
-    /// Square roots of [`Sky::at`] for many places, fixed-point steps.
+    /// Square roots of [`Sky::at`] for many points, fixed-point steps.
     #[inline(always)]
     pub(crate) fn paint(&self, x: &[i32], y: &[i32], [red, green, blue]: [&mut [f32]; 3]) {
         debug_assert!(x.len() == y.len() && x.len() == red.len());
@@ -141,41 +141,41 @@ impl Sky {
     /// Colours along a row of [`LANES`] pixels, if they change evenly.
     /// * `end`: where the last row ended.
     #[inline(always)]
-    pub(crate) fn line(&self, x: i32, y: i32, end: &mut Option<(i32, Place)>) -> Option<Line> {
+    pub(crate) fn line(&self, x: i32, y: i32, end: &mut Option<(i32, SkyPoint)>) -> Option<Line> {
         if !self.even {
             return None;
         }
         // No closures: they would be compiled apart, for the oldest processors.
         let next = x + LANES as i32 * SUB;
         let from = match *end {
-            Some((at, place)) if at == x => place,
-            _ => self.root_at(self.place([x, y])),
+            Some((at, point)) if at == x => point,
+            _ => self.root_at(self.table_position([x, y])),
         };
-        let to = self.root_at(self.place([next, y]));
+        let to = self.root_at(self.table_position([next, y]));
         *end = Some((next, to));
         from.line_to(&to)
     }
 
     /// Places along a row, [`LANES`] pixels apart, and what the table says there; `None` if colours do not change evenly.
     #[inline(always)]
-    pub(crate) fn places(&self, x: i32, y: i32) -> Option<[Place; PLACES]> {
+    pub(crate) fn points(&self, x: i32, y: i32) -> Option<[SkyPoint; POINTS]> {
         if !self.even {
             return None;
         }
-        let mut at = [0.0; PLACES.next_power_of_two()];
+        let mut at = [0.0; POINTS.next_power_of_two()];
         for (i, at) in at.iter_mut().enumerate() {
-            *at = self.place([x + i as i32 * LANES as i32 * SUB, y]);
+            *at = self.table_position([x + i as i32 * LANES as i32 * SUB, y]);
         }
-        let mut out = [Place { at: 0.0, root: [0.0; 4] }; PLACES];
+        let mut out = [SkyPoint { at: 0.0, root: [0.0; 4] }; POINTS];
         for (out, at) in out.iter_mut().zip(at) {
             *out = self.root_at(at);
         }
         Some(out)
     }
 
-    /// What the table says at a place.
+    /// What the table says at a point.
     #[inline(always)]
-    fn root_at(&self, at: f32) -> Place {
+    fn root_at(&self, at: f32) -> SkyPoint {
         // Places are not negative: this is the whole number below.
         let below = at as i32;
         let ([low, change], share) = (&self.steps[below as usize & (2 * STEPS as usize - 1)], at - below as f32);
@@ -183,12 +183,12 @@ impl Sky {
         for k in 0..4 {
             root[k] = low[k] + share * change[k];
         }
-        Place { at, root }
+        SkyPoint { at, root }
     }
 
-    /// Place of a sample in the table.
+    /// Position of a sample in the table.
     #[inline(always)]
-    fn place(&self, [x, y]: [i32; 2]) -> f32 {
+    fn table_position(&self, [x, y]: [i32; 2]) -> f32 {
         let at = (self.sine([x as f32 * (1.0 / SUB as f32), y as f32 * (1.0 / SUB as f32)]) + 1.0) * STEPS;
         let at = if at > 0.0 { at } else { 0.0 };
         if at < MOST { at } else { MOST }
@@ -201,7 +201,7 @@ impl Sky {
         py[..y.len()].copy_from_slice(y);
         let (mut below, mut share, mut threshold) = ([0; LANES], [0.0; LANES], [0.0; LANES]);
         for i in 0..LANES {
-            let at = self.place([px[i], py[i]]);
+            let at = self.table_position([px[i], py[i]]);
             // On a step, either of the two beside it will do.
             below[i] = nearest(at - 0.5);
             share[i] = at - below[i] as f32;
@@ -258,15 +258,15 @@ impl Sky {
     }
 }
 
-/// A place in the table of colours, and square roots of the colour there.
+/// A point in the table of colours, and square roots of the colour there.
 #[derive(Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct SkyPoint {
     at: f32,
     root: [f32; 4],
 }
 
-impl Place {
-    /// The line to a place [`LANES`] pixels further, if colours change evenly up to there.
+impl SkyPoint {
+    /// The line to a point [`LANES`] pixels further, if colours change evenly up to there.
     #[inline(always)]
     pub(crate) fn line_to(&self, to: &Self) -> Option<Line> {
         let mut change = [0.0; 4];

@@ -29,14 +29,14 @@ impl Kernel for Store<'_> {
         let (encoder, rows) = (Encoder::new(), [y; LANES]);
         let (mut planes, threshold) = ([[0; PIXELS]; 3], thresholds(x, y));
         for (i, out) in out.chunks_mut(PIXELS).enumerate() {
-            let places = sky.places(x + (i * PIXELS) as i32 * SUB, y);
+            let points = sky.points(x + (i * PIXELS) as i32 * SUB, y);
             for j in 0..out.len().div_ceil(LANES) {
                 let x = x + (i * PIXELS + j * LANES) as i32 * SUB;
                 let whole = (j + 1) * LANES <= out.len();
                 let mut roots = [[0.0; LANES]; 3];
                 let [red, green, blue] = &mut roots;
-                let line = match &places {
-                    Some(places) if whole => places[j].line_to(&places[j + 1]),
+                let line = match &points {
+                    Some(points) if whole => points[j].line_to(&points[j + 1]),
                     _ => None,
                 };
                 let ends = match line {
