@@ -83,15 +83,19 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     ),
 ];
 
-/// Normal and build dependencies of every workspace crate: (workspace, external).
-fn edges() -> BTreeMap<String, (Vec<String>, Vec<String>)> {
+fn metadata() -> serde_json::Value {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--format-version", "1", "--no-deps", "--offline"])
         .current_dir(belvedere_testkit::workspace_root())
         .output()
         .expect("cargo metadata runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).expect("cargo metadata prints JSON");
+    serde_json::from_slice(&output.stdout).expect("cargo metadata prints JSON")
+}
+
+/// Normal and build dependencies of every workspace crate: (workspace, external).
+fn edges() -> BTreeMap<String, (Vec<String>, Vec<String>)> {
+    let metadata = metadata();
     let packages = metadata["packages"].as_array().expect("packages");
     packages
         .iter()
@@ -146,4 +150,14 @@ fn a_forbidden_edge_is_found() {
     edges.get_mut("belvedere-core").expect("core").0.push("belvedere-io".to_owned());
     edges.get_mut("belvedere-cli").expect("cli").1.push("tiff".to_owned());
     assert_eq!(violations(&edges).len(), 2);
+}
+
+#[test]
+fn cargo_run_means_the_program() {
+    let metadata = metadata();
+    let default = metadata["workspace_default_members"].as_array().expect("default members");
+    let packages = metadata["packages"].as_array().expect("packages").iter().filter(|p| default.contains(&p["id"]));
+    let targets = packages.flat_map(|p| p["targets"].as_array().expect("targets"));
+    let programs: Vec<_> = targets.filter(|t| t["kind"][0] == "bin").map(|t| &t["name"]).collect();
+    assert_eq!(programs, ["belvedere"]);
 }
