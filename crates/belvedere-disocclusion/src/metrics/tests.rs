@@ -78,12 +78,9 @@ fn rays_find_what_a_hundred_thousand_steps_find() {
             let eye = field.scene_from_grid(eye_grid).extend(1250.0 + r(4, 100.0));
             let sight = sight(&field, eye);
             let bilinear = |g: DVec2| field.surface_at(g).map(|h| h + delta.sample(field.scene_from_grid(g)).unwrap());
-            let facets = |g: DVec2| displaced.surface_at(g);
-            let grounds: [(Judge<'_>, &dyn Fn(DVec2) -> Option<f64>); 2] = [
-                (Judge::bilinear(&field, &delta, &sight), &bilinear),
-                (Judge::faceted(&field, &delta, &sight), &facets),
-            ];
-            for (judge, height) in grounds {
+            for is_faceted in [false, true] {
+                let judge = if is_faceted { Judge::faceted } else { Judge::bilinear }(&field, &delta, &sight);
+                let height = |g: DVec2| if is_faceted { displaced.surface_at(g) } else { bilinear(g) };
                 let ours = judge.excess(p, 1.0, 1.5).unwrap().over;
                 let (z, guard) = (height(p).unwrap() + 1.0, 1.5 / (eye_grid - p).length());
                 let steps = 100_000;

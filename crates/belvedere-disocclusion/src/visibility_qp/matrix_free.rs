@@ -353,7 +353,7 @@ mod tests {
         let node = |i: usize| Between::node((i % (nodes * nodes)) as u32, nodes, nodes);
         let (a, b) = (k * 37 + k / 7, k * 53 + 11);
         let mut row = Row::ceiling((a % (nodes * nodes)) as u32, node(a), 0.0);
-        if k % 3 > 0 {
+        if !k.is_multiple_of(3) {
             let share = -0.1 * (k % 7) as f64;
             (row.nodes[1], row.weights[1], row.len) = ((b % (nodes * nodes)) as u32, share, 2);
             row.points[1] = (share, node(b));
