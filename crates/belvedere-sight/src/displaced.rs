@@ -78,21 +78,6 @@ impl<'a> DisplacedGround<'a> {
         worst
     }
 
-    /// As [`Self::excess`], of the ground nearer than the guard; negative if there is no line.
-    pub fn near_excess(&self, line: &[SightVertex], guard: f64) -> f64 {
-        let mut worst = Excess { over: -1.0, at: DVec2::ZERO };
-        for pair in line.windows(2) {
-            let leaves = beyond(line[0].0, guard, pair[0], pair[1]);
-            if leaves != Some(pair[0]) {
-                self.along(pair[0], leaves.unwrap_or(pair[1]), &mut worst);
-            }
-            if leaves.is_some() {
-                break;
-            }
-        }
-        worst.over
-    }
-
     /// The same along a straight part of a line, where that is more than `worst`.
     fn along(&self, from: SightVertex, to: SightVertex, worst: &mut Excess) {
         let (line, height) = (GridLine::between(from.0, to.0), (from.1, to.1 - from.1));
