@@ -252,6 +252,9 @@ pub(crate) struct DisoccludeArgs {
     /// Displaced elevation model: GeoTIFF, 32-bit floats in metres, on the grid and in the system of the input
     #[arg(short, long, value_name = "OUT.tif")]
     pub(crate) out: PathBuf,
+    /// Grid of the written heights: that of the input, or the one in metres that is solved on, where the promise holds to the node
+    #[arg(long, value_name = "GRID", value_parser = ["input", "scene"], default_value = "input")]
+    pub(crate) grid: String,
     /// Figures, parameters, and what cannot be shown and why
     #[arg(long, value_name = "OUT.json")]
     pub(crate) report: Option<PathBuf>,
@@ -500,7 +503,7 @@ pub(crate) struct SchemaArgs {
 /// What bends a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum TechniqueKind {
-    /// A spline, and terrain disocclusion where that leaves something hidden
+    /// What shows most of the techniques that are tried, 120 s of solving each (or --time-limit): a spline; both; terrain disocclusion
     Auto,
     /// A spline over the mean ground
     Spline,

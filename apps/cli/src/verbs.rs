@@ -10,7 +10,7 @@ use anyhow::Context as _;
 use belvedere::picture::{self, AuxBuffer, AuxFormat, PictureOptions};
 use belvedere::scene_file::{AnimationDoc, PaletteDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{self, AnimateRequest, Film};
-use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest};
+use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest, WrittenGrid};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest, Viewpoint};
 use belvedere::verbs::{check, info, measure, pick, points};
 use belvedere::{CameraPicture, DataFiles, Needs, OpenOptions, Session, output, scene_file};
@@ -171,6 +171,7 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
         fov_x_deg: args.fov,
         parameters: disocclude::parameters(&set)?,
         curved_earth: args.curved_earth,
+        grid: if args.grid == "scene" { WrittenGrid::Scene } else { WrittenGrid::Input },
     };
     let found = disocclude::disocclude(&request, &context.options(Needs::Everything, None))?;
     let written = found.write(&files, context.common.overwrite, &context.progress)?;

@@ -16,7 +16,7 @@ use crate::{IoError, Limits, Loaded};
 use belvedere_scene::{Crs, Heightfield, HeightfieldError, NodeState, Progress};
 use glam::DVec2;
 pub(crate) use grid_map::{Geometry, GridMap, Link};
-pub use original::{OriginalTerrain, load_original};
+pub use original::{OriginalTerrain, load_original, moved_terrain};
 pub(crate) use source::stated_system;
 
 use resample::SceneGrid;

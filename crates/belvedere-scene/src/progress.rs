@@ -47,6 +47,11 @@ impl Progress {
         Self { limit: Some(limit), ..self }
     }
 
+    /// The same with this limit where none is stated.
+    pub fn limited_unless_stated(self, limit: Duration) -> Self {
+        Self { limit: self.limit.or(Some(limit)), ..self }
+    }
+
     /// The same for a piece of work that begins now, to which the limit of time applies from here on; inside such a piece nothing
     /// changes.
     pub fn begin(&self) -> Self {

@@ -248,6 +248,30 @@ fn an_intent_is_solved_and_its_picture_says_what_moved() {
 }
 
 #[test]
+fn what_resampling_hides_again_is_said_and_another_grid_keeps_it() {
+    // A geographic grid: heights are solved on squares in metres, and written back.
+    let place = place(|r, c| Some(hills(r, c)));
+    let input = report(&place, &[]);
+    assert_eq!(input["grid"], "input");
+    let share = number(&input["visible_written"]);
+    assert!((0.3..=1.0).contains(&share), "{share}");
+    assert_eq!(share < 0.995, input["warnings"].to_string().contains("written on the grid of the input"), "{input}");
+    let scene = report(&place, &["--grid", "scene"]);
+    assert!(scene["grid"] == "scene" && scene["visible_written"].is_null(), "{scene}");
+    assert_eq!(scene["guaranteed"], true);
+    // What was promised holds in the file: nothing of the way is hidden on its heights.
+    place.write(
+        "again.toml",
+        "format = 1\n[[layer]]\nid = 'ground'\nkind = 'terrain'\nsource = 'out.tif'\n\
+         [[layer]]\nid = 'way'\nkind = 'line'\nsource = 'way.geojson'\nmust_see = true\n\
+         [camera]\neye = { lon = 8.022, lat = 46.002, height_m = 1500 }\n\
+         look_at = { lon = 8.024, lat = 46.03, above_ground_m = 0 }\nfov_y_deg = 60\nimage = [64, 36]\n",
+    );
+    let measured = place.json(&["measure", "again.toml"]);
+    assert!(number(&measured["lines"]["straight"]["sight"]["share"]) >= 0.995, "{}", measured["lines"]);
+}
+
+#[test]
 fn a_film_of_giving_ground_goes_on_to_the_same_bytes() {
     let place = place(|r, c| Some(hills(r, c)));
     let animation = "[animation]\nalong = 'way'\nbehind_m = 900\nabove_m = 300\nahead_m = 900\nspeed_mps = 400\nfps = 10\nframes = 4\n";

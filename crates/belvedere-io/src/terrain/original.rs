@@ -3,9 +3,9 @@
 use super::source::{self, SourceGrid};
 use super::{LoadedTerrain, TerrainRequest};
 use crate::crs::{CoordinateSystem, Transform};
-use crate::raster::{CrsKind, Raster, RasterInfo, SampleType, Samples, SourceCrs};
+use crate::raster::{Affine, CrsKind, Raster, RasterInfo, SampleType, Samples, SourceCrs};
 use crate::{IoError, Loaded};
-use belvedere_scene::{Crs, Progress};
+use belvedere_scene::{Crs, Heightfield, NodeState, Progress};
 use glam::DVec2;
 use rayon::prelude::*;
 use std::path::Path;
@@ -87,6 +87,22 @@ impl OriginalTerrain {
         Ok([0, 1].map(|k| self.raster(pairs.iter().map(|p| p[k]).collect())))
     }
 
+    /// The same file with the heights of a raster of [`Self::moved`].
+    pub fn with_heights(&self, heights: &Raster) -> Self {
+        let mut out = self.clone();
+        if let Samples::F32(values) = &heights.samples {
+            out.source.heights = values.iter().map(|h| if *h == NODATA { f32::NAN } else { *h }).collect();
+        }
+        out
+    }
+
+    /// Whether the nodes of `terrain` are the file's own samples.
+    pub fn is_grid_of(&self, terrain: &Heightfield) -> bool {
+        let first = DVec2::from(self.source.model_from_index.apply(0.0, 0.0));
+        let geographic = self.source.system.as_ref().is_some_and(CoordinateSystem::is_geographic);
+        !geographic && self.size() == [terrain.cols(), terrain.rows()] && first == terrain.north_west()
+    }
+
     fn raster(&self, values: Vec<f32>) -> Raster {
         let source = &self.source;
         let mut info = RasterInfo::new(&source.path, source.cols, source.rows, SampleType::F32);
@@ -126,6 +142,30 @@ impl OriginalTerrain {
             )
         })
     }
+}
+
+/// The heights of a terrain moved by `delta` (metres, at scene x, y), and the moves themselves, as rasters on its own grid; likewise.
+pub fn moved_terrain(terrain: &Heightfield, crs: Crs, delta: impl Fn(DVec2) -> f64) -> [Raster; 2] {
+    let (cols, rows) = (terrain.cols(), terrain.rows());
+    let mut info = RasterInfo::new(Path::new("terrain"), cols, rows, SampleType::F32);
+    let (start, step) = (terrain.north_west(), terrain.spacing());
+    let map = Affine([step.x, 0.0, start.x, 0.0, -step.y, start.y]).after_scale_and_shift(1.0, 1.0, -0.5, -0.5);
+    (info.pixel_to_model, info.nodata) = (Some(map), Some(f64::from(NODATA)));
+    if let Crs::Epsg(code) = crs {
+        (info.crs, info.crs_kind) = (SourceCrs::Epsg(code), CrsKind::Projected);
+    }
+    let pair = |(i, state): (usize, &NodeState)| match state {
+        NodeState::Void => [NODATA; 2],
+        _ => {
+            let d = delta(terrain.node_xy(i % cols, i / cols));
+            [(f64::from(terrain.heights()[i]) + d) as f32, d as f32]
+        }
+    };
+    let pairs: Vec<[f32; 2]> = terrain.states().iter().enumerate().map(pair).collect();
+    [0, 1].map(|k| {
+        let samples = Samples::F32(pairs.iter().map(|p| p[k]).collect());
+        Raster { info: info.clone(), samples, mask: None }
+    })
 }
 
 #[cfg(test)]

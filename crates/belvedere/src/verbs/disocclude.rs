@@ -8,16 +8,20 @@ use crate::resolve::ground::earth_radius;
 use crate::resolve::terrain as intent;
 use crate::scene_file::{self, CameraDoc, EarthDoc, StageDoc, TerrainStageDoc};
 use crate::{BelvedereError, OpenOptions, Session};
+use belvedere_construct::MeasureOptions;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, TerrainDisocclusion, View};
 use belvedere_disocclusion::{Solved, TerrainMemory, TerrainReport, TerrainSolver};
 use belvedere_io::IoError;
+use belvedere_io::TerrainRequest;
 use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::geotiff::write_geotiff;
-use belvedere_io::terrain::OriginalTerrain;
-use belvedere_scene::{Crs, Layer, LayerKind, Progress};
+use belvedere_io::raster::Raster;
+use belvedere_io::terrain::{CrsChoice, OriginalTerrain, moved_terrain};
+use belvedere_scene::{Crs, Layer, LayerKind, Progress, Scene};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Sides of the picture that the field of view belongs to, pixels.
 const IMAGE: [u32; 2] = [1280, 720];
@@ -39,6 +43,19 @@ pub struct DisoccludeRequest {
     pub parameters: TerrainStageDoc,
     /// Lets the ground fall away with the distance.
     pub curved_earth: bool,
+    /// Grid of the files that are written.
+    pub grid: WrittenGrid,
+}
+
+/// A grid that heights are written on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WrittenGrid {
+    /// That of the input, in its system. Where it is not the one that is solved on, heights are resampled.
+    #[default]
+    Input,
+    /// The one that is solved on, in metres: what was promised holds to the node.
+    Scene,
 }
 
 /// Parameters of the solver from `key=value` texts, keys and values as in scene files.
@@ -71,7 +88,8 @@ pub struct Disoccluded {
     pub session: Session,
     /// Displacement and figures.
     pub solved: Solved,
-    original: OriginalTerrain,
+    /// Heights and displacement as they are written.
+    rasters: [Raster; 2],
     record: Record,
 }
 
@@ -84,6 +102,10 @@ struct Record {
     look: [f64; 2],
     fov_x_deg: f64,
     earth: &'static str,
+    grid: WrittenGrid,
+    /// Share of what is in view that is seen on the heights as they are written, where those are resampled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    visible_written: Option<f64>,
     layers: Vec<String>,
     inputs: Vec<InputFile>,
     warnings: Vec<String>,
@@ -130,6 +152,18 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
     let view = camera.view(camera.target.extend(camera.eye.z), None)?;
     let solved = solver.solve(&data.scene, &view, &mut TerrainMemory::default(), &options.progress)?;
     data.warnings.extend(intent::remarks(&solved, &data.scene));
+    let delta = |p: DVec2| solved.stage.delta_at(p.extend(0.0));
+    let (rasters, visible_written) = match (request.grid, data.scene.terrain()) {
+        (WrittenGrid::Scene, Some(terrain)) => (moved_terrain(terrain, data.scene.crs, delta), None),
+        _ => {
+            let rasters = original.moved(data.scene.crs, delta)?;
+            let resampled = data.scene.terrain().is_some_and(|terrain| !original.is_grid_of(terrain));
+            let share =
+                if resampled { written_share(&data.scene, &view, &original, &rasters[0], options)? } else { None };
+            (rasters, share)
+        }
+    };
+    data.warnings.extend(visible_written.and_then(|share| resampled_away(share, &solved)));
     let ground = data.scene.terrain().and_then(|t| t.surface_at(camera.target));
     let look_at = camera.target.extend(ground.unwrap_or(camera.eye.z));
     let view = camera.view(look_at, Some(Stage::TerrainDisocclusion(solved.stage.clone())))?;
@@ -144,11 +178,50 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
         look: request.look,
         fov_x_deg: request.fov_x_deg,
         earth: if request.curved_earth { "curved" } else { "flat" },
+        grid: request.grid,
+        visible_written,
         layers: session.scene.layers.iter().map(|l| l.id.clone()).collect(),
         inputs: record::inputs(session.inputs())?,
         warnings: session.warnings.clone(),
     };
-    Ok(Disoccluded { session, solved, original, record })
+    Ok(Disoccluded { session, solved, rasters, record })
+}
+
+/// What is seen of the features on the heights as they are written, read again as any file is.
+fn written_share(
+    scene: &Scene,
+    straight: &View,
+    original: &OriginalTerrain,
+    heights: &Raster,
+    options: &OpenOptions,
+) -> Result<Option<f64>, BelvedereError> {
+    let crs = match scene.crs {
+        Crs::Epsg(code) => CrsChoice::Epsg(code),
+        Crs::Local => CrsChoice::Local,
+    };
+    let request = TerrainRequest { crs, sea: false, limits: options.limits(), ..TerrainRequest::default() };
+    let read = original.with_heights(heights).in_scene(&request, &options.progress)?.value;
+    let mut scene = scene.clone();
+    for layer in &mut scene.layers {
+        if let LayerKind::Terrain(terrain) = &mut layer.kind {
+            terrain.heightfield = Arc::new(read.heightfield.clone());
+        }
+    }
+    let measures = belvedere_construct::measure(&scene, straight, None, &MeasureOptions::default(), &options.progress)?;
+    let kinds = [measures.lines.as_ref(), measures.areas.as_ref(), measures.points.as_ref()];
+    let shares = kinds.into_iter().flatten().filter_map(|kind| kind.straight.sight.share);
+    Ok(shares.min_by(f64::total_cmp))
+}
+
+/// That resampling hides again what was solved for.
+fn resampled_away(share: f64, solved: &Solved) -> Option<String> {
+    (share < VISIBLE_LENGTH && share < solved.report.metrics.visible_dense).then(|| {
+        format!(
+            "written on the grid of the input, the heights show {:.1} % of what is in view, for its samples are not those that were \
+             solved on; grid = scene writes the latter",
+            100.0 * share
+        )
+    })
 }
 
 /// Eye and point looked at, in the scene.
@@ -251,11 +324,11 @@ impl Disoccluded {
         progress: &Progress,
     ) -> Result<Vec<PathBuf>, BelvedereError> {
         let stage = &self.solved.stage;
-        let [dem, delta] = self.original.moved(self.session.scene.crs, |p| stage.delta_at(p.extend(0.0)))?;
-        write_geotiff(&files.out, &dem, overwrite)?;
+        let [dem, delta] = &self.rasters;
+        write_geotiff(&files.out, dem, overwrite)?;
         let mut written = vec![files.out.clone()];
         if let Some(path) = &files.displacement {
-            write_geotiff(path, &delta, overwrite)?;
+            write_geotiff(path, delta, overwrite)?;
             written.push(path.clone());
         }
         if let Some(path) = &files.features {

@@ -18,6 +18,7 @@ use belvedere_io::png::{self, Channels};
 use belvedere_scene::{Crs, Progress, Scene};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 /// Size of the picture unless given, pixels.
 const IMAGE: [u32; 2] = [1280, 720];
@@ -58,7 +59,8 @@ pub struct Viewpoint {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Technique {
-    /// A spline, and terrain disocclusion as well where that leaves something hidden.
+    /// What shows most of the techniques that are tried: a spline; where that leaves something hidden both; where those do, too,
+    /// terrain disocclusion alone.
     Auto,
     /// A spline.
     #[default]
@@ -71,6 +73,22 @@ pub enum Technique {
 
 /// Visible share from which nothing is worth moving the ground for.
 const ENOUGH: f64 = 0.99;
+
+/// Time for solving the ground of each technique that is tried, where nothing else is said.
+const TRY_FOR: Duration = Duration::from_secs(120);
+
+/// A technique that was tried.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Tried {
+    /// Which.
+    pub technique: Technique,
+    /// Visible share of the in-frame amount in its picture.
+    pub visible: Option<f64>,
+    /// Wall time, seconds.
+    pub seconds: f64,
+    /// Whether its time was up before it was done.
+    pub out_of_time: bool,
+}
 
 /// What the finished picture shows, by lines of sight through its whole chain of stages.
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -94,6 +112,8 @@ pub struct RevealAnswer {
     pub report: RevealReport,
     /// What the picture shows under terrain disocclusion.
     pub shares: Option<FinalShares>,
+    /// Techniques that were tried, where that was left to the program.
+    pub tried: Vec<Tried>,
     /// What of the features in the picture stays hidden, part by part.
     pub hidden: Vec<HiddenRun>,
     missed: Vec<String>,
@@ -110,6 +130,9 @@ struct ReportFile<'a> {
     shares: Option<FinalShares>,
     #[serde(skip_serializing_if = "Option::is_none")]
     disocclusion: Option<&'a TerrainReport>,
+    /// Techniques that were tried.
+    #[serde(skip_serializing_if = "<[Tried]>::is_empty")]
+    tried: &'a [Tried],
     /// What of the features in the picture stays hidden.
     hidden: &'a [HiddenRun],
     displacement: Option<DisplacementReport>,
@@ -139,6 +162,7 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
         ..RevealOptions::default()
     };
     let mut memory = RevealMemory::default();
+    let searched = Instant::now();
     let found = belvedere_construct::reveal(&data.scene, base.as_ref(), &search, &mut memory, &options.progress)?;
     let pinhole = found.straight.pinhole();
     let ahead = (found.pivot - pinhole.eye).length().max(1.0);
@@ -146,22 +170,42 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     let earth = if request.curved_earth { EarthDoc::Curved } else { EarthDoc::Flat };
     let mut session = data.session(found.view.clone(), camera, vec![spline_stage(&found)], earth);
     session.warnings.extend(found.report.warnings.iter().cloned());
-    let with_terrain = match request.technique {
-        Technique::Spline => None,
-        Technique::Auto if found.report.bent.visible >= ENOUGH => None,
-        Technique::Auto | Technique::Both => Some(Technique::Both),
-        Technique::Terrain => Some(Technique::Terrain),
+    let candidates: &[Technique] = match request.technique {
+        Technique::Spline => &[],
+        Technique::Auto => &[Technique::Both, Technique::Terrain],
+        Technique::Both => &[Technique::Both],
+        Technique::Terrain => &[Technique::Terrain],
     };
     let mut missed = match &found.report.goal {
         Goal::Reached => Vec::new(),
         Goal::Missed(reasons) => reasons.clone(),
     };
-    let mut shares = None;
-    if let Some(technique) = with_terrain {
-        session = disoccluded(&session, technique, &options.progress)?;
-        let reached = final_shares(&session, technique, &options.progress)?;
-        missed = reached.visible_bent.filter(|v| *v < ENOUGH).map(shortfall).into_iter().collect();
-        shares = Some(reached);
+    let is_auto = request.technique == Technique::Auto;
+    let progress = &options.progress.clone().limited_unless_stated(TRY_FOR);
+    let (spline, mut shares, mut tried) = (session.clone(), None, Vec::new());
+    let mut most = if is_auto { found.report.bent.visible } else { f64::NEG_INFINITY };
+    for &technique in candidates {
+        if is_auto && most >= ENOUGH {
+            break;
+        }
+        let began = Instant::now();
+        let next = disoccluded(&spline, technique, if is_auto { progress } else { &options.progress })?;
+        let reached = final_shares(&next, technique, &options.progress)?;
+        let out_of_time = next.terrain_report().is_some_and(|r| r.out_of_time);
+        let (visible, seconds) = (reached.visible_bent, began.elapsed().as_secs_f64());
+        tried.push(Tried { technique, visible, seconds, out_of_time });
+        if visible.unwrap_or(1.0) > most {
+            most = visible.unwrap_or(1.0);
+            missed = visible.filter(|v| *v < ENOUGH).map(shortfall).into_iter().collect();
+            (session, shares) = (next, Some(reached));
+        }
+    }
+    if is_auto {
+        let (technique, visible) = (Technique::Spline, Some(found.report.bent.visible));
+        let seconds = searched.elapsed().as_secs_f64() - tried.iter().map(|t: &Tried| t.seconds).sum::<f64>();
+        tried.insert(0, Tried { technique, visible, seconds, out_of_time: false });
+    } else {
+        tried.clear();
     }
     let hidden = belvedere_construct::measure::hidden(
         &session.scene,
@@ -176,7 +220,7 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
         ..request.picture.clone()
     };
     let picture = session.render(&pair)?;
-    Ok(RevealAnswer { session, picture, report: found.report, shares, hidden, missed })
+    Ok(RevealAnswer { session, picture, report: found.report, shares, tried, hidden, missed })
 }
 
 fn shortfall(visible: f64) -> String {
@@ -259,6 +303,7 @@ impl RevealAnswer {
                 report: Some(&self.report).filter(|_| !self.shares.is_some_and(|s| s.technique == Technique::Terrain)),
                 shares: self.shares,
                 disocclusion: self.session.terrain_report(),
+                tried: &self.tried,
                 hidden: &self.hidden,
                 displacement: sidecar.displacement,
                 view: &sidecar.view,
