@@ -44,6 +44,30 @@ fn ground(place: &Place, more: &[&str]) -> (serde_json::Value, String) {
 }
 
 #[test]
+fn the_program_tries_techniques_until_one_shows_enough() {
+    let place = place(|_, _| false);
+    // Walls of 3 km that no spline bends out of the way.
+    place.write("dem.asc", &ranges(|_, _| false, 2000.0, 1500.0));
+    let tried = |more: &[&str]| {
+        let args = ["reveal", "dem.asc", "way.geojson", "-o", "out.png", "--size", "64x48", "--overwrite", "--json"];
+        let view = ["--eye", "8.03,46.002,3600", "--look", "8.03,46.035", "--report", "report.json"];
+        place.json(&[&args[..], &view, more].concat());
+        let report: serde_json::Value = serde_json::from_slice(&super::read(&place.path("report.json"))).expect("JSON");
+        report
+    };
+    let auto = tried(&["--technique", "auto"]);
+    let all = auto["tried"].as_array().expect("a list").clone();
+    assert!(all.len() >= 2 && all[0]["technique"] == "spline" && all[1]["technique"] == "both", "{all:?}");
+    let share = |t: &serde_json::Value| t["visible"].as_f64().expect("a share");
+    let most = all.iter().map(share).fold(0.0, f64::max);
+    assert_eq!(auto["visible_bent"].as_f64().expect("a share"), most, "{all:?}");
+    // Earlier ones were not enough.
+    assert!(all[..all.len() - 1].iter().all(|t| share(t) < 0.99), "{all:?}");
+    assert!(all.iter().all(|t| t["out_of_time"] == false && t["seconds"].as_f64().is_some()), "{all:?}");
+    assert!(tried(&["--technique", "both"])["tried"].is_null());
+}
+
+#[test]
 fn small_holes_are_filled_marked_and_said_or_kept() {
     let place = place(|row, col| (20..26).contains(&row) && (30..40).contains(&col));
     let count = |ground: &serde_json::Value, key: &str| ground[key].as_u64().expect("a count");
