@@ -10,6 +10,9 @@ const BLOCK: usize = 8;
 /// Cells per side of the smallest block that bounds the undisplaced ground.
 const FINEST: usize = 2;
 
+/// Facets that lie less over the bilinear displacement do so by rounding.
+const AT_EDGE: f64 = 1e-12;
+
 /// How far a displacement that is flat on the triangles of the field lies over the bilinear one at `g`, per unit of the latter's
 /// factor of xy in the cell of the field.
 pub(super) fn facet_in_cell(g: DVec2) -> f64 {
@@ -61,10 +64,12 @@ impl Lattice {
     /// but for the factor of xy.
     pub(super) fn betweens(&self, g: DVec2, faceted: bool) -> [(f64, Between); 2] {
         let at = self.between(g);
-        if !faceted {
+        let facet = if faceted { self.facet(g) } else { 0.0 };
+        // On lines of the terrain's grid both are the same.
+        if facet < AT_EDGE {
             return [(1.0, at), (0.0, at)];
         }
-        let away = self.facet(g).sqrt();
+        let away = facet.sqrt();
         [away, -away].map(|d| (0.5, Between { x: at.x + d, y: at.y + d, ..at }))
     }
 }
