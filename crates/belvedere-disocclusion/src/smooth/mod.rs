@@ -11,7 +11,6 @@ mod elevation;
 mod green;
 mod hierarchy;
 mod pass;
-mod products;
 mod smoother;
 mod temporal;
 

@@ -1,7 +1,6 @@
 //! H = L^2 + (w^2 + g^2) I and its inverse.
 
 use super::cosine::{CosineTransform, eigenvalue};
-use super::products::{self, Products};
 
 /// A smooth pass that cannot be set up.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -44,8 +43,6 @@ pub fn grid_weight(w: f64, intervals: f64) -> f64 {
 #[derive(Debug, Clone)]
 pub struct Smoother {
     transform: CosineTransform,
-    /// For small grids.
-    products: Option<Products>,
     ex: Vec<f64>,
     ey: Vec<f64>,
     w: f64,
@@ -66,8 +63,7 @@ impl Smoother {
             return Err(SmoothError::Temporal { g });
         }
         let e = |n: usize| (0..n).map(|k| eigenvalue(k, n)).collect();
-        let products = (cols.max(rows) <= products::MOST).then(|| Products::new(cols, rows));
-        Ok(Self { transform: CosineTransform::new(cols, rows), products, ex: e(cols), ey: e(rows), w, g })
+        Ok(Self { transform: CosineTransform::new(cols, rows), ex: e(cols), ey: e(rows), w, g })
     }
 
     /// Columns.
@@ -111,15 +107,6 @@ impl Smoother {
     /// If `rhs` has another size than the grid.
     pub fn solve(&mut self, rhs: &mut [f64]) {
         assert_eq!(rhs.len(), self.ex.len() * self.ey.len(), "values of a grid");
-        let shift = self.shift();
-        match &mut self.products {
-            Some(products) => products.solve(rhs, shift),
-            None => self.solve_by_transform(rhs),
-        }
-    }
-
-    /// H^-1, in place, by Fourier transforms whatever the size of the grid.
-    pub fn solve_by_transform(&mut self, rhs: &mut [f64]) {
         let (ex, ey, shift) = (&self.ex, &self.ey, self.shift());
         self.transform.filter(rhs, |k, l| {
             let e = ex[k] + ey[l];
