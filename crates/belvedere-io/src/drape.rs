@@ -2,7 +2,7 @@
 
 use crate::crs::{CoordinateSystem, Transform};
 use crate::terrain::{Geometry, GridMap, Link, stated_system};
-use crate::{Affine, GeoTiff, IoError, Limits, Loaded, Raster, SourceCrs, esri_ascii, png};
+use crate::{Affine, GeoTiff, InputFile, IoError, Limits, Loaded, Raster, SourceCrs, esri_ascii, png};
 use belvedere_scene::{Crs, Drape, Heightfield, Progress};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -103,7 +103,7 @@ pub fn load_drape(
     if drape.pixels.iter().all(|p| p[3] == 0) {
         warnings.push(format!("{}: nothing but transparent pixels lies over the terrain", path.display()));
     }
-    Ok(Loaded::new(drape, warnings))
+    Ok(Loaded::new(drape, warnings).with_file(source.input()?))
 }
 
 fn warn_about_reduction(path: &Path, picture: &Picture, full: Affine, warnings: &mut Vec<String>) {
@@ -139,6 +139,14 @@ impl Source {
         let loaded = GeoTiff::open(path, request.limits)?;
         warnings.extend(loaded.warnings);
         Ok(Self::Tiff(Box::new(loaded.value)))
+    }
+
+    /// Path, size and hash of the file.
+    fn input(&self) -> Result<InputFile, IoError> {
+        match self {
+            Self::Tiff(tiff) => tiff.input(),
+            Self::Whole(raster) => Ok(InputFile::read(&raster.info.path)?.1),
+        }
     }
 
     fn info(&self) -> &crate::RasterInfo {

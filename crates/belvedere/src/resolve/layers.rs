@@ -2,7 +2,7 @@
 
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
-use super::{areas, boxes, builtin, dem, drape, mesh, sea, vectors};
+use super::{areas, boxes, builtin, dem, mesh, sea, vectors};
 use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
@@ -12,6 +12,7 @@ use crate::scene_file::{
 use crate::{BelvedereError, Needs, OpenOptions};
 use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
 use belvedere_core::DVec2;
+use belvedere_io::DrapeRequest;
 use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
@@ -206,10 +207,11 @@ fn drapes(
 ) -> Result<Vec<Drape>, BelvedereError> {
     let Some(paths) = &doc.drape else { return Ok(Vec::new()) };
     let files = loader.files(index, "drape", paths)?;
-    let bounds = ground.terrain.map(Heightfield::bounds);
+    let Some(terrain) = ground.terrain else { return Ok(Vec::new()) };
+    let request = DrapeRequest { limits: loader.options.limits(), ..DrapeRequest::default() };
     let mut drapes = Vec::new();
     for file in files {
-        let loaded = drape::load(&file, ground.crs, bounds, loader.options.limits(), &loader.options.progress);
+        let loaded = belvedere_io::load_drape(&file, ground.crs, terrain, &request, &loader.options.progress);
         let loaded = loaded.map_err(|e| loader.fail(index, "drape", e))?;
         drapes.push(loader.take(index, loaded));
     }

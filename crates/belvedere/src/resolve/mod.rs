@@ -6,7 +6,6 @@ pub(crate) mod builtin;
 mod camera;
 pub(crate) mod delta;
 mod dem;
-mod drape;
 pub(crate) mod ground;
 mod layers;
 mod light;
