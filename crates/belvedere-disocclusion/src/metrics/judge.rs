@@ -4,7 +4,7 @@ use super::super::visibility_qp::LinesOfSight;
 use super::super::{Field, ReferencePoint};
 use belvedere_core::DVec2;
 use belvedere_core::grid::{Grid, GridError};
-use belvedere_sight::{DisplacedGround, Excess, SightVertex};
+use belvedere_sight::{DisplacedGround, SightVertex};
 use rayon::prelude::*;
 
 /// Rays that run this far under the ground are still clear: rounding. Scene units.
@@ -74,6 +74,7 @@ impl<'a> Judge<'a> {
     }
 
     /// Over ground plus the bilinear displacement, as it is traced.
+    #[cfg(test)]
     pub(crate) fn bilinear(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
         Self { grounds: vec![DisplacedGround::new(field, delta)], sight }
     }
@@ -83,33 +84,52 @@ impl<'a> Judge<'a> {
         Self { grounds: vec![DisplacedGround::faceted(field, delta), DisplacedGround::new(field, delta)], sight }
     }
 
-    /// What rises most over the line of sight of a point at grid coordinates, `lift` above the ground; `None` beside the ground.
-    ///
-    /// * `guard`: ground nearer than this does not count, cells.
-    pub(super) fn excess(&self, g: DVec2, lift: f64, guard: f64) -> Option<Excess> {
-        let mut line = Vec::new();
-        let mut worst: Option<Excess> = None;
-        for ground in &self.grounds {
-            line.clear();
-            self.trace(ground, g, lift, &mut line)?;
-            let excess = ground.excess(&line, guard);
-            if worst.is_none_or(|w| excess.over > w.over) {
-                worst = Some(excess);
+    /// Calls `visit` with each ground and the line of sight of a point at grid coordinates, `lift` above it; `None` beside the ground.
+    fn each(
+        &self,
+        g: DVec2,
+        lift: f64,
+        mut visit: impl FnMut(usize, &DisplacedGround<'_>, &[SightVertex]),
+    ) -> Option<()> {
+        let (mut line, mut traced) = (Vec::new(), f64::NAN);
+        for (i, ground) in self.grounds.iter().enumerate() {
+            let z = ground.height_at(g)? + lift;
+            // Behind bends lines take long to trace, and mostly both grounds are as high.
+            if !((z - traced).abs() <= TOUCH) {
+                line.clear();
+                self.sight.trace(g, z, &mut line);
+                traced = z;
             }
+            visit(i, ground, &line);
         }
-        worst
-    }
-
-    fn trace(&self, ground: &DisplacedGround<'_>, g: DVec2, lift: f64, out: &mut Vec<SightVertex>) -> Option<()> {
-        self.sight.trace(g, ground.height_at(g)? + lift, out);
         Some(())
     }
 
-    /// The place that hides a point most, with how far it rises over the line; `None` where it is seen, has no line, or no ground.
-    pub(crate) fn hiding(&self, points: &[(DVec2, f64)]) -> Vec<Option<(DVec2, f64)>> {
+    /// What rises most over the line of sight of a point at grid coordinates, `lift` above the ground; `None` beside the ground.
+    ///
+    /// * `guard`: ground nearer than this does not count, cells.
+    #[cfg(test)]
+    pub(super) fn excess(&self, g: DVec2, lift: f64, guard: f64) -> Option<belvedere_sight::Excess> {
+        let mut worst: Option<belvedere_sight::Excess> = None;
+        self.each(g, lift, |_, ground, line| {
+            let excess = ground.excess(line, guard);
+            if worst.is_none_or(|w| excess.over > w.over) {
+                worst = Some(excess);
+            }
+        })?;
+        worst
+    }
+
+    /// For each point and each ground (facets first) the place that hides the point most, with how far it rises over the line; `None`
+    /// where the point is seen, has no line, or no ground.
+    pub(crate) fn hiding(&self, points: &[(DVec2, f64)]) -> Vec<[Option<(DVec2, f64)>; 2]> {
         let of = |&(g, lift): &(DVec2, f64)| {
-            let worst = self.excess(g, lift, 0.0)?;
-            (worst.over > TOUCH && worst.over.is_finite()).then_some((worst.at, worst.over))
+            let mut out = [None; 2];
+            self.each(g, lift, |i, ground, line| {
+                let worst = ground.excess(line, 0.0);
+                out[i] = (worst.over > TOUCH && worst.over.is_finite()).then_some((worst.at, worst.over));
+            });
+            out
         };
         points.par_iter().map(of).collect()
     }
@@ -118,14 +138,21 @@ impl<'a> Judge<'a> {
     ///
     /// * `guard`: what only ground nearer than this hides, cells, is told apart.
     pub(crate) fn judge(&self, points: &[ReferencePoint], guard: f64) -> Vec<Verdict> {
-        let over = |p: &ReferencePoint, guard| self.excess(p.grid, p.lift, guard).map(|e| e.over);
-        let of = |p: &ReferencePoint| match over(p, 0.0) {
-            None => Verdict::NoGround,
-            Some(near) if !(near > TOUCH) => Verdict::Seen,
-            Some(near) => Verdict::Hidden(match over(p, guard) {
-                Some(far) if far > TOUCH => Hides::Ground(far),
-                _ => Hides::InGuard(near),
-            }),
+        let of = |p: &ReferencePoint| {
+            let (mut near, mut far) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+            let on_ground = self.each(p.grid, p.lift, |_, ground, line| {
+                let over = ground.excess(line, 0.0).over;
+                near = near.max(over);
+                if over > TOUCH {
+                    far = far.max(ground.excess(line, guard).over);
+                }
+            });
+            match on_ground {
+                None => Verdict::NoGround,
+                Some(()) if !(near > TOUCH) => Verdict::Seen,
+                Some(()) if far > TOUCH => Verdict::Hidden(Hides::Ground(far)),
+                Some(()) => Verdict::Hidden(Hides::InGuard(near)),
+            }
         };
         points.par_iter().map(of).collect()
     }

@@ -113,16 +113,12 @@ impl Agreement<'_> {
         let judged = self.check.iter().chain(problem.candidates).filter(|c| !named.contains(&c.id));
         let judged: Vec<Candidate> = judged.copied().collect();
         let places: Vec<(DVec2, f64)> = judged.iter().map(|c| (c.grid, c.lift)).collect();
-        let over = |judge: Judge<'_>| judge.hiding(&places);
-        let facets = over(Judge::faceted(self.field, &delta, problem.sight));
-        let bilinear = over(Judge::bilinear(self.field, &delta, problem.sight));
+        let hiding = Judge::of_both(self.field, &delta, problem.sight).hiding(&places);
         let mut found = Vec::new();
-        for (candidate, hiding) in judged.iter().zip(facets) {
-            found.extend(hiding.map(|(at, over)| Found { candidate: *candidate, at, over }));
-        }
-        for (candidate, hiding) in judged.iter().zip(bilinear) {
+        for (candidate, [facets, bilinear]) in judged.iter().zip(hiding) {
+            found.extend(facets.map(|(at, over)| Found { candidate: *candidate, at, over }));
             let candidate = Candidate { id: candidate.id | BILINEAR, faceted: false, ..*candidate };
-            found.extend(hiding.map(|(at, over)| Found { candidate, at, over }));
+            found.extend(bilinear.map(|(at, over)| Found { candidate, at, over }));
         }
         Ok(found)
     }
