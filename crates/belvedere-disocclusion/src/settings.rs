@@ -62,7 +62,7 @@ pub struct TerrainSettings {
     pub rows_weight: f64,
     /// Time constant of temporal coherence, seconds; 0 = off.
     pub gamma_time_s: f64,
-    /// Nodes of the solver's grid along the longer side, >= 2; the terrain's own grid if that is coarser.
+    /// Nodes of the solver's grid along the longer side, about, >= 2: its steps are whole ones of the terrain's grid.
     pub solver_nodes: usize,
     /// `None` = scaled in modes paper and paper+qp, plain in mode qp.
     pub detail: Option<Detail>,

@@ -248,6 +248,39 @@ fn an_intent_is_solved_and_its_picture_says_what_moved() {
 }
 
 #[test]
+fn ground_beyond_anything_plausible_is_warned_of_with_what_it_moves_for() {
+    let place = place(|r, c| Some(hills(r, c)));
+    // Five nodes cannot sink one ridge and not the others.
+    let coarse = report(&place, &["--set", "solver_nodes=5"]);
+    let warnings = coarse["warnings"].to_string();
+    let relief = 440.0;
+    assert!(
+        number(&coarse["sunk_below_m"]) > 0.2 * relief && warnings.contains("below the lowest of the terrain"),
+        "{warnings}"
+    );
+    assert!(number(&coarse["steepest_deg"]) > number(&coarse["steepest_before_deg"]) + 5.0, "{coarse}");
+    assert!(warnings.contains("feature 0 of layer \\\"features1\\\" (100 %)"), "{warnings}");
+    assert_eq!(number(&coarse["costliest"][0]["share"]), 1.0);
+    // From high above little has to move.
+    let high = ["disocclude", "dem.asc", "way.geojson", "-o", "out.tif", "--report", "r.json", "--overwrite"];
+    place.ok(&[&high[..], &["--eye", "8.022,46.002,6000", "--look", "8.024,46.03"]].concat());
+    let high: serde_json::Value = serde_json::from_slice(&super::read(&place.path("r.json"))).expect("JSON");
+    assert!(number(&high["sunk_below_m"]) < 0.2 * relief, "{high}");
+    assert!(!high["warnings"].to_string().contains("leave some out"), "{}", high["warnings"]);
+}
+
+#[test]
+fn what_runs_out_of_time_says_so_and_promises_nothing() {
+    let place = place(|r, c| Some(hills(r, c)));
+    let short = report(&place, &["--time-limit", "0.000001"]);
+    assert!(short["out_of_time"] == true && short["guaranteed"] == false, "{short}");
+    assert!(number(&short["visible_dense"]) < 0.995, "{short}");
+    assert!(short["warnings"].to_string().contains("out of time"), "{}", short["warnings"]);
+    let enough = report(&place, &["--time-limit", "600"]);
+    assert!(enough["out_of_time"] == false && enough["guaranteed"] == true, "{enough}");
+}
+
+#[test]
 fn what_resampling_hides_again_is_said_and_another_grid_keeps_it() {
     // A geographic grid: heights are solved on squares in metres, and written back.
     let place = place(|r, c| Some(hills(r, c)));

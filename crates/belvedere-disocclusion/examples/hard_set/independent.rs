@@ -1,4 +1,4 @@
-//! An independent test of what is seen: marching over the heights as a GeoTIFF holds them. Shares no code with the solver.
+//! An independent test of what is seen: marching over the heights at the nodes that were solved on, as a GeoTIFF on that grid holds them. Shares no code with the solver.
 
 use belvedere_core::grid::Grid;
 use belvedere_core::{DVec2, DVec3, View};

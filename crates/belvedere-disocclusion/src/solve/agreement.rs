@@ -81,7 +81,9 @@ impl Agreement<'_> {
                     }
                 }
             }
-            qp.set_heights(&told)?;
+            if told != before {
+                qp.set_heights(&told)?;
+            }
             let next = qp.solve_with(&QpProblem { candidates: &asked, ..*problem }, self.progress)?;
             if next.stopped || fallback::stuck(&next) > fallback::stuck(&best) {
                 break;

@@ -107,7 +107,7 @@ pub struct TerrainStageDoc {
     /// Time constant of temporal smoothing, seconds; 0 = off.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gamma_time_s: Option<f64>,
-    /// Nodes of the solver's grid on the longer side.
+    /// Nodes of the solver's grid on the longer side, about: its steps are whole ones of the terrain's grid.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub solver_nodes: Option<u32>,
     /// What happens to detail.
