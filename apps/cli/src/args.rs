@@ -96,7 +96,8 @@ pub(crate) struct FiguresArgs {
     /// Which figures, separated by commas: terrain, algorithms
     #[arg(value_parser = parse_figures)]
     pub(crate) what: FigureKinds,
-    /// Scene files with a camera and features that must be seen, in place of the built-in areas
+    /// Scene files with a camera and features that must be seen, in place of the built-in areas (and of the two real ranges
+    /// that are drawn where BELVEDERE_DATA names the folder of their files)
     pub(crate) scenes: Vec<PathBuf>,
     /// Folder for the pictures
     #[arg(short, long, value_name = "DIR", default_value = "belvedere-figures")]

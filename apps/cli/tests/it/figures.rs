@@ -49,7 +49,13 @@ fn pictures_tables_and_trends_of_an_area() {
     let heights: Vec<f64> =
         area["eyes"].as_array().expect("eyes").iter().map(|e| number(&e["above_ground_m"])).collect();
     assert!([2.0, 30.0, 100.0].iter().all(|h| heights.contains(h)), "{heights:?}");
-    assert!(number(&area["timing"]["cells_ms"]) > 0.0);
+    // Times are those of the paper's grid, cells and unknowns.
+    let timing = &area["timing"];
+    assert_eq!(timing["own_nodes"], serde_json::json!([65, 65]));
+    assert_eq!(timing["nodes"], serde_json::json!([1025, 1025]));
+    assert_eq!(timing["unknowns"], 129 * 129);
+    assert!((number(&timing["cells"]) - 651.0).abs() <= 65.0, "{timing}");
+    assert!(number(&timing["cells_ms"]) > 0.0);
 }
 
 #[test]

@@ -24,8 +24,24 @@ const BUILTIN: [(&str, &str); 2] = [
     ("massif_lake_terrain", include_str!("../../../../scenes/massif_lake_terrain.toml")),
 ];
 
+/// Real ranges that are drawn beside those where the environment variable `BELVEDERE_DATA` names the collection that holds their files.
+const REAL: [(&str, &str); 2] = [
+    ("andorra_terrain", include_str!("../../../../scenes/andorra_terrain.toml")),
+    ("baltoro_terrain", include_str!("../../../../scenes/baltoro_terrain.toml")),
+];
+
+/// The scene files and texts of the areas that are drawn if no scene is given.
+fn usual_areas() -> Vec<(PathBuf, Option<&'static str>)> {
+    let scene = |folder: &Path, name: &str| folder.join(format!("{name}.toml"));
+    let builtin = BUILTIN.map(|(name, text)| (scene(Path::new(""), name), Some(text)));
+    let Some(data) = std::env::var_os("BELVEDERE_DATA").map(PathBuf::from).filter(|d| d.is_dir()) else {
+        return builtin.into();
+    };
+    builtin.into_iter().chain(REAL.map(|(name, text)| (scene(&data, name), Some(text)))).collect()
+}
+
 /// Draws the figures of terrain disocclusion into `folder`, which is made if need be, for the areas of `scenes` (two built-in ones
-/// if there are none): pictures, `figures.json` with every report, and `index.html`. Returns the files.
+/// if there are none, and two real ranges where `BELVEDERE_DATA` names their files): pictures, `figures.json` with every report, and `index.html`. Returns the files.
 ///
 /// # Errors
 /// A file that exists if `overwrite` is false; those of opening, solving and drawing a scene.
@@ -34,9 +50,8 @@ pub fn figures(folder: &Path, scenes: &[PathBuf], options: &OpenOptions, overwri
     let (page, record) = (folder.join("index.html"), folder.join("figures.json"));
     output::check(&page, scenes, overwrite)?;
     output::check(&record, scenes, overwrite)?;
-    let builtin = BUILTIN.iter().map(|(name, text)| (PathBuf::from(format!("{name}.toml")), Some(*text)));
     let given = scenes.iter().map(|path| (path.clone(), None));
-    let areas: Vec<_> = if scenes.is_empty() { builtin.collect() } else { given.collect() };
+    let areas = if scenes.is_empty() { usual_areas() } else { given.collect() };
     let mut names: Vec<_> = areas.iter().filter_map(|(path, _)| path.file_stem()).collect();
     names.sort();
     if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {

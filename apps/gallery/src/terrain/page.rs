@@ -131,7 +131,7 @@ fn times(t: &Timing) -> String {
     let line = |what: String, paper: String, ours: String| row(&[what, paper, ours]);
     let mut rows = String::new();
     rows += &line(
-        format!("cells: {} there, {} here of {} x {} nodes", PAPER_CELLS.0, t.cells, t.nodes[0], t.nodes[1]),
+        format!("cells: {} there, {} here, of {} x {} nodes", PAPER_CELLS.0, t.cells, t.nodes[0], t.nodes[1]),
         format!("{:.0} ms", PAPER_CELLS.1),
         format!("{:.1} ms", t.cells_ms),
     );
@@ -152,8 +152,12 @@ fn times(t: &Timing) -> String {
         format!("{:.0} ms", PAPER_SOLVE.1),
         format!("{:.2} ms", t.solve_ms),
     );
-    let growth =
-        t.exponent.map_or(String::new(), |e| format!("<p class=\"small\">Greedy time grows like points^{e:.2}.</p>\n"));
+    let grid = format!(
+        "Measured on {} x {} nodes, to which the terrain's {} x {} were resampled: the paper's grid and number of cells.",
+        t.nodes[0], t.nodes[1], t.own_nodes[0], t.own_nodes[1]
+    );
+    let growth = t.exponent.map_or(String::new(), |e| format!(" Greedy time grows like points^{e:.2}."));
+    let growth = format!("<p class=\"small\">{grid}{growth}</p>\n");
     table("step|paper, 2.33 GHz dual core|here", &rows) + &growth
 }
 

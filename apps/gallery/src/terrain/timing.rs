@@ -1,4 +1,4 @@
-//! What the steps cost, for as many points as the paper had.
+//! What the steps cost on a grid, with cells and points as many as the paper had.
 
 use super::area::Area;
 use crate::chart::{self, Chart, Curve, SeriesLabelPosition, Style};
@@ -6,15 +6,19 @@ use crate::sheet::Pixels;
 use anyhow::Result;
 use belvedere::core::DVec2;
 use belvedere::disocclusion::internals::{
-    Cells, Hierarchy, Naive, ReferencePoint, SmoothPass, Wedge, in_view, reference_points, stated_spacing,
+    BlockMaxima, Cells, Field, Hierarchy, Naive, ReferencePoint, SmoothPass, Wedge, in_view, reference_points,
+    stated_spacing,
 };
 use belvedere::disocclusion::{SolverMode, TerrainSettings};
+use belvedere::scene::{Heightfield, NodeState};
 use serde::Serialize;
 use std::time::Instant;
 
 /// Points in view, and milliseconds for lines of sight and parameters, of the six examples of Deng et al. 2013.
 pub(crate) const PAPER: [(usize, f64); 6] =
     [(195, 2.0), (202, 3.0), (513, 12.0), (560, 14.0), (660, 14.0), (670, 14.0)];
+/// Nodes of the paper's elevation models, on either side.
+pub(crate) const PAPER_NODES: usize = 1025;
 /// The paper's cells and the milliseconds for them.
 pub(crate) const PAPER_CELLS: (usize, f64) = (651, 1570.0);
 /// The paper's unknowns, and milliseconds of a solution per frame.
@@ -25,7 +29,9 @@ const RUNS: usize = 5;
 /// Times of one area, wall milliseconds.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Timing {
-    /// Nodes of the terrain.
+    /// Nodes of the terrain's own grid.
+    pub(crate) own_nodes: [usize; 2],
+    /// Nodes that everything is measured on.
     pub(crate) nodes: [usize; 2],
     pub(crate) cells: usize,
     /// Cells and their tables.
@@ -50,32 +56,80 @@ pub(crate) struct GreedyTime {
     pub(crate) paper_ms: f64,
 }
 
+/// The ground of an area on the paper's grid.
+struct PaperGrid {
+    field: Field,
+    cells: Cells,
+    blocks: BlockMaxima,
+}
+
+impl PaperGrid {
+    fn new(area: &Area) -> Result<Self> {
+        let own = &area.field;
+        let last = DVec2::new((own.cols() - 1) as f64, (own.rows() - 1) as f64);
+        let step = last / (PAPER_NODES - 1) as f64;
+        let node = |i: usize| DVec2::new((i % PAPER_NODES) as f64, (i / PAPER_NODES) as f64) * step;
+        let height = |i: usize| own.surface_at(node(i).min(last));
+        let heights: Vec<Option<f64>> = (0..PAPER_NODES * PAPER_NODES).map(height).collect();
+        let state = |h: &Option<f64>| if h.is_some() { NodeState::Measured } else { NodeState::Void };
+        let ground = Heightfield::new(
+            own.north_west(),
+            own.spacing() * step,
+            PAPER_NODES,
+            PAPER_NODES,
+            heights.iter().map(|h| h.unwrap_or(0.0) as f32).collect(),
+            heights.iter().map(state).collect(),
+        )?;
+        let field = Field::new(&ground, |_| 0.0)?;
+        let (cells, blocks) = (Cells::new(&field, PAPER_CELLS.0), BlockMaxima::new(&field));
+        Ok(Self { field, cells, blocks })
+    }
+
+    /// Reference points in view, `spacing` cells apart.
+    fn points(&self, area: &Area, spacing: f64) -> Vec<ReferencePoint> {
+        let (points, _) = reference_points(area.session.scene(), &self.field, &area.settings, spacing);
+        let wedge = Wedge::of_pinhole(area.view.pinhole());
+        let (inside, _) = in_view(&self.field, &points, &wedge, area.settings.guard);
+        inside.into_iter().map(|i| points[i]).collect()
+    }
+
+    fn summits(&self) -> impl Iterator<Item = DVec2> + '_ {
+        let cols = self.field.cols();
+        self.cells.summits().iter().map(move |&i| DVec2::new((i as usize % cols) as f64, (i as usize / cols) as f64))
+    }
+}
+
 /// Measures an area.
 pub(crate) fn timing(area: &Area) -> Result<Timing> {
-    let (field, settings) = (&area.field, area.in_mode(SolverMode::Paper));
-    let cells_ms = median(|| drop(Cells::new(field, area.cells.len())));
+    let grid = PaperGrid::new(area)?;
+    let (field, settings) = (&grid.field, area.in_mode(SolverMode::Paper));
+    let cells_ms = median(|| drop(Cells::new(field, PAPER_CELLS.0)));
     let w = settings.smoothness(stated_spacing(field.cols(), field.rows(), field.spacing()));
+    let usual = grid.points(area, settings.spacing);
     let began = Instant::now();
-    // The paper's grid, whatever the scene asks for.
-    let nodes = TerrainSettings::default().solver_nodes;
-    let hierarchy = Hierarchy::new(field.cols(), field.rows(), nodes);
+    // The paper's unknowns, whatever the scene asks for.
+    let hierarchy = Hierarchy::whole(field.cols(), field.rows(), TerrainSettings::default().solver_nodes);
     let unknowns = hierarchy.nodes();
-    let rows: Vec<DVec2> = area.points.iter().map(|p| p.grid).chain(summits(area)).collect();
+    let rows: Vec<DVec2> = usual.iter().map(|p| p.grid).chain(grid.summits()).collect();
     let mut pass = SmoothPass::new(hierarchy, w, settings.rows_weight, &rows)?;
     let prepare_ms = since(began);
-    let naive = area.naive(&settings).displacement(field, &area.cells);
+    let greedy_of =
+        |points: &[ReferencePoint]| Naive::new(field, &grid.cells, Some(&grid.blocks), &settings, area.eye(), points);
+    let naive = greedy_of(&usual).displacement(field, &grid.cells);
     let solve_ms = median(|| drop(pass.run(&naive, None, None)));
-    let many = dense(area);
+    // Closer together than any count needs.
+    let spacing = settings.spacing * usual.len() as f64 / 2000.0;
+    let many = grid.points(area, spacing.clamp(0.05, settings.spacing));
     let mut greedy = Vec::new();
     for (count, paper_ms) in PAPER {
         let Some(points) = evenly(&many, count) else { continue };
         area.progress.tick("times", greedy.len() as f64 / PAPER.len() as f64)?;
-        let run = || drop(Naive::new(field, &area.cells, Some(&area.blocks), &settings, area.eye(), &points));
-        greedy.push(GreedyTime { points: count, ms: median(run), paper_ms });
+        greedy.push(GreedyTime { points: count, ms: median(|| drop(greedy_of(&points))), paper_ms });
     }
     let exponent = exponent(&greedy);
-    let (nodes, cells) = ([field.cols(), field.rows()], area.cells.len());
-    Ok(Timing { nodes, cells, cells_ms, unknowns, prepare_ms, solve_ms, greedy, exponent })
+    let (nodes, cells) = (field.nodes(), grid.cells.len());
+    let own_nodes = area.field.nodes();
+    Ok(Timing { own_nodes, nodes, cells, cells_ms, unknowns, prepare_ms, solve_ms, greedy, exponent })
 }
 
 /// Time against points, the paper's beside ours.
@@ -96,20 +150,6 @@ pub(crate) fn plot(timing: &Timing) -> Result<Option<Pixels>> {
         curves,
     };
     Ok(Some(chart::draw(&chart, chart::WIDE)?))
-}
-
-fn summits(area: &Area) -> impl Iterator<Item = DVec2> + '_ {
-    let cols = area.field.cols();
-    area.cells.summits().iter().map(move |&i| DVec2::new((i as usize % cols) as f64, (i as usize / cols) as f64))
-}
-
-/// Points in view, closer together than any count needs.
-fn dense(area: &Area) -> Vec<ReferencePoint> {
-    let spacing = area.settings.spacing * area.points.len() as f64 / 2000.0;
-    let (points, _) =
-        reference_points(area.session.scene(), &area.field, &area.settings, spacing.clamp(0.05, area.settings.spacing));
-    let wedge = Wedge::of_pinhole(area.view.pinhole());
-    in_view(&area.field, &points, &wedge, area.settings.guard).0.into_iter().map(|i| points[i]).collect()
 }
 
 /// `count` of the points, evenly chosen; `None` if there are not as many.

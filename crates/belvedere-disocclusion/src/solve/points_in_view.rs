@@ -1,6 +1,6 @@
 //! What of the features the picture is asked to show.
 
-use super::super::visibility_qp::{Candidate, LinesOfSight, StraightSight, ViewSight};
+use super::super::visibility_qp::{Candidate, LinesOfSight, RememberedLines, StraightSight, ViewSight};
 use super::super::{Field, LeftOut, ReferencePoint, TerrainSettings, Wedge, in_view};
 use super::entering::{self, EnteringSight};
 use super::in_picture;
@@ -43,7 +43,7 @@ impl<'a> PointsInView<'a> {
         let straight = StraightSight { eye: field.grid_from_scene(eye.truncate()), z: eye.z };
         let wider = entering::beside(&wedge).filter(|_| film);
         let sight: Box<dyn LinesOfSight + 'a> = match (bent, &wider) {
-            (true, _) => Box::new(ViewSight::new(base, field)),
+            (true, _) => Box::new(RememberedLines::new(ViewSight::new(base, field))),
             (false, Some(_)) => Box::new(EnteringSight { straight, field, wedge }),
             (false, None) => Box::new(straight),
         };

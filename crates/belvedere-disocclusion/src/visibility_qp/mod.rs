@@ -13,6 +13,7 @@ mod matrix_free;
 mod metric;
 mod problem;
 mod register;
+mod remembered;
 mod rise;
 mod row;
 mod rows_in_play;
@@ -26,5 +27,6 @@ pub use problem::{
     Candidate, Certificate, LinesOfSight, QpError, QpOptions, QpProblem, QpResult, Reason, SolvedRow, StraightSight,
     Unresolved,
 };
+pub(crate) use remembered::RememberedLines;
 pub use solver::QpSolver;
 pub use view_rays::ViewSight;

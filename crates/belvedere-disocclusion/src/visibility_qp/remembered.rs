@@ -1,0 +1,114 @@
+//! Lines of sight that are not traced again where their points hardly moved.
+
+use super::problem::LinesOfSight;
+use belvedere_core::DVec2;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Lines are traced at heights that are multiples of this and shifted to the ones between, metres.
+const STEP_M: f64 = 0.04;
+
+/// A line as it was traced: number of its step of height, and its vertices.
+type Traced = (i64, Arc<[(DVec2, f64)]>);
+
+/// Lines of sight that take long to trace. Between judgements and solutions of one picture points move by centimetres, and their lines
+/// with them: by all of it at the point, by nothing at the eye. Answers do not depend on what was traced before.
+pub(crate) struct RememberedLines<S> {
+    sight: S,
+    /// The last line of each point.
+    known: Mutex<HashMap<[u64; 2], Traced>>,
+}
+
+impl<S: LinesOfSight> RememberedLines<S> {
+    /// * `sight`: traces lines that depend smoothly on the heights of their points.
+    pub(crate) fn new(sight: S) -> Self {
+        Self { sight, known: Mutex::default() }
+    }
+
+    fn traced(&self, grid: DVec2, step: i64) -> Arc<[(DVec2, f64)]> {
+        let key = [grid.x.to_bits(), grid.y.to_bits()];
+        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((at, line)) = known().get(&key)
+            && *at == step
+        {
+            return Arc::clone(line);
+        }
+        let mut line = Vec::new();
+        self.sight.trace(grid, step as f64 * STEP_M, &mut line);
+        let line: Arc<[(DVec2, f64)]> = line.into();
+        known().insert(key, (step, Arc::clone(&line)));
+        line
+    }
+}
+
+impl<S: LinesOfSight> LinesOfSight for RememberedLines<S> {
+    fn trace(&self, grid: DVec2, z: f64, out: &mut Vec<(DVec2, f64)>) {
+        let step = (z / STEP_M).round();
+        let line = self.traced(grid, step as i64);
+        let shift = z - step * STEP_M;
+        let total: f64 = line.windows(2).map(|p| p[0].0.distance(p[1].0)).sum();
+        let mut way = 0.0;
+        for (k, &(at, height)) in line.iter().enumerate() {
+            way += if k > 0 { line[k - 1].0.distance(at) } else { 0.0 };
+            let left = if total > 0.0 { 1.0 - way / total } else { 1.0 };
+            out.push((at, height + left * shift));
+        }
+    }
+
+    fn straight(&self) -> Option<(DVec2, f64)> {
+        self.sight.straight()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// Lines that bow upwards, and how many were traced.
+    struct Bowed(AtomicUsize);
+
+    impl LinesOfSight for Bowed {
+        fn trace(&self, grid: DVec2, z: f64, out: &mut Vec<(DVec2, f64)>) {
+            self.0.fetch_add(1, Ordering::Relaxed);
+            let eye = DVec2::new(50.0, 0.0);
+            out.extend((0..=10).map(|k| {
+                let t = f64::from(k) / 10.0;
+                (grid.lerp(eye, t), z + (900.0 - z) * t + 30.0 * t * (1.0 - t))
+            }));
+        }
+    }
+
+    #[test]
+    fn a_line_is_traced_once_while_its_point_stays_near_and_shifted_between() {
+        let lines = RememberedLines::new(Bowed(AtomicUsize::new(0)));
+        let (grid, mut first, mut again) = (DVec2::new(3.0, 7.0), Vec::new(), Vec::new());
+        lines.trace(grid, 500.0, &mut first);
+        lines.trace(grid, 500.013, &mut again);
+        assert_eq!(lines.sight.0.load(Ordering::Relaxed), 1);
+        let mut exact = Vec::new();
+        Bowed(AtomicUsize::new(0)).trace(grid, 500.013, &mut exact);
+        assert_eq!(again.len(), exact.len());
+        for (a, b) in again.iter().zip(&exact) {
+            assert!(a.0 == b.0 && (a.1 - b.1).abs() < 1e-9, "{a:?} {b:?}");
+        }
+        assert!((again[0].1 - 500.013).abs() < 1e-12, "the point itself lies where it is");
+        lines.trace(grid, 501.0, &mut Vec::new());
+        lines.trace(grid + 1e-9, 501.0, &mut Vec::new());
+        assert_eq!(lines.sight.0.load(Ordering::Relaxed), 3, "another height, another point");
+    }
+
+    #[test]
+    fn answers_do_not_depend_on_what_was_traced_before() {
+        let (fresh, used) =
+            (RememberedLines::new(Bowed(AtomicUsize::new(0))), RememberedLines::new(Bowed(AtomicUsize::new(0))));
+        let grid = DVec2::new(3.0, 7.0);
+        for k in 0..7 {
+            used.trace(grid, 499.9 + 0.03 * f64::from(k), &mut Vec::new());
+        }
+        let (mut a, mut b) = (Vec::new(), Vec::new());
+        fresh.trace(grid, 500.0, &mut a);
+        used.trace(grid, 500.0, &mut b);
+        assert_eq!(a, b);
+    }
+}
