@@ -68,6 +68,19 @@ pub enum ConstructError {
     /// Stages could not be chained.
     #[error(transparent)]
     View(#[from] ViewError),
+    /// Curved rays that are not possible.
+    #[error(transparent)]
+    Rays(#[from] belvedere_core::map::curved_rays::CurvedRaysError),
+    /// A parameter of a constructor out of its range.
+    #[error("{name} is {value}, it must {must}")]
+    Parameter {
+        /// Name, as scene files write it.
+        name: &'static str,
+        /// The value.
+        value: f64,
+        /// What it must be.
+        must: &'static str,
+    },
     /// A spline could not be resolved.
     #[error(transparent)]
     Spline(#[from] belvedere_core::map::spline::SplineError),

@@ -6,6 +6,7 @@
 mod error;
 pub mod flight;
 pub mod measure;
+pub mod rays;
 pub mod reveal;
 mod samples;
 

@@ -29,10 +29,19 @@ impl<'a> Obstacles<'a> {
         Self::lifted(scene, None)
     }
 
+    /// The same without some layers, by their index: what is looked for does not hide itself.
+    pub fn without(scene: &'a Scene, layers: &[usize]) -> Self {
+        Self::of(scene, layers, None)
+    }
+
     /// The same where the ground, and what stands on it, may be displaced vertically.
     pub fn lifted(scene: &'a Scene, lift: Option<Lift<'_>>) -> Self {
+        Self::of(scene, &[], lift)
+    }
+
+    fn of(scene: &'a Scene, without: &[usize], lift: Option<Lift<'_>>) -> Self {
         let (mut grounds, mut boxes, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
-        for (i, layer) in scene.layers.iter().enumerate() {
+        for (i, layer) in scene.layers.iter().enumerate().filter(|(i, _)| !without.contains(i)) {
             match &layer.kind {
                 LayerKind::Terrain(t) => grounds.push((i, Ground::lifted(&t.heightfield, lift))),
                 LayerKind::Boxes(b) => boxes.extend(b.boxes.iter().enumerate().map(|(k, shape)| ([i, k], shape))),

@@ -4,3 +4,4 @@ mod bars;
 mod flight;
 mod measure;
 mod reveal;
+mod tracking;

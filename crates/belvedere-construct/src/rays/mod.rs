@@ -1,0 +1,14 @@
+//! Constructors of curved rays: from what is to be seen to the turns of a camera.
+//!
+//! Source: Cui, Rosen, Popescu, Hoffmann 2010, section 5 (interactive construction, target tracking, path preview). Lines of sight
+//! in place of boxes in the image, bends in any direction, and the search for the smallest bend that shows a target are ours.
+
+mod around;
+mod sidestep;
+mod target;
+mod tracking;
+
+pub use around::{AroundOptions, BendFound, bend_around};
+pub use sidestep::Sidestep;
+pub use target::{Target, TargetSight};
+pub use tracking::{Tracked, TrackingMemory, TrackingOptions, track_target};

@@ -1,0 +1,35 @@
+//! The camera of one turn behind parallel planes.
+
+use crate::ConstructError;
+use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
+use belvedere_core::{CurvedRays, DVec3, Pinhole, Stage, View};
+
+/// A second viewpoint beside the eye: rays leave the eye straight, bend between planes across the direction of view, and
+/// go on as if they came from that viewpoint. Parallel planes, so that modified and original rays are the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sidestep {
+    /// From the eye to the second viewpoint, scene units.
+    pub offset: DVec3,
+    /// Distances of t0, t1, t2 from the eye along the direction of view, scene units, rising.
+    pub planes: [f64; 3],
+}
+
+impl Sidestep {
+    /// The turn behind `root`.
+    pub fn turn(&self, root: &Pinhole) -> TurnSpec {
+        let [t0, t1, t2] = self.planes.map(|z| root.eye + z * root.forward);
+        let pencil = Pencil::Parallel { normal: root.forward };
+        TurnSpec { viewpoint: root.eye + self.offset, t0, t1, t2, pencil, m: Sharpness::Bend }
+    }
+
+    /// `base` with its own curved rays, if it has any, replaced by this turn.
+    ///
+    /// # Errors
+    /// [`ConstructError::Rays`] if the turn is not possible, e.g. with an orthographic camera.
+    pub fn view(&self, base: &View) -> Result<View, ConstructError> {
+        let root = base.pinhole();
+        let rays = CurvedRays::new(root, Model::Modified, &[self.turn(root)])?;
+        let earlier = base.stages().iter().filter(|s| !matches!(s, Stage::CurvedRays(_))).cloned();
+        Ok(View::new(root.clone(), earlier.chain([Stage::CurvedRays(rays)]).collect())?)
+    }
+}

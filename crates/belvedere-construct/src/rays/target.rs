@@ -1,0 +1,121 @@
+//! What is to be seen, and how much of it a view shows.
+
+use belvedere_core::{Aabb, DVec3, View};
+use belvedere_scene::{LayerKind, Scene};
+use belvedere_sight::{Obstacles, SightOptions};
+
+/// Points per edge of the box of a target.
+const LATTICE: usize = 3;
+
+/// Something to be seen.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    /// Points that stand for it, scene coordinates.
+    pub points: Vec<DVec3>,
+    /// The box around it.
+    pub bounds: Aabb,
+    /// Layers that are the target themselves, by their index: they do not hide it.
+    pub own_layers: Vec<usize>,
+}
+
+impl Target {
+    /// A whole layer, by its index, as the paper's box: points all over its surface. `None` if the layer has no extent in space
+    /// of its own (terrain, areas) or holds nothing.
+    pub fn layer(scene: &Scene, index: usize) -> Option<Self> {
+        let layer = scene.layers.get(index)?;
+        let bounds = layer.bounds();
+        if bounds.is_empty() {
+            return None;
+        }
+        match &layer.kind {
+            LayerKind::Terrain(_) | LayerKind::Area(_) => None,
+            LayerKind::Line(l) => {
+                Some(Self::points(l.features.iter().flat_map(|f| &f.points).map(|&p| p + l.lift_m * DVec3::Z)))
+            }
+            LayerKind::Point(l) => Some(Self::points(l.features.iter().map(|f| f.position + l.lift_m * DVec3::Z))),
+            _ => Some(Self { own_layers: vec![index], ..Self::around(bounds) }),
+        }
+    }
+
+    /// What lies in a box.
+    pub fn around(bounds: Aabb) -> Self {
+        let share = |i: usize| i as f64 / (LATTICE - 1) as f64;
+        let inner = |i: usize| i > 0 && i < LATTICE - 1;
+        let mut points = Vec::new();
+        for (x, y, z) in (0..LATTICE.pow(3)).map(|i| (i % LATTICE, i / LATTICE % LATTICE, i / LATTICE / LATTICE)) {
+            if !(inner(x) && inner(y) && inner(z)) {
+                points.push(bounds.min + (bounds.max - bounds.min) * DVec3::new(share(x), share(y), share(z)));
+            }
+        }
+        Self { points, bounds, own_layers: Vec::new() }
+    }
+
+    /// Points, e.g. on a surface or along a line.
+    pub fn points(points: impl IntoIterator<Item = DVec3>) -> Self {
+        let points: Vec<DVec3> = points.into_iter().filter(|p| p.is_finite()).collect();
+        let bounds = Aabb::of(points.iter().copied());
+        Self { points, bounds, own_layers: Vec::new() }
+    }
+
+    /// Its middle.
+    pub fn center(&self) -> DVec3 {
+        self.bounds.center()
+    }
+
+    /// Half its largest extent.
+    pub fn radius(&self) -> f64 {
+        0.5 * (self.bounds.max - self.bounds.min).length()
+    }
+}
+
+/// How much views show of a target, by lines of sight along their rays past everything else in the scene.
+pub struct TargetSight<'a> {
+    target: &'a Target,
+    obstacles: Obstacles<'a>,
+    sight: SightOptions,
+}
+
+impl<'a> TargetSight<'a> {
+    /// One pass over the scene.
+    pub fn new(scene: &'a Scene, target: &'a Target) -> Self {
+        let extent = (target.bounds.max - target.bounds.min).length().max(1e-9);
+        let cell = scene.terrain().map_or(0.0, |t| t.spacing().max_element());
+        let sight = SightOptions { chord_m: 1e-3 * extent + 0.05 * cell, cap_m: 0.0, guard_m: 1.5 * cell };
+        Self { target, obstacles: Obstacles::without(scene, &target.own_layers), sight }
+    }
+
+    /// Share of the target's points that are in the picture and seen, 0..=1.
+    ///
+    /// * `grow_px`: the points are pushed apart sideways and upwards in the picture by so much first, pixels.
+    pub fn share(&self, view: &View, grow_px: f64) -> f64 {
+        let points = &self.target.points;
+        let seen = points.iter().filter(|p| self.is_seen(view, **p, grow_px)).count();
+        seen as f64 / points.len().max(1) as f64
+    }
+
+    fn is_seen(&self, view: &View, p: DVec3, grow_px: f64) -> bool {
+        let p = self.grown(view, p, grow_px);
+        let Ok(image) = view.project(p) else { return false };
+        let pinhole = view.pinhole();
+        let in_range = image.depth >= pinhole.near && pinhole.far.is_none_or(|far| image.depth <= far);
+        in_range
+            && !image.folded
+            && pinhole.contains(image.pixel)
+            && self.obstacles.clearance(view, (p, 0.0), (image.pixel, image.depth), &self.sight) >= 0.0
+    }
+
+    /// A point moved away from the middle of the target: to its side of the picture, and up if it lies in the upper half.
+    fn grown(&self, view: &View, p: DVec3, grow_px: f64) -> DVec3 {
+        let pinhole = view.pinhole();
+        let v = p - self.target.center();
+        let depth = (p - pinhole.eye).dot(pinhole.forward);
+        if grow_px == 0.0 || !(depth > 0.0) {
+            return p;
+        }
+        let by = grow_px * depth / pinhole.scale_px();
+        let (x, y) = (v.dot(pinhole.right), v.dot(pinhole.down));
+        // Down there is what the target stands on.
+        let up = if y < 0.0 { -by * pinhole.down } else { DVec3::ZERO };
+        p + up + if x == 0.0 { DVec3::ZERO } else { x.signum() * by * pinhole.right }
+    }
+}

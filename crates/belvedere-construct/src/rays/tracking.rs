@@ -1,0 +1,246 @@
+//! Target tracking: the second viewpoint steps aside just as far as a moving target needs to stay in sight.
+//!
+//! Source: Cui et al. 2010, section 5.2: one number f in -1..=1 per frame, searched from where it is, changed at most at a set
+//! speed. The paper compares boxes in the image; here lines of sight to points of the target's box decide, for boxes of walls and
+//! ground hide everything. Planes, steps and speeds are not given by the paper: ours.
+
+use super::{Sidestep, Target, TargetSight};
+use crate::ConstructError;
+use belvedere_core::{DVec3, View};
+use belvedere_scene::Scene;
+use serde::Serialize;
+
+/// Shares from here on count as the whole target.
+const WHOLE: f64 = 0.999;
+/// A target must have been clear, with twice the margin, for so long before the rays straighten again, seconds.
+const CLEAR_FOR_S: f64 = 0.25;
+/// Where the whole target cannot be shown, so much more of it is worth bending for.
+const WORTH: f64 = 0.05;
+
+/// Parameters; the defaults are those of the scene file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrackingOptions {
+    /// Distance of plane t0 from the eye, scene units, > 0; half the target's by default.
+    pub z0: Option<f64>,
+    /// Distance of the second viewpoint from the eye at f = 1, scene units, > 0; half the target's distance by default.
+    pub a: Option<f64>,
+    /// Step of the search for f, in (0, 1].
+    pub f_step: f64,
+    /// Largest change of f per second, > 0.
+    pub cap_per_s: f64,
+    /// The target must be clear with so much around it, pixels, >= 0.
+    pub grow_px: f64,
+}
+
+impl Default for TrackingOptions {
+    fn default() -> Self {
+        Self { z0: None, a: None, f_step: 0.05, cap_per_s: 1.5, grow_px: 8.0 }
+    }
+}
+
+impl TrackingOptions {
+    fn check(&self) -> Result<(), ConstructError> {
+        let parameters = [
+            ("z0", self.z0.unwrap_or(1.0), f64::INFINITY, "be a number greater than 0"),
+            ("a", self.a.unwrap_or(1.0), f64::INFINITY, "be a number greater than 0"),
+            ("f_step", self.f_step, 1.0, "lie in (0, 1]"),
+            ("cap_per_s", self.cap_per_s, f64::INFINITY, "be a number greater than 0"),
+        ];
+        for (name, value, most, must) in parameters {
+            if !(value > 0.0 && value <= most && value.is_finite()) {
+                return Err(ConstructError::Parameter { name, value, must });
+            }
+        }
+        if !(self.grow_px >= 0.0 && self.grow_px.is_finite()) {
+            let (name, value) = ("grow_px", self.grow_px);
+            return Err(ConstructError::Parameter { name, value, must: "be a number of at least 0" });
+        }
+        Ok(())
+    }
+}
+
+/// What is remembered from frame to frame. Same inputs and same memory, same result.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TrackingMemory {
+    f: f64,
+    /// Sign of the last motion: the side that is searched first.
+    side: f64,
+    /// Where it is going: kept while that shows the target, else it would turn round half way.
+    goal: f64,
+    /// How long the straight rays have shown the target with twice the margin, seconds.
+    clear_s: f64,
+    /// The direction of f, of the frame before.
+    right: Option<DVec3>,
+}
+
+/// The camera of one frame.
+#[derive(Debug, Clone)]
+pub struct Tracked {
+    /// The bent view; `base` itself where f is 0.
+    pub view: View,
+    /// Figures.
+    pub report: TrackingReport,
+}
+
+/// What became of the target.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TrackingReport {
+    /// Where the second viewpoint is, -1 (left) ..= 1 (right), times `a`.
+    pub f: f64,
+    /// Where it goes to.
+    pub goal: f64,
+    /// Share of the target that straight rays show.
+    pub visible_straight: f64,
+    /// Share that the picture shows.
+    pub visible: f64,
+    /// Cameras that were tried.
+    pub tried: usize,
+}
+
+/// The camera of a frame that keeps `target` in sight.
+///
+/// * `base`: the camera, with other stages but curved rays if need be;
+/// * `time_step_s`: seconds since the frame before; `None` for a picture of its own, which takes the goal at once.
+///
+/// # Errors
+/// [`ConstructError::Parameter`], [`ConstructError::Rays`].
+pub fn track_target(
+    scene: &Scene,
+    base: &View,
+    target: &Target,
+    options: &TrackingOptions,
+    time_step_s: Option<f64>,
+    memory: &mut TrackingMemory,
+) -> Result<Tracked, ConstructError> {
+    options.check()?;
+    let sight = TargetSight::new(scene, target);
+    let mut search = Search::new(base, target, options, &sight, memory);
+    let straight = search.share(0.0, 0.0);
+    let goal = search.goal(memory, time_step_s);
+    let before = memory.f;
+    memory.f = match time_step_s {
+        Some(dt) => before + (goal - before).clamp(-options.cap_per_s * dt, options.cap_per_s * dt),
+        None => goal,
+    };
+    if memory.f != before {
+        memory.side = (memory.f - before).signum();
+    }
+    (memory.goal, memory.right) = (goal, Some(search.right));
+    let view = search.view(memory.f)?;
+    let visible = search.share(memory.f, 0.0);
+    let report = TrackingReport { f: memory.f, goal, visible_straight: straight, visible, tried: search.tried };
+    Ok(Tracked { view, report })
+}
+
+/// The cameras of one frame.
+struct Search<'a> {
+    base: &'a View,
+    sight: &'a TargetSight<'a>,
+    options: &'a TrackingOptions,
+    right: DVec3,
+    /// Distance of the second viewpoint at f = 1.
+    reach: f64,
+    /// `None`: the target is so near that there is no room for a bend.
+    planes: Option<[f64; 3]>,
+    tried: usize,
+}
+
+impl<'a> Search<'a> {
+    fn new(
+        base: &'a View,
+        target: &Target,
+        options: &'a TrackingOptions,
+        sight: &'a TargetSight<'a>,
+        memory: &TrackingMemory,
+    ) -> Self {
+        let pinhole = base.pinhole();
+        // The bend follows the other stages, and so does the target it is made for.
+        let center = base.displace(target.center()).map_or(target.center(), |d| d.point);
+        let depth = (center - pinhole.eye).dot(pinhole.forward);
+        let planes = planes(depth, target.radius(), pinhole.near, options.z0);
+        // Passing overhead turns the camera's right round; the viewpoint stays on its side.
+        let turned = memory.right.is_some_and(|before| before.dot(pinhole.right) < 0.0);
+        let right = if turned { -pinhole.right } else { pinhole.right };
+        Self { base, sight, options, right, reach: options.a.unwrap_or(0.5 * depth), planes, tried: 0 }
+    }
+
+    fn view(&self, f: f64) -> Result<View, ConstructError> {
+        match self.planes {
+            Some(planes) if f != 0.0 => Sidestep { offset: f * self.reach * self.right, planes }.view(self.base),
+            _ => Ok(self.base.clone()),
+        }
+    }
+
+    /// Share of the target that is seen; nothing through a camera that is not possible.
+    fn share(&mut self, f: f64, grow_px: f64) -> f64 {
+        self.tried += 1;
+        self.view(f).map_or(0.0, |view| self.sight.share(&view, grow_px))
+    }
+
+    /// Where f should go: to 0 where straight rays show the target; nowhere where the present ones do; else to the nearest camera
+    /// that does.
+    fn goal(&mut self, memory: &mut TrackingMemory, time_step_s: Option<f64>) -> f64 {
+        let grow = self.options.grow_px;
+        let film = time_step_s.is_some();
+        let margin = if film && memory.f != 0.0 { 2.0 * grow } else { grow };
+        let clear = self.share(0.0, margin) >= WHOLE;
+        memory.clear_s = if clear { memory.clear_s + time_step_s.unwrap_or(CLEAR_FOR_S) } else { 0.0 };
+        if self.planes.is_none() || (clear && memory.f == 0.0) {
+            return 0.0;
+        }
+        let is_seen = self.share(memory.f, grow) >= WHOLE;
+        let rested = memory.clear_s >= CLEAR_FOR_S;
+        // What hides the target half way is waited for.
+        if rested && (!film || !is_seen || self.shows_all_the_way(memory.f, 0.0)) {
+            return 0.0;
+        }
+        if is_seen {
+            return memory.f;
+        }
+        if memory.goal != memory.f && self.share(memory.goal, grow) >= WHOLE {
+            return memory.goal;
+        }
+        self.nearest(memory.f, if memory.side < 0.0 { -1.0 } else { 1.0 })
+    }
+
+    fn shows_all_the_way(&mut self, from: f64, to: f64) -> bool {
+        let steps = ((to - from).abs() / self.options.f_step).ceil() as usize;
+        (1..steps).all(|k| self.share(from + (to - from) * k as f64 / steps as f64, 0.0) >= WHOLE)
+    }
+
+    /// The nearest camera that shows the whole target; where none does, that which shows most.
+    ///
+    /// * `first`: the side that is tried first.
+    fn nearest(&mut self, from: f64, first: f64) -> f64 {
+        let mut best = (self.share(from, 0.0), from);
+        let steps = (2.0 / self.options.f_step).ceil() as usize;
+        for (k, side) in (1..=steps).flat_map(|k| [(k, first), (k, -first)]) {
+            let before = from + side * self.options.f_step * (k - 1) as f64;
+            if before.abs() >= 1.0 && before.signum() == side {
+                continue;
+            }
+            // Each side ends at 1 exactly.
+            let f = (before + side * self.options.f_step).clamp(-1.0, 1.0);
+            if self.share(f, self.options.grow_px) >= WHOLE {
+                return f;
+            }
+            let share = self.share(f, 0.0);
+            if share > best.0 + WORTH {
+                best = (share, f);
+            }
+        }
+        if best.0 > 0.0 { best.1 } else { 0.0 }
+    }
+}
+
+/// Distances of t0, t1, t2 from the eye for a target at `depth`: t2 stays before the target, by its radius.
+fn planes(depth: f64, radius: f64, near: f64, z0: Option<f64>) -> Option<[f64; 3]> {
+    if !(depth > 2.0 * near) {
+        return None;
+    }
+    let least = depth / 20.0;
+    let last = depth - 2.0 * radius;
+    let first = z0.unwrap_or(0.5 * depth).min(last - least).max(1.001 * near);
+    let end = (first + 0.25 * depth).min(last);
+    (end - first >= 0.999 * least).then(|| [first, 0.5 * (first + end), end])
+}
