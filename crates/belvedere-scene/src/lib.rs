@@ -8,6 +8,7 @@ pub mod heightfield;
 pub mod layer;
 pub mod light;
 pub mod mesh;
+pub mod motion;
 pub mod overlay;
 pub mod progress;
 pub mod ramp;
@@ -24,6 +25,7 @@ pub use layer::{
 };
 pub use light::Light;
 pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer};
+pub use motion::{Motion, MotionError, Placement};
 pub use overlay::{DistanceMarkers, Overlay, OverlayFace, OverlayLine, OverlayPoint, PointStyle, Symbol};
 pub use progress::{Cancelled, Progress};
 pub use ramp::{Ramp, RampHeight, RampStop};

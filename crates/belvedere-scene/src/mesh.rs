@@ -3,7 +3,7 @@
 use belvedere_core::{Aabb, DVec3};
 use glam::Vec3;
 
-use crate::Color;
+use crate::{Color, Placement};
 
 /// Colours of a mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -119,6 +119,15 @@ impl Mesh {
         }
         self.normals = Some(normals.iter().map(|n| n.normalize_or_zero().as_vec3()).collect());
         Ok(self)
+    }
+
+    /// This mesh moved and turned about its own origin.
+    pub fn placed(&self, at: &Placement) -> Self {
+        let origin = at.apply(self.origin);
+        let turned = |v: &Vec3| at.turn(v.as_dvec3()).as_vec3();
+        let positions = self.positions.iter().map(turned).collect();
+        let normals = self.normals.as_ref().map(|normals| normals.iter().map(turned).collect());
+        Self { origin, positions, normals, ..self.clone() }
     }
 
     fn drop_degenerate(&mut self) {

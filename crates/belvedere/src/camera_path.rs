@@ -1,5 +1,6 @@
 //! Where the camera of an animation is in every frame.
 
+use crate::resolve::constructor::Memory;
 use crate::resolve::terrain::Solving;
 use crate::resolve::{stages, validate};
 use crate::scene_file::{
@@ -9,7 +10,6 @@ use crate::session::Description;
 use crate::{BelvedereError, Session};
 use belvedere_construct::{Flight, FlightOptions};
 use belvedere_core::{DVec2, DVec3, Stage};
-use belvedere_disocclusion::TerrainMemory;
 use belvedere_scene::{LayerKind, LineFeature, Progress, Scene};
 use glam::DQuat;
 use serde::Deserialize;
@@ -71,7 +71,7 @@ impl Session {
     pub fn frame_at(&self, time_s: f64) -> Result<Self, BelvedereError> {
         let path = CameraPath::new(self, &AnimationDoc::default())?;
         let frame = ((time_s * path.fps).round().max(0.0) as usize).min(path.len() - 1);
-        let (mut memory, progress) = (TerrainMemory::default(), Progress::silent());
+        let (mut memory, progress) = (Memory::default(), Progress::silent());
         let time_step_s = Some(1.0 / path.fps);
         path.session(self, frame, Some(&mut Solving { memory: &mut memory, time_step_s, progress: &progress }))
     }
@@ -118,19 +118,22 @@ impl CameraPath {
         };
         let mut animation = merged(scene, given);
         let fps = *animation.fps.get_or_insert(FPS);
-        if [&animation.along, &animation.camera].into_iter().all(Option::is_none)
-            && animation.sweep.is_none()
-            && animation.turntable.is_none()
-        {
+        let moves_camera = animation.along.is_some()
+            || animation.camera.is_some()
+            || animation.sweep.is_some()
+            || animation.turntable.is_some();
+        if !moves_camera && session.motions.is_none() {
             return Err(BelvedereError::NoAnimation);
         }
         defaults(scene, &mut animation)?;
-        validate::animation(&animation)
+        validate::animation(&animation, !moves_camera)
             .map_err(|(_, reason)| BelvedereError::Animation(format!("animation: {reason}")))?;
         let (poses, pivot) = if let Some(layer) = animation.along.clone() {
             (along(session, scene, &layer, &mut animation)?, None)
         } else if let Some(file) = animation.camera.clone() {
             (through_cameras(scene, &roots.resolve(&file)?, &mut animation)?, Some(DVec3::ZERO))
+        } else if !moves_camera {
+            (resting(session, scene, &mut animation)?, Some(DVec3::ZERO))
         } else {
             let pivot = pivot(session, scene)?;
             let poses = match animation.sweep.clone() {
@@ -157,6 +160,7 @@ impl CameraPath {
         frame: usize,
         solving: Option<&mut Solving<'_>>,
     ) -> Result<Session, BelvedereError> {
+        let session = session.at_time(frame as f64 / self.fps);
         let resolved = session.with_document(self.document(frame), solving);
         resolved.and_then(|session| session.check_drawable().map(|()| session)).map_err(|e| match e.is_cancelled() {
             true => e,
@@ -234,6 +238,25 @@ fn along(
         Pose { eye, look_at, up: DVec3::Z, fov_y_deg, turn: 0.0 }
     };
     Ok((0..frames).map(pose).collect())
+}
+
+/// A camera that stays where it is until all layers have come to rest.
+fn resting(session: &Session, scene: &Document, animation: &mut AnimationDoc) -> Result<Vec<Pose>, BelvedereError> {
+    let lasts = session.motions.as_ref().map_or(0.0, |m| m.end()) * animation.fps.unwrap_or(FPS);
+    let frames = *animation.frames.get_or_insert(checked(lasts.floor().min(1e9) as u32 + 1)?);
+    let pinhole = session.view().pinhole();
+    let fov_y_deg = scene.camera.fov_y_deg;
+    let pose = Pose { eye: pinhole.eye, look_at: look_at(session, scene), up: -pinhole.down, fov_y_deg, turn: 0.0 };
+    Ok(vec![pose; frames as usize])
+}
+
+/// The point that the camera of the scene looks at.
+fn look_at(session: &Session, scene: &Document) -> DVec3 {
+    let pinhole = session.view().pinhole();
+    match scene.camera.look_at {
+        Some(PointDoc::Scene(p)) => DVec3::from_array(p),
+        _ => pinhole.eye + 100.0 * pinhole.forward,
+    }
 }
 
 fn checked(frames: u32) -> Result<u32, BelvedereError> {

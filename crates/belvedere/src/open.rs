@@ -1,17 +1,17 @@
 //! From a scene file, or a document made in memory, to a session.
 
+use crate::resolve::constructor::{self, Memory};
+use crate::resolve::motion::Motions;
 use crate::resolve::terrain::Solving;
 use crate::resolve::{self, LayerRequest, validate, view};
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{
-    self, ConstructorKind, Document, EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc,
-};
+use crate::scene_file::{self, Document, EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc};
 use crate::session::Description;
 use crate::{BelvedereError, Needs, OpenOptions, Session};
-use belvedere_disocclusion::TerrainMemory;
 use belvedere_io::crs::utm_epsg;
 use belvedere_scene::{Crs, Scene};
 use std::path::Path;
+use std::sync::Arc;
 
 impl Session {
     /// Opens a scene file.
@@ -57,12 +57,11 @@ impl Session {
             }
         }
         validate::document(&source)?;
-        refuse_constructor(&source)?;
         let scene_dir = source.path().and_then(Path::parent).map(Path::to_owned).unwrap_or_default();
         let roots = Roots { scene_dir, allowed };
         let document = &source.document;
         let request = LayerRequest {
-            needs: needs(document, options),
+            needs: needs(&source, options),
             fallback_crs: crs_of_eye(document),
             ..LayerRequest::new(&source.origin, &document.layer, &document.crs, &roots)
         };
@@ -70,7 +69,12 @@ impl Session {
         let scene =
             Scene { title: document.title.clone(), crs: loaded.crs, unit: document.unit, layers: loaded.layers };
         resolve::fill_surfaces(&mut source.document.layer, &scene);
-        let mut memory = TerrainMemory::default();
+        let (mut scene, mut inputs) = (Arc::new(scene), loaded.inputs);
+        let motions = Motions::read(&source, &roots, &scene, &mut inputs)?.map(Arc::new);
+        if let Some(motions) = &motions {
+            scene = Arc::new(motions.at(0.0));
+        }
+        let mut memory = Memory::default();
         let mut solving = Solving { memory: &mut memory, time_step_s: None, progress: &options.progress };
         let resolved = view::resolve(&source, &roots, &scene, (!options.unsolved).then_some(&mut solving))?;
         let file = source.input().cloned();
@@ -79,29 +83,22 @@ impl Session {
             areas: loaded.areas,
             overlay: source.document.overlay.clone().unwrap_or_default(),
             terrain: resolved.terrain,
+            constructor: resolved.constructor,
+            motions,
             warnings: loaded.warnings.into_iter().chain(resolved.warnings).collect(),
-            inputs: file.into_iter().chain(loaded.inputs).chain(resolved.inputs).collect(),
+            inputs: file.into_iter().chain(inputs).chain(resolved.inputs).collect(),
             description: Some(Description { source, resolved: resolved.document, roots }),
             ..Self::from_parts(scene, resolved.view)
         })
     }
 }
 
-/// A picture without what the scene asks for would mislead.
-fn refuse_constructor(source: &SourceDocument) -> Result<(), BelvedereError> {
-    match &source.document.constructor {
-        Some(doc) if doc.kind != ConstructorKind::Manual => Err(source.error(
-            &["constructor", "kind"],
-            "this version has no constructors; give the stages themselves and remove [constructor], or set kind = \"manual\"",
-        )),
-        _ => Ok(()),
-    }
-}
-
 /// What has to be read for what is wanted.
-fn needs(document: &Document, options: &OpenOptions) -> Needs {
+fn needs(source: &SourceDocument, options: &OpenOptions) -> Needs {
+    let document = &source.document;
+    let constructs = document.solves_terrain() || constructor::stated(source).is_some();
     match options.needs {
-        _ if document.solves_terrain() && !options.unsolved => Needs::Everything,
+        _ if constructs && !options.unsolved => Needs::Everything,
         Needs::View if ground_is_needed(document) => Needs::Ground,
         needs => needs,
     }

@@ -2,6 +2,8 @@
 
 use crate::BelvedereError;
 use crate::record::{AreaRecord, InputFile};
+use crate::resolve::constructor::{self, ConstructorReport};
+use crate::resolve::motion::Motions;
 use crate::resolve::terrain::{self, Solving};
 use crate::resolve::view;
 use crate::scene_file::paths::Roots;
@@ -23,6 +25,8 @@ pub struct Session {
     pub(crate) light: Light,
     pub(crate) overlay: OverlayDoc,
     pub(crate) terrain: Option<TerrainReport>,
+    pub(crate) constructor: Option<ConstructorReport>,
+    pub(crate) motions: Option<Arc<Motions>>,
     pub(crate) warnings: Vec<String>,
     pub(crate) areas: Vec<AreaRecord>,
     pub(crate) inputs: Vec<InputFile>,
@@ -50,6 +54,8 @@ impl Session {
             light: Light::default(),
             overlay: OverlayDoc::default(),
             terrain: None,
+            constructor: None,
+            motions: None,
             warnings: Vec::new(),
             areas: Vec::new(),
             inputs: Vec::new(),
@@ -70,7 +76,7 @@ impl Session {
 
     /// The same scene in another view. A document that described the view before is left behind.
     pub fn with_view(self, view: View) -> Self {
-        Self { view, terrain: None, description: None, ..self }
+        Self { view, terrain: None, constructor: None, description: None, ..self }
     }
 
     /// The same scene by another document of the same layers: everything that depends on camera and stages is resolved again.
@@ -90,6 +96,7 @@ impl Session {
             view: resolved.view,
             light: resolved.light,
             terrain: resolved.terrain,
+            constructor: resolved.constructor,
             description: Some(Description { source, resolved: resolved.document, roots }),
             ..self.clone()
         })
@@ -113,6 +120,24 @@ impl Session {
     /// What the solver of terrain disocclusion came to; `None` if none ran.
     pub fn terrain_report(&self) -> Option<&TerrainReport> {
         self.terrain.as_ref()
+    }
+
+    /// What the constructor of curved rays came to; `None` if the scene has none.
+    pub fn constructor_report(&self) -> Option<&ConstructorReport> {
+        self.constructor.as_ref()
+    }
+
+    /// The same with every layer where its motion has brought it at a time, seconds; the view stays as it is.
+    pub(crate) fn at_time(&self, t: f64) -> Self {
+        match &self.motions {
+            Some(motions) => Self { scene: Arc::new(motions.at(t)), ..self.clone() },
+            None => self.clone(),
+        }
+    }
+
+    /// Whether the view of a frame depends on the frames before.
+    pub(crate) fn tracks(&self) -> bool {
+        self.description.as_ref().is_some_and(|d| constructor::stated(&d.source).is_some())
     }
 
     /// What was odd: one sentence each.

@@ -1,7 +1,7 @@
 //! Building the tree, and finding out which faults do not compile.
 
 use crate::plant::Planted;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -84,6 +84,13 @@ fn closure(name: &str, direct: &BTreeMap<String, Vec<(String, bool)>>) -> BTreeS
         all.insert(package);
     }
     all
+}
+
+/// Brings the crates that the workspace needs to this machine: everything later is done offline.
+pub(crate) fn fetch(workspace: &Path) -> Result<()> {
+    let status = cargo(workspace, Path::new("target"), &["fetch", "--locked"]).status()?;
+    ensure!(status.success(), "the crates that the workspace needs cannot be fetched");
+    Ok(())
 }
 
 /// Compiles the libraries; the faults that do not compile, none if all do.

@@ -139,6 +139,7 @@ fn draw(workspace: &Path, packages: &Packages, args: &Args) -> Result<Vec<Fault>
 
 /// Plants the faults, drops those that do not compile, and builds the tests.
 fn prepare(workspace: &Path, home: &Path, packages: &Packages, faults: Vec<Fault>, args: &Args) -> Result<Plan> {
+    build::fetch(workspace)?;
     let (tree, target) = (home.join("tree"), home.join("build"));
     let _ = std::fs::remove_dir_all(&tree);
     let roots = packages.roots.iter().filter(|(p, _)| args.packages.contains(p));

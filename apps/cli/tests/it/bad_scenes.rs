@@ -143,7 +143,13 @@ fn constructors_are_read_and_refused() {
     );
     refuses(
         &with("[constructor]\nkind = 'auto_probe'"),
-        "6: this version has no constructors; give the stages themselves and remove [constructor], or set kind = \"manual\"",
+        "6: constructor: auto_probe is not built yet; use target_tracking, or give the stages themselves with kind = \"manual\"",
+    );
+    let turn = "[[stage]]\nkind = 'curved_rays'\n[[stage.turn]]\nviewpoint = [30, 0, 0]\nt0 = [0, 40, 0]\nt1 = [0, 50, 0]\n\
+                t2 = [0, 60, 0]\nnormal = [0, 1, 0]\n[constructor]\nkind = 'target_tracking'\ntarget = 'x'";
+    refuses(
+        &with(turn),
+        "14: constructor: it builds the curved rays itself; remove the curved_rays stage, or set kind = \"manual\"",
     );
     refuses(&with("[animation]\nalong = 'x'\nframes = 0"), "7: animation: frames is 0, it must be at least 1");
 }

@@ -3,6 +3,7 @@
 mod animate;
 mod areas;
 mod bad_scenes;
+mod constructors;
 mod exact;
 mod figures;
 mod light_and_tints;

@@ -8,7 +8,7 @@ mod sidestep;
 mod target;
 mod tracking;
 
-pub use around::{AroundOptions, BendFound, bend_around};
+pub use around::{AroundOptions, BendFound, BendReport, bend_around};
 pub use sidestep::Sidestep;
 pub use target::{Target, TargetSight};
-pub use tracking::{Tracked, TrackingMemory, TrackingOptions, track_target};
+pub use tracking::{Tracked, TrackingMemory, TrackingOptions, TrackingReport, track_target};

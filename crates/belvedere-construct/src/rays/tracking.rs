@@ -8,7 +8,7 @@ use super::{Sidestep, Target, TargetSight};
 use crate::ConstructError;
 use belvedere_core::{DVec3, View};
 use belvedere_scene::Scene;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Shares from here on count as the whole target.
 const WHOLE: f64 = 0.999;
@@ -83,7 +83,7 @@ pub struct Tracked {
 }
 
 /// What became of the target.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TrackingReport {
     /// Where the second viewpoint is, -1 (left) ..= 1 (right), times `a`.
     pub f: f64,
@@ -242,5 +242,5 @@ fn planes(depth: f64, radius: f64, near: f64, z0: Option<f64>) -> Option<[f64; 3
     let last = depth - 2.0 * radius;
     let first = z0.unwrap_or(0.5 * depth).min(last - least).max(1.001 * near);
     let end = (first + 0.25 * depth).min(last);
-    (end - first >= 0.999 * least).then(|| [first, 0.5 * (first + end), end])
+    (end - first >= 0.999 * least).then_some([first, 0.5 * (first + end), end])
 }

@@ -48,6 +48,7 @@ pub(crate) fn draw(
         terrain: session.scene().terrain().map(TerrainRecord::of),
         areas: session.areas().to_vec(),
         disocclusion: session.terrain_report().filter(|_| !request.straight).cloned(),
+        constructor: session.constructor_report().filter(|_| !request.straight).cloned(),
         view: ViewRecord::of(&view),
         scene: session.resolved().cloned(),
         title: session.scene().title.clone(),

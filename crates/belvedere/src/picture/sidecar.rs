@@ -3,6 +3,7 @@
 use super::displacement::DisplacementReport;
 use super::options::{AuxBuffer, AuxFormat};
 use crate::record::{AreaRecord, InputFile, ViewRecord};
+use crate::resolve::constructor::ConstructorReport;
 use crate::scene_file::Document;
 use belvedere_core::View;
 use belvedere_disocclusion::TerrainReport;
@@ -73,6 +74,9 @@ pub struct Sidecar {
     /// What the solver of terrain disocclusion came to; `None` if none ran.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub disocclusion: Option<TerrainReport>,
+    /// What the constructor of curved rays came to; `None` if the scene has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub constructor: Option<ConstructorReport>,
     /// The camera in numbers.
     pub view: ViewRecord,
     /// The resolved scene: opens to the same view; `None` for one that was made in memory.

@@ -18,9 +18,6 @@ pub(super) fn layer(
     doc: &MeshDoc,
     ground: &Ground<'_>,
 ) -> Result<LayerKind, BelvedereError> {
-    if doc.motion.is_some() {
-        return Err(loader.fail(index, "motion", "meshes stand still in this version; remove motion"));
-    }
     let color = loader.color(index, &doc.style.color)?;
     let mut file = source(loader, index, doc)?;
     match (&doc.transform, &doc.crs) {

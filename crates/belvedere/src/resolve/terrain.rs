@@ -1,19 +1,20 @@
 //! Terrain disocclusion from an intent: parameters, solver, and the document with its defaults.
 
 use super::camera::ResolvedCamera;
+use super::constructor::Memory;
 use crate::BelvedereError;
 use crate::scene_file::{DetailDoc, PointDoc, SolverMode as ModeDoc, SourceDocument, StageDoc, Table, TerrainStageDoc};
 use belvedere_core::{DVec3, Pinhole, Stage, View};
 use belvedere_disocclusion::DisocclusionError;
 use belvedere_disocclusion::report::FeatureCost;
 use belvedere_disocclusion::{
-    Detail, Solved, SolverMode, TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver, ViewpointOptions,
+    Detail, Solved, SolverMode, TerrainReport, TerrainSettings, TerrainSolver, ViewpointOptions,
 };
 use belvedere_scene::{Progress, Scene};
 
 /// What a solver needs beside the document.
 pub(crate) struct Solving<'a> {
-    pub(crate) memory: &'a mut TerrainMemory,
+    pub(crate) memory: &'a mut Memory,
     /// Seconds between frames of a film.
     pub(crate) time_step_s: Option<f64>,
     pub(crate) progress: &'a Progress,
@@ -119,7 +120,7 @@ pub(super) fn solve(
     if let Some(seconds) = solving.time_step_s {
         solver = solver.with_time_step(seconds);
     }
-    Ok(solver.solve(scene, base, solving.memory, solving.progress)?)
+    Ok(solver.solve(scene, base, &mut solving.memory.terrain, solving.progress)?)
 }
 
 /// Moves the camera where the scene allows it and that saves ground; films keep theirs.

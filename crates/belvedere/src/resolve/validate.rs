@@ -31,9 +31,12 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
     if let Some(doc) = &source.document.constructor {
         constructor(doc)
             .map_err(|(key, reason)| source.error(&["constructor", key], format!("constructor: {reason}")))?;
+        super::constructor::check_stages(source)?;
     }
     if let Some(doc) = &source.document.animation {
-        animation(doc).map_err(|(key, reason)| source.error(&["animation", key], format!("animation: {reason}")))?;
+        let moves = source.document.layer.iter().any(|l| l.motion().is_some());
+        animation(doc, moves)
+            .map_err(|(key, reason)| source.error(&["animation", key], format!("animation: {reason}")))?;
     }
     Ok(())
 }
@@ -191,9 +194,12 @@ fn constructor(doc: &ConstructorDoc) -> Result<(), Complaint> {
 }
 
 /// Ranges and combinations of keys of an animation.
-pub(crate) fn animation(doc: &AnimationDoc) -> Result<(), Complaint> {
+///
+/// * `may_rest`: the camera may stay where it is, for something else moves.
+pub(crate) fn animation(doc: &AnimationDoc, may_rest: bool) -> Result<(), Complaint> {
     let ways = [doc.along.is_some(), doc.camera.is_some(), doc.sweep.is_some(), doc.turntable.is_some()];
-    if ways.iter().filter(|w| **w).count() != 1 {
+    let given = ways.iter().filter(|w| **w).count();
+    if given != 1 && !(given == 0 && may_rest) {
         return Err(("", "exactly one of along, camera, sweep and turntable is needed".into()));
     }
     match doc.frames {

@@ -1,5 +1,6 @@
 //! What depends on camera and stages: the view, the light, and the document with every rule replaced by its value.
 
+use super::constructor::{self, ConstructorReport};
 use super::ground::{Ground, earth};
 use super::terrain::Solving;
 use super::{camera, light, stages, terrain};
@@ -19,6 +20,8 @@ pub(crate) struct ResolvedView {
     pub(crate) light: Light,
     /// What the terrain solver came to, if it ran.
     pub(crate) terrain: Option<TerrainReport>,
+    /// What the constructor of curved rays came to, if there is one.
+    pub(crate) constructor: Option<ConstructorReport>,
     pub(crate) inputs: Vec<InputFile>,
     pub(crate) warnings: Vec<String>,
 }
@@ -40,13 +43,17 @@ pub(crate) fn resolve(
     }
     let mut chain: Vec<_> = earth(shape, &ground, camera.pinhole.eye, &mut warnings).into_iter().collect();
     let context = stages::StageContext { source, roots, scene, ground: &ground, camera: &camera, earth: &chain };
-    let resolved = stages::resolve(&context, solving, &mut inputs, &mut warnings)?;
+    let resolved = stages::resolve(&context, solving.as_deref_mut(), &mut inputs, &mut warnings)?;
     chain.extend(resolved.stages);
     let view = View::new(resolved.pinhole, chain).map_err(|e| source.error(&["stage"], e))?;
+    let (view, constructor) = match solving {
+        Some(solving) => constructor::construct(source, scene, view, solving)?,
+        None => (view, None),
+    };
     let light = light::resolve(source, &ground, view.pinhole().eye, &mut warnings)?;
     let mut document = source.document.clone();
     document.crs = scene.crs.to_string();
     document.camera = camera.document;
     document.stage = resolved.documents;
-    Ok(ResolvedView { document, view, light, terrain: resolved.terrain, inputs, warnings })
+    Ok(ResolvedView { document, view, light, terrain: resolved.terrain, constructor, inputs, warnings })
 }

@@ -65,6 +65,15 @@ impl LayerDoc {
         }
     }
 
+    /// File of the layer's movement.
+    pub(crate) fn motion(&self) -> Option<&str> {
+        match self {
+            Self::Boxes(l) => l.motion.as_deref(),
+            Self::Mesh(l) => l.motion.as_deref(),
+            _ => None,
+        }
+    }
+
     /// Name of the kind, as files write it.
     pub fn kind(&self) -> &'static str {
         match self {
@@ -390,6 +399,9 @@ pub struct BoxesDoc {
     /// Moves all boxes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub transform: Option<TransformDoc>,
+    /// Movement: a CSV file of rows `t,x,y,z[,yaw_deg]` (seconds, scene coordinates): where the layer's own origin is, after `transform`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<String>,
 }
 
 /// How boxes are drawn.

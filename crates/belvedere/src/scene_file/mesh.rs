@@ -42,7 +42,7 @@ pub struct MeshDoc {
     /// `EPSG:n` of the file's x and y.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crs: Option<String>,
-    /// Movement: a CSV file with columns t, x, y, z, yaw_deg. Not played by this version.
+    /// Movement: a CSV file of rows `t,x,y,z[,yaw_deg]` (seconds, scene coordinates): where the layer's own origin is, after `transform`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<String>,
 }

@@ -3,6 +3,7 @@
 use crate::data::DataFiles;
 use crate::output::{self, document_toml, pretty};
 use crate::picture::{DisplacementReport, Picture, PictureOptions, TerrainRecord};
+use crate::resolve::constructor::Memory;
 use crate::resolve::ground::{Ground, earth_radius};
 use crate::resolve::terrain::Solving;
 use crate::scene_file::{
@@ -13,7 +14,7 @@ use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::measure::HiddenRun;
 use belvedere_construct::{Goal, MeasureOptions, RevealMemory, RevealOptions, RevealReport, Revealed};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
-use belvedere_disocclusion::{TerrainMemory, TerrainReport};
+use belvedere_disocclusion::TerrainReport;
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::{Crs, Progress, Scene};
 use serde::Serialize;
@@ -234,7 +235,7 @@ fn disoccluded(session: &Session, technique: Technique, progress: &Progress) -> 
         document.stage.clear();
     }
     document.stage.insert(0, StageDoc::TerrainDisocclusion(TerrainStageDoc::default()));
-    let mut memory = TerrainMemory::default();
+    let mut memory = Memory::default();
     session.with_document(document, Some(&mut Solving { memory: &mut memory, time_step_s: None, progress }))
 }
 

@@ -4,6 +4,7 @@ use crate::camera_path::CameraPath;
 use crate::output;
 use crate::picture::{DisplacementReport, PictureOptions};
 use crate::record::{self, InputFile, ViewRecord};
+use crate::resolve::constructor::ConstructorReport;
 use crate::scene_file::{AnimationDoc, Document};
 use crate::{BelvedereError, Session};
 use belvedere_disocclusion::TerrainReport;
@@ -67,6 +68,9 @@ pub struct FrameRecord {
     /// What the terrain solver came to, if it ran.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub terrain: Option<FrameTerrain>,
+    /// What the constructor of curved rays came to, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub constructor: Option<ConstructorReport>,
 }
 
 /// The terrain of one frame.

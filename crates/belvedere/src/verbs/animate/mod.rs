@@ -10,10 +10,10 @@ use crate::camera_path::CameraPath;
 use crate::output;
 use crate::picture::{self, PictureOptions};
 use crate::record::ViewRecord;
+use crate::resolve::constructor::Memory;
 use crate::resolve::terrain::Solving;
 use crate::scene_file::{AnimationDoc, Document};
 use crate::{BelvedereError, Session};
-use belvedere_disocclusion::TerrainMemory;
 use belvedere_scene::Progress;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -157,11 +157,11 @@ fn draw_missing(
 ) -> Result<usize, BelvedereError> {
     let missing: Vec<usize> = (0..path.len()).filter(|&f| manifest.frames[f].is_none()).collect();
     // What a solver remembers depends on every frame before: those that are there are solved again, not drawn.
-    let solves = session.resolved().is_some_and(Document::solves_terrain);
+    let solves = session.resolved().is_some_and(Document::solves_terrain) || session.tracks();
     let last = missing.last().map_or(0, |f| f + 1);
     let work: Vec<usize> = if solves { (0..last).collect() } else { missing.clone() };
     let quiet = progress.unheard();
-    let mut memory = TerrainMemory::default();
+    let mut memory = Memory::default();
     let started = Instant::now();
     for (step, &frame) in work.iter().enumerate() {
         let share = manifest.done as f64 / path.len() as f64;
@@ -181,6 +181,7 @@ fn draw_missing(
             view: ViewRecord::of(session.view()),
             displacement: picture.sidecar.displacement,
             terrain: session.terrain_report().map(FrameTerrain::of),
+            constructor: session.constructor_report().cloned(),
         };
         manifest.put(frame, record);
         manifest.write(folder)?;

@@ -1,0 +1,95 @@
+//! Constructors of curved rays and layers that move, in scene files and films.
+
+use super::{Place, read};
+
+/// A small block behind a tower; both stand on nothing.
+const SCENE: &str = "format = 1
+crs = 'local'
+[camera]
+eye = [0, 0, 6]
+look_at = [0, 100, 4]
+fov_y_deg = 50
+image = [96, 54]
+[[layer]]
+kind = 'boxes'
+id = 'tower'
+boxes = [{ base = [0, 60, 0], size = [8, 4, 30] }]
+[[layer]]
+kind = 'boxes'
+id = 'van'
+boxes = [{ base = [0, 0, 0], size = [4, 2, 3], color = '#d02020' }]
+motion = 'van.csv'
+[constructor]
+kind = 'target_tracking'
+target = 'van'
+";
+
+fn place() -> Place {
+    let place = Place::new();
+    place.write("s.toml", SCENE);
+    place.write("van.csv", "t,x,y,z,yaw_deg\n0,-25,95,0,0\n2,25,95,0,90\n");
+    place
+}
+
+#[test]
+fn a_film_keeps_its_target_in_sight_and_goes_on_to_the_same_bytes() {
+    let place = place();
+    place.ok(&["animate", "s.toml", "-o", "film"]);
+    let record: serde_json::Value = serde_json::from_slice(&read(&place.path("film/animation.json"))).expect("JSON");
+    let frames = record["frames"].as_array().expect("frames");
+    assert_eq!(frames.len(), 51, "until the van comes to rest, 25 frames a second");
+    let number = |frame: &serde_json::Value, key: &str| frame["constructor"][key].as_f64().expect("a figure");
+    let hidden: Vec<usize> = (0..51).filter(|k| number(&frames[*k], "visible_straight") < 0.5).collect();
+    assert!(hidden.len() >= 4, "the tower hides the van in frames {hidden:?}");
+    // It takes the set speed a few frames to step aside.
+    let seen = hidden.iter().filter(|k| number(&frames[**k], "visible") > 0.5).count();
+    assert!(seen + 4 >= hidden.len() && seen > 0, "{seen} of {hidden:?}");
+    for pair in frames.windows(2) {
+        let step = (number(&pair[1], "f") - number(&pair[0], "f")).abs();
+        assert!(step <= 1.5 / 25.0 * (1.0 + 1e-9), "f moves by {step} in a frame");
+    }
+    // The van is where its motion says, and it moves.
+    assert_ne!(frames[0]["sha256"], frames[1]["sha256"]);
+    // What is missing is drawn again, with the memory of the frames before.
+    let kept = read(&place.path("film/frame_00030.png"));
+    std::fs::remove_file(place.path("film/frame_00030.png")).expect("removed");
+    place.ok(&["animate", "s.toml", "-o", "film", "--resume"]);
+    assert!(read(&place.path("film/frame_00030.png")) == kept, "another picture");
+}
+
+#[test]
+fn a_still_bends_at_once_and_its_record_says_so() {
+    let place = place();
+    place.write("van.csv", "0,0,95,0\n");
+    place.ok(&["render", "s.toml", "-o", "bent.png"]);
+    let record: serde_json::Value = serde_json::from_slice(&read(&place.path("bent.png.json"))).expect("JSON");
+    let constructor = &record["constructor"];
+    assert_eq!(constructor["kind"], "target_tracking");
+    assert!(constructor["visible_straight"].as_f64() < Some(0.5) && constructor["visible"] == 1.0, "{constructor}");
+    assert_eq!(record["stages"], serde_json::json!(["curved_rays"]));
+    assert!(record["note"].as_str().is_some_and(|note| note.contains("curved_rays")));
+    // The resolved scene opens to the same picture.
+    place.write("again.toml", &place.ok(&["show", "s.toml"]));
+    place.ok(&["render", "again.toml", "-o", "again.png"]);
+    let pixels = |name: &str| super::light_and_tints::pixels(&read(&place.path(name)));
+    assert!(pixels("bent.png") == pixels("again.png"));
+}
+
+#[test]
+fn what_cannot_be_is_one_clear_line() {
+    let place = place();
+    let fails = |from: &str, to: &str, words: &[&str]| {
+        place.write("bad.toml", &SCENE.replace(from, to));
+        let line = place.fails(&["render", "bad.toml", "-o", "x.png"]);
+        assert!(words.iter().all(|w| line.contains(w)), "{line}");
+    };
+    fails("target = 'van'", "target = 'can'", &["bad.toml:19", "\"can\" is no layer", "\"van\""]);
+    fails("motion = 'van.csv'", "motion = 'gone.csv'", &["bad.toml:", "gone.csv"]);
+    fails("kind = 'target_tracking'", "kind = 'target_tracking'\nf_step = 2.0", &["f_step is 2", "(0, 1]"]);
+    place.write("van.csv", "0,0,95,0\n0,1,95,0\n");
+    fails("", "", &["van.csv:2", "times must rise"]);
+    place.write("van.csv", "0,0,95\n");
+    fails("", "", &["van.csv:1", "t,x,y,z[,yaw_deg]"]);
+    place.write("van.csv", "t,x,y,z\n");
+    fails("", "", &["van.csv:1", "at least one row"]);
+}

@@ -1,0 +1,86 @@
+//! Movements of layers: rows of a CSV file.
+
+use crate::BelvedereError;
+use crate::scene_file::paths::Roots;
+use crate::scene_file::{self, DocError, SourceDocument};
+use belvedere_core::DVec3;
+use belvedere_io::InputFile;
+use belvedere_scene::{Motion, Placement, Scene};
+use std::sync::Arc;
+
+/// The layers of a scene that move, and the scene where each stands at its own origin.
+#[derive(Debug, Clone)]
+pub(crate) struct Motions {
+    rest: Arc<Scene>,
+    /// Index of the layer, and how it moves.
+    layers: Vec<(usize, Motion)>,
+}
+
+impl Motions {
+    /// Reads the movements that a document names; `None` if nothing moves.
+    pub(crate) fn read(
+        source: &SourceDocument,
+        roots: &Roots,
+        scene: &Arc<Scene>,
+        inputs: &mut Vec<InputFile>,
+    ) -> Result<Option<Self>, BelvedereError> {
+        let mut layers = Vec::new();
+        for (i, layer) in source.document.layer.iter().enumerate() {
+            // What is not read cannot move.
+            let Some(index) = scene.layers.iter().position(|l| l.id == layer.id()) else { continue };
+            let Some(name) = layer.motion() else { continue };
+            let about = format!("layer \"{}\": ", layer.id());
+            let path = roots
+                .resolve(name)
+                .map_err(|e| source.origin.refusal(&["layer", &i.to_string(), "motion"], &about, e))?;
+            let (text, file) = scene_file::read_text(&path)?;
+            layers.push((index, parse(&text).map_err(|e| e.in_file(&path))?));
+            inputs.push(file);
+        }
+        Ok((!layers.is_empty()).then(|| Self { rest: Arc::clone(scene), layers }))
+    }
+
+    /// The scene at a time, seconds.
+    pub(crate) fn at(&self, t: f64) -> Scene {
+        let mut scene = (*self.rest).clone();
+        for (index, motion) in &self.layers {
+            if let Some(kind) = self.rest.layers[*index].kind.placed(&motion.at(t)) {
+                scene.layers[*index].kind = kind;
+            }
+        }
+        scene
+    }
+
+    /// When the last layer comes to rest, seconds.
+    pub(crate) fn end(&self) -> f64 {
+        self.layers.iter().map(|(_, motion)| motion.end()).fold(0.0, f64::max)
+    }
+}
+
+/// `t,x,y,z[,yaw_deg]`; a first line of names and lines that begin with # are skipped.
+fn parse(text: &str) -> Result<Motion, DocError> {
+    let (mut keys, mut lines) = (Vec::new(), Vec::new());
+    for (i, row) in text.lines().enumerate() {
+        let cells: Vec<&str> = row.split([',', ';', '\t']).map(str::trim).collect();
+        let is_head = keys.is_empty() && cells[0].parse::<f64>().is_err();
+        if row.trim().is_empty() || row.starts_with('#') || (is_head && i == 0) {
+            continue;
+        }
+        let number = |k: usize| cells.get(k).and_then(|c| c.parse::<f64>().ok()).filter(|v| v.is_finite());
+        let yaw = if cells.get(4).is_none_or(|c| c.is_empty()) { Some(0.0) } else { number(4) };
+        let (Some(t), Some(x), Some(y), Some(z), Some(yaw), true) =
+            (number(0), number(1), number(2), number(3), yaw, cells.len() <= 5)
+        else {
+            return Err(DocError::at(i + 1, "t,x,y,z[,yaw_deg] was expected; give finite numbers"));
+        };
+        keys.push((t, Placement { translate: DVec3::new(x, y, z), yaw: yaw.to_radians() }));
+        lines.push(i + 1);
+    }
+    Motion::new(keys).map_err(|e| {
+        let row = match &e {
+            belvedere_scene::MotionError::Order { row, .. } => *row,
+            _ => 1,
+        };
+        DocError::at(lines.get(row - 1).copied().unwrap_or(1), e.to_string())
+    })
+}
