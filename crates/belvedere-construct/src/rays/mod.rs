@@ -4,11 +4,14 @@
 //! in place of boxes in the image, bends in any direction, and the search for the smallest bend that shows a target are ours.
 
 mod around;
+mod path;
+mod preview;
 mod sidestep;
 mod target;
 mod tracking;
 
 pub use around::{AroundOptions, BendFound, BendReport, bend_around};
+pub use preview::{Lens, PathPreview, PreviewReport, Previewed};
 pub use sidestep::Sidestep;
 pub use target::{Target, TargetSight};
 pub use tracking::{Tracked, TrackingMemory, TrackingOptions, TrackingReport, track_target};

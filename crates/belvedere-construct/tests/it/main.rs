@@ -3,5 +3,6 @@
 mod bars;
 mod flight;
 mod measure;
+mod preview;
 mod reveal;
 mod tracking;

@@ -1,0 +1,374 @@
+//! Path preview: rays follow a path ahead, round every bend of it.
+//!
+//! Source: Cui et al. 2010, section 5.3, with the rules of collapse and deployment worked out by us: turns stand where the simplified
+//! path turns; a turn that comes into the preview grows from nothing, and the camera swings into the next leg while it
+//! passes one, so that nothing jumps. On terrain the turns stand upright and the camera looks down on the path.
+
+use super::path::{Control, Path};
+use crate::ConstructError;
+use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
+use belvedere_core::{CurvedRays, DVec2, DVec3, Pinhole, Projection, Stage, View};
+use serde::{Deserialize, Serialize};
+
+/// Turns of less than this are none, radians.
+const STRAIGHT: f64 = 0.035;
+/// Distance of the common line from the path, half widths of the picture.
+const LINE_AT: f64 = 1.3;
+/// Half length of a transition, shares of the shorter leg beside it.
+const TRANSITION: f64 = 0.3;
+/// The camera swings into the next leg over at most these shares of the leg before it and of the preview: over more would be
+/// gentler, but a camera that looks aside sees the wall of a canyon.
+const SWING: [f64; 2] = [0.5, 0.06];
+/// Where the position stands over terrain, shares of the picture's height from its lower edge.
+const FOOT: f64 = 0.06;
+/// Nearest drawn depth, shares of that of the position: least, and most where turns fit behind it.
+const NEAR: [f64; 2] = [0.85, 0.98];
+/// Tolerances of the simplified path that are tried, shares of the picture's width.
+const TOLERANCES: [f64; 4] = [0.02, 0.04, 0.08, 0.16];
+/// Positions at which a tolerance is tried.
+const TRIALS: usize = 24;
+
+/// The camera of a preview; lengths in scene units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lens {
+    /// Distance of the eye behind the position on the path, and of every viewpoint behind its turn, > 0.
+    pub behind_m: f64,
+    /// Width of the picture there, > 0.
+    pub width_m: f64,
+    /// Height of the eye over the path, >= 0.
+    pub rise_m: f64,
+}
+
+impl Lens {
+    /// For a preview of a length: as far behind, a quarter as wide; over terrain a tenth as high.
+    pub fn for_preview(preview_m: f64, over_terrain: bool) -> Self {
+        let rise_m = if over_terrain { 0.1 * preview_m } else { 0.0 };
+        Self { behind_m: preview_m, width_m: 0.25 * preview_m, rise_m }
+    }
+}
+
+/// A path, how much of it is shown ahead, and the camera.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PathPreview {
+    path: Path,
+    /// Where the simplified path turns, with both ends.
+    controls: Vec<Control>,
+    preview_m: f64,
+    lens: Lens,
+    level: bool,
+    tolerance: f64,
+}
+
+/// The camera at a position.
+#[derive(Debug, Clone)]
+pub struct Previewed {
+    /// The bent view.
+    pub view: View,
+    /// Figures.
+    pub report: PreviewReport,
+}
+
+/// What a preview came to.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PreviewReport {
+    /// Position on the path, scene units.
+    pub position_m: f64,
+    /// Length of the path that is followed from there, scene units: less than wanted where more turns would not fit.
+    pub reach_m: f64,
+    /// Turns of the rays.
+    pub turns: usize,
+    /// Largest distance of the path from the simplified one, scene units.
+    pub tolerance_m: f64,
+}
+
+impl PathPreview {
+    /// Prepares a preview of `points`; `level` = over terrain: turns are upright, heights of the path do not turn rays.
+    ///
+    /// # Errors
+    /// [`ConstructError::Parameter`] for lengths out of range or a path without length.
+    pub fn new(
+        points: &[DVec3],
+        preview_m: f64,
+        lens: Lens,
+        level: bool,
+        image: [u32; 2],
+    ) -> Result<Self, ConstructError> {
+        let positive = [("preview_m", preview_m), ("behind_m", lens.behind_m), ("width_m", lens.width_m)];
+        for (name, value) in positive {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(ConstructError::Parameter { name, value, must: "be a number greater than 0" });
+            }
+        }
+        if !(lens.rise_m >= 0.0 && lens.rise_m.is_finite()) {
+            let (name, value) = ("rise_m", lens.rise_m);
+            return Err(ConstructError::Parameter { name, value, must: "be a number of at least 0" });
+        }
+        let path = Path::new(points);
+        if !(path.length() > 1e-6 * lens.behind_m) {
+            let (name, value) = ("the length of the path", path.length());
+            return Err(ConstructError::Parameter {
+                name,
+                value,
+                must: "be more than nothing; give a path of two points",
+            });
+        }
+        let mut preview = Self { path, controls: Vec::new(), preview_m, lens, level, tolerance: 0.0 };
+        preview.choose_tolerance(image)?;
+        Ok(preview)
+    }
+
+    /// Length of the path, scene units.
+    pub fn length(&self) -> f64 {
+        self.path.length()
+    }
+
+    /// Points of the path that a preview from `position_m` shows, as far as `reach_m`, `spacing` apart.
+    pub fn samples(&self, position_m: f64, reach_m: f64, spacing: f64) -> Vec<DVec3> {
+        let count = (reach_m / spacing).floor().clamp(0.0, 1e6) as usize;
+        (1..=count).map(|k| self.path.at(position_m + spacing * k as f64)).collect()
+    }
+
+    /// The smallest tolerance with which all of the preview can be followed nearly everywhere; else that which reaches farthest.
+    fn choose_tolerance(&mut self, image: [u32; 2]) -> Result<(), ConstructError> {
+        let mut best: Option<(f64, f64, Vec<Control>)> = None;
+        for share in TOLERANCES {
+            self.tolerance = share * self.lens.width_m;
+            self.controls = self.path.controls(self.tolerance, 0.5 * self.lens.width_m, self.level);
+            let mut reached = 0.0;
+            for k in 0..TRIALS {
+                let position = self.path.length() * k as f64 / TRIALS as f64;
+                let report = self.at(position, image, None)?.report;
+                reached += report.reach_m / self.wanted(position) / TRIALS as f64;
+            }
+            if best.as_ref().is_none_or(|b| reached > b.0 + 0.02) {
+                best = Some((reached, self.tolerance, self.controls.clone()));
+            }
+            if reached > 0.99 {
+                break;
+            }
+        }
+        if let Some((_, tolerance, controls)) = best {
+            (self.tolerance, self.controls) = (tolerance, controls);
+        }
+        Ok(())
+    }
+
+    /// Length of path that is to be shown from a position.
+    fn wanted(&self, position: f64) -> f64 {
+        self.preview_m.min(self.path.length() - position).max(1e-9 * self.path.length())
+    }
+
+    /// The view from a position on the path, held at its ends. Depends on nothing but its arguments.
+    ///
+    /// * `image`: width and height, pixels;
+    /// * `far`: farthest drawn depth, scene units.
+    ///
+    /// # Errors
+    /// [`ConstructError::Pinhole`] for an image of no pixels.
+    pub fn at(&self, position_m: f64, image: [u32; 2], far: Option<f64>) -> Result<Previewed, ConstructError> {
+        let last = self.path.length();
+        let position = position_m.clamp(0.0, last * (1.0 - 1e-9));
+        let legs = self.legs(position);
+        let root = self.root(&legs, position, image, far)?;
+        let mut count = legs.turns.len();
+        let mut found = None;
+        while count > 0 && found.is_none() {
+            let rays = |near: f64, factor: f64| {
+                let root = Pinhole { near: near * root.near, ..root.clone() };
+                CurvedRays::new(&root, Model::Modified, &self.specs(&legs, &root, count, factor)?).ok()
+            };
+            // Rather less in front than shorter transitions.
+            let behind = |factor: f64| largest(NEAR, |near| rays(near, factor));
+            found = behind(1.0).or_else(|| {
+                let factor = largest([1e-3, 1.0], |factor| rays(NEAR[0], factor).map(|_| factor))?;
+                behind(factor)
+            });
+            count -= usize::from(found.is_none());
+        }
+        let reach = match legs.turns.get(count) {
+            Some(turn) => turn.s - position,
+            None => self.wanted(position),
+        };
+        let root = found.as_ref().map_or(root, |rays| rays.root().clone());
+        let stages = found.map(Stage::CurvedRays).into_iter().collect();
+        let report = PreviewReport { position_m: position, reach_m: reach, turns: count, tolerance_m: self.tolerance };
+        Ok(Previewed { view: View::new(root, stages)?, report })
+    }
+
+    /// The legs ahead of a position.
+    fn legs(&self, position: f64) -> Legs {
+        let next = self.controls.partition_point(|c| c.s <= position).clamp(1, self.controls.len() - 1);
+        let (from, to) = (self.controls[next - 1], self.controls[next]);
+        let lift = |p: DVec3| if self.level { p.truncate().extend(self.eye_height(position)) } else { p };
+        let here = lift(from.at.lerp(to.at, (position - from.s) / (to.s - from.s)));
+        let direction = |i: usize| (self.controls[i].at - self.controls[i - 1].at).normalize_or(DVec3::Y);
+        let mut turns: Vec<Corner> = Vec::new();
+        for i in next..self.controls.len() - 1 {
+            let Control { s, at, half_length } = self.controls[i];
+            if s >= position + self.preview_m {
+                break;
+            }
+            let (before, after) = (direction(i), direction(i + 1));
+            if before.angle_between(after) < STRAIGHT {
+                continue;
+            }
+            let edges = [self.controls[i - 1], self.controls[i + 1]].map(|c| c.at.distance(at));
+            let shorter = edges[0].min(edges[1]);
+            let half_length = half_length.unwrap_or(f64::INFINITY).min(TRANSITION * shorter);
+            // A turn enters over at most the leg before it.
+            let ramp = (0.3 * self.preview_m).min(shorter);
+            let entered = smoothstep((position + self.preview_m - s) / ramp);
+            turns.push(Corner { s, at: lift(at), before, after, edges, half_length, entered });
+        }
+        Legs { here, direction: direction(next), turns }
+    }
+
+    /// Height of the eye over terrain: that of the path around it, evenly, and the rise.
+    fn eye_height(&self, position: f64) -> f64 {
+        const SAMPLES: usize = 33;
+        let at = |k: usize| position + self.preview_m * (-0.1 + 0.6 * k as f64 / (SAMPLES - 1) as f64);
+        (0..SAMPLES).map(|k| self.path.at(at(k)).z).sum::<f64>() / SAMPLES as f64 + self.lens.rise_m
+    }
+
+    /// The camera before any turn: behind the position, swinging into the next leg while it comes to a turn.
+    fn root(&self, legs: &Legs, position: f64, image: [u32; 2], far: Option<f64>) -> Result<Pinhole, ConstructError> {
+        let Lens { behind_m, width_m, rise_m } = self.lens;
+        // Where rays begin: at the position, while the camera swings at the turn that it comes to.
+        let (direction, begin) = match legs.turns.first() {
+            Some(turn) => {
+                let over = (SWING[0] * turn.edges[0]).min(SWING[1] * self.preview_m);
+                let share = soft_ramp(1.0 - (turn.s - position) / over);
+                (turned(turn.before, turn.after, share), legs.here.lerp(turn.at, share))
+            }
+            None => (legs.direction, legs.here),
+        };
+        let eye = legs.here - behind_m * direction;
+        let [width, height] = image.map(f64::from);
+        let fov_y = 2.0 * (0.5 * width_m / behind_m * height / width).atan();
+        let pitch = if self.level { rise_m.atan2(behind_m) - (0.5 - FOOT) * fov_y } else { 0.0 };
+        let up = if direction.z.abs() < 0.99 { DVec3::Z } else { DVec3::Y };
+        let side = direction.cross(up).normalize();
+        let forward = pitch.cos() * direction + pitch.sin() * direction.cross(side);
+        let foot = begin - if self.level { rise_m * DVec3::Z } else { DVec3::ZERO };
+        let near = (foot - eye).dot(forward);
+        let far = far.filter(|far| *far > near);
+        let lens = Projection::Perspective { fov_y };
+        Ok(Pinhole::look_at(eye, eye + forward, up, lens, image, near, far)?)
+    }
+
+    /// The first `count` turns; `None` if rays of the picture do not come to one of them.
+    ///
+    /// * `factor`: length of transitions.
+    fn specs(&self, legs: &Legs, root: &Pinhole, count: usize, factor: f64) -> Option<Vec<TurnSpec>> {
+        let behind = self.lens.behind_m;
+        let mut viewpoint = root.eye;
+        // Where the rays through the corners of the picture are, on the last plane t1.
+        let mut corners = corner_rays(root).map(|ray| root.eye + ray);
+        let mut specs = Vec::with_capacity(count);
+        for (i, turn) in legs.turns.iter().take(count).enumerate() {
+            let inside = (turn.after - turn.before).normalize_or(DVec3::X);
+            let axis = turn.before.cross(turn.after).normalize_or(DVec3::Z);
+            // Plane t1 halves the angle of the legs, wherever in it the common line is.
+            let across = inside.cross(axis);
+            let mut reach = 0.0f64;
+            for corner in &mut corners {
+                let ray = *corner - viewpoint;
+                let share = (turn.at - viewpoint).dot(across) / ray.dot(across);
+                if !(share > 0.0 && share.is_finite()) {
+                    return None;
+                }
+                *corner = viewpoint + share * ray;
+                reach = reach.max((*corner - turn.at).dot(inside));
+            }
+            let before = if i == 0 { (turn.at - legs.here).dot(turn.before).max(0.0) } else { turn.edges[0] };
+            let length = factor * turn.half_length.min(TRANSITION * before);
+            viewpoint += turn.entered * (turn.at - behind * turn.after - viewpoint);
+            specs.push(TurnSpec {
+                viewpoint,
+                t0: turn.at - length * turn.before,
+                t1: turn.at,
+                t2: turn.at + length * turn.after,
+                pencil: Pencil::Line { point: turn.at + LINE_AT * reach * inside, dir: axis },
+                m: Sharpness::Bend,
+            });
+        }
+        Some(specs)
+    }
+}
+
+/// A turn of the simplified path.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    s: f64,
+    at: DVec3,
+    /// Unit directions of the legs.
+    before: DVec3,
+    after: DVec3,
+    /// Lengths of the legs.
+    edges: [f64; 2],
+    /// Half length of the transition.
+    half_length: f64,
+    /// How far it has come into the preview, 0..=1.
+    entered: f64,
+}
+
+/// What lies ahead of a position.
+struct Legs {
+    here: DVec3,
+    direction: DVec3,
+    turns: Vec<Corner>,
+}
+
+/// What `make` gives for the largest number of a range for which it gives something; changes smoothly with what `make` depends on.
+fn largest<T>([least, most]: [f64; 2], make: impl Fn(f64) -> Option<T>) -> Option<T> {
+    const STEPS: usize = 12;
+    if let Some(made) = make(most) {
+        return Some(made);
+    }
+    let mut best = make(least)?;
+    let (mut low, mut high) = (least, most);
+    for _ in 0..STEPS {
+        let middle = 0.5 * (low + high);
+        match make(middle) {
+            Some(made) => (low, best) = (middle, made),
+            None => high = middle,
+        }
+    }
+    Some(best)
+}
+
+/// Directions of the rays through the corners of the picture.
+fn corner_rays(root: &Pinhole) -> [DVec3; 4] {
+    let [w, h] = root.image.map(f64::from);
+    [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)].map(|(x, y)| root.line(DVec2::new(x, y)).1)
+}
+
+/// The direction between two, by a share of their angle.
+fn turned(from: DVec3, to: DVec3, share: f64) -> DVec3 {
+    let angle = from.angle_between(to);
+    if angle < 1e-9 {
+        return to;
+    }
+    let across = (to - from.dot(to) * from).normalize_or(to);
+    let (sin, cos) = (share * angle).sin_cos();
+    cos * from + sin * across
+}
+
+/// 0 up to 0, 1 from 1 on, even between but for its ends; C1.
+fn soft_ramp(x: f64) -> f64 {
+    const ENDS: f64 = 0.2;
+    let (x, slope) = (x.clamp(0.0, 1.0), 1.0 / (1.0 - ENDS));
+    if x < ENDS {
+        0.5 * slope * x * x / ENDS
+    } else if x > 1.0 - ENDS {
+        1.0 - 0.5 * slope * (1.0 - x) * (1.0 - x) / ENDS
+    } else {
+        slope * (x - 0.5 * ENDS)
+    }
+}
+
+/// 0 up to 0, 1 from 1 on, C1 between.
+fn smoothstep(x: f64) -> f64 {
+    let x = x.clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}
