@@ -2,6 +2,7 @@
 //! and the contract between pictures and whoever needs them ([`Renderer`], [`RenderJob`], [`Frame`]).
 
 pub mod cell;
+mod chain;
 pub mod drape;
 pub mod frame;
 pub mod heightfield;

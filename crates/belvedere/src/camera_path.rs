@@ -1,6 +1,6 @@
 //! Where the camera of an animation is in every frame.
 
-use crate::resolve::constructor::Memory;
+use crate::resolve::constructor::{self, Memory};
 use crate::resolve::terrain::Solving;
 use crate::resolve::{stages, validate};
 use crate::scene_file::{
@@ -10,7 +10,7 @@ use crate::session::Description;
 use crate::{BelvedereError, Session};
 use belvedere_construct::{Flight, FlightOptions};
 use belvedere_core::{DVec2, DVec3, Stage};
-use belvedere_scene::{LayerKind, LineFeature, Progress, Scene};
+use belvedere_scene::{LayerKind, Progress, Scene};
 use glam::DQuat;
 use serde::Deserialize;
 use std::path::Path;
@@ -37,6 +37,8 @@ pub(crate) struct CameraPath {
     /// The resolved scene.
     base: Document,
     poses: Vec<Pose>,
+    /// Position on the path of a preview in every frame; empty if there is none.
+    positions: Vec<f64>,
     /// What the camera turns about; `None` where the pivot of a spline travels with the camera.
     pivot: Option<DVec3>,
     /// Frames per second.
@@ -122,12 +124,20 @@ impl CameraPath {
             || animation.camera.is_some()
             || animation.sweep.is_some()
             || animation.turntable.is_some();
-        if !moves_camera && session.motions.is_none() {
+        let Some(Description { source, .. }) = &session.description else { return Err(BelvedereError::NoAnimation) };
+        let image = session.view().pinhole().image;
+        let preview_m = constructor::path_length(source, roots, session.scene(), image)?;
+        if !moves_camera && session.motions.is_none() && preview_m.is_none() {
             return Err(BelvedereError::NoAnimation);
         }
         defaults(scene, &mut animation)?;
         validate::animation(&animation, !moves_camera)
             .map_err(|(_, reason)| BelvedereError::Animation(format!("animation: {reason}")))?;
+        let start_m = scene.constructor.as_ref().and_then(|c| c.position_m).unwrap_or(0.0);
+        let positions = match preview_m {
+            Some(length) => walk(length, start_m, &mut animation).map_err(BelvedereError::Animation)?,
+            None => Vec::new(),
+        };
         let (poses, pivot) = if let Some(layer) = animation.along.clone() {
             (along(session, scene, &layer, &mut animation)?, None)
         } else if let Some(file) = animation.camera.clone() {
@@ -142,7 +152,7 @@ impl CameraPath {
             };
             (poses, Some(pivot))
         };
-        Ok(Self { base: scene.clone(), poses, pivot, fps, animation })
+        Ok(Self { base: scene.clone(), poses, positions, pivot, fps, animation })
     }
 
     /// Number of frames.
@@ -181,6 +191,9 @@ impl CameraPath {
             fov_y_deg: pose.fov_y_deg,
             ..document.camera
         };
+        if let (Some(constructor), Some(position)) = (&mut document.constructor, self.positions.get(frame)) {
+            constructor.position_m = Some(*position);
+        }
         for stage in &mut document.stage {
             match (stage, self.pivot) {
                 (StageDoc::SplineBend(spline), None) => spline.pivot = None,
@@ -210,10 +223,23 @@ fn along(
         ahead_m: *animation.ahead_m.get_or_insert(usual.ahead_m),
     };
     let flight = Flight::along(&route, session.scene().terrain(), &options).map_err(|e| fail(e.to_string()))?;
-    let start = *animation.start_m.get_or_insert(0.0);
-    let left = flight.length_m() - start;
+    let positions = walk(flight.length_m(), 0.0, animation).map_err(fail)?;
+    let fov_y_deg = scene.camera.fov_y_deg;
+    let pose = |walked: f64| {
+        let (eye, look_at) = flight.at(walked);
+        Pose { eye, look_at, up: DVec3::Z, fov_y_deg, turn: 0.0 }
+    };
+    Ok(positions.into_iter().map(pose).collect())
+}
+
+/// Where on a route of a length every frame is: evenly, by the speed or the number of frames.
+///
+/// * `usual_start`: where it begins if the animation does not say.
+fn walk(length: f64, usual_start: f64, animation: &mut AnimationDoc) -> Result<Vec<f64>, String> {
+    let start = *animation.start_m.get_or_insert(usual_start);
+    let left = length - start;
     if !(left > 0.0) {
-        return Err(fail(format!("start_m is {start}, the route is {:.1} long; begin earlier", flight.length_m())));
+        return Err(format!("start_m is {start}, the route is {length:.1} long; begin earlier"));
     }
     let fps = animation.fps.unwrap_or(FPS);
     let per_frame = match animation.speed_mps {
@@ -223,21 +249,16 @@ fn along(
     let possible = (left / per_frame * (1.0 + 1e-12)).floor() as u32 + 1;
     let frames = match (animation.frames, animation.speed_mps) {
         (Some(n), Some(speed)) if n > possible => {
-            return Err(fail(format!(
+            return Err(format!(
                 "{n} frames at {speed} metres per second need more than the {left:.1} left of the route; give at most {possible}"
-            )));
+            ));
         }
         (Some(n), _) => n,
         (None, _) => possible,
     };
-    animation.frames = Some(checked(frames)?);
+    animation.frames = Some(checked(frames).map_err(|e| e.to_string())?);
     animation.speed_mps = Some(per_frame * fps);
-    let fov_y_deg = scene.camera.fov_y_deg;
-    let pose = |i: u32| {
-        let (eye, look_at) = flight.at(start + f64::from(i) * per_frame);
-        Pose { eye, look_at, up: DVec3::Z, fov_y_deg, turn: 0.0 }
-    };
-    Ok((0..frames).map(pose).collect())
+    Ok((0..frames).map(|i| start + f64::from(i) * per_frame).collect())
 }
 
 /// A camera that stays where it is until all layers have come to rest.
@@ -279,47 +300,7 @@ fn route(scene: &Scene, id: &str) -> Result<Vec<DVec2>, BelvedereError> {
         return Err(BelvedereError::Animation(format!("along: \"{id}\" is no line layer of the scene; {hint}")));
     };
     let gap = scene.terrain().map_or(1.0, |t| 20.0 * t.spacing().max_element());
-    Ok(chain(&layer.features, gap))
-}
-
-/// Joins lines end to end, from the longest one on, across gaps of at most `gap`.
-fn chain(features: &[LineFeature], gap: f64) -> Vec<DVec2> {
-    let mut rest: Vec<Vec<DVec2>> = features
-        .iter()
-        .map(|f| f.points.iter().map(|p| p.truncate()).collect())
-        .filter(|p: &Vec<_>| p.len() > 1)
-        .collect();
-    let length = |line: &[DVec2]| line.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
-    let Some(longest) = (0..rest.len()).max_by(|a, b| length(&rest[*a]).total_cmp(&length(&rest[*b]))) else {
-        return Vec::new();
-    };
-    let mut chain = rest.swap_remove(longest);
-    loop {
-        let (head, tail) = (chain[0], chain[chain.len() - 1]);
-        // Distance, line, whether it goes to the tail, whether it is turned round.
-        let mut best: Option<(f64, usize, bool, bool)> = None;
-        for (i, line) in rest.iter().enumerate() {
-            let (a, b) = (line[0], line[line.len() - 1]);
-            for (d, to_tail, turned) in [
-                (a.distance(tail), true, false),
-                (b.distance(tail), true, true),
-                (b.distance(head), false, false),
-                (a.distance(head), false, true),
-            ] {
-                if d <= gap && best.is_none_or(|b| d < b.0) {
-                    best = Some((d, i, to_tail, turned));
-                }
-            }
-        }
-        let Some((_, i, to_tail, turned)) = best else { return chain };
-        let mut line = rest.swap_remove(i);
-        if turned {
-            line.reverse();
-        }
-        let (mut first, second) = if to_tail { (chain, line) } else { (line, chain) };
-        first.extend(second);
-        chain = first;
-    }
+    Ok(layer.longest_chain(gap).iter().map(|p| p.truncate()).collect())
 }
 
 /// One camera of a file.

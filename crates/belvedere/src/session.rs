@@ -137,7 +137,7 @@ impl Session {
 
     /// Whether the view of a frame depends on the frames before.
     pub(crate) fn tracks(&self) -> bool {
-        self.description.as_ref().is_some_and(|d| constructor::stated(&d.source).is_some())
+        self.description.as_ref().is_some_and(|d| constructor::tracks(&d.source))
     }
 
     /// What was odd: one sentence each.
@@ -220,6 +220,10 @@ impl Session {
     /// # Errors
     /// [`BelvedereError::UnderGround`].
     pub fn check_drawable(&self) -> Result<(), BelvedereError> {
+        if matches!(self.constructor, Some(ConstructorReport::PathPreview(_))) {
+            // Its eye lies far behind the path, and nothing is drawn before that.
+            return Ok(());
+        }
         let eye = self.view.pinhole().eye;
         let moved = self.view.stages().iter().any(|s| matches!(s, belvedere_core::Stage::TerrainDisocclusion(_)));
         let ground = self.scene.terrain().and_then(|t| t.surface_at(eye.truncate()));

@@ -93,3 +93,41 @@ fn what_cannot_be_is_one_clear_line() {
     place.write("van.csv", "t,x,y,z\n");
     fails("", "", &["van.csv:1", "at least one row"]);
 }
+
+#[test]
+fn a_path_is_previewed_round_its_turns_and_filmed_along_it() {
+    let place = Place::new();
+    // A corner: blocks on both sides of a street that turns left and then right.
+    place.write("path.csv", "x,y,z\n0,0,2\n0,100,2\n-60,160,2\n-60,300,2\n");
+    let scene = |path: &str, more: &str| {
+        format!(
+            "format = 1\ncrs = 'local'\n[camera]\neye = [0, -50, 10]\nlook_at = [0, 100, 0]\nimage = [96, 54]\n\
+             [[layer]]\nkind = 'boxes'\nid = 'blocks'\nboxes = [\n\
+             {{ base = [-60, 50, 0], size = [80, 60, 30] }}, {{ base = [60, 150, 0], size = [80, 200, 30] }}]\n\
+             [constructor]\nkind = 'path_preview'\npath = '{path}'\npreview_m = 150\n{more}"
+        )
+    };
+    place.write("s.toml", &scene("path.csv", ""));
+    place.ok(&["render", "s.toml", "-o", "p.png"]);
+    let record: serde_json::Value = serde_json::from_slice(&read(&place.path("p.png.json"))).expect("JSON");
+    let preview = &record["constructor"];
+    assert_eq!((&preview["kind"], &preview["turns"]), (&"path_preview".into(), &1.into()), "{preview}");
+    assert_eq!(preview["reach_m"], 150.0);
+    assert!(record["inputs"].to_string().contains("path.csv"), "the path is among the inputs");
+    // A film walks along it; the last position is the end of the path.
+    place.ok(&["animate", "s.toml", "-o", "film", "--frames", "6"]);
+    let film: serde_json::Value = serde_json::from_slice(&read(&place.path("film/animation.json"))).expect("JSON");
+    let at = |k: usize| film["frames"][k]["constructor"]["position_m"].as_f64().expect("a position");
+    let length = 100.0 + 2f64.sqrt() * 60.0 + 140.0;
+    assert!((at(1) - length / 5.0).abs() < 1e-6 && (at(5) - length).abs() < 1e-3 * length, "{} {}", at(1), at(5));
+    for (path, words) in [
+        ("gone.csv", ["\"gone.csv\" is no layer", "gone.csv"]),
+        ("blocks", ["\"blocks\" is no line and does not move", "line layer"]),
+    ] {
+        place.write("bad.toml", &scene(path, ""));
+        let line = place.fails(&["render", "bad.toml", "-o", "x.png"]);
+        assert!(words.iter().all(|w| line.contains(w)), "{line}");
+    }
+    place.write("bad.toml", &scene("path.csv", "lens = { width_m = 0 }"));
+    assert!(place.fails(&["check", "bad.toml"]).contains("width_m is 0"));
+}

@@ -5,9 +5,11 @@
 //! passes one, so that nothing jumps. On terrain the turns stand upright and the camera looks down on the path.
 
 use super::path::{Control, Path};
+use super::{Target, TargetSight};
 use crate::ConstructError;
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::{CurvedRays, DVec2, DVec3, Pinhole, Projection, Stage, View};
+use belvedere_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// Turns of less than this are none, radians.
@@ -27,6 +29,14 @@ const NEAR: [f64; 2] = [0.85, 0.98];
 const TOLERANCES: [f64; 4] = [0.02, 0.04, 0.08, 0.16];
 /// Positions at which a tolerance is tried.
 const TRIALS: usize = 24;
+/// Widths that are tried, shares of the usual one; at how many positions and by how many samples of the path they are judged.
+const NARROWER: [f64; 4] = [1.0, 0.7, 0.5, 0.35];
+const POSITIONS: u32 = 5;
+const SAMPLES: f64 = 60.0;
+/// Samples stand so high over the path, shares of the eye's height: rivers are drawn in valleys that a coarse model has filled.
+const LIFT: f64 = 0.01;
+/// A narrower picture must show so much more.
+const WORTH: f64 = 0.03;
 
 /// The camera of a preview; lengths in scene units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,6 +127,56 @@ impl PathPreview {
         Ok(preview)
     }
 
+    /// Prepares a preview whose camera is chosen: of some widths and tolerances that with which most of the path ahead is seen in
+    /// `scene`, from positions all along it.
+    ///
+    /// # Errors
+    /// As [`PathPreview::new`].
+    pub fn fitted(
+        scene: &Scene,
+        points: &[DVec3],
+        preview_m: f64,
+        level: bool,
+        image: [u32; 2],
+    ) -> Result<Self, ConstructError> {
+        let usual = Lens::for_preview(preview_m, level);
+        let first = Self::new(points, preview_m, usual, level, image)?;
+        let mut best = (first.seen_ahead(scene, image)?, first.clone());
+        for narrower in NARROWER {
+            for share in TOLERANCES {
+                let (width_m, rise_m) = (narrower * usual.width_m, narrower * usual.rise_m);
+                let lens = Lens { width_m, rise_m, ..usual };
+                let next = Self { lens, ..first.clone() }.with_tolerance(share * width_m);
+                let seen = next.seen_ahead(scene, image)?;
+                // A wide picture shows where the path runs.
+                if seen > best.0 + WORTH {
+                    best = (seen, next);
+                }
+            }
+        }
+        Ok(best.1)
+    }
+
+    /// Share of the path ahead that is seen, on the average over positions along it.
+    fn seen_ahead(&self, scene: &Scene, image: [u32; 2]) -> Result<f64, ConstructError> {
+        let mut sum = 0.0;
+        for k in 0..POSITIONS {
+            let position = self.length() * (f64::from(k) + 0.3) / f64::from(POSITIONS);
+            let wanted = self.wanted(position);
+            let lift = if self.level { LIFT * self.lens.rise_m * DVec3::Z } else { DVec3::ZERO };
+            let ahead = self.samples(position, wanted, wanted / SAMPLES);
+            let target = Target::points(ahead.into_iter().map(|p| p + lift));
+            sum += TargetSight::new(scene, &target).share(&self.at(position, image, None)?.view, 0.0);
+        }
+        Ok(sum / f64::from(POSITIONS))
+    }
+
+    fn with_tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self.controls = self.path.controls(tolerance, 0.5 * self.lens.width_m, self.level);
+        self
+    }
+
     /// Length of the path, scene units.
     pub fn length(&self) -> f64 {
         self.path.length()
@@ -132,8 +192,7 @@ impl PathPreview {
     fn choose_tolerance(&mut self, image: [u32; 2]) -> Result<(), ConstructError> {
         let mut best: Option<(f64, f64, Vec<Control>)> = None;
         for share in TOLERANCES {
-            self.tolerance = share * self.lens.width_m;
-            self.controls = self.path.controls(self.tolerance, 0.5 * self.lens.width_m, self.level);
+            *self = self.clone().with_tolerance(share * self.lens.width_m);
             let mut reached = 0.0;
             for k in 0..TRIALS {
                 let position = self.path.length() * k as f64 / TRIALS as f64;

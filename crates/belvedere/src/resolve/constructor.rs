@@ -1,11 +1,17 @@
 //! Constructors of curved rays: from `[constructor]` to a view with turns.
 
+use super::path;
 use super::terrain::Solving;
 use crate::BelvedereError;
+use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, ConstructorDoc, ConstructorKind, SourceDocument, StageDoc};
-use belvedere_construct::rays::{Target, TrackingMemory, TrackingOptions, TrackingReport, track_target};
-use belvedere_core::View;
+use belvedere_construct::ConstructError;
+use belvedere_construct::rays::{
+    Lens, PathPreview, PreviewReport, Target, TrackingMemory, TrackingOptions, TrackingReport, track_target,
+};
+use belvedere_core::{EarthCurvature, Stage, View};
 use belvedere_disocclusion::TerrainMemory;
+use belvedere_io::InputFile;
 use belvedere_scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -14,6 +20,8 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Memory {
     pub(crate) terrain: TerrainMemory,
     pub(crate) tracking: TrackingMemory,
+    /// The preview of the frame before.
+    pub(crate) preview: Option<Prepared>,
 }
 
 /// What a constructor of curved rays came to.
@@ -22,6 +30,8 @@ pub(crate) struct Memory {
 pub enum ConstructorReport {
     /// Target tracking.
     TargetTracking(TrackingReport),
+    /// Path preview.
+    PathPreview(PreviewReport),
 }
 
 /// The constructor of a document, unless it is `manual`.
@@ -29,10 +39,19 @@ pub(crate) fn stated(source: &SourceDocument) -> Option<&ConstructorDoc> {
     source.document.constructor.as_ref().filter(|doc| doc.kind != ConstructorKind::Manual)
 }
 
+/// Whether the view of a frame depends on the frames before.
+pub(crate) fn tracks(source: &SourceDocument) -> bool {
+    stated(source).is_some_and(|doc| doc.kind == ConstructorKind::TargetTracking)
+}
+
 /// Stages that a constructor cannot follow.
 pub(super) fn check_stages(source: &SourceDocument) -> Result<(), BelvedereError> {
     let Some(doc) = stated(source) else { return Ok(()) };
+    let previews = doc.kind == ConstructorKind::PathPreview;
     let reason = source.document.stage.iter().find_map(|stage| match stage {
+        StageDoc::SplineBend(_) if previews => {
+            Some("path_preview has a camera of its own, which a spline bend cannot follow; remove the spline_bend stage")
+        }
         StageDoc::CurvedRays(_) => Some("it builds the curved rays itself; remove the curved_rays stage, or set kind = \"manual\""),
         stage if stage.is_terrain_intent() => {
             Some("it cannot follow ground that is still to be solved; give the solved delta, or remove the terrain_disocclusion stage")
@@ -45,10 +64,6 @@ pub(super) fn check_stages(source: &SourceDocument) -> Result<(), BelvedereError
             &["constructor", "kind"],
             "constructor: auto_probe is not built yet; use target_tracking, or give the stages themselves with kind = \"manual\"",
         )),
-        (None, ConstructorKind::PathPreview) => Err(source.error(
-            &["constructor", "kind"],
-            "constructor: path_preview is not built yet; use target_tracking, or give the stages themselves with kind = \"manual\"",
-        )),
         (None, _) => Ok(()),
     }
 }
@@ -56,15 +71,17 @@ pub(super) fn check_stages(source: &SourceDocument) -> Result<(), BelvedereError
 /// The view of a document with the turns that its constructor adds to `base`.
 pub(super) fn construct(
     source: &SourceDocument,
+    roots: &Roots,
     scene: &Scene,
     base: View,
     solving: &mut Solving<'_>,
+    inputs: &mut Vec<InputFile>,
 ) -> Result<(View, Option<ConstructorReport>), BelvedereError> {
     let Some(doc) = stated(source) else { return Ok((base, None)) };
-    let fail = |e: belvedere_construct::ConstructError| match e {
-        belvedere_construct::ConstructError::Cancelled(c) => c.into(),
-        e => source.error(&["constructor", "kind"], format!("constructor: {e}")),
-    };
+    if doc.kind == ConstructorKind::PathPreview {
+        let (view, report) = preview(source, roots, scene, &base, &mut solving.memory.preview, inputs)?;
+        return Ok((view, Some(ConstructorReport::PathPreview(report))));
+    }
     let usual = TrackingOptions::default();
     let options = TrackingOptions {
         z0: doc.z0,
@@ -75,8 +92,99 @@ pub(super) fn construct(
     };
     let target = target(source, scene, doc.target.as_deref().unwrap_or_default())?;
     let memory = &mut solving.memory.tracking;
-    let tracked = track_target(scene, &base, &target, &options, solving.time_step_s, memory).map_err(fail)?;
+    let tracked = track_target(scene, &base, &target, &options, solving.time_step_s, memory);
+    let tracked = tracked.map_err(|e| fail(source, e))?;
     Ok((tracked.view, Some(ConstructorReport::TargetTracking(tracked.report))))
+}
+
+fn fail(source: &SourceDocument, e: ConstructError) -> BelvedereError {
+    match e {
+        ConstructError::Cancelled(c) => c.into(),
+        e => source.error(&["constructor", "kind"], format!("constructor: {e}")),
+    }
+}
+
+/// The view of a path preview at the position that the document states.
+fn preview(
+    source: &SourceDocument,
+    roots: &Roots,
+    scene: &Scene,
+    base: &View,
+    memory: &mut Option<Prepared>,
+    inputs: &mut Vec<InputFile>,
+) -> Result<(View, PreviewReport), BelvedereError> {
+    let (pinhole, doc) = (base.pinhole(), stated(source));
+    let position = doc.and_then(|d| d.position_m).unwrap_or(0.0);
+    let prepared = prepared(source, roots, scene, pinhole.image, memory)?;
+    inputs.extend(prepared.file.clone());
+    let seen = prepared.preview.at(position, pinhole.image, pinhole.far).map_err(|e| fail(source, e))?;
+    let root = seen.view.pinhole().clone();
+    // The camera is another one; what hangs on the world stays.
+    let earlier = base.stages().iter().filter_map(|stage| match stage {
+        Stage::EarthCurvature(earth) => Some(Stage::EarthCurvature(EarthCurvature { eye: root.eye, ..*earth })),
+        Stage::TerrainDisocclusion(_) => Some(stage.clone()),
+        Stage::SplineBend(_) | Stage::CurvedRays(_) => None,
+    });
+    let stages = earlier.chain(seen.view.stages().iter().cloned()).collect();
+    let view = View::new(root, stages).map_err(|e| source.error(&["constructor", "kind"], e))?;
+    Ok((view, seen.report))
+}
+
+/// A preview of the path of a document, and what it was made from.
+#[derive(Debug, Clone)]
+pub(crate) struct Prepared {
+    made_from: (ConstructorDoc, [u32; 2]),
+    file: Option<InputFile>,
+    preview: PathPreview,
+}
+
+/// The preview of the document, from the frame before where that had the same.
+fn prepared<'m>(
+    source: &SourceDocument,
+    roots: &Roots,
+    scene: &Scene,
+    image: [u32; 2],
+    memory: &'m mut Option<Prepared>,
+) -> Result<&'m Prepared, BelvedereError> {
+    let doc = ConstructorDoc { position_m: None, ..stated(source).cloned().unwrap_or_else(ConstructorDoc::manual) };
+    let made_from = (doc, image);
+    if memory.as_ref().is_none_or(|known| known.made_from != made_from) {
+        let doc = &made_from.0;
+        let (points, file) = path::read(source, roots, scene, doc.path.as_deref().unwrap_or_default())?;
+        let length: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
+        let preview_m = doc.preview_m.unwrap_or(0.25 * length);
+        let level = scene.terrain().is_some();
+        let preview = match doc.lens {
+            Some(lens) => {
+                let usual = Lens::for_preview(preview_m, level);
+                let lens = Lens {
+                    behind_m: lens.behind_m.unwrap_or(usual.behind_m),
+                    width_m: lens.width_m.unwrap_or(usual.width_m),
+                    rise_m: lens.rise_m.unwrap_or(usual.rise_m),
+                };
+                PathPreview::new(&points, preview_m, lens, level, image)
+            }
+            None => PathPreview::fitted(scene, &points, preview_m, level, image),
+        };
+        let preview = preview.map_err(|e| fail(source, e))?;
+        *memory = Some(Prepared { made_from, file, preview });
+    }
+    memory.as_ref().ok_or_else(|| source.error(&["constructor"], "there is no path"))
+}
+
+/// Length of the path of a document's preview, scene units; `None` if it has none.
+pub(crate) fn path_length(
+    source: &SourceDocument,
+    roots: &Roots,
+    scene: &Scene,
+    image: [u32; 2],
+) -> Result<Option<f64>, BelvedereError> {
+    match stated(source) {
+        Some(doc) if doc.kind == ConstructorKind::PathPreview => {
+            prepared(source, roots, scene, image, &mut None).map(|p| Some(p.preview.length()))
+        }
+        _ => Ok(None),
+    }
 }
 
 /// The layer to be kept in view.

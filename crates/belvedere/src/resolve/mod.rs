@@ -13,6 +13,7 @@ mod light;
 mod loader;
 mod mesh;
 pub(crate) mod motion;
+mod path;
 mod rays;
 mod sea;
 pub(crate) mod stages;

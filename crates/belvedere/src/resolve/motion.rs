@@ -58,7 +58,7 @@ impl Motions {
 }
 
 /// `t,x,y,z[,yaw_deg]`; a first line of names and lines that begin with # are skipped.
-fn parse(text: &str) -> Result<Motion, DocError> {
+pub(super) fn parse(text: &str) -> Result<Motion, DocError> {
     let (mut keys, mut lines) = (Vec::new(), Vec::new());
     for (i, row) in text.lines().enumerate() {
         let cells: Vec<&str> = row.split([',', ';', '\t']).map(str::trim).collect();

@@ -34,7 +34,8 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
         super::constructor::check_stages(source)?;
     }
     if let Some(doc) = &source.document.animation {
-        let moves = source.document.layer.iter().any(|l| l.motion().is_some());
+        let previews = source.document.constructor.as_ref().is_some_and(|c| c.kind == ConstructorKind::PathPreview);
+        let moves = previews || source.document.layer.iter().any(|l| l.motion().is_some());
         animation(doc, moves)
             .map_err(|(key, reason)| source.error(&["animation", key], format!("animation: {reason}")))?;
     }
@@ -183,12 +184,20 @@ fn constructor(doc: &ConstructorDoc) -> Result<(), Complaint> {
         }
         ConstructorKind::PathPreview if doc.path.is_none() => Err(("kind", "path_preview needs path".into())),
         _ => {
-            let positive =
-                [("z0", doc.z0), ("f_step", doc.f_step), ("cap_per_s", doc.cap_per_s), ("preview_m", doc.preview_m)];
-            match positive.into_iter().find(|(_, v)| v.is_some_and(|v| v <= 0.0)) {
-                Some((key, v)) => Err((key, format!("{key} is {}, it must be greater than 0", v.unwrap_or_default()))),
-                None => Ok(()),
+            let lens = doc.lens.unwrap_or_default();
+            let stage = [("z0", doc.z0), ("a", doc.a), ("f_step", doc.f_step), ("cap_per_s", doc.cap_per_s)];
+            let path = [("preview_m", doc.preview_m), ("behind_m", lens.behind_m), ("width_m", lens.width_m)];
+            for (key, value) in stage.into_iter().chain(path) {
+                if let Some(v) = value.filter(|v| !(*v > 0.0)) {
+                    return Err((key, format!("{key} is {v}, it must be greater than 0")));
+                }
             }
+            for (key, value) in [("position_m", doc.position_m), ("rise_m", lens.rise_m), ("grow_px", doc.grow_px)] {
+                if let Some(v) = value.filter(|v| !(*v >= 0.0)) {
+                    return Err((key, format!("{key} is {v}, it must be 0 or more")));
+                }
+            }
+            Ok(())
         }
     }
 }

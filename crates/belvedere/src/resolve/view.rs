@@ -47,7 +47,7 @@ pub(crate) fn resolve(
     chain.extend(resolved.stages);
     let view = View::new(resolved.pinhole, chain).map_err(|e| source.error(&["stage"], e))?;
     let (view, constructor) = match solving {
-        Some(solving) => constructor::construct(source, scene, view, solving)?,
+        Some(solving) => constructor::construct(source, roots, scene, view, solving, &mut inputs)?,
         None => (view, None),
     };
     let light = light::resolve(source, &ground, view.pinhole().eye, &mut warnings)?;

@@ -1,4 +1,4 @@
-//! Constructors and animations of the scene document. Constructors are read and validated, built by later versions.
+//! Constructors and animations of the scene document.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -41,18 +41,52 @@ pub struct ConstructorDoc {
     /// Growth of the target's box, pixels.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grow_px: Option<f64>,
-    /// Layer or file of the path.
+    /// The path: a line layer, a layer that moves, or a file: CSV (`x,y,z`), OBJ (its vertices in order), JSON (saved cameras).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
-    /// Position along the path, metres.
+    /// Position along the path, scene units; 0 by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub position_m: Option<f64>,
-    /// Length that is previewed, metres.
+    /// Length that is previewed, scene units; a quarter of the path by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preview_m: Option<f64>,
-    /// Lens of the preview.
+    /// Camera of the preview, which takes the place of the scene's own; chosen by what it shows of the path if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub lens: Option<serde_json::Value>,
+    pub lens: Option<LensDoc>,
+}
+
+impl ConstructorDoc {
+    /// The constructor that adds nothing.
+    pub(crate) fn manual() -> Self {
+        Self {
+            kind: ConstructorKind::Manual,
+            target: None,
+            z0: None,
+            a: None,
+            f_step: None,
+            cap_per_s: None,
+            grow_px: None,
+            path: None,
+            position_m: None,
+            preview_m: None,
+            lens: None,
+        }
+    }
+}
+
+/// Camera of a path preview, scene units.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct LensDoc {
+    /// Distance of the eye behind the position, and of every viewpoint behind its turn, > 0; the length of the preview by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub behind_m: Option<f64>,
+    /// Width of the picture at the position, > 0; a quarter of the length of the preview by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub width_m: Option<f64>,
+    /// Height of the eye over the path, >= 0; a tenth of the length of the preview by default over terrain, else 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rise_m: Option<f64>,
 }
 
 /// A fly-through: exactly one of `along`, `camera`, `sweep`, `turntable`.
