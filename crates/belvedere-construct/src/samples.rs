@@ -104,7 +104,7 @@ fn sample_layer(terrain: Option<&Heightfield>, index: usize, layer: &Layer, spac
                 .map(|(i, f)| feature(i, &f.name, Amount::Count, sampled(f.position)))
                 .collect()
         }
-        LayerKind::Terrain(_) | LayerKind::Boxes(_) | LayerKind::Mesh(_) => Vec::new(),
+        LayerKind::Terrain(_) | LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Molecule(_) => Vec::new(),
     }
 }
 

@@ -78,8 +78,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     let triangles_in = job.scene.layers.iter().map(|l| match &l.kind {
         LayerKind::Terrain(t) => 2 * ((t.heightfield.cols() - 1) * (t.heightfield.rows() - 1)) as u64,
         LayerKind::Boxes(b) => 12 * b.boxes.len() as u64,
-        LayerKind::Mesh(m) => m.mesh.triangles().len() as u64,
-        _ => 0,
+        kind => kind.triangles().map_or(0, |m| m.mesh.triangles().len() as u64),
     });
     let stats = FrameStats {
         triangles_in: triangles_in.sum(),

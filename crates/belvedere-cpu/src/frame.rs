@@ -108,8 +108,7 @@ fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
             }
             LayerKind::Boxes(b) => b.boxes.len() as u64 * 12 * 64,
             // A triangle on the image and, for the tracer, its share of a tree.
-            LayerKind::Mesh(m) => m.mesh.triangles().len() as u64 * 160,
-            _ => 0,
+            kind => kind.triangles().map_or(0, |m| m.mesh.triangles().len() as u64 * 160),
         })
         .sum();
     let needed = pixels * per_pixel + bands + nodes;

@@ -1,6 +1,6 @@
 //! Files that are known and not read yet: told by their first bytes, else by their names.
 
-use crate::{IoError, mesh, terrain, vector};
+use crate::{IoError, mesh, molecule, terrain, vector};
 use std::io::Read;
 use std::path::Path;
 
@@ -26,6 +26,9 @@ const CLOUD: &str = "a cloud of points";
 const GRID: &str = "grids of science";
 const DATABASE: &str = "map features in a database";
 const SOLID: &str = "a model of construction";
+const AS_PDB: &str = "turn it into PDB or mmCIF";
+const NAME_PDB: &str = "it is read if its name ends in .pdb";
+const NAME_CIF: &str = "it is read if its name ends in .cif";
 const LATER: &str = "layers of this kind are planned";
 const AS_GEOJSON: &str = "ogr2ogr or QGIS turn it into GeoJSON";
 const AS_MESH: &str = "turn it into OBJ or glTF, or its footprints into GeoJSON";
@@ -64,7 +67,7 @@ const MAGIC: [(&[u8], Unread); 14] = [
 /// Words among the first of text files.
 const TEXT: [(&str, Unread); 13] = [
     ("CityModel", unread("CityGML", CITY, AS_MESH)),
-    ("_atom_site", unread("mmCIF", MOLECULE, LATER)),
+    ("_atom_site", unread("mmCIF", MOLECULE, NAME_CIF)),
     ("type=\"ImageData\"", unread("VTK XML image (.vti)", VOLUME, LATER)),
     ("<VTKFile", unread("VTK XML", "a mesh or grid of science", "ParaView turns it into PLY or OBJ")),
     ("# vtk DataFile", unread("legacy VTK", "a mesh or grid of science", "ParaView turns it into PLY or OBJ")),
@@ -79,14 +82,12 @@ const TEXT: [(&str, Unread); 13] = [
 ];
 
 /// Endings of names, where content tells nothing; longer ones first.
-const ENDINGS: [(&str, Unread); 34] = [
+const ENDINGS: [(&str, Unread); 30] = [
     (".city.jsonl", unread("CityJSONSeq", CITY, AS_MESH)),
     (".city.json", unread("CityJSON", CITY, AS_MESH)),
     (".osm.bz2", unread("OSM XML", OSM, "osmium export turns it into GeoJSON")),
     (".raw.gz", unread("raw voxels", VOLUME, LATER)),
     (".nii.gz", unread("NIfTI", VOLUME, LATER)),
-    (".pdb.gz", unread("PDB", MOLECULE, LATER)),
-    (".cif.gz", unread("mmCIF", MOLECULE, LATER)),
     (".nii", unread("NIfTI", VOLUME, LATER)),
     (".raw", unread("raw voxels", VOLUME, LATER)),
     (".nhdr", unread("NRRD", VOLUME, LATER)),
@@ -94,13 +95,11 @@ const ENDINGS: [(&str, Unread); 34] = [
     (".mhd", unread("MetaImage", VOLUME, LATER)),
     (".dcm", unread("DICOM", VOLUME, LATER)),
     (".vdb", unread("OpenVDB", VOLUME, LATER)),
-    (".bcif", unread("BinaryCIF", MOLECULE, LATER)),
-    (".mmtf", unread("MMTF", MOLECULE, LATER)),
-    (".ent", unread("PDB", MOLECULE, LATER)),
-    (".pdb", unread("PDB", MOLECULE, LATER)),
-    (".sdf", unread("SDF", MOLECULE, LATER)),
-    (".mol2", unread("Mol2", MOLECULE, LATER)),
-    (".gro", unread("GROMACS coordinates", MOLECULE, LATER)),
+    (".bcif", unread("BinaryCIF", MOLECULE, AS_PDB)),
+    (".mmtf", unread("MMTF", MOLECULE, AS_PDB)),
+    (".sdf", unread("SDF", MOLECULE, AS_PDB)),
+    (".mol2", unread("Mol2", MOLECULE, AS_PDB)),
+    (".gro", unread("GROMACS coordinates", MOLECULE, AS_PDB)),
     (".pbf", unread("OSM PBF", OSM, "osmium export turns it into GeoJSON")),
     (".kmz", unread("KMZ", "map features", AS_GEOJSON)),
     (".fit", unread("FIT", "the track of a watch", "GPSBabel turns it into GPX")),
@@ -127,7 +126,8 @@ fn read_endings() -> impl Iterator<Item = &'static &'static str> {
 /// [`IoError::Os`].
 pub fn recognise(path: &Path) -> Result<Option<Unread>, IoError> {
     let file = std::fs::File::open(path).map_err(|e| IoError::os(path, e))?;
-    if path.extension().is_some_and(|e| read_endings().any(|read| e.eq_ignore_ascii_case(read))) {
+    let reads = path.extension().is_some_and(|e| read_endings().any(|read| e.eq_ignore_ascii_case(read)));
+    if reads || molecule::is_molecule(path) {
         return Ok(None);
     }
     let mut head = Vec::new();
@@ -181,7 +181,7 @@ fn of_content(head: &[u8]) -> Option<Unread> {
         return Some(*found);
     }
     let is_record = |line: &str| ["ATOM  ", "HETATM", "CRYST1"].iter().any(|r| line.starts_with(r)) && line.len() > 53;
-    text.lines().any(is_record).then_some(unread("PDB", MOLECULE, LATER))
+    text.lines().any(is_record).then_some(unread("PDB", MOLECULE, NAME_PDB))
 }
 
 #[cfg(test)]

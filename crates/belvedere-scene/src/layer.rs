@@ -1,6 +1,6 @@
 //! Layers and their styles.
 
-use crate::{DistanceMarkers, Heightfield, MeshLayer, PointStyle, Ramp};
+use crate::{DistanceMarkers, Heightfield, MeshLayer, MoleculeLayer, PointStyle, Ramp};
 use belvedere_core::{Aabb, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -336,6 +336,8 @@ pub enum LayerKind {
     Boxes(BoxLayer),
     /// Triangles.
     Mesh(MeshLayer),
+    /// Atoms.
+    Molecule(Box<MoleculeLayer>),
     /// Polylines on the ground.
     Line(LineLayer),
     /// Polygons on the ground.
@@ -361,7 +363,9 @@ impl Layer {
         match &self.kind {
             LayerKind::Terrain(t) => t.heightfield.bounds(),
             LayerKind::Boxes(b) => Aabb::of(b.boxes.iter().flat_map(BoxShape::corners)),
-            LayerKind::Mesh(m) => m.mesh.bounds(),
+            LayerKind::Mesh(_) | LayerKind::Molecule(_) => {
+                self.kind.triangles().map_or(Aabb::EMPTY, |m| m.mesh.bounds())
+            }
             LayerKind::Line(l) => Aabb::of(l.features.iter().flat_map(|f| f.points.iter().copied())),
             LayerKind::Area(_) => Aabb::EMPTY,
             LayerKind::Point(p) => Aabb::of(p.features.iter().map(|f| f.position)),
@@ -376,8 +380,17 @@ impl LayerKind {
             Self::Line(l) => &l.features.get(index)?.name,
             Self::Area(a) => &a.features.get(index)?.name,
             Self::Point(p) => &p.features.get(index)?.name,
-            Self::Terrain(_) | Self::Boxes(_) | Self::Mesh(_) => return None,
+            Self::Terrain(_) | Self::Boxes(_) | Self::Mesh(_) | Self::Molecule(_) => return None,
         };
         Some(name.as_str()).filter(|name| !name.is_empty())
+    }
+
+    /// The triangles of a mesh, or of the surface of a molecule; `None` for everything else.
+    pub fn triangles(&self) -> Option<&MeshLayer> {
+        match self {
+            Self::Mesh(mesh) => Some(mesh),
+            Self::Molecule(molecule) => Some(&molecule.surface),
+            _ => None,
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! What is looked at: terrain, lines, areas, points, boxes and meshes as plain data, never view-dependent;
+//! What is looked at: terrain, lines, areas, points, boxes, meshes and molecules as plain data, never view-dependent;
 //! and the contract between pictures and whoever needs them ([`Renderer`], [`RenderJob`], [`Frame`]).
 
 pub mod cell;
@@ -9,6 +9,7 @@ pub mod heightfield;
 pub mod layer;
 pub mod light;
 pub mod mesh;
+pub mod molecule;
 pub mod motion;
 pub mod overlay;
 pub mod progress;
@@ -26,6 +27,7 @@ pub use layer::{
 };
 pub use light::Light;
 pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer};
+pub use molecule::{Molecule, MoleculeLayer, MoleculeStyle};
 pub use motion::{Motion, MotionError, Placement};
 pub use overlay::{DistanceMarkers, Overlay, OverlayFace, OverlayLine, OverlayPoint, PointStyle, Symbol};
 pub use progress::{Cancelled, Progress};

@@ -25,6 +25,10 @@ pub struct Mesh {
     triangles: Vec<[u32; 3]>,
     normals: Option<Vec<Vec3>>,
     colors: MeshColors,
+    /// Number of the part that each triangle belongs to; empty = one part.
+    parts: Vec<u32>,
+    /// Share of the light from all around that reaches each vertex, 255 = all; empty = not known.
+    openness: Vec<u8>,
 }
 
 /// Vertices and triangles that make no mesh.
@@ -80,6 +84,19 @@ impl Mesh {
     /// # Errors
     /// [`MeshError`].
     pub fn new(positions: &[DVec3], triangles: Vec<[u32; 3]>, colors: MeshColors) -> Result<Self, MeshError> {
+        Self::in_parts(positions, triangles, colors, Vec::new())
+    }
+
+    /// [`Mesh::new`] of several parts: `parts` holds the number of the part that each triangle belongs to.
+    ///
+    /// # Errors
+    /// [`MeshError`].
+    pub fn in_parts(
+        positions: &[DVec3],
+        triangles: Vec<[u32; 3]>,
+        colors: MeshColors,
+        parts: Vec<u32>,
+    ) -> Result<Self, MeshError> {
         for (what, count) in [("vertices", positions.len()), ("triangles", triangles.len())] {
             if count > Self::MAX {
                 return Err(MeshError::TooMany { what, count });
@@ -100,10 +117,13 @@ impl Mesh {
         if found != expected {
             return Err(MeshError::Count { what: "colours", found, expected });
         }
+        if !parts.is_empty() && parts.len() != triangles.len() {
+            return Err(MeshError::Count { what: "numbers of parts", found: parts.len(), expected: triangles.len() });
+        }
         let bounds = Aabb::of(positions.iter().copied());
         let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.center().round() };
         let positions = positions.iter().map(|&p| (p - origin).as_vec3()).collect();
-        let mut mesh = Self { origin, positions, triangles, normals: None, colors };
+        let mut mesh = Self { origin, positions, triangles, normals: None, colors, parts, openness: Vec::new() };
         mesh.drop_degenerate();
         Ok(mesh)
     }
@@ -130,6 +150,19 @@ impl Mesh {
         Self { origin, positions, normals, ..self.clone() }
     }
 
+    /// This mesh with the share of the light from all around that reaches each vertex, 255 = all.
+    ///
+    /// # Errors
+    /// [`MeshError::Count`].
+    pub fn with_openness(mut self, openness: Vec<u8>) -> Result<Self, MeshError> {
+        if openness.len() != self.positions.len() {
+            let (found, expected) = (openness.len(), self.positions.len());
+            return Err(MeshError::Count { what: "shares of light", found, expected });
+        }
+        self.openness = openness;
+        Ok(self)
+    }
+
     fn drop_degenerate(&mut self) {
         let at = |v: u32| self.positions[v as usize].as_dvec3();
         let has_area = |t: &[u32; 3]| {
@@ -143,6 +176,22 @@ impl Mesh {
             let mut keep = kept.iter();
             colors.retain(|_| keep.next() == Some(&true));
         }
+        let mut keep = kept.iter();
+        self.parts.retain(|_| keep.next() == Some(&true));
+    }
+
+    /// Number of the part that a triangle belongs to; `None` if the mesh has no parts.
+    pub fn part(&self, triangle: usize) -> Option<u32> {
+        self.parts.get(triangle).copied()
+    }
+
+    /// Share of the light from all around at a point of a triangle given by the weights of its corners, 0..=1; 1 where it is not known.
+    pub fn openness_at(&self, triangle: usize, weights: [f64; 3]) -> f64 {
+        if self.openness.is_empty() {
+            return 1.0;
+        }
+        let corners = self.triangles[triangle].map(|v| f64::from(self.openness[v as usize]));
+        (corners.iter().zip(weights).map(|(c, w)| c * w).sum::<f64>() / 255.0).clamp(0.0, 1.0)
     }
 
     /// Number of vertices.

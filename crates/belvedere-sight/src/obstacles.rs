@@ -45,7 +45,8 @@ impl<'a> Obstacles<'a> {
             match &layer.kind {
                 LayerKind::Terrain(t) => grounds.push((i, Ground::lifted(&t.heightfield, lift))),
                 LayerKind::Boxes(b) => boxes.extend(b.boxes.iter().enumerate().map(|(k, shape)| ([i, k], shape))),
-                LayerKind::Mesh(m) => {
+                LayerKind::Mesh(_) | LayerKind::Molecule(_) => {
+                    let Some(m) = layer.kind.triangles() else { continue };
                     let b = m.mesh.bounds();
                     let lift = lift.filter(|_| !b.is_empty()).map(|lift| lift(b.min.truncate(), b.max.truncate()));
                     meshes.push((i, MeshTree::lifted(&m.mesh, lift.unwrap_or([0.0; 2]))));

@@ -130,8 +130,8 @@ fn files_stay_in_their_folder() {
 #[test]
 fn layers_of_later_versions_are_said_to_be_so() {
     refuses(
-        &with("[[layer]]\nid = 'm'\nkind = 'molecule'\nsource = 'x.pdb'"),
-        "7: layer \"m\": layers of kind molecule are not drawn by this version; remove the layer",
+        &with("[[layer]]\nid = 'm'\nkind = 'city'\nsource = 'x.pdb'"),
+        "7: layer \"m\": layers of kind city are not drawn by this version; remove the layer",
     );
 }
 

@@ -9,6 +9,7 @@ mod figures;
 mod light_and_tints;
 mod marks;
 mod meshes;
+mod molecules;
 mod numbers;
 mod odd_files;
 mod pick;

@@ -57,15 +57,13 @@ impl Blocks {
                         self.list.par_extend(blocks);
                     }
                     LayerKind::Boxes(b) => self.list.extend(job.boxes(b)),
-                    LayerKind::Mesh(m) => self.list.extend(job.mesh(&m.mesh)),
-                    _ => {}
+                    kind => self.list.extend(kind.triangles().map(|m| job.mesh(&m.mesh)).unwrap_or_default()),
                 }
             }
             self.triangles_in += match &layer.kind {
                 LayerKind::Terrain(t) => 2 * ((t.heightfield.cols() - 1) * (t.heightfield.rows() - 1)) as u64,
                 LayerKind::Boxes(b) => 12 * b.boxes.len() as u64,
-                LayerKind::Mesh(m) => m.mesh.triangles().len() as u64,
-                _ => 0,
+                kind => kind.triangles().map_or(0, |m| m.mesh.triangles().len() as u64),
             };
         }
         self.number();

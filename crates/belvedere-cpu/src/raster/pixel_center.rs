@@ -192,8 +192,7 @@ impl<'a> PixelCenters<'a> {
                 let corners = b.boxes.get(first + (found.parent / 12) as usize)?.corners();
                 BOX_TRIANGLES[(found.parent % 12) as usize].map(|k| corners[k])
             }
-            LayerKind::Mesh(m) => m.mesh.corners(first + found.parent as usize),
-            _ => return None,
+            kind => kind.triangles()?.mesh.corners(first + found.parent as usize),
         };
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize()?;
         Some(Surface::Plane(corners[0], normal))

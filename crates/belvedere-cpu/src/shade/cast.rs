@@ -66,7 +66,7 @@ impl<'a> Casters<'a> {
         if !(light.shadows && sun.z > 0.01) {
             return None;
         }
-        if !scene.layers.iter().any(|l| matches!(l.kind, LayerKind::Boxes(_) | LayerKind::Mesh(_))) {
+        if !scene.layers.iter().any(|l| matches!(l.kind, LayerKind::Boxes(_)) || l.kind.triangles().is_some()) {
             return None;
         }
         let obstacles = Obstacles::new(scene);

@@ -5,6 +5,7 @@ pub(crate) mod color;
 pub(crate) mod footprint;
 pub(crate) mod ground;
 mod mesh;
+mod molecule;
 pub(crate) mod overlay;
 mod paint;
 pub(crate) mod relief;
@@ -50,6 +51,7 @@ enum LayerShade<'a> {
     Terrain(Box<TerrainShade<'a>>),
     Boxes(&'a BoxLayer, ReliefLight),
     Mesh(mesh::MeshShade<'a>),
+    Molecule(molecule::MoleculeShade<'a>),
     Other,
 }
 
@@ -93,6 +95,7 @@ impl<'a> Shader<'a> {
                 LayerKind::Terrain(t) => LayerShade::Terrain(Box::new(TerrainShade::new(t, job, cache))),
                 LayerKind::Boxes(b) => LayerShade::Boxes(b, ReliefLight::new(Relief::Sun, job.light)),
                 LayerKind::Mesh(m) => LayerShade::Mesh(mesh::MeshShade::new(m, job.light)),
+                LayerKind::Molecule(m) => LayerShade::Molecule(molecule::MoleculeShade::new(&m.surface, job.view)),
                 _ => LayerShade::Other,
             })
             .collect();
@@ -106,7 +109,7 @@ impl<'a> Shader<'a> {
         let mut surfaces = layers.iter().filter(|l| !matches!(l, LayerShade::Other));
         let only_terrain = matches!((surfaces.next(), surfaces.next()), (Some(LayerShade::Terrain(_)), None));
         Self {
-            sky: Sky::new(&job.scene.bounds(), job.view.pinhole()),
+            sky: Sky::of(job.scene, job.view.pinhole()),
             screen,
             blocks,
             areas,
@@ -154,6 +157,7 @@ impl<'a> Shader<'a> {
             LayerShade::Terrain(t) => hit.on_ground(&found, t.hf),
             LayerShade::Boxes(b, _) => hit.on_box(&found, b).1,
             LayerShade::Mesh(m) => m.place(&found, hit.weights),
+            LayerShade::Molecule(m) => m.place(&found, hit.weights),
             LayerShade::Other => DVec3::NAN,
         }
     }

@@ -211,6 +211,7 @@ impl Shader<'_> {
                 self.box_color(shape, light, n, world, footprint)
             }
             LayerShade::Mesh(m) => m.shade(&found, hit.weights, &|p, n| self.sun_on(p, n, footprint)),
+            LayerShade::Molecule(m) => m.shade(&found, hit.weights),
             LayerShade::Other => Rgb::ZERO,
         };
         painted.set(k, self.sky.through_air(color, depth), layer + 1);

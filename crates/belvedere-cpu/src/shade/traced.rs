@@ -28,6 +28,7 @@ impl Shader<'_> {
             (LayerShade::Mesh(m), Part::Triangle(index, front)) => {
                 (m.color_at(index, front, seen.point, &|p, n| self.sun_on(p, n, footprint)), None)
             }
+            (LayerShade::Molecule(m), Part::Triangle(index, _)) => (m.color_at(index, seen.point), None),
             _ => (crate::shade::Rgb::ZERO, None),
         };
         let color = self.sky.through_air(color, seen.depth as f32);

@@ -28,6 +28,16 @@ pub struct RayHit {
     pub(crate) part: Part,
 }
 
+impl RayHit {
+    /// Number of the triangle of a mesh or of a molecule's surface; `None` on everything else.
+    pub fn triangle(&self) -> Option<usize> {
+        match self.part {
+            Part::Triangle(index, _) => Some(index),
+            _ => None,
+        }
+    }
+}
+
 /// Part of a layer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Part {

@@ -34,10 +34,10 @@ fn trace(scene: &Scene, view: &View, options: &RenderOptions) -> Frame {
 
 /// What two pictures have in common.
 #[derive(Debug, Default, Clone, Copy)]
-struct Difference {
-    pixels: usize,
+pub(crate) struct Difference {
+    pub(crate) pixels: usize,
     /// Pixels off the silhouettes.
-    judged: usize,
+    pub(crate) judged: usize,
     /// Of those, with another id, and with the same id and another depth.
     ids: usize,
     depths: usize,
@@ -52,7 +52,7 @@ impl Difference {
     }
 
     /// At most one in a thousand pixels off the silhouettes differs in id, and one in a thousand in depth.
-    fn is_small(&self) -> bool {
+    pub(crate) fn is_small(&self) -> bool {
         let few = |n: usize| n as f64 <= 1e-3 * self.judged as f64;
         few(self.ids) && few(self.depths)
     }
@@ -92,7 +92,7 @@ fn on_silhouette(frame: &Frame, i: usize) -> bool {
     })
 }
 
-fn difference(scene: &Scene, view: &View) -> Difference {
+pub(crate) fn difference(scene: &Scene, view: &View) -> Difference {
     compare(&trace(scene, view, &exactly()), &render(scene, view, &exactly()))
 }
 

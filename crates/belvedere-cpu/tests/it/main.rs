@@ -5,6 +5,7 @@ mod exact;
 mod lines;
 mod lod;
 mod marks;
+mod molecules;
 mod real_data;
 mod reference;
 mod robust;

@@ -6,6 +6,7 @@ mod drape;
 mod geotiff;
 mod geotiff_made;
 mod meshes;
+mod molecules;
 mod open_exr;
 mod png;
 mod rasters;

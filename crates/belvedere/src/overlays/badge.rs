@@ -25,13 +25,20 @@ const MARGIN: f64 = 10.0;
 /// What the mark of a picture says: how far at most what is seen was moved, in the longest words that fit.
 /// * `moved`: scene units.
 pub(crate) fn words(width: usize, moved: f64, unit: Unit) -> String {
-    let most = match unit {
-        Unit::Metre => length_above(moved),
-        _ => format!("{moved:.1} scene units"),
-    };
+    let most = self::moved(moved, unit);
     let room = width as f64 - 2.0 * MARGIN - BESIDE;
     let all = [format!("{WORDS}: moved by up to {most}"), format!("bent by up to {most}")];
     all.into_iter().find(|words| text_size(LETTERS_PX, words).width <= room).unwrap_or_else(|| WORDS.to_owned())
+}
+
+/// A length in words.
+/// * `moved`: scene units.
+pub(crate) fn moved(moved: f64, unit: Unit) -> String {
+    match unit {
+        Unit::Metre => length_above(moved),
+        Unit::Angstrom => format!("{moved:.1} angstrom"),
+        Unit::Voxel => format!("{moved:.1} voxels"),
+    }
 }
 
 /// Draws the mark into the lower right corner: a ray that bends over a hill, and its words.
@@ -86,7 +93,7 @@ mod tests {
         assert_eq!(said(1280, 0.0), "bent view: moved by up to 0 m");
         assert_eq!(said(200, 341.2), "bent by up to 342 m");
         assert_eq!(said(160, 12_345.6), "bent view");
-        assert_eq!(words(1280, 3.04, Unit::Angstrom), "bent view: moved by up to 3.0 scene units");
+        assert_eq!(words(1280, 3.04, Unit::Angstrom), "bent view: moved by up to 3.0 angstrom");
         for width in [160, 200, 320, 640] {
             assert!(text_size(LETTERS_PX, &said(width, 99_999.0)).width + BESIDE + 2.0 * MARGIN <= width as f64);
         }

@@ -2,7 +2,7 @@
 
 use super::displacement::{self, DisplacementReport};
 use super::options::{AuxBuffer, PictureOptions};
-use super::sidecar::{OverlayRecord, Picture, Sidecar, TerrainRecord};
+use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, Sidecar, TerrainRecord};
 use crate::overlays::{badge, camera, ghost, grid, heat, thin};
 use crate::record::{self, InputFile, ViewRecord};
 use crate::scene_file::SwitchOrLength;
@@ -46,6 +46,7 @@ pub(crate) fn draw(
         overlay,
         displacement,
         terrain: session.scene().terrain().map(TerrainRecord::of),
+        molecules: MoleculeRecord::all_of(session.scene()),
         areas: session.areas().to_vec(),
         disocclusion: session.terrain_report().filter(|_| !request.straight).cloned(),
         constructor: session.constructor_report().filter(|_| !request.straight).cloned(),
@@ -58,7 +59,8 @@ pub(crate) fn draw(
         render_ms,
     };
     let (aux, aux_format, crs) = (request.aux.clone(), request.aux_format, session.scene().crs);
-    Ok(Picture { frame, straight, sidecar, aux, aux_format, view, crs })
+    let unit = session.scene().unit;
+    Ok(Picture { frame, straight, sidecar, aux, aux_format, view, crs, unit })
 }
 
 /// Pictures with everything over them.

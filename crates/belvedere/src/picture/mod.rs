@@ -10,5 +10,5 @@ mod write;
 pub use displacement::DisplacementReport;
 pub(crate) use draw::draw;
 pub use options::{AuxBuffer, AuxFormat, PictureOptions, RendererChoice};
-pub use sidecar::{OverlayRecord, Picture, Sidecar, TerrainRecord};
+pub use sidecar::{MoleculeRecord, OverlayRecord, Picture, Sidecar, TerrainRecord};
 pub use write::{delta_path, outputs, side_by_side};

@@ -7,7 +7,7 @@ use crate::resolve::constructor::ConstructorReport;
 use crate::scene_file::Document;
 use belvedere_core::View;
 use belvedere_disocclusion::TerrainReport;
-use belvedere_scene::{Crs, Frame, FrameStats, Heightfield, NodeState};
+use belvedere_scene::{Crs, Frame, FrameStats, Heightfield, Layer, LayerKind, NodeState, Scene, Unit};
 use serde::Serialize;
 
 /// What of the ground is measured, and what is not.
@@ -29,6 +29,37 @@ impl TerrainRecord {
         let filled_share = terrain.share_of(NodeState::Filled);
         let [void_nodes, filled_nodes] = [NodeState::Void, NodeState::Filled].map(count);
         Self { nodes: terrain.states().len(), void_nodes, filled_nodes, filled_share }
+    }
+}
+
+/// What of a molecule was drawn.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MoleculeRecord {
+    /// Id of the layer.
+    pub layer: String,
+    /// Atoms of the file.
+    pub atoms: usize,
+    /// Atoms that were drawn.
+    pub drawn_atoms: usize,
+    /// Bonds that were drawn.
+    pub drawn_bonds: usize,
+    /// Triangles that they were drawn as.
+    pub triangles: usize,
+}
+
+impl MoleculeRecord {
+    pub(super) fn all_of(scene: &Scene) -> Vec<Self> {
+        let record = |layer: &Layer| match &layer.kind {
+            LayerKind::Molecule(m) => Some(Self {
+                layer: layer.id.clone(),
+                atoms: m.molecule.atoms().len(),
+                drawn_atoms: m.atoms,
+                drawn_bonds: m.bonds,
+                triangles: m.surface.mesh.triangles().len(),
+            }),
+            _ => None,
+        };
+        scene.layers.iter().filter_map(record).collect()
     }
 }
 
@@ -68,6 +99,9 @@ pub struct Sidecar {
     pub displacement: Option<DisplacementReport>,
     /// What of the ground is made up; `None` without terrain.
     pub terrain: Option<TerrainRecord>,
+    /// What of each molecule was drawn.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub molecules: Vec<MoleculeRecord>,
     /// What areas were drawn as, and why.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub areas: Vec<AreaRecord>,
@@ -108,4 +142,5 @@ pub struct Picture {
     pub(crate) aux_format: AuxFormat,
     pub(crate) view: View,
     pub(crate) crs: Crs,
+    pub(crate) unit: Unit,
 }

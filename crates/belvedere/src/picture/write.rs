@@ -106,7 +106,10 @@ impl Picture {
 
     fn bent_title(&self) -> String {
         match self.sidecar.displacement {
-            Some(d) => format!("bent: what is seen moved by up to {:.0} m, {:.0} px", d.max_m, d.max_px),
+            Some(d) => {
+                let moved = badge::moved(d.max_m, self.unit);
+                format!("bent: what is seen moved by up to {moved}, {:.0} px", d.max_px)
+            }
             None => "the same camera".into(),
         }
     }

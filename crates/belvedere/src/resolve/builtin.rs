@@ -9,7 +9,10 @@ pub(crate) const DEFAULT_SEED: u64 = 7;
 /// Nodes per side of a massif that names none.
 pub(crate) const DEFAULT_SIZE: usize = 513;
 
-const NAMES: &[&str] = &["massif", "street", "church"];
+/// Base pairs of a double helix that names none.
+const DEFAULT_PAIRS: usize = 12;
+
+const NAMES: &[&str] = &["massif", "street", "church", "dna"];
 
 /// Whether a source means a built-in scene.
 pub(super) fn is_name(source: &str) -> bool {
@@ -20,6 +23,7 @@ pub(super) fn is_name(source: &str) -> bool {
 struct Request {
     name: String,
     seed: u64,
+    /// Nodes per side, or base pairs.
     size: usize,
 }
 
@@ -63,6 +67,7 @@ fn make(request: &Request) -> Result<(Scene, builtin::SuggestedCamera), String> 
     let made = match request.name.as_str() {
         "massif" => builtin::massif(request.seed, request.size),
         "church" => builtin::church(),
+        "dna" => builtin::dna(request.seed, request.size),
         _ => builtin::street(request.seed),
     };
     made.map_err(|e| e.to_string())
@@ -74,13 +79,19 @@ fn parse(source: &str) -> Result<(Request, Option<String>), String> {
     if !NAMES.contains(&name) {
         return Err(format!("built-in scene \"{name}\" does not exist; {}", suggestion(name, NAMES)));
     }
-    let mut request = Request { name: name.to_owned(), seed: DEFAULT_SEED, size: DEFAULT_SIZE };
+    let size = if name == "dna" { DEFAULT_PAIRS } else { DEFAULT_SIZE };
+    let mut request = Request { name: name.to_owned(), seed: DEFAULT_SEED, size };
     let mut layer = None;
     for pair in query.split('&').filter(|p| !p.is_empty()) {
         let (key, value) = pair.split_once('=').unwrap_or((pair, ""));
-        let bad = || format!("{source}: \"{pair}\" is not understood; possible: seed=N, size=N (massif), layer=ID");
+        let bad = || {
+            format!(
+                "{source}: \"{pair}\" is not understood; possible: seed=N, size=N (massif), pairs=N (dna), layer=ID"
+            )
+        };
         match key {
             "seed" => request.seed = value.parse().map_err(|_| bad())?,
+            "pairs" if name == "dna" => request.size = value.parse().map_err(|_| bad())?,
             "size" if name == "massif" => request.size = value.parse().map_err(|_| bad())?,
             "layer" if !value.is_empty() => layer = Some(value.to_owned()),
             _ => return Err(bad()),

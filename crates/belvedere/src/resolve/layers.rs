@@ -2,7 +2,7 @@
 
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
-use super::{areas, boxes, builtin, dem, mesh, sea, vectors};
+use super::{areas, boxes, builtin, dem, mesh, molecule, sea, vectors};
 use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
@@ -326,7 +326,8 @@ fn layer(
         LayerDoc::Point(doc) => point(loader, index, doc, ground)?,
         LayerDoc::Boxes(doc) => boxes::layer(loader, index, doc)?,
         LayerDoc::Mesh(doc) => mesh::layer(loader, index, doc, ground)?,
-        LayerDoc::City(_) | LayerDoc::Molecule(_) | LayerDoc::Volume(_) => {
+        LayerDoc::Molecule(doc) => molecule::layer(loader, index, doc)?,
+        LayerDoc::City(_) | LayerDoc::Volume(_) => {
             return Err(loader.fail(
                 index,
                 "kind",

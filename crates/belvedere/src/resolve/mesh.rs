@@ -101,14 +101,19 @@ fn apply(file: &mut MeshFile, transform: &TransformDoc) -> Result<(), String> {
     if !(transform.scale > 0.0) {
         return Err(format!("scale is {}, it must be greater than 0", transform.scale));
     }
-    let [x, y, z] = transform.rotate_deg.map(f64::to_radians);
-    let turn = DMat3::from_euler(EulerRot::ZYX, z, y, x);
+    let turn = turn(transform);
     let to = DVec3::from_array(transform.translate);
     file.positions.iter_mut().for_each(|p| *p = turn * (transform.scale * *p) + to);
     if let Some(normals) = &mut file.normals {
         normals.iter_mut().for_each(|n| *n = turn * *n);
     }
     Ok(())
+}
+
+/// Rotation about x, then y, then z.
+pub(super) fn turn(transform: &TransformDoc) -> DMat3 {
+    let [x, y, z] = transform.rotate_deg.map(f64::to_radians);
+    DMat3::from_euler(EulerRot::ZYX, z, y, x)
 }
 
 /// Takes x and y from the file's system to the scene's; heights stay.

@@ -12,6 +12,7 @@ mod layers;
 mod light;
 mod loader;
 mod mesh;
+mod molecule;
 pub(crate) mod motion;
 mod path;
 mod rays;

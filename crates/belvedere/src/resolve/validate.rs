@@ -4,6 +4,7 @@ use crate::BelvedereError;
 use crate::scene_file::{
     AnimationDoc, AutoOrLength, ConstructorDoc, ConstructorKind, LayerDoc, SourceDocument, StageDoc, SwitchOrLength,
 };
+use belvedere_scene::Unit;
 use std::collections::HashSet;
 
 /// Ids, ranges and combinations of keys.
@@ -17,6 +18,10 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
         }
         if !ids.insert(layer.id()) {
             return Err(fail("id", format!("two layers have the id \"{}\"; give each its own", layer.id())));
+        }
+        if matches!(layer, LayerDoc::Molecule(_)) && source.document.unit != Unit::Angstrom {
+            let reason = "molecules are measured in angstrom; write unit = \"angstrom\" at the top of the scene";
+            return Err(fail("kind", format!("layer \"{}\": {reason}", layer.id())));
         }
         layer_sources(layer).map_err(|(key, reason)| fail(key, format!("layer \"{}\": {reason}", layer.id())))?;
         layer_style(layer).map_err(|(key, reason)| {
@@ -118,7 +123,8 @@ fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
         }
         LayerDoc::Boxes(l) => color("color", &l.style.color).map(|_| ()),
         LayerDoc::Mesh(l) => color("color", &l.style.color).map(|_| ()),
-        LayerDoc::City(_) | LayerDoc::Molecule(_) | LayerDoc::Volume(_) => Ok(()),
+        LayerDoc::Molecule(l) => super::molecule::style(l, None).map(|_| ()),
+        LayerDoc::City(_) | LayerDoc::Volume(_) => Ok(()),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Layers of the scene document.
 
 use super::mesh::{MeshDoc, TransformDoc};
+use super::molecule::MoleculeDoc;
 use super::overlay::AutoOrLength;
 use super::palette::PaletteDoc;
 use super::paths::Paths;
@@ -28,8 +29,8 @@ pub enum LayerDoc {
     Mesh(MeshDoc),
     /// A city model. Not drawn by this version.
     City(ModelDoc),
-    /// Atoms. Not drawn by this version.
-    Molecule(ModelDoc),
+    /// Atoms.
+    Molecule(MoleculeDoc),
     /// Voxels. Not drawn by this version.
     Volume(ModelDoc),
 }
@@ -48,7 +49,8 @@ impl LayerDoc {
             Self::Point(l) => &l.id,
             Self::Boxes(l) => &l.id,
             Self::Mesh(l) => &l.id,
-            Self::City(l) | Self::Molecule(l) | Self::Volume(l) => &l.id,
+            Self::Molecule(l) => &l.id,
+            Self::City(l) | Self::Volume(l) => &l.id,
         }
     }
 
@@ -61,7 +63,8 @@ impl LayerDoc {
             Self::Point(l) => l.must_see,
             Self::Boxes(l) => l.must_see,
             Self::Mesh(l) => l.must_see,
-            Self::City(l) | Self::Molecule(l) | Self::Volume(l) => l.must_see,
+            Self::Molecule(l) => l.must_see,
+            Self::City(l) | Self::Volume(l) => l.must_see,
         }
     }
 

@@ -7,6 +7,7 @@ mod intent;
 mod json;
 mod layers;
 mod mesh;
+mod molecule;
 mod node;
 mod overlay;
 mod palette;
@@ -22,6 +23,7 @@ pub use layers::{
     PointLayerDoc, PointStyleDoc, PositionDoc, RouteDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc,
 };
 pub use mesh::{MeshDoc, MeshStyleDoc, TransformDoc};
+pub use molecule::{MoleculeDoc, MoleculeStyleDoc, PaintDoc};
 pub(crate) use node::{Node, Value};
 pub use overlay::{AutoOrLength, AutoWord, OverlayDoc, SwitchOrLength};
 pub use palette::{PaletteDoc, PaletteName};

@@ -27,7 +27,7 @@ pub struct CheckedLayer {
     pub id: String,
     /// Kind.
     pub kind: &'static str,
-    /// Nodes of a terrain, features of the others.
+    /// Nodes of a terrain, triangles of a mesh, drawn atoms of a molecule, features of the others.
     pub count: usize,
     /// Whether it must be seen.
     pub must_see: bool,
@@ -58,6 +58,7 @@ pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
             LayerKind::Point(l) => ("point", l.features.len()),
             LayerKind::Boxes(l) => ("boxes", l.boxes.len()),
             LayerKind::Mesh(l) => ("mesh", l.mesh.triangles().len()),
+            LayerKind::Molecule(l) => ("molecule", l.atoms),
         };
         CheckedLayer { id: layer.id.clone(), kind, count, must_see: layer.must_see }
     });

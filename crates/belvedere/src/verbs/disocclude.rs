@@ -396,7 +396,7 @@ fn moved_features(session: &Session, stage: &TerrainDisocclusion) -> Result<Valu
                     }
                 }
             }
-            LayerKind::Terrain(_) | LayerKind::Boxes(_) | LayerKind::Mesh(_) => {}
+            LayerKind::Terrain(_) | LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Molecule(_) => {}
         }
     }
     Ok(json!({ "type": "FeatureCollection", "features": features }))

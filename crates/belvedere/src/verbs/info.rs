@@ -1,5 +1,6 @@
 //! `info`: what files hold, and what this machine can do.
 
+pub use super::molecule_info::MoleculeInfo;
 use crate::BelvedereError;
 use crate::resolve::builtin;
 use belvedere_core::DVec2;
@@ -24,6 +25,8 @@ pub enum FileInfo {
     Features(FeatureInfo),
     /// Triangles.
     Mesh(MeshInfo),
+    /// Atoms.
+    Molecule(MoleculeInfo),
     /// A built-in scene.
     Builtin(BuiltinInfo),
     /// A known format that this version does not read.
@@ -177,7 +180,7 @@ pub fn machine() -> MachineInfo {
     }
 }
 
-/// Describes a file: features, a picture, or terrain; or a built-in scene.
+/// Describes a file: features, a picture, terrain, triangles, or atoms; or a built-in scene.
 ///
 /// # Errors
 /// [`BelvedereError::Io`] with what is wrong with it.
@@ -198,10 +201,13 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
     if ends(belvedere_io::mesh::ENDINGS) {
         return mesh(path);
     }
+    if belvedere_io::molecule::is_molecule(path) {
+        return super::molecule_info::describe(path).map(FileInfo::Molecule);
+    }
     if !ends(belvedere_io::terrain::ENDINGS) {
         return Err(belvedere_io::IoError::format(
             path,
-            "it is of no kind that this version reads: terrain and pictures as GeoTIFF, SRTM .hgt (also .zip) or ESRI ASCII, features as GPX, GeoJSON or shapefile (.shp), meshes as OBJ, PLY, STL, glTF or GLB",
+            "it is of no kind that this version reads: terrain and pictures as GeoTIFF, SRTM .hgt (also .zip) or ESRI ASCII, features as GPX, GeoJSON or shapefile (.shp), meshes as OBJ, PLY, STL, glTF or GLB, molecules as PDB or mmCIF",
         )
         .into());
     }

@@ -5,6 +5,7 @@ pub mod check;
 pub mod disocclude;
 pub mod info;
 pub mod measure;
+mod molecule_info;
 pub mod pick;
 pub mod points;
 pub mod reveal;

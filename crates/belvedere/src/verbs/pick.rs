@@ -26,7 +26,8 @@ pub struct Picked {
     pub segment: u32,
     /// Id of the layer.
     pub layer: String,
-    /// Name of the feature of a line, area or point layer; null for surfaces and features without a name.
+    /// Name of the feature of a line, area or point layer, or of the atom of a molecule; null for other surfaces and features without a
+    /// name.
     pub feature: Option<String>,
 }
 
@@ -62,6 +63,9 @@ fn named(name: &str) -> Option<String> {
 fn surface(scene: &Scene, seen: &RayHit) -> Option<Picked> {
     let layer = scene.layers.get(seen.layer)?;
     let (mut id, mut feature) = (&layer.id, None);
+    if let LayerKind::Molecule(m) = &layer.kind {
+        feature = seen.triangle().and_then(|t| m.name_of(t));
+    }
     if let LayerKind::Terrain(_) = layer.kind {
         for (other, area) in scene.layers.iter().filter_map(area_of) {
             let hit = area.features.iter().find(|f| contains(&f.rings, seen.point.truncate()));

@@ -6,6 +6,7 @@ use crate::geometry::screen::SUB;
 use crate::shade::color::{PIXELS, Rgb, linear, smoothstep};
 use crate::simd::nearest;
 use belvedere_core::{Aabb, DVec3, Pinhole};
+use belvedere_scene::{Scene, Unit};
 
 /// Thresholds of ordered dithering, 8 x 8 (Bayer 1973), each 0..64 once.
 const BAYER: [[u8; 8]; 8] = [
@@ -46,6 +47,10 @@ const EVEN_OFF: f32 = 0.25;
 
 /// Largest share of a colour that haze takes.
 const THICKEST: f32 = 0.54;
+
+/// The same in a studio, and its backdrop: above, in the middle, below.
+const THICKEST_IN_STUDIO: f32 = 0.32;
+const STUDIO: [[u8; 3]; 3] = [[252, 252, 251], [243, 245, 246], [222, 228, 234]];
 
 /// Steps of the table of sky colours per unit of the sine of the elevation.
 const STEPS: f32 = 512.0;
@@ -91,7 +96,7 @@ impl Sky {
         // The second derivative of the sine along a row is 1.2 at most, the distance from a chord an eighth of it.
         let off = 0.15 * (LANES as f64 * per_px).powi(2) * f64::from(STEPS);
         Self {
-            steps: steps(),
+            steps: steps(towards),
             haze: linear([186, 205, 224]),
             up: [pinhole.forward.z, pinhole.right.z, pinhole.down.z].map(|v| v as f32),
             center: [center.x as f32, center.y as f32],
@@ -101,6 +106,17 @@ impl Sky {
             haze_per: 1.0 / ((1.15 - 0.22) * span),
             thickest: if pinhole.is_orthographic() { 0.0 } else { THICKEST },
         }
+    }
+
+    /// The air over a scene; a light studio behind molecules and other things that are no landscape.
+    pub(crate) fn of(scene: &Scene, pinhole: &Pinhole) -> Self {
+        let sky = Self::new(&scene.bounds(), pinhole);
+        if scene.unit == Unit::Metre || scene.terrain().is_some() {
+            return sky;
+        }
+        // Its light and dark are those of the picture, whichever way the camera is turned.
+        let thickest = sky.thickest.min(THICKEST_IN_STUDIO);
+        Self { steps: steps(studio), haze: linear(STUDIO[1]), up: [0.0, 0.0, -1.0], thickest, ..sky }
     }
 
     /// Sine of the elevation that the straight ray of a pixel looks at.
@@ -332,7 +348,7 @@ fn is_row(x: &[i32; LANES], y: &[i32; LANES]) -> bool {
     off == 0
 }
 
-fn steps() -> Box<[[[f32; 4]; 2]; 2 * STEPS as usize]> {
+fn steps(towards: fn(f32) -> Rgb) -> Box<[[[f32; 4]; 2]; 2 * STEPS as usize]> {
     let at = |i: usize| roots(towards(i as f32 / STEPS - 1.0));
     let (mut next, mut before, mut turned) = (at(0), Rgb::ZERO, 0.0);
     Box::new(std::array::from_fn(|i| {
@@ -359,6 +375,16 @@ fn towards(sine: f32) -> Rgb {
     let low = 1.0 - (-sine / 0.10).exp();
     let high = smoothstep(0.0, 0.7, sine);
     horizon.lerp(middle, low).lerp(zenith, high)
+}
+
+/// The backdrop of a studio by the sine of the angle over the middle of the picture, linear.
+fn studio(sine: f32) -> Rgb {
+    let [above, middle, below] = STUDIO.map(linear);
+    if sine > 0.0 {
+        middle.lerp(above, smoothstep(0.0, 0.35, sine))
+    } else {
+        middle.lerp(below, smoothstep(0.0, 0.35, -sine))
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,245 @@
+//! B-DNA: two strands of random sequence wound about the z axis, built from the place of each atom in a base pair.
+
+use super::{BuiltinError, SuggestedCamera};
+use crate::noise::Random;
+use belvedere_core::DVec3;
+use belvedere_scene::molecule::{Atom, Element, ModelTransform, Residue};
+use belvedere_scene::{Crs, Layer, LayerKind, Molecule, MoleculeLayer, MoleculeStyle, Scene, Unit};
+
+/// Turn and rise from one base pair to the next: ten pairs to a turn.
+const TWIST_DEG: f64 = 36.0;
+const RISE: f64 = 3.38;
+
+/// Pairs that can be asked for.
+pub(super) const PAIRS: [usize; 2] = [2, 5000];
+
+/// An atom's name and its place in the frame of its base pair, angstrom: x to the major groove, y to the strand, z along it.
+type Placed = (&'static str, [f64; 3]);
+
+/// Phosphate and sugar. Ours: the mean places in entry 1BNA of the Protein Data Bank, then moved as little as needed for the bond lengths and
+/// angles that are usual in nucleic acids, the bond from each O3' to the next phosphate included.
+const BACKBONE: [Placed; 11] = [
+    ("P", [0.202, 9.377, -1.331]),
+    ("OP1", [0.020, 10.828, -1.588]),
+    ("OP2", [1.268, 8.927, -0.400]),
+    ("O5'", [-1.195, 8.787, -0.844]),
+    ("C5'", [-2.156, 8.300, -1.799]),
+    ("C4'", [-3.108, 7.317, -1.160]),
+    ("O4'", [-2.578, 5.976, -1.282]),
+    ("C3'", [-3.359, 7.540, 0.331]),
+    ("O3'", [-4.729, 7.260, 0.635]),
+    ("C2'", [-2.444, 6.526, 0.993]),
+    ("C1'", [-2.479, 5.375, 0.0]),
+];
+
+/// The first three belong to the phosphate, which the first residue of a strand lacks.
+const PHOSPHATE: usize = 3;
+
+/// A base: name of its residue, its partner, its atoms.
+struct Base {
+    residue: &'static str,
+    partner: usize,
+    atoms: &'static [Placed],
+}
+
+/// The bases in the plane of their pair: the standard reference frame of Olson et al. 2001.
+const BASES: [Base; 4] = [
+    Base {
+        residue: "DA",
+        partner: 3,
+        atoms: &[
+            ("N9", [-1.291, 4.498, 0.0]),
+            ("C8", [0.024, 4.897, 0.0]),
+            ("N7", [0.877, 3.902, 0.0]),
+            ("C5", [0.071, 2.771, 0.0]),
+            ("C6", [0.369, 1.398, 0.0]),
+            ("N6", [1.611, 0.909, 0.0]),
+            ("N1", [-0.668, 0.532, 0.0]),
+            ("C2", [-1.912, 1.023, 0.0]),
+            ("N3", [-2.320, 2.290, 0.0]),
+            ("C4", [-1.267, 3.124, 0.0]),
+        ],
+    },
+    Base {
+        residue: "DC",
+        partner: 2,
+        atoms: &[
+            ("N1", [-1.285, 4.542, 0.0]),
+            ("C2", [-1.472, 3.158, 0.0]),
+            ("O2", [-2.628, 2.709, 0.0]),
+            ("N3", [-0.391, 2.344, 0.0]),
+            ("C4", [0.837, 2.868, 0.0]),
+            ("N4", [1.875, 2.027, 0.0]),
+            ("C5", [1.056, 4.275, 0.0]),
+            ("C6", [-0.023, 5.068, 0.0]),
+        ],
+    },
+    Base {
+        residue: "DG",
+        partner: 1,
+        atoms: &[
+            ("N9", [-1.289, 4.551, 0.0]),
+            ("C8", [0.023, 4.962, 0.0]),
+            ("N7", [0.870, 3.969, 0.0]),
+            ("C5", [0.071, 2.833, 0.0]),
+            ("C6", [0.424, 1.460, 0.0]),
+            ("O6", [1.554, 0.955, 0.0]),
+            ("N1", [-0.700, 0.641, 0.0]),
+            ("C2", [-1.999, 1.087, 0.0]),
+            ("N2", [-2.949, 0.139, 0.0]),
+            ("N3", [-2.342, 2.364, 0.0]),
+            ("C4", [-1.265, 3.177, 0.0]),
+        ],
+    },
+    Base {
+        residue: "DT",
+        partner: 0,
+        atoms: &[
+            ("N1", [-1.284, 4.500, 0.0]),
+            ("C2", [-1.462, 3.135, 0.0]),
+            ("O2", [-2.562, 2.608, 0.0]),
+            ("N3", [-0.298, 2.407, 0.0]),
+            ("C4", [0.994, 2.897, 0.0]),
+            ("O4", [1.944, 2.119, 0.0]),
+            ("C5", [1.106, 4.338, 0.0]),
+            ("C7", [2.466, 4.961, 0.0]),
+            ("C6", [-0.024, 5.057, 0.0]),
+        ],
+    },
+];
+
+/// A double helix of `pairs` base pairs about the z axis, its middle at the origin; chain A runs upwards, chain B down.
+///
+/// # Errors
+/// [`BuiltinError::Pairs`].
+pub fn dna(seed: u64, pairs: usize) -> Result<(Scene, SuggestedCamera), BuiltinError> {
+    let molecule = helix(seed, pairs)?;
+    let height = RISE * pairs as f64;
+    let style = MoleculeStyle::default();
+    let layer = MoleculeLayer::new(molecule, &style, ModelTransform::default())?;
+    let layers = vec![Layer { id: "dna".into(), must_see: false, kind: LayerKind::Molecule(Box::new(layer)) }];
+    let title = format!("B-DNA, {pairs} base pairs");
+    let eye = DVec3::new(0.0, -1.7 * height.max(24.0), 0.0);
+    let camera = SuggestedCamera { title: title.clone(), eye, look_at: DVec3::ZERO, fov_y: 40f64.to_radians() };
+    Ok((Scene { title, crs: Crs::Local, unit: Unit::Angstrom, layers }, camera))
+}
+
+fn helix(seed: u64, pairs: usize) -> Result<Molecule, BuiltinError> {
+    if !(PAIRS[0]..=PAIRS[1]).contains(&pairs) {
+        return Err(BuiltinError::Pairs { pairs });
+    }
+    let mut random = Random::new(seed);
+    let sequence: Vec<usize> = (0..pairs).map(|_| (4.0 * random.unit()).min(3.0) as usize).collect();
+    let mut builder = Builder { pairs, atoms: Vec::new(), residues: Vec::new() };
+    for (k, &base) in sequence.iter().enumerate() {
+        builder.residue(&BASES[base], k, k == 0, "A");
+    }
+    for (n, (k, &base)) in sequence.iter().enumerate().rev().enumerate() {
+        builder.residue(&BASES[BASES[base].partner], k, n == 0, "B");
+    }
+    Ok(Molecule::bonded(builder.atoms, builder.residues, &[])?)
+}
+
+struct Builder {
+    pairs: usize,
+    atoms: Vec<Atom>,
+    residues: Vec<Residue>,
+}
+
+impl Builder {
+    /// The nucleotide of a strand in pair `k`.
+    fn residue(&mut self, base: &Base, k: usize, first: bool, chain: &str) {
+        let number = self.residues.len() as i32 + 1;
+        let (name, chain) = (base.residue.to_owned(), chain.to_owned());
+        let down = chain == "B";
+        self.residues.push(Residue { name, number, insertion: None, chain, hetero: false });
+        let skip = if first { PHOSPHATE } else { 0 };
+        for (name, p) in BACKBONE[skip..].iter().chain(base.atoms) {
+            let serial = self.atoms.len() as i64 + 1;
+            let element = Element::from_symbol(&name[..1]).unwrap_or_default();
+            let position = self.place(DVec3::from_array(*p), k, down);
+            let residue = self.residues.len() as u32 - 1;
+            self.atoms.push(Atom { serial, name: (*name).to_owned(), element, residue, position });
+        }
+    }
+
+    /// Place of a point of a pair's frame; the other strand is turned half about the frame's x axis.
+    fn place(&self, p: DVec3, k: usize, down: bool) -> DVec3 {
+        let p = if down { DVec3::new(p.x, -p.y, -p.z) } else { p };
+        let (sin, cos) = (k as f64 * TWIST_DEG.to_radians()).sin_cos();
+        let up = RISE * (k as f64 - 0.5 * (self.pairs as f64 - 1.0));
+        DVec3::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y, p.z + up)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_double_helix_is_bonded_as_chemistry_says() {
+        let m = helix(7, 12).unwrap();
+        let at = |chain: &str, number: i32, name: &str| {
+            (0..m.atoms().len())
+                .find(|&i| {
+                    m.residue_of(i).chain == chain && m.residue_of(i).number == number && m.atoms()[i].name == name
+                })
+                .unwrap_or_else(|| panic!("{chain} {number} {name}"))
+        };
+        let bonded = |a: usize, b: usize| m.bonds().contains(&[a.min(b) as u32, a.max(b) as u32]);
+        for (chain, from) in [("A", 1), ("B", 13)] {
+            for n in from..from + 11 {
+                let (a, b) = (at(chain, n, "O3'"), at(chain, n + 1, "P"));
+                let length = m.atoms()[a].position.distance(m.atoms()[b].position);
+                assert!(bonded(a, b) && (length - 1.607).abs() < 0.01, "{chain} {n}: {length}");
+            }
+        }
+        // Every ring and chain closes: a base of n rings has as many bonds as atoms and n - 1 more, the sugar one ring.
+        let mut partners = vec![0; m.atoms().len()];
+        m.bonds().iter().flatten().for_each(|&i| partners[i as usize] += 1);
+        for (i, atom) in m.atoms().iter().enumerate() {
+            let possible = match atom.element.symbol() {
+                "C" => 1..=4,
+                "N" => 1..=3,
+                "O" => 1..=2,
+                _ => 4..=4,
+            };
+            assert!(possible.contains(&partners[i]), "{}: {}", m.name_of(i), partners[i]);
+        }
+        for &[a, b] in m.bonds() {
+            let (a, b) = (&m.atoms()[a as usize], &m.atoms()[b as usize]);
+            let length = a.position.distance(b.position);
+            assert!((1.2..1.63).contains(&length), "{} {}: {length}", a.name, b.name);
+        }
+        // The pairs hold together by hydrogen bonds: 2.8 to 3.0 angstrom from N1 of a purine to N3 of a pyrimidine.
+        for n in 1..=12 {
+            let [one, other] = [("A", n), ("B", 25 - n)].map(|(chain, n)| {
+                let any = at(chain, n, "C1'");
+                let purine = ["DA", "DG"].contains(&m.residue_of(any).name.as_str());
+                m.atoms()[at(chain, n, if purine { "N1" } else { "N3" })].position
+            });
+            assert!((2.7..3.1).contains(&one.distance(other)), "{n}: {}", one.distance(other));
+        }
+        let near = |i: usize| (0..i).filter(|&k| m.atoms()[i].position.distance(m.atoms()[k].position) < 2.0).count();
+        let close: usize = (0..m.atoms().len()).map(near).sum();
+        assert_eq!(close, m.bonds().len(), "what is not bonded keeps its distance");
+    }
+
+    #[test]
+    fn seeds_make_sequences_and_sizes_have_limits() {
+        let names = |seed| helix(seed, 40).unwrap().residues().iter().map(|r| r.name.clone()).collect::<Vec<_>>();
+        assert_eq!(names(1), names(1));
+        assert_ne!(names(1), names(2));
+        for base in ["DA", "DC", "DG", "DT"] {
+            assert!(names(1).iter().any(|n| n == base));
+        }
+        assert_eq!(
+            dna(1, 1).unwrap_err().to_string(),
+            "DNA of 1 base pairs is not possible; choose 2 to 5000, for example 12"
+        );
+        assert!(dna(1, 5001).is_err());
+        let (scene, camera) = dna(1, 12).unwrap();
+        let b = scene.bounds();
+        assert!(b.max.z - b.min.z > 36.0 && b.max.x < 13.0 && camera.eye.y < b.min.y);
+    }
+}

@@ -1,0 +1,68 @@
+//! Molecules: PDB and mmCIF, plain or gzipped.
+
+mod mmcif;
+mod pdb;
+mod sites;
+
+use crate::{InputFile, IoError, Limits, Loaded};
+use belvedere_scene::Molecule;
+use std::io::Read;
+use std::path::Path;
+
+/// Endings of the files that [`load_molecule`] reads; any of them may be followed by `.gz`.
+pub const ENDINGS: &[&str] = &["pdb", "ent", "cif", "mmcif"];
+
+/// What a file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MoleculeFile {
+    /// Name of the format.
+    pub format: &'static str,
+    /// Atoms of the first model, each at its likeliest place, and their bonds.
+    pub molecule: Molecule,
+    /// Models in the file; the first is read.
+    pub models: usize,
+    /// Atoms at other places that were left out.
+    pub alternates: usize,
+    /// Bonds that the file names.
+    pub named_bonds: usize,
+}
+
+/// Whether the name of a file says that it holds a molecule.
+pub fn is_molecule(path: &Path) -> bool {
+    let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let name = name.strip_suffix(".gz").unwrap_or(&name);
+    ENDINGS.iter().any(|e| name.strip_suffix(e).is_some_and(|stem| stem.ends_with('.')))
+}
+
+/// Reads a molecule. Of several models the first is taken; of alternate locations the one of highest occupancy, of equal ones the first.
+/// Bonds are those that the file names and those that distances tell, see [`belvedere_scene::molecule::BOND_TOLERANCE`].
+///
+/// # Errors
+/// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, too large for `limits`, or has no atom.
+pub fn load_molecule(path: &Path, limits: &Limits) -> Result<Loaded<MoleculeFile>, IoError> {
+    let bad = |reason: String| IoError::format(path, reason);
+    let too_large = |reason: String| bad(reason.replace("raster", "molecule"));
+    let length = std::fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
+    // An atom takes a few times the bytes of its line.
+    limits.check(length.saturating_mul(4)).map_err(too_large)?;
+    let (bytes, file) = InputFile::read(path)?;
+    let bytes = if bytes.starts_with(b"\x1f\x8b") { unpacked(&bytes, limits).map_err(too_large)? } else { bytes };
+    let text = String::from_utf8_lossy(&bytes);
+    let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let is_cif = name.contains(".cif") || name.contains(".mmcif");
+    let (format, read) = if is_cif { ("mmCIF", mmcif::read(&text)) } else { ("PDB", pdb::read(&text)) };
+    let (molecule, mut found) = read.and_then(sites::Sites::finish).map_err(bad)?;
+    found.warnings.iter_mut().for_each(|w| *w = format!("{}: {w}", path.display()));
+    let (models, alternates, named_bonds) = (found.models, found.alternates, found.named_bonds);
+    let value = MoleculeFile { format, molecule, models, alternates, named_bonds };
+    Ok(Loaded::new(value, found.warnings).with_file(file))
+}
+
+fn unpacked(bytes: &[u8], limits: &Limits) -> Result<Vec<u8>, String> {
+    let most = limits.max_bytes / 4;
+    let mut out = Vec::new();
+    let mut reader = flate2::read::MultiGzDecoder::new(bytes).take(most + 1);
+    reader.read_to_end(&mut out).map_err(|e| format!("its compressed part is damaged ({e}); get it again"))?;
+    limits.check((out.len() as u64).saturating_mul(4))?;
+    Ok(out)
+}

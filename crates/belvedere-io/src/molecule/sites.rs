@@ -1,0 +1,135 @@
+//! From lines of a file to a molecule: residues, alternate locations, models.
+
+use belvedere_scene::Molecule;
+use belvedere_scene::molecule::{Atom, Element, Residue};
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// One line of a file.
+pub(super) struct Site {
+    pub(super) serial: i64,
+    pub(super) name: String,
+    pub(super) element: Element,
+    pub(super) residue: Residue,
+    pub(super) position: DVec3,
+    /// Letter of the alternate location, if the atom has several.
+    pub(super) alternate: Option<char>,
+    pub(super) occupancy: f64,
+}
+
+/// All lines of the first model, and what else was found.
+#[derive(Default)]
+pub(super) struct Sites {
+    pub(super) sites: Vec<Site>,
+    /// Bonds by numbers of atoms in the file.
+    pub(super) bonds: Vec<[i64; 2]>,
+    pub(super) models: usize,
+    /// One sentence each.
+    pub(super) warnings: Vec<String>,
+}
+
+/// What became of them.
+#[derive(Default)]
+pub(super) struct Found {
+    pub(super) models: usize,
+    pub(super) alternates: usize,
+    pub(super) named_bonds: usize,
+    pub(super) warnings: Vec<String>,
+}
+
+impl Sites {
+    /// The molecule.
+    pub(super) fn finish(self) -> Result<(Molecule, Found), String> {
+        let Self { sites, bonds, models, mut warnings } = self;
+        if sites.is_empty() {
+            return Err("it holds no atom; a file of coordinates is needed".into());
+        }
+        if models > 1 {
+            warnings.push(format!("it holds {models} models; the first is taken"));
+        }
+        let keep = likeliest(&sites);
+        let alternates = keep.iter().filter(|k| !**k).count();
+        if alternates > 0 {
+            warnings.push(format!("{alternates} atoms at alternate locations are left out; the likeliest stay"));
+        }
+        let (mut atoms, mut residues): (Vec<Atom>, Vec<Residue>) = (Vec::new(), Vec::new());
+        for (site, _) in sites.into_iter().zip(keep).filter(|(_, keep)| *keep) {
+            if residues.last() != Some(&site.residue) {
+                residues.push(site.residue);
+            }
+            let residue = residues.len() as u32 - 1;
+            let Site { serial, name, element, position, .. } = site;
+            atoms.push(Atom { serial, name, element, residue, position });
+        }
+        let unknown = atoms.iter().filter(|a| a.element == Element::UNKNOWN).count();
+        if unknown > 0 {
+            let first = atoms.iter().find(|a| a.element == Element::UNKNOWN).map_or("", |a| a.name.as_str());
+            warnings.push(format!("{unknown} atoms are of no element (such as {first:?}); they are not drawn"));
+        }
+        let number: HashMap<i64, u32> = atoms.iter().enumerate().map(|(i, a)| (a.serial, i as u32)).collect();
+        // A serial number given twice names nobody.
+        let unique = number.len() == atoms.len();
+        let at = |serial: &i64| number.get(serial).copied().filter(|_| unique);
+        let pair = |[a, b]: &[i64; 2]| Some([at(a)?, at(b)?]).filter(|[a, b]| a != b);
+        let mut named: Vec<[u32; 2]> = bonds.iter().filter_map(pair).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        named.sort_unstable();
+        named.dedup();
+        if !unique && !bonds.is_empty() {
+            warnings.push("atoms share numbers, so the bonds that it names cannot be told; distances tell them".into());
+        }
+        let molecule = Molecule::bonded(atoms, residues, &named).map_err(|e| e.to_string())?;
+        Ok((molecule, Found { models, alternates, named_bonds: named.len(), warnings }))
+    }
+}
+
+/// Where alternate locations compete: chain, number and insertion letter of a residue.
+type Place<'s> = (&'s str, i32, Option<char>);
+
+fn place(s: &Site) -> Place<'_> {
+    (&s.residue.chain, s.residue.number, s.residue.insertion)
+}
+
+/// Whether each atom stays. Within a residue the letter of highest occupancy is taken, the first of equals, so that what stays fits
+/// together; an atom that has no location of that letter keeps its own likeliest one.
+fn likeliest(sites: &[Site]) -> Vec<bool> {
+    let mut of_place: HashMap<Place<'_>, Best<'_>> = HashMap::new();
+    for s in sites.iter().filter(|s| s.alternate.is_some()) {
+        Best::offer(&mut of_place, place(s), s);
+    }
+    // A residue may have another name at each location, a mutant: its other atoms are not missed.
+    let fits = |s: &&Site| of_place.get(&place(s)).is_some_and(|b| b.residue == s.residue.name);
+    let mut of_atom: HashMap<(Place<'_>, &str), Best<'_>> = HashMap::new();
+    for s in sites.iter().filter(|s| s.alternate.is_some()).filter(fits) {
+        let chosen = of_place.get(&place(s)).map(|b| b.letter);
+        let occupancy = if s.alternate == chosen { f64::INFINITY } else { s.occupancy };
+        Best::offer_at(&mut of_atom, (place(s), s.name.as_str()), s, occupancy);
+    }
+    let stays = |s: &Site| match s.alternate {
+        None => true,
+        Some(letter) => fits(&s) && of_atom.get(&(place(s), s.name.as_str())).is_some_and(|b| b.letter == letter),
+    };
+    sites.iter().map(stays).collect()
+}
+
+/// The likeliest letter so far, and the name of its residue.
+struct Best<'s> {
+    letter: char,
+    occupancy: f64,
+    residue: &'s str,
+}
+
+impl<'s> Best<'s> {
+    fn offer<K: Eq + std::hash::Hash>(all: &mut HashMap<K, Self>, key: K, site: &'s Site) {
+        Self::offer_at(all, key, site, site.occupancy);
+    }
+
+    fn offer_at<K: Eq + std::hash::Hash>(all: &mut HashMap<K, Self>, key: K, site: &'s Site, occupancy: f64) {
+        let Some(letter) = site.alternate else { return };
+        let new = Self { letter, occupancy, residue: &site.residue.name };
+        match all.get_mut(&key) {
+            Some(best) if best.occupancy >= occupancy => {}
+            Some(best) => *best = new,
+            None => drop(all.insert(key, new)),
+        }
+    }
+}

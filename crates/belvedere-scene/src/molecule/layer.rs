@@ -1,0 +1,187 @@
+//! A molecule as a layer: which atoms are drawn, how, and which must be seen.
+
+use super::surface::{self, Look};
+use super::{Element, Molecule, Selection};
+use crate::{Color, MeshError, MeshLayer};
+use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// How atoms are shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Representation {
+    /// Small balls joined by rods.
+    #[default]
+    BallAndStick,
+    /// Balls of van der Waals radius, as close as atoms come without a bond.
+    SpaceFilling,
+}
+
+/// Where the colours of atoms come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum MoleculeColor {
+    /// The element, by the convention of Corey, Pauling and Koltun.
+    #[default]
+    Element,
+    /// The chain, in the order of the file.
+    Chain,
+    /// The name of the residue, in the order of first appearance.
+    Residue,
+    /// One for all.
+    One(Color),
+}
+
+/// A colour of its own for some atoms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Paint {
+    /// Which.
+    pub selection: Selection,
+    /// In which colour.
+    pub color: Color,
+}
+
+/// How a molecule is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MoleculeStyle {
+    /// Balls and rods, or balls alone.
+    pub representation: Representation,
+    /// Colours.
+    pub color: MoleculeColor,
+    /// Colours for some of them, later ones win.
+    pub paint: Vec<Paint>,
+    /// Atoms that are drawn at all.
+    pub selection: Selection,
+    /// Cuts along the edge of the icosahedron that a ball is made from, 1..=16; `None` = by the number of atoms.
+    pub detail: Option<u32>,
+}
+
+impl Default for MoleculeStyle {
+    fn default() -> Self {
+        Self {
+            representation: Representation::default(),
+            color: MoleculeColor::default(),
+            paint: Vec::new(),
+            selection: Selection::all(),
+            detail: None,
+        }
+    }
+}
+
+/// Where a molecule stands: scaled, turned, moved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModelTransform {
+    /// Scene units per angstrom, > 0.
+    pub scale: f64,
+    /// Rotation.
+    pub turn: DMat3,
+    /// Added last, scene units.
+    pub to: DVec3,
+}
+
+impl Default for ModelTransform {
+    fn default() -> Self {
+        Self { scale: 1.0, turn: DMat3::IDENTITY, to: DVec3::ZERO }
+    }
+}
+
+impl ModelTransform {
+    /// Scene position of a point given in angstrom.
+    pub fn apply(&self, p: DVec3) -> DVec3 {
+        self.turn * (self.scale * p) + self.to
+    }
+}
+
+/// A molecule and its surface. The surface is made once; it bends, is drawn, picked and stands in the way like any mesh.
+#[derive(Debug, Clone)]
+pub struct MoleculeLayer {
+    /// All atoms of the file, drawn or not, angstrom.
+    pub molecule: Molecule,
+    /// Where it stands.
+    pub placement: ModelTransform,
+    /// Triangles of the drawn atoms and bonds, scene coordinates. A triangle's part ([`crate::Mesh::part`]) is the index of its atom.
+    pub surface: MeshLayer,
+    /// Atoms that are drawn.
+    pub atoms: usize,
+    /// Bonds that are drawn: those whose atoms both are, none where atoms fill space.
+    pub bonds: usize,
+    /// The atoms that `must_see` means; `None` = all that are drawn.
+    pub wanted: Option<Selection>,
+}
+
+/// Colours of chains and of residues: told apart at a glance, none of them near that of a mark of the program.
+const SERIES: [Color; 10] = [
+    Color::rgb(92, 136, 196),
+    Color::rgb(224, 148, 84),
+    Color::rgb(112, 172, 116),
+    Color::rgb(196, 104, 112),
+    Color::rgb(148, 124, 192),
+    Color::rgb(206, 186, 96),
+    Color::rgb(96, 172, 178),
+    Color::rgb(204, 140, 180),
+    Color::rgb(158, 132, 110),
+    Color::rgb(150, 158, 168),
+];
+
+impl MoleculeLayer {
+    /// The layer of the atoms that the style selects, in time linear in their number.
+    ///
+    /// # Errors
+    /// [`MeshError`] if the triangles do not make a mesh: placed where single precision ends.
+    pub fn new(molecule: Molecule, style: &MoleculeStyle, placement: ModelTransform) -> Result<Self, MeshError> {
+        let drawn = style.selection.mask(&molecule);
+        let colors = colors(&molecule, style);
+        let look = Look { representation: style.representation, detail: style.detail };
+        let made = surface::build(&molecule, &drawn, &colors, look, &placement)?;
+        let surface = MeshLayer { mesh: made.mesh, color: Element::C.color() };
+        Ok(Self { molecule, placement, surface, atoms: made.atoms, bonds: made.bonds, wanted: None })
+    }
+
+    /// The same where `must_see` means some of the atoms only.
+    pub fn wanting(self, wanted: Selection) -> Self {
+        Self { wanted: Some(wanted), ..self }
+    }
+
+    /// What people call the atom that a triangle of the surface belongs to.
+    pub fn name_of(&self, triangle: usize) -> Option<String> {
+        let atom = self.surface.mesh.part(triangle)? as usize;
+        (atom < self.molecule.atoms().len()).then(|| self.molecule.name_of(atom))
+    }
+
+    /// Centre of an atom, scene coordinates.
+    pub fn center(&self, atom: usize) -> DVec3 {
+        self.placement.apply(self.molecule.atoms()[atom].position)
+    }
+}
+
+/// A colour per atom.
+fn colors(molecule: &Molecule, style: &MoleculeStyle) -> Vec<Color> {
+    let series = |names: Vec<&str>| {
+        let mut known: Vec<&str> = Vec::new();
+        let number = names.into_iter().map(|name| {
+            known.iter().position(|k| *k == name).unwrap_or_else(|| {
+                known.push(name);
+                known.len() - 1
+            })
+        });
+        number.map(|i| SERIES[i % SERIES.len()]).collect::<Vec<_>>()
+    };
+    let residues = molecule.residues();
+    let of_residue = match style.color {
+        MoleculeColor::Chain => series(residues.iter().map(|r| r.chain.as_str()).collect()),
+        MoleculeColor::Residue => series(residues.iter().map(|r| r.name.as_str()).collect()),
+        MoleculeColor::Element | MoleculeColor::One(_) => Vec::new(),
+    };
+    let color = |i: usize| {
+        let atom = &molecule.atoms()[i];
+        if let Some(paint) = style.paint.iter().rev().find(|p| p.selection.holds(molecule, i)) {
+            return paint.color;
+        }
+        match style.color {
+            MoleculeColor::Element => atom.element.color(),
+            MoleculeColor::One(color) => color,
+            MoleculeColor::Chain | MoleculeColor::Residue => of_residue[atom.residue as usize],
+        }
+    };
+    (0..molecule.atoms().len()).map(color).collect()
+}

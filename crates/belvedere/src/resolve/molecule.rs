@@ -1,0 +1,156 @@
+//! Molecule layers: files or built in, selected, coloured and placed.
+
+use super::builtin;
+use super::loader::Loader;
+use super::mesh::turn;
+use super::validate::{Complaint, color, optional_color};
+use crate::BelvedereError;
+use crate::scene_file::{MoleculeDoc, TransformDoc};
+use belvedere_core::DVec3;
+use belvedere_io::load_molecule;
+use belvedere_scene::molecule::{ModelTransform, MoleculeColor, Paint, Selection};
+use belvedere_scene::{LayerKind, Molecule, MoleculeLayer, MoleculeStyle};
+
+/// The layer.
+pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &MoleculeDoc) -> Result<LayerKind, BelvedereError> {
+    let molecule = source(loader, index, doc)?;
+    let wanted =
+        doc.select.as_deref().map(Selection::parse).transpose().map_err(|e| loader.fail(index, "select", e))?;
+    let mut style = style(doc, wanted.as_ref()).map_err(|(key, reason)| loader.fail(index, key, reason))?;
+    match &doc.style.selection {
+        Some(_) => require_any(&style.selection, &molecule).map_err(|e| loader.fail(index, "style", e))?,
+        None => {
+            let (chosen, left_out) = without_water(&molecule);
+            style.selection = chosen;
+            if left_out > 0 {
+                let note = format!(
+                    "{left_out} atoms of water are not drawn; style.selection = \"all\" draws them, \"not water\" says that this is meant"
+                );
+                loader.note(index, vec![note]);
+            }
+        }
+    }
+    if let Some(wanted) = &wanted {
+        require_drawn(wanted, &style.selection, &molecule).map_err(|e| loader.fail(index, "select", e))?;
+    }
+    let placement = match &doc.transform {
+        Some(transform) => placement(transform).map_err(|e| loader.fail(index, "transform", e))?,
+        None => ModelTransform::default(),
+    };
+    let layer = MoleculeLayer::new(molecule, &style, placement).map_err(|e| loader.fail(index, "source", e))?;
+    let layer = match wanted {
+        Some(wanted) => layer.wanting(wanted),
+        None => layer,
+    };
+    Ok(LayerKind::Molecule(Box::new(layer)))
+}
+
+fn source(loader: &mut Loader<'_>, index: usize, doc: &MoleculeDoc) -> Result<Molecule, BelvedereError> {
+    if builtin::is_name(&doc.source) {
+        return loader.builtin(index, &doc.source, |kind| match kind {
+            LayerKind::Molecule(layer) => Some(layer.molecule.clone()),
+            _ => None,
+        });
+    }
+    let path = loader.file(index, "source", &doc.source)?;
+    loader.options.progress.tick("reading molecules", 0.0)?;
+    let loaded = load_molecule(&path, &loader.options.limits())?;
+    Ok(loader.take(index, loaded).molecule)
+}
+
+/// What the document says of colours and selections; also the check of a document that is not opened.
+pub(super) fn style(doc: &MoleculeDoc, wanted: Option<&Selection>) -> Result<MoleculeStyle, Complaint> {
+    let parse = |key: &'static str, text: &str| Selection::parse(text).map_err(|e| (key, e.to_string()));
+    let mut paint = Vec::new();
+    for one in &doc.style.paint {
+        paint.push(Paint { selection: parse("paint", &one.selection)?, color: color("paint", &one.color)? });
+    }
+    let highlight = optional_color("highlight", &doc.style.highlight)?;
+    paint.extend(wanted.cloned().zip(highlight).map(|(selection, color)| Paint { selection, color }));
+    if let Some(detail) = doc.style.detail.filter(|d| !(1..=16).contains(d)) {
+        return Err(("detail", format!("detail is {detail}, it must lie in 1..=16")));
+    }
+    Ok(MoleculeStyle {
+        representation: doc.style.representation,
+        color: match doc.style.color.as_str() {
+            "element" => MoleculeColor::Element,
+            "chain" => MoleculeColor::Chain,
+            "residue" => MoleculeColor::Residue,
+            text => MoleculeColor::One(
+                color("color", text)
+                    .map_err(|(key, reason)| (key, format!("{reason}, or one of element, chain and residue")))?,
+            ),
+        },
+        paint,
+        selection: doc.style.selection.as_deref().map_or(Ok(Selection::all()), |text| parse("selection", text))?,
+        detail: doc.style.detail,
+    })
+}
+
+/// All but water, and how many atoms that leaves out; everything where there is nothing but water.
+fn without_water(molecule: &Molecule) -> (Selection, usize) {
+    let dry = Selection::dry();
+    let left_out = dry.mask(molecule).iter().filter(|kept| !**kept).count();
+    if left_out == molecule.atoms().len() { (Selection::all(), 0) } else { (dry, left_out) }
+}
+
+fn require_any(selection: &Selection, molecule: &Molecule) -> Result<(), String> {
+    if selection.mask(molecule).contains(&true) {
+        return Ok(());
+    }
+    Err(format!("selection \"{selection}\" is none of the {} atoms; {}", molecule.atoms().len(), there_is(molecule)))
+}
+
+fn require_drawn(wanted: &Selection, drawn: &Selection, molecule: &Molecule) -> Result<(), String> {
+    require_any(wanted, molecule)?;
+    if (0..molecule.atoms().len()).any(|i| wanted.holds(molecule, i) && drawn.holds(molecule, i)) {
+        return Ok(());
+    }
+    Err(format!(
+        "none of the atoms of \"{wanted}\" is drawn by style.selection \"{drawn}\"; select atoms that are drawn"
+    ))
+}
+
+/// What could be selected instead.
+fn there_is(molecule: &Molecule) -> String {
+    let names: Vec<&str> = molecule.chains().into_iter().filter(|c| !c.is_empty()).take(20).collect();
+    let numbers = molecule.residues().iter().map(|r| r.number);
+    let (low, high) = (numbers.clone().min().unwrap_or(0), numbers.max().unwrap_or(0));
+    let chains =
+        if names.is_empty() { "there are no chains".to_owned() } else { format!("chains are {}", names.join(", ")) };
+    format!("{chains}, residues are numbered {low} to {high}")
+}
+
+fn placement(transform: &TransformDoc) -> Result<ModelTransform, String> {
+    if !(transform.scale > 0.0) {
+        return Err(format!("scale is {}, it must be greater than 0", transform.scale));
+    }
+    Ok(ModelTransform { scale: transform.scale, turn: turn(transform), to: DVec3::from_array(transform.translate) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn doc(text: &str) -> MoleculeDoc {
+        toml::from_str(&format!("id = \"m\"\nsource = \"m.pdb\"\n{text}")).unwrap()
+    }
+
+    #[test]
+    fn styles_say_what_is_wrong() {
+        for (text, key, said) in [
+            ("style.color = \"blue\"", "color", "or one of element, chain and residue"),
+            ("style.selection = \"chian A\"", "selection", "\"chian\" is no word"),
+            ("style.paint = [{ selection = \"all\", color = \"x\" }]", "paint", "is no colour"),
+            ("style.highlight = \"x\"", "highlight", "is no colour"),
+            ("style.detail = 0", "detail", "detail is 0, it must lie in 1..=16"),
+        ] {
+            let (found, reason) = style(&doc(text), None).unwrap_err();
+            assert!(found == key && reason.contains(said), "{text}: {found} {reason}");
+        }
+        let wanted = Selection::parse("chain A").unwrap();
+        let fine = style(&doc("style.color = \"chain\""), Some(&wanted)).unwrap();
+        assert_eq!((fine.color, fine.paint.len()), (MoleculeColor::Chain, 1));
+        assert_eq!(style(&doc("style.highlight = \"none\""), Some(&wanted)).unwrap().paint, []);
+    }
+}

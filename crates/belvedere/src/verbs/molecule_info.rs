@@ -1,0 +1,66 @@
+//! What a file of atoms holds.
+
+use crate::BelvedereError;
+use belvedere_io::{Limits, load_molecule};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Atoms.
+#[derive(Debug, Clone, Serialize)]
+pub struct MoleculeInfo {
+    /// The file.
+    pub path: String,
+    /// Format.
+    pub format: &'static str,
+    /// Atoms of the first model, each counted at one place.
+    pub atoms: usize,
+    /// Residues, waters included.
+    pub residues: usize,
+    /// Waters among them.
+    pub waters: usize,
+    /// Chains by name, each with its number of residues; `""` = without a name.
+    pub chains: BTreeMap<String, usize>,
+    /// Elements by symbol, each with its number of atoms; `X` = unknown.
+    pub elements: BTreeMap<&'static str, usize>,
+    /// Bonds, named or told by distance.
+    pub bonds: usize,
+    /// Bonds that the file names.
+    pub named_bonds: usize,
+    /// Models in the file; the first is read.
+    pub models: usize,
+    /// Atoms at other places of lower occupancy, left out.
+    pub alternates: usize,
+    /// Smallest coordinates, angstrom.
+    pub min: [f64; 3],
+    /// Largest coordinates, angstrom.
+    pub max: [f64; 3],
+    /// What was odd.
+    pub warnings: Vec<String>,
+}
+
+/// Reads and counts.
+pub(super) fn describe(path: &Path) -> Result<MoleculeInfo, BelvedereError> {
+    let loaded = load_molecule(path, &Limits::default())?;
+    let (file, m) = (&loaded.value, &loaded.value.molecule);
+    let (mut chains, mut elements) = (BTreeMap::new(), BTreeMap::new());
+    m.residues().iter().for_each(|r| *chains.entry(r.chain.clone()).or_insert(0) += 1);
+    m.atoms().iter().for_each(|a| *elements.entry(a.element.symbol()).or_insert(0) += 1);
+    let b = m.bounds();
+    Ok(MoleculeInfo {
+        path: path.display().to_string(),
+        format: file.format,
+        atoms: m.atoms().len(),
+        residues: m.residues().len(),
+        waters: m.residues().iter().filter(|r| r.is_water()).count(),
+        chains,
+        elements,
+        bonds: m.bonds().len(),
+        named_bonds: file.named_bonds,
+        models: file.models,
+        alternates: file.alternates,
+        min: b.min.to_array(),
+        max: b.max.to_array(),
+        warnings: loaded.warnings,
+    })
+}
