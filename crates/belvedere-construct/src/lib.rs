@@ -9,6 +9,7 @@ pub mod measure;
 pub mod rays;
 pub mod reveal;
 mod samples;
+mod surface_samples;
 
 pub use error::ConstructError;
 pub use flight::{Flight, FlightError, FlightOptions};

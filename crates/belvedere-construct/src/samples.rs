@@ -1,5 +1,6 @@
 //! Points that stand for the features of interest when visibility is judged.
 
+use crate::surface_samples::surface;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{AreaFeature, Heightfield, Layer, LayerKind, LineFeature, Scene};
 use serde::Serialize;
@@ -12,6 +13,8 @@ pub enum Amount {
     Length,
     /// Area in plan, scene units squared.
     Area,
+    /// Area of a surface in space, scene units squared.
+    Surface,
     /// Number of points.
     Count,
 }
@@ -25,6 +28,8 @@ pub struct Sample {
     pub lift: f64,
     /// Length, area or count that the sample stands for.
     pub amount: f64,
+    /// Outward unit normal, if the sample stands for a piece of a surface in space, just in front of which it lies.
+    pub surface: Option<DVec3>,
 }
 
 /// A feature of interest, sampled.
@@ -50,8 +55,9 @@ pub struct SampledFeature {
 /// * Areas: their rims likewise, and a square lattice of 4 x `spacing` inside (even-odd rule); a rim sample stands for
 ///   a band of half a lattice step.
 /// * Points: themselves.
+/// * Meshes, molecules and boxes: points spread by area over their surface, one feature per layer.
 ///
-/// Everything is set on the drawn surface of the first terrain where there is one, and lifted by the layer's `lift_m`.
+/// Lines, areas and points are set on the drawn surface of the first terrain where there is one, and lifted by the layer's `lift_m`.
 pub fn sample_features(scene: &Scene, spacing: f64) -> Vec<SampledFeature> {
     let terrain = scene.terrain();
     scene.must_see().flat_map(|(index, layer)| sample_layer(terrain, index, layer, spacing)).collect()
@@ -82,7 +88,12 @@ fn sample_layer(terrain: Option<&Heightfield>, index: usize, layer: &Layer, spac
     match &layer.kind {
         LayerKind::Line(l) => {
             let sampled = |f: &LineFeature| {
-                along(&f.points, spacing, |p, amount| Sample { p_world: set(p, l.lift_m), lift: l.lift_m, amount })
+                along(&f.points, spacing, |p, amount| Sample {
+                    p_world: set(p, l.lift_m),
+                    lift: l.lift_m,
+                    amount,
+                    surface: None,
+                })
             };
             l.features.iter().enumerate().map(|(i, f)| feature(i, &f.name, Amount::Length, sampled(f))).collect()
         }
@@ -90,21 +101,23 @@ fn sample_layer(terrain: Option<&Heightfield>, index: usize, layer: &Layer, spac
             let sampled = |f: &AreaFeature| {
                 let on_surface = |xy: DVec2, amount: f64| {
                     let ground = terrain.map_or(Some(0.0), |hf| hf.surface_at(xy))?;
-                    Some(Sample { p_world: xy.extend(ground + a.lift_m), lift: a.lift_m, amount })
+                    Some(Sample { p_world: xy.extend(ground + a.lift_m), lift: a.lift_m, amount, surface: None })
                 };
                 area_samples(f, spacing, &on_surface)
             };
             a.features.iter().enumerate().map(|(i, f)| feature(i, &f.name, Amount::Area, sampled(f))).collect()
         }
         LayerKind::Point(p) => {
-            let sampled = |at: DVec3| vec![Sample { p_world: set(at, p.lift_m), lift: p.lift_m, amount: 1.0 }];
+            let sampled =
+                |at: DVec3| vec![Sample { p_world: set(at, p.lift_m), lift: p.lift_m, amount: 1.0, surface: None }];
             p.features
                 .iter()
                 .enumerate()
                 .map(|(i, f)| feature(i, &f.name, Amount::Count, sampled(f.position)))
                 .collect()
         }
-        LayerKind::Terrain(_) | LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Molecule(_) => Vec::new(),
+        LayerKind::Terrain(_) => Vec::new(),
+        kind => surface(kind, spacing).into_iter().map(|s| feature(0, &s.name, Amount::Surface, s.samples)).collect(),
     }
 }
 
@@ -140,7 +153,7 @@ fn area_samples(f: &AreaFeature, spacing: f64, on_surface: &dyn Fn(DVec2, f64) -
     let mut out = Vec::new();
     for ring in &f.rings {
         let closed: Vec<DVec3> = ring.iter().chain(ring.first()).map(|p| p.extend(0.0)).collect();
-        let band = |p: DVec3, length: f64| Sample { p_world: p, lift: 0.0, amount: 0.5 * step * length };
+        let band = |p: DVec3, length: f64| Sample { p_world: p, lift: 0.0, amount: 0.5 * step * length, surface: None };
         out.extend(
             along(&closed, spacing, band).into_iter().filter_map(|s| on_surface(s.p_world.truncate(), s.amount)),
         );
@@ -175,7 +188,8 @@ mod tests {
         let closed = open.iter().chain(open.first()).copied().collect();
         for ring in [open, closed] {
             let feature = AreaFeature { name: String::new(), rings: vec![ring] };
-            let flat = |xy: DVec2, amount: f64| Some(Sample { p_world: xy.extend(0.0), lift: 0.0, amount });
+            let flat =
+                |xy: DVec2, amount: f64| Some(Sample { p_world: xy.extend(0.0), lift: 0.0, amount, surface: None });
             let samples = area_samples(&feature, 5.0, &flat);
             let side = |on: &dyn Fn(DVec3) -> bool| {
                 let on_side: Vec<f64> = samples.iter().filter(|s| on(s.p_world)).map(|s| s.amount).collect();

@@ -80,6 +80,11 @@ impl<'a> Obstacles<'a> {
     /// Whether every curve within `reach` (scene units, >= 0) of the straight segment `a b`, point by point, meets nothing.
     /// Never wrongly true, see [`Ground::is_clear`].
     pub fn is_clear(&self, a: DVec3, b: DVec3, reach: f64) -> bool {
+        self.grounds.iter().all(|(_, g)| g.is_clear(a, b, reach)) && self.is_free(a, b, reach)
+    }
+
+    /// Whether no box and no triangle of a mesh comes within `reach` of the straight segment `a b`; never wrongly true.
+    fn is_free(&self, a: DVec3, b: DVec3, reach: f64) -> bool {
         let near_mesh = |tree: &MeshTree<'_>| {
             let mut near = false;
             tree.near(a, b, reach, &mut |_| {
@@ -88,9 +93,7 @@ impl<'a> Obstacles<'a> {
             });
             near
         };
-        self.grounds.iter().all(|(_, g)| g.is_clear(a, b, reach))
-            && self.boxes.near(a, b, reach, &mut |_, _| false)
-            && !self.meshes.iter().any(|(_, tree)| near_mesh(tree))
+        self.boxes.near(a, b, reach, &mut |_, _| false) && !self.meshes.iter().any(|(_, tree)| near_mesh(tree))
     }
 
     /// Height of `p` over the highest terrain below or above it; `None` beside all terrain.
@@ -207,7 +210,7 @@ impl Chords<'_> {
                 }
                 // A curve stays within a few times the bow at its middle; if even that is clear, so is the curve.
                 let safe = self.best + 4.0 * bow;
-                if self.obstacles.min_gap(a, b, safe, safe) >= safe {
+                if self.obstacles.min_gap(a, b, safe, safe) >= safe && self.obstacles.is_free(a, b, 4.0 * bow) {
                     return;
                 }
                 MAX_HALVINGS

@@ -88,3 +88,14 @@ fn mistakes_are_told_in_one_line() {
         assert!(line.contains(said), "{said}: {line}");
     }
 }
+
+#[test]
+fn the_ready_scene_shows_what_the_front_helix_hides() {
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/dna.toml");
+    let answer = Place::new().json(&["measure", scene]);
+    let share = |picture: &str, method: &str| answer["surfaces"][picture][method]["share"].as_f64().expect("a share");
+    for method in ["sight", "buffer"] {
+        assert!(share("straight", method) < 0.01 && share("bent", method) > 0.18, "{method}: {answer}");
+    }
+    assert!((share("bent", "sight") - share("bent", "buffer")).abs() < 0.02, "{answer}");
+}

@@ -1,6 +1,7 @@
 //! Method (b): draw the picture and compare each sample's depth with the depth buffer.
 
 use super::image::{DepthTest, SampleImage};
+use super::surface;
 use crate::ConstructError;
 use crate::samples::{Sample, SampledFeature};
 use belvedere_core::{CurvedRays, DVec2, DVec3, Pinhole, Stage, View};
@@ -33,6 +34,8 @@ impl Job<'_> {
             let cell = self.scene.terrain().map_or(f64::INFINITY, |hf| hf.spacing().min_element());
             let depth =
                 if pinhole.is_orthographic() { 1.0 } else { depths.get(depths.len() / 2).copied().unwrap_or(0.0) };
+            // Balls and rods of molecules are a few pixels wide.
+            let cell = if cell.is_finite() { cell } else { depths.last().copied().unwrap_or(1.0) / pinhole.scale_px() };
             let wanted = (4.0 * depth / (pinhole.scale_px() * cell)).ceil().clamp(1.0, 3.0);
             let pixels = f64::from(pinhole.image[0]) * f64::from(pinhole.image[1]);
             wanted.min((8e6 / pixels).sqrt().floor().max(1.0)) as u32
@@ -78,7 +81,13 @@ impl Job<'_> {
         for (feature, row) in features.iter().zip(images) {
             for (sample, j) in feature.samples.iter().zip(row.iter_mut()).filter(|(_, j)| j.in_frame) {
                 let finer = SampleImage { pixel: finer * j.pixel, ..*j };
-                j.in_buffer = Some(in_buffer(view, terrain, sample, &finer, &frame));
+                j.in_buffer = Some(match sample.surface {
+                    Some(normal) => {
+                        let seen = surface::in_buffer(view, (sample.p_world, normal), feature.layer, &finer, &frame);
+                        DepthTest { seen, missed: false }
+                    }
+                    None => in_buffer(view, terrain, sample, &finer, &frame),
+                });
             }
         }
         Ok(())

@@ -111,7 +111,8 @@ mod tests {
     use belvedere_core::DVec3;
 
     fn feature(amount: Amount, n: usize) -> SampledFeature {
-        let sample = |i: usize| Sample { p_world: DVec3::new(i as f64, 0.0, 0.0), lift: 1.0, amount: 10.0 };
+        let sample =
+            |i: usize| Sample { p_world: DVec3::new(i as f64, 0.0, 0.0), lift: 1.0, amount: 10.0, surface: None };
         let samples = (0..n).map(sample).collect();
         SampledFeature { layer: 2, feature: 5, layer_id: "way".into(), name: "GR".into(), amount, samples }
     }

@@ -14,6 +14,8 @@ pub(super) struct SampleImage {
     pub(super) folded: bool,
     /// The sample after all stages, scene coordinates.
     pub(super) displaced: Option<DVec3>,
+    /// Of a piece of surface: whether it is seen so slantwise that a hair decides which side shows.
+    pub(super) edge_on: Option<bool>,
     /// By line of sight; `None` outside the frame.
     pub(super) clearance: Option<f64>,
     /// By the depth buffer; `None` outside the frame or without a renderer.
@@ -27,6 +29,7 @@ impl SampleImage {
         in_frame: false,
         folded: false,
         displaced: None,
+        edge_on: None,
         clearance: None,
         in_buffer: None,
     };
@@ -62,6 +65,9 @@ fn image(obstacles: &Obstacles<'_>, view: &View, sample: &Sample, sight: &SightO
     let pinhole = view.pinhole();
     let in_range = at.depth >= pinhole.near && pinhole.far.is_none_or(|far| at.depth <= far);
     let in_frame = in_range && pinhole.contains(at.pixel);
+    // A surface lies nearer to its sample than chords may lie to the ray.
+    let fine = SightOptions { chord_m: sight.chord_m.min(1e-6 * at.depth), ..*sight };
+    let sight = if sample.surface.is_some() { &fine } else { sight };
     let clearance = in_frame.then(|| {
         if at.folded {
             // Orientation is reversed there: the picture shows the ground from below.
@@ -70,5 +76,25 @@ fn image(obstacles: &Obstacles<'_>, view: &View, sample: &Sample, sight: &SightO
             obstacles.clearance(view, (sample.p_world, sample.lift), (at.pixel, at.depth), sight)
         }
     });
-    SampleImage { pixel: at.pixel, depth: at.depth, in_frame, folded: at.folded, displaced, clearance, in_buffer: None }
+    let edge_on = sample.surface.map(|normal| facing(view, sample.p_world, normal).abs() < EDGE_ON);
+    SampleImage {
+        pixel: at.pixel,
+        depth: at.depth,
+        in_frame,
+        folded: at.folded,
+        displaced,
+        edge_on,
+        clearance,
+        in_buffer: None,
+    }
+}
+
+/// Cosine of the slant below which a surface is seen edge-on.
+const EDGE_ON: f64 = 0.15;
+
+/// Cosine between the normal of a surface and the way against the ray that sees it; 0 where there is none.
+pub(super) fn facing(view: &View, p: DVec3, normal: DVec3) -> f64 {
+    // Along the ray the pixel stays: across the changes of its x and its y.
+    let along = view.jacobian(p).map_or(DVec3::ZERO, |[x, y]| x.cross(y).normalize_or_zero());
+    -normal.dot(along)
 }

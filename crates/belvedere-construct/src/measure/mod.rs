@@ -6,6 +6,7 @@ mod buffer;
 mod hidden;
 mod image;
 mod report;
+mod surface;
 
 pub use bend::BendMeasure;
 pub use hidden::{HiddenReason, HiddenRun, hidden};

@@ -16,7 +16,10 @@ pub struct Measures {
     pub areas: Option<FeatureMeasure>,
     /// All point features together (amounts are counts); `None` without points.
     pub points: Option<FeatureMeasure>,
-    /// Largest difference between the two methods over lines, areas and points, straight and bent, after leaving out
+    /// All surfaces in space together (amounts are areas of surface, of a closed one hardly more than half faces the eye); `None`
+    /// without any.
+    pub surfaces: Option<FeatureMeasure>,
+    /// Largest difference between the two methods over lines, areas, points and surfaces, straight and bent, after leaving out
     /// near misses; `None` without a renderer.
     pub largest_difference: Option<f64>,
     /// What the bend does to the picture.
@@ -40,6 +43,9 @@ pub struct FeatureMeasure {
     pub samples: usize,
     /// Length, area or count of the whole feature.
     pub total: f64,
+    /// Of a surface: mean distance between samples, scene units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface_spacing: Option<f64>,
     /// In the picture without bends.
     pub straight: Visibility,
     /// In the picture as it is.
@@ -67,7 +73,8 @@ pub struct Visibility {
     pub mismatched_share: Option<f64>,
     /// Share of the in-frame amount whose ground the renderer left out or drew too far away; `None` without a renderer.
     pub surface_missed_share: Option<f64>,
-    /// Share of the in-frame amount whose sight line passes nearer to the edge of visibility than the near-miss distance.
+    /// Share of the in-frame amount whose sight line passes nearer to the edge of visibility than the near-miss distance; of surfaces
+    /// the share that is seen edge-on.
     pub near_miss_share: f64,
     /// Clearances of the sight lines; `None` if nothing is in the frame.
     pub clearance: Option<Clearance>,
@@ -113,14 +120,15 @@ pub(super) fn summarise(
     };
     let (lines, areas, points) =
         (group(Amount::Length, "all lines"), group(Amount::Area, "all areas"), group(Amount::Count, "all points"));
-    let largest_difference = [&lines, &areas, &points]
+    let surfaces = group(Amount::Surface, "all surfaces");
+    let largest_difference = [&lines, &areas, &points, &surfaces]
         .into_iter()
         .flatten()
         .flat_map(|f| [f.straight.difference, f.bent.difference])
         .flatten()
         .reduce(f64::max);
     let features = all.iter().map(|&i| one(&[i])).collect();
-    Measures { features, lines, areas, points, largest_difference, bend, warnings }
+    Measures { features, lines, areas, points, surfaces, largest_difference, bend, warnings }
 }
 
 fn summarise_group(
@@ -138,13 +146,16 @@ fn summarise_group(
     };
     let (straight_rows, bent_rows) = (rows(straight), rows(bent));
     let displacement = displacement(&straight_rows, &bent_rows);
+    let total: f64 = samples.map(|s| s.amount).sum();
+    let is_surface = first.amount == Amount::Surface && !straight_rows.is_empty();
     FeatureMeasure {
         layer: first.layer_id.clone(),
         feature: first.feature,
         name: first.name.clone(),
         unit: first.amount,
         samples: straight_rows.len(),
-        total: samples.map(|s| s.amount).sum(),
+        total,
+        surface_spacing: is_surface.then(|| (total / straight_rows.len() as f64).sqrt()),
         straight: visibility(&straight_rows, near_miss),
         bent: visibility(&bent_rows, near_miss),
         displacement_max: displacement.max,
@@ -162,7 +173,10 @@ fn visibility(rows: &[(f64, SampleImage)], near_miss: f64) -> Visibility {
     // From 0.0, for the sum of nothing is -0.0.
     let sum =
         |keep: &dyn Fn(&SampleImage) -> bool| framed.iter().filter(|(_, j)| keep(j)).fold(0.0, |sum, (a, _)| sum + a);
-    let sharp = |j: &SampleImage| j.clearance.is_some_and(|c| c.abs() >= near_miss);
+    let sharp = |j: &SampleImage| match j.edge_on {
+        Some(edge_on) => !edge_on,
+        None => j.clearance.is_some_and(|c| c.abs() >= near_miss),
+    };
     let in_frame = sum(&|_| true);
     let clear_cut = sum(&sharp);
     let method = |seen: &dyn Fn(&SampleImage) -> bool| MethodShare {

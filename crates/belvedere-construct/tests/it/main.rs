@@ -5,4 +5,5 @@ mod flight;
 mod measure;
 mod preview;
 mod reveal;
+mod surfaces;
 mod tracking;

@@ -243,7 +243,8 @@ fn disoccluded(session: &Session, technique: Technique, progress: &Progress) -> 
 fn final_shares(session: &Session, technique: Technique, progress: &Progress) -> Result<FinalShares, BelvedereError> {
     let measures =
         belvedere_construct::measure(&session.scene, &session.view, None, &MeasureOptions::default(), progress)?;
-    let all = measures.lines.as_ref().or(measures.areas.as_ref()).or(measures.points.as_ref());
+    let all =
+        measures.lines.as_ref().or(measures.areas.as_ref()).or(measures.points.as_ref()).or(measures.surfaces.as_ref());
     Ok(FinalShares {
         technique,
         visible_straight: all.and_then(|m| m.straight.sight.share),

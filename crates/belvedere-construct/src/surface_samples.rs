@@ -1,0 +1,152 @@
+//! Points spread evenly over surfaces: meshes, molecules, boxes.
+
+use crate::samples::Sample;
+use belvedere_core::DVec3;
+use belvedere_scene::{BoxLayer, LayerKind, MeshLayer, MoleculeLayer};
+
+/// Samples of a surface, at least and at most.
+const SAMPLES: [f64; 2] = [1000.0, 6000.0];
+
+/// How far in front of its surface a sample lies, as a share of the extent of the layer: more than the single precision of its vertices,
+/// less than what is seen.
+const IN_FRONT: f64 = 2e-5;
+
+/// Where the random numbers begin: every sampling of a surface gives the same points.
+const SEED: u64 = 0x5eed;
+
+/// What is sampled, and what it is called.
+pub(crate) struct SampledSurface {
+    pub(crate) name: String,
+    pub(crate) samples: Vec<Sample>,
+}
+
+/// Points on the surface of a layer: a share of the area each, in stretches of equal area, at random within them.
+///
+/// * Meshes: all of them, or their wanted parts. Molecules: the drawn surface of the wanted atoms, or of all. Boxes: their walls and tops.
+/// * `spacing`: distance between points, scene units; between 1000 and 6000 points are made whatever it says.
+///
+/// `None` for layers that are no surface of their own.
+pub(crate) fn surface(kind: &LayerKind, spacing: f64) -> Option<SampledSurface> {
+    let (name, triangles) = match kind {
+        LayerKind::Boxes(layer) => (String::new(), of_boxes(layer)),
+        LayerKind::Molecule(layer) => of_molecule(layer),
+        LayerKind::Mesh(layer) => of_mesh(layer),
+        LayerKind::Terrain(_) | LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) => return None,
+    };
+    Some(SampledSurface { name, samples: spread(&triangles, spacing) })
+}
+
+fn of_boxes(layer: &BoxLayer) -> Vec<[DVec3; 3]> {
+    /// Corners (see [`belvedere_scene::BoxShape::corners`]) around each wall and the top, counter-clockwise from outside.
+    const FACES: [[usize; 4]; 5] = [[4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]];
+    let halves = |b: [DVec3; 8]| FACES.map(|[p, q, r, s]| [[b[p], b[q], b[r]], [b[p], b[r], b[s]]]);
+    layer.boxes.iter().flat_map(|b| halves(b.corners())).flatten().collect()
+}
+
+fn of_mesh(layer: &MeshLayer) -> (String, Vec<[DVec3; 3]>) {
+    let mesh = &layer.mesh;
+    let triangles = (0..mesh.triangles().len()).map(|t| mesh.corners(t));
+    (String::new(), triangles.collect())
+}
+
+fn of_molecule(layer: &MoleculeLayer) -> (String, Vec<[DVec3; 3]>) {
+    let mesh = &layer.surface.mesh;
+    let wanted = layer.wanted.as_ref().map(|w| w.mask(&layer.molecule));
+    let is_wanted = |t: &usize| wanted.as_ref().is_none_or(|w| mesh.part(*t).is_some_and(|atom| w[atom as usize]));
+    let triangles = (0..mesh.triangles().len()).filter(is_wanted).map(|t| mesh.corners(t));
+    (layer.wanted.as_ref().map(ToString::to_string).unwrap_or_default(), triangles.collect())
+}
+
+/// Points spread over triangles, each standing for an equal share of the area.
+fn spread(triangles: &[[DVec3; 3]], spacing: f64) -> Vec<Sample> {
+    let cross = |[a, b, c]: &[DVec3; 3]| (*b - *a).cross(*c - *a);
+    let total: f64 = triangles.iter().map(|t| 0.5 * cross(t).length()).sum();
+    if !(total > 0.0 && total.is_finite()) {
+        return Vec::new();
+    }
+    let bounds = belvedere_core::Aabb::of(triangles.iter().flatten().copied());
+    let off = IN_FRONT * (bounds.max - bounds.min).length();
+    let count = (total / (spacing * spacing)).clamp(SAMPLES[0], SAMPLES[1]).ceil() as usize;
+    let each = total / count as f64;
+    let mut random = Random(SEED);
+    let mut out = Vec::with_capacity(count);
+    let (mut before, mut next) = (0.0, random.share() * each);
+    for t in triangles {
+        let normal = cross(t);
+        let after = before + 0.5 * normal.length();
+        while next < after && out.len() < count {
+            let [u, v] = random.inside();
+            let p = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
+            let normal = normal.normalize_or(DVec3::Z);
+            out.push(Sample { p_world: p + off * normal, lift: 0.0, amount: each, surface: Some(normal) });
+            next = (out.len() as f64 + random.share()) * each;
+        }
+        before = after;
+    }
+    out
+}
+
+/// Numbers that look random (splitmix64, Steele, Lea, Flood 2014).
+struct Random(u64);
+
+impl Random {
+    /// In [0, 1).
+    fn share(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Weights of two corners of a triangle, evenly distributed over it.
+    fn inside(&mut self) -> [f64; 2] {
+        let [u, v] = [self.share(), self.share()];
+        if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_scene::{BoxShape, Color};
+
+    #[test]
+    fn walls_and_tops_get_points_by_their_area_just_in_front_of_them() {
+        let shape = BoxShape {
+            base: DVec3::new(10.0, 0.0, 5.0),
+            size: DVec3::new(6.0, 3.0, 2.0),
+            yaw: 0.4,
+            color: Color::rgb(1, 2, 3),
+        };
+        let found = surface(&LayerKind::Boxes(BoxLayer { boxes: vec![shape] }), 0.1).unwrap();
+        // Walls 2 (6 + 3) 2, top 18.
+        let area: f64 = found.samples.iter().map(|s| s.amount).sum();
+        assert!(
+            (area - 54.0).abs() < 1e-9 && (5390..5410).contains(&found.samples.len()),
+            "{area} {}",
+            found.samples.len()
+        );
+        let top = found.samples.iter().filter(|s| s.surface.unwrap().z > 0.5).count() as f64;
+        assert!((top / found.samples.len() as f64 - 18.0 / 54.0).abs() < 0.005, "{top}");
+        let corners = shape.corners();
+        for s in &found.samples {
+            let n = s.surface.unwrap();
+            // Outside by a little: beyond every corner along the normal.
+            let beyond = corners.iter().map(|c| n.dot(s.p_world - *c)).fold(f64::INFINITY, f64::min);
+            assert!((1e-6..1e-3).contains(&beyond), "{beyond}");
+        }
+        // Evenly: both halves of the top alike.
+        let left =
+            found.samples.iter().filter(|s| s.surface.unwrap().z > 0.5 && (s.p_world - shape.base).dot(DVec3::X) < 0.0);
+        assert!((left.count() as f64 / top - 0.5).abs() < 0.05);
+        assert_eq!(found.samples, surface(&LayerKind::Boxes(BoxLayer { boxes: vec![shape] }), 0.1).unwrap().samples);
+    }
+
+    #[test]
+    fn nothing_has_no_points_and_numbers_have_limits() {
+        assert_eq!(surface(&LayerKind::Boxes(BoxLayer::default()), 1.0).unwrap().samples, []);
+        let one = [[DVec3::ZERO, DVec3::X, DVec3::Y]];
+        assert_eq!([1e-6, 1e6].map(|spacing| spread(&one, spacing).len()), [6000, 1000]);
+    }
+}
