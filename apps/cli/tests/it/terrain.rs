@@ -427,3 +427,47 @@ fn the_demo_finds_a_displacement_in_its_way_before_it_draws() {
     let line = place.fails(&["demo", "-o", "demo"]);
     assert!(line.contains("massif_lake_terrain.delta.tif") && !place.path("demo/massif.png").exists(), "{line}");
 }
+
+#[test]
+fn areas_and_points_are_written_on_the_ground_that_makes_way_for_them() {
+    let place = place(|r, c| Some(hills(r, c)));
+    // In the valley behind the third row of hills; the node of row 24 and column 24 lies at 8.0245, 46.0235.
+    let square = [[8.020, 46.022], [8.028, 46.022], [8.028, 46.025], [8.020, 46.025], [8.020, 46.022]];
+    let area = serde_json::json!({ "type": "Polygon", "coordinates": [square] });
+    let hut = serde_json::json!({ "type": "Feature", "properties": { "name": "Hut" },
+        "geometry": { "type": "Point", "coordinates": [8.0245, 46.0235] } });
+    place.write("meadow.geojson", &area.to_string());
+    place.write("hut.geojson", &hut.to_string());
+    let args =
+        ["disocclude", "dem.asc", "meadow.geojson", "hut.geojson", "-o", "out.tif", "--features-out", "moved.geojson"];
+    place.ok(&[&args[..], &VIEW].concat());
+    let moved: serde_json::Value = serde_json::from_slice(&super::read(&place.path("moved.geojson"))).expect("JSON");
+    let of = |kind: &str| {
+        let all = moved["features"].as_array().expect("a list");
+        let mut found = all.iter().filter(|f| f["geometry"]["type"] == kind);
+        let first = found.next().unwrap_or_else(|| panic!("no {kind} in {moved}"));
+        assert!(found.next().is_none(), "one {kind}");
+        (first["geometry"]["coordinates"].clone(), first["properties"].clone())
+    };
+    let lowered = |now: &serde_json::Value, before: &serde_json::Value, at: [f64; 2]| {
+        for k in 0..2 {
+            assert_eq!(now[k], before[k], "moved up and down only");
+            assert!((number(&now[k]) - at[k]).abs() < 1e-6, "{now}");
+        }
+        number(&before[2]) - number(&now[2])
+    };
+    let (now, tags) = of("Point");
+    assert_eq!(tags["name"], "Hut");
+    let before = &tags["true_coordinates"];
+    assert!((number(&before[2]) - hills(24, 24)).abs() < 15.0, "{before}: on the ground");
+    assert!(lowered(&now, before, [8.0245, 46.0235]) > -0.5);
+    let (now, tags) = of("Polygon");
+    let ring = now[0].as_array().expect("a ring");
+    assert!(ring.len() == 5 && ring[0] == ring[4] && now.as_array().map(Vec::len) == Some(1), "{now}");
+    for vertex in ring {
+        let near = |c: &&[f64; 2]| (0..2).all(|k| (number(&vertex[k]) - c[k]).abs() < 1e-6);
+        let corner = square.iter().find(near).unwrap_or_else(|| panic!("{vertex} is no corner"));
+        let k = ring.iter().position(|v| v == vertex).expect("there");
+        lowered(vertex, &tags["true_coordinates"][0][k], *corner);
+    }
+}
