@@ -174,11 +174,16 @@ pub(crate) struct InfoArgs {
 /// Terrain and features.
 #[derive(Debug, Args)]
 pub(crate) struct RevealArgs {
-    /// Terrain: GeoTIFF, .hgt, ESRI ASCII, or builtin:massif?seed=7
+    /// Terrain: GeoTIFF, .hgt, ESRI ASCII, or builtin:massif?seed=7; with --see a model: OBJ, PLY, STL, glTF, PDB, mmCIF, or a scene file
+    #[arg(value_name = "DATA")]
     pub(crate) dem: String,
-    /// Routes, areas or points: GPX, GeoJSON, shapefiles, or builtin:massif?seed=7
-    #[arg(required = true)]
+    /// Routes, areas or points: GPX, GeoJSON, shapefiles, or builtin:massif?seed=7; with --see more models
+    #[arg(required_unless_present = "see")]
     pub(crate) features: Vec<String>,
+    /// What of a model must be seen: a file (by its name without ending) or layer, atoms such as "chain B", or a point x,y,z; rays
+    /// bend around what hides it
+    #[arg(long, value_name = "WHAT", allow_hyphen_values = true)]
+    pub(crate) see: Option<String>,
     /// Output; the record goes to OUT.png.json, straight beside bent to OUT.pair.png
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
@@ -210,9 +215,9 @@ pub(crate) struct RevealArgs {
     /// What areas are drawn as, instead of what their properties and names say
     #[arg(long, value_enum, value_name = "STYLE")]
     pub(crate) area_style: Option<AreaStyleKind>,
-    /// What bends the picture
-    #[arg(long, value_enum, default_value = "spline")]
-    pub(crate) technique: TechniqueKind,
+    /// What bends the picture; a spline, or curved rays with --see, if left out
+    #[arg(long, value_enum)]
+    pub(crate) technique: Option<TechniqueKind>,
     /// Coordinate system of the scene: auto, EPSG:n or local
     #[arg(long, value_name = "CRS")]
     pub(crate) crs: Option<String>,
@@ -512,6 +517,9 @@ pub(crate) enum TechniqueKind {
     Terrain,
     /// Spline and terrain
     Both,
+    /// Rays that bend once, around what hides most; what bends models with --see
+    #[value(name = "curved_rays")]
+    CurvedRays,
 }
 
 impl From<TechniqueKind> for Technique {
@@ -521,6 +529,7 @@ impl From<TechniqueKind> for Technique {
             TechniqueKind::Spline => Self::Spline,
             TechniqueKind::Terrain => Self::Terrain,
             TechniqueKind::Both => Self::Both,
+            TechniqueKind::CurvedRays => Self::CurvedRays,
         }
     }
 }

@@ -12,6 +12,7 @@ use belvedere::scene_file::{AnimationDoc, PaletteDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{self, AnimateRequest, Film};
 use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest, WrittenGrid};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest, Viewpoint};
+use belvedere::verbs::reveal_target::{TargetRequest, reveal_target};
 use belvedere::verbs::{check, info, measure, pick, points};
 use belvedere::{CameraPicture, DataFiles, Needs, OpenOptions, Session, output, scene_file};
 use belvedere_bench::BenchRequest;
@@ -230,14 +231,32 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
     Ok(if missing.is_some() { Goal::Missed } else { Goal::Reached })
 }
 
+/// What one thing of models needs to be seen.
+fn reveal_one(request: &TargetRequest, files: &RevealFiles, context: &Context) -> anyhow::Result<Goal> {
+    let answer = reveal_target(request, &context.options(Needs::Everything, None))?;
+    let written = answer.write(files, context.common.overwrite)?;
+    if context.common.json {
+        let mut result = done("reveal", &written, answer.session.warnings());
+        result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
+        context.print(&result)?;
+    } else if !context.common.quiet {
+        context.finish();
+        print(&format!("{}\n", answer.summary()))?;
+    }
+    context.warn(answer.session.warnings());
+    context.warn(&answer.missed());
+    Ok(if answer.missed().is_empty() { Goal::Reached } else { Goal::Missed })
+}
+
 fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> {
-    let files = RevealFiles { out: args.out, before: args.before, report: args.report, scene: args.scene };
+    let out = RevealFiles { out: args.out, before: args.before, report: args.report, scene: args.scene };
     let inputs: Vec<PathBuf> = args.features.iter().chain([&args.dem]).map(PathBuf::from).collect();
-    png_named(&files.out)?;
-    files.before.as_deref().map_or(Ok(()), png_named)?;
-    let moves = args.technique != TechniqueKind::Spline;
-    let delta = moves.then(|| picture::delta_path(&files.out));
-    for path in files.all().into_iter().chain(delta) {
+    png_named(&out.out)?;
+    out.before.as_deref().map_or(Ok(()), png_named)?;
+    let technique = args.technique.unwrap_or(TechniqueKind::Spline);
+    let moves = args.see.is_none() && !matches!(technique, TechniqueKind::Spline | TechniqueKind::CurvedRays);
+    let delta = moves.then(|| picture::delta_path(&out.out));
+    for path in out.all().into_iter().chain(delta) {
         output::check(&path, &inputs, context.common.overwrite)?;
     }
     let viewpoint = match (args.eye, args.look.as_deref()) {
@@ -247,6 +266,20 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         (Some(_), Some(look)) => anyhow::bail!("--look has {} numbers; give X,Y or X,Y,Z", look.len()),
         _ => anyhow::bail!("--eye and --look belong together; give both, or neither"),
     };
+    let quality = |picture: &mut PictureOptions| {
+        picture.quality.threads = context.common.threads;
+        picture.quality.max_bytes = context.common.max_mem.unwrap_or(picture.quality.max_bytes);
+    };
+    if let Some(see) = args.see {
+        if !matches!(args.technique, None | Some(TechniqueKind::Auto | TechniqueKind::CurvedRays)) {
+            anyhow::bail!("--see bends rays; give --technique curved_rays, or leave it out");
+        }
+        let files = [args.dem].into_iter().chain(args.features).map(PathBuf::from).collect();
+        let mut request =
+            TargetRequest { files, see, viewpoint, fov_y_deg: args.fov, image: args.size, ..TargetRequest::default() };
+        quality(&mut request.picture);
+        return reveal_one(&request, &out, context);
+    }
     let mut request = RevealRequest {
         data: DataFiles {
             dem: args.dem,
@@ -261,13 +294,12 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         fov_y_deg: args.fov,
         image: args.size,
         curved_earth: args.curved_earth,
-        technique: args.technique.into(),
+        technique: technique.into(),
         ..RevealRequest::default()
     };
-    request.picture.quality.threads = context.common.threads;
-    request.picture.quality.max_bytes = context.common.max_mem.unwrap_or(request.picture.quality.max_bytes);
+    quality(&mut request.picture);
     let answer = reveal::reveal(&request, &context.options(Needs::Everything, None))?;
-    let written = answer.write(&files, context.common.overwrite)?;
+    let written = answer.write(&out, context.common.overwrite)?;
     if context.common.json {
         let mut result = done("reveal", &written, answer.session.warnings());
         result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;

@@ -75,6 +75,9 @@ pub enum BelvedereError {
     /// No file of routes, areas or points was given.
     #[error("no features are given; name at least one file of routes, areas or points")]
     NoFeatures,
+    /// Something to be revealed that is not there.
+    #[error("{0}")]
+    Target(String),
     /// A parameter of the terrain solver that does not exist or is out of range.
     #[error("{0}")]
     Setting(String),

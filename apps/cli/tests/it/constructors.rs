@@ -131,3 +131,69 @@ fn a_path_is_previewed_round_its_turns_and_filmed_along_it() {
     place.write("bad.toml", &scene("path.csv", "lens = { width_m = 0 }"));
     assert!(place.fails(&["check", "bad.toml"]).contains("width_m is 0"));
 }
+
+#[test]
+fn reveal_looks_round_what_hides_a_layer_atoms_or_a_point() {
+    let place = place();
+    place.write("s.toml", &SCENE.replace("motion = 'van.csv'\n", "").replace("base = [0, 0, 0]", "base = [0, 95, 0]"));
+    let report = |name: &str| -> serde_json::Value { serde_json::from_slice(&read(&place.path(name))).expect("JSON") };
+    let said = place.ok(&[
+        "reveal", "s.toml", "--see", "van", "-o", "van.png", "--report", "van.json", "--scene", "van.toml", "--before",
+        "b.png",
+    ]);
+    assert!(said.contains("visible in the straight picture: 0 %, in the bent one: 100 %"), "{said}");
+    let found = report("van.json");
+    assert_eq!((&found["visible_straight"], &found["visible"]), (&0.0.into(), &1.0.into()), "{found}");
+    assert!(found["motion"].as_f64() < Some(0.3), "{found}");
+    for file in ["van.png", "van.png.json", "van.pair.png", "b.png"] {
+        assert!(place.path(file).exists(), "{file} is not there");
+    }
+    // The scene that is written shows the same, without any constructor.
+    place.ok(&["render", "van.toml", "-o", "again.png"]);
+    let pixels = |name: &str| super::light_and_tints::pixels(&read(&place.path(name)));
+    assert!(pixels("van.png") == pixels("again.png"));
+    // A point, and atoms of a molecule that has no file.
+    place.ok(&["reveal", "s.toml", "--see", "0,95,3.5", "-o", "p.png", "--report", "p.json"]);
+    assert_eq!(report("p.json")["visible"], 1.0);
+    place.ok(&["reveal", "builtin:dna?pairs=6", "--see", "resi 3 and name P", "--size", "96x54", "-o", "m.png"]);
+    for (see, words) in
+        [("vam", ["\"vam\" is no layer", "did you mean \"van\""]), ("1,2", ["\"1,2\" is no layer", "a point x,y,z"])]
+    {
+        let line = place.fails(&["reveal", "s.toml", "--see", see, "-o", "x.png"]);
+        assert!(words.iter().all(|w| line.contains(w)), "{line}");
+    }
+    let line = place.fails(&["reveal", "builtin:dna", "--see", "chain Q", "-o", "x.png"]);
+    assert!(line.contains("chain Q") && line.contains("chains are A, B"), "{line}");
+    place.write("x.tif", "no model");
+    assert!(
+        place.fails(&["reveal", "x.tif", "--see", "a", "-o", "x.png"]).contains("no model that can be looked into")
+    );
+    assert!(
+        place
+            .fails(&["reveal", "s.toml", "--see", "van", "--technique", "terrain", "-o", "x.png"])
+            .contains("bends rays")
+    );
+}
+
+#[test]
+fn curved_rays_show_more_of_a_route_than_straight_ones() {
+    let place = Place::new();
+    let massif = "builtin:massif?seed=7&size=129";
+    place.ok(&[
+        "reveal",
+        massif,
+        massif,
+        "--technique",
+        "curved_rays",
+        "--size",
+        "160x90",
+        "-o",
+        "r.png",
+        "--report",
+        "r.json",
+    ]);
+    let report: serde_json::Value = serde_json::from_slice(&read(&place.path("r.json"))).expect("JSON");
+    assert_eq!(report["technique"], "curved_rays");
+    let (straight, bent) = (report["visible_straight"].as_f64(), report["visible_bent"].as_f64());
+    assert!(bent > straight.map(|s| s + 0.1), "{straight:?} -> {bent:?}");
+}

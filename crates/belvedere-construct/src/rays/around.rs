@@ -92,7 +92,7 @@ pub fn bend_around(
     if straight >= 1.0 || pinhole.is_orthographic() || !(depth > 2.0 * pinhole.near) {
         return Ok(BendFound { bent: None, report });
     }
-    let last = depth - target.radius().min(0.2 * depth);
+    let last = depth - target.extent().min(0.2 * depth);
     let rest = surroundings(scene, target);
     // Towns and landscapes are not looked at from below.
     let floor = if scene.unit == Unit::Metre { scene.bounds().min.z.min(pinhole.eye.z) } else { f64::NEG_INFINITY };

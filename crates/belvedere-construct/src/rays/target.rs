@@ -1,6 +1,6 @@
 //! What is to be seen, and how much of it a view shows.
 
-use belvedere_core::{Aabb, DVec3, View};
+use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{LayerKind, Scene};
 use belvedere_sight::{Obstacles, SightOptions};
 
@@ -16,7 +16,12 @@ pub struct Target {
     pub bounds: Aabb,
     /// Layers that are the target themselves, by their index: they do not hide it.
     pub own_layers: Vec<usize>,
+    /// The points are the middles of balls of this radius, scene units, and seen if the ball is; 0 for points of their own.
+    pub radius: f64,
 }
+
+/// Balls that are looked at, at most.
+const MOST_BALLS: usize = 64;
 
 impl Target {
     /// A whole layer, by its index, as the paper's box: points all over its surface. `None` if the layer has no extent in space
@@ -39,7 +44,8 @@ impl Target {
 
     /// What lies in a box.
     pub fn around(bounds: Aabb) -> Self {
-        let share = |i: usize| i as f64 / (LATTICE - 1) as f64;
+        // A little inside: the box may stand on something.
+        let share = |i: usize| 0.02 + 0.96 * i as f64 / (LATTICE - 1) as f64;
         let inner = |i: usize| i > 0 && i < LATTICE - 1;
         let mut points = Vec::new();
         for (x, y, z) in (0..LATTICE.pow(3)).map(|i| (i % LATTICE, i / LATTICE % LATTICE, i / LATTICE / LATTICE)) {
@@ -47,14 +53,22 @@ impl Target {
                 points.push(bounds.min + (bounds.max - bounds.min) * DVec3::new(share(x), share(y), share(z)));
             }
         }
-        Self { points, bounds, own_layers: Vec::new() }
+        Self { points, bounds, own_layers: Vec::new(), radius: 0.0 }
+    }
+
+    /// Balls, such as atoms: middle and radius, scene units. Of many some are looked at, evenly chosen.
+    pub fn balls(balls: impl IntoIterator<Item = (DVec3, f64)>) -> Self {
+        let all: Vec<(DVec3, f64)> = balls.into_iter().collect();
+        let radius = all.iter().map(|(_, r)| *r).fold(0.0, f64::max);
+        let every = all.len().div_ceil(MOST_BALLS).max(1);
+        Self { radius, ..Self::points(all.iter().step_by(every).map(|(p, _)| *p)) }
     }
 
     /// Points, e.g. on a surface or along a line.
     pub fn points(points: impl IntoIterator<Item = DVec3>) -> Self {
         let points: Vec<DVec3> = points.into_iter().filter(|p| p.is_finite()).collect();
         let bounds = Aabb::of(points.iter().copied());
-        Self { points, bounds, own_layers: Vec::new() }
+        Self { points, bounds, own_layers: Vec::new(), radius: 0.0 }
     }
 
     /// Its middle.
@@ -63,8 +77,8 @@ impl Target {
     }
 
     /// Half its largest extent.
-    pub fn radius(&self) -> f64 {
-        0.5 * (self.bounds.max - self.bounds.min).length()
+    pub fn extent(&self) -> f64 {
+        0.5 * (self.bounds.max - self.bounds.min).length() + self.radius
     }
 }
 
@@ -78,9 +92,12 @@ pub struct TargetSight<'a> {
 impl<'a> TargetSight<'a> {
     /// One pass over the scene.
     pub fn new(scene: &'a Scene, target: &'a Target) -> Self {
-        let extent = (target.bounds.max - target.bounds.min).length().max(1e-9);
+        let extent = (2.0 * target.extent()).max(1e-9);
         let cell = scene.terrain().map_or(0.0, |t| t.spacing().max_element());
-        let sight = SightOptions { chord_m: 1e-3 * extent + 0.05 * cell, cap_m: 0.0, guard_m: 1.5 * cell };
+        let bounds = scene.bounds();
+        let whole = if bounds.is_empty() { 0.0 } else { (bounds.max - bounds.min).length() };
+        let chord_m = (1e-3 * extent).max(2e-5 * whole) + 0.05 * cell;
+        let sight = SightOptions { chord_m, cap_m: 0.0, guard_m: 1.5 * cell };
         Self { target, obstacles: Obstacles::without(scene, &target.own_layers), sight }
     }
 
@@ -98,10 +115,25 @@ impl<'a> TargetSight<'a> {
         let Ok(image) = view.project(p) else { return false };
         let pinhole = view.pinhole();
         let in_range = image.depth >= pinhole.near && pinhole.far.is_none_or(|far| image.depth <= far);
-        in_range
-            && !image.folded
-            && pinhole.contains(image.pixel)
-            && self.obstacles.clearance(view, (p, 0.0), (image.pixel, image.depth), &self.sight) >= 0.0
+        if !in_range || image.folded || !pinhole.contains(image.pixel) {
+            return false;
+        }
+        let (p, depth) = self.front(view, p, image.pixel, image.depth);
+        self.obstacles.clearance(view, (p, 0.0), (image.pixel, depth), &self.sight) >= 0.0
+    }
+
+    /// Where the ray to the middle of a ball meets the ball, and its depth there.
+    fn front(&self, view: &View, p: DVec3, pixel: DVec2, depth: f64) -> (DVec3, f64) {
+        let step = 1e-4 * depth;
+        let ray = view.ray(pixel);
+        let at = |w: f64| ray.at(w).map(|r| r.point);
+        match at(depth - step) {
+            Ok(before) if self.target.radius > 0.0 => {
+                let depth = (depth - step * 1.01 * self.target.radius / before.distance(p)).max(view.pinhole().near);
+                at(depth).map_or((p, depth), |front| (front, depth))
+            }
+            _ => (p, depth),
+        }
     }
 
     /// A point moved away from the middle of the target: to its side of the picture, and up if it lies in the upper half.

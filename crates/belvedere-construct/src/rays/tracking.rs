@@ -157,7 +157,7 @@ impl<'a> Search<'a> {
         // The bend follows the other stages, and so does the target it is made for.
         let center = base.displace(target.center()).map_or(target.center(), |d| d.point);
         let depth = (center - pinhole.eye).dot(pinhole.forward);
-        let planes = planes(depth, target.radius(), pinhole.near, options.z0);
+        let planes = planes(depth, target.extent(), pinhole.near, options.z0);
         // Passing overhead turns the camera's right round; the viewpoint stays on its side.
         let turned = memory.right.is_some_and(|before| before.dot(pinhole.right) < 0.0);
         let right = if turned { -pinhole.right } else { pinhole.right };

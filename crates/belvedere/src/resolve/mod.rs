@@ -15,7 +15,7 @@ mod mesh;
 mod molecule;
 pub(crate) mod motion;
 mod path;
-mod rays;
+pub(crate) mod rays;
 mod sea;
 pub(crate) mod stages;
 pub(crate) mod terrain;

@@ -2,6 +2,7 @@
 
 use crate::BelvedereError;
 use crate::scene_file::{AxisDoc, RaysStageDoc, StageDoc, Table, TurnDoc};
+use belvedere_construct::rays::Sidestep;
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::{CurvedRays, DVec3, Pinhole, Stage};
 
@@ -56,4 +57,15 @@ fn turn_spec(doc: &TurnDoc) -> Result<TurnSpec, (&'static str, String)> {
         pencil,
         m: doc.m,
     })
+}
+
+/// The stage of a second viewpoint beside the eye of `root`.
+pub(crate) fn sidestep_stage(sidestep: &Sidestep, root: &Pinhole) -> RaysStageDoc {
+    let turn = sidestep.turn(root);
+    let (line, normal) = match turn.pencil {
+        Pencil::Line { point, dir } => (Some(AxisDoc { point: point.to_array(), dir: dir.to_array() }), None),
+        Pencil::Parallel { normal } => (None, Some(normal.to_array())),
+    };
+    let [viewpoint, t0, t1, t2] = [turn.viewpoint, turn.t0, turn.t1, turn.t2].map(|p| p.to_array());
+    RaysStageDoc { model: Model::Modified, turn: vec![TurnDoc { viewpoint, t0, t1, t2, line, normal, m: turn.m }] }
 }

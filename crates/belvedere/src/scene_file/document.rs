@@ -51,6 +51,24 @@ pub struct Document {
 }
 
 impl Document {
+    /// An empty scene in a system of its own, in metres.
+    pub(crate) fn seen_by(camera: CameraDoc) -> Self {
+        Self {
+            format: one(),
+            title: String::new(),
+            crs: auto(),
+            unit: Unit::default(),
+            earth: EarthDoc::default(),
+            camera,
+            light: None,
+            overlay: None,
+            layer: Vec::new(),
+            stage: Vec::new(),
+            constructor: None,
+            animation: None,
+        }
+    }
+
     /// Whether terrain disocclusion has to be solved before anything can be drawn: the scene names what must be seen, not how far the ground moves.
     pub fn solves_terrain(&self) -> bool {
         self.stage.iter().any(StageDoc::is_terrain_intent)

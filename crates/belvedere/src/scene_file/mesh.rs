@@ -47,6 +47,21 @@ pub struct MeshDoc {
     pub motion: Option<String>,
 }
 
+impl MeshDoc {
+    /// A file in the usual style.
+    pub(crate) fn of(id: String, source: &str) -> Self {
+        Self {
+            id,
+            source: Paths::One(source.to_owned()),
+            must_see: false,
+            style: MeshStyleDoc::default(),
+            transform: None,
+            crs: None,
+            motion: None,
+        }
+    }
+}
+
 /// How a mesh is drawn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]

@@ -30,6 +30,14 @@ pub struct MoleculeDoc {
     pub transform: Option<TransformDoc>,
 }
 
+impl MoleculeDoc {
+    /// A file in the usual style.
+    pub(crate) fn of(id: String, source: &str) -> Self {
+        let source = source.to_owned();
+        Self { id, source, must_see: false, select: None, style: MoleculeStyleDoc::default(), transform: None }
+    }
+}
+
 /// How a molecule is drawn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]

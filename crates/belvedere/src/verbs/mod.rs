@@ -9,3 +9,4 @@ mod molecule_info;
 pub mod pick;
 pub mod points;
 pub mod reveal;
+pub mod reveal_target;

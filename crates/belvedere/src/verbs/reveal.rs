@@ -5,6 +5,7 @@ use crate::output::{self, document_toml, pretty};
 use crate::picture::{DisplacementReport, Picture, PictureOptions, TerrainRecord};
 use crate::resolve::constructor::Memory;
 use crate::resolve::ground::{Ground, earth_radius};
+use crate::resolve::rays::sidestep_stage;
 use crate::resolve::terrain::Solving;
 use crate::scene_file::{
     CameraDoc, Document, EarthDoc, LayerDoc, PaletteDoc, Paths, PlaneDoc, PresetsDoc, SplineStageDoc, StageDoc,
@@ -12,7 +13,10 @@ use crate::scene_file::{
 };
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::measure::HiddenRun;
-use belvedere_construct::{Goal, MeasureOptions, RevealMemory, RevealOptions, RevealReport, Revealed};
+use belvedere_construct::rays::{AroundOptions, Target, bend_around};
+use belvedere_construct::{
+    Goal, MeasureOptions, RevealMemory, RevealOptions, RevealReport, Revealed, default_spacing, sample_features,
+};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::TerrainReport;
 use belvedere_io::png::{self, Channels};
@@ -70,10 +74,15 @@ pub enum Technique {
     Terrain,
     /// Both.
     Both,
+    /// Rays that bend once, around what hides most.
+    CurvedRays,
 }
 
 /// Visible share from which nothing is worth moving the ground for.
 const ENOUGH: f64 = 0.99;
+
+/// Samples of the features that curved rays are chosen by, at most.
+const SAMPLES_TO_BEND_FOR: usize = 150;
 
 /// Time for solving the ground of each technique that is tried, where nothing else is said.
 const TRY_FOR: Duration = Duration::from_secs(120);
@@ -173,6 +182,7 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     session.warnings.extend(found.report.warnings.iter().cloned());
     let candidates: &[Technique] = match request.technique {
         Technique::Spline => &[],
+        Technique::CurvedRays => &[Technique::CurvedRays],
         Technique::Auto => &[Technique::Both, Technique::Terrain],
         Technique::Both => &[Technique::Both],
         Technique::Terrain => &[Technique::Terrain],
@@ -190,7 +200,10 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
             break;
         }
         let began = Instant::now();
-        let next = disoccluded(&spline, technique, if is_auto { progress } else { &options.progress })?;
+        let next = match technique {
+            Technique::CurvedRays => around_what_hides(&spline, &found.straight, &options.progress)?,
+            _ => disoccluded(&spline, technique, if is_auto { progress } else { &options.progress })?,
+        };
         let reached = final_shares(&next, technique, &options.progress)?;
         let out_of_time = next.terrain_report().is_some_and(|r| r.out_of_time);
         let (visible, seconds) = (reached.visible_bent, began.elapsed().as_secs_f64());
@@ -237,6 +250,23 @@ fn disoccluded(session: &Session, technique: Technique, progress: &Progress) -> 
     document.stage.insert(0, StageDoc::TerrainDisocclusion(TerrainStageDoc::default()));
     let mut memory = Memory::default();
     session.with_document(document, Some(&mut Solving { memory: &mut memory, time_step_s: None, progress }))
+}
+
+/// The session with rays that bend once, in place of the spline, so that most of the features is seen.
+fn around_what_hides(session: &Session, straight: &View, progress: &Progress) -> Result<Session, BelvedereError> {
+    let Some(mut document) = session.resolved().cloned() else { return Ok(session.clone()) };
+    let scene = session.scene();
+    let features = sample_features(scene, default_spacing(scene));
+    let samples: Vec<DVec3> = features.iter().flat_map(|f| f.samples.iter().map(|s| s.p_world)).collect();
+    let in_frame = |p: &DVec3| straight.project(*p).is_ok_and(|image| straight.pinhole().contains(image.pixel));
+    let seen: Vec<DVec3> = samples.into_iter().filter(in_frame).collect();
+    let every = seen.len().div_ceil(SAMPLES_TO_BEND_FOR).max(1);
+    let target = Target::points(seen.into_iter().step_by(every));
+    let around = AroundOptions { grow_px: 0.0, ..AroundOptions::default() };
+    let found = bend_around(scene, straight, &target, &around, progress)?;
+    let turns = found.bent.map(|(_, sidestep)| StageDoc::CurvedRays(sidestep_stage(&sidestep, straight.pinhole())));
+    document.stage = turns.into_iter().collect();
+    session.with_document(document, None)
 }
 
 /// Judges the whole chain of stages.

@@ -1,0 +1,339 @@
+//! `reveal --see`: models in, a picture in which one thing of them is visible out, by rays that bend around what hides it.
+
+use crate::output::{self, document_toml, pretty};
+use crate::picture::{Picture, PictureOptions};
+use crate::resolve::rays::sidestep_stage;
+use crate::scene_file::{CameraDoc, Document, LayerDoc, MeshDoc, MoleculeDoc, PointDoc, SourceDocument, StageDoc};
+use crate::verbs::reveal::{RevealFiles, Viewpoint};
+use crate::{BelvedereError, OpenOptions, Session};
+use belvedere_construct::rays::{AroundOptions, BendReport, Sidestep, Target, bend_around};
+use belvedere_core::{Aabb, DVec3, Pinhole, Projection, View};
+use belvedere_io::png::{self, Channels};
+use belvedere_scene::molecule::Selection;
+use belvedere_scene::{LayerKind, Scene, Unit};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Size of the picture unless given, pixels.
+const IMAGE: [u32; 2] = [1280, 720];
+/// Full vertical field of view unless given, degrees.
+const FOV_Y_DEG: f64 = 30.0;
+/// Directions that are looked from if none is given, degrees clockwise from north, and how steeply, degrees.
+const HEADINGS: [f64; 8] = [30.0, 330.0, 75.0, 285.0, 120.0, 240.0, 165.0, 195.0];
+const PITCH: [f64; 2] = [20.0, 8.0];
+/// A view that shows so much of what is looked for is good enough.
+const ENOUGH: f64 = 0.99;
+
+/// What to show, and from where.
+#[derive(Debug, Clone, Default)]
+pub struct TargetRequest {
+    /// Models (meshes, molecules) or one scene file.
+    pub files: Vec<PathBuf>,
+    /// What must be seen: the id of a layer (files are called by their name without its ending), atoms such as `chain B`, or a point
+    /// `x,y,z`.
+    pub see: String,
+    /// Where to look from; chosen if left out, or the camera of the scene file.
+    pub viewpoint: Option<Viewpoint>,
+    /// Full vertical field of view, degrees.
+    pub fov_y_deg: Option<f64>,
+    /// Picture size, pixels.
+    pub image: Option<[u32; 2]>,
+    /// Quality of the pictures.
+    pub picture: PictureOptions,
+}
+
+/// What was found: a session that shows it, its picture beside the straight one, and the figures.
+#[derive(Debug, Clone)]
+pub struct TargetAnswer {
+    /// Scene and bent view.
+    pub session: Session,
+    /// Both pictures.
+    pub picture: Picture,
+    /// Figures.
+    pub report: BendReport,
+    /// What was looked for.
+    pub see: String,
+}
+
+/// Chooses a view (unless given) and the smallest bend that shows what is looked for, and draws both pictures.
+///
+/// # Errors
+/// [`BelvedereError::Target`] if there is no such thing, else as [`Session::open`] and [`Session::render`].
+pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnswer, BelvedereError> {
+    let fov_y_deg = request.fov_y_deg.unwrap_or(FOV_Y_DEG);
+    if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
+        return Err(BelvedereError::FieldOfView { deg: fov_y_deg });
+    }
+    let session = open(request, options)?;
+    let target = target(session.scene(), &request.see)?;
+    let views = views(&session, request, fov_y_deg)?;
+    let around = AroundOptions::default();
+    let mut best: Option<(View, Option<Sidestep>, BendReport)> = None;
+    for view in views {
+        let found = bend_around(session.scene(), &view, &target, &around, &options.progress)?;
+        let score = |r: &BendReport| r.visible - 0.1 * r.motion;
+        if best.as_ref().is_none_or(|(.., b)| score(&found.report) > score(b) + 0.02) {
+            best = Some((view, found.bent.map(|(_, sidestep)| sidestep), found.report));
+        }
+        if best.as_ref().is_some_and(|(.., b)| b.visible >= ENOUGH) {
+            break;
+        }
+    }
+    let Some((view, sidestep, report)) = best else {
+        return Err(BelvedereError::Target("there is no view to look from".into()));
+    };
+    let session = session.with_document(document(&session, &view, sidestep.as_ref(), &target)?, None)?;
+    let pair = PictureOptions {
+        compare: true,
+        straight: false,
+        progress: options.progress.clone(),
+        ..request.picture.clone()
+    };
+    let picture = session.render(&pair)?;
+    Ok(TargetAnswer { session, picture, report, see: request.see.clone() })
+}
+
+/// The layers, behind any camera.
+fn open(request: &TargetRequest, options: &OpenOptions) -> Result<Session, BelvedereError> {
+    let is_scene = |p: &PathBuf| p.extension().is_some_and(|e| e == "toml" || e == "json");
+    if let [file] = &request.files[..]
+        && is_scene(file)
+    {
+        return Session::open(file, options);
+    }
+    let mut options = options.clone();
+    let mut layers = Vec::new();
+    for file in &request.files {
+        if file.to_str().is_some_and(|name| name.starts_with("builtin:")) {
+            layers.push(layer(file, &layers)?);
+            continue;
+        }
+        let path = file.canonicalize().map_err(|e| belvedere_io::IoError::os(file, e))?;
+        options.allow_roots.extend(path.parent().map(Path::to_owned));
+        layers.push(layer(&path, &layers)?);
+    }
+    for layer in &mut layers {
+        if let LayerDoc::Molecule(molecule) = layer
+            && Selection::parse(&request.see).is_ok()
+        {
+            molecule.select = Some(request.see.clone());
+        }
+    }
+    let unit = match layers.first() {
+        Some(LayerDoc::Molecule(_)) => Unit::Angstrom,
+        _ => Unit::Metre,
+    };
+    let camera = CameraDoc::looking(DVec3::new(0.0, -1.0, 0.0), DVec3::ZERO);
+    let title = format!("{} revealed", request.see);
+    let document = Document { title, crs: "local".into(), unit, layer: layers, ..Document::seen_by(camera) };
+    Session::from_document(SourceDocument::new(document), &options)
+}
+
+/// The layer of a file, by the ending of its name.
+fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
+    let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
+    let file = path.file_name().and_then(|n| n.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let file = file.strip_suffix(".gz").unwrap_or(&file);
+    let (builtin, file) = file.strip_prefix("builtin:").map_or((false, file), |name| (true, name));
+    let stem = file.split(['.', '?']).next().unwrap_or(file);
+    let taken = |id: &str| others.iter().any(|l| l.id() == id);
+    let id = (1..).map(|k| if k == 1 { stem.to_owned() } else { format!("{stem}-{k}") }).find(|id| !taken(id));
+    let id = id.unwrap_or_default();
+    match file.rsplit('.').next().unwrap_or_default() {
+        _ if builtin && stem == "dna" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
+        _ if builtin => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
+        "pdb" | "ent" | "cif" | "mmcif" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
+        "obj" | "ply" | "stl" | "gltf" | "glb" => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
+        _ => Err(BelvedereError::Target(format!(
+            "{name} is no model that can be looked into; give meshes (OBJ, PLY, STL, glTF), molecules (PDB, mmCIF) or a scene file; for an elevation model give its features instead of --see"
+        ))),
+    }
+}
+
+/// What must be seen.
+fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError> {
+    let numbers: Vec<f64> = see.split(',').filter_map(|n| n.trim().parse().ok()).collect();
+    if let [x, y, z] = numbers[..]
+        && see.split(',').count() == 3
+    {
+        return Ok(Target::points([DVec3::new(x, y, z)]));
+    }
+    if let Some(index) = scene.layers.iter().position(|l| l.id == see) {
+        return Target::layer(scene, index).ok_or_else(|| {
+            BelvedereError::Target(format!(
+                "layer \"{see}\" cannot be looked for: it is ground, an area, or holds nothing"
+            ))
+        });
+    }
+    let molecules = scene.layers.iter().filter_map(|l| match &l.kind {
+        LayerKind::Molecule(m) => Some(m),
+        _ => None,
+    });
+    let mut complaint = None;
+    for layer in molecules {
+        match Selection::parse(see) {
+            Ok(selection) => {
+                let mask = selection.mask(&layer.molecule);
+                let atoms: Vec<usize> = (0..mask.len()).filter(|i| mask[*i]).collect();
+                if !atoms.is_empty() {
+                    return Ok(Target::balls(
+                        atoms
+                            .iter()
+                            .map(|&i| (layer.center(i), layer.molecule.atoms()[i].element.van_der_waals_radius())),
+                    ));
+                }
+                complaint = Some(format!("no atom is meant by \"{see}\""));
+            }
+            Err(e) => complaint = Some(e.to_string()),
+        }
+    }
+    let ids: Vec<&str> = scene.layers.iter().map(|l| l.id.as_str()).collect();
+    let complaint = complaint.map_or_else(String::new, |c| format!(", and as atoms: {c}"));
+    Err(BelvedereError::Target(format!(
+        "\"{see}\" is no layer of the scene{complaint}; {} or give a point x,y,z",
+        crate::scene_file::suggestion(see, &ids)
+    )))
+}
+
+/// The views to try: the one that is given, the scene file's, or some from all around.
+fn views(session: &Session, request: &TargetRequest, fov_y_deg: f64) -> Result<Vec<View>, BelvedereError> {
+    let scene = session.scene();
+    let is_scene_file = session.path().is_some();
+    let own = session.view().pinhole();
+    let image = request.image.unwrap_or(if is_scene_file { own.image } else { IMAGE });
+    let lens = Projection::Perspective { fov_y: fov_y_deg.to_radians() };
+    if let Some(Viewpoint { eye, target: [x, y], target_height }) = request.viewpoint {
+        let bounds = scene.bounds();
+        let look = DVec3::new(x, y, target_height.unwrap_or(bounds.center().z));
+        let eye = DVec3::from_array(eye);
+        let near = 1e-3 * (look - eye).length();
+        return Ok(vec![View::straight(Pinhole::look_at(eye, look, DVec3::Z, lens, image, near, None)?)]);
+    }
+    if is_scene_file {
+        return Ok(vec![session.view().straightened()]);
+    }
+    around(&scene.bounds(), image, lens, PITCH[usize::from(scene.unit != Unit::Metre)])
+}
+
+/// Views that hold everything, from all around.
+fn around(bounds: &Aabb, image: [u32; 2], lens: Projection, pitch_deg: f64) -> Result<Vec<View>, BelvedereError> {
+    let (center, radius) = (bounds.center(), 0.5 * (bounds.max - bounds.min).length().max(1e-6));
+    let half = match lens {
+        Projection::Perspective { fov_y } => 0.5 * fov_y,
+        Projection::Orthographic { .. } => 0.2,
+    };
+    let narrow = if image[0] < image[1] { f64::from(image[0]) / f64::from(image[1]) } else { 1.0 };
+    let distance = 1.02 * radius / (half.tan() * narrow).atan().sin();
+    let view = |heading: &f64| {
+        let ((sin, cos), (down, ahead)) = (heading.to_radians().sin_cos(), pitch_deg.to_radians().sin_cos());
+        let forward = DVec3::new(sin * ahead, cos * ahead, -down);
+        let near = (distance - 1.5 * radius).max(1e-3 * distance);
+        Ok(View::straight(Pinhole::look_at(center - distance * forward, center, DVec3::Z, lens, image, near, None)?))
+    };
+    HEADINGS.iter().map(view).collect()
+}
+
+/// The document of the session with the view that was found.
+fn document(
+    session: &Session,
+    view: &View,
+    sidestep: Option<&Sidestep>,
+    target: &Target,
+) -> Result<Document, BelvedereError> {
+    let Some(resolved) = session.resolved() else {
+        return Err(BelvedereError::Target("the scene has no document".into()));
+    };
+    let pinhole = view.pinhole();
+    let ahead = (target.center() - pinhole.eye).dot(pinhole.forward).max(pinhole.near);
+    let up = if pinhole.forward.cross(DVec3::Z).length() > 1e-3 { [0.0, 0.0, 1.0] } else { (-pinhole.down).to_array() };
+    let mut document = resolved.clone();
+    document.camera = CameraDoc { up, ..CameraDoc::of(pinhole, pinhole.eye + ahead * pinhole.forward) };
+    document.constructor = None;
+    document.stage.retain(|stage| !matches!(stage, StageDoc::CurvedRays(_)));
+    document.stage.extend(sidestep.map(|s| StageDoc::CurvedRays(sidestep_stage(s, pinhole))));
+    Ok(document)
+}
+
+/// The report file.
+#[derive(Debug, Serialize)]
+struct TargetReport<'a> {
+    program: &'a str,
+    see: &'a str,
+    #[serde(flatten)]
+    report: BendReport,
+    view: &'a crate::record::ViewRecord,
+    inputs: &'a [crate::record::InputFile],
+    warnings: &'a [String],
+}
+
+impl TargetAnswer {
+    /// One sentence: visible share straight and bent.
+    pub fn summary(&self) -> String {
+        let BendReport { visible_straight, visible, tried, .. } = self.report;
+        if tried == 0 || visible <= visible_straight {
+            return format!("visible without any bend: {:.0} %", 100.0 * visible_straight);
+        }
+        format!(
+            "visible in the straight picture: {:.0} %, in the bent one: {:.0} %",
+            100.0 * visible_straight,
+            100.0 * visible
+        )
+    }
+
+    /// Goals that were missed, one sentence each.
+    pub fn missed(&self) -> Vec<String> {
+        let missed = self.report.visible < ENOUGH;
+        let text =
+            || format!("{:.0} % of what was looked for is visible, 99 % were wanted", 100.0 * self.report.visible);
+        missed.then(text).into_iter().collect()
+    }
+
+    /// Writes the bent picture with its record, the pair (`OUT.pair.png`), and whatever else is asked for.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`].
+    pub fn write(&self, files: &RevealFiles, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
+        let sidecar = &self.picture.sidecar;
+        let single = Picture { straight: None, ..self.picture.clone() };
+        let mut written = single.write(&files.out, overwrite)?;
+        let title = [("Software", sidecar.program.as_str()), ("Comment", "straight | bent")];
+        let mut draw = |path: &Path, [width, height]: [usize; 2], pixels: &[[u8; 3]], title: &[(&str, &str)]| {
+            png::write(path, overwrite, width, height, Channels::Rgb, pixels.as_flattened(), title)?;
+            written.push(path.to_owned());
+            Ok::<(), BelvedereError>(())
+        };
+        let (width, height, pixels) = self.picture.pixels();
+        draw(&files.pair(), [width, height], &pixels, &title)?;
+        if let (Some(path), Some(frame)) = (&files.before, &self.picture.straight) {
+            draw(path, [frame.width, frame.height], &frame.color, &title[..1])?;
+        }
+        if let Some(path) = &files.report {
+            let report = TargetReport {
+                program: &sidecar.program,
+                see: &self.see,
+                report: self.report,
+                view: &sidecar.view,
+                inputs: &sidecar.inputs,
+                warnings: self.session.warnings(),
+            };
+            output::write_text(path, &pretty(&report)?, overwrite)?;
+            written.push(path.clone());
+        }
+        if let (Some(path), Some(document)) = (&files.scene, self.session.resolved()) {
+            output::write_text(path, &document_toml(document)?, overwrite)?;
+            written.push(path.clone());
+        }
+        Ok(written)
+    }
+}
+
+impl CameraDoc {
+    /// A camera at a place that looks at another.
+    fn looking(eye: DVec3, look_at: DVec3) -> Self {
+        let lens = Projection::Perspective { fov_y: FOV_Y_DEG.to_radians() };
+        let axes = (DVec3::X, -DVec3::Z, DVec3::Y);
+        let (right, down, forward) = axes;
+        let pinhole = Pinhole { eye, right, down, forward, projection: lens, image: IMAGE, near: 1e-3, far: None };
+        Self { look_at: Some(PointDoc::Scene(look_at.to_array())), ..Self::of(&pinhole, look_at) }
+    }
+}
