@@ -31,7 +31,11 @@ pub(crate) fn surface(kind: &LayerKind, spacing: f64) -> Option<SampledSurface> 
         LayerKind::Boxes(layer) => (String::new(), of_boxes(layer)),
         LayerKind::Molecule(layer) => of_molecule(layer),
         LayerKind::Mesh(layer) => of_mesh(layer),
-        LayerKind::Terrain(_) | LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) => return None,
+        LayerKind::Terrain(_)
+        | LayerKind::Volume(_)
+        | LayerKind::Line(_)
+        | LayerKind::Area(_)
+        | LayerKind::Point(_) => return None,
     };
     Some(SampledSurface { name, samples: spread(&triangles, spacing) })
 }

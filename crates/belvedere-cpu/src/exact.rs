@@ -13,6 +13,7 @@ use crate::shade::color::{Packed, Rgb};
 use crate::shade::{LightCache, Shader};
 use crate::trace::beam::RowRays;
 use crate::trace::{Part, RayHit, Tracer};
+use crate::volume::{self, Way};
 use belvedere_core::DVec2;
 use belvedere_scene::{Frame, FrameStats, LayerKind, RenderError, RenderJob, Renderer};
 use rayon::prelude::*;
@@ -69,6 +70,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     let picture = Picture { job, screen: &screen, tracer: &tracer, shader: &shader };
     let seen = picture.trace()?;
     picture.color(&seen, &mut buffers)?;
+    let samples = volume::compose(job, Way::Exact, &mut buffers)?;
     let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
     let passes = Pass::all(job.view);
     let marks = Marks::new(job, &passes, &screen, tolerance_px, &buffers.depth);
@@ -82,6 +84,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     });
     let stats = FrameStats {
         triangles_in: triangles_in.sum(),
+        samples,
         milliseconds: start.elapsed().as_secs_f64() * 1e3,
         ..FrameStats::default()
     };

@@ -22,6 +22,7 @@ mod rasteriser;
 mod shade;
 mod simd;
 mod trace;
+mod volume;
 
 pub use exact::ExactRenderer;
 pub use geometry::project::GroundImage;

@@ -12,6 +12,7 @@ use crate::raster::pixel_center::PixelCenters;
 use crate::raster::resolve::{Colors, Rows, resolve};
 use crate::shade::color::Packed;
 use crate::shade::{LightCache, Shader};
+use crate::volume::{self, Way};
 use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -97,6 +98,7 @@ impl CpuRenderer {
         let mut buffers = Buffers::reuse(job, std::mem::take(color), frame);
         let centers = job.options.aux.exact.then(|| PixelCenters::new(job.scene, &passes, &screen));
         draw_surfaces(job, &screen, blocks, (&shader, centers.as_ref()), bands, &mut buffers)?;
+        let samples = volume::compose(job, Way::Fast, &mut buffers)?;
         if buffers.open {
             let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
             let marks = Marks::new(job, &passes, &screen, tolerance_px, &buffers.depth);
@@ -110,6 +112,7 @@ impl CpuRenderer {
             triangles_drawn: counts.drawn,
             edges_split: counts.split,
             vertices_missed: counts.missed,
+            samples,
             milliseconds: start.elapsed().as_secs_f64() * 1e3,
         };
         *color = buffers.color;

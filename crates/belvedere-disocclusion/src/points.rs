@@ -123,9 +123,11 @@ pub(super) fn required_features(scene: &Scene) -> Vec<RequiredFeature> {
                 (a.lift_m, a.features.iter().map(area).collect())
             }
             LayerKind::Point(p) => (p.lift_m, p.features.iter().map(|f| Shape::Point(f.position.truncate())).collect()),
-            LayerKind::Terrain(_) | LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Molecule(_) => {
-                (0.0, Vec::new())
-            }
+            LayerKind::Terrain(_)
+            | LayerKind::Boxes(_)
+            | LayerKind::Mesh(_)
+            | LayerKind::Molecule(_)
+            | LayerKind::Volume(_) => (0.0, Vec::new()),
         };
         shapes.into_iter().enumerate().map(move |(feature, shape)| RequiredFeature { layer, feature, lift_m, shape })
     };

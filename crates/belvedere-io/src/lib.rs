@@ -17,6 +17,7 @@ pub mod raster;
 mod recognise;
 pub mod terrain;
 pub mod vector;
+pub mod volume;
 
 pub use drape::{DrapeRequest, load_drape};
 pub use error::{IoError, Loaded};
@@ -31,3 +32,4 @@ pub use terrain::{CrsChoice, LoadedTerrain, ResampleError, TerrainRequest, load_
 pub use vector::{
     Geometry, VectorFeature, Vectors, Vertex, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain,
 };
+pub use volume::{ByteOrder, Number, RawLayout, VolumeFile, VolumeRequest, is_volume, load_volume};

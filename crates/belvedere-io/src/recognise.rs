@@ -1,6 +1,6 @@
 //! Files that are known and not read yet: told by their first bytes, else by their names.
 
-use crate::{IoError, mesh, molecule, terrain, vector};
+use crate::{IoError, mesh, molecule, terrain, vector, volume};
 use std::io::Read;
 use std::path::Path;
 
@@ -41,8 +41,7 @@ const fn unread(format: &'static str, holds: &'static str, meanwhile: &'static s
 }
 
 /// Bytes at the beginning of binary files.
-const MAGIC: [(&[u8], Unread); 14] = [
-    (b"NRRD000", unread("NRRD", VOLUME, LATER)),
+const MAGIC: [(&[u8], Unread); 13] = [
     (b"LASF", unread("LAS or LAZ", CLOUD, AS_DEM)),
     (b"ASTM-E57", unread("E57", CLOUD, AS_DEM)),
     (b"fgb\x03", unread("FlatGeobuf", "map features", AS_GEOJSON)),
@@ -65,13 +64,11 @@ const MAGIC: [(&[u8], Unread); 14] = [
 ];
 
 /// Words among the first of text files.
-const TEXT: [(&str, Unread); 13] = [
+const TEXT: [(&str, Unread); 11] = [
     ("CityModel", unread("CityGML", CITY, AS_MESH)),
     ("_atom_site", unread("mmCIF", MOLECULE, NAME_CIF)),
-    ("type=\"ImageData\"", unread("VTK XML image (.vti)", VOLUME, LATER)),
     ("<VTKFile", unread("VTK XML", "a mesh or grid of science", "ParaView turns it into PLY or OBJ")),
     ("# vtk DataFile", unread("legacy VTK", "a mesh or grid of science", "ParaView turns it into PLY or OBJ")),
-    ("NRRD000", unread("NRRD", VOLUME, LATER)),
     ("ObjectType = Image", unread("MetaImage", VOLUME, LATER)),
     ("<osm ", unread("OSM XML", OSM, "ogr2ogr or osmium export turn it into GeoJSON")),
     ("<kml", unread("KML", "map features", AS_GEOJSON)),
@@ -82,15 +79,12 @@ const TEXT: [(&str, Unread); 13] = [
 ];
 
 /// Endings of names, where content tells nothing; longer ones first.
-const ENDINGS: [(&str, Unread); 30] = [
+const ENDINGS: [(&str, Unread); 27] = [
     (".city.jsonl", unread("CityJSONSeq", CITY, AS_MESH)),
     (".city.json", unread("CityJSON", CITY, AS_MESH)),
     (".osm.bz2", unread("OSM XML", OSM, "osmium export turns it into GeoJSON")),
-    (".raw.gz", unread("raw voxels", VOLUME, LATER)),
     (".nii.gz", unread("NIfTI", VOLUME, LATER)),
     (".nii", unread("NIfTI", VOLUME, LATER)),
-    (".raw", unread("raw voxels", VOLUME, LATER)),
-    (".nhdr", unread("NRRD", VOLUME, LATER)),
     (".mha", unread("MetaImage", VOLUME, LATER)),
     (".mhd", unread("MetaImage", VOLUME, LATER)),
     (".dcm", unread("DICOM", VOLUME, LATER)),
@@ -127,7 +121,7 @@ fn read_endings() -> impl Iterator<Item = &'static &'static str> {
 pub fn recognise(path: &Path) -> Result<Option<Unread>, IoError> {
     let file = std::fs::File::open(path).map_err(|e| IoError::os(path, e))?;
     let reads = path.extension().is_some_and(|e| read_endings().any(|read| e.eq_ignore_ascii_case(read)));
-    if reads || molecule::is_molecule(path) {
+    if reads || molecule::is_molecule(path) || volume::is_volume(path) {
         return Ok(None);
     }
     let mut head = Vec::new();
@@ -197,9 +191,7 @@ mod tests {
         package.resize(68, 1);
         package.extend(b"GPKG");
         for (head, format) in [
-            (&b"NRRD0004\ntype: uchar\n"[..], "NRRD"),
-            (b"<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"0.1\">", "VTK XML image (.vti)"),
-            (b"<VTKFile type=\"PolyData\">", "VTK XML"),
+            (&b"<VTKFile type=\"PolyData\">"[..], "VTK XML"),
             (b"{\"type\":\"CityJSON\",\"version\":\"2.0\"}", "CityJSON"),
             (b"{\"type\":\"CityJSON\"}\n{\"type\":\"CityJSONFeature\"}", "CityJSONSeq"),
             (b"<core:CityModel xmlns:gml=\"http://www.opengis.net/gml\">", "CityGML"),

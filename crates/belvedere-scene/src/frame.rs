@@ -75,6 +75,8 @@ pub struct FrameStats {
     pub edges_split: u64,
     /// Vertices without an image (behind the eye or outside the domain).
     pub vertices_missed: u64,
+    /// Samples of volumes taken.
+    pub samples: u64,
     /// Wall time in milliseconds.
     pub milliseconds: f64,
 }

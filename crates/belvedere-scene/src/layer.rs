@@ -1,6 +1,6 @@
 //! Layers and their styles.
 
-use crate::{DistanceMarkers, Heightfield, MeshLayer, MoleculeLayer, PointStyle, Ramp};
+use crate::{DistanceMarkers, Heightfield, MeshLayer, MoleculeLayer, PointStyle, Ramp, VolumeLayer};
 use belvedere_core::{Aabb, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -338,6 +338,8 @@ pub enum LayerKind {
     Mesh(MeshLayer),
     /// Atoms.
     Molecule(Box<MoleculeLayer>),
+    /// Voxels.
+    Volume(VolumeLayer),
     /// Polylines on the ground.
     Line(LineLayer),
     /// Polygons on the ground.
@@ -366,6 +368,7 @@ impl Layer {
             LayerKind::Mesh(_) | LayerKind::Molecule(_) => {
                 self.kind.triangles().map_or(Aabb::EMPTY, |m| m.mesh.bounds())
             }
+            LayerKind::Volume(v) => v.volume.bounds(),
             LayerKind::Line(l) => Aabb::of(l.features.iter().flat_map(|f| f.points.iter().copied())),
             LayerKind::Area(_) => Aabb::EMPTY,
             LayerKind::Point(p) => Aabb::of(p.features.iter().map(|f| f.position)),
@@ -380,7 +383,7 @@ impl LayerKind {
             Self::Line(l) => &l.features.get(index)?.name,
             Self::Area(a) => &a.features.get(index)?.name,
             Self::Point(p) => &p.features.get(index)?.name,
-            Self::Terrain(_) | Self::Boxes(_) | Self::Mesh(_) | Self::Molecule(_) => return None,
+            Self::Terrain(_) | Self::Boxes(_) | Self::Mesh(_) | Self::Molecule(_) | Self::Volume(_) => return None,
         };
         Some(name.as_str()).filter(|name| !name.is_empty())
     }

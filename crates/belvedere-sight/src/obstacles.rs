@@ -51,7 +51,8 @@ impl<'a> Obstacles<'a> {
                     let lift = lift.filter(|_| !b.is_empty()).map(|lift| lift(b.min.truncate(), b.max.truncate()));
                     meshes.push((i, MeshTree::lifted(&m.mesh, lift.unwrap_or([0.0; 2]))));
                 }
-                LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) => {}
+                // Voxels are no surface.
+                LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) | LayerKind::Volume(_) => {}
             }
         }
         Self { grounds, boxes: BoxTree::new(boxes, lift), meshes }

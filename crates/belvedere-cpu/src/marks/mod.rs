@@ -83,7 +83,9 @@ impl Marks {
 
     /// Whether there may be any.
     pub(crate) fn are_in(job: &RenderJob<'_>) -> bool {
-        let drawn = |kind: &LayerKind| matches!(kind, LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_));
+        let drawn = |kind: &LayerKind| {
+            matches!(kind, LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) | LayerKind::Volume(_))
+        };
         job.scene.layers.iter().any(|l| drawn(&l.kind)) || job.options.overlay != Overlay::default()
     }
 

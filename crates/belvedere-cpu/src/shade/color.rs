@@ -91,6 +91,12 @@ pub(crate) fn linear(rgb: [u8; 3]) -> Rgb {
     Rgb::new(t[rgb[0] as usize], t[rgb[1] as usize], t[rgb[2] as usize])
 }
 
+/// sRGB in 0..=1 to linear light.
+pub(crate) fn linear_of(rgb: [f32; 3]) -> Rgb {
+    let of = |s: f32| if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) };
+    Rgb::from_array(rgb.map(of))
+}
+
 /// Linear light to sRGB.
 pub(crate) fn encode(c: Rgb) -> [u8; 3] {
     Packed::new(c).encode(encoding())

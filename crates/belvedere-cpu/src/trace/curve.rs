@@ -93,6 +93,15 @@ impl<'a> Split<'a> {
         self.ground.map_or(0.0, |g| g.delta_at(p))
     }
 
+    /// Bound on how much more the ground is lifted between two points than at them: what it changes over them, or is high at most.
+    pub(crate) fn most_lift(&self, a: DVec3, b: DVec3) -> f64 {
+        self.ground.map_or(0.0, |g| {
+            let (min, max) = (a.min(b).truncate(), a.max(b).truncate());
+            let [lo, hi] = g.grid().range_over(min, max).unwrap_or([0.0; 2]);
+            lo.abs().max(hi.abs())
+        })
+    }
+
     /// What the rays of an image row (`y` in pixels) have in common, over a range of depths.
     pub(crate) fn row(&self, y: f64, range: [f64; 2]) -> Option<Row<'a>> {
         let bend = self.bend.filter(|_| self.kind == Kind::Rows)?;

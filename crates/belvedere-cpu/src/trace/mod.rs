@@ -1,11 +1,11 @@
 //! First hits of curved rays on the surfaces themselves, without subdivision.
 
 pub(crate) mod beam;
-mod curve;
+pub(crate) mod curve;
 mod meshes;
 mod root;
 mod row;
 mod tracer;
 
-pub(crate) use tracer::Part;
+pub(crate) use tracer::{Part, deepest};
 pub use tracer::{RayHit, Tracer};

@@ -139,7 +139,7 @@ impl<'a> Tracer<'a> {
 }
 
 /// Depth beyond which nothing of the scene is seen: the largest depth of a lattice over its bounds and a step more.
-fn deepest(scene: &Scene, view: &View) -> f64 {
+pub(crate) fn deepest(scene: &Scene, view: &View) -> f64 {
     const STEPS: usize = 24;
     let far = view.pinhole().far.unwrap_or(f64::INFINITY);
     let bounds = scene.bounds();

@@ -74,7 +74,7 @@ fn read_bytes(path: &Path, limits: &Limits) -> Result<Vec<u8>, IoError> {
 }
 
 /// A file beside `path` that it names; refused if it is remote, absolute or leads out of the folder.
-fn beside(path: &Path, name: &str) -> Result<PathBuf, String> {
+pub(crate) fn beside(path: &Path, name: &str) -> Result<PathBuf, String> {
     let relative = Path::new(name);
     let stays =
         relative.components().all(|c| matches!(c, std::path::Component::Normal(_) | std::path::Component::CurDir));

@@ -2,7 +2,7 @@
 
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
-use super::{areas, boxes, builtin, dem, mesh, molecule, sea, vectors};
+use super::{areas, boxes, builtin, dem, mesh, molecule, sea, vectors, volume};
 use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
@@ -327,7 +327,8 @@ fn layer(
         LayerDoc::Boxes(doc) => boxes::layer(loader, index, doc)?,
         LayerDoc::Mesh(doc) => mesh::layer(loader, index, doc, ground)?,
         LayerDoc::Molecule(doc) => molecule::layer(loader, index, doc)?,
-        LayerDoc::City(_) | LayerDoc::Volume(_) => {
+        LayerDoc::Volume(doc) => volume::layer(loader, index, doc)?,
+        LayerDoc::City(_) => {
             return Err(loader.fail(
                 index,
                 "kind",

@@ -19,9 +19,11 @@ pub(crate) mod rays;
 mod sea;
 pub(crate) mod stages;
 pub(crate) mod terrain;
+mod transfer;
 pub(crate) mod validate;
 pub(crate) mod vectors;
 pub(crate) mod view;
+pub(crate) mod volume;
 
 pub(crate) use areas::{fill_surfaces, restyle};
 pub(crate) use layers::{LayerRequest, load};

@@ -5,6 +5,7 @@ use super::molecule::MoleculeDoc;
 use super::overlay::AutoOrLength;
 use super::palette::PaletteDoc;
 use super::paths::Paths;
+use super::volume::VolumeDoc;
 use belvedere_scene::{Hidden, Relief, Shading, Symbol};
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -31,8 +32,8 @@ pub enum LayerDoc {
     City(ModelDoc),
     /// Atoms.
     Molecule(MoleculeDoc),
-    /// Voxels. Not drawn by this version.
-    Volume(ModelDoc),
+    /// Voxels.
+    Volume(VolumeDoc),
 }
 
 /// Names of the kinds of layers.
@@ -50,7 +51,8 @@ impl LayerDoc {
             Self::Boxes(l) => &l.id,
             Self::Mesh(l) => &l.id,
             Self::Molecule(l) => &l.id,
-            Self::City(l) | Self::Volume(l) => &l.id,
+            Self::City(l) => &l.id,
+            Self::Volume(l) => &l.id,
         }
     }
 
@@ -64,7 +66,8 @@ impl LayerDoc {
             Self::Boxes(l) => l.must_see,
             Self::Mesh(l) => l.must_see,
             Self::Molecule(l) => l.must_see,
-            Self::City(l) | Self::Volume(l) => l.must_see,
+            Self::City(l) => l.must_see,
+            Self::Volume(l) => l.must_see,
         }
     }
 
@@ -457,9 +460,6 @@ pub struct ModelDoc {
     /// Movement: a CSV file with columns t, x, y, z, yaw_deg.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<String>,
-    /// Transfer function of a volume: a name or a file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub transfer: Option<String>,
     /// How it is drawn.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub style: Option<std::collections::BTreeMap<String, serde_json::Value>>,

@@ -14,6 +14,7 @@ mod palette;
 pub mod paths;
 mod stages;
 mod toml_tree;
+mod volume;
 
 pub(crate) use doc_error::{DocError, suggestion};
 pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDoc, ProjectionDoc};
@@ -32,6 +33,7 @@ pub use stages::{
     AxisDoc, DetailDoc, PlaneDoc, PresetsDoc, RaysStageDoc, SolverMode, SplineStageDoc, StageDoc, TerrainStageDoc,
     TurnDoc,
 };
+pub use volume::VolumeDoc;
 
 use crate::BelvedereError;
 use belvedere_core::presets::PresetDocument;

@@ -59,6 +59,7 @@ pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
             LayerKind::Boxes(l) => ("boxes", l.boxes.len()),
             LayerKind::Mesh(l) => ("mesh", l.mesh.triangles().len()),
             LayerKind::Molecule(l) => ("molecule", l.atoms),
+            LayerKind::Volume(l) => ("volume", l.volume.values().len()),
         };
         CheckedLayer { id: layer.id.clone(), kind, count, must_see: layer.must_see }
     });

@@ -396,7 +396,11 @@ fn moved_features(session: &Session, stage: &TerrainDisocclusion) -> Result<Valu
                     }
                 }
             }
-            LayerKind::Terrain(_) | LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Molecule(_) => {}
+            LayerKind::Terrain(_)
+            | LayerKind::Boxes(_)
+            | LayerKind::Mesh(_)
+            | LayerKind::Molecule(_)
+            | LayerKind::Volume(_) => {}
         }
     }
     Ok(json!({ "type": "FeatureCollection", "features": features }))

@@ -1,6 +1,10 @@
 //! `info`: what files hold, and what this machine can do.
 
+mod volume;
+
 pub use super::molecule_info::MoleculeInfo;
+pub use volume::VolumeInfo;
+
 use crate::BelvedereError;
 use crate::resolve::builtin;
 use belvedere_core::DVec2;
@@ -27,6 +31,8 @@ pub enum FileInfo {
     Mesh(MeshInfo),
     /// Atoms.
     Molecule(MoleculeInfo),
+    /// Voxels.
+    Volume(VolumeInfo),
     /// A built-in scene.
     Builtin(BuiltinInfo),
     /// A known format that this version does not read.
@@ -204,10 +210,13 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
     if belvedere_io::molecule::is_molecule(path) {
         return super::molecule_info::describe(path).map(FileInfo::Molecule);
     }
+    if belvedere_io::is_volume(path) {
+        return Ok(FileInfo::Volume(VolumeInfo::of(path)?));
+    }
     if !ends(belvedere_io::terrain::ENDINGS) {
         return Err(belvedere_io::IoError::format(
             path,
-            "it is of no kind that this version reads: terrain and pictures as GeoTIFF, SRTM .hgt (also .zip) or ESRI ASCII, features as GPX, GeoJSON or shapefile (.shp), meshes as OBJ, PLY, STL, glTF or GLB, molecules as PDB or mmCIF",
+            "it is of no kind that this version reads: terrain and pictures as GeoTIFF, SRTM .hgt (also .zip) or ESRI ASCII, features as GPX, GeoJSON or shapefile (.shp), meshes as OBJ, PLY, STL, glTF or GLB, molecules as PDB or mmCIF, volumes as .vti, NRRD or raw samples",
         )
         .into());
     }

@@ -1,0 +1,87 @@
+//! How far from every brick the nearest visible one is: what a ray may leap over.
+
+use super::table::Table;
+use belvedere_scene::Volume;
+use belvedere_scene::volume::BRICK;
+
+/// Bricks along the edge of a cube: 8 cells each.
+pub(super) const EDGE: f32 = BRICK as f32;
+
+/// Distances of bricks.
+pub(super) struct Leaps {
+    dims: [usize; 3],
+    /// Chebyshev distance to the nearest brick with anything visible, in bricks; 0 = visible itself.
+    distance: Vec<u8>,
+}
+
+impl Leaps {
+    pub(super) fn new(volume: &Volume, table: &Table) -> Self {
+        let dims = volume.bricks().dims();
+        let mut distance: Vec<u8> =
+            volume.bricks().ranges().iter().map(|r| if table.is_visible(*r) { 0 } else { u8::MAX }).collect();
+        // Chebyshev distances part by axes: along x, then y, then z, from both sides.
+        let stride = [1, dims[0], dims[0] * dims[1]];
+        for axis in 0..3 {
+            for i in 0..distance.len() {
+                if i / stride[axis] % dims[axis] == 0 {
+                    spread(&mut distance, i, stride[axis], dims[axis]);
+                }
+            }
+        }
+        Self { dims, distance }
+    }
+
+    /// Whether nothing at all is visible.
+    pub(super) fn is_clear(&self) -> bool {
+        self.distance.iter().all(|d| *d > 0)
+    }
+
+    /// The brick of a position, and its distance.
+    #[inline(always)]
+    pub(super) fn at(&self, p: [f32; 3]) -> ([usize; 3], u8) {
+        let brick: [usize; 3] = std::array::from_fn(|a| ((p[a] * (1.0 / EDGE)) as usize).min(self.dims[a] - 1));
+        let i = (brick[2] * self.dims[1] + brick[1]) * self.dims[0] + brick[0];
+        (brick, self.distance.get(i).copied().unwrap_or(0))
+    }
+}
+
+/// Lowers the distances of one line of bricks: the largest of the ways along the axes counts, so that after a pass along one axis an
+/// entry `d` away from another is at most the larger of `d` and that other's.
+fn spread(distance: &mut [u8], first: usize, stride: usize, n: usize) {
+    let line: Vec<u8> = (0..n).map(|k| distance[first + k * stride]).collect();
+    for k in 0..n {
+        let mut best = line[k];
+        // No farther than the best so far can there be better.
+        for off in 1..n {
+            if off >= usize::from(best) {
+                break;
+            }
+            let off_u8 = off as u8;
+            for other in [k.checked_sub(off), Some(k + off).filter(|o| *o < n)].into_iter().flatten() {
+                best = best.min(line[other].max(off_u8));
+            }
+        }
+        distance[first + k * stride] = best;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_those_of_the_nearest_visible_brick() {
+        let dims = [7, 5, 6];
+        let visible = [[1usize, 1, 0], [6, 4, 5]];
+        let at = |i: usize| [i % 7, i / 7 % 5, i / 35];
+        let mut distance: Vec<u8> = (0..210).map(|i| if visible.contains(&at(i)) { 0 } else { u8::MAX }).collect();
+        for axis in 0..3 {
+            let stride = [1, 7, 35];
+            (0..210).filter(|i| at(*i)[axis] == 0).for_each(|i| spread(&mut distance, i, stride[axis], dims[axis]));
+        }
+        for (i, d) in distance.iter().enumerate() {
+            let far = |v: &[usize; 3]| (0..3).map(|a| v[a].abs_diff(at(i)[a])).max();
+            assert_eq!(Some(usize::from(*d)), visible.iter().filter_map(far).min(), "{:?}", at(i));
+        }
+    }
+}

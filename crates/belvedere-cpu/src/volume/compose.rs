@@ -1,0 +1,137 @@
+//! Volumes over the surfaces of a picture.
+
+use super::march::Marcher;
+use super::ray::{Rays, Segment};
+use super::{Gathered, reference};
+use crate::frame::Buffers;
+use crate::shade::color::Packed;
+use crate::trace::deepest;
+use belvedere_core::DVec2;
+use belvedere_scene::{LayerKind, RenderError, RenderJob, VolumeLayer};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+
+/// Rows that a thread draws at a time.
+const ROWS: usize = 4;
+
+/// How rays are followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// Groups of samples, leaps over what is empty.
+    Fast,
+    /// Sample by sample in 64 bits.
+    Exact,
+}
+
+/// A volume layer and its number.
+struct Drawn<'a> {
+    index: usize,
+    layer: &'a VolumeLayer,
+    marcher: Marcher<'a>,
+}
+
+/// Lays the volumes of a scene over its surfaces, at the pixel centres. Volumes that overlap are laid over each other as a whole, the
+/// one that a ray enters first in front. Answers how many samples were taken.
+pub(crate) fn compose(job: &RenderJob<'_>, way: Way, buffers: &mut Buffers) -> Result<u64, RenderError> {
+    let volumes: Vec<Drawn<'_>> = job
+        .scene
+        .layers
+        .iter()
+        .enumerate()
+        .filter_map(|(index, l)| match &l.kind {
+            LayerKind::Volume(layer) => Some(Drawn { index, layer, marcher: Marcher::new(layer) }),
+            _ => None,
+        })
+        .filter(|v| !v.marcher.is_clear())
+        .collect();
+    if volumes.is_empty() {
+        return Ok(0);
+    }
+    let width = job.view.pinhole().image[0] as usize;
+    let height = job.view.pinhole().image[1] as usize;
+    let far = job.view.pinhole().far.unwrap_or(f64::INFINITY);
+    let rays = Rays::new(job.view, [job.view.pinhole().near, deepest(job.scene, job.view)]);
+    let (samples, done) = (AtomicU64::new(0), AtomicUsize::new(0));
+    let chunk = ROWS * width;
+    let Buffers { color, depth, id, world, .. } = buffers;
+    let mut worlds: Vec<Option<&mut [[f64; 3]]>> = match world {
+        Some(w) => w.chunks_mut(chunk).map(Some).collect(),
+        None => (0..height.div_ceil(ROWS)).map(|_| None).collect(),
+    };
+    let parts = color.par_chunks_mut(chunk).zip(depth.par_chunks_mut(chunk)).zip(id.par_chunks_mut(chunk));
+    parts.zip(worlds.par_iter_mut()).enumerate().try_for_each(|(i, (((color, depth), id), world))| {
+        let mut rows = Rows { width, color, depth, id, world: world.as_deref_mut() };
+        for y in 0..rows.depth.len() / width {
+            let taken = rows.draw(&rays, &volumes, way, far, [y, i * ROWS + y]);
+            samples.fetch_add(taken, Ordering::Relaxed);
+        }
+        let done = (done.fetch_add(1, Ordering::Relaxed) + 1) * ROWS;
+        job.progress.tick("volumes", (done as f64 / height as f64).min(1.0))
+    })?;
+    Ok(samples.into_inner())
+}
+
+/// Some rows of the picture.
+struct Rows<'b> {
+    width: usize,
+    color: &'b mut [Packed],
+    depth: &'b mut [f32],
+    id: &'b mut [u32],
+    world: Option<&'b mut [[f64; 3]]>,
+}
+
+impl Rows<'_> {
+    /// Draws row `y` of these, row `image_y` of the picture.
+    fn draw(&mut self, rays: &Rays<'_>, volumes: &[Drawn<'_>], way: Way, far: f64, [y, image_y]: [usize; 2]) -> u64 {
+        let row = y * self.width..(y + 1) * self.width;
+        // How far each ray goes: surfaces as they were before any volume.
+        let ends: Vec<f64> = self.depth[row.clone()].iter().map(|d| f64::from(*d).min(far)).collect();
+        let mut found: Vec<Vec<(usize, Gathered)>> = vec![Vec::new(); self.width];
+        let mut samples = 0;
+        for volume in volumes {
+            let mut take = |x: usize, gathered: Gathered| {
+                samples += u64::from(gathered.samples);
+                if gathered.alpha > 0.0 {
+                    found[x].push((volume.index, gathered));
+                }
+            };
+            match way {
+                Way::Fast => rays.row(
+                    image_y,
+                    self.width,
+                    volume.marcher.volume(),
+                    |x| Some(ends[x]),
+                    |x, segments: &[Segment]| {
+                        take(x, volume.marcher.gather(segments));
+                    },
+                ),
+                Way::Exact => {
+                    for (x, end) in ends.iter().enumerate() {
+                        let pixel = DVec2::new(x as f64 + 0.5, image_y as f64 + 0.5);
+                        let range = [rays.near(), end.min(rays.deepest())];
+                        take(x, reference::gather(rays.view(), volume.layer, pixel, range));
+                    }
+                }
+            }
+        }
+        for (x, mut list) in found.into_iter().enumerate() {
+            // Farthest first.
+            list.sort_by(|a, b| b.1.enters.total_cmp(&a.1.enters));
+            for (layer, gathered) in list {
+                self.lay(y * self.width + x, layer, &gathered);
+            }
+        }
+        samples
+    }
+
+    fn lay(&mut self, i: usize, layer: usize, gathered: &Gathered) {
+        self.color[i] = Packed::new(gathered.color + self.color[i].rgb() * (1.0 - gathered.alpha));
+        if let Some((depth, place)) = gathered.half {
+            self.depth[i] = depth as f32;
+            self.id[i] = layer as u32 + 1;
+            if let Some(world) = &mut self.world {
+                world[i] = place.to_array();
+            }
+        }
+    }
+}

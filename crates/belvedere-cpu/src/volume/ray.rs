@@ -1,0 +1,250 @@
+//! The ray of a pixel as segments inside the box of a volume: cubics in lattice coordinates, by arc length in the scene.
+
+use super::cubic::Cubic;
+use crate::trace::curve::{Curve, Span, Split};
+use belvedere_core::map::curved_rays::{RayPiece, Shape};
+use belvedere_core::{DVec2, DVec3, Stage, View};
+use belvedere_scene::Volume;
+
+/// How far a segment may be from the ray, voxels.
+const NEAR: f64 = 0.01;
+/// Parts of a bent piece are halved at most this often.
+const MAX_HALVINGS: u32 = 12;
+/// Parts of a ray without points are halved at most this often.
+const MAX_HALVINGS_OF_NOTHING: u32 = 5;
+
+/// Part of a ray.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Segment {
+    /// Lattice coordinates by the share of the length.
+    pub(super) curve: Cubic,
+    /// Length, scene units.
+    pub(super) length: f64,
+    /// Depths at its ends.
+    pub(super) depth: [f64; 2],
+    /// Whether it does not go on where the one before ends.
+    pub(super) is_new: bool,
+}
+
+/// What makes rays of a view.
+pub(super) struct Rays<'a> {
+    view: &'a View,
+    split: Split<'a>,
+    /// Whether rays are the pieces of curved rays, or straight.
+    pieces: bool,
+    /// Depths between which anything can be seen.
+    range: [f64; 2],
+}
+
+impl<'a> Rays<'a> {
+    /// * `range`: nearest depth, and one beyond which nothing of the scene is seen.
+    pub(super) fn new(view: &'a View, range: [f64; 2]) -> Self {
+        let pieces = view.stages().iter().all(|s| matches!(s, Stage::CurvedRays(_)));
+        Self { view, split: Split::new(view), pieces, range }
+    }
+
+    /// Nearest depth.
+    pub(super) fn near(&self) -> f64 {
+        self.range[0]
+    }
+
+    /// A depth beyond which nothing of the scene is seen.
+    pub(super) fn deepest(&self) -> f64 {
+        self.range[1]
+    }
+
+    pub(super) fn view(&self) -> &View {
+        self.view
+    }
+
+    /// Calls `each` with the segments of every pixel of a row that `wants` to be followed.
+    ///
+    /// * `wants`: for a column, the depth to follow its ray to; `None` = not at all.
+    pub(super) fn row(
+        &self,
+        y: usize,
+        width: usize,
+        volume: &Volume,
+        wants: impl Fn(usize) -> Option<f64>,
+        mut each: impl FnMut(usize, &[Segment]),
+    ) {
+        let y = y as f64 + 0.5;
+        let row = if self.pieces { None } else { self.split.row(y, self.range) };
+        let mut segments = Vec::new();
+        for x in 0..width {
+            let Some(far) = wants(x) else { continue };
+            let pixel = DVec2::new(x as f64 + 0.5, y);
+            segments.clear();
+            let mut clip = Clip::new(volume, &mut segments);
+            if self.pieces {
+                clip.pieces(self.view, pixel, [self.range[0], far]);
+            } else {
+                let curve = self.split.curve(pixel, row.as_ref());
+                clip.chords(&self.split, &curve, [self.range[0], far.min(self.range[1])]);
+            }
+            each(x, &segments);
+        }
+    }
+}
+
+/// Collects what of a ray lies in a volume.
+struct Clip<'v, 's> {
+    volume: &'v Volume,
+    most: DVec3,
+    out: &'s mut Vec<Segment>,
+    /// Whether the next segment goes on where the last one ended.
+    goes_on: bool,
+}
+
+/// A point of a bent piece: parameter, place, derivative by the parameter, both in the scene.
+type Knot = (f64, DVec3, DVec3);
+
+impl<'v, 's> Clip<'v, 's> {
+    fn new(volume: &'v Volume, out: &'s mut Vec<Segment>) -> Self {
+        let most = DVec3::from_array(volume.dims().map(|n| (n - 1) as f64));
+        Self { volume, most, out, goes_on: false }
+    }
+
+    fn pieces(&mut self, view: &View, pixel: DVec2, [near, far]: [f64; 2]) {
+        if view.stages().is_empty() {
+            let (from, per_depth) = view.pinhole().line(pixel);
+            return self.line(from, per_depth, [near, far]);
+        }
+        let Ok(pieces) = view.ray(pixel).pieces() else { return };
+        for piece in &pieces {
+            let depth = [piece.depth[0].max(near), piece.depth[1].min(far)];
+            if depth[0] < depth[1] {
+                self.piece(piece, depth);
+            }
+        }
+    }
+
+    fn piece(&mut self, piece: &RayPiece, depth: [f64; 2]) {
+        match &piece.shape {
+            Shape::Line { from, per_depth } => self.line(*from - piece.depth[0] * *per_depth, *per_depth, depth),
+            Shape::Conic(arc) => {
+                let at = |u: f64| (u, arc.curve.point(u), arc.curve.derivative(u));
+                let corners = [arc.curve.t, arc.curve.s, arc.curve.q];
+                self.bend(corners, depth.map(|w| arc.parameter(w)), &at, &|u| arc.depth(u));
+            }
+            Shape::C2(arc) => {
+                let at = |s: f64| (s, arc.curve.point(s), arc.curve.derivative(s));
+                let corners = [arc.curve.t, arc.curve.s, arc.curve.q];
+                self.bend(corners, depth.map(|w| arc.parameter(w)), &at, &|s| arc.depth(s));
+            }
+        }
+    }
+
+    /// The part of a straight line, given by its point at depth 0 and its change, that lies in the box.
+    fn line(&mut self, from: DVec3, per_depth: DVec3, depth: [f64; 2]) {
+        let (a, b) = (self.volume.lattice_from_scene(from), *self.volume.lattice_axes() * per_depth);
+        let [mut w0, mut w1] = depth;
+        for axis in 0..3 {
+            let (t0, t1) = ((0.0 - a[axis]) / b[axis], (self.most[axis] - a[axis]) / b[axis]);
+            if b[axis] == 0.0 {
+                if !(a[axis] >= 0.0 && a[axis] <= self.most[axis]) {
+                    w1 = f64::NEG_INFINITY;
+                }
+            } else {
+                w0 = w0.max(t0.min(t1));
+                w1 = w1.min(t0.max(t1));
+            }
+        }
+        let goes_on = std::mem::replace(&mut self.goes_on, false);
+        if !(w0 < w1 && w1.is_finite()) {
+            return;
+        }
+        let curve = Cubic::line(a + w0 * b, a + w1 * b);
+        let length = (w1 - w0) * per_depth.length();
+        self.out.push(Segment { curve, length, depth: [w0, w1], is_new: !(goes_on && w0 == depth[0]) });
+        self.goes_on = w1 == depth[1];
+    }
+
+    /// The part of a bent piece between two parameters that lies in the box.
+    /// * `corners`: of a triangle around the whole piece.
+    fn bend(&mut self, corners: [DVec3; 3], [u0, u1]: [f64; 2], at: &dyn Fn(f64) -> Knot, depth: &dyn Fn(f64) -> f64) {
+        let hull = corners.map(|p| self.volume.lattice_from_scene(p));
+        let (lo, hi) = (hull[0].min(hull[1]).min(hull[2]), hull[0].max(hull[1]).max(hull[2]));
+        if !(u0 < u1 && hi.cmpge(DVec3::ZERO).all() && lo.cmple(self.most).all()) {
+            self.goes_on = false;
+            return;
+        }
+        self.halved(at, depth, at(u0), at(u1), 0);
+    }
+
+    /// A part of a bent piece as cubics near enough to it.
+    fn halved(&mut self, at: &dyn Fn(f64) -> Knot, depth: &dyn Fn(f64) -> f64, a: Knot, b: Knot, halvings: u32) {
+        let middle = at(0.5 * (a.0 + b.0));
+        let [va, vm, vb] = [a.2, middle.2, b.2].map(DVec3::length);
+        // Simpson's rule.
+        let length = (b.0 - a.0) * (va + 4.0 * vm + vb) / 6.0;
+        let inverse = self.volume.lattice_axes();
+        let slopes = [*inverse * a.2 * (length / va), *inverse * b.2 * (length / vb)];
+        let curve = Cubic::hermite([a.1, b.1].map(|p| self.volume.lattice_from_scene(p)), slopes);
+        // The cubic goes by length: its middle lies where half of that is passed, to the first order in the change of speed.
+        let along = *inverse * middle.2;
+        let off = curve.at(0.5) - self.volume.lattice_from_scene(middle.1);
+        let across = off - along * (off.dot(along) / along.length_squared());
+        let uneven = (va - vb).abs() > 0.35 * vm;
+        if (across.length() > NEAR || uneven) && halvings < MAX_HALVINGS {
+            self.halved(at, depth, a, middle, halvings + 1);
+            self.halved(at, depth, middle, b, halvings + 1);
+            return;
+        }
+        self.inside(curve, length, [depth(a.0), depth(b.0)]);
+    }
+
+    /// Keeps what of a cubic lies in the box.
+    fn inside(&mut self, curve: Cubic, length: f64, depth: [f64; 2]) {
+        let mut goes_on = std::mem::replace(&mut self.goes_on, false);
+        let (out, ends) = (&mut *self.out, &mut self.goes_on);
+        curve.inside(self.most, |[t0, t1]| {
+            let w = [t0, t1].map(|t| depth[0] + t * (depth[1] - depth[0]));
+            let is_new = !(goes_on && t0 == 0.0) && out.last().is_none_or(|s: &Segment| s.depth[1] != w[0]);
+            out.push(Segment { curve: curve.part([t0, t1]), length: length * (t1 - t0), depth: w, is_new });
+            goes_on = false;
+            *ends = t1 == 1.0;
+        });
+    }
+
+    /// A ray that only the inverse of the stages tells, as chords.
+    fn chords(&mut self, split: &Split<'_>, curve: &Curve<'_, '_>, range: [f64; 2]) {
+        if !(range[0] < range[1]) {
+            return;
+        }
+        for span in curve.spans(range) {
+            self.chord(split, curve, &span, 0, range);
+        }
+    }
+
+    fn chord(&mut self, split: &Split<'_>, curve: &Curve<'_, '_>, span: &Span, halvings: u32, range: [f64; 2]) {
+        if span.depth[0] >= range[1] {
+            return;
+        }
+        let Some((a, b)) = span.chord().filter(|_| span.reach.is_finite()) else {
+            let most = if span.has_point() { MAX_HALVINGS } else { MAX_HALVINGS_OF_NOTHING };
+            if halvings >= most {
+                self.goes_on = false;
+                return;
+            }
+            return curve.halves(span).iter().for_each(|half| self.chord(split, curve, half, halvings + 1, range));
+        };
+        let lift = |p: DVec3| p - split.lift(p) * DVec3::Z;
+        let [p, q] = [lift(a), lift(b)].map(|p| self.volume.lattice_from_scene(p));
+        // Lattice units that the ray, or lifted ground between its ends, may be away from the chord.
+        let edge = self.volume.voxel_edge();
+        let room = (span.reach + split.most_lift(a, b)) / edge;
+        let (lo, hi) = (p.min(q) - room, p.max(q) + room);
+        if !(hi.cmpge(DVec3::ZERO).all() && lo.cmple(self.most).all()) {
+            self.goes_on = false;
+            return;
+        }
+        let whole = span.depth[1] <= range[1];
+        let fine = span.reach <= NEAR * edge && (split.ground.is_none() || (b - a).length() <= edge);
+        if (!fine || !whole) && halvings < MAX_HALVINGS + 6 {
+            return curve.halves(span).iter().for_each(|half| self.chord(split, curve, half, halvings + 1, range));
+        }
+        let length = (lift(b) - lift(a)).length();
+        self.inside(Cubic::line(p, q), length, span.depth);
+    }
+}

@@ -1,0 +1,57 @@
+//! Transfer functions tabulated: linear light and the opacity of one step, by value.
+
+use crate::shade::color::{Rgb, linear_of};
+use belvedere_scene::{TransferFunction, VolumeLayer};
+
+/// Entries: enough that a ramp over a hundredth of the range has forty.
+pub(super) const ENTRIES: usize = 4096;
+
+/// Opacities above this would let powers lose all digits; a step of it lets a millionth through.
+const MOST_OPAQUE: f64 = 1.0 - 1e-6;
+
+/// Light of a value (linear red, green, blue) and what a reference step absorbs.
+pub(super) fn light_and_opacity(transfer: &TransferFunction, value: f64) -> ([f32; 3], f64) {
+    let [r, g, b, opacity] = transfer.at(value);
+    let rgb: Rgb = linear_of([r, g, b].map(|c| c as f32));
+    (rgb.to_array(), opacity.min(MOST_OPAQUE))
+}
+
+/// What a distance absorbs, in units of the reference step.
+pub(super) fn absorbed(opacity: f64, steps: f64) -> f64 {
+    1.0 - (1.0 - opacity).powf(steps)
+}
+
+/// Colour and opacity by value.
+pub(super) struct Table {
+    /// Linear red, green, blue; opacity of a step.
+    pub(super) entries: Box<[[f32; 4]; ENTRIES]>,
+    /// Place of a value: `(value - least) * scale`.
+    pub(super) least: f32,
+    pub(super) scale: f32,
+    /// How many entries before this one are not transparent.
+    visible_before: Vec<u32>,
+}
+
+impl Table {
+    pub(super) fn new(layer: &VolumeLayer) -> Self {
+        let [lo, hi] = layer.volume.range().map(f64::from);
+        let per_entry = (hi - lo) / (ENTRIES - 1) as f64;
+        let steps = layer.step_length() / layer.reference_length();
+        let mut entries = Box::new([[0.0f32; 4]; ENTRIES]);
+        let mut visible_before = vec![0; ENTRIES + 1];
+        for (i, entry) in entries.iter_mut().enumerate() {
+            let ([r, g, b], opacity) = light_and_opacity(&layer.transfer, lo + per_entry * i as f64);
+            *entry = [r, g, b, absorbed(opacity, steps) as f32];
+            visible_before[i + 1] = visible_before[i] + u32::from(entry[3] > 0.0);
+        }
+        let scale = if per_entry > 0.0 { (1.0 / per_entry) as f32 } else { 0.0 };
+        Self { entries, least: lo as f32, scale, visible_before }
+    }
+
+    /// Whether any value of a range is visible.
+    pub(super) fn is_visible(&self, [lo, hi]: [f32; 2]) -> bool {
+        let place = |v: f32| (((v - self.least) * self.scale) as i64).clamp(0, ENTRIES as i64 - 1) as usize;
+        let (first, last) = (place(lo).saturating_sub(1), (place(hi) + 2).min(ENTRIES));
+        self.visible_before[last] > self.visible_before[first]
+    }
+}

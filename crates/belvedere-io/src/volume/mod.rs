@@ -1,0 +1,158 @@
+//! Volumes of voxels: NRRD, VTK XML ImageData and raw samples.
+
+mod base64;
+mod nrrd;
+mod number;
+mod raw;
+mod vti;
+mod vti_header;
+mod vti_stream;
+
+pub use number::{ByteOrder, Number};
+pub use raw::RawLayout;
+
+use crate::{InputFile, IoError, Limits, Loaded};
+use belvedere_scene::VoxelValues;
+use flate2::read::MultiGzDecoder;
+use glam::{DMat3, DVec3};
+use std::io::Read;
+use std::path::Path;
+
+/// Endings of the names of files that [`load_volume`] reads.
+pub const ENDINGS: &[&str] = &[".vti", ".nrrd", ".nhdr", ".raw", ".raw.gz"];
+
+/// Most that deflate makes of a byte, and what small files may grow to besides: what is declared beyond cannot be there.
+const MOST_GROWTH: u64 = 1040;
+const SMALL: u64 = 1 << 16;
+
+/// What a file holds, in the file's own coordinates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VolumeFile {
+    /// Name of the format.
+    pub format: &'static str,
+    /// Name of the array, where files have several.
+    pub array: Option<String>,
+    /// Type of the samples in the file.
+    pub stored: Number,
+    /// Voxels along x, y, z.
+    pub dims: [usize; 3],
+    /// Steps from a voxel to the next, as columns.
+    pub axes: DMat3,
+    /// Position of voxel (0, 0, 0).
+    pub origin: DVec3,
+    /// Values, x fastest.
+    pub values: VoxelValues,
+}
+
+/// What to read of a file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct VolumeRequest {
+    /// Name of the array; `None` = the first one of single values.
+    pub array: Option<String>,
+    /// How raw samples lie in the file, where its name does not tell.
+    pub raw: RawLayout,
+    /// Bounds.
+    pub limits: Limits,
+}
+
+/// Whether a file's name ends as those of volumes do.
+pub fn is_volume(path: &Path) -> bool {
+    let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
+    ENDINGS.iter().any(|ending| name.ends_with(ending))
+}
+
+/// Reads a volume.
+///
+/// Samples of 8 and 16 bits stay what they are (signed bytes become 16 bits), all others become 32-bit floating point. Values that
+/// are no finite number become the least one, with a warning.
+///
+/// # Errors
+/// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, larger than the limits allow, or of a kind that is not supported.
+/// What is allocated is bounded by the size of the file.
+pub fn load_volume(path: &Path, request: &VolumeRequest) -> Result<Loaded<VolumeFile>, IoError> {
+    let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let format = |reason: String| IoError::format(path, reason);
+    let length = std::fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
+    request.limits.check(length).map_err(|reason| format(reason.replace("raster", "volume")))?;
+    let (bytes, file) = InputFile::read(path)?;
+    let source = Source { path, bytes: &bytes, request };
+    let loaded = match () {
+        () if name.ends_with(".vti") => vti::read(&source).map_err(format)?,
+        () if name.ends_with(".nrrd") || name.ends_with(".nhdr") => nrrd::read(&source)?,
+        () if name.ends_with(".raw") || name.ends_with(".raw.gz") => raw::read(&source).map_err(format)?,
+        () => {
+            let reason = "it is no volume that this version reads: VTK XML ImageData (.vti), NRRD (.nrrd, .nhdr) or raw samples (.raw, .raw.gz)";
+            return Err(format(reason.into()));
+        }
+    };
+    let mut loaded = loaded;
+    loaded.files.insert(0, file);
+    Ok(loaded)
+}
+
+/// A file and what is wanted of it.
+struct Source<'a> {
+    path: &'a Path,
+    bytes: &'a [u8],
+    request: &'a VolumeRequest,
+}
+
+impl Source<'_> {
+    /// Bytes of so many samples; an error if a file of `stored` bytes cannot hold them.
+    fn expected(&self, dims: [usize; 3], number: Number, stored: usize, packed: bool) -> Result<usize, String> {
+        let [x, y, z] = dims.map(|n| n as u128);
+        // Each below 2^64, so that three would overflow.
+        let bytes = x.checked_mul(y).and_then(|n| n.checked_mul(z)).and_then(|n| n.checked_mul(number.bytes() as u128));
+        let bytes = bytes.and_then(|n| u64::try_from(n).ok()).unwrap_or(u64::MAX);
+        let stored = stored as u64;
+        let most = if packed { stored.saturating_mul(MOST_GROWTH).saturating_add(SMALL) } else { stored };
+        if bytes > most {
+            return Err(format!(
+                "it declares {} x {} x {} samples of {number}, {bytes} bytes, and has {stored}{}; it is cut off, or its header is wrong",
+                dims[0],
+                dims[1],
+                dims[2],
+                if packed { " compressed ones, which cannot be as many" } else { "" }
+            ));
+        }
+        // Samples, and the values made of them.
+        let held = bytes.saturating_mul(2);
+        self.request.limits.check(held).map_err(|reason| reason.replace("raster", "volume"))?;
+        usize::try_from(bytes).map_err(|_| format!("its {bytes} bytes are more than this machine can address"))
+    }
+}
+
+/// Exactly `expected` bytes out of a gzip stream.
+fn gunzip(packed: &[u8], expected: usize) -> Result<Vec<u8>, String> {
+    let mut out = Vec::new();
+    let limit = expected as u64 + 1;
+    MultiGzDecoder::new(packed).take(limit).read_to_end(&mut out).map_err(|e| {
+        format!("its gzip data cannot be read ({e}) after {} of {expected} bytes; it is damaged", out.len())
+    })?;
+    match out.len() {
+        n if n < expected => {
+            Err(format!("its gzip data ends after {n} of {expected} bytes; it is cut off, or the dimensions are wrong"))
+        }
+        n if n > expected => {
+            Err(format!("its gzip data is longer than the {expected} bytes declared; check dimensions and type"))
+        }
+        _ => Ok(out),
+    }
+}
+
+/// Warnings about values that were changed.
+fn odd_values(path: &Path, changed: &number::Changed) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if changed.not_finite > 0 {
+        warnings.push(format!(
+            "{}: {} values that are no finite number became the least value, {}",
+            path.display(),
+            changed.not_finite,
+            changed.least
+        ));
+    }
+    if changed.rounded > 0 {
+        warnings.push(format!("{}: {} values were rounded to 24 bits", path.display(), changed.rounded));
+    }
+    warnings
+}

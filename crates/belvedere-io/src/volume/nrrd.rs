@@ -1,0 +1,211 @@
+//! NRRD, header attached or apart. Source: Kindlmann, "Definition of NRRD File Format" (teem).
+
+use super::{ByteOrder, Number, Source, VolumeFile, gunzip, odd_values};
+use crate::mesh::beside;
+use crate::{InputFile, IoError, Loaded};
+use glam::{DMat3, DVec3};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Longest header.
+const MAX_HEADER: usize = 1 << 20;
+
+/// Fields of a header, by name in lower case without spaces, and where the header ends.
+struct Header {
+    fields: BTreeMap<String, String>,
+    end: usize,
+}
+
+pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, IoError> {
+    let bad = |reason: String| IoError::format(source.path, reason);
+    let header = Header::parse(source.bytes).map_err(bad)?;
+    let mut files = Vec::new();
+    let data: Cow<'_, [u8]> = match header.get("datafile") {
+        None => Cow::Borrowed(&source.bytes[header.end..]),
+        Some(name) => {
+            let path = detached(source, name).map_err(bad)?;
+            let length = std::fs::metadata(&path).map_err(|e| IoError::os(&path, e))?.len();
+            source.request.limits.check(length).map_err(|reason| bad(reason.replace("raster", "volume")))?;
+            let (bytes, file) = InputFile::read(&path)?;
+            files.push(file);
+            Cow::Owned(bytes)
+        }
+    };
+    let mut loaded = header.volume(source, &data).map_err(bad)?;
+    loaded.files = files;
+    Ok(loaded)
+}
+
+/// The one file that a detached header names.
+fn detached(source: &Source<'_>, name: &str) -> Result<PathBuf, String> {
+    if name.starts_with("LIST") || name.contains('%') {
+        return Err(
+            "its samples are spread over several files, which this version does not read; join them with unu".into()
+        );
+    }
+    beside(source.path, name)
+}
+
+impl Header {
+    fn parse(bytes: &[u8]) -> Result<Self, String> {
+        if !bytes.starts_with(b"NRRD000") {
+            return Err("it does not begin with NRRD000; it is no NRRD file".into());
+        }
+        let mut fields = BTreeMap::new();
+        let mut at = 0;
+        for line in bytes[..bytes.len().min(MAX_HEADER)].split_inclusive(|b| *b == b'\n') {
+            let first = at == 0;
+            at += line.len();
+            let text = String::from_utf8_lossy(line);
+            let text = text.trim_end_matches(['\n', '\r']);
+            if text.is_empty() {
+                return Ok(Self { fields, end: at });
+            }
+            if first || text.starts_with('#') || text.contains(":=") {
+                continue;
+            }
+            let Some((key, value)) = text.split_once(": ").or_else(|| text.split_once(':')) else {
+                let shown: String = text.chars().take(40).collect();
+                return Err(format!("header line {shown:?} is no field; it is damaged"));
+            };
+            fields.insert(key.to_lowercase().replace(' ', ""), value.trim().to_owned());
+        }
+        // A detached header may end with the file.
+        if fields.contains_key("datafile") && at == bytes.len() {
+            return Ok(Self { fields, end: at });
+        }
+        Err("its header has no end (an empty line); it is cut off".into())
+    }
+
+    fn get(&self, key: &str) -> Option<&str> {
+        self.fields.get(key).map(String::as_str)
+    }
+
+    fn need(&self, key: &str) -> Result<&str, String> {
+        self.get(key).ok_or_else(|| format!("its header has no field {key:?}; it is damaged"))
+    }
+
+    fn volume(&self, source: &Source<'_>, data: &[u8]) -> Result<Loaded<VolumeFile>, String> {
+        let number = self.need("type")?;
+        let number = Number::named(number).ok_or_else(|| {
+            format!("samples of type {number:?} are not read; convert them to a number type with unu")
+        })?;
+        let dims = self.dims()?;
+        let (axes, origin) = self.place()?;
+        let count = dims.iter().map(|n| *n as u128).product::<u128>();
+        let data = self.skipped(data)?;
+        let encoding = self.need("encoding")?.to_lowercase();
+        let (values, changed) = match encoding.as_str() {
+            "raw" => {
+                let expected = source.expected(dims, number, data.len(), false)?;
+                let from = if self.get("byteskip") == Some("-1") { data.len() - expected } else { 0 };
+                number.decode(data[from..from + expected].to_vec(), self.order(number)?)
+            }
+            "gzip" | "gz" => {
+                let expected = source.expected(dims, number, data.len(), true)?;
+                number.decode(gunzip(data, expected)?, self.order(number)?)
+            }
+            "ascii" | "text" | "txt" => {
+                // A value takes a digit and what parts it from the next.
+                if count > data.len() as u128 {
+                    return Err(format!(
+                        "it declares {count} values and has {} bytes of text; it is cut off",
+                        data.len()
+                    ));
+                }
+                let text = std::str::from_utf8(data)
+                    .map_err(|e| format!("byte {} of its text is no text; it is damaged", e.valid_up_to()))?;
+                source.expected(dims, number, data.len(), true)?;
+                number.parse(text, count as usize)?
+            }
+            other => {
+                let other: String = other.chars().take(30).collect();
+                return Err(format!(
+                    "its encoding {other:?} is not read; raw, gzip and ascii are: convert it with unu save -e gzip"
+                ));
+            }
+        };
+        let file = VolumeFile { format: "NRRD", array: None, stored: number, dims, axes, origin, values };
+        Ok(Loaded::new(file, odd_values(source.path, &changed)))
+    }
+
+    fn dims(&self) -> Result<[usize; 3], String> {
+        let dimension = self.need("dimension")?;
+        let sizes = self.need("sizes")?;
+        let list: Result<Vec<usize>, _> = sizes.split_whitespace().map(str::parse).collect();
+        let list = list.map_err(|_| format!("its sizes {sizes:?} are no whole numbers; it is damaged"))?;
+        if dimension.parse() != Ok(list.len()) {
+            return Err(format!("its dimension is {dimension} and it has {} sizes; it is damaged", list.len()));
+        }
+        <[usize; 3]>::try_from(list).map_err(|list| {
+            format!(
+                "it has {} dimensions, a volume of single values has 3; take one with unu slice or unu crop",
+                list.len()
+            )
+        })
+    }
+
+    /// The samples after skipped lines and bytes.
+    fn skipped<'d>(&self, data: &'d [u8]) -> Result<&'d [u8], String> {
+        let number = |key: &str| match self.get(key) {
+            None => Ok(0),
+            Some(text) => text.parse::<i64>().map_err(|_| format!("its {key} {text:?} is no whole number")),
+        };
+        let (lines, bytes) = (number("lineskip")?, number("byteskip")?);
+        let mut rest = data;
+        for _ in 0..lines {
+            let end = rest.iter().position(|b| *b == b'\n').ok_or("it has fewer lines than it says to skip")?;
+            rest = &rest[end + 1..];
+        }
+        if bytes < 0 {
+            return if bytes == -1 {
+                Ok(rest)
+            } else {
+                Err(format!("its byte skip is {bytes}, it must be -1 or more"))
+            };
+        }
+        let from = usize::try_from(bytes).ok().filter(|b| *b <= rest.len());
+        from.map(|b| &rest[b..])
+            .ok_or_else(|| format!("it says to skip {bytes} of {} bytes; it is damaged", rest.len()))
+    }
+
+    fn order(&self, number: Number) -> Result<ByteOrder, String> {
+        match self.get("endian").map(str::to_lowercase).as_deref() {
+            Some("little") => Ok(ByteOrder::Little),
+            Some("big") => Ok(ByteOrder::Big),
+            None if number.bytes() == 1 => Ok(ByteOrder::Little),
+            other => Err(format!("its endian is {other:?}; samples of {number} need little or big")),
+        }
+    }
+
+    /// Axes and origin. Coordinates stay those of the file, whichever anatomical directions it names.
+    fn place(&self) -> Result<(DMat3, DVec3), String> {
+        let bad = |key: &str, text: &str| {
+            let shown: String = text.chars().take(60).collect();
+            format!("its {key} {shown:?} cannot be read; it is damaged")
+        };
+        if let Some(text) = self.get("spacedirections") {
+            let vectors: Vec<DVec3> = text.split_inclusive(')').filter_map(vector).collect();
+            let [x, y, z] = <[DVec3; 3]>::try_from(vectors).map_err(|_| bad("space directions", text))?;
+            let origin = match self.get("spaceorigin") {
+                Some(text) => vector(text).ok_or_else(|| bad("space origin", text))?,
+                None => DVec3::ZERO,
+            };
+            return Ok((DMat3::from_cols(x, y, z), origin));
+        }
+        let Some(text) = self.get("spacings") else { return Ok((DMat3::IDENTITY, DVec3::ZERO)) };
+        let list: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
+        let list = list.ok().and_then(|l| <[f64; 3]>::try_from(l).ok()).ok_or_else(|| bad("spacings", text))?;
+        // Unknown spacings are written as nan.
+        let list = list.map(|s| if s.is_nan() { 1.0 } else { s });
+        Ok((DMat3::from_diagonal(DVec3::from_array(list)), DVec3::ZERO))
+    }
+}
+
+/// `(x,y,z)`.
+fn vector(text: &str) -> Option<DVec3> {
+    let inside = text.trim().strip_prefix('(')?.strip_suffix(')')?;
+    let numbers: Result<Vec<f64>, _> = inside.split(',').map(|n| n.trim().parse()).collect();
+    numbers.ok().and_then(|n| <[f64; 3]>::try_from(n).ok()).map(DVec3::from_array)
+}

@@ -1,0 +1,54 @@
+//! Layers of voxels in the scene document.
+
+use super::mesh::TransformDoc;
+use belvedere_scene::VolumeModel;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Voxels from a file: VTK XML ImageData (.vti), NRRD (.nrrd, .nhdr), or raw samples (.raw, .raw.gz).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VolumeDoc {
+    /// Unique id within the scene.
+    pub id: String,
+    /// A file, or `builtin:engine`.
+    pub source: String,
+    /// Name of the array in files that have several; by default the first of single values.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub array: Option<String>,
+    /// Colours and opacities by value: `auto`, `solid`, `engine`, `ct-bone`, `ct-soft`, `vessels`, `grey`, or a file.
+    #[serde(default = "auto")]
+    pub transfer: String,
+    /// Whether constructors and measures work for it.
+    #[serde(default)]
+    pub must_see: bool,
+    /// Distance between samples along a ray, voxel edges, in [0.05, 8].
+    #[serde(default = "half")]
+    pub step: f64,
+    /// How it is coloured.
+    #[serde(default)]
+    pub shading: VolumeModel,
+    /// Placement.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transform: Option<TransformDoc>,
+    /// Raw samples: how many along x, y, z; by default what the name tells, such as `engine_256x256x128_uint8.raw`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dims: Option<[usize; 3]>,
+    /// Raw samples: their type, such as `uint8`, `int16`, `float32`; by default what the name tells.
+    #[serde(rename = "type", skip_serializing_if = "Option::is_none")]
+    pub sample_type: Option<String>,
+    /// Raw samples: distances along x, y, z, scene units, > 0; 1 by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spacing: Option<[f64; 3]>,
+    /// Raw samples of several bytes: whether the most significant comes first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub big_endian: Option<bool>,
+}
+
+fn auto() -> String {
+    "auto".into()
+}
+
+fn half() -> f64 {
+    0.5
+}

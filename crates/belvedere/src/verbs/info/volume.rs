@@ -1,0 +1,56 @@
+//! What a file of voxels holds.
+
+use crate::BelvedereError;
+use crate::resolve::volume::made;
+use belvedere_io::{Number, VolumeRequest, load_volume};
+use serde::Serialize;
+use std::path::Path;
+
+/// Voxels.
+#[derive(Debug, Clone, Serialize)]
+pub struct VolumeInfo {
+    /// The file.
+    pub path: String,
+    /// Format.
+    pub format: &'static str,
+    /// Name of the array that is read.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub array: Option<String>,
+    /// Voxels along x, y, z.
+    pub dims: [usize; 3],
+    /// Type of the samples in the file.
+    pub samples: Number,
+    /// Distances between voxels along x, y, z.
+    pub spacing: [f64; 3],
+    /// Least and greatest value.
+    pub range: [f32; 2],
+    /// Smallest coordinates, the file's own.
+    pub min: [f64; 3],
+    /// Largest coordinates.
+    pub max: [f64; 3],
+    /// What was odd.
+    pub warnings: Vec<String>,
+}
+
+impl VolumeInfo {
+    /// # Errors
+    /// [`BelvedereError::Io`] with what is wrong with it.
+    pub(super) fn of(path: &Path) -> Result<Self, BelvedereError> {
+        let loaded = load_volume(path, &VolumeRequest::default())?;
+        let (format, array, samples) = (loaded.value.format, loaded.value.array.clone(), loaded.value.stored);
+        let volume = made(loaded.value).map_err(|e| belvedere_io::IoError::format(path, e.to_string()))?;
+        let (axes, bounds) = (volume.axes(), volume.bounds());
+        Ok(Self {
+            path: path.display().to_string(),
+            format,
+            array,
+            dims: volume.dims(),
+            samples,
+            spacing: [axes.x_axis, axes.y_axis, axes.z_axis].map(|a| a.length()),
+            range: volume.range(),
+            min: bounds.min.to_array(),
+            max: bounds.max.to_array(),
+            warnings: loaded.warnings,
+        })
+    }
+}
