@@ -2,6 +2,7 @@
 
 mod church;
 mod dna;
+mod engine;
 mod erosion;
 mod lake;
 mod massif;
@@ -12,6 +13,7 @@ mod viewpoint;
 
 pub use church::church;
 pub use dna::dna;
+pub use engine::engine;
 pub use massif::massif;
 pub use route::{RouteCost, RouteError, least_cost_route, valley_route};
 pub use street::street;
@@ -20,7 +22,7 @@ use belvedere_core::DVec3;
 use belvedere_scene::molecule::MoleculeError;
 use belvedere_scene::{
     Color, Heightfield, HeightfieldError, Hidden, Layer, LayerKind, LineFeature, LineLayer, MeshError, Palette, Relief,
-    TerrainLayer,
+    TerrainLayer, VolumeError,
 };
 
 /// A camera that shows what a built-in scene is about: a straight picture from it hides most of what must be seen.
@@ -61,6 +63,9 @@ pub enum BuiltinError {
     /// The triangles do not make a mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// The voxels do not make a volume.
+    #[error(transparent)]
+    Volume(#[from] VolumeError),
     /// The land drawn by this seed has no way for the trail.
     #[error("seed {seed}: {source}; choose another seed")]
     Trail {

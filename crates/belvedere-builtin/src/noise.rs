@@ -33,6 +33,12 @@ fn mix(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
+/// In [0, 1): the same number for the same seed, place and stream.
+pub(crate) fn hash_unit(seed: u64, place: u64, stream: u64) -> f64 {
+    let bits = mix(mix(seed ^ stream.wrapping_mul(0x9e37_79b9_7f4a_7c15)).wrapping_add(place));
+    (bits >> 11) as f64 / (1u64 << 53) as f64
+}
+
 /// Unit vectors 22.5 degrees apart, written out because sine and cosine differ between platforms in the last bit.
 pub(crate) const DIRECTIONS: [DVec2; 16] = {
     const A: f64 = 0.923_879_532_511_286_7;

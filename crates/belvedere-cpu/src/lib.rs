@@ -9,7 +9,8 @@
 //! 3. `raster`: bands of image rows are drawn independently, the nearest primitive at every sample. No order of drawing and no
 //!    number of threads changes a byte.
 //! 4. `shade`: samples become colours. The light on the ground is fixed to the map and remembered (`cache`) from frame to frame.
-//! 5. `marks`: lines, outlines, points and names, by lines of sight through the surfaces themselves (`trace`).
+//! 5. `volume`: what rays gather in voxels, as far as the surfaces, is laid over them.
+//! 6. `marks`: lines, outlines, points and names, by lines of sight through the surfaces themselves (`trace`).
 
 mod cache;
 pub mod canvas;
@@ -28,3 +29,4 @@ pub use exact::ExactRenderer;
 pub use geometry::project::GroundImage;
 pub use rasteriser::CpuRenderer;
 pub use trace::{RayHit, Tracer};
+pub use volume::VolumeTracer;

@@ -47,6 +47,8 @@ pub(crate) enum Part {
     Face(usize, DVec3),
     /// Number of a triangle of a mesh and whether it is seen from the side where its corners run counter-clockwise.
     Triangle(usize, bool),
+    /// Inside a volume.
+    Voxels,
 }
 
 /// A scene made ready for rays of one view.

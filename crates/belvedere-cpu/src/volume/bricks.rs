@@ -31,6 +31,11 @@ impl Leaps {
         Self { dims, distance }
     }
 
+    #[cfg(test)]
+    pub(super) fn forget(&mut self) {
+        self.distance.fill(0);
+    }
+
     /// Whether nothing at all is visible.
     pub(super) fn is_clear(&self) -> bool {
         self.distance.iter().all(|d| *d > 0)

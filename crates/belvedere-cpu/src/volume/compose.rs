@@ -118,7 +118,8 @@ impl Rows<'_> {
             // Farthest first.
             list.sort_by(|a, b| b.1.enters.total_cmp(&a.1.enters));
             for (layer, gathered) in list {
-                self.lay(y * self.width + x, layer, &gathered);
+                let half = gathered.half.map(|(depth, place)| (rays.depth_of(place, depth), place));
+                self.lay(y * self.width + x, layer, &Gathered { half, ..gathered });
             }
         }
         samples

@@ -49,6 +49,12 @@ impl<'v> Marcher<'v> {
         &self.layer.volume
     }
 
+    /// Takes every sample from now on.
+    #[cfg(test)]
+    pub(super) fn forget_leaps(&mut self) {
+        self.leaps.forget();
+    }
+
     /// What a ray gathers along its segments.
     pub(super) fn gather(&self, segments: &[Segment]) -> Gathered {
         let volume = self.volume();

@@ -14,12 +14,16 @@ mod compose;
 mod cubic;
 mod light;
 mod march;
+mod pick;
 mod ray;
 mod reference;
 mod sampler;
 mod table;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use compose::{Way, compose};
+pub use pick::VolumeTracer;
 
 use belvedere_core::DVec3;
 use glam::Vec3A;

@@ -8,6 +8,10 @@ use belvedere_scene::Volume;
 
 /// How far a segment may be from the ray, voxels.
 const NEAR: f64 = 0.01;
+/// Depths nearer to each other than this share are those of one image of a place.
+const SAME_DEPTH: f64 = 0.02;
+/// Change of speed over a part, as a share, from which on it is halved: lengths are then known to about 1e-4 of themselves.
+const UNEVEN: f64 = 0.2;
 /// Parts of a bent piece are halved at most this often.
 const MAX_HALVINGS: u32 = 12;
 /// Parts of a ray without points are halved at most this often.
@@ -55,6 +59,15 @@ impl<'a> Rays<'a> {
 
     pub(super) fn view(&self) -> &View {
         self.view
+    }
+
+    /// Depth at which the ray of a pixel sees a place that lies on it at about `depth`.
+    pub(super) fn depth_of(&self, place: DVec3, depth: f64) -> f64 {
+        match self.view.project(place) {
+            Ok(image) if (image.depth - depth).abs() <= SAME_DEPTH * depth => image.depth,
+            // Seen by another part of the rays first.
+            _ => depth,
+        }
     }
 
     /// Calls `each` with the segments of every pixel of a row that `wants` to be followed.
@@ -185,7 +198,7 @@ impl<'v, 's> Clip<'v, 's> {
         let along = *inverse * middle.2;
         let off = curve.at(0.5) - self.volume.lattice_from_scene(middle.1);
         let across = off - along * (off.dot(along) / along.length_squared());
-        let uneven = (va - vb).abs() > 0.35 * vm;
+        let uneven = (va - vb).abs() > UNEVEN * vm;
         if (across.length() > NEAR || uneven) && halvings < MAX_HALVINGS {
             self.halved(at, depth, a, middle, halvings + 1);
             self.halved(at, depth, middle, b, halvings + 1);

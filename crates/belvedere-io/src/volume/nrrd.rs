@@ -69,7 +69,13 @@ impl Header {
                 let shown: String = text.chars().take(40).collect();
                 return Err(format!("header line {shown:?} is no field; it is damaged"));
             };
-            fields.insert(key.to_lowercase().replace(' ', ""), value.trim().to_owned());
+            let key = key.to_lowercase().replace(' ', "");
+            // Names of files follow, up to the end.
+            let lists = key == "datafile" && value.trim().starts_with("LIST");
+            fields.insert(key, value.trim().to_owned());
+            if lists {
+                return Ok(Self { fields, end: bytes.len() });
+            }
         }
         // A detached header may end with the file.
         if fields.contains_key("datafile") && at == bytes.len() {
@@ -93,7 +99,6 @@ impl Header {
         })?;
         let dims = self.dims()?;
         let (axes, origin) = self.place()?;
-        let count = dims.iter().map(|n| *n as u128).product::<u128>();
         let data = self.skipped(data)?;
         let encoding = self.need("encoding")?.to_lowercase();
         let (values, changed) = match encoding.as_str() {
@@ -107,8 +112,8 @@ impl Header {
                 number.decode(gunzip(data, expected)?, self.order(number)?)
             }
             "ascii" | "text" | "txt" => {
-                // A value takes a digit and what parts it from the next.
-                if count > data.len() as u128 {
+                let count = source.expected(dims, number, data.len(), true)? / number.bytes();
+                if count > data.len() {
                     return Err(format!(
                         "it declares {count} values and has {} bytes of text; it is cut off",
                         data.len()
@@ -116,8 +121,7 @@ impl Header {
                 }
                 let text = std::str::from_utf8(data)
                     .map_err(|e| format!("byte {} of its text is no text; it is damaged", e.valid_up_to()))?;
-                source.expected(dims, number, data.len(), true)?;
-                number.parse(text, count as usize)?
+                number.parse(text, count)?
             }
             other => {
                 let other: String = other.chars().take(30).collect();

@@ -10,6 +10,8 @@ mod molecules;
 mod open_exr;
 mod png;
 mod rasters;
+mod support_files;
 mod terrain;
 mod tiff_writer;
 mod vectors;
+mod volumes;

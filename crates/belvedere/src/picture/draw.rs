@@ -3,6 +3,7 @@
 use super::displacement::{self, DisplacementReport};
 use super::options::{AuxBuffer, PictureOptions};
 use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, Sidecar, TerrainRecord};
+use super::volume_record::VolumeRecord;
 use crate::overlays::{badge, camera, ghost, grid, heat, thin};
 use crate::record::{self, InputFile, ViewRecord};
 use crate::scene_file::SwitchOrLength;
@@ -47,6 +48,7 @@ pub(crate) fn draw(
         displacement,
         terrain: session.scene().terrain().map(TerrainRecord::of),
         molecules: MoleculeRecord::all_of(session.scene()),
+        volumes: VolumeRecord::all(session.scene()),
         areas: session.areas().to_vec(),
         disocclusion: session.terrain_report().filter(|_| !request.straight).cloned(),
         constructor: session.constructor_report().filter(|_| !request.straight).cloned(),

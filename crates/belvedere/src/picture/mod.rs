@@ -5,10 +5,12 @@ mod displacement;
 mod draw;
 mod options;
 mod sidecar;
+mod volume_record;
 mod write;
 
 pub use displacement::DisplacementReport;
 pub(crate) use draw::draw;
 pub use options::{AuxBuffer, AuxFormat, PictureOptions, RendererChoice};
 pub use sidecar::{MoleculeRecord, OverlayRecord, Picture, Sidecar, TerrainRecord};
+pub use volume_record::VolumeRecord;
 pub use write::{delta_path, outputs, side_by_side};

@@ -2,6 +2,7 @@
 
 use super::displacement::DisplacementReport;
 use super::options::{AuxBuffer, AuxFormat};
+use super::volume_record::VolumeRecord;
 use crate::record::{AreaRecord, InputFile, ViewRecord};
 use crate::resolve::constructor::ConstructorReport;
 use crate::scene_file::Document;
@@ -102,6 +103,9 @@ pub struct Sidecar {
     /// What of each molecule was drawn.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub molecules: Vec<MoleculeRecord>,
+    /// How volumes were drawn.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub volumes: Vec<VolumeRecord>,
     /// What areas were drawn as, and why.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub areas: Vec<AreaRecord>,

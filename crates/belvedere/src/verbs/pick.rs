@@ -2,7 +2,7 @@
 
 use crate::{BelvedereError, Session};
 use belvedere_core::{DVec2, DVec3, View};
-use belvedere_cpu::{RayHit, Tracer};
+use belvedere_cpu::{RayHit, Tracer, VolumeTracer};
 use belvedere_scene::{AreaLayer, Layer, LayerKind, LineLayer, PointLayer, Progress, Scene};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -34,7 +34,7 @@ pub struct Picked {
 /// What each pixel (origin at the outer corner of the top-left pixel, centres at .5) shows, by the exact tracer.
 ///
 /// A visible line or point within half its width of the pixel counts before the surface, the last layer first; areas belong to the ground
-/// they are painted on. Pixels outside the image are answered as far as the camera has rays there.
+/// they are painted on; a volume is seen where it has absorbed half of the light. Pixels outside the image are answered as far as the camera has rays there.
 ///
 /// # Errors
 /// [`BelvedereError::UnderGround`], [`BelvedereError::Cancelled`].
@@ -43,11 +43,16 @@ pub fn pick(session: &Session, pixels: &[[f64; 2]], progress: &Progress) -> Resu
     let (scene, view) = (session.scene(), session.view());
     progress.tick("prepare", 0.0)?;
     let tracer = Tracer::new(scene, view);
+    let volumes = VolumeTracer::new(scene, view);
     let marks = Marks::new(scene, view);
+    let solid = |at: DVec2| {
+        let hit = tracer.first_hit(at);
+        volumes.first_hit(at, hit.map_or(f64::INFINITY, |h| h.depth)).or(hit)
+    };
     let done = AtomicUsize::new(0);
     let one = |pixel: &[f64; 2]| -> Result<Option<Picked>, BelvedereError> {
         let at = DVec2::from_array(*pixel);
-        let picked = marks.at(&tracer, at).or_else(|| tracer.first_hit(at).and_then(|seen| surface(scene, &seen)));
+        let picked = marks.at(&tracer, at).or_else(|| solid(at).and_then(|seen| surface(scene, &seen)));
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
         progress.tick("pick", done as f64 / pixels.len() as f64)?;
         Ok(picked)
