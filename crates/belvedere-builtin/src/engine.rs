@@ -1,4 +1,5 @@
-//! A machined block as a scanner sees it: walls with bores and channels, and inside, hidden behind them, a denser valve.
+//! A machined block as a scanner sees it: walls with bores and channels, and a denser valve in a chamber that opens above, where level
+//! lines of sight do not look into it.
 
 use super::noise::hash_unit;
 use super::{BuiltinError, SuggestedCamera};
@@ -13,7 +14,7 @@ const AIR: f64 = 8.0;
 const METAL: f64 = 124.0;
 const STEEL: f64 = 226.0;
 /// Standard deviation of the scanner's noise, about.
-const NOISE: f64 = 5.0;
+const NOISE: f64 = 3.0;
 
 /// The engine: 160 x 128 x 96 voxels of edge 1, its first voxel at the origin. The seed changes where small bores lie, and the noise.
 ///
@@ -32,7 +33,7 @@ pub fn engine(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
     let kind = LayerKind::Volume(VolumeLayer::new(volume, transfer));
     let layers = vec![Layer { id: "engine".into(), must_see: false, kind }];
     let title = "A machined block".to_owned();
-    let (eye, look_at) = (DVec3::new(-120.0, -190.0, 170.0), DVec3::new(80.0, 62.0, 42.0));
+    let (eye, look_at) = (DVec3::new(80.0, -260.0, 104.0), DVec3::new(80.0, 60.0, 56.0));
     let camera = SuggestedCamera { title: title.clone(), eye, look_at, fov_y: 32f64.to_radians() };
     Ok((Scene { title, crs: Crs::Local, unit: Unit::Voxel, layers }, camera))
 }
@@ -48,7 +49,7 @@ struct Block {
 impl Block {
     fn new(seed: u64) -> Self {
         let shift = |k: u64| 4.0 * (hash_unit(seed, k, 9) - 0.5);
-        let corners = [(20.0, 20.0), (20.0, 108.0), (140.0, 20.0), (140.0, 108.0), (80.0, 18.0), (80.0, 110.0)];
+        let corners = [(20.0, 20.0), (20.0, 108.0), (140.0, 20.0), (140.0, 108.0), (80.0, 18.0)];
         let bolts = corners.into_iter().enumerate().map(|(i, (x, y))| {
             (DVec2::new(x + shift(i as u64), y + shift(50 + i as u64)), 3.5 + 0.4 * shift(100 + i as u64).abs())
         });
@@ -76,7 +77,8 @@ impl Block {
         for x in [46.0, 113.0] {
             cut(cylinder(DVec2::new(p.x - x, p.y - 46.0), p.z - 62.0, 21.0, 42.0));
         }
-        cut(rounded_box(p - DVec3::new(79.5, 92.0, 42.0), DVec3::new(52.0, 15.0, 22.0), 6.0));
+        cut(rounded_box(p - DVec3::new(79.5, 92.0, 54.0), DVec3::new(54.0, 15.0, 22.0), 6.0));
+        cut(rounded_box(p - DVec3::new(79.5, 92.0, 70.0), DVec3::new(48.0, 12.5, 20.0), 4.0));
         cut(cylinder(DVec2::new(p.x - 40.0, p.z - 44.0), p.y - 4.0, 10.0, 20.0));
         self.bolts.iter().for_each(|(at, r)| cut(cylinder(p.truncate() - *at, p.z - 66.0, *r, 22.0)));
         self.channels.iter().for_each(|(at, r)| cut(cylinder(DVec2::new(p.x, p.z) - *at, p.y - 63.5, *r, 70.0)));
@@ -86,7 +88,7 @@ impl Block {
 
 /// The valve in the chamber: a stem along x with a head, a ring and coils around it.
 fn valve(p: DVec3) -> f64 {
-    let q = p - DVec3::new(79.5, 92.0, 42.0);
+    let q = p - DVec3::new(79.5, 92.0, 57.0);
     let across = DVec2::new(q.y, q.z);
     let stem = cylinder(across, q.x, 3.2, 44.0);
     let head = cylinder(across, q.x - 38.0 + 0.25 * across.length(), 11.5, 4.0);
@@ -124,12 +126,12 @@ mod tests {
     fn the_valve_lies_in_a_chamber_behind_walls() {
         let volume = volume(7);
         let at = |x: f64, y: f64, z: f64| volume.at(DVec3::new(x, y, z)).unwrap();
-        assert!(at(80.0, 92.0, 42.0) > 190.0, "the stem");
-        assert!(at(60.0, 104.0, 42.0) < 60.0, "the chamber");
-        assert!(at(80.0, 112.0, 42.0) > 90.0 && at(150.0, 92.0, 42.0) < 60.0, "its wall, and air outside");
+        assert!(at(80.0, 92.0, 57.0) > 190.0, "the stem");
+        assert!(at(60.0, 104.0, 50.0) < 60.0, "the chamber");
+        assert!(at(80.0, 112.0, 57.0) > 90.0 && at(158.0, 92.0, 57.0) < 60.0, "its wall, and air outside");
         // Straight from the front every line to the stem meets metal first.
         for x in [50.0, 60.0, 100.0] {
-            let first = (0..90).map(f64::from).find(|y| at(x, *y, 42.0) > 80.0);
+            let first = (0..90).map(f64::from).find(|y| at(x, *y, 57.0) > 80.0);
             assert!(first.is_some_and(|y| y < 80.0), "{x}: {first:?}");
         }
     }
