@@ -23,7 +23,7 @@ impl Leaps {
         let stride = [1, dims[0], dims[0] * dims[1]];
         for axis in 0..3 {
             for i in 0..distance.len() {
-                if i / stride[axis] % dims[axis] == 0 {
+                if (i / stride[axis]).is_multiple_of(dims[axis]) {
                     spread(&mut distance, i, stride[axis], dims[axis]);
                 }
             }

@@ -114,11 +114,11 @@ impl Stretch {
     fn new(segment: &Segment, step: f64) -> Self {
         let per_step = step / segment.length;
         let mut scale = 1.0;
-        let mut c = [[0.0; 3]; 4];
-        for k in 0..4 {
-            c[k] = (segment.curve.0[k] * scale).to_array().map(|v| v as f32);
+        let c = segment.curve.0.map(|c| {
+            let scaled = (c * scale).to_array().map(|v| v as f32);
             scale *= per_step;
-        }
+            scaled
+        });
         let steps = (segment.length / step) as f32;
         let bend = std::array::from_fn(|a| c[2][a].abs() + 3.0 * c[3][a].abs() * steps);
         Self { c, bend }
@@ -238,11 +238,11 @@ impl<T: Voxel> Walk<'_, '_, T> {
     ) -> bool {
         let table = &self.marcher.table;
         let mut p: [Group; 3] = [[0.0; GROUP]; 3];
-        for a in 0..3 {
+        for (a, p) in p.iter_mut().enumerate() {
             let [c0, c1, c2, c3] = [0, 1, 2, 3].map(|k| stretch.c[k][a]);
-            for l in 0..GROUP {
+            for (l, p) in p.iter_mut().enumerate() {
                 let n = n + l as f32;
-                p[a][l] = c0 + n * (c1 + n * (c2 + n * c3));
+                *p = c0 + n * (c1 + n * (c2 + n * c3));
             }
         }
         let values = self.sampler.at(&p);

@@ -167,8 +167,11 @@ fn a_homogeneous_ball_absorbs_by_its_chord() {
     assert!(crossed > 5, "{crossed}");
 }
 
+/// How made-up values are stored.
+type Stored = fn(Vec<f64>) -> VoxelValues;
+
 /// Waves and a shell: empty, thin and dense parts.
-fn wavy(values: fn(Vec<f64>) -> VoxelValues) -> Volume {
+fn wavy(values: Stored) -> Volume {
     let [nx, ny, nz] = [41, 37, 33];
     let of = |i: usize| {
         let p = DVec3::new((i % nx) as f64, (i / nx % ny) as f64, (i / nx / ny) as f64);
@@ -194,7 +197,7 @@ fn colors(volume: Volume) -> VolumeLayer {
 
 #[test]
 fn the_fast_way_is_the_obvious_one_in_every_view_and_for_every_type() {
-    let kinds: [(&str, fn(Vec<f64>) -> VoxelValues); 4] = [
+    let kinds: [(&str, Stored); 4] = [
         ("u8", |v| VoxelValues::U8(v.into_iter().map(|v| (255.0 * v) as u8).collect())),
         ("u16", |v| VoxelValues::U16(v.into_iter().map(|v| (60000.0 * v) as u16).collect())),
         ("i16", |v| VoxelValues::I16(v.into_iter().map(|v| (60000.0 * v - 30000.0) as i16).collect())),

@@ -136,9 +136,9 @@ fn otsu(counts: &[u64; BINS]) -> usize {
     let (mut below, mut sum) = (0.0, 0.0);
     // Bins that no value falls into part the values alike: the middle of the best is taken.
     let (mut best, mut first, mut last) = (0.0, BINS / 2, BINS / 2);
-    for i in 0..BINS - 1 {
-        below += counts[i] as f64;
-        sum += i as f64 * counts[i] as f64;
+    for (i, count) in counts.iter().enumerate().take(BINS - 1) {
+        below += *count as f64;
+        sum += i as f64 * *count as f64;
         let above = total - below;
         if below == 0.0 || above == 0.0 {
             continue;

@@ -93,7 +93,7 @@ fn paraview(doc: &ParaViewDoc, volume: &Volume) -> Result<Vec<TransferPoint>, St
     let [lo, hi] = volume.range().map(f64::from);
     let ramp = vec![[lo, 0.0, 0.5, 0.0], [hi, 0.5, 0.5, 0.0]];
     let opacities: Vec<[f64; 4]> = doc.points.as_ref().map_or(ramp, |p| p.as_chunks().0.to_vec());
-    let whole = doc.rgb_points.len() % 4 == 0 && doc.points.as_ref().is_none_or(|p| p.len() % 4 == 0);
+    let whole = doc.rgb_points.len().is_multiple_of(4) && doc.points.as_ref().is_none_or(|p| p.len().is_multiple_of(4));
     if colors.is_empty() || opacities.is_empty() || !whole {
         return Err(
             "RGBPoints and Points need groups of four numbers, at least one each; export the colour map again".into()
