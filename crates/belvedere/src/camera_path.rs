@@ -447,3 +447,32 @@ fn turn_rays(rays: &mut RaysStageDoc, pivot: DVec3, turn: DQuat) {
         t.normal.iter_mut().for_each(direction);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_many_frames_as_the_limit_are_drawn_and_no_more() {
+        let most = validate::MAX_FRAMES;
+        assert_eq!(checked(most).expect("at the limit"), most);
+        let error = checked(most + 1).expect_err("beyond it").to_string();
+        assert!(error.contains(&(most + 1).to_string()) && error.contains(&most.to_string()), "{error}");
+    }
+
+    #[test]
+    fn a_path_passes_its_keys_and_rests_on_a_single_one() {
+        let key = |x: f64| {
+            let mut numbers = [0.0; 10];
+            numbers[0] = x;
+            numbers
+        };
+        let keys = [key(0.0), key(10.0), key(-5.0)];
+        for (i, key) in keys.iter().enumerate() {
+            assert_eq!(at(&keys, i as f64), *key);
+        }
+        assert_eq!(at(&keys[..1], 0.0), keys[0]);
+        let between = at(&keys, 0.5)[0];
+        assert!((0.0..10.0).contains(&between), "{between}");
+    }
+}

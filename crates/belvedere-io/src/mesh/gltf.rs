@@ -275,4 +275,24 @@ mod tests {
         assert_eq!(stored(DataType::U32, &70_000u32.to_le_bytes()), [70_000.0; 2]);
         assert_eq!(stored(DataType::F32, &0.5f32.to_le_bytes()), [0.5; 2]);
     }
+
+    #[test]
+    fn strips_and_fans_of_a_flat_patch_face_one_way() {
+        // A zigzag over a level patch, and a fan around its first corner.
+        let places = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0], [2.0, 0.0], [2.0, 1.0]];
+        let fan = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+        for (mode, places, count) in [(Mode::TriangleStrip, &places[..], 4), (Mode::TriangleFan, &fan[..], 3)] {
+            let corners: Vec<u32> = (0..places.len() as u32).collect();
+            let areas: Vec<f64> = triangles(mode, &corners)
+                .into_iter()
+                .map(|t| {
+                    let [a, b, c] = t.map(|v| places[v as usize]);
+                    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+                })
+                .collect();
+            assert_eq!(areas.len(), count);
+            let first = areas[0].signum();
+            assert!(areas.iter().all(|a| a.abs() > 0.5 && a.signum() == first), "{mode:?}: {areas:?}");
+        }
+    }
 }

@@ -145,3 +145,26 @@ fn triangle(corners: [i64; 3]) -> Result<[u32; 3], String> {
     }
     Ok(out)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn load(normals: &str, rows: [&str; 3]) -> MeshFile {
+        let head = format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n{normals}element face 1\n\
+             property list uchar int vertex_indices\nend_header\n"
+        );
+        let text = head + &rows.join("\n") + "\n3 0 1 2\n";
+        read(Path::new("t.ply"), text.as_bytes(), &Limits::default()).expect("a mesh").value
+    }
+
+    #[test]
+    fn normals_are_kept_where_there_are_any() {
+        let keys = "property float nx\nproperty float ny\nproperty float nz\n";
+        let with = load(keys, ["0 0 0 0 0 1", "1 0 0 0 0 1", "0 1 0 1 0 0"]);
+        assert_eq!(with.normals, Some(vec![DVec3::Z, DVec3::Z, DVec3::X]));
+        assert_eq!(load("", ["0 0 0", "1 0 0", "0 1 0"]).normals, None);
+        assert_eq!(load(keys, ["0 0 0 0 0 0", "1 0 0 0 0 0", "0 1 0 0 0 0"]).normals, None, "all zero says nothing");
+    }
+}

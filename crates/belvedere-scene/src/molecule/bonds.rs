@@ -6,7 +6,7 @@ use super::{Atom, Element};
 /// Two atoms are bonded if they are nearer than their covalent radii and this together, angstrom.
 ///
 /// Bond lengths in good structures vary by less than 0.2 angstrom, atoms that are not bonded are more than 1 angstrom farther apart;
-/// the figure lies between, as that of other programs does. Atoms nearer than [`TOO_NEAR`] are two readings of one place.
+/// the figure lies between, as that of other programs does. Atoms nearer than 0.4 angstrom are two readings of one place.
 pub const BOND_TOLERANCE: f64 = 0.45;
 
 /// Atoms nearer than this are not bonded but in each other's place, angstrom.

@@ -41,3 +41,27 @@ pub(crate) fn lines(scene: &Scene, spacing: f64) -> Vec<OverlayLine> {
     let east = multiples(lo.y, hi.y).map(|y| line(DVec3::new(lo.x, y, 0.0), DVec3::new(hi.x, y, 0.0), name("N", y)));
     north.chain(east).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::DVec2;
+    use belvedere_scene::Heightfield;
+
+    #[test]
+    fn lines_stand_at_multiples_and_are_called_by_kilometres_where_those_are_round() {
+        let ground = Heightfield::measured(DVec2::new(900.0, 7100.0), DVec2::splat(1000.0), 7, 7, vec![5.0; 49]);
+        let scene = Scene::default().with_terrain("ground", ground.expect("ground"));
+        let names = |spacing: f64| lines(&scene, spacing).into_iter().map(|l| l.label).collect::<Vec<_>>();
+        assert_eq!(names(1500.0)[..4], ["E 1.5", "E 3", "E 4.5", "E 6"], "kilometres");
+        assert_eq!(
+            names(1250.0)[..4],
+            ["E 1250", "E 2500", "E 3750", "E 5000"],
+            "a quarter of a kilometre stays in metres"
+        );
+        assert_eq!(names(600.0)[0], "E 1200");
+        let north: Vec<f64> =
+            lines(&scene, 3000.0).iter().filter(|l| l.label.starts_with('N')).map(|l| l.points[0].y).collect();
+        assert_eq!(north, [3000.0, 6000.0]);
+    }
+}
