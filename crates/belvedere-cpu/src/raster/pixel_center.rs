@@ -35,9 +35,10 @@ struct Solution {
     depth: f64,
 }
 
-/// A ray near a point on it: the way towards the eye by unit of depth, and pixels per unit of height.
+/// A ray near a point on it and its depth: the way towards the eye by unit of depth, and pixels per unit of height.
 struct Ray {
     near: DVec3,
+    depth: f64,
     towards: DVec3,
     px_per_z: f64,
 }
@@ -46,6 +47,12 @@ struct Ray {
 pub(crate) struct PixelCenters<'a> {
     scene: &'a Scene,
     passes: &'a [Pass<'a>],
+    screen: &'a Screen,
+}
+
+/// The map of one pass.
+struct PassCenters<'a> {
+    pass: &'a Pass<'a>,
     screen: &'a Screen,
 }
 
@@ -67,14 +74,42 @@ impl<'a> PixelCenters<'a> {
     /// ground has not: the ray is followed over the cells around.
     pub(crate) fn exact(&self, found: &DrawnTriangle<'_>, near: DVec3, pixel: DVec2) -> Option<(DVec3, f32)> {
         let surface = self.surface(found)?;
-        let settled = self.settle(&surface, near, pixel);
+        let centers = self.of_pass(near, pixel)?;
+        let settled = centers.settle(&surface, near, pixel);
         let first = match surface {
-            Surface::Ground(hf) => self.first_on(hf, settled, near, pixel),
+            Surface::Ground(hf) => centers.first_on(hf, settled, near, pixel),
             Surface::Plane(..) => None,
         };
         first.or(settled).map(|s| (s.p, s.depth as f32))
     }
 
+    /// The pass that draws `p` nearest to `pixel`: beside the picture, and where parts of a chain overlap, others draw it elsewhere.
+    fn of_pass(&self, p: DVec3, pixel: DVec2) -> Option<PassCenters<'a>> {
+        let all = self.passes.iter().map(|pass| PassCenters { pass, screen: self.screen });
+        if self.passes.len() == 1 {
+            return all.last();
+        }
+        let holding = all.filter(|c| c.pass.margins(p).iter().all(|m| *m >= 0.0));
+        let off = holding.filter_map(|c| Some((c.image(p)?.0.distance_squared(pixel), c)));
+        off.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, c)| c)
+    }
+
+    fn surface(&self, found: &DrawnTriangle<'_>) -> Option<Surface<'a>> {
+        let first = found.block.origin[0];
+        let corners = match &self.scene.layers.get(found.block.layer as usize)?.kind {
+            LayerKind::Terrain(t) => return Some(Surface::Ground(&t.heightfield)),
+            LayerKind::Boxes(b) => {
+                let corners = b.boxes.get(first + (found.parent / 12) as usize)?.corners();
+                BOX_TRIANGLES[(found.parent % 12) as usize].map(|k| corners[k])
+            }
+            kind => kind.triangles()?.mesh.corners(first + found.parent as usize),
+        };
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize()?;
+        Some(Surface::Plane(corners[0], normal))
+    }
+}
+
+impl PassCenters<'_> {
     /// The first point on the ground near where Newton's steps have settled, or near `near`; `None` if none is better.
     fn first_on(&self, hf: &Heightfield, settled: Option<Solution>, near: DVec3, pixel: DVec2) -> Option<Solution> {
         let mut at = settled.unwrap_or(Solution { off: f64::INFINITY, p: near, depth: 0.0 });
@@ -130,12 +165,16 @@ impl<'a> PixelCenters<'a> {
     fn first_near(&self, hf: &Heightfield, start: &Solution, pixel: DVec2) -> Option<DVec3> {
         let ray = self.ray(start.p, pixel)?;
         // An eighth of a cell on the map.
-        let step = ray.towards * (0.125 * hf.spacing().min_element() / ray.towards.truncate().length());
+        let depth_step = 0.125 * hf.spacing().min_element() / ray.towards.truncate().length();
+        let step = ray.towards * depth_step;
         let clear = CLEAR_PX / ray.px_per_z;
         if !step.is_finite() || !clear.is_finite() {
             return None;
         }
         let gap = |k: f64| {
+            if ray.depth - k * depth_step < self.screen.near {
+                return None;
+            }
             let q = ray.near + k * step;
             hf.surface_at(q.truncate()).map(|z| q.z - z)
         };
@@ -181,29 +220,13 @@ impl<'a> PixelCenters<'a> {
         let change = DMat3::from_cols(by(DVec3::X)?, by(DVec3::Y)?, by(DVec3::Z)?);
         let back = change.inverse();
         let near = p + back * (pixel - here.0).extend(0.0);
-        Some(Ray { near, towards: back * DVec3::NEG_Z, px_per_z: change.z_axis.truncate().length() })
-    }
-
-    fn surface(&self, found: &DrawnTriangle<'_>) -> Option<Surface<'a>> {
-        let first = found.block.origin[0];
-        let corners = match &self.scene.layers.get(found.block.layer as usize)?.kind {
-            LayerKind::Terrain(t) => return Some(Surface::Ground(&t.heightfield)),
-            LayerKind::Boxes(b) => {
-                let corners = b.boxes.get(first + (found.parent / 12) as usize)?.corners();
-                BOX_TRIANGLES[(found.parent % 12) as usize].map(|k| corners[k])
-            }
-            kind => kind.triangles()?.mesh.corners(first + found.parent as usize),
-        };
-        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize()?;
-        Some(Surface::Plane(corners[0], normal))
+        Some(Ray { near, depth: here.1, towards: back * DVec3::NEG_Z, px_per_z: change.z_axis.truncate().length() })
     }
 
     /// Pixel and depth of a point.
     fn image(&self, p: DVec3) -> Option<(DVec2, f64)> {
-        let holds = |pass: &&Pass<'_>| pass.margins(p).iter().all(|m| *m >= 0.0);
-        let pass = if self.passes.len() == 1 { self.passes.first() } else { self.passes.iter().find(holds) };
-        let v = self.screen.view_from(pass?.displace(p)?);
-        (v.z > 0.0).then(|| (self.screen.pixel(v), v.z))
+        let v = self.screen.view_from(self.pass.displace(p)?);
+        (v.z >= self.screen.near).then(|| (self.screen.pixel(v), v.z))
     }
 }
 
