@@ -2,7 +2,7 @@
 
 use crate::BenchRequest;
 use crate::clock::{Stopwatch, median};
-use crate::scene::{NamedView, ground, views};
+use crate::scene::{NamedView, chain, ground, views};
 use anyhow::Result;
 use belvedere::core::View;
 use belvedere::cpu::{CpuRenderer, GroundImage};
@@ -113,6 +113,17 @@ pub(crate) fn grow_pixels(request: &BenchRequest, scene: &Scene, progress: &Prog
     let cases: Vec<Case<'_>> = curved.collect();
     let costs = measure(&cases, request.rounds.min(5), progress)?;
     Ok(Growth::new("pixels", sizes.map(|[w, h]| f64::from(w) * f64::from(h)).to_vec(), &costs))
+}
+
+/// Turns that a chain is measured with.
+const TURNS: [usize; 5] = [1, 7, 100, 127, 300];
+
+pub(crate) fn grow_turns(request: &BenchRequest, scene: &Scene, lod_px: f64, progress: &Progress) -> Result<Growth> {
+    let views = TURNS.iter().map(|&n| chain(request.image, n)).collect::<Result<Vec<_>>>()?;
+    let case = |view| Case { name: "curved rays", scene, view, samples: 1, lod_px };
+    let costs = measure(&views.iter().map(case).collect::<Vec<_>>(), request.rounds.min(5), progress)?;
+    let of = if lod_px > 0.0 { "turns, level of detail" } else { "turns" };
+    Ok(Growth::new(of, TURNS.map(|n| n as f64).to_vec(), &costs))
 }
 
 impl Growth {

@@ -16,7 +16,7 @@ pub use smooth::{SmoothCost, SparseCost};
 use anyhow::{Result, ensure};
 use belvedere::scene::Progress;
 use flight::fly;
-use frames::{Case, grow_pixels, grow_triangles, measure, project};
+use frames::{Case, grow_pixels, grow_triangles, grow_turns, measure, project};
 use scene::{ground, views};
 use serde::Serialize;
 use smooth::smooth;
@@ -103,6 +103,8 @@ fn report(request: &BenchRequest, progress: &Progress) -> Result<BenchReport> {
         grow_triangles(request, &views[1].1, 0.0, progress)?,
         grow_triangles(request, &views[1].1, 0.5, progress)?,
         grow_pixels(request, &scene, progress)?,
+        grow_turns(request, &scene, 0.0, progress)?,
+        grow_turns(request, &scene, 0.5, progress)?,
     ];
     Ok(BenchReport {
         program: format!("belvedere {}", belvedere::VERSION),

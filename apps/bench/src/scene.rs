@@ -68,3 +68,28 @@ pub fn views(image: [u32; 2]) -> Result<[NamedView; 3]> {
         ("spline", bent(Stage::SplineBend(bend))?),
     ])
 }
+
+/// The straight view with `turns` turns one behind the other over the whole ground, whose viewpoints lead 2 km sideways.
+///
+/// # Errors
+/// An image without pixels, turns too narrow to be told apart.
+pub fn chain(image: [u32; 2], turns: usize) -> Result<View> {
+    let [(_, straight), ..] = views(image)?;
+    let camera = straight.pinhole().clone();
+    let step = 9_000.0 / turns as f64;
+    let turn = |k: usize| {
+        let y = -4_500.0 + (k as f64 + 0.5) * step;
+        let side = 2_000.0 * (k + 1) as f64 / turns as f64;
+        TurnSpec {
+            viewpoint: camera.eye + DVec3::new(side, 0.0, 0.0),
+            t0: DVec3::new(0.0, y - 0.4 * step, 0.0),
+            t1: DVec3::new(0.0, y, 0.0),
+            t2: DVec3::new(0.0, y + 0.4 * step, 0.0),
+            pencil: Pencil::Parallel { normal: -DVec3::Y },
+            m: Sharpness::Bend,
+        }
+    };
+    let specs: Vec<TurnSpec> = (0..turns).map(turn).collect();
+    let rays = CurvedRays::new(&camera, Model::Modified, &specs)?;
+    Ok(View::new(camera, vec![Stage::CurvedRays(rays)])?)
+}

@@ -91,7 +91,8 @@ fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
     let per_pixel = 3 + 4 + 4 + 6 + if job.options.aux.world { 24 } else { 0 };
     let threads = if job.options.threads == 0 { rayon::current_num_threads() } else { job.options.threads } as u64;
     let bands = threads * (BAND as u64) * u64::from(width) * (u64::from(samples) + 1) * 8;
-    let passes = job.view.records() as u64;
+    // What lies beside the picture, where planes cross, may be drawn by several records.
+    let passes = job.view.records().min(2) as u64;
     let drawn = |nodes: u64| {
         // With less detail far away the picture bounds the nodes: a few per pixel, near the eye more.
         let nodes = if job.options.lod_px > 0.0 { nodes.min(8 * pixels + (1 << 20)) } else { nodes };

@@ -92,7 +92,7 @@ impl CpuRenderer {
         let screen = Screen::new(job.view.pinhole());
         let passes = Pass::all(job.view);
         let Scratch { blocks, color, bands } = scratch;
-        blocks.build(job.scene, &passes, &screen, job.options, &self.detail);
+        blocks.build(job.scene, job.view, &passes, &screen, job.options, &self.detail);
         job.progress.tick("project", 1.0)?;
         let shader = Shader::new(job, &screen, blocks, &self.light);
         let mut buffers = Buffers::reuse(job, std::mem::take(color), frame);

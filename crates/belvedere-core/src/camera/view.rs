@@ -3,6 +3,7 @@
 use super::{Pinhole, Projected, RayPath};
 use crate::{Aabb, CurvedRays, Displaced, Miss, SpaceMap, Stage};
 use glam::{DVec2, DVec3};
+use std::ops::RangeInclusive;
 
 /// A pinhole photograph of a displaced world: `pixel, depth = pinhole.project(D_n(...D_1(p)))`.
 ///
@@ -232,6 +233,24 @@ impl View {
     /// The same when curved rays displace by the record of one turn alone, see [`View::displace_in`].
     pub fn edge_error_px_in(&self, record: usize, p0: DVec3, p1: DVec3) -> f64 {
         self.edge_error(p0, p1, Some(record))
+    }
+
+    /// The same where records displace as one map ([`CurvedRays::is_continuous`]), each end by the record it belongs to.
+    pub fn edge_error_px_between(&self, records: RangeInclusive<usize>, p0: DVec3, p1: DVec3) -> f64 {
+        let (Some((a, b, mut error)), Some(rays)) = (self.earlier_error(p0, p1), self.curved_rays()) else {
+            return f64::INFINITY;
+        };
+        if error > 0.0 {
+            error *= stretch(rays, a, b);
+        }
+        let ends = [a, b].map(|p| rays.record_of(records.clone(), p));
+        let (Ok(a1), Ok(b1)) = (rays.displace_in(ends[0], a), rays.displace_in(ends[1], b)) else {
+            return f64::INFINITY;
+        };
+        // Turns that both ends are before, or past, do not bend the edge.
+        let shifts = (ends[0].min(ends[1])..=ends[0].max(ends[1])).map(|record| rays.record_edge_shift(record, a, b));
+        let shifts: Option<Vec<DVec3>> = shifts.collect();
+        shifts.map_or(f64::INFINITY, |shifts| self.image_error([a1.point, b1.point], error, &shifts))
     }
 
     fn edge_error(&self, p0: DVec3, p1: DVec3, record: Option<usize>) -> f64 {

@@ -2,7 +2,6 @@
 
 use crate::cache::lock;
 use crate::geometry::grid::{Nodes, ScreenExtent};
-use crate::geometry::pass::Pass;
 use crate::geometry::screen::{Screen, ScreenVertex};
 use std::sync::Mutex;
 
@@ -34,6 +33,8 @@ pub(crate) enum Geometry {
 #[derive(Debug)]
 pub(crate) struct Block {
     pub(crate) layer: u32,
+    /// First and last record that displace it.
+    pub(crate) records: [usize; 2],
     /// First column and row (terrain), first box or first triangle (mesh).
     pub(crate) origin: [usize; 2],
     /// Drawn cells of a terrain block.
@@ -107,20 +108,25 @@ impl Block {
     }
 
     /// Explicit triangles of the boxes or triangles from number `first` on; `None` if there are none.
-    pub(crate) fn soup(layer: u32, first: usize, soup: Vec<SoupTriangle>, counts: Counts) -> Option<Self> {
+    pub(crate) fn soup(
+        layer: u32,
+        records: [usize; 2],
+        first: usize,
+        soup: Vec<SoupTriangle>,
+        counts: Counts,
+    ) -> Option<Self> {
         if soup.is_empty() {
             return None;
         }
         let (cover, geometry) = (cover_of(&soup), Geometry::Soup(soup));
         let (origin, seam) = ([first, 0], [false; 4]);
-        Some(Self { layer, origin, cells: [0; 2], step: 1, geometry, seam, soup_base: 0, cover, counts })
+        Some(Self { layer, records, origin, cells: [0; 2], step: 1, geometry, seam, soup_base: 0, cover, counts })
     }
 }
 
 /// What all blocks of a layer have in common.
 pub(crate) struct Job<'a> {
     pub(crate) layer: u32,
-    pub(crate) pass: &'a Pass<'a>,
     pub(crate) screen: &'a Screen,
     pub(crate) tolerance_px: f64,
     pub(crate) spare: &'a BufferPool,

@@ -2,12 +2,16 @@
 
 use crate::cache::GroundCache;
 use crate::geometry::block::{Block, BufferPool, Counts, DrawnTriangle, Geometry, Job, SoupVertex};
+use crate::geometry::box_blocks::box_chunks;
 use crate::geometry::grid::{CELL_TRIANGLES, cell_weights};
+use crate::geometry::locate::{Held, JoinedPasses, Locator};
 use crate::geometry::lod::{SIDE, Tree};
-use crate::geometry::pass::Pass;
+use crate::geometry::mesh_blocks::mesh_chunks;
+use crate::geometry::pass::{InView, Pass};
 use crate::geometry::screen::Screen;
 use crate::geometry::select::{DetailSelector, Selection};
 use crate::raster::band::Band;
+use belvedere_core::{Aabb, View};
 use belvedere_scene::{LayerKind, RenderOptions, Scene};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -16,6 +20,38 @@ use std::sync::Arc;
 pub(crate) const SOUP: u32 = 1 << 31;
 /// Bits of a grid primitive below the block number: 10 of the cell, 1 of the triangle.
 pub(crate) const CELL_BITS: u32 = 11;
+
+/// Blocks of boxes or triangles: each part of a layer once for each record that shows it, or once if its records may draw it at once.
+/// * `bounds`: of the parts.
+/// * `draw`: a part, by its number.
+fn soups(
+    locator: &Locator<'_>,
+    view: &View,
+    bounds: &[Aabb],
+    draw: impl Fn(&Pass<'_>, usize) -> Option<Block> + Sync,
+) -> Vec<Block> {
+    let locate = |bounds: &Aabb| {
+        let mut list = Vec::new();
+        let all = locator.all(&mut list);
+        let Held { records, whole } = locator.locate(bounds, &all, &mut list);
+        let mut held = list[records].to_vec();
+        if whole && !held.iter().any(|&record| locator.shows(record, bounds)) {
+            held.clear();
+        } else if !whole {
+            held.retain(|&record| locator.shows(record, bounds));
+        }
+        (held, whole)
+    };
+    let located: Vec<(Vec<u32>, bool)> = bounds.par_iter().map(locate).collect();
+    let together = located.iter().filter(|(_, whole)| *whole).map(|(held, _)| &held[..]);
+    let joined = JoinedPasses::new(view, locator.passes, together);
+    let parts = located.par_iter().enumerate();
+    parts
+        .flat_map_iter(|(k, (held, whole))| {
+            joined.of(held, *whole).filter_map(|pass| draw(pass, k)).collect::<Vec<_>>()
+        })
+        .collect()
+}
 
 /// All blocks of a frame; kept between frames for its memory.
 #[derive(Debug, Default)]
@@ -34,6 +70,7 @@ impl Blocks {
     pub(crate) fn build(
         &mut self,
         scene: &Scene,
+        view: &View,
         passes: &[Pass<'_>],
         screen: &Screen,
         options: &RenderOptions,
@@ -43,21 +80,43 @@ impl Blocks {
         let tolerance_px = if options.tolerance_px > 0.01 { options.tolerance_px } else { 0.01 };
         self.list.drain(..).for_each(|b| self.spare.keep(b.geometry));
         self.triangles_in = 0;
+        let locator = Locator::new(view, passes, screen);
         for (i, layer) in scene.layers.iter().enumerate() {
-            for pass in passes {
-                let job = Job { layer: i as u32, pass, screen, tolerance_px, spare: &self.spare };
-                match &layer.kind {
-                    LayerKind::Terrain(t) => {
-                        let hf = &t.heightfield;
-                        let tree = detail.get(hf, (), || Arc::new(Tree::new(hf)));
-                        let chooser =
-                            DetailSelector { hf, tree: &tree, pass, screen, tolerance_px, lod_px: options.lod_px };
-                        chooser.choose(&mut self.choice);
-                        let blocks = self.choice.list.par_iter().filter_map(|c| job.terrain_block(hf, &tree.sparse, c));
-                        self.list.par_extend(blocks);
+            let job = Job { layer: i as u32, screen, tolerance_px, spare: &self.spare };
+            match &layer.kind {
+                LayerKind::Terrain(t) => {
+                    let hf = &t.heightfield;
+                    let tree = detail.get(hf, (), || Arc::new(Tree::new(hf)));
+                    let chooser = DetailSelector {
+                        hf,
+                        tree: &tree,
+                        view,
+                        locator: &locator,
+                        tolerance_px,
+                        lod_px: options.lod_px,
+                    };
+                    chooser.choose(&mut self.choice);
+                    let choice = &self.choice;
+                    let whole = choice.list.iter().filter(|c| c.held.whole).map(|c| choice.held(&c.held));
+                    let joined = JoinedPasses::new(view, passes, whole);
+                    let drawn = choice.list.par_iter().flat_map_iter(|c| {
+                        let bounds = tree.bounds(hf, c.level, c.block).filter(|_| !c.held.whole);
+                        let passes = joined.of(choice.held(&c.held), c.held.whole);
+                        let seen =
+                            passes.filter(move |pass| bounds.is_none_or(|b| pass.in_view(screen, &b) != InView::No));
+                        seen.filter_map(|pass| job.terrain_block(pass, hf, &tree.sparse, c))
+                    });
+                    self.list.par_extend(drawn);
+                }
+                LayerKind::Boxes(b) => {
+                    let parts = box_chunks(b);
+                    self.list.par_extend(soups(&locator, view, &parts, |pass, k| job.box_block(pass, b, k)));
+                }
+                kind => {
+                    if let Some(m) = kind.triangles() {
+                        let parts = mesh_chunks(&m.mesh);
+                        self.list.par_extend(soups(&locator, view, &parts, |pass, k| job.mesh_block(pass, &m.mesh, k)));
                     }
-                    LayerKind::Boxes(b) => self.list.extend(job.boxes(b)),
-                    kind => self.list.extend(kind.triangles().map(|m| job.mesh(&m.mesh)).unwrap_or_default()),
                 }
             }
             self.triangles_in += match &layer.kind {

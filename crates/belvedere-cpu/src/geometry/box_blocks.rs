@@ -1,10 +1,10 @@
 //! Boxes as blocks of triangles.
 
 use crate::geometry::block::{Block, Counts, Job};
-use crate::geometry::pass::InView;
+use crate::geometry::pass::Pass;
 use crate::geometry::refine::Refiner;
 use belvedere_core::Aabb;
-use belvedere_scene::BoxLayer;
+use belvedere_scene::{BoxLayer, BoxShape};
 use rayon::prelude::*;
 
 /// Boxes to a block.
@@ -26,20 +26,23 @@ pub(crate) const BOX_TRIANGLES: [[usize; 3]; 12] = [
     [1, 7, 5],
 ];
 
-impl Job<'_> {
-    /// Displaces, projects, subdivides and clips boxes.
-    pub(crate) fn boxes(&self, layer: &BoxLayer) -> Vec<Block> {
-        (0..layer.boxes.len().div_ceil(BOXES)).into_par_iter().filter_map(|i| self.box_block(layer, i)).collect()
-    }
+/// The boxes that are drawn as a block each.
+fn chunk_of(layer: &BoxLayer, chunk: usize) -> &[BoxShape] {
+    &layer.boxes[chunk * BOXES..layer.boxes.len().min((chunk + 1) * BOXES)]
+}
 
-    fn box_block(&self, layer: &BoxLayer, i: usize) -> Option<Block> {
-        let boxes = &layer.boxes[i * BOXES..layer.boxes.len().min((i + 1) * BOXES)];
-        let bounds = Aabb::of(boxes.iter().flat_map(|b| b.corners()));
-        if self.pass.in_view(self.screen, &bounds) == InView::No {
-            return None;
-        }
-        let mut refiner = Refiner::new(self.pass, self.screen, self.tolerance_px, self.spare.soup());
-        let judge = !self.pass.is_straight();
+/// Bounds of the parts of a layer that are drawn as a block each.
+pub(crate) fn box_chunks(layer: &BoxLayer) -> Vec<Aabb> {
+    let chunks = (0..layer.boxes.len().div_ceil(BOXES)).into_par_iter();
+    chunks.map(|i| Aabb::of(chunk_of(layer, i).iter().flat_map(|b| b.corners()))).collect()
+}
+
+impl Job<'_> {
+    /// Displaces, projects, subdivides and clips a part of the boxes.
+    pub(crate) fn box_block(&self, pass: &Pass<'_>, layer: &BoxLayer, chunk: usize) -> Option<Block> {
+        let boxes = chunk_of(layer, chunk);
+        let mut refiner = Refiner::new(pass, self.screen, self.tolerance_px, self.spare.soup());
+        let judge = !pass.is_straight();
         let mut missed = 0;
         for (k, shape) in boxes.iter().enumerate() {
             let corners = shape.corners().map(|p| refiner.corner(p));
@@ -50,6 +53,6 @@ impl Job<'_> {
             }
         }
         let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };
-        Block::soup(self.layer, i * BOXES, refiner.out, counts)
+        Block::soup(self.layer, pass.records, chunk * BOXES, refiner.out, counts)
     }
 }

@@ -7,6 +7,7 @@ use crate::geometry::points::{Points, each};
 use crate::geometry::spline_table::SplineTable;
 use belvedere_core::map::curved_rays::Turn;
 use belvedere_core::{CurvedRays, DVec3, Stage, View};
+use std::ops::RangeInclusive;
 
 /// All stages of a view for one pass over the scene.
 #[derive(Debug)]
@@ -31,17 +32,57 @@ enum Step<'a> {
         rays: &'a CurvedRays,
         record: usize,
     },
+    /// Records that displace as one map, each point by its own: one step per record, from the given one on.
+    Chain {
+        rays: &'a CurvedRays,
+        first: usize,
+        steps: Vec<Step<'a>>,
+    },
+}
+
+impl<'a> Step<'a> {
+    fn record(rays: &'a CurvedRays, record: usize) -> Self {
+        match rays.turns().get(record).map(|turn| (turn, turn.m)) {
+            Some((turn, Some(m))) => Self::Conic { turn, m, eye: rays.root().eye, first: record == 0 },
+            _ => Self::Record { rays, record },
+        }
+    }
+
+    fn row(&self, p: &mut Points<'_>) -> bool {
+        match self {
+            Step::Stage(stage) => each(p, |p| stage.as_map().apply(p).ok()),
+            Step::Spline(table) => table.row(p),
+            Step::Conic { turn, m, eye, first } => conic(turn, *m, *eye, *first, p),
+            Step::Record { rays, record } => each(p, |p| rays.displace_in(*record, p).ok().map(|d| d.point)),
+            Step::Chain { rays, first, steps } => {
+                let of = |p: &Points<'_>, i: usize| {
+                    rays.record_of(*first..=first + steps.len() - 1, DVec3::new(p.x[i], p.y[i], p.z[i])) - first
+                };
+                let (mut from, mut whole) = (0, true);
+                while from < p.x.len() {
+                    let record = of(p, from);
+                    let to = (from + 1..p.x.len()).find(|&i| of(p, i) != record).unwrap_or(p.x.len());
+                    let part = from..to;
+                    let (x, y, z) = (&mut p.x[part.clone()], &mut p.y[part.clone()], &mut p.z[part]);
+                    whole &= steps[record].row(&mut Points { x, y, z });
+                    from = to;
+                }
+                whole
+            }
+        }
+    }
 }
 
 impl<'a> Displacer<'a> {
-    /// * `record`: see [`View::displace_in`].
-    pub(crate) fn new(view: &'a View, record: usize) -> Self {
+    /// * `records`: one, see [`View::displace_in`], or several that displace as one map.
+    pub(crate) fn new(view: &'a View, records: RangeInclusive<usize>) -> Self {
         let step = |stage: &'a Stage| match stage {
             Stage::SplineBend(bend) => Step::Spline(SplineTable::new(bend)),
-            Stage::CurvedRays(rays) => match rays.turns().get(record).map(|turn| (turn, turn.m)) {
-                Some((turn, Some(m))) => Step::Conic { turn, m, eye: rays.root().eye, first: record == 0 },
-                _ => Step::Record { rays, record },
-            },
+            Stage::CurvedRays(rays) if records.start() == records.end() => Step::record(rays, *records.start()),
+            Stage::CurvedRays(rays) => {
+                let steps = records.clone().map(|record| Step::record(rays, record)).collect();
+                Step::Chain { rays, first: *records.start(), steps }
+            }
             other => Step::Stage(other),
         };
         Self { steps: view.stages().iter().map(step).collect() }
@@ -63,12 +104,7 @@ impl<'a> Displacer<'a> {
     /// Displaces points of slices of equal length; `false` if one of them has no image (the rest is then unspecified).
     /// A point that leaves the numbers comes out as not finite.
     pub(crate) fn row(&self, p: &mut Points<'_>) -> bool {
-        self.steps.iter().all(|step| match step {
-            Step::Stage(stage) => each(p, |p| stage.as_map().apply(p).ok()),
-            Step::Spline(table) => table.row(p),
-            Step::Conic { turn, m, eye, first } => conic(turn, *m, *eye, *first, p),
-            Step::Record { rays, record } => each(p, |p| rays.displace_in(*record, p).ok().map(|d| d.point)),
-        })
+        self.steps.iter().all(|step| step.row(p))
     }
 }
 
@@ -185,7 +221,7 @@ mod tests {
         ];
         for (k, view) in views.iter().enumerate() {
             for record in 0..view.records() {
-                let displacer = Displacer::new(view, record);
+                let displacer = Displacer::new(view, record..=record);
                 let (mut worst, mut seen) = (0.0f64, 0);
                 for p in ground(90) {
                     let exact = view.displace_in(record, p).ok().map(|d| d.point);
@@ -210,7 +246,7 @@ mod tests {
     #[test]
     fn rows_and_single_points_agree_to_the_last_bit() {
         for view in [rays(Model::Modified, Sharpness::Bend), spline("progressive")] {
-            let displacer = Displacer::new(&view, 0);
+            let displacer = Displacer::new(&view, 0..=0);
             for row in ground(66).chunks(33) {
                 let coordinate = |k: usize| row.iter().map(|p| p[k]).collect::<Vec<f64>>();
                 let (mut x, mut y, mut z) = (coordinate(0), coordinate(1), coordinate(2));
@@ -226,6 +262,6 @@ mod tests {
     fn points_beyond_the_common_line_have_no_image() {
         let view = rays(Model::Modified, Sharpness::Bend);
         assert!(view.project(view.pinhole().eye + DVec3::new(0.0, 5000.0, -100.0)).is_ok());
-        assert_eq!(Displacer::new(&view, 0).point(DVec3::NAN), None);
+        assert_eq!(Displacer::new(&view, 0..=0).point(DVec3::NAN), None);
     }
 }

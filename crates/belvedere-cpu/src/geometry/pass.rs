@@ -1,4 +1,4 @@
-//! One drawing of the scene: a record of a curved-ray chain, or the only one there is.
+//! One drawing of the scene, or of part of it: a record of a curved-ray chain, several that displace as one map, or the only one there is.
 
 use crate::geometry::displace::Displacer;
 use crate::geometry::lod::{DecimatedHeights, NODES};
@@ -12,7 +12,10 @@ use belvedere_scene::Heightfield;
 #[derive(Debug)]
 pub(crate) struct Pass<'a> {
     view: &'a View,
-    record: usize,
+    /// The first and the last record.
+    pub(crate) records: [usize; 2],
+    /// Whether what does not belong to the record is cut off.
+    cut: bool,
     displacer: Displacer<'a>,
     projector: Option<Projector<'a>>,
     height: HeightPx,
@@ -61,14 +64,25 @@ impl Columns {
 impl<'a> Pass<'a> {
     /// The passes that together draw every image of every point once.
     pub(crate) fn all(view: &'a View) -> Vec<Self> {
-        let pass = |record| Self {
+        let cut = view.records() > 1;
+        (0..view.records()).map(|record| Self::new(view, [record; 2], cut)).collect()
+    }
+
+    /// The pass for what records from the first to the last displace as one map, see [`CurvedRays::is_continuous`].
+    pub(crate) fn between(view: &'a View, records: [usize; 2]) -> Self {
+        Self::new(view, records, false)
+    }
+
+    fn new(view: &'a View, records: [usize; 2], cut: bool) -> Self {
+        let [first, last] = records;
+        Self {
             view,
-            record,
-            displacer: Displacer::new(view, record),
-            projector: Projector::new(view, record),
-            height: HeightPx::new(view, record),
-        };
-        (0..view.records()).map(pass).collect()
+            records,
+            cut,
+            displacer: Displacer::new(view, first..=last),
+            projector: Projector::new(view, first..=last),
+            height: HeightPx::new(view, first),
+        }
     }
 
     /// Displaced position; `None` where the point has no image.
@@ -129,56 +143,26 @@ impl<'a> Pass<'a> {
 
     /// Signed distances that must be positive for the point to belong to this pass.
     pub(crate) fn margins(&self, p: DVec3) -> [f64; 2] {
-        if self.is_only() { [f64::INFINITY; 2] } else { self.view.record_margins(self.record, p) }
-    }
-
-    /// Whether every point of the box belongs to this pass.
-    pub(crate) fn holds(&self, bounds: &Aabb) -> bool {
-        self.is_only() || self.record_margins(bounds).is_some_and(|m| m.iter().flatten().all(|m| *m > 0.0))
-    }
-
-    /// Margins at the corners of the box before the curved rays; they are affine there.
-    fn record_margins(&self, bounds: &Aabb) -> Option<[[f64; 2]; 8]> {
-        let (Stage::CurvedRays(rays), earlier) = self.view.stages().split_last()? else { return None };
-        let before = displaced(earlier, bounds)?;
-        Some(before.corners().map(|c| rays.record_margins(self.record, c)))
+        if self.cut { self.view.record_margins(self.records[0], p) } else { [f64::INFINITY; 2] }
     }
 
     /// See [`View::edge_error_px`].
     pub(crate) fn edge_error_px(&self, a: DVec3, b: DVec3) -> f64 {
-        self.view.edge_error_px_in(self.record, a, b)
+        edge_error_px(self.view, self.records, a, b)
     }
 
-    /// Where the box lies, judged by its displaced bounds.
+    /// Where the record shows the box, judged by its displaced bounds.
     pub(crate) fn in_view(&self, screen: &Screen, bounds: &Aabb) -> InView {
-        if self.is_only() {
-            let Some(b) = displaced(self.view.stages(), bounds) else { return InView::Maybe(None) };
-            let (mut code, mut depth) = (u8::MAX, f64::INFINITY);
-            let mut image = [DVec2::INFINITY, DVec2::NEG_INFINITY];
-            for corner in b.corners() {
-                let v = screen.view_from(corner);
-                code &= screen.outcode(v, 2.0);
-                depth = depth.min(v.z);
-                let at = screen.pixel(v) - screen.center;
-                image = [image[0].min(at), image[1].max(at)];
-            }
-            return if code != 0 {
-                InView::No
-            } else {
-                InView::Maybe((depth > 0.0).then_some(Extent { depth, image }))
-            };
+        if self.view.records() == 1 {
+            return displaced(self.view.stages(), bounds)
+                .map_or(InView::Maybe(None), |b| image_of(screen, &b.corners()));
         }
-        if self.record_margins(bounds).is_some_and(|all| (0..2).any(|side| all.iter().all(|m| m[side] <= 0.0))) {
-            return InView::No;
-        }
-        let Some(b) = self.view.image_box(bounds) else { return InView::Maybe(None) };
-        let size = 2.0 * screen.center;
-        let out = b.max.x < -2.0 || b.max.y < -2.0 || b.min.x > size.x + 2.0 || b.min.y > size.y + 2.0;
-        if out {
-            return InView::No;
-        }
-        let extent = Extent { depth: b.depth_min, image: [b.min - screen.center, b.max - screen.center] };
-        InView::Maybe((extent.depth > 0.0).then_some(extent))
+        let hull = self.view.stages().split_last().and_then(|(last, earlier)| {
+            let Stage::CurvedRays(rays) = last else { return None };
+            rays.displaced_hull_in(self.records[0], &displaced(earlier, bounds)?)
+        });
+        let eye = self.view.pinhole().eye;
+        hull.map_or(InView::Maybe(None), |hull| image_of(screen, &hull.map(|v| eye + v)))
     }
 
     /// Bound in pixels on what a unit of height inside the box can change on the image; infinite where unknown.
@@ -196,16 +180,31 @@ impl<'a> Pass<'a> {
         if screen.ortho { height_px } else { height_px / depth }
     }
 
-    pub(crate) fn is_only(&self) -> bool {
-        self.view.records() == 1
-    }
-
     pub(crate) fn is_straight(&self) -> bool {
         self.displacer.is_straight()
     }
 }
 
-fn displaced(stages: &[Stage], bounds: &Aabb) -> Option<Aabb> {
+/// See [`View::edge_error_px`]; by one record, or by several that displace as one map.
+pub(crate) fn edge_error_px(view: &View, [first, last]: [usize; 2], a: DVec3, b: DVec3) -> f64 {
+    if first == last { view.edge_error_px_in(first, a, b) } else { view.edge_error_px_between(first..=last, a, b) }
+}
+
+/// What the image shows of the hull of displaced points.
+fn image_of(screen: &Screen, hull: &[DVec3]) -> InView {
+    let (mut code, mut depth) = (u8::MAX, f64::INFINITY);
+    let mut image = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+    for &p in hull {
+        let v = screen.view_from(p);
+        code &= screen.outcode(v, 2.0);
+        depth = depth.min(v.z);
+        let at = screen.pixel(v) - screen.center;
+        image = [image[0].min(at), image[1].max(at)];
+    }
+    if code != 0 { InView::No } else { InView::Maybe((depth > 0.0).then_some(Extent { depth, image })) }
+}
+
+pub(crate) fn displaced(stages: &[Stage], bounds: &Aabb) -> Option<Aabb> {
     stages.iter().try_fold(*bounds, |b, stage| stage.displaced_bounds(&b))
 }
 

@@ -8,11 +8,13 @@ mod cameras;
 
 use crate::geometry::screen::{Row, SUB};
 use crate::simd;
+use belvedere_core::map::curved_rays::{LinearForm, Turn};
 use belvedere_core::map::terrain::TerrainDisocclusion;
 use belvedere_core::{DVec2, DVec3, Pinhole, Stage, View};
 use belvedere_scene::Heightfield;
 use cameras::{Bend, Form, Run};
 use rayon::prelude::*;
+use std::ops::RangeInclusive;
 
 /// Nodes lifted at a time.
 const CHUNK: usize = 64;
@@ -28,9 +30,10 @@ pub(crate) struct Projector<'a> {
     /// Drop of the ground per squared distance.
     earth: f32,
     lift: Option<&'a TerrainDisocclusion>,
-    /// View space before the turn: right, down, forward.
-    view: [Form; 3],
-    bend: Option<Bend>,
+    /// One, or those of records that displace as one map.
+    parts: Vec<Part>,
+    /// Between each part and the next: positive beyond.
+    separators: Vec<Form>,
     scale: f32,
     center: [i32; 2],
     ortho: bool,
@@ -38,9 +41,18 @@ pub(crate) struct Projector<'a> {
     far: f32,
 }
 
+/// A record.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    /// View space before the turn: right, down, forward.
+    view: [Form; 3],
+    bend: Option<Bend>,
+}
+
 impl<'a> Projector<'a> {
     /// `None` if the chain has a stage without this form.
-    pub(crate) fn new(view: &'a View, record: usize) -> Option<Self> {
+    /// * `records`: one, see [`View::displace_in`], or several that displace as one map.
+    pub(crate) fn new(view: &'a View, records: RangeInclusive<usize>) -> Option<Self> {
         let p = view.pinhole();
         let high = p.eye.z as f32;
         let mut out = Self {
@@ -48,8 +60,8 @@ impl<'a> Projector<'a> {
             eye_z: [high, (p.eye.z - f64::from(high)) as f32],
             earth: 0.0,
             lift: None,
-            view: [p.right, p.down, p.forward].map(|axis| Form::new(axis, 0.0)),
-            bend: None,
+            parts: vec![Part { view: [p.right, p.down, p.forward].map(|axis| Form::new(axis, 0.0)), bend: None }],
+            separators: Vec::new(),
             scale: p.scale_px() as f32,
             center: (p.center_px() * f64::from(SUB)).to_array().map(|c| c.round() as i32),
             ortho: p.is_orthographic(),
@@ -63,27 +75,17 @@ impl<'a> Projector<'a> {
                 }
                 Stage::TerrainDisocclusion(t) => out.lift = Some(t),
                 Stage::CurvedRays(rays) if rays.turns().is_empty() => {}
-                Stage::CurvedRays(rays) => out.set_turn(p, rays.turns().get(record)?)?,
+                Stage::CurvedRays(rays) => {
+                    let part = |record| Part::of(p, rays.turns().get(record)?);
+                    let form = |y: &LinearForm| Form::new(y.gradient, y.at(p.eye));
+                    out.parts = records.clone().map(part).collect::<Option<_>>()?;
+                    out.separators =
+                        (*records.start()..*records.end()).filter_map(|k| rays.separator(k)).map(form).collect();
+                }
                 _ => return None,
             }
         }
         Some(out)
-    }
-
-    fn set_turn(&mut self, p: &Pinhole, turn: &belvedere_core::map::curved_rays::Turn) -> Option<()> {
-        let axes = [p.right, p.down, p.forward];
-        let from = p.eye - turn.viewpoint_before;
-        self.view = axes.map(|axis| {
-            let gradient = turn.before.transpose() * axis;
-            Form::new(gradient, gradient.dot(from))
-        });
-        self.bend = Some(Bend {
-            a: Form::new(turn.a.gradient, turn.a.at(p.eye)),
-            b: Form::new(turn.b.gradient, turn.b.at(p.eye)),
-            m: turn.m? as f32,
-            shift: axes.map(|axis| turn.shift.dot(axis) as f32),
-        });
-        Some(())
     }
 
     /// A coordinate relative to the eye; nodes of one column (or row) share it whatever block they are drawn in.
@@ -112,13 +114,68 @@ impl<'a> Projector<'a> {
     }
 
     fn run(&self, x: &[f32], y: f32, heights: &[f32], out: &mut Row<'_>) -> bool {
-        simd::run(Run { projector: self, x, y, heights, out })
+        if let [part] = &self.parts[..] {
+            return simd::run(Run { projector: self, part, x, y, heights, out });
+        }
+        let run = |part, x, heights, out: &mut Row<'_>| simd::run(Run { projector: self, part, x, y, heights, out });
+        if let Some(part) = self.only_part(x, y, heights) {
+            return run(&self.parts[part], x, heights, out);
+        }
+        let of = |i: usize| self.part_of(x[i], y, self.z(x[i], y, heights[i]));
+        let (mut from, mut whole) = (0, true);
+        while from < x.len() {
+            let part = of(from);
+            let to = (from + 1..x.len()).find(|&i| of(i) != part).unwrap_or(x.len());
+            let nodes = from..to;
+            let (x, heights) = (&x[nodes.clone()], &heights[nodes.clone()]);
+            let mut out = Row { x: &mut out.x[nodes.clone()], y: &mut out.y[nodes.clone()], q: &mut out.q[nodes] };
+            whole &= run(&self.parts[part], x, heights, &mut out);
+            from = to;
+        }
+        whole
+    }
+
+    /// Number of the part that a node belongs to.
+    fn part_of(&self, x: f32, y: f32, z: f32) -> usize {
+        self.separators.partition_point(|s| s.at(s.row(y), x, z) > 0.0)
+    }
+
+    /// The part that all nodes of a row belong to, if there is one: that of the corners of a rectangle around them.
+    fn only_part(&self, x: &[f32], y: f32, heights: &[f32]) -> Option<usize> {
+        let (&west, &east) = (x.first()?, x.last()?);
+        let low = heights.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
+        let high = heights.iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a });
+        let far = if west.abs() > east.abs() { west } else { east };
+        let (low, high) = (self.z(far, y, low), self.z(west.max(0.0).min(east), y, high));
+        let part = self.part_of(west, y, low);
+        [(west, high), (east, low), (east, high)]
+            .into_iter()
+            .all(|(x, z)| self.part_of(x, y, z) == part)
+            .then_some(part)
     }
 
     /// Height over the eye after the earth's drop.
     #[inline(always)]
     fn z(&self, x: f32, y: f32, height: f32) -> f32 {
         ((height - self.eye_z[0]) - self.eye_z[1]) - self.earth * (x * x + y * y)
+    }
+}
+
+impl Part {
+    fn of(p: &Pinhole, turn: &Turn) -> Option<Self> {
+        let axes = [p.right, p.down, p.forward];
+        let from = p.eye - turn.viewpoint_before;
+        let view = axes.map(|axis| {
+            let gradient = turn.before.transpose() * axis;
+            Form::new(gradient, gradient.dot(from))
+        });
+        let bend = Bend {
+            a: Form::new(turn.a.gradient, turn.a.at(p.eye)),
+            b: Form::new(turn.b.gradient, turn.b.at(p.eye)),
+            m: turn.m? as f32,
+            shift: axes.map(|axis| turn.shift.dot(axis) as f32),
+        };
+        Some(Self { view, bend: Some(bend) })
     }
 }
 
@@ -140,7 +197,7 @@ impl GroundImage {
     /// Projects every node, holes included, by a record of the view; `false` if a stage has no form in single precision, or
     /// if a node has no image or lies more than 16 000 px from the image centre (its values are then unspecified).
     pub fn project(&mut self, hf: &Heightfield, view: &View, record: usize) -> bool {
-        let Some(projector) = Projector::new(view, record) else { return false };
+        let Some(projector) = Projector::new(view, record..=record) else { return false };
         let n = hf.heights().len();
         self.x.resize(n, 0);
         self.y.resize(n, 0);
@@ -218,7 +275,7 @@ mod tests {
         let (xs, ys, zs) = ground();
         for (k, view) in views().iter().enumerate() {
             for record in 0..view.records() {
-                let projector = Projector::new(view, record).expect("has a form");
+                let projector = Projector::new(view, record..=record).expect("has a form");
                 let (mut worst, mut seen) = (0.0f64, 0);
                 for (r, &y) in ys.iter().enumerate() {
                     for (c, &x) in xs.iter().enumerate() {
@@ -254,7 +311,7 @@ mod tests {
     fn a_row_and_its_nodes_agree_to_the_last_bit() {
         let (xs, ys, zs) = ground();
         for view in views() {
-            let projector = Projector::new(&view, 0).expect("has a form");
+            let projector = Projector::new(&view, 0..=0).expect("has a form");
             let relative: Vec<f32> = xs.iter().map(|&x| projector.relative(DVec2::new(x, 0.0))[0]).collect();
             for (r, &y) in ys.iter().enumerate().step_by(7) {
                 let (mut x, mut py, mut q) = ([0; 33], [0; 33], [0.0; 33]);
@@ -278,14 +335,21 @@ mod tests {
     fn all_versions_give_the_same_bits() {
         let (xs, ys, zs) = ground();
         for view in views() {
-            let projector = Projector::new(&view, 0).expect("has a form");
+            let projector = Projector::new(&view, 0..=0).expect("has a form");
             let relative: Vec<f32> = xs.iter().map(|&x| projector.relative(DVec2::new(x, 0.0))[0]).collect();
             for (r, &y) in ys.iter().enumerate().step_by(7) {
                 let y = projector.relative(DVec2::new(0.0, y))[1];
                 let image = |plain: bool| {
                     let (mut x, mut py, mut q) = ([0; 33], [0; 33], [0.0; 33]);
                     let out = &mut Row { x: &mut x, y: &mut py, q: &mut q };
-                    let run = Run { projector: &projector, x: &relative, y, heights: &zs[r * 33..][..33], out };
+                    let run = Run {
+                        projector: &projector,
+                        part: &projector.parts[0],
+                        x: &relative,
+                        y,
+                        heights: &zs[r * 33..][..33],
+                        out,
+                    };
                     let whole = if plain { run.run() } else { simd::run(run) };
                     (x, py, q.map(f32::to_bits), whole)
                 };

@@ -1,20 +1,20 @@
 //! Which blocks of the ground are drawn, and in how much detail.
 
+use crate::geometry::locate::{Held, Locator};
 use crate::geometry::lod::{Tree, nodes};
-use crate::geometry::pass::{InView, Pass};
-use crate::geometry::screen::Screen;
-use belvedere_core::Aabb;
+use crate::geometry::pass::edge_error_px;
+use belvedere_core::{Aabb, View};
 use belvedere_scene::Heightfield;
 
 /// A block to draw.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct SelectedBlock {
     pub(crate) level: usize,
     pub(crate) block: [usize; 2],
     /// Whether straight edges of its cells may be too far off.
     pub(crate) edges: bool,
-    /// Whether the pass draws all of it.
-    pub(crate) whole: bool,
+    /// The records that draw it, in [`Selection::records`].
+    pub(crate) held: Held,
     /// Sides (north, east, south, west) along which the neighbour's edges may be split too.
     pub(crate) judged: [bool; 4],
     /// Sides along which the neighbour is drawn in half the detail.
@@ -32,6 +32,7 @@ pub(crate) struct Selection {
     starts: Vec<usize>,
     cols: Vec<usize>,
     pub(crate) list: Vec<SelectedBlock>,
+    pub(crate) records: Vec<u32>,
 }
 
 const NOTHING: u32 = 0;
@@ -45,8 +46,8 @@ const AROUND: [[isize; 2]; 4] = [[0, -1], [1, 0], [0, 1], [-1, 0]];
 pub(crate) struct DetailSelector<'a> {
     pub(crate) hf: &'a Heightfield,
     pub(crate) tree: &'a Tree,
-    pub(crate) pass: &'a Pass<'a>,
-    pub(crate) screen: &'a Screen,
+    pub(crate) view: &'a View,
+    pub(crate) locator: &'a Locator<'a>,
     /// Worst error of a bent edge drawn straight, pixels.
     pub(crate) tolerance_px: f64,
     /// Worst error of less detail, bend included, pixels; 0 draws every cell.
@@ -59,7 +60,8 @@ impl DetailSelector<'_> {
     pub(crate) fn choose(&self, out: &mut Selection) {
         out.clear(self.tree);
         let top = self.tree.levels() - 1;
-        self.visit(top, [0, 0], self.pass.is_straight(), out);
+        let all = self.locator.all(&mut out.records);
+        self.visit(top, [0, 0], &all, self.view.stages().is_empty(), out);
         let mut i = 0;
         while i < out.list.len() {
             if !out.list[i].dropped {
@@ -70,35 +72,37 @@ impl DetailSelector<'_> {
         for i in 0..out.list.len() {
             for side in 0..4 {
                 let SelectedBlock { level, block, edges, .. } = out.list[i];
-                let near = self.neighbour(level, block, side, out).map(|k| out.list[k]);
-                out.list[i].seam[side] = near.is_some_and(|n| n.level > level);
+                let near = self.neighbour(level, block, side, out).map(|k| (out.list[k].level, out.list[k].edges));
+                out.list[i].seam[side] = near.is_some_and(|(n, _)| n > level);
                 // An edge between two blocks is judged alike by both; a coarser neighbour's edges are straight enough.
-                out.list[i].judged[side] = near.map_or(edges, |n| n.level == level && (edges || n.edges)) && level == 0;
+                out.list[i].judged[side] = near.map_or(edges, |(n, e)| n == level && (edges || e)) && level == 0;
             }
         }
         out.list.retain(|c| !c.dropped);
     }
 
-    fn visit(&self, level: usize, block: [usize; 2], mut plain: bool, out: &mut Selection) {
+    /// * `larger`: the records of the block around.
+    fn visit(&self, level: usize, block: [usize; 2], larger: &Held, mut plain: bool, out: &mut Selection) {
         let Some(bounds) = self.tree.bounds(self.hf, level, block) else { return };
-        let InView::Maybe(extent) = self.pass.in_view(self.screen, &bounds) else { return };
-        let px_per_unit = self.pass.px_per_height(self.screen, &bounds, extent);
+        let held = self.locator.locate(&bounds, larger, &mut out.records);
+        let Some(px_per_unit) = self.locator.px_per_height(&bounds, out.held(&held)) else { return };
         let height_px = f64::from(self.tree.span(level, block).error) * px_per_unit;
-        // Where records meet, all of them must cut the same triangles.
-        let whole = self.pass.holds(&bounds);
-        let coarse = level > 0 && whole && height_px <= self.lod_px && self.lod_px > 0.0;
+        // Where records are cut from each other, all of them must cut the same triangles.
+        let coarse = level > 0 && held.whole && height_px <= self.lod_px && self.lod_px > 0.0;
         let mut bend_px = 0.0;
-        if !self.pass.is_straight() && (coarse || !plain) {
+        if !self.view.stages().is_empty() && (coarse || !plain) {
             let (from, to) = nodes(self.hf, level, block);
-            bend_px = self.cells_error(&bounds, (to[0] - from[0]).max(to[1] - from[1]).div_ceil(1 << level));
+            let n = (to[0] - from[0]).max(to[1] - from[1]).div_ceil(1 << level);
+            bend_px = if held.whole { self.cells_error(&bounds, out.held(&held), n) } else { f64::INFINITY };
             plain |= bend_px / (1 << level) as f64 <= self.tolerance_px;
         }
         if level == 0 || (coarse && height_px + bend_px <= self.lod_px) {
+            let edges = level == 0 && !plain;
             out.add(SelectedBlock {
                 level,
                 block,
-                edges: level == 0 && !plain,
-                whole,
+                edges,
+                held,
                 judged: [false; 4],
                 seam: [false; 4],
                 px_per_unit,
@@ -106,16 +110,16 @@ impl DetailSelector<'_> {
             });
             return;
         }
-        self.descend(level, block, plain, out);
+        self.descend(level, block, &held, plain, out);
     }
 
-    fn descend(&self, level: usize, block: [usize; 2], plain: bool, out: &mut Selection) {
+    fn descend(&self, level: usize, block: [usize; 2], held: &Held, plain: bool, out: &mut Selection) {
         out.set(level, block, SPLIT);
         let [cols, rows] = self.tree.size(level - 1);
         for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
             let child = [2 * block[0] + i, 2 * block[1] + j];
             if child[0] < cols && child[1] < rows {
-                self.visit(level - 1, child, plain, out);
+                self.visit(level - 1, child, held, plain, out);
             }
         }
     }
@@ -124,12 +128,14 @@ impl DetailSelector<'_> {
     ///
     /// The chord of a curve that turns by a given angle deviates in proportion to its length, so the bound of the box's
     /// long edges, shared out over its cells with a factor 2 in hand, covers the cells' edges.
-    fn cells_error(&self, bounds: &Aabb, n: usize) -> f64 {
+    /// * `held`: records that displace the box as one map.
+    fn cells_error(&self, bounds: &Aabb, held: &[u32], n: usize) -> f64 {
+        let (Some(&first), Some(&last)) = (held.first(), held.last()) else { return f64::INFINITY };
         let c = bounds.corners();
         let pairs = [(0, 7), (1, 6), (2, 5), (3, 4), (0, 1), (2, 3), (0, 2), (1, 3), (4, 7), (5, 6)];
         let mut worst = 0.0f64;
         for (a, b) in pairs {
-            let error = self.pass.edge_error_px(c[a], c[b]);
+            let error = edge_error_px(self.view, [first, last].map(|k| k as usize), c[a], c[b]);
             if !error.is_finite() {
                 return f64::INFINITY;
             }
@@ -140,9 +146,9 @@ impl DetailSelector<'_> {
 
     /// Halves the neighbour beyond a side until it is at most one level coarser and the seam is close enough.
     fn settle(&self, i: usize, side: usize, out: &mut Selection) {
-        let SelectedBlock { level, block, px_per_unit, whole, .. } = out.list[i];
+        let SelectedBlock { level, block, px_per_unit, held: Held { whole, .. }, .. } = out.list[i];
         while let Some(k) = self.neighbour(level, block, side, out) {
-            let near = out.list[k];
+            let near = out.list[k].clone();
             let span = self.tree.span(level, block);
             let seam_px = f64::from(span.error + span.seam[side]) * px_per_unit;
             if near.level <= level || (near.level == level + 1 && whole && seam_px <= self.lod_px) {
@@ -164,9 +170,9 @@ impl DetailSelector<'_> {
                 continue;
             }
             let Some(bounds) = self.tree.bounds(self.hf, level, block) else { continue };
-            if let InView::Maybe(extent) = self.pass.in_view(self.screen, &bounds) {
-                let px_per_unit = self.pass.px_per_height(self.screen, &bounds, extent);
-                out.add(SelectedBlock { level, block, px_per_unit, whole: self.pass.holds(&bounds), ..parent });
+            let held = self.locator.locate(&bounds, &parent.held, &mut out.records);
+            if let Some(px_per_unit) = self.locator.px_per_height(&bounds, out.held(&held)) {
+                out.add(SelectedBlock { level, block, px_per_unit, held, ..parent });
             }
         }
     }
@@ -199,6 +205,11 @@ impl Selection {
         self.state.clear();
         self.state.resize(n, NOTHING);
         self.cols = (0..tree.levels()).map(|level| tree.size(level)[0]).collect();
+    }
+
+    /// Records of a block.
+    pub(crate) fn held(&self, held: &Held) -> &[u32] {
+        &self.records[held.records.clone()]
     }
 
     fn at(&self, level: usize, [x, y]: [usize; 2]) -> usize {

@@ -3,6 +3,7 @@
 use crate::geometry::block::{Block, Counts, Geometry, Job, cover_of};
 use crate::geometry::grid::{CELL_TRIANGLES, Nodes, ScreenExtent, cell_weights, kept_node};
 use crate::geometry::lod::{self, DecimatedHeights, NODES, SIDE};
+use crate::geometry::pass::Pass;
 use crate::geometry::refine::{Corner, Refiner};
 use crate::geometry::screen::{Row, SUB, ScreenVertex};
 use crate::geometry::select::SelectedBlock;
@@ -12,6 +13,7 @@ impl Job<'_> {
     /// A block of ground at its level of detail; `None` if nothing of it is on the image.
     pub(crate) fn terrain_block(
         &self,
+        pass: &Pass<'_>,
         hf: &Heightfield,
         sparse: &DecimatedHeights,
         chosen: &SelectedBlock,
@@ -20,6 +22,7 @@ impl Job<'_> {
         let step = 1 << chosen.level;
         let mut out = Block {
             layer: self.layer,
+            records: pass.records,
             origin,
             cells: [0, 1].map(|axis| (last[axis] - origin[axis]) / step),
             step,
@@ -29,14 +32,14 @@ impl Job<'_> {
             cover: ScreenExtent::EMPTY,
             counts: Counts::default(),
         };
-        let careful = chosen.edges || !chosen.whole || chosen.judged.contains(&true);
-        if !careful && let Some(mut nodes) = self.project_grid(hf, sparse, &out) {
+        let careful = chosen.edges || !chosen.held.whole || chosen.judged.contains(&true);
+        if !careful && let Some(mut nodes) = self.project_grid(pass, hf, sparse, &out) {
             nodes.close_seams(chosen.seam);
             out.cover = nodes.cover();
             out.counts.drawn = 2 * (out.cells[0] * out.cells[1]) as u64;
             out.geometry = Geometry::Grid(nodes);
         } else {
-            self.refine_grid(hf, &mut out, chosen);
+            self.refine_grid(pass, hf, &mut out, chosen);
         }
         let ScreenExtent { x, y, .. } = out.cover;
         let size = [self.screen.width * SUB, self.screen.height * SUB];
@@ -48,12 +51,18 @@ impl Job<'_> {
     }
 
     /// Nodes of the block on the image, if none needs clipping.
-    fn project_grid(&self, hf: &Heightfield, sparse: &DecimatedHeights, block: &Block) -> Option<Nodes> {
+    fn project_grid(
+        &self,
+        pass: &Pass<'_>,
+        hf: &Heightfield,
+        sparse: &DecimatedHeights,
+        block: &Block,
+    ) -> Option<Nodes> {
         let ([cols, rows], step) = (block.cells, block.step);
         let mut nodes = self.spare.nodes();
         nodes.reset(block.cells);
         let count = cols + 1;
-        let columns = self.pass.columns(hf, block.origin[0], step, count);
+        let columns = pass.columns(hf, block.origin[0], step, count);
         let mut whole = true;
         // All of them first: rows lie far apart in memory, and none has to wait for another.
         let mut heights = [[0.0; NODES]; NODES];
@@ -69,7 +78,7 @@ impl Job<'_> {
                     let at = [col + step * c, row];
                     if hf.node(at[0], at[1]).is_none() {
                         nodes.set(c, r, ScreenVertex::NONE);
-                    } else if let Some(image) = self.pass.ground_node(self.screen, hf, at) {
+                    } else if let Some(image) = pass.ground_node(self.screen, hf, at) {
                         nodes.set(c, r, image);
                     } else {
                         whole = false;
@@ -79,7 +88,7 @@ impl Job<'_> {
                 let part = r * count..(r + 1) * count;
                 let (x, y) = (&mut nodes.x[part.clone()], &mut nodes.y[part.clone()]);
                 let mut out = Row { x, y, q: &mut nodes.q[part] };
-                whole = self.pass.ground_row(self.screen, hf, &columns, row, &heights[..count], &mut out);
+                whole = pass.ground_row(self.screen, hf, &columns, row, &heights[..count], &mut out);
             }
             if !whole {
                 self.spare.keep(Geometry::Grid(nodes));
@@ -89,15 +98,15 @@ impl Job<'_> {
         Some(nodes)
     }
 
-    fn refine_grid(&self, hf: &Heightfield, block: &mut Block, chosen: &SelectedBlock) {
-        let mut refiner = Refiner::new(self.pass, self.screen, self.tolerance_px, self.spare.soup());
+    fn refine_grid(&self, pass: &Pass<'_>, hf: &Heightfield, block: &mut Block, chosen: &SelectedBlock) {
+        let mut refiner = Refiner::new(pass, self.screen, self.tolerance_px, self.spare.soup());
         let (cells, seam) = (block.cells, block.seam);
         let [cols, rows] = cells;
         let corners: Vec<Option<Corner>> = (0..(cols + 1) * (rows + 1))
             .map(|i| {
                 let kept = kept_node(seam, cells, [i % (cols + 1), i / (cols + 1)]);
                 let at = [0, 1].map(|axis| block.origin[axis] + block.step * kept[axis]);
-                hf.node(at[0], at[1]).map(|p| refiner.node(p, self.pass.ground_node(self.screen, hf, at)))
+                hf.node(at[0], at[1]).map(|p| refiner.node(p, pass.ground_node(self.screen, hf, at)))
             })
             .collect();
         block.counts.missed = corners.iter().flatten().filter(|c| c.is_missing()).count() as u64;

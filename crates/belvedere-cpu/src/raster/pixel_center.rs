@@ -74,7 +74,7 @@ impl<'a> PixelCenters<'a> {
     /// ground has not: the ray is followed over the cells around.
     pub(crate) fn exact(&self, found: &DrawnTriangle<'_>, near: DVec3, pixel: DVec2) -> Option<(DVec3, f32)> {
         let surface = self.surface(found)?;
-        let centers = self.of_pass(near, pixel)?;
+        let centers = self.of_pass(found.block.records, near, pixel)?;
         let settled = centers.settle(&surface, near, pixel);
         let first = match surface {
             Surface::Ground(hf) => centers.first_on(hf, settled, near, pixel),
@@ -83,11 +83,11 @@ impl<'a> PixelCenters<'a> {
         first.or(settled).map(|s| (s.p, s.depth as f32))
     }
 
-    /// The pass that draws `p` nearest to `pixel`: beside the picture, and where parts of a chain overlap, others draw it elsewhere.
-    fn of_pass(&self, p: DVec3, pixel: DVec2) -> Option<PassCenters<'a>> {
-        let all = self.passes.iter().map(|pass| PassCenters { pass, screen: self.screen });
-        if self.passes.len() == 1 {
-            return all.last();
+    /// The pass, of those that drew the surface, that draws `p` nearest to `pixel`.
+    fn of_pass(&self, [first, last]: [usize; 2], p: DVec3, pixel: DVec2) -> Option<PassCenters<'a>> {
+        let mut all = self.passes.get(first..=last)?.iter().map(|pass| PassCenters { pass, screen: self.screen });
+        if first == last {
+            return all.next();
         }
         let holding = all.filter(|c| c.pass.margins(p).iter().all(|m| *m >= 0.0));
         let off = holding.filter_map(|c| Some((c.image(p)?.0.distance_squared(pixel), c)));

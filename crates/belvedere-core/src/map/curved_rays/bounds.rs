@@ -163,6 +163,12 @@ impl CurvedRays {
         any.then_some(())
     }
 
+    /// Points, relative to the eye, whose hull contains the displaced image of the box by one record ([`CurvedRays::displace_in`]);
+    /// `None` if part of it may have none.
+    pub fn displaced_hull_in(&self, record: usize, bounds: &Aabb) -> Option<[DVec3; 16]> {
+        self.turns().get(record)?.hull(&bounds.corners(), bounds.center()).ok()
+    }
+
     /// Whether the record may displace a point of the box: its transition or the straight part after it, and before the
     /// first turn also that.
     fn may_displace(&self, record: usize, corners: &[DVec3; 8]) -> bool {

@@ -14,6 +14,7 @@ mod bounds;
 mod build;
 mod check;
 mod form;
+mod location;
 mod phi;
 mod ray;
 mod remedy;

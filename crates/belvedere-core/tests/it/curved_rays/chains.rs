@@ -2,7 +2,7 @@
 
 use super::cameras::{self, Spec, pinhole};
 use belvedere_core::map::curved_rays::{CurvedRays, Model, Pencil, Sharpness, TurnSpec};
-use belvedere_core::{DVec2, DVec3, Miss, SpaceMap, Stage, View};
+use belvedere_core::{Aabb, DVec2, DVec3, Miss, SpaceMap, Stage, View};
 use belvedere_testkit::Random;
 use belvedere_testkit::laws::Similarity;
 use glam::DQuat;
@@ -220,4 +220,49 @@ fn narrow_turns_tend_to_the_kink() {
             }
         }
     }
+}
+
+/// In a box whose records are continuous every point is past all turns before the record it belongs to, and before all later ones;
+/// no record holds a point of a box that it may not hold.
+#[test]
+fn continuous_records_part_a_box_one_behind_the_other() {
+    let mut random = Random::new(11);
+    let (mut joined, mut parted) = (0, 0);
+    let paths: Vec<Spec> = random_chains(4, Model::Modified, 30);
+    let spirals = (0..4000).filter_map(|_| random_spiral(&mut random)).take(30).collect::<Vec<_>>();
+    for spec in paths.iter().chain(&spirals) {
+        let rays = spec.rays(Model::Modified, &Similarity::IDENTITY);
+        let view = spec.view(Model::Modified, &Similarity::IDENTITY);
+        for _ in 0..200 {
+            let pixel = DVec2::new(random.range(-300.0, 1600.0), random.range(-300.0, 1000.0));
+            let Ok(seen) = view.ray(pixel).at(random.range(2.0, 900.0)) else { continue };
+            let half = DVec3::new(random.range(0.1, 60.0), random.range(0.1, 60.0), random.range(0.1, 20.0));
+            let bounds = Aabb { min: seen.point - half, max: seen.point + half };
+            let held: Vec<usize> = (0..rays.records()).filter(|&k| rays.may_hold(k, &bounds)).collect();
+            let (Some(&first), Some(&last)) = (held.first(), held.last()) else { panic!("no record holds {bounds:?}") };
+            let continuous = last - first + 1 == held.len() && rays.is_continuous(first..=last, &bounds);
+            *(if continuous && last > first { &mut joined } else { &mut parted }) += 1;
+            for _ in 0..30 {
+                let t = DVec3::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0), random.range(-1.0, 1.0));
+                let p = seen.point + t * half;
+                for k in 0..rays.records() {
+                    let holds = rays.record_margins(k, p).iter().all(|m| *m >= 0.0);
+                    assert!(!holds || held.contains(&k), "record {k} holds {p}");
+                }
+                if !continuous {
+                    continue;
+                }
+                let own = rays.record_of(first..=last, p);
+                for (k, turn) in rays.turns().iter().enumerate().take(last + 1).skip(first) {
+                    let (a, b) = (turn.a.at(p), turn.b.at(p));
+                    assert!(
+                        k >= own || (a > 0.0 && b <= 1e-12),
+                        "turn {k} is not over at {p} of record {own}: {a} {b}"
+                    );
+                    assert!(k <= own || a <= 1e-12, "turn {k} has begun at {p} of record {own}: {a} {b}");
+                }
+            }
+        }
+    }
+    assert!(joined > 300 && parted > 300, "{joined} boxes of several records, {parted} others");
 }

@@ -1,6 +1,6 @@
 //! Cameras in single precision, for many nodes of a row at a time.
 
-use crate::geometry::project::Projector;
+use crate::geometry::project::{Part, Projector};
 use crate::geometry::screen::{Row, SUB};
 use crate::simd::{Kernel, nearest};
 use belvedere_core::DVec3;
@@ -25,12 +25,12 @@ impl Form {
 
     /// What all points of a row share.
     #[inline(always)]
-    fn row(self, y: f32) -> f32 {
+    pub(super) fn row(self, y: f32) -> f32 {
         self.at_eye + self.gradient[1] * y
     }
 
     #[inline(always)]
-    fn at(self, row: f32, x: f32, z: f32) -> f32 {
+    pub(super) fn at(self, row: f32, x: f32, z: f32) -> f32 {
         (row + self.gradient[0] * x) + self.gradient[2] * z
     }
 }
@@ -55,6 +55,7 @@ trait Camera {
 
 struct Perspective<'p, 'a> {
     projector: &'p Projector<'a>,
+    part: &'p Part,
     rows: [f32; 3],
 }
 
@@ -62,7 +63,7 @@ impl Perspective<'_, '_> {
     /// View space before any turn.
     #[inline(always)]
     fn view(&self, x: f32, z: f32) -> [f32; 3] {
-        let [right, down, forward] = &self.projector.view;
+        let [right, down, forward] = &self.part.view;
         [right.at(self.rows[0], x, z), down.at(self.rows[1], x, z), forward.at(self.rows[2], x, z)]
     }
 
@@ -118,6 +119,7 @@ impl Camera for Bent<'_, '_> {
 /// Images of nodes of a row, see [`Projector::row`].
 pub(super) struct Run<'r, 'a, 'o> {
     pub(super) projector: &'r Projector<'a>,
+    pub(super) part: &'r Part,
     pub(super) x: &'r [f32],
     pub(super) y: f32,
     pub(super) heights: &'r [f32],
@@ -129,9 +131,9 @@ impl Kernel for Run<'_, '_, '_> {
 
     #[inline(always)]
     fn run(mut self) -> bool {
-        let projector = self.projector;
-        let straight = Perspective { projector, rows: projector.view.map(|f| f.row(self.y)) };
-        match (projector.ortho, &projector.bend) {
+        let (projector, part) = (self.projector, self.part);
+        let straight = Perspective { projector, part, rows: part.view.map(|f| f.row(self.y)) };
+        match (projector.ortho, &part.bend) {
             (false, None) => self.all(&straight),
             (false, Some(bend)) => {
                 let rows = [bend.a.row(self.y), bend.b.row(self.y)];

@@ -1,0 +1,100 @@
+//! Which records of a curved-ray chain draw a box, and whether they may draw it at once.
+
+use crate::geometry::pass::{InView, Pass, displaced};
+use crate::geometry::screen::Screen;
+use belvedere_core::{Aabb, Stage, View};
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// The records that may hold part of a box, as a range in a list, in order.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Held {
+    pub(crate) records: Range<usize>,
+    /// Whether they displace the whole box as one map: it is drawn once, uncut.
+    pub(crate) whole: bool,
+}
+
+/// The records of a frame.
+pub(crate) struct Locator<'a> {
+    view: &'a View,
+    pub(crate) passes: &'a [Pass<'a>],
+    pub(crate) screen: &'a Screen,
+}
+
+impl<'a> Locator<'a> {
+    /// * `passes`: one for each record.
+    pub(crate) fn new(view: &'a View, passes: &'a [Pass<'a>], screen: &'a Screen) -> Self {
+        Self { view, passes, screen }
+    }
+
+    /// All records, whatever the box.
+    pub(crate) fn all(&self, list: &mut Vec<u32>) -> Held {
+        list.clear();
+        list.extend(0..self.passes.len() as u32);
+        Held { records: 0..list.len(), whole: list.len() == 1 }
+    }
+
+    /// Which of the records that may hold part of a larger box may hold part of this one; written behind the list.
+    pub(crate) fn locate(&self, bounds: &Aabb, larger: &Held, list: &mut Vec<u32>) -> Held {
+        if self.passes.len() == 1 {
+            return larger.clone();
+        }
+        let from = list.len();
+        let Some((Stage::CurvedRays(rays), earlier)) = self.view.stages().split_last() else { return larger.clone() };
+        // Without bounds before the rays nothing is known.
+        let Some(before) = displaced(earlier, bounds) else { return Held { whole: false, ..larger.clone() } };
+        for i in larger.records.clone() {
+            if rays.may_hold(list[i] as usize, &before) {
+                list.push(list[i]);
+            }
+        }
+        let held = &list[from..];
+        let whole = held.first().zip(held.last()).is_some_and(|(&first, &last)| {
+            (last - first) as usize + 1 == held.len() && rays.is_continuous(first as usize..=last as usize, &before)
+        });
+        Held { records: from..list.len(), whole }
+    }
+
+    /// Pixels that a unit of height inside the box can make on the image, infinite where unknown; `None` if no record shows it.
+    pub(crate) fn px_per_height(&self, bounds: &Aabb, held: &[u32]) -> Option<f64> {
+        let of = |&record: &u32| {
+            let pass = &self.passes[record as usize];
+            let InView::Maybe(extent) = pass.in_view(self.screen, bounds) else { return None };
+            Some(pass.px_per_height(self.screen, bounds, extent))
+        };
+        held.iter().filter_map(of).reduce(f64::max)
+    }
+
+    /// Whether a record shows part of the box.
+    pub(crate) fn shows(&self, record: u32, bounds: &Aabb) -> bool {
+        self.passes[record as usize].in_view(self.screen, bounds) != InView::No
+    }
+}
+
+/// Passes for what records draw together.
+pub(crate) struct JoinedPasses<'a> {
+    passes: &'a [Pass<'a>],
+    joined: HashMap<[u32; 2], Pass<'a>>,
+}
+
+impl<'a> JoinedPasses<'a> {
+    /// Those for all lists of records that are drawn at once.
+    pub(crate) fn new<'l>(view: &'a View, passes: &'a [Pass<'a>], lists: impl Iterator<Item = &'l [u32]>) -> Self {
+        let mut joined = HashMap::new();
+        for ends in lists.filter_map(ends).filter(|[first, last]| first < last) {
+            joined.entry(ends).or_insert_with(|| Pass::between(view, ends.map(|k| k as usize)));
+        }
+        Self { passes, joined }
+    }
+
+    /// The one pass that draws what `records` hold, or one for each of them.
+    pub(crate) fn of<'s>(&'s self, records: &'s [u32], whole: bool) -> impl Iterator<Item = &'s Pass<'a>> {
+        let together = ends(records).filter(|_| whole).and_then(|ends| self.joined.get(&ends));
+        let each = if together.is_some() { &[] } else { records };
+        together.into_iter().chain(each.iter().map(|&record| &self.passes[record as usize]))
+    }
+}
+
+fn ends(records: &[u32]) -> Option<[u32; 2]> {
+    Some([*records.first()?, *records.last()?])
+}
