@@ -30,13 +30,13 @@ const ENGINE: &[Stop] = &[
     (0.86, [246, 178, 78], 0.95),
     (1.0, [255, 236, 196], 1.0),
 ];
-/// Bones, with a breath of skin around them.
+/// Bones, with a breath of what contrast medium fills.
 const CT_BONE: &[Stop] = &[
     (0.0, [0, 0, 0], 0.0),
-    (0.40, [172, 96, 76], 0.0),
-    (0.50, [196, 112, 88], 0.012),
-    (0.58, [224, 178, 140], 0.10),
-    (0.68, [240, 224, 196], 0.55),
+    (0.42, [172, 96, 76], 0.0),
+    (0.48, [196, 112, 88], 0.015),
+    (0.54, [224, 178, 140], 0.12),
+    (0.62, [240, 224, 196], 0.6),
     (0.85, [252, 246, 230], 0.9),
     (1.0, [255, 255, 250], 1.0),
 ];
@@ -63,13 +63,19 @@ const VESSELS: &[Stop] = &[
 const GREY: &[Stop] =
     &[(0.0, [0, 0, 0], 0.0), (0.12, [50, 50, 50], 0.0), (0.5, [150, 150, 150], 0.05), (1.0, [255, 255, 255], 0.30)];
 
+/// Window of the CT functions over values in Hounsfield units (air -1000, water 0): that of bone.
+const HOUNSFIELD: [f64; 2] = [-450.0, 1050.0];
+/// Values that reach below and above these are Hounsfield units.
+const AIR_TO_BONE: [f32; 2] = [-500.0, 500.0];
+
 /// Bins of the histogram.
 const BINS: usize = 256;
 /// Voxels that are counted at most.
 const COUNTED: usize = 1 << 21;
 
 impl TransferFunction {
-    /// A function by its name, fitted to the range of a volume's values; `None` if there is no such name, see [`TRANSFER_NAMES`].
+    /// A function by its name, fitted to the range of a volume's values, and those of CT to Hounsfield units where values are such;
+    /// `None` if there is no such name, see [`TRANSFER_NAMES`].
     pub fn named(name: &str, volume: &Volume) -> Option<Self> {
         let stops = match name {
             "auto" => return Some(Self::auto(volume)),
@@ -81,7 +87,10 @@ impl TransferFunction {
             "grey" => GREY,
             _ => return None,
         };
-        Some(of_stops(name, stops, volume.range().map(f64::from)))
+        let [lo, hi] = volume.range();
+        let is_hounsfield = lo < AIR_TO_BONE[0] && hi > AIR_TO_BONE[1];
+        let range = if name.starts_with("ct-") && is_hounsfield { HOUNSFIELD } else { [lo, hi].map(f64::from) };
+        Some(of_stops(name, stops, range))
     }
 
     /// A function that the histogram suggests: nothing of the background, what stands out from it as a solid. The background ends at
@@ -184,6 +193,18 @@ mod tests {
         });
         let f = TransferFunction::auto(&volume(values.collect()));
         assert!(f.at(36.0)[3] < 0.01 && f.at(140.0)[3] > 0.5, "{f:?}");
+    }
+
+    #[test]
+    fn hounsfield_units_are_shown_as_such_however_far_they_reach() {
+        let of = |most: i16| {
+            let values = (0..4096).map(|i| if i == 0 { most } else { -1024 + (i % 2000) as i16 }).collect();
+            let volume = Volume::new([16; 3], DMat3::IDENTITY, DVec3::ZERO, VoxelValues::I16(values)).unwrap();
+            TransferFunction::named("ct-bone", &volume).unwrap()
+        };
+        // Muscle is clear, bone is not; metal changes nothing.
+        assert!(of(1200).at(60.0)[3] == 0.0 && of(1200).at(500.0)[3] > 0.4);
+        assert_eq!(of(1200), of(32000));
     }
 
     #[test]
