@@ -174,16 +174,20 @@ pub(crate) struct InfoArgs {
 /// Terrain and features.
 #[derive(Debug, Args)]
 pub(crate) struct RevealArgs {
-    /// Terrain: GeoTIFF, .hgt, ESRI ASCII, or builtin:massif?seed=7; with --see a model: OBJ, PLY, STL, glTF, PDB, mmCIF, or a scene file
+    /// Terrain: GeoTIFF, .hgt, ESRI ASCII, or builtin:massif?seed=7; with --see a model: OBJ, PLY, STL, glTF, PDB, mmCIF, VTI, NRRD,
+    /// raw voxels, or a scene file
     #[arg(value_name = "DATA")]
     pub(crate) dem: String,
     /// Routes, areas or points: GPX, GeoJSON, shapefiles, or builtin:massif?seed=7; with --see more models
     #[arg(required_unless_present = "see")]
     pub(crate) features: Vec<String>,
-    /// What of a model must be seen: a file (by its name without ending) or layer, atoms such as "chain B", or a point x,y,z; rays
-    /// bend around what hides it
+    /// What of a model must be seen: a file (by its name without ending) or layer, atoms such as "chain B", or a point x,y,z
+    /// in scene coordinates; rays bend around what hides it
     #[arg(long, value_name = "WHAT", allow_hyphen_values = true)]
     pub(crate) see: Option<String>,
+    /// Colours and opacities of volumes with --see: auto, solid, engine, ct-bone, ct-soft, vessels, grey, or a file
+    #[arg(long, value_name = "NAME|FILE", requires = "see")]
+    pub(crate) transfer: Option<String>,
     /// Output; the record goes to OUT.png.json, straight beside bent to OUT.pair.png
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,

@@ -236,14 +236,14 @@ fn reveal_one(request: &TargetRequest, files: &RevealFiles, context: &Context) -
     let answer = reveal_target(request, &context.options(Needs::Everything, None))?;
     let written = answer.write(files, context.common.overwrite)?;
     if context.common.json {
-        let mut result = done("reveal", &written, answer.session.warnings());
+        let mut result = done("reveal", &written, &answer.warnings());
         result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
         context.print(&result)?;
     } else if !context.common.quiet {
         context.finish();
         print(&format!("{}\n", answer.summary()))?;
     }
-    context.warn(answer.session.warnings());
+    context.warn(&answer.warnings());
     context.warn(&answer.missed());
     Ok(if answer.missed().is_empty() { Goal::Reached } else { Goal::Missed })
 }
@@ -275,8 +275,15 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
             anyhow::bail!("--see bends rays; give --technique curved_rays, or leave it out");
         }
         let files = [args.dem].into_iter().chain(args.features).map(PathBuf::from).collect();
-        let mut request =
-            TargetRequest { files, see, viewpoint, fov_y_deg: args.fov, image: args.size, ..TargetRequest::default() };
+        let mut request = TargetRequest {
+            files,
+            see,
+            transfer: args.transfer,
+            viewpoint,
+            fov_y_deg: args.fov,
+            image: args.size,
+            ..TargetRequest::default()
+        };
         quality(&mut request.picture);
         return reveal_one(&request, &out, context);
     }

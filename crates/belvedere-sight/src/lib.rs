@@ -10,6 +10,7 @@ mod line;
 mod mesh_tree;
 mod obstacles;
 mod pyramid;
+mod voxels;
 
 pub use boxes::{BoxTree, UprightBox};
 pub use clip::clip_segment;
@@ -21,3 +22,4 @@ pub use line::{Edge, EdgeFamily, GridLine, floor};
 pub use mesh_tree::MeshTree;
 pub use obstacles::{Obstacles, SightOptions};
 pub use pyramid::Pyramid;
+pub use voxels::Voxels;

@@ -19,6 +19,7 @@ mod reveal;
 mod scenes;
 mod speed;
 mod terrain;
+mod volume_targets;
 mod volumes;
 
 use std::path::{Path, PathBuf};

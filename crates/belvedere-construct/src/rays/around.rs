@@ -3,7 +3,7 @@
 //! Ours, beyond the paper: its tracker steps aside to the left and right behind fixed planes; here all directions across the view
 //! and all distances of the planes are tried, and what the bend does to the rest of the picture counts against it.
 
-use super::{Sidestep, Target, TargetSight};
+use super::{Shown, Sidestep, Target, TargetSight};
 use crate::ConstructError;
 use belvedere_core::{DVec3, View};
 use belvedere_scene::{Progress, Scene, Unit};
@@ -50,6 +50,10 @@ pub struct BendReport {
     pub visible_straight: f64,
     /// Share that the answer shows.
     pub visible: f64,
+    /// Light of the target that comes through volumes along straight rays, 0..=1; it is seen from one half on.
+    pub light_straight: f64,
+    /// Most light that any bend that was tried lets through.
+    pub light_best: f64,
     /// Mean motion of the scene in the picture, shares of its height.
     pub motion: f64,
     /// Bends that were tried.
@@ -62,6 +66,7 @@ struct Candidate {
     view: View,
     sidestep: Sidestep,
     share: f64,
+    light: f64,
     motion: f64,
 }
 
@@ -83,9 +88,16 @@ pub fn bend_around(
     progress: &Progress,
 ) -> Result<BendFound, ConstructError> {
     let sight = TargetSight::new(scene, target);
-    let visible_straight = sight.share(base, 0.0);
+    let Shown { share: visible_straight, light: light_straight } = sight.shown(base, 0.0);
     let straight = sight.share(base, options.grow_px);
-    let mut report = BendReport { visible_straight, visible: visible_straight, motion: 0.0, tried: 0 };
+    let mut report = BendReport {
+        visible_straight,
+        visible: visible_straight,
+        light_straight,
+        light_best: light_straight,
+        motion: 0.0,
+        tried: 0,
+    };
     let pinhole = base.pinhole();
     let center = base.displace(target.center()).map_or(target.center(), |d| d.point);
     let depth = (center - pinhole.eye).dot(pinhole.forward);
@@ -117,6 +129,7 @@ pub fn bend_around(
         let found = possible.into_par_iter().filter_map(|s| candidate(base, s, center, options, &sight, &rest));
         let found: Vec<Candidate> = found.collect();
         for next in found {
+            report.light_best = report.light_best.max(next.light);
             if best.as_ref().is_none_or(|b| next.score() > b.score()) {
                 best = Some(next);
             }
@@ -140,8 +153,8 @@ fn candidate(
 ) -> Option<Candidate> {
     let turned = if options.may_turn { turned(base, &sidestep, center)? } else { base.clone() };
     let view = sidestep.view(&turned).ok()?;
-    let share = sight.share(&view, options.grow_px);
-    Some(Candidate { motion: motion(base, &view, rest), view, sidestep, share })
+    let Shown { share, light } = sight.shown(&view, options.grow_px);
+    Some(Candidate { motion: motion(base, &view, rest), view, sidestep, share, light })
 }
 
 /// `base` turned towards the point through which the ray to `center` leaves the bend.

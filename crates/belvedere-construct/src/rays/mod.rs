@@ -13,5 +13,5 @@ mod tracking;
 pub use around::{AroundOptions, BendFound, BendReport, bend_around};
 pub use preview::{Lens, PathPreview, PreviewReport, Previewed};
 pub use sidestep::Sidestep;
-pub use target::{Target, TargetSight};
+pub use target::{Shown, Target, TargetSight};
 pub use tracking::{Tracked, TrackingMemory, TrackingOptions, TrackingReport, track_target};

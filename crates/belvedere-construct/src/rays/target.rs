@@ -2,7 +2,7 @@
 
 use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{LayerKind, Scene};
-use belvedere_sight::{Obstacles, SightOptions};
+use belvedere_sight::{Obstacles, SightOptions, Voxels};
 
 /// Points per edge of the box of a target.
 const LATTICE: usize = 3;
@@ -22,6 +22,8 @@ pub struct Target {
 
 /// Balls that are looked at, at most.
 const MOST_BALLS: usize = 64;
+/// Light through volumes from which on a point is seen: as much as makes a pixel show what lies behind them.
+const SEEN: f64 = 0.5;
 
 impl Target {
     /// A whole layer, by its index, as the paper's box: points all over its surface. `None` if the layer has no extent in space
@@ -38,6 +40,10 @@ impl Target {
                 Some(Self::points(l.features.iter().flat_map(|f| &f.points).map(|&p| p + l.lift_m * DVec3::Z)))
             }
             LayerKind::Point(l) => Some(Self::points(l.features.iter().map(|f| f.position + l.lift_m * DVec3::Z))),
+            LayerKind::Volume(layer) => {
+                let points = layer.visible_voxels(MOST_BALLS);
+                (!points.is_empty()).then(|| Self { own_layers: vec![index], ..Self::points(points) })
+            }
             _ => Some(Self { own_layers: vec![index], ..Self::around(bounds) }),
         }
     }
@@ -82,10 +88,21 @@ impl Target {
     }
 }
 
-/// How much views show of a target, by lines of sight along their rays past everything else in the scene.
+/// What a view shows of a target.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shown {
+    /// Share of its points that are in the picture and seen, 0..=1.
+    pub share: f64,
+    /// Light that comes from them, 0..=1: the mean of what volumes let through, nothing from points behind other things.
+    pub light: f64,
+}
+
+/// How much views show of a target, by lines of sight along their rays past everything else in the scene. Volumes hide a point where
+/// they absorb more than half of its light.
 pub struct TargetSight<'a> {
     target: &'a Target,
     obstacles: Obstacles<'a>,
+    voxels: Voxels<'a>,
     sight: SightOptions,
 }
 
@@ -98,28 +115,44 @@ impl<'a> TargetSight<'a> {
         let whole = if bounds.is_empty() { 0.0 } else { (bounds.max - bounds.min).length() };
         let chord_m = (1e-3 * extent).max(2e-5 * whole) + 0.05 * cell;
         let sight = SightOptions { chord_m, cap_m: 0.0, guard_m: 1.5 * cell };
-        Self { target, obstacles: Obstacles::without(scene, &target.own_layers), sight }
+        let voxels = Voxels::without(scene, &target.own_layers);
+        Self { target, obstacles: Obstacles::without(scene, &target.own_layers), voxels, sight }
     }
 
     /// Share of the target's points that are in the picture and seen, 0..=1.
     ///
     /// * `grow_px`: the points are pushed apart sideways and upwards in the picture by so much first, pixels.
     pub fn share(&self, view: &View, grow_px: f64) -> f64 {
-        let points = &self.target.points;
-        let seen = points.iter().filter(|p| self.is_seen(view, **p, grow_px)).count();
-        seen as f64 / points.len().max(1) as f64
+        self.shown(view, grow_px).share
     }
 
-    fn is_seen(&self, view: &View, p: DVec3, grow_px: f64) -> bool {
+    /// What the view shows of the target; `grow_px` as in [`TargetSight::share`].
+    pub fn shown(&self, view: &View, grow_px: f64) -> Shown {
+        let points = &self.target.points;
+        let (mut seen, mut sum) = (0, 0.0);
+        for p in points {
+            let light = self.light(view, *p, grow_px);
+            seen += usize::from(light >= SEEN);
+            sum += light;
+        }
+        let count = points.len().max(1) as f64;
+        Shown { share: seen as f64 / count, light: sum / count }
+    }
+
+    /// Light that comes from a point.
+    fn light(&self, view: &View, p: DVec3, grow_px: f64) -> f64 {
         let p = self.grown(view, p, grow_px);
-        let Ok(image) = view.project(p) else { return false };
+        let Ok(image) = view.project(p) else { return 0.0 };
         let pinhole = view.pinhole();
         let in_range = image.depth >= pinhole.near && pinhole.far.is_none_or(|far| image.depth <= far);
         if !in_range || image.folded || !pinhole.contains(image.pixel) {
-            return false;
+            return 0.0;
         }
         let (p, depth) = self.front(view, p, image.pixel, image.depth);
-        self.obstacles.clearance(view, (p, 0.0), (image.pixel, depth), &self.sight) >= 0.0
+        if self.obstacles.clearance(view, (p, 0.0), (image.pixel, depth), &self.sight) < 0.0 {
+            return 0.0;
+        }
+        self.voxels.light(view, image.pixel, depth)
     }
 
     /// Where the ray to the middle of a ball meets the ball, and its depth there.

@@ -4,9 +4,10 @@
 //! length, one sample in the middle of each, weighed by the chord of its step. Nothing is tabulated or skipped.
 
 use super::light::{SURFACE, light};
-use super::table::{absorbed, light_and_opacity};
+use super::table::light_and_opacity;
 use super::{ENOUGH, Gathered, HALF};
 use belvedere_core::{DVec2, DVec3, RayPath, View};
+use belvedere_scene::volume::absorbed;
 use belvedere_scene::{VolumeLayer, VolumeModel};
 use glam::Vec3A;
 

@@ -1,24 +1,17 @@
 //! Transfer functions tabulated: linear light and the opacity of one step, by value.
 
 use crate::shade::color::{Rgb, linear_of};
+use belvedere_scene::volume::absorbed;
 use belvedere_scene::{TransferFunction, VolumeLayer};
 
 /// Entries: enough that a ramp over a hundredth of the range has forty.
 pub(super) const ENTRIES: usize = 4096;
 
-/// Opacities above this would let powers lose all digits; a step of it lets a millionth through.
-const MOST_OPAQUE: f64 = 1.0 - 1e-6;
-
 /// Light of a value (linear red, green, blue) and what a reference step absorbs.
 pub(super) fn light_and_opacity(transfer: &TransferFunction, value: f64) -> ([f32; 3], f64) {
-    let [r, g, b, opacity] = transfer.at(value);
+    let [r, g, b, _] = transfer.at(value);
     let rgb: Rgb = linear_of([r, g, b].map(|c| c as f32));
-    (rgb.to_array(), opacity.min(MOST_OPAQUE))
-}
-
-/// What a distance absorbs, in units of the reference step.
-pub(super) fn absorbed(opacity: f64, steps: f64) -> f64 {
-    1.0 - (1.0 - opacity).powf(steps)
+    (rgb.to_array(), transfer.opacity(value))
 }
 
 /// Colour and opacity by value.

@@ -7,7 +7,11 @@ use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{CurvedRays, DMat3, DVec2, DVec3, EarthCurvature, Pinhole, Projection, SplineBend, Stage, View};
-use belvedere_scene::{Color, TransferFunction, TransferPoint, Volume, VolumeLayer, VolumeModel, VoxelValues};
+use belvedere_scene::{
+    Color, Crs, Layer, LayerKind, Scene, TransferFunction, TransferPoint, Unit, Volume, VolumeLayer, VolumeModel,
+    VoxelValues,
+};
+use belvedere_sight::Voxels;
 
 const IMAGE: [u32; 2] = [64, 48];
 
@@ -285,4 +289,29 @@ fn what_lies_behind_a_surface_is_not_gathered_and_places_are_seen_where_they_are
         }
     }
     assert!(halves > 100, "{halves}");
+}
+
+#[test]
+fn lines_of_sight_let_through_what_the_picture_does() {
+    let mut layer = colors(wavy(|v| VoxelValues::U8(v.into_iter().map(|v| (255.0 * v) as u8).collect())));
+    layer.transfer = TransferFunction::new("thin", layer.transfer.points().to_vec(), 8.0).unwrap();
+    let kind = LayerKind::Volume(layer.clone());
+    let layers = vec![Layer { id: "wavy".into(), must_see: false, kind }];
+    let scene = Scene { title: String::new(), crs: Crs::Local, unit: Unit::Voxel, layers };
+    let voxels = Voxels::without(&scene, &[]);
+    let (mut dim, mut worst) = (0, 0.0f64);
+    for (name, view) in views() {
+        for (pixel, depth) in pixels().zip([120.0, 135.0, 150.0, 300.0].into_iter().cycle()) {
+            let centre = DVec2::new(pixel[0] as f64 + 0.5, pixel[1] as f64 + 0.5);
+            let Ok(point) = view.ray(centre).at(depth) else { continue };
+            // To within an edge of a voxel of the point, which does not hide itself.
+            let before = view.ray(centre).at(depth - 1e-3).map_or(1.0, |p| p.point.distance(point.point) / 1e-3);
+            let want = 1.0 - f64::from(exact(&view, &layer, pixel, depth - layer.volume.voxel_edge() / before).alpha);
+            let off = (voxels.light(&view, centre, depth) - want).abs();
+            assert!(off < 0.02, "{name} {pixel:?} {depth}: off by {off} of {want}");
+            worst = worst.max(off);
+            dim += u32::from(want > 0.1 && want < 0.9);
+        }
+    }
+    assert!(dim > 80, "{dim} are neither light nor dark; worst {worst}");
 }

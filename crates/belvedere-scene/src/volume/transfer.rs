@@ -5,6 +5,9 @@ use crate::Color;
 /// Most points of a transfer function.
 const MOST_POINTS: usize = 4096;
 
+/// Opacities above this would let powers lose all digits; a reference step of it lets a millionth through.
+const MOST_OPAQUE: f64 = 1.0 - 1e-6;
+
 /// A value with its colour and opacity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TransferPoint {
@@ -130,6 +133,22 @@ impl TransferFunction {
             (None, None) => [0.0; 4],
         }
     }
+
+    /// Opacity of a value, below 1 so that what it lets through can be multiplied.
+    pub fn opacity(&self, value: f64) -> f64 {
+        self.at(value)[3].min(MOST_OPAQUE)
+    }
+
+    /// Greatest opacity of the values from `lo` to `hi`, both included.
+    pub fn most_opaque(&self, lo: f64, hi: f64) -> f64 {
+        let between = self.points.iter().filter(|p| p.value >= lo && p.value <= hi).map(|p| p.opacity);
+        between.fold(self.opacity(lo).max(self.opacity(hi)), f64::max)
+    }
+}
+
+/// What a distance absorbs, in units of the reference step: `1 - (1 - opacity)^steps`.
+pub fn absorbed(opacity: f64, steps: f64) -> f64 {
+    1.0 - (1.0 - opacity).powf(steps)
 }
 
 #[cfg(test)]
@@ -149,6 +168,8 @@ mod tests {
         assert_eq!(f.at(20.0)[3], 1.0);
         assert_eq!(f.at(25.0)[3], 0.5);
         assert_eq!(f.at(99.0), [0.2, 0.2, 0.2, 0.0]);
+        assert!((f.opacity(20.0) - (1.0 - 1e-6)).abs() < 1e-12);
+        assert_eq!([f.most_opaque(12.0, 14.0), f.most_opaque(12.0, 20.0), f.most_opaque(25.0, 40.0)], [0.2, 1.0, 0.5]);
     }
 
     #[test]

@@ -52,6 +52,7 @@ pub(crate) fn draw(
         areas: session.areas().to_vec(),
         disocclusion: session.terrain_report().filter(|_| !request.straight).cloned(),
         constructor: session.constructor_report().filter(|_| !request.straight).cloned(),
+        target: None,
         view: ViewRecord::of(&view),
         scene: session.resolved().cloned(),
         title: session.scene().title.clone(),

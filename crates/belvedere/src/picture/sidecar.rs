@@ -6,6 +6,7 @@ use super::volume_record::VolumeRecord;
 use crate::record::{AreaRecord, InputFile, ViewRecord};
 use crate::resolve::constructor::ConstructorReport;
 use crate::scene_file::Document;
+use crate::verbs::target_place::TargetPlace;
 use belvedere_core::View;
 use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::{Crs, Frame, FrameStats, Heightfield, Layer, LayerKind, NodeState, Scene, Unit};
@@ -115,6 +116,9 @@ pub struct Sidecar {
     /// What the constructor of curved rays came to; `None` if the scene has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub constructor: Option<ConstructorReport>,
+    /// The point that the picture was made to show.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub target: Option<TargetPlace>,
     /// The camera in numbers.
     pub view: ViewRecord,
     /// The resolved scene: opens to the same view; `None` for one that was made in memory.

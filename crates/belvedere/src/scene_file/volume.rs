@@ -45,6 +45,26 @@ pub struct VolumeDoc {
     pub big_endian: Option<bool>,
 }
 
+impl VolumeDoc {
+    /// A file in the usual style.
+    pub(crate) fn of(id: String, source: &str) -> Self {
+        Self {
+            id,
+            source: source.to_owned(),
+            array: None,
+            transfer: auto(),
+            must_see: false,
+            step: half(),
+            shading: VolumeModel::default(),
+            transform: None,
+            dims: None,
+            sample_type: None,
+            spacing: None,
+            big_endian: None,
+        }
+    }
+}
+
 fn auto() -> String {
     "auto".into()
 }

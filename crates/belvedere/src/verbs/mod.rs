@@ -10,3 +10,4 @@ pub mod pick;
 pub mod points;
 pub mod reveal;
 pub mod reveal_target;
+pub mod target_place;

@@ -1,9 +1,12 @@
 //! `reveal --see`: models in, a picture in which one thing of them is visible out, by rays that bend around what hides it.
 
+use super::target_place::{self, TargetPlace};
 use crate::output::{self, document_toml, pretty};
 use crate::picture::{Picture, PictureOptions};
 use crate::resolve::rays::sidestep_stage;
-use crate::scene_file::{CameraDoc, Document, LayerDoc, MeshDoc, MoleculeDoc, PointDoc, SourceDocument, StageDoc};
+use crate::scene_file::{
+    CameraDoc, Document, LayerDoc, MeshDoc, MoleculeDoc, PointDoc, SourceDocument, StageDoc, VolumeDoc,
+};
 use crate::verbs::reveal::{RevealFiles, Viewpoint};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::rays::{AroundOptions, BendReport, Sidestep, Target, bend_around};
@@ -27,11 +30,13 @@ const ENOUGH: f64 = 0.99;
 /// What to show, and from where.
 #[derive(Debug, Clone, Default)]
 pub struct TargetRequest {
-    /// Models (meshes, molecules) or one scene file.
+    /// Models (meshes, molecules, volumes) or one scene file.
     pub files: Vec<PathBuf>,
     /// What must be seen: the id of a layer (files are called by their name without its ending), atoms such as `chain B`, or a point
-    /// `x,y,z`.
+    /// `x,y,z`, scene coordinates.
     pub see: String,
+    /// Transfer function of volumes that are files: a name or a file; `auto` if left out.
+    pub transfer: Option<String>,
     /// Where to look from; chosen if left out, or the camera of the scene file.
     pub viewpoint: Option<Viewpoint>,
     /// Full vertical field of view, degrees.
@@ -53,6 +58,8 @@ pub struct TargetAnswer {
     pub report: BendReport,
     /// What was looked for.
     pub see: String,
+    /// Where that is, if it is a point.
+    pub place: Option<TargetPlace>,
 }
 
 /// Chooses a view (unless given) and the smallest bend that shows what is looked for, and draws both pictures.
@@ -66,11 +73,14 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
     }
     let session = open(request, options)?;
     let target = target(session.scene(), &request.see)?;
+    let place = target_place::point(&request.see).map(|p| TargetPlace::of(session.scene(), p));
     let views = views(&session, request, fov_y_deg)?;
     let around = AroundOptions::default();
     let mut best: Option<(View, Option<Sidestep>, BendReport)> = None;
+    let (mut tried, mut light_best) = (0, 0.0f64);
     for view in views {
         let found = bend_around(session.scene(), &view, &target, &around, &options.progress)?;
+        (tried, light_best) = (tried + found.report.tried, light_best.max(found.report.light_best));
         let score = |r: &BendReport| r.visible - 0.1 * r.motion;
         if best.as_ref().is_none_or(|(.., b)| score(&found.report) > score(b) + 0.02) {
             best = Some((view, found.bent.map(|(_, sidestep)| sidestep), found.report));
@@ -82,6 +92,7 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
     let Some((view, sidestep, report)) = best else {
         return Err(BelvedereError::Target("there is no view to look from".into()));
     };
+    let report = BendReport { tried, light_best, ..report };
     let session = session.with_document(document(&session, &view, sidestep.as_ref(), &target)?, None)?;
     let pair = PictureOptions {
         compare: true,
@@ -89,8 +100,12 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
         progress: options.progress.clone(),
         ..request.picture.clone()
     };
-    let picture = session.render(&pair)?;
-    Ok(TargetAnswer { session, picture, report, see: request.see.clone() })
+    let mut picture = session.render(&pair)?;
+    if let Some(place) = &place {
+        place.mark(&mut picture, &report);
+    }
+    picture.sidecar.target.clone_from(&place);
+    Ok(TargetAnswer { session, picture, report, see: request.see.clone(), place })
 }
 
 /// The layers, behind any camera.
@@ -99,6 +114,11 @@ fn open(request: &TargetRequest, options: &OpenOptions) -> Result<Session, Belve
     if let [file] = &request.files[..]
         && is_scene(file)
     {
+        if request.transfer.is_some() {
+            return Err(BelvedereError::Target(
+                "a scene file states its transfer functions itself; leave --transfer out".into(),
+            ));
+        }
         return Session::open(file, options);
     }
     let mut options = options.clone();
@@ -112,6 +132,9 @@ fn open(request: &TargetRequest, options: &OpenOptions) -> Result<Session, Belve
         options.allow_roots.extend(path.parent().map(Path::to_owned));
         layers.push(layer(&path, &layers)?);
     }
+    if let Some(transfer) = &request.transfer {
+        target_place::set_transfer(&mut layers, transfer, &mut options)?;
+    }
     for layer in &mut layers {
         if let LayerDoc::Molecule(molecule) = layer
             && Selection::parse(&request.see).is_ok()
@@ -121,6 +144,7 @@ fn open(request: &TargetRequest, options: &OpenOptions) -> Result<Session, Belve
     }
     let unit = match layers.first() {
         Some(LayerDoc::Molecule(_)) => Unit::Angstrom,
+        Some(LayerDoc::Volume(_)) => Unit::Voxel,
         _ => Unit::Metre,
     };
     let camera = CameraDoc::looking(DVec3::new(0.0, -1.0, 0.0), DVec3::ZERO);
@@ -141,22 +165,21 @@ fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
     let id = id.unwrap_or_default();
     match file.rsplit('.').next().unwrap_or_default() {
         _ if builtin && stem == "dna" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
+        _ if builtin && stem == "engine" => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
         _ if builtin => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
         "pdb" | "ent" | "cif" | "mmcif" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
         "obj" | "ply" | "stl" | "gltf" | "glb" => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
+        "vti" | "nrrd" | "nhdr" | "raw" => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
         _ => Err(BelvedereError::Target(format!(
-            "{name} is no model that can be looked into; give meshes (OBJ, PLY, STL, glTF), molecules (PDB, mmCIF) or a scene file; for an elevation model give its features instead of --see"
+            "{name} is no model that can be looked into; give meshes (OBJ, PLY, STL, glTF), molecules (PDB, mmCIF), volumes (VTI, NRRD, raw) or a scene file; for an elevation model give its features instead of --see"
         ))),
     }
 }
 
 /// What must be seen.
 fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError> {
-    let numbers: Vec<f64> = see.split(',').filter_map(|n| n.trim().parse().ok()).collect();
-    if let [x, y, z] = numbers[..]
-        && see.split(',').count() == 3
-    {
-        return Ok(Target::points([DVec3::new(x, y, z)]));
+    if let Some(point) = target_place::point(see) {
+        return Ok(Target::points([point]));
     }
     if let Some(index) = scene.layers.iter().position(|l| l.id == see) {
         return Target::layer(scene, index).ok_or_else(|| {
@@ -212,7 +235,7 @@ fn views(session: &Session, request: &TargetRequest, fov_y_deg: f64) -> Result<V
     if is_scene_file {
         return Ok(vec![session.view().straightened()]);
     }
-    around(&scene.bounds(), image, lens, PITCH[usize::from(scene.unit != Unit::Metre)])
+    around(&target_place::visible_bounds(scene), image, lens, PITCH[usize::from(scene.unit != Unit::Metre)])
 }
 
 /// Views that hold everything, from all around.
@@ -227,7 +250,8 @@ fn around(bounds: &Aabb, image: [u32; 2], lens: Projection, pitch_deg: f64) -> R
     let view = |heading: &f64| {
         let ((sin, cos), (down, ahead)) = (heading.to_radians().sin_cos(), pitch_deg.to_radians().sin_cos());
         let forward = DVec3::new(sin * ahead, cos * ahead, -down);
-        let near = (distance - 1.5 * radius).max(1e-3 * distance);
+        // Rays may bend long before they come to the model.
+        let near = 0.02 * distance;
         Ok(View::straight(Pinhole::look_at(center - distance * forward, center, DVec3::Z, lens, image, near, None)?))
     };
     HEADINGS.iter().map(view).collect()
@@ -259,17 +283,39 @@ fn document(
 struct TargetReport<'a> {
     program: &'a str,
     see: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    target: &'a Option<TargetPlace>,
     #[serde(flatten)]
     report: BendReport,
     view: &'a crate::record::ViewRecord,
     inputs: &'a [crate::record::InputFile],
-    warnings: &'a [String],
+    warnings: Vec<String>,
 }
 
 impl TargetAnswer {
-    /// One sentence: visible share straight and bent.
+    /// One sentence: visible share straight and bent, and the place of a point.
     pub fn summary(&self) -> String {
-        let BendReport { visible_straight, visible, tried, .. } = self.report;
+        let place = self.place.as_ref().map_or_else(String::new, |p| format!("; {p}"));
+        self.shares() + &place
+    }
+
+    fn shares(&self) -> String {
+        let BendReport { visible_straight, visible, light_straight, light_best, tried, .. } = self.report;
+        if tried > 0 && visible < ENOUGH && visible <= visible_straight {
+            let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+            let light = match self.has_volumes() {
+                true => format!(
+                    "; {} of its light comes through straight, {} at best by a bend, half is needed",
+                    percent(light_straight),
+                    percent(light_best)
+                ),
+                false => String::new(),
+            };
+            return format!(
+                "no bend of {tried} shows more than the straight picture, {}{light}",
+                percent(visible_straight)
+            );
+        }
         if tried == 0 || visible <= visible_straight {
             return format!("visible without any bend: {:.0} %", 100.0 * visible_straight);
         }
@@ -280,12 +326,21 @@ impl TargetAnswer {
         )
     }
 
+    fn has_volumes(&self) -> bool {
+        self.session.scene().layers.iter().any(|l| matches!(l.kind, LayerKind::Volume(_)))
+    }
+
+    /// What was odd.
+    pub fn warnings(&self) -> Vec<String> {
+        self.session.warnings().iter().cloned().chain(self.place.as_ref().and_then(TargetPlace::warning)).collect()
+    }
+
     /// Goals that were missed, one sentence each.
     pub fn missed(&self) -> Vec<String> {
         let missed = self.report.visible < ENOUGH;
         let text =
             || format!("{:.0} % of what was looked for is visible, 99 % were wanted", 100.0 * self.report.visible);
-        missed.then(text).into_iter().collect()
+        missed.then(text).into_iter().chain(self.place.iter().filter(|_| missed).filter_map(TargetPlace::why)).collect()
     }
 
     /// Writes the bent picture with its record, the pair (`OUT.pair.png`), and whatever else is asked for.
@@ -311,10 +366,11 @@ impl TargetAnswer {
             let report = TargetReport {
                 program: &sidecar.program,
                 see: &self.see,
+                target: &self.place,
                 report: self.report,
                 view: &sidecar.view,
                 inputs: &sidecar.inputs,
-                warnings: self.session.warnings(),
+                warnings: self.warnings(),
             };
             output::write_text(path, &pretty(&report)?, overwrite)?;
             written.push(path.clone());
