@@ -26,7 +26,7 @@ pub fn church() -> Result<(Scene, SuggestedCamera), BuiltinError> {
     builder.apse();
     builder.tower();
     let mesh = Mesh::new(&builder.positions, builder.triangles, MeshColors::PerTriangle(builder.colors))?;
-    let kind = LayerKind::Mesh(MeshLayer { mesh, color: WALL });
+    let kind = LayerKind::Mesh(MeshLayer::new(mesh, WALL));
     let layers = vec![Layer { id: "church".into(), must_see: false, kind }];
     let title = "A church".to_owned();
     let (eye, look_at) = (DVec3::new(80.0, -120.0, 55.0), DVec3::new(0.0, 0.0, 24.0));

@@ -48,9 +48,12 @@ fn of_boxes(layer: &BoxLayer) -> Vec<[DVec3; 3]> {
 }
 
 fn of_mesh(layer: &MeshLayer) -> (String, Vec<[DVec3; 3]>) {
-    let mesh = &layer.mesh;
-    let triangles = (0..mesh.triangles().len()).map(|t| mesh.corners(t));
-    (String::new(), triangles.collect())
+    let (mesh, wanted) = (&layer.mesh, layer.wanted.as_ref());
+    let is_wanted = |t: &usize| wanted.is_none_or(|w| mesh.part(*t).is_some_and(|part| w.contains(&part)));
+    let triangles = (0..mesh.triangles().len()).filter(is_wanted).map(|t| mesh.corners(t));
+    let names: Vec<&str> =
+        wanted.into_iter().flatten().filter_map(|&part| layer.names.get(part as usize)).map(String::as_str).collect();
+    (names.join(", "), triangles.collect())
 }
 
 fn of_molecule(layer: &MoleculeLayer) -> (String, Vec<[DVec3; 3]>) {

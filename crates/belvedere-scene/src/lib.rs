@@ -16,6 +16,7 @@ pub mod progress;
 pub mod ramp;
 pub mod scene;
 pub mod sea;
+pub mod texture;
 pub mod volume;
 
 pub use cell::CellTriangle;
@@ -35,6 +36,7 @@ pub use progress::{Cancelled, Progress};
 pub use ramp::{Ramp, RampHeight, RampStop};
 pub use scene::{Crs, Scene, Unit};
 pub use sea::Sea;
+pub use texture::{Texture, Texturing, Wrap};
 pub use volume::{
     Bricks, TransferError, TransferFunction, TransferPoint, Volume, VolumeError, VolumeLayer, VolumeModel, VoxelValues,
 };

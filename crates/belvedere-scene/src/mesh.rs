@@ -1,8 +1,9 @@
 //! Triangle meshes.
 
 use belvedere_core::{Aabb, DVec3};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
+use crate::texture::Texturing;
 use crate::{Color, Placement};
 
 /// Colours of a mesh.
@@ -29,6 +30,8 @@ pub struct Mesh {
     parts: Vec<u32>,
     /// Share of the light from all around that reaches each vertex, 255 = all; empty = not known.
     openness: Vec<u8>,
+    /// Pictures on it.
+    texturing: Option<Texturing>,
 }
 
 /// Vertices and triangles that make no mesh.
@@ -97,6 +100,20 @@ impl Mesh {
         colors: MeshColors,
         parts: Vec<u32>,
     ) -> Result<Self, MeshError> {
+        Self::textured(positions, triangles, colors, parts, None)
+    }
+
+    /// [`Mesh::in_parts`] that wears pictures, which multiply its colours; without parts if `parts` is empty.
+    ///
+    /// # Errors
+    /// [`MeshError`].
+    pub fn textured(
+        positions: &[DVec3],
+        triangles: Vec<[u32; 3]>,
+        colors: MeshColors,
+        parts: Vec<u32>,
+        texturing: Option<Texturing>,
+    ) -> Result<Self, MeshError> {
         for (what, count) in [("vertices", positions.len()), ("triangles", triangles.len())] {
             if count > Self::MAX {
                 return Err(MeshError::TooMany { what, count });
@@ -120,10 +137,16 @@ impl Mesh {
         if !parts.is_empty() && parts.len() != triangles.len() {
             return Err(MeshError::Count { what: "numbers of parts", found: parts.len(), expected: triangles.len() });
         }
+        if let Some(t) = &texturing {
+            for found in [t.of_triangle.len(), t.corners.len()].into_iter().filter(|n| *n != triangles.len()) {
+                return Err(MeshError::Count { what: "places in pictures", found, expected: triangles.len() });
+            }
+        }
         let bounds = Aabb::of(positions.iter().copied());
         let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.center().round() };
         let positions = positions.iter().map(|&p| (p - origin).as_vec3()).collect();
-        let mut mesh = Self { origin, positions, triangles, normals: None, colors, parts, openness: Vec::new() };
+        let mut mesh =
+            Self { origin, positions, triangles, normals: None, colors, parts, openness: Vec::new(), texturing };
         mesh.drop_degenerate();
         Ok(mesh)
     }
@@ -178,6 +201,12 @@ impl Mesh {
         }
         let mut keep = kept.iter();
         self.parts.retain(|_| keep.next() == Some(&true));
+        if let Some(t) = &mut self.texturing {
+            let mut keep = kept.iter();
+            t.of_triangle.retain(|_| keep.next() == Some(&true));
+            let mut keep = kept.iter();
+            t.corners.retain(|_| keep.next() == Some(&true));
+        }
     }
 
     /// Number of the part that a triangle belongs to; `None` if the mesh has no parts.
@@ -258,6 +287,22 @@ impl Mesh {
         }
     }
 
+    /// [`Mesh::color_at`] times what the triangle's picture shows there.
+    ///
+    /// * `footprint`: side of the square that is seen as one colour, scene units.
+    pub fn surface_color_at(&self, triangle: usize, weights: [f64; 3], footprint: f64) -> Option<Color> {
+        let own = self.color_at(triangle, weights);
+        let Some((texture, corners)) = self.texturing.as_ref().and_then(|t| t.of(triangle)) else { return own };
+        let place = corners.iter().zip(weights).fold(Vec2::ZERO, |sum, (c, w)| sum + w as f32 * *c);
+        let [width, height] = texture.size().map(|n| n as f32);
+        let [a, b] = [corners[1] - corners[0], corners[2] - corners[0]].map(|e| e * Vec2::new(width, height));
+        let [p, q, r] = self.corners(triangle);
+        let area = (q - p).cross(r - p).length();
+        let pixels_per_unit = (f64::from(a.perp_dot(b).abs()) / area.max(f64::MIN_POSITIVE)).sqrt();
+        let texel = texture.at(place, (pixels_per_unit * footprint) as f32);
+        Some(own.map_or(texel, |own| own.times(texel)))
+    }
+
     /// Weights of a triangle's corners at a point of its plane; they sum to 1.
     pub fn weights_at(&self, triangle: usize, p: DVec3) -> [f64; 3] {
         let [a, b, c] = self.corners(triangle);
@@ -282,6 +327,30 @@ pub struct MeshLayer {
     pub mesh: Mesh,
     /// Colour where the mesh has none of its own.
     pub color: Color,
+    /// Names of its parts, as paths through the file: `town/church`; a triangle's part ([`Mesh::part`]) is an index into them.
+    pub names: Vec<String>,
+    /// The parts that `must_see` means; `None` = the whole mesh.
+    pub wanted: Option<Vec<u32>>,
+}
+
+impl MeshLayer {
+    /// A mesh without names.
+    pub fn new(mesh: Mesh, color: Color) -> Self {
+        Self { mesh, color, names: Vec::new(), wanted: None }
+    }
+
+    /// Numbers of the parts whose path has a step of this name, or is it; capitals do not matter.
+    pub fn parts_named(&self, name: &str) -> Vec<u32> {
+        let is =
+            |path: &str| path.eq_ignore_ascii_case(name) || path.split('/').any(|step| step.eq_ignore_ascii_case(name));
+        self.names.iter().enumerate().filter(|(_, path)| is(path)).map(|(i, _)| i as u32).collect()
+    }
+
+    /// Name of the part that a triangle belongs to; `None` if it has none.
+    pub fn name_of(&self, triangle: usize) -> Option<&str> {
+        let name = self.names.get(self.mesh.part(triangle)? as usize)?;
+        Some(name.as_str()).filter(|name| !name.is_empty())
+    }
 }
 
 #[cfg(test)]

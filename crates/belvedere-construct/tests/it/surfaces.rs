@@ -62,7 +62,7 @@ fn a_mesh_is_seen_like_the_box_it_draws() {
     let faces =
         [[4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4], [1, 3, 7], [1, 7, 5], [3, 2, 6], [3, 6, 7], [2, 0, 4], [2, 4, 6]];
     let mesh = Mesh::new(&shape.corners(), faces.to_vec(), MeshColors::Layer).expect("well formed");
-    let mesh = layer("block", true, LayerKind::Mesh(MeshLayer { mesh, color: shape.color }));
+    let mesh = layer("block", true, LayerKind::Mesh(MeshLayer::new(mesh, shape.color)));
     let view = View::straight(pinhole([14.0, -14.0, 14.0]));
     let (of_mesh, of_box) = (measured(vec![mesh], &view), measured(vec![layer("block", true, boxes(&[shape]))], &view));
     assert!((of_mesh.total - of_box.total).abs() < 1e-6);

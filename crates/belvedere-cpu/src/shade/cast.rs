@@ -161,7 +161,7 @@ mod tests {
         let LayerKind::Boxes(b) = tower() else { panic!("boxes") };
         let triangles = crate::geometry::box_blocks::BOX_TRIANGLES.map(|t| t.map(|k| k as u32)).to_vec();
         let mesh = Mesh::new(&b.boxes[0].corners(), triangles, MeshColors::Layer).unwrap();
-        LayerKind::Mesh(MeshLayer { mesh, color: Color::rgb(200, 200, 200) })
+        LayerKind::Mesh(MeshLayer::new(mesh, Color::rgb(200, 200, 200)))
     }
 
     #[test]

@@ -33,20 +33,27 @@ impl<'a> MeshShade<'a> {
     }
 
     /// Colour of a sample.
-    pub(crate) fn shade(&self, found: &DrawnTriangle<'_>, weights: [f64; 3], sun: &Sun<'_>) -> Rgb {
+    pub(crate) fn shade(&self, found: &DrawnTriangle<'_>, weights: [f64; 3], footprint: f64, sun: &Sun<'_>) -> Rgb {
         let triangle = found.block.origin[0] + found.parent as usize;
         let [a, b, c] = found.v.map(|v| [i64::from(v.screen.x), i64::from(v.screen.y)]);
         // y runs down the image: counter-clockwise in space is clockwise here.
         let front = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]) <= 0;
-        self.color(triangle, weights, front, self.place(found, weights), sun)
+        self.color(triangle, weights, front, (self.place(found, weights), footprint), sun)
     }
 
-    /// * `front`: whether the side is seen from which the corners run counter-clockwise.
-    fn color(&self, triangle: usize, weights: [f64; 3], front: bool, p: DVec3, sun: &Sun<'_>) -> Rgb {
+    /// * `footprint`: size of a pixel there, scene units; `front`: whether the side is seen from which the corners run counter-clockwise.
+    fn color(
+        &self,
+        triangle: usize,
+        weights: [f64; 3],
+        front: bool,
+        (p, footprint): (DVec3, f64),
+        sun: &Sun<'_>,
+    ) -> Rgb {
         let mesh = &self.layer.mesh;
         let normal = mesh.normal_at(triangle, weights);
         let n = if front { normal } else { -normal };
-        let color = mesh.color_at(triangle, weights).unwrap_or(self.layer.color);
+        let color = mesh.surface_color_at(triangle, weights, footprint).unwrap_or(self.layer.color);
         // Darker towards the foot, and from below.
         let up = (((p.z - self.foot) / self.height) as f32).clamp(0.0, 1.0);
         let open = (0.60 + 0.40 * smoothstep(-0.1, 0.6, up)) * (1.0 - 0.25 * (-n.z as f32).max(0.0));
@@ -59,7 +66,7 @@ impl<'a> MeshShade<'a> {
     }
 
     /// See [`MeshShade::color`], at a point of the mesh.
-    pub(crate) fn color_at(&self, triangle: usize, front: bool, p: DVec3, sun: &Sun<'_>) -> Rgb {
-        self.color(triangle, self.layer.mesh.weights_at(triangle, p), front, p, sun)
+    pub(crate) fn color_at(&self, triangle: usize, front: bool, p: DVec3, footprint: f64, sun: &Sun<'_>) -> Rgb {
+        self.color(triangle, self.layer.mesh.weights_at(triangle, p), front, (p, footprint), sun)
     }
 }

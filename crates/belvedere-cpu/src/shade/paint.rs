@@ -210,7 +210,7 @@ impl Shader<'_> {
                 let (shape, world, n) = hit.on_box(&found, b);
                 self.box_color(shape, light, n, world, footprint)
             }
-            LayerShade::Mesh(m) => m.shade(&found, hit.weights, &|p, n| self.sun_on(p, n, footprint)),
+            LayerShade::Mesh(m) => m.shade(&found, hit.weights, footprint, &|p, n| self.sun_on(p, n, footprint)),
             LayerShade::Molecule(m) => m.shade(&found, hit.weights),
             LayerShade::Other => Rgb::ZERO,
         };

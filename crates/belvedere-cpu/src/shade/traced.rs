@@ -26,7 +26,7 @@ impl Shader<'_> {
                 None => (crate::shade::Rgb::ZERO, None),
             },
             (LayerShade::Mesh(m), Part::Triangle(index, front)) => {
-                (m.color_at(index, front, seen.point, &|p, n| self.sun_on(p, n, footprint)), None)
+                (m.color_at(index, front, seen.point, footprint, &|p, n| self.sun_on(p, n, footprint)), None)
             }
             (LayerShade::Molecule(m), Part::Triangle(index, _)) => (m.color_at(index, seen.point), None),
             _ => (crate::shade::Rgb::ZERO, None),

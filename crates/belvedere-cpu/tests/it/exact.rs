@@ -113,7 +113,7 @@ fn church(at: DVec3, faulty: bool) -> LayerKind {
     let places: Vec<DVec3> = (0..made.mesh.vertex_count() as u32).map(|v| at + 2.0 * made.mesh.vertex(v)).collect();
     let triangles = made.mesh.triangles().iter().map(|t| t.map(swapped)).collect();
     let mesh = Mesh::new(&places, triangles, MeshColors::Layer).expect("well formed");
-    LayerKind::Mesh(MeshLayer { mesh, color: Color::rgb(220, 210, 190) })
+    LayerKind::Mesh(MeshLayer::new(mesh, Color::rgb(220, 210, 190)))
 }
 
 fn with_towers(hf: Heightfield) -> Scene {

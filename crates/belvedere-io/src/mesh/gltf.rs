@@ -1,12 +1,15 @@
-//! glTF 2.0 and GLB: the triangles of the default scene with their nodes' transforms, vertex colours, and base colours of materials.
+//! glTF 2.0 and GLB: the triangles of the default scene with their nodes' names and transforms, vertex colours, and base colours and
+//! pictures of materials.
 //!
 //! Buffers lie in the file or below its folder; nothing is fetched. Every reading of a buffer is checked against its size.
 
+use super::gltf_pictures::Pictures;
 use super::{MeshFile, beside, color};
-use crate::{IoError, Limits, Loaded};
-use belvedere_scene::{Color, MeshColors};
-use glam::{DMat4, DVec3};
+use crate::{InputFile, IoError, Limits, Loaded};
+use belvedere_scene::{Color, MeshColors, Texturing};
+use glam::{DMat4, DVec3, Vec2};
 use gltf::accessor::{DataType, Dimensions};
+use gltf::material::AlphaMode;
 use gltf::mesh::Mode;
 use gltf::{Accessor, Document, Node, Primitive, Semantic};
 use std::path::Path;
@@ -17,9 +20,9 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
         let said: String = e.to_string().chars().take(160).collect();
         bad(format!("{said}; it is damaged or no glTF 2.0"))
     })?;
-    let buffers = buffers(path, &gltf.document, gltf.blob, limits)?;
-    let mut builder =
-        Builder { buffers, out: MeshFile { format: "glTF", ..MeshFile::default() }, ..Builder::default() };
+    let (buffers, mut files) = buffers(path, &gltf.document, gltf.blob, limits)?;
+    let out = MeshFile { format: "glTF", ..MeshFile::default() };
+    let mut builder = Builder { buffers, out, pictures: Pictures::new(path, limits), ..Builder::default() };
     // A tree visits every node once: more visits than nodes are a cycle.
     builder.visits_left = gltf.document.nodes().count();
     let scene = gltf.document.default_scene().or_else(|| gltf.document.scenes().next());
@@ -28,22 +31,44 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
         None => Vec::new(),
     };
     for node in nodes {
-        builder.node(&node, DMat4::IDENTITY, 0).map_err(bad)?;
+        builder.node(&node, DMat4::IDENTITY, "", 0).map_err(bad)?;
     }
-    let Builder { mut out, normals, vertex_colors, base, painted, smooth, skipped, .. } = builder;
+    let Builder {
+        mut out,
+        normals,
+        vertex_colors,
+        base,
+        painted,
+        smooth,
+        skipped,
+        see_through,
+        texturing,
+        mut pictures,
+        ..
+    } = builder;
     out.normals = smooth.then_some(normals);
+    let textured = !pictures.textures.is_empty();
+    out.texturing = textured.then(|| Texturing { textures: std::mem::take(&mut pictures.textures), ..texturing });
+    files.append(&mut pictures.files);
+    if out.names.iter().all(String::is_empty) {
+        out.names.clear();
+        out.parts.clear();
+    }
     out.colors = if painted {
         MeshColors::PerVertex(vertex_colors)
-    } else if base.iter().any(|c| *c != Color::rgb(255, 255, 255)) {
+    } else if textured || base.iter().any(|c| *c != Color::rgb(255, 255, 255)) {
         MeshColors::PerTriangle(base)
     } else {
         MeshColors::Layer
     };
-    let mut warnings = Vec::new();
+    let mut warnings = pictures.warnings;
+    if see_through > 0 {
+        warnings.push(format!("{}: {see_through} parts are see-through; they are drawn opaque", path.display()));
+    }
     if skipped > 0 {
         warnings.push(format!("{}: {skipped} parts that are no plain triangles are left out", path.display()));
     }
-    Ok(Loaded::new(out, warnings))
+    Ok(Loaded { value: out, warnings, files })
 }
 
 fn buffers(
@@ -51,9 +76,9 @@ fn buffers(
     document: &Document,
     mut blob: Option<Vec<u8>>,
     limits: &Limits,
-) -> Result<Vec<Vec<u8>>, IoError> {
+) -> Result<(Vec<Vec<u8>>, Vec<InputFile>), IoError> {
     let bad = |reason: String| IoError::format(path, reason);
-    let mut out = Vec::new();
+    let (mut out, mut files) = (Vec::new(), Vec::new());
     for buffer in document.buffers() {
         let bytes = match buffer.source() {
             gltf::buffer::Source::Bin => {
@@ -65,16 +90,21 @@ fn buffers(
                     text.and_then(base64)
                         .ok_or_else(|| bad("it holds a buffer that is no base64; it is damaged".into()))?
                 }
-                None => super::read_bytes(&beside(path, &uri.replace("%20", " ")).map_err(bad)?, limits)?,
+                None => {
+                    let file = beside(path, &uri.replace("%20", " ")).map_err(bad)?;
+                    let bytes = super::read_bytes(&file, limits)?;
+                    files.push(InputFile::of(&file, &bytes));
+                    bytes
+                }
             },
         };
         out.push(bytes);
     }
-    Ok(out)
+    Ok((out, files))
 }
 
 /// Bytes of base64 text (RFC 4648).
-fn base64(text: &str) -> Option<Vec<u8>> {
+pub(super) fn base64(text: &str) -> Option<Vec<u8>> {
     let mut out = Vec::with_capacity(text.len() / 4 * 3);
     let (mut bits, mut held) = (0u32, 0);
     for c in text.trim_end_matches('=').bytes() {
@@ -97,8 +127,11 @@ fn base64(text: &str) -> Option<Vec<u8>> {
 }
 
 #[derive(Default)]
-struct Builder {
+struct Builder<'p> {
     buffers: Vec<Vec<u8>>,
+    pictures: Pictures<'p>,
+    texturing: Texturing,
+    see_through: usize,
     out: MeshFile,
     normals: Vec<DVec3>,
     vertex_colors: Vec<Color>,
@@ -113,21 +146,26 @@ struct Builder {
 /// Deepest nesting of nodes that is followed.
 const MAX_DEPTH: usize = 200;
 
-impl Builder {
-    fn node(&mut self, node: &Node<'_>, parent: DMat4, depth: usize) -> Result<(), String> {
+impl Builder<'_> {
+    /// * `above`: path of the nodes above.
+    fn node(&mut self, node: &Node<'_>, parent: DMat4, above: &str, depth: usize) -> Result<(), String> {
         if self.visits_left == 0 || depth > MAX_DEPTH {
             return Err("its nodes run in a circle or are nested too deeply; repair it".into());
         }
         self.visits_left -= 1;
         let columns = node.transform().matrix().map(|c| c.map(f64::from));
         let transform = parent * DMat4::from_cols_array_2d(&columns);
+        let name = node.name().or_else(|| node.mesh().and_then(|m| m.name())).unwrap_or("").trim();
+        let path =
+            if above.is_empty() || name.is_empty() { format!("{above}{name}") } else { format!("{above}/{name}") };
         if let Some(mesh) = node.mesh() {
+            self.out.names.push(path.clone());
             for primitive in mesh.primitives() {
                 self.primitive(&primitive, transform)?;
             }
         }
         for child in node.children() {
-            self.node(&child, transform, depth + 1)?;
+            self.node(&child, transform, &path, depth + 1)?;
         }
         Ok(())
     }
@@ -141,6 +179,15 @@ impl Builder {
             self.skipped += 1;
             return Ok(());
         };
+        let material = primitive.material();
+        let base = material.pbr_metallic_roughness().base_color_factor().map(f64::from);
+        if material.alpha_mode() != AlphaMode::Opaque {
+            // What is all air is no surface.
+            if base[3] <= 0.0 {
+                return Ok(());
+            }
+            self.see_through += 1;
+        }
         let positions = self.values(&positions)?;
         let (first, count) = (self.out.positions.len(), positions.len());
         self.out.positions.extend(positions.iter().map(|p| z_up(transform.transform_point3(triple(p)))));
@@ -151,7 +198,6 @@ impl Builder {
             let n = normals.as_ref().and_then(|n| n.get(i)).map_or(DVec3::ZERO, triple);
             z_up(turn.transform_vector3(n)).normalize_or_zero()
         }));
-        let base = primitive.material().pbr_metallic_roughness().base_color_factor().map(f64::from);
         let colors = primitive.get(&Semantic::Colors(0)).map(|a| self.values(&a)).transpose()?;
         self.painted |= colors.is_some();
         self.vertex_colors.extend((0..count).map(|i| {
@@ -168,14 +214,32 @@ impl Builder {
         if self.out.positions.len() > u32::MAX as usize {
             return Err("it has more than 4 billion vertices; split it".into());
         }
+        let (texture, places) = self.texture(primitive, count)?;
         // A mirrored node turns its triangles inside out.
         let mirrored = transform.determinant() < 0.0;
         for [a, b, c] in triangles(primitive.mode(), &corners) {
             let [a, b, c] = if mirrored { [a, c, b] } else { [a, b, c] };
             self.out.triangles.push([a, b, c].map(|v| v + first as u32));
             self.base.push(srgb([base[0], base[1], base[2]]));
+            self.out.parts.push(self.out.names.len().saturating_sub(1) as u32);
+            self.texturing.of_triangle.push(texture);
+            let place = |v: u32| places.get(v as usize).copied().unwrap_or_default();
+            self.texturing.corners.push([a, b, c].map(place));
         }
         Ok(())
+    }
+
+    /// Number of the picture of a part's base colour, and the places of its vertices there.
+    fn texture(&mut self, primitive: &Primitive<'_>, count: usize) -> Result<(u32, Vec<Vec2>), String> {
+        let none = (Texturing::NONE, Vec::new());
+        let Some(info) = primitive.material().pbr_metallic_roughness().base_color_texture() else { return Ok(none) };
+        let Some(places) = primitive.get(&Semantic::TexCoords(info.tex_coord())) else { return Ok(none) };
+        let places: Vec<Vec2> = self.values(&places)?.iter().map(|v| Vec2::new(v[0] as f32, v[1] as f32)).collect();
+        let fine = places.len() >= count && places.iter().all(|p| p.is_finite());
+        Ok(match self.pictures.number(&info.texture(), &self.buffers).filter(|_| fine) {
+            Some(number) => (number, places),
+            None => none,
+        })
     }
 
     /// Elements of an accessor, each with its numbers; normalized integers as shares.

@@ -1,12 +1,14 @@
 //! Triangle meshes: OBJ, PLY, STL, glTF and GLB.
 
 mod gltf;
+mod gltf_pictures;
 mod obj;
+mod picture;
 mod ply;
 mod stl;
 
 use crate::{InputFile, IoError, Limits, Loaded};
-use belvedere_scene::{Color, MeshColors};
+use belvedere_scene::{Color, MeshColors, Texturing};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
@@ -26,6 +28,12 @@ pub struct MeshFile {
     pub normals: Option<Vec<DVec3>>,
     /// Colours.
     pub colors: MeshColors,
+    /// Number of the part that each triangle belongs to; empty = the file names no parts.
+    pub parts: Vec<u32>,
+    /// Names of the parts, as paths through the file.
+    pub names: Vec<String>,
+    /// Pictures, which multiply the colours.
+    pub texturing: Option<Texturing>,
 }
 
 type Reader = fn(&Path, &[u8], &Limits) -> Result<Loaded<MeshFile>, IoError>;
@@ -73,6 +81,14 @@ fn read_bytes(path: &Path, limits: &Limits) -> Result<Vec<u8>, IoError> {
     std::fs::read(path).map_err(|e| IoError::os(path, e))
 }
 
+/// A picture or a file of materials beside `path`, if it can be read.
+fn neighbour(path: &Path, name: &str, limits: &Limits) -> Result<(Vec<u8>, InputFile), String> {
+    let file = beside(path, name)?;
+    let bytes = read_bytes(&file, limits).map_err(|e| e.to_string())?;
+    let record = InputFile::of(&file, &bytes);
+    Ok((bytes, record))
+}
+
 /// A file beside `path` that it names; refused if it is remote, absolute or leads out of the folder.
 pub(crate) fn beside(path: &Path, name: &str) -> Result<PathBuf, String> {
     let relative = Path::new(name);
@@ -95,6 +111,14 @@ fn drop_not_finite(mesh: &mut MeshFile) -> usize {
     if let MeshColors::PerTriangle(colors) = &mut mesh.colors {
         let mut kept = keep.iter();
         colors.retain(|_| kept.next() == Some(&true));
+    }
+    let mut kept = keep.iter();
+    mesh.parts.retain(|_| kept.next() == Some(&true));
+    if let Some(t) = &mut mesh.texturing {
+        let mut kept = keep.iter();
+        t.of_triangle.retain(|_| kept.next() == Some(&true));
+        let mut kept = keep.iter();
+        t.corners.retain(|_| kept.next() == Some(&true));
     }
     mesh.positions.iter_mut().zip(fine).filter(|(_, fine)| !fine).for_each(|(p, _)| *p = DVec3::ZERO);
     before - mesh.triangles.len()

@@ -1,20 +1,23 @@
-//! Wavefront OBJ, with the diffuse colours of its MTL file.
+//! Wavefront OBJ, with the diffuse colours and pictures of its MTL file, its objects and groups as parts.
 
-use super::{MeshFile, beside, color};
-use crate::{IoError, Limits, Loaded};
-use belvedere_scene::{Color, MeshColors};
-use glam::DVec3;
+use super::{MeshFile, color, neighbour, picture};
+use crate::{InputFile, IoError, Limits, Loaded};
+use belvedere_scene::{Color, MeshColors, Texture, Texturing};
+use glam::{DVec3, Vec2};
+use std::collections::HashMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Grey of faces without a material among faces that have one.
 const PLAIN: Color = Color::rgb(200, 196, 190);
 
 pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<MeshFile>, IoError> {
     let options = tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, single_index: false };
+    let files = std::cell::RefCell::new(Vec::new());
     let materials = |name: &Path| {
-        let file = name.to_str().ok_or(tobj::LoadError::OpenFileFailed)?;
-        let file = beside(path, file).map_err(|_| tobj::LoadError::OpenFileFailed)?;
-        let bytes = super::read_bytes(&file, limits).map_err(|_| tobj::LoadError::OpenFileFailed)?;
+        let name = name.to_str().ok_or(tobj::LoadError::OpenFileFailed)?;
+        let (bytes, file) = neighbour(path, name, limits).map_err(|_| tobj::LoadError::OpenFileFailed)?;
+        files.borrow_mut().push(file);
         tobj::load_mtl_buf(&mut bytes.as_slice())
     };
     let (models, materials) = tobj::load_obj_buf(&mut &*bytes, &options, materials)
@@ -23,43 +26,147 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
     if let Err(e) = &materials {
         warnings.push(format!("{}: its materials cannot be read ({e}), the layer's colour is used", path.display()));
     }
-    let materials = materials.unwrap_or_default();
-    let mut out = MeshFile { format: "OBJ", ..MeshFile::default() };
-    let (mut normals, mut per_vertex, mut per_triangle) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut smooth, mut painted, mut has_material) = (false, false, false);
+    let mut materials = Materials::new(path, materials.unwrap_or_default(), limits);
+    let mut builder = Builder::default();
     for model in models {
-        let mesh = model.mesh;
-        let first = out.positions.len() as u32;
+        builder.add(path, &model, &mut materials)?;
+    }
+    warnings.append(&mut materials.warnings);
+    let mut files = files.into_inner();
+    files.append(&mut materials.files);
+    Ok(Loaded { value: builder.finish(materials.textures), warnings, files })
+}
+
+/// Materials, and the pictures of those that are used.
+struct Materials<'p> {
+    path: &'p Path,
+    limits: &'p Limits,
+    list: Vec<tobj::Material>,
+    /// Number of the picture by its name; `None` = it cannot be read.
+    known: HashMap<String, Option<u32>>,
+    textures: Vec<Arc<Texture>>,
+    files: Vec<InputFile>,
+    warnings: Vec<String>,
+}
+
+impl<'p> Materials<'p> {
+    fn new(path: &'p Path, list: Vec<tobj::Material>, limits: &'p Limits) -> Self {
+        let (known, textures, files, warnings) = (HashMap::new(), Vec::new(), Vec::new(), Vec::new());
+        Self { path, limits, list, known, textures, files, warnings }
+    }
+
+    /// Colour and picture of a material; where it has a picture and no colour, white.
+    fn look(&mut self, id: Option<usize>) -> (Option<Color>, u32) {
+        let Some(material) = id.and_then(|id| self.list.get(id)) else { return (None, Texturing::NONE) };
+        let diffuse = material.diffuse.map(color);
+        let Some(name) = material.diffuse_texture.clone() else { return (diffuse, Texturing::NONE) };
+        // Options such as -s stand before the name.
+        let name = name.split_whitespace().last().unwrap_or("").to_owned();
+        let texture = match self.known.get(&name) {
+            Some(known) => *known,
+            None => {
+                let read = self.read(&name);
+                self.known.insert(name, read);
+                read
+            }
+        };
+        match texture {
+            Some(number) => (Some(diffuse.unwrap_or(Color::rgb(255, 255, 255))), number),
+            None => (diffuse, Texturing::NONE),
+        }
+    }
+
+    fn read(&mut self, name: &str) -> Option<u32> {
+        let read = neighbour(self.path, name, self.limits)
+            .and_then(|(bytes, file)| Ok((picture::read(&bytes, Default::default(), self.limits)?, file)));
+        match read {
+            Ok((texture, file)) => {
+                self.textures.push(Arc::new(texture));
+                self.files.push(file);
+                Some(self.textures.len() as u32 - 1)
+            }
+            Err(e) => {
+                self.warnings.push(format!("{}: picture {name:?}: {e}; it is left out", self.path.display()));
+                None
+            }
+        }
+    }
+}
+
+#[derive(Default)]
+struct Builder {
+    out: MeshFile,
+    normals: Vec<DVec3>,
+    per_vertex: Vec<Color>,
+    per_triangle: Vec<Color>,
+    texturing: Texturing,
+    part_of: HashMap<String, u32>,
+    smooth: bool,
+    painted: bool,
+    has_material: bool,
+}
+
+impl Builder {
+    fn add(&mut self, path: &Path, model: &tobj::Model, materials: &mut Materials<'_>) -> Result<(), IoError> {
+        let mesh = &model.mesh;
+        let first = self.out.positions.len() as u32;
         let count = mesh.positions.len() / 3;
-        out.positions.extend(mesh.positions.chunks_exact(3).map(DVec3::from_slice));
+        self.out.positions.extend(mesh.positions.chunks_exact(3).map(DVec3::from_slice));
         let known = mesh.indices.iter().all(|&v| (v as usize) < count) && mesh.indices.len() % 3 == 0;
-        if !known || out.positions.len() > u32::MAX as usize {
+        if !known || self.out.positions.len() > u32::MAX as usize {
             return Err(IoError::format(path, "a face names a vertex that there is not; it is damaged"));
         }
-        out.triangles.extend(mesh.indices.chunks_exact(3).map(|t| [t[0] + first, t[1] + first, t[2] + first]));
+        self.out.triangles.extend(mesh.indices.chunks_exact(3).map(|t| [t[0] + first, t[1] + first, t[2] + first]));
         // One normal per corner in the file; where the corners of a vertex differ, the file means a sharp edge and none is kept.
-        normals.resize(out.positions.len(), DVec3::ZERO);
-        smooth |= corner_normals(&mesh, &mut normals[first as usize..]);
+        self.normals.resize(self.out.positions.len(), DVec3::ZERO);
+        self.smooth |= corner_normals(mesh, &mut self.normals[first as usize..]);
         let painted_here = mesh.vertex_color.len() == 3 * count;
-        painted |= painted_here && count > 0;
-        per_vertex.extend(
-            (0..count).map(
-                |i| {
-                    if painted_here { color([0, 1, 2].map(|k| mesh.vertex_color[3 * i + k])) } else { PLAIN }
-                },
-            ),
-        );
-        let material = mesh.material_id.and_then(|id| materials.get(id)).and_then(|m| m.diffuse);
-        has_material |= material.is_some();
-        per_triangle.extend(std::iter::repeat_n(material.map_or(PLAIN, color), mesh.indices.len() / 3));
+        self.painted |= painted_here && count > 0;
+        let vertex =
+            |i: usize| if painted_here { color([0, 1, 2].map(|k| mesh.vertex_color[3 * i + k])) } else { PLAIN };
+        self.per_vertex.extend((0..count).map(vertex));
+        let triangles = mesh.indices.len() / 3;
+        let (material, texture) = materials.look(mesh.material_id);
+        self.has_material |= material.is_some();
+        self.per_triangle.extend(std::iter::repeat_n(material.unwrap_or(PLAIN), triangles));
+        let corners = places(mesh);
+        let texture = if corners.is_some() { texture } else { Texturing::NONE };
+        self.texturing.of_triangle.extend(std::iter::repeat_n(texture, triangles));
+        self.texturing.corners.extend(corners.unwrap_or_else(|| vec![[Vec2::ZERO; 3]; triangles]));
+        let next = self.out.names.len() as u32;
+        let part = *self.part_of.entry(model.name.clone()).or_insert(next);
+        if part == next {
+            self.out.names.push(model.name.clone());
+        }
+        self.out.parts.extend(std::iter::repeat_n(part, triangles));
+        Ok(())
     }
-    out.normals = smooth.then_some(normals);
-    out.colors = match (painted, has_material) {
-        (true, _) => MeshColors::PerVertex(per_vertex),
-        (false, true) => MeshColors::PerTriangle(per_triangle),
-        _ => MeshColors::Layer,
+
+    fn finish(self, textures: Vec<Arc<Texture>>) -> MeshFile {
+        let Self { mut out, normals, per_vertex, per_triangle, texturing, smooth, painted, has_material, .. } = self;
+        out.format = "OBJ";
+        out.normals = smooth.then_some(normals);
+        out.colors = match (painted, has_material) {
+            (true, _) => MeshColors::PerVertex(per_vertex),
+            (false, true) => MeshColors::PerTriangle(per_triangle),
+            _ => MeshColors::Layer,
+        };
+        out.texturing = (!textures.is_empty()).then_some(Texturing { textures, ..texturing });
+        out
+    }
+}
+
+/// Places of the corners of all triangles in their picture; `None` where the file has none. Its v axis points up.
+fn places(mesh: &tobj::Mesh) -> Option<Vec<[Vec2; 3]>> {
+    let place = |i: &u32| {
+        let at = mesh.texcoords.get(2 * *i as usize..2 * *i as usize + 2)?;
+        Some(Vec2::new(at[0] as f32, 1.0 - at[1] as f32)).filter(|p| p.is_finite())
     };
-    Ok(Loaded::new(out, warnings))
+    if mesh.texcoord_indices.len() != mesh.indices.len() {
+        return None;
+    }
+    let corners = mesh.texcoord_indices.chunks_exact(3);
+    corners.map(|t| Some([place(&t[0])?, place(&t[1])?, place(&t[2])?])).collect()
 }
 
 /// Fills in the normals of vertices whose corners agree; whether there are any.

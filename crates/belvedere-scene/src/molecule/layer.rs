@@ -133,7 +133,7 @@ impl MoleculeLayer {
         let colors = colors(&molecule, style);
         let look = Look { representation: style.representation, detail: style.detail };
         let made = surface::build(&molecule, &drawn, &colors, look, &placement)?;
-        let surface = MeshLayer { mesh: made.mesh, color: Element::C.color() };
+        let surface = MeshLayer::new(made.mesh, Element::C.color());
         Ok(Self { molecule, placement, surface, atoms: made.atoms, bonds: made.bonds, wanted: None })
     }
 

@@ -8,7 +8,7 @@ use crate::scene_file::{MeshDoc, Paths, TransformDoc};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::{MeshFile, load_mesh};
-use belvedere_scene::{Crs, LayerKind, Mesh, MeshColors, MeshLayer};
+use belvedere_scene::{Crs, LayerKind, Mesh, MeshColors, MeshLayer, Texturing};
 use glam::{DMat3, EulerRot};
 
 /// The layer.
@@ -28,12 +28,18 @@ pub(super) fn layer(
         (None, Some(crs)) => reproject(&mut file, crs, ground.crs).map_err(|e| loader.fail(index, "crs", e))?,
         (None, None) => {}
     }
-    let mesh = Mesh::new(&file.positions, file.triangles, file.colors);
-    let mesh = mesh.and_then(|mesh| match file.normals.filter(|_| doc.style.smooth) {
+    let MeshFile { positions, triangles, normals, colors, parts, names, texturing, .. } = file;
+    let mesh = Mesh::textured(&positions, triangles, colors, parts, texturing);
+    let mesh = mesh.and_then(|mesh| match normals.filter(|_| doc.style.smooth) {
         Some(normals) => mesh.with_normals(&normals),
         None => Ok(mesh),
     });
-    Ok(LayerKind::Mesh(MeshLayer { mesh: mesh.map_err(|e| loader.fail(index, "source", e))?, color }))
+    let mesh = mesh.map_err(|e| loader.fail(index, "source", e))?;
+    let mut layer = MeshLayer { names, ..MeshLayer::new(mesh, color) };
+    if let Some(select) = &doc.select {
+        layer.wanted = Some(wanted(&layer, select).map_err(|e| loader.fail(index, "select", e))?);
+    }
+    Ok(LayerKind::Mesh(layer))
 }
 
 /// All files of the layer as one.
@@ -59,6 +65,28 @@ fn source(loader: &mut Loader<'_>, index: usize, doc: &MeshDoc) -> Result<MeshFi
     Ok(all.unwrap_or_default())
 }
 
+/// Numbers of the parts of these names, separated by commas.
+fn wanted(layer: &MeshLayer, names: &str) -> Result<Vec<u32>, String> {
+    let mut out = Vec::new();
+    for name in names.split(',').map(str::trim) {
+        let found = layer.parts_named(name);
+        if found.is_empty() {
+            let known: Vec<&str> = layer.names.iter().map(String::as_str).filter(|n| !n.is_empty()).collect();
+            let shown: Vec<&str> = known.iter().copied().take(12).collect();
+            return Err(match known.len() {
+                0 => format!("select is \"{name}\", but the file names no parts; remove select"),
+                n => format!(
+                    "no part is called \"{name}\"; the {n} parts are {}{}",
+                    shown.join(", "),
+                    if n > 12 { ", ..." } else { "" }
+                ),
+            });
+        }
+        out.extend(found);
+    }
+    Ok(out)
+}
+
 fn of_mesh(mesh: &Mesh) -> MeshFile {
     let triangles = mesh.triangles().to_vec();
     let colors = (0..triangles.len()).map(|t| mesh.color_at(t, [1.0, 0.0, 0.0])).collect::<Option<Vec<_>>>();
@@ -68,12 +96,15 @@ fn of_mesh(mesh: &Mesh) -> MeshFile {
         triangles,
         normals: None,
         colors: colors.map_or(MeshColors::Layer, MeshColors::PerTriangle),
+        ..MeshFile::default()
     }
 }
 
 /// Adds a file to others; colours survive where both have them in the same way.
 fn join(all: &mut MeshFile, other: MeshFile) {
     let first = all.positions.len() as u32;
+    join_parts(all, &other);
+    join_pictures(all, &other);
     all.positions.extend(other.positions);
     all.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + first)));
     all.normals = match (all.normals.take(), other.normals) {
@@ -94,6 +125,44 @@ fn join(all: &mut MeshFile, other: MeshFile) {
         }
         _ => MeshColors::Layer,
     };
+}
+
+/// Parts of one file after those of others.
+fn join_parts(all: &mut MeshFile, other: &MeshFile) {
+    if all.names.is_empty() && other.names.is_empty() {
+        return;
+    }
+    if all.names.is_empty() {
+        all.names.push(String::new());
+        all.parts = vec![0; all.triangles.len()];
+    }
+    let next = all.names.len() as u32;
+    if other.names.is_empty() {
+        all.names.push(String::new());
+        all.parts.extend(std::iter::repeat_n(next, other.triangles.len()));
+    } else {
+        all.names.extend(other.names.iter().cloned());
+        all.parts.extend(other.parts.iter().map(|p| p + next));
+    }
+}
+
+/// Pictures of one file after those of others.
+fn join_pictures(all: &mut MeshFile, other: &MeshFile) {
+    if all.texturing.is_none() && other.texturing.is_none() {
+        return;
+    }
+    let bare = |n: usize| Texturing {
+        of_triangle: vec![Texturing::NONE; n],
+        corners: vec![Default::default(); n],
+        ..Texturing::default()
+    };
+    let mut both = all.texturing.take().unwrap_or_else(|| bare(all.triangles.len()));
+    let next = other.texturing.clone().unwrap_or_else(|| bare(other.triangles.len()));
+    let first = both.textures.len() as u32;
+    both.textures.extend(next.textures);
+    both.of_triangle.extend(next.of_triangle.iter().map(|&t| if t == Texturing::NONE { t } else { t + first }));
+    both.corners.extend(next.corners);
+    all.texturing = Some(both);
 }
 
 /// Scales, turns about x, then y, then z, and moves.

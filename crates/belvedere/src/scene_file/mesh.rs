@@ -33,6 +33,9 @@ pub struct MeshDoc {
     /// Whether constructors and measures work for it.
     #[serde(default)]
     pub must_see: bool,
+    /// Names of parts (nodes, objects, groups), separated by commas, that `must_see` means; by default the whole mesh.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub select: Option<String>,
     /// How it is drawn.
     #[serde(default)]
     pub style: MeshStyleDoc,

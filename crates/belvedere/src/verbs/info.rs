@@ -67,6 +67,10 @@ pub struct MeshInfo {
     pub normals: bool,
     /// Whether it has colours of its own.
     pub colors: bool,
+    /// Sizes of the pictures that it wears: columns and rows.
+    pub pictures: Vec<[usize; 2]>,
+    /// Names of its parts, as paths through the file; the first hundred.
+    pub parts: Vec<String>,
     /// Smallest coordinates, the file's own.
     pub min: [f64; 3],
     /// Largest coordinates.
@@ -301,6 +305,8 @@ fn mesh(path: &Path) -> Result<FileInfo, BelvedereError> {
         triangles: mesh.triangles.len(),
         normals: mesh.normals.is_some(),
         colors: mesh.colors != belvedere_scene::MeshColors::Layer,
+        pictures: mesh.texturing.iter().flat_map(|t| &t.textures).map(|t| t.size()).collect(),
+        parts: mesh.names.iter().take(100).cloned().collect(),
         min: bounds.min.to_array(),
         max: bounds.max.to_array(),
         warnings: loaded.warnings,

@@ -26,7 +26,7 @@ pub struct Picked {
     pub segment: u32,
     /// Id of the layer.
     pub layer: String,
-    /// Name of the feature of a line, area or point layer, or of the atom of a molecule; null for other surfaces and features without a
+    /// Name of the feature of a line, area or point layer, of the part of a mesh, or of the atom of a molecule; null for other surfaces and features without a
     /// name.
     pub feature: Option<String>,
 }
@@ -68,6 +68,9 @@ fn named(name: &str) -> Option<String> {
 fn surface(scene: &Scene, seen: &RayHit) -> Option<Picked> {
     let layer = scene.layers.get(seen.layer)?;
     let (mut id, mut feature) = (&layer.id, None);
+    if let LayerKind::Mesh(m) = &layer.kind {
+        feature = seen.triangle().and_then(|t| m.name_of(t)).map(str::to_owned);
+    }
     if let LayerKind::Molecule(m) = &layer.kind {
         feature = seen.triangle().and_then(|t| m.name_of(t));
     }

@@ -1,0 +1,77 @@
+//! Pictures of glTF files: within the file, in a data address, or below its folder.
+
+use super::gltf::base64;
+use super::{neighbour, picture};
+use crate::{InputFile, Limits};
+use belvedere_scene::{Texture, Wrap};
+use gltf::image::Source;
+use gltf::texture::WrappingMode;
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The pictures read so far.
+#[derive(Default)]
+pub(super) struct Pictures<'p> {
+    path: Option<&'p Path>,
+    limits: Limits,
+    /// Number by the index of the texture; `None` = it cannot be read.
+    known: HashMap<usize, Option<u32>>,
+    pub(super) textures: Vec<Arc<Texture>>,
+    pub(super) files: Vec<InputFile>,
+    /// One sentence each.
+    pub(super) warnings: Vec<String>,
+}
+
+impl<'p> Pictures<'p> {
+    pub(super) fn new(path: &'p Path, limits: &Limits) -> Self {
+        Self { path: Some(path), limits: *limits, ..Self::default() }
+    }
+
+    /// Number of the picture of a texture; `None` if it cannot be read, which is warned of once.
+    pub(super) fn number(&mut self, texture: &gltf::Texture<'_>, buffers: &[Vec<u8>]) -> Option<u32> {
+        if let Some(known) = self.known.get(&texture.index()) {
+            return *known;
+        }
+        let number = match self.read(texture, buffers) {
+            Ok((texture, file)) => {
+                self.textures.push(Arc::new(texture));
+                self.files.extend(file);
+                Some(self.textures.len() as u32 - 1)
+            }
+            Err(e) => {
+                let path = self.path.unwrap_or(Path::new(""));
+                self.warnings.push(format!("{}: picture {}: {e}; it is left out", path.display(), texture.index()));
+                None
+            }
+        };
+        self.known.insert(texture.index(), number);
+        number
+    }
+
+    fn read(&self, texture: &gltf::Texture<'_>, buffers: &[Vec<u8>]) -> Result<(Texture, Option<InputFile>), String> {
+        let sampler = texture.sampler();
+        let wrap = [sampler.wrap_s(), sampler.wrap_t()].map(|mode| match mode {
+            WrappingMode::Repeat => Wrap::Repeat,
+            WrappingMode::ClampToEdge => Wrap::Clamp,
+            WrappingMode::MirroredRepeat => Wrap::Mirror,
+        });
+        let decode = |bytes: &[u8]| picture::read(bytes, wrap, &self.limits);
+        match texture.source().source() {
+            Source::View { view, .. } => {
+                let end = view.offset().checked_add(view.length());
+                let bytes = buffers.get(view.buffer().index()).zip(end).and_then(|(b, end)| b.get(view.offset()..end));
+                Ok((decode(bytes.ok_or("it lies outside its buffer; the file is damaged")?)?, None))
+            }
+            Source::Uri { uri, .. } => {
+                if let Some(data) = uri.strip_prefix("data:") {
+                    let bytes = data.split_once(";base64,").and_then(|(_, text)| base64(text));
+                    return Ok((decode(&bytes.ok_or("it is no base64; the file is damaged")?)?, None));
+                }
+                let path = self.path.unwrap_or(Path::new(""));
+                let (bytes, file) = neighbour(path, &uri.replace("%20", " "), &self.limits)?;
+                Ok((decode(&bytes)?, Some(file)))
+            }
+        }
+    }
+}
