@@ -99,3 +99,26 @@ fn mistakes_about_meshes_are_told_with_their_line() {
     place.write("s.toml", SCENE);
     assert!(place.fails(&["check", "s.toml"]).contains("no triangles"));
 }
+
+#[test]
+fn parts_are_named_where_they_are_picked_and_chosen_by_name() {
+    let place = place();
+    let (base, top) = PYRAMID.split_once("f 1").expect("faces");
+    place.write("pyramid.obj", &format!("{base}o town hall\nf 1{}", top.replacen("f 2", "o yard\nf 2", 1)));
+    place.write("p.json", "[[32.0, 24.0]]");
+    let picked = place.json(&["pick", "s.toml", "--pixels", "p.json"]);
+    assert_eq!(picked["pixels"][0]["feature"], "town hall");
+    let with = |select: &str| SCENE.replace("style = {", &format!("must_see = true\nselect = '{select}'\nstyle = {{"));
+    place.write("s.toml", &with("Town Hall"));
+    let report = place.json(&["measure", "s.toml"]);
+    let surface = &report["surfaces"];
+    // The face towards the eye: a triangle of 40 m and 44.7 m, all of it seen.
+    let number = |v: &serde_json::Value| v.as_f64().expect("a number");
+    assert!((number(&surface["total"]) - 0.5 * 40.0 * 2000f64.sqrt()).abs() < 1e-2, "{surface}");
+    for method in ["sight", "buffer"] {
+        assert!(number(&surface["straight"][method]["share"]) > 0.97, "{surface}");
+    }
+    place.write("s.toml", &with("church"));
+    let said = place.fails(&["check", "s.toml"]);
+    assert!(said.contains("no part is called \"church\"; the 2 parts are town hall, yard"), "{said}");
+}

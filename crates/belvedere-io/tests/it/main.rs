@@ -12,6 +12,7 @@ mod png;
 mod rasters;
 mod support_files;
 mod terrain;
+mod textures;
 mod tiff_writer;
 mod vectors;
 mod volumes;
