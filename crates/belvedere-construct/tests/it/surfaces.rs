@@ -51,6 +51,9 @@ fn of_a_box_the_faces_that_look_at_the_eye_are_seen() {
     assert!((found.total - 80.0).abs() < 1e-9 && found.samples >= 1000 && found.surface_spacing.unwrap() < 0.3);
     assert_shares(&found, 0.2);
     assert_shares(&measured(vec![block()], &View::straight(pinhole([14.0, -14.0, 14.0]))), 0.6);
+    // Of two boxes of one layer, one right behind the other, depth alone tells which is seen.
+    let row = [boxed([0.0, 0.0, 0.0], [4.0, 4.0, 4.0]), boxed([0.0, 8.0, 0.0], [4.0, 4.0, 4.0])];
+    assert_shares(&measured(vec![layer("row", true, boxes(&row))], &front), 0.1);
     // A wall half-way hides the left half of the front from an eye in front.
     let wall = layer("wall", false, boxes(&[boxed([-5.0, -11.0, -10.0], [10.0, 0.02, 30.0])]));
     assert_shares(&measured(vec![block(), wall], &front), 0.1);
