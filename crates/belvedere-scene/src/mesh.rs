@@ -31,7 +31,7 @@ pub struct Mesh {
     /// Share of the light from all around that reaches each vertex, 255 = all; empty = not known.
     openness: Vec<u8>,
     /// Pictures on it.
-    texturing: Option<Texturing>,
+    texturing: Option<Box<Texturing>>,
 }
 
 /// Vertices and triangles that make no mesh.
@@ -137,16 +137,23 @@ impl Mesh {
         if !parts.is_empty() && parts.len() != triangles.len() {
             return Err(MeshError::Count { what: "numbers of parts", found: parts.len(), expected: triangles.len() });
         }
-        if let Some(t) = &texturing {
-            for found in [t.of_triangle.len(), t.corners.len()].into_iter().filter(|n| *n != triangles.len()) {
-                return Err(MeshError::Count { what: "places in pictures", found, expected: triangles.len() });
-            }
+        let places = texturing.iter().flat_map(|t| [t.of_triangle.len(), t.corners.len()]);
+        if let Some(found) = places.into_iter().find(|n| *n != triangles.len()) {
+            return Err(MeshError::Count { what: "places in pictures", found, expected: triangles.len() });
         }
         let bounds = Aabb::of(positions.iter().copied());
         let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.center().round() };
         let positions = positions.iter().map(|&p| (p - origin).as_vec3()).collect();
-        let mut mesh =
-            Self { origin, positions, triangles, normals: None, colors, parts, openness: Vec::new(), texturing };
+        let mut mesh = Self {
+            origin,
+            positions,
+            triangles,
+            normals: None,
+            colors,
+            parts,
+            openness: Vec::new(),
+            texturing: texturing.map(Box::new),
+        };
         mesh.drop_degenerate();
         Ok(mesh)
     }

@@ -112,7 +112,7 @@ impl Builder {
         let first = self.out.positions.len() as u32;
         let count = mesh.positions.len() / 3;
         self.out.positions.extend(mesh.positions.chunks_exact(3).map(DVec3::from_slice));
-        let known = mesh.indices.iter().all(|&v| (v as usize) < count) && mesh.indices.len() % 3 == 0;
+        let known = mesh.indices.iter().all(|&v| (v as usize) < count) && mesh.indices.len().is_multiple_of(3);
         if !known || self.out.positions.len() > u32::MAX as usize {
             return Err(IoError::format(path, "a face names a vertex that there is not; it is damaged"));
         }

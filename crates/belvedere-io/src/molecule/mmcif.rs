@@ -202,7 +202,7 @@ fn looped<'t>(words: &mut Words<'t>) -> Result<(Table<'t>, Next<'t>), String> {
     let (width, mut count) = (table.names.len(), 0usize);
     while let Some((line, Token::Value(value))) = next {
         if wanted {
-            if count % width == 0 {
+            if count.is_multiple_of(width) {
                 table.rows.push((line, Vec::with_capacity(width)));
             }
             if let Some((_, row)) = table.rows.last_mut() {
@@ -212,7 +212,7 @@ fn looped<'t>(words: &mut Words<'t>) -> Result<(Table<'t>, Next<'t>), String> {
         count += 1;
         next = words.next()?;
     }
-    if wanted && count % width != 0 {
+    if wanted && !count.is_multiple_of(width) {
         return Err(format!(
             "line {start}: the loop of {} has {count} values for {width} columns; it is truncated or damaged, get it again",
             table.names[0]
