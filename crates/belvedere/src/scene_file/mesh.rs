@@ -57,6 +57,7 @@ impl MeshDoc {
             id,
             source: Paths::One(source.to_owned()),
             must_see: false,
+            select: None,
             style: MeshStyleDoc::default(),
             transform: None,
             crs: None,
