@@ -181,8 +181,8 @@ pub(crate) struct RevealArgs {
     /// Routes, areas or points: GPX, GeoJSON, shapefiles, or builtin:massif?seed=7; with --see more models
     #[arg(required_unless_present = "see")]
     pub(crate) features: Vec<String>,
-    /// What of a model must be seen: a file (by its name without ending) or layer, atoms such as "chain B", or a point x,y,z
-    /// in scene coordinates; rays bend around what hides it
+    /// What of a model must be seen: a file (by its name without ending) or layer, a named part of a mesh, atoms such as "chain B",
+    /// or a point x,y,z in scene coordinates; rays bend around what hides it
     #[arg(long, value_name = "WHAT", allow_hyphen_values = true)]
     pub(crate) see: Option<String>,
     /// Colours and opacities of volumes with --see: auto, solid, engine, ct-bone, ct-soft, vessels, grey, or a file

@@ -40,13 +40,25 @@ impl<'a> MeshTree<'a> {
 
     /// The tree of a mesh whose points may be displaced vertically by something in a range of heights, scene units.
     pub fn lifted(mesh: &'a Mesh, lift: [f64; 2]) -> Self {
-        let triangles: Vec<Corners<'_>> = mesh.triangles().iter().map(|&t| Corners(mesh, t)).collect();
+        let all = (0..mesh.triangles().len() as u32).collect();
+        Self::of(mesh, all, lift)
+    }
+
+    /// The tree over all triangles but those of some parts.
+    pub fn without_parts(mesh: &'a Mesh, parts: &[u32]) -> Self {
+        let kept = (0..mesh.triangles().len()).filter(|&t| mesh.part(t).is_none_or(|part| !parts.contains(&part)));
+        Self::of(mesh, kept.map(|t| t as u32).collect(), [0.0; 2])
+    }
+
+    fn of(mesh: &'a Mesh, held: Vec<u32>, lift: [f64; 2]) -> Self {
+        let triangles: Vec<Corners<'_>> = held.iter().map(|&t| Corners(mesh, mesh.triangles()[t as usize])).collect();
         let mut tree = Bvh2::default();
         if !triangles.is_empty() {
             let all = (0..triangles.len() as u32).collect();
             let mut builder = PlocBuilder::with_capacity(triangles.len());
             tree = builder.build(PlocSearchDistance::Low, &triangles, all, SortPrecision::U64, 2);
             collapse(&mut tree, LEAF, STEP_COST);
+            tree.primitive_indices.iter_mut().for_each(|i| *i = held[*i as usize]);
         }
         Self { mesh, tree, lift: [lift[0].min(0.0), lift[1].max(0.0)] }
     }
@@ -221,6 +233,24 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn parts_that_are_left_out_are_passed_through() {
+        let whole = heap(600);
+        let places: Vec<DVec3> = (0..whole.vertex_count() as u32).map(|v| whole.vertex(v)).collect();
+        let parts: Vec<u32> = (0..600).map(|t| t % 3).collect();
+        let mesh = Mesh::textured(&places, whole.triangles().to_vec(), MeshColors::Layer, parts, None).unwrap();
+        let tree = MeshTree::without_parts(&mesh, &[1]);
+        let mut hits = 0;
+        for (a, b) in segments() {
+            let others = (0..600).filter(|t| t % 3 != 1).filter_map(|t| Some((tree.crossing(t, a, b)?, t)));
+            let expected = others.min_by(|x, y| x.partial_cmp(y).unwrap());
+            hits += usize::from(expected.is_some());
+            assert_eq!(tree.first_crossing(a, b), expected);
+        }
+        assert!(hits > 30, "{hits}");
+        assert_eq!(MeshTree::without_parts(&mesh, &[0, 1, 2]).first_crossing(DVec3::ZERO, DVec3::ONE), None);
     }
 
     #[test]

@@ -34,6 +34,19 @@ impl<'a> Obstacles<'a> {
         Self::of(scene, layers, None)
     }
 
+    /// The same without some parts of a mesh, by the index of its layer and their numbers.
+    pub fn without_parts(scene: &'a Scene, layer: usize, parts: &[u32]) -> Self {
+        let mut out = Self::of(scene, &[layer], None);
+        out.meshes.extend(
+            scene
+                .layers
+                .get(layer)
+                .and_then(|l| l.kind.triangles())
+                .map(|m| (layer, MeshTree::without_parts(&m.mesh, parts))),
+        );
+        out
+    }
+
     /// The same where the ground, and what stands on it, may be displaced vertically.
     pub fn lifted(scene: &'a Scene, lift: Option<Lift<'_>>) -> Self {
         Self::of(scene, &[], lift)

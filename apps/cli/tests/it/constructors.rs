@@ -197,3 +197,35 @@ fn curved_rays_show_more_of_a_route_than_straight_ones() {
     let (straight, bent) = (report["visible_straight"].as_f64(), report["visible_bent"].as_f64());
     assert!(bent > straight.map(|s| s + 0.1), "{straight:?} -> {bent:?}");
 }
+
+/// A tower of two parts behind a wall, in one file.
+fn town() -> String {
+    let cube = |name: &str, [x, y]: [f64; 2], size: [f64; 3], first: usize| {
+        let corner = |k: usize| {
+            let at = |axis: usize, from: f64| from + if k >> axis & 1 == 1 { size[axis] } else { 0.0 };
+            format!("v {} {} {}\n", at(0, x), at(1, y), at(2, 0.0))
+        };
+        let face = |f: [usize; 4]| format!("f {}\n", f.map(|k| (first + k).to_string()).join(" "));
+        let faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+        format!("o {name}\n{}{}", (0..8).map(corner).collect::<String>(), faces.map(face).concat())
+    };
+    [
+        cube("Wall", [-12.0, 0.0], [24.0, 2.0, 20.0], 1),
+        cube("Church", [-4.0, 40.0], [8.0, 8.0, 12.0], 9),
+        cube("Ground", [-80.0, -20.0], [160.0, 120.0, 0.1], 17),
+    ]
+    .concat()
+}
+
+#[test]
+fn a_named_part_of_a_mesh_is_looked_for() {
+    let place = Place::new();
+    place.write("town.obj", &town());
+    let from = ["--eye", "0,-80,12", "--look", "0,40,8", "--size", "96x54"];
+    let answer = place.json(&[&["reveal", "town.obj", "--see", "church", "-o", "c.png", "--json"][..], &from].concat());
+    assert!(answer["report"]["visible_straight"].as_f64() < Some(0.2), "{answer}");
+    assert!(answer["report"]["visible"].as_f64() > Some(0.9), "{answer}");
+    let line = place.fails(&["reveal", "town.obj", "--see", "chruch", "-o", "d.png"]);
+    assert!(line.contains("no part of a mesh") && line.contains("did you mean \"Church\""), "{line}");
+    assert!(!place.path("d.png").exists());
+}

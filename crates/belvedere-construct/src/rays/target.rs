@@ -16,6 +16,8 @@ pub struct Target {
     pub bounds: Aabb,
     /// Layers that are the target themselves, by their index: they do not hide it.
     pub own_layers: Vec<usize>,
+    /// Parts of a mesh that are the target themselves: the index of its layer, and their numbers.
+    pub own_parts: Option<(usize, Vec<u32>)>,
     /// The points are the middles of balls of this radius, scene units, and seen if the ball is; 0 for points of their own.
     pub radius: f64,
 }
@@ -48,6 +50,15 @@ impl Target {
         }
     }
 
+    /// Named parts of a mesh, by their numbers, as the paper's box. `None` if there are none.
+    pub fn parts(scene: &Scene, index: usize, parts: &[u32]) -> Option<Self> {
+        let LayerKind::Mesh(layer) = &scene.layers.get(index)?.kind else { return None };
+        let mesh = &layer.mesh;
+        let own = (0..mesh.triangles().len()).filter(|&t| mesh.part(t).is_some_and(|part| parts.contains(&part)));
+        let bounds = Aabb::of(own.flat_map(|t| mesh.corners(t)));
+        (!bounds.is_empty()).then(|| Self { own_parts: Some((index, parts.to_vec())), ..Self::around(bounds) })
+    }
+
     /// What lies in a box.
     pub fn around(bounds: Aabb) -> Self {
         // A little inside: the box may stand on something.
@@ -59,7 +70,7 @@ impl Target {
                 points.push(bounds.min + (bounds.max - bounds.min) * DVec3::new(share(x), share(y), share(z)));
             }
         }
-        Self { points, bounds, own_layers: Vec::new(), radius: 0.0 }
+        Self { points, bounds, own_layers: Vec::new(), own_parts: None, radius: 0.0 }
     }
 
     /// Balls, such as atoms: middle and radius, scene units. Of many some are looked at, evenly chosen.
@@ -74,7 +85,7 @@ impl Target {
     pub fn points(points: impl IntoIterator<Item = DVec3>) -> Self {
         let points: Vec<DVec3> = points.into_iter().filter(|p| p.is_finite()).collect();
         let bounds = Aabb::of(points.iter().copied());
-        Self { points, bounds, own_layers: Vec::new(), radius: 0.0 }
+        Self { points, bounds, own_layers: Vec::new(), own_parts: None, radius: 0.0 }
     }
 
     /// Its middle.
@@ -116,7 +127,11 @@ impl<'a> TargetSight<'a> {
         let chord_m = (1e-3 * extent).max(2e-5 * whole) + 0.05 * cell;
         let sight = SightOptions { chord_m, cap_m: 0.0, guard_m: 1.5 * cell };
         let voxels = Voxels::without(scene, &target.own_layers);
-        Self { target, obstacles: Obstacles::without(scene, &target.own_layers), voxels, sight }
+        let obstacles = match &target.own_parts {
+            Some((layer, parts)) => Obstacles::without_parts(scene, *layer, parts),
+            None => Obstacles::without(scene, &target.own_layers),
+        };
+        Self { target, obstacles, voxels, sight }
     }
 
     /// Share of the target's points that are in the picture and seen, 0..=1.

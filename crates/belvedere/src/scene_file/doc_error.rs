@@ -118,6 +118,9 @@ fn words(found: Unexpected<'_>) -> String {
     }
 }
 
+/// Names that are listed at most.
+const MOST_NAMED: usize = 40;
+
 /// "did you mean ...?" with the nearest of `valid`, or the list of them.
 pub(crate) fn suggestion(given: &str, valid: &[&str]) -> String {
     let given = given.to_lowercase();
@@ -131,6 +134,9 @@ pub(crate) fn suggestion(given: &str, valid: &[&str]) -> String {
     match best {
         Some((_, v)) => format!("did you mean \"{v}\"?"),
         None if valid.is_empty() => "none is possible here".into(),
+        None if valid.len() > MOST_NAMED => {
+            format!("possible: {} and {} more", valid[..MOST_NAMED].join(", "), valid.len() - MOST_NAMED)
+        }
         None => format!("possible: {}", valid.join(", ")),
     }
 }

@@ -13,7 +13,7 @@ use belvedere_construct::rays::{AroundOptions, BendReport, Sidestep, Target, ben
 use belvedere_core::{Aabb, DVec3, Pinhole, Projection, View};
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::molecule::Selection;
-use belvedere_scene::{LayerKind, Scene, Unit};
+use belvedere_scene::{LayerKind, MeshLayer, Scene, Unit};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -188,6 +188,9 @@ fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError> {
             ))
         });
     }
+    if let Some(target) = part(scene, see) {
+        return Ok(target);
+    }
     let molecules = scene.layers.iter().filter_map(|l| match &l.kind {
         LayerKind::Molecule(m) => Some(m),
         _ => None,
@@ -210,12 +213,25 @@ fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError> {
             Err(e) => complaint = Some(e.to_string()),
         }
     }
-    let ids: Vec<&str> = scene.layers.iter().map(|l| l.id.as_str()).collect();
+    let ids = scene.layers.iter().map(|l| l.id.as_str());
+    let ids: Vec<&str> = ids.chain(meshes(scene).flat_map(|(_, m)| &m.names).map(String::as_str)).collect();
     let complaint = complaint.map_or_else(String::new, |c| format!(", and as atoms: {c}"));
     Err(BelvedereError::Target(format!(
-        "\"{see}\" is no layer of the scene{complaint}; {} or give a point x,y,z",
+        "\"{see}\" is no layer of the scene and no part of a mesh{complaint}; {} or give a point x,y,z",
         crate::scene_file::suggestion(see, &ids)
     )))
+}
+
+/// The parts of a mesh that have a name: of the first mesh that has some.
+fn part(scene: &Scene, name: &str) -> Option<Target> {
+    meshes(scene).find_map(|(index, mesh)| Target::parts(scene, index, &mesh.parts_named(name)))
+}
+
+fn meshes(scene: &Scene) -> impl Iterator<Item = (usize, &MeshLayer)> {
+    scene.layers.iter().enumerate().filter_map(|(index, layer)| match &layer.kind {
+        LayerKind::Mesh(mesh) => Some((index, mesh)),
+        _ => None,
+    })
 }
 
 /// The views to try: the one that is given, the scene file's, or some from all around.
