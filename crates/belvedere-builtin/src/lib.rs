@@ -9,6 +9,7 @@ mod massif;
 mod noise;
 mod route;
 mod street;
+mod tube;
 mod viewpoint;
 
 pub use church::church;
@@ -17,6 +18,7 @@ pub use engine::engine;
 pub use massif::massif;
 pub use route::{RouteCost, RouteError, least_cost_route, valley_route};
 pub use street::street;
+pub use tube::tube;
 
 use belvedere_core::DVec3;
 use belvedere_scene::molecule::MoleculeError;

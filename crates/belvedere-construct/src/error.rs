@@ -81,6 +81,48 @@ pub enum ConstructError {
         /// What it must be.
         must: &'static str,
     },
+    /// A point of a centreline is not in the voxels that it may use.
+    #[error(
+        "{name} = [{}, {}, {}] has {}, and no voxel of {} to {} lies within {reach} of it; move the point or change values",
+        point[0], point[1], point[2],
+        value.map_or_else(|| "no value, it lies outside the volume".to_owned(), |v| format!("the value {v}")),
+        values[0], values[1]
+    )]
+    PointOutside {
+        /// Name of the point.
+        name: &'static str,
+        /// The point, scene coordinates.
+        point: [f64; 3],
+        /// Value there.
+        value: Option<f64>,
+        /// Range of values.
+        values: [f64; 2],
+        /// How far around was looked, scene units.
+        reach: f64,
+    },
+    /// The two points of a centreline are in voxels that do not hang together.
+    #[error(
+        "the points are not connected by voxels of {} to {}: the {voxels} voxels that hang together with `from` come within {distance:.1} of `to`, at [{:.1}, {:.1}, {:.1}]; widen values or move a point",
+        values[0], values[1], nearest[0], nearest[1], nearest[2]
+    )]
+    NotConnected {
+        /// Range of values.
+        values: [f64; 2],
+        /// Voxels that hang together with the first point.
+        voxels: usize,
+        /// Distance of the nearest of them from the second point, scene units.
+        distance: f64,
+        /// That voxel, scene coordinates.
+        nearest: [f64; 3],
+    },
+    /// The voxels that hang together fill too large a box.
+    #[error("the voxels around `from` fill a box of {voxels} voxels, at most {most} are searched; narrow values")]
+    TooManyVoxels {
+        /// Voxels of the box.
+        voxels: usize,
+        /// Most that are possible.
+        most: usize,
+    },
     /// A spline could not be resolved.
     #[error(transparent)]
     Spline(#[from] belvedere_core::map::spline::SplineError),

@@ -3,6 +3,7 @@
 //! [`measure()`] says what a picture shows of the features it is made for; [`reveal()`] chooses a view and a bend that
 //! show more of them.
 
+pub mod centreline;
 mod error;
 pub mod flight;
 pub mod measure;

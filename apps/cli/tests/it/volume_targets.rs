@@ -132,6 +132,81 @@ fn a_film_bends_round_a_volume_to_keep_its_target_in_sight() {
     assert!(hidden.len() == 31 && seen > 24, "{seen} of {hidden:?}");
 }
 
+/// Along the channel of the built-in tube.
+const CHANNEL: &str = "format = 1
+crs = 'local'
+unit = 'voxel'
+[[layer]]
+id = 'tube'
+kind = 'volume'
+source = 'builtin:tube'
+transfer = 'solid'
+[camera]
+eye = [200, -160, 150]
+look_at = [60, 60, 55]
+image = [64, 36]
+[constructor]
+kind = 'path_preview'
+centreline = { volume = 'tube', from = [97, 63, 25], to = [97, 56, 86], values = [12, 70] }
+position_m = 100
+preview_m = 60
+";
+
+#[test]
+fn a_centreline_traced_between_two_points_is_a_path_to_preview() {
+    let place = Place::new();
+    place.write("s.toml", CHANNEL);
+    place.ok(&["render", "s.toml", "-o", "p.png", "--aux", "world"]);
+    let preview = report(&place, "p.png.json")["constructor"].clone();
+    assert_eq!(preview["kind"], "path_preview");
+    assert!(preview["turns"].as_u64() > Some(2) && preview["reach_m"].as_f64() > Some(50.0), "{preview}");
+    // Two turns of radius 38, 62 voxels high, but for the ends.
+    let length = preview["centreline"]["length"].as_f64().expect("a length");
+    assert!((length - 474.0).abs() < 12.0, "{preview}");
+    let clearance = preview["centreline"]["median_clearance"].as_f64().expect("a clearance");
+    assert!((7.0..10.5).contains(&clearance), "{preview}");
+    // A film walks along it, and what was traced stays the same.
+    place.ok(&["animate", "s.toml", "-o", "film", "--frames", "4"]);
+    let film = report(&place, "film/animation.json");
+    let last = &film["frames"][3]["constructor"];
+    assert!((last["position_m"].as_f64().expect("a position") - length).abs() < 0.01 * length, "{last}");
+    assert_eq!(last["centreline"], preview["centreline"]);
+    // The resolved scene opens to the same picture.
+    place.write("again.toml", &place.ok(&["show", "s.toml"]));
+    place.ok(&["render", "again.toml", "-o", "again.png"]);
+    let pixels = |name: &str| super::light_and_tints::pixels(&read(&place.path(name)));
+    assert!(pixels("p.png") == pixels("again.png"));
+}
+
+#[test]
+fn a_centreline_that_cannot_be_is_one_clear_line() {
+    let place = Place::new();
+    for (from, to, wanted) in [
+        ("values = [12, 70]", "values = [100, 255]", &["from = [97, 63, 25] has the value", "move the point"][..]),
+        ("to = [97, 56, 86], values = [12, 70]", "to = [60, 60, 55], values = [0, 10]", &["has the value", "0 to 10"]),
+        (
+            "to = [97, 56, 86], values",
+            "to = [110, 56, 86], values",
+            &["not connected by voxels of 12 to 70", "come within"],
+        ),
+        (", values = [12, 70]", "", &["both sides of the threshold", "give values"]),
+        ("volume = 'tube'", "volume = 'tub'", &["\"tub\" is no layer", "did you mean \"tube\""]),
+        ("preview_m = 60", "preview_m = 60\npath = 'p.csv'", &["both are given; give exactly one"]),
+        ("centreline = ", "# ", &["neither is given; give exactly one"]),
+    ] {
+        let mut scene = CHANNEL.replace(from, to);
+        if from.starts_with(", values") {
+            // In the wall.
+            scene = scene
+                .replace("to = [97, 56, 86]", "to = [109, 60, 55]")
+                .replace("from = [97, 63, 25]", "from = [2, 2, 2]");
+        }
+        place.write("bad.toml", &scene);
+        let line = place.fails(&["render", "bad.toml", "-o", "x.png"]);
+        assert!(line.contains("bad.toml:") && wanted.iter().all(|w| line.contains(w)), "{line}");
+    }
+}
+
 #[test]
 fn mistakes_are_told_in_one_line() {
     let place = Place::new();

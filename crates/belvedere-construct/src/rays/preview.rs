@@ -128,7 +128,7 @@ impl PathPreview {
     }
 
     /// Prepares a preview whose camera is chosen: of some widths and tolerances that with which most of the path ahead is seen in
-    /// `scene`, from positions all along it.
+    /// `scene`, from positions all along it. `usual` is the widest.
     ///
     /// # Errors
     /// As [`PathPreview::new`].
@@ -136,10 +136,10 @@ impl PathPreview {
         scene: &Scene,
         points: &[DVec3],
         preview_m: f64,
+        usual: Lens,
         level: bool,
         image: [u32; 2],
     ) -> Result<Self, ConstructError> {
-        let usual = Lens::for_preview(preview_m, level);
         let first = Self::new(points, preview_m, usual, level, image)?;
         let mut best = (first.seen_ahead(scene, image)?, first.clone());
         for narrower in NARROWER {

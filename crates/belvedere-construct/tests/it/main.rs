@@ -1,6 +1,7 @@
 //! Integration tests of belvedere-construct.
 
 mod bars;
+mod centreline;
 mod flight;
 mod measure;
 mod preview;

@@ -97,7 +97,7 @@ impl TransferFunction {
     /// the threshold that parts the values into two classes of the least variance within (Otsu 1979); denser parts differ in colour.
     pub fn auto(volume: &Volume) -> Self {
         let range = volume.range().map(f64::from);
-        let threshold = otsu(&histogram(volume)) as f64 / BINS as f64;
+        let threshold = threshold_share(volume);
         let rest = 1.0 - threshold;
         let stops = [
             (0.0, [120, 128, 140], 0.0),
@@ -109,6 +109,16 @@ impl TransferFunction {
         ];
         of_stops("auto", &stops, range)
     }
+}
+
+/// The value that parts a volume's values into background and what stands out from it (Otsu 1979).
+pub fn threshold(volume: &Volume) -> f64 {
+    let [lo, hi] = volume.range().map(f64::from);
+    lo + threshold_share(volume) * (hi - lo)
+}
+
+fn threshold_share(volume: &Volume) -> f64 {
+    otsu(&histogram(volume)) as f64 / BINS as f64
 }
 
 fn of_stops(name: &str, stops: &[Stop], [lo, hi]: [f64; 2]) -> TransferFunction {

@@ -12,7 +12,7 @@ pub(crate) const DEFAULT_SIZE: usize = 513;
 /// Base pairs of a double helix that names none.
 const DEFAULT_PAIRS: usize = 12;
 
-const NAMES: &[&str] = &["massif", "street", "church", "dna", "engine"];
+const NAMES: &[&str] = &["massif", "street", "church", "dna", "engine", "tube"];
 
 /// Whether a source means a built-in scene.
 pub(super) fn is_name(source: &str) -> bool {
@@ -68,6 +68,7 @@ fn make(request: &Request) -> Result<(Scene, builtin::SuggestedCamera), String> 
         "massif" => builtin::massif(request.seed, request.size),
         "church" => builtin::church(),
         "engine" => builtin::engine(request.seed),
+        "tube" => builtin::tube(request.seed),
         "dna" => builtin::dna(request.seed, request.size),
         _ => builtin::street(request.seed),
     };

@@ -1,11 +1,12 @@
 //! Constructors of curved rays: from `[constructor]` to a view with turns.
 
-use super::path;
 use super::terrain::Solving;
+use super::{centreline, path};
 use crate::BelvedereError;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, ConstructorDoc, ConstructorKind, SourceDocument, StageDoc};
 use belvedere_construct::ConstructError;
+use belvedere_construct::centreline::CentrelineReport;
 use belvedere_construct::rays::{
     Lens, PathPreview, PreviewReport, Target, TrackingMemory, TrackingOptions, TrackingReport, track_target,
 };
@@ -31,7 +32,18 @@ pub enum ConstructorReport {
     /// Target tracking.
     TargetTracking(TrackingReport),
     /// Path preview.
-    PathPreview(PreviewReport),
+    PathPreview(PathReport),
+}
+
+/// What a path preview came to, and the path that was traced for it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PathReport {
+    /// The preview.
+    #[serde(flatten)]
+    pub preview: PreviewReport,
+    /// The centreline that is followed, if it was traced.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub centreline: Option<CentrelineReport>,
 }
 
 /// The constructor of a document, unless it is `manual`.
@@ -112,7 +124,7 @@ fn preview(
     base: &View,
     memory: &mut Option<Prepared>,
     inputs: &mut Vec<InputFile>,
-) -> Result<(View, PreviewReport), BelvedereError> {
+) -> Result<(View, PathReport), BelvedereError> {
     let (pinhole, doc) = (base.pinhole(), stated(source));
     let position = doc.and_then(|d| d.position_m).unwrap_or(0.0);
     let prepared = prepared(source, roots, scene, pinhole.image, memory)?;
@@ -127,7 +139,7 @@ fn preview(
     });
     let stages = earlier.chain(seen.view.stages().iter().cloned()).collect();
     let view = View::new(root, stages).map_err(|e| source.error(&["constructor", "kind"], e))?;
-    Ok((view, seen.report))
+    Ok((view, PathReport { preview: seen.report, centreline: prepared.centreline }))
 }
 
 /// A preview of the path of a document, and what it was made from.
@@ -135,8 +147,12 @@ fn preview(
 pub(crate) struct Prepared {
     made_from: (ConstructorDoc, [u32; 2]),
     file: Option<InputFile>,
+    centreline: Option<CentrelineReport>,
     preview: PathPreview,
 }
+
+/// Width of the picture at the position in a channel, clearances.
+const CLEARANCES: f64 = 6.0;
 
 /// The preview of the document, from the frame before where that had the same.
 fn prepared<'m>(
@@ -150,13 +166,21 @@ fn prepared<'m>(
     let made_from = (doc, image);
     if memory.as_ref().is_none_or(|known| known.made_from != made_from) {
         let doc = &made_from.0;
-        let (points, file) = path::read(source, roots, scene, doc.path.as_deref().unwrap_or_default())?;
+        let traced = doc.centreline.as_ref().map(|doc| centreline::read(source, scene, doc)).transpose()?;
+        let (points, file) = match &traced {
+            Some(traced) => (traced.points.clone(), None),
+            None => path::read(source, roots, scene, doc.path.as_deref().unwrap_or_default())?,
+        };
+        let centreline = traced.map(|t| t.report);
         let length: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
         let preview_m = doc.preview_m.unwrap_or(0.25 * length);
         let level = scene.terrain().is_some();
+        let mut usual = Lens::for_preview(preview_m, level);
+        if let Some(report) = centreline {
+            usual.width_m = usual.width_m.min(CLEARANCES * report.median_clearance);
+        }
         let preview = match doc.lens {
             Some(lens) => {
-                let usual = Lens::for_preview(preview_m, level);
                 let lens = Lens {
                     behind_m: lens.behind_m.unwrap_or(usual.behind_m),
                     width_m: lens.width_m.unwrap_or(usual.width_m),
@@ -164,10 +188,10 @@ fn prepared<'m>(
                 };
                 PathPreview::new(&points, preview_m, lens, level, image)
             }
-            None => PathPreview::fitted(scene, &points, preview_m, level, image),
+            None => PathPreview::fitted(scene, &points, preview_m, usual, level, image),
         };
         let preview = preview.map_err(|e| fail(source, e))?;
-        *memory = Some(Prepared { made_from, file, preview });
+        *memory = Some(Prepared { made_from, file, centreline, preview });
     }
     memory.as_ref().ok_or_else(|| source.error(&["constructor"], "there is no path"))
 }

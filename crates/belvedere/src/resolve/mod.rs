@@ -4,6 +4,7 @@ mod areas;
 mod boxes;
 pub(crate) mod builtin;
 mod camera;
+mod centreline;
 pub(crate) mod constructor;
 pub(crate) mod delta;
 mod dem;

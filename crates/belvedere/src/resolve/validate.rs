@@ -197,7 +197,10 @@ fn constructor(doc: &ConstructorDoc) -> Result<(), Complaint> {
         ConstructorKind::TargetTracking if doc.target.is_none() => {
             Err(("kind", "target_tracking needs target, the layer to keep in view".into()))
         }
-        ConstructorKind::PathPreview if doc.path.is_none() => Err(("kind", "path_preview needs path".into())),
+        ConstructorKind::PathPreview if doc.path.is_some() == doc.centreline.is_some() => {
+            let given = if doc.path.is_some() { "both are given" } else { "neither is given" };
+            Err(("kind", format!("path_preview needs path or centreline, {given}; give exactly one")))
+        }
         _ => {
             let lens = doc.lens.unwrap_or_default();
             let stage = [("z0", doc.z0), ("a", doc.a), ("f_step", doc.f_step), ("cap_per_s", doc.cap_per_s)];

@@ -44,6 +44,9 @@ pub struct ConstructorDoc {
     /// The path: a line layer, a layer that moves, or a file: CSV (`x,y,z`), OBJ (its vertices in order), JSON (saved cameras).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
+    /// In place of `path`: the centreline between two points of a volume.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub centreline: Option<CentrelineDoc>,
     /// Position along the path, scene units; 0 by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub position_m: Option<f64>,
@@ -67,11 +70,28 @@ impl ConstructorDoc {
             cap_per_s: None,
             grow_px: None,
             path: None,
+            centreline: None,
             position_m: None,
             preview_m: None,
             lens: None,
         }
     }
+}
+
+/// A way through voxels of certain values, such as those of a vessel or a bore, that keeps away from their borders.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CentrelineDoc {
+    /// Id of the volume layer.
+    pub volume: String,
+    /// Where it begins, scene coordinates.
+    pub from: [f64; 3],
+    /// Where it ends, scene coordinates.
+    pub to: [f64; 3],
+    /// Least and greatest value of the voxels that it may use; by default those on the side of the histogram's threshold on which
+    /// both points lie.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub values: Option<[f64; 2]>,
 }
 
 /// Camera of a path preview, scene units.

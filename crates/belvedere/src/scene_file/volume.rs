@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct VolumeDoc {
     /// Unique id within the scene.
     pub id: String,
-    /// A file, or `builtin:engine`.
+    /// A file, `builtin:engine` or `builtin:tube`.
     pub source: String,
     /// Name of the array in files that have several; by default the first of single values.
     #[serde(skip_serializing_if = "Option::is_none")]

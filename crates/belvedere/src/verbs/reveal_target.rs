@@ -165,7 +165,7 @@ fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
     let id = id.unwrap_or_default();
     match file.rsplit('.').next().unwrap_or_default() {
         _ if builtin && stem == "dna" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
-        _ if builtin && stem == "engine" => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
+        _ if builtin && (stem == "engine" || stem == "tube") => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
         _ if builtin => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
         "pdb" | "ent" | "cif" | "mmcif" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
         "obj" | "ply" | "stl" | "gltf" | "glb" => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
