@@ -2,8 +2,8 @@
 //! keeps away from their borders.
 //!
 //! 1. The voxels that hang together with the first point, face to face, values within the range.
-//! 2. [`distance`]: how far from each the nearest other voxel is.
-//! 3. [`way`]: the way on which the lengths of steps over that clearance sum up to the least.
+//! 2. `distance`: how far from each the nearest other voxel is.
+//! 3. `way`: the way on which the lengths of steps over that clearance sum up to the least.
 //! 4. The way smoothed; points that would leave the voxels stay.
 
 mod distance;
