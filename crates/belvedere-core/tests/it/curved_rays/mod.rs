@@ -1,5 +1,6 @@
 //! Curved rays: laws, and agreement with references that share no formula with the library.
 
+mod acceptance;
 mod bounds;
 mod cameras;
 mod chains;
