@@ -1,5 +1,7 @@
 //! What the paper claims of its camera, measured: figures of section 12 of our specification, printed with `--nocapture`.
 
+#![allow(clippy::print_stdout, reason = "figures to read")]
+
 use super::cameras::{self, Spec};
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::{DVec2, DVec3, View};
