@@ -177,12 +177,14 @@ mod tests {
     fn a_small_measurement_is_complete() {
         let request = BenchRequest { rounds: 1, nodes: 65, image: [64, 36], threads: 1 };
         let report = bench(&request, &Progress::silent()).unwrap();
-        assert_eq!((report.frames.len(), report.projection.len(), report.growth.len()), (12, 2, 3));
+        assert_eq!((report.frames.len(), report.projection.len(), report.growth.len()), (12, 2, 5));
         assert!(report.flight.iter().all(|f| f.pictures == FLIGHT && f.points > 1.0 && f.ground_ms[0] > 0.0));
         assert!((report.flight.len(), report.flight[0].lag) == (2, 0) && report.flight[0].hidden < 0.05);
         assert!(report.frames.iter().all(|c| c.cpu_ms > 0.0 && c.triangles > 0));
         assert!(report.frames[0].ratio == 1.0 && report.projection.iter().all(|p| p.mpts_per_core_s > 0.0));
-        assert!(report.to_string().contains("growth with pixels: exponent"));
+        assert!(
+            ["pixels", "turns"].iter().all(|of| report.to_string().contains(&format!("growth with {of}: exponent")))
+        );
         let absurd = BenchRequest { nodes: 2, ..request };
         assert!(bench(&absurd, &Progress::silent()).unwrap_err().to_string().contains("33..=8193"));
     }
