@@ -1,11 +1,11 @@
 //! Arguments.
 
 use crate::parse::{
-    parse_bytes, parse_eye, parse_lod, parse_outside, parse_place, parse_seconds, parse_size, parse_spacing,
-    parse_sweep, parse_threads,
+    parse_bytes, parse_eye, parse_highlight, parse_lod, parse_outside, parse_place, parse_seconds, parse_size,
+    parse_spacing, parse_sweep, parse_threads,
 };
 use belvedere::RendererChoice;
-use belvedere::scene_file::SurfaceDoc;
+use belvedere::scene_file::{HighlightMark, SurfaceDoc};
 use belvedere::verbs::reveal::Technique;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -358,6 +358,11 @@ pub(crate) struct RenderArgs {
     /// The straight picture's ridges and routes, faintly over the bent one
     #[arg(long, conflicts_with = "straight")]
     pub(crate) ghost: bool,
+    /// What the bend did: shift = colours for how far it moves what is seen within the picture, stages = a colour for each stage and
+    /// turn where it moves most, revealed = the outline of what the straight picture hides, ghost-box = a box where what must be seen
+    /// would be, and a leader to it; without a list shift, revealed and ghost-box
+    #[arg(long, value_delimiter = ',', value_name = "LIST", num_args = 0..=1, require_equals = true, default_missing_value = "shift,revealed,ghost-box", conflicts_with = "straight", value_parser = parse_highlight)]
+    pub(crate) highlight: Vec<HighlightMark>,
     /// Without the mark in the corner that says that the view is bent, and by how much
     #[arg(long)]
     pub(crate) no_mark: bool,
@@ -380,7 +385,7 @@ pub(crate) struct RenderArgs {
 }
 
 /// What makes no sense for pictures of the camera.
-const CAMERA_CONFLICTS: [&str; 6] = ["straight", "compare", "aux", "grid", "heatmap", "ghost"];
+const CAMERA_CONFLICTS: [&str; 7] = ["straight", "compare", "aux", "grid", "heatmap", "ghost", "highlight"];
 
 /// Eye and target of a picture of the camera; `None` = chosen.
 pub(crate) type Outside = Option<[[f64; 3]; 2]>;

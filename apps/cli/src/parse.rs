@@ -1,6 +1,7 @@
 //! Values of arguments.
 
 use crate::args::Outside;
+use belvedere::scene_file::HighlightMark;
 
 /// Most worker threads: far above what helps, far below what a system refuses to start.
 const MAX_THREADS: usize = 1024;
@@ -20,6 +21,17 @@ pub(crate) fn parse_seconds(text: &str) -> Result<f64, String> {
 pub(crate) fn parse_lod(text: &str) -> Result<f64, String> {
     let px = text.parse().ok().filter(|px| (0.0..=64.0).contains(px));
     px.ok_or_else(|| "give an error in pixels in 0..=64; 0 draws every cell".into())
+}
+
+/// A way to show what the bend did.
+pub(crate) fn parse_highlight(text: &str) -> Result<HighlightMark, String> {
+    match text.trim() {
+        "shift" => Ok(HighlightMark::Shift),
+        "stages" => Ok(HighlightMark::Stages),
+        "revealed" => Ok(HighlightMark::Revealed),
+        "ghost-box" | "ghost_box" => Ok(HighlightMark::GhostBox),
+        _ => Err("possible are shift or stages, revealed, ghost-box, separated by commas".into()),
+    }
 }
 
 /// Width and height of `1280x720`.

@@ -110,6 +110,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     };
     (request.grid, request.heatmap, request.ghost, request.no_mark) =
         (args.grid, args.heatmap, args.ghost, args.no_mark);
+    request.highlight = args.highlight.clone();
     let overhead = args.overhead.then_some(CameraPicture::Overhead);
     request.camera = overhead.or(args.outside.map(CameraPicture::Outside));
     png_named(&args.out)?;

@@ -54,6 +54,7 @@ pub use data::{DataFiles, LARGEST_HOLE};
 pub use error::BelvedereError;
 pub use options::{Needs, OpenOptions};
 pub use overlays::camera::CameraPicture;
+pub use overlays::highlight::{GhostRecord, HighlightRecord, PartRecord};
 pub use picture::{DisplacementReport, Picture, PictureOptions, RendererChoice, Sidecar};
 pub use session::Session;
 

@@ -6,6 +6,9 @@ use belvedere_cpu::canvas::{Canvas, text_size};
 use belvedere_scene::{Color, Frame};
 use rayon::prelude::*;
 
+/// Height of the legend, pixels.
+pub(crate) const LEGEND_HEIGHT: f64 = 48.0;
+
 /// Dark blue to yellow with evenly rising lightness, told apart with any colour vision (support colours of viridis, CC0).
 const RAMP: [[f32; 3]; 9] = [
     [0.267, 0.005, 0.329],
@@ -24,6 +27,21 @@ pub(crate) fn ramp(share: f64) -> [u8; 3] {
     let t = share.clamp(0.0, 1.0) as f32 * (RAMP.len() - 1) as f32;
     let i = (t as usize).min(RAMP.len() - 2);
     std::array::from_fn(|c| ((RAMP[i][c] + (t - i as f32) * (RAMP[i + 1][c] - RAMP[i][c])) * 255.0 + 0.5) as u8)
+}
+
+/// A colour's light and a little of itself, in another colour.
+pub(crate) fn tinted(color: [u8; 3], tone: [u8; 3]) -> [u8; 3] {
+    let light = light(color);
+    std::array::from_fn(|c| {
+        let heat = f32::from(tone[c]) * (0.45 + 0.75 * light);
+        (0.2 * f32::from(color[c]) + 0.8 * heat).min(255.0) as u8
+    })
+}
+
+/// How light a colour looks, 0..=1.
+pub(crate) fn light(color: [u8; 3]) -> f32 {
+    let [r, g, b] = color.map(f32::from);
+    (0.30 * r + 0.59 * g + 0.11 * b) / 255.0
 }
 
 /// Colours the surfaces of `frame`; what was drawn over them stays. Returns the largest displacement, scene units.
@@ -45,13 +63,7 @@ pub(crate) fn paint(frame: &mut Frame, bare: &Frame, view: &View) -> f64 {
     for ((color, bare), moved) in frame.color.iter_mut().zip(&bare.color).zip(&moved) {
         // A mark leaves no pixel as it is, but for one that it hardly touches.
         if moved.is_finite() && color == bare {
-            let [r, g, b] = color.map(f32::from);
-            let light = (0.30 * r + 0.59 * g + 0.11 * b) / 255.0;
-            let tone = ramp(if most > 0.0 { moved / most } else { 0.0 });
-            *color = std::array::from_fn(|c| {
-                let heat = f32::from(tone[c]) * (0.45 + 0.75 * light);
-                (0.2 * f32::from(color[c]) + 0.8 * heat).min(255.0) as u8
-            });
+            *color = tinted(*color, ramp(if most > 0.0 { moved / most } else { 0.0 }));
         }
     }
     most
@@ -60,7 +72,7 @@ pub(crate) fn paint(frame: &mut Frame, bare: &Frame, view: &View) -> f64 {
 /// The legend, in the lower left corner.
 pub(crate) fn legend(canvas: &mut Canvas<'_>, most: f64) {
     let size = canvas.size();
-    let (width, height) = (210.0, 48.0);
+    let (width, height) = (210.0, LEGEND_HEIGHT);
     if size.x < width + 20.0 || size.y < height + 20.0 {
         return;
     }

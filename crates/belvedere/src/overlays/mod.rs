@@ -5,6 +5,7 @@ pub(crate) mod camera;
 pub(crate) mod ghost;
 pub(crate) mod grid;
 pub(crate) mod heat;
+pub(crate) mod highlight;
 pub(crate) mod ring;
 pub(crate) mod thin;
 

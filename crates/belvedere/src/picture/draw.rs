@@ -4,9 +4,9 @@ use super::displacement::{self, DisplacementReport};
 use super::options::{AuxBuffer, PictureOptions};
 use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, Sidecar, TerrainRecord};
 use super::volume_record::VolumeRecord;
-use crate::overlays::{badge, camera, ghost, grid, heat, thin};
+use crate::overlays::{badge, camera, ghost, grid, heat, highlight, thin};
 use crate::record::{self, InputFile, ViewRecord};
-use crate::scene_file::SwitchOrLength;
+use crate::scene_file::{HighlightMark, SwitchOrLength};
 use crate::{BelvedereError, CameraPicture, Session};
 use belvedere_core::View;
 use belvedere_cpu::canvas::Canvas;
@@ -79,7 +79,8 @@ fn draw_view(session: &Session, request: &PictureOptions, progress: &Progress) -
     let scene = session.scene();
     let view = if request.straight { session.view().straightened() } else { session.view().clone() };
     let wanted = &session.overlay;
-    let (heatmap, ghost) = (request.heatmap || wanted.heatmap, (request.ghost || wanted.ghost) && view.is_bent());
+    let (marks, heatmap) = highlight::chosen((&request.highlight, request.heatmap), wanted)?;
+    let ghost = (request.ghost || wanted.ghost) && view.is_bent();
     let grid = request.grid.or(match wanted.grid {
         Some(SwitchOrLength::Length(spacing)) => Some(Some(spacing)),
         Some(SwitchOrLength::Switch(true)) => Some(None),
@@ -113,6 +114,20 @@ fn draw_view(session: &Session, request: &PictureOptions, progress: &Progress) -
         let bare = request.renderer.of(session).render(&job)?;
         heatmap_max = Some(heat::paint(&mut frame, &bare, &view));
     }
+    let highlight = (!marks.is_empty() && !request.straight)
+        .then(|| {
+            let aux = Aux { world: true, exact: true };
+            let options = RenderOptions { marks: false, aux, ..request.quality.clone() };
+            let draw = |view: &View| {
+                let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
+                request.renderer.of(session).render(&job)
+            };
+            let bent = draw(&view)?;
+            let straight = marks.contains(&HighlightMark::Revealed).then(|| draw(&view.straightened())).transpose()?;
+            let bare = highlight::Bare { bent: &bent, straight: straight.as_ref() };
+            Ok::<_, BelvedereError>(highlight::paint(&mut frame, &bare, scene, &view, &marks, wanted.highlight_px))
+        })
+        .transpose()?;
     if let Some(straight) = straight.as_ref().filter(|_| ghost) {
         ghost::draw(&mut frame, straight, scene);
     }
@@ -124,11 +139,22 @@ fn draw_view(session: &Session, request: &PictureOptions, progress: &Progress) -
     if let Some(most) = heatmap_max {
         heat::legend(&mut canvas, most);
     }
+    if let Some(record) = &highlight {
+        let taken = if heatmap_max.is_some() { heat::LEGEND_HEIGHT + 10.0 } else { 0.0 };
+        highlight::legend(&mut canvas, record, taken);
+    }
     if let Some(words) = &mark {
         badge::draw(&mut canvas, words);
     }
-    let overlay =
-        OverlayRecord { mark: mark.is_some(), mark_words: mark, grid: grid_spacing, heatmap_max, ghost, camera: None };
+    let overlay = OverlayRecord {
+        mark: mark.is_some(),
+        mark_words: mark,
+        grid: grid_spacing,
+        heatmap_max,
+        ghost,
+        highlight,
+        camera: None,
+    };
     Ok(Drawn { view, frame, straight: straight.filter(|_| request.compare), overlay, displacement })
 }
 

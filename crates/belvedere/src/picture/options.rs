@@ -1,5 +1,6 @@
 //! What to draw, and how well.
 
+use crate::scene_file::HighlightMark;
 use crate::{CameraPicture, Session};
 use belvedere_cpu::ExactRenderer;
 use belvedere_scene::{Progress, RenderOptions, Renderer};
@@ -25,6 +26,8 @@ pub struct PictureOptions {
     pub heatmap: bool,
     /// The straight picture faintly over the bent one, also if the scene does not ask for it.
     pub ghost: bool,
+    /// What shows what the bend did, instead of what the scene asks for; empty = as the scene says.
+    pub highlight: Vec<HighlightMark>,
     /// No mark on bent pictures, also if the scene does not say so.
     pub no_mark: bool,
     /// A picture of the camera instead of one by it.

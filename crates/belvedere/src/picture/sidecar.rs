@@ -3,6 +3,7 @@
 use super::displacement::DisplacementReport;
 use super::options::{AuxBuffer, AuxFormat};
 use super::volume_record::VolumeRecord;
+use crate::overlays::highlight::HighlightRecord;
 use crate::record::{AreaRecord, InputFile, ViewRecord};
 use crate::resolve::constructor::ConstructorReport;
 use crate::scene_file::Document;
@@ -79,6 +80,9 @@ pub struct OverlayRecord {
     pub heatmap_max: Option<f64>,
     /// Whether the straight picture shows through.
     pub ghost: bool,
+    /// What shows what the bend did; null if nothing does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub highlight: Option<HighlightRecord>,
     /// If this is a picture of the camera: from where.
     pub camera: Option<&'static str>,
 }

@@ -1,6 +1,7 @@
 //! Checks of a document that need nothing but the document.
 
 use crate::BelvedereError;
+use crate::overlays::highlight;
 use crate::scene_file::{
     AnimationDoc, AutoOrLength, ConstructorDoc, ConstructorKind, LayerDoc, SourceDocument, StageDoc, SwitchOrLength,
 };
@@ -32,6 +33,13 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
     terrain_intent(source)?;
     if let Some(SwitchOrLength::Length(spacing)) = source.document.overlay.as_ref().and_then(|o| o.grid) {
         within("grid", spacing, 0.0, 1e9).map_err(|(key, reason)| source.error(&["overlay", key], reason))?;
+    }
+    if let Some(doc) = &source.document.overlay {
+        within("highlight_px", doc.highlight_px, 0.0, 1e6)
+            .map_err(|(key, reason)| source.error(&["overlay", key], reason))?;
+        if let Some(reason) = highlight::conflict(&doc.highlight, doc.heatmap) {
+            return Err(source.error(&["overlay", "highlight"], reason));
+        }
     }
     if let Some(doc) = &source.document.constructor {
         constructor(doc)

@@ -3,6 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Upper end of the colours of highlights unless given, pixels.
+const HIGHLIGHT_PX: f64 = 200.0;
+
 /// What is drawn over the picture beside the layers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -16,11 +19,32 @@ pub struct OverlayDoc {
     pub heatmap: bool,
     /// The straight picture's ridges and routes, faintly over the bent one.
     pub ghost: bool,
+    /// What the bend did: any of `shift` (colours for how far it moves what is seen within the picture) or `stages` (a colour for each
+    /// stage and turn, where it moves most), `revealed` (the outline of what the straight picture hides), `ghost_box` (a box where what
+    /// must be seen would be, and a leader to it).
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub highlight: Vec<HighlightMark>,
+    /// Distance at the upper end of the colours of `highlight`, pixels, > 0.
+    pub highlight_px: f64,
+}
+
+/// A way to show what the bend did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum HighlightMark {
+    /// Colours for how far what is seen moved within the picture.
+    Shift,
+    /// Colours for the stage, or the turn, that moved it most.
+    Stages,
+    /// The outline of what the straight picture hides.
+    Revealed,
+    /// A box where what must be seen would be, and a leader to it.
+    GhostBox,
 }
 
 impl Default for OverlayDoc {
     fn default() -> Self {
-        Self { grid: None, mark: true, heatmap: false, ghost: false }
+        Self { grid: None, mark: true, heatmap: false, ghost: false, highlight: Vec::new(), highlight_px: HIGHLIGHT_PX }
     }
 }
 

@@ -1,0 +1,179 @@
+//! What the bend did to the picture: how far it moved what is seen, by which part of the chain, what the straight picture hides, and
+//! where what must be seen would be.
+//!
+//! Source: the highlighting of displaced subsets proposed for curved rays; here for every chain of stages, for it is measured with the
+//! straight camera: of the point that a pixel shows it has another image, at a depth of its own.
+
+mod ghosts;
+mod legend;
+mod outline;
+mod shift;
+#[cfg(test)]
+mod tests;
+
+pub use ghosts::GhostRecord;
+
+use super::heat;
+use crate::BelvedereError;
+use crate::scene_file::{HighlightMark, OverlayDoc};
+use belvedere_core::View;
+use belvedere_cpu::canvas::Canvas;
+use belvedere_scene::{Frame, Scene};
+use serde::Serialize;
+use shift::{Moved, Parts, Straight};
+
+/// Colours of parts, told apart with any colour vision (Okabe, Ito 2008); longer chains take theirs from the ramp.
+const PART_COLORS: [[u8; 3]; 7] =
+    [[230, 159, 0], [86, 180, 233], [0, 158, 115], [204, 121, 167], [213, 94, 0], [0, 114, 178], [240, 228, 66]];
+
+/// What the highlights of a picture say.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct HighlightRecord {
+    /// What was drawn.
+    pub marks: Vec<HighlightMark>,
+    /// Distance at the upper end of the colours, pixels.
+    pub ramp_px: f64,
+    /// Largest distance between the bent and the straight image of what a pixel shows, pixels; of points with a straight image.
+    pub max_px: f64,
+    /// Its mean over such pixels.
+    pub mean_px: f64,
+    /// Share of the pixels that show anything where the straight picture shows something nearer, 0..=1; null unless it was looked for.
+    pub revealed_share: Option<f64>,
+    /// Share where the point lies beside the straight picture, or behind its camera.
+    pub outside_share: Option<f64>,
+    /// The parts of the chain, in order of application.
+    pub parts: Vec<PartRecord>,
+    /// Where what must be seen is and would be.
+    pub ghosts: Vec<GhostRecord>,
+}
+
+/// A part of the chain: a stage, or a turn of curved rays.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PartRecord {
+    /// What it is called.
+    pub name: String,
+    /// Its colour, sRGB.
+    pub color: [u8; 3],
+    /// Share of the pixels that show anything which it moved farther than any other part did, 0..=1.
+    pub share: f64,
+    /// Largest distance between bent and straight image among these, pixels.
+    pub max_px: f64,
+}
+
+/// The pictures that highlights are made of.
+pub(crate) struct Bare<'a> {
+    /// Bent, without marks, with exact world positions.
+    pub(crate) bent: &'a Frame,
+    /// Straight, without marks; needed for [`HighlightMark::Revealed`].
+    pub(crate) straight: Option<&'a Frame>,
+}
+
+/// Draws `marks` over `frame`.
+/// * `ramp_px`: distance at the upper end of the colours, pixels, > 0.
+pub(crate) fn paint(
+    frame: &mut Frame,
+    bare: &Bare<'_>,
+    scene: &Scene,
+    view: &View,
+    marks: &[HighlightMark],
+    ramp_px: f64,
+) -> HighlightRecord {
+    let parts = Parts::of(view);
+    let moved = shift::moved(&parts, bare.bent, bare.straight);
+    let mut record = record(&parts, &moved, marks, ramp_px);
+    let wants = |mark| marks.contains(&mark);
+    if wants(HighlightMark::Shift) || wants(HighlightMark::Stages) {
+        let by_stage = wants(HighlightMark::Stages);
+        for ((color, bare), moved) in frame.color.iter_mut().zip(&bare.bent.color).zip(&moved) {
+            // A mark leaves no pixel as it is, but for one that it hardly touches.
+            let Some(moved) = moved.filter(|_| color == bare) else { continue };
+            let share = (f64::from(moved.px) / ramp_px).min(1.0);
+            *color = match moved.part.and_then(|part| record.parts.get(usize::from(part))) {
+                Some(part) if by_stage => of_part(*color, part.color, share as f32),
+                None if by_stage => of_part(*color, [0; 3], 0.0),
+                _ => heat::tinted(*color, heat::ramp(share)),
+            };
+        }
+    }
+    let mut canvas = Canvas::new(&mut frame.color, frame.width);
+    if wants(HighlightMark::Revealed) {
+        let hidden: Vec<bool> = moved.iter().map(|m| m.is_some_and(|m| m.straight == Straight::Hidden)).collect();
+        outline::draw(&mut canvas, &outline::cleaned(&hidden, frame.width), frame.width);
+    }
+    if wants(HighlightMark::GhostBox) {
+        record.ghosts = ghosts::draw(&mut canvas, scene, view, parts.straight());
+    }
+    record
+}
+
+/// Draws the legend of what [`paint`] drew; `above`: so much room is taken at the lower rim, pixels.
+pub(crate) fn legend(canvas: &mut Canvas<'_>, record: &HighlightRecord, above: f64) {
+    legend::draw(canvas, record, above);
+}
+
+/// The marks to draw and whether the heat map is drawn: what is asked for by the caller comes before what the scene says.
+///
+/// # Errors
+/// [`BelvedereError::Setting`] if the caller asks for two ways to colour surfaces.
+pub(crate) fn chosen(
+    (asked, asked_heatmap): (&[HighlightMark], bool),
+    scene: &OverlayDoc,
+) -> Result<(Vec<HighlightMark>, bool), BelvedereError> {
+    if let Some(reason) = conflict(asked, asked_heatmap) {
+        return Err(BelvedereError::Setting(reason.into()));
+    }
+    let colours = |m: &HighlightMark| matches!(m, HighlightMark::Shift | HighlightMark::Stages);
+    if asked.is_empty() {
+        let marks = scene.highlight.iter().copied().filter(|m| !(asked_heatmap && colours(m)));
+        return Ok((marks.collect(), asked_heatmap || scene.heatmap));
+    }
+    Ok((asked.to_vec(), asked_heatmap || (scene.heatmap && !asked.iter().any(colours))))
+}
+
+/// Which marks cannot be drawn together, in words.
+pub(crate) fn conflict(marks: &[HighlightMark], heatmap: bool) -> Option<&'static str> {
+    let wants = |mark| marks.contains(&mark);
+    match (wants(HighlightMark::Shift), wants(HighlightMark::Stages), heatmap) {
+        (true, true, _) => Some("highlights \"shift\" and \"stages\" both colour the surfaces; choose one"),
+        (true, _, true) => Some("the heat map and highlight \"shift\" both colour the surfaces; choose one"),
+        (_, true, true) => Some("the heat map and highlight \"stages\" both colour the surfaces; choose one"),
+        _ => None,
+    }
+}
+
+fn record(parts: &Parts, moved: &[Option<Moved>], marks: &[HighlightMark], ramp_px: f64) -> HighlightRecord {
+    let seen = || moved.iter().flatten();
+    let share = |count: usize| count as f64 / seen().count().max(1) as f64;
+    let distances = || seen().map(|m| f64::from(m.px)).filter(|px| px.is_finite());
+    let with = |straight: Straight| share(seen().filter(|m| m.straight == straight).count());
+    let many = parts.names.len() > PART_COLORS.len();
+    let part = |(k, name): (usize, &String)| {
+        let by_it = || seen().filter(move |m| m.part.map(usize::from) == Some(k));
+        let most = by_it().map(|m| f64::from(m.px)).filter(|px| px.is_finite()).fold(0.0, f64::max);
+        let color = if many { heat::ramp(k as f64 / (parts.names.len() - 1) as f64) } else { PART_COLORS[k] };
+        PartRecord { name: name.clone(), color, share: share(by_it().count()), max_px: most }
+    };
+    let looked = marks.contains(&HighlightMark::Revealed);
+    HighlightRecord {
+        marks: marks.to_vec(),
+        ramp_px,
+        max_px: distances().fold(0.0, f64::max),
+        mean_px: distances().sum::<f64>() / distances().count().max(1) as f64,
+        revealed_share: looked.then(|| with(Straight::Hidden)),
+        outside_share: looked.then(|| with(Straight::Outside)),
+        parts: parts.names.iter().enumerate().map(part).collect(),
+        ghosts: Vec::new(),
+    }
+}
+
+/// Grey where nothing moved, the colour of the part where it moved by the end of the ramp.
+fn of_part(color: [u8; 3], part: [u8; 3], share: f32) -> [u8; 3] {
+    let light = 255.0 * heat::light(color);
+    let full = heat::tinted(color, part).map(f32::from);
+    full.map(|full| (light + share * (full - light)).round() as u8)
+}
+
+/// Size of lines: 1 for a picture 720 high.
+fn scale(canvas: &Canvas<'_>) -> f64 {
+    (canvas.size().y / 720.0).max(0.4)
+}
