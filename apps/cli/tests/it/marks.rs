@@ -91,6 +91,56 @@ fn grid_heat_and_ghost_are_drawn_and_recorded() {
 }
 
 #[test]
+fn highlights_tell_what_the_bend_did() {
+    let place = Place::new();
+    let scene = SCENE.replace("[[stage]]", "[[layer]]\nid = 'tower'\nkind = 'boxes'\nmust_see = true\nboxes = [{ base = [-952, 1587, 2200], size = [300, 300, 500] }]\n[[stage]]");
+    place.write("s.toml", &scene);
+    let (_, plain) = drawn(&place, "plain.png", &[]);
+    let (usual, a) = drawn(&place, "usual.png", &["--highlight"]);
+    let (stages, b) = drawn(&place, "stages.png", &["--highlight=stages"]);
+    let (exact, c) = drawn(&place, "exact.png", &["--highlight=stages", "--renderer", "exact"]);
+    assert!(plain != a && a != b && b != c);
+    let found = &usual["overlay"]["highlight"];
+    assert_eq!(found["marks"], serde_json::json!(["shift", "revealed", "ghost_box"]));
+    let number = |record: &serde_json::Value, key: &str| record[key].as_f64().expect("a number");
+    // Samples of the whole picture, and all of its pixels.
+    let (most, sampled) = (number(found, "max_px"), number(&usual["displacement"], "max_px"));
+    assert!(most >= 0.98 * sampled && most < 1.3 * sampled, "{most} of all pixels, {sampled} of samples");
+    assert!((0.01..0.9).contains(&number(found, "revealed_share")), "{found}");
+    let ghosts = found["ghosts"].as_array().expect("ghosts");
+    assert!(ghosts.iter().any(|g| g["layer"] == "tower" && number(g, "shift_px") > 5.0), "{found}");
+    let turn = &stages["overlay"]["highlight"]["parts"][0];
+    assert_eq!(turn["name"], "curved rays");
+    // Both renderers show the same.
+    let other = &exact["overlay"]["highlight"]["parts"][0];
+    for key in ["share", "shown_share"] {
+        assert!((number(turn, key) - number(other, key)).abs() < 0.01, "{turn} {other}");
+    }
+    let (straight, _) = drawn(&place, "straight.png", &["--straight"]);
+    assert!(straight["overlay"]["highlight"].is_null());
+    // Keys mean what options mean; the number of threads means nothing.
+    let keys = "[overlay]\nhighlight = ['shift', 'revealed', 'ghost_box']\n[camera]";
+    place.write("s.toml", &scene.replace("[camera]", keys));
+    assert!(drawn(&place, "keys.png", &["--threads", "3"]).1 == a);
+    let (asked, d) = drawn(&place, "asked.png", &["--highlight=stages"]);
+    assert!(d == b, "what is asked for comes before what the scene says: {}", asked["overlay"]);
+    for (overlay, words) in [
+        ("highlight = ['shift', 'stages']", &["choose one", "s.toml:"][..]),
+        ("highlight = ['stages']\nheatmap = true", &["heat map", "choose one"]),
+        ("highlight = ['shine']", &["shine"]),
+        ("highlight_px = 0", &["highlight_px is 0"]),
+    ] {
+        place.write("s.toml", &scene.replace("[camera]", &format!("[overlay]\n{overlay}\n[camera]")));
+        let line = place.fails(&["render", "s.toml", "-o", "x.png"]);
+        assert!(words.iter().all(|w| line.contains(w)), "{line}");
+    }
+    place.write("s.toml", &scene);
+    for args in [&["--highlight=shift", "--heatmap"][..], &["--highlight=shift,stages"], &["--highlight=shine"]] {
+        place.fails(&[&["render", "s.toml", "-o", "x.png"][..], args].concat());
+    }
+}
+
+#[test]
 fn the_camera_itself_is_drawn_from_above_and_from_outside() {
     let place = Place::new();
     place.write("s.toml", SCENE);

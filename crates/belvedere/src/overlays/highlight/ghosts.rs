@@ -77,7 +77,12 @@ fn ghost(layer: &Layer, bent: &View, straight: &View) -> Option<Ghost> {
             let in_picture = |p: Option<DVec2>| p.is_some_and(|p| bent.pinhole().contains(p));
             let pairs = lines.iter().flatten().map(|&p| both(p)).filter(|[b, s]| in_picture(*b) && s.is_some());
             let shift = |[b, s]: &[Option<DVec2>; 2]| b.zip(*s).map_or(0.0, |(b, s)| b.distance(s));
-            let farthest = pairs.max_by(|a, b| shift(a).total_cmp(&shift(b)));
+            // Rather a place whose leader ends in the picture.
+            let rank = |pair: &[Option<DVec2>; 2]| (in_picture(pair[1]), shift(pair));
+            let farthest = pairs.max_by(|a, b| {
+                let (a, b) = (rank(a), rank(b));
+                a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+            });
             (lines.iter().flat_map(|line| images(straight, line)).collect(), farthest.into_iter().collect())
         }
         LayerKind::Point(l) => {

@@ -20,7 +20,7 @@ use belvedere_core::View;
 use belvedere_cpu::canvas::Canvas;
 use belvedere_scene::{Frame, Scene};
 use serde::Serialize;
-use shift::{Moved, Parts, Straight};
+use shift::{Parts, Straight, Survey};
 
 /// Colours of parts, told apart with any colour vision (Okabe, Ito 2008); longer chains take theirs from the ramp.
 const PART_COLORS: [[u8; 3]; 7] =
@@ -54,9 +54,11 @@ pub struct PartRecord {
     pub name: String,
     /// Its colour, sRGB.
     pub color: [u8; 3],
-    /// Share of the pixels that show anything which it moved farther than any other part did, 0..=1.
+    /// Share of the pixels that show anything which it moves by more than a pixel, 0..=1.
     pub share: f64,
-    /// Largest distance between bent and straight image among these, pixels.
+    /// Share that is drawn in its colour: its stage moved them farthest, and of the turns of curved rays it is the last that reaches them.
+    pub shown_share: f64,
+    /// How far it moves what is seen at most, pixels, from where the parts before it leave it.
     pub max_px: f64,
 }
 
@@ -79,12 +81,12 @@ pub(crate) fn paint(
     ramp_px: f64,
 ) -> HighlightRecord {
     let parts = Parts::of(view);
-    let moved = shift::moved(&parts, bare.bent, bare.straight);
-    let mut record = record(&parts, &moved, marks, ramp_px);
+    let survey = shift::survey(&parts, bare.bent, bare.straight);
+    let (moved, mut record) = (&survey.pixels, record(&parts, &survey, marks, ramp_px));
     let wants = |mark| marks.contains(&mark);
     if wants(HighlightMark::Shift) || wants(HighlightMark::Stages) {
         let by_stage = wants(HighlightMark::Stages);
-        for ((color, bare), moved) in frame.color.iter_mut().zip(&bare.bent.color).zip(&moved) {
+        for ((color, bare), moved) in frame.color.iter_mut().zip(&bare.bent.color).zip(moved) {
             // A mark leaves no pixel as it is, but for one that it hardly touches.
             let Some(moved) = moved.filter(|_| color == bare) else { continue };
             let share = (f64::from(moved.px) / ramp_px).min(1.0);
@@ -98,7 +100,7 @@ pub(crate) fn paint(
     let mut canvas = Canvas::new(&mut frame.color, frame.width);
     if wants(HighlightMark::Revealed) {
         let hidden: Vec<bool> = moved.iter().map(|m| m.is_some_and(|m| m.straight == Straight::Hidden)).collect();
-        outline::draw(&mut canvas, &outline::cleaned(&hidden, frame.width), frame.width);
+        outline::draw(&mut canvas, &hidden, frame.width);
     }
     if wants(HighlightMark::GhostBox) {
         record.ghosts = ghosts::draw(&mut canvas, scene, view, parts.straight());
@@ -141,17 +143,17 @@ pub(crate) fn conflict(marks: &[HighlightMark], heatmap: bool) -> Option<&'stati
     }
 }
 
-fn record(parts: &Parts, moved: &[Option<Moved>], marks: &[HighlightMark], ramp_px: f64) -> HighlightRecord {
-    let seen = || moved.iter().flatten();
+fn record(parts: &Parts, survey: &Survey, marks: &[HighlightMark], ramp_px: f64) -> HighlightRecord {
+    let seen = || survey.pixels.iter().flatten();
     let share = |count: usize| count as f64 / seen().count().max(1) as f64;
     let distances = || seen().map(|m| f64::from(m.px)).filter(|px| px.is_finite());
     let with = |straight: Straight| share(seen().filter(|m| m.straight == straight).count());
     let many = parts.names.len() > PART_COLORS.len();
     let part = |(k, name): (usize, &String)| {
-        let by_it = || seen().filter(move |m| m.part.map(usize::from) == Some(k));
-        let most = by_it().map(|m| f64::from(m.px)).filter(|px| px.is_finite()).fold(0.0, f64::max);
+        let shown = seen().filter(|m| m.part.map(usize::from) == Some(k)).count();
+        let (reached, max_px) = survey.parts[k];
         let color = if many { heat::ramp(k as f64 / (parts.names.len() - 1) as f64) } else { PART_COLORS[k] };
-        PartRecord { name: name.clone(), color, share: share(by_it().count()), max_px: most }
+        PartRecord { name: name.clone(), color, share: share(reached), shown_share: share(shown), max_px }
     };
     let looked = marks.contains(&HighlightMark::Revealed);
     HighlightRecord {

@@ -9,17 +9,37 @@ const WIDTHS: [f64; 2] = [4.2, 2.0];
 /// Rim and line.
 pub(super) const COLORS: [Color; 2] = [Color::rgb(255, 255, 255), Color::rgb(200, 0, 110)];
 
-/// The mask without specks: a pixel goes with most of the nine around it.
-pub(super) fn cleaned(mask: &[bool], width: usize) -> Vec<bool> {
+/// Gaps up to twice this are closed, and specks up to twice the other left out, in the same pixels.
+const CLOSED: f64 = 5.0;
+const OPENED: f64 = 1.5;
+
+/// The regions of a mask: gaps closed, then specks left out.
+/// * `close`, `open`: half the width of such gaps and specks, pixels.
+fn regions(mask: &[bool], width: usize, close: usize, open: usize) -> Vec<bool> {
+    let closed = spread(&spread(mask, width, close, true), width, close, false);
+    spread(&spread(&closed, width, open, false), width, open, true)
+}
+
+/// Every pixel becomes `value` within `reach` columns and rows of one that is; beyond the rim lies nothing.
+fn spread(mask: &[bool], width: usize, reach: usize, value: bool) -> Vec<bool> {
     let height = mask.len().checked_div(width).unwrap_or(0);
-    let most = |i: usize| {
-        let (x, y) = (i % width, i / width);
-        let rows = y.saturating_sub(1)..(y + 2).min(height);
-        let around = rows.flat_map(|row| (x.saturating_sub(1)..(x + 2).min(width)).map(move |col| row * width + col));
-        let (set, all) = around.fold((0, 0), |(set, all), i| (set + usize::from(mask[i]), all + 1));
-        2 * set > all
+    let along = |mask: &[bool], lines: usize, length: usize, at: &dyn Fn(usize, usize) -> usize| {
+        let mut out = mask.to_vec();
+        for line in 0..lines {
+            let mut last: Option<usize> = None;
+            for i in (0..length).chain((0..length).rev()) {
+                if mask[at(line, i)] == value {
+                    last = Some(i);
+                }
+                if last.is_some_and(|l| l.abs_diff(i) <= reach) {
+                    out[at(line, i)] = value;
+                }
+            }
+        }
+        out
     };
-    (0..mask.len()).map(most).collect()
+    let rows = along(mask, height, width, &|y, x| y * width + x);
+    along(&rows, width, height, &|x, y| y * width + x)
 }
 
 /// Pixels of the mask that have a neighbour beside, above or below that is not in it.
@@ -39,8 +59,9 @@ fn border(mask: &[bool], width: usize) -> Vec<usize> {
 
 /// Draws the outline.
 pub(super) fn draw(canvas: &mut Canvas<'_>, mask: &[bool], width: usize) {
-    let border = border(mask, width);
     let scale = super::scale(canvas);
+    let [close, open] = [CLOSED, OPENED].map(|px| (px * scale).round() as usize);
+    let border = border(&regions(mask, width, close, open), width);
     for (line, color) in WIDTHS.into_iter().zip(COLORS) {
         for &i in &border {
             let at = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
@@ -60,11 +81,37 @@ mod tests {
     }
 
     #[test]
-    fn specks_go_and_regions_stay() {
-        let clean = cleaned(&mask(), 6);
-        assert!(!clean[35] && clean[2 * 6 + 2] && !clean[0], "{clean:?}");
-        assert_eq!(cleaned(&[true; 12], 4), [true; 12]);
-        assert_eq!(cleaned(&[], 0), [] as [bool; 0]);
+    fn specks_go_gaps_close_and_regions_stay() {
+        let lines = |rows: &[&str], close, open| {
+            let mask: Vec<bool> = rows.iter().flat_map(|r| r.bytes().map(|c| c == b'#')).collect();
+            let out = regions(&mask, rows[0].len(), close, open);
+            let text = |r: &[bool]| r.iter().map(|&v| if v { '#' } else { '.' }).collect::<String>();
+            out.chunks(rows[0].len()).map(text).collect::<Vec<_>>()
+        };
+        let speck = ["......#", ".###...", ".###...", ".###...", "......."];
+        assert_eq!(lines(&speck, 0, 1), [".......", ".###...", ".###...", ".###...", "......."]);
+        assert_eq!(lines(&speck, 0, 0), speck);
+        let [none, gap, whole] = ["...........", "..###.###..", "..#######.."];
+        let gap = [none, none, gap, gap, gap, none, none];
+        assert_eq!(lines(&gap, 1, 1), [none, none, whole, whole, whole, none, none]);
+        assert_eq!(lines(&gap, 0, 1), gap);
+        assert_eq!(regions(&[true; 12], 4, 5, 2), [true; 12]);
+        assert_eq!(regions(&[], 0, 5, 2).len(), 0);
+    }
+
+    #[test]
+    fn spreading_is_what_looking_at_every_neighbour_finds() {
+        // Bits without a pattern.
+        let mask: Vec<bool> = (0u64..13 * 9).map(|i| i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 61 == 0).collect();
+        for (reach, value) in [(1, true), (2, true), (1, false), (4, true), (20, false)] {
+            let near = |i: usize| {
+                let is_near = |k: &usize| (k % 13).abs_diff(i % 13) <= reach && (k / 13).abs_diff(i / 13) <= reach;
+                let found = (0..mask.len()).filter(is_near).any(|k| mask[k] == value);
+                if found { value } else { !value }
+            };
+            let expected: Vec<bool> = (0..mask.len()).map(near).collect();
+            assert_eq!(spread(&mask, 13, reach, value), expected, "{reach} {value}");
+        }
     }
 
     #[test]

@@ -8,6 +8,10 @@ use rayon::prelude::*;
 
 /// Turns of curved rays are told apart up to so many: a longer chain is one part.
 const MOST_TURNS: usize = 24;
+/// Room for them beside the other stages.
+const MOST_PARTS: usize = 32;
+/// A turn reaches a point that it moves by more than this, pixels.
+const REACHES_PX: f64 = 1.0;
 /// What the straight camera sees must be nearer than a point by this share of its depth to hide it: depths of a picture are no better.
 const NEARER: f64 = 1e-3;
 /// A point that moves by less than this, pixels, stays where it is.
@@ -17,13 +21,15 @@ const STILL_PX: f64 = 0.01;
 pub(super) struct Parts {
     /// What they are called, in order of application.
     pub(super) names: Vec<String>,
+    /// Number of the stage that each belongs to.
+    stages: Vec<usize>,
     /// `views[k]` is the camera with the first k parts.
     views: Vec<View>,
 }
 
 impl Parts {
     pub(super) fn of(view: &View) -> Self {
-        let (mut names, mut views) = (Vec::new(), vec![view.straightened()]);
+        let (mut names, mut numbers, mut views) = (Vec::new(), Vec::new(), vec![view.straightened()]);
         let stages = view.stages();
         for (i, stage) in stages.iter().enumerate() {
             let mut add = |name: String, last: Stage| {
@@ -31,6 +37,7 @@ impl Parts {
                 // The beginning of a chain is a chain.
                 if let Ok(view) = View::new(view.pinhole().clone(), chain) {
                     names.push(name);
+                    numbers.push(i);
                     views.push(view);
                 }
             };
@@ -47,7 +54,7 @@ impl Parts {
                 _ => add(stage.name().replace('_', " "), stage.clone()),
             }
         }
-        Self { names, views }
+        Self { names, stages: numbers, views }
     }
 
     /// The camera without any part.
@@ -55,23 +62,41 @@ impl Parts {
         &self.views[0]
     }
 
-    /// The part that moves `p` farthest from where the parts before it leave it; `None` if it stays where it is.
+    /// How far each part moves `p` from where the parts before it leave it, pixels: infinite where they leave it without an image.
     /// * `pixel`: where all of them leave it.
-    fn mover(&self, p: DVec3, pixel: DVec2) -> Option<usize> {
-        let mut before = self.straight().project(p).ok().map(|image| image.pixel);
-        let mut most = (STILL_PX, None);
+    fn moves(&self, p: DVec3, pixel: DVec2) -> Moves {
+        let image = |view: &View| view.project(p).ok().map(|image| image.pixel);
+        let first = image(self.straight());
+        let (mut moves, mut before) = (Moves { by: [0.0; MOST_PARTS], mover: None }, first);
+        // The start of the stage that a part belongs to, and the stage that moved farthest: how far, its parts.
+        let (mut start, mut most) = (first, (STILL_PX, 0..0));
+        let far = |from: Option<DVec2>, to: DVec2| from.map_or(f64::INFINITY, |from| from.distance(to));
         for (part, view) in self.views[1..].iter().enumerate() {
+            let begins = part == 0 || self.stages[part] != self.stages[part - 1];
+            start = if begins { before } else { start };
             let last = part + 1 == self.names.len();
-            let after = if last { Some(pixel) } else { view.project(p).ok().map(|image| image.pixel) };
-            let Some(after) = after else { continue };
-            let by = before.map_or(f64::INFINITY, |before| before.distance(after));
-            if by > most.0 {
-                most = (by, Some(part));
+            if let Some(after) = if last { Some(pixel) } else { image(view) } {
+                moves.by[part] = far(before, after);
+                before = Some(after);
             }
-            before = Some(after);
+            let ends = last || self.stages[part] != self.stages[part + 1];
+            let Some(end) = before.filter(|_| ends) else { continue };
+            if far(start, end) > most.0 {
+                let begin = self.stages.iter().position(|s| *s == self.stages[part]).unwrap_or(part);
+                most = (far(start, end), begin..part + 1);
+            }
         }
-        most.1
+        // Of the turns of a stage the last that reaches the point stands for it: so the stretches of the rays are told apart.
+        let reaches = |part: &usize| moves.by[*part] > REACHES_PX;
+        moves.mover = most.1.clone().rev().find(reaches).or(most.1.last());
+        moves
     }
+}
+
+/// How far each part moves a point, and which of them stands for its move.
+struct Moves {
+    by: [f64; MOST_PARTS],
+    mover: Option<usize>,
 }
 
 /// What the straight camera makes of a point.
@@ -90,27 +115,55 @@ pub(super) enum Straight {
 pub(super) struct Moved {
     /// Distance from its straight image, pixels; infinite if it has none.
     pub(super) px: f32,
-    /// The part that moved it most.
+    /// The part that stands for the move: of the stage that moved the point farthest; of the turns of curved rays the last that reaches it.
     pub(super) part: Option<u8>,
     /// What the straight camera makes of it.
     pub(super) straight: Straight,
 }
 
-/// For every pixel what became of the point that it shows, `None` where it shows none.
-/// * `bare`: the bent picture with world positions of pixel centres; `straight`: the straight one, with depths.
-pub(super) fn moved(parts: &Parts, bare: &Frame, straight: Option<&Frame>) -> Vec<Option<Moved>> {
-    let width = bare.width.max(1);
-    let Some(world) = &bare.world else { return vec![None; bare.color.len()] };
-    let at = |(i, p): (usize, &[f64; 3])| {
-        let p = DVec3::from_array(*p);
-        let pixel = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
-        p.is_finite().then(|| of_point(parts, p, pixel, straight))
-    };
-    world.par_iter().enumerate().map(at).collect()
+/// What became of all pixels.
+pub(super) struct Survey {
+    /// Pixel by pixel; `None` where the picture shows nothing.
+    pub(super) pixels: Vec<Option<Moved>>,
+    /// For each part how many pixels it reaches, and how far it moves them at most, pixels.
+    pub(super) parts: Vec<(usize, f64)>,
 }
 
-fn of_point(parts: &Parts, p: DVec3, pixel: DVec2, straight: Option<&Frame>) -> Moved {
-    let part = parts.mover(p, pixel).and_then(|part| u8::try_from(part).ok());
+/// Follows the point of every pixel through the parts.
+/// * `bare`: the bent picture with world positions of pixel centres; `straight`: the straight one, with depths.
+pub(super) fn survey(parts: &Parts, bare: &Frame, straight: Option<&Frame>) -> Survey {
+    let width = bare.width.max(1);
+    let Some(world) = &bare.world else {
+        return Survey { pixels: vec![None; bare.color.len()], parts: vec![(0, 0.0); parts.names.len()] };
+    };
+    let mut pixels = vec![None; world.len()];
+    let row = |(y, (pixels, world)): (usize, (&mut [Option<Moved>], &[[f64; 3]]))| {
+        let mut reached = [(0, 0.0); MOST_PARTS];
+        for (x, (out, p)) in pixels.iter_mut().zip(world).enumerate() {
+            let p = DVec3::from_array(*p);
+            if !p.is_finite() {
+                continue;
+            }
+            let pixel = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+            let moves = parts.moves(p, pixel);
+            for (sum, by) in reached.iter_mut().zip(moves.by) {
+                *sum = joined(*sum, (usize::from(by > REACHES_PX), if by.is_finite() { by } else { 0.0 }));
+            }
+            *out = Some(of_point(parts, p, pixel, moves.mover, straight));
+        }
+        reached
+    };
+    let rows = pixels.par_chunks_mut(width).zip(world.par_chunks(width)).enumerate().map(row);
+    let all = rows.reduce(|| [(0, 0.0); MOST_PARTS], |a, b| std::array::from_fn(|k| joined(a[k], b[k])));
+    Survey { pixels, parts: all[..parts.names.len()].to_vec() }
+}
+
+fn joined(a: (usize, f64), b: (usize, f64)) -> (usize, f64) {
+    (a.0 + b.0, a.1.max(b.1))
+}
+
+fn of_point(parts: &Parts, p: DVec3, pixel: DVec2, mover: Option<usize>, straight: Option<&Frame>) -> Moved {
+    let part = mover.and_then(|part| u8::try_from(part).ok());
     let Ok(image) = parts.straight().project(p) else {
         return Moved { px: f32::INFINITY, part, straight: Straight::Outside };
     };

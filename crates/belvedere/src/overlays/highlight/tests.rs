@@ -1,9 +1,10 @@
 //! Laws of the highlights, on small scenes that are drawn.
 
-use super::shift::{Parts, Straight, moved};
+use super::shift::{Moved, Parts, Straight, survey};
 use super::*;
+use belvedere_core::grid::Grid;
 use belvedere_core::map::curved_rays::{CurvedRays, Model, Pencil, Sharpness, TurnSpec};
-use belvedere_core::{DVec3, EarthCurvature, Pinhole, Projection, Stage};
+use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, TerrainDisocclusion};
 use belvedere_cpu::CpuRenderer;
 use belvedere_scene::{Aux, BoxLayer, BoxShape, Color, LayerKind, Light, Progress, RenderJob, RenderOptions, Renderer};
 use belvedere_sight::{Obstacles, SightOptions};
@@ -53,6 +54,10 @@ fn drawn(scene: &Scene, view: &View) -> Frame {
         .unwrap()
 }
 
+fn moved(parts: &Parts, bent: &Frame, straight: Option<&Frame>) -> Vec<Option<Moved>> {
+    survey(parts, bent, straight).pixels
+}
+
 #[test]
 fn nothing_moves_and_nothing_is_revealed_without_a_bend() {
     let earth = Stage::EarthCurvature(EarthCurvature { eye: DVec3::ZERO, radius: 6_371_000.0, refraction: 0.13 });
@@ -78,7 +83,7 @@ fn distances_are_those_of_the_straight_image_and_nothing_moves_before_the_turn()
     for (i, m) in all.iter().enumerate() {
         let Some(m) = m else { continue };
         let p = DVec3::from_array(world[i]);
-        let pixel = belvedere_core::DVec2::new((i % 160) as f64 + 0.5, (i / 160) as f64 + 0.5);
+        let pixel = DVec2::new((i % 160) as f64 + 0.5, (i / 160) as f64 + 0.5);
         let truth = view.straightened().project(p).unwrap().pixel.distance(pixel);
         assert!((f64::from(m.px) - truth).abs() < 1e-4 * (1.0 + truth), "{m:?} {truth}");
         if p.y < 60.0 {
@@ -93,22 +98,49 @@ fn distances_are_those_of_the_straight_image_and_nothing_moves_before_the_turn()
 }
 
 #[test]
-fn the_turn_that_moves_a_point_most_is_told() {
-    // The first turn shifts a little, the second, behind the wall and before the block, more and to the other side.
+fn the_last_turn_that_reaches_a_point_is_told_and_how_far_each_moves_it() {
+    // The first turn shifts a little before the wall, the second, behind it, to the other side.
     let view = view(&[(2.0, 20.0), (-24.0, 70.0)]);
     let parts = Parts::of(&view);
     assert_eq!(parts.names, ["turn 1", "turn 2"]);
     let frame = drawn(&scene(), &view);
-    for (p, m) in frame.world.as_ref().unwrap().iter().zip(moved(&parts, &frame, None)) {
+    let found = survey(&parts, &frame, None);
+    let first = self::view(&[(2.0, 20.0)]);
+    let (mut seen, mut most) = (0usize, [0.0f64; 2]);
+    for (i, (p, m)) in frame.world.as_ref().unwrap().iter().zip(&found.pixels).enumerate() {
         let Some(m) = m else { continue };
-        let expected = if p[1] < 60.0 { 0 } else { 1 };
-        assert_eq!(m.part, Some(expected), "{p:?} {m:?}");
+        assert_eq!(m.part, Some(if p[1] < 60.0 { 0 } else { 1 }), "{p:?} {m:?}");
+        let p = DVec3::from_array(*p);
+        let [before, middle] = [&view.straightened(), &first].map(|v| v.project(p).unwrap().pixel);
+        let end = DVec2::new((i % 160) as f64 + 0.5, (i / 160) as f64 + 0.5);
+        most = [most[0].max(before.distance(middle)), most[1].max(middle.distance(end))];
+        seen += 1;
     }
-    let record = record(&parts, &moved(&parts, &frame, None), &[HighlightMark::Stages], 200.0);
-    let sum: f64 = record.parts.iter().map(|p| p.share).sum();
-    assert!((sum - 1.0).abs() < 1e-12 && record.parts[1].max_px > record.parts[0].max_px, "{record:?}");
+    let record = record(&parts, &found, &[HighlightMark::Stages], 200.0);
+    for (part, most) in record.parts.iter().zip(most) {
+        assert!((part.max_px - most).abs() < 1e-9 && most > 1.0, "{part:?} {most}");
+    }
+    let shown: f64 = record.parts.iter().map(|p| p.shown_share).sum();
+    assert!((shown - 1.0).abs() < 1e-12 && record.parts[0].share > record.parts[1].share, "{seen}: {record:?}");
     assert_eq!((record.revealed_share, record.outside_share), (None, None));
     assert!(record.max_px >= record.mean_px && record.mean_px > 0.0);
+}
+
+#[test]
+fn the_stage_that_moves_a_point_farthest_is_told() {
+    // Everything lowered by 6, then a turn that moves what lies behind by little.
+    let delta = Grid::new(DVec2::new(-80.0, 160.0), DVec2::splat(20.0), 9, 9, vec![-6.0; 81]).unwrap();
+    let lowered = TerrainDisocclusion::new(delta);
+    let Some(Stage::CurvedRays(rays)) = view(&[(1.0, 70.0)]).stages().last().cloned() else { panic!("rays") };
+    let view = View::new(pinhole(), vec![Stage::TerrainDisocclusion(lowered), Stage::CurvedRays(rays)]).unwrap();
+    let parts = Parts::of(&view);
+    assert_eq!(parts.names, ["terrain disocclusion", "curved rays"]);
+    let frame = drawn(&scene(), &view);
+    let found = survey(&parts, &frame, None);
+    for m in found.pixels.iter().flatten() {
+        assert_eq!(m.part, Some(0), "6 down at a distance of 110 at most is more than 1 aside beyond 76: {m:?}");
+    }
+    assert!(found.parts[0].1 > found.parts[1].1 && found.parts[1].1 > 0.0, "{:?}", found.parts);
 }
 
 #[test]
