@@ -137,7 +137,7 @@ pub(super) fn survey(parts: &Parts, bare: &Frame, straight: Option<&Frame>) -> S
         return Survey { pixels: vec![None; bare.color.len()], parts: vec![(0, 0.0); parts.names.len()] };
     };
     let mut pixels = vec![None; world.len()];
-    let row = |(y, (pixels, world)): (usize, (&mut [Option<Moved>], &[[f64; 3]]))| {
+    let row = |y: usize, pixels: &mut [Option<Moved>], world: &[[f64; 3]]| {
         let mut reached = [(0, 0.0); MOST_PARTS];
         for (x, (out, p)) in pixels.iter_mut().zip(world).enumerate() {
             let p = DVec3::from_array(*p);
@@ -153,7 +153,8 @@ pub(super) fn survey(parts: &Parts, bare: &Frame, straight: Option<&Frame>) -> S
         }
         reached
     };
-    let rows = pixels.par_chunks_mut(width).zip(world.par_chunks(width)).enumerate().map(row);
+    let rows = pixels.par_chunks_mut(width).zip(world.par_chunks(width)).enumerate();
+    let rows = rows.map(|(y, (pixels, world))| row(y, pixels, world));
     let all = rows.reduce(|| [(0, 0.0); MOST_PARTS], |a, b| std::array::from_fn(|k| joined(a[k], b[k])));
     Survey { pixels, parts: all[..parts.names.len()].to_vec() }
 }
