@@ -42,6 +42,7 @@ pub(crate) fn one_line(error: &anyhow::Error) -> String {
 fn in_options(error: &BelvedereError) -> String {
     match error {
         BelvedereError::FieldOfView { .. } => format!("--fov: {error}"),
+        BelvedereError::Highlight(_) => format!("--highlight: {error}"),
         BelvedereError::Setting(_) => format!("--set: {error}"),
         BelvedereError::Position { what, reason } => {
             format!("{}: {reason}", if *what == "eye" { "--eye" } else { "--look" })

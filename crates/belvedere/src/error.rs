@@ -81,6 +81,9 @@ pub enum BelvedereError {
     /// A parameter of the terrain solver that does not exist or is out of range.
     #[error("{0}")]
     Setting(String),
+    /// Highlights that cannot be drawn together.
+    #[error("{0}")]
+    Highlight(&'static str),
     /// A built-in scene that does not exist.
     #[error("{0}")]
     Builtin(String),

@@ -136,7 +136,8 @@ fn highlights_tell_what_the_bend_did() {
     }
     place.write("s.toml", &scene);
     for args in [&["--highlight=shift", "--heatmap"][..], &["--highlight=shift,stages"], &["--highlight=shine"]] {
-        place.fails(&[&["render", "s.toml", "-o", "x.png"][..], args].concat());
+        let line = place.fails(&[&["render", "s.toml", "-o", "x.png"][..], args].concat());
+        assert!(line.contains("--highlight") && !line.contains("--set"), "{line}");
     }
 }
 

@@ -26,6 +26,9 @@ use shift::{Parts, Straight, Survey};
 const PART_COLORS: [[u8; 3]; 7] =
     [[230, 159, 0], [86, 180, 233], [0, 158, 115], [204, 121, 167], [213, 94, 0], [0, 114, 178], [240, 228, 66]];
 
+/// How much of a part's colour a pixel has that it hardly moves, 0..=1: small moves are told apart too.
+const LEAST_TINT: f32 = 0.4;
+
 /// What the highlights of a picture say.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct HighlightRecord {
@@ -91,7 +94,7 @@ pub(crate) fn paint(
             let Some(moved) = moved.filter(|_| color == bare) else { continue };
             let share = (f64::from(moved.px) / ramp_px).min(1.0);
             *color = match moved.part.and_then(|part| record.parts.get(usize::from(part))) {
-                Some(part) if by_stage => of_part(*color, part.color, share as f32),
+                Some(part) if by_stage => of_part(*color, part.color, LEAST_TINT + (1.0 - LEAST_TINT) * share as f32),
                 None if by_stage => of_part(*color, [0; 3], 0.0),
                 _ => heat::tinted(*color, heat::ramp(share)),
             };
@@ -116,13 +119,13 @@ pub(crate) fn legend(canvas: &mut Canvas<'_>, record: &HighlightRecord, above: f
 /// The marks to draw and whether the heat map is drawn: what is asked for by the caller comes before what the scene says.
 ///
 /// # Errors
-/// [`BelvedereError::Setting`] if the caller asks for two ways to colour surfaces.
+/// [`BelvedereError::Highlight`] if the caller asks for two ways to colour surfaces.
 pub(crate) fn chosen(
     (asked, asked_heatmap): (&[HighlightMark], bool),
     scene: &OverlayDoc,
 ) -> Result<(Vec<HighlightMark>, bool), BelvedereError> {
     if let Some(reason) = conflict(asked, asked_heatmap) {
-        return Err(BelvedereError::Setting(reason.into()));
+        return Err(BelvedereError::Highlight(reason));
     }
     let colours = |m: &HighlightMark| matches!(m, HighlightMark::Shift | HighlightMark::Stages);
     if asked.is_empty() {
