@@ -1,8 +1,8 @@
 //! Arguments.
 
 use crate::parse::{
-    parse_bytes, parse_eye, parse_highlight, parse_lod, parse_outside, parse_place, parse_seconds, parse_size,
-    parse_spacing, parse_sweep, parse_threads,
+    parse_bytes, parse_eye, parse_fallback, parse_highlight, parse_lod, parse_outside, parse_place, parse_seconds,
+    parse_size, parse_spacing, parse_sweep, parse_threads,
 };
 use belvedere::RendererChoice;
 use belvedere::scene_file::{HighlightMark, SurfaceDoc};
@@ -185,6 +185,10 @@ pub(crate) struct RevealArgs {
     /// or a point x,y,z in scene coordinates; rays bend around what hides it
     #[arg(long, value_name = "WHAT", allow_hyphen_values = true)]
     pub(crate) see: Option<String>,
+    /// What shows it where no bend does: transparency, cutaway or explosion of all that hides it, or LAYER:KIND for one layer;
+    /// several separated by commas
+    #[arg(long, value_delimiter = ',', value_name = "LIST", requires = "see", value_parser = parse_fallback)]
+    pub(crate) fallback: Vec<String>,
     /// Colours and opacities of volumes with --see: auto, solid, engine, ct-bone, ct-soft, vessels, grey, or a file
     #[arg(long, value_name = "NAME|FILE", requires = "see")]
     pub(crate) transfer: Option<String>,

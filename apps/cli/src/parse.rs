@@ -23,6 +23,11 @@ pub(crate) fn parse_lod(text: &str) -> Result<f64, String> {
     px.ok_or_else(|| "give an error in pixels in 0..=64; 0 draws every cell".into())
 }
 
+/// A way to show what no bend shows, as it was written.
+pub(crate) fn parse_fallback(text: &str) -> Result<String, String> {
+    text.parse::<belvedere::fallback::Fallback>().map(|_| text.to_owned())
+}
+
 /// A way to show what the bend did.
 pub(crate) fn parse_highlight(text: &str) -> Result<HighlightMark, String> {
     match text.trim() {

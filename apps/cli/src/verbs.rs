@@ -135,7 +135,11 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         let mut result = done("render", &written, session.warnings());
         result["displacement"] = serde_json::json!(picture.sidecar.displacement);
         result["render_ms"] = serde_json::json!(picture.sidecar.render_ms);
+        result["fallback"] = serde_json::json!(picture.sidecar.fallback);
         context.print(&result)?;
+    } else if let Some(fallback) = picture.sidecar.fallback.as_ref().filter(|_| !context.common.quiet) {
+        context.finish();
+        print(&format!("{fallback}\n"))?;
     }
     context.warn(session.warnings());
     Ok(Goal::Reached)
@@ -279,6 +283,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         let mut request = TargetRequest {
             files,
             see,
+            fallback: args.fallback,
             transfer: args.transfer,
             viewpoint,
             fov_y_deg: args.fov,

@@ -1,5 +1,7 @@
 //! Triangle meshes.
 
+mod parts;
+
 use belvedere_core::{Aabb, DVec3};
 use glam::{Vec2, Vec3};
 
@@ -200,6 +202,11 @@ impl Mesh {
             (b - a).cross(c - a) != DVec3::ZERO
         };
         let kept: Vec<bool> = self.triangles.iter().map(has_area).collect();
+        self.retain(&kept);
+    }
+
+    /// Leaves out triangles with all that belongs to them; their vertices stay.
+    fn retain(&mut self, kept: &[bool]) {
         let mut keep = kept.iter();
         self.triangles.retain(|_| keep.next() == Some(&true));
         if let MeshColors::PerTriangle(colors) = &mut self.colors {

@@ -31,6 +31,7 @@
 mod camera_path;
 mod data;
 mod error;
+pub mod fallback;
 mod open;
 mod options;
 pub mod output;

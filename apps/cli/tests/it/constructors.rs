@@ -229,3 +229,44 @@ fn a_named_part_of_a_mesh_is_looked_for() {
     assert!(line.contains("no part of a mesh") && line.contains("did you mean \"Church\""), "{line}");
     assert!(!place.path("d.png").exists());
 }
+
+#[test]
+fn what_no_bend_shows_is_shown_by_a_fallback_and_the_record_says_how() {
+    let place = Place::new();
+    let scene = "format = 1\ncrs = 'local'\n[[layer]]\nid = 'shell'\nkind = 'boxes'\nboxes = [
+        { base = [0, 44, -20], size = [60, 2, 40] }, { base = [0, 56, -20], size = [60, 2, 40] },
+        { base = [-31, 50, -20], size = [2, 14, 40] }, { base = [31, 50, -20], size = [2, 14, 40] },
+        { base = [0, 50, 20], size = [64, 14, 2] }, { base = [0, 50, -22], size = [64, 14, 2] }]
+[[layer]]\nid = 'core'\nkind = 'boxes'\nboxes = [{ base = [0, 50, -3], size = [6, 4, 6] }]
+[camera]\neye = [0, -60, 10]\nlook_at = [0, 50, 0]\nimage = [240, 160]\n";
+    place.write("s.toml", scene);
+    let reveal = ["reveal", "s.toml", "--see", "core", "--overwrite", "-o", "r.png"];
+    let said = place.ok(&[&reveal[..], &["--fallback", "transparency", "--scene", "r.toml"]].concat());
+    assert!(said.contains("shell (1 part drawn transparent)") && said.contains("now 100 %"), "{said}");
+    // The scene that was written shows the same.
+    let again = place.ok(&["render", "r.toml", "-o", "again.png"]);
+    assert!(again.contains("fallback for core: shell"), "{again}");
+    for kind in ["transparency", "cutaway", "explosion"] {
+        let rule = format!("[constructor]\nkind = 'manual'\ntarget = 'core'\nfallback = ['shell:{kind}']\n");
+        place.write("k.toml", &(scene.to_owned() + &rule));
+        for renderer in ["cpu", "exact"] {
+            place.ok(&["render", "k.toml", "-o", "k.png", "--overwrite", "--renderer", renderer]);
+            let record: serde_json::Value = serde_json::from_slice(&read(&place.path("k.png.json"))).expect("JSON");
+            let found = &record["fallback"];
+            assert_eq!((&found["changed"][0]["layer"], &found["changed"][0]["kind"]), (&"shell".into(), &kind.into()));
+            assert!(found["visible_before"] == 0.0 && found["visible"] == 1.0, "{found}");
+        }
+    }
+    for (rule, words) in [
+        ("kind = 'manual'\nfallback = ['cutaway']", "needs target"),
+        ("kind = 'manual'\ntarget = 'core'\nfallback = ['melt']", "possible are transparency"),
+        ("kind = 'manual'\ntarget = 'core'\nfallback = ['shel:cutaway']", "shell"),
+        ("kind = 'manual'\ntarget = 'cor'\nfallback = ['cutaway']", "core"),
+    ] {
+        place.write("bad.toml", &format!("{scene}[constructor]\n{rule}\n"));
+        let line = place.fails(&["render", "bad.toml", "-o", "x.png"]);
+        assert!(line.contains(words), "{line}");
+    }
+    let line = place.fails(&[&reveal[..], &["--fallback", "melt"]].concat());
+    assert!(line.contains("--fallback") && line.contains("explosion"), "{line}");
+}

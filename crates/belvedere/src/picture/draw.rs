@@ -4,13 +4,14 @@ use super::displacement::{self, DisplacementReport};
 use super::options::{AuxBuffer, PictureOptions};
 use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, Sidecar, TerrainRecord};
 use super::volume_record::VolumeRecord;
+use crate::fallback::{self, FallbackPlan, FallbackRecord};
 use crate::overlays::{badge, camera, ghost, grid, heat, highlight, thin};
 use crate::record::{self, InputFile, ViewRecord};
 use crate::scene_file::{HighlightMark, SwitchOrLength};
 use crate::{BelvedereError, CameraPicture, Session};
 use belvedere_core::View;
 use belvedere_cpu::canvas::Canvas;
-use belvedere_scene::{Aux, Frame, Progress, RenderJob, RenderOptions};
+use belvedere_scene::{Aux, Frame, Progress, RenderJob, RenderOptions, Scene};
 use std::time::Instant;
 
 impl Session {
@@ -37,7 +38,7 @@ pub(crate) fn draw(
         Some(picture) => draw_camera(session, request, picture, progress)?,
         None => draw_view(session, request, progress)?,
     };
-    let Drawn { view, frame, straight, overlay, displacement } = drawn;
+    let Drawn { view, frame, straight, overlay, displacement, fallback } = drawn;
     let render_ms = started.elapsed().as_secs_f64() * 1e3;
     let sidecar = Sidecar {
         program: format!("belvedere {}", crate::VERSION),
@@ -53,6 +54,7 @@ pub(crate) fn draw(
         disocclusion: session.terrain_report().filter(|_| !request.straight).cloned(),
         constructor: session.constructor_report().filter(|_| !request.straight).cloned(),
         target: None,
+        fallback,
         view: ViewRecord::of(&view),
         scene: session.resolved().cloned(),
         title: session.scene().title.clone(),
@@ -73,11 +75,13 @@ struct Drawn {
     straight: Option<Frame>,
     overlay: OverlayRecord,
     displacement: Option<DisplacementReport>,
+    fallback: Option<FallbackRecord>,
 }
 
 fn draw_view(session: &Session, request: &PictureOptions, progress: &Progress) -> Result<Drawn, BelvedereError> {
-    let scene = session.scene();
     let view = if request.straight { session.view().straightened() } else { session.view().clone() };
+    let plan = if request.straight { None } else { fallback::of_session(session, &view)? };
+    let scene = plan.as_ref().map_or(session.scene(), FallbackPlan::scene);
     let wanted = &session.overlay;
     let (marks, heatmap) = highlight::chosen((&request.highlight, request.heatmap), wanted)?;
     let ghost = (request.ghost || wanted.ghost) && view.is_bent();
@@ -91,11 +95,11 @@ fn draw_view(session: &Session, request: &PictureOptions, progress: &Progress) -
     let exact = !request.aux.is_empty();
     let mut options = RenderOptions { aux: Aux { world, exact }, ..request.quality.clone() };
     options.overlay.under.extend(grid_spacing.map(|spacing| grid::lines(scene, spacing)).into_iter().flatten());
-    let draw = |view: &View| {
+    let draw = |scene: &Scene, view: &View| {
         let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
-        request.renderer.of(session).render(&job)
+        Ok::<_, BelvedereError>(request.renderer.of(session).render(&job)?)
     };
-    let mut frame = draw(&view)?;
+    let mut frame = plan.as_ref().map_or_else(|| draw(scene, &view), |plan| plan.draw(&view, &draw))?;
     if let Some(covered) =
         session.terrain_report().map(|r| &r.covered[..]).filter(|c| !c.is_empty() && !request.straight)
         && let Some(cut) = thin::cut(scene, &view, covered)?
@@ -104,7 +108,7 @@ fn draw_view(session: &Session, request: &PictureOptions, progress: &Progress) -
         let behind = request.renderer.of(session).render(&job)?;
         thin::draw(&mut frame, &behind, scene, &view, covered);
     }
-    let straight = if request.compare || ghost { Some(draw(&view.straightened())?) } else { None };
+    let straight = if request.compare || ghost { Some(draw(session.scene(), &view.straightened())?) } else { None };
     let mut heatmap_max = None;
     if heatmap {
         // Names and lines are read on the colours, not through them.
@@ -155,7 +159,8 @@ fn draw_view(session: &Session, request: &PictureOptions, progress: &Progress) -
         highlight,
         camera: None,
     };
-    Ok(Drawn { view, frame, straight: straight.filter(|_| request.compare), overlay, displacement })
+    let fallback = plan.map(|plan| plan.record);
+    Ok(Drawn { view, frame, straight: straight.filter(|_| request.compare), overlay, displacement, fallback })
 }
 
 fn draw_camera(
@@ -173,7 +178,7 @@ fn draw_camera(
     camera::draw_legend(&mut Canvas::new(&mut frame.color, frame.width), &figure, title);
     let overlay = OverlayRecord { camera: Some(picture.name()), ..OverlayRecord::default() };
     let displacement = figure.view.is_bent().then(|| displacement::measure(&figure.view, &frame));
-    Ok(Drawn { view: figure.view, frame, straight: None, overlay, displacement })
+    Ok(Drawn { view: figure.view, frame, straight: None, overlay, displacement, fallback: None })
 }
 
 fn note(view: &View, d: &DisplacementReport) -> String {

@@ -3,6 +3,7 @@
 use super::displacement::DisplacementReport;
 use super::options::{AuxBuffer, AuxFormat};
 use super::volume_record::VolumeRecord;
+use crate::fallback::FallbackRecord;
 use crate::overlays::highlight::HighlightRecord;
 use crate::record::{AreaRecord, InputFile, ViewRecord};
 use crate::resolve::constructor::ConstructorReport;
@@ -123,6 +124,9 @@ pub struct Sidecar {
     /// The point that the picture was made to show.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<TargetPlace>,
+    /// What gave way so that a target is seen; `None` if nothing was asked to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fallback: Option<FallbackRecord>,
     /// The camera in numbers.
     pub view: ViewRecord,
     /// The resolved scene: opens to the same view; `None` for one that was made in memory.

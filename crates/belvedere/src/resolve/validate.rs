@@ -1,6 +1,7 @@
 //! Checks of a document that need nothing but the document.
 
 use crate::BelvedereError;
+use crate::fallback::Fallback;
 use crate::overlays::highlight;
 use crate::scene_file::{
     AnimationDoc, AutoOrLength, ConstructorDoc, ConstructorKind, LayerDoc, SourceDocument, StageDoc, SwitchOrLength,
@@ -201,6 +202,15 @@ fn stage_order(source: &SourceDocument) -> Result<(), BelvedereError> {
 }
 
 fn constructor(doc: &ConstructorDoc) -> Result<(), Complaint> {
+    if !doc.fallback.is_empty() && doc.target.is_none() {
+        return Err((
+            "fallback",
+            "fallback needs target, what must be seen; name a layer, a part, atoms or a point x,y,z".into(),
+        ));
+    }
+    for rule in &doc.fallback {
+        rule.parse::<Fallback>().map_err(|reason| ("fallback", reason))?;
+    }
     match doc.kind {
         ConstructorKind::TargetTracking if doc.target.is_none() => {
             Err(("kind", "target_tracking needs target, the layer to keep in view".into()))

@@ -26,6 +26,10 @@ pub struct ConstructorDoc {
     /// Layer or selection to keep in view.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<String>,
+    /// What shows the target where no bend does, or always with kind `manual`: `transparency`, `cutaway` or `explosion` of all that
+    /// hides it, or `LAYER:KIND` for one layer; a rule of a layer's own comes first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fallback: Vec<String>,
     /// Depth of the first transition plane, scene units.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub z0: Option<f64>,
@@ -64,6 +68,7 @@ impl ConstructorDoc {
         Self {
             kind: ConstructorKind::Manual,
             target: None,
+            fallback: Vec::new(),
             z0: None,
             a: None,
             f_step: None,

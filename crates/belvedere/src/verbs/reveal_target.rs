@@ -5,7 +5,7 @@ use crate::output::{self, document_toml, pretty};
 use crate::picture::{Picture, PictureOptions};
 use crate::resolve::rays::sidestep_stage;
 use crate::scene_file::{
-    CameraDoc, Document, LayerDoc, MeshDoc, MoleculeDoc, PointDoc, SourceDocument, StageDoc, VolumeDoc,
+    CameraDoc, ConstructorDoc, Document, LayerDoc, MeshDoc, MoleculeDoc, PointDoc, SourceDocument, StageDoc, VolumeDoc,
 };
 use crate::verbs::reveal::{RevealFiles, Viewpoint};
 use crate::{BelvedereError, OpenOptions, Session};
@@ -43,6 +43,8 @@ pub struct TargetRequest {
     pub fov_y_deg: Option<f64>,
     /// Picture size, pixels.
     pub image: Option<[u32; 2]>,
+    /// What shows it where no bend does: `transparency`, `cutaway` or `explosion`, alone or as `LAYER:KIND`.
+    pub fallback: Vec<String>,
     /// Quality of the pictures.
     pub picture: PictureOptions,
 }
@@ -93,7 +95,12 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
         return Err(BelvedereError::Target("there is no view to look from".into()));
     };
     let report = BendReport { tried, light_best, ..report };
-    let session = session.with_document(document(&session, &view, sidestep.as_ref(), &target)?, None)?;
+    let mut document = document(&session, &view, sidestep.as_ref(), &target)?;
+    if report.visible < ENOUGH && !request.fallback.is_empty() {
+        let (target, fallback) = (Some(request.see.clone()), request.fallback.clone());
+        document.constructor = Some(ConstructorDoc { target, fallback, ..ConstructorDoc::manual() });
+    }
+    let session = session.with_document(document, None)?;
     let pair = PictureOptions {
         compare: true,
         straight: false,
@@ -177,7 +184,7 @@ fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
 }
 
 /// What must be seen.
-fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError> {
+pub(crate) fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError> {
     if let Some(point) = target_place::point(see) {
         return Ok(Target::points([point]));
     }
@@ -312,7 +319,8 @@ impl TargetAnswer {
     /// One sentence: visible share straight and bent, and the place of a point.
     pub fn summary(&self) -> String {
         let place = self.place.as_ref().map_or_else(String::new, |p| format!("; {p}"));
-        self.shares() + &place
+        let fallback = self.picture.sidecar.fallback.as_ref().map_or_else(String::new, |f| format!("; {f}"));
+        self.shares() + &place + &fallback
     }
 
     fn shares(&self) -> String {
@@ -353,9 +361,9 @@ impl TargetAnswer {
 
     /// Goals that were missed, one sentence each.
     pub fn missed(&self) -> Vec<String> {
-        let missed = self.report.visible < ENOUGH;
-        let text =
-            || format!("{:.0} % of what was looked for is visible, 99 % were wanted", 100.0 * self.report.visible);
+        let visible = self.picture.sidecar.fallback.as_ref().map_or(self.report.visible, |f| f.visible);
+        let missed = visible < ENOUGH;
+        let text = || format!("{:.0} % of what was looked for is visible, 99 % were wanted", 100.0 * visible);
         missed.then(text).into_iter().chain(self.place.iter().filter(|_| missed).filter_map(TargetPlace::why)).collect()
     }
 

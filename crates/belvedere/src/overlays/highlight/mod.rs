@@ -12,6 +12,7 @@ mod shift;
 mod tests;
 
 pub use ghosts::GhostRecord;
+pub(crate) use outline::border;
 
 use super::heat;
 use crate::BelvedereError;

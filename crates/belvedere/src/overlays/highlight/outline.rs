@@ -43,7 +43,7 @@ fn spread(mask: &[bool], width: usize, reach: usize, value: bool) -> Vec<bool> {
 }
 
 /// Pixels of the mask that have a neighbour beside, above or below that is not in it.
-fn border(mask: &[bool], width: usize) -> Vec<usize> {
+pub(crate) fn border(mask: &[bool], width: usize) -> Vec<usize> {
     let height = mask.len().checked_div(width).unwrap_or(0);
     let is_border = |&i: &usize| {
         let (x, y) = (i % width, i / width);

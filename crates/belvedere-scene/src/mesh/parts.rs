@@ -1,0 +1,81 @@
+//! Meshes of some of the triangles of another, and with some of them moved.
+
+use super::{Mesh, MeshColors};
+use belvedere_core::DVec3;
+use std::collections::HashMap;
+
+impl Mesh {
+    /// The triangles that `keep` wants, by their numbers, over the same vertices.
+    pub fn only(&self, keep: &dyn Fn(usize) -> bool) -> Self {
+        let kept: Vec<bool> = (0..self.triangles.len()).map(keep).collect();
+        let mut out = self.clone();
+        out.retain(&kept);
+        out
+    }
+
+    /// Every triangle moved by what `offset` says of its number, scene units, finite. Triangles that share vertices and move by
+    /// the same keep their shape together; others come apart.
+    pub fn moved(&self, offset: &dyn Fn(usize) -> DVec3) -> Self {
+        let mut out = self.clone();
+        let mut copies: HashMap<(u32, [u64; 3]), u32> = HashMap::new();
+        for t in 0..self.triangles.len() {
+            let by = offset(t);
+            if by == DVec3::ZERO {
+                continue;
+            }
+            let key = by.to_array().map(f64::to_bits);
+            for (corner, v) in self.triangles[t].into_iter().enumerate() {
+                out.triangles[t][corner] = *copies.entry((v, key)).or_insert_with(|| out.copy_of(v as usize, by));
+            }
+        }
+        out
+    }
+
+    /// Appends a vertex like another, moved.
+    fn copy_of(&mut self, v: usize, by: DVec3) -> u32 {
+        self.positions.push((self.positions[v].as_dvec3() + by).as_vec3());
+        if let Some(normals) = &mut self.normals {
+            normals.push(normals[v]);
+        }
+        if let MeshColors::PerVertex(colors) = &mut self.colors {
+            colors.push(colors[v]);
+        }
+        if let Some(open) = self.openness.get(v).copied() {
+            self.openness.push(open);
+        }
+        (self.positions.len() - 1) as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Color;
+
+    fn mesh() -> Mesh {
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 2.0]].map(DVec3::from_array);
+        let colors = MeshColors::PerVertex((0..4).map(|i| Color::rgb(i, 0, 0)).collect());
+        Mesh::in_parts(&corners, vec![[0, 1, 2], [1, 3, 2]], colors, vec![0, 1]).unwrap()
+    }
+
+    #[test]
+    fn what_moves_keeps_its_shape_and_its_colours_and_the_rest_stays() {
+        let (mesh, by) = (mesh(), DVec3::new(3.0, -2.0, 0.5));
+        let moved = mesh.moved(&|t| if mesh.part(t) == Some(1) { by } else { DVec3::ZERO });
+        assert_eq!(moved.corners(0), mesh.corners(0));
+        for (a, b) in moved.corners(1).into_iter().zip(mesh.corners(1)) {
+            assert!((a - b - by).length() < 1e-6, "{a} {b}");
+        }
+        for t in 0..2 {
+            assert_eq!(moved.color_at(t, [0.2, 0.3, 0.5]), mesh.color_at(t, [0.2, 0.3, 0.5]));
+        }
+        assert_eq!(moved.vertex_count(), 7);
+    }
+
+    #[test]
+    fn the_triangles_that_are_kept_keep_their_parts() {
+        let one = mesh().only(&|t| t == 1);
+        assert_eq!((one.triangles().len(), one.part(0)), (1, Some(1)));
+        assert_eq!(one.corners(0), mesh().corners(1));
+    }
+}

@@ -1,0 +1,348 @@
+//! What shows a target where no bend does: what hides it is drawn transparent, cut away, or moved apart.
+//!
+//! Ours, beside the papers: the three usual ways in their simplest exact form. All of it is made of whole pictures and changed
+//! scenes, so every renderer draws the same: a transparent group is the picture blended with the one without it; a cone through the
+//! eye has no walls that could be seen, so a cutaway is the picture without what hides the target, within the cone.
+
+mod explode;
+mod occluders;
+mod region;
+#[cfg(test)]
+mod tests;
+
+use crate::overlays::highlight::border;
+use crate::scene_file::ConstructorKind;
+use crate::verbs::reveal_target;
+use crate::{BelvedereError, Session};
+use belvedere_construct::rays::{Target, TargetSight};
+use belvedere_core::{DVec2, DVec3, Pinhole, View};
+use belvedere_cpu::canvas::Canvas;
+use belvedere_scene::{Color, Frame, LayerKind, Scene};
+use occluders::{Extent, Part};
+use serde::Serialize;
+use std::fmt;
+
+/// Opacity of what is drawn transparent.
+const OPACITY: f32 = 0.3;
+/// Space around the target that is cut open, or kept free of what is moved, pixels of a picture 720 high.
+const MARGIN_PX: f64 = 10.0;
+/// A target of which so much is seen needs no fallback.
+const ENOUGH: f64 = 0.99;
+const EDGE: [Color; 2] = [Color::rgb(255, 255, 255), Color::rgb(60, 60, 60)];
+
+/// How something gives the view free.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FallbackKind {
+    /// Drawn so that what lies behind shows through.
+    Transparency,
+    /// Left out within the cone of rays to the target, with its edge drawn.
+    Cutaway,
+    /// Moved aside, part by part, just as far as needed, with leaders from where it was.
+    Explosion,
+}
+
+/// One rule: what happens to a layer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fallback {
+    /// Id of the layer; `None` = every layer that hides the target and has no rule of its own.
+    pub layer: Option<String>,
+    /// What happens to what of it hides the target.
+    pub kind: FallbackKind,
+}
+
+impl std::str::FromStr for Fallback {
+    type Err = String;
+
+    /// Reads `KIND` or `LAYER:KIND`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (layer, kind) = text.rsplit_once(':').map_or((None, text), |(layer, kind)| (Some(layer), kind));
+        let kind = match kind.trim() {
+            "transparency" => FallbackKind::Transparency,
+            "cutaway" => FallbackKind::Cutaway,
+            "explosion" => FallbackKind::Explosion,
+            other => {
+                return Err(format!(
+                    "\"{other}\" is no fallback; possible are transparency, cutaway, explosion, each alone or after the id of a layer, as towers:cutaway"
+                ));
+            }
+        };
+        Ok(Self { layer: layer.map(|l| l.trim().to_owned()), kind })
+    }
+}
+
+/// What was changed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FallbackRecord {
+    /// What is shown.
+    pub target: String,
+    /// Share of its points with a free line of sight before, 0..=1.
+    pub visible_before: f64,
+    /// The same afterwards.
+    pub visible: f64,
+    /// Layer by layer what was done.
+    pub changed: Vec<FallbackChange>,
+}
+
+/// What was done to a layer.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FallbackChange {
+    /// Its id.
+    pub layer: String,
+    /// How it gives the view free.
+    pub kind: FallbackKind,
+    /// How many of its parts that concerns: boxes, named parts of a mesh, or 1 for the whole.
+    pub parts: usize,
+    /// Parts that hide the target but stay as they are: none of their ways leads out of its image.
+    pub stuck: usize,
+    /// Opacity of what is drawn transparent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub opacity: Option<f32>,
+    /// Margin around the target, pixels.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub margin_px: Option<f64>,
+    /// Longest way of a part, scene units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moved_by: Option<f64>,
+}
+
+impl fmt::Display for FallbackRecord {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let of = |c: &FallbackChange| {
+            let kind = match (c.kind, c.moved_by) {
+                (FallbackKind::Transparency, _) => "drawn transparent".into(),
+                (FallbackKind::Cutaway, _) => "cut away".into(),
+                (FallbackKind::Explosion, by) => format!("moved aside by up to {:.1}", by.unwrap_or(0.0)),
+            };
+            let parts = if c.parts == 1 { "1 part".into() } else { format!("{} parts", c.parts) };
+            let stuck = if c.stuck > 0 { format!(", {} cannot", c.stuck) } else { String::new() };
+            format!("{} ({parts} {kind}{stuck})", c.layer)
+        };
+        let what: Vec<String> = self.changed.iter().map(of).collect();
+        let what = if what.is_empty() { "nothing had to give way".into() } else { what.join(", ") };
+        let percent = |share: f64| (100.0 * share).round();
+        write!(f, "fallback for {}: {what}; ", self.target)?;
+        write!(f, "visible before {} %, now {} %", percent(self.visible_before), percent(self.visible))
+    }
+}
+
+/// A picture's scene with everything that gives way for its target.
+pub struct FallbackPlan {
+    /// With parts moved.
+    scene: Scene,
+    target: Target,
+    transparent: Vec<Part>,
+    cut: Vec<Part>,
+    moves: Vec<(Part, DVec3)>,
+    margin_px: f64,
+    /// What was changed.
+    pub record: FallbackRecord,
+}
+
+/// The plan that a session's document asks for in `view`; `None` if it asks for none, or the view shows the target anyway.
+pub(crate) fn of_session(session: &Session, view: &View) -> Result<Option<FallbackPlan>, BelvedereError> {
+    let Some(source) = session.description.as_ref().map(|d| &d.source) else { return Ok(None) };
+    let Some(doc) = source.document.constructor.as_ref().filter(|doc| !doc.fallback.is_empty()) else {
+        return Ok(None);
+    };
+    let rules: Result<Vec<Fallback>, String> = doc.fallback.iter().map(|rule| rule.parse()).collect();
+    let rules = rules.map_err(|reason| source.error(&["constructor", "fallback"], format!("constructor: {reason}")))?;
+    let name = doc.target.as_deref().unwrap_or_default();
+    let target = reveal_target::target(session.scene(), name)
+        .map_err(|e| source.error(&["constructor", "target"], format!("constructor: {e}")))?;
+    let plan = plan(session.scene(), view, (name, &target), &rules)?;
+    let always = doc.kind == ConstructorKind::Manual;
+    Ok(Some(plan).filter(|p| always || p.record.visible_before < ENOUGH))
+}
+
+/// What has to give way in `view` so that a target is seen.
+/// * `target`: its name for the record, and itself.
+///
+/// # Errors
+/// [`BelvedereError::Target`] for a rule of a layer that does not exist or cannot do it.
+pub fn plan(
+    scene: &Scene,
+    view: &View,
+    (name, target): (&str, &Target),
+    rules: &[Fallback],
+) -> Result<FallbackPlan, BelvedereError> {
+    let height = f64::from(view.pinhole().image[1]);
+    let margin_px = MARGIN_PX * (height / 720.0).max(0.4);
+    let before = TargetSight::new(scene, target).share(view, 0.0);
+    let ids: Vec<&str> = scene.layers.iter().map(|l| l.id.as_str()).collect();
+    for rule in rules {
+        let Some(id) = &rule.layer else { continue };
+        let Some(layer) = scene.layers.iter().find(|l| l.id == *id) else {
+            let near = crate::scene_file::suggestion(id, &ids);
+            return Err(BelvedereError::Target(format!("fallback: \"{id}\" is no layer of the scene; {near}")));
+        };
+        possible(&layer.kind, rule.kind)
+            .map_err(|reason| BelvedereError::Target(format!("fallback: layer \"{id}\": {reason}")))?;
+    }
+    let own = |index: usize| rules.iter().find(|r| r.layer.as_deref() == Some(ids[index]));
+    let rule = |index: usize| {
+        let all = || rules.iter().find(|r| r.layer.is_none() && possible(&scene.layers[index].kind, r.kind).is_ok());
+        own(index).or_else(all)
+    };
+    let concerned: Vec<usize> = (0..ids.len()).filter(|i| rule(*i).is_some()).collect();
+    let extent = Extent::of(view, &target.points);
+    let (mut transparent, mut cut, mut moves) = (Vec::new(), Vec::new(), Vec::new());
+    let mut changed: Vec<FallbackChange> = Vec::new();
+    for part in occluders::find(scene, view, target, &concerned) {
+        let Some(kind) = rule(part.layer).map(|r| r.kind) else { continue };
+        let layer = ids[part.layer];
+        if changed.last().is_none_or(|c| c.layer != layer) {
+            let opacity = (kind == FallbackKind::Transparency).then_some(OPACITY);
+            let margin_px = (kind != FallbackKind::Transparency).then_some(margin_px);
+            let (parts, stuck, moved_by) = (0, 0, None);
+            changed.push(FallbackChange { layer: layer.into(), kind, parts, stuck, opacity, margin_px, moved_by });
+        }
+        let Some(change) = changed.last_mut() else { continue };
+        match kind {
+            FallbackKind::Transparency => transparent.push(part),
+            FallbackKind::Cutaway => cut.push(part),
+            FallbackKind::Explosion => {
+                let margin = margin_px + target.radius * view.pinhole().scale_px() / extent.map_or(1.0, |e| e.depth[0]);
+                let way = extent.as_ref().and_then(|e| explode::way(view, scene.unit, &part, e, margin));
+                let Some(by) = way else {
+                    change.stuck += 1;
+                    continue;
+                };
+                change.moved_by = Some(change.moved_by.unwrap_or(0.0f64).max(by.length()));
+                moves.push((part, by));
+            }
+        }
+        change.parts += 1;
+    }
+    let by: Vec<(&Part, DVec3)> = moves.iter().map(|(part, by)| (part, *by)).collect();
+    let scene = explode::moved(scene, &by);
+    let open = occluders::without(&scene, &transparent.iter().chain(&cut).collect::<Vec<_>>());
+    let visible = TargetSight::new(&open, target).share(view, 0.0);
+    let record = FallbackRecord { target: name.into(), visible_before: before, visible, changed };
+    Ok(FallbackPlan { scene, target: target.clone(), transparent, cut, moves, margin_px, record })
+}
+
+/// Whether a layer can give way so, and if not, why and what to do.
+fn possible(kind: &LayerKind, how: FallbackKind) -> Result<(), &'static str> {
+    match (kind, how) {
+        (LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_), _) => {
+            Err("lines, areas and points hide nothing; leave the rule out")
+        }
+        (LayerKind::Terrain(_), FallbackKind::Cutaway | FallbackKind::Explosion) => {
+            Err("ground can be drawn transparent only; give transparency")
+        }
+        (LayerKind::Volume(_), FallbackKind::Explosion) => {
+            Err("voxels have no parts that could be moved; give transparency or cutaway")
+        }
+        _ => Ok(()),
+    }
+}
+
+impl FallbackPlan {
+    /// The scene with parts moved; everything else is as it was.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Draws the picture.
+    /// * `draw`: draws a scene in a view, always with the same quality and light.
+    ///
+    /// # Errors
+    /// Those of `draw`; [`BelvedereError::View`] if the camera cannot look into a volume.
+    pub fn draw(
+        &self,
+        view: &View,
+        draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
+    ) -> Result<Frame, BelvedereError> {
+        let mut frame = self.blended(&[], view, draw)?;
+        if !self.cut.is_empty() {
+            let cut: Vec<&Part> = self.cut.iter().collect();
+            let mut open = self.blended(&cut, view, draw)?;
+            self.look_into_volumes(&mut open, view, draw)?;
+            let region = region::mask(view, &self.target, self.margin_px, [frame.width, frame.height]);
+            let gone: Vec<bool> = (0..region.len()).map(|i| region[i] && open.color[i] != frame.color[i]).collect();
+            for i in (0..region.len()).filter(|i| region[*i]) {
+                copy(&mut frame, &open, i);
+                frame.color[i] = open.color[i];
+            }
+            let (scale, width) = ((frame.height as f64 / 720.0).max(0.4), frame.width);
+            let mut canvas = Canvas::new(&mut frame.color, width);
+            // The edge runs round what is shown, not over it.
+            let own = |i: usize| self.target.own_layers.iter().any(|layer| frame.id[i] as usize == layer + 1);
+            for i in border(&gone, width).into_iter().filter(|i| !own(*i)) {
+                let at = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
+                canvas.disc(at, 0.9 * scale, EDGE[1]);
+            }
+        }
+        let mut canvas = Canvas::new(&mut frame.color, frame.width);
+        let scale = (canvas.size().y / 720.0).max(0.4);
+        for (width, color) in [3.2, 1.4].into_iter().zip(EDGE) {
+            for (part, by) in &self.moves {
+                let from = part.corners.iter().sum::<DVec3>() / part.corners.len() as f64;
+                if let [Ok(a), Ok(b)] = [from, from + *by].map(|p| view.project(p)) {
+                    canvas.line(&[a.pixel, b.pixel], scale * width, color);
+                    canvas.disc(a.pixel, scale * (0.5 * width + 1.5), color);
+                }
+            }
+        }
+        Ok(frame)
+    }
+
+    /// The scene without the parts of `gone`, the transparent ones blended over the rest.
+    fn blended(
+        &self,
+        gone: &[&Part],
+        view: &View,
+        draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
+    ) -> Result<Frame, BelvedereError> {
+        let mut frame = if gone.is_empty() {
+            draw(&self.scene, view)?
+        } else {
+            draw(&occluders::without(&self.scene, gone), view)?
+        };
+        if !self.transparent.is_empty() {
+            let all: Vec<&Part> = gone.iter().copied().chain(&self.transparent).collect();
+            let behind = draw(&occluders::without(&self.scene, &all), view)?;
+            for i in 0..frame.color.len() {
+                for (over, under) in frame.color[i].iter_mut().zip(behind.color[i]) {
+                    *over = (OPACITY * f32::from(*over) + (1.0 - OPACITY) * f32::from(under)).round() as u8;
+                }
+                copy(&mut frame, &behind, i);
+            }
+        }
+        Ok(frame)
+    }
+
+    /// Volumes are cut at the nearest depth of the target, and what lies behind the cut is seen.
+    fn look_into_volumes(
+        &self,
+        open: &mut Frame,
+        view: &View,
+        draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
+    ) -> Result<(), BelvedereError> {
+        let is_volume = |p: &&Part| matches!(self.scene.layers[p.layer].kind, LayerKind::Volume(_));
+        let (Some(extent), true) = (Extent::of(view, &self.target.points), self.cut.iter().any(|p| is_volume(&p)))
+        else {
+            return Ok(());
+        };
+        let gone: Vec<&Part> = self.cut.iter().filter(|p| !is_volume(p)).chain(&self.transparent).collect();
+        let near = extent.depth[0];
+        let closer = View::new(Pinhole { near, ..view.pinhole().clone() }, view.stages().to_vec())?;
+        let inner = draw(&occluders::without(&self.scene, &gone), &closer)?;
+        for i in (0..open.color.len()).filter(|i| f64::from(inner.depth[*i]) < f64::INFINITY) {
+            if f64::from(open.depth[i]) >= near {
+                copy(open, &inner, i);
+                open.color[i] = inner.color[i];
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Takes over what is seen at a pixel, but for its colour.
+fn copy(frame: &mut Frame, from: &Frame, i: usize) {
+    (frame.depth[i], frame.id[i]) = (from.depth[i], from.id[i]);
+    if let (Some(to), Some(from)) = (&mut frame.world, &from.world) {
+        to[i] = from[i];
+    }
+}

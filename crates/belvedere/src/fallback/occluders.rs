@@ -1,0 +1,143 @@
+//! What hides a target, part by part: boxes one by one, named parts of meshes, everything else as a whole.
+
+use belvedere_construct::rays::{Target, TargetSight};
+use belvedere_core::{Aabb, DVec2, DVec3, View};
+use belvedere_scene::{BoxLayer, BoxShape, Layer, LayerKind, Scene};
+
+/// Depths nearer than this many near distances of the camera count as its near plane.
+const AT_EYE: f64 = 1.0 + 1e-9;
+
+/// A part of a layer.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Part {
+    /// Index of the layer.
+    pub(super) layer: usize,
+    /// Number of the box, or of the part of the mesh; `None` = the whole layer.
+    pub(super) number: Option<usize>,
+    /// Corners of a box around it, scene coordinates.
+    pub(super) corners: Vec<DVec3>,
+}
+
+/// An axis-parallel rectangle in the picture, pixels, and the depths of what it holds.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Extent {
+    pub(super) low: DVec2,
+    pub(super) high: DVec2,
+    pub(super) depth: [f64; 2],
+}
+
+impl Extent {
+    /// Around the images of points; `None` if one of them has none before the camera.
+    pub(super) fn of(view: &View, points: &[DVec3]) -> Option<Self> {
+        let nothing =
+            Self { low: DVec2::INFINITY, high: DVec2::NEG_INFINITY, depth: [f64::INFINITY, f64::NEG_INFINITY] };
+        points.iter().try_fold(nothing, |e, p| {
+            let image = view.project(*p).ok().filter(|i| i.depth > AT_EYE * view.pinhole().near)?;
+            let depth = [e.depth[0].min(image.depth), e.depth[1].max(image.depth)];
+            Some(Self { low: e.low.min(image.pixel), high: e.high.max(image.pixel), depth })
+        })
+    }
+
+    /// Whether both have pixels in common, with a margin between them.
+    pub(super) fn meets(&self, other: &Self, margin_px: f64) -> bool {
+        let (low, high) = (other.low - margin_px, other.high + margin_px);
+        self.low.cmplt(high).all() && self.high.cmpgt(low).all()
+    }
+}
+
+/// The parts of a layer that are no part of the target.
+fn parts(scene: &Scene, index: usize, target: &Target) -> Vec<Part> {
+    let layer = &scene.layers[index];
+    let whole = |bounds: Aabb| vec![Part { layer: index, number: None, corners: bounds.corners().to_vec() }];
+    match &layer.kind {
+        _ if target.own_layers.contains(&index) => Vec::new(),
+        LayerKind::Boxes(b) => {
+            let part =
+                |(k, b): (usize, &BoxShape)| Part { layer: index, number: Some(k), corners: b.corners().to_vec() };
+            b.boxes.iter().enumerate().map(part).collect()
+        }
+        LayerKind::Mesh(m) if m.mesh.part(0).is_some() => {
+            let own = target.own_parts.as_ref().filter(|(layer, _)| *layer == index).map(|(_, parts)| &parts[..]);
+            let mut bounds = std::collections::BTreeMap::<u32, Aabb>::new();
+            for t in 0..m.mesh.triangles().len() {
+                let Some(part) = m.mesh.part(t).filter(|p| own.is_none_or(|own| !own.contains(p))) else { continue };
+                let of = bounds.entry(part).or_insert(Aabb::EMPTY);
+                *of = of.union(Aabb::of(m.mesh.corners(t)));
+            }
+            let part =
+                |(k, b): (u32, Aabb)| Part { layer: index, number: Some(k as usize), corners: b.corners().to_vec() };
+            bounds.into_iter().map(part).collect()
+        }
+        LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) => Vec::new(),
+        _ => Some(layer.bounds()).filter(|b| !b.is_empty()).map_or_else(Vec::new, whole),
+    }
+}
+
+/// The parts of the layers that stand in the way of lines of sight to `target`, each judged as if it were alone.
+pub(super) fn find(scene: &Scene, view: &View, target: &Target, layers: &[usize]) -> Vec<Part> {
+    let empty = filtered(scene, &|_| None);
+    let open = TargetSight::new(&empty, target).shown(view, 0.0);
+    let extent = Extent::of(view, &target.points);
+    let hides = |part: &Part| {
+        let apart = extent.as_ref().zip(Extent::of(view, &part.corners));
+        // A ball is larger than its middle.
+        let margin = 2.0 + target.radius * view.pinhole().scale_px() / extent.map_or(1.0, |e| e.depth[0]);
+        if apart.is_some_and(|(e, p)| !e.meets(&p, margin) || p.depth[0] > e.depth[1]) {
+            return false;
+        }
+        let alone = filtered(scene, &|i| (i == part.layer).then(|| only(&scene.layers[i], part.number)));
+        let seen = TargetSight::new(&alone, target).shown(view, 0.0);
+        seen.share < open.share || seen.light < open.light - 1e-3
+    };
+    layers.iter().flat_map(|&i| parts(scene, i, target)).filter(hides).collect()
+}
+
+/// The scene with the same ids and numbers of layers, of what `kind` gives for each; nothing where it gives nothing.
+fn filtered(scene: &Scene, kind: &dyn Fn(usize) -> Option<LayerKind>) -> Scene {
+    let nothing = || LayerKind::Boxes(BoxLayer::default());
+    let layer = |(i, l): (usize, &Layer)| Layer {
+        id: l.id.clone(),
+        must_see: l.must_see,
+        kind: kind(i).unwrap_or_else(nothing),
+    };
+    Scene {
+        title: scene.title.clone(),
+        crs: scene.crs,
+        unit: scene.unit,
+        layers: scene.layers.iter().enumerate().map(layer).collect(),
+    }
+}
+
+/// A part of a layer, alone.
+fn only(layer: &Layer, number: Option<usize>) -> LayerKind {
+    let mut kind = layer.kind.clone();
+    match (&mut kind, number) {
+        (LayerKind::Boxes(b), Some(k)) => b.boxes = b.boxes.get(k).copied().into_iter().collect(),
+        (LayerKind::Mesh(m), Some(k)) => m.mesh = m.mesh.only(&|t| m.mesh.part(t) == Some(k as u32)),
+        _ => {}
+    }
+    kind
+}
+
+/// The scene without some parts.
+pub(super) fn without(scene: &Scene, parts: &[&Part]) -> Scene {
+    filtered(scene, &|i| {
+        let gone: Vec<Option<usize>> = parts.iter().filter(|p| p.layer == i).map(|p| p.number).collect();
+        if gone.contains(&None) {
+            return None;
+        }
+        let mut kind = scene.layers[i].kind.clone();
+        let stays = |k: usize| !gone.contains(&Some(k));
+        match &mut kind {
+            LayerKind::Boxes(b) if !gone.is_empty() => {
+                let all = b.boxes.iter().enumerate().filter(|(k, _)| stays(*k)).map(|(_, b)| *b);
+                b.boxes = all.collect();
+            }
+            LayerKind::Mesh(m) if !gone.is_empty() => {
+                m.mesh = m.mesh.only(&|t| m.mesh.part(t).is_none_or(|p| stays(p as usize)));
+            }
+            _ => {}
+        }
+        Some(kind)
+    })
+}
