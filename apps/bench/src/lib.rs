@@ -8,6 +8,7 @@ mod flight;
 mod frames;
 pub mod scene;
 mod smooth;
+pub mod volume;
 
 pub use flight::FlightCost;
 pub use frames::{FrameCost, Growth, ProjectionCost};

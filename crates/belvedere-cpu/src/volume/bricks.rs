@@ -3,6 +3,7 @@
 use super::table::Table;
 use belvedere_scene::Volume;
 use belvedere_scene::volume::BRICK;
+use glam::Vec3A;
 
 /// Bricks along the edge of a cube: 8 cells each.
 pub(super) const EDGE: f32 = BRICK as f32;
@@ -43,8 +44,9 @@ impl Leaps {
 
     /// The brick of a position, and its distance.
     #[inline(always)]
-    pub(super) fn at(&self, p: [f32; 3]) -> ([usize; 3], u8) {
-        let brick: [usize; 3] = std::array::from_fn(|a| ((p[a] * (1.0 / EDGE)) as usize).min(self.dims[a] - 1));
+    pub(super) fn at(&self, p: Vec3A) -> ([usize; 3], u8) {
+        let place = (p * (1.0 / EDGE)).to_array();
+        let brick: [usize; 3] = std::array::from_fn(|a| (place[a] as usize).min(self.dims[a] - 1));
         let i = (brick[2] * self.dims[1] + brick[1]) * self.dims[0] + brick[0];
         (brick, self.distance.get(i).copied().unwrap_or(0))
     }

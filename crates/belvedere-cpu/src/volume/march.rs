@@ -7,6 +7,7 @@ use super::sampler::{GROUP, Group, Sampler, Voxel};
 use super::table::{ENTRIES, Table};
 use super::{ENOUGH, Gathered, HALF};
 use crate::simd::{self, Kernel, nearest};
+use belvedere_core::DVec3;
 use belvedere_scene::{Volume, VolumeLayer, VolumeModel, VoxelValues};
 use glam::{Mat3A, Vec3A};
 
@@ -104,9 +105,9 @@ impl<T: Voxel> Kernel for Walk<'_, '_, T> {
 
 /// A segment in 32 bits: position by the way from its start, in steps.
 struct Stretch {
-    c: [[f32; 3]; 4],
-    /// Bound on half the second derivative, per axis.
-    bend: [f32; 3],
+    c: [Vec3A; 4],
+    /// Bound on half the second derivative, per axis; `None` for a straight one.
+    bend: Option<Vec3A>,
 }
 
 impl Stretch {
@@ -115,159 +116,199 @@ impl Stretch {
         let per_step = step / segment.length;
         let mut scale = 1.0;
         let c = segment.curve.0.map(|c| {
-            let scaled = (c * scale).to_array().map(|v| v as f32);
+            let scaled = (c * scale).as_vec3a();
             scale *= per_step;
             scaled
         });
         let steps = (segment.length / step) as f32;
-        let bend = std::array::from_fn(|a| c[2][a].abs() + 3.0 * c[3][a].abs() * steps);
-        Self { c, bend }
+        let bent = c[2] != Vec3A::ZERO || c[3] != Vec3A::ZERO;
+        Self { c, bend: bent.then(|| c[2].abs() + 3.0 * steps * c[3].abs()) }
     }
 
     #[inline(always)]
-    fn at(&self, n: f32) -> [f32; 3] {
-        std::array::from_fn(|a| self.c[0][a] + n * (self.c[1][a] + n * (self.c[2][a] + n * self.c[3][a])))
+    fn at(&self, n: f32) -> Vec3A {
+        self.c[0] + n * (self.c[1] + n * (self.c[2] + n * self.c[3]))
     }
 
     #[inline(always)]
-    fn direction(&self, n: f32) -> [f32; 3] {
-        std::array::from_fn(|a| self.c[1][a] + n * (2.0 * self.c[2][a] + n * 3.0 * self.c[3][a]))
+    fn direction(&self, n: f32) -> Vec3A {
+        self.c[1] + n * (2.0 * self.c[2] + n * 3.0 * self.c[3])
     }
 
     /// Whole steps that stay within the cube of bricks around a brick.
     #[inline(always)]
-    fn leap(&self, n: f32, (brick, distance): ([usize; 3], u8)) -> f32 {
-        let (p, v) = (self.at(n), self.direction(n));
-        let reach = f32::from(distance) - 1.0;
-        let mut leap = f32::INFINITY;
-        for a in 0..3 {
-            let low = (brick[a] as f32 - reach) * EDGE;
-            let high = (brick[a] as f32 + 1.0 + reach) * EDGE;
-            let way = if v[a] > 0.0 { high - p[a] } else { p[a] - low };
-            let straight = way / v[a].abs().max(1e-12);
-            leap = leap.min(straight);
+    fn leap(&self, n: f32, p: Vec3A, (brick, distance): ([usize; 3], u8)) -> f32 {
+        let v = self.direction(n);
+        let corner = Vec3A::from_array(brick.map(|b| b as f32 * EDGE));
+        let reach = (f32::from(distance) - 1.0) * EDGE;
+        let (low, high) = (corner - reach, corner + (EDGE + reach));
+        let way = Vec3A::select(v.cmpgt(Vec3A::ZERO), high - p, p - low);
+        let pace = v.abs().max(Vec3A::splat(1e-12)).recip();
+        let leap = (way * pace).min_element();
+        let Some(bend) = self.bend else { return leap.floor().max(1.0) };
+        // The bend may bring it to a side earlier: as far as it goes within the leap. Sides that it goes away from are as near as they
+        // are, and what speed it may come to have towards them counts.
+        let off = bend * (leap * leap);
+        let ahead = ((way - off) * pace).min_element();
+        let behind = (high - low - way - off).min_element() + 1e-3;
+        if behind >= 0.0 { leap.min(ahead).floor().max(1.0) } else { 1.0 }
+    }
+}
+
+/// Segments that go on from each other, and how far along them one is.
+struct Run<'s> {
+    segments: &'s [Segment],
+    step: f64,
+    /// The present segment, where it starts and ends, in steps.
+    at: usize,
+    start: f64,
+    end: f64,
+    stretch: Stretch,
+}
+
+impl<'s> Run<'s> {
+    #[inline(always)]
+    fn new(segments: &'s [Segment], step: f64) -> Self {
+        let stretch = Stretch::new(&segments[0], step);
+        Self { segments, step, at: 0, start: 0.0, end: segments[0].length / step, stretch }
+    }
+
+    /// Goes on to the segment of a way, in steps.
+    #[inline(always)]
+    fn seek(&mut self, way: f64) {
+        while way >= self.end && self.at + 1 < self.segments.len() {
+            self.next();
         }
-        // The bend may bring it to a side earlier: as far as it goes within the leap.
-        let mut bent = leap;
-        for a in 0..3 {
-            if self.bend[a] > 0.0 {
-                let low = (brick[a] as f32 - reach) * EDGE;
-                let high = (brick[a] as f32 + 1.0 + reach) * EDGE;
-                let off = self.bend[a] * leap * leap;
-                let up = (high - p[a] - off) / v[a].max(1e-12);
-                let down = (p[a] - low - off) / (-v[a]).max(1e-12);
-                bent = bent.min(up).min(down);
+    }
+
+    #[inline(always)]
+    fn next(&mut self) {
+        self.at += 1;
+        let segment = &self.segments[self.at];
+        (self.start, self.end) = (self.end, self.end + segment.length / self.step);
+        self.stretch = Stretch::new(segment, self.step);
+    }
+
+    /// Positions of samples from the way `way` on, a step apart, and the steps themselves if `directions` are wanted. The first one lies
+    /// in the present segment; the others may lie in later ones, and then these become the present one.
+    #[inline(always)]
+    fn group(&mut self, way: f64, taken: usize, directions: bool) -> ([Group; 3], [Group; 3]) {
+        let (mut p, mut v) = ([[0.0; GROUP]; 3], [[0.0; GROUP]; 3]);
+        let mut first = 0.0f32;
+        loop {
+            let n0 = (way - self.start) as f32;
+            for a in 0..3 {
+                let [c0, c1, c2, c3] = [0, 1, 2, 3].map(|k| self.stretch.c[k].to_array()[a]);
+                for l in 0..GROUP {
+                    let n = n0 + l as f32;
+                    let here = c0 + n * (c1 + n * (c2 + n * c3));
+                    p[a][l] = if l as f32 >= first { here } else { p[a][l] };
+                    if directions {
+                        let ahead = c1 + n * (2.0 * c2 + n * 3.0 * c3);
+                        v[a][l] = if l as f32 >= first { ahead } else { v[a][l] };
+                    }
+                }
             }
+            if way + (taken - 1) as f64 <= self.end || self.at + 1 >= self.segments.len() {
+                return (p, v);
+            }
+            first = (self.end - way).ceil() as f32;
+            self.next();
         }
-        bent.floor().max(1.0)
+    }
+
+    /// Depth and lattice position of a sample.
+    #[inline(never)]
+    fn place(&self, way: f64) -> (f64, DVec3) {
+        let mut start = 0.0;
+        for (i, segment) in self.segments.iter().enumerate() {
+            let end = start + segment.length / self.step;
+            if way < end || i + 1 == self.segments.len() {
+                let t = ((way - start) / (end - start)).clamp(0.0, 1.0);
+                return (segment.depth_at(t), segment.curve.at(t));
+            }
+            start = end;
+        }
+        (0.0, DVec3::ZERO)
     }
 }
 
 impl<T: Voxel> Walk<'_, '_, T> {
     /// Samples of segments that go on from each other, at `(k + 1/2)` steps of their common length; the last step ends with them.
     #[inline(always)]
-    fn run_of(&self, run: &[Segment], out: &mut Gathered) {
+    fn run_of(&self, segments: &[Segment], out: &mut Gathered) {
         let step = self.marcher.step;
-        let total: f64 = run.iter().map(|s| s.length).sum::<f64>() / step;
+        let total: f64 = segments.iter().map(|s| s.length).sum::<f64>() / step;
         // Rounding makes no step of its own.
         let whole = (total + 1e-6).floor();
-        let mut start = 0.0;
+        let mut run = Run::new(segments, step);
         let mut k = 0.0f64;
-        for segment in run {
-            let end = start + segment.length / step;
-            let stretch = Stretch::new(segment, step);
-            // Samples k with start <= k + 1/2 < end, whole ones.
-            let last = (end - 0.5).ceil().min(whole);
-            if k < last {
-                let offset = (k + 0.5 - start) as f32;
-                let count = (last - k) as u32;
-                if self.samples(&stretch, segment, offset, count, 1.0, out) {
-                    return;
-                }
-                k = last;
-            }
-            start = end;
-        }
-        let part = total - whole;
-        if part > 1e-6
-            && let Some(segment) = run.last()
-        {
-            let stretch = Stretch::new(segment, step);
-            let at = segment.length / step - 0.5 * part;
-            self.samples(&stretch, segment, at as f32, 1, part as f32, out);
-        }
-    }
-
-    /// `count` samples from `offset` steps into a segment on; each counts for `share` of a step. Answers whether that was enough.
-    #[inline(always)]
-    fn samples(
-        &self,
-        stretch: &Stretch,
-        segment: &Segment,
-        offset: f32,
-        count: u32,
-        share: f32,
-        out: &mut Gathered,
-    ) -> bool {
-        let mut k = 0;
-        while k < count {
-            let n = offset + k as f32;
-            let found = self.marcher.leaps.at(stretch.at(n));
+        while k < whole {
+            let way = k + 0.5;
+            run.seek(way);
+            let n = (way - run.start) as f32;
+            let p = run.stretch.at(n);
+            let found = self.marcher.leaps.at(p);
             if found.1 > 0 {
-                k = k.saturating_add(stretch.leap(n, found).min(1e6) as u32);
+                C[0].fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+                let to_end = (run.end - way).ceil().max(1.0);
+                k += f64::from(run.stretch.leap(n, p, found).min(1e6)).min(to_end);
                 continue;
             }
-            let taken = (count - k).min(GROUP as u32);
-            if self.group(stretch, segment, n, taken as usize, share, out) {
-                return true;
+            let taken = (whole - k).min(GROUP as f64);
+            if self.group(&mut run, way, taken as usize, 1.0, out) {
+                return;
             }
             k += taken;
         }
-        false
+        let part = total - whole;
+        if part > 1e-6 {
+            let way = total - 0.5 * part;
+            run.seek(way);
+            self.group(&mut run, way, 1, part as f32, out);
+        }
     }
 
+    /// `taken` samples from the way `way` on; each counts for `share` of a step. Answers whether that was enough.
     #[inline(always)]
-    fn group(
-        &self,
-        stretch: &Stretch,
-        segment: &Segment,
-        n: f32,
-        taken: usize,
-        share: f32,
-        out: &mut Gathered,
-    ) -> bool {
-        let table = &self.marcher.table;
-        let mut p: [Group; 3] = [[0.0; GROUP]; 3];
-        for (a, p) in p.iter_mut().enumerate() {
-            let [c0, c1, c2, c3] = [0, 1, 2, 3].map(|k| stretch.c[k][a]);
-            for (l, p) in p.iter_mut().enumerate() {
-                let n = n + l as f32;
-                *p = c0 + n * (c1 + n * (c2 + n * c3));
-            }
-        }
+    fn group(&self, run: &mut Run<'_>, way: f64, taken: usize, share: f32, out: &mut Gathered) -> bool {
+        let marcher = self.marcher;
+        let table = &marcher.table;
+        let shaded = marcher.layer.model == VolumeModel::Shaded;
+        let (p, v) = run.group(way, taken, shaded);
         let values = self.sampler.at(&p);
         let mut place = [0i32; GROUP];
         for l in 0..GROUP {
-            let v = (values[l] - table.least) * table.scale;
-            place[l] = nearest(v);
+            place[l] = nearest((values[l] - table.least) * table.scale);
         }
         out.samples += taken as u32;
+        let mut alphas: Group = [0.0; GROUP];
+        let mut any = false;
         for l in 0..taken {
-            let entry = table.entries[place[l] as usize & (ENTRIES - 1)];
-            let mut alpha = entry[3];
-            if alpha <= 0.0 {
+            alphas[l] = table.alphas[place[l] as usize & (ENTRIES - 1)];
+            any |= alphas[l] > 0.0;
+        }
+        C[1].fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        C[2].fetch_add(alphas.iter().filter(|a| **a > 0.0).count() as u64, std::sync::atomic::Ordering::Relaxed);
+        if !any {
+            C[3].fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            return false;
+        }
+        if share != 1.0 {
+            alphas[0] = 1.0 - (1.0 - alphas[0]).powf(share);
+        }
+        let [factor, white] = if shaded { self.shading(&p, &v) } else { [[1.0; GROUP], [0.0; GROUP]] };
+        for l in 0..taken {
+            if alphas[l] <= 0.0 {
                 continue;
             }
-            if share != 1.0 {
-                alpha = 1.0 - (1.0 - alpha).powf(share);
-            }
-            let at = [p[0][l], p[1][l], p[2][l]];
-            let lit = self.lit(entry, at, stretch, n + l as f32);
-            let weight = alpha * (1.0 - out.alpha);
+            let lit = table.colors[place[l] as usize & (ENTRIES - 1)] * factor[l] + white[l];
+            let weight = alphas[l] * (1.0 - out.alpha);
             out.color += lit * weight;
             out.alpha += weight;
             if out.half.is_none() && out.alpha >= HALF {
-                out.half = Some(self.place(segment, n + l as f32));
+                let (depth, q) = run.place(way + l as f64);
+                out.half = Some((depth, marcher.volume().scene_from_lattice(q)));
             }
             if out.alpha >= ENOUGH {
                 return true;
@@ -276,31 +317,31 @@ impl<T: Voxel> Walk<'_, '_, T> {
         false
     }
 
-    /// Depth and place of a sample.
+    /// Factors of the colours, and white added to them.
+    ///
+    /// * `v`: steps of the ray, lattice coordinates.
     #[inline(always)]
-    fn place(&self, segment: &Segment, n: f32) -> (f64, belvedere_core::DVec3) {
-        let t = (f64::from(n) * self.marcher.step / segment.length).clamp(0.0, 1.0);
-        let depth = segment.depth[0] + t * (segment.depth[1] - segment.depth[0]);
-        (depth, self.marcher.volume().scene_from_lattice(segment.curve.at(t)))
-    }
-
-    #[inline(always)]
-    fn lit(&self, [r, g, b, _]: [f32; 4], p: [f32; 3], stretch: &Stretch, n: f32) -> Vec3A {
-        let rgb = Vec3A::new(r, g, b);
-        if self.marcher.layer.model == VolumeModel::Plain {
-            return rgb;
-        }
-        let gradient = Vec3A::from_array(self.sampler.gradient(p));
-        let normal = self.marcher.normal_from_gradient * gradient;
-        let size = normal.length_squared();
+    fn shading(&self, p: &[Group; 3], v: &[Group; 3]) -> [Group; 2] {
+        let g = self.sampler.gradients(p);
+        let m = self.marcher.normal_from_gradient;
+        let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|c| c.to_array());
         // The length of a step, in lattice coordinates, is that of the direction.
-        let along = gradient.dot(Vec3A::from_array(stretch.direction(n)));
-        let edges = (self.marcher.layer.step) as f32;
-        let inverse = 1.0 / size.max(f32::MIN_POSITIVE).sqrt();
-        let cos = (along.abs() * inverse / edges).min(1.0);
-        let solid = size / (size + self.marcher.surface_squared);
-        let up = normal.z * inverse * if along > 0.0 { -1.0 } else { 1.0 };
-        let [factor, white] = light(cos, solid, up);
-        rgb * factor + white
+        let edges = self.marcher.layer.step as f32;
+        let surface_squared = self.marcher.surface_squared;
+        let mut out = [[0.0; GROUP]; 2];
+        for l in 0..GROUP {
+            let normal: [f32; 3] = std::array::from_fn(|a| x[a] * g[0][l] + y[a] * g[1][l] + z[a] * g[2][l]);
+            let size = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+            let along = g[0][l] * v[0][l] + g[1][l] * v[1][l] + g[2][l] * v[2][l];
+            let inverse = 1.0 / size.max(f32::MIN_POSITIVE).sqrt();
+            let cos = (along.abs() * inverse / edges).min(1.0);
+            let solid = size / (size + surface_squared);
+            let up = normal[2] * inverse * if along > 0.0 { -1.0 } else { 1.0 };
+            let [factor, white] = light(cos, solid, up);
+            (out[0][l], out[1][l]) = (factor, white);
+        }
+        out
     }
 }
+
+pub static C: [std::sync::atomic::AtomicU64; 4] = [const { std::sync::atomic::AtomicU64::new(0) }; 4];

@@ -30,6 +30,13 @@ pub(super) struct Segment {
     pub(super) is_new: bool,
 }
 
+impl Segment {
+    /// Depth at a share of its length.
+    pub(super) fn depth_at(&self, t: f64) -> f64 {
+        self.depth[0] + t * (self.depth[1] - self.depth[0])
+    }
+}
+
 /// What makes rays of a view.
 pub(super) struct Rays<'a> {
     view: &'a View,

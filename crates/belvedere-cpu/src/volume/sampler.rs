@@ -1,4 +1,4 @@
-//! Trilinear interpolation of several positions at once.
+//! Trilinear interpolation of several positions at once, and of gradients.
 
 use crate::simd::nearest;
 use belvedere_scene::Volume;
@@ -7,36 +7,126 @@ use belvedere_scene::Volume;
 pub(super) const GROUP: usize = 8;
 pub(super) type Group = [f32; GROUP];
 
-/// A stored value.
+/// A stored value; neighbours along x are read together.
 pub(super) trait Voxel: Copy + Sync {
-    fn number(self) -> f32;
+    type Two: Copy;
+    type Four: Copy;
+    const NO_TWO: Self::Two;
+    const NO_FOUR: Self::Four;
+    fn two(values: [Self; 2]) -> Self::Two;
+    fn four(values: [Self; 4]) -> Self::Four;
+    /// Number `K` of those that were read.
+    fn of_two<const K: usize>(two: Self::Two) -> f32;
+    fn of_four<const K: usize>(four: Self::Four) -> f32;
 }
 
 impl Voxel for u8 {
+    type Two = u32;
+    type Four = u32;
+    const NO_TWO: u32 = 0;
+    const NO_FOUR: u32 = 0;
+
     #[inline(always)]
-    fn number(self) -> f32 {
-        f32::from(self)
+    fn two(values: [u8; 2]) -> u32 {
+        u32::from(u16::from_le_bytes(values))
+    }
+
+    #[inline(always)]
+    fn four(values: [u8; 4]) -> u32 {
+        u32::from_le_bytes(values)
+    }
+
+    #[inline(always)]
+    fn of_two<const K: usize>(two: u32) -> f32 {
+        ((two >> (8 * K)) & 0xff) as i32 as f32
+    }
+
+    #[inline(always)]
+    fn of_four<const K: usize>(four: u32) -> f32 {
+        ((four >> (8 * K)) & 0xff) as i32 as f32
     }
 }
 
-impl Voxel for u16 {
+/// Two 16-bit numbers in one word: `K` of them to a float.
+macro_rules! sixteen_bits {
+    ($type:ty, $two:expr) => {
+        impl Voxel for $type {
+            type Two = u32;
+            type Four = [u32; 2];
+            const NO_TWO: u32 = 0;
+            const NO_FOUR: [u32; 2] = [0; 2];
+
+            #[inline(always)]
+            fn two([a, b]: [$type; 2]) -> u32 {
+                u32::from(a.cast_unsigned_16()) | (u32::from(b.cast_unsigned_16()) << 16)
+            }
+
+            #[inline(always)]
+            fn four([a, b, c, d]: [$type; 4]) -> [u32; 2] {
+                [Self::two([a, b]), Self::two([c, d])]
+            }
+
+            #[inline(always)]
+            fn of_two<const K: usize>(two: u32) -> f32 {
+                let half: fn(u32, usize) -> i32 = $two;
+                half(two, K) as f32
+            }
+
+            #[inline(always)]
+            fn of_four<const K: usize>(four: [u32; 2]) -> f32 {
+                let half: fn(u32, usize) -> i32 = $two;
+                half(four[K / 2], K % 2) as f32
+            }
+        }
+    };
+}
+
+/// Bits of 16-bit numbers.
+trait Bits {
+    fn cast_unsigned_16(self) -> u16;
+}
+
+impl Bits for u16 {
     #[inline(always)]
-    fn number(self) -> f32 {
-        f32::from(self)
+    fn cast_unsigned_16(self) -> u16 {
+        self
     }
 }
 
-impl Voxel for i16 {
+impl Bits for i16 {
     #[inline(always)]
-    fn number(self) -> f32 {
-        f32::from(self)
+    fn cast_unsigned_16(self) -> u16 {
+        self.cast_unsigned()
     }
 }
+
+sixteen_bits!(u16, |two, k| ((two >> (16 * k)) & 0xffff) as i32);
+sixteen_bits!(i16, |two, k| ((two << (16 - 16 * k)) as i32) >> 16);
 
 impl Voxel for f32 {
+    type Two = [f32; 2];
+    type Four = [f32; 4];
+    const NO_TWO: [f32; 2] = [0.0; 2];
+    const NO_FOUR: [f32; 4] = [0.0; 4];
+
     #[inline(always)]
-    fn number(self) -> f32 {
-        self
+    fn two(values: [f32; 2]) -> [f32; 2] {
+        values
+    }
+
+    #[inline(always)]
+    fn four(values: [f32; 4]) -> [f32; 4] {
+        values
+    }
+
+    #[inline(always)]
+    fn of_two<const K: usize>(two: [f32; 2]) -> f32 {
+        two[K]
+    }
+
+    #[inline(always)]
+    fn of_four<const K: usize>(four: [f32; 4]) -> f32 {
+        four[K]
     }
 }
 
@@ -51,6 +141,17 @@ pub(super) struct Sampler<'v, T> {
     last: [i32; 3],
 }
 
+/// Cells of positions, and where in them these are.
+struct Cells {
+    cell: [[i32; GROUP]; 3],
+    share: [Group; 3],
+}
+
+#[inline(always)]
+fn mix(a: f32, b: f32, t: f32) -> f32 {
+    a + t * (b - a)
+}
+
 impl<'v, T: Voxel> Sampler<'v, T> {
     /// * `values`: those of `volume`.
     pub(super) fn new(volume: &Volume, values: &'v [T]) -> Self {
@@ -59,11 +160,10 @@ impl<'v, T: Voxel> Sampler<'v, T> {
         Self { values, stride: [nx, nx * ny], most, last: [nx, ny, nz].map(|n| n as i32 - 2) }
     }
 
-    /// Values at lattice coordinates; positions outside count as the nearest inside.
     #[inline(always)]
-    pub(super) fn at(&self, p: &[Group; 3]) -> Group {
+    fn cells(&self, p: &[Group; 3]) -> Cells {
         let mut cell = [[0i32; GROUP]; 3];
-        let mut f = [[0.0f32; GROUP]; 3];
+        let mut share = [[0.0f32; GROUP]; 3];
         for a in 0..3 {
             let (most, last) = (self.most[a], self.last[a]);
             for l in 0..GROUP {
@@ -73,43 +173,167 @@ impl<'v, T: Voxel> Sampler<'v, T> {
                 // The whole number below, or at a whole number perhaps the one before: the value is the same.
                 let c = nearest(q - 0.5).min(last).max(0);
                 cell[a][l] = c;
-                f[a][l] = q - c as f32;
+                share[a][l] = q - c as f32;
             }
         }
+        Cells { cell, share }
+    }
+
+    /// Numbers of the first voxels of cells.
+    #[inline(always)]
+    fn numbers(&self, cell: &[[i32; GROUP]; 3]) -> [usize; GROUP] {
         let [sy, sz] = self.stride;
-        let mut corner = [[0.0f32; GROUP]; 8];
+        let mut out = [0; GROUP];
         for l in 0..GROUP {
-            let base = cell[2][l] as usize * sz + cell[1][l] as usize * sy + cell[0][l] as usize;
-            if let Some(v) = self.values.get(base..base + sz + sy + 2) {
-                corner[0][l] = v[0].number();
-                corner[1][l] = v[1].number();
-                corner[2][l] = v[sy].number();
-                corner[3][l] = v[sy + 1].number();
-                corner[4][l] = v[sz].number();
-                corner[5][l] = v[sz + 1].number();
-                corner[6][l] = v[sz + sy].number();
-                corner[7][l] = v[sz + sy + 1].number();
-            }
+            out[l] = cell[2][l] as usize * sz + cell[1][l] as usize * sy + cell[0][l] as usize;
+        }
+        out
+    }
+
+    #[inline(always)]
+    fn two(&self, at: usize) -> T::Two {
+        match self.values.get(at..).and_then(|v| v.first_chunk::<2>()) {
+            Some(v) => T::two(*v),
+            None => T::NO_TWO,
+        }
+    }
+
+    #[inline(always)]
+    fn four(&self, at: usize) -> T::Four {
+        match self.values.get(at..).and_then(|v| v.first_chunk::<4>()) {
+            Some(v) => T::four(*v),
+            None => T::NO_FOUR,
+        }
+    }
+
+    /// Values at lattice coordinates; positions outside count as the nearest inside.
+    #[inline(always)]
+    pub(super) fn at(&self, p: &[Group; 3]) -> Group {
+        let Cells { cell, share } = self.cells(p);
+        let [sy, sz] = self.stride;
+        let numbers = self.numbers(&cell);
+        let mut rows = [[T::NO_TWO; GROUP]; 4];
+        for l in 0..GROUP {
+            let n = numbers[l];
+            rows[0][l] = self.two(n);
+            rows[1][l] = self.two(n + sy);
+            rows[2][l] = self.two(n + sz);
+            rows[3][l] = self.two(n + sz + sy);
         }
         let mut out = [0.0; GROUP];
         for l in 0..GROUP {
-            let x = |k: usize| corner[k][l] + f[0][l] * (corner[k + 1][l] - corner[k][l]);
-            let (y0, y1) = (x(0) + f[1][l] * (x(2) - x(0)), x(4) + f[1][l] * (x(6) - x(4)));
-            out[l] = y0 + f[2][l] * (y1 - y0);
+            let x = |k: usize| mix(T::of_two::<0>(rows[k][l]), T::of_two::<1>(rows[k][l]), share[0][l]);
+            let (y0, y1) = (mix(x(0), x(1), share[1][l]), mix(x(2), x(3), share[1][l]));
+            out[l] = mix(y0, y1, share[2][l]);
         }
         out
     }
 
     /// Central differences over a voxel to both sides, per voxel.
     #[inline(always)]
-    pub(super) fn gradient(&self, p: [f32; 3]) -> [f32; 3] {
-        let mut around = [[0.0; GROUP]; 3];
+    pub(super) fn gradients(&self, p: &[Group; 3]) -> [Group; 3] {
+        let Cells { cell, share } = self.cells(p);
+        let mut deep = true;
         for a in 0..3 {
-            around[a] = [p[a]; GROUP];
-            around[a][2 * a] += 1.0;
-            around[a][2 * a + 1] -= 1.0;
+            for l in 0..GROUP {
+                deep &= cell[a][l] >= 1 && cell[a][l] < self.last[a];
+            }
         }
-        let v = self.at(&around);
-        std::array::from_fn(|a| 0.5 * (v[2 * a] - v[2 * a + 1]))
+        if deep { self.gradients_inside(&self.numbers(&cell), &share) } else { self.gradients_anywhere(p) }
+    }
+
+    /// Away from the outer voxels: differences of the voxels around, interpolated, which is the same.
+    #[inline(always)]
+    fn gradients_inside(&self, numbers: &[usize; GROUP], share: &[Group; 3]) -> [Group; 3] {
+        let [sy, sz] = self.stride;
+        // Rows of four along x by their offsets along y and z, -1..=2; those at both ends of both are not needed.
+        let mut rows = [[[T::NO_FOUR; GROUP]; 4]; 4];
+        for (z, rows) in rows.iter_mut().enumerate() {
+            for (y, row) in rows.iter_mut().enumerate() {
+                if (y == 0 || y == 3) && (z == 0 || z == 3) {
+                    continue;
+                }
+                for l in 0..GROUP {
+                    row[l] = self.four(numbers[l] + z * sz + y * sy - sz - sy - 1);
+                }
+            }
+        }
+        let mut out = [[0.0; GROUP]; 3];
+        for l in 0..GROUP {
+            let [fx, fy, fz] = [share[0][l], share[1][l], share[2][l]];
+            // Along x through the middle, and its change over two voxels.
+            let along = |z: usize, y: usize| mix(T::of_four::<1>(rows[z][y][l]), T::of_four::<2>(rows[z][y][l]), fx);
+            let change = |z: usize, y: usize| {
+                let row = rows[z][y][l];
+                let (before, after) =
+                    (T::of_four::<2>(row) - T::of_four::<0>(row), T::of_four::<3>(row) - T::of_four::<1>(row));
+                mix(before, after, fx)
+            };
+            out[0][l] = 0.5 * mix(mix(change(1, 1), change(1, 2), fy), mix(change(2, 1), change(2, 2), fy), fz);
+            let over_y = |z: usize| mix(along(z, 2) - along(z, 0), along(z, 3) - along(z, 1), fy);
+            out[1][l] = 0.5 * mix(over_y(1), over_y(2), fz);
+            let plane = |z: usize| mix(along(z, 1), along(z, 2), fy);
+            out[2][l] = 0.5 * mix(plane(2) - plane(0), plane(3) - plane(1), fz);
+        }
+        out
+    }
+
+    #[inline(never)]
+    fn gradients_anywhere(&self, p: &[Group; 3]) -> [Group; 3] {
+        let moved = |axis: usize, by: f32| {
+            let mut q = *p;
+            q[axis].iter_mut().for_each(|v| *v += by);
+            self.at(&q)
+        };
+        std::array::from_fn(|axis| {
+            let (after, before) = (moved(axis, 1.0), moved(axis, -1.0));
+            std::array::from_fn(|l| 0.5 * (after[l] - before[l]))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::{DMat3, DVec3};
+    use belvedere_scene::VoxelValues;
+
+    fn judged<T: Voxel>(values: &[T], stored: VoxelValues) {
+        let volume = Volume::new([11, 9, 7], DMat3::IDENTITY, DVec3::ZERO, stored).unwrap();
+        let sampler = Sampler::new(&volume, values);
+        let value = |p: DVec3| volume.at(p.clamp(DVec3::ZERO, DVec3::new(10.0, 8.0, 6.0))).unwrap();
+        for k in 0..200u32 {
+            // Every third group lies near the border.
+            let room = if k % 3 == 0 { 0.0 } else { 1.0 };
+            let share = |l: usize, a: u32| f64::from((k * 8 + l as u32) * (7919 + 104_729 * a) % 1000) / 999.0;
+            let place = |l: usize| {
+                let most = DVec3::new(10.0, 8.0, 6.0) - 2.0 * room - 1e-3;
+                DVec3::splat(room) + most * DVec3::new(share(l, 0), share(l, 1), share(l, 2))
+            };
+            let p = std::array::from_fn(|a| std::array::from_fn(|l| place(l)[a] as f32));
+            let (found, slopes) = (sampler.at(&p), sampler.gradients(&p));
+            for l in 0..GROUP {
+                let q = place(l);
+                assert!((f64::from(found[l]) - value(q)).abs() < 1e-4 * 300.0, "{q}: {} {}", found[l], value(q));
+                for (a, e) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
+                    let want = 0.5 * (value(q + e) - value(q - e));
+                    assert!((f64::from(slopes[a][l]) - want).abs() < 0.05, "{q} axis {a}: {} {want}", slopes[a][l]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn values_and_gradients_are_those_of_the_volume_for_every_type() {
+        let number = |i: usize| ((i * 7919) % 251) as i32;
+        let all = || (0..11 * 9 * 7).map(number);
+        let bytes: Vec<u8> = all().map(|v| v as u8).collect();
+        judged(&bytes, VoxelValues::U8(bytes.clone()));
+        let wide: Vec<u16> = all().map(|v| v as u16 + 300).collect();
+        judged(&wide, VoxelValues::U16(wide.clone()));
+        let signed: Vec<i16> = all().map(|v| v as i16 - 120).collect();
+        judged(&signed, VoxelValues::I16(signed.clone()));
+        let real: Vec<f32> = all().map(|v| v as f32 - 40.5).collect();
+        judged(&real, VoxelValues::F32(real.clone()));
     }
 }

@@ -3,6 +3,7 @@
 use crate::shade::color::{Rgb, linear_of};
 use belvedere_scene::volume::absorbed;
 use belvedere_scene::{TransferFunction, VolumeLayer};
+use glam::Vec3A;
 
 /// Entries: enough that a ramp over a hundredth of the range has forty.
 pub(super) const ENTRIES: usize = 4096;
@@ -16,8 +17,10 @@ pub(super) fn light_and_opacity(transfer: &TransferFunction, value: f64) -> ([f3
 
 /// Colour and opacity by value.
 pub(super) struct Table {
-    /// Linear red, green, blue; opacity of a step.
-    pub(super) entries: Box<[[f32; 4]; ENTRIES]>,
+    /// Opacity of a step.
+    pub(super) alphas: Box<[f32; ENTRIES]>,
+    /// Linear red, green, blue.
+    pub(super) colors: Box<[Vec3A; ENTRIES]>,
     /// Place of a value: `(value - least) * scale`.
     pub(super) least: f32,
     pub(super) scale: f32,
@@ -30,15 +33,17 @@ impl Table {
         let [lo, hi] = layer.volume.range().map(f64::from);
         let per_entry = (hi - lo) / (ENTRIES - 1) as f64;
         let steps = layer.step_length() / layer.reference_length();
-        let mut entries = Box::new([[0.0f32; 4]; ENTRIES]);
+        let mut alphas = Box::new([0.0; ENTRIES]);
+        let mut colors = Box::new([Vec3A::ZERO; ENTRIES]);
         let mut visible_before = vec![0; ENTRIES + 1];
-        for (i, entry) in entries.iter_mut().enumerate() {
-            let ([r, g, b], opacity) = light_and_opacity(&layer.transfer, lo + per_entry * i as f64);
-            *entry = [r, g, b, absorbed(opacity, steps) as f32];
-            visible_before[i + 1] = visible_before[i] + u32::from(entry[3] > 0.0);
+        for i in 0..ENTRIES {
+            let (rgb, opacity) = light_and_opacity(&layer.transfer, lo + per_entry * i as f64);
+            colors[i] = Vec3A::from_array(rgb);
+            alphas[i] = absorbed(opacity, steps) as f32;
+            visible_before[i + 1] = visible_before[i] + u32::from(alphas[i] > 0.0);
         }
         let scale = if per_entry > 0.0 { (1.0 / per_entry) as f32 } else { 0.0 };
-        Self { entries, least: lo as f32, scale, visible_before }
+        Self { alphas, colors, least: lo as f32, scale, visible_before }
     }
 
     /// Whether any value of a range is visible.
