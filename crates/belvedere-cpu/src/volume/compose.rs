@@ -68,7 +68,6 @@ pub(crate) fn compose(job: &RenderJob<'_>, way: Way, buffers: &mut Buffers) -> R
         let done = (done.fetch_add(1, Ordering::Relaxed) + 1) * ROWS;
         job.progress.tick("volumes", (done as f64 / height as f64).min(1.0))
     })?;
-    eprintln!("{:?}", super::march::C.iter().map(|c| c.swap(0, std::sync::atomic::Ordering::Relaxed)).collect::<Vec<_>>());
     Ok(samples.into_inner())
 }
 

@@ -5,7 +5,7 @@ use super::light::{SURFACE, light};
 use super::ray::Segment;
 use super::sampler::{GROUP, Group, Sampler, Voxel};
 use super::table::{ENTRIES, Table};
-use super::{ENOUGH, Gathered, HALF};
+use super::{ENOUGH, Gathered, HALF, half_within};
 use crate::simd::{self, Kernel, nearest};
 use belvedere_core::DVec3;
 use belvedere_scene::{Volume, VolumeLayer, VolumeModel, VoxelValues};
@@ -250,7 +250,6 @@ impl<T: Voxel> Walk<'_, '_, T> {
             let p = run.stretch.at(n);
             let found = self.marcher.leaps.at(p);
             if found.1 > 0 {
-                C[0].fetch_add(1, std::sync::atomic::Ordering::Relaxed);
                 let to_end = (run.end - way).ceil().max(1.0);
                 k += f64::from(run.stretch.leap(n, p, found).min(1e6)).min(to_end);
                 continue;
@@ -277,21 +276,22 @@ impl<T: Voxel> Walk<'_, '_, T> {
         let shaded = marcher.layer.model == VolumeModel::Shaded;
         let (p, v) = run.group(way, taken, shaded);
         let values = self.sampler.at(&p);
-        let mut place = [0i32; GROUP];
+        let (mut place, mut rest) = ([0i32; GROUP], [0.0f32; GROUP]);
         for l in 0..GROUP {
-            place[l] = nearest((values[l] - table.least) * table.scale);
+            let at = ((values[l] - table.least) * table.scale).max(0.0);
+            // The entry below, or at an entry perhaps the one before: the opacity is the same.
+            place[l] = nearest(at - 0.5);
+            rest[l] = at - place[l] as f32;
         }
         out.samples += taken as u32;
         let mut alphas: Group = [0.0; GROUP];
         let mut any = false;
         for l in 0..taken {
-            alphas[l] = table.alphas[place[l] as usize & (ENTRIES - 1)];
+            let [alpha, change] = table.alphas[place[l] as usize & (ENTRIES - 1)];
+            alphas[l] = alpha + rest[l] * change;
             any |= alphas[l] > 0.0;
         }
-        C[1].fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        C[2].fetch_add(alphas.iter().filter(|a| **a > 0.0).count() as u64, std::sync::atomic::Ordering::Relaxed);
         if !any {
-            C[3].fetch_add(1, std::sync::atomic::Ordering::Relaxed);
             return false;
         }
         if share != 1.0 {
@@ -303,11 +303,13 @@ impl<T: Voxel> Walk<'_, '_, T> {
                 continue;
             }
             let lit = table.colors[place[l] as usize & (ENTRIES - 1)] * factor[l] + white[l];
-            let weight = alphas[l] * (1.0 - out.alpha);
+            let before = 1.0 - out.alpha;
+            let weight = alphas[l] * before;
             out.color += lit * weight;
             out.alpha += weight;
             if out.half.is_none() && out.alpha >= HALF {
-                let (depth, q) = run.place(way + l as f64);
+                let within = f64::from(share) * (half_within(before, alphas[l]) - 0.5);
+                let (depth, q) = run.place(way + l as f64 + within);
                 out.half = Some((depth, marcher.volume().scene_from_lattice(q)));
             }
             if out.alpha >= ENOUGH {
@@ -343,5 +345,3 @@ impl<T: Voxel> Walk<'_, '_, T> {
         out
     }
 }
-
-pub static C: [std::sync::atomic::AtomicU64; 4] = [const { std::sync::atomic::AtomicU64::new(0) }; 4];

@@ -47,3 +47,10 @@ pub(crate) struct Gathered {
     /// Samples taken.
     pub(crate) samples: u32,
 }
+
+/// Share of a step, 0..=1, after which half of the light is left: what is left of it fades by a constant factor per length.
+///
+/// * `before`: light left where the step begins, above a half. `alpha`: what the step absorbs, 0..=1.
+fn half_within(before: f32, alpha: f32) -> f64 {
+    (f64::from(HALF / before).ln() / (-f64::from(alpha)).ln_1p()).clamp(0.0, 1.0)
+}

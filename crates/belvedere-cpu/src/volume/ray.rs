@@ -7,11 +7,11 @@ use belvedere_core::{DVec2, DVec3, Stage, View};
 use belvedere_scene::Volume;
 
 /// How far a segment may be from the ray, voxels.
-const NEAR: f64 = 0.01;
+const NEAR: f64 = 1e-3;
 /// Depths nearer to each other than this share are those of one image of a place.
 const SAME_DEPTH: f64 = 0.02;
-/// Change of speed over a part, as a share, from which on it is halved: lengths are then known to about 1e-4 of themselves.
-const UNEVEN: f64 = 0.2;
+/// Change of speed over a part, as a share, from which on it is halved: lengths are then known to about 1e-5 of themselves.
+const UNEVEN: f64 = 0.1;
 /// Parts of a bent piece are halved at most this often.
 const MAX_HALVINGS: u32 = 12;
 /// Parts of a ray without points are halved at most this often.

@@ -5,7 +5,7 @@
 
 use super::light::{SURFACE, light};
 use super::table::light_and_opacity;
-use super::{ENOUGH, Gathered, HALF};
+use super::{ENOUGH, Gathered, HALF, half_within};
 use belvedere_core::{DVec2, DVec3, RayPath, View};
 use belvedere_scene::volume::absorbed;
 use belvedere_scene::{VolumeLayer, VolumeModel};
@@ -60,21 +60,25 @@ fn march(layer: &VolumeLayer, run: &[Chord], out: &mut Gathered) {
     let mut begin = 0.0;
     while begin < total && out.alpha < ENOUGH {
         let end = (begin + step).min(total);
-        let (q, depth) = at(0.5 * (begin + end));
         let chord = scene(at(end).0) - scene(at(begin).0);
         out.samples += 1;
-        sample(layer, q, chord, depth, out);
+        let before = 1.0 - out.alpha;
+        let alpha = sample(layer, at(0.5 * (begin + end)).0, chord, out);
+        if out.half.is_none() && out.alpha >= HALF {
+            let (q, depth) = at(begin + half_within(before, alpha) * (end - begin));
+            out.half = Some((depth, scene(q)));
+        }
         begin = end;
     }
 }
 
-/// Adds the sample of a step to what was gathered before.
-fn sample(layer: &VolumeLayer, q: DVec3, chord: DVec3, depth: f64, out: &mut Gathered) {
-    let Some(value) = layer.volume.at(inside(layer, q)) else { return };
+/// Adds the sample of a step to what was gathered before; answers what the step absorbs.
+fn sample(layer: &VolumeLayer, q: DVec3, chord: DVec3, out: &mut Gathered) -> f32 {
+    let Some(value) = layer.volume.at(inside(layer, q)) else { return 0.0 };
     let (rgb, opacity) = light_and_opacity(&layer.transfer, value);
     let alpha = absorbed(opacity, chord.length() / layer.reference_length()) as f32;
     if alpha <= 0.0 {
-        return;
+        return 0.0;
     }
     let lit = match layer.model {
         VolumeModel::Plain => Vec3A::from_array(rgb),
@@ -86,9 +90,7 @@ fn sample(layer: &VolumeLayer, q: DVec3, chord: DVec3, depth: f64, out: &mut Gat
     let weight = alpha * (1.0 - out.alpha);
     out.color += lit * weight;
     out.alpha += weight;
-    if out.half.is_none() && out.alpha >= HALF {
-        out.half = Some((depth, layer.volume.scene_from_lattice(q)));
-    }
+    alpha
 }
 
 /// Rounding may leave a position just outside.

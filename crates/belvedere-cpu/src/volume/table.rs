@@ -17,8 +17,8 @@ pub(super) fn light_and_opacity(transfer: &TransferFunction, value: f64) -> ([f3
 
 /// Colour and opacity by value.
 pub(super) struct Table {
-    /// Opacity of a step.
-    pub(super) alphas: Box<[f32; ENTRIES]>,
+    /// Opacity of a step, and its change to the next entry.
+    pub(super) alphas: Box<[[f32; 2]; ENTRIES]>,
     /// Linear red, green, blue.
     pub(super) colors: Box<[Vec3A; ENTRIES]>,
     /// Place of a value: `(value - least) * scale`.
@@ -33,14 +33,17 @@ impl Table {
         let [lo, hi] = layer.volume.range().map(f64::from);
         let per_entry = (hi - lo) / (ENTRIES - 1) as f64;
         let steps = layer.step_length() / layer.reference_length();
-        let mut alphas = Box::new([0.0; ENTRIES]);
+        let mut alphas = Box::new([[0.0; 2]; ENTRIES]);
         let mut colors = Box::new([Vec3A::ZERO; ENTRIES]);
         let mut visible_before = vec![0; ENTRIES + 1];
         for i in 0..ENTRIES {
             let (rgb, opacity) = light_and_opacity(&layer.transfer, lo + per_entry * i as f64);
             colors[i] = Vec3A::from_array(rgb);
-            alphas[i] = absorbed(opacity, steps) as f32;
-            visible_before[i + 1] = visible_before[i] + u32::from(alphas[i] > 0.0);
+            alphas[i][0] = absorbed(opacity, steps) as f32;
+            visible_before[i + 1] = visible_before[i] + u32::from(alphas[i][0] > 0.0);
+        }
+        for i in 1..ENTRIES {
+            alphas[i - 1][1] = alphas[i][0] - alphas[i - 1][0];
         }
         let scale = if per_entry > 0.0 { (1.0 / per_entry) as f32 } else { 0.0 };
         Self { alphas, colors, least: lo as f32, scale, visible_before }

@@ -132,6 +132,10 @@ fn a_homogeneous_box_absorbs_by_the_length_of_the_ray_whatever_the_step() {
                 let (found, _) = fast(&view, &layer, pixel, 1e9);
                 let off = (f64::from(found.alpha) - want).abs();
                 assert!(off < 2e-4, "{name} {pixel:?} step {step}: {} for {want} over {length}", found.alpha);
+                for (depth, _) in [found.half, exact(&view, &layer, pixel, 1e9).half].into_iter().flatten() {
+                    let (way, half) = (length_within(&view, pixel, [60.0, depth], inside), 0.5f64.ln() / 0.96f64.ln());
+                    assert!((way - half).abs() < 0.05, "{name} {pixel:?} step {step}: half after {way} for {half}");
+                }
             }
             let off = (f64::from(exact(&view, &layer, pixel, 1e9).alpha) - want).abs();
             // The chord of the step over a kink is shorter than the way.
