@@ -1,7 +1,7 @@
 //! Frames of 256 x 256 x 110 voxels, straight and bent rays in turn, as one line of JSON.
 //!
 //! `cargo bench -p belvedere-bench --bench volume -- [--volume FILE.raw] [--frames 8] [--step 1] [--shaded] [--ppm OUT.ppm]`
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::print_stdout)]
 
 use anyhow::{Context, Result};
 use belvedere_bench::volume::{VolumeRequest, block, measure, scene};

@@ -233,12 +233,7 @@ impl<'v, T: Voxel> Sampler<'v, T> {
     #[inline(always)]
     pub(super) fn gradients(&self, p: &[Group; 3]) -> [Group; 3] {
         let Cells { cell, share } = self.cells(p);
-        let mut deep = true;
-        for a in 0..3 {
-            for l in 0..GROUP {
-                deep &= cell[a][l] >= 1 && cell[a][l] < self.last[a];
-            }
-        }
+        let deep = cell.iter().zip(self.last).all(|(along, last)| along.iter().all(|&c| c >= 1 && c < last));
         if deep { self.gradients_inside(&self.numbers(&cell), &share) } else { self.gradients_anywhere(p) }
     }
 
