@@ -42,6 +42,18 @@ impl Leaps {
         self.distance.iter().all(|d| *d > 0)
     }
 
+    /// Bricks along x, y, z.
+    pub(super) fn dims(&self) -> [usize; 3] {
+        self.dims
+    }
+
+    /// Whether any of the bricks from the first to before the last along each axis is visible.
+    pub(super) fn shows(&self, cube: [[usize; 2]; 3]) -> bool {
+        let [x, y, z] = std::array::from_fn(|a| cube[a][0]..cube[a][1].min(self.dims[a]));
+        z.flat_map(|z| y.clone().map(move |y| (z * self.dims[1] + y) * self.dims[0]))
+            .any(|row| self.distance[row + x.start..row + x.end].contains(&0))
+    }
+
     /// The brick of a position, and its distance.
     #[inline(always)]
     pub(super) fn at(&self, p: Vec3A) -> ([usize; 3], u8) {

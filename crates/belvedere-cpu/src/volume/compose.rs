@@ -2,6 +2,7 @@
 
 use super::march::Marcher;
 use super::ray::{Rays, Segment};
+use super::spans::Spans;
 use super::{Gathered, reference};
 use crate::frame::Buffers;
 use crate::shade::color::Packed;
@@ -28,6 +29,7 @@ struct Drawn<'a> {
     index: usize,
     layer: &'a VolumeLayer,
     marcher: Marcher<'a>,
+    spans: Spans,
 }
 
 /// Lays the volumes of a scene over its surfaces, at the pixel centres. Volumes that overlap are laid over each other as a whole, the
@@ -39,10 +41,11 @@ pub(crate) fn compose(job: &RenderJob<'_>, way: Way, buffers: &mut Buffers) -> R
         .iter()
         .enumerate()
         .filter_map(|(index, l)| match &l.kind {
-            LayerKind::Volume(layer) => Some(Drawn { index, layer, marcher: Marcher::new(layer) }),
+            LayerKind::Volume(layer) => Some((index, layer, Marcher::new(layer))),
             _ => None,
         })
-        .filter(|v| !v.marcher.is_clear())
+        .filter(|(_, _, marcher)| !marcher.is_clear())
+        .map(|(index, layer, marcher)| Drawn { index, layer, spans: marcher.spans(job.view), marcher })
         .collect();
     if volumes.is_empty() {
         return Ok(0);
@@ -100,7 +103,7 @@ impl Rows<'_> {
                     image_y,
                     self.width,
                     volume.marcher.volume(),
-                    |x| Some(ends[x]),
+                    |x| volume.spans.hold([x, image_y]).then_some(ends[x]),
                     |x, segments: &[Segment]| {
                         take(x, volume.marcher.gather(segments));
                     },

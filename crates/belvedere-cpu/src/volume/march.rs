@@ -4,10 +4,11 @@ use super::bricks::{EDGE, Leaps};
 use super::light::{SURFACE, light};
 use super::ray::Segment;
 use super::sampler::{GROUP, Group, Sampler, Voxel};
+use super::spans::Spans;
 use super::table::{ENTRIES, Table};
 use super::{ENOUGH, Gathered, HALF, half_within};
 use crate::simd::{self, Kernel, nearest};
-use belvedere_core::DVec3;
+use belvedere_core::{DVec3, View};
 use belvedere_scene::{Volume, VolumeLayer, VolumeModel, VoxelValues};
 use glam::{Mat3A, Vec3A};
 
@@ -44,6 +45,11 @@ impl<'v> Marcher<'v> {
     /// Whether nothing of the volume is visible.
     pub(super) fn is_clear(&self) -> bool {
         self.leaps.is_clear()
+    }
+
+    /// The pixels of a view that may show it.
+    pub(super) fn spans(&self, view: &View) -> Spans {
+        Spans::new(view, self.volume(), &self.leaps)
     }
 
     pub(super) fn volume(&self) -> &'v Volume {

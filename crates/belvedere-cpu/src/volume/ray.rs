@@ -2,7 +2,8 @@
 
 use super::cubic::Cubic;
 use crate::trace::curve::{Curve, Span, Split};
-use belvedere_core::map::curved_rays::{RayPiece, Shape};
+use belvedere_core::conic::ConicArc;
+use belvedere_core::map::curved_rays::{Bend, C2Arc, RayPiece, Shape};
 use belvedere_core::{DVec2, DVec3, Stage, View};
 use belvedere_scene::Volume;
 
@@ -116,8 +117,50 @@ struct Clip<'v, 's> {
     goes_on: bool,
 }
 
-/// A point of a bent piece: parameter, place, derivative by the parameter, both in the scene.
-type Knot = (f64, DVec3, DVec3);
+/// A point of a bent piece.
+#[derive(Clone, Copy)]
+struct Knot {
+    parameter: f64,
+    /// Lattice coordinates, and their derivative by the parameter.
+    place: DVec3,
+    slope: DVec3,
+    /// Length of the derivative in the scene.
+    speed: f64,
+}
+
+/// A bent piece of a ray, by its parameter; places and slopes in the scene.
+trait Arc {
+    fn point(&self, u: f64) -> DVec3;
+    fn derivative(&self, u: f64) -> DVec3;
+    fn depth(&self, u: f64) -> f64;
+    /// A triangle around the whole piece.
+    fn corners(&self) -> [DVec3; 3];
+}
+
+macro_rules! arc {
+    ($curve:ty) => {
+        impl Arc for Bend<$curve> {
+            fn point(&self, u: f64) -> DVec3 {
+                self.curve.point(u)
+            }
+
+            fn derivative(&self, u: f64) -> DVec3 {
+                self.curve.derivative(u)
+            }
+
+            fn depth(&self, u: f64) -> f64 {
+                Bend::<$curve>::depth(self, u)
+            }
+
+            fn corners(&self) -> [DVec3; 3] {
+                [self.curve.t, self.curve.s, self.curve.q]
+            }
+        }
+    };
+}
+
+arc!(ConicArc);
+arc!(C2Arc);
 
 impl<'v, 's> Clip<'v, 's> {
     fn new(volume: &'v Volume, out: &'s mut Vec<Segment>) -> Self {
@@ -142,16 +185,8 @@ impl<'v, 's> Clip<'v, 's> {
     fn piece(&mut self, piece: &RayPiece, depth: [f64; 2]) {
         match &piece.shape {
             Shape::Line { from, per_depth } => self.line(*from - piece.depth[0] * *per_depth, *per_depth, depth),
-            Shape::Conic(arc) => {
-                let at = |u: f64| (u, arc.curve.point(u), arc.curve.derivative(u));
-                let corners = [arc.curve.t, arc.curve.s, arc.curve.q];
-                self.bend(corners, depth.map(|w| arc.parameter(w)), &at, &|u| arc.depth(u));
-            }
-            Shape::C2(arc) => {
-                let at = |s: f64| (s, arc.curve.point(s), arc.curve.derivative(s));
-                let corners = [arc.curve.t, arc.curve.s, arc.curve.q];
-                self.bend(corners, depth.map(|w| arc.parameter(w)), &at, &|s| arc.depth(s));
-            }
+            Shape::Conic(arc) => self.conic(arc, depth),
+            Shape::C2(arc) => self.bend(arc, depth.map(|w| arc.parameter(w))),
         }
     }
 
@@ -180,38 +215,88 @@ impl<'v, 's> Clip<'v, 's> {
         self.goes_on = w1 == depth[1];
     }
 
-    /// The part of a bent piece between two parameters that lies in the box.
-    /// * `corners`: of a triangle around the whole piece.
-    fn bend(&mut self, corners: [DVec3; 3], [u0, u1]: [f64; 2], at: &dyn Fn(f64) -> Knot, depth: &dyn Fn(f64) -> f64) {
-        let hull = corners.map(|p| self.volume.lattice_from_scene(p));
-        let (lo, hi) = (hull[0].min(hull[1]).min(hull[2]), hull[0].max(hull[1]).max(hull[2]));
-        if !(u0 < u1 && hi.cmpge(DVec3::ZERO).all() && lo.cmple(self.most).all()) {
-            self.goes_on = false;
-            return;
+    /// The part of a conic between two depths that lies in the box: between its crossings of the faces it does so or not.
+    fn conic(&mut self, arc: &Bend<ConicArc>, depth: [f64; 2]) {
+        let Some([lo, hi]) = self.meets(arc) else { return };
+        let [u0, u1] = depth.map(|w| arc.parameter(w));
+        let [t, s, q] = arc.corners().map(|p| self.volume.lattice_from_scene(p));
+        let mut ends = [u1; 14];
+        ends[0] = u0;
+        let mut n = 1;
+        for axis in 0..3 {
+            for face in [0.0, self.most[axis]] {
+                if lo[axis] < face && face < hi[axis] {
+                    for u in arc.curve.plane_hits([t, s, q].map(|p| p[axis] - face)).filter(|u| u0 < *u && *u < u1) {
+                        ends[n] = u;
+                        n += 1;
+                    }
+                }
+            }
         }
-        self.halved(at, depth, at(u0), at(u1), 0);
+        ends[1..n].sort_unstable_by(f64::total_cmp);
+        for pair in ends[..=n].windows(2) {
+            let middle = self.volume.lattice_from_scene(arc.point(0.5 * (pair[0] + pair[1])));
+            if pair[0] < pair[1] && middle.cmpge(DVec3::ZERO).all() && middle.cmple(self.most).all() {
+                let [a, b] = [pair[0], pair[1]].map(|u| self.knot(arc, u));
+                self.halved(arc, a, b, 0, &Self::whole);
+            } else {
+                self.goes_on = false;
+            }
+        }
     }
 
-    /// A part of a bent piece as cubics near enough to it.
-    fn halved(&mut self, at: &dyn Fn(f64) -> Knot, depth: &dyn Fn(f64) -> f64, a: Knot, b: Knot, halvings: u32) {
-        let middle = at(0.5 * (a.0 + b.0));
-        let [va, vm, vb] = [a.2, middle.2, b.2].map(DVec3::length);
+    /// The part of a bent piece between two parameters that lies in the box.
+    fn bend(&mut self, arc: &impl Arc, [u0, u1]: [f64; 2]) {
+        if self.meets(arc).is_some() && u0 < u1 {
+            let [a, b] = [u0, u1].map(|u| self.knot(arc, u));
+            self.halved(arc, a, b, 0, &Self::inside);
+        }
+    }
+
+    /// Lattice bounds of a bent piece, unless they miss the box.
+    fn meets(&mut self, arc: &impl Arc) -> Option<[DVec3; 2]> {
+        let [t, s, q] = arc.corners().map(|p| self.volume.lattice_from_scene(p));
+        let (lo, hi) = (t.min(s).min(q), t.max(s).max(q));
+        let meets = hi.cmpge(DVec3::ZERO).all() && lo.cmple(self.most).all();
+        self.goes_on &= meets;
+        meets.then_some([lo, hi])
+    }
+
+    fn knot(&self, arc: &impl Arc, u: f64) -> Knot {
+        let slope = arc.derivative(u);
+        let place = self.volume.lattice_from_scene(arc.point(u));
+        Knot { parameter: u, place, slope: *self.volume.lattice_axes() * slope, speed: slope.length() }
+    }
+
+    /// A part of a bent piece as cubics near enough to it, with their lengths and depths.
+    fn halved<A: Arc>(
+        &mut self,
+        arc: &A,
+        a: Knot,
+        b: Knot,
+        halvings: u32,
+        keep: &impl Fn(&mut Self, Cubic, f64, [f64; 2]),
+    ) {
+        let middle = self.knot(arc, 0.5 * (a.parameter + b.parameter));
         // Simpson's rule.
-        let length = (b.0 - a.0) * (va + 4.0 * vm + vb) / 6.0;
-        let inverse = self.volume.lattice_axes();
-        let slopes = [*inverse * a.2 * (length / va), *inverse * b.2 * (length / vb)];
-        let curve = Cubic::hermite([a.1, b.1].map(|p| self.volume.lattice_from_scene(p)), slopes);
+        let length = (b.parameter - a.parameter) * (a.speed + 4.0 * middle.speed + b.speed) / 6.0;
+        let curve = Cubic::hermite([a, b].map(|k| k.place), [a, b].map(|k| k.slope * (length / k.speed)));
         // The cubic goes by length: its middle lies where half of that is passed, to the first order in the change of speed.
-        let along = *inverse * middle.2;
-        let off = curve.at(0.5) - self.volume.lattice_from_scene(middle.1);
+        let (off, along) = (curve.at(0.5) - middle.place, middle.slope);
         let across = off - along * (off.dot(along) / along.length_squared());
-        let uneven = (va - vb).abs() > UNEVEN * vm;
-        if (across.length() > NEAR || uneven) && halvings < MAX_HALVINGS {
-            self.halved(at, depth, a, middle, halvings + 1);
-            self.halved(at, depth, middle, b, halvings + 1);
+        let uneven = (a.speed - b.speed).abs() > UNEVEN * middle.speed;
+        if (across.length_squared() > NEAR * NEAR || uneven) && halvings < MAX_HALVINGS {
+            self.halved(arc, a, middle, halvings + 1, keep);
+            self.halved(arc, middle, b, halvings + 1, keep);
             return;
         }
-        self.inside(curve, length, [depth(a.0), depth(b.0)]);
+        keep(self, curve, length, [a, b].map(|k| arc.depth(k.parameter)));
+    }
+
+    /// Keeps a cubic that lies in the box.
+    fn whole(&mut self, curve: Cubic, length: f64, depth: [f64; 2]) {
+        let is_new = !std::mem::replace(&mut self.goes_on, true);
+        self.out.push(Segment { curve, length, depth, is_new });
     }
 
     /// Keeps what of a cubic lies in the box.

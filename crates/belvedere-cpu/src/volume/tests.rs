@@ -274,6 +274,24 @@ fn leaps_miss_nothing_and_save_samples() {
 }
 
 #[test]
+fn every_pixel_that_sees_anything_lies_in_the_spans() {
+    // One brick, seen to its faces.
+    let axes = DMat3::from_rotation_z(0.3) * DMat3::from_diagonal(DVec3::splat(2.0));
+    let block = Volume::new([9; 3], axes, DVec3::new(14.0, 10.0, 8.0), VoxelValues::U8(vec![200; 729])).unwrap();
+    let layer = VolumeLayer::new(block, from_value(100.0, 0.5));
+    for (name, view) in views() {
+        let spans = Marcher::new(&layer).spans(&view);
+        let [mut held, mut seen] = [0, 0];
+        for pixel in (0..IMAGE[0] as usize).flat_map(|x| (0..IMAGE[1] as usize).map(move |y| [x, y])) {
+            let (holds, sees) = (spans.hold(pixel), fast(&view, &layer, pixel, 1e9).0.alpha > 0.0);
+            assert!(holds || !sees, "{name} {pixel:?}");
+            (held, seen) = (held + u32::from(holds), seen + u32::from(sees));
+        }
+        assert!(seen > 0 && (name != "straight" || held < 3 * seen), "{name}: {seen} of {held}");
+    }
+}
+
+#[test]
 fn what_lies_behind_a_surface_is_not_gathered_and_places_are_seen_where_they_are() {
     let layer = colors(wavy(|v| VoxelValues::U8(v.into_iter().map(|v| (255.0 * v) as u8).collect())));
     let mut halves = 0;
