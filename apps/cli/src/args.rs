@@ -93,7 +93,7 @@ pub(crate) enum Verb {
 /// The figures.
 #[derive(Debug, Args)]
 pub(crate) struct FiguresArgs {
-    /// Which figures, separated by commas: terrain, algorithms
+    /// Which figures, separated by commas: terrain, curved, algorithms
     #[arg(value_parser = parse_figures)]
     pub(crate) what: FigureKinds,
     /// Scene files with a camera and features that must be seen, in place of the built-in areas (and of the two real ranges
@@ -109,6 +109,8 @@ pub(crate) struct FiguresArgs {
 pub(crate) enum FigureKind {
     /// Terrain disocclusion: Deng et al. 2013
     Terrain,
+    /// Curved ray camera: Cui et al. 2010
+    Curved,
     /// Charts of docs/algorithms
     Algorithms,
 }
@@ -120,7 +122,7 @@ pub(crate) struct FigureKinds(pub(crate) Vec<FigureKind>);
 fn parse_figures(text: &str) -> Result<FigureKinds, String> {
     let kind = |name: &str| {
         FigureKind::from_str(name.trim(), false)
-            .map_err(|_| format!("\"{name}\" is none; possible: terrain, algorithms"))
+            .map_err(|_| format!("\"{name}\" is none; possible: terrain, curved, algorithms"))
     };
     Ok(FigureKinds(text.split(',').map(kind).collect::<Result<_, _>>()?))
 }

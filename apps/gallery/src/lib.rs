@@ -3,11 +3,13 @@
 
 mod algorithms;
 mod chart;
+mod curved;
 mod demo;
 mod html;
 mod sheet;
 mod terrain;
 
 pub use algorithms::figures as algorithm_figures;
+pub use curved::figures as curved_figures;
 pub use demo::{DemoScene, SCENES, demo};
 pub use terrain::figures as terrain_figures;

@@ -1,4 +1,4 @@
-//! `figures terrain` as a reader of the paper meets it.
+//! `figures` as a reader of the papers meets them.
 
 use super::{Place, read};
 
@@ -56,6 +56,34 @@ fn pictures_tables_and_trends_of_an_area() {
     assert_eq!(timing["unknowns"], 129 * 129);
     assert!((20.0..=651.0).contains(&number(&timing["cells"])), "so small an area has few summits: {timing}");
     assert!(number(&timing["cells_ms"]) > 0.0);
+}
+
+#[test]
+fn figures_of_curved_rays_show_what_was_hidden() {
+    let place = Place::new();
+    place.ok(&["figures", "curved", "-o", "rays"]);
+    let page = String::from_utf8(read(&place.path("rays/curved.html"))).expect("UTF-8");
+    let record: serde_json::Value = serde_json::from_slice(&read(&place.path("rays/curved.json"))).expect("JSON");
+    let figures = record.as_array().expect("figures");
+    for figure in figures {
+        let picture = figure["picture"].as_str().expect("picture");
+        assert!(page.contains(picture) && read(&place.path("rays").join(picture)).starts_with(b"\x89PNG"), "{picture}");
+    }
+    let seen = |name: &str| -> Vec<f64> {
+        let figure = figures.iter().find(|f| f["name"] == name).unwrap_or_else(|| panic!("no figure {name}"));
+        figure["seen"].as_array().expect("seen").iter().map(|v| v.as_f64().expect("number")).collect()
+    };
+    // Straight rays show none of the vehicles, every bend its own.
+    let street = seen("street");
+    assert!(street.len() >= 4 && street[0] == 0.0 && street[1..].iter().all(|n| *n > 800.0), "{street:?}");
+    let helix = seen("helix");
+    assert!(helix[0] < 0.02 && helix[1] > 0.15, "{helix:?}");
+    // Further bends show more.
+    for (name, times) in [("viewpoints", 2.0), ("preview", 2.0)] {
+        let seen = seen(name);
+        assert!(seen.windows(2).all(|w| w[0] < w[1]) && seen[seen.len() - 1] > times * seen[0], "{name}: {seen:?}");
+    }
+    assert!(place.fails(&["figures", "curved", "-o", "rays"]).contains("curved_street.png"));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The built-in scenes: the same everywhere, mountains rather than noise, and a route that is really hidden.
 
-use belvedere_builtin::{BuiltinError, SuggestedCamera, massif, street};
+use belvedere_builtin::{BuiltinError, SuggestedCamera, canyon, massif, street};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection};
 use belvedere_scene::{BoxShape, Heightfield, LayerKind, Scene};
 use std::sync::LazyLock;
@@ -219,4 +219,28 @@ fn town_has_towers_and_a_route_clear_of_them() {
         }));
     }
     assert_eq!(boxes(&street(3).unwrap().0), boxes(&street(3).unwrap().0));
+}
+
+/// As for the massif.
+const CANYON_7: u64 = 0x04d0_c664_b6a2_f2e3;
+
+#[test]
+fn canyon_is_the_same_bytes_everywhere_deep_and_its_river_runs_down_and_is_hidden() {
+    let (scene, camera) = canyon(7).unwrap();
+    let ground = terrain(&scene);
+    assert_eq!(hash(ground.heights()), CANYON_7, "{:#x}", hash(ground.heights()));
+    let river = must_see(&scene);
+    let length: f64 = river.windows(2).map(|w| w[0].distance(w[1])).sum();
+    assert!((14e3..24e3).contains(&length), "{length} m over 12.8 km");
+    // Nowhere does it climb by more than a boulder, and on the whole it falls.
+    let climbs = river.windows(2).map(|w| w[1].z - w[0].z).fold(0.0, f64::max);
+    assert!(climbs < 2.0 && river[0].z - river[river.len() - 1].z > 15.0, "{climbs}");
+    let rim = ground.heights().iter().copied().fold(0.0f32, f32::max);
+    assert!(f64::from(rim) - river[0].z > 800.0, "{rim}");
+    let (framed, visible) = shares(&scene, &camera, 400);
+    assert!(framed > 0.4 && (0.1..0.6).contains(&visible), "{framed} {visible}");
+    for seed in [1, 2, 3] {
+        let (other, _) = canyon(seed).unwrap();
+        assert_ne!(hash(terrain(&other).heights()), CANYON_7);
+    }
 }

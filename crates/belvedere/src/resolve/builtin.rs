@@ -12,7 +12,7 @@ pub(crate) const DEFAULT_SIZE: usize = 513;
 /// Base pairs of a double helix that names none.
 const DEFAULT_PAIRS: usize = 12;
 
-const NAMES: &[&str] = &["massif", "street", "church", "dna", "engine", "tube"];
+const NAMES: &[&str] = &["massif", "canyon", "street", "church", "dna", "engine", "tube"];
 
 /// Whether a source means a built-in scene.
 pub(super) fn is_name(source: &str) -> bool {
@@ -66,6 +66,7 @@ pub(crate) fn scene(source: &str) -> Result<(Scene, builtin::SuggestedCamera), S
 fn make(request: &Request) -> Result<(Scene, builtin::SuggestedCamera), String> {
     let made = match request.name.as_str() {
         "massif" => builtin::massif(request.seed, request.size),
+        "canyon" => builtin::canyon(request.seed),
         "church" => builtin::church(),
         "engine" => builtin::engine(request.seed),
         "tube" => builtin::tube(request.seed),
