@@ -2,7 +2,7 @@
 
 use crate::samples::Sample;
 use belvedere_core::DVec3;
-use belvedere_scene::{BoxLayer, LayerKind, MeshLayer, MoleculeLayer};
+use belvedere_scene::{BoxShape, LayerKind, MeshLayer, MoleculeLayer};
 
 /// Samples of a surface, at least and at most.
 const SAMPLES: [f64; 2] = [1000.0, 6000.0];
@@ -28,7 +28,7 @@ pub(crate) struct SampledSurface {
 /// `None` for layers that are no surface of their own.
 pub(crate) fn surface(kind: &LayerKind, spacing: f64) -> Option<SampledSurface> {
     let (name, triangles) = match kind {
-        LayerKind::Boxes(layer) => (String::new(), of_boxes(layer)),
+        LayerKind::Boxes(layer) => (String::new(), layer.boxes.iter().flat_map(box_triangles).collect()),
         LayerKind::Molecule(layer) => of_molecule(layer),
         LayerKind::Mesh(layer) => of_mesh(layer),
         LayerKind::Terrain(_)
@@ -37,14 +37,22 @@ pub(crate) fn surface(kind: &LayerKind, spacing: f64) -> Option<SampledSurface> 
         | LayerKind::Area(_)
         | LayerKind::Point(_) => return None,
     };
-    Some(SampledSurface { name, samples: spread(&triangles, spacing) })
+    let bounds = belvedere_core::Aabb::of(triangles.iter().flatten().copied());
+    let area: f64 = triangles.iter().map(|t| 0.5 * cross(t).length()).sum();
+    let count = (area / (spacing * spacing)).clamp(SAMPLES[0], SAMPLES[1]).ceil() as usize;
+    Some(SampledSurface { name, samples: spread(&triangles, count, IN_FRONT * (bounds.max - bounds.min).length()) })
 }
 
-fn of_boxes(layer: &BoxLayer) -> Vec<[DVec3; 3]> {
+/// Walls and top of a box.
+pub(crate) fn box_triangles(shape: &BoxShape) -> impl Iterator<Item = [DVec3; 3]> {
     /// Corners (see [`belvedere_scene::BoxShape::corners`]) around each wall and the top, counter-clockwise from outside.
     const FACES: [[usize; 4]; 5] = [[4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]];
-    let halves = |b: [DVec3; 8]| FACES.map(|[p, q, r, s]| [[b[p], b[q], b[r]], [b[p], b[r], b[s]]]);
-    layer.boxes.iter().flat_map(|b| halves(b.corners())).flatten().collect()
+    let b = shape.corners();
+    FACES.into_iter().flat_map(move |[p, q, r, s]| [[b[p], b[q], b[r]], [b[p], b[r], b[s]]])
+}
+
+fn cross([a, b, c]: &[DVec3; 3]) -> DVec3 {
+    (*b - *a).cross(*c - *a)
 }
 
 fn of_mesh(layer: &MeshLayer) -> (String, Vec<[DVec3; 3]>) {
@@ -64,16 +72,12 @@ fn of_molecule(layer: &MoleculeLayer) -> (String, Vec<[DVec3; 3]>) {
     (layer.wanted.as_ref().map(ToString::to_string).unwrap_or_default(), triangles.collect())
 }
 
-/// Points spread over triangles, each standing for an equal share of the area.
-fn spread(triangles: &[[DVec3; 3]], spacing: f64) -> Vec<Sample> {
-    let cross = |[a, b, c]: &[DVec3; 3]| (*b - *a).cross(*c - *a);
+/// `count` points spread over triangles, each standing for an equal share of the area, `off` before the surface.
+pub(crate) fn spread(triangles: &[[DVec3; 3]], count: usize, off: f64) -> Vec<Sample> {
     let total: f64 = triangles.iter().map(|t| 0.5 * cross(t).length()).sum();
     if !(total > 0.0 && total.is_finite()) {
         return Vec::new();
     }
-    let bounds = belvedere_core::Aabb::of(triangles.iter().flatten().copied());
-    let off = IN_FRONT * (bounds.max - bounds.min).length();
-    let count = (total / (spacing * spacing)).clamp(SAMPLES[0], SAMPLES[1]).ceil() as usize;
     let each = total / count as f64;
     let mut random = Random(SEED);
     let mut out = Vec::with_capacity(count);
@@ -94,11 +98,15 @@ fn spread(triangles: &[[DVec3; 3]], spacing: f64) -> Vec<Sample> {
 }
 
 /// Numbers that look random (splitmix64, Steele, Lea, Flood 2014).
-struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
     /// In [0, 1).
-    fn share(&mut self) -> f64 {
+    pub(crate) fn share(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -116,7 +124,7 @@ impl Random {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere_scene::{BoxShape, Color};
+    use belvedere_scene::{BoxLayer, Color};
 
     #[test]
     fn walls_and_tops_get_points_by_their_area_just_in_front_of_them() {
@@ -154,6 +162,9 @@ mod tests {
     fn nothing_has_no_points_and_numbers_have_limits() {
         assert_eq!(surface(&LayerKind::Boxes(BoxLayer::default()), 1.0).unwrap().samples, []);
         let one = [[DVec3::ZERO, DVec3::X, DVec3::Y]];
-        assert_eq!([1e-6, 1e6].map(|spacing| spread(&one, spacing).len()), [6000, 1000]);
+        assert_eq!(spread(&one, 77, 0.0).len(), 77);
+        let shape = BoxShape { base: DVec3::ZERO, size: DVec3::ONE, yaw: 0.0, color: Color::rgb(1, 2, 3) };
+        let layer = LayerKind::Boxes(BoxLayer { boxes: vec![shape] });
+        assert_eq!([1e-6, 1e6].map(|spacing| surface(&layer, spacing).unwrap().samples.len()), [6000, 1000]);
     }
 }

@@ -127,7 +127,8 @@ impl CameraPath {
         let Some(Description { source, .. }) = &session.description else { return Err(BelvedereError::NoAnimation) };
         let image = session.view().pinhole().image;
         let preview_m = constructor::path_length(source, roots, session.scene(), image)?;
-        if !moves_camera && session.motions.is_none() && preview_m.is_none() {
+        let probe_frames = constructor::frames_of_probe(source, fps).filter(|_| session.motions.is_none());
+        if !moves_camera && session.motions.is_none() && preview_m.is_none() && probe_frames.is_none() {
             return Err(BelvedereError::NoAnimation);
         }
         defaults(scene, &mut animation)?;
@@ -143,7 +144,7 @@ impl CameraPath {
         } else if let Some(file) = animation.camera.clone() {
             (through_cameras(scene, &roots.resolve(&file)?, &mut animation)?, Some(DVec3::ZERO))
         } else if !moves_camera {
-            (resting(session, scene, &mut animation)?, Some(DVec3::ZERO))
+            (resting(session, scene, probe_frames, &mut animation)?, Some(DVec3::ZERO))
         } else {
             let pivot = pivot(session, scene)?;
             let poses = match animation.sweep.clone() {
@@ -262,8 +263,16 @@ fn walk(length: f64, usual_start: f64, animation: &mut AnimationDoc) -> Result<V
 }
 
 /// A camera that stays where it is until all layers have come to rest.
-fn resting(session: &Session, scene: &Document, animation: &mut AnimationDoc) -> Result<Vec<Pose>, BelvedereError> {
-    let lasts = session.motions.as_ref().map_or(0.0, |m| m.end()) * animation.fps.unwrap_or(FPS);
+///
+/// * `frames`: how many instead.
+fn resting(
+    session: &Session,
+    scene: &Document,
+    frames: Option<f64>,
+    animation: &mut AnimationDoc,
+) -> Result<Vec<Pose>, BelvedereError> {
+    let until_rest = || session.motions.as_ref().map_or(0.0, |m| m.end()) * animation.fps.unwrap_or(FPS);
+    let lasts = frames.unwrap_or_else(until_rest);
     let frames = *animation.frames.get_or_insert(checked(lasts.floor().min(1e9) as u32 + 1)?);
     let pinhole = session.view().pinhole();
     let fov_y_deg = scene.camera.fov_y_deg;

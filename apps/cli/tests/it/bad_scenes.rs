@@ -142,8 +142,16 @@ fn constructors_are_read_and_refused() {
         "6: constructor: target_tracking needs target, the layer to keep in view",
     );
     refuses(
-        &with("[constructor]\nkind = 'auto_probe'"),
-        "6: constructor: auto_probe is not built yet; use target_tracking, or give the stages themselves with kind = \"manual\"",
+        &with("[constructor]\nkind = 'auto_probe'\nturns = 9"),
+        "7: constructor: turns is 9, it must be a whole number in 1..=6",
+    );
+    refuses(
+        &with("[[stage]]\nkind = 'spline_bend'\npresets = 'demo'\n[constructor]\nkind = 'auto_probe'"),
+        "9: constructor: auto_probe looks for free space where things stand, not where a spline bend carries them; remove the spline_bend stage",
+    );
+    refuses(
+        &with("[constructor]\nkind = 'auto_probe'\nreach_m = 0"),
+        "7: constructor: reach_m is 0, it must be greater than 0",
     );
     let turn = "[[stage]]\nkind = 'curved_rays'\n[[stage.turn]]\nviewpoint = [30, 0, 0]\nt0 = [0, 40, 0]\nt1 = [0, 50, 0]\n\
                 t2 = [0, 60, 0]\nnormal = [0, 1, 0]\n[constructor]\nkind = 'target_tracking'\ntarget = 'x'";

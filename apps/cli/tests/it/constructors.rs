@@ -133,6 +133,51 @@ fn a_path_is_previewed_round_its_turns_and_filmed_along_it() {
 }
 
 #[test]
+fn a_probe_looks_behind_a_row_of_houses_in_stills_and_films() {
+    let place = Place::new();
+    // A row of houses, and others behind it.
+    let row = |y: i32, h: i32| {
+        let house = |x: i32| format!("{{ base = [{}, {y}, 0], size = [18, 14, {}] }}", 20 * x, h + x % 2);
+        (-4..5).map(house).collect::<Vec<_>>().join(", ")
+    };
+    place.write(
+        "s.toml",
+        &format!(
+            "format = 1\ncrs = 'local'\n[camera]\neye = [0, -120, 14]\nlook_at = [0, 60, 8]\nimage = [96, 54]\n\
+             [[layer]]\nkind = 'boxes'\nid = 'houses'\nboxes = [{}, {}, {}, {}]\n[constructor]\nkind = 'auto_probe'\n\
+             cap_per_s = 0.5\n",
+            row(0, 16),
+            row(40, 9),
+            row(75, 8),
+            row(110, 10)
+        ),
+    );
+    place.ok(&["render", "s.toml", "-o", "p.png"]);
+    let record: serde_json::Value = serde_json::from_slice(&read(&place.path("p.png.json"))).expect("JSON");
+    let probe = &record["constructor"];
+    let number = |of: &serde_json::Value, key: &str| of[key].as_f64().expect("a figure");
+    assert_eq!(probe["kind"], "auto_probe");
+    assert!(number(probe, "seen") > 1.3 * number(probe, "seen_straight"), "{probe}");
+    assert!(number(probe, "gained") > number(probe, "lost") && number(probe, "turns") >= 1.0, "{probe}");
+    assert_eq!(record["stages"], serde_json::json!(["curved_rays"]));
+    place.write("again.toml", &place.ok(&["show", "s.toml"]));
+    place.ok(&["render", "again.toml", "-o", "again.png"]);
+    let pixels = |name: &str| super::light_and_tints::pixels(&read(&place.path(name)));
+    assert!(pixels("p.png") == pixels("again.png"), "the same scene, the same way");
+    // A resting camera makes a film of the turns as they come in.
+    place.ok(&["animate", "s.toml", "-o", "film", "--frames", "9", "--fps", "2"]);
+    let film: serde_json::Value = serde_json::from_slice(&read(&place.path("film/animation.json"))).expect("JSON");
+    let entered = |k: usize| number(&film["frames"][k]["constructor"], "entered");
+    assert!((entered(0), entered(1), entered(2)) == (0.0, 0.25, 0.5), "{} {}", entered(1), entered(2));
+    let seen = |k: usize| number(&film["frames"][k]["constructor"], "seen");
+    assert!(seen(8) > seen(0) && seen(0) == number(probe, "seen_straight"));
+    let kept = read(&place.path("film/frame_00003.png"));
+    std::fs::remove_file(place.path("film/frame_00003.png")).expect("removed");
+    place.ok(&["animate", "s.toml", "-o", "film", "--frames", "9", "--fps", "2", "--resume"]);
+    assert!(read(&place.path("film/frame_00003.png")) == kept, "another picture");
+}
+
+#[test]
 fn reveal_looks_round_what_hides_a_layer_atoms_or_a_point() {
     let place = place();
     place.write("s.toml", &SCENE.replace("motion = 'van.csv'\n", "").replace("base = [0, 0, 0]", "base = [0, 95, 0]"));

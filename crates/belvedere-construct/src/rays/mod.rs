@@ -6,12 +6,15 @@
 mod around;
 mod path;
 mod preview;
+mod probe;
 mod sidestep;
 mod target;
 mod tracking;
+mod turns;
 
 pub use around::{AroundOptions, BendFound, BendReport, bend_around};
 pub use preview::{Lens, PathPreview, PreviewReport, Previewed};
+pub use probe::{ProbeMemory, ProbeOptions, ProbeReport, Probed, auto_probe};
 pub use sidestep::Sidestep;
 pub use target::{Shown, Target, TargetSight};
 pub use tracking::{Tracked, TrackingMemory, TrackingOptions, TrackingReport, track_target};

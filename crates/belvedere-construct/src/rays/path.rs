@@ -1,9 +1,7 @@
 //! A polyline by arc length, and fewer points that stand for it.
 
+use super::turns::HAIRPIN;
 use belvedere_core::DVec3;
-
-/// Turns beyond this are made in two, radians.
-const HAIRPIN: f64 = 1.6;
 
 /// Where a simplified path turns.
 #[derive(Debug, Clone, Copy, PartialEq)]

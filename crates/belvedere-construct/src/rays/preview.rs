@@ -5,19 +5,14 @@
 //! passes one, so that nothing jumps. On terrain the turns stand upright and the camera looks down on the path.
 
 use super::path::{Control, Path};
+use super::turns::{Corner, STRAIGHT, TRANSITION, TurnShape, largest, smoothstep, turns};
 use super::{Target, TargetSight};
 use crate::ConstructError;
-use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
-use belvedere_core::{CurvedRays, DVec2, DVec3, Pinhole, Projection, Stage, View};
+use belvedere_core::map::curved_rays::{Model, Sharpness};
+use belvedere_core::{CurvedRays, DVec3, Pinhole, Projection, Stage, View};
 use belvedere_scene::Scene;
 use serde::{Deserialize, Serialize};
 
-/// Turns of less than this are none, radians.
-const STRAIGHT: f64 = 0.035;
-/// Distance of the common line from the path, half widths of the picture.
-const LINE_AT: f64 = 1.3;
-/// Half length of a transition, shares of the shorter leg beside it.
-const TRANSITION: f64 = 0.3;
 /// The camera swings into the next leg over at most these shares of the leg before it and of the preview: over more would be
 /// gentler, but a camera that looks aside sees the wall of a canyon.
 const SWING: [f64; 2] = [0.5, 0.06];
@@ -234,7 +229,9 @@ impl PathPreview {
         while count > 0 && found.is_none() {
             let rays = |near: f64, factor: f64| {
                 let root = Pinhole { near: near * root.near, ..root.clone() };
-                CurvedRays::new(&root, Model::Modified, &self.specs(&legs, &root, count, factor)?).ok()
+                let shape = TurnShape { behind: self.lens.behind_m, length: factor, m: Sharpness::Bend };
+                let specs = turns(&root, legs.here, &legs.turns[..count], &shape)?;
+                CurvedRays::new(&root, Model::Modified, &specs).ok()
             };
             // Rather less in front than shorter transitions.
             let behind = |factor: f64| largest(NEAR, |near| rays(near, factor));
@@ -314,61 +311,6 @@ impl PathPreview {
         let lens = Projection::Perspective { fov_y };
         Ok(Pinhole::look_at(eye, eye + forward, up, lens, image, near, far)?)
     }
-
-    /// The first `count` turns; `None` if rays of the picture do not come to one of them.
-    ///
-    /// * `factor`: length of transitions.
-    fn specs(&self, legs: &Legs, root: &Pinhole, count: usize, factor: f64) -> Option<Vec<TurnSpec>> {
-        let behind = self.lens.behind_m;
-        let mut viewpoint = root.eye;
-        // Where the rays through the corners of the picture are, on the last plane t1.
-        let mut corners = corner_rays(root).map(|ray| root.eye + ray);
-        let mut specs = Vec::with_capacity(count);
-        for (i, turn) in legs.turns.iter().take(count).enumerate() {
-            let inside = (turn.after - turn.before).normalize_or(DVec3::X);
-            let axis = turn.before.cross(turn.after).normalize_or(DVec3::Z);
-            // Plane t1 halves the angle of the legs, wherever in it the common line is.
-            let across = inside.cross(axis);
-            let mut reach = 0.0f64;
-            for corner in &mut corners {
-                let ray = *corner - viewpoint;
-                let share = (turn.at - viewpoint).dot(across) / ray.dot(across);
-                if !(share > 0.0 && share.is_finite()) {
-                    return None;
-                }
-                *corner = viewpoint + share * ray;
-                reach = reach.max((*corner - turn.at).dot(inside));
-            }
-            let before = if i == 0 { (turn.at - legs.here).dot(turn.before).max(0.0) } else { turn.edges[0] };
-            let length = factor * turn.half_length.min(TRANSITION * before);
-            viewpoint += turn.entered * (turn.at - behind * turn.after - viewpoint);
-            specs.push(TurnSpec {
-                viewpoint,
-                t0: turn.at - length * turn.before,
-                t1: turn.at,
-                t2: turn.at + length * turn.after,
-                pencil: Pencil::Line { point: turn.at + LINE_AT * reach * inside, dir: axis },
-                m: Sharpness::Bend,
-            });
-        }
-        Some(specs)
-    }
-}
-
-/// A turn of the simplified path.
-#[derive(Debug, Clone, Copy)]
-struct Corner {
-    s: f64,
-    at: DVec3,
-    /// Unit directions of the legs.
-    before: DVec3,
-    after: DVec3,
-    /// Lengths of the legs.
-    edges: [f64; 2],
-    /// Half length of the transition.
-    half_length: f64,
-    /// How far it has come into the preview, 0..=1.
-    entered: f64,
 }
 
 /// What lies ahead of a position.
@@ -376,30 +318,6 @@ struct Legs {
     here: DVec3,
     direction: DVec3,
     turns: Vec<Corner>,
-}
-
-/// What `make` gives for the largest number of a range for which it gives something; changes smoothly with what `make` depends on.
-fn largest<T>([least, most]: [f64; 2], make: impl Fn(f64) -> Option<T>) -> Option<T> {
-    const STEPS: usize = 12;
-    if let Some(made) = make(most) {
-        return Some(made);
-    }
-    let mut best = make(least)?;
-    let (mut low, mut high) = (least, most);
-    for _ in 0..STEPS {
-        let middle = 0.5 * (low + high);
-        match make(middle) {
-            Some(made) => (low, best) = (middle, made),
-            None => high = middle,
-        }
-    }
-    Some(best)
-}
-
-/// Directions of the rays through the corners of the picture.
-fn corner_rays(root: &Pinhole) -> [DVec3; 4] {
-    let [w, h] = root.image.map(f64::from);
-    [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)].map(|(x, y)| root.line(DVec2::new(x, y)).1)
 }
 
 /// The direction between two, by a share of their angle.
@@ -424,10 +342,4 @@ fn soft_ramp(x: f64) -> f64 {
     } else {
         slope * (x - 0.5 * ENDS)
     }
-}
-
-/// 0 up to 0, 1 from 1 on, C1 between.
-fn smoothstep(x: f64) -> f64 {
-    let x = x.clamp(0.0, 1.0);
-    x * x * (3.0 - 2.0 * x)
 }

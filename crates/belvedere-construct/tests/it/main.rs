@@ -5,6 +5,7 @@ mod centreline;
 mod flight;
 mod measure;
 mod preview;
+mod probe;
 mod reveal;
 mod surfaces;
 mod tracking;

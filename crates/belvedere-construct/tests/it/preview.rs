@@ -9,7 +9,7 @@ const IMAGE: [u32; 2] = [640, 360];
 const PREVIEW: f64 = 2000.0;
 
 /// A path of legs of 350 to 500 m with four turns of 35 to 65 degrees to random sides, rounded over 120 m.
-fn path(seed: u64) -> Vec<DVec3> {
+pub(crate) fn path(seed: u64) -> Vec<DVec3> {
     let mut random = Random::new(seed);
     let (mut at, mut heading) = (DVec2::ZERO, 0.0f64);
     let mut points = Vec::new();
@@ -33,7 +33,7 @@ fn path(seed: u64) -> Vec<DVec3> {
 }
 
 /// A plateau 300 m high with a canyon along the path, 50 m wide at its bottom.
-fn canyon(path: &[DVec3]) -> Heightfield {
+pub(crate) fn canyon(path: &[DVec3]) -> Heightfield {
     let (low, high) = path
         .iter()
         .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), p| (a.min(p.truncate()), b.max(p.truncate())));

@@ -8,7 +8,8 @@ use crate::scene_file::{self, ConstructorDoc, ConstructorKind, SourceDocument, S
 use belvedere_construct::ConstructError;
 use belvedere_construct::centreline::CentrelineReport;
 use belvedere_construct::rays::{
-    Lens, PathPreview, PreviewReport, Target, TrackingMemory, TrackingOptions, TrackingReport, track_target,
+    Lens, PathPreview, PreviewReport, ProbeMemory, ProbeOptions, ProbeReport, Target, TrackingMemory, TrackingOptions,
+    TrackingReport, auto_probe, track_target,
 };
 use belvedere_core::{EarthCurvature, Stage, View};
 use belvedere_disocclusion::TerrainMemory;
@@ -16,11 +17,15 @@ use belvedere_io::InputFile;
 use belvedere_scene::Scene;
 use serde::{Deserialize, Serialize};
 
+/// How long a film of a probe shows it when it has all its turns, seconds.
+const LOOKED_AT_S: f64 = 2.0;
+
 /// What constructors remember between the frames of a film.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Memory {
     pub(crate) terrain: TerrainMemory,
     pub(crate) tracking: TrackingMemory,
+    pub(crate) probe: ProbeMemory,
     /// The preview of the frame before.
     pub(crate) preview: Option<Prepared>,
 }
@@ -33,6 +38,8 @@ pub enum ConstructorReport {
     TargetTracking(TrackingReport),
     /// Path preview.
     PathPreview(PathReport),
+    /// Auto-probing.
+    AutoProbe(ProbeReport),
 }
 
 /// What a path preview came to, and the path that was traced for it.
@@ -53,16 +60,36 @@ pub(crate) fn stated(source: &SourceDocument) -> Option<&ConstructorDoc> {
 
 /// Whether the view of a frame depends on the frames before.
 pub(crate) fn tracks(source: &SourceDocument) -> bool {
-    stated(source).is_some_and(|doc| doc.kind == ConstructorKind::TargetTracking)
+    stated(source).is_some_and(|doc| doc.kind != ConstructorKind::PathPreview)
+}
+
+/// Frames in which a probe under a resting camera has all its turns and is looked at for a while; `None` without one.
+pub(crate) fn frames_of_probe(source: &SourceDocument, fps: f64) -> Option<f64> {
+    let doc = stated(source).filter(|doc| doc.kind == ConstructorKind::AutoProbe)?;
+    let options = probe_options(doc);
+    Some((options.turns as f64 / options.cap_per_s + LOOKED_AT_S) * fps)
+}
+
+fn probe_options(doc: &ConstructorDoc) -> ProbeOptions {
+    let usual = ProbeOptions::default();
+    ProbeOptions {
+        turns: doc.turns.map_or(usual.turns, |n| n as usize),
+        reach: doc.reach_m,
+        cap_per_s: doc.cap_per_s.unwrap_or(usual.cap_per_s),
+    }
 }
 
 /// Stages that a constructor cannot follow.
 pub(super) fn check_stages(source: &SourceDocument) -> Result<(), BelvedereError> {
     let Some(doc) = stated(source) else { return Ok(()) };
     let previews = doc.kind == ConstructorKind::PathPreview;
+    let probes = doc.kind == ConstructorKind::AutoProbe;
     let reason = source.document.stage.iter().find_map(|stage| match stage {
         StageDoc::SplineBend(_) if previews => {
             Some("path_preview has a camera of its own, which a spline bend cannot follow; remove the spline_bend stage")
+        }
+        StageDoc::SplineBend(_) if probes => {
+            Some("auto_probe looks for free space where things stand, not where a spline bend carries them; remove the spline_bend stage")
         }
         StageDoc::CurvedRays(_) => Some("it builds the curved rays itself; remove the curved_rays stage, or set kind = \"manual\""),
         stage if stage.is_terrain_intent() => {
@@ -70,13 +97,9 @@ pub(super) fn check_stages(source: &SourceDocument) -> Result<(), BelvedereError
         }
         _ => None,
     });
-    match (reason, doc.kind) {
-        (Some(reason), _) => Err(source.error(&["constructor", "kind"], format!("constructor: {reason}"))),
-        (None, ConstructorKind::AutoProbe) => Err(source.error(
-            &["constructor", "kind"],
-            "constructor: auto_probe is not built yet; use target_tracking, or give the stages themselves with kind = \"manual\"",
-        )),
-        (None, _) => Ok(()),
+    match reason {
+        Some(reason) => Err(source.error(&["constructor", "kind"], format!("constructor: {reason}"))),
+        None => Ok(()),
     }
 }
 
@@ -93,6 +116,13 @@ pub(super) fn construct(
     if doc.kind == ConstructorKind::PathPreview {
         let (view, report) = preview(source, roots, scene, &base, &mut solving.memory.preview, inputs)?;
         return Ok((view, Some(ConstructorReport::PathPreview(report))));
+    }
+    if doc.kind == ConstructorKind::AutoProbe {
+        let memory = &mut solving.memory.probe;
+        let options = probe_options(doc);
+        let probed = auto_probe(scene, &base, &options, solving.time_step_s, memory, solving.progress);
+        let probed = probed.map_err(|e| fail(source, e))?;
+        return Ok((probed.view, Some(ConstructorReport::AutoProbe(probed.report))));
     }
     let usual = TrackingOptions::default();
     let options = TrackingOptions {

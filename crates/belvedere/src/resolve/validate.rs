@@ -48,8 +48,9 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
         super::constructor::check_stages(source)?;
     }
     if let Some(doc) = &source.document.animation {
-        let previews = source.document.constructor.as_ref().is_some_and(|c| c.kind == ConstructorKind::PathPreview);
-        let moves = previews || source.document.layer.iter().any(|l| l.motion().is_some());
+        let goes_on = |kind| matches!(kind, ConstructorKind::PathPreview | ConstructorKind::AutoProbe);
+        let constructs = source.document.constructor.as_ref().is_some_and(|c| goes_on(c.kind));
+        let moves = constructs || source.document.layer.iter().any(|l| l.motion().is_some());
         animation(doc, moves)
             .map_err(|(key, reason)| source.error(&["animation", key], format!("animation: {reason}")))?;
     }
@@ -223,10 +224,13 @@ fn constructor(doc: &ConstructorDoc) -> Result<(), Complaint> {
             let lens = doc.lens.unwrap_or_default();
             let stage = [("z0", doc.z0), ("a", doc.a), ("f_step", doc.f_step), ("cap_per_s", doc.cap_per_s)];
             let path = [("preview_m", doc.preview_m), ("behind_m", lens.behind_m), ("width_m", lens.width_m)];
-            for (key, value) in stage.into_iter().chain(path) {
+            for (key, value) in stage.into_iter().chain(path).chain([("reach_m", doc.reach_m)]) {
                 if let Some(v) = value.filter(|v| !(*v > 0.0)) {
                     return Err((key, format!("{key} is {v}, it must be greater than 0")));
                 }
+            }
+            if let Some(n) = doc.turns.filter(|n| !(1..=6).contains(n)) {
+                return Err(("turns", format!("turns is {n}, it must be a whole number in 1..=6")));
             }
             for (key, value) in [("position_m", doc.position_m), ("rise_m", lens.rise_m), ("grow_px", doc.grow_px)] {
                 if let Some(v) = value.filter(|v| !(*v >= 0.0)) {

@@ -11,7 +11,7 @@ pub enum ConstructorKind {
     TargetTracking,
     /// Bends rays along a path.
     PathPreview,
-    /// Probes for unseen space.
+    /// Bends rays into what the straight picture does not show.
     AutoProbe,
     /// The explicit stages, as they are.
     Manual,
@@ -39,7 +39,7 @@ pub struct ConstructorDoc {
     /// Step of the search, in (0, 1].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub f_step: Option<f64>,
-    /// Largest change of the state per second.
+    /// Largest change of the state per second of a film; of `auto_probe`: turns that come in per second, 0.5 by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cap_per_s: Option<f64>,
     /// Growth of the target's box, pixels.
@@ -60,6 +60,13 @@ pub struct ConstructorDoc {
     /// Camera of the preview, which takes the place of the scene's own; chosen by what it shows of the path if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lens: Option<LensDoc>,
+    /// Of `auto_probe`: turns of the rays at most, 1 to 6; 3 by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turns: Option<u32>,
+    /// Of `auto_probe`: how far from the eye it looks, scene units; by default three times the median distance of what the straight
+    /// picture shows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reach_m: Option<f64>,
 }
 
 impl ConstructorDoc {
@@ -79,6 +86,8 @@ impl ConstructorDoc {
             position_m: None,
             preview_m: None,
             lens: None,
+            turns: None,
+            reach_m: None,
         }
     }
 }

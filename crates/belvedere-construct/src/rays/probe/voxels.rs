@@ -1,0 +1,308 @@
+//! Space in cells: where something stands, and how much room there is elsewhere.
+
+use super::distance::distances;
+use belvedere_core::{Aabb, DVec2, DVec3};
+use belvedere_scene::{BoxShape, Heightfield, LayerKind, Mesh, Scene};
+
+/// Cells there are at most, and along the longest side.
+const MOST_CELLS: f64 = 262_144.0;
+const LONGEST_SIDE: f64 = 128.0;
+
+/// A box of cubic cells over a part of a scene. A cell is solid if a surface passes through it, or it lies under ground or in a box.
+#[derive(Debug, Clone)]
+pub(super) struct Voxels {
+    low: DVec3,
+    cell: f64,
+    size: [usize; 3],
+    solid: Vec<bool>,
+    /// From the middle of each cell, scene units.
+    clearance: Vec<f32>,
+}
+
+impl Voxels {
+    /// * `region`: what is divided, not empty.
+    pub(super) fn new(scene: &Scene, region: &Aabb) -> Self {
+        let extent = (region.max - region.min).max(DVec3::splat(1e-9));
+        let cell = (extent.x * extent.y * extent.z / MOST_CELLS).cbrt().max(extent.max_element() / LONGEST_SIDE);
+        let size = (extent / cell).to_array().map(|n| (n.ceil() as usize).clamp(1, LONGEST_SIDE as usize));
+        let count = size[0] * size[1] * size[2];
+        let mut voxels = Self { low: region.min, cell, size, solid: vec![false; count], clearance: Vec::new() };
+        for layer in &scene.layers {
+            match &layer.kind {
+                LayerKind::Terrain(t) => voxels.add_ground(&t.heightfield),
+                LayerKind::Boxes(b) => b.boxes.iter().for_each(|shape| voxels.add_box(shape)),
+                kind => kind.triangles().into_iter().for_each(|m| voxels.add_mesh(&m.mesh)),
+            }
+        }
+        // What is solid reaches half a cell from the middle of its cell, on the average.
+        let free = distances(&voxels.solid, size).into_iter().map(|d| ((f64::from(d) - 0.5) * cell).max(0.0) as f32);
+        voxels.clearance = free.collect();
+        voxels
+    }
+
+    /// Edge of a cell, scene units.
+    pub(super) fn cell(&self) -> f64 {
+        self.cell
+    }
+
+    /// Cells along x, y, z.
+    pub(super) fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.solid.len()
+    }
+
+    pub(super) fn is_solid(&self, index: usize) -> bool {
+        self.solid[index]
+    }
+
+    pub(super) fn coordinates(&self, index: usize) -> [usize; 3] {
+        let [nx, ny, _] = self.size;
+        [index % nx, index / nx % ny, index / nx / ny]
+    }
+
+    /// The cell that lies `step` cells from another; `None` outside.
+    pub(super) fn neighbour(&self, index: usize, step: [isize; 3]) -> Option<usize> {
+        let at = self.coordinates(index);
+        let mut to = [0; 3];
+        for axis in 0..3 {
+            to[axis] = at[axis].checked_add_signed(step[axis]).filter(|v| *v < self.size[axis])?;
+        }
+        Some(self.index(to))
+    }
+
+    fn index(&self, [x, y, z]: [usize; 3]) -> usize {
+        (z * self.size[1] + y) * self.size[0] + x
+    }
+
+    pub(super) fn center(&self, index: usize) -> DVec3 {
+        self.low + self.cell * (DVec3::from_array(self.coordinates(index).map(|v| v as f64)) + 0.5)
+    }
+
+    /// The cell that holds a point; `None` outside.
+    pub(super) fn at(&self, p: DVec3) -> Option<usize> {
+        let at = ((p - self.low) / self.cell).to_array();
+        let inside = (0..3).all(|k| at[k] >= 0.0 && at[k] < self.size[k] as f64);
+        inside.then(|| self.index(at.map(|v| v as usize)))
+    }
+
+    /// Room around the middle of a cell, scene units: no surface comes nearer, but for half a cell.
+    pub(super) fn clearance(&self, index: usize) -> f64 {
+        f64::from(self.clearance[index])
+    }
+
+    /// Whether a straight way keeps a clearance that rises with the length of the way, where it begins at `length` already; outside the
+    /// cells everything is free.
+    ///
+    /// * `per_length`: clearance needed for a unit of length.
+    pub(super) fn is_free(&self, from: DVec3, to: DVec3, length: f64, per_length: f64) -> bool {
+        let way = from.distance(to);
+        let steps = (2.0 * way / self.cell).ceil().clamp(1.0, 4096.0) as usize;
+        (1..=steps).all(|k| {
+            let share = k as f64 / steps as f64;
+            let Some(cell) = self.at(from.lerp(to, share)) else { return true };
+            !self.solid[cell] && self.clearance(cell) >= per_length * (length + share * way)
+        })
+    }
+
+    /// Whether nothing solid lies between two points, but for the cells next to them.
+    pub(super) fn sees(&self, from: DVec3, to: DVec3) -> bool {
+        let way = from.distance(to);
+        let steps = (1.4 * way / self.cell).ceil().clamp(1.0, 4096.0);
+        let margin = (2.0 * self.cell / way).min(0.5);
+        let mut share = margin;
+        while share < 1.0 - margin {
+            if self.at(from.lerp(to, share)).is_some_and(|cell| self.solid[cell]) {
+                return false;
+            }
+            share += 1.0 / steps;
+        }
+        true
+    }
+
+    /// Ranges of cells that meet a box; `None` if none does.
+    fn cells_in(&self, bounds: &Aabb) -> Option<[[usize; 2]; 3]> {
+        let (low, high) = ((bounds.min - self.low) / self.cell, (bounds.max - self.low) / self.cell);
+        let mut out = [[0; 2]; 3];
+        for axis in 0..3 {
+            let last = (self.size[axis] - 1) as f64;
+            if !(low[axis] <= last + 1.0 && high[axis] >= 0.0) {
+                return None;
+            }
+            out[axis] = [low[axis].floor().clamp(0.0, last) as usize, high[axis].floor().clamp(0.0, last) as usize];
+        }
+        Some(out)
+    }
+
+    fn fill(&mut self, [xs, ys, zs]: [[usize; 2]; 3], mut is_solid: impl FnMut(DVec3) -> bool) {
+        for z in zs[0]..=zs[1] {
+            for y in ys[0]..=ys[1] {
+                for x in xs[0]..=xs[1] {
+                    let index = self.index([x, y, z]);
+                    if !self.solid[index] && is_solid(self.center(index)) {
+                        self.solid[index] = true;
+                    }
+                }
+            }
+        }
+    }
+
+    fn add_box(&mut self, shape: &BoxShape) {
+        let Some(cells) = self.cells_in(&Aabb::of(shape.corners())) else { return };
+        let (half, (sin, cos)) = (0.5 * shape.size, shape.yaw.sin_cos());
+        let middle = shape.base + half.z * DVec3::Z;
+        // Reach of a cell along the axes of the box.
+        let turned = 0.5 * self.cell * (sin.abs() + cos.abs());
+        let reach = DVec3::new(turned, turned, 0.5 * self.cell);
+        self.fill(cells, |p| {
+            let d = p - middle;
+            let local = DVec3::new(cos * d.x + sin * d.y, cos * d.y - sin * d.x, d.z);
+            local.abs().cmplt(half + reach).all()
+        });
+    }
+
+    fn add_mesh(&mut self, mesh: &Mesh) {
+        for t in 0..mesh.triangles().len() {
+            let corners = mesh.corners(t);
+            let Some(cells) = self.cells_in(&Aabb::of(corners)) else { continue };
+            let half = 0.5 * self.cell;
+            self.fill(cells, |p| meets_cube(corners.map(|c| c - p), half));
+        }
+    }
+
+    /// Cells under the highest node around their column, and under the surface at its corners.
+    fn add_ground(&mut self, ground: &Heightfield) {
+        let [nx, ny, nz] = self.size;
+        let mut top = vec![f64::NEG_INFINITY; nx * ny];
+        let low = self.low.truncate();
+        let column = |p: DVec2| {
+            let at = (p - low) / self.cell;
+            let inside = at.x >= 0.0 && at.y >= 0.0 && at.x < nx as f64 && at.y < ny as f64;
+            inside.then(|| at.y as usize * nx + at.x as usize)
+        };
+        let far = low + self.cell * DVec2::new(nx as f64, ny as f64);
+        let corners = [low, far].map(|p| ground.grid_from_scene(p));
+        let nodes = |from: f64, to: f64, n: usize| {
+            let [from, to] = [from.floor(), to.ceil() + 1.0].map(|v| v.clamp(0.0, n as f64) as usize);
+            from..to
+        };
+        let cols = nodes(corners[0].x, corners[1].x, ground.cols());
+        let rows = nodes(corners[1].y, corners[0].y, ground.rows());
+        for row in rows {
+            for col in cols.clone() {
+                if let Some(i) = column(ground.node_xy(col, row))
+                    && let Some(node) = ground.node(col, row)
+                {
+                    top[i] = top[i].max(node.z);
+                }
+            }
+        }
+        for (i, top) in top.iter_mut().enumerate() {
+            let [x, y] = [i % nx, i / nx].map(|v| v as f64);
+            for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (0.5, 0.5)] {
+                let height = ground.surface_at(low + self.cell * DVec2::new(x + u, y + v));
+                *top = top.max(height.unwrap_or(f64::NEG_INFINITY));
+            }
+            let solid = ((*top - self.low.z) / self.cell).ceil().clamp(0.0, nz as f64) as usize;
+            (0..solid).for_each(|z| self.solid[z * nx * ny + i] = true);
+        }
+    }
+}
+
+/// Whether a triangle meets the cube of half an edge `half` around the origin: no axis separates them (Akenine-Moeller 2001).
+fn meets_cube([a, b, c]: [DVec3; 3], half: f64) -> bool {
+    let edges = [b - a, c - b, a - c];
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+    let normal = [edges[0].cross(edges[1])];
+    let crosses = edges.into_iter().flat_map(|e| axes.map(|axis| axis.cross(e)));
+    axes.into_iter().chain(normal).chain(crosses).all(|axis| {
+        let along = [a, b, c].map(|p| p.dot(axis));
+        let reach = half * axis.abs().element_sum() * (1.0 + 1e-12);
+        let (low, high) = along.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        low <= reach && high >= -reach
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface_samples::Random;
+    use belvedere_scene::{BoxLayer, Color, MeshColors, MeshLayer};
+
+    fn region() -> Aabb {
+        Aabb { min: DVec3::new(-50.0, -50.0, -10.0), max: DVec3::new(50.0, 50.0, 40.0) }
+    }
+
+    #[test]
+    fn every_point_of_a_surface_lies_in_a_solid_cell_and_clearance_is_kept_by_all_of_them() {
+        let mut random = Random::new(5);
+        let mut at = |r: f64| DVec3::new(random.share() - 0.5, random.share() - 0.5, random.share()) * r;
+        let corners: Vec<DVec3> = (0..60).map(|i| if i % 3 == 0 { at(80.0) } else { DVec3::ZERO }).collect();
+        let corners: Vec<DVec3> = (0..60).map(|i| corners[i / 3 * 3] + at(12.0)).collect();
+        let triangles = (0..20).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let mesh = Mesh::new(&corners, triangles, MeshColors::Layer).unwrap();
+        let shape = BoxShape {
+            base: DVec3::new(20.0, -10.0, 0.0),
+            size: DVec3::new(18.0, 9.0, 14.0),
+            yaw: 0.6,
+            color: Color::rgb(1, 2, 3),
+        };
+        let heights = (0..121).map(|i| (3.0 * f64::from(i).sin() - 5.0) as f32).collect();
+        let ground = Heightfield::measured(DVec2::new(-50.0, 50.0), DVec2::splat(10.0), 11, 11, heights).unwrap();
+        let scene = Scene::default()
+            .with_terrain("ground", ground)
+            .with_layer("box", LayerKind::Boxes(BoxLayer { boxes: vec![shape] }))
+            .with_layer("mesh", LayerKind::Mesh(MeshLayer { mesh: mesh.clone(), color: Color::rgb(1, 2, 3) }));
+        let voxels = Voxels::new(&scene, &region());
+        assert!(voxels.len() <= MOST_CELLS as usize * 5 / 4 && voxels.size().into_iter().max() >= Some(64));
+        let mut points = Vec::new();
+        for _ in 0..3000 {
+            let [u, v, w] = [random.share(), random.share(), random.share()];
+            let [a, b, c] = mesh.corners((w * 20.0) as usize);
+            let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+            points.push(a + u * (b - a) + v * (c - a));
+            let local = DVec3::new((u - 0.5) * shape.size.x, (v - 0.5) * shape.size.y, w * shape.size.z);
+            let (sin, cos) = shape.yaw.sin_cos();
+            points.push(shape.base + DVec3::new(cos * local.x - sin * local.y, sin * local.x + cos * local.y, local.z));
+            let xy = DVec2::new(100.0 * u - 50.0, 100.0 * w - 50.0);
+            let z = scene.terrain().unwrap().surface_at(xy).unwrap();
+            points.push(xy.extend(z - 1e-6 - 2.0 * v));
+        }
+        let inside: Vec<DVec3> = points.into_iter().filter(|p| voxels.at(*p).is_some()).collect();
+        assert!(inside.len() > 6000);
+        for p in &inside {
+            assert!(voxels.at(*p).is_some_and(|cell| voxels.is_solid(cell)), "{p} is in no solid cell");
+        }
+        let mut free = 0;
+        for cell in (0..voxels.len()).step_by(97).filter(|c| !voxels.is_solid(*c)) {
+            free += 1;
+            let center = voxels.center(cell);
+            let nearest = inside.iter().map(|p| p.distance(center)).fold(f64::INFINITY, f64::min);
+            // Half the diagonal of a cell instead of half its edge.
+            assert!(nearest >= voxels.clearance(cell) - 0.37 * voxels.cell(), "{center} {nearest}");
+        }
+        assert!(free > 500, "{free}");
+    }
+
+    #[test]
+    fn ways_are_free_up_to_what_stands_there() {
+        let wall = BoxShape {
+            base: DVec3::new(0.0, 0.0, -10.0),
+            size: DVec3::new(4.0, 100.0, 30.0),
+            yaw: 0.0,
+            color: Color::rgb(1, 2, 3),
+        };
+        let scene = Scene::default().with_layer("wall", LayerKind::Boxes(BoxLayer { boxes: vec![wall] }));
+        let voxels = Voxels::new(&scene, &region());
+        let [left, right] = [-30.0, 30.0].map(|x| DVec3::new(x, 0.0, 5.0));
+        assert!(!voxels.is_free(left, right, 0.0, 0.0) && !voxels.sees(left, right));
+        let [up, down] = [left, right].map(|p| p + 30.0 * DVec3::Z);
+        assert!(voxels.is_free(up, down, 0.0, 0.0) && voxels.sees(up, down));
+        // 15 m over the wall, in its middle after 30 m.
+        assert!(voxels.is_free(up, down, 0.0, 0.4) && !voxels.is_free(up, down, 0.0, 0.6));
+        assert!(!voxels.is_free(up, down, 30.0, 0.4));
+        assert!(voxels.is_free(left, left + 90.0 * DVec3::NEG_X, 0.0, 0.1), "outside everything is free");
+    }
+}

@@ -1,0 +1,232 @@
+//! Shortest ways through free cells, from what the eye sees into what it does not.
+//!
+//! Source: Dijkstra 1959, on cells that know in which direction the way to them arrives, so that turning has a price.
+
+use super::voxels::Voxels;
+use belvedere_core::DVec3;
+use belvedere_scene::{Cancelled, Progress};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Directions from a cell to its neighbours.
+const DIRECTIONS: usize = 26;
+/// A step turns from the one before by at most this angle, cosine: 60 degrees.
+const LEAST_COSINE: f64 = 0.499;
+/// Marks cells whose way comes straight from the eye.
+const FROM_EYE: u8 = u8::MAX;
+/// Marks cells that no way leads to.
+const UNREACHED: u8 = u8::MAX - 1;
+
+/// What ways cost beside their length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Price {
+    /// Clearance needed for a unit of length from the eye.
+    pub(super) clearance_per_length: f64,
+    /// Length that a turn of a radian costs as much as.
+    pub(super) per_radian: f64,
+    /// A unit of length where the clearance is this costs as much as two.
+    pub(super) tight: f64,
+    /// Ways end at this length.
+    pub(super) longest: f64,
+}
+
+/// The cheapest way to every cell that can be reached.
+pub(super) struct Ways<'a> {
+    voxels: &'a Voxels,
+    eye: DVec3,
+    cost: Vec<f32>,
+    length: Vec<f32>,
+    /// Number of the direction of arrival.
+    arrival: Vec<u8>,
+}
+
+impl<'a> Ways<'a> {
+    /// All ways that begin with a straight line from `eye` to one of the cells `seen`.
+    ///
+    /// Of all ways to a cell only the cheapest is gone on with, though a dearer one might turn less in the next step.
+    pub(super) fn new(
+        voxels: &'a Voxels,
+        eye: DVec3,
+        seen: &[usize],
+        price: &Price,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let cells = voxels.len();
+        let (cost, length) = (vec![f32::INFINITY; cells], vec![f32::INFINITY; cells]);
+        let mut ways = Self { voxels, eye, cost, length, arrival: vec![UNREACHED; cells] };
+        let mut open = BinaryHeap::new();
+        for &cell in seen {
+            let length = voxels.center(cell).distance(eye);
+            let room = voxels.clearance(cell);
+            if room > 0.0 && room >= price.clearance_per_length * length && length <= price.longest {
+                let cost = length as f32;
+                (ways.cost[cell], ways.length[cell], ways.arrival[cell]) = (cost, cost, FROM_EYE);
+                open.push(Open { cost, cell });
+            }
+        }
+        let units: [DVec3; DIRECTIONS] = std::array::from_fn(|d| unit(step(d)));
+        let mut done = 0usize;
+        while let Some(Open { cost, cell }) = open.pop() {
+            if cost > ways.cost[cell] {
+                continue;
+            }
+            done += 1;
+            if done.is_multiple_of(1 << 14) {
+                progress.tick("looking for ways round what hides", done as f64 / cells as f64)?;
+            }
+            let arrival = ways.arrival(cell);
+            for (direction, u) in units.iter().enumerate() {
+                let cosine = u.dot(arrival);
+                if cosine > LEAST_COSINE {
+                    let turned = price.per_radian * cosine.min(1.0).acos();
+                    ways.step(cell, direction, f64::from(cost) + turned, price, &mut open);
+                }
+            }
+        }
+        Ok(ways)
+    }
+
+    /// Tries a step from a cell, the way to which costs `cost`.
+    fn step(&mut self, from: usize, direction: usize, cost: f64, price: &Price, open: &mut BinaryHeap<Open>) {
+        let by = step(direction);
+        let Some(cell) = self.voxels.neighbour(from, by) else { return };
+        let way = self.voxels.cell() * DVec3::from_array(by.map(|v| v as f64)).length();
+        let (length, room) = (f64::from(self.length[from]) + way, self.voxels.clearance(cell));
+        if room <= 0.0 || room < price.clearance_per_length * length || length > price.longest {
+            return;
+        }
+        let cost = (cost + way * (1.0 + price.tight / room)) as f32;
+        if cost < self.cost[cell] {
+            (self.cost[cell], self.length[cell], self.arrival[cell]) = (cost, length as f32, direction as u8);
+            open.push(Open { cost, cell });
+        }
+    }
+
+    /// Cells that ways lead to.
+    pub(super) fn reached(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.arrival.len()).filter(|i| self.arrival[*i] != UNREACHED)
+    }
+
+    /// Cost of the cheapest way to a cell.
+    pub(super) fn cost(&self, cell: usize) -> f64 {
+        f64::from(self.cost[cell])
+    }
+
+    /// Unit direction in which the cheapest way comes to a cell.
+    pub(super) fn arrival(&self, cell: usize) -> DVec3 {
+        match self.arrival[cell] {
+            FROM_EYE | UNREACHED => (self.voxels.center(cell) - self.eye).normalize_or(DVec3::Y),
+            direction => unit(step(usize::from(direction))),
+        }
+    }
+
+    /// Middles of the cells of the cheapest way, from the last that the eye sees straight.
+    pub(super) fn points(&self, end: usize) -> Vec<DVec3> {
+        let mut points = vec![self.voxels.center(end)];
+        let mut at = end;
+        while !matches!(self.arrival[at], FROM_EYE | UNREACHED) {
+            let back = step(usize::from(self.arrival[at])).map(|v| -v);
+            let Some(cell) = self.voxels.neighbour(at, back) else { break };
+            points.push(self.voxels.center(cell));
+            at = cell;
+        }
+        points.reverse();
+        points
+    }
+}
+
+/// A cell whose neighbours are still to be looked at; the cheapest comes first, the first of equals.
+#[derive(Debug, PartialEq)]
+struct Open {
+    cost: f32,
+    cell: usize,
+}
+
+impl Eq for Open {}
+
+impl Ord for Open {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.cost.total_cmp(&self.cost).then(other.cell.cmp(&self.cell))
+    }
+}
+
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// Cells from one to its neighbour, by the number of the direction.
+fn step(direction: usize) -> [isize; 3] {
+    // 13 would be no step at all.
+    let k = (direction + usize::from(direction >= 13)) as isize;
+    [k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1]
+}
+
+fn unit(step: [isize; 3]) -> DVec3 {
+    DVec3::from_array(step.map(|v| v as f64)).normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::Aabb;
+    use belvedere_scene::{BoxLayer, BoxShape, Color, LayerKind, Scene};
+
+    /// A wall with the eye before it.
+    fn voxels() -> Voxels {
+        let wall = BoxShape {
+            base: DVec3::new(0.0, 20.0, 0.0),
+            size: DVec3::new(60.0, 6.0, 40.0),
+            yaw: 0.0,
+            color: Color::rgb(1, 2, 3),
+        };
+        let scene = Scene::default().with_layer("wall", LayerKind::Boxes(BoxLayer { boxes: vec![wall] }));
+        let region = Aabb { min: DVec3::new(-60.0, -20.0, 0.0), max: DVec3::new(60.0, 80.0, 60.0) };
+        Voxels::new(&scene, &region)
+    }
+
+    fn price(per_length: f64) -> Price {
+        Price { clearance_per_length: per_length, per_radian: 5.0, tight: 1.0, longest: 200.0 }
+    }
+
+    #[test]
+    fn ways_keep_clear_of_walls_and_are_no_longer_than_need_be() {
+        let (voxels, eye) = (voxels(), DVec3::new(0.0, -10.0, 10.0));
+        let seen: Vec<usize> = (0..voxels.len()).filter(|c| voxels.center(*c).y < 10.0).collect();
+        for per_length in [0.0, 0.05, 0.12] {
+            let ways = Ways::new(&voxels, eye, &seen, &price(per_length), &Progress::silent()).unwrap();
+            let behind = DVec3::new(0.0, 45.0, 20.0);
+            let end = ways.reached().filter(|c| voxels.at(behind) == Some(*c));
+            let end = end.min_by(|a, b| ways.cost(*a).total_cmp(&ways.cost(*b))).expect("a way");
+            let points = ways.points(end);
+            assert_eq!(points.last().copied(), voxels.at(behind).map(|c| voxels.center(c)));
+            let mut length = points[0].distance(eye);
+            for pair in points.windows(2) {
+                length += pair[0].distance(pair[1]);
+                let cell = voxels.at(pair[1]).unwrap();
+                assert!(!voxels.is_solid(cell) && voxels.clearance(cell) >= per_length * length - 1e-3);
+                assert!(pair[0].distance(pair[1]) < 1.8 * voxels.cell());
+            }
+            // Over the edges of the wall, 40 m high, it is 76 m.
+            assert!(length > 76.0 && length < 76.0 * (1.15 + 2.0 * per_length), "{length}");
+            assert!((ways.length[end] - length as f32).abs() < 1e-2);
+        }
+        // Through no wall, and not where the room is too small for the length.
+        let ways = Ways::new(&voxels, eye, &seen, &price(0.6), &Progress::silent()).unwrap();
+        assert!(ways.reached().all(|s| voxels.center(s).y < 60.0));
+        assert!(!ways.reached().any(|s| voxels.is_solid(s)));
+    }
+
+    #[test]
+    fn directions_are_all_neighbours_and_cancelling_ends_the_search() {
+        let mut steps: Vec<[isize; 3]> = (0..DIRECTIONS).map(step).collect();
+        steps.sort_unstable();
+        steps.dedup();
+        assert!(steps.len() == 26 && !steps.contains(&[0; 3]));
+        let (voxels, progress) = (voxels(), Progress::silent());
+        progress.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
+        let seen: Vec<usize> = (0..voxels.len()).filter(|c| voxels.center(*c).y < 10.0).collect();
+        assert!(Ways::new(&voxels, DVec3::ZERO, &seen, &price(0.0), &progress).is_err());
+    }
+}
