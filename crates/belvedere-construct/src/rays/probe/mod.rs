@@ -319,7 +319,7 @@ fn search(
             tight: TIGHT_CELLS * voxels.cell(),
             longest: LONGEST * region.reach,
         };
-        let ways = Ways::new(&voxels, pinhole.eye, &seen, &price, progress)?;
+        let ways = Ways::new(&voxels, pinhole.eye, &seen, &price, &progress.unheard())?;
         let frustum = ProbeFrustum {
             eye: pinhole.eye,
             up: -pinhole.down,
@@ -342,8 +342,8 @@ fn search(
     scored.truncate(POLISHED);
     let mut best: Option<(f64, Chain)> = None;
     for (i, (score, chain)) in scored.into_iter().enumerate() {
-        progress.tick("improving the best ways", 0.7 + 0.06 * i as f64)?;
-        let (score, chain, more) = polish::polished(chain, score, base, &voxels, judge, progress)?;
+        progress.tick("improving the best ways", 0.7 + 0.035 * i as f64)?;
+        let (score, chain, more) = polish::polished(chain, score, base, &voxels, judge, &progress.unheard())?;
         tried += more;
         if best.as_ref().is_none_or(|(s, _)| score > *s) {
             best = Some((score, chain));
