@@ -272,7 +272,7 @@ impl ProbeMemory {
         let near = kept.chain.points[0].distance(eye) < 0.4 * kept.first;
         let is_good = turns >= 1 && turns <= options.turns && score > KEPT_WORTH * kept.score && !near;
         self.leaving |= !is_good;
-        if time_step_s.is_none() && self.leaving || self.leaving && self.entered <= 0.0 {
+        if self.leaving && (time_step_s.is_none() || self.entered <= 0.0) {
             (self.chain, self.leaving) = (None, false);
         }
     }

@@ -254,7 +254,15 @@ mod tests {
         let scene = Scene::default()
             .with_terrain("ground", ground)
             .with_layer("box", LayerKind::Boxes(BoxLayer { boxes: vec![shape] }))
-            .with_layer("mesh", LayerKind::Mesh(MeshLayer { mesh: mesh.clone(), color: Color::rgb(1, 2, 3) }));
+            .with_layer(
+                "mesh",
+                LayerKind::Mesh(MeshLayer {
+                    mesh: mesh.clone(),
+                    color: Color::rgb(1, 2, 3),
+                    names: Vec::new(),
+                    wanted: None,
+                }),
+            );
         let voxels = Voxels::new(&scene, &region());
         assert!(voxels.len() <= MOST_CELLS as usize * 5 / 4 && voxels.size().into_iter().max() >= Some(64));
         let mut points = Vec::new();
