@@ -345,6 +345,9 @@ fn draw_figures(args: &FiguresArgs, context: &Context) -> anyhow::Result<Goal> {
     if args.what.0.contains(&FigureKind::Curved) {
         written.extend(belvedere_gallery::curved_figures(&args.out, &options, overwrite)?);
     }
+    if args.what.0.contains(&FigureKind::Compare) {
+        written.extend(belvedere_gallery::compare_figures(&args.out, &options, overwrite)?);
+    }
     if args.what.0.contains(&FigureKind::Terrain) {
         written.extend(belvedere_gallery::terrain_figures(&args.out, &args.scenes, &options, overwrite)?);
     }

@@ -9,6 +9,10 @@ figcaption{display:grid;grid-template-columns:1fr 1fr;gap:.5rem;padding:.5rem 0;
 .small{font-size:.9rem;color:#666;max-width:none}a{color:#1f5fa8}code{font-size:.95em}\
 @media(prefers-color-scheme:dark){body{color:#e4e4e0;background:#191b1d}.small{color:#a0a4a8}a{color:#8bbdf0}}";
 
+/// Style of tables, for pages that have some.
+pub(crate) const TABLES: &str = "table{border-collapse:collapse;margin:.6rem 0 1.4rem;font-size:.9rem}td,th{padding:.2rem .7rem;\
+text-align:right;border-bottom:1px solid #8884}th:first-child,td:first-child{text-align:left}";
+
 /// A page: `title` of the window, `style` besides that of every page, and what it shows.
 pub(crate) fn page(title: &str, style: &str, body: &str) -> String {
     format!(

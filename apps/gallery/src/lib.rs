@@ -3,6 +3,7 @@
 
 mod algorithms;
 mod chart;
+mod compare;
 mod curved;
 mod demo;
 mod html;
@@ -10,6 +11,7 @@ mod sheet;
 mod terrain;
 
 pub use algorithms::figures as algorithm_figures;
+pub use compare::figures as compare_figures;
 pub use curved::figures as curved_figures;
 pub use demo::{DemoScene, SCENES, demo};
 pub use terrain::figures as terrain_figures;

@@ -87,6 +87,20 @@ fn figures_of_curved_rays_show_what_was_hidden() {
 }
 
 #[test]
+fn every_means_shows_the_target_and_curved_rays_bend_edges_less_than_broken_ones() {
+    let place = Place::new();
+    place.ok(&["figures", "compare", "-o", "means"]);
+    assert!(read(&place.path("means/compare.png")).starts_with(b"\x89PNG"));
+    let rows: serde_json::Value = serde_json::from_slice(&read(&place.path("means/compare.json"))).expect("JSON");
+    let rows = rows.as_array().expect("rows");
+    let of = |key: &str| -> Vec<f64> { rows.iter().map(|r| r[key].as_f64().expect("number")).collect() };
+    let (visible, bent) = (of("visible"), of("bent_edges"));
+    assert_eq!(visible.len(), 6);
+    assert!(visible[0] < 0.5 && visible[1..].iter().all(|v| *v > 0.95), "{visible:?}");
+    assert!(bent[..4].iter().all(|b| *b < 1e-9) && bent[5] > 0.01 && bent[5] < 0.5 * bent[4], "{bent:?}");
+}
+
+#[test]
 fn charts_of_the_documents_are_drawn() {
     let place = Place::new();
     place.ok(&["figures", "algorithms", "-o", "charts"]);

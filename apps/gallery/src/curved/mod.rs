@@ -2,7 +2,7 @@
 
 mod canyon;
 mod crossing;
-mod easel;
+pub(crate) mod easel;
 mod engine;
 mod helix;
 mod massif;

@@ -8,9 +8,6 @@ use belvedere::disocclusion::{SolverMode, TerrainReport};
 use serde::Serialize;
 use std::fmt::Write;
 
-const TABLES: &str = "table{border-collapse:collapse;margin:.6rem 0 1.4rem;font-size:.9rem}td,th{padding:.2rem .7rem;\
-text-align:right;border-bottom:1px solid #8884}th:first-child,td:first-child{text-align:left}";
-
 /// What one area comes to.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct AreaRecord {
@@ -48,7 +45,7 @@ pub(crate) fn page(records: &[AreaRecord]) -> String {
          {sections}<p class=\"small\">belvedere {}</p>\n",
         belvedere::VERSION
     );
-    html::page("Belvedere: terrain that makes way", TABLES, &body)
+    html::page("Belvedere: terrain that makes way", html::TABLES, &body)
 }
 
 fn section(record: &AreaRecord) -> String {
