@@ -9,7 +9,7 @@
 use belvedere::core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere::cpu::CpuRenderer;
 use belvedere::scene::{Frame, Heightfield, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
-use belvedere_bench::clock::{Stopwatch, median, quantile};
+use belvedere_bench::clock::{Stopwatch, median, quantile, status_mib};
 use belvedere_bench::scene::scene_of;
 use rayon::prelude::*;
 use std::io::{BufRead, BufReader, Lines, Write};
@@ -26,13 +26,6 @@ fn height(x: f64, y: f64) -> f32 {
         500.0 * 0.52f64.powi(k) * (at.x + (1.7 * at.y).sin()).sin() * (0.8 * at.y).cos()
     };
     (0..10).map(ridge).sum::<f64>() as f32
-}
-
-/// Figures of `/proc/self/status`, MiB.
-fn status_mib(key: &str) -> f64 {
-    let text = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = text.lines().find_map(|l| l.strip_prefix(key)?.strip_prefix(':'));
-    line.and_then(|l| l.trim().trim_end_matches(" kB").parse::<f64>().ok()).unwrap_or(0.0) / 1024.0
 }
 
 /// A flight along the circle.

@@ -42,6 +42,13 @@ fn cpu_ms() -> Option<f64> {
     Some(std::fs::read_dir("/proc/self/task").ok()?.flatten().filter_map(of_task).sum::<f64>() * 1e-6)
 }
 
+/// Figures of `/proc/self/status`, MiB; 0 where the system does not tell.
+pub fn status_mib(key: &str) -> f64 {
+    let text = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = text.lines().find_map(|l| l.strip_prefix(key)?.strip_prefix(':'));
+    line.and_then(|l| l.trim().trim_end_matches(" kB").parse::<f64>().ok()).unwrap_or(0.0) / 1024.0
+}
+
 /// Processes that wanted to run over the last minute.
 pub(crate) fn load() -> Option<f64> {
     std::fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()

@@ -7,6 +7,7 @@ pub mod clock;
 mod flight;
 mod frames;
 pub mod scene;
+pub mod sizes;
 mod smooth;
 pub mod volume;
 
