@@ -18,7 +18,9 @@ pub mod presets;
 pub mod sections;
 
 pub use bounds::Aabb;
-pub use camera::{ImageBox, Pinhole, PinholeError, Projected, Projection, RayPath, RayPoint, View, ViewError};
+pub use camera::{
+    EdgePoint, Edges, ImageBox, Pinhole, PinholeError, Projected, Projection, RayPath, RayPoint, View, ViewError,
+};
 pub use glam::{DMat3, DVec2, DVec3};
 pub use map::curved_rays::{CurvedRays, CurvedRaysError};
 pub use map::earth::EarthCurvature;

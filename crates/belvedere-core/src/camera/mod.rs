@@ -1,9 +1,11 @@
 //! Cameras: the pinhole, the view (pinhole behind a chain of stages) and the rays of its pixels.
 
+mod edges;
 mod pinhole;
 mod ray_path;
 mod view;
 
+pub use edges::{EdgePoint, Edges};
 pub use pinhole::{Pinhole, PinholeError, Projection};
 pub use ray_path::{RayPath, RayPoint};
 pub use view::{ImageBox, View, ViewError};

@@ -5,7 +5,7 @@ use crate::geometry::lod::{DecimatedHeights, NODES};
 use crate::geometry::points::Points;
 use crate::geometry::project::Projector;
 use crate::geometry::screen::{Row, Screen, ScreenVertex};
-use belvedere_core::{Aabb, DVec2, DVec3, SpaceMap, Stage, View};
+use belvedere_core::{Aabb, DVec2, DVec3, EdgePoint, Edges, SpaceMap, Stage, View};
 use belvedere_scene::Heightfield;
 
 /// A view prepared for a frame.
@@ -17,6 +17,8 @@ pub(crate) struct Pass<'a> {
     /// Whether what does not belong to the record is cut off.
     cut: bool,
     displacer: Displacer<'a>,
+    /// Where one turn is all that bends edges.
+    edges: Option<Edges<'a>>,
     projector: Option<Projector<'a>>,
     height: HeightPx,
 }
@@ -80,6 +82,7 @@ impl<'a> Pass<'a> {
             records,
             cut,
             displacer: Displacer::new(view, first..=last),
+            edges: if first == last { view.edges(first) } else { None },
             projector: Projector::new(view, first..=last),
             height: HeightPx::new(view, first),
         }
@@ -144,6 +147,21 @@ impl<'a> Pass<'a> {
     /// Signed distances that must be positive for the point to belong to this pass.
     pub(crate) fn margins(&self, p: DVec3) -> [f64; 2] {
         if self.cut { self.view.record_margins(self.records[0], p) } else { [f64::INFINITY; 2] }
+    }
+
+    /// Whether all edges inside a box may be drawn straight; `false` also where that is not known.
+    pub(crate) fn is_straight_in(&self, bounds: &Aabb, tolerance_px: f64) -> bool {
+        self.is_straight() || self.edges.as_ref().is_some_and(|edges| edges.box_error_px(bounds) <= tolerance_px)
+    }
+
+    /// What [`Pass::edge_error_between`] needs; `None` where it is not known.
+    pub(crate) fn edge_point(&self, p: DVec3) -> Option<EdgePoint> {
+        self.edges.as_ref()?.point(p)
+    }
+
+    /// [`Pass::edge_error_px`] of an edge whose ends are known; `None` where it must be asked for by their places.
+    pub(crate) fn edge_error_between(&self, a: Option<&EdgePoint>, b: Option<&EdgePoint>) -> Option<f64> {
+        Some(self.edges.as_ref()?.error_px(a?, b?))
     }
 
     /// See [`View::edge_error_px`].

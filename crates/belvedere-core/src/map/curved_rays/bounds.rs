@@ -3,7 +3,7 @@
 //! phi is convex along every line that avoids the opposite wedge, so along an edge the truth is the straight edge between
 //! the displaced ends minus `delta d_j`, with `delta = lerp(phi) - phi >= 0`.
 
-use super::phi::Hinge;
+use super::phi::{Hinge, Phi};
 use super::turn::Cell;
 use super::{CurvedRays, Hit, Turn};
 use crate::{Aabb, Miss};
@@ -13,27 +13,46 @@ use glam::DVec3;
 /// estimates from the ends, the middle and this factor, tried on many cameras, not proven.
 const BEZIER_ROOM: f64 = 1.25;
 
+/// What the bound of an edge needs of one of its ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct EdgeEnd {
+    p: DVec3,
+    a: f64,
+    b: f64,
+    cell: Cell,
+    phi: Phi,
+}
+
 impl Turn {
-    /// Largest `lerp(phi) - phi` along an edge; `None` if the edge has an end in the opposite wedge or passes through it.
+    /// `None` in the opposite wedge.
+    pub(crate) fn edge_end(&self, p: DVec3) -> Option<EdgeEnd> {
+        let cell = self.cell(p).ok()?;
+        Some(EdgeEnd { p, a: self.a.at(p), b: self.b.at(p), cell, phi: self.phi(p, cell).ok()? })
+    }
+
+    /// Displaced end relative to the eye, see [`Turn::displaced`].
+    pub(crate) fn displaced_end(&self, end: &EdgeEnd) -> DVec3 {
+        self.displaced_by(end.p, end.cell, end.phi.phi)
+    }
+
+    /// Largest `lerp(phi) - phi` along an edge; `None` if it passes through the opposite wedge.
     ///
     /// With end slopes `D0 = (phi1 - phi0) - phi'(X0) (X1 - X0)` and `D1` alike, both >= 0 for a convex function:
     /// `delta <= D0 D1 / (D0 + D1)`, the height of the triangle that the end tangents leave.
-    pub(super) fn edge_delta(&self, p0: DVec3, p1: DVec3) -> Option<f64> {
-        let (a, b) = ([self.a.at(p0), self.a.at(p1)], [self.b.at(p0), self.b.at(p1)]);
-        if self.hinge != Hinge::Broken && !separable(&[(a[0], b[0]), (a[1], b[1])]) {
+    pub(crate) fn edge_delta(&self, end0: &EdgeEnd, end1: &EdgeEnd) -> Option<f64> {
+        if self.hinge != Hinge::Broken && !separable(&[(end0.a, end0.b), (end1.a, end1.b)]) {
             return None;
         }
-        let (cell0, cell1) = (self.cell(p0).ok()?, self.cell(p1).ok()?);
-        if cell0 == cell1 && cell0 != Cell::Wedge {
+        if end0.cell == end1.cell && end0.cell != Cell::Wedge {
             return Some(0.0);
         }
-        let (phi0, phi1) = (self.phi(p0, cell0).ok()?, self.phi(p1, cell1).ok()?);
-        let (da, db) = (a[1] - a[0], b[1] - b[0]);
+        let (phi0, phi1) = (&end0.phi, &end1.phi);
+        let (da, db) = (end1.a - end0.a, end1.b - end0.b);
         let rise = phi1.phi - phi0.phi;
         let d0 = rise - phi0.phi_a * da - phi0.phi_b * db;
         let d1 = phi1.phi_a * da + phi1.phi_b * db - rise;
         let delta = if matches!(self.hinge, Hinge::Bezier { .. }) {
-            let middle = p0.midpoint(p1);
+            let middle = end0.p.midpoint(end1.p);
             let sag = 0.5 * (phi0.phi + phi1.phi) - self.phi(middle, self.cell(middle).ok()?).ok()?.phi;
             BEZIER_ROOM * sag.abs().max(0.5 * d0.abs().max(d1.abs()))
         } else {
@@ -41,6 +60,32 @@ impl Turn {
             if d0 + d1 > 0.0 { d0 * d1 / (d0 + d1) } else { 0.0 }
         };
         delta.is_finite().then_some(delta)
+    }
+
+    /// Bound on [`Turn::edge_delta`] of every edge inside a box; `None` where unknown.
+    ///
+    /// With the gap g of the convex phi over its tangent at the centre: `D0 <= g(X1) + g(2 X0 - X1)`, for g is convex, not negative, and
+    /// adding a linear function changes no D. Both places lie in the box of three times the size, where g is largest at a corner; so
+    /// `delta <= (D0 + D1) / 4` is at most that.
+    pub(crate) fn box_delta(&self, bounds: &Aabb) -> Option<f64> {
+        let corners = bounds.corners();
+        let first = self.cell(corners[0]).ok()?;
+        if first != Cell::Wedge && corners[1..].iter().all(|p| self.cell(*p) == Ok(first)) {
+            return Some(0.0);
+        }
+        let middle = bounds.center();
+        let corners = corners.map(|p| middle + 3.0 * (p - middle));
+        let values = corners.map(|p| (self.a.at(p), self.b.at(p)));
+        if matches!(self.hinge, Hinge::Bezier { .. }) || (self.hinge != Hinge::Broken && !separable(&values)) {
+            return None;
+        }
+        let center = self.edge_end(middle)?;
+        let gap = |(p, (a, b)): (&DVec3, &(f64, f64))| {
+            let tangent = center.phi.phi + center.phi.phi_a * (a - center.a) + center.phi.phi_b * (b - center.b);
+            Some(self.phi(*p, self.cell(*p).ok()?).ok()?.phi - tangent)
+        };
+        let gaps: Option<Vec<f64>> = corners.iter().zip(&values).map(gap).collect();
+        gaps.map(|gaps| gaps.into_iter().fold(0.0, f64::max)).filter(|gap| gap.is_finite())
     }
 
     /// Points whose hull contains the displaced box: its displaced corners, and those moved back along `d_j`.
@@ -121,7 +166,7 @@ impl CurvedRays {
     /// `delta d` of the edge drawn with one record; `None` if it leaves the record's domain.
     pub(crate) fn record_edge_shift(&self, record: usize, p0: DVec3, p1: DVec3) -> Option<DVec3> {
         let Some(turn) = self.turns().get(record) else { return self.turns().is_empty().then_some(DVec3::ZERO) };
-        Some(turn.edge_delta(p0, p1)? * turn.shift)
+        Some(turn.edge_delta(&turn.edge_end(p0)?, &turn.edge_end(p1)?)? * turn.shift)
     }
 
     /// Whether the point's displacement is the sum of all turns' phi: past each earlier turn, before each later one.

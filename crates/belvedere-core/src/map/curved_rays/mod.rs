@@ -21,6 +21,7 @@ mod remedy;
 mod spec;
 mod turn;
 
+pub(crate) use bounds::EdgeEnd;
 pub use form::LinearForm;
 pub use phi::ViewpointValues;
 pub use ray::{Bend, C2Arc, RayPiece, Shape};

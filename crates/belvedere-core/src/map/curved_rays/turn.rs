@@ -99,14 +99,17 @@ impl Turn {
 
     /// Displaced point relative to the eye.
     pub(super) fn displaced(&self, p: DVec3, cell: Cell) -> Result<DVec3, Miss> {
-        Ok(match cell {
+        let phi = if cell == Cell::Wedge { self.phi(p, cell)?.phi } else { 0.0 };
+        Ok(self.displaced_by(p, cell, phi))
+    }
+
+    /// The same with phi as known.
+    pub(super) fn displaced_by(&self, p: DVec3, cell: Cell, phi: f64) -> DVec3 {
+        match cell {
             Cell::Before => self.before * (p - self.viewpoint_before),
             Cell::After => self.after * (p - self.viewpoint),
-            Cell::Wedge => {
-                let phi = self.phi(p, cell)?.phi;
-                self.before * (p - self.viewpoint_before) + phi * self.shift
-            }
-        })
+            Cell::Wedge => self.before * (p - self.viewpoint_before) + phi * self.shift,
+        }
     }
 
     /// phi and its derivatives by a and b.

@@ -63,6 +63,36 @@ fn edge_error_is_never_below_the_truth_and_not_far_above() {
 }
 
 #[test]
+fn edges_with_known_ends_have_the_same_bound() {
+    for model in MODELS {
+        for spec in specs() {
+            let view = spec.view(model, &Similarity::IDENTITY);
+            let mut random = Random::new(0xed9e);
+            let (mut compared, mut bounded) = (0, 0);
+            for k in 0..400 {
+                let record = k % view.records();
+                let edges = view.edges(record).unwrap();
+                let (p0, p1) = edge(&view, &mut random, 40.0);
+                let (Some(a), Some(b)) = (edges.point(p0), edges.point(p1)) else { continue };
+                let (found, want) = (edges.error_px(&a, &b), view.edge_error_px_in(record, p0, p1));
+                let same = found == want || (found - want).abs() <= 1e-9 * want.abs().max(1e-3);
+                assert!(same, "{model:?} record {record}, edge {p0} {p1}: {found} px, not {want}");
+                compared += u32::from(want > 0.0 && want.is_finite());
+                let within = edges.box_error_px(&Aabb::of([p0, p1]));
+                assert!(
+                    found <= within * (1.0 + 1e-9) + 1e-9,
+                    "{model:?} record {record}, box {p0} {p1}: {found} px, not {within}"
+                );
+                bounded += u32::from(found > 0.0 && within.is_finite());
+            }
+            assert!(compared > 0, "{model:?}: {compared}");
+            // The original model is convex only nearly.
+            assert!(bounded > 0 || model == Model::Original || view.records() > 1, "{model:?}");
+        }
+    }
+}
+
+#[test]
 fn edges_across_turns_are_bounded_by_the_sum() {
     let view = cameras::long_bend().view(Model::Modified, &Similarity::IDENTITY);
     let mut random = Random::new(0xacc);
