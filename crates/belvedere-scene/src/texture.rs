@@ -82,8 +82,8 @@ impl Texture {
             return Color { r, g, b, a };
         }
         let (fx, fy) = (x - x.floor(), y - y.floor());
-        let column = |k: i64| wrapped(x.floor() as i64 + k, level.width, self.wrap[0]);
-        let row = |k: i64| wrapped(y.floor() as i64 + k, level.height, self.wrap[1]);
+        let column = |k: i64| wrapped((x.floor() as i64).saturating_add(k), level.width, self.wrap[0]);
+        let row = |k: i64| wrapped((y.floor() as i64).saturating_add(k), level.height, self.wrap[1]);
         let pixel = |i: i64, k: i64| level.pixels[row(k) * level.width + column(i)].map(f32::from);
         let [p, q, r, s] = [pixel(0, 0), pixel(1, 0), pixel(0, 1), pixel(1, 1)];
         let mix = |c: usize| {

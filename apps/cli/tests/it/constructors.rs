@@ -207,6 +207,11 @@ fn reveal_looks_round_what_hides_a_layer_atoms_or_a_point() {
         let line = place.fails(&["reveal", "s.toml", "--see", see, "-o", "x.png"]);
         assert!(words.iter().all(|w| line.contains(w)), "{line}");
     }
+    // Ground is none, and a name that is nearly one is told.
+    for (source, word) in [("builtin:canyon", "no model that can be looked into"), ("builtin:canyom", "\"canyon\"")] {
+        let line = place.fails(&["reveal", source, "--see", "1,2,3", "-o", "x.png"]);
+        assert!(line.contains(word), "{line}");
+    }
     let line = place.fails(&["reveal", "builtin:dna", "--see", "chain Q", "-o", "x.png"]);
     assert!(line.contains("chain Q") && line.contains("chains are A, B"), "{line}");
     place.write("x.tif", "no model");

@@ -173,7 +173,8 @@ fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
     match file.rsplit('.').next().unwrap_or_default() {
         _ if builtin && stem == "dna" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
         _ if builtin && (stem == "engine" || stem == "tube") => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
-        _ if builtin => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
+        // Unknown names go on to where the nearest one is told.
+        _ if builtin && !matches!(stem, "massif" | "canyon" | "street") => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
         "pdb" | "ent" | "cif" | "mmcif" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
         "obj" | "ply" | "stl" | "gltf" | "glb" => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
         "vti" | "nrrd" | "nhdr" | "raw" => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
