@@ -1,8 +1,9 @@
-//! What is looked at: terrain, lines, areas, points, boxes, meshes and molecules as plain data, never view-dependent;
+//! What is looked at: terrain, lines, areas, points, boxes, meshes, molecules and cities as plain data, never view-dependent;
 //! and the contract between pictures and whoever needs them ([`Renderer`], [`RenderJob`], [`Frame`]).
 
 pub mod cell;
 mod chain;
+pub mod city;
 pub mod drape;
 pub mod frame;
 pub mod heightfield;
@@ -20,6 +21,10 @@ pub mod texture;
 pub mod volume;
 
 pub use cell::CellTriangle;
+pub use city::{
+    Building, City, CityArea, CityFace, HeightSource, LandCover, Polygon, Structure, StructureKind, Surface, Way,
+    WayClass,
+};
 pub use drape::{Draped, drape_polyline};
 pub use frame::{Aux, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer};
 pub use heightfield::{Heightfield, HeightfieldError, NodeState, States};

@@ -1,0 +1,167 @@
+//! A city as it is mapped: buildings, ways and land cover; plain data that pictures and generalisation start from.
+
+use belvedere_core::{DVec2, DVec3};
+
+/// What is known of a city. Coordinates are those of its holder: of the file after loading, of the scene once it is placed there.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct City {
+    /// Buildings.
+    pub buildings: Vec<Building>,
+    /// Solids that are no buildings.
+    pub structures: Vec<Structure>,
+    /// Centre lines of streets, railways and rivers.
+    pub ways: Vec<Way>,
+    /// Land cover.
+    pub areas: Vec<CityArea>,
+}
+
+/// A polygon in plan.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Polygon {
+    /// Outer ring, counter-clockwise, closed implicitly, at least 3 vertices.
+    pub outer: Vec<DVec2>,
+    /// Holes, clockwise, closed implicitly.
+    pub holes: Vec<Vec<DVec2>>,
+}
+
+/// Where the height of a building is from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum HeightSource {
+    /// The shape itself: median of the roof over the ground.
+    Shape,
+    /// A height attribute.
+    Stated,
+    /// Storeys times 3 m, and 1 m.
+    Levels,
+    /// Unknown: 9 m.
+    Assumed,
+}
+
+/// A building.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Building {
+    /// Id in the file, possibly empty.
+    pub id: String,
+    /// Name, possibly empty.
+    pub name: String,
+    /// Whether the file's attributes make it a landmark (church, tower, monument and the like).
+    pub landmark: bool,
+    /// Outline in plan, one polygon or several.
+    pub footprint: Vec<Polygon>,
+    /// Height of its ground, metres over the file's datum; `None` = it stands on the terrain.
+    pub base_m: Option<f64>,
+    /// Height over its ground, metres, > 0.
+    pub height_m: f64,
+    /// Where the height is from.
+    pub height_source: HeightSource,
+    /// Its surfaces; empty = the footprint extruded to its height under a flat roof.
+    pub faces: Vec<CityFace>,
+}
+
+/// A solid that is no building.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Structure {
+    /// Id in the file, possibly empty.
+    pub id: String,
+    /// Name, possibly empty.
+    pub name: String,
+    /// What it is.
+    pub kind: StructureKind,
+    /// Its surfaces, at least one.
+    pub faces: Vec<CityFace>,
+}
+
+/// Kinds of solids that are no buildings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum StructureKind {
+    /// Bridges.
+    Bridge,
+    /// Trees and hedges.
+    Vegetation,
+    /// Tunnels, installations, furniture and the rest.
+    Other,
+}
+
+/// A plane surface in space.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CityFace {
+    /// What it is of its solid.
+    pub surface: Surface,
+    /// Rings, outer first, then holes, closed implicitly; the outer one counter-clockwise seen from outside.
+    pub rings: Vec<Vec<DVec3>>,
+}
+
+/// Semantics of a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Surface {
+    /// Roof.
+    Roof,
+    /// Wall, closure surface.
+    Wall,
+    /// Ground, underside.
+    Ground,
+    /// Not told.
+    Other,
+}
+
+/// A centre line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Way {
+    /// Name, possibly empty.
+    pub name: String,
+    /// What runs there.
+    pub class: WayClass,
+    /// Vertices, at least 2.
+    pub points: Vec<DVec2>,
+}
+
+/// Classes of ways, of OpenStreetMap's `highway`, `railway` and `waterway`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum WayClass {
+    /// Motorway, trunk road and their ramps.
+    Motorway,
+    /// Primary road.
+    Primary,
+    /// Secondary road.
+    Secondary,
+    /// Tertiary road.
+    Tertiary,
+    /// Residential and unclassified streets.
+    Residential,
+    /// Service roads, yards, tracks.
+    Service,
+    /// Footways, paths, steps, cycleways.
+    Footway,
+    /// Railways and trams.
+    Rail,
+    /// Rivers, canals, streams.
+    Waterway,
+}
+
+/// A piece of land cover.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CityArea {
+    /// Name, possibly empty.
+    pub name: String,
+    /// What covers it.
+    pub cover: LandCover,
+    /// Outline in plan, at least one polygon.
+    pub polygons: Vec<Polygon>,
+}
+
+/// Kinds of land cover.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum LandCover {
+    /// Lakes, rivers, canals, basins.
+    Water,
+    /// Parks, gardens, meadows, cemeteries.
+    Green,
+    /// Forest and scrub.
+    Forest,
+    /// Streets, squares, parking.
+    Road,
+    /// Railway land.
+    Rail,
+    /// Everything else.
+    Other,
+}
