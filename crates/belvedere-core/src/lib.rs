@@ -25,5 +25,6 @@ pub use glam::{DMat3, DVec2, DVec3};
 pub use map::curved_rays::{CurvedRays, CurvedRaysError};
 pub use map::earth::EarthCurvature;
 pub use map::spline::SplineBend;
+pub use map::split_rays::SplitRays;
 pub use map::terrain::TerrainDisocclusion;
 pub use map::{Displaced, Miss, SpaceMap, Stage};

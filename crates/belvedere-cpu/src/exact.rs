@@ -3,6 +3,7 @@
 //! It shares with the rasteriser the colours ([`crate::shade`]) and the lines and points drawn over the surfaces
 //! ([`crate::marks`]), and nothing that decides what is seen where: the reference that other renderers are judged by.
 
+use crate::branches;
 use crate::frame::{Buffers, checked, finish};
 use crate::geometry::blocks::Blocks;
 use crate::geometry::pass::Pass;
@@ -54,7 +55,7 @@ impl Renderer for ExactRenderer {
     }
 
     fn render(&self, job: &RenderJob<'_>) -> Result<Frame, RenderError> {
-        checked(job, render)
+        checked(job, |job| branches::draw(job, render))
     }
 }
 

@@ -11,7 +11,10 @@
 //! 4. `shade`: samples become colours. The light on the ground is fixed to the map and remembered (`cache`) from frame to frame.
 //! 5. `volume`: what rays gather in voxels, as far as the surfaces, is laid over them.
 //! 6. `marks`: lines, outlines, points and names, by lines of sight through the surfaces themselves (`trace`).
+//!
+//! Where rays part, every branch is drawn so and the pictures are put together along the seams (`branches`).
 
+mod branches;
 mod cache;
 pub mod canvas;
 mod exact;

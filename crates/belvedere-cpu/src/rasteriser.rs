@@ -1,5 +1,6 @@
 //! The rasteriser.
 
+use crate::branches;
 use crate::cache::{GroundCache, lock};
 use crate::frame::{Buffers, checked, finish};
 use crate::geometry::blocks::Blocks;
@@ -59,7 +60,7 @@ impl Renderer for CpuRenderer {
 
     fn render_into(&self, job: &RenderJob<'_>, frame: &mut Frame) -> Result<(), RenderError> {
         let old = Mutex::new(std::mem::take(frame));
-        *frame = checked(job, |job| self.draw(job, std::mem::take(&mut *lock(&old))))?;
+        *frame = checked(job, |job| branches::draw(job, |job| self.draw(job, std::mem::take(&mut *lock(&old)))))?;
         Ok(())
     }
 }

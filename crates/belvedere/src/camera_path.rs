@@ -4,7 +4,8 @@ use crate::resolve::constructor::{self, Memory};
 use crate::resolve::terrain::Solving;
 use crate::resolve::{stages, validate};
 use crate::scene_file::{
-    self, AnimationDoc, CameraDoc, Document, PointDoc, PresetsDoc, RaysStageDoc, StageDoc, SweepDoc, TurntableDoc,
+    self, AnimationDoc, CameraDoc, Document, PointDoc, PresetsDoc, RaysStageDoc, SplitDoc, StageDoc, SweepDoc, TurnDoc,
+    TurntableDoc,
 };
 use crate::session::Description;
 use crate::{BelvedereError, Session};
@@ -447,8 +448,17 @@ fn turntable(
 fn turn_rays(rays: &mut RaysStageDoc, pivot: DVec3, turn: DQuat) {
     let position = |p: &mut [f64; 3]| *p = (pivot + turn * (DVec3::from_array(*p) - pivot)).to_array();
     let direction = |v: &mut [f64; 3]| *v = (turn * DVec3::from_array(*v)).to_array();
-    for t in &mut rays.turn {
-        [&mut t.viewpoint, &mut t.t0, &mut t.t1, &mut t.t2].into_iter().for_each(position);
+    let mut ways: Vec<&mut [TurnDoc]> = vec![&mut rays.turn];
+    let mut splits: Vec<&mut SplitDoc> = rays.split.iter_mut().collect();
+    while let Some(split) = splits.pop() {
+        split.merge.iter_mut().for_each(|merge| position(&mut merge.viewpoint));
+        for way in [&mut split.left, &mut split.right] {
+            ways.push(&mut way.turn);
+            splits.extend(way.split.as_deref_mut());
+        }
+    }
+    for t in ways.into_iter().flatten() {
+        [&mut t.viewpoint, &mut t.t0, &mut t.t1, &mut t.t2].into_iter().for_each(&position);
         if let Some(line) = &mut t.line {
             position(&mut line.point);
             direction(&mut line.dir);

@@ -4,7 +4,7 @@ use super::image::{DepthTest, SampleImage};
 use super::surface;
 use crate::ConstructError;
 use crate::samples::{Sample, SampledFeature};
-use belvedere_core::{CurvedRays, DVec2, DVec3, Pinhole, Stage, View};
+use belvedere_core::{CurvedRays, DVec2, DVec3, Pinhole, SplitRays, Stage, View};
 use belvedere_scene::{Aux, Frame, Heightfield, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
 
 pub(super) struct Job<'a> {
@@ -43,7 +43,12 @@ impl Job<'_> {
         let scale = scale.clamp(1, 8).min(65_535 / pinhole.image[0].max(pinhole.image[1])).max(1);
         let larger = Pinhole { image: pinhole.image.map(|n| n * scale), ..pinhole.clone() };
         let rebuilt = |stage: &Stage| match stage {
-            Stage::CurvedRays(rays) => CurvedRays::new(&larger, rays.model(), rays.spec()).map(Stage::CurvedRays),
+            Stage::CurvedRays(rays) => {
+                CurvedRays::new(&larger, rays.model(), rays.spec()).map(Stage::CurvedRays).map_err(|_| ())
+            }
+            Stage::SplitRays(rays) => {
+                SplitRays::new(&larger, rays.model(), rays.spec()).map(Stage::SplitRays).map_err(|_| ())
+            }
             other => Ok(other.clone()),
         };
         // Curved rays belong to the pixels of their image; should the finer ones not bend, the given image has to do.

@@ -29,7 +29,7 @@ impl Sidestep {
     pub fn view(&self, base: &View) -> Result<View, ConstructError> {
         let root = base.pinhole();
         let rays = CurvedRays::new(root, Model::Modified, &[self.turn(root)])?;
-        let earlier = base.stages().iter().filter(|s| !matches!(s, Stage::CurvedRays(_))).cloned();
+        let earlier = base.stages().iter().filter(|s| !s.bends_rays()).cloned();
         Ok(View::new(root.clone(), earlier.chain([Stage::CurvedRays(rays)]).collect())?)
     }
 }

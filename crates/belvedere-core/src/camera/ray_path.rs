@@ -68,8 +68,10 @@ impl<'a> RayPath<'a> {
         if !(from.is_finite() && per_depth.is_finite()) {
             return Err(Miss::OutsideDomain);
         }
-        if let Some(Stage::CurvedRays(rays)) = self.view.stages().last() {
-            return rays.pieces(per_depth);
+        match self.view.stages().last() {
+            Some(Stage::CurvedRays(rays)) => return rays.pieces(per_depth),
+            Some(Stage::SplitRays(rays)) => return rays.branch_of(from + per_depth).rays.pieces(per_depth),
+            _ => {}
         }
         Ok(vec![RayPiece { segment: 0, depth: [0.0, f64::INFINITY], shape: Shape::Line { from, per_depth } }])
     }
@@ -81,7 +83,7 @@ impl<'a> RayPath<'a> {
     /// [`Miss::BehindEye`] unless `depth` > 0; [`Miss::OutsideDomain`] where the ray has no world point on the way.
     pub fn path_length(&self, depth: f64) -> Result<f64, Miss> {
         self.at(depth)?;
-        let bent_before = self.view.stages().iter().any(|s| !matches!(s, Stage::CurvedRays(_)));
+        let bent_before = self.view.stages().iter().any(|s| !s.bends_rays());
         if bent_before {
             return self.length_by_chords(depth);
         }

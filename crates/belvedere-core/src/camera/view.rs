@@ -1,6 +1,7 @@
 //! A view: a pinhole behind a chain of displacements.
 
 use super::{Pinhole, Projected, RayPath};
+use crate::map::split_rays::{Branch, SplitRays};
 use crate::{Aabb, CurvedRays, Displaced, Miss, SpaceMap, Stage};
 use glam::{DVec2, DVec3};
 use std::ops::RangeInclusive;
@@ -67,6 +68,11 @@ impl ImageBox {
             depth_max: self.depth_max.max(depth),
         }
     }
+
+    /// The smallest box around both.
+    pub fn union(self, other: Self) -> Self {
+        self.including(other.min, other.depth_min).including(other.max, other.depth_max)
+    }
 }
 
 impl View {
@@ -81,10 +87,13 @@ impl View {
                 return Err(ViewError::Order { first: pair[0].name(), second: pair[1].name() });
             }
         }
-        if let Some(Stage::CurvedRays(rays)) = stages.last()
-            && !rays.root().has_same_rays(&pinhole)
-        {
-            return Err(ViewError::OtherRoot { built: rays.root().eye, here: pinhole.eye });
+        let root = match stages.last() {
+            Some(Stage::CurvedRays(rays)) => Some(rays.root()),
+            Some(Stage::SplitRays(rays)) => Some(rays.root()),
+            _ => None,
+        };
+        if let Some(root) = root.filter(|root| !root.has_same_rays(&pinhole)) {
+            return Err(ViewError::OtherRoot { built: root.eye, here: pinhole.eye });
         }
         Ok(Self { pinhole, stages })
     }
@@ -141,16 +150,33 @@ impl View {
         let mut segment = 0;
         let mut p = p_displaced;
         for stage in self.stages.iter().rev() {
-            if let Stage::CurvedRays(rays) = stage {
-                (p, segment) = rays.undisplace(p)?;
-            } else {
-                p = stage.as_map().invert(p)?;
+            match stage {
+                Stage::CurvedRays(rays) => (p, segment) = rays.undisplace(p)?,
+                Stage::SplitRays(rays) => (p, segment) = rays.undisplace(p)?,
+                _ => p = stage.as_map().invert(p)?,
             }
         }
         Ok((p, segment))
     }
 
-    /// The curved rays, if the chain ends with them.
+    /// The rays that part at seams, if the chain ends with them.
+    pub fn split_rays(&self) -> Option<&SplitRays> {
+        match self.stages.last() {
+            Some(Stage::SplitRays(rays)) => Some(rays),
+            _ => None,
+        }
+    }
+
+    /// This view as one of its branches sees it, over the whole image: with curved rays in place of those that part.
+    pub fn along(&self, branch: &Branch) -> Self {
+        let earlier = self.stages.iter().filter(|s| !matches!(s, Stage::SplitRays(_))).cloned();
+        Self {
+            pinhole: self.pinhole.clone(),
+            stages: earlier.chain([Stage::CurvedRays(branch.rays.clone())]).collect(),
+        }
+    }
+
+    /// The curved rays, if the chain ends with them; not those that part, see [`View::split_rays`].
     pub fn curved_rays(&self) -> Option<&CurvedRays> {
         match self.stages.last() {
             Some(Stage::CurvedRays(rays)) => Some(rays),
@@ -160,7 +186,8 @@ impl View {
 
     /// The stages before the curved rays, all of them if there are none.
     fn earlier_stages(&self) -> &[Stage] {
-        &self.stages[..self.stages.len() - usize::from(self.curved_rays().is_some())]
+        let last = self.stages.last().is_some_and(Stage::bends_rays);
+        &self.stages[..self.stages.len() - usize::from(last)]
     }
 
     fn displace_earlier(&self, p_world: DVec3) -> Result<Displaced, Miss> {
@@ -172,6 +199,7 @@ impl View {
     }
 
     /// How often a renderer draws what spans the whole chain: once per turn of the curved rays, once without them.
+    /// Rays that part are drawn branch by branch ([`View::along`]); the records here are not theirs.
     pub fn records(&self) -> usize {
         self.curved_rays().map_or(1, CurvedRays::records)
     }
@@ -184,7 +212,7 @@ impl View {
         let d = self.displace_earlier(p_world)?;
         match self.curved_rays() {
             Some(rays) => Ok(Displaced { folded: d.folded, ..rays.displace_in(record, d.point)? }),
-            None if record == 0 => Ok(d),
+            None if record == 0 && self.split_rays().is_none() => Ok(d),
             None => Err(Miss::OutsideDomain),
         }
     }
@@ -194,16 +222,21 @@ impl View {
     pub fn record_margins(&self, record: usize, p_world: DVec3) -> [f64; 2] {
         match (self.displace_earlier(p_world), self.curved_rays()) {
             (Ok(d), Some(rays)) => rays.record_margins(record, d.point),
-            (Ok(_), None) => [f64::INFINITY; 2],
-            (Err(_), _) => [f64::NEG_INFINITY; 2],
+            (Ok(_), None) if self.split_rays().is_none() => [f64::INFINITY; 2],
+            _ => [f64::NEG_INFINITY; 2],
         }
     }
 
-    /// All images of a point, in ray order. More than one only where cells of a curved-ray chain overlap.
+    /// All images of a point, in ray order. More than one only where cells of a curved-ray chain overlap, or where several
+    /// branches of rays that part show it.
     pub fn project_all(&self, p_world: DVec3) -> Vec<Projected> {
-        let Some(rays) = self.curved_rays() else { return self.project(p_world).into_iter().collect() };
         let Ok(d) = self.displace_earlier(p_world) else { return Vec::new() };
-        let images = rays.displace_all(d.point).into_iter();
+        let images = match self.stages.last() {
+            Some(Stage::CurvedRays(rays)) => rays.displace_all(d.point),
+            Some(Stage::SplitRays(rays)) => rays.displace_all(d.point).into_iter().map(|(_, image)| image).collect(),
+            _ => return self.photograph(d).into_iter().collect(),
+        };
+        let images = images.into_iter();
         images.filter_map(|image| self.photograph(Displaced { folded: d.folded, ..image }).ok()).collect()
     }
 
@@ -255,6 +288,12 @@ impl View {
 
     fn edge_error(&self, p0: DVec3, p1: DVec3, record: Option<usize>) -> f64 {
         let Some((a, b, mut error)) = self.earlier_error(p0, p1) else { return f64::INFINITY };
+        if let Some(split) = self.split_rays() {
+            return match split.branch_of_edge(a, b) {
+                Some(branch) if record.is_none() => self.along(branch).edge_error(p0, p1, None),
+                _ => f64::INFINITY,
+            };
+        }
         let Some(rays) = self.curved_rays() else { return self.image_error([a, b], error, &[]) };
         if error > 0.0 {
             error *= stretch(rays, a, b);
@@ -327,6 +366,10 @@ impl View {
 
     /// Conservative image of a box, or `None` if part of it has no image or lies nearer than `near`.
     pub fn image_box(&self, bounds: &Aabb) -> Option<ImageBox> {
+        if let Some(split) = self.split_rays() {
+            let boxes = split.branches().iter().map(|branch| self.along(branch).image_box(bounds));
+            return boxes.reduce(|a, b| Some(a?.union(b?))).flatten();
+        }
         let earlier = self.earlier_stages().iter().try_fold(*bounds, |b, stage| stage.displaced_bounds(&b))?;
         let Some(rays) = self.curved_rays().filter(|rays| rays.turn_count() > 0) else {
             return self.pinhole.image_box(&earlier);

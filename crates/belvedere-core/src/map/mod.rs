@@ -3,6 +3,7 @@
 pub mod curved_rays;
 pub mod earth;
 pub mod spline;
+pub mod split_rays;
 pub mod terrain;
 
 use crate::Aabb;
@@ -51,6 +52,8 @@ pub enum Stage {
     SplineBend(spline::SplineBend),
     /// Rays bend around occluders (Cui et al. 2010).
     CurvedRays(curved_rays::CurvedRays),
+    /// Rays bend, and part at seams of the picture.
+    SplitRays(split_rays::SplitRays),
 }
 
 impl Stage {
@@ -61,7 +64,13 @@ impl Stage {
             Self::TerrainDisocclusion(m) => m,
             Self::SplineBend(m) => m,
             Self::CurvedRays(m) => m,
+            Self::SplitRays(m) => m,
         }
+    }
+
+    /// Whether the stage bends rays about turns, the last of a chain: [`Stage::CurvedRays`] or [`Stage::SplitRays`].
+    pub fn bends_rays(&self) -> bool {
+        matches!(self, Self::CurvedRays(_) | Self::SplitRays(_))
     }
 
     /// Position in the fixed order of application: earth, terrain, spline, curved rays.
@@ -70,7 +79,7 @@ impl Stage {
             Self::EarthCurvature(_) => 0,
             Self::TerrainDisocclusion(_) => 1,
             Self::SplineBend(_) => 2,
-            Self::CurvedRays(_) => 3,
+            Self::CurvedRays(_) | Self::SplitRays(_) => 3,
         }
     }
 
@@ -80,7 +89,7 @@ impl Stage {
             Self::EarthCurvature(_) => "earth",
             Self::TerrainDisocclusion(_) => "terrain_disocclusion",
             Self::SplineBend(_) => "spline_bend",
-            Self::CurvedRays(_) => "curved_rays",
+            Self::CurvedRays(_) | Self::SplitRays(_) => "curved_rays",
         }
     }
 
@@ -89,6 +98,7 @@ impl Stage {
         match self {
             Self::SplineBend(m) => Ok(Displaced { point: m.apply(p)?, segment: 0, folded: m.is_folded(p) }),
             Self::CurvedRays(m) => m.displace(p),
+            Self::SplitRays(m) => m.displace(p),
             _ => Ok(Displaced { point: self.as_map().apply(p)?, segment: 0, folded: false }),
         }
     }
@@ -102,6 +112,7 @@ impl Stage {
             Self::TerrainDisocclusion(m) => m.edge_bound(p0, p1),
             Self::SplineBend(m) => m.edge_bound(p0, p1),
             Self::CurvedRays(m) => m.edge_bound(p0, p1),
+            Self::SplitRays(m) => m.edge_bound(p0, p1),
         }
     }
 
@@ -112,6 +123,7 @@ impl Stage {
             Self::TerrainDisocclusion(m) => m.displaced_bounds(bounds),
             Self::SplineBend(m) => m.displaced_bounds(bounds),
             Self::CurvedRays(m) => m.displaced_bounds(bounds),
+            Self::SplitRays(m) => m.displaced_bounds(bounds),
         }
     }
 }

@@ -6,5 +6,6 @@ mod spline_bend;
 mod spline_bounds;
 mod spline_curve;
 mod spline_figures;
+mod split_rays;
 mod terrain;
 mod views;

@@ -75,7 +75,7 @@ impl<'a> Split<'a> {
             Stage::SplineBend(b) => Some(b),
             _ => None,
         });
-        let kind = match (bend, view.curved_rays().is_some()) {
+        let kind = match (bend, view.stages().iter().any(Stage::bends_rays)) {
             (None, _) => Kind::Pieces,
             (Some(bend), false) => {
                 let across = |axis: DVec3| view.pinhole().right.dot(axis).abs() <= ALIKE;
@@ -125,7 +125,7 @@ impl<'a> Split<'a> {
 
     /// Whether at every depth the rays of a row lie on a line, evenly: what two of them clear between them, all between them clear.
     pub(crate) fn rows_are_straight(&self) -> bool {
-        self.kind == Kind::Rows || (self.kind == Kind::Pieces && self.view.curved_rays().is_none())
+        self.kind == Kind::Rows || (self.kind == Kind::Pieces && !self.view.stages().iter().any(Stage::bends_rays))
     }
 
     /// How far two points of rays of a row at one depth may lie above the rays between them, for the earth's curvature.

@@ -51,7 +51,7 @@ pub(super) struct Rays<'a> {
 impl<'a> Rays<'a> {
     /// * `range`: nearest depth, and one beyond which nothing of the scene is seen.
     pub(super) fn new(view: &'a View, range: [f64; 2]) -> Self {
-        let pieces = view.stages().iter().all(|s| matches!(s, Stage::CurvedRays(_)));
+        let pieces = view.stages().iter().all(Stage::bends_rays);
         Self { view, split: Split::new(view), pieces, range }
     }
 

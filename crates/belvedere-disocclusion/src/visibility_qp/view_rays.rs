@@ -25,7 +25,7 @@ pub struct ViewSight {
 impl ViewSight {
     /// Lines of sight over `field` of the stages of `view` that follow the terrain.
     pub fn new(view: &View, field: &Field) -> Self {
-        let follows = |s: &&Stage| matches!(s, Stage::SplineBend(_) | Stage::CurvedRays(_));
+        let follows = |s: &&Stage| matches!(s, Stage::SplineBend(_)) || s.bends_rays();
         let stages = view.stages().iter().filter(follows).cloned().collect();
         // A part of a chain in its order is a chain.
         let later =

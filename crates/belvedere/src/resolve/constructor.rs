@@ -165,7 +165,7 @@ fn preview(
     let earlier = base.stages().iter().filter_map(|stage| match stage {
         Stage::EarthCurvature(earth) => Some(Stage::EarthCurvature(EarthCurvature { eye: root.eye, ..*earth })),
         Stage::TerrainDisocclusion(_) => Some(stage.clone()),
-        Stage::SplineBend(_) | Stage::CurvedRays(_) => None,
+        Stage::SplineBend(_) | Stage::CurvedRays(_) | Stage::SplitRays(_) => None,
     });
     let stages = earlier.chain(seen.view.stages().iter().cloned()).collect();
     let view = View::new(root, stages).map_err(|e| source.error(&["constructor", "kind"], e))?;

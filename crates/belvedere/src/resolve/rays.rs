@@ -1,25 +1,21 @@
 //! From the turns of a document to curved rays.
 
 use crate::BelvedereError;
-use crate::scene_file::{AxisDoc, RaysStageDoc, StageDoc, Table, TurnDoc};
+use crate::scene_file::{AxisDoc, MergeDoc, RaysStageDoc, SplitDoc, StageDoc, Table, TurnDoc, WayDoc};
 use belvedere_construct::rays::Sidestep;
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
-use belvedere_core::{CurvedRays, DVec3, Pinhole, Stage};
+use belvedere_core::map::split_rays::{Fork, Merge, Seam, SplitSpec};
+use belvedere_core::{CurvedRays, DVec3, Pinhole, SplitRays, Stage};
 
-/// The stage behind `root`, and its document with every rule for m replaced by the number it came to.
+/// The stage behind `root`, and its document with every rule replaced by its value.
 pub(super) fn resolve(root: &Pinhole, doc: &RaysStageDoc, at: Table<'_>) -> Result<(Stage, StageDoc), BelvedereError> {
+    if let Some(split) = &doc.split {
+        return parting(root, doc, split, at);
+    }
     if doc.turn.is_empty() {
         return Err(at.error(&["turn"], "curved_rays has no turn; give at least one [[stage.turn]]"));
     }
-    let specs: Vec<TurnSpec> = doc
-        .turn
-        .iter()
-        .enumerate()
-        .map(|(j, turn)| {
-            turn_spec(turn)
-                .map_err(|(key, reason)| at.error(&["turn", &j.to_string(), key], format!("turn {}: {reason}", j + 1)))
-        })
-        .collect::<Result<_, _>>()?;
+    let specs = turn_specs(&doc.turn, &[], at)?;
     let rays = CurvedRays::new(root, doc.model, &specs).map_err(|e| at.error(&["turn"], e))?;
     let mut resolved = doc.clone();
     for (turn, computed) in resolved.turn.iter_mut().zip(rays.turns()) {
@@ -29,6 +25,57 @@ pub(super) fn resolve(root: &Pinhole, doc: &RaysStageDoc, at: Table<'_>) -> Resu
         }
     }
     Ok((Stage::CurvedRays(rays), StageDoc::CurvedRays(resolved)))
+}
+
+/// Rays that part.
+fn parting(
+    root: &Pinhole,
+    doc: &RaysStageDoc,
+    split: &SplitDoc,
+    at: Table<'_>,
+) -> Result<(Stage, StageDoc), BelvedereError> {
+    let turns = turn_specs(&doc.turn, &[], at)?;
+    let spec = SplitSpec { turns, fork: Some(Box::new(fork(split, &["split"], at)?)) };
+    let rays = SplitRays::new(root, doc.model, &spec).map_err(|e| at.error(&["split"], e))?;
+    let WayDoc { turn, split } = way_doc(rays.spec());
+    let resolved = RaysStageDoc { model: doc.model, turn, split: split.map(|split| *split) };
+    Ok((Stage::SplitRays(rays), StageDoc::CurvedRays(resolved)))
+}
+
+/// * `path`: of the split within the stage.
+fn fork(doc: &SplitDoc, path: &[&str], at: Table<'_>) -> Result<Fork, BelvedereError> {
+    let way = |name: &str, way: &WayDoc| -> Result<SplitSpec, BelvedereError> {
+        let path = [path, &[name]].concat();
+        let fork = match &way.split {
+            Some(split) => Some(Box::new(fork(split, &[&path[..], &["split"]].concat(), at)?)),
+            None => None,
+        };
+        Ok(SplitSpec { turns: turn_specs(&way.turn, &path, at)?, fork })
+    };
+    let seam = doc.seam.map_or(Seam::MIDDLE, |[from, to]| Seam { from: from.into(), to: to.into() });
+    let merge = doc.merge.map(|m| Merge { viewpoint: DVec3::from_array(m.viewpoint), reach: m.reach });
+    Ok(Fork { seam, sides: [way("left", &doc.left)?, way("right", &doc.right)?], merge })
+}
+
+fn way_doc(spec: &SplitSpec) -> WayDoc {
+    let split = |fork: &Fork| {
+        let [left, right] = &fork.sides;
+        let merge = fork.merge.map(|m| MergeDoc { viewpoint: m.viewpoint.to_array(), reach: m.reach });
+        let seam = Some([fork.seam.from.to_array(), fork.seam.to.to_array()]);
+        Box::new(SplitDoc { seam, left: way_doc(left), right: way_doc(right), merge })
+    };
+    WayDoc { turn: spec.turns.iter().map(turn_doc).collect(), split: spec.fork.as_deref().map(split) }
+}
+
+/// * `path`: of the table that holds the turns, within the stage.
+fn turn_specs(docs: &[TurnDoc], path: &[&str], at: Table<'_>) -> Result<Vec<TurnSpec>, BelvedereError> {
+    let spec = |(j, turn): (usize, &TurnDoc)| {
+        let number = j.to_string();
+        turn_spec(turn).map_err(|(key, reason)| {
+            at.error(&[path, &["turn", &number, key]].concat(), format!("turn {}: {reason}", j + 1))
+        })
+    };
+    docs.iter().enumerate().map(spec).collect()
 }
 
 fn turn_spec(doc: &TurnDoc) -> Result<TurnSpec, (&'static str, String)> {
@@ -61,11 +108,14 @@ fn turn_spec(doc: &TurnDoc) -> Result<TurnSpec, (&'static str, String)> {
 
 /// The stage of a second viewpoint beside the eye of `root`.
 pub(crate) fn sidestep_stage(sidestep: &Sidestep, root: &Pinhole) -> RaysStageDoc {
-    let turn = sidestep.turn(root);
+    RaysStageDoc { model: Model::Modified, turn: vec![turn_doc(&sidestep.turn(root))], split: None }
+}
+
+fn turn_doc(turn: &TurnSpec) -> TurnDoc {
     let (line, normal) = match turn.pencil {
         Pencil::Line { point, dir } => (Some(AxisDoc { point: point.to_array(), dir: dir.to_array() }), None),
         Pencil::Parallel { normal } => (None, Some(normal.to_array())),
     };
     let [viewpoint, t0, t1, t2] = [turn.viewpoint, turn.t0, turn.t1, turn.t2].map(|p| p.to_array());
-    RaysStageDoc { model: Model::Modified, turn: vec![TurnDoc { viewpoint, t0, t1, t2, line, normal, m: turn.m }] }
+    TurnDoc { viewpoint, t0, t1, t2, line, normal, m: turn.m }
 }

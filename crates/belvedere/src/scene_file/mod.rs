@@ -30,8 +30,8 @@ pub use overlay::{AutoOrLength, AutoWord, HighlightMark, OverlayDoc, SwitchOrLen
 pub use palette::{PaletteDoc, PaletteName};
 pub use paths::Paths;
 pub use stages::{
-    AxisDoc, DetailDoc, PlaneDoc, PresetsDoc, RaysStageDoc, SolverMode, SplineStageDoc, StageDoc, TerrainStageDoc,
-    TurnDoc,
+    AxisDoc, DetailDoc, MergeDoc, PlaneDoc, PresetsDoc, RaysStageDoc, SolverMode, SplineStageDoc, SplitDoc, StageDoc,
+    TerrainStageDoc, TurnDoc, WayDoc,
 };
 pub use volume::VolumeDoc;
 

@@ -204,8 +204,53 @@ pub struct RaysStageDoc {
     /// Model of the transition.
     #[serde(default)]
     pub model: Model,
-    /// The turns, in ray order; at least one.
+    /// The turns, in ray order; at least one, or a split.
+    #[serde(default)]
     pub turn: Vec<TurnDoc>,
+    /// After these turns the rays part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub split: Option<SplitDoc>,
+}
+
+/// The rays of the two sides of a seam go different ways.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SplitDoc {
+    /// Two points of a straight line across the picture, in shares of its width and height, `[0, 0]` at the top left; upright
+    /// in the middle by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seam: Option<[[f64; 2]; 2]>,
+    /// The way of the left side (the upper one of a level seam).
+    #[serde(default)]
+    pub left: WayDoc,
+    /// The way of the right side (the lower one of a level seam).
+    #[serde(default)]
+    pub right: WayDoc,
+    /// Where both ways become one again.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub merge: Option<MergeDoc>,
+}
+
+/// One way: turns, and a further split after them. Without either its rays go on as they come.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct WayDoc {
+    /// The turns, in ray order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub turn: Vec<TurnDoc>,
+    /// After these turns the rays part again.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub split: Option<Box<SplitDoc>>,
+}
+
+/// Both ways go on as from one viewpoint from where the rays along the seam meet.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MergeDoc {
+    /// The common viewpoint.
+    pub viewpoint: [f64; 3],
+    /// How far before and behind the meeting the rays bend, scene units.
+    pub reach: f64,
 }
 
 /// One turn: exactly one of `line` and `normal`.

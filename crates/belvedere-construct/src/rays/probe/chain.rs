@@ -117,7 +117,7 @@ impl Chain {
             let shape = TurnShape { length: share * self.shape.length, ..self.shape };
             CurvedRays::new(root, Model::Modified, &turns(root, root.eye, &corners, &shape)?).ok()
         })?;
-        let earlier = base.stages().iter().filter(|s| !matches!(s, Stage::CurvedRays(_))).cloned();
+        let earlier = base.stages().iter().filter(|s| !s.bends_rays()).cloned();
         View::new(root.clone(), earlier.chain([Stage::CurvedRays(rays)]).collect()).ok()
     }
 }

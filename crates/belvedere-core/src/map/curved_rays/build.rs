@@ -1,6 +1,6 @@
 //! From a specification to a chain.
 
-use super::check::{PreviousTurn, TurnContext, UnscaledTurn, corner_direction, corner_pixels, numbers};
+use super::check::{PreviousTurn, TurnContext, UnscaledTurn, corner_direction, numbers};
 use super::form::{Forms, LinearForm, StraightPart};
 use super::phi::Hinge;
 use super::remedy::report;
@@ -10,7 +10,13 @@ use super::{CurvedRays, Remedy};
 use crate::Pinhole;
 use glam::{DMat3, DVec2};
 
-pub(super) fn build(root: &Pinhole, model: Model, spec: &[TurnSpec]) -> Result<CurvedRays, CurvedRaysError> {
+/// * `corners`: of the part of the image that the chain draws.
+pub(super) fn build(
+    root: &Pinhole,
+    model: Model,
+    spec: &[TurnSpec],
+    corners: &[DVec2],
+) -> Result<CurvedRays, CurvedRaysError> {
     if root.is_orthographic() {
         return Err(CurvedRaysError::Orthographic);
     }
@@ -18,12 +24,12 @@ pub(super) fn build(root: &Pinhole, model: Model, spec: &[TurnSpec]) -> Result<C
     let mut previous: Option<PreviousTurn<'_>> = None;
     let mut turns: Vec<Turn> = Vec::with_capacity(spec.len());
     for (index, turn_spec) in spec.iter().enumerate() {
-        let context = TurnContext { root, turn: index + 1, part, previous };
+        let context = TurnContext { root, corners, turn: index + 1, part, previous };
         numbers(turn_spec, context.turn)?;
         let unscaled = UnscaledTurn::new(turn_spec, context.turn, &part)?;
         let forms = unscaled.check(turn_spec, &context).map_err(|violation| report(violation, turn_spec, &context))?;
         let hinge = hinge(model, turn_spec, &forms, &context)?;
-        let ends = corner_pixels(root).map(|px| forms.end(corner_direction(px, root, &part)));
+        let ends = corners.iter().map(|px| forms.end(corner_direction(*px, root, &part))).collect();
         previous = Some(PreviousTurn { spec: turn_spec, part, ends });
         let turn = Turn::new(&part, turn_spec, &forms, hinge);
         part = turn.part_after();
@@ -66,12 +72,13 @@ fn sharpness(spec: &TurnSpec, forms: &Forms, context: &TurnContext<'_>) -> Resul
     };
     match spec.m {
         Sharpness::Value(m) => Ok(m),
-        Sharpness::Left => at_pixel(DVec2::new(0.0, root.center_px().y)),
+        Sharpness::Left => at_pixel(left(context.corners)),
         Sharpness::Mid => {
-            let [p, q, r, s] = corner_pixels(root).map(at_pixel);
-            let corners = [p?, q?, r?, s?];
-            let (low, high) =
-                corners.into_iter().fold((f64::INFINITY, 0.0f64), |(low, high), m| (low.min(m), high.max(m)));
+            let (mut low, mut high) = (f64::INFINITY, 0.0f64);
+            for &corner in context.corners {
+                let m = at_pixel(corner)?;
+                (low, high) = (low.min(m), high.max(m));
+            }
             Ok((low * high).sqrt())
         }
         Sharpness::Bend => forms.values.m_sigma(forms.sigma).ok_or_else(|| {
@@ -80,6 +87,13 @@ fn sharpness(spec: &TurnSpec, forms: &Forms, context: &TurnContext<'_>) -> Resul
             end_not_reached(pixel, forms.sigma, forms, context)
         }),
     }
+}
+
+/// Middle of the corners that lie farthest left.
+fn left(corners: &[DVec2]) -> DVec2 {
+    let x = corners.iter().map(|c| c.x).fold(f64::INFINITY, f64::min);
+    let ys: Vec<f64> = corners.iter().filter(|c| c.x == x).map(|c| c.y).collect();
+    DVec2::new(x, ys.iter().sum::<f64>() / ys.len() as f64)
 }
 
 fn end_not_reached(pixel: DVec2, sigma: f64, forms: &Forms, context: &TurnContext<'_>) -> CurvedRaysError {

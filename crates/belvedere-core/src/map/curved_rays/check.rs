@@ -14,9 +14,12 @@ const TOUCHING: f64 = 1e-8;
 const LARGEST: f64 = 1e15;
 
 /// What a turn is checked against: the camera and the chain before it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct TurnContext<'a> {
     pub(super) root: &'a Pinhole,
+    /// Corners of the part of the image that the chain draws. All conditions are affine in the pixel, so the corners decide
+    /// for all of it.
+    pub(super) corners: &'a [DVec2],
     /// Number of the turn, from 1.
     pub(super) turn: usize,
     /// The chain before the turn.
@@ -26,13 +29,13 @@ pub(super) struct TurnContext<'a> {
 }
 
 /// The turn before the one that is checked.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct PreviousTurn<'a> {
     pub(super) spec: &'a TurnSpec,
     /// The chain before that turn.
     pub(super) part: StraightPart,
-    /// Depth of its t2 on the rays of the image corners.
-    pub(super) ends: [f64; 4],
+    /// Depth of its t2 on the rays of the corners.
+    pub(super) ends: Vec<f64>,
 }
 
 /// A condition that does not hold, measured. The order of the variants is the order of the checks.
@@ -180,16 +183,16 @@ impl UnscaledTurn {
         if !(forms.values.a0 < 0.0) {
             return Err(Violation::PreviousPastStart { past: forms.values.a0 / forms.a.gradient.length() });
         }
-        let pixels = corner_pixels(context.root);
-        for pixel in pixels {
+        let pixels = context.corners;
+        for &pixel in pixels {
             forms.meets_bend(pixel, spec, context)?;
         }
-        for pixel in pixels {
+        for &pixel in pixels {
             forms.reaches_end(pixel, context)?;
         }
-        for (i, pixel) in pixels.into_iter().enumerate() {
+        for (i, &pixel) in pixels.iter().enumerate() {
             let start = forms.start(corner_direction(pixel, context.root, part));
-            match context.previous {
+            match &context.previous {
                 Some(PreviousTurn { ends, .. }) if !(start >= ends[i]) => {
                     return Err(Violation::TurnsOverlap { pixel, end: ends[i], start });
                 }
@@ -264,7 +267,7 @@ pub(super) fn axis(context: &TurnContext<'_>) -> DVec3 {
     (context.part.inverse * context.root.forward).normalize()
 }
 
-/// The four image corners. All conditions are affine in the pixel, so the corners decide for the whole picture.
+/// The four image corners.
 pub(super) fn corner_pixels(root: &Pinhole) -> [DVec2; 4] {
     let [w, h] = root.image.map(f64::from);
     [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(0.0, h), DVec2::new(w, h)]

@@ -101,7 +101,17 @@ impl CurvedRays {
     /// # Errors
     /// Every [`CurvedRaysError`]: the first condition, turn by turn, that does not hold, with the nearest valid value.
     pub fn new(root: &Pinhole, model: Model, turns: &[TurnSpec]) -> Result<Self, CurvedRaysError> {
-        build::build(root, model, turns)
+        build::build(root, model, turns, &check::corner_pixels(root))
+    }
+
+    /// The same for a part of the image: the conditions hold within the convex polygon of `corners`, pixels.
+    pub(crate) fn within(
+        root: &Pinhole,
+        model: Model,
+        turns: &[TurnSpec],
+        corners: &[DVec2],
+    ) -> Result<Self, CurvedRaysError> {
+        build::build(root, model, turns, corners)
     }
 
     /// The pinhole that the rays start in.

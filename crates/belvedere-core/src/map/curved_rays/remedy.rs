@@ -1,8 +1,8 @@
 //! From a violated condition to an error with the nearest valid value.
 
-use super::check::{PreviousTurn, TurnContext, UnscaledTurn, Violation, axis, corner_direction, corner_pixels};
+use super::check::{PreviousTurn, TurnContext, UnscaledTurn, Violation, axis, corner_direction};
 use super::spec::{CurvedRaysError, Pencil, Remedy, TurnSpec};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// The error for a violated condition of a turn.
 pub(super) fn report(violation: Violation, spec: &TurnSpec, context: &TurnContext<'_>) -> CurvedRaysError {
@@ -52,9 +52,10 @@ fn remedy(violation: Violation, spec: &TurnSpec, context: &TurnContext<'_>) -> R
         Violation::NearPastStart { .. } => {
             let start = UnscaledTurn::new(spec, context.turn, &context.part).map(|unscaled| {
                 let forms = unscaled.forms(&context.part, spec.viewpoint);
-                corner_pixels(context.root).map(|px| forms.start(corner_direction(px, context.root, &context.part)))
+                let start = |px: &DVec2| forms.start(corner_direction(*px, context.root, &context.part));
+                context.corners.iter().map(start).fold(f64::INFINITY, f64::min)
             });
-            let near = start.map_or(0.0, |s| s.into_iter().fold(f64::INFINITY, f64::min)) * (1.0 - 1e-9);
+            let near = start.unwrap_or(0.0) * (1.0 - 1e-9);
             if near > 0.0 { Some(Remedy::Near { near }) } else { start_towards_bend(spec, &healed) }
         }
     };
@@ -150,14 +151,15 @@ fn line_away(spec: &TurnSpec, healed: &dyn Fn(&TurnSpec) -> bool) -> Option<Reme
 
 /// Both turns get narrower by one factor; the straight parts do not depend on t0 and t2.
 fn shrunk(violation: Violation, spec: &TurnSpec, context: &TurnContext<'_>) -> Option<Remedy> {
-    let previous = context.previous?;
+    let previous = context.previous.as_ref()?;
     let narrower = |s: &TurnSpec, t: f64| TurnSpec { t0: s.t0.lerp(s.t1, t), t2: s.t2.lerp(s.t1, t), ..*s };
     let valid = |t: f64| {
         let before = narrower(previous.spec, t);
         let Ok(unscaled) = UnscaledTurn::new(&before, context.turn - 1, &previous.part) else { return false };
         let forms = unscaled.forms(&previous.part, before.viewpoint);
-        let ends = corner_pixels(context.root).map(|px| forms.end(corner_direction(px, context.root, &previous.part)));
-        let narrow = TurnContext { previous: Some(PreviousTurn { ends, ..previous }), ..*context };
+        let end = |px: &DVec2| forms.end(corner_direction(*px, context.root, &previous.part));
+        let ends = context.corners.iter().map(end).collect();
+        let narrow = TurnContext { previous: Some(PreviousTurn { ends, ..previous.clone() }), ..context.clone() };
         heals(violation, &narrower(spec, t), &narrow)
     };
     smallest(valid, 1.0).map(|t| Remedy::Shrink { factor: 1.0 - t })

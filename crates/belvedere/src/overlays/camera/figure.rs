@@ -27,7 +27,13 @@ pub(crate) fn figure(session: &Session, picture: CameraPicture) -> Result<Camera
     for stage in view.stages() {
         match stage {
             Stage::SplineBend(bend) => spline::draw(&subject, bend, &mut overlay, &mut legend),
-            Stage::CurvedRays(rays) => turns::draw(&subject, rays, &mut overlay, &mut legend),
+            Stage::CurvedRays(rays) => {
+                turns::draw(&subject, &[(rays, &rays::corners(view))], &mut overlay, &mut legend);
+            }
+            Stage::SplitRays(split) => {
+                let ways: Vec<_> = split.branches().iter().map(|b| (&b.rays, b.region.corners())).collect();
+                turns::draw(&subject, &ways, &mut overlay, &mut legend);
+            }
             Stage::EarthCurvature(_) | Stage::TerrainDisocclusion(_) => {}
         }
     }

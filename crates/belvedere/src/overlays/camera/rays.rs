@@ -1,7 +1,7 @@
 //! A fan of rays, each as [`View::ray`] gives it, up to the surface that it meets.
 
 use super::subject::{Subject, line, segment_color};
-use belvedere_core::{CurvedRays, DVec2, DVec3, View};
+use belvedere_core::{CurvedRays, DVec2, DVec3, SplitRays, View};
 use belvedere_cpu::{RayHit, Tracer};
 use belvedere_scene::{Color, Overlay};
 
@@ -62,7 +62,8 @@ pub(super) fn draw(subject: &Subject<'_>, overlay: &mut Overlay, legend: &mut Ve
             overlay.over.push(line(points, segment_color(segment).with_alpha(150), 1.0));
         }
     }
-    match view.curved_rays().map(CurvedRays::turn_count) {
+    let longest = |split: &SplitRays| split.branches().iter().map(|b| b.rays.turn_count()).max();
+    match view.curved_rays().map(CurvedRays::turn_count).or_else(|| view.split_rays().and_then(longest)) {
         None | Some(0) => legend.push((segment_color(0), "rays, to what they meet".into())),
         Some(turns) => {
             for segment in 0..=2 * turns as u32 {
