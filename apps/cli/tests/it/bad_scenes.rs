@@ -110,6 +110,34 @@ fn stages_are_checked_with_their_line() {
 }
 
 #[test]
+fn rays_that_cannot_part_say_on_which_side() {
+    let stage = "[[stage]]\nkind = 'curved_rays'\n";
+    let turn = |side: &str, normal: &str| {
+        format!(
+            "[[stage.split.{side}.turn]]\nviewpoint = [5, 0, 0]\nt0 = [0, 40, 0]\nt1 = [0, 50, 0]\nt2 = [0, 60, 0]\n{normal}"
+        )
+    };
+    let normal = "normal = [0, 1, 0]\n";
+    refuses(
+        &with(&format!("{stage}{}{}", turn("left", ""), turn("right", normal))),
+        "10: stage 1.split.left.turn.0.t0: turn 1: neither line nor normal is given; give the common line of the planes, or the normal of parallel planes",
+    );
+    refuses(
+        &with(&format!("{stage}split.seam = [[0.5, 0], [0.5, 0]]\n{}{}", turn("left", normal), turn("right", normal))),
+        "7: stage 1.split: the two points of the seam are [0.5, 0], [0.5, 0]; give two points that are apart",
+    );
+    refuses(
+        &with(&format!("{stage}split.seam = [[3, 0], [3, 1]]\n{}{}", turn("left", normal), turn("right", normal))),
+        "7: stage 1.split: the seam leaves no pixel on its right side; move it into the picture",
+    );
+    let place = Place::new();
+    let backwards = turn("right", normal).replace("[0, 40, 0]", "[0, 70, 0]");
+    place.write("s.toml", &with(&format!("{stage}{}{backwards}", turn("left", normal))));
+    let line = place.fails(&["check", "s.toml"]);
+    assert!(line.contains("right of the seam, ") && line.contains("t0"), "{line}");
+}
+
+#[test]
 fn files_stay_in_their_folder() {
     let layer = |source: &str| with(&format!("[[layer]]\nid = 'g'\nkind = 'terrain'\nsource = '{source}'"));
     refuses(

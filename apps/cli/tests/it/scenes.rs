@@ -43,11 +43,14 @@ fn shown_scenes_open_to_the_same_view() {
     let camera = BARE.replace("look_at = [0.0, 1.0, 0.0]", "heading_deg = 30\npitch_deg = 12.5");
     let spline = "[[stage]]\nkind = 'spline_bend'\npresets = 'demo'\nplane = { height_m = -200 }\n";
     let rays = "[[stage]]\nkind = 'curved_rays'\n[[stage.turn]]\nviewpoint = [-70, 20, 3]\nt0 = [500, 866, -200]\nt1 = [600, 1039, -230]\nt2 = [700, 1212, -270]\nnormal = [0.5, 0.866, -0.2]\nm = 'mid'\n";
+    let split = "[[stage]]\nkind = 'curved_rays'\n[[stage.split.left.turn]]\nviewpoint = [-70, 20, 3]\nt0 = [500, 866, -200]\nt1 = [600, 1039, -230]\nt2 = [700, 1212, -270]\nnormal = [0.5, 0.866, -0.2]\n[[stage.split.right.turn]]\nviewpoint = [70, -20, 3]\nt0 = [500, 866, -200]\nt1 = [600, 1039, -230]\nt2 = [700, 1212, -270]\nnormal = [0.5, 0.866, -0.2]\n";
     let massif = "[[layer]]\nid = 'g'\nkind = 'terrain'\nsource = 'builtin:massif?size=65'\n";
     let standing = BARE.replace("eye = [0.0, 0.0, 0.0]", "eye = { x = 100, y = 200, above_ground_m = 300 }");
     for scene in [
         format!("{camera}{spline}"),
         format!("{camera}{rays}"),
+        format!("{camera}{split}"),
+        format!("{camera}{spline}{split}"),
         format!("{camera}{spline}{rays}"),
         format!("{standing}{massif}[[stage]]\nkind = 'spline_bend'\npresets = 'progressive'\n"),
         format!("earth = 'curved'\n{camera}{rays}"),

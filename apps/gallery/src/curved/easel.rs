@@ -3,7 +3,8 @@
 use crate::sheet::Panel;
 use anyhow::{Context, Result};
 use belvedere::core::map::curved_rays::{Model, TurnSpec};
-use belvedere::core::{CurvedRays, Stage, View};
+use belvedere::core::map::split_rays::{Fork, Seam, SplitSpec};
+use belvedere::core::{CurvedRays, SplitRays, Stage, View};
 use belvedere::scene::{BoxLayer, BoxShape, Frame, Layer, LayerKind};
 use belvedere::{CameraPicture, OpenOptions, PictureOptions, Session};
 use std::path::Path;
@@ -47,6 +48,15 @@ pub(crate) fn bent(session: &Session, model: Model, turns: &[TurnSpec]) -> Resul
     let pinhole = session.view().pinhole().clone();
     let rays = CurvedRays::new(&pinhole, model, turns)?;
     Ok(session.clone().with_view(View::new(pinhole, vec![Stage::CurvedRays(rays)])?))
+}
+
+/// The session with rays that part in the middle of the picture, the left and the right half with a turn each.
+pub(crate) fn parted(session: &Session, model: Model, turns: [TurnSpec; 2]) -> Result<Session> {
+    let pinhole = session.view().pinhole().clone();
+    let sides = turns.map(|turn| SplitSpec { turns: vec![turn], fork: None });
+    let fork = Fork { seam: Seam::MIDDLE, sides, merge: None };
+    let rays = SplitRays::new(&pinhole, model, &SplitSpec { turns: Vec::new(), fork: Some(Box::new(fork)) })?;
+    Ok(session.clone().with_view(View::new(pinhole, vec![Stage::SplitRays(rays)])?))
 }
 
 /// The session with straight rays.

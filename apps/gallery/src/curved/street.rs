@@ -1,7 +1,7 @@
 //! A street corner: what waits in the side streets.
 
 use super::Figure;
-use super::easel::{Easel, bent, pixels_of, straight, with_boxes};
+use super::easel::{Easel, bent, parted, pixels_of, straight, with_boxes};
 use crate::sheet::Panel;
 use anyhow::Result;
 use belvedere::core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
@@ -91,7 +91,15 @@ pub(super) fn corners(easel: &Easel<'_>) -> Result<Figure> {
     for (title, crossing, side, vehicle) in TURNS {
         keep(&bent(&town, Model::Modified, &[turn(crossing, side)])?, title, &[vehicle])?;
     }
-    Ok(Figure { panels, columns: 2, seen })
+    let both = both_sides(&town)?;
+    keep(&both, "Both side streets", &[BUS, VAN])?;
+    panels.push(easel.camera(&both, CameraPicture::Overhead, "Their rays", "from above".into())?);
+    Ok(Figure { panels, columns: 3, seen })
+}
+
+/// The left half of the picture turns to the west, the right half to the east.
+fn both_sides(town: &Session) -> Result<Session> {
+    parted(town, Model::Modified, [-1.0, 1.0].map(|side| turn(CROSSING, side)))
 }
 
 /// The cameras of the bent pictures, from outside and from above.
@@ -104,6 +112,10 @@ pub(super) fn rays(easel: &Easel<'_>) -> Result<Figure> {
         panels.push(easel.camera(&session, outside, title, "from outside".into())?);
         panels.push(easel.camera(&session, CameraPicture::Overhead, title, "from above".into())?);
     }
+    let both = both_sides(&town)?;
+    let outside = CameraPicture::Outside(Some([[-100.0, -560.0, 420.0], [AVENUE, CROSSING, 20.0]]));
+    panels.push(easel.camera(&both, outside, "Both side streets", "from outside".into())?);
+    panels.push(easel.camera(&both, CameraPicture::Overhead, "Both side streets", "from above".into())?);
     Ok(Figure { panels, columns: 2, seen: Vec::new() })
 }
 
