@@ -18,6 +18,8 @@ const CROSSING: f64 = -160.3;
 const NEXT_CROSSING: f64 = -55.0;
 const EYE: [f64; 2] = [-262.0, 22.0];
 const LEVEL: f64 = 17.0;
+/// South of the crossing's middle, metres: as from there the side streets stand in the middle of each half of the picture.
+const ASIDE: f64 = 14.6;
 
 /// Differences are drawn this many times as strong.
 const STRONGER: u8 = 20;
@@ -99,7 +101,11 @@ pub(super) fn corners(easel: &Easel<'_>) -> Result<Figure> {
 
 /// The left half of the picture turns to the west, the right half to the east.
 fn both_sides(town: &Session) -> Result<Session> {
-    parted(town, Model::Modified, [-1.0, 1.0].map(|side| turn(CROSSING, side)))
+    let side = |side| {
+        let whole = turn(CROSSING, side);
+        TurnSpec { viewpoint: whole.viewpoint - ASIDE * DVec3::Y, ..whole }
+    };
+    parted(town, Model::Modified, [-1.0, 1.0].map(side))
 }
 
 /// The cameras of the bent pictures, from outside and from above.
