@@ -120,15 +120,15 @@ fn rays_that_cannot_part_say_on_which_side() {
     let normal = "normal = [0, 1, 0]\n";
     refuses(
         &with(&format!("{stage}{}{}", turn("left", ""), turn("right", normal))),
-        "10: stage 1.split.left.turn.0.t0: turn 1: neither line nor normal is given; give the common line of the planes, or the normal of parallel planes",
+        "9: split.left, turn 1: neither line nor normal is given; give the common line of the planes, or the normal of parallel planes",
     );
     refuses(
         &with(&format!("{stage}split.seam = [[0.5, 0], [0.5, 0]]\n{}{}", turn("left", normal), turn("right", normal))),
-        "7: stage 1.split: the two points of the seam are [0.5, 0], [0.5, 0]; give two points that are apart",
+        "7: the two points of the seam are [0.5, 0], [0.5, 0]; give two points that are apart",
     );
     refuses(
         &with(&format!("{stage}split.seam = [[3, 0], [3, 1]]\n{}{}", turn("left", normal), turn("right", normal))),
-        "7: stage 1.split: the seam leaves no pixel on its right side; move it into the picture",
+        "7: the seam leaves no pixel on its right side; move it into the picture",
     );
     let place = Place::new();
     let backwards = turn("right", normal).replace("[0, 40, 0]", "[0, 70, 0]");

@@ -69,10 +69,11 @@ fn way_doc(spec: &SplitSpec) -> WayDoc {
 
 /// * `path`: of the table that holds the turns, within the stage.
 fn turn_specs(docs: &[TurnDoc], path: &[&str], at: Table<'_>) -> Result<Vec<TurnSpec>, BelvedereError> {
+    let way = if path.is_empty() { String::new() } else { format!("{}, ", path.join(".")) };
     let spec = |(j, turn): (usize, &TurnDoc)| {
         let number = j.to_string();
         turn_spec(turn).map_err(|(key, reason)| {
-            at.error(&[path, &["turn", &number, key]].concat(), format!("turn {}: {reason}", j + 1))
+            at.error(&[path, &["turn", &number, key]].concat(), format!("{way}turn {}: {reason}", j + 1))
         })
     };
     docs.iter().enumerate().map(spec).collect()
