@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 /// One stage.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
-#[expect(clippy::large_enum_variant, reason = "a scene has a handful of stages")]
 pub enum StageDoc {
     /// The ground moves so that required features are seen.
     TerrainDisocclusion(TerrainStageDoc),
