@@ -6,6 +6,7 @@
 pub mod centreline;
 mod error;
 pub mod flight;
+pub mod generalise;
 pub mod measure;
 pub mod rays;
 pub mod reveal;

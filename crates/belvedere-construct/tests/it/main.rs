@@ -3,6 +3,8 @@
 mod bars;
 mod centreline;
 mod flight;
+mod generalise;
+mod generalise_towns;
 mod measure;
 mod preview;
 mod probe;

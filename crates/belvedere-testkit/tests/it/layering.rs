@@ -51,7 +51,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     (
         "belvedere-construct",
         &["belvedere-core", "belvedere-scene", "belvedere-sight"],
-        &["glam", "rayon", "serde", "thiserror"],
+        &["geo", "glam", "rayon", "serde", "thiserror"],
     ),
     (
         "belvedere-cpu",

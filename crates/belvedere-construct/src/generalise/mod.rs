@@ -1,0 +1,144 @@
+//! Levels of abstraction of a city: blocks of buildings between streets, and landmarks in their own shape.
+//!
+//! Streets as wide as their class divide the settled ground into cells; the buildings of a cell become one block as high as they
+//! are on average, weighted by area. The finer level is divided by all streets, the coarser one by main streets. Buildings that
+//! stand out stay.
+//!
+//! Source: the idea of cells, blocks and landmarks is that of Glander and Döllner, "Abstract representations for interactive
+//! visualization of virtual 3D city models", Computers, Environment and Urban Systems 33 (2009); thresholds are ours.
+
+mod blocks;
+mod cells;
+mod error;
+mod index;
+mod landmarks;
+mod level;
+mod report;
+mod settings;
+mod shapes;
+mod streets;
+mod strokes;
+
+pub use blocks::CellKind;
+pub use error::GeneraliseError;
+pub use level::{Block, Cell, Level};
+pub use report::{FailingCell, GeneraliseReport, LevelReport};
+pub use settings::{GeneraliseSettings, half_width_m, is_main};
+
+use belvedere_core::DVec2;
+use belvedere_scene::Progress;
+use belvedere_scene::city::City;
+use landmarks::Volume;
+use level::Input;
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// Smallest footprint that counts, m^2.
+const LEAST_AREA_M2: f64 = 0.01;
+/// Widths of cities that are possible, metres: less is degrees, more is damaged.
+const WIDTHS_M: [f64; 2] = [10.0, 1e6];
+
+/// A city at its levels of abstraction.
+#[derive(Debug, Clone)]
+pub struct Generalised {
+    /// `loa1`, the blocks of all streets, and `loa2`, the blocks of main streets.
+    pub levels: [Level; 2],
+    /// Figures.
+    pub report: GeneraliseReport,
+}
+
+/// The levels of abstraction of `city`, whose coordinates are metres.
+///
+/// # Errors
+/// [`GeneraliseError`]: no building with an area, coordinates that are no metres, settings out of range, cancelled.
+pub fn generalise(
+    city: &City,
+    settings: &GeneraliseSettings,
+    progress: &Progress,
+) -> Result<Generalised, GeneraliseError> {
+    let begun = Instant::now();
+    settings.check()?;
+    progress.tick("buildings", 0.0)?;
+    let mut notes = Vec::new();
+    let input = input(city, &mut notes)?;
+    let extent = cells::settled(&input.lands, settings.margin_m);
+    progress.tick("streets", 0.2)?;
+    let [fine, coarse] = streets::dividers(city, settings, &mut notes);
+    progress.tick("cells", 0.4)?;
+    let fine_cells = cells::cells(&extent, &fine.land, settings);
+    let of_fine = cells::assign(&fine_cells.lands, &input.lands);
+    progress.tick("cells", 0.6)?;
+    let coarse_cells = cells::cells(&extent, &coarse.land, settings);
+    let of_coarse = cells::assign_by_cells(&coarse_cells.lands, &fine_cells.lands, &of_fine, &input.lands);
+    progress.tick("blocks", 0.7)?;
+    let whole = |cells: cells::Cells| (cells.lands, cells.merged);
+    let (loa1, report1, kept) = level::level("loa1", &input, whole(fine_cells), &of_fine, &fine, |_| true, settings);
+    progress.tick("blocks", 0.85)?;
+    let mut stays = vec![false; input.lands.len()];
+    kept.into_iter().for_each(|i| stays[i] = true);
+    let (loa2, report2, _) =
+        level::level("loa2", &input, whole(coarse_cells), &of_coarse, &coarse, |i| stays[i], settings);
+    progress.tick("blocks", 1.0)?;
+    let all: Vec<usize> = (0..input.volumes.len()).collect();
+    let report = GeneraliseReport {
+        buildings: city.buildings.len(),
+        without_area: city.buildings.len() - input.lands.len(),
+        volume_m3: input.volume_of(&all),
+        levels: vec![report1, report2],
+        notes: notes_of(notes, [&loa1, &loa2]),
+        seconds: begun.elapsed().as_secs_f64(),
+    };
+    Ok(Generalised { levels: [loa1, loa2], report })
+}
+
+/// Notes on levels of which there is little to say else.
+fn notes_of(mut notes: Vec<String>, levels: [&Level; 2]) -> Vec<String> {
+    for level in levels {
+        let inhabited: Vec<&Cell> = level.cells.iter().filter(|c| !c.buildings.is_empty()).collect();
+        if let [only] = inhabited[..] {
+            let held = only.buildings.len();
+            notes.push(format!("{}: all buildings but landmarks ({held}) lie in one cell, {}", level.name, only.name));
+        }
+        if !inhabited.is_empty() && inhabited.iter().all(|c| c.kind == CellKind::Green) {
+            notes.push(format!(
+                "{}: every cell is green, there are no blocks; lower green_below or margin_m",
+                level.name
+            ));
+        }
+        if level.cells.is_empty() {
+            notes.push(format!("{}: streets cover all settled ground, every building keeps its shape", level.name));
+        }
+    }
+    notes
+}
+
+fn input<'a>(city: &'a City, notes: &mut Vec<String>) -> Result<Input<'a>, GeneraliseError> {
+    let lands: Vec<shapes::Land> = city.buildings.par_iter().map(|b| shapes::land_of(&b.footprint)).collect();
+    let (mut input, mut bad_heights) =
+        (Input { city, places: Vec::new(), lands: Vec::new(), volumes: Vec::new() }, 0usize);
+    for (place, (land, building)) in lands.into_iter().zip(&city.buildings).enumerate() {
+        let area_m2 = shapes::area(&land);
+        if !(area_m2 > LEAST_AREA_M2) {
+            continue;
+        }
+        let usable = building.height_m.is_finite() && building.height_m > 0.0;
+        bad_heights += usize::from(!usable);
+        let height_m = if usable { building.height_m } else { 9.0 };
+        input.places.push(place);
+        input.lands.push(land);
+        input.volumes.push(Volume { area_m2, height_m, tagged: building.landmark });
+    }
+    if bad_heights > 0 {
+        notes.push(format!("{bad_heights} buildings have no usable height and are taken as 9 m high"));
+    }
+    let points = city.buildings.iter().flat_map(|b| &b.footprint).flat_map(|p| &p.outer).copied();
+    let [low, high] = index::bounds(points.filter(|p| p.is_finite())).unwrap_or([DVec2::ZERO; 2]);
+    let [width, height] = (high - low).to_array();
+    if !city.buildings.is_empty() && low != high && !(WIDTHS_M[0]..=WIDTHS_M[1]).contains(&width.max(height)) {
+        return Err(GeneraliseError::Extent { width, height });
+    }
+    if input.lands.is_empty() {
+        return Err(GeneraliseError::NoBuildings { buildings: city.buildings.len() });
+    }
+    Ok(input)
+}

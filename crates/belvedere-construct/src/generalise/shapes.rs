@@ -1,0 +1,148 @@
+//! Areas in plan: from cities to the geometry library and back, grown, shrunk, closed and simplified.
+
+use belvedere_core::DVec2;
+use belvedere_scene::city::Polygon;
+use geo::algorithm::buffer::{BufferStyle, LineCap, LineJoin};
+use geo::algorithm::orient::{Direction, Orient};
+use geo::{Area as _, BooleanOps, Buffer, Coord, LineString, MultiPolygon, Simplify, Validation};
+use rayon::prelude::*;
+
+/// Several polygons, none overlapping another.
+pub(super) type Land = MultiPolygon<f64>;
+
+/// Angle between vertices of round outlines, radians.
+const ROUND: f64 = 0.5;
+/// Outlines that are put together at a time: small unions cost less than one large one.
+const AT_ONCE: usize = 64;
+/// Pieces smaller than this are rounding, m^2.
+const SPECK_M2: f64 = 1e-3;
+
+fn ring(points: &[DVec2]) -> Option<LineString<f64>> {
+    (points.len() >= 3 && points.iter().all(|p| p.is_finite()))
+        .then(|| LineString::from(points.iter().map(|p| (p.x, p.y)).collect::<Vec<_>>()))
+}
+
+/// The land of an outline; rings that cross themselves or each other are put in order, rings that are no numbers left out.
+pub(super) fn land_of(polygons: &[Polygon]) -> Land {
+    let nothing: Land = MultiPolygon(Vec::new());
+    let parts: Vec<Land> = polygons
+        .iter()
+        .filter_map(|p| {
+            let holes = p.holes.iter().filter_map(|h| ring(h)).collect();
+            let polygon = geo::Polygon::new(ring(&p.outer)?, holes);
+            // The rule of odd and even crossings needs no orientation of rings.
+            Some(if polygon.is_valid() { polygon.orient(Direction::Default).into() } else { polygon.union(&nothing) })
+        })
+        .collect();
+    without_specks(if parts.len() == 1 {
+        parts.into_iter().next().unwrap_or(nothing)
+    } else {
+        geo::unary_union(&parts)
+    })
+}
+
+/// The polygons of a city, rings oriented as it wants them.
+pub(super) fn polygons_of(land: &Land) -> Vec<Polygon> {
+    let turned = |ring: &LineString<f64>, left: bool| {
+        let mut points: Vec<DVec2> = ring.coords().map(|c| DVec2::new(c.x, c.y)).collect();
+        points.pop();
+        let twice: f64 = points.iter().zip(points.iter().cycle().skip(1)).map(|(a, b)| a.x * b.y - b.x * a.y).sum();
+        if (twice > 0.0) != left {
+            points.reverse();
+        }
+        points
+    };
+    let polygon = |p: &geo::Polygon<f64>| Polygon {
+        outer: turned(p.exterior(), true),
+        holes: p.interiors().iter().map(|h| turned(h, false)).collect(),
+    };
+    land.iter().map(polygon).filter(|p| p.outer.len() >= 3).collect()
+}
+
+/// Everything within `by` metres of the land; corners are rounded.
+pub(super) fn grown(land: &Land, by: f64) -> Land {
+    land.buffer_with_style(BufferStyle::new(by).line_join(LineJoin::Round(ROUND)))
+}
+
+/// The land further than `by` metres inside; corners stay corners.
+pub(super) fn shrunk(land: &Land, by: f64) -> Land {
+    if by <= 0.0 {
+        return land.clone();
+    }
+    without_specks(land.buffer_with_style(BufferStyle::new(-by).line_join(LineJoin::Miter(1.0))))
+}
+
+/// The land with gaps up to `2 by` metres wide filled.
+pub(super) fn closed(land: &Land, by: f64) -> Land {
+    let shrink = BufferStyle::new(-by).line_join(LineJoin::Round(ROUND));
+    without_specks(grown(land, by).buffer_with_style(shrink))
+}
+
+/// The land within `half_width` metres of a line.
+pub(super) fn along(line: &LineString<f64>, half_width: f64) -> Land {
+    let style = BufferStyle::new(half_width).line_join(LineJoin::Round(ROUND)).line_cap(LineCap::Round(ROUND));
+    line.buffer_with_style(style)
+}
+
+/// Everything that lies in one of `parts`, which should lie near their neighbours in the list.
+pub(super) fn union(mut parts: Vec<Land>) -> Land {
+    while parts.len() > 1 {
+        parts = parts.par_chunks(AT_ONCE).map(geo::unary_union).collect();
+    }
+    parts.pop().unwrap_or_else(|| MultiPolygon(Vec::new()))
+}
+
+/// `parts` in an order in which neighbours in the list are neighbours in the plane.
+pub(super) fn by_place(mut parts: Vec<Land>) -> Vec<Land> {
+    const BITS: u32 = 10;
+    let corner = |land: &Land| land.iter().next().and_then(|p| p.exterior().coords().next().copied());
+    let corners: Vec<Coord<f64>> = parts.iter().filter_map(corner).collect();
+    let low = corners.iter().fold(DVec2::MAX, |low, c| low.min(DVec2::new(c.x, c.y)));
+    let high = corners.iter().fold(DVec2::MIN, |high, c| high.max(DVec2::new(c.x, c.y)));
+    let scale = f64::from((1u32 << BITS) - 1) / (high - low).max_element().max(1e-9);
+    let interleave = |at: Coord<f64>| {
+        let cell = ((DVec2::new(at.x, at.y) - low) * scale).as_uvec2();
+        (0..BITS).fold(0u32, |key, bit| key | (cell.x >> bit & 1) << (2 * bit) | (cell.y >> bit & 1) << (2 * bit + 1))
+    };
+    parts.sort_by_cached_key(|land| corner(land).map_or(0, interleave));
+    parts
+}
+
+/// Land without the pieces that rounding leaves.
+pub(super) fn without_specks(mut land: Land) -> Land {
+    land.0.retain(|p| p.unsigned_area() > SPECK_M2);
+    land
+}
+
+/// The land with its holes filled.
+pub(super) fn filled(land: Land) -> Land {
+    let whole: Vec<geo::Polygon<f64>> =
+        land.into_iter().map(|p| geo::Polygon::new(p.into_inner().0, Vec::new())).collect();
+    geo::unary_union(&whole)
+}
+
+/// The land with outlines of fewer vertices, none moved by more than `by` metres; an outline that would cross itself takes less.
+pub(super) fn simplified(land: &Land, by: f64) -> Land {
+    let one = |polygon: &geo::Polygon<f64>| {
+        let mut tolerance = by;
+        while tolerance > 0.05 {
+            let simple = polygon.simplify(tolerance);
+            if simple.unsigned_area() > 0.5 * polygon.unsigned_area() && simple.is_valid() {
+                return simple;
+            }
+            tolerance *= 0.5;
+        }
+        polygon.clone()
+    };
+    MultiPolygon(land.iter().map(one).collect())
+}
+
+/// What of `land` lies in `other`.
+pub(super) fn common(land: &Land, other: &Land) -> Land {
+    without_specks(land.intersection(other))
+}
+
+/// Area, m^2.
+pub(super) fn area(land: &Land) -> f64 {
+    land.unsigned_area()
+}

@@ -1,0 +1,229 @@
+//! Levels of abstraction of cities: laws, odd cities, real ones.
+
+use crate::generalise_towns::{building, read, rectangle, town, way};
+use belvedere_construct::generalise::{GeneraliseError, GeneraliseSettings, Generalised, Level, generalise};
+use belvedere_core::DVec2;
+use belvedere_scene::Progress;
+use belvedere_scene::city::{Building, City, CityArea, LandCover, Polygon, WayClass};
+use belvedere_testkit::{Random, data};
+
+fn done(city: &City) -> Generalised {
+    generalise(city, &GeneraliseSettings::default(), &Progress::silent()).expect("a city")
+}
+
+fn inside(polygon: &Polygon, p: DVec2) -> bool {
+    let rings = std::iter::once(&polygon.outer).chain(&polygon.holes);
+    let crossings = rings
+        .flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)))
+        .filter(|(a, b)| (a.y <= p.y) != (b.y <= p.y) && a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) > p.x);
+    crossings.count() % 2 == 1
+}
+
+fn in_any(polygons: &[Polygon], p: DVec2) -> bool {
+    polygons.iter().any(|polygon| inside(polygon, p))
+}
+
+fn area(polygons: &[Polygon]) -> f64 {
+    let twice =
+        |ring: &Vec<DVec2>| ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| a.perp_dot(*b)).sum::<f64>();
+    polygons.iter().map(|p| 0.5 * (twice(&p.outer).abs() - p.holes.iter().map(|h| twice(h).abs()).sum::<f64>())).sum()
+}
+
+fn distance_to_outline(polygons: &[Polygon], p: DVec2) -> f64 {
+    let rings = polygons.iter().flat_map(|polygon| std::iter::once(&polygon.outer).chain(&polygon.holes));
+    let edges = rings.flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
+    edges
+        .map(|(a, b)| {
+            let t = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);
+            p.distance(a.lerp(*b, t))
+        })
+        .fold(f64::MAX, f64::min)
+}
+
+/// What holds for every city: cells share the settled ground without streets, blocks lie in cells, every building is in one
+/// cell, blocks and landmarks hold the volume of what they stand for.
+fn check_laws(city: &City, made: &Generalised) {
+    let mut random = Random::new(7);
+    for level in &made.levels {
+        let places = level.cells.iter().flat_map(|c| c.buildings.iter().chain(&c.landmarks)).copied();
+        let mut places: Vec<usize> = places.collect();
+        places.sort_unstable();
+        assert_eq!(places, (0..city.buildings.len()).collect::<Vec<_>>(), "{}: every building in one cell", level.name);
+        for _ in 0..2000 {
+            let building = &city.buildings[random.below(city.buildings.len())];
+            let corner = building.footprint[0].outer[0];
+            let p = corner + DVec2::new(random.range(-13.0, 13.0), random.range(-13.0, 13.0));
+            let holders = level.cells.iter().filter(|c| in_any(&c.polygons, p)).count();
+            let on_edge = level.cells.iter().any(|c| distance_to_outline(&c.polygons, p) < 1e-3);
+            let expected = usize::from(!in_any(&level.streets, p));
+            assert!(holders == expected || on_edge, "{}: {p} lies in {holders} cells, not {expected}", level.name);
+        }
+        for (block, shape) in level.blocks.iter().zip(&level.city.buildings) {
+            let cell = &level.cells[block.cell];
+            assert_eq!(shape.id, cell.name);
+            assert!(area(&shape.footprint) > 0.0 && area(&shape.footprint) <= cell.area_m2 + 1e-3);
+            for p in shape.footprint.iter().flat_map(|p| &p.outer) {
+                let out = distance_to_outline(&cell.polygons, *p);
+                assert!(in_any(&cell.polygons, *p) || out < 1e-3, "{}: a corner lies {out} m outside", cell.name);
+            }
+            let held: f64 =
+                cell.buildings.iter().map(|i| area(&city.buildings[*i].footprint) * city.buildings[*i].height_m).sum();
+            let shown = area(&shape.footprint) * shape.height_m * block.coverage;
+            assert!((shown / held - 1.0).abs() < 0.1 || block.coverage == 1.0, "{}: {shown} for {held} m^3", cell.name);
+        }
+        let own: Vec<_> =
+            level.city.buildings[level.blocks.len()..].iter().map(|b| (&b.footprint, b.height_m)).collect();
+        let landmarks: Vec<_> = level.cells.iter().flat_map(|c| &c.landmarks).map(|i| &city.buildings[*i]).collect();
+        assert_eq!(own, landmarks.iter().map(|b| (&b.footprint, b.height_m)).collect::<Vec<_>>());
+        let tagged = |b: &&Building| b.landmark;
+        assert_eq!(landmarks.iter().copied().filter(tagged).count(), city.buildings.iter().filter(tagged).count());
+    }
+    let [fine, coarse] = &made.levels;
+    let landmarks = |level: &Level| level.cells.iter().flat_map(|c| c.landmarks.clone()).collect::<Vec<_>>();
+    assert!(landmarks(coarse).iter().all(|i| landmarks(fine).contains(i)), "no landmark comes anew");
+}
+
+#[test]
+fn a_town_of_blocks() {
+    let mut city = town(8, 3);
+    city.buildings[5].height_m = 60.0;
+    city.buildings[100].landmark = true;
+    let made = done(&city);
+    check_laws(&city, &made);
+    let [fine, coarse] = &made.report.levels[..] else { panic!("two levels") };
+    assert_eq!([fine.cells - fine.green_cells, coarse.cells - coarse.green_cells], [64, 4]);
+    assert_eq!([fine.landmarks, coarse.landmarks], [2, 2], "a tower and a tagged building");
+    assert!(fine.volume_kept && coarse.volume_kept && (fine.volume_share - 1.0).abs() < 0.01, "{}", fine.volume_share);
+    assert_eq!(made.report.notes, Vec::<String>::new());
+    let block = &made.levels[0].city.buildings[0];
+    assert!((7.0..11.0).contains(&block.height_m), "the mean without the landmarks, not {}", block.height_m);
+}
+
+#[test]
+fn the_same_city_gives_the_same_levels() {
+    let city = town(5, 9);
+    let [a, b] = [done(&city), done(&city)];
+    assert!(a.levels[0].city == b.levels[0].city && a.levels[1].city == b.levels[1].city);
+    let shift = DVec2::new(84_000.0, 447_000.0);
+    let mut moved = city.clone();
+    moved.ways.iter_mut().flat_map(|w| &mut w.points).for_each(|p| *p += shift);
+    moved.buildings.iter_mut().flat_map(|b| &mut b.footprint).flat_map(|f| &mut f.outer).for_each(|p| *p += shift);
+    let there = done(&moved);
+    assert_eq!(there.report.levels[0].blocks, a.report.levels[0].blocks);
+    assert!((there.report.levels[0].volume_m3 / a.report.levels[0].volume_m3 - 1.0).abs() < 1e-5);
+}
+
+#[test]
+fn street_areas_and_water_divide() {
+    let mut city = City::default();
+    for x in [10.0, 35.0, 75.0, 100.0] {
+        city.buildings.push(building(rectangle(DVec2::new(x, 0.0), DVec2::splat(15.0), 0.0), 10.0));
+    }
+    let strip = |width: f64| {
+        let outer = rectangle(DVec2::new(55.0, 0.0), DVec2::new(width, 200.0), 0.0);
+        vec![Polygon { outer, holes: Vec::new() }]
+    };
+    let with = |cover, width| {
+        let area = CityArea { name: String::new(), cover, polygons: strip(width) };
+        let made = done(&City { areas: vec![area], ..city.clone() });
+        [0, 1].map(|level| made.levels[level].blocks.len())
+    };
+    assert_eq!(with(LandCover::Green, 8.0), [1, 1], "grass is built around");
+    assert_eq!(with(LandCover::Road, 8.0), [2, 1], "a side street");
+    assert_eq!(with(LandCover::Road, 16.0), [2, 2], "a main street");
+    assert_eq!(with(LandCover::Water, 4.0), [2, 2], "a canal");
+}
+
+#[test]
+fn small_cells_join_the_neighbour_they_face() {
+    let mut city = City::default();
+    for (x, y) in [(0.0, 0.0), (30.0, 0.0), (0.0, 30.0), (30.0, 30.0)] {
+        city.buildings.push(building(rectangle(DVec2::new(x, y), DVec2::splat(18.0), 0.0), 10.0));
+    }
+    city.ways.push(way(WayClass::Residential, &[DVec2::new(-100.0, 50.0), DVec2::new(100.0, 50.0)]));
+    city.ways.push(way(WayClass::Residential, &[DVec2::new(-100.0, 62.0), DVec2::new(100.0, 62.0)]));
+    city.buildings.push(building(rectangle(DVec2::new(15.0, 56.0), DVec2::new(4.0, 3.0), 0.0), 3.0));
+    let settings = GeneraliseSettings { smallest_cell_m2: 500.0, ..Default::default() };
+    let made = generalise(&city, &settings, &Progress::silent()).expect("a city");
+    let holder = made.levels[0].cells.iter().find(|c| c.buildings.contains(&4)).expect("a cell");
+    assert!(holder.buildings.contains(&2) && made.report.levels[0].cells_merged >= 1, "{:?}", made.report);
+    check_laws(&city, &made);
+}
+
+#[test]
+fn odd_cities_become_something_sensible_and_it_is_said() {
+    let houses = |n: usize| City {
+        buildings: (0..n)
+            .map(|i| building(rectangle(DVec2::new(20.0 * i as f64, 0.0), DVec2::splat(14.0), 0.3), 9.0))
+            .collect(),
+        ..City::default()
+    };
+    let without_streets = done(&houses(6));
+    check_laws(&houses(6), &without_streets);
+    assert_eq!(without_streets.levels[0].blocks.len(), 1);
+    assert!(
+        without_streets.report.notes.iter().any(|n| n.contains("no streets")),
+        "{:?}",
+        without_streets.report.notes
+    );
+    assert!(without_streets.report.notes.iter().any(|n| n.contains("one cell")), "{:?}", without_streets.report.notes);
+
+    let mut paved = houses(3);
+    let outer = rectangle(DVec2::ZERO, DVec2::splat(500.0), 0.0);
+    let polygons = vec![Polygon { outer, holes: Vec::new() }];
+    paved.areas.push(CityArea { name: String::new(), cover: LandCover::Road, polygons });
+    let made = done(&paved);
+    assert_eq!(made.levels[0].city.buildings.len(), 3, "streets everywhere: every building stays");
+    assert!(made.report.notes.iter().any(|n| n.contains("keeps its shape")), "{:?}", made.report.notes);
+
+    let mut damaged = houses(4);
+    damaged.buildings[0].footprint[0].outer[2] = DVec2::new(f64::NAN, 0.0);
+    damaged.buildings[1].footprint[0].outer.truncate(2);
+    damaged.buildings[2].height_m = f64::NAN;
+    let bow = &mut damaged.buildings[3].footprint[0].outer;
+    bow.swap(1, 2);
+    damaged.ways.push(way(WayClass::Primary, &[DVec2::ZERO]));
+    damaged.ways.push(way(WayClass::Primary, &[DVec2::NAN, DVec2::ZERO]));
+    damaged.ways.push(way(WayClass::Primary, &[DVec2::splat(300.0), DVec2::splat(300.0)]));
+    let made = done(&damaged);
+    assert_eq!(made.report.without_area, 2);
+    assert!((made.report.volume_m3 - (9.0 * 14.0 * 14.0 + 9.0 * 7.0 * 14.0)).abs() < 1.0, "{}", made.report.volume_m3);
+    assert!(made.report.notes.iter().any(|n| n.contains("no usable height")), "{:?}", made.report.notes);
+    assert!(made.report.notes.iter().any(|n| n.contains("every cell is green")), "{:?}", made.report.notes);
+}
+
+#[test]
+fn what_is_no_city_is_refused_with_a_reason() {
+    let refused =
+        |city: &City| generalise(city, &GeneraliseSettings::default(), &Progress::silent()).expect_err("refused");
+    assert!(matches!(refused(&City::default()), GeneraliseError::NoBuildings { buildings: 0 }));
+    let mut degrees = town(1, 1);
+    degrees.buildings.iter_mut().flat_map(|b| &mut b.footprint).flat_map(|f| &mut f.outer).for_each(|p| *p *= 1e-5);
+    assert!(refused(&degrees).to_string().contains("project it"), "{}", refused(&degrees));
+    let settings = GeneraliseSettings { inset_m: 0.5, ..Default::default() };
+    let error = generalise(&town(1, 1), &settings, &Progress::silent()).expect_err("refused");
+    assert!(error.to_string().contains("inset_m is 0.5"), "{error}");
+    let progress = Progress::silent();
+    progress.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
+    let cancelled = generalise(&town(1, 1), &GeneraliseSettings::default(), &progress);
+    assert!(matches!(cancelled, Err(GeneraliseError::Cancelled(_))));
+}
+
+#[test]
+fn a_mapped_town_and_a_mapped_quarter() {
+    let files = [
+        ("swellendam/buildings.geojson", "swellendam/roads.geojson", 4708),
+        ("city_bubenec/buildings.geojson", "city_bubenec/streets.geojson", 144),
+    ];
+    for (buildings, roads, count) in files {
+        let (Some(from), Some(roads)) = (data(buildings), data(roads)) else { continue };
+        let city = read(&from, &roads);
+        assert_eq!(city.buildings.len(), count);
+        let made = done(&city);
+        check_laws(&city, &made);
+        for level in &made.report.levels {
+            assert!(level.volume_kept, "{buildings}: {} keeps {}", level.name, level.volume_share);
+            assert!(level.blocks > 0 && level.blocks < count / 10, "{buildings}: {} blocks", level.blocks);
+        }
+    }
+}
