@@ -202,7 +202,7 @@ mod tests {
             assert_eq!(index.cell_at(DVec2::new(x, y)), expected, "at {x}, {y}");
         }
         assert_eq!(index.cells_near([DVec2::new(20.0, 85.0), DVec2::new(30.0, 105.0)]), [0, 1]);
-        assert_eq!(index.cells_near([DVec2::new(20.0, 20.0), DVec2::new(30.0, 30.0)]), []);
+        assert_eq!(index.cells_near([DVec2::new(20.0, 20.0), DVec2::new(30.0, 30.0)]), [0usize; 0]);
         assert_eq!(
             index.nearest(DVec2::new(107.0, 104.0), 30.0, Some(2)),
             Some(1),

@@ -39,6 +39,8 @@ pub(super) fn landmarks(buildings: &[Volume], cell: &[usize], candidates: impl F
 mod tests {
     use super::*;
 
+    const NONE: [usize; 0] = [];
+
     fn heights(heights: &[f64]) -> Vec<Volume> {
         heights.iter().map(|h| Volume { area_m2: 100.0, height_m: *h, tagged: false }).collect()
     }
@@ -48,13 +50,13 @@ mod tests {
         let all = |n: usize| (0..n).collect::<Vec<_>>();
         let tower = heights(&[9.0, 10.0, 9.5, 10.5, 9.0, 10.0, 40.0]);
         assert_eq!(landmarks(&tower, &all(7), |_| true), [6]);
-        assert_eq!(landmarks(&tower, &all(7), |i| i != 6), [], "no candidate");
-        assert_eq!(landmarks(&tower, &[0, 1, 2, 6], |_| true), [], "too few buildings");
+        assert_eq!(landmarks(&tower, &all(7), |i| i != 6), NONE, "no candidate");
+        assert_eq!(landmarks(&tower, &[0, 1, 2, 6], |_| true), NONE, "too few buildings");
         let even = heights(&[9.0, 9.0, 9.0, 9.0, 9.0, 9.0, 9.0, 10.0]);
-        assert_eq!(landmarks(&even, &all(8), |_| true), [], "two deviations higher, but not half as high again");
+        assert_eq!(landmarks(&even, &all(8), |_| true), NONE, "two deviations higher, but not half as high again");
         let mut church = heights(&[9.0, 10.0]);
         church[0].tagged = true;
         assert_eq!(landmarks(&church, &all(2), |_| true), [0]);
-        assert_eq!(landmarks(&[], &[], |_| true), []);
+        assert_eq!(landmarks(&[], &[], |_| true), NONE);
     }
 }

@@ -100,6 +100,6 @@ mod tests {
         ];
         assert_eq!(longest_strokes(&ways, &[0, 1, 2, 3]), [0, 1]);
         assert_eq!(longest_strokes(&ways, &[2, 3]), [2, 3], "they go on in each other");
-        assert_eq!(longest_strokes(&ways, &[]), []);
+        assert_eq!(longest_strokes(&ways, &[]), [0usize; 0]);
     }
 }
