@@ -10,6 +10,7 @@ mod massif;
 mod noise;
 mod route;
 mod street;
+mod town;
 mod tube;
 mod viewpoint;
 
@@ -20,6 +21,7 @@ pub use engine::engine;
 pub use massif::massif;
 pub use route::{RouteCost, RouteError, least_cost_route, valley_route};
 pub use street::street;
+pub use town::{TOWN_SIZES_M, town};
 pub use tube::tube;
 
 use belvedere_core::DVec3;
@@ -51,6 +53,12 @@ pub enum BuiltinError {
     Size {
         /// Nodes per side asked for.
         size: usize,
+    },
+    /// Width of a town out of range.
+    #[error("town {size_m} m wide is not possible; choose {least} to {most}, for example 1200", least = TOWN_SIZES_M[0], most = TOWN_SIZES_M[1])]
+    TownSize {
+        /// Width asked for, metres.
+        size_m: f64,
     },
     /// The heights do not make a heightfield.
     #[error(transparent)]
