@@ -336,6 +336,9 @@ pub(crate) struct DrawArgs {
     /// Coverage samples per pixel: 1, 4 or 16
     #[arg(long, default_value_t = 4, value_name = "N")]
     pub(crate) samples: u32,
+    /// Thresholds per pixel where styling sections pass into each other; 1 is a dither
+    #[arg(long, default_value_t = 64, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub(crate) thresholds: u32,
     /// Largest error of terrain drawn in less detail far away, pixels; 0 draws every cell
     #[arg(long, default_value_t = 0.5, value_name = "PX", allow_hyphen_values = true, value_parser = parse_lod)]
     pub(crate) lod: f64,

@@ -86,6 +86,7 @@ fn request(args: &DrawArgs, context: &Context) -> PictureOptions {
     request.renderer = args.renderer.into();
     request.quality.threads = context.common.threads;
     request.quality.samples = args.samples;
+    request.quality.exposures = args.thresholds.div_ceil(args.samples.max(1));
     request.quality.lod_px = args.lod;
     request.progress = context.progress.clone();
     request.quality.max_bytes = context.common.max_mem.unwrap_or(request.quality.max_bytes);

@@ -67,7 +67,7 @@ pub fn canyon(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
     let layers =
         vec![ground_layer(terrain, Palette::Desert), line_layer("river", LineFeature { name: "River".into(), points })];
     let camera = SuggestedCamera { title: title.clone(), eye, look_at, fov_y: 45f64.to_radians() };
-    Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers }, camera))
+    Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers, ..Scene::default() }, camera))
 }
 
 /// A wave of period 1 between -1 and 1, of parabolas: sines differ between platforms in the last bit.

@@ -31,7 +31,7 @@ pub fn church() -> Result<(Scene, SuggestedCamera), BuiltinError> {
     let title = "A church".to_owned();
     let (eye, look_at) = (DVec3::new(80.0, -120.0, 55.0), DVec3::new(0.0, 0.0, 24.0));
     let camera = SuggestedCamera { title: title.clone(), eye, look_at, fov_y: 40f64.to_radians() };
-    Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers }, camera))
+    Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers, ..Scene::default() }, camera))
 }
 
 #[derive(Default)]

@@ -121,7 +121,7 @@ pub fn dna(seed: u64, pairs: usize) -> Result<(Scene, SuggestedCamera), BuiltinE
     let title = format!("B-DNA, {pairs} base pairs");
     let eye = DVec3::new(0.0, -1.7 * height.max(24.0), 0.0);
     let camera = SuggestedCamera { title: title.clone(), eye, look_at: DVec3::ZERO, fov_y: 40f64.to_radians() };
-    Ok((Scene { title, crs: Crs::Local, unit: Unit::Angstrom, layers }, camera))
+    Ok((Scene { title, crs: Crs::Local, unit: Unit::Angstrom, layers, ..Scene::default() }, camera))
 }
 
 fn helix(seed: u64, pairs: usize) -> Result<Molecule, BuiltinError> {

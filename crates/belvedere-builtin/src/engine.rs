@@ -35,7 +35,7 @@ pub fn engine(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
     let title = "A machined block".to_owned();
     let (eye, look_at) = (DVec3::new(80.0, -260.0, 104.0), DVec3::new(80.0, 60.0, 56.0));
     let camera = SuggestedCamera { title: title.clone(), eye, look_at, fov_y: 32f64.to_radians() };
-    Ok((Scene { title, crs: Crs::Local, unit: Unit::Voxel, layers }, camera))
+    Ok((Scene { title, crs: Crs::Local, unit: Unit::Voxel, layers, ..Scene::default() }, camera))
 }
 
 /// Signed distances, negative inside, in voxels.

@@ -47,7 +47,7 @@ pub fn massif(seed: u64, size: usize) -> Result<(Scene, SuggestedCamera), Builti
         layers.push(lake_layer(lake));
     }
     layers.push(line_layer("trail", LineFeature { name: "Trail over the pass".into(), points }));
-    Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers }, camera))
+    Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers, ..Scene::default() }, camera))
 }
 
 fn heightfield(land: &Land) -> Result<Heightfield, HeightfieldError> {

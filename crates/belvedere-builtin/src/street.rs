@@ -84,7 +84,7 @@ pub fn street(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
         line_layer("route", LineFeature { name: "Route through town".into(), points }),
     ];
     let camera = SuggestedCamera { title: title.clone(), eye, look_at, fov_y: 45f64.to_radians() };
-    Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers }, camera))
+    Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers, ..Scene::default() }, camera))
 }
 
 fn area_layer(id: &str, features: Vec<AreaFeature>, fill: Color) -> Layer {

@@ -52,7 +52,7 @@ pub fn tube(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
     let title = "A coiled tube".to_owned();
     let (eye, look_at) = (DVec3::new(200.0, -160.0, 150.0), DVec3::new(60.0, 60.0, 55.0));
     let camera = SuggestedCamera { title: title.clone(), eye, look_at, fov_y: 32f64.to_radians() };
-    Ok((Scene { title, crs: Crs::Local, unit: Unit::Voxel, layers }, camera))
+    Ok((Scene { title, crs: Crs::Local, unit: Unit::Voxel, layers, ..Scene::default() }, camera))
 }
 
 /// Points of the middle of the channel.

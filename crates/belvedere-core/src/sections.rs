@@ -26,7 +26,14 @@ pub struct StylingSections {
     start: Vec<String>,
     target: Vec<String>,
     beta: f64,
+    /// The distinct ids, in order of first appearance: all of `start` before those of `target`.
+    representations: Vec<String>,
+    /// Numbers of the representations of each section, before and after the transition.
+    numbers: Vec<[usize; 2]>,
 }
+
+/// Most different representations of a document.
+pub const MOST_REPRESENTATIONS: usize = 32;
 
 impl StylingSections {
     /// Sections `start` fading to `target`, both with one more entry than `tags`; `beta` in 0..=1 is the share of `target`.
@@ -34,13 +41,23 @@ impl StylingSections {
     pub fn new(tags: Vec<TagPoint>, start: Vec<String>, target: Vec<String>, beta: f64) -> Option<Self> {
         let fits = start.len() == tags.len() + 1 && target.len() == start.len();
         let finite = tags.iter().all(|t| t.u.is_finite() && t.delta.is_finite()) && (0.0..=1.0).contains(&beta);
-        (fits && finite).then_some(Self { tags, start, target, beta })
+        let mut representations: Vec<String> = Vec::new();
+        for id in start.iter().chain(&target) {
+            if !representations.contains(id) {
+                representations.push(id.clone());
+            }
+        }
+        let few = representations.len() <= MOST_REPRESENTATIONS;
+        let number = |id: &String| representations.iter().position(|r| r == id).unwrap_or(0);
+        let numbers = start.iter().zip(&target).map(|(a, b)| [number(a), number(b)]).collect();
+        (fits && finite && few).then_some(Self { tags, start, target, beta, representations, numbers })
     }
 
     /// One section of the representation `all`.
     pub fn plain() -> Self {
         let all = vec!["all".to_owned()];
-        Self { tags: Vec::new(), start: all.clone(), target: all, beta: 0.0 }
+        let (start, target) = (all.clone(), all.clone());
+        Self { tags: Vec::new(), start, target, beta: 0.0, representations: all, numbers: vec![[0, 0]] }
     }
 
     /// Number of sections, at least 1.
@@ -83,13 +100,42 @@ impl StylingSections {
 
     /// The distinct representations, in order of first appearance.
     pub fn representations(&self) -> Vec<&str> {
-        let mut ids: Vec<&str> = Vec::new();
-        for id in self.start.iter().chain(&self.target) {
-            if !ids.contains(&id.as_str()) {
-                ids.push(id);
+        self.representations.iter().map(String::as_str).collect()
+    }
+
+    /// Number, in [`Self::representations`], of the representation that a threshold in 0..1 shows at `t`.
+    ///
+    /// At every `t` the representations own half-open intervals of 0..1, one after the other, as long as their weights: exactly one is
+    /// shown. Source: ours; the mean over all thresholds is the weighted composite of Pasewaldt et al. 2011, section 4.4.
+    pub fn shown(&self, t: f64, threshold: f64) -> usize {
+        let mut shares = [0.0; MOST_REPRESENTATIONS];
+        let mut step = 1.0;
+        for (i, &[start, target]) in self.numbers.iter().enumerate() {
+            let next = self.tags.get(i).map_or(0.0, |tag| ramp(tag, t).min(step));
+            shares[start] += (step - next) * (1.0 - self.beta);
+            shares[target] += (step - next) * self.beta;
+            step = next;
+        }
+        let (mut sum, mut last) = (0.0, 0);
+        for (i, &share) in shares[..self.representations.len()].iter().enumerate().filter(|(_, share)| **share > 0.0) {
+            (sum, last) = (sum + share, i);
+            if threshold < sum {
+                break;
             }
         }
-        ids
+        last
+    }
+
+    /// The representations, as bits of their numbers, that may have a weight anywhere between `t0` and `t1`.
+    pub fn supported(&self, [t0, t1]: [f64; 2]) -> u32 {
+        let from = |i: usize| i.checked_sub(1).map_or(f64::NEG_INFINITY, |i| self.tags[i].u - self.tags[i].delta);
+        let to = |i: usize| self.tags.get(i).map_or(f64::INFINITY, |tag| tag.u + tag.delta);
+        let held = |i: &usize| from(*i) <= t1 && t0 <= to(*i);
+        let bits = |i: usize| {
+            let [start, target] = self.numbers[i];
+            (if self.beta < 1.0 { 1 << start } else { 0 }) | (if self.beta > 0.0 { 1 << target } else { 0 })
+        };
+        (0..self.len()).filter(held).map(bits).fold(0, |all, bit: u32| all | bit)
     }
 
     /// Weight of representation `id` at `t`: the section weights, cross-faded by `beta`; 0 for an id that does not occur.

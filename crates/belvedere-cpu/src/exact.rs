@@ -10,6 +10,7 @@ use crate::geometry::pass::Pass;
 use crate::geometry::screen::{SUB, Screen};
 use crate::marks::Marks;
 use crate::raster::band::{BAND, sample_offsets};
+use crate::sections::{Exposure, Sections};
 use crate::shade::color::{Packed, Rgb};
 use crate::shade::{LightCache, Shader};
 use crate::trace::beam::RowRays;
@@ -63,14 +64,25 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     let start = Instant::now();
     job.progress.tick("prepare", 0.0)?;
     let screen = Screen::new(job.view.pinhole());
-    let tracer = Tracer::new(job.scene, job.view);
     let (blocks, light) = (Blocks::default(), LightCache::default());
     let shader = Shader::new(job, &screen, &blocks, &light);
     job.progress.tick("prepare", 1.0)?;
     let mut buffers = Buffers::new(job);
-    let picture = Picture { job, screen: &screen, tracer: &tracer, shader: &shader };
-    let seen = picture.trace()?;
-    picture.color(&seen, &mut buffers)?;
+    let sections = Sections::new(job.scene, job.view);
+    let count = if sections.is_some() { job.options.exposures.max(1) as usize } else { 1 };
+    let samples = sample_offsets(job.options.samples).len();
+    let mut sum = vec![Rgb::ZERO; buffers.color.len()];
+    // The last one first: depth and id stay those of the first exposure.
+    for number in (0..count).rev() {
+        let tracer = Tracer::exposed(job.scene, job.view, Exposure::new(number, count, samples));
+        let picture = Picture { job, screen: &screen, tracer: &tracer, shader: &shader };
+        let seen = picture.trace()?;
+        picture.color(&seen, &mut buffers)?;
+        sum.iter_mut().zip(&buffers.color).for_each(|(sum, color)| *sum += color.rgb());
+    }
+    if count > 1 {
+        buffers.color.iter_mut().zip(sum).for_each(|(color, sum)| *color = Packed::new(sum / count as f32));
+    }
     let samples = volume::compose(job, Way::Exact, &mut buffers)?;
     let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
     let passes = Pass::all(job.view);
@@ -111,7 +123,7 @@ impl Picture<'_> {
         let done = AtomicUsize::new(0);
         seen.par_chunks_mut(ROWS * width).enumerate().try_for_each(|(i, rows)| {
             for (k, row) in rows.chunks_mut(width).enumerate() {
-                RowRays::new(self.tracer, (i * ROWS + k) as f64 + 0.5).first_hits(row);
+                RowRays::new(self.tracer, (i * ROWS + k) as f64 + 0.5, 0).first_hits(row);
             }
             let done = (done.fetch_add(1, Ordering::Relaxed) + 1) * ROWS;
             self.job.progress.tick("trace", (done as f64 / height as f64).min(1.0))
@@ -150,7 +162,7 @@ impl Picture<'_> {
         let place = |oy: i32| y as f64 + f64::from(oy) / f64::from(SUB);
         let rows: Vec<OnceCell<RowRays<'_, '_>>> = offsets.iter().map(|_| OnceCell::new()).collect();
         let trace =
-            |s: usize, x: f64| rows[s].get_or_init(|| RowRays::new(self.tracer, place(offsets[s][1]))).first_hit(x);
+            |s: usize, x: f64| rows[s].get_or_init(|| RowRays::new(self.tracer, place(offsets[s][1]), s)).first_hit(x);
         (y * width..(y + 1) * width).map(|i| self.pixel(seen, i, offsets, &trace)).collect()
     }
 

@@ -12,6 +12,7 @@
 //! 5. `volume`: what rays gather in voxels, as far as the surfaces, is laid over them.
 //! 6. `marks`: lines, outlines, points and names, by lines of sight through the surfaces themselves (`trace`).
 //!
+//! Where styling sections show layers in part, samples choose by thresholds (`sections`), and exposures of a band are averaged.
 //! Where rays part, every branch is drawn so and the pictures are put together along the seams (`branches`).
 
 mod branches;
@@ -23,6 +24,7 @@ mod geometry;
 mod marks;
 mod raster;
 mod rasteriser;
+mod sections;
 mod shade;
 mod simd;
 mod trace;

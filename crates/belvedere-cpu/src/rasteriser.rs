@@ -11,7 +11,8 @@ use crate::marks::Marks;
 use crate::raster::band::{BAND, Band, sample_offsets};
 use crate::raster::pixel_center::PixelCenters;
 use crate::raster::resolve::{Colors, Rows, resolve};
-use crate::shade::color::Packed;
+use crate::sections::{Exposure, Sections};
+use crate::shade::color::{self, Packed, Rgb};
 use crate::shade::{LightCache, Shader};
 use crate::volume::{self, Way};
 use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
@@ -93,12 +94,14 @@ impl CpuRenderer {
         let screen = Screen::new(job.view.pinhole());
         let passes = Pass::all(job.view);
         let Scratch { blocks, color, bands } = scratch;
-        blocks.build(job.scene, job.view, &passes, &screen, job.options, &self.detail);
+        let sections = Sections::new(job.scene, job.view);
+        blocks.build(job.scene, job.view, &passes, &screen, job.options, sections.as_ref(), &self.detail);
         job.progress.tick("project", 1.0)?;
         let shader = Shader::new(job, &screen, blocks, &self.light);
         let mut buffers = Buffers::reuse(job, std::mem::take(color), frame);
         let centers = job.options.aux.exact.then(|| PixelCenters::new(job.scene, &passes, &screen));
-        draw_surfaces(job, &screen, blocks, (&shader, centers.as_ref()), bands, &mut buffers)?;
+        let surfaces = Surfaces { job, screen: &screen, blocks, shader: &shader, centers: centers.as_ref() };
+        surfaces.draw(sections.as_ref(), bands, &mut buffers)?;
         let samples = volume::compose(job, Way::Fast, &mut buffers)?;
         if buffers.open {
             let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
@@ -130,39 +133,79 @@ impl CpuRenderer {
     }
 }
 
-fn draw_surfaces(
-    job: &RenderJob<'_>,
-    screen: &Screen,
-    blocks: &Blocks,
-    (shader, centers): (&Shader<'_>, Option<&PixelCenters<'_>>),
-    spare: &Mutex<Vec<Band>>,
-    buffers: &mut Buffers,
-) -> Result<(), RenderError> {
-    let chunk = BAND * screen.width as usize;
-    let bands = (screen.height as usize).div_ceil(BAND);
-    let done = AtomicUsize::new(0);
-    let offsets = sample_offsets(job.options.samples);
-    let mut worlds: Vec<Option<&mut [[f64; 3]]>> = match &mut buffers.world {
-        Some(w) => w.chunks_mut(chunk).map(Some).collect(),
-        None => (0..bands).map(|_| None).collect(),
-    };
-    let mut colors: Vec<Colors<'_>> = if buffers.open {
-        buffers.color.chunks_mut(chunk).map(Colors::Open).collect()
-    } else {
-        buffers.out.chunks_mut(chunk).map(Colors::Stored).collect()
-    };
-    let depth = buffers.depth.par_chunks_mut(chunk);
-    let id = buffers.id.par_chunks_mut(chunk);
-    colors.par_iter_mut().zip(depth).zip(id).zip(worlds.par_iter_mut()).enumerate().try_for_each(
-        |(i, (((color, depth), id), world))| {
-            let y0 = (i * BAND) as i32;
-            let mut band = lock(spare).pop().unwrap_or_default();
-            band.clear(y0, (y0 + BAND as i32).min(screen.height), screen.width, &offsets);
-            blocks.draw(&mut band);
-            resolve(&band, shader, screen, &mut Rows { color, depth, id, world: world.as_deref_mut(), centers });
-            lock(spare).push(band);
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            Ok(job.progress.tick("draw", done as f64 / bands as f64)?)
-        },
-    )
+/// What there is to rasterise.
+struct Surfaces<'a> {
+    job: &'a RenderJob<'a>,
+    screen: &'a Screen,
+    blocks: &'a Blocks,
+    shader: &'a Shader<'a>,
+    centers: Option<&'a PixelCenters<'a>>,
+}
+
+impl Surfaces<'_> {
+    fn draw(
+        &self,
+        sections: Option<&Sections<'_>>,
+        spare: &Mutex<Vec<Band>>,
+        buffers: &mut Buffers,
+    ) -> Result<(), RenderError> {
+        let Self { job, screen, centers, .. } = *self;
+        let chunk = BAND * screen.width as usize;
+        let bands = (screen.height as usize).div_ceil(BAND);
+        let done = AtomicUsize::new(0);
+        let offsets = sample_offsets(job.options.samples);
+        let count = if sections.is_some() { job.options.exposures.max(1) as usize } else { 1 };
+        let exposures: Vec<Exposure> = (0..count).map(|k| Exposure::new(k, count, offsets.len())).collect();
+        let mut worlds: Vec<Option<&mut [[f64; 3]]>> = match &mut buffers.world {
+            Some(w) => w.chunks_mut(chunk).map(Some).collect(),
+            None => (0..bands).map(|_| None).collect(),
+        };
+        let mut colors: Vec<Colors<'_>> = if buffers.open {
+            buffers.color.chunks_mut(chunk).map(Colors::Open).collect()
+        } else {
+            buffers.out.chunks_mut(chunk).map(Colors::Stored).collect()
+        };
+        let depth = buffers.depth.par_chunks_mut(chunk);
+        let id = buffers.id.par_chunks_mut(chunk);
+        colors.par_iter_mut().zip(depth).zip(id).zip(worlds.par_iter_mut()).enumerate().try_for_each(
+            |(i, (((color, depth), id), world))| {
+                let y0 = (i * BAND) as i32;
+                let mut band = lock(spare).pop().unwrap_or_default();
+                let expose = |band: &mut Band, exposure: &Exposure| {
+                    band.clear(y0, (y0 + BAND as i32).min(screen.height), screen.width, &offsets);
+                    self.blocks.draw(band, screen.ortho, sections.map(|s| (s, exposure)))
+                };
+                let mut rows = Rows { color, depth, id, world: world.as_deref_mut(), centers };
+                if !expose(&mut band, &exposures[0]) || count == 1 {
+                    resolve(&band, self.shader, screen, &mut rows);
+                } else {
+                    let mut sum = self.exposed(&band, &mut rows);
+                    for exposure in &exposures[1..] {
+                        expose(&mut band, exposure);
+                        let (mut depth, mut id) = (vec![0.0; sum.len()], vec![0; sum.len()]);
+                        let color = &mut Colors::Stored(&mut []);
+                        let (depth, id) = (depth.as_mut_slice(), id.as_mut_slice());
+                        let again = &mut Rows { color, depth, id, world: None, centers: None };
+                        let seen = self.exposed(&band, again);
+                        sum.iter_mut().zip(seen).for_each(|(sum, seen)| *sum += seen);
+                    }
+                    let mean = sum.into_iter().map(|sum| Packed::new(sum / count as f32));
+                    rows.color.store(mean, color::encoding());
+                }
+                lock(spare).push(band);
+                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                Ok(job.progress.tick("draw", done as f64 / bands as f64)?)
+            },
+        )
+    }
+
+    /// Colours of a band, linear; all else goes to `rows`.
+    fn exposed(&self, band: &Band, rows: &mut Rows<'_, '_>) -> Vec<Rgb> {
+        let mut packed = vec![Packed::default(); rows.depth.len()];
+        let color = &mut Colors::Open(&mut packed);
+        let Rows { depth, id, world, centers, .. } = rows;
+        let rows = &mut Rows { color, depth, id, world: world.as_deref_mut(), centers: *centers };
+        resolve(band, self.shader, self.screen, rows);
+        packed.iter().map(|c| c.rgb()).collect()
+    }
 }

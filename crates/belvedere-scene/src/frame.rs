@@ -28,6 +28,9 @@ pub struct RenderOptions {
     pub aux: Aux,
     /// Marks that belong to no layer.
     pub overlay: Overlay,
+    /// Drawings, each with other thresholds, of the places where representations of styling sections pass into each other; the mean
+    /// is what is stored. 1 = an ordered dither, >= 1.
+    pub exposures: u32,
     /// Whether lines, outlines, points and names are drawn, those of the overlay too; else surfaces alone.
     pub marks: bool,
     /// Memory the renderer may use for one picture, bytes; more is [`RenderError::TooLarge`].
@@ -43,6 +46,7 @@ impl Default for RenderOptions {
             threads: 0,
             aux: Aux::default(),
             overlay: Overlay::default(),
+            exposures: 1,
             marks: true,
             max_bytes: 4 << 30,
         }

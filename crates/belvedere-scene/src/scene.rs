@@ -1,6 +1,8 @@
 //! The scene: a flat list of layers in one coordinate system.
 
-use crate::{Color, Heightfield, Layer, LayerKind, LineFeature, LineLayer, TerrainLayer, drape_polyline};
+use crate::{
+    Color, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Representation, TerrainLayer, drape_polyline,
+};
 use belvedere_core::{Aabb, DVec2};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -49,6 +51,8 @@ pub struct Scene {
     pub unit: Unit,
     /// Layers, in file order. The id buffer of a [`crate::Frame`] holds `1 + index` into this list.
     pub layers: Vec<Layer>,
+    /// Ways to show the same, of which styling sections choose; empty = every layer is shown everywhere.
+    pub representations: Vec<Representation>,
 }
 
 impl Scene {

@@ -221,7 +221,7 @@ mod tests {
         let transfer = TransferFunction::new("test", vec![point(50.0, 0.0), point(50.0, opacity)], 1.0).unwrap();
         let kind = LayerKind::Volume(VolumeLayer::new(volume, transfer));
         let layers = vec![Layer { id: "wall".into(), must_see: false, kind }];
-        Scene { title: String::new(), crs: Crs::Local, unit: Unit::Voxel, layers }
+        Scene { title: String::new(), crs: Crs::Local, unit: Unit::Voxel, layers, ..Scene::default() }
     }
 
     fn light(scene: &Scene, p: DVec3, without: &[usize]) -> f64 {

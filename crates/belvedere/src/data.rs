@@ -106,6 +106,7 @@ impl Data {
             camera,
             overlay: None,
             light: None,
+            representations: Default::default(),
             layer: self.layers,
             stage,
             constructor: None,

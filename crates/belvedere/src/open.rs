@@ -3,7 +3,7 @@
 use crate::resolve::constructor::{self, Memory};
 use crate::resolve::motion::Motions;
 use crate::resolve::terrain::Solving;
-use crate::resolve::{self, LayerRequest, validate, view};
+use crate::resolve::{self, LayerRequest, representations, validate, view};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, Document, EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc};
 use crate::session::Description;
@@ -66,8 +66,9 @@ impl Session {
             ..LayerRequest::new(&source.origin, &document.layer, &document.crs, &roots)
         };
         let loaded = resolve::load(request, options)?;
-        let scene =
-            Scene { title: document.title.clone(), crs: loaded.crs, unit: document.unit, layers: loaded.layers };
+        let (title, crs, unit) = (document.title.clone(), loaded.crs, document.unit);
+        let representations = representations::of(&source, &roots)?;
+        let scene = Scene { title, crs, unit, layers: loaded.layers, representations };
         resolve::fill_surfaces(&mut source.document.layer, &scene);
         let (mut scene, mut inputs) = (Arc::new(scene), loaded.inputs);
         let motions = Motions::read(&source, &roots, &scene, &mut inputs)?.map(Arc::new);

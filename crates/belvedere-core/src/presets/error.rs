@@ -115,4 +115,12 @@ pub enum PresetError {
         /// Name asked for.
         name: String,
     },
+    /// More representations than a picture can tell apart.
+    #[error("the presets name {count} different representations, {limit} at most; use fewer")]
+    ManyRepresentations {
+        /// Different ids.
+        count: usize,
+        /// Limit.
+        limit: usize,
+    },
 }

@@ -11,9 +11,10 @@ pub use interpolate::{InterpolatedPreset, Selection};
 
 use crate::bspline::{BSpline, BSplineError};
 use crate::map::spline::DeformationCurve;
-use crate::sections::TagPoint;
+use crate::sections::{MOST_REPRESENTATIONS, TagPoint};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// Coordinates in which the curve's slope is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -221,6 +222,10 @@ impl PresetDocument {
         }
         for (index, preset) in self.presets.iter().enumerate() {
             preset.validate(index)?;
+        }
+        let ids: BTreeSet<&String> = self.presets.iter().flat_map(|p| &p.sections).collect();
+        if ids.len() > MOST_REPRESENTATIONS {
+            return Err(PresetError::ManyRepresentations { count: ids.len(), limit: MOST_REPRESENTATIONS });
         }
         let sorted = self.sorted();
         for pair in sorted.windows(2) {

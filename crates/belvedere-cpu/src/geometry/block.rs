@@ -3,6 +3,8 @@
 use crate::cache::lock;
 use crate::geometry::grid::{Nodes, ScreenExtent};
 use crate::geometry::screen::{Screen, ScreenVertex};
+use crate::sections::{Sections, Shown};
+use belvedere_core::Aabb;
 use std::sync::Mutex;
 
 /// A vertex of a subdivided or clipped triangle: image, and weights of vertices 1 and 2 of the parent triangle.
@@ -50,6 +52,8 @@ pub(crate) struct Block {
     /// What the block may touch of the image.
     pub(crate) cover: ScreenExtent,
     pub(crate) counts: Counts,
+    /// Place along the deformation curve of the corners of each soup triangle, where only some samples are shown; else empty.
+    pub(crate) thin: Vec<[f32; 3]>,
 }
 
 /// Contribution to [`belvedere_scene::FrameStats`].
@@ -120,7 +124,27 @@ impl Block {
         }
         let (cover, geometry) = (cover_of(&soup), Geometry::Soup(soup));
         let (origin, seam) = ([first, 0], [false; 4]);
-        Some(Self { layer, records, origin, cells: [0; 2], step: 1, geometry, seam, soup_base: 0, cover, counts })
+        let thin = Vec::new();
+        Some(Self { layer, records, origin, cells: [0; 2], step: 1, geometry, seam, soup_base: 0, cover, counts, thin })
+    }
+}
+
+impl Block {
+    /// The block, its triangles to be shown sample by sample.
+    /// * `corners`: of a parent triangle, by its number: their places along the deformation curve.
+    pub(crate) fn thinned(mut self, corners: impl Fn(u32) -> [f64; 3]) -> Self {
+        if let Geometry::Soup(soup) = &self.geometry {
+            let thin = soup.iter().map(|t| {
+                let [a, b, c] = corners(t.parent);
+                let at = |v: SoupVertex| {
+                    let [u, w] = v.weights.map(f64::from);
+                    (a + u * (b - a) + w * (c - a)) as f32
+                };
+                t.v.map(at)
+            });
+            self.thin = thin.collect();
+        }
+        self
     }
 }
 
@@ -130,6 +154,14 @@ pub(crate) struct Job<'a> {
     pub(crate) screen: &'a Screen,
     pub(crate) tolerance_px: f64,
     pub(crate) spare: &'a BufferPool,
+    pub(crate) sections: Option<&'a Sections<'a>>,
+}
+
+impl Job<'_> {
+    /// How much of a part of the layer is shown.
+    pub(crate) fn shown(&self, bounds: &Aabb) -> Shown {
+        self.sections.map_or(Shown::Everything, |s| s.of_part(self.layer as usize, bounds))
+    }
 }
 
 pub(crate) fn cover_of(soup: &[SoupTriangle]) -> ScreenExtent {

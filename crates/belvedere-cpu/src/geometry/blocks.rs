@@ -11,6 +11,7 @@ use crate::geometry::pass::{InView, Pass};
 use crate::geometry::screen::Screen;
 use crate::geometry::select::{DetailSelector, Selection};
 use crate::raster::band::Band;
+use crate::sections::{Exposure, Sections, Shown};
 use belvedere_core::{Aabb, View};
 use belvedere_scene::{LayerKind, RenderOptions, Scene};
 use rayon::prelude::*;
@@ -74,6 +75,7 @@ impl Blocks {
         passes: &[Pass<'_>],
         screen: &Screen,
         options: &RenderOptions,
+        sections: Option<&Sections<'_>>,
         detail: &GroundCache<(), Arc<Tree>>,
     ) {
         // A tolerance of zero or less would split without end.
@@ -82,7 +84,10 @@ impl Blocks {
         self.triangles_in = 0;
         let locator = Locator::new(view, passes, screen);
         for (i, layer) in scene.layers.iter().enumerate() {
-            let job = Job { layer: i as u32, screen, tolerance_px, spare: &self.spare };
+            if sections.is_some_and(|s| s.of_layer(i) == Shown::Nothing) {
+                continue;
+            }
+            let job = Job { layer: i as u32, screen, tolerance_px, spare: &self.spare, sections };
             match &layer.kind {
                 LayerKind::Terrain(t) => {
                     let hf = &t.heightfield;
@@ -99,12 +104,17 @@ impl Blocks {
                     let choice = &self.choice;
                     let whole = choice.list.iter().filter(|c| c.held.whole).map(|c| choice.held(&c.held));
                     let joined = JoinedPasses::new(view, passes, whole);
+                    let (job, tree) = (&job, &tree);
                     let drawn = choice.list.par_iter().flat_map_iter(|c| {
-                        let bounds = tree.bounds(hf, c.level, c.block).filter(|_| !c.held.whole);
-                        let passes = joined.of(choice.held(&c.held), c.held.whole);
+                        let bounds = tree.bounds(hf, c.level, c.block);
+                        let shown = bounds.map_or(Shown::Everything, |b| job.shown(&b));
+                        let bounds = bounds.filter(|_| !c.held.whole);
+                        let passes =
+                            joined.of(choice.held(&c.held), c.held.whole).filter(move |_| shown != Shown::Nothing);
                         let seen =
                             passes.filter(move |pass| bounds.is_none_or(|b| pass.in_view(screen, &b) != InView::No));
-                        seen.filter_map(|pass| job.terrain_block(pass, hf, &tree.sparse, c))
+                        let thin = shown == Shown::Partly;
+                        seen.filter_map(move |pass| job.terrain_block(pass, hf, &tree.sparse, c, thin))
                     });
                     self.list.par_extend(drawn);
                 }
@@ -146,8 +156,9 @@ impl Blocks {
             .sort_unstable_by(|&a, &b| list[b as usize].cover.q.total_cmp(&list[a as usize].cover.q).then(a.cmp(&b)));
     }
 
-    /// Draws everything that touches the band and is not hidden, nearest first.
-    pub(crate) fn draw(&self, band: &mut Band) {
+    /// Draws everything that touches the band and is not hidden, nearest first; whether some of it is shown sample by sample.
+    pub(crate) fn draw(&self, band: &mut Band, ortho: bool, sections: Option<(&Sections<'_>, &Exposure)>) -> bool {
+        let mut any_thin = false;
         for &i in &self.order {
             let block = &self.list[i as usize];
             let [y0, y1] = block.cover.y;
@@ -156,6 +167,18 @@ impl Blocks {
             }
             match &block.geometry {
                 Geometry::Grid(nodes) => nodes.draw(i << CELL_BITS, band),
+                Geometry::Soup(soup)
+                    if let Some((sections, exposure)) = sections.filter(|_| !block.thin.is_empty()) =>
+                {
+                    any_thin = true;
+                    let shows = |s: usize, [x, y]: [i32; 2], at: f64| {
+                        sections.shows(block.layer as usize, at, exposure.threshold(s, x, y))
+                    };
+                    for (k, (t, at)) in soup.iter().zip(&block.thin).enumerate() {
+                        let prim = SOUP | (block.soup_base + k as u32);
+                        band.draw_thin(t.v.map(|v| v.screen), *at, ortho, prim, &shows);
+                    }
+                }
                 Geometry::Soup(soup) => {
                     for (k, t) in soup.iter().enumerate() {
                         band.draw(t.v.map(|v| v.screen), SOUP | (block.soup_base + k as u32));
@@ -164,6 +187,7 @@ impl Blocks {
             }
             band.drew(block.cover.x);
         }
+        any_thin
     }
 
     /// Layer of a primitive number (not sky).

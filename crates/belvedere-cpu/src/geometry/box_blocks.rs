@@ -3,6 +3,7 @@
 use crate::geometry::block::{Block, Counts, Job};
 use crate::geometry::pass::Pass;
 use crate::geometry::refine::Refiner;
+use crate::sections::Shown;
 use belvedere_core::Aabb;
 use belvedere_scene::{BoxLayer, BoxShape};
 use rayon::prelude::*;
@@ -41,6 +42,10 @@ impl Job<'_> {
     /// Displaces, projects, subdivides and clips a part of the boxes.
     pub(crate) fn box_block(&self, pass: &Pass<'_>, layer: &BoxLayer, chunk: usize) -> Option<Block> {
         let boxes = chunk_of(layer, chunk);
+        let shown = self.shown(&Aabb::of(boxes.iter().flat_map(|b| b.corners())));
+        if shown == Shown::Nothing {
+            return None;
+        }
         let mut refiner = Refiner::new(pass, self.screen, self.tolerance_px, self.spare.soup());
         let judge = !pass.is_straight();
         let mut missed = 0;
@@ -53,6 +58,11 @@ impl Job<'_> {
             }
         }
         let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };
-        Block::soup(self.layer, pass.records, chunk * BOXES, refiner.out, counts)
+        let block = Block::soup(self.layer, pass.records, chunk * BOXES, refiner.out, counts)?;
+        let Some(sections) = self.sections.filter(|_| shown == Shown::Partly) else { return Some(block) };
+        Some(block.thinned(|parent| {
+            let corners = boxes[parent as usize / 12].corners();
+            BOX_TRIANGLES[parent as usize % 12].map(|n| sections.parameter(corners[n]))
+        }))
     }
 }

@@ -4,6 +4,7 @@ use crate::geometry::block::{Block, Counts, Job, SoupTriangle, SoupVertex};
 use crate::geometry::pass::Pass;
 use crate::geometry::refine::Refiner;
 use crate::geometry::screen::ScreenVertex;
+use crate::sections::Shown;
 use belvedere_core::{Aabb, DVec3, EdgePoint};
 use belvedere_scene::Mesh;
 use rayon::prelude::*;
@@ -36,6 +37,9 @@ impl Job<'_> {
         let triangles = mesh.triangles().get(first..mesh.triangles().len().min(first + TRIANGLES))?;
         let (numbers, corners) = distinct(triangles);
         let bounds = Aabb::of(numbers.iter().map(|&v| mesh.vertex(v)));
+        if self.shown(&bounds) == Shown::Nothing {
+            return None;
+        }
         let judge = !pass.is_straight_in(&bounds, self.tolerance_px);
         let vertices: Vec<Vertex> = numbers.iter().map(|&v| self.mesh_vertex(pass, mesh.vertex(v), judge)).collect();
         let missed = vertices.iter().filter(|v| v.missed).count() as u64;
@@ -52,7 +56,9 @@ impl Job<'_> {
             }
         }
         let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };
-        Block::soup(self.layer, pass.records, first, refiner.out, counts)
+        let block = Block::soup(self.layer, pass.records, first, refiner.out, counts)?;
+        let Some(sections) = self.sections.filter(|_| self.shown(&bounds) == Shown::Partly) else { return Some(block) };
+        Some(block.thinned(|k| triangles[k as usize].map(|v| sections.parameter(mesh.vertex(v)))))
     }
 
     fn mesh_vertex(&self, pass: &Pass<'_>, p: DVec3, judge: bool) -> Vertex {

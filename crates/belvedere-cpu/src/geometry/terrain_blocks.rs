@@ -17,6 +17,7 @@ impl Job<'_> {
         hf: &Heightfield,
         sparse: &DecimatedHeights,
         chosen: &SelectedBlock,
+        thin: bool,
     ) -> Option<Block> {
         let (origin, last) = lod::nodes(hf, chosen.level, chosen.block);
         let step = 1 << chosen.level;
@@ -31,8 +32,9 @@ impl Job<'_> {
             soup_base: 0,
             cover: ScreenExtent::EMPTY,
             counts: Counts::default(),
+            thin: Vec::new(),
         };
-        let careful = chosen.edges || !chosen.held.whole || chosen.judged.contains(&true);
+        let careful = thin || chosen.edges || !chosen.held.whole || chosen.judged.contains(&true);
         if !careful && let Some(mut nodes) = self.project_grid(pass, hf, sparse, &out) {
             nodes.close_seams(chosen.seam);
             out.cover = nodes.cover();
@@ -47,7 +49,21 @@ impl Job<'_> {
             self.spare.keep(out.geometry);
             return None;
         }
-        Some(out)
+        Some(if thin { self.thin_ground(hf, out) } else { out })
+    }
+
+    fn thin_ground(&self, hf: &Heightfield, block: Block) -> Block {
+        let Some(sections) = self.sections else { return block };
+        let (origin, step) = (block.origin, block.step);
+        block.thinned(|parent| {
+            let cell = (parent >> 1) as usize;
+            CELL_TRIANGLES[(parent & 1) as usize].map(|n| {
+                let at = [cell % SIDE + (n & 1), cell / SIDE + (n >> 1)];
+                let [col, row] = [0, 1].map(|axis| origin[axis] + step * at[axis]);
+                let height = f64::from(hf.heights()[row * hf.cols() + col]);
+                sections.parameter(hf.node_xy(col, row).extend(height))
+            })
+        })
     }
 
     /// Nodes of the block on the image, if none needs clipping.

@@ -22,7 +22,7 @@ impl Band {
 
     /// First and last pixel whose sample lies in a triangle's bounding box.
     #[inline(always)]
-    fn pixels(&self, [ox, oy]: [i32; 2], x: [i32; 2], y: [i32; 2]) -> [i32; 4] {
+    pub(super) fn pixels(&self, [ox, oy]: [i32; 2], x: [i32; 2], y: [i32; 2]) -> [i32; 4] {
         [
             ((x[0] - ox + SUB - 1) >> 8).max(0),
             ((x[1] - ox) >> 8).min(self.width - 1),
@@ -193,7 +193,7 @@ impl Plane {
 }
 
 /// Edge functions (inside = all >= 0) and the plane of nearness of a triangle of any size.
-struct Setup {
+pub(super) struct Setup {
     /// Edge functions at the first vertex, fill rule included.
     e0: [i64; 3],
     /// Their change per pixel along x and per fixed-point step.
@@ -206,7 +206,7 @@ struct Setup {
 impl Setup {
     /// `None` for a triangle without area.
     #[inline(always)]
-    fn new(a: ScreenVertex, b: ScreenVertex, c: ScreenVertex) -> Option<Self> {
+    pub(super) fn new(a: ScreenVertex, b: ScreenVertex, c: ScreenVertex) -> Option<Self> {
         let d = |p: i32, q: i32| i64::from(p) - i64::from(q);
         let area = d(b.x, a.x) * d(c.y, a.y) - d(c.x, a.x) * d(b.y, a.y);
         if area == 0 {
@@ -225,6 +225,12 @@ impl Setup {
         Some(Self { e0, dx: ex.map(|e| e * i64::from(SUB)), ex, ey, plane: Plane::new(v, area) })
     }
 
+    /// Nearness at a place on the image, between those of the corners.
+    #[inline(always)]
+    pub(super) fn nearness(&self, xs: i32, ys: i32) -> f64 {
+        self.plane.at(xs, ys).clamp(f64::from(self.plane.q_min), f64::from(self.plane.q_max))
+    }
+
     #[inline(always)]
     fn edges_at(&self, xs: i32, ys: i32) -> [i64; 3] {
         let [x0, y0] = self.plane.origin;
@@ -233,7 +239,7 @@ impl Setup {
     }
 
     /// The pixels of `xa..=xb` whose sample in row `ys` is inside, exactly.
-    fn span(&self, ys: i32, ox: i32, xa: i32, xb: i32) -> (i32, i32) {
+    pub(super) fn span(&self, ys: i32, ox: i32, xa: i32, xb: i32) -> (i32, i32) {
         let e = self.edges_at(xa * SUB + ox, ys);
         let (mut lo, mut hi) = (0i64, i64::from(xb - xa));
         for (e, d) in e.into_iter().zip(self.dx) {

@@ -17,11 +17,13 @@ pub(crate) struct RowRays<'t, 'a> {
     tracer: &'t Tracer<'a>,
     row: Option<Row<'a>>,
     y: f64,
+    /// Number of the sample of a pixel.
+    sample: usize,
 }
 
 impl<'t, 'a> RowRays<'t, 'a> {
-    pub(crate) fn new(tracer: &'t Tracer<'a>, y: f64) -> Self {
-        Self { tracer, row: tracer.split.row(y, tracer.range), y }
+    pub(crate) fn new(tracer: &'t Tracer<'a>, y: f64, sample: usize) -> Self {
+        Self { tracer, row: tracer.split.row(y, tracer.range), y, sample }
     }
 
     fn curve(&self, x: f64) -> Curve<'_, 'a> {
@@ -30,7 +32,12 @@ impl<'t, 'a> RowRays<'t, 'a> {
 
     /// First hit of one ray.
     pub(crate) fn first_hit(&self, x: f64) -> Option<RayHit> {
-        self.tracer.hit_on(&self.curve(x), self.tracer.range[0])
+        self.hit_from(x, self.tracer.range[0])
+    }
+
+    fn hit_from(&self, x: f64, start: f64) -> Option<RayHit> {
+        let threshold = self.tracer.threshold(self.sample, DVec2::new(x, self.y));
+        self.tracer.hit_on(&self.curve(x), start, threshold)
     }
 
     /// First hits at the pixels `0.5, 1.5 ..`.
@@ -39,7 +46,7 @@ impl<'t, 'a> RowRays<'t, 'a> {
             let x = |k: usize| (i * GROUP + k) as f64 + 0.5;
             let start = self.clear_until(x(0), x(group.len() - 1));
             for (k, out) in group.iter_mut().enumerate() {
-                *out = if start < self.tracer.range[1] { self.tracer.hit_on(&self.curve(x(k)), start) } else { None };
+                *out = if start < self.tracer.range[1] { self.hit_from(x(k), start) } else { None };
             }
         }
     }

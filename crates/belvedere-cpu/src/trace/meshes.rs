@@ -16,13 +16,14 @@ impl Walk<'_, '_> {
     /// Offers `take` the first hit of every mesh within a span that is all but straight.
     pub(crate) fn meet_meshes(&self, span: &Span, (a, b): (DVec3, DVec3), reach: f64, take: &mut dyn FnMut(Found)) {
         for (layer, tree) in self.tracer.obstacles.meshes() {
-            let straight = span.is_straight() && tree.is_still();
+            let straight = span.is_straight() && tree.is_still() && self.shows_all(*layer);
             let mut best: Option<(f64, usize)> = None;
             if straight {
                 best = tree.first_crossing(a, b).map(|(t, triangle)| (span.depth_at(t), triangle));
             } else {
                 tree.near(a, b, reach, &mut |triangle| {
                     let found = Plane::new(self, tree, triangle).meet(span, reach).map(|depth| (depth, triangle));
+                    let found = found.filter(|(depth, _)| self.shows(*layer, *depth));
                     if let Some(found) = found.filter(|f| best.is_none_or(|b| *f < b)) {
                         best = Some(found);
                     }

@@ -1,6 +1,7 @@
 //! First hits of curved rays.
 
 use crate::geometry::screen::Screen;
+use crate::sections::{Exposure, Sections, Shown};
 use crate::trace::curve::{Curve, Span, Split};
 use crate::trace::root::root;
 use belvedere_core::{Aabb, DVec2, DVec3, View};
@@ -64,11 +65,20 @@ pub struct Tracer<'a> {
     /// Around all boxes and meshes, wherever the ground has moved them to.
     solid: Aabb,
     pub(crate) range: [f64; 2],
+    sections: Option<Sections<'a>>,
+    exposure: Exposure,
 }
 
 impl<'a> Tracer<'a> {
     /// Prepares terrain, boxes and meshes of `scene`: one pass over the nodes and the triangles.
+    ///
+    /// Where styling sections show layers in part, a ray meets what its pixel's threshold shows.
     pub fn new(scene: &'a Scene, view: &'a View) -> Self {
+        Self::exposed(scene, view, Exposure::new(0, 1, 1))
+    }
+
+    /// * `exposure`: thresholds of the samples.
+    pub(crate) fn exposed(scene: &'a Scene, view: &'a View, exposure: Exposure) -> Self {
         let split = Split::new(view);
         let lift = |min: DVec2, max: DVec2| {
             let Some(g) = split.ground.map(|g| g.grid()) else { return [0.0; 2] };
@@ -80,7 +90,7 @@ impl<'a> Tracer<'a> {
         let obstacles = Obstacles::lifted(scene, lift);
         let range = [view.pinhole().near, deepest(scene, view)];
         let (screen, solid) = (Screen::new(view.pinhole()), obstacles.solid_bounds());
-        Self { split, screen, obstacles, solid, range }
+        Self { split, screen, obstacles, solid, range, sections: Sections::new(scene, view), exposure }
     }
 
     /// What the ray of `pixel` meets first between the near and far depth of the camera; `None` for the sky.
@@ -88,12 +98,17 @@ impl<'a> Tracer<'a> {
     /// Of surfaces seen at the same depth the layer listed first counts.
     pub fn first_hit(&self, pixel: DVec2) -> Option<RayHit> {
         let row = self.split.row(pixel.y, self.range);
-        self.hit_on(&self.split.curve(pixel, row.as_ref()), self.range[0])
+        self.hit_on(&self.split.curve(pixel, row.as_ref()), self.range[0], self.threshold(0, pixel))
     }
 
-    /// First hit of a curve that is known to meet nothing before depth `start`.
-    pub(crate) fn hit_on(&self, curve: &Curve<'_, '_>, start: f64) -> Option<RayHit> {
-        let walk = Walk { tracer: self, curve, start };
+    /// Threshold of a sample, by its number, of the pixel in which it lies.
+    pub(crate) fn threshold(&self, sample: usize, pixel: DVec2) -> f64 {
+        self.exposure.threshold(sample, pixel.x.floor() as i32, pixel.y.floor() as i32)
+    }
+
+    /// First hit of a curve that is known to meet nothing before depth `start`, by a sample with a threshold.
+    pub(crate) fn hit_on(&self, curve: &Curve<'_, '_>, start: f64, threshold: f64) -> Option<RayHit> {
+        let walk = Walk { tracer: self, curve, start, threshold };
         let spans = curve.spans([start, self.range[1]]);
         let (depth, layer, part) = spans.into_iter().find_map(|span| walk.span(span, 0))?;
         let point = walk.true_point(depth)?;
@@ -180,6 +195,7 @@ pub(crate) struct Walk<'t, 'a> {
     curve: &'t Curve<'t, 'a>,
     /// Depth up to which nothing is met.
     start: f64,
+    threshold: f64,
 }
 
 impl Walk<'_, '_> {
@@ -217,7 +233,8 @@ impl Walk<'_, '_> {
             }
         };
         for (layer, ground) in self.tracer.obstacles.grounds() {
-            let mut follow = Follow { walk: self, span, chord, reach, hf: ground.heightfield(), last: None };
+            let mut follow =
+                Follow { walk: self, layer: *layer, span, chord, reach, hf: ground.heightfield(), last: None };
             ground.walk(chord.0, chord.1, reach, &mut |cell, t0, t1| match follow.cell(cell, t0, t1) {
                 ControlFlow::Break((depth, triangle)) => {
                     take((depth, *layer, Part::Cell(cell, triangle)));
@@ -227,7 +244,7 @@ impl Walk<'_, '_> {
             });
         }
         self.tracer.obstacles.boxes().near(chord.0, chord.1, reach, &mut |shape, part| {
-            if let Some(depth) = self.enter(shape, span, part) {
+            if let Some(depth) = self.meet_box(shape, span, part) {
                 take((depth, shape.layer, Part::Face(shape.index, DVec3::Z)));
             }
             true
@@ -254,8 +271,19 @@ impl Walk<'_, '_> {
         Some(p - self.tracer.split.lift(p) * DVec3::Z)
     }
 
-    /// Depth at which the ray first passes the surface of a box.
-    fn enter(&self, shape: &UprightBox, span: &Span, [t0, t1]: [f64; 2]) -> Option<f64> {
+    /// Whether the ray's sample shows the layer at a depth.
+    pub(crate) fn shows(&self, layer: usize, depth: f64) -> bool {
+        let Some(sections) = &self.tracer.sections else { return true };
+        self.true_point(depth).is_some_and(|p| sections.shows(layer, sections.parameter(p), self.threshold))
+    }
+
+    /// Whether the ray's sample shows the layer wherever it goes.
+    pub(crate) fn shows_all(&self, layer: usize) -> bool {
+        self.tracer.sections.as_ref().is_none_or(|s| s.of_layer(layer) == Shown::Everything)
+    }
+
+    /// Depth at which the ray first passes the surface of a box that it shows there.
+    fn meet_box(&self, shape: &UprightBox, span: &Span, [t0, t1]: [f64; 2]) -> Option<f64> {
         let outside = |w: f64| self.true_point(w).map_or(f64::NAN, |p| shape.outside(p));
         let steps = if shape.is_sheared() { 64 } else { 8 };
         // A little more on both sides, so that the ends lie off the surface.
@@ -269,7 +297,10 @@ impl Walk<'_, '_> {
         for i in 1..=steps {
             let now = at(i);
             if (before.1 > 0.0) != (now.1 > 0.0) && !before.1.is_nan() && !now.1.is_nan() {
-                return Some(root(before, now, outside));
+                let depth = root(before, now, outside);
+                if self.shows(shape.layer, depth) {
+                    return Some(depth);
+                }
             }
             before = now;
         }
@@ -280,6 +311,7 @@ impl Walk<'_, '_> {
 /// The height over the ground, followed along a span from cell to cell.
 struct Follow<'w, 't, 'a> {
     walk: &'w Walk<'t, 'a>,
+    layer: usize,
     span: &'w Span,
     chord: (DVec3, DVec3),
     reach: f64,
@@ -320,7 +352,8 @@ impl Follow<'_, '_, '_> {
             }
             match self.plane(cell, triangle) {
                 Some(plane) => {
-                    if let Some(depth) = self.triangle(&plane, from, to) {
+                    let met = self.triangle(&plane, from, to);
+                    if let Some(depth) = met.filter(|depth| self.walk.shows(self.layer, *depth)) {
                         return ControlFlow::Break((depth, triangle));
                     }
                 }

@@ -319,7 +319,7 @@ fn lines_of_sight_let_through_what_the_picture_does() {
     layer.transfer = TransferFunction::new("thin", layer.transfer.points().to_vec(), 8.0).unwrap();
     let kind = LayerKind::Volume(layer.clone());
     let layers = vec![Layer { id: "wavy".into(), must_see: false, kind }];
-    let scene = Scene { title: String::new(), crs: Crs::Local, unit: Unit::Voxel, layers };
+    let scene = Scene { title: String::new(), crs: Crs::Local, unit: Unit::Voxel, layers, ..Scene::default() };
     let voxels = Voxels::without(&scene, &[]);
     let (mut dim, mut worst) = (0, 0.0f64);
     for (name, view) in views() {

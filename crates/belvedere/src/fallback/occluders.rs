@@ -105,6 +105,7 @@ fn filtered(scene: &Scene, kind: &dyn Fn(usize) -> Option<LayerKind>) -> Scene {
         crs: scene.crs,
         unit: scene.unit,
         layers: scene.layers.iter().enumerate().map(layer).collect(),
+        representations: scene.representations.clone(),
     }
 }
 

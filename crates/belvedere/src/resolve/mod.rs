@@ -17,6 +17,7 @@ mod molecule;
 pub(crate) mod motion;
 mod path;
 pub(crate) mod rays;
+pub(crate) mod representations;
 mod sea;
 pub(crate) mod stages;
 pub(crate) mod terrain;

@@ -127,7 +127,7 @@ fn spline(
     warnings: &mut Vec<String>,
     at: Table<'_>,
 ) -> Result<(SplineBend, StageDoc), BelvedereError> {
-    let presets = presets(context, &doc.presets, inputs, at)?;
+    let presets = presets(context.roots, &doc.presets, inputs, at)?;
     let pinhole = &context.camera.pinhole;
     let normal = doc.plane.as_ref().map_or(DVec3::Z, |p| DVec3::from_array(p.normal));
     let unit = normal.try_normalize().ok_or_else(|| {
@@ -182,8 +182,9 @@ fn median_height(terrain: &belvedere_scene::Heightfield) -> f64 {
     }
 }
 
-fn presets(
-    context: &StageContext<'_>,
+/// The document that a stage names.
+pub(super) fn presets(
+    roots: &Roots,
     doc: &PresetsDoc,
     inputs: &mut Vec<InputFile>,
     at: Table<'_>,
@@ -200,7 +201,7 @@ fn presets(
                     at.error(&["presets"], format!("{e} ({hint})"))
                 });
             }
-            let path = context.roots.resolve(name).map_err(|e| at.refusal(&["presets"], e))?;
+            let path = roots.resolve(name).map_err(|e| at.refusal(&["presets"], e))?;
             let (text, file) = scene_file::read_text(&path)?;
             let document = scene_file::parse_presets(&path, &text)?;
             inputs.push(file);

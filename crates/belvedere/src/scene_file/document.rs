@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// A whole scene file, version 1.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -39,6 +40,10 @@ pub struct Document {
     /// Layers, a flat list; terrain first in drawing order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layer: Vec<LayerDoc>,
+    /// Ways to show the same, by name: the ids of their layers. Styling sections of presets choose of them; layers of no representation
+    /// are shown everywhere. A section may also name a layer.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub representations: BTreeMap<String, Vec<String>>,
     /// Stages in order of application: terrain_disocclusion, spline_bend, curved_rays.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stage: Vec<StageDoc>,
@@ -63,6 +68,7 @@ impl Document {
             light: None,
             overlay: None,
             layer: Vec::new(),
+            representations: BTreeMap::new(),
             stage: Vec::new(),
             constructor: None,
             animation: None,
@@ -92,6 +98,8 @@ pub(super) struct Head {
     pub(super) camera: CameraDoc,
     pub(super) light: Option<LightDoc>,
     pub(super) overlay: Option<super::overlay::OverlayDoc>,
+    #[serde(default)]
+    pub(super) representations: BTreeMap<String, Vec<String>>,
     #[serde(default)]
     #[serde(rename = "layer")]
     pub(super) _layer: serde::de::IgnoredAny,

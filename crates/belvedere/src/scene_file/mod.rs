@@ -226,6 +226,7 @@ fn document(root: &Node) -> Result<Document, DocError> {
         camera: head.camera,
         light: head.light,
         overlay: head.overlay,
+        representations: head.representations,
         layer: each(root, "layer", layers::LAYER_KINDS, layer)?,
         stage: each(root, "stage", stages::STAGE_KINDS, stage)?,
         constructor: head.constructor,

@@ -400,10 +400,10 @@ mod tests {
             let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
             let (screen, passes) = (Screen::new(view.pinhole()), Pass::all(&view));
             let (mut blocks, light_cache) = (Blocks::default(), LightCache::default());
-            blocks.build(&scene, &view, &passes, &screen, &options, &GroundCache::default());
+            blocks.build(&scene, &view, &passes, &screen, &options, None, &GroundCache::default());
             let shader = Shader::new(&job, &screen, &blocks, &light_cache);
             let mut band = Band::new(0, 160, 331, sample_offsets(1));
-            blocks.draw(&mut band);
+            blocks.draw(&mut band, false, None);
             let x: Vec<i32> = (0..331).map(|x| x * SUB + SUB / 2).collect();
             for row in 0..160 {
                 let (y, from) = (vec![row * SUB + SUB / 2; 331], band.index(0, 0, row));

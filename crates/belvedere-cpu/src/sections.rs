@@ -1,0 +1,145 @@
+//! Styling sections on the image: which representation a sample shows.
+//!
+//! Every sample has a threshold. At each place of the deformation curve the representations own intervals of all thresholds, as long as
+//! their weights, so exactly one of them is shown by a sample: no layers, one depth buffer. Pixels have different thresholds (an 8 x 8
+//! ordered dither); exposures of one frame shift them, and their mean tends to the weighted composite.
+
+use belvedere_core::map::spline::SplineBend;
+use belvedere_core::sections::StylingSections;
+use belvedere_core::{Aabb, DVec3, Stage, View};
+use belvedere_scene::Scene;
+
+/// Which layers are shown where.
+#[derive(Debug, Clone)]
+pub(crate) struct Sections<'a> {
+    /// `None` = one representation everywhere.
+    bend: Option<&'a SplineBend>,
+    styling: StylingSections,
+    /// For each layer the representations that show it, as bits.
+    shown_by: Vec<u32>,
+}
+
+/// How much of something is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Shown {
+    Nothing,
+    /// Sample by sample.
+    Partly,
+    Everything,
+}
+
+impl<'a> Sections<'a> {
+    /// `None` for scenes without representations.
+    pub(crate) fn new(scene: &Scene, view: &'a View) -> Option<Self> {
+        if scene.representations.is_empty() {
+            return None;
+        }
+        let bend = view.stages().iter().find_map(|s| if let Stage::SplineBend(bend) = s { Some(bend) } else { None });
+        let styling = bend.map_or_else(StylingSections::plain, |bend| bend.sections().clone());
+        let shown_by = scene.shown_by(&styling.representations());
+        Some(Self { bend, styling, shown_by })
+    }
+
+    /// One representation, wherever it has a weight.
+    pub(crate) fn alone(&self, scene: &Scene, number: usize) -> Vec<u32> {
+        let id = self.styling.representations()[number];
+        scene.shown_by(&[id])
+    }
+
+    /// How much of a layer the image shows at most.
+    pub(crate) fn of_layer(&self, layer: usize) -> Shown {
+        self.of_range(layer, [f64::NEG_INFINITY, f64::INFINITY])
+    }
+
+    /// How much of a part of a layer is shown, by its bounds before any displacement.
+    pub(crate) fn of_part(&self, layer: usize, bounds: &Aabb) -> Shown {
+        let Some(bend) = self.bend else { return self.of_layer(layer) };
+        let places = bounds.corners().map(|p| bend.section_parameter(p));
+        let range = places.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], t| [lo.min(t), hi.max(t)]);
+        // What bounds hold by rounding alone is tested.
+        self.of_range(layer, [range[0] - 1e-9, range[1] + 1e-9])
+    }
+
+    fn of_range(&self, layer: usize, range: [f64; 2]) -> Shown {
+        let supported = self.styling.supported(range);
+        match supported & self.shown_by[layer] {
+            0 => Shown::Nothing,
+            bits if bits == supported => Shown::Everything,
+            _ => Shown::Partly,
+        }
+    }
+
+    /// Place along the curve, as a share of its length.
+    pub(crate) fn parameter(&self, p: DVec3) -> f64 {
+        self.bend.map_or(0.0, |bend| bend.section_parameter(p))
+    }
+
+    /// Whether a sample with a threshold shows the layer at a place along the curve.
+    pub(crate) fn shows(&self, layer: usize, parameter: f64, threshold: f64) -> bool {
+        self.shown_by[layer] >> self.styling.shown(parameter, threshold) & 1 == 1
+    }
+
+    /// Share of a layer at a place, 0..=1.
+    pub(crate) fn weight(&self, layer: usize, p: DVec3) -> f64 {
+        let t = self.parameter(p);
+        let ids = self.styling.representations();
+        let held = ids.iter().enumerate().filter(|(i, _)| self.shown_by[layer] >> i & 1 == 1);
+        held.map(|(_, id)| self.styling.representation_weight(id, t)).sum::<f64>().min(1.0)
+    }
+}
+
+/// The thresholds of one of several drawings of a frame.
+#[derive(Debug, Clone)]
+pub(crate) struct Exposure {
+    /// Added to the dither, for each sample of a pixel, the centre first.
+    phases: Vec<f64>,
+}
+
+impl Exposure {
+    /// * `samples`: of a pixel, the centre among them.
+    pub(crate) fn new(number: usize, count: usize, samples: usize) -> Self {
+        let coverage = samples.max(2) - 1;
+        let phase = |s: usize| match s {
+            0 => (0.5 + number as f64 / count as f64).fract(),
+            s => ((number * coverage + s - 1) as f64 + 0.5) / (count * coverage) as f64,
+        };
+        Self { phases: (0..samples).map(phase).collect() }
+    }
+
+    /// Threshold of a sample, 0..1.
+    #[inline]
+    pub(crate) fn threshold(&self, sample: usize, x: i32, y: i32) -> f64 {
+        (dither(x, y) + self.phases[sample]).fract()
+    }
+}
+
+/// Ordered dither of 8 x 8 pixels: each 64th once.
+#[inline]
+fn dither(x: i32, y: i32) -> f64 {
+    let (a, b) = ((x ^ y) as u32, y as u32);
+    // Bits of both in turn, the lowest of the pixel's place weighing most.
+    let bits = (0..3).fold(0, |sum, k| sum << 2 | (a >> k & 1) << 1 | b >> k & 1);
+    f64::from(bits) / 64.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thresholds_of_a_pixel_and_of_a_tile_are_spread_evenly() {
+        let mut tile: Vec<f64> = (0..64).map(|i| dither(i % 8, i / 8)).collect();
+        tile.sort_by(f64::total_cmp);
+        assert!(tile.iter().enumerate().all(|(i, d)| (d - i as f64 / 64.0).abs() < 1e-12));
+        for (count, samples) in [(1, 1), (64, 1), (16, 5), (4, 17)] {
+            let exposures: Vec<_> = (0..count).map(|k| Exposure::new(k, count, samples)).collect();
+            let coverage = if samples == 1 { 0..1 } else { 1..samples };
+            let mut all: Vec<f64> =
+                exposures.iter().flat_map(|e| coverage.clone().map(|s| e.threshold(s, 13, 7))).collect();
+            all.sort_by(f64::total_cmp);
+            let step = 1.0 / all.len() as f64;
+            assert!(all.windows(2).all(|w| (w[1] - w[0] - step).abs() < 1e-9), "{count} {samples}: {all:?}");
+            assert!(all[0] >= 0.0 && all[all.len() - 1] < 1.0);
+        }
+    }
+}
