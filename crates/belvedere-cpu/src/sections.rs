@@ -40,12 +40,6 @@ impl<'a> Sections<'a> {
         Some(Self { bend, styling, shown_by })
     }
 
-    /// One representation, wherever it has a weight.
-    pub(crate) fn alone(&self, scene: &Scene, number: usize) -> Vec<u32> {
-        let id = self.styling.representations()[number];
-        scene.shown_by(&[id])
-    }
-
     /// How much of a layer the image shows at most.
     pub(crate) fn of_layer(&self, layer: usize) -> Shown {
         self.of_range(layer, [f64::NEG_INFINITY, f64::INFINITY])
@@ -79,12 +73,31 @@ impl<'a> Sections<'a> {
         self.shown_by[layer] >> self.styling.shown(parameter, threshold) & 1 == 1
     }
 
-    /// Share of a layer at a place, 0..=1.
-    pub(crate) fn weight(&self, layer: usize, p: DVec3) -> f64 {
+    /// Share, 0..=1, of the representations that show `layer` among those that show `on`, at a place.
+    pub(crate) fn share(&self, layer: usize, on: usize, p: DVec3) -> f64 {
+        let (held, all) = (self.shown_by[layer] & self.shown_by[on], self.shown_by[on]);
+        if held == all || held == 0 {
+            return if held == 0 { 0.0 } else { 1.0 };
+        }
         let t = self.parameter(p);
         let ids = self.styling.representations();
-        let held = ids.iter().enumerate().filter(|(i, _)| self.shown_by[layer] >> i & 1 == 1);
-        held.map(|(_, id)| self.styling.representation_weight(id, t)).sum::<f64>().min(1.0)
+        let sum = |bits: u32| {
+            let members = ids.iter().enumerate().filter(|(i, _)| bits >> i & 1 == 1);
+            members.map(|(_, id)| self.styling.representation_weight(id, t)).sum::<f64>()
+        };
+        let of = sum(all);
+        if of > 0.0 { (sum(held) / of).clamp(0.0, 1.0) } else { 0.0 }
+    }
+
+    /// Whether a layer throws shadows on a place of another: on what is shown together with it.
+    pub(crate) fn throws(&self, layer: usize, onto: usize, p: DVec3) -> bool {
+        let (thrown, seen) = (self.shown_by[layer], self.shown_by[onto]);
+        thrown & seen != 0 && (thrown & seen == seen || self.prevails(layer, p))
+    }
+
+    /// Whether a layer has at least half of the weight at a place: where lines and points of it are drawn.
+    pub(crate) fn prevails(&self, layer: usize, p: DVec3) -> bool {
+        self.shows(layer, self.parameter(p), 0.5)
     }
 }
 
@@ -93,23 +106,31 @@ impl<'a> Sections<'a> {
 pub(crate) struct Exposure {
     /// Added to the dither, for each sample of a pixel, the centre first.
     phases: Vec<f64>,
+    dithered: bool,
 }
 
 impl Exposure {
     /// * `samples`: of a pixel, the centre among them.
     pub(crate) fn new(number: usize, count: usize, samples: usize) -> Self {
         let coverage = samples.max(2) - 1;
+        // In the middles of equal parts of 0..1, which are no wider than those of the dither.
+        let part = |i: usize, n: usize| i as f64 / n as f64 + 0.5 / n.max(64) as f64;
         let phase = |s: usize| match s {
-            0 => (0.5 + number as f64 / count as f64).fract(),
-            s => ((number * coverage + s - 1) as f64 + 0.5) / (count * coverage) as f64,
+            0 => part(number, count) + 0.5,
+            s => part(number * coverage + s - 1, count * coverage),
         };
-        Self { phases: (0..samples).map(phase).collect() }
+        Self { phases: (0..samples).map(phase).collect(), dithered: true }
+    }
+
+    /// The same threshold everywhere: what has the greater part of the weight.
+    pub(crate) fn even() -> Self {
+        Self { phases: vec![0.5], dithered: false }
     }
 
     /// Threshold of a sample, 0..1.
     #[inline]
     pub(crate) fn threshold(&self, sample: usize, x: i32, y: i32) -> f64 {
-        (dither(x, y) + self.phases[sample]).fract()
+        if self.dithered { (dither(x, y) + self.phases[sample]).fract() } else { self.phases[0] }
     }
 }
 

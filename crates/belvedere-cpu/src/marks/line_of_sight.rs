@@ -2,6 +2,7 @@
 
 use crate::geometry::screen::Screen;
 use crate::marks::path::LinePoint;
+use crate::sections::Exposure;
 use crate::trace::Tracer;
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{LayerKind, Scene};
@@ -50,6 +51,6 @@ impl<'a> LineOfSight<'a> {
                 _ => 0,
             })
             .sum();
-        (nodes <= MAX_NODES).then(|| Tracer::new(self.scene, self.view))
+        (nodes <= MAX_NODES).then(|| Tracer::exposed(self.scene, self.view, Exposure::even()))
     }
 }

@@ -8,6 +8,7 @@ mod line_of_sight;
 mod names;
 mod path;
 mod ribbon;
+mod shown;
 mod symbol;
 mod visibility;
 
@@ -15,6 +16,7 @@ use crate::canvas::Canvas;
 use crate::geometry::pass::Pass;
 use crate::geometry::screen::Screen;
 use crate::raster::band::BAND;
+use crate::sections::Sections;
 use crate::shade::color::{Packed, linear};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{
@@ -57,7 +59,16 @@ impl Marks {
         }
         let map = DepthMap { depth, width: screen.width, height: screen.height };
         let sight = LineOfSight::new(job.scene, job.view);
-        let builder = MarkBuilder { scene: job.scene, passes, screen, tolerance_px, map, sight: &sight };
+        let sections = Sections::new(job.scene, job.view);
+        let builder = MarkBuilder {
+            sections: sections.as_ref(),
+            scene: job.scene,
+            passes,
+            screen,
+            tolerance_px,
+            map,
+            sight: &sight,
+        };
         let overlay = &job.options.overlay;
         let mut requests: Vec<LabelRequest> = Vec::new();
         let mut sheets: Vec<StrokeLayer> = Vec::new();
@@ -65,12 +76,13 @@ impl Marks {
             let id = i as u32 + 1;
             match &layer.kind {
                 LayerKind::Line(l) => {
+                    let l = &*builder.shown_lines(i, l);
                     sheets.push(builder.line_layer(l, id));
                     sheets.extend(builder.distances(l, id, &mut requests));
                     requests.extend(builder.line_names(l));
                 }
                 LayerKind::Area(a) => sheets.extend(builder.outlines(a, id)),
-                LayerKind::Point(p) => sheets.push(builder.points(p, id, &mut requests)),
+                LayerKind::Point(p) => sheets.push(builder.points(&builder.shown_points(i, p), id, &mut requests)),
                 _ => {}
             }
         }
@@ -110,6 +122,7 @@ impl Marks {
 }
 
 struct MarkBuilder<'a> {
+    sections: Option<&'a Sections<'a>>,
     scene: &'a Scene,
     passes: &'a [Pass<'a>],
     screen: &'a Screen,
@@ -154,6 +167,7 @@ impl MarkBuilder<'_> {
         }
         let half_px = 0.5 * width_or_none(layer.width_px);
         let style = Style { half_px, casing_px: None, hidden: layer.hidden, lift_m: layer.lift_m };
+        let paths = self.shown_paths(id as usize - 1, paths);
         Some(self.sheet(paths, style, inks(color, None, layer.hidden), id))
     }
 

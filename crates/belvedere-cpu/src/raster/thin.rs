@@ -41,10 +41,13 @@ impl Band {
                 let (x0, x1) = setup.span(ys, ox, xa, xb);
                 for px in x0..=x1 {
                     let xs = px * SUB + ox;
+                    let at = self.index(s, px, py);
                     let q = setup.nearness(xs, ys);
+                    if (q as f32) < self.q[at] {
+                        continue;
+                    }
                     let here = if ortho { value.nearness(xs, ys) } else { value.nearness(xs, ys) / q };
                     if shows(s, [px, py], here) {
-                        let at = self.index(s, px, py);
                         self.write(at, q as f32, prim);
                     }
                 }

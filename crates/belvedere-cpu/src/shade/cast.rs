@@ -82,7 +82,8 @@ impl<'a> Casters<'a> {
 
     /// Share of the sun that boxes and meshes leave to a pixel on the ground.
     /// * `axes`: way on the map per pixel to the right and per pixel down.
-    pub(crate) fn on_ground(&self, p: DVec3, axes: [DVec2; 2]) -> f32 {
+    /// * `throws`: whether a layer, by its index, does so here.
+    pub(crate) fn on_ground(&self, p: DVec3, axes: [DVec2; 2], throws: &dyn Fn(usize) -> bool) -> f32 {
         // Away from every caster: the box that the rays run through.
         let way = self.way(p.z, self.solid.max.z);
         let reach = (axes[0].length() + axes[1].length()) + 2.0 * SUN_RADIUS * way;
@@ -92,25 +93,25 @@ impl<'a> Casters<'a> {
             return 1.0;
         }
         let [right, down] = axes.map(|a| a.extend(0.0));
-        self.share(p, [right, down], false)
+        self.share(p, [right, down], false, throws)
     }
 
     /// Share of the sun that everything leaves to a pixel on a surface with a normal.
-    /// * `side`: of the square that the pixel covers there.
-    pub(crate) fn on_surface(&self, p: DVec3, normal: DVec3, side: f64) -> f32 {
+    /// * `side`: of the square that the pixel covers there; `throws`: see [`Self::on_ground`].
+    pub(crate) fn on_surface(&self, p: DVec3, normal: DVec3, side: f64, throws: &dyn Fn(usize) -> bool) -> f32 {
         if normal.dot(self.sun) <= 0.0 {
             return 0.0;
         }
         let (u, v) = normal.any_orthonormal_pair();
         let off = OFF_PX * side + OFF * p.abs().max_element();
-        self.share(p + off * normal, [side * u, side * v], true)
+        self.share(p + off * normal, [side * u, side * v], true, throws)
     }
 
-    fn share(&self, p: DVec3, [right, down]: [DVec3; 2], over_ground: bool) -> f32 {
+    fn share(&self, p: DVec3, [right, down]: [DVec3; 2], over_ground: bool, throws: &dyn Fn(usize) -> bool) -> f32 {
         let lit = |i: usize| {
             let [x, y, u, v] = PATTERN[i];
             let sun = self.sun + u * self.across[0] + v * self.across[1];
-            u32::from(self.sees(p + x * right + y * down, sun, over_ground))
+            u32::from(self.sees(p + x * right + y * down, sun, over_ground, throws))
         };
         let corners: u32 = (0..FIRST).map(lit).sum();
         if corners == 0 || corners as usize == FIRST {
@@ -125,12 +126,12 @@ impl<'a> Casters<'a> {
         (top - z) / self.sun.z
     }
 
-    fn sees(&self, p: DVec3, sun: DVec3, over_ground: bool) -> bool {
+    fn sees(&self, p: DVec3, sun: DVec3, over_ground: bool, throws: &dyn Fn(usize) -> bool) -> bool {
         let to = |top: f64| p + self.way(p.z, top).max(0.0) * sun;
         let end = to(self.solid.max.z);
-        self.obstacles.boxes().near(p, end, 0.0, &mut |_, _| false)
-            && self.obstacles.meshes().iter().all(|(_, tree)| tree.first_crossing(p, end).is_none())
-            && (!over_ground || self.obstacles.grounds().iter().all(|(_, g)| g.sees(p, to(self.top))))
+        self.obstacles.boxes().near(p, end, 0.0, &mut |shape, _| !throws(shape.layer))
+            && self.obstacles.meshes().iter().all(|(i, tree)| !throws(*i) || tree.first_crossing(p, end).is_none())
+            && (!over_ground || self.obstacles.grounds().iter().all(|(i, g)| !throws(*i) || g.sees(p, to(self.top))))
     }
 }
 
@@ -171,17 +172,18 @@ mod tests {
             let casters = Casters::new(&scene, &SUN).unwrap();
             for i in -80..160 {
                 let x = f64::from(i) + 0.25;
-                let lit = casters.on_ground(DVec3::new(x, 3.0, 0.0), AXES);
+                let lit = casters.on_ground(DVec3::new(x, 3.0, 0.0), AXES, &|_| true);
                 // The foot itself is in the dark; the sun is as wide as 0.93 over the length of this shadow.
                 let want = if (-9.0..58.5).contains(&x) { Some(0.0) } else { None };
                 let want = want.or_else(|| (!(-11.0..=61.5).contains(&x)).then_some(1.0));
                 assert!(want.is_none_or(|w| lit == w), "{lit} at {x}");
             }
-            let border: Vec<f32> =
-                (0..20).map(|i| casters.on_ground(DVec3::new(59.0 + 0.1 * f64::from(i), 0.0, 0.0), AXES)).collect();
+            let border: Vec<f32> = (0..20)
+                .map(|i| casters.on_ground(DVec3::new(59.0 + 0.1 * f64::from(i), 0.0, 0.0), AXES, &|_| true))
+                .collect();
             assert!(border.windows(2).all(|w| w[0] <= w[1]), "{border:?}");
             assert!(border.iter().filter(|v| **v > 0.0 && **v < 1.0).count() > 4, "the border is soft: {border:?}");
-            assert_eq!(casters.on_ground(DVec3::new(30.0, 10.9, 0.0), AXES), 1.0);
+            assert_eq!(casters.on_ground(DVec3::new(30.0, 10.9, 0.0), AXES, &|_| true), 1.0);
         }
     }
 
@@ -208,13 +210,13 @@ mod tests {
         let west = |z: f64| (DVec3::new(-10.0, 0.0, z), DVec3::NEG_X);
         for z in [5.0, 20.0, 45.0] {
             let (p, n) = west(z);
-            assert_eq!(open.on_surface(p, n, 0.2), 1.0, "{z}: nothing throws a shadow on itself");
+            assert_eq!(open.on_surface(p, n, 0.2, &|_| true), 1.0, "{z}: nothing throws a shadow on itself");
             // The sun's ray over the ridge at x = -90 comes down by tan 0.4 on 80.
             let want = if z < 60.0 - 80.0 * 0.4f64.tan() { 0.0 } else { 1.0 };
-            assert_eq!(behind.on_surface(p, n, 0.2), want, "{z}");
+            assert_eq!(behind.on_surface(p, n, 0.2, &|_| true), want, "{z}");
         }
-        assert_eq!(open.on_surface(DVec3::new(10.0, 0.0, 5.0), DVec3::X, 0.2), 0.0, "the far side");
-        assert_eq!(open.on_surface(DVec3::new(3.0, 2.0, 50.0), DVec3::Z, 0.2), 1.0, "the roof");
+        assert_eq!(open.on_surface(DVec3::new(10.0, 0.0, 5.0), DVec3::X, 0.2, &|_| true), 0.0, "the far side");
+        assert_eq!(open.on_surface(DVec3::new(3.0, 2.0, 50.0), DVec3::Z, 0.2, &|_| true), 1.0, "the roof");
     }
 
     #[test]

@@ -21,6 +21,7 @@ use crate::geometry::lod::SIDE;
 use crate::geometry::screen::{SUB, Screen};
 use crate::raster::band::SKY;
 use crate::raster::pixel_center::PixelCenters;
+use crate::sections::Sections;
 use crate::simd::nearest;
 use belvedere_core::{DVec2, DVec3, Stage};
 use belvedere_scene::{AreaSurface, BoxLayer, BoxShape, Heightfield, LayerKind, Relief, RenderJob};
@@ -43,6 +44,7 @@ pub(crate) struct Shader<'a> {
     layers: Vec<LayerShade<'a>>,
     areas: Vec<AreaMap>,
     casters: Option<Casters<'a>>,
+    sections: Option<Sections<'a>>,
     /// The only layer with surfaces, if that is terrain.
     only_terrain: bool,
 }
@@ -91,8 +93,9 @@ impl<'a> Shader<'a> {
             .scene
             .layers
             .iter()
-            .map(|l| match &l.kind {
-                LayerKind::Terrain(t) => LayerShade::Terrain(Box::new(TerrainShade::new(t, job, cache))),
+            .enumerate()
+            .map(|(i, l)| match &l.kind {
+                LayerKind::Terrain(t) => LayerShade::Terrain(Box::new(TerrainShade::new((i, t), job, cache))),
                 LayerKind::Boxes(b) => LayerShade::Boxes(b, ReliefLight::new(Relief::Sun, job.light)),
                 LayerKind::Mesh(m) => LayerShade::Mesh(mesh::MeshShade::new(m, job.light)),
                 LayerKind::Molecule(m) => LayerShade::Molecule(molecule::MoleculeShade::new(&m.surface, job.view)),
@@ -114,6 +117,7 @@ impl<'a> Shader<'a> {
             blocks,
             areas,
             casters: Casters::new(job.scene, job.light),
+            sections: Sections::new(job.scene, job.view),
             layers,
             only_terrain,
         }
@@ -165,18 +169,31 @@ impl<'a> Shader<'a> {
 
 impl Shader<'_> {
     /// Share of the sun that a surface sees, all of it without cast shadows.
-    /// * `n`: unit normal to the side that is seen; `footprint`: size of a pixel there, scene units.
-    fn sun_on(&self, p: DVec3, n: DVec3, footprint: f64) -> f32 {
-        self.casters.as_ref().map_or(1.0, |c| c.on_surface(p, n, footprint))
+    /// * `layer`: of the surface; `n`: unit normal to the side that is seen; `footprint`: size of a pixel there, scene units.
+    fn sun_on(&self, layer: usize, p: DVec3, n: DVec3, footprint: f64) -> f32 {
+        self.casters.as_ref().map_or(1.0, |c| c.on_surface(p, n, footprint, &|other| self.throws(other, layer, p)))
+    }
+
+    /// Whether a layer throws shadows on a place of another.
+    fn throws(&self, layer: usize, onto: usize, p: DVec3) -> bool {
+        self.sections.as_ref().is_none_or(|s| s.throws(layer, onto, p))
     }
 
     /// Boxes look like an architect's model: matt, darker towards the foot, with drawn edges.
     /// * `n`: outward unit normal of the face; `footprint`: size of a pixel at the box, scene units.
-    fn box_color(&self, shape: &BoxShape, light: &ReliefLight, n: DVec3, world: DVec3, footprint: f64) -> Rgb {
+    fn box_color(
+        &self,
+        layer: usize,
+        shape: &BoxShape,
+        light: &ReliefLight,
+        n: DVec3,
+        world: DVec3,
+        footprint: f64,
+    ) -> Rgb {
         let centre = shape.base + DVec3::Z * 0.5 * shape.size.z;
         let up = (((world.z - shape.base.z) / shape.size.z.max(1e-9)) as f32).clamp(0.0, 1.0);
         let open = 0.60 + 0.40 * smoothstep(-0.1, 0.6, up);
-        let sun = self.sun_on(world, n, footprint);
+        let sun = self.sun_on(layer, world, n, footprint);
         let n = Vec3A::new(n.x as f32, n.y as f32, n.z as f32);
         let c = shape.color;
         let ink = 1.0 - 0.42 * edge_share(shape, world - centre, footprint);

@@ -208,9 +208,11 @@ impl Shader<'_> {
             LayerShade::Terrain(_) => return batch.take_odd(layer as usize, self, samples, k, painted),
             LayerShade::Boxes(b, light) => {
                 let (shape, world, n) = hit.on_box(&found, b);
-                self.box_color(shape, light, n, world, footprint)
+                self.box_color(layer as usize, shape, light, n, world, footprint)
             }
-            LayerShade::Mesh(m) => m.shade(&found, hit.weights, footprint, &|p, n| self.sun_on(p, n, footprint)),
+            LayerShade::Mesh(m) => {
+                m.shade(&found, hit.weights, footprint, &|p, n| self.sun_on(layer as usize, p, n, footprint))
+            }
             LayerShade::Molecule(m) => m.shade(&found, hit.weights),
             LayerShade::Other => Rgb::ZERO,
         };

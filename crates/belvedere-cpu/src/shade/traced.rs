@@ -22,12 +22,13 @@ impl Shader<'_> {
                 t.shade_at(self, seen.point.truncate(), fp, axes, seen.depth, pixel)
             }
             (LayerShade::Boxes(b, light), Part::Face(index, normal)) => match b.boxes.get(index) {
-                Some(shape) => (self.box_color(shape, light, normal, seen.point, footprint), None),
+                Some(shape) => (self.box_color(seen.layer, shape, light, normal, seen.point, footprint), None),
                 None => (crate::shade::Rgb::ZERO, None),
             },
-            (LayerShade::Mesh(m), Part::Triangle(index, front)) => {
-                (m.color_at(index, front, seen.point, footprint, &|p, n| self.sun_on(p, n, footprint)), None)
-            }
+            (LayerShade::Mesh(m), Part::Triangle(index, front)) => (
+                m.color_at(index, front, seen.point, footprint, &|p, n| self.sun_on(seen.layer, p, n, footprint)),
+                None,
+            ),
             (LayerShade::Molecule(m), Part::Triangle(index, _)) => (m.color_at(index, seen.point), None),
             _ => (crate::shade::Rgb::ZERO, None),
         };

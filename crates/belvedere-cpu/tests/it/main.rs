@@ -10,6 +10,7 @@ mod molecules;
 mod real_data;
 mod reference;
 mod robust;
+mod sections;
 mod steady;
 mod steady_lines;
 mod subdivision;

@@ -1,6 +1,7 @@
 //! Terrain: its light, and what is laid over it.
 
 use crate::cache::GroundCache;
+use crate::sections::Sections;
 use crate::shade::color::{Rgb, linear, smoothstep};
 use crate::shade::footprint::{Footprint, LONGEST};
 use crate::shade::ground::displaced::{self, DisplacedLight};
@@ -21,6 +22,8 @@ use std::sync::Arc;
 
 /// A terrain layer ready for shading.
 pub(crate) struct TerrainShade<'a> {
+    /// Index of the layer in the scene.
+    layer: usize,
     pub(crate) hf: &'a Heightfield,
     pub(crate) lit: Arc<LitGround>,
     pub(crate) light: ReliefLight,
@@ -46,7 +49,8 @@ pub(crate) struct LightCache {
 }
 
 impl<'a> TerrainShade<'a> {
-    pub(crate) fn new(layer: &'a TerrainLayer, job: &RenderJob<'a>, cache: &LightCache) -> Self {
+    /// * `layer`: with its index in the scene.
+    pub(crate) fn new((index, layer): (usize, &'a TerrainLayer), job: &RenderJob<'a>, cache: &LightCache) -> Self {
         let hf = &layer.heightfield;
         let surface = lit_surface(layer, job);
         let light = *job.light;
@@ -80,6 +84,7 @@ impl<'a> TerrainShade<'a> {
         };
         let spacing = hf.spacing();
         Self {
+            layer: index,
             hf,
             lit,
             light: ReliefLight::new(layer.relief, job.light),
@@ -143,11 +148,18 @@ impl<'a> TerrainShade<'a> {
         self.light.warm * (lit.direct * left) + self.light.cool * lit.sky
     }
 
+    /// Share of an area that styling sections show on this ground.
+    fn share_of(&self, shader: &Shader<'_>, area: &AreaMap, xy: DVec2) -> f32 {
+        let of = |s: &Sections<'_>| s.share(area.layer as usize, self.layer, xy.extend(0.0)) as f32;
+        shader.sections.as_ref().map_or(1.0, of)
+    }
+
     /// Share of the sun that boxes and meshes leave to a point of which a pixel covers `print`.
     fn sun_on(&self, shader: &Shader<'_>, xy: DVec2, print: &Footprint) -> f32 {
         let Some(casters) = &shader.casters else { return 1.0 };
         let Some(z) = self.hf.surface_at(xy) else { return 1.0 };
-        casters.on_ground(xy.extend(z), [print.major, print.major.perp().normalize_or_zero() * print.minor])
+        let (p, across) = (xy.extend(z), print.major.perp().normalize_or_zero() * print.minor);
+        casters.on_ground(p, [print.major, across], &|other| shader.throws(other, self.layer, p))
     }
 
     /// Colour and area where a picture or an area covers the ground; `None` where nothing does.
@@ -174,7 +186,9 @@ impl<'a> TerrainShade<'a> {
         }
         let print = print();
         let areas = areas.into_iter().map(|(a, border)| (a, border.inside / print.along(border.across)));
-        let areas: Vec<_> = areas.filter(|(_, inside)| *inside > -0.5).collect();
+        let areas = areas.filter(|(_, inside)| *inside > -0.5);
+        let areas = areas.map(|(a, inside)| (a, inside, self.share_of(shader, a, xy)));
+        let areas: Vec<_> = areas.filter(|(_, _, shown)| *shown > 0.0).collect();
         let drapes = self.drapes.iter().map(|d| d.at(xy, &print)).filter(|(_, alpha)| *alpha > 0.0);
         let drapes: Vec<_> = drapes.collect();
         let sun = self.sun_on(shader, xy, &print);
@@ -191,11 +205,11 @@ impl<'a> TerrainShade<'a> {
         // A photograph has its own light: model it only half.
         let mut light = self.light_of(&lit, sun).lerp(Rgb::splat(0.95 * (0.5 + 0.5 * sun)), 0.5 * draped);
         let (mut id, mut water) = (None, 0.0f32);
-        for (a, inside) in areas {
-            if inside >= 0.0 {
+        for (a, inside, shown) in areas {
+            if inside >= 0.0 && shown >= 0.5 {
                 id = Some(a.layer);
             }
-            let share = (0.5 + inside).clamp(0.0, 1.0) as f32 * a.alpha;
+            let share = (0.5 + inside).clamp(0.0, 1.0) as f32 * a.alpha * shown;
             albedo = albedo.lerp(fill(a, xy, inside as f32, &print), share);
             match a.surface {
                 AreaSurface::Water | AreaSurface::Sea => water += share * (1.0 - water),

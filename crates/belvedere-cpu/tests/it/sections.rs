@@ -1,0 +1,157 @@
+//! Styling sections in both renderers: what is shown where, and what the mean of the exposures is.
+
+use crate::exact::difference;
+use crate::support::{hills, layer, options, pinhole, render, scene, terrain};
+use belvedere_core::map::spline::{ReferencePlane, SplineBend, default_pivot};
+use belvedere_core::presets::PresetDocument;
+use belvedere_core::sections::TagPoint;
+use belvedere_core::{DVec3, Stage, View};
+use belvedere_scene::{BoxLayer, BoxShape, Color, Frame, LayerKind, Palette, RenderOptions, Representation, Scene};
+
+const IMAGE: [u32; 2] = [160, 120];
+
+fn representation(id: &str, layers: &[&str]) -> Representation {
+    Representation { id: id.into(), layers: layers.iter().map(|l| (*l).to_owned()).collect() }
+}
+
+/// Hills as relief and as plan, with towers on the relief alone.
+fn land() -> Scene {
+    let relief = terrain(hills(129, 25.0, 120.0, 11));
+    let mut plan = relief.clone();
+    (plan.palette, plan.relief) = (Palette::Plain, belvedere_scene::Relief::None);
+    let boxes = (0..49)
+        .map(|i| {
+            let base = DVec3::new(f64::from(i % 7 - 3) * 220.0, f64::from(i / 7 - 3) * 220.0, -40.0);
+            BoxShape { base, size: DVec3::new(60.0, 60.0, 170.0), yaw: 0.3, color: Color::rgb(190, 90, 60) }
+        })
+        .collect();
+    let layers = vec![
+        layer("relief", LayerKind::Terrain(relief)),
+        layer("towers", LayerKind::Boxes(BoxLayer { boxes })),
+        layer("plan", LayerKind::Terrain(plan)),
+    ];
+    let representations = vec![representation("near", &["relief", "towers"]), representation("far", &["plan"])];
+    Scene { representations, ..scene(layers) }
+}
+
+/// A degressive bend with these sections; phi is 30 degrees.
+fn view(tags: &[TagPoint], sections: &[&str]) -> View {
+    let camera = pinhole(DVec3::new(0.0, -2200.0, 1270.0), DVec3::ZERO, 45.0, IMAGE);
+    let plane = ReferencePlane::level(0.0);
+    let mut document = PresetDocument::builtin("degressive").expect("built in");
+    document.presets[0].tags = tags.to_vec();
+    document.presets[0].sections = sections.iter().map(|s| (*s).to_owned()).collect();
+    let bend = SplineBend::new(&camera, &document, &plane, default_pivot(&camera, &plane)).expect("a preset");
+    View::new(camera, vec![Stage::SplineBend(bend)]).expect("one stage is in order")
+}
+
+fn parameter(view: &View, p: [f64; 3]) -> f64 {
+    let Some(Stage::SplineBend(bend)) = view.stages().first() else { panic!("a spline") };
+    bend.section_parameter(DVec3::from_array(p))
+}
+
+fn placed(scene: &Scene, view: &View, exposures: u32) -> Frame {
+    let mut options = RenderOptions { exposures, ..options(1) };
+    options.aux.world = true;
+    render(scene, view, &options)
+}
+
+#[test]
+fn each_side_of_a_hard_border_shows_its_own_representation() {
+    let (scene, view) = (land(), view(&[TagPoint { u: 0.5, delta: 0.0 }], &["near", "far"]));
+    let frame = placed(&scene, &view, 1);
+    let mut seen = [0; 2];
+    for (id, p) in frame.id.iter().zip(frame.world.expect("asked for")) {
+        let t = parameter(&view, p);
+        match id {
+            0 => {}
+            3 => {
+                assert!(t > 0.5 - 1e-6, "plan at {t}");
+                seen[1] += 1;
+            }
+            _ => {
+                assert!(t < 0.5 + 1e-6, "relief at {t}");
+                seen[0] += 1;
+            }
+        }
+    }
+    assert!(seen[0] > 4000 && seen[1] > 2000, "{seen:?}");
+}
+
+#[test]
+fn a_transition_shows_shares_of_both_and_exactly_one_of_them_at_each_sample() {
+    let (mut scene, view) = (land(), view(&[TagPoint { u: 0.5, delta: 0.3 }], &["near", "far"]));
+    scene.layers[1].kind = LayerKind::Boxes(BoxLayer::default());
+    let frame = placed(&scene, &view, 1);
+    // By tenths of the curve: pixels of the plan, their number by the weights, and all.
+    let mut tenths = [[0.0; 3]; 10];
+    for (id, p) in frame.id.iter().zip(frame.world.expect("asked for")) {
+        let t = parameter(&view, p);
+        if *id != 0 && (0.2..0.8).contains(&t) {
+            let tenth = &mut tenths[(t * 10.0) as usize];
+            tenth[0] += f64::from(u8::from(*id == 3));
+            tenth[1] += (t - 0.2) / 0.6;
+            tenth[2] += 1.0;
+        }
+    }
+    for (i, [plan, want, all]) in tenths.into_iter().enumerate().filter(|(_, t)| t[2] > 300.0) {
+        assert!((plan - want).abs() < 0.02 * all, "tenth {i}: {plan} of {all}, weights {want}");
+    }
+    // Both grounds are one surface: no sample falls between them.
+    let whole = render(&Scene { representations: vec![], ..scene }, &view, &options(1));
+    assert!(whole.id.iter().zip(&frame.id).all(|(a, b)| (*a == 0) == (*b == 0)));
+}
+
+#[test]
+fn exposures_tend_to_the_weighted_composite_where_layers_see_one_surface() {
+    let (mut scene, view) = (land(), view(&[TagPoint { u: 0.5, delta: 0.3 }], &["near", "far"]));
+    scene.layers[1].kind = LayerKind::Boxes(BoxLayer::default());
+    let mean = placed(&scene, &view, 64);
+    let only = |keep: &str| {
+        let of = |id: &str| representation(id, if id == keep { &["relief", "plan"] } else { &[] });
+        let layers = scene.layers.iter().filter(|l| l.id == keep).cloned().collect();
+        render(&Scene { layers, representations: vec![of(keep)], ..Scene::default() }, &view, &options(1))
+    };
+    let (relief, plan) = (only("relief"), only("plan"));
+    let linear = |v: u8| {
+        let v = f64::from(v) / 255.0;
+        if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+    };
+    let code = |v: f64| 255.0 * if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
+    let (mut worst, mut mixed) = (0.0f64, 0);
+    for (i, p) in mean.world.as_ref().expect("asked for").iter().enumerate() {
+        let share = ((parameter(&view, *p) - 0.2) / 0.6).clamp(0.0, 1.0);
+        if mean.id[i] == 0 {
+            continue;
+        }
+        mixed += usize::from(share > 0.0 && share < 1.0);
+        for k in 0..3 {
+            let want = (1.0 - share) * linear(relief.color[i][k]) + share * linear(plan.color[i][k]);
+            worst = worst.max((code(want) - f64::from(mean.color[i][k])).abs());
+        }
+    }
+    assert!(mixed > 4000, "{mixed}");
+    // Half a step of 64 between two colours, and rounding.
+    assert!(worst <= 2.0, "{worst}");
+}
+
+#[test]
+fn rasteriser_and_tracer_show_the_same_representations() {
+    for (delta, sections) in [(0.0, ["near", "far"]), (0.2, ["far", "near"])] {
+        let d = difference(&land(), &view(&[TagPoint { u: 0.45, delta }], &sections));
+        assert!(d.judged > d.pixels / 2 && d.is_small(), "{delta}: {d:?}");
+    }
+}
+
+#[test]
+fn sections_of_one_representation_are_the_plain_picture() {
+    let scene = land();
+    let six: Vec<TagPoint> = (1..6).map(|i| TagPoint { u: f64::from(i) / 6.0, delta: 0.05 }).collect();
+    let one = render(&scene, &view(&[], &["near"]), &options(4));
+    let many = render(&scene, &view(&six, &["near"; 6]), &RenderOptions { exposures: 8, ..options(4) });
+    assert!(one.color == many.color && one.depth == many.depth);
+    let mut alone = scene.clone();
+    alone.representations.clear();
+    alone.layers.truncate(2);
+    assert!(one.color == render(&alone, &view(&[], &["all"]), &options(4)).color);
+}
