@@ -318,6 +318,15 @@ impl From<RendererKind> for RendererChoice {
     }
 }
 
+/// How representations of styling sections are put together.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum CompositingKind {
+    /// Each sample shows one of them: one drawing
+    Dither,
+    /// Each is drawn alone and the pictures are mixed, as published
+    Layers,
+}
+
 /// How pictures and frames are drawn.
 #[derive(Debug, Args)]
 pub(crate) struct DrawArgs {
@@ -339,6 +348,9 @@ pub(crate) struct DrawArgs {
     /// Thresholds per pixel where styling sections pass into each other; 1 is a dither
     #[arg(long, default_value_t = 64, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub(crate) thresholds: u32,
+    /// How representations of styling sections are put together
+    #[arg(long, value_enum, default_value = "dither")]
+    pub(crate) compositing: CompositingKind,
     /// Largest error of terrain drawn in less detail far away, pixels; 0 draws every cell
     #[arg(long, default_value_t = 0.5, value_name = "PX", allow_hyphen_values = true, value_parser = parse_lod)]
     pub(crate) lod: f64,

@@ -1,13 +1,14 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, DrawArgs, FigureKind, FiguresArgs,
-    InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs,
-    TechniqueKind, Verb,
+    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, CompositingKind, DemoArgs, DisoccludeArgs, DrawArgs, FigureKind,
+    FiguresArgs, InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs,
+    ShowArgs, TechniqueKind, Verb,
 };
 use crate::report::{Context, done, print};
 use anyhow::Context as _;
 use belvedere::picture::{self, AuxBuffer, AuxFormat, PictureOptions};
+use belvedere::scene::Compositing;
 use belvedere::scene_file::{AnimationDoc, PaletteDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{self, AnimateRequest, Film};
 use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest, WrittenGrid};
@@ -86,6 +87,10 @@ fn request(args: &DrawArgs, context: &Context) -> PictureOptions {
     request.renderer = args.renderer.into();
     request.quality.threads = context.common.threads;
     request.quality.samples = args.samples;
+    request.quality.compositing = match args.compositing {
+        CompositingKind::Dither => Compositing::Dither,
+        CompositingKind::Layers => Compositing::Layers,
+    };
     request.quality.exposures = args.thresholds.div_ceil(args.samples.max(1));
     request.quality.lod_px = args.lod;
     request.progress = context.progress.clone();

@@ -51,18 +51,6 @@ fn joined(drawn: Vec<(&Branch, Frame)>, smooth: bool) -> Frame {
         depth: pixels.clone().map(|i| drawn[owners[i]].1.depth[i]).collect(),
         id: pixels.clone().map(|i| drawn[owners[i]].1.id[i]).collect(),
         world: has_world.then(|| pixels.map(world).collect()),
-        stats: drawn.iter().fold(FrameStats::default(), |sum, (_, frame)| added(&sum, &frame.stats)),
-    }
-}
-
-/// Work of several drawings of one scene.
-fn added(a: &FrameStats, b: &FrameStats) -> FrameStats {
-    FrameStats {
-        triangles_in: b.triangles_in,
-        triangles_drawn: a.triangles_drawn + b.triangles_drawn,
-        edges_split: a.edges_split + b.edges_split,
-        vertices_missed: a.vertices_missed + b.vertices_missed,
-        samples: a.samples + b.samples,
-        milliseconds: a.milliseconds + b.milliseconds,
+        stats: drawn.iter().fold(FrameStats::default(), |sum, (_, frame)| sum.and(&frame.stats)),
     }
 }

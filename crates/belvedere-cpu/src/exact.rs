@@ -8,6 +8,7 @@ use crate::frame::{Buffers, checked, finish};
 use crate::geometry::blocks::Blocks;
 use crate::geometry::pass::Pass;
 use crate::geometry::screen::{SUB, Screen};
+use crate::layers;
 use crate::marks::Marks;
 use crate::raster::band::{BAND, sample_offsets};
 use crate::sections::{Exposure, Sections};
@@ -56,7 +57,7 @@ impl Renderer for ExactRenderer {
     }
 
     fn render(&self, job: &RenderJob<'_>) -> Result<Frame, RenderError> {
-        checked(job, |job| branches::draw(job, render))
+        checked(job, |job| branches::draw(job, |job| layers::draw(job, render)))
     }
 }
 
@@ -64,25 +65,17 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     let start = Instant::now();
     job.progress.tick("prepare", 0.0)?;
     let screen = Screen::new(job.view.pinhole());
+    let (sections, own) = (Sections::new(job), sample_offsets(job.options.samples));
+    let exposure = Exposure::new(if sections.is_some() { job.options.exposures as usize } else { 1 }, own.len());
+    let offsets = exposure.offsets(&own);
+    let tracer = Tracer::exposed(job.scene, job.view, sections, exposure);
     let (blocks, light) = (Blocks::default(), LightCache::default());
     let shader = Shader::new(job, &screen, &blocks, &light);
     job.progress.tick("prepare", 1.0)?;
     let mut buffers = Buffers::new(job);
-    let sections = Sections::new(job.scene, job.view);
-    let count = if sections.is_some() { job.options.exposures.max(1) as usize } else { 1 };
-    let samples = sample_offsets(job.options.samples).len();
-    let mut sum = vec![Rgb::ZERO; buffers.color.len()];
-    // The last one first: depth and id stay those of the first exposure.
-    for number in (0..count).rev() {
-        let tracer = Tracer::exposed(job.scene, job.view, Exposure::new(number, count, samples));
-        let picture = Picture { job, screen: &screen, tracer: &tracer, shader: &shader };
-        let seen = picture.trace()?;
-        picture.color(&seen, &mut buffers)?;
-        sum.iter_mut().zip(&buffers.color).for_each(|(sum, color)| *sum += color.rgb());
-    }
-    if count > 1 {
-        buffers.color.iter_mut().zip(sum).for_each(|(color, sum)| *color = Packed::new(sum / count as f32));
-    }
+    let picture = Picture { job, screen: &screen, tracer: &tracer, shader: &shader, offsets };
+    let seen = picture.trace()?;
+    picture.color(&seen, &mut buffers)?;
     let samples = volume::compose(job, Way::Exact, &mut buffers)?;
     let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
     let passes = Pass::all(job.view);
@@ -113,6 +106,8 @@ struct Picture<'a> {
     screen: &'a Screen,
     tracer: &'a Tracer<'a>,
     shader: &'a Shader<'a>,
+    /// Samples of a pixel, the centre first.
+    offsets: Vec<[i32; 2]>,
 }
 
 impl Picture<'_> {
@@ -133,14 +128,14 @@ impl Picture<'_> {
 
     fn color(&self, seen: &[Option<RayHit>], buffers: &mut Buffers) -> Result<(), RenderError> {
         let width = self.screen.width as usize;
-        let offsets = sample_offsets(self.job.options.samples);
+        let offsets = &self.offsets;
         let bands = (self.screen.height as usize).div_ceil(BAND);
         let done = AtomicUsize::new(0);
         let shaded: Vec<Pixel> = (0..bands)
             .into_par_iter()
             .map(|band| {
                 let rows = band * BAND..((band + 1) * BAND).min(seen.len() / width);
-                let row = rows.flat_map(|y| self.row(seen, y, &offsets)).collect::<Vec<_>>();
+                let row = rows.flat_map(|y| self.row(seen, y, offsets)).collect::<Vec<_>>();
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 self.job.progress.tick("draw", done as f64 / bands as f64)?;
                 Ok(row)

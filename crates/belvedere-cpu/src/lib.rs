@@ -21,6 +21,7 @@ pub mod canvas;
 mod exact;
 mod frame;
 mod geometry;
+mod layers;
 mod marks;
 mod raster;
 mod rasteriser;

@@ -7,12 +7,13 @@ use crate::geometry::blocks::Blocks;
 use crate::geometry::lod::Tree;
 use crate::geometry::pass::Pass;
 use crate::geometry::screen::Screen;
+use crate::layers;
 use crate::marks::Marks;
 use crate::raster::band::{BAND, Band, sample_offsets};
 use crate::raster::pixel_center::PixelCenters;
 use crate::raster::resolve::{Colors, Rows, resolve};
 use crate::sections::{Exposure, Sections};
-use crate::shade::color::{self, Packed, Rgb};
+use crate::shade::color::Packed;
 use crate::shade::{LightCache, Shader};
 use crate::volume::{self, Way};
 use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
@@ -61,7 +62,9 @@ impl Renderer for CpuRenderer {
 
     fn render_into(&self, job: &RenderJob<'_>, frame: &mut Frame) -> Result<(), RenderError> {
         let old = Mutex::new(std::mem::take(frame));
-        *frame = checked(job, |job| branches::draw(job, |job| self.draw(job, std::mem::take(&mut *lock(&old)))))?;
+        *frame = checked(job, |job| {
+            branches::draw(job, |job| layers::draw(job, |job| self.draw(job, std::mem::take(&mut *lock(&old)))))
+        })?;
         Ok(())
     }
 }
@@ -94,7 +97,7 @@ impl CpuRenderer {
         let screen = Screen::new(job.view.pinhole());
         let passes = Pass::all(job.view);
         let Scratch { blocks, color, bands } = scratch;
-        let sections = Sections::new(job.scene, job.view);
+        let sections = Sections::new(job);
         blocks.build(job.scene, job.view, &passes, &screen, job.options, sections.as_ref(), &self.detail);
         job.progress.tick("project", 1.0)?;
         let shader = Shader::new(job, &screen, blocks, &self.light);
@@ -117,6 +120,7 @@ impl CpuRenderer {
             edges_split: counts.split,
             vertices_missed: counts.missed,
             samples,
+            layer_bytes: 0,
             milliseconds: start.elapsed().as_secs_f64() * 1e3,
         };
         *color = buffers.color;
@@ -149,13 +153,12 @@ impl Surfaces<'_> {
         spare: &Mutex<Vec<Band>>,
         buffers: &mut Buffers,
     ) -> Result<(), RenderError> {
-        let Self { job, screen, centers, .. } = *self;
+        let Self { job, screen, blocks, shader, centers } = *self;
         let chunk = BAND * screen.width as usize;
         let bands = (screen.height as usize).div_ceil(BAND);
         let done = AtomicUsize::new(0);
         let offsets = sample_offsets(job.options.samples);
-        let count = if sections.is_some() { job.options.exposures.max(1) as usize } else { 1 };
-        let exposures: Vec<Exposure> = (0..count).map(|k| Exposure::new(k, count, offsets.len())).collect();
+        let exposure = Exposure::new(job.options.exposures as usize, offsets.len());
         let mut worlds: Vec<Option<&mut [[f64; 3]]>> = match &mut buffers.world {
             Some(w) => w.chunks_mut(chunk).map(Some).collect(),
             None => (0..bands).map(|_| None).collect(),
@@ -171,41 +174,17 @@ impl Surfaces<'_> {
             |(i, (((color, depth), id), world))| {
                 let y0 = (i * BAND) as i32;
                 let mut band = lock(spare).pop().unwrap_or_default();
-                let expose = |band: &mut Band, exposure: &Exposure| {
-                    band.clear(y0, (y0 + BAND as i32).min(screen.height), screen.width, &offsets);
-                    self.blocks.draw(band, screen.ortho, sections.map(|s| (s, exposure)))
-                };
-                let mut rows = Rows { color, depth, id, world: world.as_deref_mut(), centers };
-                if !expose(&mut band, &exposures[0]) || count == 1 {
-                    resolve(&band, self.shader, screen, &mut rows);
-                } else {
-                    let mut sum = self.exposed(&band, &mut rows);
-                    for exposure in &exposures[1..] {
-                        expose(&mut band, exposure);
-                        let (mut depth, mut id) = (vec![0.0; sum.len()], vec![0; sum.len()]);
-                        let color = &mut Colors::Stored(&mut []);
-                        let (depth, id) = (depth.as_mut_slice(), id.as_mut_slice());
-                        let again = &mut Rows { color, depth, id, world: None, centers: None };
-                        let seen = self.exposed(&band, again);
-                        sum.iter_mut().zip(seen).for_each(|(sum, seen)| *sum += seen);
-                    }
-                    let mean = sum.into_iter().map(|sum| Packed::new(sum / count as f32));
-                    rows.color.store(mean, color::encoding());
+                band.clear(y0, (y0 + BAND as i32).min(screen.height), screen.width, &offsets);
+                blocks.draw(&mut band);
+                if let Some(sections) = sections.filter(|_| blocks.are_thin_in(&band)) {
+                    band.expose(exposure.offsets(&offsets));
+                    blocks.draw_thin(&mut band, screen.ortho, sections, &exposure);
                 }
+                resolve(&band, shader, screen, &mut Rows { color, depth, id, world: world.as_deref_mut(), centers });
                 lock(spare).push(band);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 Ok(job.progress.tick("draw", done as f64 / bands as f64)?)
             },
         )
-    }
-
-    /// Colours of a band, linear; all else goes to `rows`.
-    fn exposed(&self, band: &Band, rows: &mut Rows<'_, '_>) -> Vec<Rgb> {
-        let mut packed = vec![Packed::default(); rows.depth.len()];
-        let color = &mut Colors::Open(&mut packed);
-        let Rows { depth, id, world, centers, .. } = rows;
-        let rows = &mut Rows { color, depth, id, world: world.as_deref_mut(), centers: *centers };
-        resolve(band, self.shader, self.screen, rows);
-        packed.iter().map(|c| c.rgb()).collect()
     }
 }

@@ -2,12 +2,12 @@
 //!
 //! Every sample has a threshold. At each place of the deformation curve the representations own intervals of all thresholds, as long as
 //! their weights, so exactly one of them is shown by a sample: no layers, one depth buffer. Pixels have different thresholds (an 8 x 8
-//! ordered dither); exposures of one frame shift them, and their mean tends to the weighted composite.
+//! ordered dither), its samples again others, and their mean tends to the weighted composite.
 
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::sections::StylingSections;
 use belvedere_core::{Aabb, DVec3, Stage, View};
-use belvedere_scene::Scene;
+use belvedere_scene::{RenderJob, Scene};
 
 /// Which layers are shown where.
 #[derive(Debug, Clone)]
@@ -17,6 +17,8 @@ pub(crate) struct Sections<'a> {
     styling: StylingSections,
     /// For each layer the representations that show it, as bits.
     shown_by: Vec<u32>,
+    /// The only representation that is drawn.
+    only: Option<usize>,
 }
 
 /// How much of something is shown.
@@ -30,14 +32,30 @@ pub(crate) enum Shown {
 
 impl<'a> Sections<'a> {
     /// `None` for scenes without representations.
-    pub(crate) fn new(scene: &Scene, view: &'a View) -> Option<Self> {
+    pub(crate) fn new(job: &RenderJob<'a>) -> Option<Self> {
+        Self::of(job.scene, job.view, job.options.representation)
+    }
+
+    /// * `only`: see [`belvedere_scene::RenderOptions::representation`].
+    pub(crate) fn of(scene: &Scene, view: &'a View, only: Option<usize>) -> Option<Self> {
         if scene.representations.is_empty() {
             return None;
         }
         let bend = view.stages().iter().find_map(|s| if let Stage::SplineBend(bend) = s { Some(bend) } else { None });
         let styling = bend.map_or_else(StylingSections::plain, |bend| bend.sections().clone());
         let shown_by = scene.shown_by(&styling.representations());
-        Some(Self { bend, styling, shown_by })
+        let only = only.filter(|number| *number < styling.representations().len());
+        Some(Self { bend, styling, shown_by, only })
+    }
+
+    /// How many representations the sections name.
+    pub(crate) fn representations(&self) -> usize {
+        self.styling.representations().len()
+    }
+
+    /// Weight of a representation at a place along the curve.
+    pub(crate) fn weight(&self, number: usize, parameter: f64) -> f64 {
+        self.styling.representation_weight(self.styling.representations()[number], parameter)
     }
 
     /// How much of a layer the image shows at most.
@@ -56,6 +74,13 @@ impl<'a> Sections<'a> {
 
     fn of_range(&self, layer: usize, range: [f64; 2]) -> Shown {
         let supported = self.styling.supported(range);
+        if let Some(number) = self.only {
+            return match supported & self.shown_by[layer] & 1 << number {
+                0 => Shown::Nothing,
+                bit if bit == supported => Shown::Everything,
+                _ => Shown::Partly,
+            };
+        }
         match supported & self.shown_by[layer] {
             0 => Shown::Nothing,
             bits if bits == supported => Shown::Everything,
@@ -70,7 +95,12 @@ impl<'a> Sections<'a> {
 
     /// Whether a sample with a threshold shows the layer at a place along the curve.
     pub(crate) fn shows(&self, layer: usize, parameter: f64, threshold: f64) -> bool {
-        self.shown_by[layer] >> self.styling.shown(parameter, threshold) & 1 == 1
+        let shown = match self.only {
+            Some(number) if self.weight(number, parameter) > 0.0 => number,
+            Some(_) => return false,
+            None => self.styling.shown(parameter, threshold),
+        };
+        self.shown_by[layer] >> shown & 1 == 1
     }
 
     /// Share, 0..=1, of the representations that show `layer` among those that show `on`, at a place.
@@ -101,25 +131,32 @@ impl<'a> Sections<'a> {
     }
 }
 
-/// The thresholds of one of several drawings of a frame.
+/// The thresholds of the samples of a pixel.
 #[derive(Debug, Clone)]
 pub(crate) struct Exposure {
-    /// Added to the dither, for each sample of a pixel, the centre first.
+    /// Added to the dither, for each sample, the centre first.
     phases: Vec<f64>,
     dithered: bool,
 }
 
 impl Exposure {
+    /// Every sample apart from the centre, or the centre where there are no others, `count` times with other thresholds.
     /// * `samples`: of a pixel, the centre among them.
-    pub(crate) fn new(number: usize, count: usize, samples: usize) -> Self {
-        let coverage = samples.max(2) - 1;
+    pub(crate) fn new(count: usize, samples: usize) -> Self {
+        let others = if count > 1 || samples > 1 { count.max(1) * (samples.max(2) - 1) } else { 0 };
         // In the middles of equal parts of 0..1, which are no wider than those of the dither.
-        let part = |i: usize, n: usize| i as f64 / n as f64 + 0.5 / n.max(64) as f64;
-        let phase = |s: usize| match s {
-            0 => part(number, count) + 0.5,
-            s => part(number * coverage + s - 1, count * coverage),
-        };
-        Self { phases: (0..samples).map(phase).collect(), dithered: true }
+        let part = |i: usize| i as f64 / others as f64 + 0.5 / others.max(64) as f64;
+        let phases = std::iter::once(0.5 + 0.5 / 64.0).chain((0..others).map(part)).collect();
+        Self { phases, dithered: true }
+    }
+
+    /// Places of all samples.
+    /// * `offsets`: of those of one exposure.
+    pub(crate) fn offsets(&self, offsets: &[[i32; 2]]) -> Vec<[i32; 2]> {
+        let own = offsets.len();
+        (0..self.phases.len())
+            .map(|s| if s == 0 || own == 1 { offsets[0] } else { offsets[1 + (s - 1) % (own - 1)] })
+            .collect()
     }
 
     /// The same threshold everywhere: what has the greater part of the weight.
@@ -153,10 +190,11 @@ mod tests {
         tile.sort_by(f64::total_cmp);
         assert!(tile.iter().enumerate().all(|(i, d)| (d - i as f64 / 64.0).abs() < 1e-12));
         for (count, samples) in [(1, 1), (64, 1), (16, 5), (4, 17)] {
-            let exposures: Vec<_> = (0..count).map(|k| Exposure::new(k, count, samples)).collect();
-            let coverage = if samples == 1 { 0..1 } else { 1..samples };
-            let mut all: Vec<f64> =
-                exposures.iter().flat_map(|e| coverage.clone().map(|s| e.threshold(s, 13, 7))).collect();
+            let exposure = Exposure::new(count, samples);
+            let all = exposure.offsets(&vec![[0, 0]; samples]).len();
+            assert_eq!(all, if samples * count == 1 { 1 } else { 1 + count * (samples.max(2) - 1) });
+            let coverage = if all == 1 { 0..1 } else { 1..all };
+            let mut all: Vec<f64> = coverage.map(|s| exposure.threshold(s, 13, 7)).collect();
             all.sort_by(f64::total_cmp);
             let step = 1.0 / all.len() as f64;
             assert!(all.windows(2).all(|w| (w[1] - w[0] - step).abs() < 1e-9), "{count} {samples}: {all:?}");

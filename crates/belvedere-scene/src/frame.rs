@@ -28,9 +28,13 @@ pub struct RenderOptions {
     pub aux: Aux,
     /// Marks that belong to no layer.
     pub overlay: Overlay,
-    /// Drawings, each with other thresholds, of the places where representations of styling sections pass into each other; the mean
-    /// is what is stored. 1 = an ordered dither, >= 1.
+    /// How often each sample is taken, with other thresholds, where representations of styling sections pass into each other; 1 = an
+    /// ordered dither, >= 1.
     pub exposures: u32,
+    /// How representations of styling sections are put together.
+    pub compositing: Compositing,
+    /// Only one representation, by its number among those of the view's sections, wherever it has a weight.
+    pub representation: Option<usize>,
     /// Whether lines, outlines, points and names are drawn, those of the overlay too; else surfaces alone.
     pub marks: bool,
     /// Memory the renderer may use for one picture, bytes; more is [`RenderError::TooLarge`].
@@ -47,8 +51,37 @@ impl Default for RenderOptions {
             aux: Aux::default(),
             overlay: Overlay::default(),
             exposures: 1,
+            compositing: Compositing::default(),
+            representation: None,
             marks: true,
             max_bytes: 4 << 30,
+        }
+    }
+}
+
+/// How representations of styling sections are put together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Compositing {
+    /// Each sample shows one of them, by its threshold: one drawing, no memory beside the picture's.
+    #[default]
+    Dither,
+    /// Each is drawn alone and the pictures are mixed: as many drawings and pictures as there are representations.
+    Layers,
+}
+
+impl FrameStats {
+    /// Work of two drawings of one scene.
+    pub fn and(&self, other: &Self) -> Self {
+        Self {
+            triangles_in: self.triangles_in.max(other.triangles_in),
+            triangles_drawn: self.triangles_drawn + other.triangles_drawn,
+            edges_split: self.edges_split + other.edges_split,
+            vertices_missed: self.vertices_missed + other.vertices_missed,
+            samples: self.samples + other.samples,
+            layer_bytes: self.layer_bytes + other.layer_bytes,
+            milliseconds: self.milliseconds + other.milliseconds,
         }
     }
 }
@@ -81,6 +114,8 @@ pub struct FrameStats {
     pub vertices_missed: u64,
     /// Samples of volumes taken.
     pub samples: u64,
+    /// Bytes of the pictures of single representations, see [`Compositing::Layers`].
+    pub layer_bytes: u64,
     /// Wall time in milliseconds.
     pub milliseconds: f64,
 }

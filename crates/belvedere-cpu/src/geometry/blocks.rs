@@ -156,29 +156,14 @@ impl Blocks {
             .sort_unstable_by(|&a, &b| list[b as usize].cover.q.total_cmp(&list[a as usize].cover.q).then(a.cmp(&b)));
     }
 
-    /// Draws everything that touches the band and is not hidden, nearest first; whether some of it is shown sample by sample.
-    pub(crate) fn draw(&self, band: &mut Band, ortho: bool, sections: Option<(&Sections<'_>, &Exposure)>) -> bool {
-        let mut any_thin = false;
-        for &i in &self.order {
-            let block = &self.list[i as usize];
-            let [y0, y1] = block.cover.y;
-            if y0 >> 8 >= band.y1 || y1 >> 8 < band.y0 || band.hides(block.cover.x, block.cover.q) {
+    /// Draws everything that touches the band and is not hidden, nearest first, but what is shown sample by sample.
+    pub(crate) fn draw(&self, band: &mut Band) {
+        for (i, block) in self.in_band(band).filter(|(_, block)| block.thin.is_empty()) {
+            if band.hides(block.cover.x, block.cover.q) {
                 continue;
             }
             match &block.geometry {
                 Geometry::Grid(nodes) => nodes.draw(i << CELL_BITS, band),
-                Geometry::Soup(soup)
-                    if let Some((sections, exposure)) = sections.filter(|_| !block.thin.is_empty()) =>
-                {
-                    any_thin = true;
-                    let shows = |s: usize, [x, y]: [i32; 2], at: f64| {
-                        sections.shows(block.layer as usize, at, exposure.threshold(s, x, y))
-                    };
-                    for (k, (t, at)) in soup.iter().zip(&block.thin).enumerate() {
-                        let prim = SOUP | (block.soup_base + k as u32);
-                        band.draw_thin(t.v.map(|v| v.screen), *at, ortho, prim, &shows);
-                    }
-                }
                 Geometry::Soup(soup) => {
                     for (k, t) in soup.iter().enumerate() {
                         band.draw(t.v.map(|v| v.screen), SOUP | (block.soup_base + k as u32));
@@ -187,7 +172,36 @@ impl Blocks {
             }
             band.drew(block.cover.x);
         }
-        any_thin
+    }
+
+    /// Whether something that touches the band is shown sample by sample.
+    pub(crate) fn are_thin_in(&self, band: &Band) -> bool {
+        self.in_band(band).any(|(_, block)| !block.thin.is_empty())
+    }
+
+    /// Draws what is shown sample by sample; the band has the samples of `exposure`.
+    pub(crate) fn draw_thin(&self, band: &mut Band, ortho: bool, sections: &Sections<'_>, exposure: &Exposure) {
+        for (_, block) in self.in_band(band).filter(|(_, block)| !block.thin.is_empty()) {
+            let Geometry::Soup(soup) = &block.geometry else { continue };
+            if band.hides(block.cover.x, block.cover.q) {
+                continue;
+            }
+            let shows = |s: usize, [x, y]: [i32; 2], at: f64| {
+                sections.shows(block.layer as usize, at, exposure.threshold(s, x, y))
+            };
+            for (k, (t, at)) in soup.iter().zip(&block.thin).enumerate() {
+                let prim = SOUP | (block.soup_base + k as u32);
+                band.draw_thin(t.v.map(|v| v.screen), *at, ortho, prim, &shows);
+            }
+            band.drew(block.cover.x);
+        }
+    }
+
+    /// Blocks that may touch a band, with their numbers, nearest first.
+    fn in_band(&self, band: &Band) -> impl Iterator<Item = (u32, &Block)> + use<'_> {
+        let [top, bottom] = [band.y0, band.y1];
+        let blocks = self.order.iter().map(|&i| (i, &self.list[i as usize]));
+        blocks.filter(move |(_, block)| block.cover.y[0] >> 8 < bottom && block.cover.y[1] >> 8 >= top)
     }
 
     /// Layer of a primitive number (not sky).

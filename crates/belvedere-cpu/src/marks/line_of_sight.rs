@@ -2,7 +2,7 @@
 
 use crate::geometry::screen::Screen;
 use crate::marks::path::LinePoint;
-use crate::sections::Exposure;
+use crate::sections::{Exposure, Sections};
 use crate::trace::Tracer;
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{LayerKind, Scene};
@@ -18,12 +18,13 @@ const SLACK_PX: f64 = 0.05;
 pub(crate) struct LineOfSight<'a> {
     scene: &'a Scene,
     view: &'a View,
+    sections: Option<&'a Sections<'a>>,
     tracer: OnceLock<Option<Tracer<'a>>>,
 }
 
 impl<'a> LineOfSight<'a> {
-    pub(crate) fn new(scene: &'a Scene, view: &'a View) -> Self {
-        Self { scene, view, tracer: OnceLock::new() }
+    pub(crate) fn new(scene: &'a Scene, view: &'a View, sections: Option<&'a Sections<'a>>) -> Self {
+        Self { scene, view, sections, tracer: OnceLock::new() }
     }
 
     /// The point itself, exactly on the drawn surface if its line lies on the ground.
@@ -51,6 +52,6 @@ impl<'a> LineOfSight<'a> {
                 _ => 0,
             })
             .sum();
-        (nodes <= MAX_NODES).then(|| Tracer::exposed(self.scene, self.view, Exposure::even()))
+        (nodes <= MAX_NODES).then(|| Tracer::exposed(self.scene, self.view, self.sections.cloned(), Exposure::even()))
     }
 }

@@ -58,8 +58,8 @@ impl Marks {
             return Self::default();
         }
         let map = DepthMap { depth, width: screen.width, height: screen.height };
-        let sight = LineOfSight::new(job.scene, job.view);
-        let sections = Sections::new(job.scene, job.view);
+        let sections = Sections::new(job);
+        let sight = LineOfSight::new(job.scene, job.view, sections.as_ref());
         let builder = MarkBuilder {
             sections: sections.as_ref(),
             scene: job.scene,

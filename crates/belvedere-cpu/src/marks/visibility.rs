@@ -311,7 +311,7 @@ mod tests {
         let pinhole = Pinhole::look_at(DVec3::ZERO, DVec3::Y, DVec3::Z, lens, [320, 240], 1.0, None).unwrap();
         let (scene, view) = (Scene::default(), View::straight(pinhole));
         let (screen, passes, depth) = (Screen::new(view.pinhole()), Pass::all(&view), vec![f32::INFINITY; 320 * 240]);
-        let (sight, map) = (LineOfSight::new(&scene, &view), DepthMap { depth: &depth, width: 320, height: 240 });
+        let (sight, map) = (LineOfSight::new(&scene, &view, None), DepthMap { depth: &depth, width: 320, height: 240 });
         let visibility = LineVisibility { pass: &passes[0], screen: &screen, map, sight: &sight, lift_m: 0.0 };
         // From near to forty times as far.
         let line = path::as_given(&[DVec3::new(-20.0, 50.0, -5.0), DVec3::new(600.0, 2000.0, -40.0)]);

@@ -155,6 +155,22 @@ impl Band {
         })
     }
 
+    /// Repeats the samples apart from the centre (or, where there are no others, the centre): what they see so far, they see in every
+    /// exposure.
+    /// * `offsets`: of all samples then, those that there are first.
+    pub(crate) fn expose(&mut self, offsets: Vec<[i32; 2]>) {
+        let plane = (self.y1 - self.y0).max(0) as usize * self.stride;
+        let own = self.offsets.len();
+        for s in own..offsets.len() {
+            let from = if own == 1 { 0 } else { 1 + (s - 1) % (own - 1) };
+            self.q.extend_from_within(from * plane..(from + 1) * plane);
+            self.prim.extend_from_within(from * plane..(from + 1) * plane);
+        }
+        #[cfg(test)]
+        self.hits.resize(self.q.len(), 0);
+        self.offsets = offsets;
+    }
+
     /// Tells that something was drawn in these columns; what nobody tells of is neither coloured nor cleared.
     pub(crate) fn drew(&mut self, x: [i32; 2]) {
         let (from, to) = ((x[0] >> 8).max(0) as usize / TILE, (x[1] >> 8).clamp(0, self.width - 1) as usize / TILE);

@@ -3,7 +3,7 @@
 use crate::geometry::screen::{SUB, Screen};
 use crate::raster::band::{Band, Part, SKY};
 use crate::raster::pixel_center::PixelCenters;
-use crate::shade::color::{Encoding, Packed};
+use crate::shade::color::Packed;
 use crate::shade::{Painted, Sample, Samples, Shader};
 use crate::simd::{self, Kernel};
 use std::ops::Range;
@@ -24,16 +24,6 @@ pub(crate) enum Colors<'a> {
     Open(&'a mut [Packed]),
     /// Finished.
     Stored(&'a mut [[u8; 3]]),
-}
-
-impl Colors<'_> {
-    /// Puts down the colours of all pixels.
-    pub(crate) fn store(&mut self, colors: impl Iterator<Item = Packed>, encoding: &Encoding) {
-        match self {
-            Self::Open(out) => out.iter_mut().zip(colors).for_each(|(out, color)| *out = color),
-            Self::Stored(out) => out.iter_mut().zip(colors).for_each(|(out, color)| *out = color.encode(encoding)),
-        }
-    }
 }
 
 /// Two samples farther apart than this share of their depth are coloured separately.

@@ -117,7 +117,7 @@ impl<'a> Shader<'a> {
             blocks,
             areas,
             casters: Casters::new(job.scene, job.light),
-            sections: Sections::new(job.scene, job.view),
+            sections: Sections::new(job),
             layers,
             only_terrain,
         }

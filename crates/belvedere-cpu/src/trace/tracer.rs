@@ -74,11 +74,16 @@ impl<'a> Tracer<'a> {
     ///
     /// Where styling sections show layers in part, a ray meets what its pixel's threshold shows.
     pub fn new(scene: &'a Scene, view: &'a View) -> Self {
-        Self::exposed(scene, view, Exposure::new(0, 1, 1))
+        Self::exposed(scene, view, Sections::of(scene, view, None), Exposure::new(1, 1))
     }
 
     /// * `exposure`: thresholds of the samples.
-    pub(crate) fn exposed(scene: &'a Scene, view: &'a View, exposure: Exposure) -> Self {
+    pub(crate) fn exposed(
+        scene: &'a Scene,
+        view: &'a View,
+        sections: Option<Sections<'a>>,
+        exposure: Exposure,
+    ) -> Self {
         let split = Split::new(view);
         let lift = |min: DVec2, max: DVec2| {
             let Some(g) = split.ground.map(|g| g.grid()) else { return [0.0; 2] };
@@ -90,7 +95,7 @@ impl<'a> Tracer<'a> {
         let obstacles = Obstacles::lifted(scene, lift);
         let range = [view.pinhole().near, deepest(scene, view)];
         let (screen, solid) = (Screen::new(view.pinhole()), obstacles.solid_bounds());
-        Self { split, screen, obstacles, solid, range, sections: Sections::new(scene, view), exposure }
+        Self { split, screen, obstacles, solid, range, sections, exposure }
     }
 
     /// What the ray of `pixel` meets first between the near and far depth of the camera; `None` for the sky.

@@ -6,7 +6,9 @@ use belvedere_core::map::spline::{ReferencePlane, SplineBend, default_pivot};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::sections::TagPoint;
 use belvedere_core::{DVec3, Stage, View};
-use belvedere_scene::{BoxLayer, BoxShape, Color, Frame, LayerKind, Palette, RenderOptions, Representation, Scene};
+use belvedere_scene::{
+    BoxLayer, BoxShape, Color, Compositing, Frame, LayerKind, Palette, RenderOptions, Representation, Scene,
+};
 
 const IMAGE: [u32; 2] = [160, 120];
 
@@ -154,4 +156,25 @@ fn sections_of_one_representation_are_the_plain_picture() {
     alone.representations.clear();
     alone.layers.truncate(2);
     assert!(one.color == render(&alone, &view(&[], &["all"]), &options(4)).color);
+}
+
+#[test]
+fn layers_are_the_mean_of_the_exposures_where_they_see_one_surface() {
+    let (mut scene, view) = (land(), view(&[TagPoint { u: 0.5, delta: 0.3 }], &["near", "far"]));
+    scene.layers[1].kind = LayerKind::Boxes(BoxLayer::default());
+    let mean = render(&scene, &view, &RenderOptions { exposures: 64, ..options(1) });
+    let layers = render(&scene, &view, &RenderOptions { compositing: Compositing::Layers, ..options(1) });
+    let off = mean.color.iter().zip(&layers.color).flat_map(|(a, b)| (0..3).map(|k| a[k].abs_diff(b[k]))).max();
+    assert!(off.is_some_and(|off| off <= 2), "{off:?} of 255");
+    // Two pictures with colour, depth, identity and place; exposures need none.
+    assert_eq!((layers.stats.layer_bytes, mean.stats.layer_bytes), (2 * 160 * 120 * 35, 0));
+}
+
+#[test]
+fn layers_that_see_different_places_leave_no_hole() {
+    let (scene, view) = (land(), view(&[TagPoint { u: 0.5, delta: 0.3 }], &["near", "far"]));
+    let layers = render(&scene, &view, &RenderOptions { compositing: Compositing::Layers, ..options(1) });
+    let mean = render(&scene, &view, &options(1));
+    let sky = |frame: &Frame| frame.id.iter().filter(|id| **id == 0).count();
+    assert!(sky(&layers) <= sky(&mean) && layers.id.iter().any(|id| *id == 2), "towers");
 }

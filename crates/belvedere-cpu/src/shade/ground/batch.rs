@@ -403,7 +403,7 @@ mod tests {
             blocks.build(&scene, &view, &passes, &screen, &options, None, &GroundCache::default());
             let shader = Shader::new(&job, &screen, &blocks, &light_cache);
             let mut band = Band::new(0, 160, 331, sample_offsets(1));
-            blocks.draw(&mut band, false, None);
+            blocks.draw(&mut band);
             let x: Vec<i32> = (0..331).map(|x| x * SUB + SUB / 2).collect();
             for row in 0..160 {
                 let (y, from) = (vec![row * SUB + SUB / 2; 331], band.index(0, 0, row));
