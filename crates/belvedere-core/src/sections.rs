@@ -108,6 +108,13 @@ impl StylingSections {
     /// At every `t` the representations own half-open intervals of 0..1, one after the other, as long as their weights: exactly one is
     /// shown. Source: ours; the mean over all thresholds is the weighted composite of Pasewaldt et al. 2011, section 4.4.
     pub fn shown(&self, t: f64, threshold: f64) -> usize {
+        let (ends, count) = (self.interval_ends(t), self.representations.len());
+        let last = (1..count).rev().find(|&i| ends[i] > ends[i - 1]).unwrap_or(0);
+        ends[..count].iter().position(|end| threshold < *end).unwrap_or(last)
+    }
+
+    /// Where the interval of each representation ends at `t`, rising to 1, see [`Self::shown`]; entries past the last one mean nothing.
+    pub fn interval_ends(&self, t: f64) -> [f64; MOST_REPRESENTATIONS] {
         let mut shares = [0.0; MOST_REPRESENTATIONS];
         let mut step = 1.0;
         for (i, &[start, target]) in self.numbers.iter().enumerate() {
@@ -116,14 +123,26 @@ impl StylingSections {
             shares[target] += (step - next) * self.beta;
             step = next;
         }
-        let (mut sum, mut last) = (0.0, 0);
-        for (i, &share) in shares[..self.representations.len()].iter().enumerate().filter(|(_, share)| **share > 0.0) {
-            (sum, last) = (sum + share, i);
-            if threshold < sum {
-                break;
-            }
+        let mut sum = 0.0;
+        for share in &mut shares[..self.representations.len()] {
+            sum += *share;
+            *share = sum;
         }
-        last
+        shares
+    }
+
+    /// Where weights begin or cease to change, or may change their slope: the ends of the transitions and where they cross each other.
+    pub fn knees(&self) -> Vec<f64> {
+        let ramps = self.tags.iter().map(|tag| [tag.u - tag.delta, tag.u + tag.delta]);
+        let mut knees: Vec<f64> = ramps.clone().flatten().collect();
+        for (a, b) in ramps.clone().enumerate().flat_map(|(i, a)| ramps.clone().skip(i + 1).map(move |b| (a, b))) {
+            let (wide, apart) = ([a[1] - a[0], b[1] - b[0]], b[0] - a[0]);
+            // (t - a0) / wide_a = (t - b0) / wide_b
+            let crossing = a[0] - apart * wide[0] / (wide[1] - wide[0]);
+            knees.extend(Some(crossing).filter(|t| t.is_finite() && a[0].max(b[0]) <= *t && *t <= a[1].min(b[1])));
+        }
+        knees.sort_by(f64::total_cmp);
+        knees
     }
 
     /// The representations, as bits of their numbers, that may have a weight anywhere between `t0` and `t1`.

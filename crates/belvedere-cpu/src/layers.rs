@@ -23,8 +23,7 @@ pub(crate) fn draw(
         return draw(job);
     };
     let alone = |number: usize| {
-        let mut options =
-            RenderOptions { representation: Some(number), compositing: Compositing::Dither, ..options.clone() };
+        let mut options = RenderOptions { representation: Some(number), exposures: 1, ..options.clone() };
         options.aux.world = true;
         draw(&RenderJob { options: &options, ..*job })
     };

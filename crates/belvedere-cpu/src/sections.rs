@@ -4,8 +4,9 @@
 //! their weights, so exactly one of them is shown by a sample: no layers, one depth buffer. Pixels have different thresholds (an 8 x 8
 //! ordered dither), its samples again others, and their mean tends to the weighted composite.
 
+use crate::raster::thin::ThinShow;
 use belvedere_core::map::spline::SplineBend;
-use belvedere_core::sections::StylingSections;
+use belvedere_core::sections::{MOST_REPRESENTATIONS, StylingSections};
 use belvedere_core::{Aabb, DVec3, Stage, View};
 use belvedere_scene::{RenderJob, Scene};
 
@@ -15,6 +16,7 @@ pub(crate) struct Sections<'a> {
     /// `None` = one representation everywhere.
     bend: Option<&'a SplineBend>,
     styling: StylingSections,
+    table: Table,
     /// For each layer the representations that show it, as bits.
     shown_by: Vec<u32>,
     /// The only representation that is drawn.
@@ -45,7 +47,8 @@ impl<'a> Sections<'a> {
         let styling = bend.map_or_else(StylingSections::plain, |bend| bend.sections().clone());
         let shown_by = scene.shown_by(&styling.representations());
         let only = only.filter(|number| *number < styling.representations().len());
-        Some(Self { bend, styling, shown_by, only })
+        let table = Table::new(&styling);
+        Some(Self { bend, styling, table, shown_by, only })
     }
 
     /// How many representations the sections name.
@@ -95,12 +98,22 @@ impl<'a> Sections<'a> {
 
     /// Whether a sample with a threshold shows the layer at a place along the curve.
     pub(crate) fn shows(&self, layer: usize, parameter: f64, threshold: f64) -> bool {
-        let shown = match self.only {
-            Some(number) if self.weight(number, parameter) > 0.0 => number,
-            Some(_) => return false,
-            None => self.styling.shown(parameter, threshold),
-        };
-        self.shown_by[layer] >> shown & 1 == 1
+        self.is_shown_by(layer, self.intervals(parameter).holding(threshold))
+    }
+
+    /// Whether a representation, by its number, shows a layer; one that does not exist shows none.
+    #[inline]
+    fn is_shown_by(&self, layer: usize, number: usize) -> bool {
+        self.shown_by[layer].checked_shr(number as u32).is_some_and(|bits| bits & 1 == 1)
+    }
+
+    /// The intervals of thresholds at a place along the curve.
+    fn intervals(&self, parameter: f64) -> Intervals {
+        match self.only {
+            None => self.table.intervals(&self.styling, parameter),
+            Some(number) if self.weight(number, parameter) > 0.0 => Intervals::of_one(number),
+            Some(_) => Intervals::of_one(MOST_REPRESENTATIONS),
+        }
     }
 
     /// Share, 0..=1, of the representations that show `layer` among those that show `on`, at a place.
@@ -131,11 +144,105 @@ impl<'a> Sections<'a> {
     }
 }
 
+/// The intervals of thresholds of the representations at a place.
+pub(crate) struct Intervals {
+    ends: [f64; MOST_REPRESENTATIONS],
+    count: usize,
+    /// Number of the first one.
+    first: usize,
+}
+
+impl Intervals {
+    /// One representation holds all thresholds.
+    fn of_one(number: usize) -> Self {
+        Self { ends: [1.0; MOST_REPRESENTATIONS], count: 1, first: number }
+    }
+
+    /// Number of the representation that holds a threshold.
+    #[inline]
+    fn holding(&self, threshold: f64) -> usize {
+        self.first + self.ends[..self.count - 1].iter().take_while(|end| threshold >= **end).count()
+    }
+}
+
+/// What samples show of a layer.
+pub(crate) struct LayerShow<'a> {
+    pub(crate) sections: &'a Sections<'a>,
+    pub(crate) exposure: &'a Exposure,
+    pub(crate) layer: usize,
+}
+
+impl ThinShow for LayerShow<'_> {
+    type At = Intervals;
+
+    #[inline]
+    fn at(&self, parameter: f64) -> Intervals {
+        self.sections.intervals(parameter)
+    }
+
+    #[inline]
+    fn shows(&self, at: &Intervals, sample: usize, [x, y]: [i32; 2]) -> bool {
+        self.sections.is_shown_by(self.layer, at.holding(self.exposure.threshold(sample, x, y)))
+    }
+}
+
+/// The ends of the intervals of all representations at many places: linear between them, but at the knees.
+#[derive(Debug, Clone)]
+struct Table {
+    from: f64,
+    per_step: f64,
+    representations: usize,
+    /// Place by place.
+    ends: Vec<f64>,
+    /// Whether a knee lies between a place and the next.
+    has_knee: Vec<bool>,
+}
+
+impl Table {
+    const STEPS: usize = 1024;
+
+    fn new(styling: &StylingSections) -> Self {
+        let knees = styling.knees();
+        let (from, to) = (knees.first().copied().unwrap_or(0.0), knees.last().copied().unwrap_or(0.0));
+        // Rounding must not put a knee beside its step.
+        let slack = 1e-9 + 1e-3 * (to - from);
+        let (from, to) = (from - slack, to + slack);
+        let per_step = (to - from) / Self::STEPS as f64;
+        let representations = styling.representations().len();
+        let place = |i: usize| from + per_step * i as f64;
+        let ends = (0..=Self::STEPS).flat_map(|i| styling.interval_ends(place(i)).into_iter().take(representations));
+        let near = |i: usize| {
+            let (a, b) = (place(i) - 1e-6 * per_step, place(i + 1) + 1e-6 * per_step);
+            knees.iter().any(|knee| a <= *knee && *knee <= b)
+        };
+        Self { from, per_step, representations, ends: ends.collect(), has_knee: (0..Self::STEPS).map(near).collect() }
+    }
+
+    #[inline]
+    fn intervals(&self, styling: &StylingSections, parameter: f64) -> Intervals {
+        let at = ((parameter - self.from) / self.per_step).clamp(0.0, Self::STEPS as f64 - 1e-9);
+        // NaN becomes 0.
+        let step = at as usize;
+        if self.has_knee[step] {
+            return Intervals { ends: styling.interval_ends(parameter), count: self.representations, first: 0 };
+        }
+        let (n, share) = (self.representations, at - step as f64);
+        let (here, next) = (&self.ends[step * n..][..n], &self.ends[(step + 1) * n..][..n]);
+        let mut ends = [1.0; MOST_REPRESENTATIONS];
+        for (end, (a, b)) in ends.iter_mut().zip(here.iter().zip(next)) {
+            *end = a + share * (b - a);
+        }
+        Intervals { ends, count: n, first: 0 }
+    }
+}
+
 /// The thresholds of the samples of a pixel.
 #[derive(Debug, Clone)]
 pub(crate) struct Exposure {
     /// Added to the dither, for each sample, the centre first.
     phases: Vec<f64>,
+    /// Samples apart from the centre in different places.
+    places: usize,
     dithered: bool,
 }
 
@@ -147,7 +254,12 @@ impl Exposure {
         // In the middles of equal parts of 0..1, which are no wider than those of the dither.
         let part = |i: usize| i as f64 / others as f64 + 0.5 / others.max(64) as f64;
         let phases = std::iter::once(0.5 + 0.5 / 64.0).chain((0..others).map(part)).collect();
-        Self { phases, dithered: true }
+        Self { phases, places: samples.max(2) - 1, dithered: true }
+    }
+
+    /// How many samples apart from the centre lie in different places.
+    pub(crate) fn places(&self) -> usize {
+        self.places
     }
 
     /// Places of all samples.
@@ -161,7 +273,7 @@ impl Exposure {
 
     /// The same threshold everywhere: what has the greater part of the weight.
     pub(crate) fn even() -> Self {
-        Self { phases: vec![0.5], dithered: false }
+        Self { phases: vec![0.5], places: 1, dithered: false }
     }
 
     /// Threshold of a sample, 0..1.
@@ -183,6 +295,23 @@ fn dither(x: i32, y: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use belvedere_core::sections::TagPoint;
+
+    #[test]
+    fn the_table_shows_what_the_sections_show() {
+        let tags = [(0.2, 0.05), (0.3, 0.2), (0.7, 0.0)].map(|(u, delta)| TagPoint { u, delta });
+        let ids = |ids: [&str; 4]| ids.map(str::to_owned).to_vec();
+        let styling = StylingSections::new(tags.to_vec(), ids(["a", "b", "a", "c"]), ids(["b", "b", "d", "c"]), 0.4);
+        let styling = styling.expect("well formed");
+        let table = Table::new(&styling);
+        let mut differ = 0;
+        for i in 0..200_000 {
+            let t = -0.2 + 1.4 * (f64::from(i) * 0.618_033_988_75).fract();
+            let threshold = (f64::from(i) * 0.754_877_666).fract();
+            differ += u32::from(table.intervals(&styling, t).holding(threshold) != styling.shown(t, threshold));
+        }
+        assert!(differ <= 2, "{differ}: rounding at the ends of intervals alone");
+    }
 
     #[test]
     fn thresholds_of_a_pixel_and_of_a_tile_are_spread_evenly() {

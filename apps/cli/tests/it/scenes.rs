@@ -66,3 +66,38 @@ fn shown_scenes_open_to_the_same_view() {
         assert_eq!(place.ok(&["show", "shown.toml"]), place.ok(&["show", "s.toml"]), "{scene}");
     }
 }
+
+#[test]
+fn sections_show_representations_and_unknown_ones_are_named() {
+    let scene = |sections: &str| {
+        format!(
+            "{}[representations]\ntown = ['towers']\n[[layer]]\nid = 'towers'\nkind = 'boxes'\nboxes = [{{ base = [0, 400, 0], size = [40, 40, 60] }}]\n\
+             [[layer]]\nid = 'far'\nkind = 'boxes'\nboxes = [{{ base = [0, 900, 0], size = [200, 40, 60] }}]\n\
+             [[stage]]\nkind = 'spline_bend'\nplane = {{ height_m = 0 }}\n[stage.presets]\nversion = 1\n[[stage.presets.presets]]\nphi = 0\ns = 100\ne = 1100\n\
+             control = [[0, 0], [0.3, 0], [0.6, 0], [1, 0]]\ntags = [{{ u = 0.5 }}]\nsections = {sections}\n",
+            BARE.replace("eye = [0.0, 0.0, 0.0]", "eye = [0.0, 0.0, 90.0]")
+                .replace("look_at = [0.0, 1.0, 0.0]", "look_at = [0, 500, 40]")
+        )
+    };
+    let seen = |sections: &str| {
+        let place = Place::new();
+        place.write("s.toml", &scene(sections));
+        place.write("p.json", "[[640, 345], [500, 300]]");
+        let _ = place.ok(&["render", "s.toml", "-o", "a.png", "--size", "160x90", "--thresholds", "1"]);
+        let picked = place.json(&["pick", "s.toml", "--pixels", "p.json"]);
+        [0, 1].map(|i| picked["pixels"][i]["layer"].as_str().unwrap_or("-").to_owned())
+    };
+    // A section may name a representation or a layer.
+    assert_eq!(seen("['town', 'far']"), ["towers", "far"]);
+    assert_eq!(seen("['far', 'town']"), ["-", "-"]);
+    let place = Place::new();
+    place.write("s.toml", &scene("['town', 'farr']"));
+    let line = place.fails(&["check", "s.toml"]);
+    assert!(
+        line.contains("section \"farr\" is neither a representation nor a layer") && line.contains("\"far\"?"),
+        "{line}"
+    );
+    place.write("s.toml", &scene("['town', 'far']").replace("['towers']", "['tower']"));
+    let line = place.fails(&["check", "s.toml"]);
+    assert!(line.contains("representation \"town\": there is no layer \"tower\"; did you mean \"towers\"?"), "{line}");
+}

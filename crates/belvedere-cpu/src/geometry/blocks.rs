@@ -11,7 +11,7 @@ use crate::geometry::pass::{InView, Pass};
 use crate::geometry::screen::Screen;
 use crate::geometry::select::{DetailSelector, Selection};
 use crate::raster::band::Band;
-use crate::sections::{Exposure, Sections, Shown};
+use crate::sections::{Exposure, LayerShow, Sections, Shown};
 use belvedere_core::{Aabb, View};
 use belvedere_scene::{LayerKind, RenderOptions, Scene};
 use rayon::prelude::*;
@@ -186,12 +186,10 @@ impl Blocks {
             if band.hides(block.cover.x, block.cover.q) {
                 continue;
             }
-            let shows = |s: usize, [x, y]: [i32; 2], at: f64| {
-                sections.shows(block.layer as usize, at, exposure.threshold(s, x, y))
-            };
+            let show = LayerShow { sections, exposure, layer: block.layer as usize };
             for (k, (t, at)) in soup.iter().zip(&block.thin).enumerate() {
                 let prim = SOUP | (block.soup_base + k as u32);
-                band.draw_thin(t.v.map(|v| v.screen), *at, ortho, prim, &shows);
+                band.draw_thin(t.v.map(|v| v.screen), *at, (ortho, exposure.places()), prim, &show);
             }
             band.drew(block.cover.x);
         }

@@ -4,18 +4,26 @@ use crate::geometry::screen::{SUB, ScreenVertex};
 use crate::raster::band::Band;
 use crate::raster::triangle::Setup;
 
+/// Which samples of a pixel show what, by a value at their place.
+pub(crate) trait ThinShow {
+    /// What is known of a value, for all samples there.
+    type At;
+    fn at(&self, value: f64) -> Self::At;
+    fn shows(&self, at: &Self::At, sample: usize, pixel: [i32; 2]) -> bool;
+}
+
 impl Band {
-    /// Draws the samples of a triangle that `shows` at a value given at its corners and linear on the triangle itself.
+    /// Draws the samples of a triangle that `show` shows, by a value given at its corners and linear on the triangle itself.
     ///
-    /// * `shows`: by sample, pixel and value.
+    /// * `places`: samples apart from the centre that lie in different places; those after them lie in the same places again.
     #[inline(never)]
     pub(crate) fn draw_thin(
         &mut self,
         tri: [ScreenVertex; 3],
         values: [f32; 3],
-        ortho: bool,
+        (ortho, places): (bool, usize),
         prim: u32,
-        shows: &dyn Fn(usize, [i32; 2], f64) -> bool,
+        show: &impl ThinShow,
     ) {
         let [a, b, c] = tri;
         let x = [a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x)];
@@ -33,22 +41,25 @@ impl Band {
         ) else {
             return;
         };
-        for s in 0..self.offsets.len() {
-            let [ox, oy] = self.offsets[s];
+        let all = self.offsets.len();
+        for first in 0..all.min(1 + places) {
+            let [ox, oy] = self.offsets[first];
             let [xa, xb, ya, yb] = self.pixels([ox, oy], x, y);
+            // The centre alone, or a place again and again.
+            let samples = (first..if first == 0 { 1 } else { all }).step_by(places.max(1));
             for py in ya..=yb {
                 let ys = py * SUB + oy;
                 let (x0, x1) = setup.span(ys, ox, xa, xb);
                 for px in x0..=x1 {
                     let xs = px * SUB + ox;
-                    let at = self.index(s, px, py);
                     let q = setup.nearness(xs, ys);
-                    if (q as f32) < self.q[at] {
-                        continue;
-                    }
                     let here = if ortho { value.nearness(xs, ys) } else { value.nearness(xs, ys) / q };
-                    if shows(s, [px, py], here) {
-                        self.write(at, q as f32, prim);
+                    let at = show.at(here);
+                    for s in samples.clone() {
+                        let i = self.index(s, px, py);
+                        if q as f32 >= self.q[i] && show.shows(&at, s, [px, py]) {
+                            self.write(i, q as f32, prim);
+                        }
                     }
                 }
             }
