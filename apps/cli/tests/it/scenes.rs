@@ -82,7 +82,7 @@ fn sections_show_representations_and_unknown_ones_are_named() {
     let seen = |sections: &str| {
         let place = Place::new();
         place.write("s.toml", &scene(sections));
-        place.write("p.json", "[[640, 345], [500, 300]]");
+        place.write("p.json", "[[640, 300], [560, 330]]");
         let _ = place.ok(&["render", "s.toml", "-o", "a.png", "--size", "160x90", "--thresholds", "1"]);
         let picked = place.json(&["pick", "s.toml", "--pixels", "p.json"]);
         [0, 1].map(|i| picked["pixels"][i]["layer"].as_str().unwrap_or("-").to_owned())
