@@ -21,7 +21,7 @@ impl Scene {
     pub fn shown_by(&self, ids: &[&str]) -> Vec<u32> {
         let known = |id: &str| self.representations.iter().find(|r| r.id == id).or(self.representations.first());
         let layers = self.layers.iter().map(|layer| {
-            let holds = |r: &Representation| r.layers.iter().any(|id| *id == layer.id);
+            let holds = |r: &Representation| r.layers.contains(&layer.id);
             if !self.representations.iter().any(holds) {
                 return u32::MAX;
             }
