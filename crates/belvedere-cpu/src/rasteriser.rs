@@ -98,7 +98,7 @@ impl CpuRenderer {
         let passes = Pass::all(job.view);
         let Scratch { blocks, color, bands } = scratch;
         let sections = Sections::new(job);
-        blocks.build(job.scene, job.view, &passes, &screen, job.options, sections.as_ref(), &self.detail);
+        blocks.build(job, &passes, &screen, sections.as_ref(), &self.detail);
         job.progress.tick("project", 1.0)?;
         let shader = Shader::new(job, &screen, blocks, &self.light);
         let mut buffers = Buffers::reuse(job, std::mem::take(color), frame);

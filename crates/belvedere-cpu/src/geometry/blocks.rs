@@ -13,7 +13,7 @@ use crate::geometry::select::{DetailSelector, Selection};
 use crate::raster::band::Band;
 use crate::sections::{Exposure, LayerShow, Sections, Shown};
 use belvedere_core::{Aabb, View};
-use belvedere_scene::{LayerKind, RenderOptions, Scene};
+use belvedere_scene::{LayerKind, RenderJob};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -70,14 +70,13 @@ impl Blocks {
     /// Displaces, projects, subdivides and clips every surface of the scene.
     pub(crate) fn build(
         &mut self,
-        scene: &Scene,
-        view: &View,
+        job: &RenderJob<'_>,
         passes: &[Pass<'_>],
         screen: &Screen,
-        options: &RenderOptions,
         sections: Option<&Sections<'_>>,
         detail: &GroundCache<(), Arc<Tree>>,
     ) {
+        let RenderJob { scene, view, options, .. } = *job;
         // A tolerance of zero or less would split without end.
         let tolerance_px = if options.tolerance_px > 0.01 { options.tolerance_px } else { 0.01 };
         self.list.drain(..).for_each(|b| self.spare.keep(b.geometry));
