@@ -1,10 +1,11 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, CompositingKind, DemoArgs, DisoccludeArgs, DrawArgs, FigureKind,
-    FiguresArgs, InfoArgs, MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs,
-    ShowArgs, TechniqueKind, Verb,
+    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, FigureKind, FiguresArgs, InfoArgs,
+    MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs,
+    TechniqueKind, Verb,
 };
+use crate::draw_args::{CompositingKind, DrawArgs};
 use crate::report::{Context, done, print};
 use anyhow::Context as _;
 use belvedere::picture::{self, AuxBuffer, AuxFormat, PictureOptions};
