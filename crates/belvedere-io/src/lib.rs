@@ -1,6 +1,7 @@
 //! Loaders and writers, one file per format: bytes in, [`Loaded`] values and warnings out.
 
 pub mod atomic;
+pub mod city;
 pub mod crs;
 pub mod drape;
 mod error;
@@ -19,6 +20,7 @@ pub mod terrain;
 pub mod vector;
 pub mod volume;
 
+pub use city::{CityFile, load_city};
 pub use drape::{DrapeRequest, load_drape};
 pub use error::{IoError, Loaded};
 pub use geotiff::GeoTiff;

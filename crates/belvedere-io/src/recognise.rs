@@ -31,6 +31,7 @@ const NAME_PDB: &str = "it is read if its name ends in .pdb";
 const NAME_CIF: &str = "it is read if its name ends in .cif";
 const LATER: &str = "layers of this kind are planned";
 const AS_GEOJSON: &str = "ogr2ogr or QGIS turn it into GeoJSON";
+const AS_CITY: &str = "it is read by layers of kind city";
 const AS_MESH: &str = "turn it into OBJ or glTF, or its footprints into GeoJSON";
 const AS_GLTF: &str = "turn it into glTF or OBJ";
 const AS_GEOTIFF: &str = "gdal_translate turns it into GeoTIFF";
@@ -80,8 +81,8 @@ const TEXT: [(&str, Unread); 11] = [
 
 /// Endings of names, where content tells nothing; longer ones first.
 const ENDINGS: [(&str, Unread); 27] = [
-    (".city.jsonl", unread("CityJSONSeq", CITY, AS_MESH)),
-    (".city.json", unread("CityJSON", CITY, AS_MESH)),
+    (".city.jsonl", unread("CityJSONSeq", CITY, AS_CITY)),
+    (".city.json", unread("CityJSON", CITY, AS_CITY)),
     (".osm.bz2", unread("OSM XML", OSM, "osmium export turns it into GeoJSON")),
     (".nii.gz", unread("NIfTI", VOLUME, LATER)),
     (".nii", unread("NIfTI", VOLUME, LATER)),
@@ -169,7 +170,7 @@ fn of_content(head: &[u8]) -> Option<Unread> {
         let compact: String = text.chars().filter(|c| !c.is_whitespace()).collect();
         let is = |kind: &str| compact.contains(&format!("\"type\":\"{kind}\""));
         let format = if is("CityJSONFeature") { "CityJSONSeq" } else { "CityJSON" };
-        return (is("CityJSON") || is("CityJSONFeature")).then_some(unread(format, CITY, AS_MESH));
+        return (is("CityJSON") || is("CityJSONFeature")).then_some(unread(format, CITY, AS_CITY));
     }
     if let Some((_, found)) = TEXT.iter().find(|(word, _)| text.contains(word)) {
         return Some(*found);

@@ -15,6 +15,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         &[
             "crs-definitions",
             "dbase",
+            "earcut",
             "exr",
             "flate2",
             "geojson",

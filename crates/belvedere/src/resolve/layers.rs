@@ -2,7 +2,7 @@
 
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
-use super::{areas, boxes, builtin, dem, mesh, molecule, sea, vectors, volume};
+use super::{areas, boxes, builtin, city, dem, mesh, molecule, sea, vectors, volume};
 use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
@@ -75,6 +75,7 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
         warnings: Vec::new(),
         areas: Vec::new(),
         vectors,
+        cities: BTreeMap::new(),
         keep_original,
         original: None,
     };
@@ -84,6 +85,11 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
             let (layer, found) = terrain(&mut loader, i, doc, crs)?;
             crs.get_or_insert(found);
             layers[i] = Some(Layer { id: doc.id.clone(), must_see: false, kind: LayerKind::Terrain(layer) });
+        }
+    }
+    for (i, doc) in docs.iter().enumerate().filter(|_| needs != Needs::View) {
+        if let (None, LayerDoc::City(doc)) = (crs, doc) {
+            crs = city::crs(&mut loader, i, doc)?;
         }
     }
     let crs = crs.or(fallback_crs).unwrap_or_default();
@@ -328,13 +334,7 @@ fn layer(
         LayerDoc::Mesh(doc) => mesh::layer(loader, index, doc, ground)?,
         LayerDoc::Molecule(doc) => molecule::layer(loader, index, doc)?,
         LayerDoc::Volume(doc) => volume::layer(loader, index, doc)?,
-        LayerDoc::City(_) => {
-            return Err(loader.fail(
-                index,
-                "kind",
-                format!("layers of kind {} are not drawn by this version; remove the layer", doc.kind()),
-            ));
-        }
+        LayerDoc::City(doc) => city::layer(loader, index, doc, ground)?,
     };
     Ok(Some(Layer { id: doc.id().to_owned(), must_see: doc.must_see(), kind }))
 }

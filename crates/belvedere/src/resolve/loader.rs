@@ -8,7 +8,7 @@ use crate::scene_file::{LayerDoc, Origin, Paths};
 use crate::{BelvedereError, OpenOptions};
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
-use belvedere_io::{InputFile, Loaded};
+use belvedere_io::{CityFile, InputFile, Loaded};
 use belvedere_scene::{Color, LayerKind};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -26,6 +26,8 @@ pub(super) struct Loader<'a> {
     pub(super) areas: Vec<AreaRecord>,
     /// Vector files that were read already.
     pub(super) vectors: BTreeMap<PathBuf, Loaded<Vectors>>,
+    /// Cities that were read already, by the number of their layer.
+    pub(super) cities: BTreeMap<usize, Vec<CityFile>>,
     /// Whether the samples of the terrain's file are kept as they are there, and where.
     pub(super) keep_original: bool,
     pub(super) original: Option<OriginalTerrain>,

@@ -66,7 +66,7 @@ fn source(loader: &mut Loader<'_>, index: usize, doc: &MeshDoc) -> Result<MeshFi
 }
 
 /// Numbers of the parts of these names, separated by commas.
-fn wanted(layer: &MeshLayer, names: &str) -> Result<Vec<u32>, String> {
+pub(super) fn wanted(layer: &MeshLayer, names: &str) -> Result<Vec<u32>, String> {
     let mut out = Vec::new();
     for name in names.split(',').map(str::trim) {
         let found = layer.parts_named(name);

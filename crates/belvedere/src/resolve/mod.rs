@@ -5,6 +5,7 @@ mod boxes;
 pub(crate) mod builtin;
 mod camera;
 mod centreline;
+mod city;
 pub(crate) mod constructor;
 pub(crate) mod delta;
 mod dem;

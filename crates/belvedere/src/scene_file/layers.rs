@@ -1,5 +1,6 @@
 //! Layers of the scene document.
 
+use super::city::CityDoc;
 use super::mesh::{MeshDoc, TransformDoc};
 use super::molecule::MoleculeDoc;
 use super::overlay::AutoOrLength;
@@ -28,8 +29,8 @@ pub enum LayerDoc {
     Boxes(BoxesDoc),
     /// Triangles.
     Mesh(MeshDoc),
-    /// A city model. Not drawn by this version.
-    City(ModelDoc),
+    /// Buildings and what is between them.
+    City(CityDoc),
     /// Atoms.
     Molecule(MoleculeDoc),
     /// Voxels.
@@ -438,29 +439,4 @@ pub struct BoxDoc {
     /// Colour of its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub color: Option<String>,
-}
-
-/// A model of a kind that this version reads but does not draw.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ModelDoc {
-    /// Unique id within the scene.
-    pub id: String,
-    /// A file, or several.
-    pub source: Paths,
-    /// Whether constructors and measures work for it.
-    #[serde(default)]
-    pub must_see: bool,
-    /// Placement.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub transform: Option<TransformDoc>,
-    /// Coordinate system of the file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub crs: Option<String>,
-    /// Movement: a CSV file with columns t, x, y, z, yaw_deg.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub motion: Option<String>,
-    /// How it is drawn.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub style: Option<std::collections::BTreeMap<String, serde_json::Value>>,
 }

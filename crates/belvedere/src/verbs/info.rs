@@ -1,8 +1,10 @@
 //! `info`: what files hold, and what this machine can do.
 
+mod city;
 mod volume;
 
 pub use super::molecule_info::MoleculeInfo;
+pub use city::CityInfo;
 pub use volume::VolumeInfo;
 
 use crate::BelvedereError;
@@ -29,6 +31,8 @@ pub enum FileInfo {
     Features(FeatureInfo),
     /// Triangles.
     Mesh(MeshInfo),
+    /// A city.
+    City(CityInfo),
     /// Atoms.
     Molecule(MoleculeInfo),
     /// Voxels.
@@ -199,6 +203,9 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
         return built_in(name);
     }
     let path = Path::new(name);
+    if belvedere_io::city::is_cityjson(path)? {
+        return CityInfo::of(path).map(FileInfo::City);
+    }
     if let Some(known) = belvedere_io::recognise(path)? {
         let note = format!("not read by this version; {}", known.meanwhile);
         let (path, format, holds) = (name.to_owned(), known.format, known.holds);

@@ -1,0 +1,406 @@
+//! CityJSON 1.0 to 2.0, and CityJSONSeq.
+
+use super::attributes::{self, Attributes};
+use super::plan::{self, Repairs};
+use super::{CityFile, IoError, Loaded};
+use crate::crs::CoordinateSystem;
+use belvedere_scene::{Building, City, CityArea, CityFace, HeightSource, LandCover, Structure, StructureKind, Surface};
+use glam::{DMat4, DVec3};
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Parts of parts of parts: no model goes deeper.
+const MAX_DEPTH: usize = 16;
+/// Compound systems and their horizontal parts.
+const COMPOUND: [(u32, u32); 9] = [
+    (7415, 28992),
+    (5554, 25831),
+    (5555, 25832),
+    (5556, 25833),
+    (7405, 27700),
+    (6696, 6668),
+    (6697, 6668),
+    (5972, 25832),
+    (5973, 25833),
+];
+
+impl Attributes for Map<String, Value> {
+    fn text(&self, key: &str) -> Option<String> {
+        let (_, value) = self.iter().find(|(k, _)| k.eq_ignore_ascii_case(key))?;
+        match value {
+            Value::String(text) => Some(text.trim().to_owned()).filter(|t| !t.is_empty()),
+            Value::Number(number) => Some(number.to_string()),
+            _ => None,
+        }
+    }
+}
+
+/// Where numbers of vertices lead.
+struct Vertices {
+    points: Vec<DVec3>,
+    templates: Vec<Value>,
+    template_points: Vec<DVec3>,
+}
+
+/// What one object, with all of its parts, shows at one level of detail.
+#[derive(Default)]
+struct Shown {
+    faces: BTreeMap<Lod, Vec<CityFace>>,
+}
+
+/// A level of detail, in the order of its numbers.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct Lod(u32, String);
+
+impl Lod {
+    fn of(geometry: &Value) -> Self {
+        let text = match geometry.get("lod") {
+            Some(Value::String(text)) => text.clone(),
+            Some(Value::Number(number)) => number.to_string(),
+            _ => "0".into(),
+        };
+        Self((1000.0 * text.parse::<f64>().unwrap_or(0.0).clamp(0.0, 1000.0)) as u32, text)
+    }
+}
+
+#[derive(Default)]
+struct Reader {
+    city: City,
+    repairs: Repairs,
+    lods: BTreeMap<Lod, usize>,
+    wanted: Option<String>,
+    left_out: BTreeMap<String, usize>,
+    without_faces: usize,
+}
+
+type Fail = String;
+
+pub(super) fn load(path: &Path, text: &str, lod: Option<&str>) -> Result<Loaded<CityFile>, IoError> {
+    let fail = |reason: Fail| IoError::format(path, reason);
+    let text = text.trim_start_matches('\u{feff}');
+    let mut reader = Reader { wanted: lod.map(str::to_owned), ..Reader::default() };
+    let (head, format) = reader.read(text).map_err(fail)?;
+    let Reader { mut city, repairs, lods, wanted, left_out, without_faces } = reader;
+    let known: Vec<String> = lods.keys().map(|lod| lod.1.clone()).collect();
+    if let Some(wanted) = wanted.filter(|w| !known.contains(w)) {
+        let reason = format!("has no level of detail {wanted}; it has {}", known.join(", "));
+        return Err(fail(reason));
+    }
+    if city == City::default() {
+        return Err(fail(format!("{format} holds no geometry that is read; choose another file")));
+    }
+    city.buildings.sort_by(|a, b| a.id.cmp(&b.id));
+    let (crs, reference, unknown) = reference(&head);
+    let mut warnings: Vec<String> = unknown.into_iter().chain(repairs.warnings()).collect();
+    if without_faces > 0 {
+        warnings.push(format!("{without_faces} objects have no geometry that is read and were left out"));
+    }
+    if !left_out.is_empty() {
+        let kinds: Vec<String> = left_out.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+        warnings.push(format!("of kinds that are not drawn: {}", kinds.join(", ")));
+    }
+    let warnings = warnings.into_iter().map(|w| format!("{}: {w}", path.display())).collect();
+    Ok(Loaded::new(CityFile { path: path.into(), format, crs, reference, lods: known, city }, warnings))
+}
+
+/// The horizontal system, what is said of it, and a warning if it is not known.
+fn reference(head: &Value) -> (Option<CoordinateSystem>, String, Option<String>) {
+    let said = head.pointer("/metadata/referenceSystem").and_then(Value::as_str).unwrap_or_default();
+    let Some(code) = said.rsplit(['/', ':']).next().and_then(|n| n.parse::<u32>().ok()) else {
+        return (None, said.to_owned(), None);
+    };
+    let flat = COMPOUND.iter().find(|(compound, _)| *compound == code).map_or(code, |(_, flat)| *flat);
+    match CoordinateSystem::from_epsg(flat) {
+        Ok(crs) => (Some(crs), format!("EPSG:{code}"), None),
+        Err(e) => (None, format!("EPSG:{code}"), Some(format!("its system EPSG:{code} is not known ({e}); set crs"))),
+    }
+}
+
+impl Reader {
+    /// Reads all documents of a text; the first, which says what holds for all, and the name of the format.
+    fn read(&mut self, text: &str) -> Result<(Value, String), Fail> {
+        if let Ok(whole) = serde_json::from_str::<Value>(text) {
+            let version = whole.get("version").and_then(Value::as_str).unwrap_or("of no version").to_owned();
+            if !["1.0", "1.1", "2.0"].iter().any(|v| version.starts_with(v)) {
+                return Err(format!("is CityJSON {version}; versions 1.0, 1.1 and 2.0 are read"));
+            }
+            self.document(&whole, &whole)?;
+            return Ok((whole, format!("CityJSON {version}")));
+        }
+        let mut head: Option<Value> = None;
+        for (i, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+            let value: Value = serde_json::from_str(line)
+                .map_err(|e| format!("line {}: no valid JSON ({e}); it is damaged or cut off", i + 1))?;
+            self.document(&value, head.as_ref().unwrap_or(&value)).map_err(|e| format!("line {}: {e}", i + 1))?;
+            head.get_or_insert(value);
+        }
+        Ok((head.ok_or("is empty")?, "CityJSONSeq".into()))
+    }
+
+    /// * `head`: holds the transform of the vertices.
+    fn document(&mut self, document: &Value, head: &Value) -> Result<(), Fail> {
+        let objects = document.get("CityObjects").and_then(Value::as_object);
+        let objects = objects.ok_or("has no CityObjects; it is no CityJSON, or damaged")?;
+        let vertices = Vertices::of(document, head)?;
+        let mut shown: BTreeMap<&str, Shown> = BTreeMap::new();
+        for (id, object) in objects {
+            let root = root(objects, id);
+            let all = shown.entry(root).or_default();
+            for geometry in object.get("geometry").and_then(Value::as_array).into_iter().flatten() {
+                let lod = Lod::of(geometry);
+                *self.lods.entry(lod.clone()).or_default() += 1;
+                let faces = vertices.faces(geometry).map_err(|e| format!("object \"{id}\": {e}"))?;
+                all.faces.entry(lod).or_default().extend(faces);
+            }
+        }
+        for (id, shown) in shown {
+            self.object(id, &objects[id], shown);
+        }
+        Ok(())
+    }
+
+    fn object(&mut self, id: &str, object: &Value, shown: Shown) {
+        let kind = object.get("type").and_then(Value::as_str).unwrap_or_default().trim_start_matches('+');
+        let empty = Map::new();
+        let about = object.get("attributes").and_then(Value::as_object).unwrap_or(&empty);
+        let (id, name) = (id.to_owned(), attributes::name(about));
+        let Some(mut faces) = self.chosen(shown) else {
+            self.without_faces += usize::from(kind != "CityObjectGroup");
+            return;
+        };
+        self.clean(&mut faces);
+        let structure = match kind {
+            "Building" | "BuildingPart" | "BuildingUnit" => return self.building(id, name, about, faces),
+            "Bridge" | "BridgePart" => StructureKind::Bridge,
+            "SolitaryVegetationObject" => StructureKind::Vegetation,
+            "TINRelief" => return *self.left_out.entry(kind.to_owned()).or_default() += 1,
+            _ => match cover(kind, about) {
+                Some(cover) => return self.area(name, cover, &faces),
+                None => StructureKind::Other,
+            },
+        };
+        if !faces.is_empty() {
+            self.city.structures.push(Structure { id, name, kind: structure, faces });
+        }
+    }
+
+    /// The faces of the level of detail that is wanted, else of the highest.
+    fn chosen(&self, mut shown: Shown) -> Option<Vec<CityFace>> {
+        let of_wanted = |wanted: &String| shown.faces.keys().find(|lod| lod.1 == *wanted).cloned();
+        let lod = self.wanted.as_ref().and_then(of_wanted).or_else(|| shown.faces.keys().next_back().cloned())?;
+        shown.faces.remove(&lod).filter(|faces| !faces.is_empty())
+    }
+
+    /// Drops rings that are none.
+    fn clean(&mut self, faces: &mut Vec<CityFace>) {
+        let repairs = &mut self.repairs;
+        faces.retain_mut(|face| {
+            // Holes of a face without an outline are none.
+            let mut has_outline = None;
+            face.rings.retain_mut(|ring| {
+                ring.dedup();
+                while ring.len() > 1 && ring.first() == ring.last() {
+                    ring.pop();
+                }
+                let (short, flat) = (ring.len() < 3, plan::normal(ring).length() < 1e-9);
+                repairs.short_rings += usize::from(short);
+                repairs.flat_rings += usize::from(!short && flat);
+                let fine = !short && !flat;
+                has_outline.get_or_insert(fine);
+                fine
+            });
+            has_outline == Some(true)
+        });
+    }
+
+    fn building(&mut self, id: String, name: String, about: &Map<String, Value>, faces: Vec<CityFace>) {
+        let (footprint, base, height) = plan::of_solid(&faces, &mut self.repairs);
+        // Plans of no height: what is known of the height is said elsewhere.
+        let (height_m, height_source, faces) = if height > 0.1 {
+            (height, HeightSource::Shape, faces)
+        } else {
+            let (height, source) = attributes::height(about, &mut self.repairs.heights);
+            (height, source, Vec::new())
+        };
+        if footprint.is_empty() && faces.is_empty() {
+            self.without_faces += 1;
+            return;
+        }
+        let landmark = attributes::is_landmark(about);
+        let base_m = base.is_finite().then_some(base);
+        self.city.buildings.push(Building { id, name, landmark, footprint, base_m, height_m, height_source, faces });
+    }
+
+    fn area(&mut self, name: String, cover: LandCover, faces: &[CityFace]) {
+        let flat = |f: &CityFace| {
+            let rings = f.rings.iter().map(|ring| ring.iter().map(|p| p.truncate()).collect());
+            plan::polygon(rings, &mut Repairs::default())
+        };
+        let polygons: Vec<_> = faces.iter().filter_map(flat).collect();
+        if !polygons.is_empty() {
+            self.city.areas.push(CityArea { name, cover, polygons });
+        }
+    }
+}
+
+/// What a surface on the ground is; `None` for solids.
+fn cover(kind: &str, about: &Map<String, Value>) -> Option<LandCover> {
+    Some(match kind {
+        "Road" | "TransportSquare" | "Square" | "Track" => LandCover::Road,
+        "Railway" => LandCover::Rail,
+        "WaterBody" | "Waterway" | "WaterWay" => LandCover::Water,
+        "PlantCover" => match words(about) {
+            Some(text) if ["forest", "bos", "wood", "wald"].iter().any(|w| text.contains(w)) => LandCover::Forest,
+            _ => LandCover::Green,
+        },
+        "LandUse" => match words(about) {
+            Some(text) if ["park", "gras", "green", "garden", "groen"].iter().any(|w| text.contains(w)) => {
+                LandCover::Green
+            }
+            _ => LandCover::Other,
+        },
+        _ => return None,
+    })
+}
+
+fn words(about: &Map<String, Value>) -> Option<String> {
+    let said = ["function", "class", "usage", "plus_functie", "bgt_functie", "fysiek_voorkomen", "bgt_fysiekvoorkomen"];
+    let text: Vec<String> = said.iter().filter_map(|key| about.text(key)).collect();
+    (!text.is_empty()).then(|| text.join(" ").to_lowercase())
+}
+
+/// The object that an object is a part of, of a part of ...
+fn root<'o>(objects: &'o Map<String, Value>, id: &'o str) -> &'o str {
+    let mut at = id;
+    for _ in 0..MAX_DEPTH {
+        let parent = objects.get(at).and_then(|o| o.pointer("/parents/0")).and_then(Value::as_str);
+        match parent.and_then(|p| objects.get_key_value(p)) {
+            // Members of groups stand for themselves.
+            Some((parent, object)) if object.get("type").is_none_or(|t| t != "CityObjectGroup") => at = parent,
+            _ => break,
+        }
+    }
+    at
+}
+
+impl Vertices {
+    fn of(document: &Value, head: &Value) -> Result<Self, Fail> {
+        let transform = document.get("transform").or(head.get("transform"));
+        let vector = |key: &str, default: f64| match transform.and_then(|t| t.get(key)) {
+            Some(value) => point(value).ok_or_else(|| format!("transform.{key} is not three finite numbers")),
+            None => Ok(DVec3::splat(default)),
+        };
+        let (scale, translate) = (vector("scale", 1.0)?, vector("translate", 0.0)?);
+        let list =
+            document.get("vertices").and_then(Value::as_array).ok_or("has no list of vertices; it is damaged")?;
+        let place = |(i, value): (usize, &Value)| {
+            let p = point(value).ok_or_else(|| format!("vertex {i} is not three finite numbers"))?;
+            Ok::<_, Fail>(scale * p + translate)
+        };
+        let points = list.iter().enumerate().map(place).collect::<Result<_, _>>()?;
+        let templates = head.get("geometry-templates").or(document.get("geometry-templates"));
+        let array =
+            |key: &str| templates.and_then(|t| t.get(key)).and_then(Value::as_array).cloned().unwrap_or_default();
+        let template_points = array("vertices-templates");
+        let template_points: Option<Vec<DVec3>> = template_points.iter().map(point).collect();
+        let template_points = template_points.ok_or("a vertex of a template is not three finite numbers")?;
+        Ok(Self { points, templates: array("templates"), template_points })
+    }
+
+    fn faces(&self, geometry: &Value) -> Result<Vec<CityFace>, Fail> {
+        if geometry.get("type").is_some_and(|t| t == "GeometryInstance") {
+            return self.instance(geometry);
+        }
+        faces(geometry, &self.points)
+    }
+
+    /// A template, moved to its place.
+    fn instance(&self, geometry: &Value) -> Result<Vec<CityFace>, Fail> {
+        let number = geometry.get("template").and_then(Value::as_u64).ok_or("an instance names no template")? as usize;
+        let template = self.templates.get(number);
+        let template =
+            template.ok_or_else(|| format!("template {number} does not exist, there are {}", self.templates.len()))?;
+        let at = geometry.pointer("/boundaries/0").and_then(Value::as_u64).ok_or("an instance has no place")?;
+        let at = *self.points.get(at as usize).ok_or_else(|| missing(at, self.points.len()))?;
+        let rows = geometry.get("transformationMatrix").and_then(Value::as_array);
+        let rows: Vec<f64> = rows.into_iter().flatten().filter_map(Value::as_f64).collect();
+        let rows: [f64; 16] = rows.try_into().map_err(|_| "the matrix of an instance is not 16 numbers")?;
+        let matrix = DMat4::from_cols_array(&rows).transpose();
+        let mut faces = faces(template, &self.template_points)?;
+        for p in faces.iter_mut().flat_map(|f| &mut f.rings).flatten() {
+            *p = matrix.transform_point3(*p) + at;
+            if !p.is_finite() {
+                return Err("an instance lies nowhere: its matrix is not finite".into());
+            }
+        }
+        Ok(faces)
+    }
+}
+
+fn missing(index: u64, count: usize) -> Fail {
+    format!("vertex {index} does not exist, there are {count}; the file is damaged")
+}
+
+fn point(value: &Value) -> Option<DVec3> {
+    let [x, y, z] = value.as_array()?.as_slice() else { return None };
+    Some(DVec3::new(x.as_f64()?, y.as_f64()?, z.as_f64()?)).filter(|p| p.is_finite())
+}
+
+/// All surfaces of a geometry, whatever it nests.
+fn faces(geometry: &Value, points: &[DVec3]) -> Result<Vec<CityFace>, Fail> {
+    let depth = match geometry.get("type").and_then(Value::as_str).unwrap_or_default() {
+        "MultiSurface" | "CompositeSurface" => 1,
+        "Solid" => 2,
+        "MultiSolid" | "CompositeSolid" => 3,
+        // Points and lines have no surface.
+        "MultiPoint" | "MultiLineString" => return Ok(Vec::new()),
+        other => return Err(format!("geometry of type \"{other}\" is not known")),
+    };
+    let semantics: Vec<Surface> =
+        geometry.pointer("/semantics/surfaces").and_then(Value::as_array).into_iter().flatten().map(semantic).collect();
+    let mut out = Vec::new();
+    let boundaries = geometry.get("boundaries").ok_or("a geometry has no boundaries")?;
+    gather(boundaries, geometry.pointer("/semantics/values"), depth, &semantics, points, &mut out)?;
+    Ok(out)
+}
+
+/// * `depth`: lists around a surface.
+fn gather(
+    boundaries: &Value,
+    values: Option<&Value>,
+    depth: usize,
+    semantics: &[Surface],
+    points: &[DVec3],
+    out: &mut Vec<CityFace>,
+) -> Result<(), Fail> {
+    let list = boundaries.as_array().ok_or("boundaries are not nested as their type says")?;
+    if depth > 0 {
+        for (i, part) in list.iter().enumerate() {
+            gather(part, values.and_then(|v| v.get(i)), depth - 1, semantics, points, out)?;
+        }
+        return Ok(());
+    }
+    let ring = |ring: &Value| -> Result<Vec<DVec3>, Fail> {
+        let numbers = ring.as_array().ok_or("a ring is not a list of vertices")?;
+        let vertex = |v: &Value| {
+            let index = v.as_u64().ok_or_else(|| format!("{v} is no number of a vertex"))?;
+            points.get(index as usize).copied().ok_or_else(|| missing(index, points.len()))
+        };
+        numbers.iter().map(vertex).collect()
+    };
+    let rings = list.iter().map(ring).collect::<Result<Vec<_>, _>>()?;
+    let told = values.and_then(Value::as_u64).and_then(|i| semantics.get(i as usize)).copied();
+    let surface = told.unwrap_or_else(|| plan::surface_of(&rings));
+    out.push(CityFace { surface, rings });
+    Ok(())
+}
+
+fn semantic(surface: &Value) -> Surface {
+    match surface.get("type").and_then(Value::as_str).unwrap_or_default() {
+        "RoofSurface" | "OuterCeilingSurface" => Surface::Roof,
+        "WallSurface" | "ClosureSurface" | "Window" | "Door" => Surface::Wall,
+        "GroundSurface" | "OuterFloorSurface" => Surface::Ground,
+        _ => Surface::Other,
+    }
+}

@@ -1,0 +1,79 @@
+//! Cities: CityJSON and CityJSONSeq, and footprints, ways and land cover in GeoJSON and shapefiles.
+
+mod attributes;
+mod cityjson;
+mod footprints;
+mod plan;
+mod surface;
+
+pub use surface::{CityColors, surface};
+
+use crate::crs::CoordinateSystem;
+use crate::vector::load_vectors;
+use crate::{InputFile, IoError, Limits, Loaded};
+use belvedere_scene::City;
+use std::path::{Path, PathBuf};
+
+/// What a file says of a city.
+#[derive(Debug, Clone)]
+pub struct CityFile {
+    /// The file, for messages.
+    pub path: PathBuf,
+    /// Format, for messages: "CityJSON 2.0", "CityJSONSeq", "GeoJSON" or "shapefile".
+    pub format: String,
+    /// Horizontal system of every coordinate; `None` if the file names none.
+    pub crs: Option<CoordinateSystem>,
+    /// What the file says of its system and heights, for messages, possibly empty.
+    pub reference: String,
+    /// Levels of detail that the file holds, rising.
+    pub lods: Vec<String>,
+    /// The city, in the file's coordinates: x and y in its system, heights in metres.
+    pub city: City,
+}
+
+/// Reads a city; the format is told by the content.
+///
+/// * `lod`: level of detail to take where there is a choice; by default the highest of each object.
+///
+/// # Errors
+/// [`IoError`]: unreadable, none of the formats, broken, too large for `limits`, or without anything to show.
+pub fn load_city(path: &Path, lod: Option<&str>, limits: &Limits) -> Result<Loaded<CityFile>, IoError> {
+    let size = std::fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
+    // A tree of JSON takes several times the bytes of its text.
+    limits.check(size.saturating_mul(8)).map_err(|reason| IoError::format(path, reason.replace("raster", "city")))?;
+    if is_cityjson(path)? {
+        let (bytes, file) = InputFile::read(path)?;
+        let text = std::str::from_utf8(&bytes).map_err(|e| {
+            IoError::format(path, format!("is no UTF-8 text from byte {} on; it is damaged", e.valid_up_to()))
+        })?;
+        return Ok(cityjson::load(path, text, lod)?.with_file(file));
+    }
+    let Loaded { value, warnings, files } = load_vectors(path)?;
+    let mut loaded = footprints::city(value)?;
+    loaded.warnings.splice(0..0, warnings);
+    Ok(Loaded { files, ..loaded })
+}
+
+/// Whether a file is CityJSON or CityJSONSeq, by its first bytes.
+///
+/// # Errors
+/// [`IoError::Os`].
+pub fn is_cityjson(path: &Path) -> Result<bool, IoError> {
+    use std::io::Read;
+    let mut head = Vec::new();
+    let file = std::fs::File::open(path).map_err(|e| IoError::os(path, e))?;
+    file.take(64 << 10).read_to_end(&mut head).map_err(|e| IoError::os(path, e))?;
+    let text = String::from_utf8_lossy(&head);
+    if !text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
+        return Ok(false);
+    }
+    let dense: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+    Ok(["\"type\":\"CityJSON\"", "\"type\":\"CityJSONFeature\"", "\"CityObjects\":{"].iter().any(|k| dense.contains(k)))
+}
+
+impl CityFile {
+    /// Where the heights of buildings are from, in words; empty without buildings.
+    pub fn heights(&self) -> String {
+        plan::sources(self.city.buildings.iter().map(|b| b.height_source))
+    }
+}

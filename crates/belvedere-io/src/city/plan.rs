@@ -1,0 +1,134 @@
+//! Rings in plan, and the plan of solids.
+
+use belvedere_scene::{CityFace, HeightSource, Polygon, Surface};
+use glam::{DVec2, DVec3};
+
+/// What was repaired, for one warning each.
+#[derive(Debug, Default, Clone, Copy)]
+pub(super) struct Repairs {
+    /// Rings of fewer than three different vertices.
+    pub(super) short_rings: usize,
+    /// Rings without area.
+    pub(super) flat_rings: usize,
+    /// Footprints that cross themselves.
+    pub(super) crossing: usize,
+    /// Heights out of range.
+    pub(super) heights: usize,
+}
+
+impl Repairs {
+    pub(super) fn warnings(&self) -> impl Iterator<Item = String> {
+        let of = |count: usize, what: &str| (count > 0).then(|| format!("{count} {what}"));
+        [
+            of(self.short_rings, "rings of fewer than 3 different vertices were dropped"),
+            of(self.flat_rings, "rings without area were dropped"),
+            of(self.crossing, "footprints cross themselves; their outlines are drawn as they are"),
+            of(self.heights, "heights out of 0..2000 m were not believed"),
+        ]
+        .into_iter()
+        .flatten()
+    }
+}
+
+/// Twice the signed area, positive counter-clockwise.
+pub(super) fn doubled_area(ring: &[DVec2]) -> f64 {
+    let origin = ring.first().copied().unwrap_or_default();
+    (0..ring.len()).map(|k| (ring[k] - origin).perp_dot(ring[(k + 1) % ring.len()] - origin)).sum()
+}
+
+/// Area vector of a ring in space, twice as long as the area.
+pub(super) fn normal(ring: &[DVec3]) -> DVec3 {
+    let origin = ring.first().copied().unwrap_or_default();
+    (0..ring.len()).map(|k| (ring[k] - origin).cross(ring[(k + 1) % ring.len()] - origin)).sum()
+}
+
+/// The polygon of rings, outer first: repeated vertices dropped, outer ring counter-clockwise, holes clockwise. `None` if the outer
+/// ring is none.
+pub(super) fn polygon(rings: impl IntoIterator<Item = Vec<DVec2>>, repairs: &mut Repairs) -> Option<Polygon> {
+    let mut cleaned = rings.into_iter().map(|ring| clean(ring, repairs)).collect::<Vec<_>>().into_iter();
+    let mut outer = cleaned.next()??;
+    if doubled_area(&outer) < 0.0 {
+        outer.reverse();
+    }
+    repairs.crossing += usize::from(crosses_itself(&outer));
+    let holes = cleaned.flatten().map(|mut hole| {
+        if doubled_area(&hole) > 0.0 {
+            hole.reverse();
+        }
+        hole
+    });
+    Some(Polygon { holes: holes.collect(), outer })
+}
+
+fn clean(mut ring: Vec<DVec2>, repairs: &mut Repairs) -> Option<Vec<DVec2>> {
+    ring.dedup();
+    while ring.len() > 1 && ring.first() == ring.last() {
+        ring.pop();
+    }
+    let (short, flat) = (ring.len() < 3, doubled_area(&ring).abs() < 1e-12);
+    repairs.short_rings += usize::from(short);
+    repairs.flat_rings += usize::from(!short && flat);
+    (!short && !flat).then_some(ring)
+}
+
+/// Whether two edges of a ring cross; told for rings of up to 2000 vertices.
+fn crosses_itself(ring: &[DVec2]) -> bool {
+    let n = ring.len();
+    let edge = |i: usize| (ring[i], ring[(i + 1) % n]);
+    let side = |a: DVec2, b: DVec2, p: DVec2| (b - a).perp_dot(p - a);
+    let cross = |i: usize, j: usize| {
+        let ((a, b), (c, d)) = (edge(i), edge(j));
+        side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
+    };
+    n <= 2000 && (0..n).any(|i| (i + 2..n).any(|j| (i, j) != (0, n - 1) && cross(i, j)))
+}
+
+/// A face whose kind its semantics do not tell: by its direction.
+pub(super) fn surface_of(rings: &[Vec<DVec3>]) -> Surface {
+    let up = rings.first().map_or(0.0, |ring| normal(ring).normalize_or_zero().z);
+    match up {
+        up if up > 0.35 => Surface::Roof,
+        up if up < -0.35 => Surface::Ground,
+        _ => Surface::Wall,
+    }
+}
+
+/// Footprint, height of the ground and height over it of a solid's faces.
+pub(super) fn of_solid(faces: &[CityFace], repairs: &mut Repairs) -> (Vec<Polygon>, f64, f64) {
+    let z = |f: &CityFace| f.rings.iter().flatten().map(|p| p.z).collect::<Vec<_>>();
+    let all: Vec<f64> = faces.iter().flat_map(z).collect();
+    let lowest = all.iter().copied().fold(f64::INFINITY, f64::min);
+    let grounds: Vec<&CityFace> = faces.iter().filter(|f| f.surface == Surface::Ground).collect();
+    let base = median(grounds.iter().flat_map(|f| z(f)).collect()).unwrap_or(lowest);
+    let roofs: Vec<f64> = faces.iter().filter(|f| f.surface == Surface::Roof).flat_map(z).collect();
+    let top = median(roofs).unwrap_or_else(|| all.iter().copied().fold(f64::NEG_INFINITY, f64::max));
+    // Without a floor the roofs tell the plan.
+    let plan = if grounds.is_empty() { faces.iter().filter(|f| f.surface == Surface::Roof).collect() } else { grounds };
+    let flat = |f: &&CityFace| {
+        let rings = f.rings.iter().map(|ring| ring.iter().map(|p| p.truncate()).collect());
+        polygon(rings, repairs)
+    };
+    let footprint = plan.iter().filter_map(flat).collect();
+    (footprint, base, top - base)
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// How many heights are from where, for messages.
+pub(super) fn sources(heights: impl Iterator<Item = HeightSource>) -> String {
+    let mut counts = std::collections::BTreeMap::new();
+    heights.for_each(|source| *counts.entry(source).or_insert(0usize) += 1);
+    let words = counts.into_iter().map(|(source, count)| {
+        let from = match source {
+            HeightSource::Shape => "by their shape",
+            HeightSource::Stated => "stated",
+            HeightSource::Levels => "from storeys",
+            HeightSource::Assumed => "assumed to be 9 m",
+        };
+        format!("{count} {from}")
+    });
+    words.collect::<Vec<_>>().join(", ")
+}

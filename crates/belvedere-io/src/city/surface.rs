@@ -1,0 +1,245 @@
+//! The surface of a city as triangles: roofs, walls, land cover and the ground that all stands on.
+
+use super::plan::normal;
+use crate::MeshFile;
+use belvedere_scene::{Building, City, CityFace, Color, LandCover, MeshColors, Polygon, StructureKind, Surface};
+use earcut::Earcut;
+use glam::{DVec2, DVec3};
+
+/// Colours of a city.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CityColors {
+    /// Roofs.
+    pub roof: Color,
+    /// Walls and everything of buildings that is no roof.
+    pub wall: Color,
+    /// The ground between, where there is no terrain.
+    pub ground: Color,
+}
+
+impl Default for CityColors {
+    fn default() -> Self {
+        Self { roof: Color::rgb(186, 110, 86), wall: Color::rgb(236, 228, 214), ground: Color::rgb(232, 229, 220) }
+    }
+}
+
+/// Land cover lies this far over the ground, one kind over the other, metres.
+const COVER_STEP_M: f64 = 0.04;
+/// The ground reaches beyond the city by this share of its size.
+const MARGIN: f64 = 0.15;
+
+/// Triangles of a city in parts: one per building and structure, by name or else id, one of everything else.
+///
+/// * `terrain`: height of the ground; without it buildings without ground of their own stand on the plate under all, at the median
+///   height of the others, or at 0.
+pub fn surface(city: &City, colors: &CityColors, terrain: Option<&dyn Fn(DVec2) -> Option<f64>>) -> MeshFile {
+    let plate = plate_height(city);
+    let mut out =
+        Builder { mesh: MeshFile { format: "city", ..MeshFile::default() }, colors: Vec::new(), earcut: Earcut::new() };
+    out.part(String::new());
+    if terrain.is_none() {
+        out.plate(city, plate, colors.ground);
+        for area in &city.areas {
+            let (color, level) = cover(area.cover);
+            let z = plate + COVER_STEP_M * f64::from(level);
+            area.polygons.iter().for_each(|p| out.flat(p, z, color));
+        }
+    }
+    for building in &city.buildings {
+        out.part(if building.name.is_empty() { building.id.clone() } else { building.name.clone() });
+        if building.faces.is_empty() {
+            let base = building.base_m.unwrap_or_else(|| lowest(building, terrain).unwrap_or(plate));
+            out.extruded(building, base, colors);
+        } else {
+            building.faces.iter().for_each(|face| out.face(face, color_of(face.surface, colors)));
+        }
+    }
+    for structure in &city.structures {
+        out.part(if structure.name.is_empty() { structure.id.clone() } else { structure.name.clone() });
+        let color = match structure.kind {
+            StructureKind::Bridge => Color::rgb(203, 193, 176),
+            StructureKind::Vegetation => Color::rgb(126, 158, 104),
+            StructureKind::Other => Color::rgb(206, 202, 194),
+        };
+        structure.faces.iter().for_each(|face| out.face(face, color));
+    }
+    MeshFile { colors: MeshColors::PerTriangle(out.colors), ..out.mesh }
+}
+
+fn color_of(surface: Surface, colors: &CityColors) -> Color {
+    if surface == Surface::Roof { colors.roof } else { colors.wall }
+}
+
+/// Colour of land cover, and its place from below.
+fn cover(cover: LandCover) -> (Color, u8) {
+    match cover {
+        LandCover::Other => (Color::rgb(226, 221, 208), 1),
+        LandCover::Green => (Color::rgb(190, 209, 158), 2),
+        LandCover::Forest => (Color::rgb(148, 180, 126), 3),
+        LandCover::Water => (Color::rgb(142, 184, 214), 4),
+        LandCover::Rail => (Color::rgb(188, 182, 176), 5),
+        LandCover::Road => (Color::rgb(207, 203, 196), 6),
+    }
+}
+
+/// Median height of the grounds that buildings bring; 0 without any.
+fn plate_height(city: &City) -> f64 {
+    let mut bases: Vec<f64> = city.buildings.iter().filter_map(|b| b.base_m).collect();
+    let middle = bases.len() / 2;
+    if bases.is_empty() { 0.0 } else { *bases.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
+/// Lowest ground under a building.
+fn lowest(building: &Building, terrain: Option<&dyn Fn(DVec2) -> Option<f64>>) -> Option<f64> {
+    let under = building.footprint.iter().flat_map(|p| &p.outer).filter_map(|xy| terrain?(*xy));
+    under.reduce(f64::min)
+}
+
+struct Builder {
+    mesh: MeshFile,
+    colors: Vec<Color>,
+    earcut: Earcut<f64>,
+}
+
+impl Builder {
+    /// What follows is a part of its own.
+    fn part(&mut self, name: String) {
+        self.mesh.names.push(name);
+    }
+
+    fn triangle(&mut self, corners: [u32; 3], color: Color) {
+        self.mesh.triangles.push(corners);
+        self.colors.push(color);
+        self.mesh.parts.push(self.mesh.names.len() as u32 - 1);
+    }
+
+    /// Rings in space, outer first, in the plane that fits the first.
+    fn rings(&mut self, rings: &[Vec<DVec3>], color: Color) {
+        let Some(outer) = rings.first() else { return };
+        let n = normal(outer);
+        // Seen along the axis that the face is most square to.
+        let axis = n.abs().to_array();
+        let drop = (0..3).max_by(|a, b| axis[*a].total_cmp(&axis[*b])).unwrap_or(2);
+        let [u, v] = [(drop + 1) % 3, (drop + 2) % 3];
+        let first = self.mesh.positions.len() as u32;
+        let flat: Vec<[f64; 2]> = rings.iter().flatten().map(|p| [p[u] - outer[0][u], p[v] - outer[0][v]]).collect();
+        let mut holes = Vec::new();
+        let mut count = 0;
+        for ring in &rings[..rings.len() - 1] {
+            count += ring.len() as u32;
+            holes.push(count);
+        }
+        let mut corners: Vec<u32> = Vec::new();
+        self.earcut.earcut(flat.iter().copied(), &holes, &mut corners);
+        self.mesh.positions.extend(rings.iter().flatten());
+        for t in corners.chunks_exact(3) {
+            let [a, b, c] = [t[0], t[1], t[2]].map(|k| flat[k as usize]);
+            let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+            let turned = (area < 0.0) != (n[drop] < 0.0);
+            let [b, c] = if turned { [t[2], t[1]] } else { [t[1], t[2]] };
+            self.triangle([first + t[0], first + b, first + c], color);
+        }
+    }
+
+    fn face(&mut self, face: &CityFace, color: Color) {
+        self.rings(&face.rings, color);
+    }
+
+    fn flat(&mut self, polygon: &Polygon, z: f64, color: Color) {
+        let rings = std::iter::once(&polygon.outer).chain(&polygon.holes);
+        let rings: Vec<Vec<DVec3>> = rings.map(|ring| ring.iter().map(|p| p.extend(z)).collect()).collect();
+        self.rings(&rings, color);
+    }
+
+    /// Walls over the footprint, and a flat roof.
+    fn extruded(&mut self, building: &Building, base: f64, colors: &CityColors) {
+        let top = base + building.height_m;
+        for polygon in &building.footprint {
+            self.flat(polygon, top, colors.roof);
+            for ring in std::iter::once(&polygon.outer).chain(&polygon.holes) {
+                for (k, a) in ring.iter().enumerate() {
+                    let b = ring[(k + 1) % ring.len()];
+                    let first = self.mesh.positions.len() as u32;
+                    self.mesh.positions.extend([a.extend(base), b.extend(base), b.extend(top), a.extend(top)]);
+                    self.triangle([first, first + 1, first + 2], colors.wall);
+                    self.triangle([first, first + 2, first + 3], colors.wall);
+                }
+            }
+        }
+    }
+
+    /// The ground under a city, past its rim, in squares small enough to bend.
+    fn plate(&mut self, city: &City, z: f64, color: Color) {
+        const SQUARES: u32 = 24;
+        let of = |polygons: &[Polygon]| polygons.iter().flat_map(|p| p.outer.clone()).collect::<Vec<_>>();
+        let faces =
+            city.structures.iter().flat_map(|s| &s.faces).flat_map(|f| &f.rings).flatten().map(|p| p.truncate());
+        let footprints = city.buildings.iter().flat_map(|b| of(&b.footprint));
+        let all = footprints.chain(city.areas.iter().flat_map(|a| of(&a.polygons))).chain(faces);
+        let [min, max] = all.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[lo, hi], p| [lo.min(p), hi.max(p)]);
+        if !(min.is_finite() && max.is_finite()) {
+            return;
+        }
+        let margin = DVec2::splat(MARGIN * (max - min).max_element() + 1.0);
+        let (min, size) = (min - margin, max - min + 2.0 * margin);
+        let first = self.mesh.positions.len() as u32;
+        let n = SQUARES + 1;
+        self.mesh.positions.extend((0..n * n).map(|i| {
+            let share = DVec2::new(f64::from(i % n), f64::from(i / n)) / f64::from(SQUARES);
+            (min + share * size).extend(z)
+        }));
+        for i in (0..n * n).filter(|i| i % n < SQUARES && i / n < SQUARES) {
+            let [a, b, c, d] = [i, i + 1, i + n, i + n + 1].map(|k| first + k);
+            self.triangle([a, b, d], color);
+            self.triangle([a, d, c], color);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_scene::{HeightSource, LandCover};
+
+    fn square(from: f64, to: f64) -> Vec<DVec2> {
+        vec![DVec2::new(from, from), DVec2::new(to, from), DVec2::new(to, to), DVec2::new(from, to)]
+    }
+
+    #[test]
+    fn footprints_become_closed_walls_and_roofs_with_courts() {
+        let mut court = square(3.0, 7.0);
+        court.reverse();
+        let footprint = vec![Polygon { outer: square(0.0, 10.0), holes: vec![court] }];
+        let building = Building {
+            id: "b".into(),
+            name: "hall".into(),
+            landmark: false,
+            footprint,
+            base_m: None,
+            height_m: 12.0,
+            height_source: HeightSource::Stated,
+            faces: Vec::new(),
+        };
+        let areas = vec![belvedere_scene::CityArea {
+            name: String::new(),
+            cover: LandCover::Water,
+            polygons: vec![Polygon { outer: square(20.0, 30.0), holes: vec![] }],
+        }];
+        let city = City { buildings: vec![building], areas, ..City::default() };
+        let mesh = surface(&city, &CityColors::default(), None);
+        let corners = |t: &[u32; 3]| t.map(|v| mesh.positions[v as usize]);
+        let part =
+            |p: u32| mesh.triangles.iter().zip(&mesh.parts).filter(move |(_, q)| **q == p).map(|(t, _)| corners(t));
+        assert_eq!(mesh.names, ["", "hall"]);
+        let area = |[a, b, c]: [DVec3; 3]| 0.5 * (b - a).cross(c - a);
+        let roof: f64 = part(1).map(area).filter(|n| n.z.abs() > 1e-9).map(|n| n.z).sum();
+        let walls: f64 = part(1).map(area).filter(|n| n.z.abs() < 1e-9).map(DVec3::length).sum();
+        assert!((roof - 84.0).abs() < 1e-9 && (walls - 12.0 * 56.0).abs() < 1e-9, "{roof} {walls}");
+        // Walls look outwards: their flow through a closed surface is that of the roof downwards, nothing sideways.
+        let sum: DVec3 = part(1).map(area).sum();
+        assert!(sum.truncate().length() < 1e-9, "{sum}");
+        let on_ground = surface(&city, &CityColors::default(), Some(&|xy: DVec2| Some(100.0 + xy.x)));
+        let lowest = on_ground.positions.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+        assert_eq!((lowest, on_ground.names.len()), (100.0, 2));
+    }
+}

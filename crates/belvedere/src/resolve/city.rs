@@ -1,0 +1,167 @@
+//! City layers: files placed in the scene, on its terrain where there is one.
+
+use super::ground::{Ground, epsg};
+use super::loader::Loader;
+use super::mesh::wanted;
+use crate::BelvedereError;
+use crate::scene_file::CityDoc;
+use belvedere_core::DVec2;
+use belvedere_io::city::{CityColors, surface};
+use belvedere_io::crs::{CoordinateSystem, Transform, utm_epsg};
+use belvedere_io::{CityFile, load_city};
+use belvedere_scene::{City, Crs, LayerKind, Mesh, MeshLayer};
+
+/// Ground that is farther from the terrain than this is spoken of, metres.
+const NOTED_M: f64 = 1.0;
+
+/// The files of a layer; read once.
+pub(super) fn files(loader: &mut Loader<'_>, index: usize, doc: &CityDoc) -> Result<Vec<CityFile>, BelvedereError> {
+    if let Some(files) = loader.cities.get(&index) {
+        return Ok(files.clone());
+    }
+    let mut files = Vec::new();
+    for path in loader.files(index, "source", &doc.source)? {
+        loader.options.progress.tick("reading cities", 0.0)?;
+        let loaded = load_city(&path, doc.lod.as_deref(), &loader.options.limits())?;
+        files.push(loader.take(index, loaded));
+    }
+    loader.cities.insert(index, files.clone());
+    Ok(files)
+}
+
+/// The system that a city brings to a scene without another: its own if that is one for scenes, else the UTM zone of its middle.
+pub(super) fn crs(loader: &mut Loader<'_>, index: usize, doc: &CityDoc) -> Result<Option<Crs>, BelvedereError> {
+    let files = files(loader, index, doc)?;
+    let Some(file) = files.first() else { return Ok(None) };
+    let Some(system) = system(loader, index, doc, file)? else { return Ok(None) };
+    if let (true, Some(code)) = (system.suits_scenes(), system.epsg()) {
+        return Ok(Some(Crs::Epsg(code)));
+    }
+    let fail = |e: String| loader.fail(index, "crs", e);
+    let wgs84 = CoordinateSystem::wgs84().map_err(|e| fail(e.to_string()))?;
+    let to_degrees = Transform::new(&system, &wgs84).map_err(|e| fail(e.to_string()))?;
+    let at = places(&file.city).next().and_then(|p| to_degrees.forward_one(*p));
+    Ok(at.and_then(|at| utm_epsg(at.x, at.y)).map(Crs::Epsg))
+}
+
+/// The system of a file: what the document says, else what the file does.
+fn system(
+    loader: &Loader<'_>,
+    index: usize,
+    doc: &CityDoc,
+    file: &CityFile,
+) -> Result<Option<CoordinateSystem>, BelvedereError> {
+    let Some(stated) = &doc.crs else { return Ok(file.crs.clone()) };
+    let unknown = || loader.fail(index, "crs", format!("crs \"{stated}\" is not known; give \"EPSG:n\""));
+    let code = epsg(stated).ok_or_else(unknown)?;
+    CoordinateSystem::from_epsg(code).map(Some).map_err(|e| loader.fail(index, "crs", e))
+}
+
+/// The layer.
+pub(super) fn layer(
+    loader: &mut Loader<'_>,
+    index: usize,
+    doc: &CityDoc,
+    ground: &Ground<'_>,
+) -> Result<LayerKind, BelvedereError> {
+    let style = &doc.style;
+    let colors = CityColors {
+        roof: loader.color(index, &style.roof)?,
+        wall: loader.color(index, &style.wall)?,
+        ground: loader.color(index, &style.ground)?,
+    };
+    let mut city = City::default();
+    for file in files(loader, index, doc)? {
+        let system = system(loader, index, doc, &file)?;
+        let mut part = file.city;
+        if let (Some(from), Crs::Epsg(_)) = (system, ground.crs) {
+            reproject(&mut part, &from, ground.crs).map_err(|e| loader.fail(index, "crs", e))?;
+        }
+        city.buildings.extend(part.buildings);
+        city.structures.extend(part.structures);
+        city.ways.extend(part.ways);
+        city.areas.extend(part.areas);
+    }
+    lift(&mut city, doc.height_offset_m);
+    let terrain = |xy: DVec2| ground.terrain.and_then(|t| t.surface_at(xy));
+    let terrain: Option<&dyn Fn(DVec2) -> Option<f64>> = if ground.terrain.is_some() { Some(&terrain) } else { None };
+    if let Some(terrain) = terrain {
+        loader.note(index, remarks(&city, terrain));
+    }
+    let file = surface(&city, &colors, terrain);
+    if file.triangles.is_empty() {
+        return Err(loader.fail(
+            index,
+            "source",
+            "it has no building or other surface to draw; ways alone are drawn by a line layer",
+        ));
+    }
+    let mesh = Mesh::textured(&file.positions, file.triangles, file.colors, file.parts, None);
+    let mesh = mesh.map_err(|e| loader.fail(index, "source", e))?;
+    let mut layer = MeshLayer { names: file.names, ..MeshLayer::new(mesh, colors.wall) };
+    if let Some(select) = &doc.select {
+        layer.wanted = Some(wanted(&layer, select).map_err(|e| loader.fail(index, "select", e))?);
+    }
+    Ok(LayerKind::Mesh(layer))
+}
+
+/// What does not fit the terrain.
+fn remarks(city: &City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Vec<String> {
+    let offset = |b: &belvedere_scene::Building| Some(b.base_m? - terrain(*b.footprint.first()?.outer.first()?)?);
+    let mut offsets: Vec<f64> = city.buildings.iter().filter_map(offset).collect();
+    let mut out = Vec::new();
+    if !offsets.is_empty() {
+        let middle = offsets.len() / 2;
+        let median = *offsets.select_nth_unstable_by(middle, f64::total_cmp).1;
+        if median.abs() > NOTED_M {
+            out.push(format!(
+                "its buildings stand {:.1} m {} the terrain (median of {}); set height_offset_m = {:.1} if the datums differ",
+                median.abs(),
+                if median > 0.0 { "above" } else { "below" },
+                offsets.len(),
+                -median
+            ));
+        }
+    }
+    if !city.areas.is_empty() {
+        out.push(format!("{} areas of land cover are not drawn on terrain; use layers of kind area", city.areas.len()));
+    }
+    out
+}
+
+/// Every position in plan.
+fn places(city: &City) -> impl Iterator<Item = &DVec2> {
+    let polygons = city.buildings.iter().flat_map(|b| &b.footprint).chain(city.areas.iter().flat_map(|a| &a.polygons));
+    let rings = polygons.flat_map(|p| std::iter::once(&p.outer).chain(&p.holes)).flatten();
+    rings.chain(city.ways.iter().flat_map(|w| &w.points))
+}
+
+/// Takes all positions to the scene's system; heights stay.
+fn reproject(city: &mut City, from: &CoordinateSystem, to: Crs) -> Result<(), String> {
+    let to = CoordinateSystem::from_scene(to).map_err(|e| e.to_string())?;
+    let transform = Transform::new(from, &to).map_err(|e| e.to_string())?;
+    if transform.is_identity() {
+        return Ok(());
+    }
+    let outside = |p: DVec2| format!("({}, {}) lies outside the domain of {}; check crs", p.x, p.y, to.name());
+    let moved = |p: DVec2| transform.forward_one(p).ok_or_else(|| outside(p));
+    let polygons = city.buildings.iter_mut().flat_map(|b| &mut b.footprint);
+    let polygons = polygons.chain(city.areas.iter_mut().flat_map(|a| &mut a.polygons));
+    let rings = polygons.flat_map(|p| std::iter::once(&mut p.outer).chain(&mut p.holes)).flatten();
+    for p in rings.chain(city.ways.iter_mut().flat_map(|w| &mut w.points)) {
+        *p = moved(*p)?;
+    }
+    let faces = city.buildings.iter_mut().flat_map(|b| &mut b.faces);
+    for p in faces.chain(city.structures.iter_mut().flat_map(|s| &mut s.faces)).flat_map(|f| &mut f.rings).flatten() {
+        *p = moved(p.truncate())?.extend(p.z);
+    }
+    Ok(())
+}
+
+/// Adds to all heights.
+fn lift(city: &mut City, by: f64) {
+    city.buildings.iter_mut().filter_map(|b| b.base_m.as_mut()).for_each(|z| *z += by);
+    let faces = city.buildings.iter_mut().flat_map(|b| &mut b.faces);
+    let faces = faces.chain(city.structures.iter_mut().flat_map(|s| &mut s.faces));
+    faces.flat_map(|f| &mut f.rings).flatten().for_each(|p| p.z += by);
+}

@@ -1,0 +1,71 @@
+//! Layers of cities in the scene document.
+
+use super::paths::Paths;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A city: CityJSON, CityJSONSeq, or footprints, ways and land cover as GeoJSON or shapefile.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CityDoc {
+    /// Unique id within the scene.
+    pub id: String,
+    /// A file, or several.
+    pub source: Paths,
+    /// Whether constructors and measures work for it.
+    #[serde(default)]
+    pub must_see: bool,
+    /// Names or ids of buildings, separated by commas, that `must_see` means; by default the whole city.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub select: Option<String>,
+    /// `EPSG:n` of the files' x and y, where they do not say it or say it wrongly.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crs: Option<String>,
+    /// Level of detail to draw, such as `"1.2"`; by default the highest of each object.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lod: Option<String>,
+    /// Added to all heights of the files, metres: between their datum and that of the terrain.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub height_offset_m: f64,
+    /// How it is drawn.
+    #[serde(default)]
+    pub style: CityStyleDoc,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+impl CityDoc {
+    /// A file in the usual style.
+    pub(crate) fn of(id: String, source: &str) -> Self {
+        Self {
+            id,
+            source: Paths::One(source.to_owned()),
+            must_see: false,
+            select: None,
+            crs: None,
+            lod: None,
+            height_offset_m: 0.0,
+            style: CityStyleDoc::default(),
+        }
+    }
+}
+
+/// How a city is drawn.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct CityStyleDoc {
+    /// Colour of roofs.
+    pub roof: String,
+    /// Colour of walls.
+    pub wall: String,
+    /// Colour of the ground between, in scenes without terrain.
+    pub ground: String,
+}
+
+impl Default for CityStyleDoc {
+    fn default() -> Self {
+        Self { roof: "#ba6e56".into(), wall: "#ece4d6".into(), ground: "#e8e5dc".into() }
+    }
+}
