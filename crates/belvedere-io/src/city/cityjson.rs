@@ -1,10 +1,11 @@
 //! CityJSON 1.0 to 2.0, and CityJSONSeq.
 
-use super::attributes::{self, Attributes};
-use super::plan::{self, Repairs};
+use super::attributes::Attributes;
+use super::collect::{Collector, Lod, Shown};
+use super::plan;
+use super::reference::Reference;
 use super::{CityFile, IoError, Loaded};
-use crate::crs::CoordinateSystem;
-use belvedere_scene::{Building, City, CityArea, CityFace, HeightSource, LandCover, Structure, StructureKind, Surface};
+use belvedere_scene::{CityFace, Surface};
 use glam::{DMat4, DVec3};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -12,18 +13,6 @@ use std::path::Path;
 
 /// Parts of parts of parts: no model goes deeper.
 const MAX_DEPTH: usize = 16;
-/// Compound systems and their horizontal parts.
-const COMPOUND: [(u32, u32); 9] = [
-    (7415, 28992),
-    (5554, 25831),
-    (5555, 25832),
-    (5556, 25833),
-    (7405, 27700),
-    (6696, 6668),
-    (6697, 6668),
-    (5972, 25832),
-    (5973, 25833),
-];
 
 impl Attributes for Map<String, Value> {
     fn text(&self, key: &str) -> Option<String> {
@@ -43,81 +32,22 @@ struct Vertices {
     template_points: Vec<DVec3>,
 }
 
-/// What one object, with all of its parts, shows at one level of detail.
-#[derive(Default)]
-struct Shown {
-    faces: BTreeMap<Lod, Vec<CityFace>>,
-}
-
-/// A level of detail, in the order of its numbers.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-struct Lod(u32, String);
-
-impl Lod {
-    fn of(geometry: &Value) -> Self {
-        let text = match geometry.get("lod") {
-            Some(Value::String(text)) => text.clone(),
-            Some(Value::Number(number)) => number.to_string(),
-            _ => "0".into(),
-        };
-        Self((1000.0 * text.parse::<f64>().unwrap_or(0.0).clamp(0.0, 1000.0)) as u32, text)
-    }
-}
-
-#[derive(Default)]
-struct Reader {
-    city: City,
-    repairs: Repairs,
-    lods: BTreeMap<Lod, usize>,
-    wanted: Option<String>,
-    left_out: BTreeMap<String, usize>,
-    without_faces: usize,
-}
-
 type Fail = String;
 
 pub(super) fn load(path: &Path, text: &str, lod: Option<&str>) -> Result<Loaded<CityFile>, IoError> {
-    let fail = |reason: Fail| IoError::format(path, reason);
-    let text = text.trim_start_matches('\u{feff}');
-    let mut reader = Reader { wanted: lod.map(str::to_owned), ..Reader::default() };
-    let (head, format) = reader.read(text).map_err(fail)?;
-    let Reader { mut city, repairs, lods, wanted, left_out, without_faces } = reader;
-    let known: Vec<String> = lods.keys().map(|lod| lod.1.clone()).collect();
-    if let Some(wanted) = wanted.filter(|w| !known.contains(w)) {
-        let reason = format!("has no level of detail {wanted}; it has {}", known.join(", "));
-        return Err(fail(reason));
-    }
-    if city == City::default() {
-        return Err(fail(format!("{format} holds no geometry that is read; choose another file")));
-    }
-    city.buildings.sort_by(|a, b| a.id.cmp(&b.id));
-    let (crs, reference, unknown) = reference(&head);
-    let mut warnings: Vec<String> = unknown.into_iter().chain(repairs.warnings()).collect();
-    if without_faces > 0 {
-        warnings.push(format!("{without_faces} objects have no geometry that is read and were left out"));
-    }
-    if !left_out.is_empty() {
-        let kinds: Vec<String> = left_out.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
-        warnings.push(format!("of kinds that are not drawn: {}", kinds.join(", ")));
-    }
-    let warnings = warnings.into_iter().map(|w| format!("{}: {w}", path.display())).collect();
-    Ok(Loaded::new(CityFile { path: path.into(), format, crs, reference, lods: known, city }, warnings))
-}
-
-/// The horizontal system, what is said of it, and a warning if it is not known.
-fn reference(head: &Value) -> (Option<CoordinateSystem>, String, Option<String>) {
+    let mut reader = Reader { out: Collector::new(lod) };
+    let (head, format) =
+        reader.read(text.trim_start_matches('\u{feff}')).map_err(|reason| IoError::format(path, reason))?;
     let said = head.pointer("/metadata/referenceSystem").and_then(Value::as_str).unwrap_or_default();
-    let Some(code) = said.rsplit(['/', ':']).next().and_then(|n| n.parse::<u32>().ok()) else {
-        return (None, said.to_owned(), None);
-    };
-    let flat = COMPOUND.iter().find(|(compound, _)| *compound == code).map_or(code, |(_, flat)| *flat);
-    match CoordinateSystem::from_epsg(flat) {
-        Ok(crs) => (Some(crs), format!("EPSG:{code}"), None),
-        Err(e) => (None, format!("EPSG:{code}"), Some(format!("its system EPSG:{code} is not known ({e}); set crs"))),
-    }
+    // Coordinates of CityJSON are x, y, z whatever the name of the system demands.
+    reader.out.finish(path, format, Reference::of(said))
 }
 
-impl Reader {
+struct Reader<'l> {
+    out: Collector<'l>,
+}
+
+impl Reader<'_> {
     /// Reads all documents of a text; the first, which says what holds for all, and the name of the format.
     fn read(&mut self, text: &str) -> Result<(Value, String), Fail> {
         if let Ok(whole) = serde_json::from_str::<Value>(text) {
@@ -148,8 +78,7 @@ impl Reader {
             let root = root(objects, id);
             let all = shown.entry(root).or_default();
             for geometry in object.get("geometry").and_then(Value::as_array).into_iter().flatten() {
-                let lod = Lod::of(geometry);
-                *self.lods.entry(lod.clone()).or_default() += 1;
+                let lod = lod(geometry);
                 let faces = vertices.faces(geometry).map_err(|e| format!("object \"{id}\": {e}"))?;
                 all.faces.entry(lod).or_default().extend(faces);
             }
@@ -164,110 +93,8 @@ impl Reader {
         let kind = object.get("type").and_then(Value::as_str).unwrap_or_default().trim_start_matches('+');
         let empty = Map::new();
         let about = object.get("attributes").and_then(Value::as_object).unwrap_or(&empty);
-        let (id, name) = (id.to_owned(), attributes::name(about));
-        let Some(mut faces) = self.chosen(shown) else {
-            self.without_faces += usize::from(kind != "CityObjectGroup");
-            return;
-        };
-        self.clean(&mut faces);
-        let structure = match kind {
-            "Building" | "BuildingPart" | "BuildingUnit" => return self.building(id, name, about, faces),
-            "Bridge" | "BridgePart" => StructureKind::Bridge,
-            "SolitaryVegetationObject" => StructureKind::Vegetation,
-            "TINRelief" => return *self.left_out.entry(kind.to_owned()).or_default() += 1,
-            _ => match cover(kind, about) {
-                Some(cover) => return self.area(name, cover, &faces),
-                None => StructureKind::Other,
-            },
-        };
-        if !faces.is_empty() {
-            self.city.structures.push(Structure { id, name, kind: structure, faces });
-        }
+        self.out.add(id, kind, about, shown);
     }
-
-    /// The faces of the level of detail that is wanted, else of the highest.
-    fn chosen(&self, mut shown: Shown) -> Option<Vec<CityFace>> {
-        let of_wanted = |wanted: &String| shown.faces.keys().find(|lod| lod.1 == *wanted).cloned();
-        let lod = self.wanted.as_ref().and_then(of_wanted).or_else(|| shown.faces.keys().next_back().cloned())?;
-        shown.faces.remove(&lod).filter(|faces| !faces.is_empty())
-    }
-
-    /// Drops rings that are none.
-    fn clean(&mut self, faces: &mut Vec<CityFace>) {
-        let repairs = &mut self.repairs;
-        faces.retain_mut(|face| {
-            // Holes of a face without an outline are none.
-            let mut has_outline = None;
-            face.rings.retain_mut(|ring| {
-                ring.dedup();
-                while ring.len() > 1 && ring.first() == ring.last() {
-                    ring.pop();
-                }
-                let (short, flat) = (ring.len() < 3, plan::normal(ring).length() < 1e-9);
-                repairs.short_rings += usize::from(short);
-                repairs.flat_rings += usize::from(!short && flat);
-                let fine = !short && !flat;
-                has_outline.get_or_insert(fine);
-                fine
-            });
-            has_outline == Some(true)
-        });
-    }
-
-    fn building(&mut self, id: String, name: String, about: &Map<String, Value>, faces: Vec<CityFace>) {
-        let (footprint, base, height) = plan::of_solid(&faces, &mut self.repairs);
-        // Plans of no height: what is known of the height is said elsewhere.
-        let (height_m, height_source, faces) = if height > 0.1 {
-            (height, HeightSource::Shape, faces)
-        } else {
-            let (height, source) = attributes::height(about, &mut self.repairs.heights);
-            (height, source, Vec::new())
-        };
-        if footprint.is_empty() && faces.is_empty() {
-            self.without_faces += 1;
-            return;
-        }
-        let landmark = attributes::is_landmark(about);
-        let base_m = base.is_finite().then_some(base);
-        self.city.buildings.push(Building { id, name, landmark, footprint, base_m, height_m, height_source, faces });
-    }
-
-    fn area(&mut self, name: String, cover: LandCover, faces: &[CityFace]) {
-        let flat = |f: &CityFace| {
-            let rings = f.rings.iter().map(|ring| ring.iter().map(|p| p.truncate()).collect());
-            plan::polygon(rings, &mut Repairs::default())
-        };
-        let polygons: Vec<_> = faces.iter().filter_map(flat).collect();
-        if !polygons.is_empty() {
-            self.city.areas.push(CityArea { name, cover, polygons });
-        }
-    }
-}
-
-/// What a surface on the ground is; `None` for solids.
-fn cover(kind: &str, about: &Map<String, Value>) -> Option<LandCover> {
-    Some(match kind {
-        "Road" | "TransportSquare" | "Square" | "Track" => LandCover::Road,
-        "Railway" => LandCover::Rail,
-        "WaterBody" | "Waterway" | "WaterWay" => LandCover::Water,
-        "PlantCover" => match words(about) {
-            Some(text) if ["forest", "bos", "wood", "wald"].iter().any(|w| text.contains(w)) => LandCover::Forest,
-            _ => LandCover::Green,
-        },
-        "LandUse" => match words(about) {
-            Some(text) if ["park", "gras", "green", "garden", "groen"].iter().any(|w| text.contains(w)) => {
-                LandCover::Green
-            }
-            _ => LandCover::Other,
-        },
-        _ => return None,
-    })
-}
-
-fn words(about: &Map<String, Value>) -> Option<String> {
-    let said = ["function", "class", "usage", "plus_functie", "bgt_functie", "fysiek_voorkomen", "bgt_fysiekvoorkomen"];
-    let text: Vec<String> = said.iter().filter_map(|key| about.text(key)).collect();
-    (!text.is_empty()).then(|| text.join(" ").to_lowercase())
 }
 
 /// The object that an object is a part of, of a part of ...
@@ -402,5 +229,13 @@ fn semantic(surface: &Value) -> Surface {
         "WallSurface" | "ClosureSurface" | "Window" | "Door" => Surface::Wall,
         "GroundSurface" | "OuterFloorSurface" => Surface::Ground,
         _ => Surface::Other,
+    }
+}
+
+fn lod(geometry: &Value) -> Lod {
+    match geometry.get("lod") {
+        Some(Value::String(text)) => Lod::of_text(text),
+        Some(Value::Number(number)) => Lod::of_text(&number.to_string()),
+        _ => Lod::of_text("0"),
     }
 }

@@ -1,9 +1,14 @@
-//! Cities: CityJSON and CityJSONSeq, and footprints, ways and land cover in GeoJSON and shapefiles.
+//! Cities: CityJSON, CityJSONSeq, CityGML and OpenStreetMap's PBF, and footprints, ways and land cover in GeoJSON and shapefiles.
 
 mod attributes;
+mod citygml;
 mod cityjson;
+mod collect;
 mod footprints;
+mod gml;
+mod osm;
 mod plan;
+mod reference;
 mod surface;
 
 pub use surface::{CityColors, surface};
@@ -19,7 +24,7 @@ use std::path::{Path, PathBuf};
 pub struct CityFile {
     /// The file, for messages.
     pub path: PathBuf,
-    /// Format, for messages: "CityJSON 2.0", "CityJSONSeq", "GeoJSON" or "shapefile".
+    /// Format, for messages: "CityJSON 2.0", "CityJSONSeq", "CityGML 2.0", "OSM PBF", "GeoJSON" or "shapefile".
     pub format: String,
     /// Horizontal system of every coordinate; `None` if the file names none.
     pub crs: Option<CoordinateSystem>,
@@ -41,12 +46,14 @@ pub fn load_city(path: &Path, lod: Option<&str>, limits: &Limits) -> Result<Load
     let size = std::fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     // A tree of JSON takes several times the bytes of its text.
     limits.check(size.saturating_mul(8)).map_err(|reason| IoError::format(path, reason.replace("raster", "city")))?;
-    if is_cityjson(path)? {
+    if let Some(model) = model(path)? {
         let (bytes, file) = InputFile::read(path)?;
-        let text = std::str::from_utf8(&bytes).map_err(|e| {
-            IoError::format(path, format!("is no UTF-8 text from byte {} on; it is damaged", e.valid_up_to()))
-        })?;
-        return Ok(cityjson::load(path, text, lod)?.with_file(file));
+        let loaded = match model {
+            Model::OsmPbf => osm::load(path, &bytes)?,
+            Model::CityJson => cityjson::load(path, text(path, &bytes)?, lod)?,
+            Model::CityGml => citygml::load(path, text(path, &bytes)?, lod)?,
+        };
+        return Ok(loaded.with_file(file));
     }
     let Loaded { value, warnings, files } = load_vectors(path)?;
     let mut loaded = footprints::city(value)?;
@@ -54,21 +61,43 @@ pub fn load_city(path: &Path, lod: Option<&str>, limits: &Limits) -> Result<Load
     Ok(Loaded { files, ..loaded })
 }
 
-/// Whether a file is CityJSON or CityJSONSeq, by its first bytes.
+fn text<'b>(path: &Path, bytes: &'b [u8]) -> Result<&'b str, IoError> {
+    std::str::from_utf8(bytes)
+        .map_err(|e| IoError::format(path, format!("is no UTF-8 text from byte {} on; it is damaged", e.valid_up_to())))
+}
+
+/// Formats that hold nothing but cities.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Model {
+    CityJson,
+    CityGml,
+    OsmPbf,
+}
+
+/// Whether a file is a city and nothing else, by its first bytes: CityJSON, CityJSONSeq, CityGML or OpenStreetMap's PBF.
 ///
 /// # Errors
 /// [`IoError::Os`].
-pub fn is_cityjson(path: &Path) -> Result<bool, IoError> {
+pub fn is_city(path: &Path) -> Result<bool, IoError> {
+    model(path).map(|model| model.is_some())
+}
+
+fn model(path: &Path) -> Result<Option<Model>, IoError> {
     use std::io::Read;
     let mut head = Vec::new();
     let file = std::fs::File::open(path).map_err(|e| IoError::os(path, e))?;
     file.take(64 << 10).read_to_end(&mut head).map_err(|e| IoError::os(path, e))?;
+    if osm::is_pbf(&head) {
+        return Ok(Some(Model::OsmPbf));
+    }
     let text = String::from_utf8_lossy(&head);
-    if !text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
-        return Ok(false);
+    let text = text.trim_start_matches('\u{feff}').trim_start();
+    if text.starts_with('<') {
+        return Ok(gml::root_name(text).filter(|name| name == "CityModel").map(|_| Model::CityGml));
     }
     let dense: String = text.chars().filter(|c| !c.is_whitespace()).collect();
-    Ok(["\"type\":\"CityJSON\"", "\"type\":\"CityJSONFeature\"", "\"CityObjects\":{"].iter().any(|k| dense.contains(k)))
+    let words = ["\"type\":\"CityJSON\"", "\"type\":\"CityJSONFeature\"", "\"CityObjects\":{"];
+    Ok((text.starts_with('{') && words.iter().any(|k| dense.contains(k))).then_some(Model::CityJson))
 }
 
 impl CityFile {

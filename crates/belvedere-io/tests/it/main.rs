@@ -1,6 +1,8 @@
 //! Tests of the loaders and writers.
 
 mod atomic;
+mod city_gml;
+mod city_osm;
 mod crs;
 mod drape;
 mod geotiff;

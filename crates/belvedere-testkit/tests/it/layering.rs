@@ -22,6 +22,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
             "glam",
             "gltf",
             "gpx",
+            "osmpbf",
             "ply-rs-bw",
             "png",
             "proj4rs",

@@ -1,0 +1,181 @@
+//! The objects of city models as a city: one level of detail of each, cleaned, sorted by what they are.
+
+use super::attributes::{self, Attributes};
+use super::plan::{self, Repairs};
+use super::reference::Reference;
+use super::{CityFile, IoError, Loaded};
+use belvedere_scene::{Building, City, CityArea, CityFace, HeightSource, LandCover, Structure, StructureKind};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// What one object, with all of its parts, shows at one level of detail.
+#[derive(Default)]
+pub(super) struct Shown {
+    pub(super) faces: BTreeMap<Lod, Vec<CityFace>>,
+}
+
+/// A level of detail, in the order of its numbers.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Lod(u32, String);
+
+impl Lod {
+    /// Of its number, such as `2` or `1.3`.
+    pub(super) fn of_text(text: &str) -> Self {
+        Self((1000.0 * text.parse::<f64>().unwrap_or(0.0).clamp(0.0, 1000.0)) as u32, text.to_owned())
+    }
+}
+
+/// A city in the making.
+#[derive(Default)]
+pub(super) struct Collector<'l> {
+    city: City,
+    repairs: Repairs,
+    lods: BTreeSet<Lod>,
+    wanted: Option<&'l str>,
+    left_out: BTreeMap<String, usize>,
+    without_faces: usize,
+}
+
+impl<'l> Collector<'l> {
+    /// * `lod`: level of detail to take where there is a choice; by default the highest of each object.
+    pub(super) fn new(lod: Option<&'l str>) -> Self {
+        Self { wanted: lod, ..Self::default() }
+    }
+
+    /// Takes an object with all of its parts.
+    ///
+    /// * `kind`: as CityJSON names it.
+    pub(super) fn add(&mut self, id: &str, kind: &str, about: &impl Attributes, shown: Shown) {
+        for lod in shown.faces.keys() {
+            self.lods.insert(lod.clone());
+        }
+        let (id, name) = (id.to_owned(), attributes::name(about));
+        let Some(mut faces) = self.chosen(shown) else {
+            self.without_faces += usize::from(kind != "CityObjectGroup");
+            return;
+        };
+        self.clean(&mut faces);
+        let structure = match kind {
+            "Building" | "BuildingPart" | "BuildingUnit" => return self.building(id, name, about, faces),
+            "Bridge" | "BridgePart" => StructureKind::Bridge,
+            "SolitaryVegetationObject" => StructureKind::Vegetation,
+            "TINRelief" => return *self.left_out.entry(kind.to_owned()).or_default() += 1,
+            _ => match cover(kind, about) {
+                Some(cover) => return self.area(name, cover, &faces),
+                None => StructureKind::Other,
+            },
+        };
+        if !faces.is_empty() {
+            self.city.structures.push(Structure { id, name, kind: structure, faces });
+        }
+    }
+
+    /// What a file says, with its oddities.
+    pub(super) fn finish(self, path: &Path, format: String, reference: Reference) -> Result<Loaded<CityFile>, IoError> {
+        let fail = |reason: String| IoError::format(path, reason);
+        let Self { mut city, repairs, lods, wanted, left_out, without_faces } = self;
+        let lods: Vec<String> = lods.into_iter().map(|lod| lod.1).collect();
+        if let Some(wanted) = wanted.filter(|w| !lods.iter().any(|lod| lod == w)) {
+            return Err(fail(format!("has no level of detail {wanted}; it has {}", lods.join(", "))));
+        }
+        if city == City::default() {
+            return Err(fail(format!("{format} holds no geometry that is read; choose another file")));
+        }
+        city.buildings.sort_by(|a, b| a.id.cmp(&b.id));
+        let mut warnings: Vec<String> = reference.warning.into_iter().chain(repairs.warnings()).collect();
+        if without_faces > 0 {
+            warnings.push(format!("{without_faces} objects have no geometry that is read and were left out"));
+        }
+        if !left_out.is_empty() {
+            let kinds: Vec<String> = left_out.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+            warnings.push(format!("of kinds that are not drawn: {}", kinds.join(", ")));
+        }
+        let warnings = warnings.into_iter().map(|w| format!("{}: {w}", path.display())).collect();
+        let (crs, reference) = (reference.crs, reference.said);
+        Ok(Loaded::new(CityFile { path: path.into(), format, crs, reference, lods, city }, warnings))
+    }
+
+    /// The faces of the level of detail that is wanted, else of the highest.
+    fn chosen(&self, mut shown: Shown) -> Option<Vec<CityFace>> {
+        let of_wanted = |wanted: &str| shown.faces.keys().find(|lod| lod.1 == wanted).cloned();
+        let lod = self.wanted.and_then(of_wanted).or_else(|| shown.faces.keys().next_back().cloned())?;
+        shown.faces.remove(&lod).filter(|faces| !faces.is_empty())
+    }
+
+    /// Drops rings that are none.
+    fn clean(&mut self, faces: &mut Vec<CityFace>) {
+        let repairs = &mut self.repairs;
+        faces.retain_mut(|face| {
+            // Holes of a face without an outline are none.
+            let mut has_outline = None;
+            face.rings.retain_mut(|ring| {
+                ring.dedup();
+                while ring.len() > 1 && ring.first() == ring.last() {
+                    ring.pop();
+                }
+                let (short, flat) = (ring.len() < 3, plan::normal(ring).length() < 1e-9);
+                repairs.short_rings += usize::from(short);
+                repairs.flat_rings += usize::from(!short && flat);
+                let fine = !short && !flat;
+                has_outline.get_or_insert(fine);
+                fine
+            });
+            has_outline == Some(true)
+        });
+    }
+
+    fn building(&mut self, id: String, name: String, about: &impl Attributes, faces: Vec<CityFace>) {
+        let (footprint, base, height) = plan::of_solid(&faces, &mut self.repairs);
+        // Plans of no height: what is known of the height is said elsewhere.
+        let (height_m, height_source, faces) = if height > 0.1 {
+            (height, HeightSource::Shape, faces)
+        } else {
+            let (height, source) = attributes::height(about, &mut self.repairs.heights);
+            (height, source, Vec::new())
+        };
+        if footprint.is_empty() && faces.is_empty() {
+            self.without_faces += 1;
+            return;
+        }
+        let landmark = attributes::is_landmark(about);
+        let base_m = base.is_finite().then_some(base);
+        self.city.buildings.push(Building { id, name, landmark, footprint, base_m, height_m, height_source, faces });
+    }
+
+    fn area(&mut self, name: String, cover: LandCover, faces: &[CityFace]) {
+        let flat = |f: &CityFace| {
+            let rings = f.rings.iter().map(|ring| ring.iter().map(|p| p.truncate()).collect());
+            plan::polygon(rings, &mut Repairs::default())
+        };
+        let polygons: Vec<_> = faces.iter().filter_map(flat).collect();
+        if !polygons.is_empty() {
+            self.city.areas.push(CityArea { name, cover, polygons });
+        }
+    }
+}
+
+/// What a surface on the ground is; `None` for solids.
+fn cover(kind: &str, about: &impl Attributes) -> Option<LandCover> {
+    Some(match kind {
+        "Road" | "TransportSquare" | "Square" | "Track" => LandCover::Road,
+        "Railway" => LandCover::Rail,
+        "WaterBody" | "Waterway" | "WaterWay" => LandCover::Water,
+        "PlantCover" => match words(about) {
+            Some(text) if ["forest", "bos", "wood", "wald"].iter().any(|w| text.contains(w)) => LandCover::Forest,
+            _ => LandCover::Green,
+        },
+        "LandUse" => match words(about) {
+            Some(text) if ["park", "gras", "green", "garden", "groen"].iter().any(|w| text.contains(w)) => {
+                LandCover::Green
+            }
+            _ => LandCover::Other,
+        },
+        _ => return None,
+    })
+}
+
+fn words(about: &impl Attributes) -> Option<String> {
+    let said = ["function", "class", "usage", "plus_functie", "bgt_functie", "fysiek_voorkomen", "bgt_fysiekvoorkomen"];
+    let text: Vec<String> = said.iter().filter_map(|key| about.text(key)).collect();
+    (!text.is_empty()).then(|| text.join(" ").to_lowercase())
+}

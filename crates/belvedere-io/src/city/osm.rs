@@ -1,0 +1,319 @@
+//! OpenStreetMap's PBF: buildings, streets, railways, rivers and land cover from tagged ways and multipolygons.
+
+use super::attributes;
+use super::footprints::{cover, way_class};
+use super::plan::{self, Repairs};
+use super::{CityFile, IoError, Loaded};
+use crate::crs::CoordinateSystem;
+use belvedere_scene::{Building, City, CityArea, Polygon, Way, WayClass};
+use glam::DVec2;
+use osmpbf::{Element, ElementReader, RelMemberType};
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::path::Path;
+
+type Tags = BTreeMap<String, String>;
+
+/// Values of tags that are none of what their keys say, or that nobody sees.
+const NOT_WAYS: [(&str, &[&str]); 3] = [
+    ("highway", &["proposed", "construction", "platform", "rest_area", "services", "abandoned", "razed", "raceway"]),
+    (
+        "railway",
+        &["proposed", "construction", "platform", "station", "abandoned", "razed", "disused", "subway", "dismantled"],
+    ),
+    ("waterway", &["dam", "weir", "riverbank", "dock", "boatyard", "fuel", "lock_gate", "dam_section"]),
+];
+/// Land forms that are lines, even where they close.
+const NOT_AREAS: [&str; 7] = ["coastline", "cliff", "ridge", "arete", "tree_row", "valley", "earth_bank"];
+
+/// A way of interest: its tags, and the numbers of its nodes.
+struct Line {
+    tags: Tags,
+    nodes: Vec<i64>,
+}
+
+/// A multipolygon of interest.
+struct Relation {
+    id: i64,
+    tags: Tags,
+    ways: Vec<i64>,
+}
+
+/// What a file says of a city, before its nodes have places.
+#[derive(Default)]
+struct Map {
+    relations: Vec<Relation>,
+    ways: BTreeMap<i64, Line>,
+    nodes: HashMap<i64, DVec2>,
+    counts: [usize; 3],
+}
+
+/// What was left out.
+#[derive(Default)]
+struct Lost {
+    nodes: usize,
+    polygons: usize,
+    relations: usize,
+}
+
+/// Whether a file is OpenStreetMap's PBF: the kind of its first block is named in its first bytes.
+pub(super) fn is_pbf(head: &[u8]) -> bool {
+    head.get(6..).is_some_and(|rest| rest.starts_with(b"OSMHeader"))
+}
+
+pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<CityFile>, IoError> {
+    // The reader gives up by a panic where the kind of a member is none.
+    let read = std::panic::catch_unwind(|| Map::read(bytes));
+    let read = read.unwrap_or_else(|_| Err("its blocks contradict themselves".into()));
+    let map =
+        read.map_err(|e| IoError::format(path, format!("OSM PBF is damaged or cut off ({e}); fetch it again")))?;
+    let (mut lost, mut repairs) = (Lost::default(), Repairs::default());
+    let city = map.city(&mut lost, &mut repairs);
+    if city == City::default() {
+        let [nodes, ways, relations] = map.counts;
+        let reason = format!(
+            "OSM PBF of {nodes} nodes, {ways} ways and {relations} relations holds no building, way or land cover; choose another extract"
+        );
+        return Err(IoError::format(path, reason));
+    }
+    let say = |count: usize, what: &str| (count > 0).then(|| format!("{count} {what}"));
+    let warnings = repairs
+        .warnings()
+        .chain(say(lost.nodes, "vertices of ways are not in the file; their ways are cut there"))
+        .chain(say(lost.polygons, "polygons with vertices that are not in the file were left out"))
+        .chain(say(lost.relations, "multipolygons do not close in the file and were left out"))
+        .map(|w| format!("{}: {w}", path.display()))
+        .collect();
+    let crs = CoordinateSystem::wgs84().map_err(|e| IoError::format(path, e.to_string()))?;
+    let (format, reference) = ("OSM PBF".into(), crs.name().to_owned());
+    let file = CityFile { path: path.into(), format, crs: Some(crs), reference, lods: vec!["0".into()], city };
+    Ok(Loaded::new(file, warnings))
+}
+
+impl Map {
+    /// Relations come after ways and ways after nodes, so the file is read three times and only what is used is kept.
+    fn read(bytes: &[u8]) -> Result<Self, String> {
+        let each = |what: &mut dyn FnMut(Element<'_>)| {
+            ElementReader::new(bytes).for_each(|element| what(element)).map_err(|e| e.to_string())
+        };
+        let mut map = Self::default();
+        each(&mut |element| map.relation(&element))?;
+        let members: HashSet<i64> = map.relations.iter().flat_map(|r| &r.ways).copied().collect();
+        each(&mut |element| map.way(&element, &members))?;
+        let wanted: HashSet<i64> = map.ways.values().flat_map(|w| &w.nodes).copied().collect();
+        each(&mut |element| map.node(&element, &wanted))?;
+        Ok(map)
+    }
+
+    fn relation(&mut self, element: &Element<'_>) {
+        let Element::Relation(relation) = element else { return };
+        self.counts[2] += 1;
+        let tags = owned(relation.tags());
+        if tags.get("type").is_some_and(|t| t == "multipolygon") && is_wanted(&tags) {
+            let ways = relation.members().filter(|m| m.member_type == RelMemberType::Way).map(|m| m.member_id);
+            self.relations.push(Relation { id: relation.id(), tags, ways: ways.collect() });
+        }
+    }
+
+    fn way(&mut self, element: &Element<'_>, members: &HashSet<i64>) {
+        let Element::Way(way) = element else { return };
+        self.counts[1] += 1;
+        let tags = owned(way.tags());
+        if members.contains(&way.id()) || is_wanted(&tags) {
+            self.ways.insert(way.id(), Line { tags, nodes: way.refs().collect() });
+        }
+    }
+
+    fn node(&mut self, element: &Element<'_>, wanted: &HashSet<i64>) {
+        let (id, lon, lat) = match element {
+            Element::Node(node) => (node.id(), node.lon(), node.lat()),
+            Element::DenseNode(node) => (node.id(), node.lon(), node.lat()),
+            _ => return,
+        };
+        self.counts[0] += 1;
+        let on_earth = lon.abs() <= 180.0 && lat.abs() <= 90.0;
+        if on_earth && wanted.contains(&id) {
+            self.nodes.insert(id, DVec2::new(lon, lat));
+        }
+    }
+
+    fn city(&self, lost: &mut Lost, repairs: &mut Repairs) -> City {
+        let mut city = City::default();
+        for relation in &self.relations {
+            let polygons = self.polygons(&relation.ways, repairs);
+            if polygons.is_empty() {
+                lost.relations += 1;
+            } else {
+                add(&mut city, &format!("relation/{}", relation.id), &relation.tags, polygons, repairs);
+            }
+        }
+        let of_building = |r: &&Relation| is_building(&r.tags);
+        let drawn: HashSet<i64> = self.relations.iter().filter(of_building).flat_map(|r| &r.ways).copied().collect();
+        for (id, line) in self.ways.iter().filter(|(_, line)| is_wanted(&line.tags)) {
+            if is_building(&line.tags) && drawn.contains(id) {
+                continue; // tagged twice: the outline of a building with courtyards
+            }
+            let closed = line.nodes.len() > 3 && line.nodes.first() == line.nodes.last();
+            if closed && is_area(&line.tags) {
+                match self.places(&line.nodes) {
+                    Some(ring) => {
+                        let polygon = plan::polygon([ring], repairs);
+                        add(&mut city, &format!("way/{id}"), &line.tags, polygon.into_iter().collect(), repairs);
+                    }
+                    None => lost.polygons += 1,
+                }
+            } else if let Some(class) = class(&line.tags) {
+                lost.nodes += line.nodes.iter().filter(|n| !self.nodes.contains_key(n)).count();
+                for points in self.pieces(&line.nodes) {
+                    city.ways.push(Way { name: attributes::name(&line.tags), class, points });
+                }
+            }
+        }
+        city
+    }
+
+    fn places(&self, nodes: &[i64]) -> Option<Vec<DVec2>> {
+        nodes.iter().map(|n| self.nodes.get(n).copied()).collect()
+    }
+
+    /// Runs of at least two nodes whose places are known.
+    fn pieces(&self, nodes: &[i64]) -> Vec<Vec<DVec2>> {
+        let known = nodes.split(|n| !self.nodes.contains_key(n)).filter_map(|run| self.places(run));
+        known.filter(|run| run.len() >= 2).collect()
+    }
+
+    /// Polygons of the rings that the ways of a multipolygon make, whatever their roles say: a ring within an odd number of
+    /// others is a hole of the smallest of them.
+    fn polygons(&self, ways: &[i64], repairs: &mut Repairs) -> Vec<Polygon> {
+        let lines: Vec<&[i64]> = ways.iter().filter_map(|id| self.ways.get(id)).map(|l| l.nodes.as_slice()).collect();
+        let mut rings: Vec<(f64, Vec<DVec2>)> = closed_rings(&lines)
+            .iter()
+            .filter_map(|nodes| self.places(nodes))
+            .map(|ring| (plan::doubled_area(&ring).abs(), ring))
+            .collect();
+        rings.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut groups: Vec<Option<Vec<Vec<DVec2>>>> = Vec::new();
+        for (k, (_, ring)) in rings.iter().enumerate() {
+            let around: Vec<usize> = (0..k).filter(|&j| contains(&rings[j].1, ring)).collect();
+            let hole_of = around.last().filter(|_| around.len() % 2 == 1).and_then(|&j| groups[j].as_mut());
+            match hole_of {
+                Some(group) => {
+                    group.push(ring.clone());
+                    groups.push(None);
+                }
+                None => groups.push(Some(vec![ring.clone()])),
+            }
+        }
+        groups.into_iter().flatten().filter_map(|rings| plan::polygon(rings, repairs)).collect()
+    }
+}
+
+fn owned<'t>(tags: impl Iterator<Item = (&'t str, &'t str)>) -> Tags {
+    tags.map(|(k, v)| (k.to_owned(), v.to_owned())).collect()
+}
+
+fn is_building(tags: &Tags) -> bool {
+    tags.get("building").is_some_and(|b| b != "no")
+}
+
+fn is_area(tags: &Tags) -> bool {
+    let line = tags.get("natural").is_some_and(|n| NOT_AREAS.contains(&n.as_str()));
+    let ring_road = tags.contains_key("highway") && tags.get("area").is_none_or(|a| a != "yes");
+    is_building(tags) || (!line && !ring_road && cover(tags).is_some())
+}
+
+fn class(tags: &Tags) -> Option<WayClass> {
+    let hidden = NOT_WAYS.iter().any(|(key, values)| tags.get(*key).is_some_and(|v| values.contains(&v.as_str())));
+    let under = tags.get("tunnel").is_some_and(|t| t == "yes" || t == "culvert");
+    way_class(tags).filter(|_| !hidden && !(under && tags.contains_key("waterway")))
+}
+
+fn is_wanted(tags: &Tags) -> bool {
+    is_area(tags) || class(tags).is_some()
+}
+
+fn add(city: &mut City, id: &str, tags: &Tags, polygons: Vec<Polygon>, repairs: &mut Repairs) {
+    if polygons.is_empty() {
+        return;
+    }
+    let name = attributes::name(tags);
+    if is_building(tags) {
+        let (height_m, height_source) = attributes::height(tags, &mut repairs.heights);
+        let landmark = attributes::is_landmark(tags);
+        let id = id.to_owned();
+        city.buildings.push(Building {
+            id,
+            name,
+            landmark,
+            footprint: polygons,
+            base_m: None,
+            height_m,
+            height_source,
+            faces: Vec::new(),
+        });
+    } else if let Some(cover) = cover(tags) {
+        city.areas.push(CityArea { name, cover, polygons });
+    }
+}
+
+/// Rings of ways joined where they end; what stays open is dropped.
+fn closed_rings(lines: &[&[i64]]) -> Vec<Vec<i64>> {
+    let mut left: Vec<&[i64]> = lines.iter().copied().filter(|l| l.len() > 1).collect();
+    let mut rings = Vec::new();
+    while let Some(first) = left.pop() {
+        let mut ring = first.to_vec();
+        while ring.first() != ring.last() {
+            let end = ring[ring.len() - 1];
+            let Some(next) = left.iter().position(|l| l[0] == end || l[l.len() - 1] == end) else { break };
+            let line = left.swap_remove(next);
+            if line[0] == end {
+                ring.extend(&line[1..]);
+            } else {
+                ring.extend(line.iter().rev().skip(1));
+            }
+        }
+        if ring.len() > 3 && ring.first() == ring.last() {
+            rings.push(ring);
+        }
+    }
+    rings
+}
+
+/// Whether a ring lies within another that it does not cross.
+fn contains(outer: &[DVec2], ring: &[DVec2]) -> bool {
+    // A vertex that both share tells nothing.
+    let Some(p) = ring.iter().find(|p| !outer.contains(p)) else { return false };
+    (0..outer.len()).fold(false, |within, k| {
+        let (a, b) = (outer[k], outer[(k + 1) % outer.len()]);
+        let crosses = (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y);
+        within != crosses
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ways_join_into_rings_whatever_their_direction() {
+        assert_eq!(closed_rings(&[&[1, 2, 3], &[5, 4, 3], &[5, 1]]).len(), 1);
+        assert_eq!(closed_rings(&[&[1, 2, 3], &[3, 4]]).len(), 0, "stays open");
+        assert_eq!(closed_rings(&[&[1, 2, 3, 1], &[7, 8, 9, 7], &[4], &[]]).len(), 2);
+    }
+
+    #[test]
+    fn holes_and_islands_are_told_by_where_they_lie() {
+        let mut map = Map::default();
+        for (k, half) in [8.0, 4.0, 2.0].into_iter().enumerate() {
+            let k = k as i64;
+            for (j, (x, y)) in [(-half, -half), (half, -half), (half, half), (-half, half)].into_iter().enumerate() {
+                map.nodes.insert(10 * k + j as i64, DVec2::new(x, y));
+            }
+            let nodes = vec![10 * k, 10 * k + 1, 10 * k + 2, 10 * k + 3, 10 * k];
+            map.ways.insert(k, Line { tags: Tags::new(), nodes });
+        }
+        let polygons = map.polygons(&[2, 0, 1], &mut Repairs::default());
+        assert_eq!(polygons.iter().map(|p| p.holes.len()).collect::<Vec<_>>(), [1, 0]);
+        assert_eq!(plan::doubled_area(&polygons[0].outer), 512.0);
+        assert_eq!(plan::doubled_area(&polygons[0].holes[0]), -128.0);
+    }
+}
