@@ -32,7 +32,6 @@ const NAME_CIF: &str = "it is read if its name ends in .cif";
 const LATER: &str = "layers of this kind are planned";
 const AS_GEOJSON: &str = "ogr2ogr or QGIS turn it into GeoJSON";
 const AS_CITY: &str = "it is read by layers of kind city";
-const AS_MESH: &str = "turn it into OBJ or glTF, or its footprints into GeoJSON";
 const AS_GLTF: &str = "turn it into glTF or OBJ";
 const AS_GEOTIFF: &str = "gdal_translate turns it into GeoTIFF";
 const AS_DEM: &str = "grid its ground points into a GeoTIFF, as with pdal";
@@ -66,7 +65,7 @@ const MAGIC: [(&[u8], Unread); 13] = [
 
 /// Words among the first of text files.
 const TEXT: [(&str, Unread); 11] = [
-    ("CityModel", unread("CityGML", CITY, AS_MESH)),
+    ("CityModel", unread("CityGML", CITY, AS_CITY)),
     ("_atom_site", unread("mmCIF", MOLECULE, NAME_CIF)),
     ("<VTKFile", unread("VTK XML", "a mesh or grid of science", "ParaView turns it into PLY or OBJ")),
     ("# vtk DataFile", unread("legacy VTK", "a mesh or grid of science", "ParaView turns it into PLY or OBJ")),
@@ -95,7 +94,7 @@ const ENDINGS: [(&str, Unread); 27] = [
     (".sdf", unread("SDF", MOLECULE, AS_PDB)),
     (".mol2", unread("Mol2", MOLECULE, AS_PDB)),
     (".gro", unread("GROMACS coordinates", MOLECULE, AS_PDB)),
-    (".pbf", unread("OSM PBF", OSM, "osmium export turns it into GeoJSON")),
+    (".pbf", unread("OSM PBF", OSM, AS_CITY)),
     (".kmz", unread("KMZ", "map features", AS_GEOJSON)),
     (".fit", unread("FIT", "the track of a watch", "GPSBabel turns it into GPX")),
     (".tcx", unread("TCX", "the track of a watch", "GPSBabel turns it into GPX")),
@@ -137,7 +136,9 @@ pub(crate) fn explain(error: IoError) -> IoError {
     let IoError::Format { path, .. } = &error else { return error };
     match recognise(path) {
         Ok(Some(known)) => {
-            IoError::format(path, format!("is {known}, which this version does not read; {}", known.meanwhile))
+            let unread =
+                if known.meanwhile.starts_with("it is read") { "" } else { ", which this version does not read" };
+            IoError::format(path, format!("is {known}{unread}; {}", known.meanwhile))
         }
         _ => error,
     }
@@ -155,7 +156,7 @@ fn of_content(head: &[u8]) -> Option<Unread> {
     }
     let at = |from: usize, wanted: &[u8]| head.get(from..).is_some_and(|rest| rest.starts_with(wanted));
     if at(6, b"OSMHeader") {
-        return Some(unread("OSM PBF", OSM, "osmium export turns it into GeoJSON"));
+        return Some(unread("OSM PBF", OSM, AS_CITY));
     }
     if at(0, b"SQLite format 3\0") {
         let package = at(68, b"GPKG") || at(68, b"GP10");

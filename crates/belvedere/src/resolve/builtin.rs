@@ -2,7 +2,9 @@
 
 use crate::scene_file::suggestion;
 use belvedere_builtin as builtin;
-use belvedere_scene::{LayerKind, Scene};
+use belvedere_core::DVec3;
+use belvedere_io::city::CityColors;
+use belvedere_scene::{City, Crs, Layer, LayerKind, Scene, Unit};
 
 /// Seed of a built-in scene that names none.
 pub(crate) const DEFAULT_SEED: u64 = 7;
@@ -12,7 +14,10 @@ pub(crate) const DEFAULT_SIZE: usize = 513;
 /// Base pairs of a double helix that names none.
 const DEFAULT_PAIRS: usize = 12;
 
-const NAMES: &[&str] = &["massif", "canyon", "street", "church", "dna", "engine", "tube"];
+/// Width of a town that names none, metres.
+const DEFAULT_TOWN_M: usize = 1200;
+
+const NAMES: &[&str] = &["massif", "canyon", "street", "church", "dna", "engine", "tube", "town"];
 
 /// Whether a source means a built-in scene.
 pub(super) fn is_name(source: &str) -> bool {
@@ -23,7 +28,7 @@ pub(super) fn is_name(source: &str) -> bool {
 struct Request {
     name: String,
     seed: u64,
-    /// Nodes per side, or base pairs.
+    /// Nodes per side, base pairs, or metres.
     size: usize,
 }
 
@@ -50,7 +55,7 @@ impl Builtins {
             }
         };
         let layers = &self.0[at].1.layers;
-        let named = |l: &&belvedere_scene::Layer| id.as_ref().is_none_or(|id| *id == l.id);
+        let named = |l: &&Layer| id.as_ref().is_none_or(|id| *id == l.id);
         layers.iter().filter(named).find_map(|l| pick(&l.kind)).ok_or_else(|| {
             let ids: Vec<&str> = layers.iter().filter(|l| pick(&l.kind).is_some()).map(|l| l.id.as_str()).collect();
             format!("{source} has no such layer of this kind; layers of this kind are: {}", ids.join(", "))
@@ -68,6 +73,7 @@ fn make(request: &Request) -> Result<(Scene, builtin::SuggestedCamera), String> 
         "massif" => builtin::massif(request.seed, request.size),
         "canyon" => builtin::canyon(request.seed),
         "church" => builtin::church(),
+        "town" => return town(request),
         "engine" => builtin::engine(request.seed),
         "tube" => builtin::tube(request.seed),
         "dna" => builtin::dna(request.seed, request.size),
@@ -76,26 +82,55 @@ fn make(request: &Request) -> Result<(Scene, builtin::SuggestedCamera), String> 
     made.map_err(|e| e.to_string())
 }
 
+/// The city of a built-in scene that is one.
+pub(super) fn city(source: &str, seed: Option<u64>) -> Result<City, String> {
+    let (request, layer) = parse(source)?;
+    if request.name != "town" || layer.is_some() {
+        return Err(format!("{source} is no city; builtin:town?seed=7 is one"));
+    }
+    builtin::town(seed.unwrap_or(request.seed), request.size as f64).map_err(|e| e.to_string())
+}
+
+/// The town as triangles, seen from over the fields in the south.
+fn town(request: &Request) -> Result<(Scene, builtin::SuggestedCamera), String> {
+    let size = request.size as f64;
+    let city = builtin::town(request.seed, size).map_err(|e| e.to_string())?;
+    let layer = super::city::mesh(&city, &CityColors::default(), None)?;
+    let title = format!("Town {}: its church between roofs", request.seed);
+    let layers = vec![Layer { id: "town".into(), must_see: false, kind: LayerKind::Mesh(layer) }];
+    let camera = builtin::SuggestedCamera {
+        title: title.clone(),
+        eye: DVec3::new(0.0, -0.75 * size, 0.25 * size),
+        look_at: DVec3::ZERO,
+        fov_y: 40f64.to_radians(),
+    };
+    Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers, representations: Vec::new() }, camera))
+}
+
 fn parse(source: &str) -> Result<(Request, Option<String>), String> {
     let text = source.trim_start_matches("builtin:");
     let (name, query) = text.split_once('?').unwrap_or((text, ""));
     if !NAMES.contains(&name) {
         return Err(format!("built-in scene \"{name}\" does not exist; {}", suggestion(name, NAMES)));
     }
-    let size = if name == "dna" { DEFAULT_PAIRS } else { DEFAULT_SIZE };
+    let size = match name {
+        "dna" => DEFAULT_PAIRS,
+        "town" => DEFAULT_TOWN_M,
+        _ => DEFAULT_SIZE,
+    };
     let mut request = Request { name: name.to_owned(), seed: DEFAULT_SEED, size };
     let mut layer = None;
     for pair in query.split('&').filter(|p| !p.is_empty()) {
         let (key, value) = pair.split_once('=').unwrap_or((pair, ""));
         let bad = || {
             format!(
-                "{source}: \"{pair}\" is not understood; possible: seed=N, size=N (massif), pairs=N (dna), layer=ID"
+                "{source}: \"{pair}\" is not understood; possible: seed=N, size=N (massif, town), pairs=N (dna), layer=ID"
             )
         };
         match key {
             "seed" => request.seed = value.parse().map_err(|_| bad())?,
             "pairs" if name == "dna" => request.size = value.parse().map_err(|_| bad())?,
-            "size" if name == "massif" => request.size = value.parse().map_err(|_| bad())?,
+            "size" if name == "massif" || name == "town" => request.size = value.parse().map_err(|_| bad())?,
             "layer" if !value.is_empty() => layer = Some(value.to_owned()),
             _ => return Err(bad()),
         }

@@ -1,10 +1,11 @@
 //! City layers: files placed in the scene, on its terrain where there is one.
 
+use super::builtin;
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
 use super::mesh::wanted;
 use crate::BelvedereError;
-use crate::scene_file::CityDoc;
+use crate::scene_file::{CityDoc, Paths};
 use belvedere_core::DVec2;
 use belvedere_io::city::{CityColors, surface};
 use belvedere_io::crs::{CoordinateSystem, Transform, utm_epsg};
@@ -20,13 +21,27 @@ pub(super) fn files(loader: &mut Loader<'_>, index: usize, doc: &CityDoc) -> Res
         return Ok(files.clone());
     }
     let mut files = Vec::new();
-    for path in loader.files(index, "source", &doc.source)? {
+    for name in doc.source.as_slice() {
+        if builtin::is_name(name) {
+            let city = builtin::city(name, loader.options.seed).map_err(|e| loader.fail(index, "source", e))?;
+            files.push(built_in(name, city));
+            continue;
+        }
+        let path = loader.files(index, "source", &Paths::One(name.clone()))?.remove(0);
         loader.options.progress.tick("reading cities", 0.0)?;
         let loaded = load_city(&path, doc.lod.as_deref(), &loader.options.limits())?;
         files.push(loader.take(index, loaded));
     }
+    if files.is_empty() {
+        return Err(loader.fail(index, "source", "source is an empty list; name at least one file"));
+    }
     loader.cities.insert(index, files.clone());
     Ok(files)
+}
+
+fn built_in(name: &str, city: City) -> CityFile {
+    let (path, format) = (name.into(), "built in".into());
+    CityFile { path, format, crs: None, reference: String::new(), lods: Vec::new(), city }
 }
 
 /// The system that a city brings to a scene without another: its own if that is one for scenes, else the UTM zone of its middle.
@@ -88,21 +103,26 @@ pub(super) fn layer(
     if let Some(terrain) = terrain {
         loader.note(index, remarks(&city, terrain));
     }
-    let file = surface(&city, &colors, terrain);
-    if file.triangles.is_empty() {
-        return Err(loader.fail(
-            index,
-            "source",
-            "it has no building or other surface to draw; ways alone are drawn by a line layer",
-        ));
-    }
-    let mesh = Mesh::textured(&file.positions, file.triangles, file.colors, file.parts, None);
-    let mesh = mesh.map_err(|e| loader.fail(index, "source", e))?;
-    let mut layer = MeshLayer { names: file.names, ..MeshLayer::new(mesh, colors.wall) };
+    let mut layer = mesh(&city, &colors, terrain).map_err(|e| loader.fail(index, "source", e))?;
     if let Some(select) = &doc.select {
         layer.wanted = Some(wanted(&layer, select).map_err(|e| loader.fail(index, "select", e))?);
     }
     Ok(LayerKind::Mesh(layer))
+}
+
+/// A city as triangles, its buildings as parts.
+pub(super) fn mesh(
+    city: &City,
+    colors: &CityColors,
+    terrain: Option<&dyn Fn(DVec2) -> Option<f64>>,
+) -> Result<MeshLayer, String> {
+    let file = surface(city, colors, terrain);
+    if file.triangles.is_empty() {
+        return Err("it has no building or other surface to draw; ways alone are drawn by a line layer".into());
+    }
+    let mesh = Mesh::textured(&file.positions, file.triangles, file.colors, file.parts, None);
+    let mesh = mesh.map_err(|e| e.to_string())?;
+    Ok(MeshLayer { names: file.names, ..MeshLayer::new(mesh, colors.wall) })
 }
 
 /// What does not fit the terrain.

@@ -203,7 +203,7 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
         return built_in(name);
     }
     let path = Path::new(name);
-    if belvedere_io::city::is_cityjson(path)? {
+    if belvedere_io::city::is_city(path)? {
         return CityInfo::of(path).map(FileInfo::City);
     }
     if let Some(known) = belvedere_io::recognise(path)? {

@@ -174,15 +174,15 @@ fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
     match file.rsplit('.').next().unwrap_or_default() {
         _ if builtin && stem == "dna" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
         _ if builtin && (stem == "engine" || stem == "tube") => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
-        _ if file.ends_with(".city.json") => Ok(LayerDoc::City(CityDoc::of(id, name))),
+        _ if file.ends_with(".city.json") || (builtin && stem == "town") => Ok(LayerDoc::City(CityDoc::of(id, name))),
         // Unknown names go on to where the nearest one is told.
         _ if builtin && !matches!(stem, "massif" | "canyon" | "street") => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
         "pdb" | "ent" | "cif" | "mmcif" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
         "obj" | "ply" | "stl" | "gltf" | "glb" => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
-        "jsonl" => Ok(LayerDoc::City(CityDoc::of(id, name))),
+        "jsonl" | "gml" | "pbf" => Ok(LayerDoc::City(CityDoc::of(id, name))),
         "vti" | "nrrd" | "nhdr" | "raw" => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
         _ => Err(BelvedereError::Target(format!(
-            "{name} is no model that can be looked into; give meshes (OBJ, PLY, STL, glTF), cities (CityJSON), molecules (PDB, mmCIF), volumes (VTI, NRRD, raw) or a scene file; for an elevation model give its features instead of --see"
+            "{name} is no model that can be looked into; give meshes (OBJ, PLY, STL, glTF), cities (CityJSON, CityGML, OSM PBF), molecules (PDB, mmCIF), volumes (VTI, NRRD, raw) or a scene file; for an elevation model give its features instead of --see"
         ))),
     }
 }
