@@ -1,6 +1,7 @@
 //! Tests of the loaders and writers.
 
 mod atomic;
+mod cities;
 mod city_gml;
 mod city_osm;
 mod crs;
