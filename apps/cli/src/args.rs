@@ -1,5 +1,6 @@
 //! Arguments.
 
+use crate::city::GeneraliseArgs;
 use crate::draw_args::DrawArgs;
 use crate::parse::{
     parse_bytes, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_place, parse_seconds, parse_size,
@@ -62,6 +63,8 @@ pub(crate) enum Verb {
     Reveal(RevealArgs),
     /// Elevation model and features in, an elevation model in which the features can be seen from an eye out
     Disocclude(DisoccludeArgs),
+    /// Buildings and streets in, blocks between streets out: two levels of abstraction, a map, plan drawings
+    Generalise(GeneraliseArgs),
     /// One picture and its record
     Render(RenderArgs),
     /// A film or numbered frames: along a route, through viewing angles, or once around

@@ -3,6 +3,7 @@
 #![allow(rustdoc::broken_intra_doc_links)]
 
 mod args;
+mod city;
 mod draw_args;
 mod parse;
 mod report;

@@ -2,6 +2,7 @@
 
 pub mod atomic;
 pub mod city;
+pub mod city_write;
 pub mod crs;
 pub mod drape;
 mod error;

@@ -171,6 +171,9 @@ pub enum BelvedereError {
     /// A constructor or measure failed.
     #[error(transparent)]
     Construct(#[from] belvedere_construct::ConstructError),
+    /// A city could not be generalised.
+    #[error(transparent)]
+    Generalise(#[from] belvedere_construct::generalise::GeneraliseError),
     /// Terrain could not be solved.
     #[error(transparent)]
     Disocclusion(#[from] belvedere_disocclusion::DisocclusionError),
@@ -198,6 +201,7 @@ impl BelvedereError {
         matches!(
             self,
             Self::Cancelled(_)
+                | Self::Generalise(belvedere_construct::generalise::GeneraliseError::Cancelled(_))
                 | Self::Construct(belvedere_construct::ConstructError::Cancelled(_))
                 | Self::Disocclusion(belvedere_disocclusion::DisocclusionError::Cancelled(_))
                 | Self::Io(belvedere_io::IoError::Cancelled(_))

@@ -29,6 +29,7 @@
 //! [`cpu`] (renderers), [`builtin`] (generated scenes).
 
 mod camera_path;
+pub mod city_map;
 mod data;
 mod error;
 pub mod fallback;

@@ -6,6 +6,7 @@ mod bad_scenes;
 mod constructors;
 mod exact;
 mod figures;
+mod generalise;
 mod layers;
 mod light_and_tints;
 mod marks;

@@ -1,5 +1,6 @@
 //! Drawing over a finished picture: rectangles, lines and letters, anti-aliased in linear light.
 
+mod polygon;
 mod text;
 
 pub use text::{FONT_BYTES, TextSize, text_size};

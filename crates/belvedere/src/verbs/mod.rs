@@ -3,6 +3,7 @@
 pub mod animate;
 pub mod check;
 pub mod disocclude;
+pub mod generalise;
 pub mod info;
 pub mod measure;
 mod molecule_info;

@@ -1,0 +1,48 @@
+//! `generalise`: its arguments, and what it says.
+
+use crate::report::{Context, done, print};
+use crate::verbs::Goal;
+use belvedere::output;
+use belvedere::verbs::generalise::{self, GeneraliseRequest, GeneraliseSettings};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Buildings and streets.
+#[derive(Debug, Args)]
+pub(crate) struct GeneraliseArgs {
+    /// Building footprints with their heights or storeys: GeoJSON, shapefile
+    pub(crate) city: PathBuf,
+    /// Streets, railways, rivers: GeoJSON, shapefiles
+    pub(crate) roads: Vec<PathBuf>,
+    /// Folder of the levels, the map, the plan drawings and the report
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Distance from buildings within which ground is settled, metres
+    #[arg(long, value_name = "METRES", default_value_t = GeneraliseSettings::default().margin_m)]
+    pub(crate) margin: f64,
+}
+
+pub(crate) fn generalise_city(args: GeneraliseArgs, context: &Context) -> anyhow::Result<Goal> {
+    let inputs: Vec<PathBuf> = args.roads.iter().chain([&args.city]).cloned().collect();
+    if args.out.exists() {
+        for path in [None, Some(0)].iter().flat_map(|epsg| generalise::files(&args.out, *epsg)) {
+            output::check(&path, &inputs, context.common.overwrite)?;
+        }
+    }
+    let settings = GeneraliseSettings { margin_m: args.margin, ..GeneraliseSettings::default() };
+    let request = GeneraliseRequest { city: args.city, roads: args.roads, settings };
+    let found = generalise::generalise(&request, &context.progress)?;
+    let written = found.write(&args.out, context.common.overwrite, &context.progress)?;
+    context.finish();
+    if context.common.json {
+        let mut result = done("generalise", &written, &found.warnings);
+        result["report"] = serde_json::from_str(&found.report_json()?)?;
+        context.print(&result)?;
+    } else if !context.common.quiet {
+        print(&format!("{}\nopen {}\n", found.summary(), args.out.join("overview.png").display()))?;
+    }
+    context.warn(&found.warnings);
+    context.warn(&found.generalised.report.notes);
+    context.warn(&found.missed());
+    Ok(if found.missed().is_empty() { Goal::Reached } else { Goal::Missed })
+}

@@ -1,0 +1,97 @@
+//! `generalise` as a user meets it.
+
+use super::{Place, read};
+use belvedere_testkit::data;
+use serde_json::{Value, json};
+
+/// Four street blocks of nine houses in degrees, around lon 20, lat -34; main streets outside, side streets between.
+fn place() -> Place {
+    let place = Place::new();
+    let at = |x: f64, y: f64| json!([20.0 + x / 92_000.0, -34.0 + y / 111_000.0]);
+    let feature = |geometry: Value, properties: Value| json!({ "type": "Feature", "properties": properties, "geometry": geometry });
+    let mut houses = Vec::new();
+    for number in 0..36 {
+        let (block, house) = (number / 9, number % 9);
+        let x = 110.0 * f64::from(block % 2) + 12.0 + 28.0 * f64::from(house % 3);
+        let y = 110.0 * f64::from(block / 2) + 12.0 + 28.0 * f64::from(house / 3);
+        let ring = [[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0], [0.0, 0.0]].map(|d| at(x + d[0], y + d[1]));
+        let kind = if number == 4 { "church" } else { "yes" };
+        let properties = json!({ "building": kind, "building:levels": "2", "osm_id": number.to_string() });
+        houses.push(feature(json!({ "type": "Polygon", "coordinates": [ring] }), properties));
+    }
+    let mut roads = Vec::new();
+    for (k, class) in [(0.0, "secondary"), (105.0, "residential"), (210.0, "secondary")] {
+        for ends in [[at(k, -40.0), at(k, 250.0)], [at(-40.0, k), at(250.0, k)]] {
+            roads.push(feature(json!({ "type": "LineString", "coordinates": ends }), json!({ "highway": class })));
+        }
+    }
+    for (name, features) in [("houses.geojson", houses), ("roads.geojson", roads)] {
+        place.write(name, &json!({ "type": "FeatureCollection", "features": features }).to_string());
+    }
+    place
+}
+
+const FILES: [&str; 5] = ["loa1.city.json", "loa2.city.json", "report.json", "overview.png", "map.tif"];
+
+#[test]
+fn a_town_becomes_blocks_in_a_folder() {
+    let place = place();
+    let args = ["generalise", "houses.geojson", "roads.geojson", "-o", "blocks"];
+    let text = place.ok(&args);
+    assert!(text.contains("36 buildings") && text.contains("open blocks"), "{text}");
+    let city =
+        |name: &str| -> Value { serde_json::from_slice(&read(&place.path(&format!("blocks/{name}")))).expect("JSON") };
+    let blocks = |document: &Value| {
+        let objects = document["CityObjects"].as_object().expect("objects").values().cloned().collect::<Vec<_>>();
+        let is_block = |o: &Value| o["type"] == "Building" && o["attributes"]["landmark"].is_null();
+        objects.into_iter().filter(is_block).collect::<Vec<_>>()
+    };
+    let [fine, coarse] = ["loa1.city.json", "loa2.city.json"].map(city);
+    assert_eq!([blocks(&fine).len(), blocks(&coarse).len()], [4, 1]);
+    assert_eq!(fine["metadata"]["referenceSystem"], "https://www.opengis.net/def/crs/EPSG/0/32734");
+    let counts: u64 = blocks(&fine).iter().map(|b| b["attributes"]["count"].as_u64().expect("a count")).sum();
+    assert_eq!(counts, 35, "the church stays itself");
+    assert_eq!(fine["CityObjects"]["4"]["attributes"]["landmark"], true);
+    for block in blocks(&fine) {
+        assert!((block["attributes"]["height"].as_f64().expect("a height") - 7.0).abs() < 1e-9, "{block}");
+    }
+    let report = city("report.json");
+    assert_eq!(report["levels"][0]["volume_kept"], true, "{report}");
+    assert_eq!(report["inputs"].as_array().map(Vec::len), Some(2));
+    let before = FILES.map(|name| read(&place.path(&format!("blocks/{name}"))));
+
+    let refused = place.fails(&args);
+    assert!(refused.contains("--overwrite"), "{refused}");
+    let again = place.json(&[&args[..], &["--overwrite", "--json"]].concat());
+    assert_eq!(again["report"]["levels"][1]["blocks"], 1);
+    for (name, before) in FILES.iter().zip(before).filter(|(name, _)| **name != "report.json") {
+        assert!(read(&place.path(&format!("blocks/{name}"))) == before, "{name}: same input, other bytes");
+    }
+}
+
+#[test]
+fn what_holds_no_buildings_is_refused_and_nothing_is_written() {
+    let place = place();
+    let text = place.fails(&["generalise", "roads.geojson", "-o", "blocks"]);
+    assert!(text.contains("roads.geojson") && text.contains("building footprints"), "{text}");
+    assert!(place.fails(&["generalise", "missing.geojson", "-o", "blocks"]).contains("missing.geojson"));
+    let text = place.fails(&["generalise", "houses.geojson", "-o", "blocks", "--margin", "1"]);
+    assert!(text.contains("margin_m is 1"), "{text}");
+    assert!(!place.path("blocks").exists());
+}
+
+#[test]
+fn a_mapped_town_keeps_its_volume() {
+    let (Some(houses), Some(roads)) = (data("swellendam/buildings.geojson"), data("swellendam/roads.geojson")) else {
+        return;
+    };
+    let place = Place::new();
+    let [houses, roads] = [houses, roads].map(|p| p.to_string_lossy().into_owned());
+    let made = place.json(&["generalise", &houses, &roads, "-o", "town", "--strict", "--json"]);
+    assert_eq!(made["report"]["buildings"], 4708);
+    for level in made["report"]["levels"].as_array().expect("levels") {
+        let share = level["volume_share"].as_f64().expect("a share");
+        assert!((0.9..=1.1).contains(&share), "{level}");
+    }
+    assert!(FILES.iter().all(|name| place.path(&format!("town/{name}")).exists()));
+}

@@ -1,0 +1,176 @@
+//! `generalise`: a city in, its levels of abstraction out.
+
+mod read;
+
+use crate::city_map::overview::{Panel, overview};
+use crate::city_map::{MapPicture, bounds, map_picture};
+use crate::record::{self, InputFile};
+use crate::{BelvedereError, output};
+pub use belvedere_construct::generalise::GeneraliseSettings;
+use belvedere_construct::generalise::{GeneraliseReport, Generalised};
+use belvedere_core::DVec2;
+use belvedere_io::city_write::{BlockFigures, write_city_json};
+use belvedere_io::png;
+use belvedere_scene::Progress;
+use belvedere_scene::city::City;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Longer side of the map, pixels, and its smallest pixel, metres.
+const MAP_PX: usize = 4096;
+const MAP_LEAST_M: f64 = 0.25;
+/// Ground around the buildings on the map, metres.
+const MAP_MARGIN_M: f64 = 50.0;
+
+/// What is generalised.
+#[derive(Debug, Clone, Default)]
+pub struct GeneraliseRequest {
+    /// Building footprints: GeoJSON or shapefile.
+    pub city: PathBuf,
+    /// Streets, railways, water.
+    pub roads: Vec<PathBuf>,
+    /// Measures.
+    pub settings: GeneraliseSettings,
+}
+
+/// A city and its levels.
+pub struct GeneralisedCity {
+    /// The city in metres.
+    pub city: City,
+    /// Code of its coordinate system, if it has one.
+    pub epsg: Option<u32>,
+    /// The levels and their figures.
+    pub generalised: Generalised,
+    /// What was odd in the files.
+    pub warnings: Vec<String>,
+    inputs: Vec<InputFile>,
+}
+
+/// The report file.
+#[derive(Debug, Serialize)]
+struct Record<'a> {
+    program: &'static str,
+    crs: Option<String>,
+    inputs: &'a [InputFile],
+    #[serde(flatten)]
+    report: &'a GeneraliseReport,
+    warnings: &'a [String],
+}
+
+/// Reads a city and generalises it.
+///
+/// # Errors
+/// [`BelvedereError::Io`], [`BelvedereError::Crs`], [`BelvedereError::Generalise`].
+pub fn generalise(request: &GeneraliseRequest, progress: &Progress) -> Result<GeneralisedCity, BelvedereError> {
+    progress.tick("read", 0.0)?;
+    let read::Read { city, epsg, inputs, warnings } = read::read(&request.city, &request.roads)?;
+    let generalised = belvedere_construct::generalise::generalise(&city, &request.settings, progress)?;
+    Ok(GeneralisedCity { city, epsg, generalised, warnings, inputs: record::inputs(&inputs)? })
+}
+
+fn many(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Every file that is written into `folder`; which map depends on the coordinate system.
+pub fn files(folder: &Path, epsg: Option<u32>) -> Vec<PathBuf> {
+    let names = ["loa1.city.json", "loa2.city.json", "report.json", "overview.png"];
+    names.iter().map(|name| folder.join(name)).chain(MapPicture::files(folder, epsg)).collect()
+}
+
+impl GeneralisedCity {
+    /// The report as JSON.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Text`], which no report gives.
+    pub fn report_json(&self) -> Result<String, BelvedereError> {
+        output::pretty(&Record {
+            program: concat!("belvedere ", env!("CARGO_PKG_VERSION")),
+            crs: self.epsg.map(|code| format!("EPSG:{code}")),
+            inputs: &self.inputs,
+            report: &self.generalised.report,
+            warnings: &self.warnings,
+        })
+    }
+
+    /// Levels that do not keep the volume, one sentence each.
+    pub fn missed(&self) -> Vec<String> {
+        let levels = self.generalised.report.levels.iter().filter(|l| !l.volume_kept);
+        let text = |l: &belvedere_construct::generalise::LevelReport| {
+            format!(
+                "{} keeps {:.0} % of the volume, 90 to 110 are good; {} buildings stand in green cells, a smaller margin_m keeps more",
+                l.name,
+                100.0 * l.volume_share,
+                l.buildings_in_green
+            )
+        };
+        levels.map(text).collect()
+    }
+
+    /// One line per level.
+    pub fn summary(&self) -> String {
+        let report = &self.generalised.report;
+        let mut text = format!("{} buildings, {:.1} s", report.buildings, report.seconds);
+        for l in &report.levels {
+            text += &format!(
+                "\n{}: {} blocks in {} cells ({} green), {} landmarks, {:.1} % of the volume",
+                l.name,
+                l.blocks,
+                l.cells,
+                l.green_cells,
+                l.landmarks,
+                100.0 * l.volume_share
+            );
+        }
+        text
+    }
+
+    /// Writes [`files`] into `folder`, which is made if it is not there; the report last.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`], [`BelvedereError::Output`], [`BelvedereError::Cancelled`].
+    pub fn write(&self, folder: &Path, overwrite: bool, progress: &Progress) -> Result<Vec<PathBuf>, BelvedereError> {
+        std::fs::create_dir_all(folder).map_err(|e| belvedere_io::IoError::os(folder, e))?;
+        let inputs: Vec<PathBuf> = self.inputs.iter().map(|i| i.path.clone()).collect();
+        let files = files(folder, self.epsg);
+        for path in &files {
+            output::check(path, &inputs, overwrite)?;
+        }
+        for (number, (level, path)) in self.generalised.levels.iter().zip(&files).enumerate() {
+            progress.tick("write", 0.2 * number as f64)?;
+            let figures = level.blocks.iter().map(|b| BlockFigures { coverage: b.coverage, count: b.count });
+            write_city_json(path, &level.city, &figures.collect::<Vec<_>>(), self.epsg, overwrite)?;
+        }
+        progress.tick("map", 0.4)?;
+        self.map().write(folder, self.epsg, overwrite)?;
+        progress.tick("overview", 0.8)?;
+        let (pixels, width) = self.overview();
+        let height = pixels.len() / width;
+        png::write(&files[3], overwrite, width, height, png::Channels::Rgb, pixels.as_flattened(), &[])?;
+        output::write_text(&files[2], &self.report_json()?, overwrite)?;
+        Ok(files)
+    }
+
+    /// The ground as a map: land cover, water and roads of the city, green cells, and the blocks of the finer level.
+    pub fn map(&self) -> MapPicture {
+        let fine = &self.generalised.levels[0].city;
+        let ground = City { areas: fine.areas.clone(), ways: self.city.ways.clone(), ..City::default() };
+        let [low, high] = bounds(&self.city).unwrap_or([DVec2::ZERO, DVec2::ONE]);
+        map_picture(&ground, &fine.buildings, [low - MAP_MARGIN_M, high + MAP_MARGIN_M], MAP_PX, MAP_LEAST_M)
+    }
+
+    /// Plan drawings of the city and its levels side by side: RGB pixels and the width.
+    pub fn overview(&self) -> (Vec<[u8; 3]>, usize) {
+        let [fine, coarse] = &self.generalised.levels;
+        let counted = |level: &belvedere_construct::generalise::LevelReport| {
+            format!("{}, {}", many(level.blocks, "block"), many(level.landmarks, "landmark"))
+        };
+        let figures = &self.generalised.report.levels;
+        let notes = [many(self.city.buildings.len(), "building"), counted(&figures[0]), counted(&figures[1])];
+        let titles = ["The city as mapped", "Blocks between all streets", "Blocks between main streets"];
+        let cities = [&self.city, &fine.city, &coarse.city];
+        let panels: Vec<Panel<'_>> =
+            (0..3).map(|i| Panel { title: [titles[i], &notes[i]], city: cities[i], landmarks: i > 0 }).collect();
+        overview(&self.city, &panels)
+    }
+}
