@@ -10,9 +10,9 @@ use std::path::PathBuf;
 /// Buildings and streets.
 #[derive(Debug, Args)]
 pub(crate) struct GeneraliseArgs {
-    /// Building footprints with their heights or storeys: GeoJSON, shapefile
+    /// Buildings with their heights or storeys: CityJSON, CityGML, OSM PBF, or footprints as GeoJSON or shapefile
     pub(crate) city: PathBuf,
-    /// Streets, railways, rivers: GeoJSON, shapefiles
+    /// Streets, railways, rivers and land cover, where the city holds none: GeoJSON, shapefiles, OSM PBF
     pub(crate) roads: Vec<PathBuf>,
     /// Folder of the levels, the map, the plan drawings and the report
     #[arg(short, long, value_name = "DIR")]

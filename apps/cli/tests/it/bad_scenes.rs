@@ -156,14 +156,6 @@ fn files_stay_in_their_folder() {
 }
 
 #[test]
-fn layers_of_later_versions_are_said_to_be_so() {
-    refuses(
-        &with("[[layer]]\nid = 'm'\nkind = 'city'\nsource = 'x.pdb'"),
-        "7: layer \"m\": layers of kind city are not drawn by this version; remove the layer",
-    );
-}
-
-#[test]
 fn constructors_are_read_and_refused() {
     refuses(
         &with("[constructor]\nkind = 'target_tracking'"),
@@ -211,7 +203,7 @@ fn arguments_are_checked_in_one_line() {
     assert!(place.fails(&[]).contains("a verb is missing"));
     assert!(place.fails(&["render", "s.toml", "-o", "x.png", "--size", "big"]).contains("1280x720"));
     let help = place.ok(&["--help"]);
-    for later in ["migrate", "generalise"] {
+    for later in ["migrate", "  pack "] {
         assert!(!help.contains(later), "{later} is in the help");
     }
 }

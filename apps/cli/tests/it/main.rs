@@ -3,6 +3,7 @@
 mod animate;
 mod areas;
 mod bad_scenes;
+mod cities;
 mod constructors;
 mod exact;
 mod figures;

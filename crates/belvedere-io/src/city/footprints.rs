@@ -14,15 +14,19 @@ impl Attributes for BTreeMap<String, String> {
     }
 }
 
-/// What the features of a file are of a city. Polygons that nothing tells are buildings if no polygon of the file is told either.
+/// What the features of a file are of a city. Polygons that nothing tells are buildings, and lines streets, if nothing tells what any
+/// other of the file is either.
 pub(super) fn city(vectors: Vectors) -> Result<Loaded<CityFile>, IoError> {
     let mut city = City::default();
     let (mut repairs, mut unknown, mut points) = (Repairs::default(), 0, 0);
     let told = vectors.features.iter().any(|f| is_building(f) || cover(&f.properties).is_some());
+    let told_ways = vectors.features.iter().any(|f| way_class(&f.properties).is_some());
     for feature in &vectors.features {
         match &feature.geometry {
             Geometry::Points(_) => points += 1,
-            Geometry::Lines(lines) => match way_class(&feature.properties) {
+            Geometry::Lines(lines) => match way_class(&feature.properties)
+                .or((!told_ways).then_some(WayClass::Residential))
+            {
                 Some(class) => {
                     let flat = |line: &Vec<Vertex>| line.iter().map(|v| v.xy).collect();
                     let name = feature.name.clone();

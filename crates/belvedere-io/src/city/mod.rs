@@ -7,10 +7,12 @@ mod collect;
 mod footprints;
 mod gml;
 mod osm;
+mod place;
 mod plan;
 mod reference;
 mod surface;
 
+pub use place::reproject;
 pub use surface::{CityColors, surface};
 
 use crate::crs::CoordinateSystem;

@@ -92,9 +92,8 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<CityFile>, IoErro
 impl Map {
     /// Relations come after ways and ways after nodes, so the file is read three times and only what is used is kept.
     fn read(bytes: &[u8]) -> Result<Self, String> {
-        let each = |what: &mut dyn FnMut(Element<'_>)| {
-            ElementReader::new(bytes).for_each(|element| what(element)).map_err(|e| e.to_string())
-        };
+        let each =
+            |what: &mut dyn FnMut(Element<'_>)| ElementReader::new(bytes).for_each(what).map_err(|e| e.to_string());
         let mut map = Self::default();
         each(&mut |element| map.relation(&element))?;
         let members: HashSet<i64> = map.relations.iter().flat_map(|r| &r.ways).copied().collect();
@@ -224,7 +223,7 @@ fn is_area(tags: &Tags) -> bool {
 fn class(tags: &Tags) -> Option<WayClass> {
     let hidden = NOT_WAYS.iter().any(|(key, values)| tags.get(*key).is_some_and(|v| values.contains(&v.as_str())));
     let under = tags.get("tunnel").is_some_and(|t| t == "yes" || t == "culvert");
-    way_class(tags).filter(|_| !hidden && !(under && tags.contains_key("waterway")))
+    way_class(tags).filter(|_| !(hidden || under && tags.contains_key("waterway")))
 }
 
 fn is_wanted(tags: &Tags) -> bool {

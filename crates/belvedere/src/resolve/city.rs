@@ -7,8 +7,8 @@ use super::mesh::wanted;
 use crate::BelvedereError;
 use crate::scene_file::{CityDoc, Paths};
 use belvedere_core::DVec2;
-use belvedere_io::city::{CityColors, surface};
-use belvedere_io::crs::{CoordinateSystem, Transform, utm_epsg};
+use belvedere_io::city::{CityColors, reproject, surface};
+use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::{CityFile, load_city};
 use belvedere_scene::{City, Crs, LayerKind, Mesh, MeshLayer};
 
@@ -48,25 +48,14 @@ fn built_in(name: &str, city: City) -> CityFile {
 pub(super) fn crs(loader: &mut Loader<'_>, index: usize, doc: &CityDoc) -> Result<Option<Crs>, BelvedereError> {
     let files = files(loader, index, doc)?;
     let Some(file) = files.first() else { return Ok(None) };
-    let Some(system) = system(loader, index, doc, file)? else { return Ok(None) };
-    if let (true, Some(code)) = (system.suits_scenes(), system.epsg()) {
-        return Ok(Some(Crs::Epsg(code)));
-    }
-    let fail = |e: String| loader.fail(index, "crs", e);
-    let wgs84 = CoordinateSystem::wgs84().map_err(|e| fail(e.to_string()))?;
-    let to_degrees = Transform::new(&system, &wgs84).map_err(|e| fail(e.to_string()))?;
-    let at = places(&file.city).next().and_then(|p| to_degrees.forward_one(*p));
-    Ok(at.and_then(|at| utm_epsg(at.x, at.y)).map(Crs::Epsg))
+    let stated = stated(loader, index, doc)?;
+    let system = file.metric_system(stated.as_ref()).map_err(|e| loader.fail(index, "crs", e))?;
+    Ok(system.and_then(|s| s.epsg()).map(Crs::Epsg))
 }
 
-/// The system of a file: what the document says, else what the file does.
-fn system(
-    loader: &Loader<'_>,
-    index: usize,
-    doc: &CityDoc,
-    file: &CityFile,
-) -> Result<Option<CoordinateSystem>, BelvedereError> {
-    let Some(stated) = &doc.crs else { return Ok(file.crs.clone()) };
+/// The system that the document states for the files.
+fn stated(loader: &Loader<'_>, index: usize, doc: &CityDoc) -> Result<Option<CoordinateSystem>, BelvedereError> {
+    let Some(stated) = &doc.crs else { return Ok(None) };
     let unknown = || loader.fail(index, "crs", format!("crs \"{stated}\" is not known; give \"EPSG:n\""));
     let code = epsg(stated).ok_or_else(unknown)?;
     CoordinateSystem::from_epsg(code).map(Some).map_err(|e| loader.fail(index, "crs", e))
@@ -86,11 +75,18 @@ pub(super) fn layer(
         ground: loader.color(index, &style.ground)?,
     };
     let mut city = City::default();
+    let stated = stated(loader, index, doc)?;
     for file in files(loader, index, doc)? {
-        let system = system(loader, index, doc, &file)?;
         let mut part = file.city;
-        if let (Some(from), Crs::Epsg(_)) = (system, ground.crs) {
-            reproject(&mut part, &from, ground.crs).map_err(|e| loader.fail(index, "crs", e))?;
+        if let (Some(from), Crs::Epsg(_)) = (stated.as_ref().or(file.crs.as_ref()), ground.crs) {
+            let to = CoordinateSystem::from_scene(ground.crs).map_err(|e| loader.fail(index, "crs", e))?;
+            let lost = reproject(&mut part, from, &to).map_err(|e| loader.fail(index, "crs", e))?;
+            if lost > 0 {
+                loader.note(
+                    index,
+                    vec![format!("{lost} shapes lie outside the domain of {} and are left out", to.name())],
+                );
+            }
         }
         city.buildings.extend(part.buildings);
         city.structures.extend(part.structures);
@@ -147,35 +143,6 @@ fn remarks(city: &City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Vec<String> {
         out.push(format!("{} areas of land cover are not drawn on terrain; use layers of kind area", city.areas.len()));
     }
     out
-}
-
-/// Every position in plan.
-fn places(city: &City) -> impl Iterator<Item = &DVec2> {
-    let polygons = city.buildings.iter().flat_map(|b| &b.footprint).chain(city.areas.iter().flat_map(|a| &a.polygons));
-    let rings = polygons.flat_map(|p| std::iter::once(&p.outer).chain(&p.holes)).flatten();
-    rings.chain(city.ways.iter().flat_map(|w| &w.points))
-}
-
-/// Takes all positions to the scene's system; heights stay.
-fn reproject(city: &mut City, from: &CoordinateSystem, to: Crs) -> Result<(), String> {
-    let to = CoordinateSystem::from_scene(to).map_err(|e| e.to_string())?;
-    let transform = Transform::new(from, &to).map_err(|e| e.to_string())?;
-    if transform.is_identity() {
-        return Ok(());
-    }
-    let outside = |p: DVec2| format!("({}, {}) lies outside the domain of {}; check crs", p.x, p.y, to.name());
-    let moved = |p: DVec2| transform.forward_one(p).ok_or_else(|| outside(p));
-    let polygons = city.buildings.iter_mut().flat_map(|b| &mut b.footprint);
-    let polygons = polygons.chain(city.areas.iter_mut().flat_map(|a| &mut a.polygons));
-    let rings = polygons.flat_map(|p| std::iter::once(&mut p.outer).chain(&mut p.holes)).flatten();
-    for p in rings.chain(city.ways.iter_mut().flat_map(|w| &mut w.points)) {
-        *p = moved(*p)?;
-    }
-    let faces = city.buildings.iter_mut().flat_map(|b| &mut b.faces);
-    for p in faces.chain(city.structures.iter_mut().flat_map(|s| &mut s.faces)).flat_map(|f| &mut f.rings).flatten() {
-        *p = moved(p.truncate())?.extend(p.z);
-    }
-    Ok(())
 }
 
 /// Adds to all heights.

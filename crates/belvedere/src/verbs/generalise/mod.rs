@@ -25,9 +25,9 @@ const MAP_MARGIN_M: f64 = 50.0;
 /// What is generalised.
 #[derive(Debug, Clone, Default)]
 pub struct GeneraliseRequest {
-    /// Building footprints: GeoJSON or shapefile.
+    /// Buildings: CityJSON, CityGML, OSM PBF, or footprints as GeoJSON or shapefile.
     pub city: PathBuf,
-    /// Streets, railways, water.
+    /// Streets, railways, water: the same formats.
     pub roads: Vec<PathBuf>,
     /// Measures.
     pub settings: GeneraliseSettings,
