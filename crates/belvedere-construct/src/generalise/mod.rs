@@ -11,6 +11,7 @@ mod blocks;
 mod cells;
 mod error;
 mod index;
+mod land_cover;
 mod landmarks;
 mod level;
 mod report;
@@ -21,6 +22,7 @@ mod strokes;
 
 pub use blocks::CellKind;
 pub use error::GeneraliseError;
+pub use land_cover::{LandCoverMap, land_cover};
 pub use level::{Block, Cell, Level};
 pub use report::{FailingCell, GeneraliseReport, LevelReport};
 pub use settings::{GeneraliseSettings, half_width_m, is_main};

@@ -13,7 +13,7 @@ mod reference;
 mod surface;
 
 pub use place::reproject;
-pub use surface::{CityColors, surface};
+pub use surface::{CityColors, CityGround, plate_extent, surface};
 
 use crate::crs::CoordinateSystem;
 use crate::vector::load_vectors;

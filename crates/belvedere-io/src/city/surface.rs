@@ -23,32 +23,36 @@ impl Default for CityColors {
     }
 }
 
-/// Land cover lies this far over the ground, one kind over the other, metres.
-const COVER_STEP_M: f64 = 0.04;
 /// The ground reaches beyond the city by this share of its size.
 const MARGIN: f64 = 0.15;
 
+/// What a city stands on.
+#[derive(Clone, Copy)]
+pub enum CityGround<'a> {
+    /// Terrain, its height by place; land cover is not drawn.
+    Terrain(&'a dyn Fn(DVec2) -> Option<f64>),
+    /// A level plate: the city's land cover, which must lie side by side, and these pieces between.
+    Plate(&'a [Polygon]),
+}
+
 /// Triangles of a city in parts: one per building and structure, by name or else id, one of everything else.
 ///
-/// * `terrain`: height of the ground; without it buildings without ground of their own stand on the plate under all, at the median
-///   height of the others, or at 0.
-pub fn surface(city: &City, colors: &CityColors, terrain: Option<&dyn Fn(DVec2) -> Option<f64>>) -> MeshFile {
+/// On a plate, buildings without ground of their own stand at the median height of the others, or at 0.
+pub fn surface(city: &City, colors: &CityColors, ground: CityGround<'_>) -> MeshFile {
     let plate = plate_height(city);
     let mut out =
         Builder { mesh: MeshFile { format: "city", ..MeshFile::default() }, colors: Vec::new(), earcut: Earcut::new() };
     out.part(String::new());
-    if terrain.is_none() {
-        out.plate(city, plate, colors.ground);
+    if let CityGround::Plate(bare) = ground {
+        bare.iter().for_each(|p| out.flat(p, plate, colors.ground));
         for area in &city.areas {
-            let (color, level) = cover(area.cover);
-            let z = plate + COVER_STEP_M * f64::from(level);
-            area.polygons.iter().for_each(|p| out.flat(p, z, color));
+            area.polygons.iter().for_each(|p| out.flat(p, plate, cover(area.cover)));
         }
     }
     for building in &city.buildings {
         out.part(if building.name.is_empty() { building.id.clone() } else { building.name.clone() });
         if building.faces.is_empty() {
-            let base = building.base_m.unwrap_or_else(|| lowest(building, terrain).unwrap_or(plate));
+            let base = building.base_m.unwrap_or_else(|| lowest(building, ground).unwrap_or(plate));
             out.extruded(building, base, colors);
         } else {
             building.faces.iter().for_each(|face| out.face(face, color_of(face.surface, colors)));
@@ -70,16 +74,26 @@ fn color_of(surface: Surface, colors: &CityColors) -> Color {
     if surface == Surface::Roof { colors.roof } else { colors.wall }
 }
 
-/// Colour of land cover, and its place from below.
-fn cover(cover: LandCover) -> (Color, u8) {
+fn cover(cover: LandCover) -> Color {
     match cover {
-        LandCover::Other => (Color::rgb(226, 221, 208), 1),
-        LandCover::Green => (Color::rgb(190, 209, 158), 2),
-        LandCover::Forest => (Color::rgb(148, 180, 126), 3),
-        LandCover::Water => (Color::rgb(142, 184, 214), 4),
-        LandCover::Rail => (Color::rgb(188, 182, 176), 5),
-        LandCover::Road => (Color::rgb(207, 203, 196), 6),
+        LandCover::Other => Color::rgb(226, 221, 208),
+        LandCover::Green => Color::rgb(190, 209, 158),
+        LandCover::Forest => Color::rgb(148, 180, 126),
+        LandCover::Water => Color::rgb(142, 184, 214),
+        LandCover::Rail => Color::rgb(188, 182, 176),
+        LandCover::Road => Color::rgb(207, 203, 196),
     }
+}
+
+/// Least and largest corner of the ground under a city, past its rim; `None` without any place.
+pub fn plate_extent(city: &City) -> Option<[DVec2; 2]> {
+    let of = |polygons: &[Polygon]| polygons.iter().flat_map(|p| p.outer.clone()).collect::<Vec<_>>();
+    let faces = city.structures.iter().flat_map(|s| &s.faces).flat_map(|f| &f.rings).flatten().map(|p| p.truncate());
+    let footprints = city.buildings.iter().flat_map(|b| of(&b.footprint));
+    let all = footprints.chain(city.areas.iter().flat_map(|a| of(&a.polygons))).chain(faces);
+    let [low, high] = all.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[lo, hi], p| [lo.min(p), hi.max(p)]);
+    let margin = DVec2::splat(MARGIN * (high - low).max_element() + 1.0);
+    (low.is_finite() && high.is_finite()).then(|| [low - margin, high + margin])
 }
 
 /// Median height of the grounds that buildings bring; 0 without any.
@@ -90,8 +104,9 @@ fn plate_height(city: &City) -> f64 {
 }
 
 /// Lowest ground under a building.
-fn lowest(building: &Building, terrain: Option<&dyn Fn(DVec2) -> Option<f64>>) -> Option<f64> {
-    let under = building.footprint.iter().flat_map(|p| &p.outer).filter_map(|xy| terrain?(*xy));
+fn lowest(building: &Building, ground: CityGround<'_>) -> Option<f64> {
+    let CityGround::Terrain(terrain) = ground else { return None };
+    let under = building.footprint.iter().flat_map(|p| &p.outer).filter_map(|xy| terrain(*xy));
     under.reduce(f64::min)
 }
 
@@ -167,33 +182,6 @@ impl Builder {
             }
         }
     }
-
-    /// The ground under a city, past its rim, in squares small enough to bend.
-    fn plate(&mut self, city: &City, z: f64, color: Color) {
-        const SQUARES: u32 = 24;
-        let of = |polygons: &[Polygon]| polygons.iter().flat_map(|p| p.outer.clone()).collect::<Vec<_>>();
-        let faces =
-            city.structures.iter().flat_map(|s| &s.faces).flat_map(|f| &f.rings).flatten().map(|p| p.truncate());
-        let footprints = city.buildings.iter().flat_map(|b| of(&b.footprint));
-        let all = footprints.chain(city.areas.iter().flat_map(|a| of(&a.polygons))).chain(faces);
-        let [min, max] = all.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[lo, hi], p| [lo.min(p), hi.max(p)]);
-        if !(min.is_finite() && max.is_finite()) {
-            return;
-        }
-        let margin = DVec2::splat(MARGIN * (max - min).max_element() + 1.0);
-        let (min, size) = (min - margin, max - min + 2.0 * margin);
-        let first = self.mesh.positions.len() as u32;
-        let n = SQUARES + 1;
-        self.mesh.positions.extend((0..n * n).map(|i| {
-            let share = DVec2::new(f64::from(i % n), f64::from(i / n)) / f64::from(SQUARES);
-            (min + share * size).extend(z)
-        }));
-        for i in (0..n * n).filter(|i| i % n < SQUARES && i / n < SQUARES) {
-            let [a, b, c, d] = [i, i + 1, i + n, i + n + 1].map(|k| first + k);
-            self.triangle([a, b, d], color);
-            self.triangle([a, d, c], color);
-        }
-    }
 }
 
 #[cfg(test)]
@@ -226,7 +214,7 @@ mod tests {
             polygons: vec![Polygon { outer: square(20.0, 30.0), holes: vec![] }],
         }];
         let city = City { buildings: vec![building], areas, ..City::default() };
-        let mesh = surface(&city, &CityColors::default(), None);
+        let mesh = surface(&city, &CityColors::default(), CityGround::Plate(&[]));
         let corners = |t: &[u32; 3]| t.map(|v| mesh.positions[v as usize]);
         let part =
             |p: u32| mesh.triangles.iter().zip(&mesh.parts).filter(move |(_, q)| **q == p).map(|(t, _)| corners(t));
@@ -238,7 +226,7 @@ mod tests {
         // Walls look outwards: their flow through a closed surface is that of the roof downwards, nothing sideways.
         let sum: DVec3 = part(1).map(area).sum();
         assert!(sum.truncate().length() < 1e-9, "{sum}");
-        let on_ground = surface(&city, &CityColors::default(), Some(&|xy: DVec2| Some(100.0 + xy.x)));
+        let on_ground = surface(&city, &CityColors::default(), CityGround::Terrain(&|xy: DVec2| Some(100.0 + xy.x)));
         let lowest = on_ground.positions.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
         assert_eq!((lowest, on_ground.names.len()), (100.0, 2));
     }

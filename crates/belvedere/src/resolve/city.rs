@@ -6,8 +6,9 @@ use super::loader::Loader;
 use super::mesh::wanted;
 use crate::BelvedereError;
 use crate::scene_file::{CityDoc, Paths};
+use belvedere_construct::generalise::{LandCoverMap, land_cover};
 use belvedere_core::DVec2;
-use belvedere_io::city::{CityColors, reproject, surface};
+use belvedere_io::city::{CityColors, CityGround, plate_extent, reproject, surface};
 use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::{CityFile, load_city};
 use belvedere_scene::{City, Crs, LayerKind, Mesh, MeshLayer};
@@ -99,20 +100,28 @@ pub(super) fn layer(
     if let Some(terrain) = terrain {
         loader.note(index, remarks(&city, terrain));
     }
-    let mut layer = mesh(&city, &colors, terrain).map_err(|e| loader.fail(index, "source", e))?;
+    let mut layer = mesh(city, &colors, terrain).map_err(|e| loader.fail(index, "source", e))?;
     if let Some(select) = &doc.select {
         layer.wanted = Some(wanted(&layer, select).map_err(|e| loader.fail(index, "select", e))?);
     }
     Ok(LayerKind::Mesh(layer))
 }
 
-/// A city as triangles, its buildings as parts.
+/// A city as triangles, its buildings as parts; without terrain on a plate of its land cover.
 pub(super) fn mesh(
-    city: &City,
+    mut city: City,
     colors: &CityColors,
     terrain: Option<&dyn Fn(DVec2) -> Option<f64>>,
 ) -> Result<MeshLayer, String> {
-    let file = surface(city, colors, terrain);
+    let file = match terrain {
+        Some(terrain) => surface(&city, colors, CityGround::Terrain(terrain)),
+        None => {
+            let cover = plate_extent(&city).map(|extent| land_cover(&city.areas, extent));
+            let LandCoverMap { areas, bare } = cover.unwrap_or_default();
+            city.areas = areas;
+            surface(&city, colors, CityGround::Plate(&bare))
+        }
+    };
     if file.triangles.is_empty() {
         return Err("it has no building or other surface to draw; ways alone are drawn by a line layer".into());
     }

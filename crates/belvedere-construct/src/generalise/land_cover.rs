@@ -1,0 +1,134 @@
+//! Land cover side by side: what overlaps on maps, so that each place is drawn once.
+
+use super::shapes::{Land, by_place, land_of, polygons_of, union, without_specks};
+use belvedere_core::DVec2;
+use belvedere_scene::city::{CityArea, LandCover, Polygon};
+use geo::BooleanOps;
+use std::collections::HashMap;
+
+/// Kinds of land cover, what lies over the others first.
+const FROM_ABOVE: [LandCover; 6] =
+    [LandCover::Road, LandCover::Rail, LandCover::Water, LandCover::Forest, LandCover::Green, LandCover::Other];
+/// Vertices nearer to an edge than this lie on it, metres.
+const ON_EDGE_M: f64 = 1e-4;
+
+/// Pieces of ground that neither overlap nor leave gaps; along a common border they have the same vertices.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct LandCoverMap {
+    /// At most one for each kind, without names.
+    pub areas: Vec<CityArea>,
+    /// The rest of the ground.
+    pub bare: Vec<Polygon>,
+}
+
+/// Lays land cover side by side: streets cut through railways, those through water, woods, green, the rest, in this order.
+///
+/// * `extent`: least and largest corner of the ground, metres; what lies outside is cut off.
+pub fn land_cover(areas: &[CityArea], extent: [DVec2; 2]) -> LandCoverMap {
+    let [low, high] = extent;
+    let mut bare = land_of(&[Polygon {
+        outer: vec![low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)],
+        holes: Vec::new(),
+    }]);
+    let mut pieces: Vec<(Option<LandCover>, Land)> = Vec::new();
+    for kind in FROM_ABOVE {
+        let of_kind = areas.iter().filter(|a| a.cover == kind).map(|a| land_of(&a.polygons)).collect();
+        let of_kind = union(by_place(of_kind));
+        if !of_kind.0.is_empty() {
+            pieces.push((Some(kind), without_specks(of_kind.intersection(&bare))));
+            bare = without_specks(bare.difference(&of_kind));
+        }
+    }
+    pieces.push((None, bare));
+    let mut pieces: Vec<_> = pieces.into_iter().map(|(kind, land)| (kind, polygons_of(&land))).collect();
+    share_vertices(pieces.iter_mut().flat_map(|(_, polygons)| polygons).collect());
+    let bare = pieces.pop().map(|(_, polygons)| polygons).unwrap_or_default();
+    let area = |(kind, polygons): (Option<LandCover>, Vec<Polygon>)| {
+        Some(CityArea { name: String::new(), cover: kind?, polygons }).filter(|a| !a.polygons.is_empty())
+    };
+    LandCoverMap { areas: pieces.into_iter().filter_map(area).collect(), bare }
+}
+
+/// Gives every edge the vertices of others that lie on it: pieces that share only a part of an edge gape when they are bent.
+fn share_vertices(mut polygons: Vec<&mut Polygon>) {
+    const SIDE_M: f64 = 16.0;
+    let square = |p: DVec2| (p / SIDE_M).floor().to_array().map(|v| v as i64);
+    let mut vertices: HashMap<_, Vec<DVec2>> = HashMap::new();
+    for p in polygons.iter().flat_map(|p| std::iter::once(&p.outer).chain(&p.holes)).flatten() {
+        vertices.entry(square(*p)).or_default().push(*p);
+    }
+    let mut on_edge: Vec<(f64, DVec2)> = Vec::new();
+    for ring in polygons.iter_mut().flat_map(|p| std::iter::once(&mut p.outer).chain(&mut p.holes)) {
+        let mut out = Vec::with_capacity(ring.len());
+        for (k, &a) in ring.iter().enumerate() {
+            let b = ring[(k + 1) % ring.len()];
+            out.push(a);
+            let (along, length) = ((b - a).normalize_or_zero(), a.distance(b));
+            on_edge.clear();
+            let [from, to] = [square(a.min(b) - ON_EDGE_M), square(a.max(b) + ON_EDGE_M)];
+            for x in from[0]..=to[0] {
+                // Of a row of squares those that the edge passes.
+                let [left, right] = [x as f64 * SIDE_M, (x + 1) as f64 * SIDE_M]
+                    .map(|at| if along.x.abs() < 1e-12 { None } else { Some(a.y + (at - a.x) / along.x * along.y) });
+                let (low, high) = match (left, right) {
+                    (Some(l), Some(r)) => (l.min(r).max(a.y.min(b.y)), l.max(r).min(a.y.max(b.y))),
+                    _ => (a.y.min(b.y), a.y.max(b.y)),
+                };
+                let [low, high] = [low - ON_EDGE_M, high + ON_EDGE_M].map(|y| (y / SIDE_M).floor() as i64);
+                for p in (low..=high).filter_map(|y| vertices.get(&[x, y])).flatten() {
+                    let (t, off) = (along.dot(*p - a), along.perp_dot(*p - a).abs());
+                    if t > ON_EDGE_M && t < length - ON_EDGE_M && off < ON_EDGE_M {
+                        on_edge.push((t, *p));
+                    }
+                }
+            }
+            on_edge.sort_by(|p, q| p.0.total_cmp(&q.0));
+            on_edge.dedup_by(|q, p| q.0 - p.0 < ON_EDGE_M);
+            out.extend(on_edge.iter().map(|(_, p)| *p));
+        }
+        *ring = out;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(from: [f64; 2], to: [f64; 2]) -> Polygon {
+        let outer = [from, [to[0], from[1]], to, [from[0], to[1]]].map(DVec2::from).to_vec();
+        Polygon { outer, holes: Vec::new() }
+    }
+
+    fn area(polygons: &[Polygon]) -> f64 {
+        let ring = |r: &Vec<DVec2>| (0..r.len()).map(|k| r[k].perp_dot(r[(k + 1) % r.len()])).sum::<f64>() / 2.0;
+        polygons.iter().flat_map(|p| std::iter::once(&p.outer).chain(&p.holes)).map(ring).sum()
+    }
+
+    #[test]
+    fn pieces_cover_the_ground_once_and_share_their_vertices() {
+        let of = |cover, polygon| CityArea { name: "a".into(), cover, polygons: vec![polygon] };
+        let areas = [
+            of(LandCover::Green, square([10.0, 10.0], [60.0, 60.0])),
+            of(LandCover::Green, square([50.0, 10.0], [80.0, 40.0])),
+            of(LandCover::Road, square([-20.0, 30.0], [200.0, 36.0])),
+            of(LandCover::Water, square([40.0, 0.0], [48.0, 100.0])),
+        ];
+        let map = land_cover(&areas, [DVec2::ZERO, DVec2::splat(100.0)]);
+        let kind = |cover| area(&map.areas.iter().find(|a| a.cover == cover).expect("a piece").polygons);
+        assert!((kind(LandCover::Road) - 600.0).abs() < 1e-3);
+        assert!((kind(LandCover::Water) - 8.0 * 94.0).abs() < 1e-3);
+        let green = 50.0 * 50.0 + 20.0 * 30.0 - 6.0 * 70.0 - 8.0 * 44.0;
+        assert!((kind(LandCover::Green) - green).abs() < 1e-3);
+        let all: f64 = map.areas.iter().map(|a| area(&a.polygons)).sum::<f64>() + area(&map.bare);
+        assert!((all - 1e4).abs() < 1e-3);
+        // No vertex lies inside an edge: each edge inside the ground is one of another piece, backwards.
+        let polygons = map.areas.iter().flat_map(|a| &a.polygons).chain(&map.bare);
+        let rings = polygons.flat_map(|p| std::iter::once(&p.outer).chain(&p.holes));
+        let key = |p: DVec2| (p * 1e3).round().to_array().map(|v| v as i64);
+        let edges: Vec<_> = rings.flat_map(|r| (0..r.len()).map(|k| [key(r[k]), key(r[(k + 1) % r.len()])])).collect();
+        let rim = |[p, q]: &[[i64; 2]; 2]| (0..2).any(|c| p[c] == q[c] && (p[c] == 0 || p[c] == 100_000));
+        for edge in edges.iter().filter(|e| !rim(e)) {
+            assert!(edges.contains(&[edge[1], edge[0]]), "{edge:?}");
+        }
+    }
+}
