@@ -3,12 +3,15 @@
 use super::shapes::{Land, by_place, land_of, polygons_of, union, without_specks};
 use belvedere_core::DVec2;
 use belvedere_scene::city::{CityArea, LandCover, Polygon};
-use geo::BooleanOps;
+use geo::{BooleanOps, Rect};
+use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Kinds of land cover, what lies over the others first.
 const FROM_ABOVE: [LandCover; 6] =
     [LandCover::Road, LandCover::Rail, LandCover::Water, LandCover::Forest, LandCover::Green, LandCover::Other];
+/// Quarterings of the ground.
+const TILINGS: u32 = 4;
 /// Vertices nearer to an edge than this lie on it, metres.
 const ON_EDGE_M: f64 = 1e-4;
 
@@ -40,13 +43,29 @@ pub fn land_cover(areas: &[CityArea], extent: [DVec2; 2]) -> LandCoverMap {
         }
     }
     pieces.push((None, bare));
-    let mut pieces: Vec<_> = pieces.into_iter().map(|(kind, land)| (kind, polygons_of(&land))).collect();
+    let mut pieces: Vec<_> =
+        pieces.into_par_iter().map(|(kind, land)| (kind, polygons_of(&tiled(land, extent, TILINGS)))).collect();
     share_vertices(pieces.iter_mut().flat_map(|(_, polygons)| polygons).collect());
     let bare = pieces.pop().map(|(_, polygons)| polygons).unwrap_or_default();
     let area = |(kind, polygons): (Option<LandCover>, Vec<Polygon>)| {
         Some(CityArea { name: String::new(), cover: kind?, polygons }).filter(|a| !a.polygons.is_empty())
     };
     LandCoverMap { areas: pieces.into_iter().filter_map(area).collect(), bare }
+}
+
+/// The land cut along the lines that halve `extent`, then its quarters, and so on: slivers across a whole city are slow to draw.
+fn tiled(land: Land, [low, high]: [DVec2; 2], times: u32) -> Land {
+    if times == 0 || land.0.is_empty() {
+        return land;
+    }
+    let size = 0.5 * (high - low);
+    let quarter = |i: u32| {
+        let low = low + size * DVec2::new(f64::from(i % 2), f64::from(i / 2));
+        let tile = Rect::new((low.x, low.y), (low.x + size.x, low.y + size.y)).to_polygon();
+        let part = without_specks(land.intersection(&tile));
+        tiled(part, [low, low + size], times - 1).0
+    };
+    geo::MultiPolygon((0..4u32).into_par_iter().flat_map_iter(quarter).collect())
 }
 
 /// Gives every edge the vertices of others that lie on it: pieces that share only a part of an edge gape when they are bent.
