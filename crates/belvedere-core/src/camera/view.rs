@@ -21,7 +21,7 @@ pub struct View {
 pub enum ViewError {
     /// Wrong order or a repeated stage.
     #[error(
-        "stage {second} cannot follow stage {first}; the order is earth, terrain_disocclusion, spline_bend, curved_rays, each at most once"
+        "stage {second} cannot follow stage {first}; the order is earth, terrain_disocclusion, relief, spline_bend, curved_rays, each at most once"
     )]
     Order {
         /// Name of the earlier stage.
@@ -79,7 +79,7 @@ impl View {
     /// Chains `stages`, in order of application, before `pinhole`.
     ///
     /// # Errors
-    /// [`ViewError::Order`] unless the stages are in the order earth, terrain, spline, curved rays, each at most once;
+    /// [`ViewError::Order`] unless the stages are in the order earth, terrain, relief, spline, curved rays, each at most once;
     /// [`ViewError::OtherRoot`] if curved rays were built for a pinhole with other rays.
     pub fn new(pinhole: Pinhole, stages: Vec<Stage>) -> Result<Self, ViewError> {
         for pair in stages.windows(2) {

@@ -2,6 +2,7 @@
 
 pub mod curved_rays;
 pub mod earth;
+pub mod relief;
 pub mod spline;
 pub mod split_rays;
 pub mod terrain;
@@ -48,6 +49,8 @@ pub enum Stage {
     EarthCurvature(earth::EarthCurvature),
     /// The ground moves so that routes are seen (Deng et al. 2013).
     TerrainDisocclusion(terrain::TerrainDisocclusion),
+    /// Heights are raised, lowered, shown in plan or levelled.
+    Relief(relief::Relief),
     /// Space is carried onto a B-spline over the reference plane (Pasewaldt et al. 2011).
     SplineBend(spline::SplineBend),
     /// Rays bend around occluders (Cui et al. 2010).
@@ -62,6 +65,7 @@ impl Stage {
         match self {
             Self::EarthCurvature(m) => m,
             Self::TerrainDisocclusion(m) => m,
+            Self::Relief(m) => m,
             Self::SplineBend(m) => m,
             Self::CurvedRays(m) => m,
             Self::SplitRays(m) => m,
@@ -73,13 +77,19 @@ impl Stage {
         matches!(self, Self::CurvedRays(_) | Self::SplitRays(_))
     }
 
-    /// Position in the fixed order of application: earth, terrain, spline, curved rays.
+    /// Whether points of a vertical line all move along it, by the same height.
+    pub fn is_upright(&self) -> bool {
+        matches!(self, Self::EarthCurvature(_) | Self::TerrainDisocclusion(_))
+    }
+
+    /// Position in the fixed order of application: earth, terrain, relief, spline, curved rays.
     pub fn rank(&self) -> u32 {
         match self {
             Self::EarthCurvature(_) => 0,
             Self::TerrainDisocclusion(_) => 1,
-            Self::SplineBend(_) => 2,
-            Self::CurvedRays(_) | Self::SplitRays(_) => 3,
+            Self::Relief(_) => 2,
+            Self::SplineBend(_) => 3,
+            Self::CurvedRays(_) | Self::SplitRays(_) => 4,
         }
     }
 
@@ -88,6 +98,7 @@ impl Stage {
         match self {
             Self::EarthCurvature(_) => "earth",
             Self::TerrainDisocclusion(_) => "terrain_disocclusion",
+            Self::Relief(_) => "relief",
             Self::SplineBend(_) => "spline_bend",
             Self::CurvedRays(_) | Self::SplitRays(_) => "curved_rays",
         }
@@ -110,6 +121,7 @@ impl Stage {
         match self {
             Self::EarthCurvature(m) => m.edge_bound(p0, p1),
             Self::TerrainDisocclusion(m) => m.edge_bound(p0, p1),
+            Self::Relief(m) => m.edge_bound(p0, p1),
             Self::SplineBend(m) => m.edge_bound(p0, p1),
             Self::CurvedRays(m) => m.edge_bound(p0, p1),
             Self::SplitRays(m) => m.edge_bound(p0, p1),
@@ -121,6 +133,7 @@ impl Stage {
         match self {
             Self::EarthCurvature(m) => m.displaced_bounds(bounds),
             Self::TerrainDisocclusion(m) => m.displaced_bounds(bounds),
+            Self::Relief(m) => m.displaced_bounds(bounds),
             Self::SplineBend(m) => m.displaced_bounds(bounds),
             Self::CurvedRays(m) => m.displaced_bounds(bounds),
             Self::SplitRays(m) => m.displaced_bounds(bounds),

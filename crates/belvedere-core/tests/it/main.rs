@@ -2,6 +2,7 @@
 
 mod curved_rays;
 mod presets;
+mod relief;
 mod spline_bend;
 mod spline_bounds;
 mod spline_curve;

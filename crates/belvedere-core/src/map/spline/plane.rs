@@ -45,6 +45,12 @@ impl ReferencePlane {
     pub fn foot(&self, p: DVec3) -> DVec3 {
         p - self.height_of(p) * self.normal
     }
+
+    /// Unit directions in the plane: to the right of the picture, and ahead.
+    pub fn heading_axes(&self, pinhole: &Pinhole) -> [DVec3; 2] {
+        let Heading { right, heading, .. } = Heading::of(pinhole, self);
+        [right, heading]
+    }
 }
 
 /// Axes of the aligned space: `right`, `heading` and the plane's normal are orthonormal and right-handed.
