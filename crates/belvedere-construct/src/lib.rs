@@ -7,6 +7,7 @@ pub mod centreline;
 mod error;
 pub mod flight;
 pub mod generalise;
+mod large_forms;
 pub mod measure;
 pub mod rays;
 pub mod reveal;
@@ -15,6 +16,7 @@ mod surface_samples;
 
 pub use error::ConstructError;
 pub use flight::{Flight, FlightError, FlightOptions};
+pub use large_forms::large_forms;
 pub use measure::{MeasureOptions, Measures, measure};
 pub use reveal::{Goal, RevealMemory, RevealOptions, RevealReport, Revealed, reveal};
 pub use samples::{Amount, Sample, SampledFeature, default_spacing, sample_features};

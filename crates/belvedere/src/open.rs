@@ -112,6 +112,9 @@ fn ground_is_needed(doc: &Document) -> bool {
     let geographic = |p: &PointDoc| matches!(p, PointDoc::Map(m) if m.lon.is_some());
     let spline_floats = doc.stage.iter().any(|s| match s {
         StageDoc::SplineBend(spline) => spline.plane.as_ref().is_none_or(|p| p.height_m.is_none()),
+        StageDoc::Relief(relief) => {
+            relief.levelling.is_some_and(|v| v > 0.0) || relief.plane.as_ref().is_none_or(|p| p.height_m.is_none())
+        }
         StageDoc::TerrainDisocclusion(_) => true,
         StageDoc::CurvedRays(_) => false,
     });

@@ -87,8 +87,16 @@ fn stages_are_checked_with_their_line() {
     let spline = "[[stage]]\nkind = 'spline_bend'\npresets = 'map'\n";
     refuses(
         &with(&format!("{turn}{spline}")),
-        "9: stage spline_bend cannot follow stage curved_rays; the order is earth, terrain_disocclusion, spline_bend, curved_rays, each at most once",
+        "9: stage spline_bend cannot follow stage curved_rays; the order is earth, terrain_disocclusion, relief, spline_bend, curved_rays, each at most once",
     );
+    let relief = |key: &str| with(&format!("[[stage]]\nkind = 'relief'\n{key}"));
+    refuses(&relief("oblique = 9"), "7: oblique is 9, it must be in 0..=5");
+    refuses(&relief("exaggeration = [1, 0]"), "7: exaggeration is 0, it must be in 0.01..=100");
+    refuses(
+        &relief("range_m = [9, 2]"),
+        "7: range is [9, 2]; the background must begin farther away than the foreground ends",
+    );
+    refuses(&relief("levelling = 0.5"), "7: levelling needs terrain over a level reference plane");
     refuses(&with(turn), "7: curved_rays has no turn; give at least one [[stage.turn]]");
     refuses(
         &with("[[stage]]\nkind = 'terrain_disocclusion'\nmode = 'qp'"),

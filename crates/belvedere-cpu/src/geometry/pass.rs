@@ -5,7 +5,7 @@ use crate::geometry::lod::{DecimatedHeights, NODES};
 use crate::geometry::points::Points;
 use crate::geometry::project::Projector;
 use crate::geometry::screen::{Row, Screen, ScreenVertex};
-use belvedere_core::{Aabb, DVec2, DVec3, EdgePoint, Edges, SpaceMap, Stage, View};
+use belvedere_core::{Aabb, DMat3, DVec2, DVec3, EdgePoint, Edges, Stage, View};
 use belvedere_scene::Heightfield;
 
 /// A view prepared for a frame.
@@ -187,14 +187,24 @@ impl<'a> Pass<'a> {
     /// * `extent`: of the box, see [`InView::Maybe`].
     pub(crate) fn px_per_height(&self, screen: &Screen, bounds: &Aabb, extent: Option<Extent>) -> f64 {
         let Some(Extent { depth, image }) = extent else { return f64::INFINITY };
-        let stretch = |bend: &belvedere_core::map::spline::SplineBend| {
+        let stages = self.view.stages().iter();
+        let oblique = stages.clone().any(|s| matches!(s, Stage::Relief(_)));
+        let stretch = stages.filter(|s| turns_heights(s)).map(|stage| {
+            // A spline lengthens upright heights by that of the z axis, oblique ones by no more than the norm.
+            let upright = !oblique || matches!(stage, Stage::Relief(_));
+            let length = |j: DMat3| {
+                if upright {
+                    j.z_axis.length()
+                } else {
+                    [j.x_axis, j.y_axis, j.z_axis].map(DVec3::length_squared).iter().sum::<f64>().sqrt()
+                }
+            };
             let points = bounds.corners().into_iter().chain([bounds.center()]);
-            points.map(|p| bend.jacobian(p).map_or(f64::INFINITY, |j| j.z_axis.length())).fold(0.0, f64::max)
-        };
-        let spline = self.view.stages().iter().find_map(|s| if let Stage::SplineBend(b) = s { Some(b) } else { None });
+            points.map(|p| stage.as_map().jacobian(p).map_or(f64::INFINITY, length)).fold(0.0, f64::max)
+        });
         // What lies beyond the image is not drawn.
         let image = image.map(|at| at.clamp(-screen.center.abs(), screen.center.abs()));
-        let height_px = self.height.most(screen, image) * spline.map_or(1.0, stretch);
+        let height_px = self.height.most(screen, image) * stretch.product::<f64>();
         if screen.ortho { height_px } else { height_px / depth }
     }
 
@@ -222,6 +232,11 @@ fn image_of(screen: &Screen, hull: &[DVec3]) -> InView {
     if code != 0 { InView::No } else { InView::Maybe((depth > 0.0).then_some(Extent { depth, image })) }
 }
 
+/// Whether a stage, not one of curved rays, makes heights point anywhere.
+fn turns_heights(stage: &Stage) -> bool {
+    matches!(stage, Stage::Relief(_) | Stage::SplineBend(_))
+}
+
 pub(crate) fn displaced(stages: &[Stage], bounds: &Aabb) -> Option<Aabb> {
     stages.iter().try_fold(*bounds, |b, stage| stage.displaced_bounds(&b))
 }
@@ -246,7 +261,7 @@ impl HeightPx {
             let depth = if ph.is_orthographic() { 0.0 } else { d.dot(ph.forward) };
             (DVec2::new(d.dot(ph.right), d.dot(ph.down)) * ph.scale_px(), depth)
         };
-        let splined = view.stages().iter().any(|s| matches!(s, Stage::SplineBend(_)));
+        let splined = view.stages().iter().any(turns_heights);
         let turn = view.curved_rays().and_then(|rays| rays.turns().get(record));
         match (turn, splined) {
             (None, false) => Self::Ways(vec![way(DVec3::Z)]),

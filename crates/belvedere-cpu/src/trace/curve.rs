@@ -75,7 +75,9 @@ impl<'a> Split<'a> {
             Stage::SplineBend(b) => Some(b),
             _ => None,
         });
+        let relief = view.stages().iter().any(|s| matches!(s, Stage::Relief(_)));
         let kind = match (bend, view.stages().iter().any(Stage::bends_rays)) {
+            _ if relief => Kind::Any,
             (None, _) => Kind::Pieces,
             (Some(bend), false) => {
                 let across = |axis: DVec3| view.pinhole().right.dot(axis).abs() <= ALIKE;

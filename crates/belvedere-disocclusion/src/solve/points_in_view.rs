@@ -36,8 +36,7 @@ impl<'a> PointsInView<'a> {
         settings: &TerrainSettings,
         film: bool,
     ) -> Self {
-        let later = |s: &Stage| matches!(s, Stage::SplineBend(_)) || s.bends_rays();
-        let bent = base.pinhole().is_orthographic() || base.stages().iter().any(later);
+        let bent = base.pinhole().is_orthographic() || !base.stages().iter().all(Stage::is_upright);
         let eye = base.pinhole().eye;
         let wedge = if bent { Wedge::all_around(eye.truncate()) } else { Wedge::of_pinhole(base.pinhole()) };
         let straight = StraightSight { eye: field.grid_from_scene(eye.truncate()), z: eye.z };

@@ -2,7 +2,7 @@
 
 use super::problem::LinesOfSight;
 use crate::Field;
-use belvedere_core::{DVec2, DVec3, Stage, View};
+use belvedere_core::{DVec2, DVec3, View};
 
 /// A chord leaves the ray that it stands for by less than this in height, metres; the usual margin is twenty times that.
 const BOW: f64 = 0.05;
@@ -25,8 +25,7 @@ pub struct ViewSight {
 impl ViewSight {
     /// Lines of sight over `field` of the stages of `view` that follow the terrain.
     pub fn new(view: &View, field: &Field) -> Self {
-        let follows = |s: &&Stage| matches!(s, Stage::SplineBend(_)) || s.bends_rays();
-        let stages = view.stages().iter().filter(follows).cloned().collect();
+        let stages = view.stages().iter().filter(|s| !s.is_upright()).cloned().collect();
         // A part of a chain in its order is a chain.
         let later =
             View::new(view.pinhole().clone(), stages).unwrap_or_else(|_| View::straight(view.pinhole().clone()));

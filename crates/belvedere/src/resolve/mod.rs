@@ -18,6 +18,7 @@ mod molecule;
 pub(crate) mod motion;
 mod path;
 pub(crate) mod rays;
+mod relief;
 pub(crate) mod representations;
 mod sea;
 pub(crate) mod stages;

@@ -66,6 +66,7 @@ pub(super) fn resolve(
                 continue;
             }
             StageDoc::TerrainDisocclusion(doc) => solved_terrain(context, doc, inputs, at)?,
+            StageDoc::Relief(doc) => super::relief::resolve(context, doc, at)?,
             StageDoc::SplineBend(doc) => {
                 let (bend, document) = spline(context, doc, inputs, warnings, at)?;
                 out.pinhole = bend.adapted_pinhole(&out.pinhole);
@@ -129,28 +130,42 @@ fn spline(
 ) -> Result<(SplineBend, StageDoc), BelvedereError> {
     let presets = presets(context.roots, &doc.presets, inputs, at)?;
     let pinhole = &context.camera.pinhole;
-    let normal = doc.plane.as_ref().map_or(DVec3::Z, |p| DVec3::from_array(p.normal));
-    let unit = normal.try_normalize().ok_or_else(|| {
-        at.error(&["plane", "normal"], "plane normal is [0, 0, 0], it needs a direction; [0, 0, 1] is level ground")
-    })?;
-    let height = match doc.plane.as_ref().and_then(|p| p.height_m) {
-        Some(height) => height,
-        None => plane_point(context, at)?.dot(unit),
-    };
-    let plane = ReferencePlane::new(normal, height)
-        .ok_or_else(|| at.error(&["plane"], "the reference plane is not finite; give a normal and a height"))?;
+    let (plane, height) = plane(context, doc.plane.as_ref(), at)?;
     let pivot = doc.pivot.map_or_else(|| default_pivot(pinhole, &plane), DVec3::from_array);
     let bend = SplineBend::new(pinhole, &presets, &plane, pivot).map_err(|e| at.error(&["presets"], e))?;
-    let heights = context.ground.terrain.map(|t| t.z_range().map(|z| z - height)).filter(|_| unit == DVec3::Z);
+    let heights =
+        context.ground.terrain.map(|t| t.z_range().map(|z| z - height)).filter(|_| plane.normal() == DVec3::Z);
     let distance = bend.resolved().distance;
     warnings
         .extend(belvedere_core::map::spline::check_presets(&presets, distance, heights).iter().map(|w| w.to_string()));
     let document = StageDoc::SplineBend(SplineStageDoc {
         presets: PresetsDoc::Inline(Box::new(presets)),
         pivot: Some(pivot.to_array()),
-        plane: Some(PlaneDoc { normal: normal.to_array(), height_m: Some(height) }),
+        plane: Some(PlaneDoc {
+            normal: doc.plane.as_ref().map_or([0.0, 0.0, 1.0], |p| p.normal),
+            height_m: Some(height),
+        }),
     });
     Ok((bend, document))
+}
+
+/// The reference plane and its height along the unit normal.
+pub(super) fn plane(
+    context: &StageContext<'_>,
+    doc: Option<&PlaneDoc>,
+    at: Table<'_>,
+) -> Result<(ReferencePlane, f64), BelvedereError> {
+    let normal = doc.map_or(DVec3::Z, |p| DVec3::from_array(p.normal));
+    let unit = normal.try_normalize().ok_or_else(|| {
+        at.error(&["plane", "normal"], "plane normal is [0, 0, 0], it needs a direction; [0, 0, 1] is level ground")
+    })?;
+    let height = match doc.and_then(|p| p.height_m) {
+        Some(height) => height,
+        None => plane_point(context, at)?.dot(unit),
+    };
+    let plane = ReferencePlane::new(normal, height)
+        .ok_or_else(|| at.error(&["plane"], "the reference plane is not finite; give a normal and a height"))?;
+    Ok((plane, height))
 }
 
 /// A point of the default plane: at the median height of the terrain, or at look_at.

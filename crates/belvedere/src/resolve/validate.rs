@@ -186,8 +186,9 @@ pub(super) fn optional_color(key: &'static str, text: &str) -> Result<Option<bel
 fn rank(stage: &StageDoc) -> u32 {
     match stage {
         StageDoc::TerrainDisocclusion(_) => 1,
-        StageDoc::SplineBend(_) => 2,
-        StageDoc::CurvedRays(_) => 3,
+        StageDoc::Relief(_) => 2,
+        StageDoc::SplineBend(_) => 3,
+        StageDoc::CurvedRays(_) => 4,
     }
 }
 

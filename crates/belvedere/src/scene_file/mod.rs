@@ -13,6 +13,7 @@ mod node;
 mod overlay;
 mod palette;
 pub mod paths;
+mod relief;
 mod stages;
 mod toml_tree;
 mod volume;
@@ -31,6 +32,7 @@ pub(crate) use node::{Node, Value};
 pub use overlay::{AutoOrLength, AutoWord, HighlightMark, OverlayDoc, SwitchOrLength};
 pub use palette::{PaletteDoc, PaletteName};
 pub use paths::Paths;
+pub use relief::{OneOrTwo, ReliefStageDoc};
 pub use stages::{
     AxisDoc, DetailDoc, MergeDoc, PlaneDoc, PresetsDoc, RaysStageDoc, SolverMode, SplineStageDoc, SplitDoc, StageDoc,
     TerrainStageDoc, TurnDoc, WayDoc,
@@ -296,6 +298,7 @@ fn layer(kind: &str, node: &Node) -> Result<Option<LayerDoc>, DocError> {
 fn stage(kind: &str, node: &Node) -> Result<Option<StageDoc>, DocError> {
     Ok(Some(match kind {
         "terrain_disocclusion" => StageDoc::TerrainDisocclusion(de::from_node(node)?),
+        "relief" => StageDoc::Relief(de::from_node(node)?),
         "spline_bend" => StageDoc::SplineBend(de::from_node(node)?),
         "curved_rays" => StageDoc::CurvedRays(de::from_node(node)?),
         _ => return Ok(None),

@@ -262,8 +262,7 @@ fn lit_surface<'a>(layer: &'a TerrainLayer, job: &RenderJob<'a>) -> Surface<'a> 
             None => return Surface::of_map(hf),
         },
     };
-    let upright = |s: &Stage| matches!(s, Stage::EarthCurvature(_) | Stage::TerrainDisocclusion(_));
-    if deformed.iter().all(upright) {
+    if deformed.iter().all(Stage::is_upright) {
         return Surface::lifted(hf, Arc::new(displaced::heights(hf, deformed)));
     }
     let moved = move |p: DVec3| deformed.iter().try_fold(p, |p, s| s.as_map().apply(p)).ok().filter(|p| p.is_finite());

@@ -1,0 +1,65 @@
+//! Relief stages.
+
+use super::stages::{StageContext, plane};
+use crate::BelvedereError;
+use crate::scene_file::{OneOrTwo, PlaneDoc, ReliefStageDoc, StageDoc, Table};
+use belvedere_construct::large_forms;
+use belvedere_core::Stage;
+use belvedere_core::map::relief::{Relief, ReliefError, ReliefShape};
+use belvedere_core::map::spline::default_pivot;
+use std::sync::Arc;
+
+/// Foreground and background as shares of the distance of the pivot: those of the built-in presets.
+const RANGE: [f64; 2] = [0.5, 1.9];
+/// Large forms as a share of the range.
+const LARGE: f64 = 0.2;
+
+/// The stage and its document.
+pub(super) fn resolve(
+    context: &StageContext<'_>,
+    doc: &ReliefStageDoc,
+    at: Table<'_>,
+) -> Result<(Stage, StageDoc), BelvedereError> {
+    let pinhole = &context.camera.pinhole;
+    let (plane, height) = plane(context, doc.plane.as_ref(), at)?;
+    let range = doc.range_m.unwrap_or_else(|| {
+        let distance = default_pivot(pinhole, &plane).distance(plane.foot(pinhole.eye));
+        RANGE.map(|share| share * distance.max(1.0))
+    });
+    let shape = ReliefShape {
+        exaggeration: doc.exaggeration.map_or([1.0; 2], OneOrTwo::pair),
+        oblique: doc.oblique.unwrap_or(0.0),
+        horizon_radius: doc.horizon_radius_m.unwrap_or(f64::INFINITY),
+        levelling: doc.levelling.unwrap_or(0.0),
+        range,
+    };
+    let scale = doc.levelling_scale_m.unwrap_or(LARGE * (range[1] - range[0]));
+    if shape.levelling > 0.0 && !(scale > 0.0 && scale.is_finite()) {
+        return Err(
+            at.error(&["levelling_scale_m"], format!("levelling_scale_m is {scale}, it must be greater than 0"))
+        );
+    }
+    let terrain = context.ground.terrain.filter(|_| shape.levelling > 0.0);
+    let base = terrain.and_then(|terrain| large_forms(terrain, scale)).map(Arc::new);
+    let relief = Relief::new(pinhole, &plane, shape.clone(), base).map_err(|e| at.error(&[key(&e)], e))?;
+    let document = ReliefStageDoc {
+        exaggeration: Some(OneOrTwo::Two(shape.exaggeration)),
+        oblique: Some(shape.oblique),
+        horizon_radius_m: doc.horizon_radius_m,
+        levelling: Some(shape.levelling),
+        levelling_scale_m: (shape.levelling > 0.0).then_some(scale),
+        range_m: Some(range),
+        plane: Some(PlaneDoc { normal: plane.normal().to_array(), height_m: Some(height) }),
+    };
+    Ok((Stage::Relief(relief), StageDoc::Relief(document)))
+}
+
+/// The key of the document that an error is about.
+fn key(error: &ReliefError) -> &'static str {
+    match error {
+        ReliefError::Range { key: "horizon_radius", .. } => "horizon_radius_m",
+        ReliefError::Range { key: "range", .. } | ReliefError::Order { .. } => "range_m",
+        ReliefError::Range { key, .. } => key,
+        _ => "levelling",
+    }
+}
