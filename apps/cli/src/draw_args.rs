@@ -37,6 +37,9 @@ pub(crate) struct DrawArgs {
     /// How representations of styling sections are put together
     #[arg(long, value_enum, default_value = "dither")]
     pub(crate) compositing: CompositingKind,
+    /// Dark edges and shade behind what stands out, whatever the scene says
+    #[arg(long)]
+    pub(crate) stylise: bool,
     /// Largest error of terrain drawn in less detail far away, pixels; 0 draws every cell
     #[arg(long, default_value_t = 0.5, value_name = "PX", allow_hyphen_values = true, value_parser = parse_lod)]
     pub(crate) lod: f64,

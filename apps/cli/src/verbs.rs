@@ -10,7 +10,7 @@ use crate::report::{Context, done, print};
 use anyhow::Context as _;
 use belvedere::picture::{self, AuxBuffer, AuxFormat, PictureOptions};
 use belvedere::scene::Compositing;
-use belvedere::scene_file::{AnimationDoc, PaletteDoc, SweepDoc, TurntableDoc};
+use belvedere::scene_file::{AnimationDoc, PaletteDoc, StylisationDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{self, AnimateRequest, Film};
 use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest, WrittenGrid};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest, Viewpoint};
@@ -95,6 +95,7 @@ fn request(args: &DrawArgs, context: &Context) -> PictureOptions {
     };
     request.quality.exposures = args.thresholds.div_ceil(args.samples.max(1));
     request.quality.lod_px = args.lod;
+    request.stylisation = args.stylise.then(|| StylisationDoc::usual().strengths().unwrap_or_default());
     request.progress = context.progress.clone();
     request.quality.max_bytes = context.common.max_mem.unwrap_or(request.quality.max_bytes);
     request

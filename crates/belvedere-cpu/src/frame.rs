@@ -5,6 +5,7 @@ use crate::marks::Marks;
 use crate::raster::band::BAND;
 use crate::shade::color::{self, Packed};
 use crate::shade::ground_bytes;
+use crate::stylise;
 use belvedere_scene::{Frame, LayerKind, RenderError, RenderJob};
 use rayon::prelude::*;
 
@@ -30,7 +31,7 @@ pub(crate) fn checked(
 
 /// The pixels of a frame in the making.
 pub(crate) struct Buffers {
-    /// Whether lines or points may be drawn over the surfaces.
+    /// Whether lines, points or stylisation may be drawn over the surfaces.
     pub(crate) open: bool,
     /// Colours of the surfaces while they are open, else empty.
     pub(crate) color: Vec<Packed>,
@@ -52,20 +53,24 @@ impl Buffers {
     pub(crate) fn reuse(job: &RenderJob<'_>, mut color: Vec<Packed>, old: Frame) -> Self {
         let n = job.view.pinhole().image.map(|s| s as usize).iter().product();
         let Frame { color: mut out, mut depth, mut id, .. } = old;
-        let open = Marks::are_in(job);
+        let styled = stylise::is_on(job);
+        let open = Marks::are_in(job) || styled;
         if open {
             color.resize(n, Packed::default());
         }
         out.resize(n, [0; 3]);
         depth.resize(n, f32::INFINITY);
         id.resize(n, 0);
-        let world = job.options.aux.world.then(|| vec![[f64::NAN; 3]; n]);
+        let world = (job.options.aux.world || styled).then(|| vec![[f64::NAN; 3]; n]);
         Self { open, color, depth, id, world, out }
     }
 }
 
-/// Lines and points over the surfaces, and the stored colours.
-pub(crate) fn finish(marks: &Marks, screen: &Screen, buffers: &mut Buffers) {
+/// Stylisation, lines and points over the surfaces, and the stored colours.
+pub(crate) fn finish(job: &RenderJob<'_>, marks: &Marks, screen: &Screen, buffers: &mut Buffers) {
+    if stylise::is_on(job) {
+        stylise::apply(job, screen.width as usize, buffers);
+    }
     let chunk = BAND * screen.width as usize;
     let Buffers { depth, color, id, out, .. } = buffers;
     let encoding = color::encoding();
@@ -88,7 +93,8 @@ fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
     let [width, height] = job.view.pinhole().image;
     let samples = job.options.samples;
     let pixels = u64::from(width) * u64::from(height);
-    let per_pixel = 3 + 4 + 4 + 6 + if job.options.aux.world { 24 } else { 0 };
+    let per_pixel =
+        3 + 4 + 4 + 6 + if job.options.aux.world { 24 } else { 0 } + if stylise::is_on(job) { 64 } else { 0 };
     let threads = if job.options.threads == 0 { rayon::current_num_threads() } else { job.options.threads } as u64;
     let bands = threads * (BAND as u64) * u64::from(width) * (u64::from(samples) + 1) * 8;
     // What lies beside the picture, where planes cross, may be drawn by several records.

@@ -28,6 +28,7 @@ mod rasteriser;
 mod sections;
 mod shade;
 mod simd;
+mod stylise;
 mod trace;
 mod volume;
 

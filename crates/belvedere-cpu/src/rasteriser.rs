@@ -110,7 +110,7 @@ impl CpuRenderer {
             let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
             let marks = Marks::new(job, &passes, &screen, tolerance_px, &buffers.depth);
             job.progress.tick("lines", 0.0)?;
-            finish(&marks, &screen, &mut buffers);
+            finish(job, &marks, &screen, &mut buffers);
             job.progress.tick("lines", 1.0)?;
         }
         let counts = blocks.counts();

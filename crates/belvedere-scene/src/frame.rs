@@ -26,6 +26,8 @@ pub struct RenderOptions {
     pub threads: usize,
     /// Extra buffers.
     pub aux: Aux,
+    /// What is done to the surfaces of the picture before marks are drawn.
+    pub stylisation: Stylisation,
     /// Marks that belong to no layer.
     pub overlay: Overlay,
     /// How often each sample is taken, with other thresholds, where representations of styling sections pass into each other; 1 = an
@@ -49,6 +51,7 @@ impl Default for RenderOptions {
             lod_px: 0.5,
             threads: 0,
             aux: Aux::default(),
+            stylisation: Stylisation::default(),
             overlay: Overlay::default(),
             exposures: 1,
             compositing: Compositing::default(),
@@ -57,6 +60,15 @@ impl Default for RenderOptions {
             max_bytes: 4 << 30,
         }
     }
+}
+
+/// Drawing over the surfaces of a picture from their depths; nothing by default.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stylisation {
+    /// Strength of dark edges where depth or faces break, 0..=1.
+    pub edges: f32,
+    /// Strength of the shade behind what stands out (depth unsharp masking), 0..=10; 3 to 6 are usual.
+    pub unsharp: f32,
 }
 
 /// How representations of styling sections are put together.

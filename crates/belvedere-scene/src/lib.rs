@@ -27,7 +27,7 @@ pub use city::{
     WayClass,
 };
 pub use drape::{Draped, drape_polyline};
-pub use frame::{Aux, Compositing, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer};
+pub use frame::{Aux, Compositing, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer, Stylisation};
 pub use heightfield::{Heightfield, HeightfieldError, NodeState, States};
 pub use layer::{
     AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Color, Drape, Hidden, Layer, LayerKind, LineFeature,

@@ -105,6 +105,7 @@ impl Data {
             earth,
             camera,
             overlay: None,
+            stylisation: None,
             light: None,
             representations: Default::default(),
             layer: self.layers,

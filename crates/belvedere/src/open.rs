@@ -83,6 +83,7 @@ impl Session {
             light: resolved.light,
             areas: loaded.areas,
             overlay: source.document.overlay.clone().unwrap_or_default(),
+            stylisation: source.document.stylisation.unwrap_or_default().strengths().unwrap_or_default(),
             terrain: resolved.terrain,
             constructor: resolved.constructor,
             motions,

@@ -11,7 +11,7 @@ use crate::scene_file::{Document, OverlayDoc, SourceDocument, StageDoc};
 use belvedere_core::View;
 use belvedere_cpu::CpuRenderer;
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
-use belvedere_scene::{Light, Scene};
+use belvedere_scene::{Light, Scene, Stylisation};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -24,6 +24,7 @@ pub struct Session {
     pub(crate) view: View,
     pub(crate) light: Light,
     pub(crate) overlay: OverlayDoc,
+    pub(crate) stylisation: Stylisation,
     pub(crate) terrain: Option<TerrainReport>,
     pub(crate) constructor: Option<ConstructorReport>,
     pub(crate) motions: Option<Arc<Motions>>,
@@ -53,6 +54,7 @@ impl Session {
             view,
             light: Light::default(),
             overlay: OverlayDoc::default(),
+            stylisation: Stylisation::default(),
             terrain: None,
             constructor: None,
             motions: None,
@@ -72,6 +74,11 @@ impl Session {
     /// The same with other marks over the picture.
     pub fn with_overlay(self, overlay: OverlayDoc) -> Self {
         Self { overlay, ..self }
+    }
+
+    /// The same with its surfaces drawn over.
+    pub fn with_stylisation(self, stylisation: Stylisation) -> Self {
+        Self { stylisation, ..self }
     }
 
     /// The same scene in another view. A document that described the view before is left behind.

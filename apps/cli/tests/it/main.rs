@@ -20,6 +20,7 @@ mod pictures;
 mod reveal;
 mod scenes;
 mod speed;
+mod stylisation;
 mod terrain;
 mod volume_targets;
 mod volumes;

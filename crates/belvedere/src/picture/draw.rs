@@ -93,7 +93,8 @@ fn draw_view(session: &Session, request: &PictureOptions, progress: &Progress) -
     let grid_spacing = grid.and_then(|spacing| grid::spacing(scene, spacing));
     let world = request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
     let exact = !request.aux.is_empty();
-    let mut options = RenderOptions { aux: Aux { world, exact }, ..request.quality.clone() };
+    let stylisation = request.stylisation.unwrap_or(session.stylisation);
+    let mut options = RenderOptions { aux: Aux { world, exact }, stylisation, ..request.quality.clone() };
     options.overlay.under.extend(grid_spacing.map(|spacing| grid::lines(scene, spacing)).into_iter().flatten());
     let draw = |scene: &Scene, view: &View| {
         let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
@@ -151,6 +152,8 @@ fn draw_view(session: &Session, request: &PictureOptions, progress: &Progress) -
         badge::draw(&mut canvas, words);
     }
     let overlay = OverlayRecord {
+        edges: (stylisation.edges > 0.0).then_some(stylisation.edges),
+        unsharp: (stylisation.unsharp > 0.0).then_some(stylisation.unsharp),
         mark: mark.is_some(),
         mark_words: mark,
         grid: grid_spacing,

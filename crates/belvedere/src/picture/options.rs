@@ -3,7 +3,7 @@
 use crate::scene_file::HighlightMark;
 use crate::{CameraPicture, Session};
 use belvedere_cpu::ExactRenderer;
-use belvedere_scene::{Progress, RenderOptions, Renderer};
+use belvedere_scene::{Progress, RenderOptions, Renderer, Stylisation};
 
 /// What to draw, and how well.
 #[derive(Debug, Clone, Default)]
@@ -20,6 +20,8 @@ pub struct PictureOptions {
     pub aux_format: AuxFormat,
     /// Who draws.
     pub renderer: RendererChoice,
+    /// Edges and shades, whatever the scene says.
+    pub stylisation: Option<Stylisation>,
     /// Grid on the ground, whatever the scene says: spacing in scene units, or `Some(None)` for a round one.
     pub grid: Option<Option<f64>>,
     /// Colours for how far the bend moves what is seen, also if the scene does not ask for them.

@@ -75,6 +75,12 @@ pub struct OverlayRecord {
     /// What that says: how far at most what is seen was moved.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mark_words: Option<String>,
+    /// Strength of dark edges.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub edges: Option<f32>,
+    /// Strength of the shade behind what stands out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unsharp: Option<f32>,
     /// Spacing of the grid, scene units.
     pub grid: Option<f64>,
     /// Displacement at the upper end of the colours, scene units.

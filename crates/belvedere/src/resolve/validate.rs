@@ -35,6 +35,9 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
     if let Some(SwitchOrLength::Length(spacing)) = source.document.overlay.as_ref().and_then(|o| o.grid) {
         within("grid", spacing, 0.0, 1e9).map_err(|(key, reason)| source.error(&["overlay", key], reason))?;
     }
+    if let Some(doc) = &source.document.stylisation {
+        doc.strengths().map_err(|(key, reason)| source.error(&["stylisation", key], reason))?;
+    }
     if let Some(doc) = &source.document.overlay {
         within("highlight_px", doc.highlight_px, 0.0, 1e6)
             .map_err(|(key, reason)| source.error(&["overlay", key], reason))?;

@@ -37,6 +37,9 @@ pub struct Document {
     /// Marks over the picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub overlay: Option<super::overlay::OverlayDoc>,
+    /// What is done to the surfaces of the picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stylisation: Option<super::stylisation::StylisationDoc>,
     /// Layers, a flat list; terrain first in drawing order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layer: Vec<LayerDoc>,
@@ -44,7 +47,7 @@ pub struct Document {
     /// are shown everywhere. A section may also name a layer.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub representations: BTreeMap<String, Vec<String>>,
-    /// Stages in order of application: terrain_disocclusion, spline_bend, curved_rays.
+    /// Stages in order of application: terrain_disocclusion, relief, spline_bend, curved_rays.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stage: Vec<StageDoc>,
     /// Builds stages from an intent.
@@ -67,6 +70,7 @@ impl Document {
             camera,
             light: None,
             overlay: None,
+            stylisation: None,
             layer: Vec::new(),
             representations: BTreeMap::new(),
             stage: Vec::new(),
@@ -98,6 +102,7 @@ pub(super) struct Head {
     pub(super) camera: CameraDoc,
     pub(super) light: Option<LightDoc>,
     pub(super) overlay: Option<super::overlay::OverlayDoc>,
+    pub(super) stylisation: Option<super::stylisation::StylisationDoc>,
     #[serde(default)]
     pub(super) representations: BTreeMap<String, Vec<String>>,
     #[serde(default)]

@@ -15,6 +15,7 @@ mod palette;
 pub mod paths;
 mod relief;
 mod stages;
+mod stylisation;
 mod toml_tree;
 mod volume;
 
@@ -37,6 +38,7 @@ pub use stages::{
     AxisDoc, DetailDoc, MergeDoc, PlaneDoc, PresetsDoc, RaysStageDoc, SolverMode, SplineStageDoc, SplitDoc, StageDoc,
     TerrainStageDoc, TurnDoc, WayDoc,
 };
+pub use stylisation::{StylisationDoc, SwitchOrStrength};
 pub use volume::VolumeDoc;
 
 use crate::BelvedereError;
@@ -230,6 +232,7 @@ fn document(root: &Node) -> Result<Document, DocError> {
         camera: head.camera,
         light: head.light,
         overlay: head.overlay,
+        stylisation: head.stylisation,
         representations: head.representations,
         layer: each(root, "layer", layers::LAYER_KINDS, layer)?,
         stage: each(root, "stage", stages::STAGE_KINDS, stage)?,
