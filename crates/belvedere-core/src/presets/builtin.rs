@@ -4,11 +4,64 @@ use super::{BendFrame, DepthUnits, Ease, Preset, PresetDocument, PresetError, on
 use crate::sections::TagPoint;
 
 /// Names of the built-in documents; `identity` also takes an angle in degrees, as in `identity(35)`.
-pub const BUILTIN_NAMES: [&str; 7] =
-    ["progressive", "degressive", "hybrid-flat-steep-flat", "hybrid-steep-flat-steep", "map", "identity", "demo"];
+pub const BUILTIN_NAMES: [&str; 8] = {
+    let mut names = [""; 8];
+    let mut i = 0;
+    while i < names.len() {
+        names[i] = BUILTINS[i].name;
+        i += 1;
+    }
+    names
+};
+
+/// A built-in document and what it is called.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+pub struct Builtin {
+    /// Name.
+    pub name: &'static str,
+    /// Other names, by effect: authors do not agree on which of the two is progressive.
+    pub aliases: &'static [&'static str],
+    /// What is seen, near to far.
+    pub effect: &'static str,
+}
+
+/// The built-in documents.
+pub const BUILTINS: [Builtin; 8] = [
+    Builtin { name: "progressive", aliases: &["steep-flat", "panorama"], effect: "a map in front, a horizon behind" },
+    Builtin {
+        name: "degressive",
+        aliases: &["flat-steep", "map-ahead"],
+        effect: "a close view in front, a map of what lies ahead",
+    },
+    Builtin {
+        name: "hybrid-flat-steep-flat",
+        aliases: &["flat-steep-flat"],
+        effect: "a map between a close view and a horizon",
+    },
+    Builtin {
+        name: "hybrid-steep-flat-steep",
+        aliases: &["steep-flat-steep"],
+        effect: "a close view between two maps",
+    },
+    Builtin { name: "map", aliases: &["steep"], effect: "a plane seen under 80 degrees" },
+    Builtin { name: "identity", aliases: &["straight", "perspective"], effect: "the ordinary perspective" },
+    Builtin {
+        name: "demo",
+        aliases: &[],
+        effect: "degressive, progressive, map by viewing angle, with levels of abstraction",
+    },
+    Builtin {
+        name: "demo-orthographic",
+        aliases: &["demo-parallel"],
+        effect: "the same with a parallel projection at the steep end",
+    },
+];
+
+/// Field of view that passes for a parallel projection, degrees: heights of a twentieth of the distance to the pivot lean by 0.04 of 720 pixels.
+const PARALLEL_FOV_DEG: f64 = 0.1;
 
 impl PresetDocument {
-    /// A built-in document by name, see [`BUILTIN_NAMES`]. Underscores and hyphens are the same.
+    /// A built-in document by name or alias, see [`BUILTINS`]. Underscores and hyphens are the same.
     ///
     /// Source of the curves: ours, after the figures of Pasewaldt et al. 2011 (which print no control points).
     ///
@@ -23,7 +76,8 @@ impl PresetDocument {
     /// ```
     pub fn builtin(name: &str) -> Result<Self, PresetError> {
         let key = name.trim().replace('_', "-");
-        let document = match key.as_str() {
+        let named = BUILTINS.iter().find(|b| b.aliases.contains(&key.as_str()));
+        let document = match named.map_or(key.as_str(), |b| b.name) {
             "progressive" => document(vec![progressive(40.0)]),
             "degressive" => document(vec![degressive(25.0)]),
             "hybrid-flat-steep-flat" => document(vec![flat_steep_flat()]),
@@ -31,6 +85,13 @@ impl PresetDocument {
             "map" => document(vec![map()]),
             "identity" => Self { frame: BendFrame::Plane, ..document(vec![straight(0.0)]) },
             "demo" => demo(),
+            "demo-orthographic" => {
+                let mut document = demo();
+                if let Some(map) = document.presets.last_mut() {
+                    map.fov_y_deg = Some(PARALLEL_FOV_DEG);
+                }
+                document
+            }
             _ => document(vec![straight(angle_of(&key).ok_or(PresetError::UnknownName { name: name.to_owned() })?)]),
         };
         document.validate()?;

@@ -2,10 +2,11 @@
 
 mod align;
 mod builtin;
+pub mod edit;
 mod error;
 mod interpolate;
 
-pub use builtin::BUILTIN_NAMES;
+pub use builtin::{BUILTIN_NAMES, BUILTINS, Builtin};
 pub use error::PresetError;
 pub use interpolate::{InterpolatedPreset, Selection};
 
