@@ -6,6 +6,7 @@ use crate::parse::{
     parse_bytes, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_place, parse_seconds, parse_size,
     parse_spacing, parse_sweep, parse_threads,
 };
+use crate::preset::PresetArgs;
 use belvedere::RendererChoice;
 use belvedere::scene_file::{HighlightMark, SurfaceDoc};
 use belvedere::verbs::reveal::Technique;
@@ -65,6 +66,8 @@ pub(crate) enum Verb {
     Disocclude(DisoccludeArgs),
     /// Buildings and streets in, blocks between streets out: two levels of abstraction, a map, plan drawings
     Generalise(GeneraliseArgs),
+    /// Presets of spline bends: listed, made, changed, checked, plotted
+    Preset(PresetArgs),
     /// One picture and its record
     Render(RenderArgs),
     /// A film or numbered frames: along a route, through viewing angles, or once around

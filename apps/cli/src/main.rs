@@ -6,6 +6,7 @@ mod args;
 mod city;
 mod draw_args;
 mod parse;
+mod preset;
 mod report;
 mod verbs;
 

@@ -42,6 +42,7 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::Render(args) => render(&args, context),
         Verb::Disocclude(args) => disocclude_terrain(args, context),
         Verb::Generalise(args) => crate::city::generalise_city(args, context),
+        Verb::Preset(args) => crate::preset::preset(args, context),
         Verb::Animate(args) => animate_scene(args, context),
         Verb::Project(args) => project(&args, context),
         Verb::Rays(args) => rays(&args, context),

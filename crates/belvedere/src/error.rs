@@ -162,6 +162,12 @@ pub enum BelvedereError {
     /// A coordinate system that cannot be used.
     #[error(transparent)]
     Crs(#[from] belvedere_io::crs::CrsError),
+    /// A preset document that describes no usable deformation.
+    #[error(transparent)]
+    Preset(#[from] belvedere_core::presets::PresetError),
+    /// An operation on a preset document that cannot be carried out.
+    #[error(transparent)]
+    PresetEdit(#[from] belvedere_core::presets::edit::EditError),
     /// A loader or writer failed.
     #[error(transparent)]
     Io(#[from] belvedere_io::IoError),

@@ -17,6 +17,7 @@ mod numbers;
 mod odd_files;
 mod pick;
 mod pictures;
+mod presets;
 mod reveal;
 mod scenes;
 mod speed;

@@ -207,10 +207,7 @@ pub(super) fn presets(
     let document = match doc {
         PresetsDoc::Inline(document) => (**document).clone(),
         PresetsDoc::Named(name) => {
-            let looks_like_path = name.contains(['/', '\\'])
-                || name.to_lowercase().ends_with(".toml")
-                || name.to_lowercase().ends_with(".json");
-            if !looks_like_path {
+            if !scene_file::names_a_preset_file(name) {
                 return PresetDocument::builtin(name).map_err(|e| {
                     let hint = scene_file::suggestion(name, &BUILTIN_NAMES);
                     at.error(&["presets"], format!("{e} ({hint})"))

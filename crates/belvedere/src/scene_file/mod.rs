@@ -161,6 +161,12 @@ pub fn parse_presets(path: &Path, text: &str) -> Result<PresetDocument, Belveder
     de::from_node(&root).map_err(|e| e.in_file(path))
 }
 
+/// Whether a text means the file of a preset document, not a built-in one.
+pub(crate) fn names_a_preset_file(name: &str) -> bool {
+    let small = name.to_lowercase();
+    name.contains(['/', '\\']) || small.ends_with(".toml") || small.ends_with(".json")
+}
+
 /// Reads a text file of at most [`MAX_BYTES`].
 ///
 /// # Errors

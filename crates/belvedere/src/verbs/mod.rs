@@ -9,6 +9,7 @@ pub mod measure;
 mod molecule_info;
 pub mod pick;
 pub mod points;
+pub mod preset;
 pub mod reveal;
 pub mod reveal_target;
 pub mod target_place;

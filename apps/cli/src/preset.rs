@@ -1,0 +1,183 @@
+//! `preset`: its arguments, and what it says.
+
+use crate::report::{Context, done, print};
+use crate::verbs::Goal;
+use belvedere::core::presets::edit::{PresetChange, PresetOperation};
+use belvedere::io::png;
+use belvedere::verbs::preset::{self, Shape};
+use belvedere::{Needs, Session, output};
+use clap::{Args, Subcommand};
+use serde_json::json;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// What is done with presets.
+#[derive(Debug, Args)]
+pub(crate) struct PresetArgs {
+    #[command(subcommand)]
+    pub(crate) work: PresetWork,
+}
+
+/// One kind of work on presets.
+#[derive(Debug, Subcommand)]
+pub(crate) enum PresetWork {
+    /// The built-in documents: names, effects, angles
+    List,
+    /// A document as TOML or JSON
+    Show {
+        /// Built-in name or file
+        preset: String,
+        /// File to write; standard output if left out
+        #[arg(short, long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
+    /// A document of one's own from a built-in one
+    New {
+        /// File to write, .toml or .json
+        #[arg(short, long, value_name = "FILE")]
+        out: PathBuf,
+        /// Built-in name or file to start from
+        #[arg(long, default_value = "demo", value_name = "PRESET")]
+        from: String,
+    },
+    /// Changes a document: PRESET.KEY[.N]=VALUE, all or nothing
+    #[command(after_help = SET_HELP)]
+    Set {
+        /// File of the document
+        file: PathBuf,
+        /// Operations, in this order
+        #[arg(value_name = "OPERATION")]
+        operations: Vec<PresetOperation>,
+        /// Makes a preset one for the viewing angle of a scene's camera
+        #[arg(long, value_name = "PRESET=SCENE")]
+        capture: Vec<String>,
+        /// File to write instead
+        #[arg(short, long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
+    /// Whether a document is good: facing, folds, sections
+    Check {
+        /// Built-in name or file
+        preset: String,
+    },
+    /// A drawing of the curves with eye, wedge of view and tag points
+    Plot {
+        /// Built-in name or file
+        preset: String,
+        /// PNG
+        #[arg(short, long, value_name = "OUT.png")]
+        out: PathBuf,
+        /// What lies between the presets at this viewing angle, degrees
+        #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+        phi: Option<f64>,
+    },
+}
+
+const SET_HELP: &str = "Presets by name, or by position from 1; points, tags and sections by position from 1.
+  PRESET.point.N=U,V      drags a control point          PRESET.phi=DEG     viewing angle
+  PRESET.add-point=T      one more, same curve           PRESET.tau=DEG     half width of its range
+  PRESET.remove-point=N   one less                       PRESET.range=S,E   depths of u = 0 and u = 1
+  PRESET.corner=N         doubles a point, or undoes it  PRESET.fade=A,B    where representations fade
+  PRESET.soften=SHARE     spreads doubled points         PRESET.fov=DEG     field of view, or none
+  PRESET.tag.N=T or U,V   moves a border                 PRESET.mirror      near and far change places
+  PRESET.width.N=DELTA    half width of its transition   PRESET.name=NAME
+  PRESET.section.N=ID     representation of a section    PRESET.duplicate=NAME,DEG
+  PRESET.split=N  PRESET.merge=N                         PRESET.remove
+  add=BUILT-IN,NAME,DEG  frame=camera|plane  units=absolute|distance  ease=linear|smoothstep  pin=true|false  follow=true|false";
+
+pub(crate) fn preset(args: PresetArgs, context: &Context) -> anyhow::Result<Goal> {
+    match args.work {
+        PresetWork::List => list(context),
+        PresetWork::Show { preset, out } => {
+            let text = preset::text(&preset::load(&preset)?, out.as_deref().unwrap_or(Path::new("")))?;
+            context.deliver("preset", out.as_deref(), &text, &[])?;
+            Ok(Goal::Reached)
+        }
+        PresetWork::New { out, from } => {
+            let text = preset::text(&preset::load(&from)?, &out)?;
+            output::write_text(&out, &text, context.common.overwrite)?;
+            written(&[out], &[], context)
+        }
+        PresetWork::Set { file, operations, capture, out } => set(&file, operations, &capture, out, context),
+        PresetWork::Check { preset } => check(&preset, context),
+        PresetWork::Plot { preset, out, phi } => {
+            let document = preset::load(&preset)?;
+            output::check(&out, &[], context.common.overwrite)?;
+            let plot = preset::plot(&document, phi);
+            let height = plot.pixels.len() / plot.width;
+            let pixels = plot.pixels.as_flattened();
+            png::write(&out, context.common.overwrite, plot.width, height, png::Channels::Rgb, pixels, &[])?;
+            written(&[out], &[], context)
+        }
+    }
+}
+
+fn written(files: &[PathBuf], warnings: &[String], context: &Context) -> anyhow::Result<Goal> {
+    if context.common.json {
+        context.print(&done("preset", files, warnings))?;
+    }
+    context.warn(warnings);
+    Ok(Goal::Reached)
+}
+
+fn list(context: &Context) -> anyhow::Result<Goal> {
+    let listed = preset::list()?;
+    if context.common.json {
+        context.print(&json!({ "verb": "preset", "presets": listed }))?;
+        return Ok(Goal::Reached);
+    }
+    let mut text = String::new();
+    for l in listed {
+        let also = if l.aliases.is_empty() { String::new() } else { format!(" (also {})", l.aliases.join(", ")) };
+        writeln!(text, "{}{also}: {}", l.name, l.effect)?;
+        for shape in &l.presets {
+            writeln!(text, "  {}", line(shape))?;
+        }
+    }
+    print(&text)?;
+    Ok(Goal::Reached)
+}
+
+fn line(shape: &Shape) -> String {
+    let [near, pivot, far] = shape.slopes_deg;
+    format!(
+        "{:12} phi {:>3.0}, slopes {near:.0} / {pivot:.0} / {far:.0}, length {:.3}, facing {:.3}",
+        shape.name, shape.phi, shape.length, shape.facing
+    )
+}
+
+fn check(source: &str, context: &Context) -> anyhow::Result<Goal> {
+    let found = preset::check(&preset::load(source)?);
+    if context.common.json {
+        context.print(&json!({ "verb": "preset", "presets": found.presets, "warnings": found.warnings }))?;
+    } else {
+        let lines: Vec<String> = found.presets.iter().map(line).collect();
+        print(&format!("{}\n", lines.join("\n")))?;
+        context.warn(&found.warnings);
+    }
+    Ok(if found.warnings.is_empty() { Goal::Reached } else { Goal::Missed })
+}
+
+fn set(
+    file: &Path,
+    mut operations: Vec<PresetOperation>,
+    capture: &[String],
+    out: Option<PathBuf>,
+    context: &Context,
+) -> anyhow::Result<Goal> {
+    for text in capture {
+        let (preset, scene) =
+            text.split_once('=').ok_or_else(|| anyhow::anyhow!("--capture {text}: write PRESET=SCENE.toml"))?;
+        let session = Session::open(Path::new(scene), &context.options(Needs::View, None))?;
+        let change = PresetChange::Phi(preset::viewing_angle(&session)?);
+        operations.push(PresetOperation::Preset { preset: preset.to_owned(), change });
+    }
+    anyhow::ensure!(!operations.is_empty(), "nothing to do; give operations such as low.phi=25, or --capture");
+    let source = file.to_string_lossy();
+    anyhow::ensure!(file.exists(), "{source}: there is no such file; preset new -o {source} --from NAME makes one");
+    let document = preset::set(&preset::load(&source)?, &operations)?;
+    let to = out.clone().unwrap_or_else(|| file.to_owned());
+    // What is changed in place is meant to be replaced.
+    output::write_text(&to, &preset::text(&document, &to)?, out.is_none() || context.common.overwrite)?;
+    written(&[to], &preset::check(&document).warnings, context)
+}

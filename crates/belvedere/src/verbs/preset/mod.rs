@@ -1,0 +1,156 @@
+//! `preset`: preset documents listed, read, changed, checked and plotted.
+
+mod plot;
+
+pub use plot::{Plot, plot};
+
+use crate::scene_file;
+use crate::{BelvedereError, output};
+use belvedere_core::map::spline::{ReferencePlane, SplineBend, check_presets};
+use belvedere_core::presets::edit::PresetOperation;
+use belvedere_core::presets::{BUILTINS, PresetDocument};
+use belvedere_core::{DVec3, Pinhole, Projection};
+use serde::Serialize;
+use std::path::Path;
+
+/// Distance from the eye to the pivot in plots and checks, scene units: that of the figures in the documentation.
+const DISTANCE: f64 = 1000.0;
+/// Field of view of the camera that plots and checks stand in for, degrees.
+const FOV_Y_DEG: f64 = 50.0;
+
+/// What a built-in document is, at its own viewing angle.
+#[derive(Debug, Clone, Serialize)]
+pub struct Listed {
+    /// Name.
+    pub name: &'static str,
+    /// Other names.
+    pub aliases: &'static [&'static str],
+    /// What is seen.
+    pub effect: &'static str,
+    /// Its presets.
+    pub presets: Vec<Shape>,
+}
+
+/// The curve of a preset in figures.
+#[derive(Debug, Clone, Serialize)]
+pub struct Shape {
+    /// Name, possibly empty.
+    pub name: String,
+    /// Viewing angle, degrees.
+    pub phi: f64,
+    /// Slope at the near end, the pivot and the far end, degrees.
+    pub slopes_deg: [f64; 3],
+    /// Length, curve units.
+    pub length: f64,
+    /// Smallest sine of the angle under which the ground is seen; it must be above 0.
+    pub facing: f64,
+    /// Heights between which nothing folds at a distance of 1000 scene units from eye to pivot; null where there is no limit.
+    pub fold_heights: [Option<f64>; 2],
+}
+
+/// Answer of [`check`].
+#[derive(Debug, Clone, Serialize)]
+pub struct PresetCheck {
+    /// The presets by rising viewing angle.
+    pub presets: Vec<Shape>,
+    /// What will look bad.
+    pub warnings: Vec<String>,
+}
+
+/// The document of a file, or a built-in one by name or alias.
+///
+/// # Errors
+/// [`BelvedereError::Scene`], [`BelvedereError::Io`], [`BelvedereError::Preset`].
+pub fn load(source: &str) -> Result<PresetDocument, BelvedereError> {
+    let path = Path::new(source);
+    if !path.exists() && !scene_file::names_a_preset_file(source) {
+        return Ok(PresetDocument::builtin(source)?);
+    }
+    let (text, _) = scene_file::read_text(path)?;
+    let document = scene_file::parse_presets(path, &text)?;
+    document.validate()?;
+    Ok(document)
+}
+
+/// A document as a file of its name holds it: JSON for `.json`, else TOML.
+///
+/// # Errors
+/// [`BelvedereError::Text`], which no document gives.
+pub fn text(document: &PresetDocument, path: &Path) -> Result<String, BelvedereError> {
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
+        return output::pretty(document);
+    }
+    toml::to_string(document).map_err(|e| BelvedereError::Text { what: "the preset document", reason: e.to_string() })
+}
+
+/// The document after operations, all of them or none.
+///
+/// # Errors
+/// [`BelvedereError::PresetEdit`].
+pub fn set(document: &PresetDocument, operations: &[PresetOperation]) -> Result<PresetDocument, BelvedereError> {
+    Ok(operations.iter().try_fold(document.clone(), |document, operation| document.edited(operation))?)
+}
+
+/// The built-in documents.
+///
+/// # Errors
+/// [`BelvedereError::Preset`], which no built-in gives.
+pub fn list() -> Result<Vec<Listed>, BelvedereError> {
+    let listed = |b: &belvedere_core::presets::Builtin| {
+        let presets = shapes(&PresetDocument::builtin(b.name)?);
+        Ok(Listed { name: b.name, aliases: b.aliases, effect: b.effect, presets })
+    };
+    BUILTINS.iter().map(listed).collect()
+}
+
+/// What will look bad of a document, for data that reach no heights.
+pub fn check(document: &PresetDocument) -> PresetCheck {
+    let warnings = check_presets(document, DISTANCE, None).iter().map(ToString::to_string).collect();
+    PresetCheck { presets: shapes(document), warnings }
+}
+
+fn shapes(document: &PresetDocument) -> Vec<Shape> {
+    document.sorted().iter().filter_map(|p| Some(Shape::of(&p.name, &seen_at(document, p.phi)?.1))).collect()
+}
+
+impl Shape {
+    fn of(name: &str, bend: &SplineBend) -> Self {
+        let curve = bend.curve();
+        let slope = |l: f64| curve.at(l).1.to_angle().to_degrees();
+        let pivot = bend.coordinates(bend.pivot()).l;
+        Self {
+            name: name.to_owned(),
+            phi: bend.resolved().phi_deg,
+            slopes_deg: [0.0, pivot, curve.length()].map(slope),
+            length: curve.length(),
+            facing: bend.facing(),
+            fold_heights: bend.fold_heights().map(|h| Some(h).filter(|h| h.is_finite())),
+        }
+    }
+}
+
+/// The document for a camera at a viewing angle, [`DISTANCE`] from the pivot.
+fn seen_at(document: &PresetDocument, phi_deg: f64) -> Option<(Pinhole, SplineBend)> {
+    let (sin, cos) = phi_deg.to_radians().sin_cos();
+    let (eye, up) = (DISTANCE * DVec3::new(0.0, -cos, sin), DVec3::new(0.0, sin, cos));
+    let screen = Projection::Perspective { fov_y: FOV_Y_DEG.to_radians() };
+    let camera = Pinhole::look_at(eye, DVec3::ZERO, up, screen, [1280, 720], 1.0, None).ok()?;
+    let bend = SplineBend::new(&camera, document, &ReferencePlane::level(0.0), DVec3::ZERO).ok()?;
+    Some((bend.adapted_pinhole(&camera), bend))
+}
+
+/// The viewing angle of a scene's camera over its reference plane, degrees: to make a preset for it.
+///
+/// # Errors
+/// [`BelvedereError::Setting`] for scenes without a spline bend.
+pub fn viewing_angle(session: &crate::Session) -> Result<f64, BelvedereError> {
+    let bend = session.view().stages().iter().find_map(|s| match s {
+        belvedere_core::Stage::SplineBend(bend) => Some(bend),
+        _ => None,
+    });
+    bend.map(|b| b.resolved().phi_deg).ok_or_else(|| {
+        BelvedereError::Setting(
+            "the scene has no spline_bend stage, whose plane and camera give the viewing angle".into(),
+        )
+    })
+}
