@@ -3,6 +3,7 @@
 //! Source: edges in reciprocal depth, which is affine on planes, are ours; depth unsharp masking after Luft, Colditz and Deussen 2006.
 
 use crate::frame::Buffers;
+use crate::sections::Sections;
 use crate::shade::color::{Packed, smoothstep};
 use belvedere_scene::{LayerKind, RenderJob, Stylisation};
 use glam::{DVec3, Vec3};
@@ -42,6 +43,17 @@ pub(crate) fn apply(job: &RenderJob<'_>, width: usize, buffers: &mut Buffers) {
     if unsharp > 0.0 {
         let behind = behind(&buffers.depth, width, ortho);
         light.par_iter_mut().zip(&behind).for_each(|(light, off)| *light *= 1.0 + (unsharp * off).clamp(-DARKEST, 0.0));
+    }
+    // Where representations pass into each other the depths are those of single samples.
+    if let Some(sections) = Sections::new(job).filter(|s| s.representations() > 1)
+        && let Some(world) = &buffers.world
+    {
+        light.par_iter_mut().zip(world).for_each(|(light, p)| {
+            let p = DVec3::from_array(*p);
+            if p.is_finite() {
+                *light = 1.0 - (1.0 - *light) * sections.purity(p) as f32;
+            }
+        });
     }
     buffers.color.par_iter_mut().zip(&light).for_each(|(color, light)| {
         if *light < 1.0 {

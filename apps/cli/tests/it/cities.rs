@@ -118,3 +118,26 @@ fn broken_cities_end_in_one_error_with_the_place() {
         "geometry":{"type":"Polygon","coordinates":[[[7.0,46.0],[7.01,46.0],[7.02,46.0],[7.0,46.0]]]}}]}"#;
     refuses("f.geojson", flat, &["f.geojson"]);
 }
+
+#[test]
+fn a_city_is_abstracted_on_loading() {
+    let place = Place::new();
+    let scene = |loa: &str| {
+        format!(
+            "format = 1\ncrs = \"local\"\n{}{loa}[camera]\neye = [0, -500, 300]\nlook_at = [0, 0, 0]\n",
+            layer("c", "city", "builtin:town?size=600")
+        )
+    };
+    let triangles = |loa: &str| {
+        place.write("s.toml", &scene(loa));
+        let record = place.json(&["render", "s.toml", "-o", "a.png", "--size", "160x90", "--overwrite", "--json"]);
+        assert!(record.is_object());
+        let sidecar: serde_json::Value =
+            serde_json::from_slice(&super::read(&place.path("a.png.json"))).expect("a record");
+        sidecar["stats"]["triangles_in"].as_u64().expect("a count")
+    };
+    let [all, blocks, quarters] = ["", "loa = 1\n", "loa = 2\n"].map(triangles);
+    assert!(blocks < all && quarters <= blocks, "{all} {blocks} {quarters}");
+    place.write("s.toml", &scene("loa = 3\n"));
+    assert!(place.fails(&["check", "s.toml"]).contains("loa is 3, it must be 0"));
+}

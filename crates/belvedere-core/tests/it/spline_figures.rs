@@ -1,8 +1,8 @@
 //! The measured figures of the built-in presets.
 
 use belvedere_core::map::spline::{ReferencePlane, SplineBend, default_pivot};
-use belvedere_core::presets::PresetDocument;
-use belvedere_core::{DVec3, Pinhole, Projection};
+use belvedere_core::presets::{Preset, PresetDocument};
+use belvedere_core::{DVec2, DVec3, Pinhole, Projection, SpaceMap};
 
 /// Camera at `distance` from the origin at viewing angle `phi_deg`, looking north at the origin.
 pub(crate) fn camera_at(phi_deg: f64, distance: f64) -> Pinhole {
@@ -71,4 +71,58 @@ fn demo_faces_the_camera_and_never_folds_over_the_whole_range_of_angles() {
         let [low, high] = b.fold_heights();
         assert!(high >= 1140.0 && low <= -1089.0, "folds at {low}..{high} at {phi_deg}");
     }
+}
+
+/// Tilting from level to straight down in quarter degrees: the ground never turns its back, and nothing leaps.
+#[test]
+fn demos_sweep_through_all_angles_without_leaps() {
+    const STEP_DEG: f64 = 0.25;
+    for (name, most) in [("demo", 0.02), ("demo-orthographic", 0.05)] {
+        let document = PresetDocument::builtin(name).unwrap();
+        let range = |f: fn(f64, f64) -> f64, of: fn(&Preset) -> f64| document.presets.iter().map(of).reduce(f).unwrap();
+        let (first, last) = (range(f64::min, |p| p.phi), range(f64::max, |p| p.phi));
+        let ground: Vec<DVec3> = (0..21 * 31)
+            .map(|i| DVec3::new(100.0 * f64::from(i % 21) - 1000.0, 100.0 * f64::from(i / 21) - 800.0, 0.0))
+            .collect();
+        let mut before: Option<Vec<Option<DVec2>>> = None;
+        let mut worst = 0.0f64;
+        for i in 0..=360 {
+            let phi_deg = STEP_DEG * f64::from(i);
+            let camera = camera_at(phi_deg, 1000.0);
+            // The camera turns about the origin, also where it looks along the ground.
+            let b = SplineBend::new(&camera, &document, &ReferencePlane::level(0.0), DVec3::ZERO).unwrap();
+            if (first..=last).contains(&phi_deg) {
+                assert!(b.facing() > 0.0, "{name}: facing {} at {phi_deg}", b.facing());
+            }
+            let photograph = b.adapted_pinhole(&camera);
+            // Image coordinates in multiples of the distance of the image from the eye, for the camera's own field of view.
+            let place = |p: &DVec3| {
+                let (pixel, _) = photograph.project(b.apply(*p).unwrap()).ok()?;
+                let at = (pixel - photograph.center_px()) / camera.scale_px();
+                (at.abs().max_element() < 0.6).then_some(at)
+            };
+            let now: Vec<Option<DVec2>> = ground.iter().map(place).collect();
+            if let Some(before) = &before {
+                let motion = |(a, b): (&Option<DVec2>, &Option<DVec2>)| Some(a.as_ref()?.distance(*b.as_ref()?));
+                worst = before.iter().zip(&now).filter_map(motion).fold(worst, f64::max);
+            }
+            before = Some(now);
+        }
+        assert!(worst > 0.001 && worst <= most, "{name}: {worst} per {STEP_DEG} degrees");
+    }
+}
+
+/// The steep end of `demo-orthographic`: edges of towers that are parallel in space are so in the picture.
+#[test]
+fn the_steep_end_may_be_a_parallel_projection() {
+    let document = PresetDocument::builtin("demo-orthographic").unwrap();
+    let camera = camera_at(85.0, 1000.0);
+    let photograph = bend(&document, &camera).adapted_pinhole(&camera);
+    let image = |p: DVec3| photograph.project(p).unwrap().0;
+    let edge = |x: f64, y: f64| image(DVec3::new(x, y, 50.0)) - image(DVec3::new(x, y, 0.0));
+    for (x, y) in [(-400.0, -200.0), (300.0, 250.0), (0.0, 300.0)] {
+        let off = edge(x, y) - edge(0.0, 0.0);
+        assert!(off.length() < 0.1, "({x}, {y}): {} pixels", off.length());
+    }
+    assert!((image(DVec3::ZERO) - photograph.center_px()).length() < 1e-6);
 }

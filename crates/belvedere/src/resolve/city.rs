@@ -6,7 +6,7 @@ use super::loader::Loader;
 use super::mesh::wanted;
 use crate::BelvedereError;
 use crate::scene_file::{CityDoc, Paths};
-use belvedere_construct::generalise::{LandCoverMap, land_cover};
+use belvedere_construct::generalise::{GeneraliseSettings, LandCoverMap, generalise, land_cover};
 use belvedere_core::DVec2;
 use belvedere_io::city::{CityColors, CityGround, plate_extent, reproject, surface};
 use belvedere_io::crs::CoordinateSystem;
@@ -95,6 +95,9 @@ pub(super) fn layer(
         city.areas.extend(part.areas);
     }
     lift(&mut city, doc.height_offset_m);
+    if doc.loa > 0 {
+        city = abstraction(loader, index, &city, doc.loa)?;
+    }
     let terrain = |xy: DVec2| ground.terrain.and_then(|t| t.surface_at(xy));
     let terrain: Option<&dyn Fn(DVec2) -> Option<f64>> = if ground.terrain.is_some() { Some(&terrain) } else { None };
     if let Some(terrain) = terrain {
@@ -105,6 +108,23 @@ pub(super) fn layer(
         layer.wanted = Some(wanted(&layer, select).map_err(|e| loader.fail(index, "select", e))?);
     }
     Ok(LayerKind::Mesh(layer))
+}
+
+/// A city at a level of abstraction.
+fn abstraction(loader: &mut Loader<'_>, index: usize, city: &City, loa: u8) -> Result<City, BelvedereError> {
+    let progress = &loader.options.progress;
+    let found = generalise(city, &GeneraliseSettings::default(), progress).map_err(|e| loader.fail(index, "loa", e))?;
+    let [fine, coarse] = found.levels;
+    let level = if loa == 1 { fine } else { coarse };
+    let notes = found.report.notes.into_iter().filter(|n| n.starts_with(level.name)).collect();
+    loader.note(index, notes);
+    let missed = found.report.levels.iter().find(|l| l.name == level.name && !l.volume_kept);
+    if let Some(missed) = missed {
+        loader.note(index, vec![format!("{} keeps {:.0} % of the volume", missed.name, 100.0 * missed.volume_share)]);
+    }
+    // What lay on the ground lies there still, green cells over it.
+    let areas = city.areas.iter().cloned().chain(level.city.areas).collect();
+    Ok(City { areas, ..level.city })
 }
 
 /// A city as triangles, its buildings as parts; without terrain on a plate of its land cover.

@@ -94,6 +94,10 @@ fn layer_sources(layer: &LayerDoc) -> Result<(), Complaint> {
         LayerDoc::Line(l) if l.source.is_some() == l.route.is_some() => {
             Err(("source", "a line layer needs exactly one of source and route".into()))
         }
+        LayerDoc::City(l) if l.loa > 2 => Err((
+            "loa",
+            format!("loa is {}, it must be 0 (as it is), 1 (blocks) or 2 (blocks between main streets)", l.loa),
+        )),
         LayerDoc::Boxes(l) if l.source.is_some() == l.boxes.is_some() => {
             Err(("source", "a boxes layer needs exactly one of source and boxes".into()))
         }

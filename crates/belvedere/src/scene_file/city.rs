@@ -24,6 +24,10 @@ pub struct CityDoc {
     /// Level of detail to draw, such as `"1.2"`; by default the highest of each object.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lod: Option<String>,
+    /// Level of abstraction: 0, the buildings as they are; 1, blocks between all streets; 2, blocks between main streets, landmarks
+    /// kept in both. The streets are those of the files.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub loa: u8,
     /// Added to all heights of the files, metres: between their datum and that of the terrain.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub height_offset_m: f64,
@@ -36,6 +40,10 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
+fn is_none(loa: &u8) -> bool {
+    *loa == 0
+}
+
 impl CityDoc {
     /// A file in the usual style.
     pub(crate) fn of(id: String, source: &str) -> Self {
@@ -46,6 +54,7 @@ impl CityDoc {
             select: None,
             crs: None,
             lod: None,
+            loa: 0,
             height_offset_m: 0.0,
             style: CityStyleDoc::default(),
         }

@@ -18,6 +18,9 @@ const DISTANCE: f64 = 1000.0;
 /// Field of view of the camera that plots and checks stand in for, degrees.
 const FOV_Y_DEG: f64 = 50.0;
 
+/// Heights beyond do not count as limits: straight curves bend by rounding alone.
+const NO_LIMIT: f64 = 1e3 * DISTANCE;
+
 /// What a built-in document is, at its own viewing angle.
 #[derive(Debug, Clone, Serialize)]
 pub struct Listed {
@@ -120,11 +123,12 @@ impl Shape {
         let pivot = bend.coordinates(bend.pivot()).l;
         Self {
             name: name.to_owned(),
-            phi: bend.resolved().phi_deg,
+            // No negative zero.
+            phi: bend.resolved().phi_deg + 0.0,
             slopes_deg: [0.0, pivot, curve.length()].map(slope),
             length: curve.length(),
             facing: bend.facing(),
-            fold_heights: bend.fold_heights().map(|h| Some(h).filter(|h| h.is_finite())),
+            fold_heights: bend.fold_heights().map(|h| Some(h).filter(|h| h.abs() < NO_LIMIT)),
         }
     }
 }

@@ -217,10 +217,9 @@ impl<'a> Panel<'a> {
         let title = if shape.name.is_empty() { "preset" } else { &shape.name };
         let folds = match shape.fold_heights {
             [None, None] => "never folds".to_owned(),
-            [low, high] => {
-                let height = |h: Option<f64>| h.map_or("no limit".to_owned(), |h| format!("{h:.0}"));
-                format!("folds below {} and above {} at a distance of 1000", height(low), height(high))
-            }
+            [Some(low), None] => format!("folds below {low:.0}"),
+            [None, Some(high)] => format!("folds above {high:.0}"),
+            [Some(low), Some(high)] => format!("folds below {low:.0}, above {high:.0}"),
         };
         let at = |y: f64| self.corner + DVec2::new(MARGIN[0], y);
         canvas.text(at(32.0), 22.0, &format!("{title}, phi {:.0}°", shape.phi), INK, None);
@@ -240,14 +239,10 @@ impl<'a> Panel<'a> {
         );
         let names: Vec<String> = (0..self.bend.sections().len())
             .filter_map(|i| self.bend.sections().ids(i))
-            .map(|(a, b)| if a == b { a.to_owned() } else { format!("{a} to {b}") })
+            .map(|(start, target)| if self.bend.sections().beta() < 0.5 { start } else { target }.to_owned())
             .collect();
-        let below = format!(
-            "u = 0 at depth {:.0}, u = 1 at {:.0}; sections near to far: {}",
-            resolved.s,
-            resolved.e,
-            names.join(", ")
-        );
+        let below =
+            format!("u = 0 at depth {:.0}, u = 1 at {:.0}; sections {}", resolved.s, resolved.e, names.join(", "));
         canvas.text(at(PANEL.y - 18.0), 15.0, &below, FAINT, None);
     }
 }
