@@ -259,7 +259,9 @@ mod tests {
             assert_eq!(drawn.width, 720 * document.presets.len().min(3), "{}", builtin.name);
             let green = drawn.pixels.iter().filter(|[r, g, b]| g > r && i32::from(*g) > i32::from(*b) + 40).count();
             let red = drawn.pixels.iter().filter(|[r, g, b]| *r > 180 && *g < 60 && *b < 70).count();
-            assert!(green > 300 && red < 50, "{}: {green} {red}", builtin.name);
+            // Level ground seen along itself is the one that shows no face.
+            let edge_on = builtin.name == "identity";
+            assert!((green > 300 && red < 50) != edge_on, "{}: {green} {red}", builtin.name);
             assert_eq!(plot(&document, Some(40.0)).width, 720);
         }
     }
