@@ -100,7 +100,7 @@ pub(crate) enum Verb {
 /// The figures.
 #[derive(Debug, Args)]
 pub(crate) struct FiguresArgs {
-    /// Which figures, separated by commas: terrain, curved, compare, algorithms
+    /// Which figures, separated by commas: terrain, curved, spline, compare, algorithms
     #[arg(value_parser = parse_figures)]
     pub(crate) what: FigureKinds,
     /// Scene files with a camera and features that must be seen, in place of the built-in areas (and of the two real ranges
@@ -118,6 +118,8 @@ pub(crate) enum FigureKind {
     Terrain,
     /// Curved ray camera: Cui et al. 2010
     Curved,
+    /// Multi-perspective views: Pasewaldt et al. 2011
+    Spline,
     /// One hidden target by transparency, cutaway, explosion and bent rays
     Compare,
     /// Charts of docs/algorithms
@@ -131,7 +133,7 @@ pub(crate) struct FigureKinds(pub(crate) Vec<FigureKind>);
 fn parse_figures(text: &str) -> Result<FigureKinds, String> {
     let kind = |name: &str| {
         FigureKind::from_str(name.trim(), false)
-            .map_err(|_| format!("\"{name}\" is none; possible: terrain, curved, compare, algorithms"))
+            .map_err(|_| format!("\"{name}\" is none; possible: terrain, curved, spline, compare, algorithms"))
     };
     Ok(FigureKinds(text.split(',').map(kind).collect::<Result<_, _>>()?))
 }

@@ -355,6 +355,9 @@ fn draw_figures(args: &FiguresArgs, context: &Context) -> anyhow::Result<Goal> {
     if args.what.0.contains(&FigureKind::Curved) {
         written.extend(belvedere_gallery::curved_figures(&args.out, &options, overwrite)?);
     }
+    if args.what.0.contains(&FigureKind::Spline) {
+        written.extend(belvedere_gallery::spline_figures(&args.out, &options, overwrite)?);
+    }
     if args.what.0.contains(&FigureKind::Compare) {
         written.extend(belvedere_gallery::compare_figures(&args.out, &options, overwrite)?);
     }

@@ -1,6 +1,6 @@
 //! `figures compare`: one hidden target, shown by every means there is.
 
-use crate::curved::easel::{Easel, bent, pixels_of, straight};
+use crate::easel::{Easel, bent, pixels_of, straight};
 use crate::html::{self, escape};
 use crate::sheet::{self, Panel};
 use anyhow::{Context, Result};

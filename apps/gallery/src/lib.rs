@@ -6,12 +6,16 @@ mod chart;
 mod compare;
 mod curved;
 mod demo;
+mod easel;
+mod figure_set;
 mod html;
 mod sheet;
+mod spline;
 mod terrain;
 
 pub use algorithms::figures as algorithm_figures;
 pub use compare::figures as compare_figures;
 pub use curved::figures as curved_figures;
 pub use demo::{DemoScene, SCENES, demo};
+pub use spline::figures as spline_figures;
 pub use terrain::figures as terrain_figures;

@@ -1,7 +1,7 @@
 //! A river in a canyon, previewed.
 
-use super::Figure;
-use super::easel::Easel;
+use crate::easel::Easel;
+use crate::figure_set::Figure;
 use anyhow::{Context, Result};
 use belvedere::construct::{self, MeasureOptions};
 use belvedere::scene::Progress;

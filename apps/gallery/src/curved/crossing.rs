@@ -1,7 +1,7 @@
 //! Something long that lies across a transition.
 
-use super::Figure;
-use super::easel::{Easel, bent, straight, with_boxes};
+use crate::easel::{Easel, bent, straight, with_boxes};
+use crate::figure_set::Figure;
 use anyhow::Result;
 use belvedere::core::DVec3;
 use belvedere::core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};

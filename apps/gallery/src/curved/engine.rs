@@ -1,7 +1,7 @@
 //! A volume: a block with a valve in a chamber that opens above.
 
-use super::Figure;
-use super::easel::{Easel, bent, straight, turns};
+use crate::easel::{Easel, bent, straight, turns};
+use crate::figure_set::Figure;
 use anyhow::{Context, Result};
 use belvedere::core::DVec3;
 use belvedere::core::map::curved_rays::{Model, TurnSpec};

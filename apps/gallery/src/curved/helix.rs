@@ -1,7 +1,7 @@
 //! Two double helices, one behind the other.
 
-use super::Figure;
-use super::easel::{Easel, bent, straight, turns};
+use crate::easel::{Easel, bent, straight, turns};
+use crate::figure_set::Figure;
 use crate::sheet::Panel;
 use anyhow::{Context, Result};
 use belvedere::Session;

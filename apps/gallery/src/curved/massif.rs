@@ -1,7 +1,7 @@
 //! The valley behind a pass.
 
-use super::Figure;
-use super::easel::{Easel, bent, straight, turns};
+use crate::easel::{Easel, bent, straight, turns};
+use crate::figure_set::Figure;
 use anyhow::{Context, Result};
 use belvedere::Session;
 use belvedere::construct::{self, MeasureOptions};

@@ -2,38 +2,15 @@
 
 mod canyon;
 mod crossing;
-pub(crate) mod easel;
 mod engine;
 mod helix;
 mod massif;
-mod page;
 mod street;
 
-use crate::sheet::{self, Panel};
-use anyhow::{Context, Result};
+use crate::figure_set::{Entry, FigureSet};
+use anyhow::Result;
 use belvedere::OpenOptions;
-use belvedere::output::{self, pretty};
-use easel::Easel;
-use page::FigureRecord;
 use std::path::{Path, PathBuf};
-
-/// A figure: panels of one size in rows.
-struct Figure {
-    panels: Vec<Panel>,
-    columns: usize,
-    /// How much of what matters each panel shows, in the unit of its note; empty where that is not the point.
-    seen: Vec<f64>,
-}
-
-/// A figure that can be drawn.
-struct Entry {
-    /// The file is `curved_NAME.png`.
-    name: &'static str,
-    title: &'static str,
-    /// What is seen, for the page.
-    says: &'static str,
-    draw: fn(&Easel<'_>) -> Result<Figure>,
-}
 
 /// In the order of the page.
 const FIGURES: [Entry; 11] = [
@@ -108,33 +85,19 @@ const FIGURES: [Entry; 11] = [
     },
 ];
 
-/// Draws the figures of the curved ray camera into `folder`, which is made if need be: `curved_NAME.png`, `curved.json` with what
-/// stands under the panels, and `curved.html`. Returns the files.
+/// Draws the figures of the curved ray camera into `folder`, see [`FigureSet::draw`].
 ///
 /// # Errors
 /// A file that exists if `overwrite` is false; those of drawing a scene.
 pub fn figures(folder: &Path, options: &OpenOptions, overwrite: bool) -> Result<Vec<PathBuf>> {
-    std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
-    let picture = |entry: &Entry| format!("curved_{}.png", entry.name);
-    let (page, record) = (folder.join("curved.html"), folder.join("curved.json"));
-    for path in FIGURES.iter().map(|e| folder.join(picture(e))).chain([page.clone(), record.clone()]) {
-        output::check(&path, &[], overwrite)?;
-    }
-    let easel = Easel::new(options);
-    let (mut written, mut records) = (Vec::new(), Vec::new());
-    for (k, entry) in FIGURES.iter().enumerate() {
-        options.progress.tick("figures of curved rays", k as f64 / FIGURES.len() as f64)?;
-        let figure = (entry.draw)(&easel)?;
-        let path = folder.join(picture(entry));
-        sheet::write(&path, sheet::sheet(&figure.panels, figure.columns), NOTE, overwrite)?;
-        records.push(FigureRecord::new(entry, picture(entry), &figure));
-        written.push(path);
-    }
-    output::write_text(&record, &pretty(&records)?, overwrite)?;
-    output::write_text(&page, &page::page(&records), overwrite)?;
-    written.extend([record, page]);
-    Ok(written)
+    let set = FigureSet {
+        name: "curved",
+        title: "Rays that bend",
+        intro: "The figures of Cui et al. 2010, <i>A curved ray camera for handling occlusions through continuous multiperspective \
+                visualization</i>, on generated scenes; the paper's own models are not public, so what the figures show can be \
+                compared, not single pixels. Bent pictures are not to scale and not for navigation.",
+        comment: "rays are bent unless a panel says straight; not to scale, not for navigation",
+        entries: &FIGURES,
+    };
+    set.draw(folder, options, overwrite)
 }
-
-/// Goes with every picture.
-const NOTE: &str = "rays are bent unless a panel says straight; not to scale, not for navigation";

@@ -1,7 +1,7 @@
 //! A street corner: what waits in the side streets.
 
-use super::Figure;
-use super::easel::{Easel, bent, parted, pixels_of, straight, with_boxes};
+use crate::easel::{Easel, bent, parted, pixels_of, straight, with_boxes};
+use crate::figure_set::Figure;
 use crate::sheet::Panel;
 use anyhow::Result;
 use belvedere::core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};

@@ -1,0 +1,82 @@
+//! `figures spline`: the figures of Pasewaldt et al. 2011, drawn again on generated scenes.
+
+mod angles;
+mod bent;
+mod canyon;
+mod corners;
+mod relief;
+mod styles;
+mod town;
+
+use crate::figure_set::{Entry, FigureSet};
+use anyhow::Result;
+use belvedere::OpenOptions;
+use std::path::{Path, PathBuf};
+
+/// In the order of the page.
+const FIGURES: [Entry; 7] = [
+    Entry {
+        name: "town",
+        title: "Progressive, degressive and hybrid views of a town",
+        says: "Each view has three styling sections, near to far: the houses as they are, blocks between all streets, blocks between main \
+               streets. Landmarks stay. The levels of abstraction are made from the same map of the town.",
+        draw: town::views,
+    },
+    Entry {
+        name: "canyon",
+        title: "Relief and map of a canyon",
+        says: "A steep far end reads as a map: there the shaded relief passes into flat tints with a grid. The curve that does it is drawn \
+               beside, with the eye, its field of view and the tag point.",
+        draw: canyon::sections,
+    },
+    Entry {
+        name: "corners",
+        title: "Hard transitions between three planes",
+        says: "Control points that are doubled make nearly plane parts with short bends between them. Houses fold where the bend is sharper \
+               than they are high; spread points bend five times as gently.",
+        draw: corners::hard_and_soft,
+    },
+    Entry {
+        name: "styles",
+        title: "Stylisation",
+        says: "Dark edges where depth and faces break, and shade behind what stands out, alone and together.",
+        draw: styles::side_by_side,
+    },
+    Entry {
+        name: "angles",
+        title: "From panorama to map",
+        says: "One document over all viewing angles: a degressive view, a progressive one, and a map in parallel projection; what lies between \
+               is interpolated, representations fade.",
+        draw: angles::sweep,
+    },
+    Entry {
+        name: "relief",
+        title: "Relief as panorama makers draw it",
+        says: "Heights exaggerated towards the background, a curved horizon, and plan oblique relief: a stage of its own before any bend.",
+        draw: relief::changes,
+    },
+    Entry {
+        name: "chain",
+        title: "All techniques at once",
+        says: "The ground makes way for the routes, relief is exaggerated, space is bent by a preset, and rays turn behind the pass: four maps \
+               in one chain, and the promise of visibility holds behind all of them.",
+        draw: relief::chain,
+    },
+];
+
+/// Draws the figures of multi-perspective views into `folder`, see [`FigureSet::draw`].
+///
+/// # Errors
+/// A file that exists if `overwrite` is false; those of drawing a scene.
+pub fn figures(folder: &Path, options: &OpenOptions, overwrite: bool) -> Result<Vec<PathBuf>> {
+    let set = FigureSet {
+        name: "spline",
+        title: "Space on a curve",
+        intro: "The figures of Pasewaldt, Trapp and Döllner 2011, <i>Multiscale visualization of 3D geovirtual environments using \
+                view-dependent multi-perspective views</i>, on generated scenes; the paper's own models and control points are not public. Ground \
+                pictures are drawn from the scenes' own vectors and land cover. Bent pictures are not to scale and not for navigation.",
+        comment: "space is bent unless a panel says straight; not to scale, not for navigation",
+        entries: &FIGURES,
+    };
+    set.draw(folder, options, overwrite)
+}
