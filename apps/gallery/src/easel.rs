@@ -9,6 +9,9 @@ use belvedere::scene::{BoxLayer, BoxShape, Frame, Layer, LayerKind};
 use belvedere::{CameraPicture, OpenOptions, PictureOptions, Session};
 use std::path::Path;
 
+/// Thresholds of each sample where representations pass into each other: 64 a pixel.
+const EXPOSURES: u32 = 16;
+
 pub(crate) struct Easel<'a> {
     options: &'a OpenOptions,
 }
@@ -25,7 +28,10 @@ impl<'a> Easel<'a> {
     }
 
     fn request(&self) -> PictureOptions {
-        PictureOptions { no_mark: true, progress: self.options.progress.clone(), ..PictureOptions::default() }
+        let mut request =
+            PictureOptions { no_mark: true, progress: self.options.progress.clone(), ..PictureOptions::default() };
+        request.quality.exposures = EXPOSURES;
+        request
     }
 
     pub(crate) fn draw(&self, session: &Session) -> Result<Frame> {

@@ -23,7 +23,7 @@ source = "builtin:canyon?seed=7"
 id = "map"
 kind = "terrain"
 source = "builtin:canyon?seed=7"
-style = { palette = "plain", relief = "none" }
+style = { relief = "none" }
 
 [[layer]]
 id = "river"
@@ -52,8 +52,11 @@ pub(super) fn sections(easel: &Easel<'_>) -> Result<Figure> {
         Stage::SplineBend(bend) => Some(bend.resolved().phi_deg),
         _ => None,
     });
+    let (before, map) = SCENE.split_once("[[layer]]\nid = \"map\"").context("the scene has a map")?;
+    let (_, after) = map.split_once("[[layer]]").context("the map is followed by the river")?;
+    let relief = format!("{before}[[layer]]{after}").replace("map = [\"map\"]\n", "");
     let panels = vec![
-        easel.panel(&straight(&whole), "Straight", "shaded relief".into())?,
+        easel.panel(&straight(&easel.open(&relief, TILE)?), "Straight", "shaded relief".into())?,
         easel.panel(&whole, "Degressive", "shaded relief in front, a map of what lies ahead".into())?,
         curve(&document, phi.context("the view is bent")?, "The curve"),
     ];
