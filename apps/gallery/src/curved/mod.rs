@@ -85,7 +85,7 @@ const FIGURES: [Entry; 11] = [
     },
 ];
 
-/// Draws the figures of the curved ray camera into `folder`, see [`FigureSet::draw`].
+/// Draws the figures of the curved ray camera into `folder`: sheets, a page and a record. Returns the files.
 ///
 /// # Errors
 /// A file that exists if `overwrite` is false; those of drawing a scene.

@@ -64,7 +64,7 @@ const FIGURES: [Entry; 7] = [
     },
 ];
 
-/// Draws the figures of multi-perspective views into `folder`, see [`FigureSet::draw`].
+/// Draws the figures of multi-perspective views into `folder`: sheets, a page and a record. Returns the files.
 ///
 /// # Errors
 /// A file that exists if `overwrite` is false; those of drawing a scene.
