@@ -122,6 +122,37 @@ impl<'a> MeshTree<'a> {
         best
     }
 
+    /// Whether the straight segment `a b` passes any triangle: [`MeshTree::first_crossing`] is something, found sooner.
+    pub fn is_crossed(&self, a: DVec3, b: DVec3) -> bool {
+        if self.tree.nodes.is_empty() {
+            return false;
+        }
+        let slabs = Slabs::new(a - self.mesh.origin(), b - self.mesh.origin(), self.lift);
+        let mut stack = [0u32; DEPTH];
+        let mut height = 1;
+        while height > 0 {
+            height -= 1;
+            let node = &self.tree.nodes[stack[height] as usize];
+            let first = node.first_index as usize;
+            if node.prim_count > 0 {
+                let leaf = &self.tree.primitive_indices[first..first + node.prim_count as usize];
+                if leaf.iter().any(|&triangle| self.crossing(triangle as usize, a, b).is_some()) {
+                    return true;
+                }
+                continue;
+            }
+            for child in [first + 1, first] {
+                if slabs.meet(self.tree.nodes[child].aabb()) {
+                    // A tree deeper than the stack: the slower way has no limit.
+                    let Some(place) = stack.get_mut(height) else { return self.first_crossing(a, b).is_some() };
+                    *place = child as u32;
+                    height += 1;
+                }
+            }
+        }
+        false
+    }
+
     /// Where the straight segment `a b` passes a triangle. Of the triangles around an edge at least one is passed by a segment through it.
     pub fn crossing(&self, triangle: usize, a: DVec3, b: DVec3) -> Option<f64> {
         let along = b - a;
@@ -158,6 +189,35 @@ impl Segment {
         let [t0, t1] = clip_segment(self.a.to_array(), self.along.to_array(), [low.to_array(), high.to_array()]);
         // Rounding of the quotients must not lose a box that is only just touched.
         (t0 - 1e-12 <= t1 + 1e-12).then_some(t0 - 1e-12)
+    }
+}
+
+/// Nodes that wait to be looked at, at most.
+const DEPTH: usize = 96;
+
+/// A segment prepared for boxes that it may meet anywhere.
+struct Slabs {
+    a: DVec3,
+    /// 1 / the segment's extent along each axis, huge where it has none.
+    inverse: DVec3,
+    lift: [f64; 2],
+}
+
+impl Slabs {
+    /// Extents below this are none.
+    const LEAST: f64 = 1e-300;
+
+    fn new(a: DVec3, b: DVec3, lift: [f64; 2]) -> Self {
+        let inverse = (b - a).to_array().map(|d| if d.abs() < Self::LEAST { 1.0 / Self::LEAST } else { 1.0 / d });
+        Self { a, inverse: DVec3::from_array(inverse), lift }
+    }
+
+    fn meet(&self, bounds: &Bounds) -> bool {
+        let low = (bounds.min.as_dvec3() + self.lift[0] * DVec3::Z - self.a) * self.inverse;
+        let high = (bounds.max.as_dvec3() + self.lift[1] * DVec3::Z - self.a) * self.inverse;
+        let (enter, leave) = (low.min(high).max_element().max(0.0), low.max(high).min_element().min(1.0));
+        // Rounding must not lose a box that is only just touched.
+        enter - 1e-12 <= leave + 1e-12
     }
 }
 
@@ -205,6 +265,16 @@ mod tests {
             let expected = all.min_by(|x, y| x.partial_cmp(y).unwrap());
             hits += usize::from(expected.is_some());
             assert_eq!(tree.first_crossing(a, b), expected);
+            assert_eq!(tree.is_crossed(a, b), expected.is_some());
+        }
+        // Along an axis, through faces of boxes, and of no length.
+        let corner = DVec3::new(5e5, 4.7e6, 0.0);
+        for i in 0..200 {
+            let from = corner + DVec3::new(f64::from(i % 20) * 5.0, f64::from(i / 20) * 10.0, -10.0);
+            for along in [DVec3::Z, DVec3::X, DVec3::Y, DVec3::ZERO].map(|axis| 150.0 * axis) {
+                let found = tree.first_crossing(from, from + along).is_some();
+                assert_eq!(tree.is_crossed(from, from + along), found, "{from} {along}");
+            }
         }
         assert!(hits > 200, "{hits}");
     }

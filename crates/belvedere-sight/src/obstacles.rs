@@ -132,7 +132,7 @@ impl<'a> Obstacles<'a> {
             }
             best >= floor
         });
-        if best > -f64::MIN_POSITIVE && self.meshes.iter().any(|(_, m)| m.first_crossing(a, b).is_some()) {
+        if best > -f64::MIN_POSITIVE && self.meshes.iter().any(|(_, m)| m.is_crossed(a, b)) {
             best = -f64::MIN_POSITIVE;
         }
         best

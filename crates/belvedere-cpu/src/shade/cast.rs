@@ -130,7 +130,7 @@ impl<'a> Casters<'a> {
         let to = |top: f64| p + self.way(p.z, top).max(0.0) * sun;
         let end = to(self.solid.max.z);
         self.obstacles.boxes().near(p, end, 0.0, &mut |shape, _| !throws(shape.layer))
-            && self.obstacles.meshes().iter().all(|(i, tree)| !throws(*i) || tree.first_crossing(p, end).is_none())
+            && self.obstacles.meshes().iter().all(|(i, tree)| !throws(*i) || !tree.is_crossed(p, end))
             && (!over_ground || self.obstacles.grounds().iter().all(|(i, g)| !throws(*i) || g.sees(p, to(self.top))))
     }
 }
