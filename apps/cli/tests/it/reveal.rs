@@ -143,9 +143,9 @@ fn info_says_what_it_reads() {
 #[test]
 fn files_of_formats_that_are_not_read_yet_are_named() {
     let place = place(|_, _| false);
-    place.write("block.json", "{\"type\": \"CityJSON\", \"version\": \"2.0\"}");
+    place.write("block.osm", "<osm version=\"0.6\"></osm>");
     place.write("survey.las", "LASF\0\0\0\0");
-    for (file, format) in [("block.json", "CityJSON"), ("survey.las", "LAS or LAZ")] {
+    for (file, format) in [("block.osm", "OSM XML"), ("survey.las", "LAS or LAZ")] {
         let found = place.json(&["info", file, "--json"]);
         assert_eq!((&found["files"][0]["kind"], &found["files"][0]["format"]), (&"unread".into(), &format.into()));
         assert!(found["files"][0]["note"].as_str().is_some_and(|note| note.starts_with("not read by this version")));
