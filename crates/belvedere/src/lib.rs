@@ -31,6 +31,7 @@
 mod camera_path;
 pub mod city_map;
 mod data;
+pub mod editor;
 mod error;
 pub mod fallback;
 mod open;

@@ -1,13 +1,13 @@
 //! A scene with a view and a light: everything that a picture needs, nothing left to look up.
 
-use crate::BelvedereError;
 use crate::record::{AreaRecord, InputFile};
-use crate::resolve::constructor::{self, ConstructorReport};
+use crate::resolve::constructor::{self, ConstructorReport, Memory};
 use crate::resolve::motion::Motions;
 use crate::resolve::terrain::{self, Solving};
-use crate::resolve::view;
+use crate::resolve::{validate, view};
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{Document, OverlayDoc, SourceDocument, StageDoc};
+use crate::scene_file::{Document, OverlayDoc, SourceDocument, StageDoc, TerrainStageDoc};
+use crate::{BelvedereError, OpenOptions};
 use belvedere_core::View;
 use belvedere_cpu::CpuRenderer;
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
@@ -109,6 +109,35 @@ impl Session {
         })
     }
 
+    /// The same scene by a document that was edited, opened as by `options`: as [`Session::from_document`] of that document, without
+    /// reading the layers again.
+    ///
+    /// * `about_layers`: warnings that stay.
+    pub(crate) fn edited(
+        &self,
+        document: Document,
+        options: &OpenOptions,
+        about_layers: &[String],
+    ) -> Result<Self, BelvedereError> {
+        let source = SourceDocument::new(document);
+        validate::document(&source)?;
+        let roots = Roots { allowed: options.allow_roots.clone(), ..Roots::default() };
+        let mut memory = Memory::default();
+        let mut solving = Solving { memory: &mut memory, time_step_s: None, progress: &options.progress };
+        let resolved = view::resolve(&source, &roots, &self.scene, (!options.unsolved).then_some(&mut solving))?;
+        Ok(Self {
+            view: resolved.view,
+            light: resolved.light,
+            overlay: source.document.overlay.clone().unwrap_or_default(),
+            stylisation: source.document.stylisation.unwrap_or_default().strengths().unwrap_or_default(),
+            terrain: resolved.terrain,
+            constructor: resolved.constructor,
+            warnings: about_layers.iter().cloned().chain(resolved.warnings).collect(),
+            description: Some(Description { source, resolved: resolved.document, roots }),
+            ..self.clone()
+        })
+    }
+
     /// Layers, unit and coordinate system.
     pub fn scene(&self) -> &Scene {
         &self.scene
@@ -176,6 +205,15 @@ impl Session {
     /// view. `None` for a session from parts.
     pub fn resolved(&self) -> Option<&Document> {
         self.description.as_ref().map(|d| &d.resolved)
+    }
+
+    /// Terrain disocclusion that the document asks for and a solver has to find.
+    pub(crate) fn stated_terrain(&self) -> Option<TerrainStageDoc> {
+        let mut stages = self.description.iter().flat_map(|d| &d.source.document.stage);
+        stages.find_map(|stage| match stage {
+            StageDoc::TerrainDisocclusion(doc) if doc.delta.is_none() => Some(doc.clone()),
+            _ => None,
+        })
     }
 
     /// Parameters of terrain disocclusion as the document states them, else the usual ones.

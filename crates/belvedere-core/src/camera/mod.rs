@@ -1,11 +1,13 @@
 //! Cameras: the pinhole, the view (pinhole behind a chain of stages) and the rays of its pixels.
 
 mod edges;
+mod navigate;
 mod pinhole;
 mod ray_path;
 mod view;
 
 pub use edges::{EdgePoint, Edges};
+pub use navigate::Navigation;
 pub use pinhole::{Pinhole, PinholeError, Projection};
 pub use ray_path::{RayPath, RayPoint};
 pub use view::{ImageBox, View, ViewError};

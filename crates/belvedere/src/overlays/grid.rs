@@ -1,6 +1,7 @@
 //! Lines of the coordinate system on the ground.
 
 use super::round_below;
+use crate::scene_file::{OverlayDoc, SwitchOrLength};
 use belvedere_core::DVec3;
 use belvedere_scene::{Color, Hidden, OverlayLine, Scene};
 
@@ -14,6 +15,19 @@ pub(crate) fn spacing(scene: &Scene, given: Option<f64>) -> Option<f64> {
     let size = (bounds.max - bounds.min).truncate();
     let spacing = given.unwrap_or_else(|| round_below(size.min_element() / WANTED));
     (spacing > 0.0 && size.max_element() / spacing <= MOST).then_some(spacing)
+}
+
+/// What a scene asks for: a spacing, or `Some(None)` for a round one.
+pub(crate) fn stated(overlay: &OverlayDoc) -> Option<Option<f64>> {
+    match overlay.grid? {
+        SwitchOrLength::Length(spacing) => Some(Some(spacing)),
+        SwitchOrLength::Switch(on) => on.then_some(None),
+    }
+}
+
+/// The lines of the grid that is wanted, if there is one.
+pub(crate) fn wanted(scene: &Scene, grid: Option<Option<f64>>) -> Vec<OverlayLine> {
+    grid.and_then(|given| spacing(scene, given)).map_or_else(Vec::new, |spacing| lines(scene, spacing))
 }
 
 /// The lines at multiples of `spacing`, with their coordinates.

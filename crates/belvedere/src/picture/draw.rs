@@ -7,7 +7,7 @@ use super::volume_record::VolumeRecord;
 use crate::fallback::{self, FallbackPlan, FallbackRecord};
 use crate::overlays::{badge, camera, ghost, grid, heat, highlight, thin};
 use crate::record::{self, InputFile, ViewRecord};
-use crate::scene_file::{HighlightMark, SwitchOrLength};
+use crate::scene_file::HighlightMark;
 use crate::{BelvedereError, CameraPicture, Session};
 use belvedere_core::View;
 use belvedere_cpu::canvas::Canvas;
@@ -69,33 +69,34 @@ pub(crate) fn draw(
 }
 
 /// Pictures with everything over them.
-struct Drawn {
-    view: View,
-    frame: Frame,
-    straight: Option<Frame>,
+pub(crate) struct Drawn {
+    pub(crate) view: View,
+    pub(crate) frame: Frame,
+    pub(crate) straight: Option<Frame>,
     overlay: OverlayRecord,
-    displacement: Option<DisplacementReport>,
+    pub(crate) displacement: Option<DisplacementReport>,
     fallback: Option<FallbackRecord>,
 }
 
-fn draw_view(session: &Session, request: &PictureOptions, progress: &Progress) -> Result<Drawn, BelvedereError> {
+/// The view with everything over it.
+pub(crate) fn draw_view(
+    session: &Session,
+    request: &PictureOptions,
+    progress: &Progress,
+) -> Result<Drawn, BelvedereError> {
     let view = if request.straight { session.view().straightened() } else { session.view().clone() };
     let plan = if request.straight { None } else { fallback::of_session(session, &view)? };
     let scene = plan.as_ref().map_or(session.scene(), FallbackPlan::scene);
     let wanted = &session.overlay;
     let (marks, heatmap) = highlight::chosen((&request.highlight, request.heatmap), wanted)?;
     let ghost = (request.ghost || wanted.ghost) && view.is_bent();
-    let grid = request.grid.or(match wanted.grid {
-        Some(SwitchOrLength::Length(spacing)) => Some(Some(spacing)),
-        Some(SwitchOrLength::Switch(true)) => Some(None),
-        Some(SwitchOrLength::Switch(false)) | None => None,
-    });
+    let grid = request.grid.or(grid::stated(wanted));
     let grid_spacing = grid.and_then(|spacing| grid::spacing(scene, spacing));
     let world = request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
     let exact = !request.aux.is_empty();
     let stylisation = request.stylisation.unwrap_or(session.stylisation);
     let mut options = RenderOptions { aux: Aux { world, exact }, stylisation, ..request.quality.clone() };
-    options.overlay.under.extend(grid_spacing.map(|spacing| grid::lines(scene, spacing)).into_iter().flatten());
+    options.overlay.under.extend(grid::wanted(scene, grid));
     let draw = |scene: &Scene, view: &View| {
         let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
         Ok::<_, BelvedereError>(request.renderer.of(session).render(&job)?)
@@ -166,7 +167,8 @@ fn draw_view(session: &Session, request: &PictureOptions, progress: &Progress) -
     Ok(Drawn { view, frame, straight: straight.filter(|_| request.compare), overlay, displacement, fallback })
 }
 
-fn draw_camera(
+/// The picture of the camera.
+pub(crate) fn draw_camera(
     session: &Session,
     request: &PictureOptions,
     picture: CameraPicture,

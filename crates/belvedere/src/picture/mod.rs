@@ -9,7 +9,7 @@ mod volume_record;
 mod write;
 
 pub use displacement::DisplacementReport;
-pub(crate) use draw::draw;
+pub(crate) use draw::{draw, draw_camera, draw_view};
 pub use options::{AuxBuffer, AuxFormat, PictureOptions, RendererChoice};
 pub use sidecar::{MoleculeRecord, OverlayRecord, Picture, Sidecar, TerrainRecord};
 pub use volume_record::VolumeRecord;

@@ -195,7 +195,8 @@ fn prepared<'m>(
     image: [u32; 2],
     memory: &'m mut Option<Prepared>,
 ) -> Result<&'m Prepared, BelvedereError> {
-    let doc = ConstructorDoc { position_m: None, ..stated(source).cloned().unwrap_or_else(ConstructorDoc::manual) };
+    let usual = || ConstructorDoc::of(ConstructorKind::PathPreview);
+    let doc = ConstructorDoc { position_m: None, ..stated(source).cloned().unwrap_or_else(usual) };
     let made_from = (doc, image);
     if memory.as_ref().is_none_or(|known| known.made_from != made_from) {
         let doc = &made_from.0;

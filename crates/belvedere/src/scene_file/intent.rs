@@ -70,10 +70,10 @@ pub struct ConstructorDoc {
 }
 
 impl ConstructorDoc {
-    /// The constructor that adds nothing.
-    pub(crate) fn manual() -> Self {
+    /// The constructor of a kind with its defaults.
+    pub fn of(kind: ConstructorKind) -> Self {
         Self {
-            kind: ConstructorKind::Manual,
+            kind,
             target: None,
             fallback: Vec::new(),
             z0: None,

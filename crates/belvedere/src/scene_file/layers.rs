@@ -72,6 +72,23 @@ impl LayerDoc {
         }
     }
 
+    /// The layer with another wish of whether it is seen; terrain has none.
+    pub fn with_must_see(&self, wanted: bool) -> Self {
+        let mut layer = self.clone();
+        match &mut layer {
+            Self::Terrain(_) => {}
+            Self::Line(l) => l.must_see = wanted,
+            Self::Area(l) => l.must_see = wanted,
+            Self::Point(l) => l.must_see = wanted,
+            Self::Boxes(l) => l.must_see = wanted,
+            Self::Mesh(l) => l.must_see = wanted,
+            Self::Molecule(l) => l.must_see = wanted,
+            Self::City(l) => l.must_see = wanted,
+            Self::Volume(l) => l.must_see = wanted,
+        }
+        layer
+    }
+
     /// File of the layer's movement.
     pub(crate) fn motion(&self) -> Option<&str> {
         match self {

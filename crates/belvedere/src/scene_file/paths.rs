@@ -1,5 +1,6 @@
 //! Which files a scene may name: those in its own folder or below, unless the user allows more.
 
+use super::{Document, LayerDoc, PaletteDoc, PresetsDoc, StageDoc, names_a_preset_file};
 use crate::BelvedereError;
 use schemars::JsonSchema;
 use serde::de::value::SeqAccessDeserializer;
@@ -25,6 +26,14 @@ impl Paths {
             Self::Many(p) => p,
         }
     }
+
+    /// Calls `change` with each of them.
+    pub fn each(&mut self, change: &mut dyn FnMut(&mut String)) {
+        match self {
+            Self::One(name) => change(name),
+            Self::Many(names) => names.iter_mut().for_each(change),
+        }
+    }
 }
 
 impl<'de> Deserialize<'de> for Paths {
@@ -47,6 +56,64 @@ impl<'de> Deserialize<'de> for Paths {
         }
         deserializer.deserialize_any(PathsVisitor)
     }
+}
+
+impl Document {
+    /// Calls `change` with every name of a file in the document; built-in scenes are no files.
+    pub fn for_each_path(&mut self, change: &mut dyn FnMut(&mut String)) {
+        let mut one = |name: &mut String| {
+            if !name.starts_with("builtin:") {
+                change(name);
+            }
+        };
+        for layer in &mut self.layer {
+            match layer {
+                LayerDoc::Terrain(l) => {
+                    l.source.each(&mut one);
+                    l.drape.iter_mut().for_each(|drape| drape.each(&mut one));
+                    if let PaletteDoc::File(name) = &mut l.style.palette {
+                        one(name);
+                    }
+                }
+                LayerDoc::Line(l) => l.source.iter_mut().for_each(|source| source.each(&mut one)),
+                LayerDoc::Area(l) => l.source.each(&mut one),
+                LayerDoc::Point(l) => l.source.each(&mut one),
+                LayerDoc::Boxes(l) => l.source.iter_mut().chain(&mut l.motion).for_each(&mut one),
+                LayerDoc::Mesh(l) => {
+                    l.source.each(&mut one);
+                    l.motion.iter_mut().for_each(&mut one);
+                }
+                LayerDoc::City(l) => l.source.each(&mut one),
+                LayerDoc::Molecule(l) => one(&mut l.source),
+                LayerDoc::Volume(l) => {
+                    one(&mut l.source);
+                    if names_a_document(&l.transfer) {
+                        one(&mut l.transfer);
+                    }
+                }
+            }
+        }
+        for stage in &mut self.stage {
+            match stage {
+                StageDoc::TerrainDisocclusion(stage) => stage.delta.iter_mut().for_each(&mut one),
+                StageDoc::SplineBend(stage) => match &mut stage.presets {
+                    PresetsDoc::Named(name) if names_a_preset_file(name) => one(name),
+                    _ => {}
+                },
+                StageDoc::Relief(_) | StageDoc::CurvedRays(_) => {}
+            }
+        }
+        self.animation.iter_mut().filter_map(|a| a.camera.as_mut()).for_each(&mut one);
+        let ids: Vec<&str> = self.layer.iter().map(LayerDoc::id).collect();
+        let paths = self.constructor.iter_mut().filter_map(|c| c.path.as_mut());
+        paths.filter(|path| !ids.contains(&path.as_str())).for_each(&mut one);
+    }
+}
+
+/// Whether a name that may also be one of a built-in thing means a document.
+fn names_a_document(name: &str) -> bool {
+    let small = name.to_lowercase();
+    small.ends_with(".toml") || small.ends_with(".json")
 }
 
 /// Where the files of a scene may lie.

@@ -8,8 +8,7 @@ use crate::resolve::ground::{Ground, earth_radius};
 use crate::resolve::rays::sidestep_stage;
 use crate::resolve::terrain::Solving;
 use crate::scene_file::{
-    CameraDoc, Document, EarthDoc, LayerDoc, PaletteDoc, Paths, PlaneDoc, PresetsDoc, SplineStageDoc, StageDoc,
-    TerrainStageDoc,
+    CameraDoc, Document, EarthDoc, PlaneDoc, PresetsDoc, SplineStageDoc, StageDoc, TerrainStageDoc,
 };
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::measure::HiddenRun;
@@ -420,25 +419,7 @@ fn beside(document: &Document, path: &Path) -> Document {
             *name = below.to_owned();
         }
     };
-    let short = |source: &mut Paths| {
-        if let Paths::One(name) = source {
-            below(name);
-        }
-    };
     let mut document = document.clone();
-    for layer in &mut document.layer {
-        match layer {
-            LayerDoc::Terrain(l) => {
-                short(&mut l.source);
-                if let PaletteDoc::File(name) = &mut l.style.palette {
-                    below(name);
-                }
-            }
-            LayerDoc::Line(l) => l.source.iter_mut().for_each(short),
-            LayerDoc::Area(l) => short(&mut l.source),
-            LayerDoc::Point(l) => short(&mut l.source),
-            _ => {}
-        }
-    }
+    document.for_each_path(&mut |name| below(name));
     document
 }

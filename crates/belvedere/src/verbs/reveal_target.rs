@@ -5,7 +5,7 @@ use crate::output::{self, document_toml, pretty};
 use crate::picture::{Picture, PictureOptions};
 use crate::resolve::rays::sidestep_stage;
 use crate::scene_file::{
-    CameraDoc, CityDoc, ConstructorDoc, Document, LayerDoc, MeshDoc, MoleculeDoc, PointDoc, SourceDocument, StageDoc,
+    CameraDoc, CityDoc, ConstructorDoc, ConstructorKind, Document, LayerDoc, MeshDoc, MoleculeDoc, PointDoc, SourceDocument, StageDoc,
     VolumeDoc,
 };
 use crate::verbs::reveal::{RevealFiles, Viewpoint};
@@ -99,7 +99,7 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
     let mut document = document(&session, &view, sidestep.as_ref(), &target)?;
     if report.visible < ENOUGH && !request.fallback.is_empty() {
         let (target, fallback) = (Some(request.see.clone()), request.fallback.clone());
-        document.constructor = Some(ConstructorDoc { target, fallback, ..ConstructorDoc::manual() });
+        document.constructor = Some(ConstructorDoc { target, fallback, ..ConstructorDoc::of(ConstructorKind::Manual) });
     }
     let session = session.with_document(document, None)?;
     let pair = PictureOptions {
@@ -150,19 +150,24 @@ fn open(request: &TargetRequest, options: &OpenOptions) -> Result<Session, Belve
             molecule.select = Some(request.see.clone());
         }
     }
-    let unit = match layers.first() {
-        Some(LayerDoc::Molecule(_)) => Unit::Angstrom,
-        Some(LayerDoc::Volume(_)) => Unit::Voxel,
-        _ => Unit::Metre,
-    };
+    let unit = unit_of(&layers);
     let camera = CameraDoc::looking(DVec3::new(0.0, -1.0, 0.0), DVec3::ZERO);
     let title = format!("{} revealed", request.see);
     let document = Document { title, crs: "local".into(), unit, layer: layers, ..Document::seen_by(camera) };
     Session::from_document(SourceDocument::new(document), &options)
 }
 
+/// The unit in which files of a kind are measured.
+pub(crate) fn unit_of(layers: &[LayerDoc]) -> Unit {
+    match layers.first() {
+        Some(LayerDoc::Molecule(_)) => Unit::Angstrom,
+        Some(LayerDoc::Volume(_)) => Unit::Voxel,
+        _ => Unit::Metre,
+    }
+}
+
 /// The layer of a file, by the ending of its name.
-fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
+pub(crate) fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
     let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
     let file = path.file_name().and_then(|n| n.to_str()).unwrap_or_default().to_ascii_lowercase();
     let file = file.strip_suffix(".gz").unwrap_or(&file);
@@ -413,7 +418,7 @@ impl TargetAnswer {
 
 impl CameraDoc {
     /// A camera at a place that looks at another.
-    fn looking(eye: DVec3, look_at: DVec3) -> Self {
+    pub(crate) fn looking(eye: DVec3, look_at: DVec3) -> Self {
         let lens = Projection::Perspective { fov_y: FOV_Y_DEG.to_radians() };
         let axes = (DVec3::X, -DVec3::Z, DVec3::Y);
         let (right, down, forward) = axes;

@@ -1,8 +1,10 @@
 //! `preset`: preset documents listed, read, changed, checked and plotted.
 
 mod plot;
+mod sketch;
 
 pub use plot::{Plot, plot};
+pub use sketch::{Sketch, SketchPoint, SketchTag, sketch};
 
 use crate::scene_file;
 use crate::{BelvedereError, output};

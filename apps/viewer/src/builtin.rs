@@ -1,0 +1,14 @@
+//! Scenes that need no files.
+
+/// Names and texts of the scenes that are always there.
+pub const BUILTIN: [(&str, &str); 9] = [
+    ("Massif, a bent panorama", include_str!("../../../scenes/massif.toml")),
+    ("Massif, the ground makes way", include_str!("../../../scenes/massif_terrain.toml")),
+    ("Massif, panorama map", include_str!("../../../scenes/massif_panorama.toml")),
+    ("Massif, curved rays", include_str!("../../../scenes/massif_curved_rays.toml")),
+    ("Street, around a corner", include_str!("../../../scenes/street.toml")),
+    ("Church, behind houses", include_str!("../../../scenes/church.toml")),
+    ("Canyon, the river ahead", include_str!("../../../scenes/canyon_preview.toml")),
+    ("Town, three levels of abstraction", include_str!("../../../scenes/town_sections.toml")),
+    ("Engine, a volume", include_str!("../../../scenes/engine_curved_rays.toml")),
+];

@@ -1,0 +1,197 @@
+//! Export: a picture of any size, an animation, a report; beside the window, with progress, to be cancelled.
+
+use crate::model::Model;
+use belvedere::editor::Place;
+use belvedere::picture::PictureOptions;
+use belvedere::scene::Progress;
+use belvedere::scene_file::{AnimationDoc, Document, SourceDocument, SweepDoc, TurntableDoc};
+use belvedere::verbs::animate::{AnimateRequest, animate};
+use belvedere::verbs::measure::{MeasureOptions, measure};
+use belvedere::{BelvedereError, OpenOptions, RendererChoice, Session, output};
+use eframe::egui::{ComboBox, DragValue, ProgressBar, Ui};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex, mpsc};
+
+/// What a film does.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Film {
+    /// What the scene says.
+    #[default]
+    Scene,
+    /// The viewing angle rises.
+    Sweep,
+    /// Once around.
+    Turntable,
+}
+
+/// The panel, and the work that is done for it.
+#[derive(Default)]
+pub(crate) struct Exporter {
+    film: Film,
+    job: Option<Job>,
+    /// A window for choosing files is open elsewhere.
+    chosen: Option<(Want, mpsc::Receiver<Option<PathBuf>>)>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Want {
+    Picture,
+    Film,
+    Report,
+}
+
+/// Work beside the window.
+struct Job {
+    name: &'static str,
+    progress: Progress,
+    at: Arc<Mutex<(String, f64)>>,
+    done: mpsc::Receiver<Result<String, BelvedereError>>,
+}
+
+impl Exporter {
+    /// Whether something is being made.
+    pub(crate) fn is_busy(&self) -> bool {
+        self.job.is_some()
+    }
+
+    /// Shows the panel.
+    pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model) {
+        let mut image = model.document().camera.image;
+        ui.horizontal(|ui| {
+            let label = ui.label("Width, pixels");
+            ui.add(DragValue::new(&mut image[0]).range(16..=16384)).labelled_by(label.id);
+            let label = ui.label("Height, pixels");
+            ui.add(DragValue::new(&mut image[1]).range(16..=16384)).labelled_by(label.id);
+        });
+        if image != model.document().camera.image {
+            model.edit_on(|document| document.camera.image = image);
+        }
+        let idle = self.job.is_none() && self.chosen.is_none();
+        ui.add_enabled_ui(idle, |ui| {
+            if ui.button("Export picture…").clicked() {
+                self.ask(Want::Picture, "picture.png");
+            }
+            ui.horizontal(|ui| {
+                if ui.button("Export animation…").clicked() {
+                    self.ask(Want::Film, "animation.mp4");
+                }
+                let name = |film: Film| match film {
+                    Film::Scene => "as the scene says",
+                    Film::Sweep => "viewing angle 10 to 80 degrees",
+                    Film::Turntable => "once around",
+                };
+                ComboBox::from_label("Animation").selected_text(name(self.film)).show_ui(ui, |ui| {
+                    for one in [Film::Scene, Film::Sweep, Film::Turntable] {
+                        ui.selectable_value(&mut self.film, one, name(one));
+                    }
+                });
+            });
+            if ui.button("Export report…").on_hover_text("what the picture shows of what must be seen").clicked() {
+                self.ask(Want::Report, "report.json");
+            }
+        });
+        self.follow(ui, model);
+    }
+
+    fn ask(&mut self, want: Want, name: &str) {
+        self.chosen = Some((want, crate::files::choose_output(name)));
+    }
+
+    /// Progress, and what came of it.
+    fn follow(&mut self, ui: &mut Ui, model: &mut Model) {
+        if let Some((want, answer)) = &self.chosen {
+            match answer.try_recv() {
+                Ok(Some(path)) => {
+                    let want = *want;
+                    self.chosen = None;
+                    self.begin(want, &path, model, ui.ctx());
+                }
+                Ok(None) | Err(mpsc::TryRecvError::Disconnected) => self.chosen = None,
+                Err(mpsc::TryRecvError::Empty) => ui.ctx().request_repaint_after_secs(0.1),
+            }
+        }
+        let Some(job) = &self.job else { return };
+        let (stage, share) = job.at.lock().map(|at| at.clone()).unwrap_or_default();
+        ui.label(format!("{}: {stage}", job.name));
+        ui.add(ProgressBar::new(share as f32).show_percentage());
+        if ui.button("Cancel export").clicked() {
+            job.progress.cancel_flag().store(true, Ordering::Relaxed);
+        }
+        ui.ctx().request_repaint_after_secs(0.1);
+        match job.done.try_recv() {
+            Ok(Ok(said)) => model.notices.say(said, ui.input(|input| input.time)),
+            Ok(Err(e)) if e.is_cancelled() => model.notices.say("Export cancelled", ui.input(|input| input.time)),
+            Ok(Err(e)) => model.notices.error(e.to_string()),
+            Err(mpsc::TryRecvError::Empty) => return,
+            Err(mpsc::TryRecvError::Disconnected) => model.notices.error("the export ended without a word"),
+        }
+        self.job = None;
+    }
+
+    fn begin(&mut self, want: Want, path: &Path, model: &Model, ctx: &eframe::egui::Context) {
+        let (document, place) = ((**model.document()).clone(), model.editor.place.clone());
+        let animation = match self.film {
+            Film::Scene => AnimationDoc::default(),
+            Film::Sweep => AnimationDoc { sweep: Some(SweepDoc { phi_deg: [10.0, 80.0, 0.5] }), ..AnimationDoc::default() },
+            Film::Turntable => {
+                AnimationDoc { turntable: Some(TurntableDoc { deg_per_s: 36.0 }), ..AnimationDoc::default() }
+            }
+        };
+        let at = Arc::new(Mutex::new((String::new(), 0.0)));
+        let told = at.clone();
+        let progress = Progress::new(move |stage, share| {
+            if let Ok(mut at) = told.lock() {
+                *at = (stage.to_owned(), share);
+            }
+        });
+        let (outbox, done) = mpsc::channel();
+        let (own, path, ctx) = (progress.clone(), path.to_owned(), ctx.clone());
+        let work = move || {
+            let result = make(want, document, &place, &path, animation, &own);
+            let _ = outbox.send(result);
+            ctx.request_repaint();
+        };
+        let name = match want {
+            Want::Picture => "Picture",
+            Want::Film => "Animation",
+            Want::Report => "Report",
+        };
+        #[cfg(not(target_family = "wasm"))]
+        std::thread::spawn(work);
+        #[cfg(target_family = "wasm")]
+        work();
+        self.job = Some(Job { name, progress, at, done });
+    }
+}
+
+/// The session of a document, as the command line opens it.
+pub(crate) fn open(document: Document, place: &Place, progress: &Progress) -> Result<Session, BelvedereError> {
+    let folder = Some(&place.roots.scene_dir).filter(|dir| !dir.as_os_str().is_empty());
+    let allow_roots = folder.into_iter().chain(&place.roots.allowed).cloned().collect();
+    let options = OpenOptions { allow_roots, progress: progress.clone(), ..OpenOptions::default() };
+    Session::from_document(SourceDocument::new(document), &options)
+}
+
+fn make(want: Want, document: Document, place: &Place, path: &Path, animation: AnimationDoc, progress: &Progress) -> Result<String, BelvedereError> {
+    let session = open(document, place, progress)?;
+    let picture = PictureOptions { progress: progress.clone(), ..PictureOptions::default() };
+    match want {
+        Want::Picture => {
+            output::check(path, &session.input_paths(), true)?;
+            let written = session.render(&picture)?.write(path, true)?;
+            Ok(format!("Written: {}", written.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ")))
+        }
+        Want::Film => {
+            let out = path.to_owned();
+            let request = AnimateRequest { animation, picture, out, resume: false, overwrite: true };
+            let made = animate(&session, &request, progress)?;
+            Ok(format!("Written: {} frames in {}", made.drawn, made.folder.display()))
+        }
+        Want::Report => {
+            let report = measure(&session, &MeasureOptions::default(), RendererChoice::Cpu, progress)?;
+            output::write_text(path, &output::pretty(&report)?, true)?;
+            Ok(format!("Written: {}", path.display()))
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! The keyboard: everything that the pointer can do to the camera, and the commands of the menu.
+
+use crate::model::{Compare, Model};
+use belvedere::core::{DVec3, Navigation};
+use eframe::egui::{Context, Key, Modifiers};
+
+/// A command of the application.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Command {
+    Open,
+    Save,
+    SaveAs,
+    Undo,
+    Redo,
+    Bookmark,
+    ShowAll,
+    Help,
+}
+
+/// Keys and what they do, for the help window.
+pub(crate) const KEYS: [(&str, &str); 14] = [
+    ("Drag, arrow keys", "move over the ground (tool Orbit: turn)"),
+    ("Right drag, Shift + arrow keys", "turn and tilt"),
+    ("Wheel, pinch, + and -", "nearer and farther"),
+    ("Space", "straight or bent"),
+    ("C", "compare: one picture, split, flicker"),
+    ("I", "straight picture in a corner"),
+    ("O", "camera from above"),
+    ("F", "show all"),
+    ("B", "bookmark"),
+    ("T", "renderer and times"),
+    ("Ctrl O, Ctrl S, Ctrl Shift S", "open, save, save as"),
+    ("Ctrl Z, Ctrl Shift Z or Ctrl Y", "undo, redo"),
+    ("Tab, Enter", "next control, press it"),
+    ("F1", "this help"),
+];
+
+/// Steps of the arrow keys, share of the distance to the target; of a turn, radians; of a zoom.
+const STEP: f64 = 0.06;
+const TURN: f64 = 0.06;
+const ZOOM: f64 = 1.15;
+
+/// Reads the keyboard, unless something is being typed.
+pub(crate) fn read(ctx: &Context, model: &mut Model) -> Option<Command> {
+    let with = |modifiers: Modifiers, key: Key| ctx.input_mut(|input| input.consume_key(modifiers, key));
+    let shift = Modifiers::COMMAND | Modifiers::SHIFT;
+    let commands = [
+        (shift, Key::Z, Command::Redo),
+        (shift, Key::S, Command::SaveAs),
+        (Modifiers::COMMAND, Key::Z, Command::Undo),
+        (Modifiers::COMMAND, Key::Y, Command::Redo),
+        (Modifiers::COMMAND, Key::S, Command::Save),
+        (Modifiers::COMMAND, Key::O, Command::Open),
+        (Modifiers::NONE, Key::F1, Command::Help),
+    ];
+    if let Some((.., command)) = commands.into_iter().find(|(modifiers, key, _)| with(*modifiers, *key)) {
+        return Some(command);
+    }
+    // A control that has the focus uses the arrow keys and the space bar itself.
+    if ctx.egui_wants_keyboard_input() || ctx.memory(|memory| memory.focused().is_some()) {
+        return None;
+    }
+    steer(ctx, model);
+    let pressed = |key: Key| with(Modifiers::NONE, key);
+    let look = &mut model.look;
+    if pressed(Key::Space) {
+        look.bent = !look.bent;
+    }
+    if pressed(Key::C) {
+        look.compare = match look.compare {
+            Compare::Off => Compare::Split,
+            Compare::Split => Compare::Flicker,
+            Compare::Flicker => Compare::Off,
+        };
+    }
+    look.inset ^= pressed(Key::I);
+    look.overhead ^= pressed(Key::O);
+    look.statistics ^= pressed(Key::T);
+    if pressed(Key::F) {
+        return Some(Command::ShowAll);
+    }
+    pressed(Key::B).then_some(Command::Bookmark)
+}
+
+fn steer(ctx: &Context, model: &mut Model) {
+    let (mut moved, mut turned, mut zoom) = ([0.0f64; 2], [0.0f64; 2], 1.0);
+    ctx.input(|input| {
+        let arrows = [(Key::ArrowLeft, [-1.0, 0.0]), (Key::ArrowRight, [1.0, 0.0]), (Key::ArrowUp, [0.0, 1.0]), (Key::ArrowDown, [0.0, -1.0])];
+        for (_, [x, y]) in arrows.into_iter().filter(|(key, _)| input.key_pressed(*key)) {
+            let to = if input.modifiers.shift { &mut turned } else { &mut moved };
+            (to[0], to[1]) = (to[0] + x, to[1] + y);
+        }
+        if input.key_pressed(Key::Plus) || input.key_pressed(Key::Equals) {
+            zoom *= ZOOM;
+        }
+        if input.key_pressed(Key::Minus) {
+            zoom /= ZOOM;
+        }
+    });
+    if moved == [0.0; 2] && turned == [0.0; 2] && zoom == 1.0 {
+        return;
+    }
+    model.begin_gesture();
+    model.move_camera(|camera: &Navigation| {
+        let reach = STEP * camera.target.distance(camera.pinhole.eye);
+        let ahead = camera.pinhole.forward.truncate().extend(0.0);
+        let ahead = if ahead.length() > 0.05 { ahead.normalize() } else { -camera.pinhole.down };
+        let by: DVec3 = reach * (moved[0] * camera.pinhole.right + moved[1] * ahead);
+        camera.moved(by)?.orbited(TURN * turned[0], TURN * turned[1])?.zoomed(camera.target + by, zoom)
+    });
+}

@@ -1,0 +1,21 @@
+//! The application: each technique by hand. A thin shell over the facade's editor: panels edit one document, a painter draws it.
+
+mod builtin;
+mod export;
+mod files;
+mod keys;
+mod menu;
+mod model;
+mod notices;
+mod panels;
+mod picture;
+mod pointer;
+mod viewer;
+mod widgets;
+#[cfg(not(target_family = "wasm"))]
+mod window;
+
+pub use builtin::BUILTIN;
+pub use viewer::{Opening, Viewer};
+#[cfg(not(target_family = "wasm"))]
+pub use window::{WindowError, run};

@@ -1,0 +1,108 @@
+//! The menu bar: files, steps, places.
+
+use crate::builtin::BUILTIN;
+use crate::keys::{Command, KEYS};
+use crate::model::Model;
+use belvedere::core::Navigation;
+use eframe::egui::{Context, Grid, MenuBar, Ui, Window};
+use std::path::PathBuf;
+
+/// What the menu wants.
+pub(crate) enum Choice {
+    Command(Command),
+    Builtin(usize),
+    Recent(PathBuf),
+    GoTo(usize),
+    Quit,
+}
+
+/// A camera to come back to.
+#[derive(Debug, Clone)]
+pub(crate) struct Bookmark {
+    pub(crate) name: String,
+    pub(crate) camera: Navigation,
+}
+
+/// Shows the bar.
+pub(crate) fn bar(ui: &mut Ui, model: &Model, recent: &[PathBuf], bookmarks: &[Bookmark]) -> Option<Choice> {
+    let mut choice = None;
+    MenuBar::new().ui(ui, |ui| {
+        ui.menu_button("File", |ui| {
+            if ui.button("Open…").clicked() {
+                choice = Some(Choice::Command(Command::Open));
+            }
+            ui.menu_button("Built-in scenes", |ui| {
+                for (i, (name, _)) in BUILTIN.iter().enumerate() {
+                    if ui.button(*name).clicked() {
+                        choice = Some(Choice::Builtin(i));
+                    }
+                }
+            });
+            ui.menu_button("Recent files", |ui| {
+                if recent.is_empty() {
+                    ui.weak("none yet");
+                }
+                for path in recent {
+                    if ui.button(path.display().to_string()).clicked() {
+                        choice = Some(Choice::Recent(path.clone()));
+                    }
+                }
+            });
+            ui.separator();
+            if ui.button("Save").clicked() {
+                choice = Some(Choice::Command(Command::Save));
+            }
+            if ui.button("Save as…").clicked() {
+                choice = Some(Choice::Command(Command::SaveAs));
+            }
+            ui.separator();
+            if ui.button("Quit").clicked() {
+                choice = Some(Choice::Quit);
+            }
+        });
+        ui.menu_button("Edit", |ui| {
+            let undo = eframe::egui::Button::new("Undo");
+            if ui.add_enabled(model.editor.can_undo(), undo).clicked() {
+                choice = Some(Choice::Command(Command::Undo));
+            }
+            let redo = eframe::egui::Button::new("Redo");
+            if ui.add_enabled(model.editor.can_redo(), redo).clicked() {
+                choice = Some(Choice::Command(Command::Redo));
+            }
+        });
+        ui.menu_button("Places", |ui| {
+            if ui.button("Show all").clicked() {
+                choice = Some(Choice::Command(Command::ShowAll));
+            }
+            if ui.button("Bookmark this view").clicked() {
+                choice = Some(Choice::Command(Command::Bookmark));
+            }
+            ui.separator();
+            for (i, bookmark) in bookmarks.iter().enumerate() {
+                if ui.button(&bookmark.name).clicked() {
+                    choice = Some(Choice::GoTo(i));
+                }
+            }
+        });
+        if ui.button("Help").clicked() {
+            choice = Some(Choice::Command(Command::Help));
+        }
+        let title = &model.document().title;
+        let state = if model.editor.is_changed() { "changed" } else { "" };
+        ui.weak(format!("{title}  {state}"));
+    });
+    choice
+}
+
+/// The help window.
+pub(crate) fn help(ctx: &Context, open: &mut bool) {
+    Window::new("Keys and pointer").open(open).resizable(false).show(ctx, |ui| {
+        Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
+            for (keys, what) in KEYS {
+                ui.strong(keys);
+                ui.label(what);
+                ui.end_row();
+            }
+        });
+    });
+}

@@ -1,0 +1,112 @@
+//! How the picture is drawn and compared: marks, stylisation, light, projection.
+
+use super::slider;
+use crate::model::{Compare, Model, Tool};
+use belvedere::scene_file::{HighlightMark, LightDoc, OverlayDoc, StylisationDoc, SwitchOrLength, SwitchOrStrength};
+use eframe::egui::Ui;
+
+/// Shows the panel.
+pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
+    let look = &mut model.look;
+    ui.horizontal(|ui| {
+        ui.label("Pointer");
+        ui.selectable_value(&mut look.tool, Tool::Map, "Map");
+        ui.selectable_value(&mut look.tool, Tool::Orbit, "Orbit");
+    });
+    ui.checkbox(&mut look.bent, "Bent");
+    ui.horizontal(|ui| {
+        ui.label("Compare");
+        ui.selectable_value(&mut look.compare, Compare::Off, "One picture");
+        ui.selectable_value(&mut look.compare, Compare::Split, "Split");
+        ui.selectable_value(&mut look.compare, Compare::Flicker, "Flicker");
+    });
+    ui.checkbox(&mut look.inset, "True view in a corner");
+    ui.checkbox(&mut look.overhead, "Camera from above");
+    ui.checkbox(&mut look.statistics, "Renderer and times");
+    ui.separator();
+    marks(ui, model);
+    ui.separator();
+    stylisation(ui, model);
+    ui.separator();
+    light(ui, model);
+    ui.separator();
+    let fov = model.document().camera.fov_y_deg;
+    if let Some(fov) = slider(ui, model, "field of view, degrees", fov, 5.0..=120.0, "from top to bottom") {
+        model.edit_on(|document| document.camera.fov_y_deg = fov);
+    }
+}
+
+fn marks(ui: &mut Ui, model: &mut Model) {
+    let before = model.document().overlay.clone().unwrap_or_default();
+    let mut overlay = before.clone();
+    let mut grid = !matches!(overlay.grid, None | Some(SwitchOrLength::Switch(false)));
+    if ui.checkbox(&mut grid, "Grid on the ground").changed() {
+        overlay.grid = grid.then_some(SwitchOrLength::Switch(true));
+    }
+    ui.checkbox(&mut overlay.heatmap, "Heat map of what was moved");
+    ui.checkbox(&mut overlay.ghost, "Straight picture faintly over it");
+    ui.checkbox(&mut overlay.mark, "Mark on bent pictures");
+    for (mark, name) in [
+        (HighlightMark::Shift, "How far it moved in the picture"),
+        (HighlightMark::Stages, "Which stage moved it"),
+        (HighlightMark::Revealed, "Outline of what is revealed"),
+        (HighlightMark::GhostBox, "Box where it would be"),
+    ] {
+        let mut on = overlay.highlight.contains(&mark);
+        if ui.checkbox(&mut on, name).changed() {
+            overlay.highlight.retain(|other| *other != mark);
+            if on {
+                // Two ramps of colours exclude each other.
+                let ramps = [HighlightMark::Shift, HighlightMark::Stages];
+                if ramps.contains(&mark) {
+                    overlay.highlight.retain(|other| !ramps.contains(other));
+                    overlay.heatmap = false;
+                }
+                overlay.highlight.push(mark);
+            }
+        }
+    }
+    if overlay.heatmap && !before.heatmap {
+        overlay.highlight.retain(|mark| !matches!(mark, HighlightMark::Shift | HighlightMark::Stages));
+    }
+    if overlay != before {
+        let stated = (overlay != OverlayDoc::default()).then_some(overlay);
+        model.edit(|document| document.overlay = stated);
+    }
+}
+
+fn stylisation(ui: &mut Ui, model: &mut Model) {
+    let before = model.document().stylisation.unwrap_or_default();
+    let mut style = before;
+    let is_on = |value: Option<SwitchOrStrength>| !matches!(value, None | Some(SwitchOrStrength::Switch(false)));
+    for (value, name) in [(&mut style.edges, "Edges"), (&mut style.unsharp, "Shade behind what stands out")] {
+        let mut on = is_on(*value);
+        if ui.checkbox(&mut on, name).changed() {
+            *value = on.then_some(SwitchOrStrength::Switch(true));
+        }
+    }
+    if style != before {
+        model.edit(|document| document.stylisation = (style != StylisationDoc::default()).then_some(style));
+    }
+}
+
+fn light(ui: &mut Ui, model: &mut Model) {
+    let usual = LightDoc { azimuth_deg: None, altitude_deg: None, time: None, shadows: false };
+    let light = model.document().light.clone().unwrap_or(usual);
+    let mut set = |ui: &mut Ui, name: &str, value: f64, range, help: &str, put: fn(&mut LightDoc, f64)| {
+        if let Some(value) = slider(ui, model, name, value, range, help) {
+            let mut light = light.clone();
+            light.time = None;
+            put(&mut light, value);
+            model.edit_on(|document| document.light = Some(light));
+        }
+    };
+    let azimuth = light.azimuth_deg.unwrap_or(315.0);
+    set(ui, "sun from, degrees", azimuth, 0.0..=360.0, "clockwise from north", |l, v| l.azimuth_deg = Some(v));
+    let altitude = light.altitude_deg.unwrap_or(45.0);
+    set(ui, "sun over the horizon, degrees", altitude, 1.0..=90.0, "", |l, v| l.altitude_deg = Some(v));
+    let mut shadows = light.shadows;
+    if ui.checkbox(&mut shadows, "Shadows").changed() {
+        model.edit(|document| document.light = Some(LightDoc { shadows, ..light }));
+    }
+}

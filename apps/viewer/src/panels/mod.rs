@@ -1,0 +1,125 @@
+//! Panels: each shows one part of the document and edits it. No algorithm lives here.
+
+pub(crate) mod layers;
+pub(crate) mod look;
+pub(crate) mod rays;
+pub(crate) mod spline;
+pub(crate) mod terrain;
+
+use crate::export::Exporter;
+use crate::model::Model;
+use belvedere::scene_file::{Document, StageDoc};
+use eframe::egui::{DragValue, ScrollArea, Slider, Ui};
+use std::ops::RangeInclusive;
+
+/// The side panel.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum Tab {
+    #[default]
+    Layers,
+    Look,
+    Rays,
+    Terrain,
+    Spline,
+    Export,
+}
+
+impl Tab {
+    const ALL: [(Self, &'static str); 6] = [
+        (Self::Layers, "Layers"),
+        (Self::Look, "Look"),
+        (Self::Rays, "Curved rays"),
+        (Self::Terrain, "Terrain"),
+        (Self::Spline, "Spline"),
+        (Self::Export, "Export"),
+    ];
+}
+
+/// All panels and what they remember.
+#[derive(Default)]
+pub(crate) struct Panels {
+    pub(crate) tab: Tab,
+    rays: rays::RaysPanel,
+    spline: spline::SplinePanel,
+    pub(crate) exporter: Exporter,
+}
+
+impl Panels {
+    /// Shows the chosen one.
+    pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model) {
+        ui.horizontal_wrapped(|ui| {
+            for (tab, name) in Tab::ALL {
+                ui.selectable_value(&mut self.tab, tab, name);
+            }
+        });
+        ui.separator();
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| match self.tab {
+            Tab::Layers => layers::show(ui, model),
+            Tab::Look => look::show(ui, model),
+            Tab::Rays => self.rays.show(ui, model),
+            Tab::Terrain => terrain::show(ui, model),
+            Tab::Spline => self.spline.show(ui, model),
+            Tab::Export => self.exporter.show(ui, model),
+        });
+    }
+
+    /// What goes on by itself from frame to frame.
+    pub(crate) fn play(&mut self, ctx: &eframe::egui::Context, model: &mut Model) {
+        self.rays.play(ctx, model);
+        self.spline.play(ctx, model);
+    }
+}
+
+/// Puts a stage in its place of the chain, in place of one of its kind.
+pub(crate) fn set_stage(document: &mut Document, stage: StageDoc) {
+    const ORDER: [&str; 4] = ["terrain_disocclusion", "relief", "spline_bend", "curved_rays"];
+    let rank = |stage: &StageDoc| ORDER.iter().position(|kind| *kind == stage.kind());
+    document.stage.retain(|other| other.kind() != stage.kind());
+    let at = document.stage.iter().take_while(|other| rank(other) < rank(&stage)).count();
+    document.stage.insert(at, stage);
+}
+
+/// A slider with its name before it; its drag is one step of undo. Returns the new value.
+pub(crate) fn slider(
+    ui: &mut Ui,
+    model: &mut Model,
+    name: &str,
+    value: f64,
+    range: RangeInclusive<f64>,
+    help: &str,
+) -> Option<f64> {
+    let mut now = value;
+    let response = ui.add(Slider::new(&mut now, range).text(name)).on_hover_text(help);
+    changed(model, &response, now)
+}
+
+/// A number with its name before it; its drag is one step of undo. Returns the new value.
+pub(crate) fn number(ui: &mut Ui, model: &mut Model, name: &str, value: f64, speed: f64, help: &str) -> Option<f64> {
+    let mut now = value;
+    let response = ui
+        .horizontal(|ui| {
+            let label = ui.label(name);
+            ui.add(DragValue::new(&mut now).speed(speed).max_decimals(3)).labelled_by(label.id)
+        })
+        .inner
+        .on_hover_text(help);
+    changed(model, &response, now)
+}
+
+fn changed(model: &mut Model, response: &eframe::egui::Response, now: f64) -> Option<f64> {
+    if response.drag_started() || response.gained_focus() {
+        model.begin_gesture();
+    }
+    if !response.changed() {
+        return None;
+    }
+    if !response.dragged() && !response.has_focus() {
+        model.begin_gesture();
+    }
+    Some(now)
+}
+
+/// A share in percent, or a dash.
+pub(crate) fn percent(share: Option<f64>) -> String {
+    share.map_or_else(|| "–".into(), |share| format!("{:.1} %", 100.0 * share))
+}

@@ -1,0 +1,234 @@
+//! Curved rays: turns by hand, constructors that find them.
+
+use super::{number, set_stage, slider};
+use crate::model::{Model, Tool};
+use belvedere::core::DVec3;
+use belvedere::core::map::curved_rays::{Model as RayModel, Sharpness};
+use belvedere::editor::next_turn;
+use belvedere::scene_file::{ConstructorDoc, ConstructorKind, LayerDoc, RaysStageDoc, StageDoc, TurnDoc};
+use eframe::egui::{CollapsingHeader, ComboBox, Context, Ui};
+
+const KIND: &str = "curved_rays";
+/// Speed of a played preview, share of the previewed length per second.
+const PLAY: f64 = 0.25;
+
+/// What the panel remembers.
+#[derive(Debug, Default)]
+pub(crate) struct RaysPanel {
+    playing: bool,
+    played_at: f64,
+}
+
+impl RaysPanel {
+    /// Shows the panel.
+    pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model) {
+        constructors(ui, model);
+        match model.document().constructor.clone() {
+            Some(constructor) if constructor.kind == ConstructorKind::PathPreview => {
+                self.preview(ui, model, &constructor);
+            }
+            Some(constructor) if constructor.kind == ConstructorKind::TargetTracking => {
+                ui.label(format!("In sight: {}", constructor.target.as_deref().unwrap_or("nothing chosen")));
+            }
+            _ => {}
+        }
+        if let Some(reason) = &model.violated {
+            ui.separator();
+            ui.strong("Not possible like this");
+            ui.label(reason);
+        }
+        ui.separator();
+        turns(ui, model);
+    }
+
+    /// Position and length of a preview.
+    fn preview(&mut self, ui: &mut Ui, model: &mut Model, constructor: &ConstructorDoc) {
+        let length = path_length(model, constructor).unwrap_or(1000.0);
+        let put = |model: &mut Model, change: &dyn Fn(&mut ConstructorDoc)| {
+            let mut next = constructor.clone();
+            change(&mut next);
+            model.edit_on(|document| document.constructor = Some(next));
+        };
+        let position = constructor.position_m.unwrap_or(0.0);
+        if let Some(value) = slider(ui, model, "position", position, 0.0..=length, "along the path") {
+            put(model, &|doc| doc.position_m = Some(value));
+        }
+        let ahead = constructor.preview_m.unwrap_or(0.25 * length);
+        if let Some(value) = slider(ui, model, "preview", ahead, 0.01 * length..=length, "length of the path ahead that is shown") {
+            put(model, &|doc| doc.preview_m = Some(value));
+        }
+        let name = if self.playing { "Pause preview" } else { "Play preview" };
+        if ui.button(name).clicked() {
+            self.playing = !self.playing;
+            self.played_at = ui.input(|input| input.time);
+            model.begin_gesture();
+        }
+    }
+
+    /// Goes on along the path.
+    pub(crate) fn play(&mut self, ctx: &Context, model: &mut Model) {
+        let constructor = model.document().constructor.clone();
+        let Some(mut doc) = constructor.filter(|doc| self.playing && doc.kind == ConstructorKind::PathPreview) else {
+            self.playing = false;
+            return;
+        };
+        let now = ctx.input(|input| input.time);
+        let length = path_length(model, &doc).unwrap_or(1000.0);
+        let speed = PLAY * doc.preview_m.unwrap_or(0.25 * length);
+        let next = doc.position_m.unwrap_or(0.0) + speed * (now - self.played_at).clamp(0.0, 0.2);
+        self.played_at = now;
+        self.playing = next < length;
+        doc.position_m = Some(next.min(length));
+        model.edit_on(|document| document.constructor = Some(doc));
+        ctx.request_repaint();
+    }
+}
+
+/// Length of the path of a preview, scene units.
+fn path_length(model: &Model, constructor: &ConstructorDoc) -> Option<f64> {
+    use belvedere::scene::LayerKind;
+    let scene = model.shown.as_ref()?.session.scene();
+    let layer = scene.layers.iter().find(|layer| Some(&layer.id) == constructor.path.as_ref())?;
+    let LayerKind::Line(line) = &layer.kind else { return None };
+    let length = |points: &[DVec3]| points.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f64>();
+    line.features.iter().map(|feature| length(&feature.points)).reduce(f64::max)
+}
+
+/// Keeps a layer in sight.
+pub(crate) fn track(model: &mut Model, layer: &str) {
+    let target = Some(layer.to_owned());
+    model.edit(|document| {
+        document.constructor = Some(ConstructorDoc { target, ..ConstructorDoc::of(ConstructorKind::TargetTracking) });
+    });
+}
+
+fn constructors(ui: &mut Ui, model: &mut Model) {
+    let kind = model.document().constructor.as_ref().map_or(ConstructorKind::Manual, |constructor| constructor.kind);
+    ui.label("Rays are bent");
+    ui.horizontal_wrapped(|ui| {
+        if ui.selectable_label(kind == ConstructorKind::Manual, "By hand").clicked() {
+            model.edit(|document| document.constructor = None);
+        }
+        let tracking = kind == ConstructorKind::TargetTracking;
+        if ui.selectable_label(tracking, "To keep something in sight").on_hover_text("then click it in the picture").clicked() {
+            model.look.tool = Tool::Track;
+        }
+        let lines = model.layer_ids(|layer| matches!(layer, LayerDoc::Line(_)));
+        let preview = ui.add_enabled(!lines.is_empty(), eframe::egui::Button::selectable(kind == ConstructorKind::PathPreview, "Along a path"));
+        if preview.on_disabled_hover_text("needs a line layer").clicked() {
+            let path = lines.first().cloned();
+            model.edit(|document| {
+                document.constructor = Some(ConstructorDoc { path, ..ConstructorDoc::of(ConstructorKind::PathPreview) });
+            });
+        }
+        let probing = kind == ConstructorKind::AutoProbe;
+        if ui.selectable_label(probing, "Into what is hidden").on_hover_text("turns are found that show most").clicked() {
+            model.edit(|document| document.constructor = Some(ConstructorDoc::of(ConstructorKind::AutoProbe)));
+        }
+    });
+    if model.look.tool == Tool::Track {
+        ui.label("Click what has to stay in sight.");
+    }
+}
+
+/// Turns by hand.
+fn turns(ui: &mut Ui, model: &mut Model) {
+    let stage = match model.stage(KIND) {
+        Some(StageDoc::CurvedRays(stage)) => Some(stage.clone()),
+        _ => None,
+    };
+    ui.horizontal(|ui| {
+        let camera = model.camera();
+        if ui.add_enabled(camera.is_some(), eframe::egui::Button::new("Add a turn")).clicked()
+            && let Some(camera) = camera
+        {
+            let mut next = stage.clone().unwrap_or(RaysStageDoc { model: RayModel::default(), turn: Vec::new(), split: None });
+            next.turn.push(next_turn(&camera, stage.as_ref()));
+            model.edit(|document| set_stage(document, StageDoc::CurvedRays(next)));
+            model.look.overhead = true;
+        }
+        if stage.is_some() && ui.button("Straight rays").clicked() {
+            model.edit(|document| document.stage.retain(|stage| stage.kind() != KIND));
+        }
+    });
+    let Some(stage) = stage else { return };
+    ray_model(ui, model, &stage);
+    let mut next = stage.clone();
+    let mut removed = None;
+    for (index, turn) in stage.turn.iter().enumerate() {
+        CollapsingHeader::new(format!("Turn {}", index + 1)).default_open(index == 0).show(ui, |ui| {
+            one(ui, model, index + 1, turn, &mut next.turn[index]);
+            if ui.button(format!("Remove turn {}", index + 1)).clicked() {
+                removed = Some(index);
+            }
+        });
+    }
+    if let Some(index) = removed {
+        next.turn.remove(index);
+        model.begin_gesture();
+        model.edit_on(|document| match next.turn.is_empty() && next.split.is_none() {
+            true => document.stage.retain(|stage| stage.kind() != KIND),
+            false => set_stage(document, StageDoc::CurvedRays(next)),
+        });
+    } else if next != stage {
+        model.edit_on(|document| set_stage(document, StageDoc::CurvedRays(next)));
+    }
+}
+
+fn ray_model(ui: &mut Ui, model: &mut Model, stage: &RaysStageDoc) {
+    let name = |one: RayModel| match one {
+        RayModel::Modified => "modified",
+        RayModel::Original => "original",
+        RayModel::C0 => "C0",
+        RayModel::C2 => "C2",
+        RayModel::Circular => "circular",
+    };
+    let mut chosen = stage.model;
+    ComboBox::from_label("Model of the transition").selected_text(name(chosen)).show_ui(ui, |ui| {
+        for one in [RayModel::Modified, RayModel::Original, RayModel::C0, RayModel::C2, RayModel::Circular] {
+            ui.selectable_value(&mut chosen, one, name(one));
+        }
+    });
+    if chosen != stage.model {
+        let next = RaysStageDoc { model: chosen, ..stage.clone() };
+        model.edit(|document| set_stage(document, StageDoc::CurvedRays(next)));
+    }
+}
+
+/// The numbers of a turn.
+fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut TurnDoc) {
+    let reach = DVec3::from_array(turn.viewpoint).distance(DVec3::from_array(turn.t1));
+    let speed = 0.004 * reach;
+    let rows: [(&str, &str, fn(&mut TurnDoc) -> &mut [f64; 3]); 4] = [
+        ("viewpoint", "where the rays come from behind the turn", |t| &mut t.viewpoint),
+        ("first plane", "a point of the plane where the rays begin to bend", |t| &mut t.t0),
+        ("bend point", "where the rays bend most", |t| &mut t.t1),
+        ("last plane", "a point of the plane from which they run straight again", |t| &mut t.t2),
+    ];
+    for (name, help, part) in rows {
+        let now = *part(&mut turn.clone());
+        ui.label(name).on_hover_text(help);
+        ui.horizontal(|ui| {
+            for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+                let mut value = now[axis];
+                let field = eframe::egui::DragValue::new(&mut value).speed(speed).max_decimals(2).prefix(format!("{letter} "));
+                let response = ui.add(field).on_hover_text(format!("{name} {n}, {letter}"));
+                if let Some(value) = super::changed(model, &response, value) {
+                    part(next)[axis] = value;
+                }
+            }
+        });
+    }
+    let value = match turn.m {
+        Sharpness::Value(value) => value,
+        _ => 1.0,
+    };
+    let mut own = !matches!(turn.m, Sharpness::Value(_));
+    if ui.checkbox(&mut own, format!("sharpness of turn {n} by its bend point")).changed() {
+        model.begin_gesture();
+        next.m = if own { Sharpness::Bend } else { Sharpness::Value(value) };
+    }
+    if !own && let Some(value) = number(ui, model, &format!("sharpness {n}"), value, 0.02, "0.2 to 20; larger is sharper") {
+        next.m = Sharpness::Value(value.clamp(0.2, 20.0));
+    }
+}

@@ -1,0 +1,277 @@
+//! Multi-perspective views: presets over the viewing angle, their curves, sections and representations.
+
+use super::{number, set_stage};
+use crate::model::Model;
+use crate::widgets::curve::curve;
+use crate::widgets::ruler::{RulerEdit, ruler};
+use belvedere::core::presets::edit::{PresetChange, PresetOperation};
+use belvedere::core::presets::{BUILTINS, PresetDocument};
+use belvedere::scene_file::{PresetsDoc, SplineStageDoc, StageDoc};
+use belvedere::verbs::preset::{sketch, viewing_angle};
+use eframe::egui::{Color32, ComboBox, Context, Id, Sense, Ui, WidgetInfo, WidgetType};
+
+const KIND: &str = "spline_bend";
+/// Speed of a played sweep, degrees per second.
+const SWEEP: f64 = 12.0;
+
+/// What the panel remembers.
+#[derive(Debug, Default)]
+pub(crate) struct SplinePanel {
+    /// Position of the edited preset in the document.
+    chosen: usize,
+    playing: bool,
+    played_at: f64,
+    downwards: bool,
+}
+
+impl SplinePanel {
+    /// Shows the panel.
+    pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model) {
+        let stage = match model.stage(KIND) {
+            Some(StageDoc::SplineBend(stage)) => Some(stage.clone()),
+            _ => None,
+        };
+        builtins(ui, model, stage.as_ref());
+        let Some(stage) = stage else {
+            ui.label("Choose presets to bend the picture along a spline over the ground.");
+            return;
+        };
+        if ui.button("No spline").clicked() {
+            model.edit(|document| document.stage.retain(|stage| stage.kind() != KIND));
+            return;
+        }
+        let Some(presets) = presets_of(model, &stage) else {
+            ui.label("The presets come from a file that is not open yet.");
+            return;
+        };
+        self.chosen = self.chosen.min(presets.presets.len().saturating_sub(1));
+        let phi = model.shown.as_ref().and_then(|shown| viewing_angle(&shown.session).ok());
+        self.angles(ui, model, &presets, phi);
+        let preset = &presets.presets[self.chosen];
+        ui.strong(if preset.name.is_empty() { format!("Preset {}", self.chosen + 1) } else { preset.name.clone() });
+        let Some(drawing) = sketch(&presets, preset.phi) else { return };
+        let id = ui.id().with(("curve", self.chosen));
+        if let Some(edit) = curve(ui, id, &drawing) {
+            if edit.begins {
+                model.begin_gesture();
+            }
+            self.change(model, &presets, edit.change);
+        }
+        self.sections(ui, model, &presets);
+        self.numbers(ui, model, &presets);
+    }
+
+    /// The ruler, and what is done with whole presets.
+    fn angles(&mut self, ui: &mut Ui, model: &mut Model, presets: &PresetDocument, phi: Option<f64>) {
+        let listed: Vec<(String, f64)> = presets.presets.iter().map(|p| (p.name.clone(), p.phi)).collect();
+        match ruler(ui, ui.id().with("ruler"), &listed, self.chosen, phi) {
+            Some(RulerEdit::Choose(i)) => self.chosen = i,
+            Some(RulerEdit::Move(i, to, begins)) => {
+                self.chosen = i;
+                if begins {
+                    model.begin_gesture();
+                }
+                self.change(model, presets, PresetChange::Phi(to));
+            }
+            None => {}
+        }
+        ui.horizontal_wrapped(|ui| {
+            if let Some(phi) = phi {
+                ui.label(format!("camera {phi:.1}°"));
+                if ui.button("Capture camera").on_hover_text("the preset is for the angle of the camera").clicked() {
+                    self.step(model, presets, PresetChange::Phi((10.0 * phi).round() / 10.0));
+                }
+                let name = free_name(presets);
+                if ui.button("Copy for this camera").clicked() {
+                    self.step(model, presets, PresetChange::Duplicate { name, phi: (10.0 * phi).round() / 10.0 });
+                    self.chosen = presets.presets.len();
+                }
+            }
+            if ui.button("Mirror").on_hover_text("near and far change places").clicked() {
+                self.step(model, presets, PresetChange::Mirror);
+            }
+            if presets.presets.len() > 1 && ui.button("Remove preset").clicked() {
+                self.step(model, presets, PresetChange::Remove);
+            }
+            let name = if self.playing { "Pause sweep" } else { "Play sweep" };
+            if ui.button(name).on_hover_text("the camera tilts through the viewing angles").clicked() {
+                self.playing = !self.playing;
+                self.played_at = ui.input(|input| input.time);
+                model.begin_gesture();
+            }
+        });
+    }
+
+    /// The sections, near to far, each a place to drop a representation on.
+    fn sections(&mut self, ui: &mut Ui, model: &mut Model, presets: &PresetDocument) {
+        let preset = &presets.presets[self.chosen];
+        ui.label("Sections, near to far: drop a representation on one");
+        let mut change = None;
+        ui.horizontal_wrapped(|ui| {
+            for (i, section) in preset.sections.iter().enumerate() {
+                let text = format!("{}. {section}", i + 1);
+                let response = ui.add(eframe::egui::Button::new(&text).fill(color_of(section)).sense(Sense::click()));
+                if let Some(dropped) = response.dnd_release_payload::<String>() {
+                    change = Some(PresetChange::Section(i + 1, (*dropped).clone()));
+                }
+                if response.dnd_hover_payload::<String>().is_some() {
+                    response.highlight();
+                }
+            }
+        });
+        let mut known: Vec<String> = vec!["all".into()];
+        known.extend(model.document().representations.keys().cloned());
+        known.extend(model.layer_ids(|_| true));
+        ui.horizontal_wrapped(|ui| {
+            for name in &known {
+                let id = Id::new(("representation", name));
+                let response = ui.dnd_drag_source(id, name.clone(), |ui| ui.add(eframe::egui::Button::new(name).fill(color_of(name)))).response;
+                response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("Representation {name}")));
+            }
+        });
+        // The same for the keyboard.
+        for (i, section) in preset.sections.iter().enumerate() {
+            let mut to = section.clone();
+            ComboBox::from_label(format!("Section {}", i + 1)).selected_text(&to).show_ui(ui, |ui| {
+                for name in &known {
+                    ui.selectable_value(&mut to, name.clone(), name);
+                }
+            });
+            if to != *section {
+                change = Some(PresetChange::Section(i + 1, to));
+            }
+        }
+        ui.horizontal(|ui| {
+            if ui.button("Split the last section").clicked() {
+                change = Some(PresetChange::Split(preset.sections.len()));
+            }
+            if preset.sections.len() > 1 && ui.button("Join the last two").clicked() {
+                change = Some(PresetChange::Merge(preset.sections.len() - 1));
+            }
+        });
+        if let Some(change) = change {
+            self.step(model, presets, change);
+        }
+    }
+
+    fn numbers(&mut self, ui: &mut Ui, model: &mut Model, presets: &PresetDocument) {
+        let preset = presets.presets[self.chosen].clone();
+        if let Some(tau) = number(ui, model, "holds within ± degrees", preset.tau, 0.1, "half width of the range of angles") {
+            self.change(model, presets, PresetChange::Tau(tau.max(0.0)));
+        }
+        let own = preset.fov_y_deg;
+        let mut has = own.is_some();
+        if ui.checkbox(&mut has, "field of view of its own").changed() {
+            self.step(model, presets, PresetChange::FieldOfView(has.then_some(45.0)));
+        }
+        if let Some(fov) = own
+            && let Some(fov) = number(ui, model, "field of view", fov, 0.2, "degrees")
+        {
+            self.change(model, presets, PresetChange::FieldOfView(Some(fov.clamp(0.05, 170.0))));
+        }
+        for (i, tag) in preset.tags.iter().enumerate() {
+            let name = format!("transition of tag {}", i + 1);
+            if let Some(delta) = number(ui, model, &name, tag.delta, 0.002, "half width, share of the curve's length") {
+                self.change(model, presets, PresetChange::TagWidth(i + 1, delta.clamp(0.0, 0.5)));
+            }
+        }
+    }
+
+    /// An operation that is a step of its own.
+    fn step(&self, model: &mut Model, presets: &PresetDocument, change: PresetChange) {
+        model.begin_gesture();
+        self.change(model, presets, change);
+    }
+
+    /// An operation on the chosen preset in the course of the gesture; what cannot be is said.
+    fn change(&self, model: &mut Model, presets: &PresetDocument, change: PresetChange) {
+        let preset = (self.chosen + 1).to_string();
+        match presets.edited(&PresetOperation::Preset { preset, change }) {
+            Ok(next) => model.edit_on(|document| {
+                let stages = document.stage.iter_mut();
+                for stage in stages {
+                    if let StageDoc::SplineBend(stage) = stage {
+                        stage.presets = PresetsDoc::Inline(Box::new(next.clone()));
+                    }
+                }
+            }),
+            Err(e) => model.violated = Some(e.to_string()),
+        }
+    }
+
+    /// Goes on with the sweep: up and down through the viewing angles.
+    pub(crate) fn play(&mut self, ctx: &Context, model: &mut Model) {
+        if !self.playing {
+            return;
+        }
+        let now = ctx.input(|input| input.time);
+        let by = (SWEEP * (now - self.played_at).clamp(0.0, 0.2)).to_radians();
+        self.played_at = now;
+        let phi = model.shown.as_ref().and_then(|shown| viewing_angle(&shown.session).ok());
+        let Some(phi) = phi else {
+            self.playing = false;
+            return;
+        };
+        if phi > 88.0 {
+            self.downwards = true;
+        } else if phi < 8.0 {
+            self.downwards = false;
+        }
+        let by = if self.downwards { -by } else { by };
+        model.move_camera(|camera| camera.orbited(0.0, by));
+        ctx.request_repaint();
+    }
+}
+
+/// The presets of a stage, as the picture shows them.
+fn presets_of(model: &Model, stage: &SplineStageDoc) -> Option<PresetDocument> {
+    match &stage.presets {
+        PresetsDoc::Inline(document) => Some((**document).clone()),
+        PresetsDoc::Named(name) => PresetDocument::builtin(name).ok().or_else(|| {
+            let resolved = model.shown.as_ref()?.session.resolved()?;
+            resolved.stage.iter().find_map(|stage| match stage {
+                StageDoc::SplineBend(SplineStageDoc { presets: PresetsDoc::Inline(document), .. }) => Some((**document).clone()),
+                _ => None,
+            })
+        }),
+    }
+}
+
+/// The built-in documents, by what they do.
+fn builtins(ui: &mut Ui, model: &mut Model, stage: Option<&SplineStageDoc>) {
+    let shown = match stage.map(|stage| &stage.presets) {
+        Some(PresetsDoc::Named(name)) => name.as_str(),
+        Some(PresetsDoc::Inline(_)) => "edited",
+        None => "none",
+    };
+    let mut chosen = None;
+    ComboBox::from_label("Presets").selected_text(shown).show_ui(ui, |ui| {
+        for builtin in BUILTINS.iter() {
+            if ui.selectable_label(shown == builtin.name, builtin.name).on_hover_text(builtin.effect).clicked() {
+                chosen = Some(builtin.name);
+            }
+        }
+    });
+    if let Some(name) = chosen {
+        let presets = PresetsDoc::Named(name.to_owned());
+        let next = match stage {
+            Some(stage) => SplineStageDoc { presets, ..stage.clone() },
+            None => SplineStageDoc { presets, pivot: None, plane: None },
+        };
+        model.edit(|document| set_stage(document, StageDoc::SplineBend(next)));
+    }
+}
+
+fn free_name(presets: &PresetDocument) -> String {
+    let taken = |name: &str| presets.presets.iter().any(|p| p.name == name);
+    (1..).map(|n| format!("preset {n}")).find(|name| !taken(name)).unwrap_or_default()
+}
+
+/// A quiet colour of its own for each name.
+fn color_of(name: &str) -> Color32 {
+    let hash = name.bytes().fold(7u32, |hash, byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)));
+    let palette = [[205, 222, 240], [226, 216, 190], [210, 232, 206], [240, 212, 204], [224, 208, 236], [204, 232, 232]];
+    let [r, g, b] = palette[hash as usize % palette.len()];
+    Color32::from_rgb(r, g, b)
+}
+

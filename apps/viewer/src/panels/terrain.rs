@@ -1,0 +1,137 @@
+//! Terrain disocclusion: what must be seen, how far the ground may move for it, what stays hidden.
+
+use super::{percent, set_stage, slider};
+use crate::model::Model;
+use belvedere::core::DVec3;
+use belvedere::scene_file::{LayerDoc, SolverMode, StageDoc, TerrainStageDoc};
+use eframe::egui::{ComboBox, Ui};
+
+const KIND: &str = "terrain_disocclusion";
+
+/// Shows the panel.
+pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
+    let stage = match model.stage(KIND) {
+        Some(StageDoc::TerrainDisocclusion(stage)) => Some(stage.clone()),
+        _ => None,
+    };
+    let mut moves = stage.is_some();
+    if ui.checkbox(&mut moves, "The ground makes way").changed() {
+        model.edit(|document| match moves {
+            true => set_stage(document, StageDoc::TerrainDisocclusion(TerrainStageDoc::default())),
+            false => document.stage.retain(|stage| stage.kind() != KIND),
+        });
+    }
+    ui.label("for:");
+    let document = model.document().clone();
+    for (index, layer) in document.layer.iter().enumerate() {
+        if matches!(layer, LayerDoc::Line(_) | LayerDoc::Area(_) | LayerDoc::Point(_)) {
+            let mut must_see = layer.must_see();
+            if ui.checkbox(&mut must_see, layer.id()).changed() {
+                model.edit(|d| d.layer[index] = d.layer[index].with_must_see(must_see));
+            }
+        }
+    }
+    if let Some(stage) = stage {
+        ui.separator();
+        settings(ui, model, &stage);
+    }
+    ui.separator();
+    shares(ui, model);
+}
+
+fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
+    let put = |model: &mut Model, change: &dyn Fn(&mut TerrainStageDoc)| {
+        let mut next = stage.clone();
+        change(&mut next);
+        model.edit_on(|document| set_stage(document, StageDoc::TerrainDisocclusion(next)));
+    };
+    if stage.delta.is_some() {
+        ui.label("The ground was solved before and comes from a file; uncheck and check to solve it here.");
+        return;
+    }
+    let name = |mode: SolverMode| match mode {
+        SolverMode::Paper => "as published",
+        SolverMode::PaperQp => "as published, then a quadratic program",
+        SolverMode::Qp => "a quadratic program",
+    };
+    let mut mode = stage.mode.unwrap_or(SolverMode::Qp);
+    ComboBox::from_label("Solver").selected_text(name(mode)).show_ui(ui, |ui| {
+        for one in [SolverMode::Qp, SolverMode::PaperQp, SolverMode::Paper] {
+            ui.selectable_value(&mut mode, one, name(one));
+        }
+    });
+    if mode != stage.mode.unwrap_or(SolverMode::Qp) {
+        model.begin_gesture();
+        put(model, &|stage| stage.mode = Some(mode));
+    }
+    let moved = stage.adjust_viewpoint.unwrap_or(1.0);
+    let help = "left: the camera moves a little where that saves ground; right: only the ground moves";
+    if let Some(value) = slider(ui, model, "camera or ground", moved, 0.0..=1.0, help) {
+        put(model, &|stage| stage.adjust_viewpoint = (value < 1.0).then_some(value));
+    }
+    let w = stage.w.unwrap_or(0.3);
+    if let Some(value) = slider(ui, model, "smoothness w", w, 0.02..=2.0, "smaller: wider and gentler") {
+        put(model, &|stage| stage.w = Some(value));
+    }
+    let eta = stage.eta.unwrap_or(0.5);
+    if let Some(value) = slider(ui, model, "weight eta", eta, 0.0..=1.0, "mountains that are kept, against those that are moved") {
+        put(model, &|stage| stage.eta = Some(value));
+    }
+    let rise = stage.rise_limit_m.unwrap_or(500.0);
+    if let Some(value) = slider(ui, model, "rise at most, m", rise, 0.0..=2000.0, "most that the ground may rise") {
+        put(model, &|stage| stage.rise_limit_m = Some(value));
+    }
+    let margin = stage.margin_m.unwrap_or(1.0);
+    if let Some(value) = slider(ui, model, "clearance, m", margin, 0.0..=50.0, "of the lines of sight") {
+        put(model, &|stage| stage.margin_m = Some(value));
+    }
+    if ui.button("Usual values").clicked() {
+        model.begin_gesture();
+        put(model, &|stage| *stage = TerrainStageDoc::default());
+    }
+}
+
+/// Before and after, and what stays hidden.
+fn shares(ui: &mut Ui, model: &mut Model) {
+    let Some(judged) = &model.judged else {
+        ui.label("Visible shares appear when something must be seen and the view rests.");
+        return;
+    };
+    let measures = &judged.measures;
+    for (name, of) in
+        [("lines", &measures.lines), ("areas", &measures.areas), ("points", &measures.points), ("surfaces", &measures.surfaces)]
+    {
+        if let Some(of) = of {
+            let [before, after] = [&of.straight, &of.bent].map(|side| percent(side.sight.share));
+            ui.label(format!("{name}: {before} visible straight, {after} bent"));
+        }
+    }
+    if let Some(report) = model.shown.as_ref().and_then(|shown| shown.session.terrain_report()) {
+        let _ = report;
+        if let Some(moved) = model.shown.as_ref().and_then(|shown| shown.displacement) {
+            ui.label(format!("moved by up to {:.0} m", moved.max_m));
+        }
+    }
+    if judged.hidden.is_empty() {
+        ui.label("Nothing in the picture that must be seen is hidden.");
+        return;
+    }
+    ui.label(format!("Still hidden ({}):", judged.hidden.len()));
+    let mut go_to = None;
+    for (i, run) in judged.hidden.iter().take(40).enumerate() {
+        let name = if run.name.is_empty() { &run.layer_id } else { &run.name };
+        let from = run.from_m.map_or_else(String::new, |from| format!(" from {:.1} km", from / 1000.0));
+        if ui.button(format!("{}. {name}{from}", i + 1)).on_hover_text("Look there").clicked() {
+            go_to = Some(run.at);
+        }
+    }
+    if let Some([x, y]) = go_to {
+        let height = model.shown.as_ref().and_then(|shown| shown.session.scene().terrain()?.surface_at([x, y].into()));
+        let point = DVec3::new(x, y, height.unwrap_or(0.0));
+        model.begin_gesture();
+        model.move_camera(|camera| {
+            let by = 0.5 * (point - camera.target);
+            camera.moved(by.truncate().extend(0.0))?.zoomed(point, 1.6)
+        });
+    }
+}

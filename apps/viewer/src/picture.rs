@@ -1,0 +1,240 @@
+//! The picture: shown, compared, walked about in, asked.
+
+use crate::model::{Compare, Model, Tool};
+use crate::pointer::{Hand, share};
+use belvedere::core::{DVec2, DVec3};
+use belvedere::editor::Pace;
+use belvedere::scene::{Frame, Unit};
+use eframe::egui::{
+    Align2, Color32, ColorImage, Context, CursorIcon, FontId, Painter, Pos2, Rect, Sense, Stroke, TextureHandle,
+    TextureOptions, Ui, Vec2, WidgetInfo, WidgetType, pos2, vec2,
+};
+
+/// Most pixels of a picture on the screen.
+const MOST_PIXELS: f32 = 2.4e6;
+/// Time in which a straight picture becomes a bent one, seconds; of one picture of a flicker.
+const DISSOLVE: f32 = 0.4;
+const FLICKER: f64 = 0.7;
+const INK: Color32 = Color32::from_rgb(28, 34, 44);
+const PAPER: Color32 = Color32::from_rgba_premultiplied(225, 225, 222, 225);
+
+/// The picture on the screen.
+#[derive(Default)]
+pub(crate) struct PictureView {
+    textures: [Option<TextureHandle>; 2],
+    of: u64,
+    hand: Hand,
+    /// What was clicked: where it is, and on which layer.
+    pub(crate) picked: Option<(DVec3, String)>,
+}
+
+impl PictureView {
+    /// Shows the picture in what is left of the window, and lets it be moved.
+    pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model) {
+        let room = ui.available_rect_before_wrap();
+        let [w, h] = model.document().camera.image.map(|n| n as f32);
+        let scale = (room.width() / w).min(room.height() / h);
+        let rect = Rect::from_center_size(room.center(), vec2(w, h) * scale);
+        let response = ui.interact(rect, ui.id().with("picture"), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "Picture"));
+        self.hand.steer(ui, &response, rect, model);
+        self.order(ui.ctx(), rect, model);
+        self.upload(ui.ctx(), model);
+        let painter = ui.painter_at(room);
+        self.paint(&painter, rect, ui.ctx(), model);
+        if response.clicked() && let Some(at) = response.interact_pointer_pos() {
+            self.click(share(rect, at), model);
+        }
+        let cursor = match (model.look.tool, response.dragged()) {
+            (Tool::Track, _) => CursorIcon::Crosshair,
+            (_, true) => CursorIcon::Grabbing,
+            (_, false) => CursorIcon::Grab,
+        };
+        let response = response.on_hover_cursor(cursor);
+        if let Some(at) = response.hover_pos() {
+            self.tell(&painter, rect, share(rect, at), model);
+        }
+        if model.look.compare == Compare::Split {
+            self.bar(ui, rect, model);
+        }
+    }
+
+    /// Orders the picture in pixels of the screen.
+    fn order(&self, ctx: &Context, rect: Rect, model: &mut Model) {
+        let size = rect.size() * ctx.pixels_per_point();
+        let size = size * (MOST_PIXELS / (size.x * size.y)).sqrt().min(1.0);
+        let image = [size.x, size.y].map(|n| (n.round() as u32).max(16));
+        let now = ctx.input(|input| input.time);
+        if let Some(again) = model.order(image, now) {
+            ctx.request_repaint_after_secs(again as f32);
+        }
+    }
+
+    fn upload(&mut self, ctx: &Context, model: &Model) {
+        let Some(shown) = model.shown.as_ref().filter(|_| self.of != model.pictures) else { return };
+        self.of = model.pictures;
+        for (slot, frame) in self.textures.iter_mut().zip([&shown.bent, &shown.straight]) {
+            let Some(frame) = frame else { continue };
+            let image = ColorImage::from_rgb([frame.width, frame.height], frame.color.as_flattened());
+            match slot {
+                Some(texture) => texture.set(image, TextureOptions::LINEAR),
+                None => *slot = Some(ctx.load_texture("picture", image, TextureOptions::LINEAR)),
+            }
+        }
+    }
+
+    fn paint(&self, painter: &Painter, rect: Rect, ctx: &Context, model: &Model) {
+        let [bent, straight] = &self.textures;
+        let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+        let draw = |texture: &Option<TextureHandle>, clip: Rect, opacity: f32| {
+            if let Some(texture) = texture {
+                painter.with_clip_rect(clip).image(texture.id(), rect, whole, Color32::WHITE.gamma_multiply(opacity));
+            }
+        };
+        let bar = rect.left() + model.look.split * rect.width();
+        let now = ctx.input(|input| input.time);
+        match model.look.compare {
+            Compare::Split => {
+                draw(straight, rect.with_max_x(bar), 1.0);
+                draw(bent, rect.with_min_x(bar), 1.0);
+            }
+            Compare::Flicker => {
+                let is_bent = (now / FLICKER) as i64 % 2 == 0;
+                draw(if is_bent { bent } else { straight }, rect, 1.0);
+                label(painter, rect.center_top() + vec2(0.0, 8.0), Align2::CENTER_TOP, if is_bent { "bent" } else { "straight" });
+                ctx.request_repaint_after_secs(0.1);
+            }
+            Compare::Off => {
+                let share = ctx.animate_bool_with_time(eframe::egui::Id::new("bent"), model.look.bent, DISSOLVE);
+                let eased = share * share * (3.0 - 2.0 * share);
+                if eased < 1.0 {
+                    draw(straight, rect, 1.0);
+                }
+                if eased > 0.0 {
+                    draw(bent, rect, eased);
+                }
+            }
+        }
+        if model.look.inset && model.look.compare == Compare::Off {
+            let small = Rect::from_min_size(rect.min + vec2(10.0, 10.0), 0.28 * rect.size());
+            if let Some(texture) = if model.look.bent { straight } else { bent } {
+                painter.image(texture.id(), small, whole, Color32::WHITE);
+                painter.rect_stroke(small, 2.0, Stroke::new(1.5, Color32::WHITE), eframe::egui::StrokeKind::Outside);
+                let words = if model.look.bent { "straight view" } else { "bent view" };
+                label(painter, small.center_top() + vec2(0.0, 4.0), Align2::CENTER_TOP, words);
+            }
+        }
+        self.marks(painter, rect, model);
+    }
+
+    /// What the picture has to say about itself.
+    fn marks(&self, painter: &Painter, rect: Rect, model: &Model) {
+        let Some(shown) = &model.shown else {
+            let words = model.violated.as_deref().unwrap_or("opening the scene");
+            painter.text(rect.center(), Align2::CENTER_CENTER, words, FontId::proportional(15.0), Color32::GRAY);
+            return;
+        };
+        let moving = matches!(shown.pace, Pace::Moving { .. });
+        if moving && shown.session.view().is_bent() && model.look.bent {
+            label(painter, rect.left_bottom() + vec2(8.0, -30.0), Align2::LEFT_BOTTOM, "bent view");
+        }
+        let mut top = rect.center_top() + vec2(0.0, 8.0);
+        if let Some(waits) = shown.waits {
+            label(painter, top, Align2::CENTER_TOP, waits);
+            top.y += 26.0;
+        }
+        if let Some(reason) = &model.violated {
+            let galley = painter.layout(reason.clone(), FontId::proportional(13.0), Color32::WHITE, 0.7 * rect.width());
+            let frame = Rect::from_center_size(top + vec2(0.0, 0.5 * galley.size().y + 6.0), galley.size() + vec2(20.0, 12.0));
+            painter.rect_filled(frame, 4.0, Color32::from_rgb(160, 50, 36));
+            painter.galley(frame.min + vec2(10.0, 6.0), galley, Color32::WHITE);
+        }
+        if model.look.statistics {
+            let stats = shown.bent.as_ref().or(shown.straight.as_ref()).map(|frame| &frame.stats);
+            let words = format!(
+                "CPU renderer · {:.0} ms, drawing {:.0} ms · {} triangles · {:.0} % of the pixels' width",
+                shown.milliseconds,
+                stats.map_or(0.0, |s| s.milliseconds),
+                stats.map_or(0, |s| s.triangles_drawn),
+                if moving { 100.0 * model.coarseness } else { 100.0 },
+            );
+            label(painter, rect.right_bottom() + vec2(-8.0, -8.0), Align2::RIGHT_BOTTOM, &words);
+        }
+        if let Some((point, name)) = &self.picked
+            && let Some(at) = image_of(*point, rect, model)
+        {
+            painter.circle_stroke(at, 6.0, Stroke::new(2.5, Color32::WHITE));
+            painter.circle_stroke(at, 6.0, Stroke::new(1.2, INK));
+            let words = format!("{name}  {}", coordinates(*point, shown.session.scene().unit));
+            label(painter, at + vec2(10.0, -10.0), Align2::LEFT_BOTTOM, &words);
+        }
+    }
+
+    /// True coordinates under the pointer.
+    fn tell(&self, painter: &Painter, rect: Rect, at: DVec2, model: &Model) {
+        let (Some(point), Some(shown)) = (model.world_at(at), &model.shown) else { return };
+        let layer = model.layer_at(at).unwrap_or_default();
+        let words = format!("{}   {layer}", coordinates(point, shown.session.scene().unit));
+        label(painter, rect.left_bottom() + vec2(8.0, -8.0), Align2::LEFT_BOTTOM, &words);
+    }
+
+    fn click(&mut self, at: DVec2, model: &mut Model) {
+        let Some(layer) = model.layer_at(at) else {
+            self.picked = None;
+            return;
+        };
+        if model.look.tool == Tool::Track {
+            crate::panels::rays::track(model, &layer);
+            model.look.tool = Tool::Map;
+            return;
+        }
+        self.picked = model.world_at(at).map(|point| (point, layer));
+    }
+
+    /// The bar between the two halves.
+    fn bar(&self, ui: &mut Ui, rect: Rect, model: &mut Model) {
+        let x = rect.left() + model.look.split * rect.width();
+        let grip = Rect::from_center_size(pos2(x, rect.center().y), vec2(14.0, rect.height()));
+        let response = ui.interact(grip, ui.id().with("split"), Sense::drag());
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Slider, true, "Bar between straight and bent"));
+        if response.dragged() && let Some(at) = response.interact_pointer_pos() {
+            model.look.split = ((at.x - rect.left()) / rect.width()).clamp(0.02, 0.98);
+        }
+        let painter = ui.painter();
+        painter.vline(x, rect.y_range(), Stroke::new(2.0, Color32::WHITE));
+        label(painter, pos2(x - 8.0, rect.top() + 8.0), Align2::RIGHT_TOP, "straight");
+        label(painter, pos2(x + 8.0, rect.top() + 8.0), Align2::LEFT_TOP, "bent");
+        response.on_hover_cursor(CursorIcon::ResizeHorizontal);
+    }
+}
+
+/// Where the picture shows a world point.
+fn image_of(point: DVec3, rect: Rect, model: &Model) -> Option<Pos2> {
+    let shown = model.shown.as_ref()?;
+    let view = if model.look.bent { shown.session.view().clone() } else { shown.session.view().straightened() };
+    let at = view.project(point).ok()?.pixel;
+    let [w, h] = view.pinhole().image.map(f64::from);
+    let share = Vec2::new((at.x / w) as f32, (at.y / h) as f32);
+    Some(rect.min + share * rect.size()).filter(|at| rect.contains(*at))
+}
+
+/// Position and height in the scene's own system.
+pub(crate) fn coordinates(point: DVec3, unit: Unit) -> String {
+    match unit {
+        Unit::Metre => format!("E {:.0}  N {:.0}  height {:.0} m", point.x, point.y, point.z),
+        _ => format!("x {:.2}  y {:.2}  z {:.2}", point.x, point.y, point.z),
+    }
+}
+
+/// Words on a light ground.
+fn label(painter: &Painter, at: Pos2, align: Align2, words: &str) {
+    let galley = painter.layout_no_wrap(words.to_owned(), FontId::proportional(13.0), INK);
+    let rect = align.anchor_size(at, galley.size() + vec2(12.0, 6.0));
+    painter.rect_filled(rect, 3.0, PAPER);
+    painter.galley(rect.min + vec2(6.0, 3.0), galley, INK);
+}
+
+/// A frame as an image of the window.
+pub(crate) fn image_of_frame(frame: &Frame) -> ColorImage {
+    ColorImage::from_rgb([frame.width, frame.height], frame.color.as_flattened())
+}

@@ -1,0 +1,362 @@
+//! The application as a whole: what is opened, saved, remembered; panels around the picture.
+
+use crate::builtin::BUILTIN;
+use crate::files;
+use crate::keys::{self, Command};
+use crate::menu::{self, Bookmark, Choice};
+use crate::model::Model;
+use crate::panels::{Panels, set_stage};
+use crate::picture::{PictureView, image_of_frame};
+use crate::widgets::overhead::overhead;
+use belvedere::editor::{Editor, Place, Recovery, open_files, set_camera};
+use belvedere::scene::Progress;
+use belvedere::scene_file::{self, StageDoc};
+use eframe::egui::{self, CentralPanel, Context, Panel, TextureHandle, TextureOptions, Ui, ViewportCommand, Window};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, TryRecvError};
+
+/// What to open at the start.
+#[derive(Debug, Clone, Default)]
+pub struct Opening {
+    /// A scene, or data; empty = the first built-in scene.
+    pub files: Vec<PathBuf>,
+    /// Folders beside that of a scene from which its files may come.
+    pub allowed: Vec<PathBuf>,
+    /// Where the application remembers what it was doing; `None` = nowhere.
+    pub state: Option<PathBuf>,
+}
+
+impl Opening {
+    /// The usual place of what is remembered.
+    pub fn usual_state() -> Option<PathBuf> {
+        files::state_folder()
+    }
+}
+
+/// Recent files that are remembered.
+const RECENT: usize = 12;
+/// How long after a change it is written down for the case of a crash, seconds.
+const WRITE_AFTER: f64 = 0.4;
+
+/// What is remembered between runs.
+#[derive(Debug, Default, Serialize, Deserialize)]
+struct Remembered {
+    recent: Vec<PathBuf>,
+}
+
+/// A file that is being opened beside the window.
+type Pending = Receiver<Result<Editor, String>>;
+
+/// The application.
+pub struct Viewer {
+    model: Model,
+    panels: Panels,
+    picture: PictureView,
+    from_above: Option<(u64, TextureHandle)>,
+    bookmarks: Vec<Bookmark>,
+    recent: Vec<PathBuf>,
+    allowed: Vec<PathBuf>,
+    state: Option<PathBuf>,
+    recovery: Option<Recovery>,
+    /// The document that was written down last, and since when it is another.
+    written: Option<std::sync::Arc<scene_file::Document>>,
+    dirty_since: Option<f64>,
+    pending: Option<Pending>,
+    chosen_input: Option<Receiver<Option<Vec<PathBuf>>>>,
+    chosen_output: Option<Receiver<Option<PathBuf>>>,
+    help: bool,
+    started: Option<std::time::Instant>,
+}
+
+impl Viewer {
+    /// Opens what there is to open; what an instance left that did not end comes first.
+    pub fn new(ctx: &Context, opening: &Opening) -> Self {
+        let wake = ctx.clone();
+        let mut notes = Vec::new();
+        let (recovery, left) = match opening.state.as_deref().map(Recovery::claim) {
+            Some(Ok((recovery, left))) => (Some(recovery), left),
+            Some(Err(e)) => {
+                notes.push(format!("what you do is not written down for the case of a crash: {e}"));
+                (None, None)
+            }
+            None => (None, None),
+        };
+        let first = builtin(0);
+        let mut viewer = Self {
+            model: Model::new(first, move || wake.request_repaint()),
+            panels: Panels::default(),
+            picture: PictureView::default(),
+            from_above: None,
+            bookmarks: Vec::new(),
+            recent: opening.state.as_deref().map_or_else(Vec::new, |folder| remembered(folder).recent),
+            allowed: opening.allowed.clone(),
+            state: opening.state.clone(),
+            recovery,
+            written: None,
+            dirty_since: None,
+            pending: None,
+            chosen_input: None,
+            chosen_output: None,
+            help: false,
+            started: Some(std::time::Instant::now()),
+        };
+        if let Some(left) = left.filter(|_| opening.files.is_empty()) {
+            viewer.model.replace(left.editor);
+            notes.push("The last session did not end as it should; here is its last state.".into());
+        } else if !opening.files.is_empty() {
+            viewer.open(ctx, opening.files.clone());
+        }
+        notes.into_iter().for_each(|note| viewer.model.notices.error(note));
+        viewer
+    }
+
+    /// Opens files beside the window.
+    fn open(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
+        if let [path] = paths.as_slice() {
+            self.remember(path);
+        }
+        let (outbox, inbox) = std::sync::mpsc::channel();
+        let (allowed, ctx) = (self.allowed.clone(), ctx.clone());
+        let work = move || {
+            let opened = open_files(&paths, &allowed, &Progress::silent()).map_err(|e| e.to_string());
+            let _ = outbox.send(opened);
+            ctx.request_repaint();
+        };
+        #[cfg(not(target_family = "wasm"))]
+        std::thread::spawn(work);
+        #[cfg(target_family = "wasm")]
+        work();
+        self.pending = Some(inbox);
+    }
+
+    fn remember(&mut self, path: &Path) {
+        let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        self.recent.retain(|other| *other != path);
+        self.recent.insert(0, path);
+        self.recent.truncate(RECENT);
+        if let Some(folder) = &self.state {
+            let text = serde_json::to_string(&Remembered { recent: self.recent.clone() }).unwrap_or_default();
+            // What cannot be remembered is not; nothing depends on it.
+            let _ = std::fs::create_dir_all(folder);
+            let _ = belvedere::output::write_text(&folder.join("recent.json"), &text, true);
+        }
+    }
+
+    /// Takes what was chosen or opened elsewhere.
+    fn arrivals(&mut self, ctx: &Context) {
+        if let Some(pending) = &self.pending {
+            match pending.try_recv() {
+                Ok(Ok(editor)) => {
+                    self.model.replace(editor);
+                    self.pending = None;
+                }
+                Ok(Err(reason)) => {
+                    self.model.notices.error(reason);
+                    self.pending = None;
+                }
+                Err(TryRecvError::Disconnected) => {
+                    self.model.notices.error("the file could not be opened: internal error; please report this with the file");
+                    self.pending = None;
+                }
+                Err(TryRecvError::Empty) => {}
+            }
+        }
+        if let Some(answer) = self.chosen_input.as_ref().and_then(|inbox| inbox.try_recv().ok()) {
+            self.chosen_input = None;
+            if let Some(paths) = answer {
+                self.open(ctx, paths);
+            }
+        }
+        if let Some(answer) = self.chosen_output.as_ref().and_then(|inbox| inbox.try_recv().ok()) {
+            self.chosen_output = None;
+            if let Some(path) = answer {
+                self.save(ctx, &path);
+            }
+        }
+        if self.chosen_input.is_some() || self.chosen_output.is_some() {
+            ctx.request_repaint_after_secs(0.1);
+        }
+        let dropped: Vec<PathBuf> = ctx.input(|input| input.raw.dropped_files.iter().filter_map(|file| file.path.clone()).collect());
+        if !dropped.is_empty() {
+            self.open(ctx, dropped);
+        }
+    }
+
+    fn save(&mut self, ctx: &Context, path: &Path) {
+        match self.model.editor.save(path) {
+            Ok(()) => {
+                self.remember(path);
+                let outside = self.model.editor.outside();
+                let mut said = format!("Saved: {}", path.display());
+                if !outside.is_empty() {
+                    let folders: Vec<String> = outside.iter().map(|folder| format!("--allow-root {}", folder.display())).collect();
+                    said += &format!("; on the command line it needs {}", folders.join(" "));
+                }
+                self.model.notices.say(said, ctx.input(|input| input.time));
+            }
+            Err(e) => self.model.notices.error(e.to_string()),
+        }
+    }
+
+    fn command(&mut self, ctx: &Context, command: Command) {
+        match command {
+            Command::Open => self.chosen_input = Some(files::choose_input()),
+            Command::Save => match self.model.editor.place.scene.clone() {
+                Some(path) => self.save(ctx, &path),
+                None => self.chosen_output = Some(files::choose_output("scene.toml")),
+            },
+            Command::SaveAs => self.chosen_output = Some(files::choose_output("scene.toml")),
+            Command::Undo => {
+                self.model.editor.undo();
+            }
+            Command::Redo => {
+                self.model.editor.redo();
+            }
+            Command::Bookmark => {
+                if let Some(camera) = self.model.camera() {
+                    let name = format!("View {}", self.bookmarks.len() + 1);
+                    self.bookmarks.push(Bookmark { name, camera });
+                }
+            }
+            Command::ShowAll => {
+                if let Some(bounds) = self.model.shown.as_ref().map(|shown| shown.session.scene().bounds()) {
+                    self.model.begin_gesture();
+                    self.model.move_camera(|camera| camera.framing(&bounds));
+                }
+            }
+            Command::Help => self.help = !self.help,
+        }
+    }
+
+    fn choose(&mut self, ctx: &Context, choice: Choice) {
+        match choice {
+            Choice::Command(command) => self.command(ctx, command),
+            Choice::Builtin(i) => self.model.replace(builtin(i)),
+            Choice::Recent(path) => self.open(ctx, vec![path]),
+            Choice::GoTo(i) => {
+                if let Some(bookmark) = self.bookmarks.get(i).cloned() {
+                    self.model.edit(|document| set_camera(document, &bookmark.camera));
+                }
+            }
+            Choice::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
+        }
+    }
+
+    /// The camera from above in a window of its own.
+    fn overhead(&mut self, ctx: &Context) {
+        if !self.model.look.overhead {
+            return;
+        }
+        let mut open = true;
+        let mut edit = None;
+        Window::new("Camera from above").open(&mut open).default_width(460.0).show(ctx, |ui| {
+            let Some((frame, view)) = &self.model.overhead else {
+                ui.label("drawing");
+                return;
+            };
+            if self.from_above.as_ref().is_none_or(|(of, _)| *of != self.model.pictures) {
+                let texture = ctx.load_texture("camera from above", image_of_frame(frame), TextureOptions::LINEAR);
+                self.from_above = Some((self.model.pictures, texture));
+            }
+            let Some((_, texture)) = &self.from_above else { return };
+            let turns = match self.model.stage("curved_rays") {
+                Some(StageDoc::CurvedRays(stage)) => stage.turn.clone(),
+                _ => Vec::new(),
+            };
+            edit = overhead(ui, ui.id(), texture.id(), view, &turns);
+            if let Some(reason) = &self.model.violated {
+                ui.colored_label(egui::Color32::from_rgb(170, 50, 40), reason);
+            }
+        });
+        self.model.look.overhead = open;
+        let Some(edit) = edit else { return };
+        if edit.begins {
+            self.model.begin_gesture();
+        }
+        self.model.edit_on(|document| {
+            let stage = document.stage.iter().find_map(|stage| match stage {
+                StageDoc::CurvedRays(stage) => Some(stage.clone()),
+                _ => None,
+            });
+            if let Some(mut stage) = stage
+                && let Some(turn) = stage.turn.get_mut(edit.turn)
+            {
+                edit.apply(turn);
+                set_stage(document, StageDoc::CurvedRays(stage));
+            }
+        });
+    }
+
+    /// Writes down what is being done, a moment after it was.
+    fn write_down(&mut self, ctx: &Context) {
+        let Some(recovery) = &self.recovery else { return };
+        let now = ctx.input(|input| input.time);
+        let same = self.written.as_ref().is_some_and(|written| std::sync::Arc::ptr_eq(written, self.model.document()));
+        if same {
+            self.dirty_since = None;
+            return;
+        }
+        let since = *self.dirty_since.get_or_insert(now);
+        if now - since < WRITE_AFTER {
+            ctx.request_repaint_after_secs((WRITE_AFTER - (now - since)) as f32);
+            return;
+        }
+        self.written = Some(self.model.document().clone());
+        self.dirty_since = None;
+        if let Err(e) = recovery.write(&self.model.editor, serde_json::Value::Null) {
+            self.model.notices.error(format!("what you do could not be written down for the case of a crash: {e}"));
+        }
+    }
+}
+
+/// A built-in scene.
+fn builtin(i: usize) -> Editor {
+    let text = BUILTIN.get(i).map_or("", |(_, text)| text);
+    let parsed = scene_file::parse(Path::new("built-in.toml"), text);
+    match parsed {
+        Ok(source) => Editor::new(source.document, Place::default()),
+        Err(e) => unreachable!("a built-in scene is broken: {e}"),
+    }
+}
+
+fn remembered(folder: &Path) -> Remembered {
+    let text = std::fs::read_to_string(folder.join("recent.json")).unwrap_or_default();
+    serde_json::from_str(&text).unwrap_or_default()
+}
+
+impl eframe::App for Viewer {
+    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        self.model.take_answers();
+        self.arrivals(&ctx);
+        if let Some(command) = keys::read(&ctx, &mut self.model) {
+            self.command(&ctx, command);
+        }
+        self.panels.play(&ctx, &mut self.model);
+        let choice = Panel::top("menu").show(ui, |ui| menu::bar(ui, &self.model, &self.recent, &self.bookmarks)).inner;
+        if let Some(choice) = choice {
+            self.choose(&ctx, choice);
+        }
+        Panel::left("panels").default_size(330.0).show(ui, |ui| self.panels.show(ui, &mut self.model));
+        CentralPanel::no_frame().show(ui, |ui| self.picture.show(ui, &mut self.model));
+        self.overhead(&ctx);
+        menu::help(&ctx, &mut self.help);
+        self.model.notices.show(&ctx);
+        self.write_down(&ctx);
+        if self.model.shown.is_some()
+            && let Some(started) = self.started.take()
+        {
+            // For whoever measures how long it takes to the first picture.
+            if std::env::var_os("BELVEDERE_VIEW_TIMES").is_some() {
+                eprintln!("first picture after {} ms", started.elapsed().as_millis());
+            }
+        }
+    }
+
+    fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {
+        if let Some(recovery) = self.recovery.take() {
+            recovery.end();
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! The angle ruler: presets over the range of viewing angles, and where the camera is.
+
+use eframe::egui::{Align2, Color32, FontId, Id, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2};
+
+const HEIGHT: f32 = 52.0;
+/// Range of angles, degrees.
+const RANGE: [f64; 2] = [0.0, 90.0];
+
+/// What the user did.
+pub(crate) enum RulerEdit {
+    /// Chose the preset of that number.
+    Choose(usize),
+    /// Drags it to an angle, degrees; whether the drag begins.
+    Move(usize, f64, bool),
+}
+
+/// Draws the ruler.
+///
+/// * `presets`: name and angle of each. `chosen`: the one that is edited. `phi`: viewing angle of the camera, degrees.
+pub(crate) fn ruler(ui: &mut Ui, id: Id, presets: &[(String, f64)], chosen: usize, phi: Option<f64>) -> Option<RulerEdit> {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, "Viewing angles"));
+    let inner = rect.shrink2(vec2(12.0, 0.0));
+    let x_of = |phi: f64| inner.left() + ((phi - RANGE[0]) / (RANGE[1] - RANGE[0])) as f32 * inner.width();
+    let painter = ui.painter_at(rect);
+    let ink = ui.visuals().text_color();
+    let y = rect.center().y;
+    painter.hline(inner.x_range(), y, Stroke::new(1.5, ink));
+    for degrees in (0..=90).step_by(15) {
+        let x = x_of(f64::from(degrees));
+        painter.vline(x, y..=y + 5.0, Stroke::new(1.0, ink));
+        painter.text(pos2(x, y + 6.0), Align2::CENTER_TOP, format!("{degrees}°"), FontId::proportional(10.0), ink);
+    }
+    if let Some(phi) = phi {
+        painter.vline(x_of(phi.clamp(RANGE[0], RANGE[1])), y - 18.0..=y + 8.0, Stroke::new(2.0, Color32::from_rgb(30, 96, 170)));
+    }
+    let mut edit = None;
+    for (i, (name, phi)) in presets.iter().enumerate() {
+        let at = pos2(x_of(phi.clamp(RANGE[0], RANGE[1])), y - 9.0);
+        let target = eframe::egui::Rect::from_center_size(at, vec2(16.0, 18.0));
+        let response = ui.interact(target, id.with(("preset", i)), Sense::click_and_drag());
+        let label = if name.is_empty() { format!("Preset {} at {phi:.0}°", i + 1) } else { format!("Preset {name} at {phi:.0}°") };
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &label));
+        let color = if i == chosen { Color32::from_rgb(190, 96, 10) } else { ink };
+        painter.circle_filled(at, if response.hovered() || i == chosen { 6.5 } else { 5.0 }, color);
+        if response.clicked() {
+            edit = Some(RulerEdit::Choose(i));
+        }
+        if response.dragged() && let Some(to) = response.interact_pointer_pos() {
+            let share = f64::from((to.x - inner.left()) / inner.width());
+            let to = (RANGE[0] + share * (RANGE[1] - RANGE[0])).clamp(RANGE[0], RANGE[1]);
+            edit = Some(RulerEdit::Move(i, (2.0 * to).round() / 2.0, response.drag_started()));
+        }
+        response.on_hover_text(label);
+    }
+    edit
+}

@@ -1,0 +1,190 @@
+//! Moving a camera by hand: about a point, over a plane, towards a point.
+
+use super::{Pinhole, PinholeError, Projection};
+use crate::Aabb;
+use glam::{DQuat, DVec2, DVec3};
+use std::f64::consts::FRAC_PI_2;
+
+/// Nearest to straight up or down that a hand may tilt a view, radians.
+const LEAST_TILT: f64 = 1e-3;
+
+/// A camera and the point that it looks at, in the hand of a user. Moves never roll the camera; an orthographic one is zoomed by the
+/// height of its picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Navigation {
+    /// The camera.
+    pub pinhole: Pinhole,
+    /// Point on its optical axis, scene coordinates.
+    pub target: DVec3,
+}
+
+impl Navigation {
+    /// About the target by `yaw` (counter-clockwise seen from above) and up over it by `pitch`, radians; the eye stays between
+    /// straight above and straight below.
+    ///
+    /// # Errors
+    /// [`PinholeError`] only for a camera that was none before.
+    pub fn orbited(&self, yaw: f64, pitch: f64) -> Result<Self, PinholeError> {
+        let away = self.pinhole.eye - self.target;
+        self.placed(self.target + turned(away, yaw, pitch), self.target)
+    }
+
+    /// The eye stays; it looks to the left by `yaw` and up by `pitch`, radians.
+    ///
+    /// # Errors
+    /// As [`Self::orbited`].
+    pub fn looked(&self, yaw: f64, pitch: f64) -> Result<Self, PinholeError> {
+        let ahead = self.target - self.pinhole.eye;
+        self.placed(self.pinhole.eye, self.pinhole.eye + turned(ahead, yaw, pitch))
+    }
+
+    /// Eye and target move together.
+    ///
+    /// # Errors
+    /// As [`Self::orbited`].
+    pub fn moved(&self, by: DVec3) -> Result<Self, PinholeError> {
+        self.placed(self.pinhole.eye + by, self.target + by)
+    }
+
+    /// The level plane through `held` is dragged so that what was under pixel `from` comes under pixel `to`, as a map is; near the
+    /// horizon the drag is as long as at a distance of ten times that of `held`.
+    ///
+    /// # Errors
+    /// As [`Self::orbited`].
+    pub fn dragged(&self, held: DVec3, from: DVec2, to: DVec2) -> Result<Self, PinholeError> {
+        let (Some(a), Some(b)) = (self.on_level(held, from), self.on_level(held, to)) else {
+            // Above the horizon a drag turns the head.
+            let angle = (to - from) / self.pinhole.scale_px().max(1e-9);
+            return self.looked(angle.x, angle.y);
+        };
+        self.moved(a - b)
+    }
+
+    /// Nearer to `about` by `factor` > 1, farther by less.
+    ///
+    /// # Errors
+    /// As [`Self::orbited`].
+    pub fn zoomed(&self, about: DVec3, factor: f64) -> Result<Self, PinholeError> {
+        let share = 1.0 - 1.0 / factor.clamp(0.05, 20.0);
+        if let Projection::Orthographic { height } = self.pinhole.projection {
+            let sideways = about - self.target;
+            let sideways = sideways - sideways.dot(self.pinhole.forward) * self.pinhole.forward;
+            let mut next = self.moved(share * sideways)?;
+            next.pinhole.projection = Projection::Orthographic { height: height * (1.0 - share) };
+            return Ok(next);
+        }
+        let eye = self.pinhole.eye.lerp(about, share);
+        // The point on the axis comes as near as the zoomed one.
+        let ahead = (self.target - self.pinhole.eye).length() * (1.0 - share);
+        self.placed(eye, eye + self.pinhole.forward * ahead.max(10.0 * self.pinhole.near))
+    }
+
+    /// Looking the same way at the middle of a box, from where all of it is in the picture.
+    ///
+    /// # Errors
+    /// [`PinholeError`] for a box that is empty or not finite.
+    pub fn framing(&self, bounds: &Aabb) -> Result<Self, PinholeError> {
+        let middle = 0.5 * (bounds.min + bounds.max);
+        let radius = 0.5 * (bounds.max - bounds.min).length();
+        let [w, h] = self.pinhole.image.map(f64::from);
+        let narrow = (w / h).min(1.0);
+        if let Projection::Orthographic { .. } = self.pinhole.projection {
+            let eye = middle - (2.0 * radius + self.pinhole.near) * self.pinhole.forward;
+            let mut next = self.placed(eye, middle)?;
+            next.pinhole.projection = Projection::Orthographic { height: 2.0 * radius / narrow };
+            return Ok(next);
+        }
+        let half = (0.5 * h / self.pinhole.scale_px() * narrow).atan();
+        self.placed(middle - radius / half.sin() * self.pinhole.forward, middle)
+    }
+
+    fn placed(&self, eye: DVec3, target: DVec3) -> Result<Self, PinholeError> {
+        let p = &self.pinhole;
+        let pinhole = Pinhole::look_at(eye, target, DVec3::Z, p.projection, p.image, p.near, p.far)?;
+        Ok(Self { pinhole, target })
+    }
+
+    /// Where the ray of a pixel meets the level plane through a point, at most ten times as far away as that.
+    fn on_level(&self, held: DVec3, pixel: DVec2) -> Option<DVec3> {
+        let (start, direction) = self.pinhole.line(pixel);
+        let direction = direction.normalize();
+        let farthest = 10.0 * held.distance(self.pinhole.eye);
+        let t = (held.z - start.z) / direction.z;
+        (t > 0.0 && t < farthest).then(|| start + t * direction)
+    }
+}
+
+/// A direction turned about the vertical, and towards it.
+fn turned(direction: DVec3, yaw: f64, pitch: f64) -> DVec3 {
+    let level = direction.truncate().length();
+    let height = direction.z.atan2(level);
+    let limit = FRAC_PI_2 - LEAST_TILT;
+    let wanted = (height + pitch).clamp(-limit, limit);
+    let heading = if level > 1e-12 * direction.length() { direction.truncate() / level } else { DVec2::Y };
+    let flat = (heading * wanted.cos()).extend(wanted.sin());
+    DQuat::from_rotation_z(yaw) * flat * direction.length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera() -> Navigation {
+        let (eye, target) = (DVec3::new(100.0, -2000.0, 1500.0), DVec3::new(0.0, 300.0, 200.0));
+        let lens = Projection::Perspective { fov_y: 0.8 };
+        let pinhole = Pinhole::look_at(eye, target, DVec3::Z, lens, [1280, 720], 1.0, None).expect("camera");
+        Navigation { pinhole, target }
+    }
+
+    #[test]
+    fn what_is_held_stays_under_the_pointer() {
+        let before = camera();
+        let (from, to) = (DVec2::new(300.0, 500.0), DVec2::new(900.0, 420.0));
+        let held = before.on_level(before.target, from).expect("ground");
+        let after = before.dragged(held, from, to).expect("moved");
+        let (pixel, _) = after.pinhole.project(held).expect("in front");
+        assert!(pixel.distance(to) < 1e-6, "{pixel}");
+        assert_eq!(after.pinhole.forward, before.pinhole.forward);
+    }
+
+    #[test]
+    fn a_zoom_keeps_the_image_of_what_it_is_about() {
+        let before = camera();
+        let about = DVec3::new(400.0, 800.0, 300.0);
+        let (was, depth) = before.pinhole.project(about).expect("in front");
+        let after = before.zoomed(about, 2.0).expect("zoomed");
+        let (is, nearer) = after.pinhole.project(about).expect("in front");
+        assert!(was.distance(is) < 1e-6 && (nearer - 0.5 * depth).abs() < 1e-6, "{was} {is} {nearer} {depth}");
+    }
+
+    #[test]
+    fn orbits_keep_distance_and_never_pass_the_poles() {
+        let before = camera();
+        let distance = before.pinhole.eye.distance(before.target);
+        for pitch in [-9.0, -1.0, 0.3, 9.0] {
+            let after = before.orbited(0.7, pitch).expect("orbit");
+            assert!((after.pinhole.eye.distance(after.target) - distance).abs() < 1e-9 * distance);
+            assert!(after.pinhole.right.z.abs() < 1e-12, "rolled");
+            assert!(after.pinhole.down.z < 0.0, "upside down");
+        }
+        let round = before.orbited(std::f64::consts::TAU, 0.0).expect("orbit");
+        assert!(round.pinhole.eye.distance(before.pinhole.eye) < 1e-6);
+    }
+
+    #[test]
+    fn all_of_a_box_is_framed() {
+        let bounds = Aabb { min: DVec3::new(-300.0, 100.0, 0.0), max: DVec3::new(900.0, 2100.0, 400.0) };
+        let after = camera().framing(&bounds).expect("framed");
+        assert!(bounds.corners().iter().all(|&c| after.pinhole.project(c).is_ok_and(|(p, _)| after.pinhole.contains(p))));
+        assert!(after.pinhole.forward.distance(camera().pinhole.forward) < 1e-12);
+    }
+
+    #[test]
+    fn the_horizon_is_not_dragged() {
+        let level = Navigation { target: DVec3::new(0.0, 3000.0, 1500.0), ..camera() };
+        let level = level.placed(level.pinhole.eye, level.target).expect("camera");
+        let after = level.dragged(DVec3::ZERO, DVec2::new(640.0, 10.0), DVec2::new(740.0, 10.0)).expect("turned");
+        assert_eq!(after.pinhole.eye, level.pinhole.eye);
+        assert!(after.pinhole.forward.x < level.pinhole.forward.x);
+    }
+}

@@ -1,0 +1,319 @@
+//! A session that follows a document: everything is resolved again, nothing that stays is read again.
+
+use super::Place;
+use crate::fallback;
+use crate::overlays::grid;
+use crate::picture::{self, AuxBuffer, DisplacementReport, PictureOptions};
+use crate::scene_file::{Document, LayerDoc, SourceDocument};
+use crate::{BelvedereError, CameraPicture, OpenOptions, Session};
+use belvedere_construct::measure::HiddenRun;
+use belvedere_construct::{MeasureOptions, Measures};
+use belvedere_core::{Stage, View};
+use belvedere_scene::{Frame, Progress, RenderJob, RenderOptions, Renderer, Scene};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// A picture that is wanted of a document.
+#[derive(Debug, Clone)]
+pub struct Order {
+    /// The document.
+    pub document: Arc<Document>,
+    /// Where its files are.
+    pub place: Place,
+    /// Size of the picture on the screen, pixels.
+    pub image: [u32; 2],
+    /// How much time there is.
+    pub pace: Pace,
+    /// Which pictures.
+    pub sides: Sides,
+    /// With the picture of the camera from above; at rest only.
+    pub overhead: bool,
+}
+
+/// Pictures of a view.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sides {
+    /// As the stages bend it.
+    Bent,
+    /// Without them.
+    Straight,
+    /// Both.
+    Both,
+}
+
+/// How much time a picture may take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Pace {
+    /// As little as possible: something is being moved. What takes long to solve waits.
+    Moving {
+        /// Worst error of terrain drawn in less detail, pixels.
+        detail_px: f64,
+    },
+    /// As much as it needs: the picture that the command line draws.
+    Resting,
+}
+
+/// A picture and what it was made of.
+#[derive(Debug, Clone)]
+pub struct Shown {
+    /// The document, as it was ordered.
+    pub document: Arc<Document>,
+    /// Scene, view, light and reports.
+    pub session: Session,
+    /// The bent picture, if it was wanted; with world positions if it is of the pace [`Pace::Resting`].
+    pub bent: Option<Frame>,
+    /// The straight one, likewise.
+    pub straight: Option<Frame>,
+    /// The camera from above, if that was wanted, and how that picture was taken.
+    pub overhead: Option<(Frame, View)>,
+    /// How far it moves what it shows; `None` if it is straight, or nobody had the time to look.
+    pub displacement: Option<DisplacementReport>,
+    /// How much time there was.
+    pub pace: Pace,
+    /// What was left out because it takes long, for the time being; one sentence.
+    pub waits: Option<&'static str>,
+    /// Wall time of everything, milliseconds.
+    pub milliseconds: f64,
+}
+
+/// What a picture shows of what must be seen.
+#[derive(Debug, Clone)]
+pub struct Judged {
+    /// The document.
+    pub document: Arc<Document>,
+    /// Visible shares by lines of sight.
+    pub measures: Measures,
+    /// What stays hidden, part by part.
+    pub hidden: Vec<HiddenRun>,
+}
+
+/// Longest that solving may take while something is moved.
+const SOLVE_WITHIN: Duration = Duration::from_millis(120);
+
+/// A session that follows a document.
+#[derive(Debug, Default)]
+pub struct LiveSession {
+    session: Option<Session>,
+    /// The document that its layers were read by.
+    opened: Option<Document>,
+    /// Warnings about the layers, which stay while the view changes.
+    layer_warnings: Vec<String>,
+    /// How long constructing took last.
+    constructing: Duration,
+    ground: Ground,
+}
+
+/// Ground that makes way while something is moved.
+#[derive(Debug, Default)]
+struct Ground {
+    #[cfg(not(target_family = "wasm"))]
+    live: Option<(crate::scene_file::TerrainStageDoc, Arc<Scene>, belvedere_disocclusion::LiveTerrain)>,
+    last: Option<Stage>,
+}
+
+impl LiveSession {
+    /// Follows the document, and draws it.
+    ///
+    /// # Errors
+    /// As [`Session::open`] and [`Session::render`]; the session stays as it was.
+    pub fn show(&mut self, order: &Order, progress: &Progress) -> Result<Shown, BelvedereError> {
+        let began = Instant::now();
+        let mut document = (*order.document).clone();
+        document.camera.image = order.image;
+        let (session, waits) = match order.pace {
+            Pace::Moving { .. } => self.moving(document, order, progress)?,
+            Pace::Resting => (self.resting(document, order, progress)?, None),
+        };
+        session.check_drawable()?;
+        let (mut bent, mut straight, mut displacement) = (None, None, None);
+        match order.pace {
+            Pace::Moving { detail_px } => {
+                if order.sides != Sides::Straight {
+                    bent = Some(quick(&session, session.view(), detail_px, progress)?);
+                }
+                if order.sides != Sides::Bent {
+                    straight = Some(quick(&session, &session.view().straightened(), detail_px, progress)?);
+                }
+            }
+            Pace::Resting => {
+                let mut side = |plain: bool| {
+                    let aux = vec![AuxBuffer::World];
+                    let request = PictureOptions { straight: plain, aux, ..PictureOptions::default() };
+                    let drawn = picture::draw_view(&session, &request, progress)?;
+                    displacement = displacement.or(drawn.displacement);
+                    Ok::<_, BelvedereError>(Some(drawn.frame))
+                };
+                bent = if order.sides == Sides::Straight { None } else { side(false)? };
+                straight = if order.sides == Sides::Bent { None } else { side(true)? };
+            }
+        }
+        let overhead = match order.overhead && order.pace == Pace::Resting {
+            true => Some(overhead(&session, progress)?),
+            false => None,
+        };
+        let milliseconds = began.elapsed().as_secs_f64() * 1e3;
+        let document = order.document.clone();
+        Ok(Shown { document, session, bent, straight, overhead, displacement, pace: order.pace, waits, milliseconds })
+    }
+
+    /// What the view of the last resting picture shows of what must be seen; `None` if nothing must be.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Construct`], [`BelvedereError::Cancelled`].
+    pub fn judge(&self, order: &Order, progress: &Progress) -> Result<Option<Judged>, BelvedereError> {
+        let Some(session) = &self.session else { return Ok(None) };
+        if !session.scene().layers.iter().any(|layer| layer.must_see) {
+            return Ok(None);
+        }
+        let options = MeasureOptions::default();
+        let (scene, view) = (session.scene(), session.view());
+        let measures = belvedere_construct::measure(scene, view, None, &options, progress)?;
+        let hidden = belvedere_construct::measure::hidden(scene, view, &options, progress)?;
+        Ok(Some(Judged { document: order.document.clone(), measures, hidden }))
+    }
+
+    /// Everything is solved.
+    fn resting(&mut self, document: Document, order: &Order, progress: &Progress) -> Result<Session, BelvedereError> {
+        let options = options(order, progress);
+        let began = Instant::now();
+        let session = match self.open(&document) {
+            Some(session) => session.edited(document.clone(), &options, &self.layer_warnings)?,
+            None => self.reopened(&document, &options)?,
+        };
+        self.constructing = began.elapsed();
+        let is_terrain = |stage: &&Stage| matches!(stage, Stage::TerrainDisocclusion(_));
+        self.ground.last = session.view().stages().iter().find(is_terrain).cloned();
+        self.session = Some(session.clone());
+        Ok(session)
+    }
+
+    /// What takes long is left out or taken from before.
+    fn moving(
+        &mut self,
+        document: Document,
+        order: &Order,
+        progress: &Progress,
+    ) -> Result<(Session, Option<&'static str>), BelvedereError> {
+        const GROUND: &str = "the ground makes way when the view rests";
+        const RAYS: &str = "rays are bent when the view rests";
+        let (solves, constructs) = (document.solves_terrain(), document.constructor.is_some());
+        let in_time = constructs && !solves && self.constructing <= SOLVE_WITHIN;
+        let options = OpenOptions { unsolved: !in_time, ..options(order, progress) };
+        let Some(session) = self.open(&document) else {
+            let session = self.reopened(&document, &options)?;
+            self.session = Some(session.clone());
+            return Ok((session, solves.then_some(GROUND).or((constructs && !in_time).then_some(RAYS))));
+        };
+        let session = session.edited(document, &options, &self.layer_warnings)?;
+        if solves {
+            return match self.ground.under(&session)? {
+                Some(stage) => Ok((with_ground(session, stage)?, constructs.then_some(RAYS))),
+                None => Ok((session, Some(GROUND))),
+            };
+        }
+        Ok((session, (constructs && !in_time).then_some(RAYS)))
+    }
+
+    /// The session, if it holds the layers of a document.
+    fn open(&self, document: &Document) -> Option<Session> {
+        let (opened, session) = (self.opened.as_ref()?, self.session.as_ref()?);
+        let must_see: Vec<bool> = document.layer.iter().map(LayerDoc::must_see).collect();
+        let layers = session.scene().layers.iter();
+        let same = opened.crs == document.crs
+            && opened.unit == document.unit
+            && opened.representations == document.representations
+            && opened.layer.len() == document.layer.len()
+            && session.scene().layers.len() == document.layer.len()
+            && opened.layer.iter().zip(&document.layer).all(|(a, b)| a.with_must_see(b.must_see()) == *b);
+        let is_current = session.scene().title == document.title
+            && layers.clone().zip(&must_see).all(|(layer, must)| layer.must_see == *must);
+        match (same, is_current) {
+            (false, _) => None,
+            (true, true) => Some(session.clone()),
+            (true, false) => {
+                let mut scene = Scene { title: document.title.clone(), ..session.scene().clone() };
+                scene.layers.iter_mut().zip(must_see).for_each(|(layer, must)| layer.must_see = must);
+                Some(Session { scene: Arc::new(scene), ..session.clone() })
+            }
+        }
+    }
+
+    fn reopened(&mut self, document: &Document, options: &OpenOptions) -> Result<Session, BelvedereError> {
+        let session = Session::from_document(SourceDocument::new(document.clone()), options)?;
+        self.layer_warnings = session.warnings().to_vec();
+        self.opened = Some(document.clone());
+        self.ground = Ground::default();
+        Ok(session)
+    }
+}
+
+impl Ground {
+    /// The newest ground there is for the view of a session in which nothing has moved it yet.
+    #[cfg(not(target_family = "wasm"))]
+    fn under(&mut self, session: &Session) -> Result<Option<Stage>, BelvedereError> {
+        use belvedere_disocclusion::{LiveTerrain, TerrainSolver};
+        let Some(stated) = session.stated_terrain() else { return Ok(None) };
+        let fits = |(doc, scene, _): &(_, Arc<Scene>, _)| *doc == stated && Arc::ptr_eq(scene, &session.scene);
+        if !self.live.as_ref().is_some_and(fits) {
+            let solver = TerrainSolver::new(session.terrain_settings()?)?;
+            self.live = Some((stated, session.scene.clone(), LiveTerrain::new(solver, session.scene.clone())));
+        }
+        let Some((.., live)) = &mut self.live else { return Ok(None) };
+        Ok(Some(Stage::TerrainDisocclusion(live.frame(session.view())?.stage)))
+    }
+
+    /// The ground of the last resting picture: there is no thread that could solve beside the drawing.
+    #[cfg(target_family = "wasm")]
+    fn under(&mut self, _: &Session) -> Result<Option<Stage>, BelvedereError> {
+        Ok(self.last.clone())
+    }
+}
+
+/// The session with moved ground in its chain.
+fn with_ground(session: Session, ground: Stage) -> Result<Session, BelvedereError> {
+    let (pinhole, mut stages) = (session.view().pinhole().clone(), session.view().stages().to_vec());
+    let at = stages.iter().take_while(|stage| matches!(stage, Stage::EarthCurvature(_))).count();
+    stages.insert(at, ground);
+    let view = View::new(pinhole, stages).map_err(|e| BelvedereError::Setting(e.to_string()))?;
+    Ok(Session { view, ..session })
+}
+
+fn options(order: &Order, progress: &Progress) -> OpenOptions {
+    let roots = &order.place.roots;
+    let folder = Some(&roots.scene_dir).filter(|dir| !dir.as_os_str().is_empty());
+    OpenOptions {
+        allow_roots: folder.into_iter().chain(&roots.allowed).cloned().collect(),
+        progress: progress.clone(),
+        ..OpenOptions::default()
+    }
+}
+
+/// One sample per pixel, less detail, no marks that need further pictures.
+fn quick(session: &Session, view: &View, detail_px: f64, progress: &Progress) -> Result<Frame, BelvedereError> {
+    let mut options = RenderOptions {
+        samples: 1,
+        lod_px: detail_px,
+        stylisation: session.stylisation,
+        ..RenderOptions::default()
+    };
+    let scene = session.scene();
+    let plan = if view.is_bent() { fallback::of_session(session, view)? } else { None };
+    let scene = plan.as_ref().map_or(scene, |plan| plan.scene());
+    options.overlay.under.extend(grid::wanted(scene, grid::stated(&session.overlay)));
+    let draw = |scene: &Scene, view: &View| {
+        let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
+        Ok::<_, BelvedereError>(session.renderer.render(&job)?)
+    };
+    match &plan {
+        Some(plan) => plan.draw(view, &draw),
+        None => draw(scene, view),
+    }
+}
+
+/// The camera from above, with its rays, planes and legend.
+fn overhead(session: &Session, progress: &Progress) -> Result<(Frame, View), BelvedereError> {
+    let quality = RenderOptions { samples: 1, ..RenderOptions::default() };
+    let request = PictureOptions { quality, ..PictureOptions::default() };
+    let drawn = picture::draw_camera(session, &request, CameraPicture::Overhead, progress)?;
+    Ok((drawn.frame, drawn.view))
+}

@@ -1,0 +1,229 @@
+//! Where a document and its files lie: opening, saving, and what is left after a crash.
+
+use super::Editor;
+use crate::scene_file::paths::Roots;
+use crate::scene_file::{self, Document};
+use crate::{BelvedereError, output};
+use serde::{Deserialize, Serialize};
+use std::fs::{File, TryLockError};
+use std::path::{Path, PathBuf};
+
+/// Where a document and its files lie.
+#[derive(Debug, Clone, Default)]
+pub struct Place {
+    /// The scene file; `None` if it was never saved.
+    pub scene: Option<PathBuf>,
+    /// Where the files that it names may lie.
+    pub roots: Roots,
+}
+
+impl Editor {
+    /// Opens a scene file.
+    ///
+    /// * `allowed`: folders beside that of the scene from which its files may come.
+    ///
+    /// # Errors
+    /// As [`scene_file::read`].
+    pub fn open(path: &Path, allowed: Vec<PathBuf>) -> Result<Self, BelvedereError> {
+        let source = scene_file::read(path)?;
+        let place = Place { scene: Some(path.to_owned()), roots: Roots { scene_dir: folder_of(path), allowed } };
+        Ok(Self::new(source.document, place))
+    }
+
+    /// Writes the scene file. Names of its files are made to hold there: below the folder of the scene relative, else absolute.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Output`] if `path` is one of the scene's own files; [`BelvedereError::Io`].
+    pub fn save(&mut self, path: &Path) -> Result<(), BelvedereError> {
+        let folder = folder_of(path);
+        let mut document = (**self.document()).clone();
+        let mut files = Vec::new();
+        if folder != self.place.roots.scene_dir {
+            document.for_each_path(&mut |name| {
+                if let Ok(file) = self.place.roots.resolve(name) {
+                    let shown = file.strip_prefix(&folder).unwrap_or(&file);
+                    shown.to_string_lossy().as_ref().clone_into(name);
+                    files.push(file);
+                }
+            });
+        }
+        output::check(path, &files, true)?;
+        output::write_text(path, &output::document_toml(&document)?, true)?;
+        if folder != self.place.roots.scene_dir {
+            let old = std::mem::replace(&mut self.place.roots.scene_dir, folder);
+            if !old.as_os_str().is_empty() {
+                self.place.roots.allowed.push(old);
+            }
+        }
+        self.place.scene = Some(path.to_owned());
+        self.mark_saved();
+        Ok(())
+    }
+
+    /// Folders outside that of the scene file from which its files come: what a command line needs to be allowed.
+    pub fn outside(&self) -> Vec<PathBuf> {
+        let home = self.place.roots.scene_dir.canonicalize().unwrap_or_default();
+        let mut out = Vec::new();
+        (**self.document()).clone().for_each_path(&mut |name| {
+            let folder = self.place.roots.resolve(name).ok().and_then(|file| file.parent().map(Path::to_owned));
+            out.extend(folder.filter(|folder| !folder.starts_with(&home)));
+        });
+        out.sort();
+        out.dedup();
+        out
+    }
+}
+
+/// The folder of a file as an absolute path, if there is one.
+fn folder_of(path: &Path) -> PathBuf {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    folder.canonicalize().unwrap_or_else(|_| folder.to_owned())
+}
+
+/// What an application was doing, written while it runs and taken away when it ends.
+#[derive(Debug)]
+pub struct Recovery {
+    file: PathBuf,
+    /// Held as long as the application lives; the system lets go of it when that is killed.
+    _lock: File,
+    lock: PathBuf,
+}
+
+/// What was left by an application that did not end.
+#[derive(Debug, Clone)]
+pub struct Recovered {
+    /// The document with its unsaved changes.
+    pub editor: Editor,
+    /// Whatever else the application wrote.
+    pub extra: serde_json::Value,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Left {
+    scene: Option<PathBuf>,
+    scene_dir: PathBuf,
+    allowed: Vec<PathBuf>,
+    changed: bool,
+    document: serde_json::Value,
+    #[serde(default)]
+    extra: serde_json::Value,
+}
+
+impl Recovery {
+    /// Instances that may run at once.
+    const MOST: usize = 64;
+
+    /// Claims a place in `folder` (made if it is not there), and gives back what an instance that did not end left in it.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`] if nothing can be written there.
+    pub fn claim(folder: &Path) -> Result<(Self, Option<Recovered>), BelvedereError> {
+        let os = |path: &Path| {
+            let path = path.to_owned();
+            move |e| BelvedereError::from(belvedere_io::IoError::os(&path, e))
+        };
+        std::fs::create_dir_all(folder).map_err(os(folder))?;
+        for n in 0..Self::MOST {
+            let (file, lock) = (folder.join(format!("state-{n}.json")), folder.join(format!("state-{n}.lock")));
+            let held = File::create(&lock).map_err(os(&lock))?;
+            match held.try_lock() {
+                Ok(()) => {
+                    let left = std::fs::read_to_string(&file).ok().and_then(|text| recovered(&text));
+                    return Ok((Self { file, _lock: held, lock }, left));
+                }
+                Err(TryLockError::WouldBlock) => {}
+                Err(TryLockError::Error(e)) => return Err(os(&lock)(e)),
+            }
+        }
+        Err(BelvedereError::Output {
+            path: folder.to_owned(),
+            reason: format!("{} instances are running already; end one", Self::MOST),
+        })
+    }
+
+    /// Writes what the application is doing; whole, or not at all.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`].
+    pub fn write(&self, editor: &Editor, extra: serde_json::Value) -> Result<(), BelvedereError> {
+        let document = serde_json::to_value(&**editor.document());
+        let left = Left {
+            scene: editor.place.scene.clone(),
+            scene_dir: editor.place.roots.scene_dir.clone(),
+            allowed: editor.place.roots.allowed.clone(),
+            changed: editor.is_changed(),
+            document: document.map_err(|e| BelvedereError::Text { what: "the document", reason: e.to_string() })?,
+            extra,
+        };
+        output::write_text(&self.file, &output::pretty(&left)?, true)
+    }
+
+    /// The application ends as it should: nothing is left.
+    pub fn end(self) {
+        let _ = std::fs::remove_file(&self.file);
+        let _ = std::fs::remove_file(&self.lock);
+    }
+}
+
+fn recovered(text: &str) -> Option<Recovered> {
+    let left: Left = serde_json::from_str(text).ok()?;
+    let parsed: Document = scene_file::parse(Path::new("state.json"), &left.document.to_string()).ok()?.document;
+    let roots = Roots { scene_dir: left.scene_dir, allowed: left.allowed };
+    // What was saved is in the file, if that is still there; else everything is new.
+    let saved = left.scene.as_deref().and_then(|path| scene_file::read(path).ok()).map(|source| source.document);
+    let mut editor = Editor::new(saved.unwrap_or_else(|| parsed.clone()), Place { scene: left.scene, roots });
+    if left.changed {
+        editor.edit(|document| *document = parsed);
+    }
+    Some(Recovered { editor, extra: left.extra })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(dir: &Path) -> PathBuf {
+        let path = dir.join("s.toml");
+        let text = "format = 1\n[camera]\neye = [0, 0, 10]\nlook_at = [0, 1, 0]\n[[layer]]\nid = 'a'\nkind = 'mesh'\nsource = 'a.obj'\n";
+        std::fs::write(&path, text).expect("scene");
+        std::fs::write(dir.join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("mesh");
+        path
+    }
+
+    #[test]
+    fn what_a_killed_instance_was_doing_comes_back() {
+        let dir = tempfile::tempdir().expect("folder");
+        let state = dir.path().join("state");
+        let mut editor = Editor::open(&scene(dir.path()), Vec::new()).expect("scene");
+        editor.edit(|d| d.title = "changed".into());
+        let (recovery, left) = Recovery::claim(&state).expect("place");
+        assert!(left.is_none());
+        recovery.write(&editor, serde_json::json!({ "tool": 3 })).expect("written");
+        let (other, left) = Recovery::claim(&state).expect("a second instance");
+        assert!(left.is_none(), "what a living instance does is its own");
+        other.end();
+        drop(recovery); // As the system does for a killed process.
+        let (recovery, left) = Recovery::claim(&state).expect("place");
+        let left = left.expect("left behind");
+        assert!(left.editor.document().title == "changed" && left.editor.is_changed() && left.extra["tool"] == 3);
+        assert_eq!(left.editor.place.scene, editor.place.scene);
+        recovery.end();
+        assert!(Recovery::claim(&state).expect("place").1.is_none(), "an instance that ended left something");
+    }
+
+    #[test]
+    fn files_are_found_from_wherever_a_scene_is_saved() {
+        let dir = tempfile::tempdir().expect("folder");
+        let mut editor = Editor::open(&scene(dir.path()), Vec::new()).expect("scene");
+        let below = dir.path().join("below");
+        std::fs::create_dir(&below).expect("folder");
+        editor.save(&below.join("t.toml")).expect("saved");
+        assert!(editor.is_saved());
+        let there = Editor::open(&below.join("t.toml"), editor.outside()).expect("again");
+        let mut names = Vec::new();
+        (**there.document()).clone().for_each_path(&mut |name| names.push(name.clone()));
+        assert!(there.place.roots.resolve(&names[0]).is_ok(), "{names:?}");
+        let refused = editor.save(&dir.path().join("a.obj")).expect_err("one of its own files");
+        assert!(refused.to_string().contains("input"), "{refused}");
+    }
+}
