@@ -95,6 +95,17 @@ pub(crate) enum Verb {
     Bench(BenchArgs),
     /// The figures and tables of the papers on open data, with an index.html; needs no files
     Figures(FiguresArgs),
+    /// The application: look, drag, tilt, author; a scene, data, or nothing: the built-in scenes
+    #[cfg(feature = "view")]
+    View(ViewArgs),
+}
+
+/// The application.
+#[cfg(feature = "view")]
+#[derive(Debug, Args)]
+pub(crate) struct ViewArgs {
+    /// A scene file; or models; or an elevation model, alone or with routes, areas or points
+    pub(crate) files: Vec<PathBuf>,
 }
 
 /// The figures.

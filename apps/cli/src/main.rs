@@ -20,17 +20,22 @@ const STACK_BYTES: usize = 64 << 20;
 
 fn main() -> ExitCode {
     std::panic::set_hook(Box::new(|_| {}));
-    let worker = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(run);
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(e) => return report::usage(&e),
+    };
+    #[cfg(feature = "view")]
+    if let args::Verb::View(_) = cli.verb {
+        // Windows belong to the main thread; whatever reads documents there has threads of its own.
+        return match std::panic::catch_unwind(|| run(cli)) {
+            Ok(code) => code,
+            Err(panic) => broken(&*panic),
+        };
+    }
+    let worker = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(|| run(cli));
     match worker.map(std::thread::JoinHandle::join) {
         Ok(Ok(code)) => code,
-        Ok(Err(panic)) => {
-            let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
-            let what = text.unwrap_or("no message").lines().next().unwrap_or_default();
-            report::complain(&format!(
-                "internal error ({what}); please report this with the command line and the files"
-            ));
-            ExitCode::from(2)
-        }
+        Ok(Err(panic)) => broken(&*panic),
         Err(e) => {
             report::complain(&format!("no thread could be started: {e}"));
             ExitCode::from(2)
@@ -38,11 +43,15 @@ fn main() -> ExitCode {
     }
 }
 
-fn run() -> ExitCode {
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
-        Err(e) => return report::usage(&e),
-    };
+/// A fault of our own, in one line.
+fn broken(panic: &(dyn std::any::Any + Send)) -> ExitCode {
+    let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+    let what = text.unwrap_or("no message").lines().next().unwrap_or_default();
+    report::complain(&format!("internal error ({what}); please report this with the command line and the files"));
+    ExitCode::from(2)
+}
+
+fn run(cli: Cli) -> ExitCode {
     let context = Context::new(cli.common);
     match verbs::run(cli.verb, &context) {
         Ok(goal) => {

@@ -129,11 +129,13 @@ impl Exporter {
         self.job = None;
     }
 
-    fn begin(&mut self, want: Want, path: &Path, model: &Model, ctx: &eframe::egui::Context) {
+    fn begin(&mut self, want: Want, path: &Path, model: &mut Model, ctx: &eframe::egui::Context) {
         let (document, place) = ((**model.document()).clone(), model.editor.place.clone());
         let animation = match self.film {
             Film::Scene => AnimationDoc::default(),
-            Film::Sweep => AnimationDoc { sweep: Some(SweepDoc { phi_deg: [10.0, 80.0, 0.5] }), ..AnimationDoc::default() },
+            Film::Sweep => {
+                AnimationDoc { sweep: Some(SweepDoc { phi_deg: [10.0, 80.0, 0.5] }), ..AnimationDoc::default() }
+            }
             Film::Turntable => {
                 AnimationDoc { turntable: Some(TurntableDoc { deg_per_s: 36.0 }), ..AnimationDoc::default() }
             }
@@ -157,10 +159,10 @@ impl Exporter {
             Want::Film => "Animation",
             Want::Report => "Report",
         };
-        #[cfg(not(target_family = "wasm"))]
-        std::thread::spawn(work);
-        #[cfg(target_family = "wasm")]
-        work();
+        if let Err(e) = crate::viewer::beside(work) {
+            model.notices.error(e);
+            return;
+        }
         self.job = Some(Job { name, progress, at, done });
     }
 }
@@ -173,7 +175,14 @@ pub(crate) fn open(document: Document, place: &Place, progress: &Progress) -> Re
     Session::from_document(SourceDocument::new(document), &options)
 }
 
-fn make(want: Want, document: Document, place: &Place, path: &Path, animation: AnimationDoc, progress: &Progress) -> Result<String, BelvedereError> {
+fn make(
+    want: Want,
+    document: Document,
+    place: &Place,
+    path: &Path,
+    animation: AnimationDoc,
+    progress: &Progress,
+) -> Result<String, BelvedereError> {
     let session = open(document, place, progress)?;
     let picture = PictureOptions { progress: progress.clone(), ..PictureOptions::default() };
     match want {

@@ -85,7 +85,12 @@ pub(crate) fn read(ctx: &Context, model: &mut Model) -> Option<Command> {
 fn steer(ctx: &Context, model: &mut Model) {
     let (mut moved, mut turned, mut zoom) = ([0.0f64; 2], [0.0f64; 2], 1.0);
     ctx.input(|input| {
-        let arrows = [(Key::ArrowLeft, [-1.0, 0.0]), (Key::ArrowRight, [1.0, 0.0]), (Key::ArrowUp, [0.0, 1.0]), (Key::ArrowDown, [0.0, -1.0])];
+        let arrows = [
+            (Key::ArrowLeft, [-1.0, 0.0]),
+            (Key::ArrowRight, [1.0, 0.0]),
+            (Key::ArrowUp, [0.0, 1.0]),
+            (Key::ArrowDown, [0.0, -1.0]),
+        ];
         for (_, [x, y]) in arrows.into_iter().filter(|(key, _)| input.key_pressed(*key)) {
             let to = if input.modifiers.shift { &mut turned } else { &mut moved };
             (to[0], to[1]) = (to[0] + x, to[1] + y);

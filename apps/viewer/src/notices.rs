@@ -60,7 +60,7 @@ impl Notices {
                 ("Done", egui::Color32::from_rgb(40, 120, 80))
             };
             egui::Window::new(format!("{heading} {}", i + 1))
-                .id(egui::Id::new(("notice", i)))
+                .id(egui::Id::unique(("notice", i)))
                 .title_bar(false)
                 .resizable(false)
                 .anchor(egui::Align2::RIGHT_TOP, [-12.0, 44.0 + 78.0 * i as f32])

@@ -6,8 +6,8 @@ use belvedere::core::{DVec2, DVec3};
 use belvedere::editor::Pace;
 use belvedere::scene::{Frame, Unit};
 use eframe::egui::{
-    Align2, Color32, ColorImage, Context, CursorIcon, FontId, Painter, Pos2, Rect, Sense, Stroke, TextureHandle,
-    TextureOptions, Ui, Vec2, WidgetInfo, WidgetType, pos2, vec2,
+    Align2, Color32, ColorImage, Context, CursorIcon, FontId, Painter, Pos2, Rect, Role, Sense, Stroke, TextureHandle,
+    TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
 /// Most pixels of a picture on the screen.
@@ -35,14 +35,16 @@ impl PictureView {
         let [w, h] = model.document().camera.image.map(|n| n as f32);
         let scale = (room.width() / w).min(room.height() / h);
         let rect = Rect::from_center_size(room.center(), vec2(w, h) * scale);
-        let response = ui.interact(rect, ui.id().with("picture"), Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "Picture"));
+        let response = ui.interact(rect, ui.scope_id().with("picture"), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Picture"));
         self.hand.steer(ui, &response, rect, model);
         self.order(ui.ctx(), rect, model);
         self.upload(ui.ctx(), model);
         let painter = ui.painter_at(room);
         self.paint(&painter, rect, ui.ctx(), model);
-        if response.clicked() && let Some(at) = response.interact_pointer_pos() {
+        if response.clicked()
+            && let Some(at) = response.interact_pointer_pos()
+        {
             self.click(share(rect, at), model);
         }
         let cursor = match (model.look.tool, response.dragged()) {
@@ -101,11 +103,16 @@ impl PictureView {
             Compare::Flicker => {
                 let is_bent = (now / FLICKER) as i64 % 2 == 0;
                 draw(if is_bent { bent } else { straight }, rect, 1.0);
-                label(painter, rect.center_top() + vec2(0.0, 8.0), Align2::CENTER_TOP, if is_bent { "bent" } else { "straight" });
+                label(
+                    painter,
+                    rect.center_top() + vec2(0.0, 8.0),
+                    Align2::CENTER_TOP,
+                    if is_bent { "bent" } else { "straight" },
+                );
                 ctx.request_repaint_after_secs(0.1);
             }
             Compare::Off => {
-                let share = ctx.animate_bool_with_time(eframe::egui::Id::new("bent"), model.look.bent, DISSOLVE);
+                let share = ctx.animate_bool_with_time(eframe::egui::Id::unique("bent"), model.look.bent, DISSOLVE);
                 let eased = share * share * (3.0 - 2.0 * share);
                 if eased < 1.0 {
                     draw(straight, rect, 1.0);
@@ -145,7 +152,8 @@ impl PictureView {
         }
         if let Some(reason) = &model.violated {
             let galley = painter.layout(reason.clone(), FontId::proportional(13.0), Color32::WHITE, 0.7 * rect.width());
-            let frame = Rect::from_center_size(top + vec2(0.0, 0.5 * galley.size().y + 6.0), galley.size() + vec2(20.0, 12.0));
+            let frame =
+                Rect::from_center_size(top + vec2(0.0, 0.5 * galley.size().y + 6.0), galley.size() + vec2(20.0, 12.0));
             painter.rect_filled(frame, 4.0, Color32::from_rgb(160, 50, 36));
             painter.galley(frame.min + vec2(10.0, 6.0), galley, Color32::WHITE);
         }
@@ -195,9 +203,11 @@ impl PictureView {
     fn bar(&self, ui: &mut Ui, rect: Rect, model: &mut Model) {
         let x = rect.left() + model.look.split * rect.width();
         let grip = Rect::from_center_size(pos2(x, rect.center().y), vec2(14.0, rect.height()));
-        let response = ui.interact(grip, ui.id().with("split"), Sense::drag());
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Slider, true, "Bar between straight and bent"));
-        if response.dragged() && let Some(at) = response.interact_pointer_pos() {
+        let response = ui.interact(grip, ui.scope_id().with("split"), Sense::drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, "Bar between straight and bent"));
+        if response.dragged()
+            && let Some(at) = response.interact_pointer_pos()
+        {
             model.look.split = ((at.x - rect.left()) / rect.width()).clamp(0.02, 0.98);
         }
         let painter = ui.painter();

@@ -74,7 +74,8 @@ impl Hand {
 
     fn wheel(&mut self, ui: &Ui, response: &Response, rect: Rect, model: &mut Model) {
         let Some(at) = response.hover_pos() else { return };
-        let (scroll, pinch, now) = ui.input(|i| (f64::from(i.smooth_scroll_delta.y), f64::from(i.zoom_delta()), i.time));
+        let (scroll, pinch, now) =
+            ui.input(|i| (f64::from(i.smooth_scroll_delta.y), f64::from(i.zoom_delta()), i.time));
         let factor = (scroll / WHEEL).exp2() * pinch;
         if (factor - 1.0).abs() < 1e-4 {
             return;

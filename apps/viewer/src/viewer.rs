@@ -123,10 +123,10 @@ impl Viewer {
             let _ = outbox.send(opened);
             ctx.request_repaint();
         };
-        #[cfg(not(target_family = "wasm"))]
-        std::thread::spawn(work);
-        #[cfg(target_family = "wasm")]
-        work();
+        if let Err(e) = beside(work) {
+            self.model.notices.error(e);
+            return;
+        }
         self.pending = Some(inbox);
     }
 
@@ -156,7 +156,9 @@ impl Viewer {
                     self.pending = None;
                 }
                 Err(TryRecvError::Disconnected) => {
-                    self.model.notices.error("the file could not be opened: internal error; please report this with the file");
+                    self.model
+                        .notices
+                        .error("the file could not be opened: internal error; please report this with the file");
                     self.pending = None;
                 }
                 Err(TryRecvError::Empty) => {}
@@ -177,7 +179,8 @@ impl Viewer {
         if self.chosen_input.is_some() || self.chosen_output.is_some() {
             ctx.request_repaint_after_secs(0.1);
         }
-        let dropped: Vec<PathBuf> = ctx.input(|input| input.raw.dropped_files.iter().filter_map(|file| file.path.clone()).collect());
+        let dropped: Vec<PathBuf> =
+            ctx.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
         if !dropped.is_empty() {
             self.open(ctx, dropped);
         }
@@ -190,7 +193,8 @@ impl Viewer {
                 let outside = self.model.editor.outside();
                 let mut said = format!("Saved: {}", path.display());
                 if !outside.is_empty() {
-                    let folders: Vec<String> = outside.iter().map(|folder| format!("--allow-root {}", folder.display())).collect();
+                    let folders: Vec<String> =
+                        outside.iter().map(|folder| format!("--allow-root {}", folder.display())).collect();
                     said += &format!("; on the command line it needs {}", folders.join(" "));
                 }
                 self.model.notices.say(said, ctx.input(|input| input.time));
@@ -264,7 +268,7 @@ impl Viewer {
                 Some(StageDoc::CurvedRays(stage)) => stage.turn.clone(),
                 _ => Vec::new(),
             };
-            edit = overhead(ui, ui.id(), texture.id(), view, &turns);
+            edit = overhead(ui, ui.scope_id(), texture.id(), view, &turns);
             if let Some(reason) = &self.model.violated {
                 ui.colored_label(egui::Color32::from_rgb(170, 50, 40), reason);
             }
@@ -308,6 +312,19 @@ impl Viewer {
             self.model.notices.error(format!("what you do could not be written down for the case of a crash: {e}"));
         }
     }
+}
+
+/// Stack of threads that read documents: deep enough for any that passes the limits.
+const STACK_BYTES: usize = 64 << 20;
+
+/// Does something beside the window; in it, where there are no threads.
+pub(crate) fn beside(work: impl FnOnce() + Send + 'static) -> Result<(), String> {
+    if cfg!(target_family = "wasm") {
+        work();
+        return Ok(());
+    }
+    let started = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(work);
+    started.map(drop).map_err(|e| format!("no thread could be started: {e}"))
 }
 
 /// A built-in scene.

@@ -15,7 +15,11 @@ pub struct WindowError {
 /// # Errors
 /// [`WindowError`] where there is no display, or no OpenGL on it.
 pub fn run(opening: &Opening) -> Result<(), WindowError> {
-    let viewport = ViewportBuilder::default().with_title("Belvedere").with_app_id("belvedere").with_inner_size([1440.0, 860.0]).with_drag_and_drop(true);
+    let viewport = ViewportBuilder::default()
+        .with_title("Belvedere")
+        .with_app_id("belvedere")
+        .with_inner_size([1440.0, 860.0])
+        .with_drag_and_drop(true);
     let options = eframe::NativeOptions { viewport, ..eframe::NativeOptions::default() };
     let opening = opening.clone();
     let make: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(Viewer::new(&cc.egui_ctx, &opening))));

@@ -19,7 +19,8 @@ pub mod sections;
 
 pub use bounds::Aabb;
 pub use camera::{
-    EdgePoint, Edges, ImageBox, Navigation, Pinhole, PinholeError, Projected, Projection, RayPath, RayPoint, View, ViewError,
+    EdgePoint, Edges, ImageBox, Navigation, Pinhole, PinholeError, Projected, Projection, RayPath, RayPoint, View,
+    ViewError,
 };
 pub use glam::{DMat3, DQuat, DVec2, DVec3};
 pub use map::curved_rays::{CurvedRays, CurvedRaysError};

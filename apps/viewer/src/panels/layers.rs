@@ -63,7 +63,7 @@ fn visible(model: &Model, id: &str) -> Option<f64> {
 }
 
 fn style(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDoc) {
-    let key = ui.id().with(("style", index));
+    let key = ui.scope_id().with(("style", index));
     let pending = ui.data(|data| data.get_temp::<Pending>(key));
     let mut next = pending.map_or_else(|| layer.clone(), |pending| pending.0);
     let id = layer.id().to_owned();
@@ -163,7 +163,9 @@ fn hidden(ui: &mut Ui, id: &str, value: &mut Hidden) {
 
 fn palette(ui: &mut Ui, id: &str, value: &mut PaletteDoc) {
     let shown = match &*value {
-        PaletteDoc::Named(named) => PaletteName::ALL.iter().find(|(_, p)| p == named).map_or("auto", |(name, _)| *name).to_owned(),
+        PaletteDoc::Named(named) => {
+            PaletteName::ALL.iter().find(|(_, p)| p == named).map_or("auto", |(name, _)| *name).to_owned()
+        }
         PaletteDoc::File(file) => file.clone(),
     };
     ComboBox::from_label(format!("tints of {id}")).selected_text(shown).show_ui(ui, |ui| {

@@ -54,7 +54,9 @@ impl RaysPanel {
             put(model, &|doc| doc.position_m = Some(value));
         }
         let ahead = constructor.preview_m.unwrap_or(0.25 * length);
-        if let Some(value) = slider(ui, model, "preview", ahead, 0.01 * length..=length, "length of the path ahead that is shown") {
+        if let Some(value) =
+            slider(ui, model, "preview", ahead, 0.01 * length..=length, "length of the path ahead that is shown")
+        {
             put(model, &|doc| doc.preview_m = Some(value));
         }
         let name = if self.playing { "Pause preview" } else { "Play preview" };
@@ -110,19 +112,28 @@ fn constructors(ui: &mut Ui, model: &mut Model) {
             model.edit(|document| document.constructor = None);
         }
         let tracking = kind == ConstructorKind::TargetTracking;
-        if ui.selectable_label(tracking, "To keep something in sight").on_hover_text("then click it in the picture").clicked() {
+        if ui
+            .selectable_label(tracking, "To keep something in sight")
+            .on_hover_text("then click it in the picture")
+            .clicked()
+        {
             model.look.tool = Tool::Track;
         }
         let lines = model.layer_ids(|layer| matches!(layer, LayerDoc::Line(_)));
-        let preview = ui.add_enabled(!lines.is_empty(), eframe::egui::Button::selectable(kind == ConstructorKind::PathPreview, "Along a path"));
+        let preview = ui.add_enabled(
+            !lines.is_empty(),
+            eframe::egui::Button::selectable(kind == ConstructorKind::PathPreview, "Along a path"),
+        );
         if preview.on_disabled_hover_text("needs a line layer").clicked() {
             let path = lines.first().cloned();
             model.edit(|document| {
-                document.constructor = Some(ConstructorDoc { path, ..ConstructorDoc::of(ConstructorKind::PathPreview) });
+                document.constructor =
+                    Some(ConstructorDoc { path, ..ConstructorDoc::of(ConstructorKind::PathPreview) });
             });
         }
         let probing = kind == ConstructorKind::AutoProbe;
-        if ui.selectable_label(probing, "Into what is hidden").on_hover_text("turns are found that show most").clicked() {
+        if ui.selectable_label(probing, "Into what is hidden").on_hover_text("turns are found that show most").clicked()
+        {
             model.edit(|document| document.constructor = Some(ConstructorDoc::of(ConstructorKind::AutoProbe)));
         }
     });
@@ -142,7 +153,8 @@ fn turns(ui: &mut Ui, model: &mut Model) {
         if ui.add_enabled(camera.is_some(), eframe::egui::Button::new("Add a turn")).clicked()
             && let Some(camera) = camera
         {
-            let mut next = stage.clone().unwrap_or(RaysStageDoc { model: RayModel::default(), turn: Vec::new(), split: None });
+            let mut next =
+                stage.clone().unwrap_or(RaysStageDoc { model: RayModel::default(), turn: Vec::new(), split: None });
             next.turn.push(next_turn(&camera, stage.as_ref()));
             model.edit(|document| set_stage(document, StageDoc::CurvedRays(next)));
             model.look.overhead = true;
@@ -211,7 +223,8 @@ fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut Turn
         ui.horizontal(|ui| {
             for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
                 let mut value = now[axis];
-                let field = eframe::egui::DragValue::new(&mut value).speed(speed).max_decimals(2).prefix(format!("{letter} "));
+                let field =
+                    eframe::egui::DragValue::new(&mut value).speed(speed).max_decimals(2).prefix(format!("{letter} "));
                 let response = ui.add(field).on_hover_text(format!("{name} {n}, {letter}"));
                 if let Some(value) = super::changed(model, &response, value) {
                     part(next)[axis] = value;
@@ -228,7 +241,9 @@ fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut Turn
         model.begin_gesture();
         next.m = if own { Sharpness::Bend } else { Sharpness::Value(value) };
     }
-    if !own && let Some(value) = number(ui, model, &format!("sharpness {n}"), value, 0.02, "0.2 to 20; larger is sharper") {
+    if !own
+        && let Some(value) = number(ui, model, &format!("sharpness {n}"), value, 0.02, "0.2 to 20; larger is sharper")
+    {
         next.m = Sharpness::Value(value.clamp(0.2, 20.0));
     }
 }

@@ -8,7 +8,7 @@ use belvedere::core::presets::edit::{PresetChange, PresetOperation};
 use belvedere::core::presets::{BUILTINS, PresetDocument};
 use belvedere::scene_file::{PresetsDoc, SplineStageDoc, StageDoc};
 use belvedere::verbs::preset::{sketch, viewing_angle};
-use eframe::egui::{Color32, ComboBox, Context, Id, Sense, Ui, WidgetInfo, WidgetType};
+use eframe::egui::{Color32, ComboBox, Context, Id, Role, Sense, Ui, WidgetInfo};
 
 const KIND: &str = "spline_bend";
 /// Speed of a played sweep, degrees per second.
@@ -50,7 +50,7 @@ impl SplinePanel {
         let preset = &presets.presets[self.chosen];
         ui.strong(if preset.name.is_empty() { format!("Preset {}", self.chosen + 1) } else { preset.name.clone() });
         let Some(drawing) = sketch(&presets, preset.phi) else { return };
-        let id = ui.id().with(("curve", self.chosen));
+        let id = ui.scope_id().with(("curve", self.chosen));
         if let Some(edit) = curve(ui, id, &drawing) {
             if edit.begins {
                 model.begin_gesture();
@@ -64,7 +64,7 @@ impl SplinePanel {
     /// The ruler, and what is done with whole presets.
     fn angles(&mut self, ui: &mut Ui, model: &mut Model, presets: &PresetDocument, phi: Option<f64>) {
         let listed: Vec<(String, f64)> = presets.presets.iter().map(|p| (p.name.clone(), p.phi)).collect();
-        match ruler(ui, ui.id().with("ruler"), &listed, self.chosen, phi) {
+        match ruler(ui, ui.scope_id().with("ruler"), &listed, self.chosen, phi) {
             Some(RulerEdit::Choose(i)) => self.chosen = i,
             Some(RulerEdit::Move(i, to, begins)) => {
                 self.chosen = i;
@@ -124,9 +124,13 @@ impl SplinePanel {
         known.extend(model.layer_ids(|_| true));
         ui.horizontal_wrapped(|ui| {
             for name in &known {
-                let id = Id::new(("representation", name));
-                let response = ui.dnd_drag_source(id, name.clone(), |ui| ui.add(eframe::egui::Button::new(name).fill(color_of(name)))).response;
-                response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("Representation {name}")));
+                let id = Id::unique(("representation", name));
+                let response = ui
+                    .dnd_drag_source(id, name.clone(), |ui| {
+                        ui.add(eframe::egui::Button::new(name).fill(color_of(name)))
+                    })
+                    .response;
+                response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Representation {name}")));
             }
         });
         // The same for the keyboard.
@@ -156,7 +160,9 @@ impl SplinePanel {
 
     fn numbers(&mut self, ui: &mut Ui, model: &mut Model, presets: &PresetDocument) {
         let preset = presets.presets[self.chosen].clone();
-        if let Some(tau) = number(ui, model, "holds within ± degrees", preset.tau, 0.1, "half width of the range of angles") {
+        if let Some(tau) =
+            number(ui, model, "holds within ± degrees", preset.tau, 0.1, "half width of the range of angles")
+        {
             self.change(model, presets, PresetChange::Tau(tau.max(0.0)));
         }
         let own = preset.fov_y_deg;
@@ -230,7 +236,9 @@ fn presets_of(model: &Model, stage: &SplineStageDoc) -> Option<PresetDocument> {
         PresetsDoc::Named(name) => PresetDocument::builtin(name).ok().or_else(|| {
             let resolved = model.shown.as_ref()?.session.resolved()?;
             resolved.stage.iter().find_map(|stage| match stage {
-                StageDoc::SplineBend(SplineStageDoc { presets: PresetsDoc::Inline(document), .. }) => Some((**document).clone()),
+                StageDoc::SplineBend(SplineStageDoc { presets: PresetsDoc::Inline(document), .. }) => {
+                    Some((**document).clone())
+                }
                 _ => None,
             })
         }),
@@ -270,8 +278,8 @@ fn free_name(presets: &PresetDocument) -> String {
 /// A quiet colour of its own for each name.
 fn color_of(name: &str) -> Color32 {
     let hash = name.bytes().fold(7u32, |hash, byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)));
-    let palette = [[205, 222, 240], [226, 216, 190], [210, 232, 206], [240, 212, 204], [224, 208, 236], [204, 232, 232]];
+    let palette =
+        [[205, 222, 240], [226, 216, 190], [210, 232, 206], [240, 212, 204], [224, 208, 236], [204, 232, 232]];
     let [r, g, b] = palette[hash as usize % palette.len()];
     Color32::from_rgb(r, g, b)
 }
-

@@ -74,7 +74,9 @@ fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
         put(model, &|stage| stage.w = Some(value));
     }
     let eta = stage.eta.unwrap_or(0.5);
-    if let Some(value) = slider(ui, model, "weight eta", eta, 0.0..=1.0, "mountains that are kept, against those that are moved") {
+    if let Some(value) =
+        slider(ui, model, "weight eta", eta, 0.0..=1.0, "mountains that are kept, against those that are moved")
+    {
         put(model, &|stage| stage.eta = Some(value));
     }
     let rise = stage.rise_limit_m.unwrap_or(500.0);
@@ -98,9 +100,12 @@ fn shares(ui: &mut Ui, model: &mut Model) {
         return;
     };
     let measures = &judged.measures;
-    for (name, of) in
-        [("lines", &measures.lines), ("areas", &measures.areas), ("points", &measures.points), ("surfaces", &measures.surfaces)]
-    {
+    for (name, of) in [
+        ("lines", &measures.lines),
+        ("areas", &measures.areas),
+        ("points", &measures.points),
+        ("surfaces", &measures.surfaces),
+    ] {
         if let Some(of) = of {
             let [before, after] = [&of.straight, &of.bent].map(|side| percent(side.sight.share));
             ui.label(format!("{name}: {before} visible straight, {after} bent"));

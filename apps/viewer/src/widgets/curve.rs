@@ -3,7 +3,10 @@
 use belvedere::core::DVec2;
 use belvedere::core::presets::edit::PresetChange;
 use belvedere::verbs::preset::{Sketch, SketchTag};
-use eframe::egui::{Color32, CursorIcon, FontId, Id, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2};
+use eframe::egui::{
+    Color32, CursorIcon, FontId, Id, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2,
+    vec2,
+};
 
 const HEIGHT: f32 = 250.0;
 const GRAB: f32 = 9.0;
@@ -55,7 +58,7 @@ impl Scale {
 /// Draws the curve and lets it be dragged.
 pub(crate) fn curve(ui: &mut Ui, id: Id, sketch: &Sketch) -> Option<CurveEdit> {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, "Curve of the preset"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Curve of the preset"));
     // The scale stays while something is dragged, or the curve would run away under the pointer.
     let key = id.with("scale");
     let dragging = ui.input(|input| input.pointer.any_down());
@@ -72,7 +75,10 @@ pub(crate) fn curve(ui: &mut Ui, id: Id, sketch: &Sketch) -> Option<CurveEdit> {
         painter.circle_filled(scale.at(*point), if response.hovered() { 6.0 } else { 4.5 }, INK);
         if let Some(to) = dragged_to(&response) {
             let to = scale.back(to) - sketch.pinned_by;
-            edit = Some(CurveEdit { change: PresetChange::MovePoint(i + 1, to.to_array()), begins: response.drag_started() });
+            edit = Some(CurveEdit {
+                change: PresetChange::MovePoint(i + 1, to.to_array()),
+                begins: response.drag_started(),
+            });
         }
         if let Some([x, y]) = nudged(ui, &response) {
             let to = *point - sketch.pinned_by + 0.01 * DVec2::new(x, y);
@@ -86,7 +92,15 @@ pub(crate) fn curve(ui: &mut Ui, id: Id, sketch: &Sketch) -> Option<CurveEdit> {
 }
 
 /// A tag and the end of its transition.
-fn tag_handles(ui: &Ui, id: Id, scale: &Scale, sketch: &Sketch, i: usize, tag: &SketchTag, painter: &Painter) -> Option<CurveEdit> {
+fn tag_handles(
+    ui: &Ui,
+    id: Id,
+    scale: &Scale,
+    sketch: &Sketch,
+    i: usize,
+    tag: &SketchTag,
+    painter: &Painter,
+) -> Option<CurveEdit> {
     let at = scale.at(tag.at);
     let response = handle(ui, id.with(("tag", i)), at, &format!("Tag {}", i + 1));
     let r = if response.hovered() { 7.0 } else { 5.5 };
@@ -94,7 +108,10 @@ fn tag_handles(ui: &Ui, id: Id, scale: &Scale, sketch: &Sketch, i: usize, tag: &
     painter.add(Shape::convex_polygon(diamond.to_vec(), TAG, Stroke::new(1.0, Color32::WHITE)));
     if let Some(to) = dragged_to(&response) {
         let to = scale.back(to) - sketch.pinned_by;
-        return Some(CurveEdit { change: PresetChange::MoveTag(i + 1, to.to_array()), begins: response.drag_started() });
+        return Some(CurveEdit {
+            change: PresetChange::MoveTag(i + 1, to.to_array()),
+            begins: response.drag_started(),
+        });
     }
     if let Some([x, _]) = nudged(ui, &response) {
         let change = PresetChange::PlaceTag(i + 1, (tag.share + 0.01 * x).clamp(0.0, 1.0));
@@ -123,7 +140,7 @@ fn nearest(sketch: &Sketch, share: f64) -> belvedere::verbs::preset::SketchPoint
 
 fn handle(ui: &Ui, id: Id, at: Pos2, name: &str) -> Response {
     let response = ui.interact(Rect::from_center_size(at, vec2(2.0 * GRAB, 2.0 * GRAB)), id, Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, name));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
     if response.clicked() {
         response.request_focus();
     }
@@ -145,7 +162,12 @@ fn nudged(ui: &Ui, response: &Response) -> Option<[f64; 2]> {
     if !response.has_focus() {
         return None;
     }
-    let keys = [(Key::ArrowLeft, [-1.0, 0.0]), (Key::ArrowRight, [1.0, 0.0]), (Key::ArrowUp, [0.0, 1.0]), (Key::ArrowDown, [0.0, -1.0])];
+    let keys = [
+        (Key::ArrowLeft, [-1.0, 0.0]),
+        (Key::ArrowRight, [1.0, 0.0]),
+        (Key::ArrowUp, [0.0, 1.0]),
+        (Key::ArrowDown, [0.0, -1.0]),
+    ];
     ui.input(|input| keys.into_iter().find(|(key, _)| input.key_pressed(*key)).map(|(_, step)| step))
 }
 
@@ -171,7 +193,12 @@ fn draw(painter: &Painter, scale: &Scale, sketch: &Sketch) {
     }
     for (fold, side) in sketch.fold_heights.into_iter().zip([-1.0, 1.0]) {
         if fold.abs() < 1.5 {
-            let line: Vec<Pos2> = sketch.curve.iter().filter(|p| (0.0..=1.0).contains(&p.share)).map(|p| scale.at(p.at + side * fold.abs() * p.normal)).collect();
+            let line: Vec<Pos2> = sketch
+                .curve
+                .iter()
+                .filter(|p| (0.0..=1.0).contains(&p.share))
+                .map(|p| scale.at(p.at + side * fold.abs() * p.normal))
+                .collect();
             painter.extend(Shape::dashed_line(&line, Stroke::new(1.0, FOLD), 5.0, 4.0));
         }
     }
@@ -189,5 +216,9 @@ fn seen(facing: f64) -> Color32 {
         let [r, g, b] = [0, 1, 2].map(|i| (a[i] + t * (b[i] - a[i])) as u8);
         Color32::from_rgb(r, g, b)
     };
-    if facing <= 0.0 { Color32::from_rgb(200, 50, 40) } else { mix([236.0, 176.0, 30.0], [40.0, 140.0, 80.0], facing / WELL_SEEN) }
+    if facing <= 0.0 {
+        Color32::from_rgb(200, 50, 40)
+    } else {
+        mix([236.0, 176.0, 30.0], [40.0, 140.0, 80.0], facing / WELL_SEEN)
+    }
 }

@@ -2,7 +2,9 @@
 
 use belvedere::core::{DVec2, DVec3, View};
 use belvedere::scene_file::TurnDoc;
-use eframe::egui::{Color32, CursorIcon, FontId, Id, Pos2, Rect, Sense, Stroke, TextureId, Ui, WidgetInfo, WidgetType, pos2, vec2};
+use eframe::egui::{
+    Color32, CursorIcon, FontId, Id, Pos2, Rect, Role, Sense, Stroke, TextureId, Ui, WidgetInfo, pos2, vec2,
+};
 
 /// A part of a turn that can be dragged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,11 +36,17 @@ const COLORS: [Color32; 5] = [
 /// Shows the picture with handles.
 ///
 /// * `view`: how it was taken, from above and without perspective.
-pub(crate) fn overhead(ui: &mut Ui, id: Id, texture: TextureId, view: &View, turns: &[TurnDoc]) -> Option<OverheadEdit> {
+pub(crate) fn overhead(
+    ui: &mut Ui,
+    id: Id,
+    texture: TextureId,
+    view: &View,
+    turns: &[TurnDoc],
+) -> Option<OverheadEdit> {
     let [w, h] = view.pinhole().image.map(|n| n as f32);
     let width = ui.available_width();
     let (rect, response) = ui.allocate_exact_size(vec2(width, width * h / w), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "Camera from above"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Camera from above"));
     let painter = ui.painter_at(rect);
     painter.image(texture, rect, Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0)), Color32::WHITE);
     let at = |p: DVec3| {
@@ -46,7 +54,10 @@ pub(crate) fn overhead(ui: &mut Ui, id: Id, texture: TextureId, view: &View, tur
         Some(rect.min + vec2((pixel.x as f32) / w * rect.width(), (pixel.y as f32) / h * rect.height()))
     };
     let back = |p: Pos2, z: f64| {
-        let pixel = DVec2::new(f64::from((p.x - rect.left()) / rect.width() * w), f64::from((p.y - rect.top()) / rect.height() * h));
+        let pixel = DVec2::new(
+            f64::from((p.x - rect.left()) / rect.width() * w),
+            f64::from((p.y - rect.top()) / rect.height() * h),
+        );
         let (start, direction) = view.pinhole().line(pixel);
         // The height of the point stays: from above it cannot be seen.
         let along = (z - start.z) / direction.z;
@@ -55,7 +66,8 @@ pub(crate) fn overhead(ui: &mut Ui, id: Id, texture: TextureId, view: &View, tur
     let mut edit = None;
     for (i, turn) in turns.iter().enumerate() {
         let reach = 0.25 * DVec3::from_array(turn.t0).distance(DVec3::from_array(turn.t2)).max(1e-6);
-        let normal = turn.normal.map(|n| DVec3::from_array(turn.t1) + 4.0 * reach * DVec3::from_array(n).normalize_or_zero());
+        let normal =
+            turn.normal.map(|n| DVec3::from_array(turn.t1) + 4.0 * reach * DVec3::from_array(n).normalize_or_zero());
         let parts = [
             (Part::Viewpoint, "Viewpoint", Some(DVec3::from_array(turn.viewpoint))),
             (Part::First, "First plane", Some(DVec3::from_array(turn.t0))),
@@ -66,13 +78,22 @@ pub(crate) fn overhead(ui: &mut Ui, id: Id, texture: TextureId, view: &View, tur
         for ((part, name, place), color) in parts.into_iter().zip(COLORS) {
             let Some((place, spot)) = place.and_then(|p| Some((p, at(p)?))) else { continue };
             let label = format!("{name} of turn {}", i + 1);
-            let response = ui.interact(Rect::from_center_size(spot, vec2(18.0, 18.0)), id.with((i, name)), Sense::drag());
-            response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &label));
+            let response =
+                ui.interact(Rect::from_center_size(spot, vec2(18.0, 18.0)), id.with((i, name)), Sense::drag());
+            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
             painter.circle(spot, if response.hovered() { 7.0 } else { 5.5 }, color, Stroke::new(1.5, Color32::WHITE));
             if part == Part::Viewpoint {
-                painter.text(spot + vec2(9.0, 0.0), eframe::egui::Align2::LEFT_CENTER, format!("V{}", i + 1), FontId::proportional(12.0), color);
+                painter.text(
+                    spot + vec2(9.0, 0.0),
+                    eframe::egui::Align2::LEFT_CENTER,
+                    format!("V{}", i + 1),
+                    FontId::proportional(12.0),
+                    color,
+                );
             }
-            if response.dragged() && let Some(to) = response.interact_pointer_pos() {
+            if response.dragged()
+                && let Some(to) = response.interact_pointer_pos()
+            {
                 edit = Some(OverheadEdit { turn: i, part, to: back(to, place.z), begins: response.drag_started() });
             }
             response.on_hover_cursor(CursorIcon::Move).on_hover_text(label);
@@ -100,7 +121,8 @@ impl OverheadEdit {
                 let bend = DVec3::from_array(turn.t1);
                 let Some(normal) = (self.to - bend).try_normalize() else { return };
                 let half = |p: [f64; 3]| DVec3::from_array(p).distance(bend);
-                (turn.t0, turn.t2) = ((bend - half(turn.t0) * normal).to_array(), (bend + half(turn.t2) * normal).to_array());
+                (turn.t0, turn.t2) =
+                    ((bend - half(turn.t0) * normal).to_array(), (bend + half(turn.t2) * normal).to_array());
                 turn.normal = Some(normal.to_array());
             }
         }

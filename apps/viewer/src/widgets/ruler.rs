@@ -1,6 +1,6 @@
 //! The angle ruler: presets over the range of viewing angles, and where the camera is.
 
-use eframe::egui::{Align2, Color32, FontId, Id, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2};
+use eframe::egui::{Align2, Color32, FontId, Id, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 const HEIGHT: f32 = 52.0;
 /// Range of angles, degrees.
@@ -17,9 +17,15 @@ pub(crate) enum RulerEdit {
 /// Draws the ruler.
 ///
 /// * `presets`: name and angle of each. `chosen`: the one that is edited. `phi`: viewing angle of the camera, degrees.
-pub(crate) fn ruler(ui: &mut Ui, id: Id, presets: &[(String, f64)], chosen: usize, phi: Option<f64>) -> Option<RulerEdit> {
+pub(crate) fn ruler(
+    ui: &mut Ui,
+    id: Id,
+    presets: &[(String, f64)],
+    chosen: usize,
+    phi: Option<f64>,
+) -> Option<RulerEdit> {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, "Viewing angles"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Viewing angles"));
     let inner = rect.shrink2(vec2(12.0, 0.0));
     let x_of = |phi: f64| inner.left() + ((phi - RANGE[0]) / (RANGE[1] - RANGE[0])) as f32 * inner.width();
     let painter = ui.painter_at(rect);
@@ -32,21 +38,31 @@ pub(crate) fn ruler(ui: &mut Ui, id: Id, presets: &[(String, f64)], chosen: usiz
         painter.text(pos2(x, y + 6.0), Align2::CENTER_TOP, format!("{degrees}°"), FontId::proportional(10.0), ink);
     }
     if let Some(phi) = phi {
-        painter.vline(x_of(phi.clamp(RANGE[0], RANGE[1])), y - 18.0..=y + 8.0, Stroke::new(2.0, Color32::from_rgb(30, 96, 170)));
+        painter.vline(
+            x_of(phi.clamp(RANGE[0], RANGE[1])),
+            y - 18.0..=y + 8.0,
+            Stroke::new(2.0, Color32::from_rgb(30, 96, 170)),
+        );
     }
     let mut edit = None;
     for (i, (name, phi)) in presets.iter().enumerate() {
         let at = pos2(x_of(phi.clamp(RANGE[0], RANGE[1])), y - 9.0);
         let target = eframe::egui::Rect::from_center_size(at, vec2(16.0, 18.0));
         let response = ui.interact(target, id.with(("preset", i)), Sense::click_and_drag());
-        let label = if name.is_empty() { format!("Preset {} at {phi:.0}°", i + 1) } else { format!("Preset {name} at {phi:.0}°") };
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &label));
+        let label = if name.is_empty() {
+            format!("Preset {} at {phi:.0}°", i + 1)
+        } else {
+            format!("Preset {name} at {phi:.0}°")
+        };
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
         let color = if i == chosen { Color32::from_rgb(190, 96, 10) } else { ink };
         painter.circle_filled(at, if response.hovered() || i == chosen { 6.5 } else { 5.0 }, color);
         if response.clicked() {
             edit = Some(RulerEdit::Choose(i));
         }
-        if response.dragged() && let Some(to) = response.interact_pointer_pos() {
+        if response.dragged()
+            && let Some(to) = response.interact_pointer_pos()
+        {
             let share = f64::from((to.x - inner.left()) / inner.width());
             let to = (RANGE[0] + share * (RANGE[1] - RANGE[0])).clamp(RANGE[0], RANGE[1]);
             edit = Some(RulerEdit::Move(i, (2.0 * to).round() / 2.0, response.drag_started()));

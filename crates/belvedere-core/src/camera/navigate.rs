@@ -175,7 +175,9 @@ mod tests {
     fn all_of_a_box_is_framed() {
         let bounds = Aabb { min: DVec3::new(-300.0, 100.0, 0.0), max: DVec3::new(900.0, 2100.0, 400.0) };
         let after = camera().framing(&bounds).expect("framed");
-        assert!(bounds.corners().iter().all(|&c| after.pinhole.project(c).is_ok_and(|(p, _)| after.pinhole.contains(p))));
+        assert!(
+            bounds.corners().iter().all(|&c| after.pinhole.project(c).is_ok_and(|(p, _)| after.pinhole.contains(p)))
+        );
         assert!(after.pinhole.forward.distance(camera().pinhole.forward) < 1e-12);
     }
 

@@ -9,7 +9,13 @@ use belvedere_scene::Scene;
 /// * `written`: the camera as the document has it. `resolved`: the same with every rule replaced by its value, as it was shown last in
 ///   `view`; it counts where `written` has rules.
 /// * `image`: size of the picture on the screen, pixels.
-pub fn navigation(written: &CameraDoc, resolved: &CameraDoc, view: &View, scene: &Scene, image: [u32; 2]) -> Navigation {
+pub fn navigation(
+    written: &CameraDoc,
+    resolved: &CameraDoc,
+    view: &View,
+    scene: &Scene,
+    image: [u32; 2],
+) -> Navigation {
     let fixed = matches!((written.eye, written.look_at), (PointDoc::Scene(_), Some(PointDoc::Scene(_))));
     let camera = if fixed { written } else { resolved };
     let shown = view.pinhole();

@@ -35,7 +35,9 @@ pub fn open_files(paths: &[PathBuf], allowed: &[PathBuf], progress: &Progress) -
             FileInfo::Terrain(_) => grounds.push(name),
             FileInfo::Features(_) => features.push(name),
             FileInfo::Mesh(_) | FileInfo::City(_) | FileInfo::Molecule(_) | FileInfo::Volume(_) => models.push(real),
-            FileInfo::Unread(unread) => return Err(BelvedereError::Target(format!("{name} is {}: {}", unread.format, unread.note))),
+            FileInfo::Unread(unread) => {
+                return Err(BelvedereError::Target(format!("{name} is {}: {}", unread.format, unread.note)));
+            }
             FileInfo::Picture(_) | FileInfo::Raster(_) | FileInfo::Builtin(_) => {
                 return Err(BelvedereError::Target(format!("{name} makes no scene; {REMEDY}")));
             }
@@ -89,7 +91,8 @@ fn shown(layers: Vec<LayerDoc>, crs: &str, place: &Place, options: &OpenOptions)
     let options = OpenOptions { allow_roots: place.roots.allowed.clone(), ..options.clone() };
     let session = Session::from_document(SourceDocument::new(document.clone()), &options)?;
     let view = framed(&session.scene().bounds(), 20.0, 30.0, document.camera.image);
-    let view = view.ok_or_else(|| BelvedereError::Target(format!("there is nothing to see in these files; {REMEDY}")))?;
+    let view =
+        view.ok_or_else(|| BelvedereError::Target(format!("there is nothing to see in these files; {REMEDY}")))?;
     document.camera.near = view.pinhole.near;
     set_camera(&mut document, &view);
     Ok(document)

@@ -290,12 +290,8 @@ fn options(order: &Order, progress: &Progress) -> OpenOptions {
 
 /// One sample per pixel, less detail, no marks that need further pictures.
 fn quick(session: &Session, view: &View, detail_px: f64, progress: &Progress) -> Result<Frame, BelvedereError> {
-    let mut options = RenderOptions {
-        samples: 1,
-        lod_px: detail_px,
-        stylisation: session.stylisation,
-        ..RenderOptions::default()
-    };
+    let mut options =
+        RenderOptions { samples: 1, lod_px: detail_px, stylisation: session.stylisation, ..RenderOptions::default() };
     let scene = session.scene();
     let plan = if view.is_bent() { fallback::of_session(session, view)? } else { None };
     let scene = plan.as_ref().map_or(scene, |plan| plan.scene());

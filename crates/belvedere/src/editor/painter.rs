@@ -36,6 +36,10 @@ pub struct Painter {
     to_judge: Option<Order>,
 }
 
+/// Stack of the thread: deep enough for any document that passes the limits.
+#[cfg(not(target_family = "wasm"))]
+const STACK_BYTES: usize = 64 << 20;
+
 /// Where orders are laid down.
 #[cfg(not(target_family = "wasm"))]
 #[derive(Debug, Default)]
@@ -84,7 +88,7 @@ impl Painter {
         let desk = Arc::new(Desk::default());
         let (outbox, answers) = std::sync::mpsc::channel();
         let own = desk.clone();
-        let worker = std::thread::spawn(move || {
+        let work = move || {
             let mut session = LiveSession::default();
             while let Some((order, progress)) = own.next() {
                 let say = |answer: Answer| {
@@ -102,8 +106,10 @@ impl Painter {
                     return;
                 }
             }
-        });
-        Self { desk, worker: Some(worker), answers }
+        };
+        // Without a thread every order is answered by silence; a system that starts none has worse to tell.
+        let worker = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(work).ok();
+        Self { desk, worker, answers }
     }
 
     /// The next picture; one that was ordered before and is not begun is forgotten, one at rest that is begun is broken off.

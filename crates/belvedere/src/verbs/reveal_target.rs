@@ -5,8 +5,8 @@ use crate::output::{self, document_toml, pretty};
 use crate::picture::{Picture, PictureOptions};
 use crate::resolve::rays::sidestep_stage;
 use crate::scene_file::{
-    CameraDoc, CityDoc, ConstructorDoc, ConstructorKind, Document, LayerDoc, MeshDoc, MoleculeDoc, PointDoc, SourceDocument, StageDoc,
-    VolumeDoc,
+    CameraDoc, CityDoc, ConstructorDoc, ConstructorKind, Document, LayerDoc, MeshDoc, MoleculeDoc, PointDoc,
+    SourceDocument, StageDoc, VolumeDoc,
 };
 use crate::verbs::reveal::{RevealFiles, Viewpoint};
 use crate::{BelvedereError, OpenOptions, Session};
