@@ -50,11 +50,6 @@ struct Job {
 }
 
 impl Exporter {
-    /// Whether something is being made.
-    pub(crate) fn is_busy(&self) -> bool {
-        self.job.is_some()
-    }
-
     /// Shows the panel.
     pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model) {
         let mut image = model.document().camera.image;

@@ -10,6 +10,7 @@ mod notices;
 mod panels;
 mod picture;
 mod pointer;
+mod times;
 mod viewer;
 mod widgets;
 #[cfg(not(target_family = "wasm"))]

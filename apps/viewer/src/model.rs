@@ -6,6 +6,7 @@ use belvedere::editor::{Answer, Editor, Judged, Order, Pace, Painter, Shown, Sid
 use belvedere::scene::Frame;
 use belvedere::scene_file::{Document, LayerDoc, StageDoc};
 use std::sync::Arc;
+use std::time::Instant as Clock;
 
 /// How two pictures are compared.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -59,6 +60,8 @@ impl Default for Look {
 const PACE_MS: [f64; 2] = [40.0, 18.0];
 /// Least share of the pixels' width of a moving picture.
 const COARSEST: f64 = 0.35;
+/// Moving pictures whose times are remembered.
+const LATENCIES: usize = 600;
 /// How long nothing moves before the picture is drawn in full, seconds.
 const REST_AFTER: f64 = 0.09;
 
@@ -79,8 +82,10 @@ pub(crate) struct Model {
     /// Why the document as it is cannot be drawn.
     pub(crate) violated: Option<String>,
     ordered: Option<(Arc<Document>, [u32; 2], Sides, bool)>,
-    /// Pictures in hand: moving ones that are not answered yet.
-    outstanding: usize,
+    /// Documents of moving pictures that are not there yet, and when they were ordered.
+    awaited: Vec<(Arc<Document>, Clock)>,
+    /// Times from input to picture of the last moving pictures, milliseconds.
+    pub(crate) latencies: Vec<f64>,
     rested: bool,
     changed_at: f64,
     /// Share of the pixels' width that moving pictures have.
@@ -102,7 +107,8 @@ impl Model {
             judged: None,
             violated: None,
             ordered: None,
-            outstanding: 0,
+            awaited: Vec::new(),
+            latencies: Vec::new(),
             rested: false,
             changed_at: f64::NEG_INFINITY,
             coarseness: 1.0,
@@ -211,7 +217,7 @@ impl Model {
                 let size = image.map(|n| ((f64::from(n) * self.coarseness) as u32).max(16));
                 let detail_px = 1.0 / self.coarseness;
                 self.send(&wanted, size, Pace::Moving { detail_px });
-                self.outstanding += 1;
+                self.awaited.push((wanted.0, Clock::now()));
                 return Some(REST_AFTER);
             }
         }
@@ -244,7 +250,7 @@ impl Model {
         match answer {
             Answer::Shown(mut shown) => {
                 if let Pace::Moving { .. } = shown.pace {
-                    self.outstanding = self.outstanding.saturating_sub(1);
+                    self.arrived(&shown.document);
                     let factor = match shown.milliseconds {
                         ms if ms > PACE_MS[0] => 0.85,
                         ms if ms < PACE_MS[1] => 1.1,
@@ -267,23 +273,26 @@ impl Model {
         }
     }
 
-    /// Waits until the picture rests: for tests and scripts.
-    #[cfg(not(target_family = "wasm"))]
-    pub(crate) fn settle(&mut self, image: [u32; 2], within: std::time::Duration) -> bool {
-        let began = std::time::Instant::now();
-        self.order(image, f64::MAX);
-        while began.elapsed() < within {
-            if let Some(answer) = self.painter.answer_within(std::time::Duration::from_millis(50)) {
-                self.take(answer);
-            }
-            let rests = self.shown.as_ref().is_some_and(|shown| {
-                shown.pace == Pace::Resting && Arc::ptr_eq(&shown.document, self.editor.document())
-            });
-            if rests || (self.violated.is_some() && self.shown.is_none()) {
-                return rests;
-            }
-        }
-        false
+    /// Notes how long a moving picture took from the input on; those before it were overtaken.
+    fn arrived(&mut self, document: &Arc<Document>) {
+        let Some(at) = self.awaited.iter().position(|(awaited, _)| Arc::ptr_eq(awaited, document)) else { return };
+        let (_, since) = self.awaited.drain(..=at).next_back().unwrap_or_else(|| (document.clone(), Clock::now()));
+        self.latencies.push(since.elapsed().as_secs_f64() * 1e3);
+        let extra = self.latencies.len().saturating_sub(LATENCIES);
+        self.latencies.drain(..extra);
+    }
+
+    /// Median time from input to picture, milliseconds.
+    pub(crate) fn latency(&self) -> Option<f64> {
+        let mut sorted = self.latencies.clone();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get(sorted.len() / 2).copied()
+    }
+
+    /// Whether the picture is that of the document, in full.
+    pub(crate) fn rests(&self) -> bool {
+        let is_it = |shown: &Shown| shown.pace == Pace::Resting && Arc::ptr_eq(&shown.document, self.document());
+        self.rested && self.shown.as_deref().is_some_and(is_it)
     }
 
     /// The stage of a kind, if the document has one.

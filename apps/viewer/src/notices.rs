@@ -42,12 +42,6 @@ impl Notices {
         self.shown.drain(..extra);
     }
 
-    /// The texts that are shown.
-    #[cfg(test)]
-    pub(crate) fn texts(&self) -> Vec<&str> {
-        self.shown.iter().map(|notice| notice.text.as_str()).collect()
-    }
-
     /// Shows them in the upper right corner.
     pub(crate) fn show(&mut self, ctx: &egui::Context) {
         let now = ctx.input(|input| input.time);

@@ -160,11 +160,12 @@ impl PictureView {
         if model.look.statistics {
             let stats = shown.bent.as_ref().or(shown.straight.as_ref()).map(|frame| &frame.stats);
             let words = format!(
-                "CPU renderer · {:.0} ms, drawing {:.0} ms · {} triangles · {:.0} % of the pixels' width",
+                "CPU renderer · {:.0} ms, drawing {:.0} ms · {} triangles · {:.0} % of the pixels' width · input to picture {:.0} ms",
                 shown.milliseconds,
                 stats.map_or(0.0, |s| s.milliseconds),
                 stats.map_or(0, |s| s.triangles_drawn),
                 if moving { 100.0 * model.coarseness } else { 100.0 },
+                model.latency().unwrap_or_default(),
             );
             label(painter, rect.right_bottom() + vec2(-8.0, -8.0), Align2::RIGHT_BOTTOM, &words);
         }

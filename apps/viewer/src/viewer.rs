@@ -7,6 +7,7 @@ use crate::menu::{self, Bookmark, Choice};
 use crate::model::Model;
 use crate::panels::{Panels, set_stage};
 use crate::picture::{PictureView, image_of_frame};
+use crate::times::Times;
 use crate::widgets::overhead::overhead;
 use belvedere::editor::{Editor, Place, Recovery, open_files, set_camera};
 use belvedere::scene::Progress;
@@ -66,7 +67,7 @@ pub struct Viewer {
     chosen_input: Option<Receiver<Option<Vec<PathBuf>>>>,
     chosen_output: Option<Receiver<Option<PathBuf>>>,
     help: bool,
-    started: Option<std::time::Instant>,
+    times: Times,
 }
 
 impl Viewer {
@@ -99,7 +100,7 @@ impl Viewer {
             chosen_input: None,
             chosen_output: None,
             help: false,
-            started: Some(std::time::Instant::now()),
+            times: Times::default(),
         };
         if let Some(left) = left.filter(|_| opening.files.is_empty()) {
             viewer.model.replace(left.editor);
@@ -109,6 +110,16 @@ impl Viewer {
         }
         notes.into_iter().for_each(|note| viewer.model.notices.error(note));
         viewer
+    }
+
+    /// The document as it is.
+    pub fn document(&self) -> &std::sync::Arc<scene_file::Document> {
+        self.model.document()
+    }
+
+    /// Whether the picture on the screen is that of the document, in full.
+    pub fn rests(&self) -> bool {
+        self.pending.is_none() && self.model.rests()
     }
 
     /// Opens files beside the window.
@@ -254,7 +265,9 @@ impl Viewer {
         }
         let mut open = true;
         let mut edit = None;
-        Window::new("Camera from above").open(&mut open).default_width(460.0).show(ctx, |ui| {
+        // Beside the panel, which it would hide.
+        let corner = ctx.content_rect().right_bottom() - egui::vec2(490.0, 360.0);
+        Window::new("Camera from above").open(&mut open).default_pos(corner).default_width(460.0).show(ctx, |ui| {
             let Some((frame, view)) = &self.model.overhead else {
                 ui.label("drawing");
                 return;
@@ -361,17 +374,11 @@ impl eframe::App for Viewer {
         menu::help(&ctx, &mut self.help);
         self.model.notices.show(&ctx);
         self.write_down(&ctx);
-        if self.model.shown.is_some()
-            && let Some(started) = self.started.take()
-        {
-            // For whoever measures how long it takes to the first picture.
-            if std::env::var_os("BELVEDERE_VIEW_TIMES").is_some() {
-                eprintln!("first picture after {} ms", started.elapsed().as_millis());
-            }
-        }
+        self.times.note(&self.model);
     }
 
     fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {
+        self.times.tell(&self.model);
         if let Some(recovery) = self.recovery.take() {
             recovery.end();
         }

@@ -49,7 +49,7 @@ impl SplinePanel {
         self.angles(ui, model, &presets, phi);
         let preset = &presets.presets[self.chosen];
         ui.strong(if preset.name.is_empty() { format!("Preset {}", self.chosen + 1) } else { preset.name.clone() });
-        let Some(drawing) = sketch(&presets, preset.phi) else { return };
+        let Some(drawing) = sketch(&presets, preset.phi, distance_of(model)) else { return };
         let id = ui.scope_id().with(("curve", self.chosen));
         if let Some(edit) = curve(ui, id, &drawing) {
             if edit.begins {
@@ -109,8 +109,8 @@ impl SplinePanel {
         let mut change = None;
         ui.horizontal_wrapped(|ui| {
             for (i, section) in preset.sections.iter().enumerate() {
-                let text = format!("{}. {section}", i + 1);
-                let response = ui.add(eframe::egui::Button::new(&text).fill(color_of(section)).sense(Sense::click()));
+                let text = dark(format!("{}. {section}", i + 1));
+                let response = ui.add(eframe::egui::Button::new(text).fill(color_of(section)).sense(Sense::click()));
                 if let Some(dropped) = response.dnd_release_payload::<String>() {
                     change = Some(PresetChange::Section(i + 1, (*dropped).clone()));
                 }
@@ -127,7 +127,7 @@ impl SplinePanel {
                 let id = Id::unique(("representation", name));
                 let response = ui
                     .dnd_drag_source(id, name.clone(), |ui| {
-                        ui.add(eframe::egui::Button::new(name).fill(color_of(name)))
+                        ui.add(eframe::egui::Button::new(dark(name.clone())).fill(color_of(name)))
                     })
                     .response;
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Representation {name}")));
@@ -270,9 +270,23 @@ fn builtins(ui: &mut Ui, model: &mut Model, stage: Option<&SplineStageDoc>) {
     }
 }
 
+/// Distance of the camera from the pivot of the spline.
+fn distance_of(model: &Model) -> Option<f64> {
+    let stages = model.shown.as_ref()?.session.view().stages();
+    stages.iter().find_map(|stage| match stage {
+        belvedere::core::Stage::SplineBend(bend) => Some(bend.resolved().distance),
+        _ => None,
+    })
+}
+
 fn free_name(presets: &PresetDocument) -> String {
     let taken = |name: &str| presets.presets.iter().any(|p| p.name == name);
     (1..).map(|n| format!("preset {n}")).find(|name| !taken(name)).unwrap_or_default()
+}
+
+/// Text on a quiet colour.
+fn dark(text: String) -> eframe::egui::RichText {
+    eframe::egui::RichText::new(text).color(Color32::from_rgb(30, 34, 44))
 }
 
 /// A quiet colour of its own for each name.

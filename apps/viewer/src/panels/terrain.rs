@@ -64,26 +64,34 @@ fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
         model.begin_gesture();
         put(model, &|stage| stage.mode = Some(mode));
     }
+    // What the document leaves open has the values that the last picture was solved with.
+    let resolved = model.shown.as_ref().and_then(|shown| shown.session.resolved()).and_then(|document| {
+        document.stage.iter().find_map(|stage| match stage {
+            StageDoc::TerrainDisocclusion(stage) => Some(stage.clone()),
+            _ => None,
+        })
+    });
+    let usual = resolved.unwrap_or_default();
     let moved = stage.adjust_viewpoint.unwrap_or(1.0);
     let help = "left: the camera moves a little where that saves ground; right: only the ground moves";
     if let Some(value) = slider(ui, model, "camera or ground", moved, 0.0..=1.0, help) {
         put(model, &|stage| stage.adjust_viewpoint = (value < 1.0).then_some(value));
     }
-    let w = stage.w.unwrap_or(0.3);
+    let w = stage.w.or(usual.w).unwrap_or_default();
     if let Some(value) = slider(ui, model, "smoothness w", w, 0.02..=2.0, "smaller: wider and gentler") {
         put(model, &|stage| stage.w = Some(value));
     }
-    let eta = stage.eta.unwrap_or(0.5);
+    let eta = stage.eta.or(usual.eta).unwrap_or_default();
     if let Some(value) =
         slider(ui, model, "weight eta", eta, 0.0..=1.0, "mountains that are kept, against those that are moved")
     {
         put(model, &|stage| stage.eta = Some(value));
     }
-    let rise = stage.rise_limit_m.unwrap_or(500.0);
+    let rise = stage.rise_limit_m.or(usual.rise_limit_m).unwrap_or_default();
     if let Some(value) = slider(ui, model, "rise at most, m", rise, 0.0..=2000.0, "most that the ground may rise") {
         put(model, &|stage| stage.rise_limit_m = Some(value));
     }
-    let margin = stage.margin_m.unwrap_or(1.0);
+    let margin = stage.margin_m.or(usual.margin_m).unwrap_or_default();
     if let Some(value) = slider(ui, model, "clearance, m", margin, 0.0..=50.0, "of the lines of sight") {
         put(model, &|stage| stage.margin_m = Some(value));
     }
@@ -111,11 +119,8 @@ fn shares(ui: &mut Ui, model: &mut Model) {
             ui.label(format!("{name}: {before} visible straight, {after} bent"));
         }
     }
-    if let Some(report) = model.shown.as_ref().and_then(|shown| shown.session.terrain_report()) {
-        let _ = report;
-        if let Some(moved) = model.shown.as_ref().and_then(|shown| shown.displacement) {
-            ui.label(format!("moved by up to {:.0} m", moved.max_m));
-        }
+    if let Some(moved) = model.shown.as_ref().and_then(|shown| shown.displacement) {
+        ui.label(format!("What is in the picture was moved by up to {:.0} m.", moved.max_m));
     }
     if judged.hidden.is_empty() {
         ui.label("Nothing in the picture that must be seen is hidden.");

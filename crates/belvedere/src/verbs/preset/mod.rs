@@ -137,8 +137,13 @@ impl Shape {
 
 /// The document for a camera at a viewing angle, [`DISTANCE`] from the pivot.
 fn seen_at(document: &PresetDocument, phi_deg: f64) -> Option<(Pinhole, SplineBend)> {
+    seen_from(document, phi_deg, DISTANCE)
+}
+
+/// The same for any distance, scene units.
+fn seen_from(document: &PresetDocument, phi_deg: f64, distance: f64) -> Option<(Pinhole, SplineBend)> {
     let (sin, cos) = phi_deg.to_radians().sin_cos();
-    let (eye, up) = (DISTANCE * DVec3::new(0.0, -cos, sin), DVec3::new(0.0, sin, cos));
+    let (eye, up) = (distance * DVec3::new(0.0, -cos, sin), DVec3::new(0.0, sin, cos));
     let screen = Projection::Perspective { fov_y: FOV_Y_DEG.to_radians() };
     let camera = Pinhole::look_at(eye, DVec3::ZERO, up, screen, [1280, 720], 1.0, None).ok()?;
     let bend = SplineBend::new(&camera, document, &ReferencePlane::level(0.0), DVec3::ZERO).ok()?;

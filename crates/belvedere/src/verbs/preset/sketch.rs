@@ -1,6 +1,6 @@
 //! A preset as a drawing can be made of it: the curve, its tags, the eye and what it sees.
 
-use super::seen_at;
+use super::{DISTANCE, seen_from};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{DVec2, Projection};
 
@@ -57,8 +57,10 @@ pub struct SketchTag {
 }
 
 /// The drawing of what a document makes of a viewing angle, degrees; `None` if that is no valid bend.
-pub fn sketch(document: &PresetDocument, phi_deg: f64) -> Option<Sketch> {
-    let (pinhole, bend) = seen_at(document, phi_deg)?;
+///
+/// * `distance`: of the eye from the pivot, scene units; counts for documents whose depths are scene units.
+pub fn sketch(document: &PresetDocument, phi_deg: f64, distance: Option<f64>) -> Option<Sketch> {
+    let (pinhole, bend) = seen_from(document, phi_deg, distance.unwrap_or(DISTANCE))?;
     let curve = bend.curve();
     let eye = bend.curve_position(pinhole.eye);
     let point = |l: f64| {
@@ -102,7 +104,7 @@ mod tests {
         for name in belvedere_core::presets::BUILTIN_NAMES {
             let document = PresetDocument::builtin(name).expect("built in");
             for preset in document.sorted() {
-                let drawn = sketch(&document, preset.phi).expect("drawn");
+                let drawn = sketch(&document, preset.phi, None).expect("drawn");
                 let inside = drawn.curve.iter().filter(|p| (0.0..=1.0).contains(&p.share));
                 assert!(inside.clone().all(|p| p.facing > 0.0), "{name} {}", preset.phi);
                 assert!(inside.count() > 50 && drawn.tags.len() == preset.tags.len());

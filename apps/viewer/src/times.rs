@@ -1,0 +1,38 @@
+//! How long pictures take, for whoever measures: written as JSON to the file that `BELVEDERE_VIEW_TIMES` names, when the window closes.
+
+use crate::model::Model;
+use std::time::Instant;
+
+/// Times of one run.
+#[derive(Debug)]
+pub(crate) struct Times {
+    started: Instant,
+    first_ms: Option<f64>,
+}
+
+impl Default for Times {
+    fn default() -> Self {
+        Self { started: Instant::now(), first_ms: None }
+    }
+}
+
+impl Times {
+    /// Notes the first picture.
+    pub(crate) fn note(&mut self, model: &Model) {
+        if model.shown.is_some() && self.first_ms.is_none() {
+            self.first_ms = Some(self.started.elapsed().as_secs_f64() * 1e3);
+        }
+    }
+
+    /// Writes what was noted, if anybody asks.
+    pub(crate) fn tell(&self, model: &Model) {
+        let Some(path) = std::env::var_os("BELVEDERE_VIEW_TIMES") else { return };
+        let times = serde_json::json!({
+            "first_picture_ms": self.first_ms,
+            "input_to_picture_median_ms": model.latency(),
+            "input_to_picture_ms": model.latencies,
+        });
+        // A measurement that cannot be written is missed by who asked for it.
+        let _ = belvedere::output::write_text(std::path::Path::new(&path), &times.to_string(), true);
+    }
+}

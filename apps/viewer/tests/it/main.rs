@@ -1,0 +1,76 @@
+//! The application, by its accessibility tree: what a screen reader finds, a test presses.
+
+mod authoring;
+mod controls;
+mod files;
+mod moving;
+
+use belvedere_viewer::{Opening, Viewer};
+use egui_kittest::kittest::Queryable;
+use egui_kittest::{Harness, Node};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Longest that a picture may take in a test.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The application in a window of 1200 x 760 points.
+fn app(opening: &Opening) -> Harness<'static, Viewer> {
+    let opening = opening.clone();
+    let builder = Harness::builder().with_size([1200.0, 760.0]).with_max_steps(4);
+    builder.build_eframe(move |cc| Viewer::new(&cc.egui_ctx, &opening))
+}
+
+/// Goes on until the picture rests.
+fn settle(harness: &mut Harness<'_, Viewer>) {
+    let began = Instant::now();
+    // What was just done is taken up by the next two frames.
+    harness.step();
+    harness.step();
+    while !harness.state().rests() {
+        assert!(began.elapsed() < PATIENCE, "no picture");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    harness.step();
+}
+
+/// Presses the control of that name.
+fn press(harness: &mut Harness<'_, Viewer>, name: &str) {
+    find(harness, name).click();
+    harness.step();
+    harness.step();
+}
+
+fn find<'a>(harness: &'a Harness<'_, Viewer>, name: &'a str) -> Node<'a> {
+    harness.get_by_label(name)
+}
+
+/// A small scene of its own in a folder.
+fn scene(folder: &Path) -> PathBuf {
+    let path = folder.join("scene.toml");
+    let text = r#"
+format = 1
+title = "A small massif"
+crs = "local"
+[camera]
+eye = [6000.0, -5200.0, 3600.0]
+look_at = [0.0, 0.0, 300.0]
+image = [320, 180]
+[[layer]]
+kind = "terrain"
+id = "ground"
+source = "builtin:massif?seed=7&size=129"
+[[layer]]
+kind = "line"
+id = "trail"
+source = "builtin:massif?seed=7&size=129"
+must_see = true
+"#;
+    std::fs::write(&path, text).expect("scene");
+    path
+}
+
+fn opened(files: &[PathBuf]) -> Opening {
+    Opening { files: files.to_vec(), ..Opening::default() }
+}

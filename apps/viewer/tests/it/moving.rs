@@ -1,0 +1,82 @@
+//! The camera by pointer and keyboard.
+
+use crate::{app, find, opened, press, scene, settle};
+use belvedere::scene_file::PointDoc;
+use belvedere_viewer::Viewer;
+use eframe::egui::{Key, Modifiers, vec2};
+use egui_kittest::Harness;
+
+fn eye(harness: &Harness<'_, Viewer>) -> [f64; 3] {
+    match harness.state().document().camera.eye {
+        PointDoc::Scene(eye) => eye,
+        PointDoc::Map(_) => panic!("the eye is a rule"),
+    }
+}
+
+#[test]
+fn a_drag_moves_the_ground_under_the_pointer_and_is_one_step() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    settle(&mut harness);
+    let before = eye(&harness);
+    let middle = find(&harness, "Picture").rect().center() + vec2(0.0, 60.0);
+    harness.drag_at(middle);
+    harness.step();
+    for k in 1..=10 {
+        harness.hover_at(middle + vec2(8.0 * k as f32, 3.0 * k as f32));
+        harness.step();
+    }
+    harness.drop_at(middle + vec2(80.0, 30.0));
+    settle(&mut harness);
+    let after = eye(&harness);
+    assert!((after[0] - before[0]).hypot(after[1] - before[1]) > 50.0, "{before:?} {after:?}");
+    assert_eq!(after[2], before[2], "a map is dragged level");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut harness);
+    assert_eq!(eye(&harness), before);
+}
+
+#[test]
+fn keys_do_what_the_pointer_does() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    settle(&mut harness);
+    let mut last = eye(&harness);
+    for (modifiers, key) in [
+        (Modifiers::NONE, Key::ArrowLeft),
+        (Modifiers::NONE, Key::ArrowUp),
+        (Modifiers::SHIFT, Key::ArrowRight),
+        (Modifiers::SHIFT, Key::ArrowUp),
+        (Modifiers::NONE, Key::Plus),
+        (Modifiers::NONE, Key::Minus),
+        (Modifiers::NONE, Key::F),
+    ] {
+        harness.key_press_modifiers(modifiers, key);
+        settle(&mut harness);
+        let now = eye(&harness);
+        assert_ne!(now, last, "{key:?}");
+        last = now;
+    }
+}
+
+#[test]
+fn views_are_bookmarked_and_compared() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    settle(&mut harness);
+    let before = eye(&harness);
+    harness.key_press(Key::B);
+    harness.step();
+    harness.key_press(Key::ArrowLeft);
+    settle(&mut harness);
+    assert_ne!(eye(&harness), before);
+    press(&mut harness, "Places");
+    press(&mut harness, "View 1");
+    settle(&mut harness);
+    let again = eye(&harness);
+    assert!(before.iter().zip(again).all(|(a, b)| (a - b).abs() < 1e-6), "{before:?} {again:?}");
+    press(&mut harness, "Look");
+    press(&mut harness, "Split");
+    settle(&mut harness);
+    find(&harness, "Bar between straight and bent");
+}
