@@ -111,7 +111,7 @@ pub(crate) struct ViewArgs {
 /// The figures.
 #[derive(Debug, Args)]
 pub(crate) struct FiguresArgs {
-    /// Which figures, separated by commas: terrain, curved, spline, compare, algorithms
+    /// Which figures, separated by commas: terrain, curved, spline, compare, algorithms, guide
     #[arg(value_parser = parse_figures)]
     pub(crate) what: FigureKinds,
     /// Scene files with a camera and features that must be seen, in place of the built-in areas (and of the two real ranges
@@ -135,6 +135,8 @@ pub(crate) enum FigureKind {
     Compare,
     /// Charts of docs/algorithms
     Algorithms,
+    /// Pictures of docs/guide
+    Guide,
 }
 
 /// Figures of one paper or several.
@@ -144,7 +146,7 @@ pub(crate) struct FigureKinds(pub(crate) Vec<FigureKind>);
 fn parse_figures(text: &str) -> Result<FigureKinds, String> {
     let kind = |name: &str| {
         FigureKind::from_str(name.trim(), false)
-            .map_err(|_| format!("\"{name}\" is none; possible: terrain, curved, spline, compare, algorithms"))
+            .map_err(|_| format!("\"{name}\" is none; possible: terrain, curved, spline, compare, algorithms, guide"))
     };
     Ok(FigureKinds(text.split(',').map(kind).collect::<Result<_, _>>()?))
 }

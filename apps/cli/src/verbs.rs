@@ -366,6 +366,9 @@ fn draw_figures(args: &FiguresArgs, context: &Context) -> anyhow::Result<Goal> {
     if args.what.0.contains(&FigureKind::Algorithms) {
         written.extend(belvedere_gallery::algorithm_figures(&args.out, &options, overwrite)?);
     }
+    if args.what.0.contains(&FigureKind::Guide) {
+        written.extend(belvedere_gallery::guide_figures(&args.out, &options, overwrite)?);
+    }
     if args.what.0.contains(&FigureKind::Curved) {
         written.extend(belvedere_gallery::curved_figures(&args.out, &options, overwrite)?);
     }

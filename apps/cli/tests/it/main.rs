@@ -25,6 +25,8 @@ mod stylisation;
 mod terrain;
 mod volume_targets;
 mod volumes;
+#[cfg(target_os = "linux")]
+mod window;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -76,11 +76,12 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     ),
     ("belvedere-bench", &["belvedere"], &["anyhow", "rayon", "serde"]),
     ("belvedere-gallery", &["belvedere"], &["anyhow", "plotters", "serde"]),
+    ("belvedere-viewer", &["belvedere"], &["eframe", "rfd", "serde", "serde_json", "thiserror"]),
     ("belvedere-testkit", &["belvedere-core", "belvedere-scene"], &["glam", "rayon"]),
     ("belvedere-mutants", &[], &["anyhow", "clap", "proc-macro2", "serde", "serde_json", "syn"]),
     (
         "belvedere-cli",
-        &["belvedere", "belvedere-bench", "belvedere-gallery"],
+        &["belvedere", "belvedere-bench", "belvedere-gallery", "belvedere-viewer"],
         &["anyhow", "clap", "ctrlc", "indicatif", "serde_json", "tracing", "tracing-subscriber"],
     ),
 ];

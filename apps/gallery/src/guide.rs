@@ -1,0 +1,71 @@
+//! `figures guide`: the pictures of docs/guide.
+
+use crate::easel::{Easel, straight};
+use crate::figure_set::{Entry, Figure, FigureSet};
+use anyhow::Result;
+use belvedere::{CameraPicture, OpenOptions};
+use std::path::{Path, PathBuf};
+
+const TILE: [u32; 2] = [512, 288];
+const STREET: &str = include_str!("../../../scenes/street.toml");
+const MASSIF: &str = include_str!("../../../scenes/massif_terrain.toml");
+const TOWN: &str = include_str!("../../../scenes/town.toml");
+const BEND: &str = "\n[[stage]]\nkind = \"spline_bend\"\npresets = \"progressive\"\n";
+
+const SET: FigureSet<'_> = FigureSet {
+    name: "guide",
+    title: "Pictures of the guide",
+    intro: "One scene for each technique, straight and bent.",
+    comment: "straight | bent",
+    entries: &[
+        Entry {
+            name: "curved_rays",
+            title: "Curved rays",
+            says: "Rays turn round a corner, and the camera from above.",
+            draw: curved_rays,
+        },
+        Entry {
+            name: "terrain",
+            title: "Terrain disocclusion",
+            says: "The ground makes way for a trail.",
+            draw: terrain,
+        },
+        Entry { name: "spline", title: "Multi-perspective views", says: "A town bent along a spline.", draw: spline },
+    ],
+};
+
+/// Draws the pictures of the guide into `folder`, which is made if need be. Returns the files.
+///
+/// # Errors
+/// A file that exists if `overwrite` is false; those of drawing a scene.
+pub fn figures(folder: &Path, options: &OpenOptions, overwrite: bool) -> Result<Vec<PathBuf>> {
+    SET.draw(folder, options, overwrite)
+}
+
+fn curved_rays(easel: &Easel<'_>) -> Result<Figure> {
+    let session = easel.open(STREET, TILE)?;
+    let panels = vec![
+        easel.panel(&straight(&session), "Straight", "the side street is hidden".into())?,
+        easel.panel(&session, "Bent", "one turn, round the corner".into())?,
+        easel.camera(&session, CameraPicture::Overhead, "The camera from above", "rays, planes, viewpoints".into())?,
+    ];
+    Ok(Figure { panels, columns: 3, seen: Vec::new() })
+}
+
+fn terrain(easel: &Easel<'_>) -> Result<Figure> {
+    let session = easel.open(MASSIF, TILE)?;
+    let panels = vec![
+        easel.panel(&straight(&session), "Straight", "what lies behind ridges is dashed".into())?,
+        easel.panel(&session, "The ground makes way", "as little as it can".into())?,
+    ];
+    Ok(Figure { panels, columns: 2, seen: Vec::new() })
+}
+
+fn spline(easel: &Easel<'_>) -> Result<Figure> {
+    let session = easel.open(&format!("{TOWN}{BEND}"), TILE)?;
+    let panels = vec![
+        easel.panel(&straight(&session), "Straight", String::new())?,
+        easel.panel(&session, "Progressive", "steep in the foreground, flat towards the horizon".into())?,
+    ];
+    Ok(Figure { panels, columns: 2, seen: Vec::new() })
+}
