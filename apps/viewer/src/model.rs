@@ -57,7 +57,7 @@ impl Default for Look {
 }
 
 /// Longest that a moving picture may take before it is made coarser, milliseconds; shortest before it is made finer.
-const PACE_MS: [f64; 2] = [40.0, 18.0];
+const PACE_MS: [f64; 2] = [32.0, 16.0];
 /// Least share of the pixels' width of a moving picture.
 const COARSEST: f64 = 0.35;
 /// Moving pictures whose times are remembered.

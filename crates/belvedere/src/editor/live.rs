@@ -4,7 +4,7 @@ use super::Place;
 use crate::fallback;
 use crate::overlays::grid;
 use crate::picture::{self, AuxBuffer, DisplacementReport, PictureOptions};
-use crate::scene_file::{Document, LayerDoc, SourceDocument};
+use crate::scene_file::{Document, LayerDoc, SourceDocument, StageDoc};
 use crate::{BelvedereError, CameraPicture, OpenOptions, Session};
 use belvedere_construct::measure::HiddenRun;
 use belvedere_construct::{MeasureOptions, Measures};
@@ -204,6 +204,7 @@ impl LiveSession {
             self.session = Some(session.clone());
             return Ok((session, solves.then_some(GROUND).or((constructs && !in_time).then_some(RAYS))));
         };
+        let document = with_known_planes(document, &session);
         let session = session.edited(document, &options, &self.layer_warnings)?;
         if solves {
             return match self.ground.under(&session)? {
@@ -267,6 +268,26 @@ impl Ground {
     fn under(&mut self, _: &Session) -> Result<Option<Stage>, BelvedereError> {
         Ok(self.last.clone())
     }
+}
+
+/// The document with reference planes where the last picture at rest had them: the median of the terrain is not looked for in every
+/// picture.
+fn with_known_planes(mut document: Document, session: &Session) -> Document {
+    let Some(resolved) = session.resolved().filter(|_| session.scene().terrain().is_some()) else { return document };
+    for (stage, known) in document.stage.iter_mut().zip(&resolved.stage) {
+        let (plane, known) = match (stage, known) {
+            (StageDoc::SplineBend(stage), StageDoc::SplineBend(known)) => (&mut stage.plane, &known.plane),
+            (StageDoc::Relief(stage), StageDoc::Relief(known)) => (&mut stage.plane, &known.plane),
+            _ => continue,
+        };
+        // Over level ground it is the same wherever the camera goes.
+        let Some(known) = known.as_ref().filter(|known| known.normal == [0.0, 0.0, 1.0]) else { continue };
+        let stated = plane.get_or_insert_with(|| known.clone());
+        if stated.normal == known.normal {
+            stated.height_m = stated.height_m.or(known.height_m);
+        }
+    }
+    document
 }
 
 /// The session with moved ground in its chain.
