@@ -17,6 +17,7 @@ struct Display {
 
 impl Display {
     /// `None`, said loudly, where there is none to be had.
+    #[allow(clippy::print_stderr)]
     fn open() -> Option<Self> {
         let required = std::env::var("BELVEDERE_REQUIRE_DISPLAY").is_ok_and(|v| v == "1");
         let started = Command::new("Xvfb")

@@ -211,7 +211,8 @@ fn ray_model(ui: &mut Ui, model: &mut Model, stage: &RaysStageDoc) {
 fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut TurnDoc) {
     let reach = DVec3::from_array(turn.viewpoint).distance(DVec3::from_array(turn.t1));
     let speed = 0.004 * reach;
-    let rows: [(&str, &str, fn(&mut TurnDoc) -> &mut [f64; 3]); 4] = [
+    type Part = fn(&mut TurnDoc) -> &mut [f64; 3];
+    let rows: [(&str, &str, Part); 4] = [
         ("viewpoint", "where the rays come from behind the turn", |t| &mut t.viewpoint),
         ("first plane", "a point of the plane where the rays begin to bend", |t| &mut t.t0),
         ("bend point", "where the rays bend most", |t| &mut t.t1),

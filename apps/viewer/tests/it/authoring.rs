@@ -10,7 +10,7 @@ use eframe::egui::{Key, Modifiers, vec2};
 fn a_progressive_preset_is_made_from_the_template_saved_and_drawn_elsewhere() {
     let folder = tempfile::tempdir().expect("folder");
     let path = scene(folder.path());
-    let mut harness = app(&opened(&[path.clone()]));
+    let mut harness = app(&opened(std::slice::from_ref(&path)));
     settle(&mut harness);
     let mut operations = 0;
     let mut done = || operations += 1;

@@ -9,7 +9,7 @@ use egui_kittest::kittest::Queryable;
 fn a_killed_application_comes_back_as_it_was() {
     let folder = tempfile::tempdir().expect("folder");
     let path = scene(folder.path());
-    let opening = Opening { state: Some(folder.path().join("state")), ..opened(&[path.clone()]) };
+    let opening = Opening { state: Some(folder.path().join("state")), ..opened(std::slice::from_ref(&path)) };
     let mut harness = app(&opening);
     settle(&mut harness);
     harness.key_press(Key::ArrowLeft);
@@ -66,7 +66,7 @@ fn terrain_and_a_route_become_a_picture_in_which_the_route_is_seen() {
 fn what_is_saved_is_what_is_seen() {
     let folder = tempfile::tempdir().expect("folder");
     let path = scene(folder.path());
-    let mut harness = app(&opened(&[path.clone()]));
+    let mut harness = app(&opened(std::slice::from_ref(&path)));
     settle(&mut harness);
     harness.key_press_modifiers(Modifiers::SHIFT, Key::ArrowUp);
     settle(&mut harness);
