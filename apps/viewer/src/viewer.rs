@@ -201,6 +201,8 @@ impl Viewer {
         match self.model.editor.save(path) {
             Ok(()) => {
                 self.remember(path);
+                // What is written down for the case of a crash says that it is saved.
+                self.written = None;
                 let outside = self.model.editor.outside();
                 let mut said = format!("Saved: {}", path.display());
                 if !outside.is_empty() {
