@@ -7,10 +7,9 @@ use belvedere::{CameraPicture, OpenOptions};
 use std::path::{Path, PathBuf};
 
 const TILE: [u32; 2] = [512, 288];
-const STREET: &str = include_str!("../../../scenes/street.toml");
+const STREET: &str = include_str!("../../../scenes/street_split.toml");
 const MASSIF: &str = include_str!("../../../scenes/massif_terrain.toml");
 const TOWN: &str = include_str!("../../../scenes/town.toml");
-const BEND: &str = "\n[[stage]]\nkind = \"spline_bend\"\npresets = \"progressive\"\n";
 
 const SET: FigureSet<'_> = FigureSet {
     name: "guide",
@@ -21,7 +20,7 @@ const SET: FigureSet<'_> = FigureSet {
         Entry {
             name: "curved_rays",
             title: "Curved rays",
-            says: "Rays turn round a corner, and the camera from above.",
+            says: "Rays turn round two corners, and the camera from above.",
             draw: curved_rays,
         },
         Entry {
@@ -45,8 +44,8 @@ pub fn figures(folder: &Path, options: &OpenOptions, overwrite: bool) -> Result<
 fn curved_rays(easel: &Easel<'_>) -> Result<Figure> {
     let session = easel.open(STREET, TILE)?;
     let panels = vec![
-        easel.panel(&straight(&session), "Straight", "the side street is hidden".into())?,
-        easel.panel(&session, "Bent", "one turn, round the corner".into())?,
+        easel.panel(&straight(&session), "Straight", "houses hide the side streets".into())?,
+        easel.panel(&session, "Bent", "rays part, and each half turns round its corner".into())?,
         easel.camera(&session, CameraPicture::Overhead, "The camera from above", "rays, planes, viewpoints".into())?,
     ];
     Ok(Figure { panels, columns: 3, seen: Vec::new() })
@@ -62,7 +61,7 @@ fn terrain(easel: &Easel<'_>) -> Result<Figure> {
 }
 
 fn spline(easel: &Easel<'_>) -> Result<Figure> {
-    let session = easel.open(&format!("{TOWN}{BEND}"), TILE)?;
+    let session = easel.open(TOWN, TILE)?;
     let panels = vec![
         easel.panel(&straight(&session), "Straight", String::new())?,
         easel.panel(&session, "Progressive", "steep in the foreground, flat towards the horizon".into())?,

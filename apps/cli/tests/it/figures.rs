@@ -145,3 +145,22 @@ fn figures_of_multi_perspective_views_are_all_there() {
         assert!(figure["panels"].as_array().is_some_and(|p| p.len() > 2), "{figure}");
     }
 }
+
+#[test]
+fn the_pictures_of_the_guide_are_those_that_it_shows() {
+    let place = Place::new();
+    place.ok(&["figures", "guide", "-o", "guide"]);
+    let guide = belvedere_testkit::workspace_root().join("docs/guide");
+    let pages: String = ["curved-rays", "terrain", "spline"]
+        .iter()
+        .map(|page| String::from_utf8(read(&guide.join(format!("{page}.md")))).expect("UTF-8"))
+        .collect();
+    for what in ["curved_rays", "terrain", "spline"] {
+        let name = format!("guide_{what}.png");
+        assert!(pages.contains(&format!("images/{name}")), "{name} is shown nowhere");
+        assert!(
+            read(&place.path(&format!("guide/{name}"))) == read(&guide.join("images").join(&name)),
+            "{name} is old"
+        );
+    }
+}
