@@ -5,6 +5,7 @@ mod areas;
 mod bad_scenes;
 mod cities;
 mod constructors;
+mod curve_inset;
 mod exact;
 mod figures;
 mod generalise;

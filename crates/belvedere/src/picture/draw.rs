@@ -5,7 +5,7 @@ use super::options::{AuxBuffer, PictureOptions};
 use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, Sidecar, TerrainRecord};
 use super::volume_record::VolumeRecord;
 use crate::fallback::{self, FallbackPlan, FallbackRecord};
-use crate::overlays::{badge, camera, ghost, grid, heat, highlight, thin};
+use crate::overlays::{badge, camera, curve_inset, ghost, grid, heat, highlight, thin};
 use crate::record::{self, InputFile, ViewRecord};
 use crate::scene_file::HighlightMark;
 use crate::{BelvedereError, CameraPicture, Session};
@@ -149,6 +149,8 @@ pub(crate) fn draw_view(
         let taken = if heatmap_max.is_some() { heat::LEGEND_HEIGHT + 10.0 } else { 0.0 };
         highlight::legend(&mut canvas, record, taken);
     }
+    let figure = wanted.inset.and_then(|inset| Some((inset, curve_inset::CurveFigure::of(&view)?)));
+    let inset = figure.filter(|(_, figure)| curve_inset::draw(&mut canvas, figure)).map(|(inset, _)| inset);
     if let Some(words) = &mark {
         badge::draw(&mut canvas, words);
     }
@@ -157,6 +159,7 @@ pub(crate) fn draw_view(
         unsharp: (stylisation.unsharp > 0.0).then_some(stylisation.unsharp),
         mark: mark.is_some(),
         mark_words: mark,
+        inset,
         grid: grid_spacing,
         heatmap_max,
         ghost,

@@ -7,7 +7,7 @@ use crate::fallback::FallbackRecord;
 use crate::overlays::highlight::HighlightRecord;
 use crate::record::{AreaRecord, InputFile, ViewRecord};
 use crate::resolve::constructor::ConstructorReport;
-use crate::scene_file::Document;
+use crate::scene_file::{Document, Inset};
 use crate::verbs::target_place::TargetPlace;
 use belvedere_core::View;
 use belvedere_disocclusion::TerrainReport;
@@ -75,6 +75,9 @@ pub struct OverlayRecord {
     /// What that says: how far at most what is seen was moved.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mark_words: Option<String>,
+    /// What the figure in the corner shows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inset: Option<Inset>,
     /// Strength of dark edges.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub edges: Option<f32>,

@@ -30,7 +30,7 @@ pub use layers::{
 pub use mesh::{MeshDoc, MeshStyleDoc, TransformDoc};
 pub use molecule::{MoleculeDoc, MoleculeStyleDoc, PaintDoc};
 pub(crate) use node::{Node, Value};
-pub use overlay::{AutoOrLength, AutoWord, HighlightMark, OverlayDoc, SwitchOrLength};
+pub use overlay::{AutoOrLength, AutoWord, HighlightMark, Inset, OverlayDoc, SwitchOrLength};
 pub use palette::{PaletteDoc, PaletteName};
 pub use paths::Paths;
 pub use relief::{OneOrTwo, ReliefStageDoc};

@@ -24,8 +24,19 @@ pub struct OverlayDoc {
     /// must be seen would be, and a leader to it).
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub highlight: Vec<HighlightMark>,
+    /// A figure in the upper left corner, of pictures that a spline bends.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inset: Option<Inset>,
     /// Distance at the upper end of the colours of `highlight`, pixels, > 0.
     pub highlight_px: f64,
+}
+
+/// A figure in a corner of the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Inset {
+    /// The deformation curve from the side, with its control points, tag points, the eye and what it sees.
+    Curve,
 }
 
 /// A way to show what the bend did.
@@ -44,7 +55,15 @@ pub enum HighlightMark {
 
 impl Default for OverlayDoc {
     fn default() -> Self {
-        Self { grid: None, mark: true, heatmap: false, ghost: false, highlight: Vec::new(), highlight_px: HIGHLIGHT_PX }
+        Self {
+            grid: None,
+            mark: true,
+            heatmap: false,
+            ghost: false,
+            highlight: Vec::new(),
+            inset: None,
+            highlight_px: HIGHLIGHT_PX,
+        }
     }
 }
 
