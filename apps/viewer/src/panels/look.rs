@@ -2,7 +2,9 @@
 
 use super::slider;
 use crate::model::{Compare, Model, Tool};
-use belvedere::scene_file::{HighlightMark, LightDoc, OverlayDoc, StylisationDoc, SwitchOrLength, SwitchOrStrength};
+use belvedere::scene_file::{
+    HighlightMark, Inset, LightDoc, OverlayDoc, StylisationDoc, SwitchOrLength, SwitchOrStrength,
+};
 use eframe::egui::Ui;
 
 /// Shows the panel.
@@ -46,6 +48,10 @@ fn marks(ui: &mut Ui, model: &mut Model) {
     ui.checkbox(&mut overlay.heatmap, "Heat map of what was moved");
     ui.checkbox(&mut overlay.ghost, "Straight picture faintly over it");
     ui.checkbox(&mut overlay.mark, "Mark on bent pictures");
+    let mut curve = overlay.inset.is_some();
+    if ui.checkbox(&mut curve, "Curve in a corner").on_hover_text("where a spline bends the picture").changed() {
+        overlay.inset = curve.then_some(Inset::Curve);
+    }
     for (mark, name) in [
         (HighlightMark::Shift, "How far it moved in the picture"),
         (HighlightMark::Stages, "Which stage moved it"),

@@ -56,7 +56,7 @@ impl CurveFigure {
         };
         Some(Self {
             curve: (0..=POINTS).map(place).collect(),
-            control: resolved.control.iter().map(|c| DVec2::from_array(*c)).collect(),
+            control: bend.control(),
             tags: bend.sections().tags().iter().map(|tag| at(tag.u)).collect(),
             eye: bend.curve_position(pinhole.eye),
             rays: [0.0, height].map(ray),

@@ -91,6 +91,14 @@ impl SplineBend {
         &self.resolved
     }
 
+    /// Control points of the curve where the pin has moved them, curve units.
+    pub fn control(&self) -> Vec<DVec2> {
+        let stated: Vec<DVec2> = self.resolved.control.iter().map(|&p| DVec2::from(p)).collect();
+        // A curve begins at its first control point.
+        let by = stated.first().map_or(DVec2::ZERO, |first| self.curve.at(0.0).0 - *first);
+        stated.into_iter().map(|p| p + by).collect()
+    }
+
     /// The pivot dropped onto the reference plane, scene coordinates. It does not move if the curve is pinned.
     pub fn pivot(&self) -> DVec3 {
         self.origin

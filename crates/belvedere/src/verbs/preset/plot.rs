@@ -87,7 +87,7 @@ impl<'a> Panel<'a> {
             Projection::Orthographic { .. } => 0.0,
         };
         let wedge = [-half, half].map(|h| flat(pinhole.forward + h * pinhole.down).normalize_or_zero());
-        let control = bend.resolved().control.iter().map(|&p| DVec2::from(p));
+        let control = bend.control().into_iter();
         let ends = [-EXTENSION, curve.length() + EXTENSION].map(|l| curve.at(l).0);
         // An eye that a dolly has moved far away is not drawn.
         let near = Some(eye).filter(|e| e.length() < 4.0);
@@ -129,7 +129,7 @@ impl<'a> Panel<'a> {
     fn draw(&self, canvas: &mut Canvas<'_>, shape: &Shape) {
         self.grid(canvas);
         self.wedge(canvas);
-        let control: Vec<DVec2> = self.bend.resolved().control.iter().map(|&p| DVec2::from(p)).collect();
+        let control = self.bend.control();
         for pair in control.windows(2) {
             self.line(canvas, [pair[0], pair[1]], 1.5, POLYGON);
         }
