@@ -3,8 +3,9 @@
 use crate::builtin::BUILTIN;
 use crate::keys::{Command, KEYS};
 use crate::model::Model;
-use belvedere::core::Navigation;
+use belvedere::scene_file::CameraDoc;
 use eframe::egui::{Context, Grid, MenuBar, Ui, Window};
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// What the menu wants.
@@ -17,10 +18,10 @@ pub(crate) enum Choice {
 }
 
 /// A camera to come back to.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Bookmark {
     pub(crate) name: String,
-    pub(crate) camera: Navigation,
+    pub(crate) camera: CameraDoc,
 }
 
 /// Shows the bar.

@@ -9,11 +9,12 @@ use crate::panels::{Panels, set_stage};
 use crate::picture::{PictureView, image_of_frame};
 use crate::times::Times;
 use crate::widgets::overhead::overhead;
-use belvedere::editor::{Editor, Place, Recovery, open_files, set_camera};
+use belvedere::editor::{Editor, Place, Recovery, open_files};
 use belvedere::scene::Progress;
-use belvedere::scene_file::{self, StageDoc};
+use belvedere::scene_file::{self, CameraDoc, StageDoc};
 use eframe::egui::{self, CentralPanel, Context, Panel, TextureHandle, TextureOptions, Ui, ViewportCommand, Window};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError};
 
@@ -42,8 +43,11 @@ const WRITE_AFTER: f64 = 0.4;
 
 /// What is remembered between runs.
 #[derive(Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
 struct Remembered {
     recent: Vec<PathBuf>,
+    /// Of each scene file.
+    bookmarks: BTreeMap<PathBuf, Vec<Bookmark>>,
 }
 
 /// A file that is being opened beside the window.
@@ -56,7 +60,7 @@ pub struct Viewer {
     picture: PictureView,
     from_above: Option<(u64, TextureHandle)>,
     bookmarks: Vec<Bookmark>,
-    recent: Vec<PathBuf>,
+    remembered: Remembered,
     allowed: Vec<PathBuf>,
     state: Option<PathBuf>,
     recovery: Option<Recovery>,
@@ -90,7 +94,7 @@ impl Viewer {
             picture: PictureView::default(),
             from_above: None,
             bookmarks: Vec::new(),
-            recent: opening.state.as_deref().map_or_else(Vec::new, |folder| remembered(folder).recent),
+            remembered: opening.state.as_deref().map_or_else(Remembered::default, remembered),
             allowed: opening.allowed.clone(),
             state: opening.state.clone(),
             recovery,
@@ -102,10 +106,22 @@ impl Viewer {
             help: false,
             times: Times::default(),
         };
-        if let Some(left) = left.filter(|_| opening.files.is_empty()) {
-            viewer.model.replace(left.editor);
-            notes.push("The last session did not end as it should; here is its last state.".into());
-        } else if !opening.files.is_empty() {
+        match left {
+            Some(left) if opening.files.is_empty() => {
+                viewer.replace(left.editor);
+                notes.push("The last session did not end as it should; here is its last state.".into());
+            }
+            Some(mut left) if left.editor.is_changed() => {
+                let kept = opening.state.clone().unwrap_or_default().join("recovered.toml");
+                let what = match left.editor.save(&kept) {
+                    Ok(()) => format!("its unsaved scene is kept in {}", kept.display()),
+                    Err(e) => format!("its unsaved scene could not be kept: {e}"),
+                };
+                notes.push(format!("The last session did not end as it should; {what}."));
+            }
+            Some(_) | None => {}
+        }
+        if !opening.files.is_empty() {
             viewer.open(ctx, opening.files.clone());
         }
         notes.into_iter().for_each(|note| viewer.model.notices.error(note));
@@ -143,15 +159,37 @@ impl Viewer {
 
     fn remember(&mut self, path: &Path) {
         let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        self.recent.retain(|other| *other != path);
-        self.recent.insert(0, path);
-        self.recent.truncate(RECENT);
+        let recent = &mut self.remembered.recent;
+        recent.retain(|other| *other != path);
+        recent.insert(0, path);
+        recent.truncate(RECENT);
+        self.write_remembered();
+    }
+
+    /// Bookmarks of scenes that have a file outlive the window.
+    fn remember_bookmarks(&mut self) {
+        let scene = self.model.editor.place.scene.as_ref().and_then(|path| path.canonicalize().ok());
+        if let Some(scene) = scene {
+            self.remembered.bookmarks.insert(scene, self.bookmarks.clone());
+            self.write_remembered();
+        }
+    }
+
+    fn write_remembered(&self) {
         if let Some(folder) = &self.state {
-            let text = serde_json::to_string(&Remembered { recent: self.recent.clone() }).unwrap_or_default();
+            let text = serde_json::to_string(&self.remembered).unwrap_or_default();
             // What cannot be remembered is not; nothing depends on it.
             let _ = std::fs::create_dir_all(folder);
-            let _ = belvedere::output::write_text(&folder.join("recent.json"), &text, true);
+            let _ = belvedere::output::write_text(&folder.join("remembered.json"), &text, true);
         }
+    }
+
+    /// Another document comes in place of this one.
+    fn replace(&mut self, editor: Editor) {
+        let scene = editor.place.scene.as_ref().and_then(|path| path.canonicalize().ok());
+        let known = scene.and_then(|scene| self.remembered.bookmarks.get(&scene).cloned());
+        self.bookmarks = known.unwrap_or_default();
+        self.model.replace(editor);
     }
 
     /// Takes what was chosen or opened elsewhere.
@@ -159,7 +197,7 @@ impl Viewer {
         if let Some(pending) = &self.pending {
             match pending.try_recv() {
                 Ok(Ok(editor)) => {
-                    self.model.replace(editor);
+                    self.replace(editor);
                     self.pending = None;
                 }
                 Ok(Err(reason)) => {
@@ -233,7 +271,9 @@ impl Viewer {
             Command::Bookmark => {
                 if let Some(camera) = self.model.camera() {
                     let name = format!("View {}", self.bookmarks.len() + 1);
+                    let camera = CameraDoc::of(&camera.pinhole, camera.target);
                     self.bookmarks.push(Bookmark { name, camera });
+                    self.remember_bookmarks();
                 }
             }
             Command::ShowAll => {
@@ -249,11 +289,12 @@ impl Viewer {
     fn choose(&mut self, ctx: &Context, choice: Choice) {
         match choice {
             Choice::Command(command) => self.command(ctx, command),
-            Choice::Builtin(i) => self.model.replace(builtin(i)),
+            Choice::Builtin(i) => self.replace(builtin(i)),
             Choice::Recent(path) => self.open(ctx, vec![path]),
             Choice::GoTo(i) => {
                 if let Some(bookmark) = self.bookmarks.get(i).cloned() {
-                    self.model.edit(|document| set_camera(document, &bookmark.camera));
+                    let image = self.model.document().camera.image;
+                    self.model.edit(|document| document.camera = CameraDoc { image, ..bookmark.camera });
                 }
             }
             Choice::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
@@ -353,7 +394,7 @@ fn builtin(i: usize) -> Editor {
 }
 
 fn remembered(folder: &Path) -> Remembered {
-    let text = std::fs::read_to_string(folder.join("recent.json")).unwrap_or_default();
+    let text = std::fs::read_to_string(folder.join("remembered.json")).unwrap_or_default();
     serde_json::from_str(&text).unwrap_or_default()
 }
 
@@ -366,7 +407,9 @@ impl eframe::App for Viewer {
             self.command(&ctx, command);
         }
         self.panels.play(&ctx, &mut self.model);
-        let choice = Panel::top("menu").show(ui, |ui| menu::bar(ui, &self.model, &self.recent, &self.bookmarks)).inner;
+        let choice = Panel::top("menu")
+            .show(ui, |ui| menu::bar(ui, &self.model, &self.remembered.recent, &self.bookmarks))
+            .inner;
         if let Some(choice) = choice {
             self.choose(&ctx, choice);
         }

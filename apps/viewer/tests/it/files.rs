@@ -25,6 +25,14 @@ fn a_killed_application_comes_back_as_it_was() {
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
     drop(harness); // Without the word that an application says when it ends.
+    let state = folder.path().join("other");
+    std::fs::create_dir(&state).expect("folder");
+    std::fs::copy(folder.path().join("state/state-0.json"), state.join("state-0.json")).expect("copied");
+    let other = app(&Opening { state: Some(state.clone()), ..opening.clone() });
+    other.get_by_label_contains("its unsaved scene is kept in");
+    let kept = belvedere::scene_file::read(&state.join("recovered.toml")).expect("kept").document;
+    assert_eq!(kept.camera, document.camera, "another scene is opened, and what was lost is kept");
+    drop(other);
     let mut again = app(&Opening { files: Vec::new(), ..opening });
     settle(&mut again);
     assert_eq!(**again.state().document(), *document);

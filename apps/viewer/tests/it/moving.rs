@@ -2,7 +2,7 @@
 
 use crate::{app, find, opened, press, scene, settle};
 use belvedere::scene_file::PointDoc;
-use belvedere_viewer::Viewer;
+use belvedere_viewer::{Opening, Viewer};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 
@@ -60,13 +60,17 @@ fn keys_do_what_the_pointer_does() {
 }
 
 #[test]
-fn views_are_bookmarked_and_compared() {
+fn views_are_bookmarked_beyond_the_window_and_compared() {
     let folder = tempfile::tempdir().expect("folder");
-    let mut harness = app(&opened(&[scene(folder.path())]));
+    let opening = Opening { state: Some(folder.path().join("state")), ..opened(&[scene(folder.path())]) };
+    let mut harness = app(&opening);
     settle(&mut harness);
     let before = eye(&harness);
     harness.key_press(Key::B);
     harness.step();
+    drop(harness);
+    let mut harness = app(&opening);
+    settle(&mut harness);
     harness.key_press(Key::ArrowLeft);
     settle(&mut harness);
     assert_ne!(eye(&harness), before);
