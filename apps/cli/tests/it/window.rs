@@ -25,7 +25,7 @@ impl Display {
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn();
-        let has_pointer = Command::new("xdotool").arg("version").stdout(Stdio::null()).status().is_ok();
+        let has_pointer = Command::new("xdotool").arg("version").output().is_ok();
         let (Ok(mut server), true) = (started, has_pointer) else {
             assert!(!required, "Xvfb or xdotool is missing and BELVEDERE_REQUIRE_DISPLAY=1");
             eprintln!("SKIPPED: the window is not tried; it needs Xvfb and xdotool");

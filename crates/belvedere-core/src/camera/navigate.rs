@@ -8,6 +8,9 @@ use std::f64::consts::FRAC_PI_2;
 /// Nearest to straight up or down that a hand may tilt a view, radians.
 const LEAST_TILT: f64 = 1e-3;
 
+/// Room around what is framed, as a factor of its distance or size.
+const ROOM: f64 = 1.06;
+
 /// A camera and the point that it looks at, in the hand of a user. Moves never roll the camera; an orthographic one is zoomed by the
 /// height of its picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,17 +88,20 @@ impl Navigation {
     /// [`PinholeError`] for a box that is empty or not finite.
     pub fn framing(&self, bounds: &Aabb) -> Result<Self, PinholeError> {
         let middle = 0.5 * (bounds.min + bounds.max);
-        let radius = 0.5 * (bounds.max - bounds.min).length();
-        let [w, h] = self.pinhole.image.map(f64::from);
-        let narrow = (w / h).min(1.0);
-        if let Projection::Orthographic { .. } = self.pinhole.projection {
-            let eye = middle - (2.0 * radius + self.pinhole.near) * self.pinhole.forward;
-            let mut next = self.placed(eye, middle)?;
-            next.pinhole.projection = Projection::Orthographic { height: 2.0 * radius / narrow };
+        let p = &self.pinhole;
+        let [w, h] = p.image.map(f64::from);
+        let corners = bounds.corners().map(|c| c - middle);
+        let most = |of: &dyn Fn(DVec3) -> f64| corners.iter().map(|&c| of(c)).fold(f64::NEG_INFINITY, f64::max);
+        let behind = most(&|c| -c.dot(p.forward)) + p.near;
+        if let Projection::Orthographic { .. } = p.projection {
+            let height = most(&|c| (2.0 * c.dot(p.down).abs()).max(2.0 * c.dot(p.right).abs() * h / w));
+            let mut next = self.placed(middle - 2.0 * behind * p.forward, middle)?;
+            next.pinhole.projection = Projection::Orthographic { height: ROOM * height };
             return Ok(next);
         }
-        let half = (0.5 * h / self.pinhole.scale_px() * narrow).atan();
-        self.placed(middle - radius / half.sin() * self.pinhole.forward, middle)
+        let [across, down] = [w, h].map(|n| 0.5 * n / p.scale_px());
+        let away = |c: DVec3| (c.dot(p.right).abs() / across).max(c.dot(p.down).abs() / down) - c.dot(p.forward);
+        self.placed(middle - (ROOM * most(&away)).max(2.0 * behind) * p.forward, middle)
     }
 
     fn placed(&self, eye: DVec3, target: DVec3) -> Result<Self, PinholeError> {
@@ -179,6 +185,10 @@ mod tests {
             bounds.corners().iter().all(|&c| after.pinhole.project(c).is_ok_and(|(p, _)| after.pinhole.contains(p)))
         );
         assert!(after.pinhole.forward.distance(camera().pinhole.forward) < 1e-12);
+        let pixels = bounds.corners().map(|c| after.pinhole.project(c).expect("in front").0);
+        let [lo, hi] =
+            pixels.iter().fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[lo, hi], p| [lo.min(*p), hi.max(*p)]);
+        assert!(((hi - lo) / DVec2::new(1280.0, 720.0)).max_element() > 0.6, "it is small in the picture: {lo} {hi}");
     }
 
     #[test]

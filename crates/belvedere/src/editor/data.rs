@@ -46,7 +46,8 @@ pub fn open_files(paths: &[PathBuf], allowed: &[PathBuf], progress: &Progress) -
     let options = OpenOptions { progress: progress.clone(), ..OpenOptions::default() };
     let folders = paths.iter().filter_map(|path| path.canonicalize().ok()?.parent().map(Path::to_owned));
     let place = Place { scene: None, roots: Roots { scene_dir: PathBuf::new(), allowed: folders.collect() } };
-    let document = match (grounds.as_slice(), features.is_empty(), models.is_empty()) {
+    let title = paths.first().and_then(|path| path.file_name()?.to_str()?.split('.').next().map(str::to_owned));
+    let mut document = match (grounds.as_slice(), features.is_empty(), models.is_empty()) {
         ([dem], false, true) => {
             let data = DataFiles { dem: dem.clone(), features, ..DataFiles::default() };
             let found = reveal(&RevealRequest { data, ..RevealRequest::default() }, &options)?.session;
@@ -62,6 +63,7 @@ pub fn open_files(paths: &[PathBuf], allowed: &[PathBuf], progress: &Progress) -
         }
         _ => return Err(BelvedereError::Target(format!("these files make no scene together; {REMEDY}"))),
     };
+    document.title = title.unwrap_or(document.title);
     Ok(Editor::new(document, place))
 }
 
