@@ -4,9 +4,9 @@ use crate::notices::Notices;
 use belvedere::core::{DVec2, DVec3, Navigation};
 use belvedere::editor::{Answer, Editor, Judged, Order, Pace, Painter, Shown, Sides, navigation, set_camera};
 use belvedere::scene::Frame;
+use belvedere::scene::Instant as Clock;
 use belvedere::scene_file::{Document, LayerDoc, StageDoc};
 use std::sync::Arc;
-use std::time::Instant as Clock;
 
 /// How two pictures are compared.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! How long pictures take, for whoever measures: written as JSON to the file that `BELVEDERE_VIEW_TIMES` names, when the window closes.
 
 use crate::model::Model;
-use std::time::Instant;
+use belvedere::scene::Instant;
 
 /// Times of one run.
 #[derive(Debug)]

@@ -18,11 +18,11 @@ use crate::trace::beam::RowRays;
 use crate::trace::{Part, RayHit, Tracer};
 use crate::volume::{self, Way};
 use belvedere_core::DVec2;
+use belvedere_scene::Instant;
 use belvedere_scene::{Frame, FrameStats, LayerKind, RenderError, RenderJob, Renderer};
 use rayon::prelude::*;
 use std::cell::OnceCell;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
 
 /// Rows that a thread traces at a time.
 const ROWS: usize = 4;

@@ -16,11 +16,11 @@ use crate::sections::{Exposure, Sections};
 use crate::shade::color::Packed;
 use crate::shade::{LightCache, Shader};
 use crate::volume::{self, Way};
+use belvedere_scene::Instant;
 use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
-use std::time::Instant;
 
 /// Draws scenes on the processor.
 ///

@@ -47,3 +47,4 @@ pub use texture::{Texture, Texturing, Wrap};
 pub use volume::{
     Bricks, TransferError, TransferFunction, TransferPoint, Volume, VolumeError, VolumeLayer, VolumeModel, VoxelValues,
 };
+pub use web_time::Instant;

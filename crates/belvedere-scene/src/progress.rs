@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// The work was cancelled; nothing was kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

@@ -28,12 +28,12 @@ pub use report::{FailingCell, GeneraliseReport, LevelReport};
 pub use settings::{GeneraliseSettings, half_width_m, is_main};
 
 use belvedere_core::DVec2;
+use belvedere_scene::Instant;
 use belvedere_scene::Progress;
 use belvedere_scene::city::City;
 use landmarks::Volume;
 use level::Input;
 use rayon::prelude::*;
-use std::time::Instant;
 
 /// Smallest footprint that counts, m^2.
 const LEAST_AREA_M2: f64 = 0.01;

@@ -22,12 +22,12 @@ use crate::DisocclusionError;
 use adjust::RequiredPoints;
 use belvedere_core::grid::{Grid, GridError};
 use belvedere_core::{DVec2, EarthCurvature, SpaceMap, Stage, TerrainDisocclusion, View};
+use belvedere_scene::Instant;
 use belvedere_scene::{Heightfield, LayerKind, Progress, Scene};
 use memory::{Prepared, Weights};
 use passes::Passes;
 use points_in_view::PointsInView;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Terrain disocclusion as a constructor: the ground of a scene makes way for what must be seen.
 #[derive(Debug, Clone)]

@@ -8,9 +8,9 @@ use super::memory::{self, Prepared, Weights};
 use super::{Outcome, PointsInView, QpReport, TerrainTimes, scales, since};
 use crate::DisocclusionError;
 use belvedere_core::DVec3;
+use belvedere_scene::Instant;
 use belvedere_scene::Progress;
 use std::borrow::Cow;
-use std::time::Instant;
 
 /// What finer grids are tried on.
 struct Finer<'a> {

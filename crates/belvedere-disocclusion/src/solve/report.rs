@@ -11,9 +11,9 @@ use super::{Fallback, Outcome, PointsInView, since};
 use crate::DisocclusionError;
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
+use belvedere_scene::Instant;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
-use std::time::Instant;
 
 /// Share of the length in view that must be seen for a promise to be kept: places between two candidates may lie a little under
 /// the line of sight.

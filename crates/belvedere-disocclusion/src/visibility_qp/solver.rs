@@ -13,10 +13,10 @@ use super::walk::{Clearance, Touch};
 use crate::Field;
 use crate::smooth::{Between, Hierarchy, Smoother};
 use belvedere_core::DVec2;
+use belvedere_scene::Instant;
 use belvedere_scene::Progress;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 /// Rows are met to within this by the dual solver, metres.
 const EXACT: f64 = 1e-6;

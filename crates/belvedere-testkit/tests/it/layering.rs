@@ -6,7 +6,7 @@ use std::process::Command;
 /// Which workspace crates and which external crates each crate may depend on (dev-dependencies are free).
 const RULES: &[(&str, &[&str], &[&str])] = &[
     ("belvedere-core", &[], &["glam", "schemars", "serde", "thiserror"]),
-    ("belvedere-scene", &["belvedere-core"], &["glam", "rayon", "schemars", "serde", "thiserror"]),
+    ("belvedere-scene", &["belvedere-core"], &["glam", "rayon", "schemars", "serde", "thiserror", "web-time"]),
     ("belvedere-sight", &["belvedere-core", "belvedere-scene"], &["glam", "obvhs", "rayon", "thiserror"]),
     ("belvedere-builtin", &["belvedere-core", "belvedere-scene", "belvedere-sight"], &["rayon", "thiserror"]),
     (

@@ -9,9 +9,10 @@ use crate::{BelvedereError, CameraPicture, OpenOptions, Session};
 use belvedere_construct::measure::HiddenRun;
 use belvedere_construct::{MeasureOptions, Measures};
 use belvedere_core::{Stage, View};
+use belvedere_scene::Instant;
 use belvedere_scene::{Frame, Progress, RenderJob, RenderOptions, Renderer, Scene};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A picture that is wanted of a document.
 #[derive(Debug, Clone)]

@@ -11,8 +11,8 @@ use crate::scene_file::HighlightMark;
 use crate::{BelvedereError, CameraPicture, Session};
 use belvedere_core::View;
 use belvedere_cpu::canvas::Canvas;
+use belvedere_scene::Instant;
 use belvedere_scene::{Aux, Frame, Progress, RenderJob, RenderOptions, Scene};
-use std::time::Instant;
 
 impl Session {
     /// Draws the session's view, or its camera.

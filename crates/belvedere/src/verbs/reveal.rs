@@ -19,10 +19,11 @@ use belvedere_construct::{
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::TerrainReport;
 use belvedere_io::png::{self, Channels};
+use belvedere_scene::Instant;
 use belvedere_scene::{Crs, Progress, Scene};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Size of the picture unless given, pixels.
 const IMAGE: [u32; 2] = [1280, 720];

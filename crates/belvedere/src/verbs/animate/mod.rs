@@ -14,9 +14,9 @@ use crate::resolve::constructor::Memory;
 use crate::resolve::terrain::Solving;
 use crate::scene_file::{AnimationDoc, Document};
 use crate::{BelvedereError, Session};
+use belvedere_scene::Instant;
 use belvedere_scene::Progress;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// What to draw, and where to.
 #[derive(Debug, Clone, Default)]
