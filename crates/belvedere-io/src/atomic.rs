@@ -1,9 +1,9 @@
 //! Writing a file so that it is there whole or not at all.
 
-use crate::IoError;
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Write};
+use crate::{IoError, fs};
+use std::io::{self, Write};
 use std::path::Path;
+#[cfg(not(target_family = "wasm"))]
 use tempfile::NamedTempFile;
 
 /// Fails at once if [`write_atomic`] could not write `path`: it exists and `overwrite` is false, it is a folder, or its
@@ -44,6 +44,7 @@ pub fn check_output(path: &Path, overwrite: bool) -> Result<(), IoError> {
 /// # Errors
 /// [`IoError::Exists`] if the file is there and may not be replaced; [`IoError::Format`] for a folder;
 /// [`IoError::Os`] with what the system or `write` said.
+#[cfg(not(target_family = "wasm"))]
 pub fn write_atomic(
     path: &Path,
     overwrite: bool,
@@ -54,10 +55,10 @@ pub fn write_atomic(
     // follow a link, so that it is not replaced by a file
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     if fs::metadata(&target).is_ok_and(|m| !m.is_file()) {
-        let mut device = OpenOptions::new().write(true).open(&target).map_err(os)?;
+        let mut device = std::fs::OpenOptions::new().write(true).open(&target).map_err(os)?;
         return write(&mut device).and_then(|()| device.flush()).map_err(os);
     }
-    let mut out = BufWriter::with_capacity(1 << 16, temporary_beside(&target).map_err(os)?);
+    let mut out = io::BufWriter::with_capacity(1 << 16, temporary_beside(&target).map_err(os)?);
     write(&mut out).map_err(os)?;
     let file = out.into_inner().map_err(|e| os(e.into_error()))?;
     file.as_file().sync_all().map_err(os)?;
@@ -70,6 +71,21 @@ pub fn write_atomic(
     Ok(())
 }
 
+/// Writes a file in memory: complete, or not at all.
+///
+/// # Errors
+/// As on a file system.
+#[cfg(target_family = "wasm")]
+pub fn write_atomic(
+    path: &Path,
+    overwrite: bool,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), IoError> {
+    check_output(path, overwrite)?;
+    let mut bytes = Vec::new();
+    write(&mut bytes).and_then(|()| fs::write(path, bytes)).map_err(|e| IoError::os(path, e))
+}
+
 fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -78,6 +94,7 @@ fn folder_of(path: &Path) -> &Path {
 }
 
 /// A hidden temporary file beside `target`, with the permissions of any new file.
+#[cfg(not(target_family = "wasm"))]
 fn temporary_beside(target: &Path) -> io::Result<NamedTempFile> {
     // a long name plus the ending could pass the system's limit
     let name = target.file_name().unwrap_or_default().to_string_lossy();
@@ -92,10 +109,10 @@ fn temporary_beside(target: &Path) -> io::Result<NamedTempFile> {
 #[cfg(unix)]
 fn sync_folder(folder: &Path) {
     // some file systems cannot do this; the data are safe already
-    if let Ok(folder) = File::open(folder) {
+    if let Ok(folder) = fs::File::open(folder) {
         let _ = folder.sync_all();
     }
 }
 
-#[cfg(not(unix))]
+#[cfg(not(any(unix, target_family = "wasm")))]
 fn sync_folder(_: &Path) {}

@@ -2,11 +2,10 @@
 
 use crate::crs::{CoordinateSystem, Transform};
 use crate::terrain::{Geometry, GridMap, Link, stated_system};
-use crate::{Affine, GeoTiff, InputFile, IoError, Limits, Loaded, Raster, SourceCrs, esri_ascii, png};
+use crate::{Affine, GeoTiff, InputFile, IoError, Limits, Loaded, Raster, SourceCrs, esri_ascii, fs, png};
 use belvedere_scene::{Crs, Drape, Heightfield, Progress};
 use glam::DVec2;
 use rayon::prelude::*;
-use std::fs;
 use std::ops::Range;
 use std::path::Path;
 

@@ -3,8 +3,7 @@
 //! Header: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or `yllcenter`, `cellsize` (or `dx`, `dy`),
 //! `NODATA_value` (-9999 if missing); then the rows, the northernmost first. Source: ESRI, ASCII raster format.
 
-use crate::{Affine, InputFile, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs};
-use std::fs;
+use crate::{Affine, InputFile, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs, fs};
 use std::path::Path;
 
 /// Value of "no data" unless the header says otherwise.

@@ -3,10 +3,10 @@
 //! A square of big-endian 16-bit heights of one degree by one degree, north-west first; rows and columns on both edges
 //! are shared with the neighbours. The name gives the south-west corner: `N42E001.hgt`. Source: NASA, SRTM user's guide.
 
+use crate::fs::File;
 use crate::{Affine, CrsKind, InputFile, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs};
 use rayon::prelude::*;
 use std::ffi::OsStr;
-use std::fs::File;
 use std::io::{Cursor, Read};
 use std::path::Path;
 

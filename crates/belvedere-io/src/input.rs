@@ -1,6 +1,6 @@
 //! Files that were read: path, size and sha256 of what was found in them, so that nobody has to open them again to tell.
 
-use crate::IoError;
+use crate::{IoError, fs};
 use serde::{Deserialize, Serialize, Serializer};
 use sha2::{Digest, Sha256};
 use std::io::Read;
@@ -33,7 +33,7 @@ impl InputFile {
     /// # Errors
     /// [`IoError::Os`].
     pub fn read(path: &Path) -> Result<(Vec<u8>, Self), IoError> {
-        let content = std::fs::read(path).map_err(|e| IoError::os(path, e))?;
+        let content = fs::read(path).map_err(|e| IoError::os(path, e))?;
         let record = Self::of(path, &content);
         Ok((content, record))
     }
@@ -50,7 +50,7 @@ pub fn sha256(bytes: &[u8]) -> String {
 /// [`IoError::Os`].
 pub fn sha256_of_file(path: &Path) -> Result<String, IoError> {
     let os = |e| IoError::os(path, e);
-    let mut file = std::fs::File::open(path).map_err(os)?;
+    let mut file = fs::File::open(path).map_err(os)?;
     sha256_of_chunks(|buffer| file.read(buffer)).map_err(os)
 }
 

@@ -7,6 +7,7 @@ pub mod crs;
 pub mod drape;
 mod error;
 pub mod esri_ascii;
+pub mod fs;
 pub mod geotiff;
 pub mod hgt;
 mod input;

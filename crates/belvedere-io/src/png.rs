@@ -1,8 +1,8 @@
 //! PNG pictures with provenance in text chunks.
 
+use crate::fs::File;
 use crate::{Alpha, IoError, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, atomic};
 use png::{BitDepth, ColorType, Compression, Encoder, Filter, SrgbRenderingIntent};
-use std::fs::File;
 use std::io::{self, BufReader, Write};
 use std::path::Path;
 

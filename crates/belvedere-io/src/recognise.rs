@@ -1,6 +1,6 @@
 //! Files that are known and not read yet: told by their first bytes, else by their names.
 
-use crate::{IoError, mesh, molecule, terrain, vector, volume};
+use crate::{IoError, fs, mesh, molecule, terrain, vector, volume};
 use std::io::Read;
 use std::path::Path;
 
@@ -119,7 +119,7 @@ fn read_endings() -> impl Iterator<Item = &'static &'static str> {
 /// # Errors
 /// [`IoError::Os`].
 pub fn recognise(path: &Path) -> Result<Option<Unread>, IoError> {
-    let file = std::fs::File::open(path).map_err(|e| IoError::os(path, e))?;
+    let file = fs::File::open(path).map_err(|e| IoError::os(path, e))?;
     let reads = path.extension().is_some_and(|e| read_endings().any(|read| e.eq_ignore_ascii_case(read)));
     if reads || molecule::is_molecule(path) || volume::is_volume(path) {
         return Ok(None);

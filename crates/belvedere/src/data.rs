@@ -129,7 +129,7 @@ fn locate(name: &str, roots: &mut Roots) -> Result<String, BelvedereError> {
     if name.starts_with("builtin:") {
         return Ok(name.to_owned());
     }
-    let path = Path::new(name).canonicalize().map_err(|e| belvedere_io::IoError::os(name, e))?;
+    let path = belvedere_io::fs::canonicalize(name).map_err(|e| belvedere_io::IoError::os(name, e))?;
     roots.allowed.extend(path.parent().map(Path::to_owned));
     path.to_str().map(str::to_owned).ok_or_else(|| BelvedereError::not_utf8(name))
 }

@@ -2,6 +2,7 @@
 
 use crate::BelvedereError;
 use crate::scene_file::Document;
+use belvedere_io::fs;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -10,8 +11,8 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// [`BelvedereError::Output`], [`BelvedereError::Io`].
 pub fn check(path: &Path, inputs: &[PathBuf], overwrite: bool) -> Result<(), BelvedereError> {
-    if let Ok(real) = path.canonicalize()
-        && inputs.iter().any(|input| input.canonicalize().is_ok_and(|input| input == real))
+    if let Ok(real) = fs::canonicalize(path)
+        && inputs.iter().any(|input| fs::canonicalize(input).is_ok_and(|input| input == real))
     {
         return Err(BelvedereError::Output {
             path: path.to_owned(),

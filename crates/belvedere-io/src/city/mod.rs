@@ -17,7 +17,7 @@ pub use surface::{CityColors, CityGround, plate_extent, surface};
 
 use crate::crs::CoordinateSystem;
 use crate::vector::load_vectors;
-use crate::{InputFile, IoError, Limits, Loaded};
+use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_scene::City;
 use std::path::{Path, PathBuf};
 
@@ -45,7 +45,7 @@ pub struct CityFile {
 /// # Errors
 /// [`IoError`]: unreadable, none of the formats, broken, too large for `limits`, or without anything to show.
 pub fn load_city(path: &Path, lod: Option<&str>, limits: &Limits) -> Result<Loaded<CityFile>, IoError> {
-    let size = std::fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
+    let size = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     // A tree of JSON takes several times the bytes of its text.
     limits.check(size.saturating_mul(8)).map_err(|reason| IoError::format(path, reason.replace("raster", "city")))?;
     if let Some(model) = model(path)? {
@@ -87,7 +87,7 @@ pub fn is_city(path: &Path) -> Result<bool, IoError> {
 fn model(path: &Path) -> Result<Option<Model>, IoError> {
     use std::io::Read;
     let mut head = Vec::new();
-    let file = std::fs::File::open(path).map_err(|e| IoError::os(path, e))?;
+    let file = fs::File::open(path).map_err(|e| IoError::os(path, e))?;
     file.take(64 << 10).read_to_end(&mut head).map_err(|e| IoError::os(path, e))?;
     if osm::is_pbf(&head) {
         return Ok(Some(Model::OsmPbf));

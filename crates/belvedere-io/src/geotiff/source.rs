@@ -1,7 +1,7 @@
 //! Bytes of a file at a position, from disk or memory.
 
+use crate::fs::File;
 use crate::input;
-use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};

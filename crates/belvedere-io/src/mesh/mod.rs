@@ -7,7 +7,7 @@ mod picture;
 mod ply;
 mod stl;
 
-use crate::{InputFile, IoError, Limits, Loaded};
+use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_scene::{Color, MeshColors, Texturing};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -75,10 +75,10 @@ pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoErr
 
 /// The whole file, if the limits allow for what becomes of it.
 fn read_bytes(path: &Path, limits: &Limits) -> Result<Vec<u8>, IoError> {
-    let length = std::fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
+    let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     // Vertices and triangles take at most a few times the bytes that a file spends on them.
     limits.check(length.saturating_mul(6)).map_err(|reason| IoError::format(path, reason.replace("raster", "mesh")))?;
-    std::fs::read(path).map_err(|e| IoError::os(path, e))
+    fs::read(path).map_err(|e| IoError::os(path, e))
 }
 
 /// A picture or a file of materials beside `path`, if it can be read.

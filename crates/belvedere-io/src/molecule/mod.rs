@@ -4,7 +4,7 @@ mod mmcif;
 mod pdb;
 mod sites;
 
-use crate::{InputFile, IoError, Limits, Loaded};
+use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_scene::Molecule;
 use std::io::Read;
 use std::path::Path;
@@ -42,7 +42,7 @@ pub fn is_molecule(path: &Path) -> bool {
 pub fn load_molecule(path: &Path, limits: &Limits) -> Result<Loaded<MoleculeFile>, IoError> {
     let bad = |reason: String| IoError::format(path, reason);
     let too_large = |reason: String| bad(reason.replace("raster", "molecule"));
-    let length = std::fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
+    let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     // An atom takes a few times the bytes of its line.
     limits.check(length.saturating_mul(4)).map_err(too_large)?;
     let (bytes, file) = InputFile::read(path)?;

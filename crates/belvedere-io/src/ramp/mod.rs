@@ -4,7 +4,7 @@ mod colors;
 pub mod cpt;
 pub mod gdal;
 
-use crate::{InputFile, IoError, Loaded};
+use crate::{InputFile, IoError, Loaded, fs};
 use belvedere_scene::Ramp;
 use std::io::Read;
 use std::path::Path;
@@ -20,7 +20,7 @@ const MAX_BYTES: u64 = 4 << 20;
 pub fn load_ramp(path: &Path) -> Result<Loaded<Ramp>, IoError> {
     let os = |e| IoError::os(path, e);
     let mut bytes = Vec::new();
-    std::fs::File::open(path).map_err(os)?.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(os)?;
+    fs::File::open(path).map_err(os)?.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(os)?;
     let bad = |reason: String| IoError::format(path, reason);
     if bytes.len() as u64 > MAX_BYTES {
         return Err(bad(format!("it is larger than {MAX_BYTES} bytes; a colour ramp is a short text, give one")));

@@ -2,11 +2,11 @@
 
 use super::{CrsChoice, TerrainRequest};
 use crate::crs::CoordinateSystem;
+use crate::fs::File;
 use crate::{Affine, GeoTiff, IoError, Loaded, Photometric, Raster, RasterInfo, Samples, SourceCrs, esri_ascii, hgt};
 use belvedere_scene::Progress;
 use glam::DVec2;
 use rayon::prelude::*;
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 

@@ -12,7 +12,7 @@ pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
 
 use crate::crs::CoordinateSystem;
 use crate::recognise::explain;
-use crate::{InputFile, IoError, Loaded};
+use crate::{InputFile, IoError, Loaded, fs};
 use glam::DVec2;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -103,7 +103,7 @@ pub fn load_vectors(path: &Path) -> Result<Loaded<Vectors>, IoError> {
 }
 
 fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
-    let size = std::fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
+    let size = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     if size > MAX_BYTES {
         let mib = size >> 20;
         return Err(IoError::format(

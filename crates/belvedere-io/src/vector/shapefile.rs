@@ -2,7 +2,7 @@
 
 use super::{Geometry, VectorFeature, Vectors, Vertex, name_of, not_degrees, rings, shorten, vertex};
 use crate::crs::CoordinateSystem;
-use crate::{IoError, Loaded};
+use crate::{IoError, Loaded, fs};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError
     let shapes = read_shapes(bytes, &mut warnings).map_err(fail)?;
     let count = shapes.len();
     let table = match sidecar(path, "dbf") {
-        Some(p) => read_dbf(&std::fs::read(&p).map_err(|e| IoError::os(&p, e))?).unwrap_or_else(|reason| {
+        Some(p) => read_dbf(&fs::read(&p).map_err(|e| IoError::os(&p, e))?).unwrap_or_else(|reason| {
             warnings.push(format!("{}: {reason}; features stay without names", p.display()));
             Vec::new()
         }),
@@ -49,13 +49,16 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError
 
 /// The file beside `path` with another extension, in small or capital letters.
 fn sidecar(path: &Path, extension: &str) -> Option<PathBuf> {
-    [extension.to_owned(), extension.to_ascii_uppercase()].iter().map(|e| path.with_extension(e)).find(|p| p.is_file())
+    [extension.to_owned(), extension.to_ascii_uppercase()]
+        .iter()
+        .map(|e| path.with_extension(e))
+        .find(|p| fs::metadata(p).is_ok_and(|m| m.is_file()))
 }
 
 fn system_of(path: &Path, features: &[VectorFeature], warnings: &mut Vec<String>) -> Result<CoordinateSystem, IoError> {
     let bad = not_degrees(features);
     if let Some(prj) = sidecar(path, "prj") {
-        let text = std::fs::read(&prj).map_err(|e| IoError::os(&prj, e))?;
+        let text = fs::read(&prj).map_err(|e| IoError::os(&prj, e))?;
         let crs = CoordinateSystem::from_wkt(&String::from_utf8_lossy(&text))
             .map_err(|e| IoError::format(&prj, e.to_string()))?;
         return match bad.filter(|_| crs.is_geographic()) {

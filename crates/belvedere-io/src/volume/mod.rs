@@ -11,7 +11,7 @@ mod vti_stream;
 pub use number::{ByteOrder, Number};
 pub use raw::RawLayout;
 
-use crate::{InputFile, IoError, Limits, Loaded};
+use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_scene::VoxelValues;
 use flate2::read::MultiGzDecoder;
 use glam::{DMat3, DVec3};
@@ -72,7 +72,7 @@ pub fn is_volume(path: &Path) -> bool {
 pub fn load_volume(path: &Path, request: &VolumeRequest) -> Result<Loaded<VolumeFile>, IoError> {
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
     let format = |reason: String| IoError::format(path, reason);
-    let length = std::fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
+    let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     request.limits.check(length).map_err(|reason| format(reason.replace("raster", "volume")))?;
     let (bytes, file) = InputFile::read(path)?;
     let source = Source { path, bytes: &bytes, request };

@@ -2,7 +2,7 @@
 
 use super::{ByteOrder, Number, Source, VolumeFile, gunzip, odd_values};
 use crate::mesh::beside;
-use crate::{InputFile, IoError, Loaded};
+use crate::{InputFile, IoError, Loaded, fs};
 use glam::{DMat3, DVec3};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -25,7 +25,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, IoError> {
         None => Cow::Borrowed(&source.bytes[header.end..]),
         Some(name) => {
             let path = detached(source, name).map_err(bad)?;
-            let length = std::fs::metadata(&path).map_err(|e| IoError::os(&path, e))?.len();
+            let length = fs::metadata(&path).map_err(|e| IoError::os(&path, e))?.len();
             source.request.limits.check(length).map_err(|reason| bad(reason.replace("raster", "volume")))?;
             let (bytes, file) = InputFile::read(&path)?;
             files.push(file);

@@ -4,6 +4,7 @@ use super::Editor;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, Document};
 use crate::{BelvedereError, output};
+use belvedere_io::fs;
 use serde::{Deserialize, Serialize};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -62,7 +63,7 @@ impl Editor {
 
     /// Folders outside that of the scene file from which its files come: what a command line needs to be allowed.
     pub fn outside(&self) -> Vec<PathBuf> {
-        let home = self.place.roots.scene_dir.canonicalize().unwrap_or_default();
+        let home = fs::canonicalize(&self.place.roots.scene_dir).unwrap_or_default();
         let mut out = Vec::new();
         (**self.document()).clone().for_each_path(&mut |name| {
             let folder = self.place.roots.resolve(name).ok().and_then(|file| file.parent().map(Path::to_owned));
@@ -77,7 +78,7 @@ impl Editor {
 /// The folder of a file as an absolute path, if there is one.
 fn folder_of(path: &Path) -> PathBuf {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    folder.canonicalize().unwrap_or_else(|_| folder.to_owned())
+    fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }
 
 /// What an application was doing, written while it runs and taken away when it ends.

@@ -175,7 +175,7 @@ pub(crate) fn read_text(path: &Path) -> Result<(String, InputFile), BelvedereErr
     use std::io::Read;
     let os = |e| belvedere_io::IoError::os(path, e);
     let refuse = |reason: String| DocError::whole(reason).in_file(path);
-    let meta = std::fs::metadata(path).map_err(os)?;
+    let meta = belvedere_io::fs::metadata(path).map_err(os)?;
     if !meta.is_file() {
         return Err(refuse("this is not a regular file; give the path of a file".into()));
     }
@@ -188,7 +188,7 @@ pub(crate) fn read_text(path: &Path) -> Result<(String, InputFile), BelvedereErr
         return Err(too_large(meta.len()));
     }
     let mut bytes = Vec::new();
-    std::fs::File::open(path).and_then(|f| f.take(MAX_BYTES + 1).read_to_end(&mut bytes)).map_err(os)?;
+    belvedere_io::fs::File::open(path).and_then(|f| f.take(MAX_BYTES + 1).read_to_end(&mut bytes)).map_err(os)?;
     if bytes.len() as u64 > MAX_BYTES {
         return Err(too_large(bytes.len() as u64));
     }

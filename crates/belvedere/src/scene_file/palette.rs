@@ -35,7 +35,7 @@ impl PaletteDoc {
     pub(crate) fn located(&self, allowed: &mut Vec<PathBuf>) -> Result<Self, BelvedereError> {
         let Self::File(name) = self else { return Ok(self.clone()) };
         let names = PaletteName::ALL.map(|(name, _)| name).join(", ");
-        let path = Path::new(name).canonicalize().map_err(|e| BelvedereError::Path {
+        let path = belvedere_io::fs::canonicalize(name).map_err(|e| BelvedereError::Path {
             name: name.clone(),
             reason: format!("is no palette ({names}) and no file of colours by height: {e}"),
             root_missing: false,

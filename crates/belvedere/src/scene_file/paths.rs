@@ -2,6 +2,7 @@
 
 use super::{Document, LayerDoc, PaletteDoc, PresetsDoc, StageDoc, names_a_preset_file};
 use crate::BelvedereError;
+use belvedere_io::fs;
 use schemars::JsonSchema;
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, SeqAccess, Visitor};
@@ -148,7 +149,7 @@ impl Roots {
             return Err(refused(format!("leaves the folder of the scene file; {outside}"), true));
         }
         let bases = std::iter::once(&self.scene_dir).chain(self.allowed.iter().filter(|_| !path.is_absolute()));
-        let Some(found) = bases.map(|base| base.join(path)).find(|p| std::fs::symlink_metadata(p).is_ok()) else {
+        let Some(found) = bases.map(|base| base.join(path)).find(|p| fs::symlink_metadata(p).is_ok()) else {
             let folders: Vec<String> =
                 std::iter::once(&self.scene_dir).chain(&self.allowed).map(|p| shown(p)).collect();
             let folders = folders.join(", ");
@@ -157,18 +158,16 @@ impl Roots {
                 true,
             ));
         };
-        let real = found.canonicalize().map_err(|e| refuse(format!("cannot be followed: {e}; check the name")))?;
+        let real = fs::canonicalize(&found).map_err(|e| refuse(format!("cannot be followed: {e}; check the name")))?;
         let inside = std::iter::once(&self.scene_dir)
             .chain(&self.allowed)
-            .filter_map(|base| {
-                if base.as_os_str().is_empty() { Path::new(".").canonicalize() } else { base.canonicalize() }.ok()
-            })
+            .filter_map(|base| fs::canonicalize(if base.as_os_str().is_empty() { Path::new(".") } else { base }).ok())
             .any(|base| real.starts_with(base));
         if !inside {
             let real = real.display();
             return Err(refused(format!("leads to {real}, outside the folder of the scene file; {outside}"), true));
         }
-        match std::fs::metadata(&real) {
+        match fs::metadata(&real) {
             Ok(meta) if meta.is_file() => Ok(real),
             _ => Err(refuse("is not a regular file; give a file".into())),
         }

@@ -152,7 +152,7 @@ pub fn rays(view: &View, pixels: &[[f64; 2]], samples: usize, far: f64) -> Resul
 pub fn read_points<const N: usize>(path: &Path) -> Result<Vec<[f64; N]>, BelvedereError> {
     let fail = |reason: String| BelvedereError::Points { path: path.to_owned(), reason };
     let mut text = Vec::new();
-    std::fs::File::open(path)
+    belvedere_io::fs::File::open(path)
         .and_then(|f| f.take(MAX_POINT_BYTES + 1).read_to_end(&mut text))
         .map_err(|e| belvedere_io::IoError::os(path, e))?;
     if text.len() as u64 > MAX_POINT_BYTES {

@@ -414,7 +414,7 @@ fn base_view(request: &RevealRequest, scene: &Scene) -> Result<Option<View>, Bel
 /// The document with sources relative to the folder of `path` where they lie below it.
 fn beside(document: &Document, path: &Path) -> Document {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    let folder = belvedere_io::fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
     let below = |name: &mut String| {
         if let Some(below) = Path::new(name.as_str()).strip_prefix(&folder).ok().and_then(Path::to_str) {
             *name = below.to_owned();

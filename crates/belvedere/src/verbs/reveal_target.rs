@@ -136,7 +136,7 @@ fn open(request: &TargetRequest, options: &OpenOptions) -> Result<Session, Belve
             layers.push(layer(file, &layers)?);
             continue;
         }
-        let path = file.canonicalize().map_err(|e| belvedere_io::IoError::os(file, e))?;
+        let path = belvedere_io::fs::canonicalize(file).map_err(|e| belvedere_io::IoError::os(file, e))?;
         options.allow_roots.extend(path.parent().map(Path::to_owned));
         layers.push(layer(&path, &layers)?);
     }

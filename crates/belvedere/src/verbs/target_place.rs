@@ -66,7 +66,8 @@ pub(super) fn set_transfer(
     let is_file = [".toml", ".json"].iter().any(|e| transfer.to_ascii_lowercase().ends_with(e));
     let mut name = transfer.to_owned();
     if is_file {
-        let path = Path::new(transfer).canonicalize().map_err(|e| belvedere_io::IoError::os(Path::new(transfer), e))?;
+        let path =
+            belvedere_io::fs::canonicalize(transfer).map_err(|e| belvedere_io::IoError::os(Path::new(transfer), e))?;
         options.allow_roots.extend(path.parent().map(Path::to_owned));
         name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?.to_owned();
     }

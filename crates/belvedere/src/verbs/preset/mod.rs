@@ -68,7 +68,7 @@ pub struct PresetCheck {
 /// [`BelvedereError::Scene`], [`BelvedereError::Io`], [`BelvedereError::Preset`].
 pub fn load(source: &str) -> Result<PresetDocument, BelvedereError> {
     let path = Path::new(source);
-    if !path.exists() && !scene_file::names_a_preset_file(source) {
+    if belvedere_io::fs::metadata(path).is_err() && !scene_file::names_a_preset_file(source) {
         return Ok(PresetDocument::builtin(source)?);
     }
     let (text, _) = scene_file::read_text(path)?;
