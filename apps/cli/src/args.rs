@@ -2,6 +2,7 @@
 
 use crate::city::GeneraliseArgs;
 use crate::draw_args::DrawArgs;
+use crate::pack::PackArgs;
 use crate::parse::{
     parse_bytes, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_place, parse_seconds, parse_size,
     parse_spacing, parse_sweep, parse_threads,
@@ -98,6 +99,8 @@ pub(crate) enum Verb {
     /// The application: look, drag, tilt, author; a scene, data, or nothing: the built-in scenes
     #[cfg(feature = "view")]
     View(ViewArgs),
+    /// The application as a web page: a folder with a scene (or data, or the built-in scenes) that any web server can host
+    Pack(PackArgs),
 }
 
 /// The application.

@@ -59,6 +59,7 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::Figures(args) => draw_figures(&args, context),
         #[cfg(feature = "view")]
         Verb::View(args) => view(args, context),
+        Verb::Pack(args) => crate::pack::pack_scene(args, context),
     }
 }
 

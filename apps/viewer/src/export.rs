@@ -4,14 +4,17 @@ use crate::model::Model;
 use belvedere::editor::Place;
 use belvedere::picture::PictureOptions;
 use belvedere::scene::Progress;
-use belvedere::scene_file::{AnimationDoc, Document, SourceDocument, SweepDoc, TurntableDoc};
+use belvedere::scene_file::{AnimationDoc, Document, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{AnimateRequest, animate};
 use belvedere::verbs::measure::{MeasureOptions, measure};
-use belvedere::{BelvedereError, OpenOptions, RendererChoice, Session, output};
-use eframe::egui::{ComboBox, DragValue, ProgressBar, Ui};
+use belvedere::{BelvedereError, RendererChoice, output};
+use eframe::egui::{Button, ComboBox, DragValue, ProgressBar, Ui};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, mpsc};
+
+/// Whether films can be made: they take a folder of frames, and a program that joins them.
+const FILMS: bool = cfg!(not(target_family = "wasm"));
 
 /// What a film does.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -46,7 +49,8 @@ struct Job {
     name: &'static str,
     progress: Progress,
     at: Arc<Mutex<(String, f64)>>,
-    done: mpsc::Receiver<Result<String, BelvedereError>>,
+    /// What was written.
+    done: mpsc::Receiver<Result<Vec<PathBuf>, BelvedereError>>,
 }
 
 impl Exporter {
@@ -65,11 +69,14 @@ impl Exporter {
         let idle = self.job.is_none() && self.chosen.is_none();
         ui.add_enabled_ui(idle, |ui| {
             if ui.button("Export picture…").clicked() {
-                self.ask(Want::Picture, "picture.png");
+                self.ask(model, Want::Picture, "picture.png");
             }
             ui.horizontal(|ui| {
-                if ui.button("Export animation…").clicked() {
-                    self.ask(Want::Film, "animation.mp4");
+                let film = ui.add_enabled(FILMS, Button::new("Export animation…"));
+                let film =
+                    film.on_disabled_hover_text("in a browser there are no films; save the scene and animate it");
+                if film.clicked() {
+                    self.ask(model, Want::Film, "animation.mp4");
                 }
                 let name = |film: Film| match film {
                     Film::Scene => "as the scene says",
@@ -83,14 +90,15 @@ impl Exporter {
                 });
             });
             if ui.button("Export report…").on_hover_text("what the picture shows of what must be seen").clicked() {
-                self.ask(Want::Report, "report.json");
+                self.ask(model, Want::Report, "report.json");
             }
         });
         self.follow(ui, model);
     }
 
-    fn ask(&mut self, want: Want, name: &str) {
-        self.chosen = Some((want, crate::files::choose_output(name)));
+    fn ask(&mut self, model: &Model, want: Want, name: &str) {
+        let folder = &model.editor.place.roots.scene_dir;
+        self.chosen = Some((want, crate::files::choose_output(folder, name)));
     }
 
     /// Progress, and what came of it.
@@ -115,7 +123,13 @@ impl Exporter {
         }
         ui.ctx().request_repaint_after_secs(0.1);
         match job.done.try_recv() {
-            Ok(Ok(said)) => model.notices.say(said, ui.input(|input| input.time)),
+            Ok(Ok(written)) => {
+                let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
+                model.notices.say(format!("Written: {}", names.join(", ")), ui.input(|input| input.time));
+                for reason in written.iter().filter_map(|path| crate::files::hand_over(path).err()) {
+                    model.notices.error(reason);
+                }
+            }
             Ok(Err(e)) if e.is_cancelled() => model.notices.say("Export cancelled", ui.input(|input| input.time)),
             Ok(Err(e)) => model.notices.error(e.to_string()),
             Err(mpsc::TryRecvError::Empty) => return,
@@ -162,14 +176,6 @@ impl Exporter {
     }
 }
 
-/// The session of a document, as the command line opens it.
-pub(crate) fn open(document: Document, place: &Place, progress: &Progress) -> Result<Session, BelvedereError> {
-    let folder = Some(&place.roots.scene_dir).filter(|dir| !dir.as_os_str().is_empty());
-    let allow_roots = folder.into_iter().chain(&place.roots.allowed).cloned().collect();
-    let options = OpenOptions { allow_roots, progress: progress.clone(), ..OpenOptions::default() };
-    Session::from_document(SourceDocument::new(document), &options)
-}
-
 fn make(
     want: Want,
     document: Document,
@@ -177,25 +183,24 @@ fn make(
     path: &Path,
     animation: AnimationDoc,
     progress: &Progress,
-) -> Result<String, BelvedereError> {
-    let session = open(document, place, progress)?;
+) -> Result<Vec<PathBuf>, BelvedereError> {
+    let session = place.session(document, progress)?;
     let picture = PictureOptions { progress: progress.clone(), ..PictureOptions::default() };
     match want {
         Want::Picture => {
             output::check(path, &session.input_paths(), true)?;
-            let written = session.render(&picture)?.write(path, true)?;
-            Ok(format!("Written: {}", written.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ")))
+            session.render(&picture)?.write(path, true)
         }
         Want::Film => {
             let out = path.to_owned();
             let request = AnimateRequest { animation, picture, out, resume: false, overwrite: true };
             let made = animate(&session, &request, progress)?;
-            Ok(format!("Written: {} frames in {}", made.drawn, made.folder.display()))
+            Ok(vec![made.folder])
         }
         Want::Report => {
             let report = measure(&session, &MeasureOptions::default(), RendererChoice::Cpu, progress)?;
             output::write_text(path, &output::pretty(&report)?, true)?;
-            Ok(format!("Written: {}", path.display()))
+            Ok(vec![path.to_owned()])
         }
     }
 }

@@ -24,15 +24,22 @@ impl Times {
         }
     }
 
-    /// Writes what was noted, if anybody asks.
-    pub(crate) fn tell(&self, model: &Model) {
-        let Some(path) = std::env::var_os("BELVEDERE_VIEW_TIMES") else { return };
-        let times = serde_json::json!({
+    /// What was noted.
+    pub(crate) fn report(&self, model: &Model) -> serde_json::Value {
+        serde_json::json!({
+            "pictures": model.pictures,
+            "rests": model.rests(),
             "first_picture_ms": self.first_ms,
             "input_to_picture_median_ms": model.latency(),
             "input_to_picture_ms": model.latencies,
-        });
+        })
+    }
+
+    /// Writes what was noted, if anybody asks.
+    pub(crate) fn tell(&self, model: &Model) {
+        let Some(path) = std::env::var_os("BELVEDERE_VIEW_TIMES") else { return };
+        let times = self.report(model).to_string();
         // A measurement that cannot be written is missed by who asked for it.
-        let _ = belvedere::output::write_text(std::path::Path::new(&path), &times.to_string(), true);
+        let _ = belvedere::output::write_text(std::path::Path::new(&path), &times, true);
     }
 }

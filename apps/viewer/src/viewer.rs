@@ -10,6 +10,7 @@ use crate::picture::{PictureView, image_of_frame};
 use crate::times::Times;
 use crate::widgets::overhead::overhead;
 use belvedere::editor::{Editor, Place, Recovery, open_files};
+use belvedere::io::fs;
 use belvedere::scene::Progress;
 use belvedere::scene_file::{self, CameraDoc, StageDoc};
 use eframe::egui::{self, CentralPanel, Context, Panel, TextureHandle, TextureOptions, Ui, ViewportCommand, Window};
@@ -31,6 +32,7 @@ pub struct Opening {
 
 impl Opening {
     /// The usual place of what is remembered.
+    #[cfg(not(target_family = "wasm"))]
     pub fn usual_state() -> Option<PathBuf> {
         files::state_folder()
     }
@@ -68,7 +70,7 @@ pub struct Viewer {
     written: Option<std::sync::Arc<scene_file::Document>>,
     dirty_since: Option<f64>,
     pending: Option<Pending>,
-    chosen_input: Option<Receiver<Option<Vec<PathBuf>>>>,
+    chosen_input: Option<files::Inputs>,
     chosen_output: Option<Receiver<Option<PathBuf>>>,
     help: bool,
     times: Times,
@@ -138,6 +140,12 @@ impl Viewer {
         self.pending.is_none() && self.model.rests()
     }
 
+    /// What was drawn and how long it took.
+    #[cfg(target_family = "wasm")]
+    pub(crate) fn times(&self) -> serde_json::Value {
+        self.times.report(&self.model)
+    }
+
     /// Opens files beside the window.
     fn open(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
         if let [path] = paths.as_slice() {
@@ -158,7 +166,7 @@ impl Viewer {
     }
 
     fn remember(&mut self, path: &Path) {
-        let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let recent = &mut self.remembered.recent;
         recent.retain(|other| *other != path);
         recent.insert(0, path);
@@ -168,7 +176,7 @@ impl Viewer {
 
     /// Bookmarks of scenes that have a file outlive the window.
     fn remember_bookmarks(&mut self) {
-        let scene = self.model.editor.place.scene.as_ref().and_then(|path| path.canonicalize().ok());
+        let scene = self.model.editor.place.scene.as_ref().and_then(|path| fs::canonicalize(path).ok());
         if let Some(scene) = scene {
             self.remembered.bookmarks.insert(scene, self.bookmarks.clone());
             self.write_remembered();
@@ -186,7 +194,7 @@ impl Viewer {
 
     /// Another document comes in place of this one.
     fn replace(&mut self, editor: Editor) {
-        let scene = editor.place.scene.as_ref().and_then(|path| path.canonicalize().ok());
+        let scene = editor.place.scene.as_ref().and_then(|path| fs::canonicalize(path).ok());
         let known = scene.and_then(|scene| self.remembered.bookmarks.get(&scene).cloned());
         self.bookmarks = known.unwrap_or_default();
         self.model.replace(editor);
@@ -213,10 +221,16 @@ impl Viewer {
                 Err(TryRecvError::Empty) => {}
             }
         }
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        if !dropped.is_empty() {
+            self.chosen_input = Some(files::dropped(&dropped));
+        }
         if let Some(answer) = self.chosen_input.as_ref().and_then(|inbox| inbox.try_recv().ok()) {
             self.chosen_input = None;
-            if let Some(paths) = answer {
-                self.open(ctx, paths);
+            match answer {
+                Ok(paths) if paths.is_empty() => {}
+                Ok(paths) => self.open(ctx, paths),
+                Err(reason) => self.model.notices.error(reason),
             }
         }
         if let Some(answer) = self.chosen_output.as_ref().and_then(|inbox| inbox.try_recv().ok()) {
@@ -227,11 +241,6 @@ impl Viewer {
         }
         if self.chosen_input.is_some() || self.chosen_output.is_some() {
             ctx.request_repaint_after_secs(0.1);
-        }
-        let dropped: Vec<PathBuf> =
-            ctx.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
-        if !dropped.is_empty() {
-            self.open(ctx, dropped);
         }
     }
 
@@ -249,9 +258,17 @@ impl Viewer {
                     said += &format!("; on the command line it needs {}", folders.join(" "));
                 }
                 self.model.notices.say(said, ctx.input(|input| input.time));
+                if let Err(reason) = files::hand_over(path) {
+                    self.model.notices.error(reason);
+                }
             }
             Err(e) => self.model.notices.error(e.to_string()),
         }
+    }
+
+    /// Lets the user choose where to write a scene.
+    fn choose_output(&mut self) {
+        self.chosen_output = Some(files::choose_output(&self.model.editor.place.roots.scene_dir, "scene.toml"));
     }
 
     fn command(&mut self, ctx: &Context, command: Command) {
@@ -259,9 +276,9 @@ impl Viewer {
             Command::Open => self.chosen_input = Some(files::choose_input()),
             Command::Save => match self.model.editor.place.scene.clone() {
                 Some(path) => self.save(ctx, &path),
-                None => self.chosen_output = Some(files::choose_output("scene.toml")),
+                None => self.choose_output(),
             },
-            Command::SaveAs => self.chosen_output = Some(files::choose_output("scene.toml")),
+            Command::SaveAs => self.choose_output(),
             Command::Undo => {
                 self.model.editor.undo();
             }
@@ -420,6 +437,11 @@ impl eframe::App for Viewer {
         self.model.notices.show(&ctx);
         self.write_down(&ctx);
         self.times.note(&self.model);
+    }
+
+    #[cfg(target_family = "wasm")]
+    fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
+        Some(self)
     }
 
     fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {

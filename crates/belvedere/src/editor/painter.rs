@@ -20,7 +20,6 @@ pub enum Answer {
 type Wake = Box<dyn Fn() + Send>;
 
 /// Draws the newest order, on a thread of its own; where there are no threads, when [`Painter::answer`] is asked.
-#[derive(Debug)]
 pub struct Painter {
     #[cfg(not(target_family = "wasm"))]
     desk: Arc<Desk>,
@@ -29,11 +28,16 @@ pub struct Painter {
     #[cfg(not(target_family = "wasm"))]
     answers: std::sync::mpsc::Receiver<Answer>,
     #[cfg(target_family = "wasm")]
+    wake: Wake,
+    #[cfg(target_family = "wasm")]
     session: LiveSession,
     #[cfg(target_family = "wasm")]
     order: Option<Order>,
     #[cfg(target_family = "wasm")]
     to_judge: Option<Order>,
+    /// Whether the last answer is still to be shown.
+    #[cfg(target_family = "wasm")]
+    waits: bool,
 }
 
 /// Stack of the thread: deep enough for any document that passes the limits.
@@ -153,22 +157,30 @@ impl Drop for Painter {
 #[cfg(target_family = "wasm")]
 impl Painter {
     /// A painter without a thread.
-    pub fn new(_: Wake) -> Self {
-        Self { session: LiveSession::default(), order: None, to_judge: None }
+    pub fn new(wake: Wake) -> Self {
+        Self { wake, session: LiveSession::default(), order: None, to_judge: None, waits: false }
     }
 
     /// The next picture; one that was ordered before is forgotten.
     pub fn order(&mut self, order: Order) {
         self.to_judge = None;
         self.order = Some(order);
+        (self.wake)();
     }
 
-    /// Draws what was ordered, if anything was.
+    /// Draws what was ordered, if anything was; what a picture shows is judged when it is on the screen.
     pub fn answer(&mut self) -> Option<Answer> {
         let progress = Progress::silent();
         if let Some(order) = self.order.take() {
+            self.waits = true;
             self.to_judge = (order.pace == Pace::Resting).then(|| order.clone());
             return guarded(|| self.session.show(&order, &progress));
+        }
+        if std::mem::take(&mut self.waits) {
+            if self.to_judge.is_some() {
+                (self.wake)();
+            }
+            return None;
         }
         let order = self.to_judge.take()?;
         judge(&self.session, &order, &progress)

@@ -2,9 +2,10 @@
 
 use super::Editor;
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{self, Document};
-use crate::{BelvedereError, output};
+use crate::scene_file::{self, Document, SourceDocument};
+use crate::{BelvedereError, OpenOptions, Session, output};
 use belvedere_io::fs;
+use belvedere_scene::Progress;
 use serde::{Deserialize, Serialize};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -16,6 +17,19 @@ pub struct Place {
     pub scene: Option<PathBuf>,
     /// Where the files that it names may lie.
     pub roots: Roots,
+}
+
+impl Place {
+    /// The session of a document that lies here, as the command line opens it.
+    ///
+    /// # Errors
+    /// As [`Session::from_document`].
+    pub fn session(&self, document: Document, progress: &Progress) -> Result<Session, BelvedereError> {
+        let folder = Some(&self.roots.scene_dir).filter(|dir| !dir.as_os_str().is_empty());
+        let allow_roots = folder.into_iter().chain(&self.roots.allowed).cloned().collect();
+        let options = OpenOptions { allow_roots, progress: progress.clone(), ..OpenOptions::default() };
+        Session::from_document(SourceDocument::new(document), &options)
+    }
 }
 
 impl Editor {

@@ -7,6 +7,7 @@ pub mod generalise;
 pub mod info;
 pub mod measure;
 mod molecule_info;
+pub mod pack;
 pub mod pick;
 pub mod points;
 pub mod preset;

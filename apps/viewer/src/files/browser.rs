@@ -1,0 +1,73 @@
+//! Files in a browser: given by the user into memory, handed back as downloads.
+
+use super::Inputs;
+use belvedere::io::fs;
+use eframe::egui::DroppedFileHandle;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{self, Receiver, Sender};
+use wasm_bindgen::{JsCast, JsValue};
+use wasm_bindgen_futures::spawn_local;
+use web_sys::js_sys::{Array, Uint8Array};
+use web_sys::{Blob, HtmlAnchorElement, Url};
+
+/// Where to write: beside the scene, under the usual name; the browser asks the user what to do with it.
+pub(crate) fn choose_output(folder: &Path, name: &str) -> Receiver<Option<PathBuf>> {
+    let (outbox, inbox) = mpsc::channel();
+    let _ = outbox.send(Some(folder.join(name)));
+    inbox
+}
+
+/// Lets the user choose a scene, or data.
+pub(crate) fn choose_input() -> Inputs {
+    later(|outbox| async move {
+        let mut paths = Vec::new();
+        for file in rfd::AsyncFileDialog::new().pick_files().await.unwrap_or_default() {
+            paths.push(keep(&file.file_name(), Ok(file.read().await)));
+        }
+        let _ = outbox.send(paths.into_iter().collect());
+    })
+}
+
+/// Files that were dropped on the page.
+pub(crate) fn dropped(files: &[DroppedFileHandle]) -> Inputs {
+    let files = files.to_vec();
+    later(|outbox| async move {
+        let mut paths = Vec::new();
+        for file in &files {
+            paths.push(keep(&file.path().to_string_lossy(), file.bytes_async().await));
+        }
+        let _ = outbox.send(paths.into_iter().collect());
+    })
+}
+
+fn later<F: Future<Output = ()> + 'static>(work: impl FnOnce(Sender<Result<Vec<PathBuf>, String>>) -> F) -> Inputs {
+    let (outbox, inbox) = mpsc::channel();
+    spawn_local(work(outbox));
+    inbox
+}
+
+/// Puts a file into memory.
+fn keep(name: &str, bytes: Result<Vec<u8>, String>) -> Result<PathBuf, String> {
+    let path = PathBuf::from(name);
+    let bytes = bytes.map_err(|e| format!("{name} could not be read: {e}"))?;
+    fs::write(&path, bytes).map_err(|e| format!("{name} could not be kept: {e}"))?;
+    Ok(path)
+}
+
+/// Gives a file that was written to the user, as a download.
+pub(crate) fn hand_over(path: &Path) -> Result<(), String> {
+    let bytes = fs::read(path).map_err(|e| e.to_string())?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    download(&name, &bytes).map_err(|e| format!("{name} could not be handed over: {e:?}"))
+}
+
+fn download(name: &str, bytes: &[u8]) -> Result<(), JsValue> {
+    let blob = Blob::new_with_u8_array_sequence(&Array::of1(&Uint8Array::from(bytes)))?;
+    let address = Url::create_object_url_with_blob(&blob)?;
+    let document = web_sys::window().and_then(|window| window.document()).ok_or("there is no page")?;
+    let link: HtmlAnchorElement = document.create_element("a")?.dyn_into()?;
+    link.set_href(&address);
+    link.set_download(name);
+    link.click();
+    Url::revoke_object_url(&address)
+}

@@ -1,0 +1,17 @@
+//! Files: chosen by the user, dropped on the window, handed over; where the application keeps what it remembers.
+
+#[cfg(target_family = "wasm")]
+mod browser;
+#[cfg(not(target_family = "wasm"))]
+mod native;
+
+#[cfg(target_family = "wasm")]
+pub(crate) use browser::{choose_input, choose_output, dropped, hand_over};
+#[cfg(not(target_family = "wasm"))]
+pub(crate) use native::{choose_input, choose_output, dropped, hand_over, state_folder};
+
+use std::path::PathBuf;
+use std::sync::mpsc::Receiver;
+
+/// Files to open, as soon as they are there; none if the user thought better of it.
+pub(crate) type Inputs = Receiver<Result<Vec<PathBuf>, String>>;

@@ -1,0 +1,198 @@
+//! A scene, its files and the application as a folder that any web server can host.
+
+use crate::editor::{Editor, Place, open_files};
+use crate::{BelvedereError, output};
+use belvedere_io::{InputFile, IoError, atomic, fs};
+use belvedere_scene::Progress;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::{Component, Path, PathBuf};
+
+/// The files of the application.
+pub const APPLICATION: [&str; 3] = ["index.html", "belvedere.js", "belvedere_bg.wasm"];
+/// What the page reads to know what else there is.
+pub const BUNDLE: &str = "bundle.json";
+/// Folder of the scene and its files.
+const SCENE_FOLDER: &str = "scene";
+/// Most that a page is asked to load: memory of WebAssembly ends at 4 GiB, and what is read takes more than its files, bytes.
+const MAX_BYTES: u64 = 1 << 30;
+
+/// What to pack.
+#[derive(Debug, Clone, Default)]
+pub struct PackRequest {
+    /// A scene file, or data as [`open_files`] takes them; empty = the built-in scenes.
+    pub files: Vec<PathBuf>,
+    /// Folders beside that of a scene file from which its files may come.
+    pub allowed: Vec<PathBuf>,
+    /// Folder with the files of the application ([`APPLICATION`]).
+    pub application: PathBuf,
+    /// The folder to be made.
+    pub out: PathBuf,
+    /// Whether files that are there may be replaced.
+    pub overwrite: bool,
+}
+
+/// What the page has to load, besides the application.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct Bundle {
+    /// Title of the scene.
+    pub title: String,
+    /// Names of the files to open.
+    pub open: Vec<String>,
+    /// All files; paths from the folder on, with `/`.
+    pub files: Vec<InputFile>,
+}
+
+/// What was packed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Packed {
+    /// The folder.
+    pub folder: PathBuf,
+    /// The scene and its files.
+    pub bundle: Bundle,
+    /// Size of the application, bytes.
+    pub application_bytes: u64,
+    /// Size of the scene and its files, bytes.
+    pub scene_bytes: u64,
+}
+
+/// Writes the folder: the application, the scene, and every file that it takes, under names that tell nothing of where it came from.
+///
+/// # Errors
+/// [`BelvedereError`] of a scene that cannot be opened; [`BelvedereError::Output`] if the application is not where it should be, or the
+/// files are too large for a page; [`IoError::Exists`] for files that are there already.
+pub fn pack(request: &PackRequest, progress: &Progress) -> Result<Packed, BelvedereError> {
+    let application = application_files(&request.application)?;
+    let names = application.iter().map(|(name, _)| *name).chain([BUNDLE]);
+    if request.out.is_dir() {
+        names.into_iter().try_for_each(|name| atomic::check_output(&request.out.join(name), request.overwrite))?;
+    }
+    let (bundle, contents) =
+        if request.files.is_empty() { Default::default() } else { scene_files(request, progress)? };
+    let scene_bytes: u64 = bundle.files.iter().map(|file| file.bytes).sum();
+    if scene_bytes > MAX_BYTES {
+        let mib = |bytes: u64| bytes >> 20;
+        let reason = format!(
+            "the files of the scene have {} MiB, a page can load at most {} MiB; cut out the part that is seen",
+            mib(scene_bytes),
+            mib(MAX_BYTES)
+        );
+        return Err(BelvedereError::Output { path: request.out.clone(), reason });
+    }
+    let mut application_bytes = 0;
+    for (name, bytes) in &application {
+        application_bytes += bytes.len() as u64;
+        put(&request.out.join(name), bytes, request.overwrite)?;
+    }
+    for (i, (file, bytes)) in bundle.files.iter().zip(&contents).enumerate() {
+        progress.tick("writing", i as f64 / contents.len() as f64)?;
+        put(&request.out.join(&file.path), bytes, request.overwrite)?;
+    }
+    // Last, so that a page that finds it finds everything.
+    output::write_text(&request.out.join(BUNDLE), &output::pretty(&bundle)?, request.overwrite)?;
+    Ok(Packed { folder: request.out.clone(), bundle, application_bytes, scene_bytes })
+}
+
+fn application_files(folder: &Path) -> Result<Vec<(&'static str, Vec<u8>)>, BelvedereError> {
+    let read = |name: &'static str| {
+        let bytes = fs::read(folder.join(name)).map_err(|e| BelvedereError::Output {
+            path: folder.to_owned(),
+            reason: format!("holds no application for browsers ({name}: {e}); build it by apps/viewer/web/build"),
+        });
+        bytes.map(|bytes| (name, bytes))
+    };
+    APPLICATION.into_iter().map(read).collect()
+}
+
+/// The scene with names that hold within the bundle, and every file that it takes, with its content.
+fn scene_files(request: &PackRequest, progress: &Progress) -> Result<(Bundle, Vec<Vec<u8>>), BelvedereError> {
+    let editor = open_files(&request.files, &request.allowed, progress)?;
+    let session = editor.place.session((**editor.document()).clone(), progress)?;
+    let mut layout = Layout::new(&editor);
+    let mut document = (**editor.document()).clone();
+    let mut failed = None;
+    document.for_each_path(&mut |name| {
+        let packed = editor.place.roots.resolve(name).and_then(|file| layout.place(&file));
+        match packed {
+            Ok(packed) => *name = packed,
+            Err(e) => failed = Some(e),
+        }
+    });
+    if let Some(e) = failed {
+        return Err(e);
+    }
+    // Files that those name in turn, such as materials and tables.
+    for input in session.input_paths() {
+        if editor.place.scene.as_deref().is_none_or(|scene| !same(scene, &input)) {
+            layout.place(&input)?;
+        }
+    }
+    let name = editor.place.scene.as_deref().and_then(|scene| scene.file_stem()?.to_str()).unwrap_or("scene");
+    let scene = format!("{SCENE_FOLDER}/{name}.toml");
+    let text = output::document_toml(&document)?.into_bytes();
+    let title = document.title.clone();
+    let mut bundle = Bundle { title, open: vec![scene.clone()], files: vec![InputFile::of(Path::new(&scene), &text)] };
+    let mut contents = vec![text];
+    let count = layout.files.len() as f64;
+    for (i, (file, packed)) in layout.files.into_iter().enumerate() {
+        progress.tick("reading", i as f64 / count)?;
+        let (bytes, record) = InputFile::read(&file)?;
+        bundle.files.push(InputFile { path: format!("{SCENE_FOLDER}/{packed}").into(), ..record });
+        contents.push(bytes);
+    }
+    Ok((bundle, contents))
+}
+
+fn same(a: &Path, b: &Path) -> bool {
+    fs::canonicalize(a).is_ok_and(|a| fs::canonicalize(b).is_ok_and(|b| a == b))
+}
+
+/// Where files go: what lies below one folder stays together, so that files find their neighbours.
+struct Layout {
+    /// Folders of the scene: its own, then those that were allowed.
+    folders: Vec<PathBuf>,
+    /// Where each file goes, from the folder of the scene on.
+    files: BTreeMap<PathBuf, String>,
+}
+
+impl Layout {
+    fn new(editor: &Editor) -> Self {
+        let Place { roots, .. } = &editor.place;
+        let own = (!roots.scene_dir.as_os_str().is_empty()).then_some(&roots.scene_dir);
+        let folders = own.into_iter().chain(&roots.allowed).filter_map(|folder| fs::canonicalize(folder).ok());
+        let mut folders: Vec<PathBuf> = folders.collect();
+        let mut seen = std::collections::BTreeSet::new();
+        folders.retain(|folder| seen.insert(folder.clone()));
+        Self { folders, files: BTreeMap::new() }
+    }
+
+    /// The name of a file in the bundle, from the folder of the scene on.
+    fn place(&mut self, file: &Path) -> Result<String, BelvedereError> {
+        let real = fs::canonicalize(file).map_err(|e| IoError::os(file, e))?;
+        if let Some(packed) = self.files.get(&real) {
+            return Ok(packed.clone());
+        }
+        let below = self.folders.iter().enumerate().find_map(|(i, folder)| Some((i, real.strip_prefix(folder).ok()?)));
+        let Some((i, below)) = below else {
+            let reason = "lies in no folder of the scene".into();
+            return Err(BelvedereError::Path { name: real.display().to_string(), reason, root_missing: true });
+        };
+        let parts = below.components().filter_map(|part| match part {
+            Component::Normal(part) => {
+                Some(part.to_str().ok_or_else(|| BelvedereError::not_utf8(&real.display().to_string())))
+            }
+            _ => None,
+        });
+        let below = parts.collect::<Result<Vec<_>, _>>()?.join("/");
+        let packed = format!("data-{i}/{below}");
+        self.files.insert(real, packed.clone());
+        Ok(packed)
+    }
+}
+
+fn put(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), BelvedereError> {
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(|e| IoError::os(folder, e))?;
+    }
+    Ok(atomic::write_atomic(path, overwrite, |out| out.write_all(bytes))?)
+}
