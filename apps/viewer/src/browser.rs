@@ -39,6 +39,12 @@ impl Application {
         self.runner.app_mut::<Viewer>().map(|viewer| viewer.times().to_string())
     }
 
+    /// The scene as it is, as the text of a scene file.
+    pub fn scene(&self) -> Option<String> {
+        let viewer = self.runner.app_mut::<Viewer>()?;
+        belvedere::output::document_toml(viewer.document()).ok()
+    }
+
     /// What went wrong so badly that it stands still.
     pub fn failure(&self) -> Option<String> {
         self.runner.panic_summary().map(|summary| summary.message())

@@ -76,7 +76,11 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     ),
     ("belvedere-bench", &["belvedere"], &["anyhow", "rayon", "serde"]),
     ("belvedere-gallery", &["belvedere"], &["anyhow", "plotters", "serde"]),
-    ("belvedere-viewer", &["belvedere"], &["eframe", "rfd", "serde", "serde_json", "thiserror"]),
+    (
+        "belvedere-viewer",
+        &["belvedere"],
+        &["eframe", "rfd", "serde", "serde_json", "thiserror", "wasm-bindgen", "wasm-bindgen-futures", "web-sys"],
+    ),
     ("belvedere-testkit", &["belvedere-core", "belvedere-scene"], &["glam", "rayon"]),
     ("belvedere-mutants", &[], &["anyhow", "clap", "proc-macro2", "serde", "serde_json", "syn"]),
     (

@@ -1,0 +1,131 @@
+//! The application in a browser: packed, served, loaded, dragged. Needs the application built by apps/viewer/web/build in
+//! $BELVEDERE_WEB_APP, and Chromium; with BELVEDERE_REQUIRE_BROWSER=1 it fails where they are missing.
+#![cfg(target_os = "linux")]
+#![allow(clippy::print_stderr)]
+
+mod chromium;
+mod server;
+
+use chromium::{PAGE, Page};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+/// How long the picture is dragged.
+const DRAG: Duration = Duration::from_secs(10);
+const TIMES: &str = "window.belvedere?.application.times() ?? null";
+
+/// Folder of the application; `None`, said loudly, where it was not built.
+fn application() -> Option<PathBuf> {
+    let required = std::env::var("BELVEDERE_REQUIRE_BROWSER").is_ok_and(|v| v == "1");
+    let folder = std::env::var_os("BELVEDERE_WEB_APP").map(PathBuf::from);
+    if folder.is_none() {
+        assert!(!required, "BELVEDERE_WEB_APP is not set and BELVEDERE_REQUIRE_BROWSER=1");
+        eprintln!(
+            "SKIPPED: the browser is not tried; BELVEDERE_WEB_APP names no application (apps/viewer/web/build makes it)"
+        );
+    }
+    folder
+}
+
+fn browser(place: &Path) -> Option<Page> {
+    let page = Page::open(&place.join("profile"));
+    if page.is_none() {
+        let required = std::env::var("BELVEDERE_REQUIRE_BROWSER").is_ok_and(|v| v == "1");
+        assert!(!required, "there is no Chromium and BELVEDERE_REQUIRE_BROWSER=1");
+        eprintln!("SKIPPED: the browser is not tried; there is no Chromium");
+    }
+    page
+}
+
+/// Packs files; answers the report.
+fn pack(application: &Path, files: &[&Path], out: &Path) -> Value {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_belvedere"));
+    command.arg("pack").args(files).arg("-o").arg(out).arg("--app").arg(application).arg("--json");
+    let output = command.output().expect("the program starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice::<Value>(&output.stdout).expect("a report")["report"].take()
+}
+
+fn times(page: &mut Page, passes: impl Fn(&Value) -> bool) -> Value {
+    let parsed = |text: &Value| text.as_str().and_then(|text| serde_json::from_str::<Value>(text).ok());
+    let text = page.wait(TIMES, |text| parsed(text).is_some_and(|times| passes(&times)));
+    parsed(&text).expect("times")
+}
+
+fn rests(times: &Value) -> bool {
+    times["rests"] == true
+}
+
+#[test]
+fn the_built_in_scene_is_drawn_and_dragged() {
+    let place = tempfile::tempdir().expect("folder");
+    let Some(application) = application() else { return };
+    let Some(mut page) = browser(place.path()) else { return };
+    let site = place.path().join("site");
+    let report = pack(&application, &[], &site);
+    let began = Instant::now();
+    let address = server::serve(site);
+    page.call("Page.navigate", serde_json::json!({ "url": address }));
+    times(&mut page, |times| times["pictures"].as_u64() > Some(0));
+    let first_ms = began.elapsed().as_millis();
+    times(&mut page, rests);
+    let before = page.screenshot();
+    let middle = PAGE.map(|n| f64::from(n) / 2.0);
+    page.pointer("mouseMoved", middle);
+    page.pointer("mousePressed", middle);
+    let dragged = Instant::now();
+    while dragged.elapsed() < DRAG {
+        let angle = 2.0 * dragged.elapsed().as_secs_f64();
+        page.pointer("mouseMoved", [middle[0] + 120.0 * angle.sin(), middle[1] + 40.0 * (1.3 * angle).sin()]);
+        std::thread::sleep(Duration::from_millis(16));
+    }
+    page.pointer("mouseReleased", [middle[0] + 90.0, middle[1]]);
+    let released = Instant::now();
+    let times = times(&mut page, rests);
+    let rest_ms = released.elapsed().as_millis();
+    assert!(page.screenshot() != before, "the picture does not follow the pointer");
+    let mut each: Vec<f64> =
+        times["input_to_picture_ms"].as_array().expect("times").iter().filter_map(Value::as_f64).collect();
+    each.sort_by(f64::total_cmp);
+    assert!(each.len() > 20, "{} pictures in a drag of {DRAG:?}", each.len());
+    assert_eq!(page.complaints, Vec::<String>::new());
+    assert_eq!(page.value("belvedere.application.failure() ?? null"), Value::Null);
+    eprintln!(
+        "browser: application {} bytes; first picture {first_ms} ms after the address; {} pictures in {DRAG:?}, input to picture \
+         median {:.0} ms, 95 % {:.0} ms; in full {rest_ms} ms after release",
+        report["application_bytes"],
+        each.len(),
+        each[each.len() / 2],
+        each[each.len() * 95 / 100]
+    );
+}
+
+#[test]
+fn a_packed_terrain_and_its_route_are_drawn_as_the_command_line_draws_them() {
+    let Some(application) = application() else { return };
+    let names = ["rmnp/rmnp_dem.tif", "rmnp/continental-div-trail_clip.geojson"];
+    let [Some(dem), Some(route)] = names.map(belvedere_testkit::data) else { return };
+    let place = tempfile::tempdir().expect("folder");
+    let Some(mut page) = browser(place.path()) else { return };
+    let site = place.path().join("site");
+    let report = pack(&application, &[&dem, &route], &site);
+    let files = report["bundle"]["files"].as_array().expect("files");
+    assert!(files.len() >= 3, "scene, ground and route: {files:?}");
+    let text = std::fs::read_to_string(site.join(report["bundle"]["open"][0].as_str().expect("scene"))).expect("scene");
+    assert!(!text.contains(dem.parent().and_then(Path::to_str).expect("folder")), "it tells where it was made: {text}");
+    // What is packed is a scene like any other.
+    let picture = place.path().join("p.png");
+    let scene = site.join(report["bundle"]["open"][0].as_str().expect("scene"));
+    let drawn =
+        Command::new(env!("CARGO_BIN_EXE_belvedere")).arg("render").arg(&scene).arg("-o").arg(&picture).output();
+    let drawn = drawn.expect("the program starts");
+    assert!(drawn.status.success(), "{}", String::from_utf8_lossy(&drawn.stderr));
+    let address = server::serve(site);
+    page.call("Page.navigate", serde_json::json!({ "url": address }));
+    times(&mut page, rests);
+    let shown = page.value("belvedere.application.scene()");
+    assert_eq!(shown.as_str().expect("scene"), text, "the page shows another scene");
+    assert_eq!(page.complaints, Vec::<String>::new());
+}
