@@ -208,6 +208,7 @@ impl Session {
     }
 
     /// Terrain disocclusion that the document asks for and a solver has to find.
+    #[cfg(not(target_family = "wasm"))]
     pub(crate) fn stated_terrain(&self) -> Option<TerrainStageDoc> {
         let mut stages = self.description.iter().flat_map(|d| &d.source.document.stage);
         stages.find_map(|stage| match stage {

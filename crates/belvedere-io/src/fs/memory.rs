@@ -30,7 +30,7 @@ pub struct Metadata {
 
 impl Metadata {
     /// Size, bytes; none of a folder.
-    #[expect(clippy::len_without_is_empty, reason = "the name that std gives it")]
+    #[allow(clippy::len_without_is_empty)] // the name that std gives it
     pub fn len(&self) -> u64 {
         self.size.unwrap_or(0)
     }
