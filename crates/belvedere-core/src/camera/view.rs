@@ -124,6 +124,22 @@ impl View {
         Self { pinhole: self.pinhole.clone(), stages }
     }
 
+    /// The same camera with its bends at a share of their strength: pictures on the way from the straight one to the bent one.
+    ///
+    /// * `share`: at or below 0 straight, at or above 1 as it is.
+    ///
+    /// `None` where a stage has nothing between.
+    pub fn eased(&self, share: f64) -> Option<Self> {
+        if !(share > 0.0) {
+            return Some(self.straightened());
+        }
+        if share >= 1.0 {
+            return Some(self.clone());
+        }
+        let stages = self.stages.iter().map(|stage| stage.eased(share)).collect::<Option<Vec<_>>>()?;
+        Some(Self { pinhole: self.pinhole.clone(), stages })
+    }
+
     /// Image of a world point.
     ///
     /// Law: `project(ray(px).at(d)) == (px, d)`, unless an earlier cell of a curved-ray chain also sees the point.

@@ -72,6 +72,22 @@ impl Stage {
         }
     }
 
+    /// This stage at a share of its strength; the earth's curvature stays whole.
+    ///
+    /// * `share`: 0 < share <= 1; towards 0 the stage becomes the identity.
+    ///
+    /// `None` where there is no such stage, as with turns that only hold in full.
+    pub fn eased(&self, share: f64) -> Option<Self> {
+        match self {
+            Self::EarthCurvature(m) => Some(Self::EarthCurvature(m.clone())),
+            Self::TerrainDisocclusion(m) => m.eased(share).map(Self::TerrainDisocclusion),
+            Self::Relief(m) => Some(Self::Relief(m.eased(share))),
+            Self::SplineBend(m) => m.eased(share).map(Self::SplineBend),
+            Self::CurvedRays(m) => m.eased(share).map(Self::CurvedRays),
+            Self::SplitRays(m) => m.eased(share).map(Self::SplitRays),
+        }
+    }
+
     /// Whether the stage bends rays about turns, the last of a chain: [`Stage::CurvedRays`] or [`Stage::SplitRays`].
     pub fn bends_rays(&self) -> bool {
         matches!(self, Self::CurvedRays(_) | Self::SplitRays(_))

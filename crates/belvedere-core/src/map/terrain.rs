@@ -34,6 +34,13 @@ impl TerrainDisocclusion {
         &self.delta
     }
 
+    /// These displacements times `share`.
+    pub(crate) fn eased(&self, share: f64) -> Option<Self> {
+        let delta = &*self.delta;
+        let values = delta.values().iter().map(|value| share * value).collect();
+        Grid::new(delta.north_west(), delta.spacing(), delta.cols(), delta.rows(), values).ok().map(Self::new)
+    }
+
     /// Displacement at a scene position, scene units; 0 outside the grid.
     pub fn delta_at(&self, p: DVec3) -> f64 {
         self.delta.sample(p.truncate()).unwrap_or(0.0)

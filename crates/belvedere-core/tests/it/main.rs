@@ -1,6 +1,7 @@
 //! Laws and references for the mathematics.
 
 mod curved_rays;
+mod eased;
 mod preset_edit;
 mod presets;
 mod relief;

@@ -68,16 +68,18 @@ belvedere_testkit::space_map_laws!(
     super::bend_case("hybrid-flat-steep-flat", super::BendFrame::Camera, super::Continuity::C2)
 );
 
-fn view_case() -> CameraCase {
+fn view_case(name: &'static str, share: f64) -> CameraCase {
     let document = PresetDocument::builtin("demo").unwrap();
-    CameraCase::new("demo preset", [200.0, 6000.0], move |s| {
-        View::new(moved_camera(s), vec![Stage::SplineBend(moved_bend(s, &document))]).unwrap()
+    CameraCase::new(name, [200.0, 6000.0], move |s| {
+        let view = View::new(moved_camera(s), vec![Stage::SplineBend(moved_bend(s, &document))]).unwrap();
+        view.eased(share).unwrap()
     })
     .tolerance_px(1e-8)
     .least_share(0.99)
 }
 
-belvedere_testkit::camera_laws!(view, super::view_case());
+belvedere_testkit::camera_laws!(view, super::view_case("demo preset", 1.0));
+belvedere_testkit::camera_laws!(half_bent, super::view_case("demo preset, half bent", 0.5));
 
 /// The formulas of the paper as our specification writes them, with arc length from a hundred thousand samples.
 struct Literal {

@@ -8,7 +8,7 @@ use belvedere_testkit::laws::{CameraCase, Similarity};
 const IMAGE: [u32; 2] = [1280, 720];
 const MIDDLE: f64 = 640.0;
 
-fn root(s: &Similarity) -> Pinhole {
+pub(crate) fn root(s: &Similarity) -> Pinhole {
     let lens = Projection::Perspective { fov_y: 40f64.to_radians() };
     let axis = |v: DVec3| s.vector(v).normalize();
     Pinhole::look_at(s.point(DVec3::ZERO), s.point(DVec3::Y), axis(DVec3::Z), lens, IMAGE, s.scale, None).unwrap()
@@ -37,7 +37,7 @@ fn fork(seam: Seam, left: SplitSpec, right: SplitSpec, merge: Option<Merge>) -> 
 }
 
 /// Left of the middle rays lean left, right of it they lean right.
-fn parting(s: &Similarity) -> SplitSpec {
+pub(crate) fn parting(s: &Similarity) -> SplitSpec {
     let side = |x: f64| way([turn(s, [-8.0 * x, 0.0, 0.0], [0.0, 30.0])]);
     fork(Seam::MIDDLE, side(-1.0), side(1.0), None)
 }

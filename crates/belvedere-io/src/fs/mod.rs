@@ -7,5 +7,5 @@ pub use std::fs::{File, canonicalize, metadata, read, read_to_string, symlink_me
 pub use memory::{File, Metadata, canonicalize, metadata, read, read_to_string, remove_file, symlink_metadata, write};
 
 #[cfg(any(test, target_family = "wasm"))]
-#[cfg_attr(not(target_family = "wasm"), allow(unreachable_pub))]
+#[cfg_attr(not(target_family = "wasm"), allow(dead_code, unreachable_pub))]
 mod memory;

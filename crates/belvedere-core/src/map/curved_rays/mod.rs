@@ -114,6 +114,12 @@ impl CurvedRays {
         build::build(root, model, turns, corners)
     }
 
+    /// These rays at a share of their strength: viewpoints on their way from the eye. `None` if they cannot turn like that.
+    pub(crate) fn eased(&self, share: f64) -> Option<Self> {
+        let turns: Vec<TurnSpec> = self.spec.iter().map(|turn| turn.eased(self.root.eye, share)).collect();
+        Self::new(&self.root, self.model, &turns).ok()
+    }
+
     /// The pinhole that the rays start in.
     pub fn root(&self) -> &Pinhole {
         &self.root

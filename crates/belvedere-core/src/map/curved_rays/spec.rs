@@ -108,6 +108,13 @@ pub struct TurnSpec {
     pub m: Sharpness,
 }
 
+impl TurnSpec {
+    /// This turn with its viewpoint on its way from the eye.
+    pub(crate) fn eased(self, eye: DVec3, share: f64) -> Self {
+        Self { viewpoint: eye.lerp(self.viewpoint, share), ..self }
+    }
+}
+
 /// The nearest valid value for a parameter that is not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]

@@ -143,6 +143,18 @@ impl Relief {
         Ok(Self { origin, right, heading, normal, plane: origin.z, shape, base })
     }
 
+    /// This relief at a share of its strength, 0 < share <= 1.
+    pub(crate) fn eased(&self, share: f64) -> Self {
+        let shape = ReliefShape {
+            exaggeration: self.shape.exaggeration.map(|factor| factor.powf(share)),
+            oblique: share * self.shape.oblique,
+            horizon_radius: self.shape.horizon_radius / share,
+            levelling: share * self.shape.levelling,
+            range: self.shape.range,
+        };
+        Self { shape, ..self.clone() }
+    }
+
     /// The parameters.
     pub fn shape(&self) -> &ReliefShape {
         &self.shape

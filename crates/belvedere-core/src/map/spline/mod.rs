@@ -4,6 +4,7 @@ mod arc_length;
 mod bound;
 mod check;
 mod curve;
+mod ease;
 mod plane;
 mod resolve;
 

@@ -102,6 +102,11 @@ impl SplitRays {
         Ok(turns.iter().zip(rays.turns()).map(pinned).collect())
     }
 
+    /// These rays at a share of their strength. `None` if they cannot turn like that.
+    pub(crate) fn eased(&self, share: f64) -> Option<Self> {
+        Self::new(self.root(), self.model(), &self.spec.eased(self.root().eye, share)).ok()
+    }
+
     /// The pinhole that the rays start in.
     pub fn root(&self) -> &Pinhole {
         &self.root

@@ -13,6 +13,21 @@ pub struct SplitSpec {
     pub fork: Option<Box<Fork>>,
 }
 
+impl SplitSpec {
+    /// These turns with their viewpoints on their way from the eye.
+    pub(crate) fn eased(&self, eye: DVec3, share: f64) -> Self {
+        let fork = |fork: &Fork| Fork {
+            seam: fork.seam,
+            sides: [0, 1].map(|i| fork.sides[i].eased(eye, share)),
+            merge: fork.merge.map(|merge| Merge { viewpoint: eye.lerp(merge.viewpoint, share), ..merge }),
+        };
+        Self {
+            turns: self.turns.iter().map(|turn| turn.eased(eye, share)).collect(),
+            fork: self.fork.as_deref().map(|f| Box::new(fork(f))),
+        }
+    }
+}
+
 /// Rays of the two sides of a seam go different ways.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fork {
