@@ -64,6 +64,26 @@ const COARSEST: f64 = 0.35;
 const LATENCIES: usize = 600;
 /// How long nothing moves before the picture is drawn in full, seconds.
 const REST_AFTER: f64 = 0.09;
+/// Time in which a straight picture becomes a bent one, seconds.
+const EASE: f64 = 0.6;
+
+/// A picture that is wanted.
+#[derive(Debug, Clone)]
+struct Wanted {
+    document: Arc<Document>,
+    image: [u32; 2],
+    sides: Sides,
+    /// Share of the bend.
+    bend: f64,
+    overhead: bool,
+}
+
+impl PartialEq for Wanted {
+    fn eq(&self, other: &Self) -> bool {
+        let of = |wanted: &Self| (wanted.image, wanted.sides, wanted.bend, wanted.overhead);
+        Arc::ptr_eq(&self.document, &other.document) && of(self) == of(other)
+    }
+}
 
 /// The application without its window.
 pub(crate) struct Model {
@@ -81,13 +101,16 @@ pub(crate) struct Model {
     pub(crate) judged: Option<Box<Judged>>,
     /// Why the document as it is cannot be drawn.
     pub(crate) violated: Option<String>,
-    ordered: Option<(Arc<Document>, [u32; 2], Sides, bool)>,
+    ordered: Option<Wanted>,
     /// Documents of moving pictures that are not there yet, and when they were ordered.
     awaited: Vec<(Arc<Document>, Clock)>,
     /// Times from input to picture of the last moving pictures, milliseconds.
     pub(crate) latencies: Vec<f64>,
     rested: bool,
     changed_at: f64,
+    /// How far the picture is on its way from straight to bent, 0..=1, and when it was last moved on.
+    way: f64,
+    moved_on_at: f64,
     /// Share of the pixels' width that moving pictures have.
     pub(crate) coarseness: f64,
     gesture: u64,
@@ -111,6 +134,8 @@ impl Model {
             latencies: Vec::new(),
             rested: false,
             changed_at: f64::NEG_INFINITY,
+            way: 1.0,
+            moved_on_at: f64::NEG_INFINITY,
             coarseness: 1.0,
             gesture: 0,
         }
@@ -152,7 +177,7 @@ impl Model {
 
     /// Size of the picture that is shown, pixels.
     fn image(&self) -> Option<[u32; 2]> {
-        self.ordered.as_ref().map(|ordered| ordered.1)
+        self.ordered.as_ref().map(|ordered| ordered.image)
     }
 
     /// Moves the camera in the course of the gesture; what cannot be is not.
@@ -164,7 +189,7 @@ impl Model {
 
     /// World point that the picture shows at a pixel of itself.
     pub(crate) fn world_at(&self, share: DVec2) -> Option<DVec3> {
-        let shown = self.shown.as_ref()?;
+        let shown = self.shown.as_ref().filter(|_| !self.is_easing())?;
         let frame = if self.look.bent { shown.bent.as_ref() } else { shown.straight.as_ref() }?;
         let at = share * DVec2::new(frame.width as f64, frame.height as f64);
         let inside = at.min_element() >= 0.0 && (at.x as usize) < frame.width && (at.y as usize) < frame.height;
@@ -189,13 +214,30 @@ impl Model {
         Some(shown.session.scene().layers.get(id.checked_sub(1)?)?.id.clone())
     }
 
-    /// Which pictures are wanted.
-    fn sides(&self) -> Sides {
-        let both = self.look.compare != Compare::Off || self.look.inset;
-        match (both, self.look.bent) {
-            (true, _) => Sides::Both,
-            (false, true) => Sides::Bent,
-            (false, false) => Sides::Straight,
+    /// Whether two pictures are compared.
+    fn compares(&self) -> bool {
+        self.look.compare != Compare::Off || self.look.inset
+    }
+
+    /// Whether the picture is on its way between straight and bent.
+    pub(crate) fn is_easing(&self) -> bool {
+        !self.compares() && self.way != f64::from(u8::from(self.look.bent))
+    }
+
+    /// Goes on from straight to bent, or back; compared pictures are there at once.
+    fn ease(&mut self, now: f64) {
+        let end = f64::from(u8::from(self.look.bent));
+        let step = (now - self.moved_on_at).min(0.1) / EASE;
+        self.moved_on_at = now;
+        self.way = if self.compares() { end } else { self.way + (end - self.way).clamp(-step, step) };
+    }
+
+    /// Which pictures are wanted, and how far the bent one is bent.
+    fn sides(&self) -> (Sides, f64) {
+        match self.way {
+            _ if self.compares() => (Sides::Both, 1.0),
+            way if way > 0.0 => (Sides::Bent, way * way * (3.0 - 2.0 * way)),
+            _ => (Sides::Straight, 1.0),
         }
     }
 
@@ -205,21 +247,23 @@ impl Model {
     ///
     /// Returns the time after which it wants to be asked again.
     pub(crate) fn order(&mut self, image: [u32; 2], now: f64) -> Option<f64> {
-        let wanted = (self.document().clone(), image, self.sides(), self.look.overhead);
-        let is_new = self.ordered.as_ref().is_none_or(|old| {
-            !Arc::ptr_eq(&old.0, &wanted.0) || (old.1, old.2, old.3) != (wanted.1, wanted.2, wanted.3)
-        });
-        if is_new {
+        self.ease(now);
+        let (sides, bend) = self.sides();
+        let wanted = Wanted { document: self.document().clone(), image, sides, bend, overhead: self.look.overhead };
+        if self.ordered.as_ref() != Some(&wanted) {
             self.changed_at = now;
             self.rested = false;
             self.ordered = Some(wanted.clone());
             if self.shown.is_some() {
                 let size = image.map(|n| ((f64::from(n) * self.coarseness) as u32).max(16));
                 let detail_px = 1.0 / self.coarseness;
-                self.send(&wanted, size, Pace::Moving { detail_px });
-                self.awaited.push((wanted.0, Clock::now()));
-                return Some(REST_AFTER);
+                self.awaited.push((wanted.document.clone(), Clock::now()));
+                self.send(wanted, size, Pace::Moving { detail_px });
+                return Some(if self.is_easing() { 0.0 } else { REST_AFTER });
             }
+        }
+        if self.is_easing() {
+            return Some(0.0);
         }
         if self.rested {
             return None;
@@ -229,14 +273,14 @@ impl Model {
             return Some(due - now);
         }
         self.rested = true;
-        self.send(&wanted, image, Pace::Resting);
+        self.send(wanted, image, Pace::Resting);
         None
     }
 
-    fn send(&mut self, wanted: &(Arc<Document>, [u32; 2], Sides, bool), image: [u32; 2], pace: Pace) {
-        let (document, _, sides, overhead) = wanted.clone();
+    fn send(&mut self, wanted: Wanted, image: [u32; 2], pace: Pace) {
+        let Wanted { document, sides, bend, overhead, .. } = wanted;
         let place = self.editor.place.clone();
-        self.painter.order(Order { document, place, image, pace, sides, overhead });
+        self.painter.order(Order { document, place, image, pace, sides, bend, overhead });
     }
 
     /// Takes what the painter has made.
@@ -303,5 +347,66 @@ impl Model {
     /// Ids of the layers that pass a test.
     pub(crate) fn layer_ids(&self, passes: impl Fn(&LayerDoc) -> bool) -> Vec<String> {
         self.document().layer.iter().filter(|layer| passes(layer)).map(|layer| layer.id().to_owned()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere::editor::Place;
+    use std::time::Duration;
+
+    const SCENE: &str = r#"
+format = 1
+crs = "local"
+[camera]
+eye = [6000.0, -5200.0, 3600.0]
+look_at = [0.0, 0.0, 300.0]
+[[layer]]
+kind = "terrain"
+id = "ground"
+source = "builtin:massif?seed=7&size=129"
+[[stage]]
+kind = "spline_bend"
+presets = "progressive"
+"#;
+
+    /// The next picture.
+    fn next(model: &mut Model) -> Vec<f32> {
+        let answer = model.painter.answer_within(Duration::from_secs(60)).expect("an answer");
+        model.take(answer);
+        let shown = model.shown.as_ref().expect("a picture");
+        shown.bent.as_ref().or(shown.straight.as_ref()).expect("a frame").depth.clone()
+    }
+
+    /// Pixels that show something in one picture only.
+    fn apart(a: &[f32], b: &[f32]) -> usize {
+        a.iter().zip(b).filter(|(a, b)| a.is_finite() != b.is_finite()).count()
+    }
+
+    #[test]
+    fn the_picture_goes_from_bent_to_straight_by_way_of_pictures_between() {
+        let image = [160, 90];
+        let source = belvedere::scene_file::parse(std::path::Path::new("s.toml"), SCENE).expect("scene");
+        let mut model = Model::new(Editor::new(source.document, Place::default()), || ());
+        let mut now = 0.0;
+        model.order(image, now);
+        let bent = next(&mut model);
+        (model.look.bent, model.coarseness) = (false, 1.0);
+        let mut between = Vec::new();
+        while model.shown.as_ref().is_some_and(|shown| shown.straight.is_none()) {
+            now += 0.1;
+            model.order(image, now);
+            between.push(next(&mut model));
+            model.coarseness = 1.0;
+            assert!(between.len() < 20, "it never arrives");
+        }
+        let straight = between.pop().expect("pictures");
+        let whole = apart(&bent, &straight);
+        assert!(whole > 300, "{whole}");
+        assert!(between.len() >= 4, "{}", between.len());
+        let way: Vec<usize> = between.iter().map(|picture| apart(picture, &straight)).collect();
+        assert!(way.windows(2).all(|pair| pair[1] <= pair[0] + whole / 10), "{way:?} of {whole}");
+        assert!(way[1] < whole && way[way.len() - 2] > 0, "{way:?} of {whole}");
     }
 }

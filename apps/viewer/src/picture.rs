@@ -3,7 +3,7 @@
 use crate::model::{Compare, Model, Tool};
 use crate::pointer::{Hand, share};
 use belvedere::core::{DVec2, DVec3};
-use belvedere::editor::Pace;
+use belvedere::editor::{Pace, Shown};
 use belvedere::scene::{Frame, Unit};
 use eframe::egui::{
     Align2, Color32, ColorImage, Context, CursorIcon, FontId, Painter, Pos2, Rect, Role, Sense, Stroke, TextureHandle,
@@ -12,8 +12,7 @@ use eframe::egui::{
 
 /// Most pixels of a picture on the screen.
 const MOST_PIXELS: f32 = 2.4e6;
-/// Time in which a straight picture becomes a bent one, seconds; of one picture of a flicker.
-const DISSOLVE: f32 = 0.4;
+/// Time of one picture of a flicker, seconds.
 const FLICKER: f64 = 0.7;
 const INK: Color32 = Color32::from_rgb(28, 34, 44);
 const PAPER: Color32 = Color32::from_rgba_premultiplied(225, 225, 222, 225);
@@ -88,21 +87,21 @@ impl PictureView {
     fn paint(&self, painter: &Painter, rect: Rect, ctx: &Context, model: &Model) {
         let [bent, straight] = &self.textures;
         let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-        let draw = |texture: &Option<TextureHandle>, clip: Rect, opacity: f32| {
+        let draw = |texture: &Option<TextureHandle>, clip: Rect| {
             if let Some(texture) = texture {
-                painter.with_clip_rect(clip).image(texture.id(), rect, whole, Color32::WHITE.gamma_multiply(opacity));
+                painter.with_clip_rect(clip).image(texture.id(), rect, whole, Color32::WHITE);
             }
         };
         let bar = rect.left() + model.look.split * rect.width();
         let now = ctx.input(|input| input.time);
         match model.look.compare {
             Compare::Split => {
-                draw(straight, rect.with_max_x(bar), 1.0);
-                draw(bent, rect.with_min_x(bar), 1.0);
+                draw(straight, rect.with_max_x(bar));
+                draw(bent, rect.with_min_x(bar));
             }
             Compare::Flicker => {
                 let is_bent = (now / FLICKER) as i64 % 2 == 0;
-                draw(if is_bent { bent } else { straight }, rect, 1.0);
+                draw(if is_bent { bent } else { straight }, rect);
                 label(
                     painter,
                     rect.center_top() + vec2(0.0, 8.0),
@@ -112,14 +111,13 @@ impl PictureView {
                 ctx.request_repaint_after_secs(0.1);
             }
             Compare::Off => {
-                let share = ctx.animate_bool_with_time(eframe::egui::Id::unique("bent"), model.look.bent, DISSOLVE);
-                let eased = share * share * (3.0 - 2.0 * share);
-                if eased < 1.0 {
-                    draw(straight, rect, 1.0);
-                }
-                if eased > 0.0 {
-                    draw(bent, rect, eased);
-                }
+                // On the way between them there is one picture, and that is a bent one.
+                let has = |side: fn(&Shown) -> &Option<Frame>| {
+                    model.shown.as_deref().is_some_and(|shown| side(shown).is_some())
+                };
+                let both = has(|shown| &shown.bent) && has(|shown| &shown.straight);
+                let is_bent = if both { model.look.bent } else { has(|shown| &shown.bent) };
+                draw(if is_bent { bent } else { straight }, rect);
             }
         }
         if model.look.inset && model.look.compare == Compare::Off {
@@ -142,7 +140,7 @@ impl PictureView {
             return;
         };
         let moving = matches!(shown.pace, Pace::Moving { .. });
-        if moving && shown.session.view().is_bent() && model.look.bent {
+        if moving && shown.session.view().is_bent() && shown.bent.is_some() {
             label(painter, rect.left_bottom() + vec2(8.0, -30.0), Align2::LEFT_BOTTOM, "bent view");
         }
         let mut top = rect.center_top() + vec2(0.0, 8.0);

@@ -79,7 +79,7 @@ impl Stage {
     /// `None` where there is no such stage, as with turns that only hold in full.
     pub fn eased(&self, share: f64) -> Option<Self> {
         match self {
-            Self::EarthCurvature(m) => Some(Self::EarthCurvature(m.clone())),
+            Self::EarthCurvature(m) => Some(Self::EarthCurvature(*m)),
             Self::TerrainDisocclusion(m) => m.eased(share).map(Self::TerrainDisocclusion),
             Self::Relief(m) => Some(Self::Relief(m.eased(share))),
             Self::SplineBend(m) => m.eased(share).map(Self::SplineBend),

@@ -27,6 +27,8 @@ pub struct Order {
     pub pace: Pace,
     /// Which pictures.
     pub sides: Sides,
+    /// Share of its strength at which the bent picture is bent while something moves, 0..=1; at rest it is bent in full.
+    pub bend: f64,
     /// With the picture of the camera from above; at rest only.
     pub overhead: bool,
 }
@@ -130,7 +132,7 @@ impl LiveSession {
         match order.pace {
             Pace::Moving { detail_px } => {
                 if order.sides != Sides::Straight {
-                    bent = Some(quick(&session, session.view(), detail_px, progress)?);
+                    bent = Some(quick(&session, &eased(session.view(), order.bend), detail_px, progress)?);
                 }
                 if order.sides != Sides::Bent {
                     straight = Some(quick(&session, &session.view().straightened(), detail_px, progress)?);
@@ -308,6 +310,11 @@ fn options(order: &Order, progress: &Progress) -> OpenOptions {
         progress: progress.clone(),
         ..OpenOptions::default()
     }
+}
+
+/// The view on its way between straight and bent; where there is nothing between, it is one or the other.
+fn eased(view: &View, share: f64) -> View {
+    view.eased(share).unwrap_or_else(|| if share < 0.5 { view.straightened() } else { view.clone() })
 }
 
 /// One sample per pixel, less detail, no marks that need further pictures.
