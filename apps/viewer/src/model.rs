@@ -60,7 +60,7 @@ impl Default for Look {
 const PACE_MS: [f64; 2] = [32.0, 16.0];
 /// Least share of the pixels' width of a moving picture.
 const COARSEST: f64 = 0.35;
-/// Moving pictures whose times are remembered.
+/// Pictures whose times are remembered.
 const LATENCIES: usize = 600;
 /// How long nothing moves before the picture is drawn in full, seconds.
 const REST_AFTER: f64 = 0.09;
@@ -102,10 +102,15 @@ pub(crate) struct Model {
     /// Why the document as it is cannot be drawn.
     pub(crate) violated: Option<String>,
     ordered: Option<Wanted>,
+    /// Pace of the last order that is not answered yet.
+    waiting: Option<Pace>,
     /// Documents of moving pictures that are not there yet, and when they were ordered.
     awaited: Vec<(Arc<Document>, Clock)>,
     /// Times from input to picture of the last moving pictures, milliseconds.
     pub(crate) latencies: Vec<f64>,
+    /// Times from the last change to the picture in full of the last pictures at rest, milliseconds.
+    pub(crate) rests_after: Vec<f64>,
+    changed: Clock,
     rested: bool,
     changed_at: f64,
     /// How far the picture is on its way from straight to bent, 0..=1, and when it was last moved on.
@@ -130,8 +135,11 @@ impl Model {
             judged: None,
             violated: None,
             ordered: None,
+            waiting: None,
             awaited: Vec::new(),
             latencies: Vec::new(),
+            rests_after: Vec::new(),
+            changed: Clock::now(),
             rested: false,
             changed_at: f64::NEG_INFINITY,
             way: 1.0,
@@ -251,7 +259,7 @@ impl Model {
         let (sides, bend) = self.sides();
         let wanted = Wanted { document: self.document().clone(), image, sides, bend, overhead: self.look.overhead };
         if self.ordered.as_ref() != Some(&wanted) {
-            self.changed_at = now;
+            (self.changed_at, self.changed) = (now, Clock::now());
             self.rested = false;
             self.ordered = Some(wanted.clone());
             if self.shown.is_some() {
@@ -280,6 +288,7 @@ impl Model {
     fn send(&mut self, wanted: Wanted, image: [u32; 2], pace: Pace) {
         let Wanted { document, sides, bend, overhead, .. } = wanted;
         let place = self.editor.place.clone();
+        self.waiting = Some(pace);
         self.painter.order(Order { document, place, image, pace, sides, bend, overhead });
     }
 
@@ -293,6 +302,7 @@ impl Model {
     fn take(&mut self, answer: Answer) {
         match answer {
             Answer::Shown(mut shown) => {
+                self.waiting = self.waiting.filter(|pace| *pace != shown.pace);
                 if let Pace::Moving { .. } = shown.pace {
                     self.arrived(&shown.document);
                     let factor = match shown.milliseconds {
@@ -301,6 +311,8 @@ impl Model {
                         _ => 1.0,
                     };
                     self.coarseness = (self.coarseness * factor).clamp(COARSEST, 1.0);
+                } else {
+                    note(&mut self.rests_after, self.changed.elapsed().as_secs_f64() * 1e3);
                 }
                 self.overhead = shown.overhead.take().or(self.overhead.take());
                 self.violated = None;
@@ -309,6 +321,7 @@ impl Model {
             }
             Answer::Judged(judged) => self.judged = Some(judged),
             Answer::Failed(reason) => {
+                self.waiting = None;
                 if self.shown.is_none() {
                     self.notices.error(reason.clone());
                 }
@@ -321,9 +334,7 @@ impl Model {
     fn arrived(&mut self, document: &Arc<Document>) {
         let Some(at) = self.awaited.iter().position(|(awaited, _)| Arc::ptr_eq(awaited, document)) else { return };
         let (_, since) = self.awaited.drain(..=at).next_back().unwrap_or_else(|| (document.clone(), Clock::now()));
-        self.latencies.push(since.elapsed().as_secs_f64() * 1e3);
-        let extra = self.latencies.len().saturating_sub(LATENCIES);
-        self.latencies.drain(..extra);
+        note(&mut self.latencies, since.elapsed().as_secs_f64() * 1e3);
     }
 
     /// Median time from input to picture, milliseconds.
@@ -336,7 +347,7 @@ impl Model {
     /// Whether the picture is that of the document, in full.
     pub(crate) fn rests(&self) -> bool {
         let is_it = |shown: &Shown| shown.pace == Pace::Resting && Arc::ptr_eq(&shown.document, self.document());
-        self.rested && self.shown.as_deref().is_some_and(is_it)
+        self.rested && self.waiting.is_none() && self.shown.as_deref().is_some_and(is_it)
     }
 
     /// The stage of a kind, if the document has one.
@@ -348,6 +359,13 @@ impl Model {
     pub(crate) fn layer_ids(&self, passes: impl Fn(&LayerDoc) -> bool) -> Vec<String> {
         self.document().layer.iter().filter(|layer| passes(layer)).map(|layer| layer.id().to_owned()).collect()
     }
+}
+
+/// Notes a time, and forgets the oldest.
+fn note(times: &mut Vec<f64>, milliseconds: f64) {
+    times.push(milliseconds);
+    let extra = times.len().saturating_sub(LATENCIES);
+    times.drain(..extra);
 }
 
 #[cfg(test)]

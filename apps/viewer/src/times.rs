@@ -32,6 +32,7 @@ impl Times {
             "first_picture_ms": self.first_ms,
             "input_to_picture_median_ms": model.latency(),
             "input_to_picture_ms": model.latencies,
+            "rest_to_full_picture_ms": model.rests_after,
         })
     }
 

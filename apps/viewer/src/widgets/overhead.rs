@@ -15,6 +15,10 @@ pub(crate) enum Part {
     Last,
     /// The direction of the planes' normal.
     Normal,
+    /// The line that the planes share.
+    Line,
+    /// Its direction.
+    LineDirection,
 }
 
 /// What the user did: part of a turn, where to, whether the drag begins.
@@ -25,13 +29,17 @@ pub(crate) struct OverheadEdit {
     pub(crate) begins: bool,
 }
 
-const COLORS: [Color32; 5] = [
+const COLORS: [Color32; 7] = [
     Color32::from_rgb(30, 96, 170),
     Color32::from_rgb(0, 120, 96),
     Color32::from_rgb(200, 60, 130),
     Color32::from_rgb(0, 120, 96),
     Color32::from_rgb(120, 120, 120),
+    Color32::from_rgb(150, 90, 20),
+    Color32::from_rgb(120, 120, 120),
 ];
+/// Handles nearer together than this, points, are one: as of a line that stands upright.
+const APART: f32 = 14.0;
 
 /// Shows the picture with handles.
 ///
@@ -68,33 +76,45 @@ pub(crate) fn overhead(
         let reach = 0.25 * DVec3::from_array(turn.t0).distance(DVec3::from_array(turn.t2)).max(1e-6);
         let normal =
             turn.normal.map(|n| DVec3::from_array(turn.t1) + 4.0 * reach * DVec3::from_array(n).normalize_or_zero());
+        let line = turn.line.map(|line| DVec3::from_array(line.point));
+        let along = turn
+            .line
+            .map(|line| DVec3::from_array(line.point) + 4.0 * reach * DVec3::from_array(line.dir).normalize_or_zero());
+        let apart = |a: DVec3, b: DVec3| at(a).zip(at(b)).is_some_and(|(a, b)| a.distance(b) > APART);
+        let along = along.filter(|&along| line.is_some_and(|line| apart(line, along)));
+        if let (Some(a), Some(b)) = (line.and_then(at), along.and_then(at)) {
+            painter.line_segment([a, b], Stroke::new(1.5, COLORS[5]));
+        }
         let parts = [
             (Part::Viewpoint, "Viewpoint", Some(DVec3::from_array(turn.viewpoint))),
             (Part::First, "First plane", Some(DVec3::from_array(turn.t0))),
             (Part::Bend, "Bend point", Some(DVec3::from_array(turn.t1))),
             (Part::Last, "Last plane", Some(DVec3::from_array(turn.t2))),
             (Part::Normal, "Bend direction", normal),
+            (Part::Line, "Pivot line", line),
+            (Part::LineDirection, "Direction of the pivot line", along),
         ];
         for ((part, name, place), color) in parts.into_iter().zip(COLORS) {
             let Some((place, spot)) = place.and_then(|p| Some((p, at(p)?))) else { continue };
             let label = format!("{name} of turn {}", i + 1);
+            // What lies outside the picture has its handle at the edge.
+            let handle = rect.shrink(8.0).clamp(spot);
             let response =
-                ui.interact(Rect::from_center_size(spot, vec2(18.0, 18.0)), id.with((i, name)), Sense::drag());
+                ui.interact(Rect::from_center_size(handle, vec2(18.0, 18.0)), id.with((i, name)), Sense::drag());
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
-            painter.circle(spot, if response.hovered() { 7.0 } else { 5.5 }, color, Stroke::new(1.5, Color32::WHITE));
+            painter.circle(handle, if response.hovered() { 7.0 } else { 5.5 }, color, Stroke::new(1.5, Color32::WHITE));
             if part == Part::Viewpoint {
                 painter.text(
-                    spot + vec2(9.0, 0.0),
+                    handle + vec2(9.0, 0.0),
                     eframe::egui::Align2::LEFT_CENTER,
                     format!("V{}", i + 1),
                     FontId::proportional(12.0),
                     color,
                 );
             }
-            if response.dragged()
-                && let Some(to) = response.interact_pointer_pos()
-            {
-                edit = Some(OverheadEdit { turn: i, part, to: back(to, place.z), begins: response.drag_started() });
+            if response.dragged() {
+                let to = back(spot + response.drag_delta(), place.z);
+                edit = Some(OverheadEdit { turn: i, part, to, begins: response.drag_started() });
             }
             response.on_hover_cursor(CursorIcon::Move).on_hover_text(label);
         }
@@ -115,6 +135,21 @@ impl OverheadEdit {
                 let by = self.to - DVec3::from_array(turn.t1);
                 for point in [&mut turn.t0, &mut turn.t1, &mut turn.t2] {
                     *point = (DVec3::from_array(*point) + by).to_array();
+                }
+                if let Some(line) = &mut turn.line {
+                    line.point = (DVec3::from_array(line.point) + by).to_array();
+                }
+            }
+            Part::Line => {
+                if let Some(line) = &mut turn.line {
+                    line.point = to;
+                }
+            }
+            Part::LineDirection => {
+                if let Some(line) = &mut turn.line
+                    && let Some(dir) = (self.to - DVec3::from_array(line.point)).try_normalize()
+                {
+                    line.dir = dir.to_array();
                 }
             }
             Part::Normal => {

@@ -1,7 +1,9 @@
 //! Every control has a name, every panel works on every kind of scene.
 
 use crate::{app, opened, press, scene, settle};
+use belvedere::scene_file::StageDoc;
 use belvedere_viewer::Opening;
+use eframe::egui::vec2;
 use egui_kittest::kittest::Queryable;
 
 const TABS: [&str; 6] = ["Layers", "Look", "Curved rays", "Terrain", "Spline", "Export"];
@@ -67,4 +69,45 @@ fn without_a_file_a_built_in_scene_is_there() {
     let mut harness = app(&Opening::default());
     settle(&mut harness);
     assert_eq!(harness.state().document().title, "A massif and its trail");
+}
+
+#[test]
+fn the_pivot_line_of_a_turn_is_dragged_in_the_camera_from_above() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = scene(folder.path());
+    let text = std::fs::read_to_string(&path).expect("scene");
+    let stage = r#"
+[[stage]]
+kind = "curved_rays"
+[[stage.turn]]
+viewpoint = [6400.0, -4750.0, 3600.0]
+t0 = [3900.0, -3380.0, 2445.0]
+t1 = [3600.0, -3120.0, 2280.0]
+t2 = [3300.0, -2860.0, 2115.0]
+line = { point = [16700.0, 12000.0, 2280.0], dir = [0.0, 0.0, 1.0] }
+"#;
+    std::fs::write(&path, text + stage).expect("scene");
+    let mut harness = app(&opened(&[path]));
+    settle(&mut harness);
+    harness.key_press(eframe::egui::Key::O);
+    settle(&mut harness);
+    let line = |harness: &egui_kittest::Harness<'_, belvedere_viewer::Viewer>| {
+        let Some(StageDoc::CurvedRays(stage)) = harness.state().document().stage.first().cloned() else {
+            panic!("no turns")
+        };
+        stage.turn[0].line.expect("a line")
+    };
+    let before = line(&harness);
+    let handle = harness.get_by_label("Pivot line of turn 1").rect().center();
+    harness.drag_at(handle);
+    harness.step();
+    for k in 1..=5 {
+        harness.hover_at(handle + vec2(4.0 * k as f32, 0.0));
+        harness.step();
+    }
+    harness.drop_at(handle + vec2(20.0, 0.0));
+    settle(&mut harness);
+    let after = line(&harness);
+    assert!(after.point[0] != before.point[0] && after.point[2] == before.point[2], "{before:?} {after:?}");
+    assert_eq!(after.dir, before.dir);
 }
