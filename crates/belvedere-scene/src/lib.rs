@@ -34,7 +34,7 @@ pub use layer::{
     LineLayer, Palette, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
 };
 pub use light::Light;
-pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer};
+pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer, triangle_lattice};
 pub use molecule::{Molecule, MoleculeLayer, MoleculeStyle};
 pub use motion::{Motion, MotionError, Placement};
 pub use overlay::{DistanceMarkers, Overlay, OverlayFace, OverlayLine, OverlayPoint, PointStyle, Symbol};

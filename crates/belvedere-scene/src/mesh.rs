@@ -1,5 +1,6 @@
 //! Triangle meshes.
 
+mod openness;
 mod parts;
 
 use belvedere_core::{Aabb, DVec3};
@@ -7,6 +8,9 @@ use glam::{Vec2, Vec3};
 
 use crate::texture::Texturing;
 use crate::{Color, Placement};
+use openness::Openness;
+
+pub use openness::triangle_lattice;
 
 /// Colours of a mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -30,8 +34,7 @@ pub struct Mesh {
     colors: MeshColors,
     /// Number of the part that each triangle belongs to; empty = one part.
     parts: Vec<u32>,
-    /// Share of the light from all around that reaches each vertex, 255 = all; empty = not known.
-    openness: Vec<u8>,
+    openness: Openness,
     /// Pictures on it.
     texturing: Option<Box<Texturing>>,
 }
@@ -153,7 +156,7 @@ impl Mesh {
             normals: None,
             colors,
             parts,
-            openness: Vec::new(),
+            openness: Openness::Unknown,
             texturing: texturing.map(Box::new),
         };
         mesh.drop_degenerate();
@@ -182,19 +185,6 @@ impl Mesh {
         Self { origin, positions, normals, ..self.clone() }
     }
 
-    /// This mesh with the share of the light from all around that reaches each vertex, 255 = all.
-    ///
-    /// # Errors
-    /// [`MeshError::Count`].
-    pub fn with_openness(mut self, openness: Vec<u8>) -> Result<Self, MeshError> {
-        if openness.len() != self.positions.len() {
-            let (found, expected) = (openness.len(), self.positions.len());
-            return Err(MeshError::Count { what: "shares of light", found, expected });
-        }
-        self.openness = openness;
-        Ok(self)
-    }
-
     fn drop_degenerate(&mut self) {
         let at = |v: u32| self.positions[v as usize].as_dvec3();
         let has_area = |t: &[u32; 3]| {
@@ -215,6 +205,7 @@ impl Mesh {
         }
         let mut keep = kept.iter();
         self.parts.retain(|_| keep.next() == Some(&true));
+        self.openness.retain(kept);
         if let Some(t) = &mut self.texturing {
             let mut keep = kept.iter();
             t.of_triangle.retain(|_| keep.next() == Some(&true));
@@ -226,15 +217,6 @@ impl Mesh {
     /// Number of the part that a triangle belongs to; `None` if the mesh has no parts.
     pub fn part(&self, triangle: usize) -> Option<u32> {
         self.parts.get(triangle).copied()
-    }
-
-    /// Share of the light from all around at a point of a triangle given by the weights of its corners, 0..=1; 1 where it is not known.
-    pub fn openness_at(&self, triangle: usize, weights: [f64; 3]) -> f64 {
-        if self.openness.is_empty() {
-            return 1.0;
-        }
-        let corners = self.triangles[triangle].map(|v| f64::from(self.openness[v as usize]));
-        (corners.iter().zip(weights).map(|(c, w)| c * w).sum::<f64>() / 255.0).clamp(0.0, 1.0)
     }
 
     /// Number of vertices.

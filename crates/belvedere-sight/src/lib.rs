@@ -9,6 +9,7 @@ mod ground;
 mod line;
 mod mesh_tree;
 mod obstacles;
+mod openness;
 mod pyramid;
 mod voxels;
 
@@ -21,5 +22,6 @@ pub use ground::{Ground, Lift};
 pub use line::{Edge, EdgeFamily, GridLine, floor};
 pub use mesh_tree::MeshTree;
 pub use obstacles::{Obstacles, SightOptions};
+pub use openness::{GroundHeight, OpennessSettings, with_ambient_occlusion};
 pub use pyramid::Pyramid;
 pub use voxels::Voxels;

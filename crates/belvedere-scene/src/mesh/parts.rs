@@ -40,9 +40,7 @@ impl Mesh {
         if let MeshColors::PerVertex(colors) = &mut self.colors {
             colors.push(colors[v]);
         }
-        if let Some(open) = self.openness.get(v).copied() {
-            self.openness.push(open);
-        }
+        self.openness.copy_of(v);
         (self.positions.len() - 1) as u32
     }
 }

@@ -1,0 +1,245 @@
+//! Ambient occlusion, computed once: how much of the light from all around reaches a mesh.
+
+use crate::MeshTree;
+use belvedere_core::{DVec2, DVec3};
+use belvedere_scene::{Cancelled, Mesh, Progress, triangle_lattice};
+use rayon::prelude::*;
+
+/// How finely ambient occlusion is computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OpennessSettings {
+    /// Distance from which on nothing takes light away, scene units, > 0; nearer things take `1 - (r / reach)^2`.
+    pub reach: f64,
+    /// Longest distance between points of one triangle, scene units, > 0.
+    pub step: f64,
+    /// Rays of a point.
+    pub rays: usize,
+}
+
+impl OpennessSettings {
+    /// Points a fifth of the reach apart, 32 rays each.
+    pub fn reaching(reach: f64) -> Self {
+        Self { reach, step: 0.2 * reach, rays: 32 }
+    }
+}
+
+/// Most steps along an edge.
+const MOST_STEPS: f64 = 24.0;
+/// How far from the surface rays begin, share of the reach; how far points are drawn from the edge of their triangle towards its middle.
+const LIFT: f64 = 1e-3;
+const INWARDS: f64 = 0.02;
+/// A side that gets less than this may be the inside of something closed: the other one is looked at, too.
+const INSIDE: f64 = 0.3;
+/// Triangles that are computed at a time.
+const BATCH: usize = 256;
+
+/// Height of the ground at a place; `None` where there is none.
+pub type GroundHeight<'a> = dyn Fn(DVec2) -> Option<f64> + Sync + 'a;
+
+/// The mesh with the share of the light from all around that reaches it past itself and the ground, on the lighter side of each triangle.
+///
+/// Rays are spread by the cosine to the normal; their lengths are spread so that a hit at r counts `1 - (r / reach)^2` on average, and only
+/// whether anything is hit is asked. Source: Pasewaldt et al. 2011, section 6; the rule in our specification, section 7.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn with_ambient_occlusion(
+    mesh: Mesh,
+    ground: Option<&GroundHeight<'_>>,
+    settings: &OpennessSettings,
+    progress: &Progress,
+) -> Result<Mesh, Cancelled> {
+    let rays = rays(settings);
+    let tree = MeshTree::new(&mesh);
+    let count = mesh.triangles().len();
+    let batches: Vec<(Vec<u8>, Vec<u8>)> = (0..count.div_ceil(BATCH))
+        .into_par_iter()
+        .map(|batch| {
+            progress.tick("ambient occlusion", batch as f64 * BATCH as f64 / count as f64)?;
+            let (mut steps, mut shares) = (Vec::new(), Vec::new());
+            for triangle in batch * BATCH..count.min((batch + 1) * BATCH) {
+                let corners = mesh.corners(triangle);
+                let [a, b, c] = corners;
+                let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+                let n = (longest / settings.step).ceil().clamp(1.0, MOST_STEPS) as u8;
+                steps.push(n);
+                let around = Around { tree: &tree, ground, rays: &rays, lift: LIFT * settings.reach };
+                let normal = mesh.face_normal(triangle);
+                let middle = (a + b + c) / 3.0;
+                shares.extend(triangle_lattice(n).map(|w| {
+                    let p = a * w[0] + b * w[1] + c * w[2];
+                    let open = around.openness(p.lerp(middle, INWARDS), normal);
+                    (255.0 * open).round() as u8
+                }));
+            }
+            Ok((steps, shares))
+        })
+        .collect::<Result<_, Cancelled>>()?;
+    let (steps, shares): (Vec<_>, Vec<_>) = batches.into_iter().unzip();
+    let (steps, shares) = (steps.concat(), shares.concat());
+    // As many as were just counted.
+    Ok(mesh.clone().with_open_lattices(&steps, shares).unwrap_or(mesh))
+}
+
+/// Everything that takes light away.
+struct Around<'a> {
+    tree: &'a MeshTree<'a>,
+    ground: Option<&'a GroundHeight<'a>>,
+    /// Towards z, each as long as it looks.
+    rays: &'a [DVec3],
+    lift: f64,
+}
+
+impl Around<'_> {
+    /// Share of the light that reaches a point of a face, 0..=1.
+    fn openness(&self, p: DVec3, normal: DVec3) -> f64 {
+        let front = self.one_side(p, normal);
+        if front >= INSIDE { front } else { front.max(self.one_side(p, -normal)) }
+    }
+
+    fn one_side(&self, p: DVec3, normal: DVec3) -> f64 {
+        let [across, along] = [normal.any_orthonormal_vector(), normal.cross(normal.any_orthonormal_vector())];
+        let from = p + self.lift * normal;
+        let open = self.rays.iter().filter(|ray| {
+            let by = ray.x * across + ray.y * along + ray.z * normal;
+            !self.is_under(from, by) && !self.tree.is_crossed(from, from + by)
+        });
+        open.count() as f64 / self.rays.len() as f64
+    }
+
+    /// Whether a ray comes to the ground. What stands in the ground a little is not shut in by it.
+    fn is_under(&self, from: DVec3, by: DVec3) -> bool {
+        let Some(ground) = self.ground.filter(|_| by.z < 0.0) else { return false };
+        let height = |share: f64| ground((from + share * by).truncate()).map(|z| from.z - z);
+        let Some(over) = height(0.0) else { return false };
+        let first = (over.max(0.0) / -by.z).min(1.0);
+        height(first).is_some_and(|over| over.max(0.0) <= -by.z)
+    }
+}
+
+/// Directions about z by the cosine rule, each as long as it looks.
+fn rays(settings: &OpennessSettings) -> Vec<DVec3> {
+    let n = settings.rays.max(1);
+    let directions = (0..n).map(|i| {
+        let (u, v) = ((i as f64 + 0.5) / n as f64, radical_inverse(i, 2));
+        let (sin, cos) = (std::f64::consts::TAU * v).sin_cos();
+        let length = settings.reach * (1.0 - radical_inverse(i, 3)).sqrt();
+        length * DVec3::new(u.sqrt() * cos, u.sqrt() * sin, (1.0 - u).sqrt())
+    });
+    directions.collect()
+}
+
+/// The digits of a number behind the point, in reverse: evenly spread over 0..1.
+fn radical_inverse(mut number: usize, base: usize) -> f64 {
+    let (mut sum, mut digit) = (0.0, 1.0 / base as f64);
+    while number > 0 {
+        sum += (number % base) as f64 * digit;
+        number /= base;
+        digit /= base as f64;
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_scene::MeshColors;
+
+    /// Four corners of a rectangle as two triangles.
+    fn rectangle(corners: [[f64; 3]; 4], positions: &mut Vec<DVec3>, triangles: &mut Vec<[u32; 3]>) {
+        let first = positions.len() as u32;
+        positions.extend(corners.map(DVec3::from_array));
+        triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    }
+
+    fn settings(rays: usize) -> OpennessSettings {
+        OpennessSettings { reach: 40.0, step: 8.0, rays }
+    }
+
+    /// A floor from 0 to 200 in both directions, and a wall of a height at x = 0.
+    fn corner(height: f64) -> Mesh {
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        rectangle(
+            [[0.0, 0.0, 0.0], [200.0, 0.0, 0.0], [200.0, 200.0, 0.0], [0.0, 200.0, 0.0]],
+            &mut positions,
+            &mut triangles,
+        );
+        rectangle(
+            [[0.0, 0.0, 0.0], [0.0, 200.0, 0.0], [0.0, 200.0, height], [0.0, 0.0, height]],
+            &mut positions,
+            &mut triangles,
+        );
+        Mesh::new(&positions, triangles, MeshColors::Layer).unwrap()
+    }
+
+    /// What a wall without end takes from the floor at a distance from it, by adding up directions.
+    fn by_quadrature(distance: f64, reach: f64) -> f64 {
+        let n = 400;
+        let mut lost = 0.0;
+        for i in 0..n {
+            for j in 0..n {
+                let (u, v) = ((f64::from(i) + 0.5) / f64::from(n), (f64::from(j) + 0.5) / f64::from(n));
+                let towards = -u.sqrt() * (std::f64::consts::TAU * v).cos();
+                let r = if towards > 0.0 { distance / towards } else { f64::INFINITY };
+                lost += (1.0 - (r / reach).powi(2)).max(0.0);
+            }
+        }
+        1.0 - lost / f64::from(n * n)
+    }
+
+    #[test]
+    fn a_wall_takes_from_the_floor_what_the_integral_says() {
+        let mesh = with_ambient_occlusion(corner(60.0), None, &settings(2048), &Progress::silent()).unwrap();
+        for distance in [2.0, 6.0, 12.0, 25.0, 60.0] {
+            let p = DVec3::new(distance, 100.0, 0.0);
+            let triangle = usize::from(distance < 100.0);
+            let open = mesh.openness_at(triangle, mesh.weights_at(triangle, p));
+            let expected = by_quadrature(distance, 40.0);
+            assert!((open - expected).abs() < 0.03, "{distance}: {open}, {expected}");
+        }
+    }
+
+    #[test]
+    fn what_is_alone_is_open_and_ground_shades_the_foot_of_a_wall() {
+        let alone = with_ambient_occlusion(corner(0.0), None, &settings(32), &Progress::silent()).unwrap();
+        assert_eq!(alone.openness_at(0, [0.3, 0.3, 0.4]), 1.0);
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        rectangle(
+            [[0.0, 0.0, 10.0], [0.0, 100.0, 10.0], [0.0, 100.0, 60.0], [0.0, 0.0, 60.0]],
+            &mut positions,
+            &mut triangles,
+        );
+        let wall = Mesh::new(&positions, triangles, MeshColors::Layer).unwrap();
+        let level = |_: DVec2| Some(10.0);
+        let wall = with_ambient_occlusion(wall, Some(&level), &settings(256), &Progress::silent()).unwrap();
+        let open = |z: f64| wall.openness_at(0, wall.weights_at(0, DVec3::new(0.0, 95.0, z)));
+        // Half of what it sees is ground, at its foot all of that without distance.
+        assert!((open(10.0) - 0.5).abs() < 0.06, "{}", open(10.0));
+        assert!(open(20.0) > open(12.0) && open(55.0) > 0.97, "{} {} {}", open(12.0), open(20.0), open(55.0));
+    }
+
+    #[test]
+    fn closed_things_are_light_outside_whichever_way_their_faces_run() {
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        let c = |x: f64, y: f64, z: f64| [10.0 * x, 10.0 * y, 10.0 * z];
+        for (corners, turned) in [
+            ([c(0.0, 0.0, 0.0), c(1.0, 0.0, 0.0), c(1.0, 1.0, 0.0), c(0.0, 1.0, 0.0)], true),
+            ([c(0.0, 0.0, 1.0), c(1.0, 0.0, 1.0), c(1.0, 1.0, 1.0), c(0.0, 1.0, 1.0)], false),
+            ([c(0.0, 0.0, 0.0), c(1.0, 0.0, 0.0), c(1.0, 0.0, 1.0), c(0.0, 0.0, 1.0)], true),
+            ([c(0.0, 1.0, 0.0), c(1.0, 1.0, 0.0), c(1.0, 1.0, 1.0), c(0.0, 1.0, 1.0)], false),
+            ([c(0.0, 0.0, 0.0), c(0.0, 1.0, 0.0), c(0.0, 1.0, 1.0), c(0.0, 0.0, 1.0)], true),
+            ([c(1.0, 0.0, 0.0), c(1.0, 1.0, 0.0), c(1.0, 1.0, 1.0), c(1.0, 0.0, 1.0)], false),
+        ] {
+            let mut corners = corners;
+            if turned {
+                corners.reverse();
+            }
+            rectangle(corners, &mut positions, &mut triangles);
+        }
+        let cube = Mesh::new(&positions, triangles, MeshColors::Layer).unwrap();
+        let cube = with_ambient_occlusion(cube, None, &settings(64), &Progress::silent()).unwrap();
+        for triangle in 0..12 {
+            assert!(cube.openness_at(triangle, [0.3, 0.3, 0.4]) > 0.98, "{triangle}");
+        }
+    }
+}
