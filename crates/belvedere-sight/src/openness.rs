@@ -24,7 +24,9 @@ impl OpennessSettings {
 }
 
 /// Most steps along an edge.
-const MOST_STEPS: f64 = 24.0;
+const MOST_STEPS: f64 = 255.0;
+/// Most points of a triangle for each that its area and its longest edge ask for: slivers have fewer steps along their edges.
+const SURPLUS: f64 = 4.0;
 /// How far from the surface rays begin, share of the reach; how far points are drawn from the edge of their triangle towards its middle.
 const LIFT: f64 = 1e-3;
 const INWARDS: f64 = 0.02;
@@ -58,10 +60,8 @@ pub fn with_ambient_occlusion(
             progress.tick("ambient occlusion", batch as f64 * BATCH as f64 / count as f64)?;
             let (mut steps, mut shares) = (Vec::new(), Vec::new());
             for triangle in batch * BATCH..count.min((batch + 1) * BATCH) {
-                let corners = mesh.corners(triangle);
-                let [a, b, c] = corners;
-                let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-                let n = (longest / settings.step).ceil().clamp(1.0, MOST_STEPS) as u8;
+                let [a, b, c] = mesh.corners(triangle);
+                let n = steps_of([a, b, c], settings.step);
                 steps.push(n);
                 let around = Around { tree: &tree, ground, rays: &rays, lift: LIFT * settings.reach };
                 let normal = mesh.face_normal(triangle);
@@ -79,6 +79,14 @@ pub fn with_ambient_occlusion(
     let (steps, shares) = (steps.concat(), shares.concat());
     // As many as were just counted.
     Ok(mesh.clone().with_open_lattices(&steps, shares).unwrap_or(mesh))
+}
+
+/// Steps along the edges of a triangle.
+fn steps_of([a, b, c]: [DVec3; 3], step: f64) -> u8 {
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a)) / step;
+    let area = 0.5 * (b - a).cross(c - a).length() / (step * step);
+    let asked = 2.0 * area + longest + 3.0;
+    longest.ceil().min((2.0 * SURPLUS * asked).sqrt()).clamp(1.0, MOST_STEPS) as u8
 }
 
 /// Everything that takes light away.

@@ -10,6 +10,9 @@ use glam::Vec3A;
 /// Share of the sun that a point with a normal sees.
 pub(crate) type Sun<'s> = dyn Fn(DVec3, DVec3) -> f32 + 's;
 
+/// Openness that a point is shaded with that no light from around reaches.
+const DARKEST: f32 = 0.25;
+
 /// A mesh layer ready for colouring.
 pub(crate) struct MeshShade<'a> {
     layer: &'a MeshLayer,
@@ -54,9 +57,14 @@ impl<'a> MeshShade<'a> {
         let normal = mesh.normal_at(triangle, weights);
         let n = if front { normal } else { -normal };
         let color = mesh.surface_color_at(triangle, weights, footprint).unwrap_or(self.layer.color);
-        // Darker towards the foot, and from below.
-        let up = (((p.z - self.foot) / self.height) as f32).clamp(0.0, 1.0);
-        let open = (0.60 + 0.40 * smoothstep(-0.1, 0.6, up)) * (1.0 - 0.25 * (-n.z as f32).max(0.0));
+        // Darker where others take light, else towards the foot; and from below.
+        let open = if mesh.has_openness() {
+            DARKEST + (1.0 - DARKEST) * mesh.openness_at(triangle, weights) as f32
+        } else {
+            let up = (((p.z - self.foot) / self.height) as f32).clamp(0.0, 1.0);
+            0.60 + 0.40 * smoothstep(-0.1, 0.6, up)
+        };
+        let open = open * (1.0 - 0.25 * (-n.z as f32).max(0.0));
         // Shadows end where the triangle does, whatever its smooth normals say.
         let face = mesh.face_normal(triangle);
         let sun = sun(p, if front { face } else { -face });

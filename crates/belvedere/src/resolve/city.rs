@@ -3,7 +3,7 @@
 use super::builtin;
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
-use super::mesh::wanted;
+use super::mesh::{wanted, with_ambient_occlusion};
 use crate::BelvedereError;
 use crate::scene_file::{CityDoc, Paths};
 use belvedere_construct::generalise::{GeneraliseSettings, LandCoverMap, generalise, land_cover};
@@ -104,6 +104,7 @@ pub(super) fn layer(
         loader.note(index, remarks(&city, terrain));
     }
     let mut layer = mesh(city, &colors, terrain).map_err(|e| loader.fail(index, "source", e))?;
+    layer.mesh = with_ambient_occlusion(loader, index, layer.mesh, style.ambient_occlusion, ground)?;
     if let Some(select) = &doc.select {
         layer.wanted = Some(wanted(&layer, select).map_err(|e| loader.fail(index, "select", e))?);
     }

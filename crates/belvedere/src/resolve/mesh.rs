@@ -9,6 +9,7 @@ use belvedere_core::{DVec2, DVec3};
 use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::{MeshFile, load_mesh};
 use belvedere_scene::{Crs, LayerKind, Mesh, MeshColors, MeshLayer, Texturing};
+use belvedere_sight::{GroundHeight, OpennessSettings};
 use glam::{DMat3, EulerRot};
 
 /// The layer.
@@ -35,11 +36,32 @@ pub(super) fn layer(
         None => Ok(mesh),
     });
     let mesh = mesh.map_err(|e| loader.fail(index, "source", e))?;
+    let mesh = with_ambient_occlusion(loader, index, mesh, doc.style.ambient_occlusion, ground)?;
     let mut layer = MeshLayer { names, ..MeshLayer::new(mesh, color) };
     if let Some(select) = &doc.select {
         layer.wanted = Some(wanted(&layer, select).map_err(|e| loader.fail(index, "select", e))?);
     }
     Ok(LayerKind::Mesh(layer))
+}
+
+/// The mesh with ambient occlusion, if that is asked for.
+pub(super) fn with_ambient_occlusion(
+    loader: &Loader<'_>,
+    index: usize,
+    mesh: Mesh,
+    reach: Option<f64>,
+    ground: &Ground<'_>,
+) -> Result<Mesh, BelvedereError> {
+    let Some(reach) = reach else { return Ok(mesh) };
+    if !(reach > 0.0 && reach.is_finite()) {
+        let reason =
+            format!("is {reach}; give the distance within which things take light from each other, more than 0");
+        return Err(loader.fail(index, "style.ambient_occlusion", reason));
+    }
+    let height = |xy: DVec2| ground.terrain.and_then(|terrain| terrain.surface_at(xy));
+    let ground: Option<&GroundHeight<'_>> = if ground.terrain.is_some() { Some(&height) } else { None };
+    let settings = OpennessSettings::reaching(reach);
+    Ok(belvedere_sight::with_ambient_occlusion(mesh, ground, &settings, &loader.options.progress)?)
 }
 
 /// All files of the layer as one.

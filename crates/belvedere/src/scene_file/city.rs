@@ -71,10 +71,14 @@ pub struct CityStyleDoc {
     pub wall: String,
     /// Colour of the ground between, in scenes without terrain.
     pub ground: String,
+    /// Ambient occlusion: how far away something may be that takes light, scene units, > 0; 40 suits a town. Computed when the scene is opened.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ambient_occlusion: Option<f64>,
 }
 
 impl Default for CityStyleDoc {
     fn default() -> Self {
-        Self { roof: "#ba6e56".into(), wall: "#ece4d6".into(), ground: "#e8e5dc".into() }
+        let [roof, wall, ground] = ["#ba6e56", "#ece4d6", "#e8e5dc"].map(str::to_owned);
+        Self { roof, wall, ground, ambient_occlusion: None }
     }
 }

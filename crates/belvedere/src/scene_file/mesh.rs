@@ -74,10 +74,13 @@ pub struct MeshStyleDoc {
     pub color: String,
     /// Whether normals of the file smooth the shading.
     pub smooth: bool,
+    /// Ambient occlusion: how far away something may be that takes light, scene units, > 0. Computed when the scene is opened.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ambient_occlusion: Option<f64>,
 }
 
 impl Default for MeshStyleDoc {
     fn default() -> Self {
-        Self { color: "#c9c2b8".into(), smooth: true }
+        Self { color: "#c9c2b8".into(), smooth: true, ambient_occlusion: None }
     }
 }
