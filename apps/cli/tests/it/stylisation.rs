@@ -49,3 +49,27 @@ fn strengths_out_of_range_are_refused_with_their_line() {
         assert!(line.contains(why), "{key}: {line}");
     }
 }
+
+#[test]
+fn ambient_occlusion_darkens_where_things_stand_close_and_moves_nothing() {
+    let place = Place::new();
+    let lit = TOWN.replace("size=500'", "size=500'\nstyle = { ambient_occlusion = 40 }");
+    place.write("plain.toml", TOWN);
+    place.write("lit.toml", &lit);
+    let draw = |scene: &str, out: &str| {
+        place.ok(&["render", scene, "-o", out, "--size", "320x180", "--aux", "depth,id", "--overwrite"]);
+        read(&place.path(out))
+    };
+    let (plain, dark) = (draw("plain.toml", "plain.png"), draw("lit.toml", "lit.png"));
+    assert!(plain != dark);
+    for buffer in ["depth", "id"] {
+        let [a, b] = ["plain", "lit"].map(|name| read(&place.path(&format!("{name}.{buffer}.npy"))));
+        assert!(a == b, "{buffer}");
+    }
+    assert!(draw("lit.toml", "again.png") == dark, "the same scene, other bytes");
+    for reach in ["0", "-1", "nan"] {
+        place.write("bad.toml", &lit.replace("= 40", &format!("= {reach}")));
+        let line = place.fails(&["render", "bad.toml", "-o", "bad.png"]);
+        assert!(line.contains("ambient_occlusion"), "{reach}: {line}");
+    }
+}

@@ -39,7 +39,8 @@ const FIGURES: [Entry; 7] = [
     Entry {
         name: "styles",
         title: "Stylisation",
-        says: "Dark edges where depth and faces break, and shade behind what stands out, alone and together.",
+        says: "Light that houses keep from each other, dark edges where depth and faces break, and shade behind what stands out, alone and \
+               together.",
         draw: styles::side_by_side,
     },
     Entry {

@@ -6,13 +6,29 @@ use crate::figure_set::Figure;
 use anyhow::Result;
 use belvedere::Session;
 use belvedere::core::{DVec3, Pinhole, View};
+use belvedere::scene_file::{LayerDoc, parse};
+use std::path::Path;
 
+/// Distance within which houses take light from each other, metres: that of our specification, section 7.
+const REACH_M: f64 = 40.0;
 const SCENE: &str = include_str!("../../../../scenes/town_sections.toml");
 
 /// The town of the scenes folder, seen from a viewing angle; straight.
 pub(super) fn seen(easel: &Easel<'_>, phi_deg: f64, distance: f64) -> Result<Session> {
     let session = easel.open(SCENE, TILE)?;
     from(&session, phi_deg, distance)
+}
+
+/// The same town with ambient occlusion.
+pub(super) fn shaded(easel: &Easel<'_>, phi_deg: f64, distance: f64) -> Result<Session> {
+    let mut document = parse(Path::new("figure.toml"), SCENE)?.document;
+    for layer in &mut document.layer {
+        if let LayerDoc::City(city) = layer {
+            city.style.ambient_occlusion = Some(REACH_M);
+        }
+    }
+    let text = belvedere::output::document_toml(&document)?;
+    from(&easel.open(&text, TILE)?, phi_deg, distance)
 }
 
 /// The session seen from a viewing angle.

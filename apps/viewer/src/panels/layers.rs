@@ -93,11 +93,13 @@ fn style(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDoc) {
         }
         LayerDoc::Mesh(l) => {
             color(ui, &format!("colour of {id}"), &mut l.style.color);
+            occlusion(ui, &id, &mut l.style.ambient_occlusion);
         }
         LayerDoc::City(l) => {
             color(ui, &format!("roofs of {id}"), &mut l.style.roof);
             color(ui, &format!("walls of {id}"), &mut l.style.wall);
             color(ui, &format!("ground of {id}"), &mut l.style.ground);
+            occlusion(ui, &id, &mut l.style.ambient_occlusion);
         }
         LayerDoc::Molecule(_) => {
             ui.label("Atoms are drawn in the colours of their elements; see molecules in the guide.");
@@ -128,6 +130,22 @@ fn width(ui: &mut Ui, name: &str, value: &mut f64) {
     ui.horizontal(|ui| {
         let label = ui.label(name);
         ui.add(DragValue::new(value).speed(0.05).range(0.2..=40.0)).labelled_by(label.id);
+    });
+}
+
+/// Distance within which things take light from each other, where that is first asked for: that of a town, metres.
+const REACH: f64 = 40.0;
+
+fn occlusion(ui: &mut Ui, id: &str, value: &mut Option<f64>) {
+    let mut on = value.is_some();
+    ui.horizontal(|ui| {
+        if ui.checkbox(&mut on, format!("ambient occlusion of {id}")).changed() {
+            *value = on.then_some(REACH);
+        }
+        if let Some(reach) = value {
+            let label = ui.label("within");
+            ui.add(DragValue::new(reach).speed(0.5).range(0.01..=1e4)).labelled_by(label.id);
+        }
     });
 }
 
