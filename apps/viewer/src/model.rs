@@ -62,8 +62,8 @@ const PACE_MS: [f64; 2] = [32.0, 16.0];
 const COARSEST: f64 = 0.35;
 /// Pictures whose times are remembered.
 const LATENCIES: usize = 600;
-/// How long nothing moves before the picture is drawn in full, seconds.
-const REST_AFTER: f64 = 0.09;
+/// How long nothing moves before the picture is drawn in full, seconds; longer where that cannot be broken off.
+const REST_AFTER: f64 = if cfg!(target_family = "wasm") { 0.09 } else { 0.06 };
 /// Time in which a straight picture becomes a bent one, seconds.
 const EASE: f64 = 0.6;
 
