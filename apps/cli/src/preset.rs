@@ -79,6 +79,7 @@ const SET_HELP: &str = "Presets by name, or by position from 1; points, tags and
   PRESET.remove-point=N   one less                       PRESET.range=S,E   depths of u = 0 and u = 1
   PRESET.corner=N         doubles a point, or undoes it  PRESET.fade=A,B    where representations fade
   PRESET.soften=SHARE     spreads doubled points         PRESET.fov=DEG     field of view, or none
+  PRESET.angles=COUNT     the curve as angles of view    PRESET.angle.N=DEG one of them
   PRESET.tag.N=T or U,V   moves a border                 PRESET.mirror      near and far change places
   PRESET.width.N=DELTA    half width of its transition   PRESET.name=NAME
   PRESET.section.N=ID     representation of a section    PRESET.duplicate=NAME,DEG

@@ -120,6 +120,7 @@ impl BendShape {
             a: 0.0,
             b: 1.0,
             control: control.into_iter().map(|p| p.map(|v| tidy(v, 1e5))).collect(),
+            angles: None,
             knots: None,
             tags: Vec::new(),
             sections: vec!["all".into()],

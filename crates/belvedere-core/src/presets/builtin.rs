@@ -125,6 +125,7 @@ fn preset(name: &str, phi: f64, [s, e]: [f64; 2], control: &[[f64; 2]]) -> Prese
         a: 0.1,
         b: 0.6,
         control: control.to_vec(),
+        angles: None,
         knots: None,
         tags: Vec::new(),
         sections: one_section(),

@@ -55,6 +55,30 @@ pub enum PresetError {
         /// What is wrong.
         source: BSplineError,
     },
+    /// Angles and control points.
+    #[error(
+        "preset {preset}: it has angles and control points or knots; a curve is told by one of them, remove the other"
+    )]
+    TwoCurves {
+        /// Preset.
+        preset: String,
+    },
+    /// Too few or too many angles.
+    #[error("preset {preset}: it has {count} angles, from 2 to {limit} make a curve")]
+    AngleCount {
+        /// Preset.
+        preset: String,
+        /// How many.
+        count: usize,
+        /// Most.
+        limit: usize,
+    },
+    /// Arc lengths of angles that do not rise from 0.
+    #[error("preset {preset}: the arc lengths of its angles do not rise from 0; sort them, the first one is 0")]
+    AngleOrder {
+        /// Preset.
+        preset: String,
+    },
     /// The control points run towards the eye.
     #[error(
         "preset {preset}: the last control point (u = {far}) is nearer than the first (u = {near}); list them near to far"

@@ -1,7 +1,7 @@
 //! Which presets hold at a viewing angle, and what lies between them.
 
 use super::align::align;
-use super::{Ease, Preset, PresetDocument};
+use super::{Ease, Preset, PresetDocument, angles};
 use crate::bspline::{BSpline, BSplineError};
 use crate::sections::{StylingSections, TagPoint};
 
@@ -61,7 +61,7 @@ impl PresetDocument {
 }
 
 impl Selection<'_> {
-    /// The preset between the two: control points over common knots, s, e, tags and field of view interpolated linearly,
+    /// The preset between the two: control points over common knots (angles, where both have them), s, e, tags and field of view interpolated linearly,
     /// representations cross-faded between `a` and `b`. `camera_fov_y_deg` stands in where only one of them has a field of view.
     ///
     /// # Errors
@@ -69,9 +69,10 @@ impl Selection<'_> {
     pub fn interpolate(&self, camera_fov_y_deg: f64) -> Result<InterpolatedPreset, BSplineError> {
         let (p, q, sigma) = (self.start, self.target, self.sigma);
         let mix = |a: f64, b: f64| a + sigma * (b - a);
-        let spline = match sigma {
-            0.0 => p.spline()?,
-            1.0 => q.spline()?,
+        let spline = match (sigma, &p.angles, &q.angles) {
+            (0.0, ..) => p.spline()?,
+            (1.0, ..) => q.spline()?,
+            (_, Some(a), Some(b)) => angles::curve(&angles::between(a, b, sigma))?,
             _ => BSpline::lerp(&p.spline()?, &q.spline()?, sigma),
         };
         let [start, target] = align(p, q);

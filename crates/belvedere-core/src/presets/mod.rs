@@ -1,6 +1,7 @@
 //! Preset documents: deformation curves, styling sections and the viewing angles they are made for.
 
 mod align;
+mod angles;
 mod builtin;
 pub mod edit;
 mod error;
@@ -76,8 +77,13 @@ pub struct Preset {
     /// Share at which they are complete, `a`..=1.
     #[serde(default = "one")]
     pub b: f64,
-    /// Control points (u, v) of the curve, near to far, at least 4.
+    /// Control points (u, v) of the curve, near to far, at least 4; none where there are `angles`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub control: Vec<[f64; 2]>,
+    /// In place of control points: the slope of the curve (in frame `camera` the angle under which the ground is seen), degrees, at arc
+    /// lengths that rise from 0, curve units; linear between them. The curve begins at (0, 0).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angles: Option<Vec<[f64; 2]>>,
     /// Knots, `control.len() + 4` of them, clamped; clamped uniform if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub knots: Option<Vec<f64>>,
@@ -118,6 +124,9 @@ pub struct PresetDocument {
     pub presets: Vec<Preset>,
 }
 
+/// Most angles of a curve.
+const MOST_ANGLES: usize = 1000;
+
 fn one() -> f64 {
     1.0
 }
@@ -136,6 +145,9 @@ impl Preset {
     /// # Errors
     /// Every [`BSplineError`].
     pub fn spline(&self) -> Result<BSpline, BSplineError> {
+        if let Some(angles) = &self.angles {
+            return angles::curve(angles);
+        }
         let control = self.control.iter().map(|&p| DVec2::from(p)).collect();
         match &self.knots {
             Some(knots) => BSpline::with_knots(control, knots.clone()),
@@ -169,14 +181,38 @@ impl Preset {
         if self.e <= self.s {
             return Err(PresetError::EndBeforeStart { preset: preset(), s: self.s, e: self.e });
         }
+        if let Some(angles) = &self.angles {
+            self.validate_angles(angles, &preset)?;
+        }
         let spline = self.spline().map_err(|source| PresetError::Curve { preset: preset(), source })?;
-        let (near, far) = (self.control[0][0], self.control[self.control.len() - 1][0]);
+        let [near, far] = [0, spline.control().len() - 1].map(|i| spline.control()[i].x);
         if far < near - 1e-12 {
             return Err(PresetError::FarEndNearer { preset: preset(), near, far });
         }
         DeformationCurve::new(&spline)
             .map_err(|e| PresetError::CurveTooShort { preset: preset(), length: e.length })?;
         self.validate_sections(index)
+    }
+
+    fn validate_angles(&self, angles: &[[f64; 2]], preset: &dyn Fn() -> String) -> Result<(), PresetError> {
+        if !self.control.is_empty() || self.knots.is_some() {
+            return Err(PresetError::TwoCurves { preset: preset() });
+        }
+        if angles.iter().flatten().any(|v| !v.is_finite()) {
+            return Err(PresetError::NotFinite { preset: preset(), field: "angles" });
+        }
+        if !(2..=MOST_ANGLES).contains(&angles.len()) {
+            return Err(PresetError::AngleCount { preset: preset(), count: angles.len(), limit: MOST_ANGLES });
+        }
+        let ranges = angles.iter().flat_map(|[l, degrees]| [(*l, 0.0, 1e6), (*degrees, -360.0, 360.0)]);
+        if let Some((value, min, max)) = ranges.into_iter().find(|r| !(r.1..=r.2).contains(&r.0)) {
+            return Err(PresetError::Range { preset: preset(), field: "angles", value, min, max });
+        }
+        let rises = |pair: &[[f64; 2]]| pair[1][0] > pair[0][0] + 1e-9;
+        if angles[0][0] != 0.0 || !angles.windows(2).all(rises) {
+            return Err(PresetError::AngleOrder { preset: preset() });
+        }
+        Ok(())
     }
 
     fn validate_sections(&self, index: usize) -> Result<(), PresetError> {

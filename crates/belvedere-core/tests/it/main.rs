@@ -2,6 +2,7 @@
 
 mod curved_rays;
 mod eased;
+mod preset_angles;
 mod preset_edit;
 mod presets;
 mod relief;

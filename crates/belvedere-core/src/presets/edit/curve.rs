@@ -1,7 +1,7 @@
 //! Operations on control points.
 
 use super::{EditError, Edited};
-use crate::presets::Preset;
+use crate::presets::{Preset, angles};
 use glam::DVec2;
 
 /// Where the two copies of a doubled point go when it is made soft: shares of the legs to the end of the curve, and to other points.
@@ -11,6 +11,38 @@ const SPREAD_TO_POINT: f64 = 0.25;
 const FEWEST: usize = 4;
 
 impl Edited<'_> {
+    /// A curve of angles becomes one of control points, the same one.
+    pub(super) fn with_points(self) -> Result<Self, EditError> {
+        if self.preset.angles.is_some() {
+            let spline = self.preset.spline().map_err(|e| self.bad_curve(e))?;
+            self.preset.control = spline.control().iter().map(|p| p.to_array()).collect();
+            self.preset.knots = Some(spline.knots().to_vec());
+            self.preset.angles = None;
+        }
+        Ok(self)
+    }
+
+    pub(super) fn to_angles(self, count: usize) -> Result<(), EditError> {
+        self.range("number of angles", count as f64, [2.0, 1000.0])?;
+        let spline = self.preset.spline().map_err(|e| self.bad_curve(e))?;
+        // A curve of no length is refused when the document is looked at as a whole.
+        self.preset.angles = angles::of_curve(&spline, count);
+        (self.preset.control, self.preset.knots) = (Vec::new(), None);
+        Ok(())
+    }
+
+    pub(super) fn turn(self, number: usize, degrees: f64) -> Result<(), EditError> {
+        if self.preset.angles.is_none() {
+            let what = format!("preset {}: its curve has control points, no angles", self.label);
+            return Err(EditError::Needed { what, remedy: "give it angles first, as in PRESET.angles=5" });
+        }
+        let index = self.index("angle", number, self.preset.angles.as_ref().map_or(0, Vec::len))?;
+        if let Some(angles) = &mut self.preset.angles {
+            angles[index][1] = degrees;
+        }
+        Ok(())
+    }
+
     pub(super) fn move_point(self, number: usize, to: [f64; 2]) -> Result<(), EditError> {
         let index = self.index("control point", number, self.preset.control.len())?;
         self.preset.control[index] = to;
@@ -90,7 +122,12 @@ impl Edited<'_> {
     }
 
     pub(super) fn mirror(self) {
-        let Preset { control, knots, tags, sections, .. } = self.preset;
+        let Preset { control, knots, angles, tags, sections, .. } = self.preset;
+        if let Some(angles) = angles {
+            let length = angles.last().map_or(0.0, |last| last[0]);
+            angles.reverse();
+            angles.iter_mut().for_each(|angle| angle[0] = length - angle[0]);
+        }
         control.reverse();
         control.iter_mut().for_each(|p| *p = [1.0 - p[0], -p[1]]);
         if let Some(knots) = knots {

@@ -59,6 +59,10 @@ pub enum PresetChange {
     Corner(usize),
     /// Doubled points are spread along their legs by a share, 0..=1.
     Soften(f64),
+    /// The curve is told by its angles at so many places, evenly along it, instead of by control points.
+    Angles(usize),
+    /// An angle of a curve that is told by angles, degrees.
+    Turn(usize, f64),
     /// A border is dragged to the place of the curve nearest to (u, v), as far as its neighbours let it.
     MoveTag(usize, [f64; 2]),
     /// A border at a share of the curve's length, as far as its neighbours let it.
@@ -213,11 +217,13 @@ impl PresetDocument {
         }
         let at = Edited { preset: &mut self.presets[index], label: &label };
         match change {
-            PresetChange::MovePoint(number, to) => at.move_point(*number, *to),
-            PresetChange::AddPoint(t) => at.add_point(*t),
-            PresetChange::RemovePoint(number) => at.remove_point(*number),
-            PresetChange::Corner(number) => at.toggle_corner(*number),
-            PresetChange::Soften(share) => at.soften(*share),
+            PresetChange::MovePoint(number, to) => at.with_points()?.move_point(*number, *to),
+            PresetChange::AddPoint(t) => at.with_points()?.add_point(*t),
+            PresetChange::RemovePoint(number) => at.with_points()?.remove_point(*number),
+            PresetChange::Corner(number) => at.with_points()?.toggle_corner(*number),
+            PresetChange::Soften(share) => at.with_points()?.soften(*share),
+            PresetChange::Angles(count) => at.to_angles(*count),
+            PresetChange::Turn(number, degrees) => at.turn(*number, *degrees),
             PresetChange::MoveTag(number, to) => at.move_tag(*number, *to),
             PresetChange::PlaceTag(number, u) => at.place_tag(*number, *u),
             PresetChange::TagWidth(number, delta) => at.widen_tag(*number, *delta),

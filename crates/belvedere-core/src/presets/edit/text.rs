@@ -5,7 +5,7 @@ use crate::presets::{BendFrame, DepthUnits, Ease};
 use std::str::FromStr;
 
 /// What can be written, for messages.
-const KEYS: &str = "PRESET.point.N=U,V  PRESET.add-point=T  PRESET.remove-point=N  PRESET.corner=N  PRESET.soften=SHARE  \
+const KEYS: &str = "PRESET.point.N=U,V  PRESET.add-point=T  PRESET.remove-point=N  PRESET.corner=N  PRESET.soften=SHARE  PRESET.angles=COUNT  PRESET.angle.N=DEG  \
 PRESET.tag.N=T or U,V  PRESET.width.N=DELTA  PRESET.section.N=ID  PRESET.split=N  PRESET.merge=N  PRESET.range=S,E  PRESET.phi=DEG  \
 PRESET.tau=DEG  PRESET.fade=A,B  PRESET.fov=DEG or none  PRESET.mirror  PRESET.duplicate=NAME,DEG  PRESET.name=NAME  PRESET.remove  \
 add=BUILT-IN,NAME,DEG  frame=camera or plane  units=absolute or distance  ease=linear or smoothstep  pin=true  follow=true";
@@ -95,6 +95,7 @@ impl Value<'_> {
                 [u, v] => PresetChange::MoveTag(numbered()?, [u, v]),
                 ref n => return Err(format!("one or two numbers are needed, there are {}", n.len())),
             },
+            "angle" => PresetChange::Turn(numbered()?, self.one()?),
             "width" => PresetChange::TagWidth(numbered()?, self.one()?),
             "section" => PresetChange::Section(numbered()?, self.text()?.to_owned()),
             _ if number.is_some() => return Err(format!("{key:?} takes no number; the keys are {KEYS}")),
@@ -102,6 +103,7 @@ impl Value<'_> {
             "remove-point" => PresetChange::RemovePoint(self.one()?),
             "corner" => PresetChange::Corner(self.one()?),
             "soften" => PresetChange::Soften(self.one()?),
+            "angles" => PresetChange::Angles(self.one()?),
             "split" => PresetChange::Split(self.one()?),
             "merge" => PresetChange::Merge(self.one()?),
             "range" => PresetChange::Range(self.pair()?),
