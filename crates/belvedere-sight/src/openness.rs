@@ -27,9 +27,11 @@ impl OpennessSettings {
 const MOST_STEPS: f64 = 255.0;
 /// Most points of a triangle for each that its area and its longest edge ask for: slivers have fewer steps along their edges.
 const SURPLUS: f64 = 4.0;
-/// How far from the surface rays begin, share of the reach; how far points are drawn from the edge of their triangle towards its middle.
+/// How far from the surface rays begin, share of the reach.
 const LIFT: f64 = 1e-3;
+/// How far points are drawn from the edge of their triangle towards its middle: a share of the way, and at most one of the reach.
 const INWARDS: f64 = 0.02;
+const MOST_INWARDS: f64 = 0.01;
 /// A side that gets less than this may be the inside of something closed: the other one is looked at, too.
 const INSIDE: f64 = 0.3;
 /// Triangles that are computed at a time.
@@ -68,7 +70,9 @@ pub fn with_ambient_occlusion(
                 let middle = (a + b + c) / 3.0;
                 shares.extend(triangle_lattice(n).map(|w| {
                     let p = a * w[0] + b * w[1] + c * w[2];
-                    let open = around.openness(p.lerp(middle, INWARDS), normal);
+                    let inwards =
+                        INWARDS.min(MOST_INWARDS * settings.reach / p.distance(middle).max(f64::MIN_POSITIVE));
+                    let open = around.openness(p.lerp(middle, inwards), normal);
                     (255.0 * open).round() as u8
                 }));
             }
@@ -197,7 +201,8 @@ mod tests {
 
     #[test]
     fn a_wall_takes_from_the_floor_what_the_integral_says() {
-        let mesh = with_ambient_occlusion(corner(60.0), None, &settings(2048), &Progress::silent()).unwrap();
+        let fine = OpennessSettings { step: 4.0, ..settings(512) };
+        let mesh = with_ambient_occlusion(corner(60.0), None, &fine, &Progress::silent()).unwrap();
         for distance in [2.0, 6.0, 12.0, 25.0, 60.0] {
             let p = DVec3::new(distance, 100.0, 0.0);
             let triangle = usize::from(distance < 100.0);

@@ -211,7 +211,5 @@ fn arguments_are_checked_in_one_line() {
     assert!(place.fails(&[]).contains("a verb is missing"));
     assert!(place.fails(&["render", "s.toml", "-o", "x.png", "--size", "big"]).contains("1280x720"));
     let help = place.ok(&["--help"]);
-    for later in ["migrate", "  pack "] {
-        assert!(!help.contains(later), "{later} is in the help");
-    }
+    assert!(!help.contains("migrate"), "what does not exist yet is in the help");
 }

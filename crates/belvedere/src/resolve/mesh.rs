@@ -55,8 +55,8 @@ pub(super) fn with_ambient_occlusion(
     let Some(reach) = reach else { return Ok(mesh) };
     if !(reach > 0.0 && reach.is_finite()) {
         let reason =
-            format!("is {reach}; give the distance within which things take light from each other, more than 0");
-        return Err(loader.fail(index, "style.ambient_occlusion", reason));
+            format!("ambient_occlusion is {reach}; give the distance within which things take light, more than 0");
+        return Err(loader.fail(index, "style", reason));
     }
     let height = |xy: DVec2| ground.terrain.and_then(|terrain| terrain.surface_at(xy));
     let ground: Option<&GroundHeight<'_>> = if ground.terrain.is_some() { Some(&height) } else { None };
