@@ -22,7 +22,7 @@ impl Edited<'_> {
         Ok(self)
     }
 
-    pub(super) fn to_angles(self, count: usize) -> Result<(), EditError> {
+    pub(super) fn give_angles(self, count: usize) -> Result<(), EditError> {
         self.range("number of angles", count as f64, [2.0, 1000.0])?;
         let spline = self.preset.spline().map_err(|e| self.bad_curve(e))?;
         // A curve of no length is refused when the document is looked at as a whole.

@@ -222,7 +222,7 @@ impl PresetDocument {
             PresetChange::RemovePoint(number) => at.with_points()?.remove_point(*number),
             PresetChange::Corner(number) => at.with_points()?.toggle_corner(*number),
             PresetChange::Soften(share) => at.with_points()?.soften(*share),
-            PresetChange::Angles(count) => at.to_angles(*count),
+            PresetChange::Angles(count) => at.give_angles(*count),
             PresetChange::Turn(number, degrees) => at.turn(*number, *degrees),
             PresetChange::MoveTag(number, to) => at.move_tag(*number, *to),
             PresetChange::PlaceTag(number, u) => at.place_tag(*number, *u),
