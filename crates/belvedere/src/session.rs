@@ -6,7 +6,7 @@ use crate::resolve::motion::Motions;
 use crate::resolve::terrain::{self, Solving};
 use crate::resolve::{validate, view};
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{Document, OverlayDoc, SourceDocument, StageDoc, TerrainStageDoc};
+use crate::scene_file::{Document, OverlayDoc, SourceDocument, StageDoc};
 use crate::{BelvedereError, OpenOptions};
 use belvedere_core::View;
 use belvedere_cpu::CpuRenderer;
@@ -209,7 +209,7 @@ impl Session {
 
     /// Terrain disocclusion that the document asks for and a solver has to find.
     #[cfg(not(target_family = "wasm"))]
-    pub(crate) fn stated_terrain(&self) -> Option<TerrainStageDoc> {
+    pub(crate) fn stated_terrain(&self) -> Option<crate::scene_file::TerrainStageDoc> {
         let mut stages = self.description.iter().flat_map(|d| &d.source.document.stage);
         stages.find_map(|stage| match stage {
             StageDoc::TerrainDisocclusion(doc) if doc.delta.is_none() => Some(doc.clone()),

@@ -1,6 +1,7 @@
 //! `figures spline`: the figures of Pasewaldt et al. 2011, drawn again on generated scenes.
 
 mod angles;
+mod arc_length;
 mod bent;
 mod canyon;
 mod corners;
@@ -14,7 +15,7 @@ use belvedere::OpenOptions;
 use std::path::{Path, PathBuf};
 
 /// In the order of the page.
-const FIGURES: [Entry; 7] = [
+const FIGURES: [Entry; 8] = [
     Entry {
         name: "town",
         title: "Progressive, degressive and hybrid views of a town",
@@ -55,6 +56,13 @@ const FIGURES: [Entry; 7] = [
         title: "Relief as panorama makers draw it",
         says: "Heights exaggerated towards the background, a curved horizon, and plan oblique relief: a stage of its own before any bend.",
         draw: relief::changes,
+    },
+    Entry {
+        name: "arc_length",
+        title: "Arc length from a table",
+        says: "What a table of samples of the curve gets wrong, against the number of samples. Pictures are drawn without a table: our arc \
+               length is right to 1e-14 of its length.",
+        draw: arc_length::against_samples,
     },
     Entry {
         name: "chain",
