@@ -85,6 +85,10 @@ fn the_built_in_scene_is_drawn_and_dragged() {
     let times = times(&mut page, rests);
     let rest_ms = times["rest_to_full_picture_ms"].as_array().and_then(|all| all.last()?.as_f64()).expect("a rest");
     assert!(page.screenshot() != before, "the picture does not follow the pointer");
+    // What was done is there again when the page is loaded again.
+    let left = page.value("belvedere.application.scene()");
+    page.call("Page.reload", serde_json::json!({}));
+    page.wait("window.belvedere?.application.scene() ?? null", |scene| *scene == left);
     let mut each: Vec<f64> =
         times["input_to_picture_ms"].as_array().expect("times").iter().filter_map(Value::as_f64).collect();
     each.sort_by(f64::total_cmp);
