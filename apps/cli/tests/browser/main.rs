@@ -7,7 +7,7 @@ mod chromium;
 mod server;
 
 use chromium::{PAGE, Page};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -67,7 +67,7 @@ fn the_built_in_scene_is_drawn_and_dragged() {
     let report = pack(&application, &[], &site);
     let began = Instant::now();
     let address = server::serve(site);
-    page.call("Page.navigate", serde_json::json!({ "url": address }));
+    page.call("Page.navigate", json!({ "url": address }));
     times(&mut page, |times| times["pictures"].as_u64() > Some(0));
     let first_ms = began.elapsed().as_millis();
     times(&mut page, rests);
@@ -87,7 +87,7 @@ fn the_built_in_scene_is_drawn_and_dragged() {
     assert!(page.screenshot() != before, "the picture does not follow the pointer");
     // What was done is there again when the page is loaded again.
     let left = page.value("belvedere.application.scene()");
-    page.call("Page.reload", serde_json::json!({}));
+    page.call("Page.reload", json!({}));
     page.wait("window.belvedere?.application.scene() ?? null", |scene| *scene == left);
     let mut each: Vec<f64> =
         times["input_to_picture_ms"].as_array().expect("times").iter().filter_map(Value::as_f64).collect();
@@ -126,9 +126,45 @@ fn a_packed_terrain_and_its_route_are_drawn_as_the_command_line_draws_them() {
     let drawn = drawn.expect("the program starts");
     assert!(drawn.status.success(), "{}", String::from_utf8_lossy(&drawn.stderr));
     let address = server::serve(site);
-    page.call("Page.navigate", serde_json::json!({ "url": address }));
+    page.call("Page.navigate", json!({ "url": address }));
     times(&mut page, rests);
     let shown = page.value("belvedere.application.scene()");
     assert_eq!(shown.as_str().expect("scene"), text, "the page shows another scene");
+    assert_eq!(page.complaints, Vec::<String>::new());
+}
+
+#[test]
+fn files_that_are_dropped_on_the_page_are_opened_and_what_is_saved_is_downloaded() {
+    let Some(application) = application() else { return };
+    let names = ["rmnp/rmnp_dem.tif", "rmnp/continental-div-trail_clip.geojson"];
+    let [Some(dem), Some(route)] = names.map(belvedere_testkit::data) else { return };
+    let place = tempfile::tempdir().expect("folder");
+    let Some(mut page) = browser(place.path()) else { return };
+    let site = place.path().join("site");
+    pack(&application, &[], &site);
+    let address = server::serve(site);
+    page.call("Page.navigate", json!({ "url": address }));
+    times(&mut page, rests);
+    for step in ["dragEnter", "dragOver", "drop"] {
+        let data = json!({ "items": [], "files": [dem, route], "dragOperationsMask": 1 });
+        page.call("Input.dispatchDragEvent", json!({ "type": step, "x": 700, "y": 400, "data": data }));
+    }
+    let opened = |scene: &Value| scene.as_str().is_some_and(|text| text.contains("rmnp_dem.tif"));
+    let scene = page.wait("belvedere.application.scene()", opened);
+    assert!(scene.as_str().is_some_and(|text| text.contains("must_see = true") && text.contains("spline_bend")));
+    times(&mut page, rests);
+    let downloads = place.path().join("downloads");
+    page.call("Browser.setDownloadBehavior", json!({ "behavior": "allow", "downloadPath": downloads }));
+    for kind in ["keyDown", "keyUp"] {
+        let key = json!({ "type": kind, "modifiers": 2, "key": "s", "code": "KeyS", "windowsVirtualKeyCode": 83 });
+        page.call("Input.dispatchKeyEvent", key);
+    }
+    let saved = downloads.join("scene.toml");
+    let began = Instant::now();
+    while !saved.exists() {
+        assert!(began.elapsed() < DRAG, "nothing is downloaded; {:?}", page.complaints);
+        times(&mut page, |_| true);
+    }
+    assert_eq!(std::fs::read_to_string(&saved).expect("scene"), scene.as_str().expect("scene"));
     assert_eq!(page.complaints, Vec::<String>::new());
 }
