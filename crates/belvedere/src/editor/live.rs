@@ -3,7 +3,7 @@
 use super::Place;
 use crate::fallback;
 use crate::overlays::grid;
-use crate::picture::{self, AuxBuffer, DisplacementReport, PictureOptions};
+use crate::picture::{self, DisplacementReport, PictureOptions};
 use crate::scene_file::{Document, LayerDoc, SourceDocument, StageDoc};
 use crate::{BelvedereError, CameraPicture, OpenOptions, Session};
 use belvedere_construct::measure::HiddenRun;
@@ -63,7 +63,7 @@ pub struct Shown {
     pub document: Arc<Document>,
     /// Scene, view, light and reports.
     pub session: Session,
-    /// The bent picture, if it was wanted; with world positions if it is of the pace [`Pace::Resting`].
+    /// The bent picture, if it was wanted.
     pub bent: Option<Frame>,
     /// The straight one, likewise.
     pub straight: Option<Frame>,
@@ -140,8 +140,7 @@ impl LiveSession {
             }
             Pace::Resting => {
                 let mut side = |plain: bool| {
-                    let aux = vec![AuxBuffer::World];
-                    let request = PictureOptions { straight: plain, aux, ..PictureOptions::default() };
+                    let request = PictureOptions { straight: plain, ..PictureOptions::default() };
                     let drawn = picture::draw_view(&session, &request, progress)?;
                     displacement = displacement.or(drawn.displacement);
                     Ok::<_, BelvedereError>(Some(drawn.frame))
