@@ -138,6 +138,8 @@ fn files_that_are_dropped_on_the_page_are_opened_and_what_is_saved_is_downloaded
     let Some(application) = application() else { return };
     let names = ["rmnp/rmnp_dem.tif", "rmnp/continental-div-trail_clip.geojson"];
     let [Some(dem), Some(route)] = names.map(belvedere_testkit::data) else { return };
+    // The browser takes no path that climbs ("..").
+    let [dem, route] = [dem, route].map(|path| path.canonicalize().expect("test data"));
     let place = tempfile::tempdir().expect("folder");
     let Some(mut page) = browser(place.path()) else { return };
     let site = place.path().join("site");
