@@ -34,6 +34,13 @@ impl Application {
         self.runner.start(canvas, eframe::WebOptions::default(), make).await
     }
 
+    /// Shows what its workers have made; to be called often where there are some.
+    pub fn attend(&self) {
+        if let Some(viewer) = self.runner.app_mut::<Viewer>() {
+            viewer.wake().pass_on();
+        }
+    }
+
     /// What it has drawn and how long that took, as JSON; for whoever measures.
     pub fn times(&self) -> Option<String> {
         self.runner.app_mut::<Viewer>().map(|viewer| viewer.times().to_string())

@@ -1,7 +1,8 @@
 //! Export: a picture of any size, an animation, a report; beside the window, with progress, to be cancelled.
 
 use crate::model::Model;
-use belvedere::editor::Place;
+use crate::wake::Wake;
+use belvedere::editor::{Place, beside};
 use belvedere::picture::PictureOptions;
 use belvedere::scene::Progress;
 use belvedere::scene_file::{AnimationDoc, Document, SweepDoc, TurntableDoc};
@@ -49,6 +50,8 @@ struct Job {
     name: &'static str,
     progress: Progress,
     at: Arc<Mutex<(String, f64)>>,
+    /// What was read there last.
+    last: (String, f64),
     /// What was written.
     done: mpsc::Receiver<Result<Vec<PathBuf>, BelvedereError>>,
 }
@@ -114,10 +117,14 @@ impl Exporter {
                 Err(mpsc::TryRecvError::Empty) => ui.ctx().request_repaint_after_secs(0.1),
             }
         }
-        let Some(job) = &self.job else { return };
-        let (stage, share) = job.at.lock().map(|at| at.clone()).unwrap_or_default();
+        let Some(job) = &mut self.job else { return };
+        // The page of a browser may not wait for a lock.
+        if let Ok(at) = job.at.try_lock() {
+            job.last = at.clone();
+        }
+        let (stage, share) = &job.last;
         ui.label(format!("{}: {stage}", job.name));
-        ui.add(ProgressBar::new(share as f32).show_percentage());
+        ui.add(ProgressBar::new(*share as f32).show_percentage());
         if ui.button("Cancel export").clicked() {
             job.progress.cancel_flag().store(true, Ordering::Relaxed);
         }
@@ -157,22 +164,22 @@ impl Exporter {
             }
         });
         let (outbox, done) = mpsc::channel();
-        let (own, path, ctx) = (progress.clone(), path.to_owned(), ctx.clone());
+        let (own, path, wake) = (progress.clone(), path.to_owned(), Wake::new(ctx));
         let work = move || {
             let result = make(want, document, &place, &path, animation, &own);
             let _ = outbox.send(result);
-            ctx.request_repaint();
+            wake.call();
         };
         let name = match want {
             Want::Picture => "Picture",
             Want::Film => "Animation",
             Want::Report => "Report",
         };
-        if let Err(e) = crate::viewer::beside(work) {
+        if let Err(e) = beside(work) {
             model.notices.error(e);
             return;
         }
-        self.job = Some(Job { name, progress, at, done });
+        self.job = Some(Job { name, progress, at, last: Default::default(), done });
     }
 }
 

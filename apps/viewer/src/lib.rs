@@ -14,6 +14,7 @@ mod picture;
 mod pointer;
 mod times;
 mod viewer;
+mod wake;
 mod widgets;
 #[cfg(not(target_family = "wasm"))]
 mod window;
@@ -22,5 +23,7 @@ mod window;
 pub use browser::Application;
 pub use builtin::BUILTIN;
 pub use viewer::{Opening, Viewer};
+#[cfg(all(target_family = "wasm", target_feature = "atomics"))]
+pub use wasm_bindgen_rayon::init_thread_pool;
 #[cfg(not(target_family = "wasm"))]
 pub use window::{WindowError, run};

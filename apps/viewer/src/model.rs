@@ -123,12 +123,12 @@ pub(crate) struct Model {
 
 impl Model {
     /// * `wake`: called from another thread when there is something new.
-    pub(crate) fn new(editor: Editor, wake: impl Fn() + Send + 'static) -> Self {
+    pub(crate) fn new(editor: Editor, wake: impl Fn() + Send + Sync + 'static) -> Self {
         Self {
             editor,
             look: Look::default(),
             notices: Notices::default(),
-            painter: Painter::new(Box::new(wake)),
+            painter: Painter::new(wake),
             shown: None,
             pictures: 0,
             overhead: None,

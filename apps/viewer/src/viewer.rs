@@ -8,8 +8,9 @@ use crate::model::Model;
 use crate::panels::{Panels, set_stage};
 use crate::picture::{PictureView, image_of_frame};
 use crate::times::Times;
+use crate::wake::Wake;
 use crate::widgets::overhead::overhead;
-use belvedere::editor::{Editor, Place, Recovery, open_files};
+use belvedere::editor::{Editor, Place, Recovery, beside, open_files};
 use belvedere::io::fs;
 use belvedere::scene::Progress;
 use belvedere::scene_file::{self, CameraDoc, StageDoc};
@@ -74,12 +75,13 @@ pub struct Viewer {
     chosen_output: Option<Receiver<Option<PathBuf>>>,
     help: bool,
     times: Times,
+    wake: Wake,
 }
 
 impl Viewer {
     /// Opens what there is to open; what an instance left that did not end comes first.
     pub fn new(ctx: &Context, opening: &Opening) -> Self {
-        let wake = ctx.clone();
+        let wake = Wake::new(ctx);
         let mut notes = Vec::new();
         let (recovery, left) = match opening.state.as_deref().map(Recovery::claim) {
             Some(Ok((recovery, left))) => (Some(recovery), left),
@@ -91,7 +93,11 @@ impl Viewer {
         };
         let first = builtin(0);
         let mut viewer = Self {
-            model: Model::new(first, move || wake.request_repaint()),
+            model: Model::new(first, {
+                let wake = wake.clone();
+                move || wake.call()
+            }),
+            wake,
             panels: Panels::default(),
             picture: PictureView::default(),
             from_above: None,
@@ -124,7 +130,7 @@ impl Viewer {
             Some(_) | None => {}
         }
         if !opening.files.is_empty() {
-            viewer.open(ctx, opening.files.clone());
+            viewer.open(opening.files.clone());
         }
         notes.into_iter().for_each(|note| viewer.model.notices.error(note));
         viewer
@@ -140,6 +146,12 @@ impl Viewer {
         self.pending.is_none() && self.model.rests()
     }
 
+    /// What its workers call.
+    #[cfg(target_family = "wasm")]
+    pub(crate) fn wake(&self) -> &Wake {
+        &self.wake
+    }
+
     /// What was drawn and how long it took.
     #[cfg(target_family = "wasm")]
     pub(crate) fn times(&self) -> serde_json::Value {
@@ -147,16 +159,16 @@ impl Viewer {
     }
 
     /// Opens files beside the window.
-    fn open(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
+    fn open(&mut self, paths: Vec<PathBuf>) {
         if let [path] = paths.as_slice() {
             self.remember(path);
         }
         let (outbox, inbox) = std::sync::mpsc::channel();
-        let (allowed, ctx) = (self.allowed.clone(), ctx.clone());
+        let (allowed, wake) = (self.allowed.clone(), self.wake.clone());
         let work = move || {
             let opened = open_files(&paths, &allowed, &Progress::silent()).map_err(|e| e.to_string());
             let _ = outbox.send(opened);
-            ctx.request_repaint();
+            wake.call();
         };
         if let Err(e) = beside(work) {
             self.model.notices.error(e);
@@ -229,7 +241,7 @@ impl Viewer {
             self.chosen_input = None;
             match answer {
                 Ok(paths) if paths.is_empty() => {}
-                Ok(paths) => self.open(ctx, paths),
+                Ok(paths) => self.open(paths),
                 Err(reason) => self.model.notices.error(reason),
             }
         }
@@ -307,7 +319,7 @@ impl Viewer {
         match choice {
             Choice::Command(command) => self.command(ctx, command),
             Choice::Builtin(i) => self.replace(builtin(i)),
-            Choice::Recent(path) => self.open(ctx, vec![path]),
+            Choice::Recent(path) => self.open(vec![path]),
             Choice::GoTo(i) => {
                 if let Some(bookmark) = self.bookmarks.get(i).cloned() {
                     let image = self.model.document().camera.image;
@@ -385,19 +397,6 @@ impl Viewer {
             self.model.notices.error(format!("what you do could not be written down for the case of a crash: {e}"));
         }
     }
-}
-
-/// Stack of threads that read documents: deep enough for any that passes the limits.
-const STACK_BYTES: usize = 64 << 20;
-
-/// Does something beside the window; in it, where there are no threads.
-pub(crate) fn beside(work: impl FnOnce() + Send + 'static) -> Result<(), String> {
-    if cfg!(target_family = "wasm") {
-        work();
-        return Ok(());
-    }
-    let started = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(work);
-    started.map(drop).map_err(|e| format!("no thread could be started: {e}"))
 }
 
 /// A built-in scene.

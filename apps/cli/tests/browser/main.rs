@@ -60,15 +60,30 @@ fn rests(times: &Value) -> bool {
 
 #[test]
 fn the_built_in_scene_is_drawn_and_dragged() {
+    drawn_and_dragged(false);
+}
+
+#[test]
+fn the_built_in_scene_is_drawn_and_dragged_by_many_threads() {
+    drawn_and_dragged(true);
+}
+
+fn drawn_and_dragged(isolated: bool) {
     let place = tempfile::tempdir().expect("folder");
     let Some(application) = application() else { return };
     let Some(mut page) = browser(place.path()) else { return };
     let site = place.path().join("site");
     let report = pack(&application, &[], &site);
+    if isolated && report["bundle"]["threads"] == false {
+        eprintln!("SKIPPED: many threads are not tried; the application was built without them");
+        return;
+    }
     let began = Instant::now();
-    let address = server::serve(site);
+    let address = server::serve(site, isolated);
     page.call("Page.navigate", json!({ "url": address }));
     times(&mut page, |times| times["pictures"].as_u64() > Some(0));
+    let threads = page.value("belvedere.threads");
+    assert_eq!(threads.as_u64() > Some(0), isolated, "{threads} threads");
     let first_ms = began.elapsed().as_millis();
     times(&mut page, rests);
     let before = page.screenshot();
@@ -96,7 +111,7 @@ fn the_built_in_scene_is_drawn_and_dragged() {
     assert_eq!(page.complaints, Vec::<String>::new());
     assert_eq!(page.value("belvedere.application.failure() ?? null"), Value::Null);
     eprintln!(
-        "browser: application {} bytes; first picture {first_ms} ms after the address; {} pictures in {DRAG:?}, input to picture \
+        "browser, {threads} workers: application {} bytes; first picture {first_ms} ms after the address; {} pictures in {DRAG:?}, input to picture \
          median {:.0} ms, 95 % {:.0} ms; in full {rest_ms:.0} ms after the last change",
         report["application_bytes"],
         each.len(),
@@ -125,7 +140,7 @@ fn a_packed_terrain_and_its_route_are_drawn_as_the_command_line_draws_them() {
         Command::new(env!("CARGO_BIN_EXE_belvedere")).arg("render").arg(&scene).arg("-o").arg(&picture).output();
     let drawn = drawn.expect("the program starts");
     assert!(drawn.status.success(), "{}", String::from_utf8_lossy(&drawn.stderr));
-    let address = server::serve(site);
+    let address = server::serve(site, false);
     page.call("Page.navigate", json!({ "url": address }));
     times(&mut page, rests);
     let shown = page.value("belvedere.application.scene()");
@@ -144,7 +159,7 @@ fn files_that_are_dropped_on_the_page_are_opened_and_what_is_saved_is_downloaded
     let Some(mut page) = browser(place.path()) else { return };
     let site = place.path().join("site");
     pack(&application, &[], &site);
-    let address = server::serve(site);
+    let address = server::serve(site, false);
     page.call("Page.navigate", json!({ "url": address }));
     times(&mut page, rests);
     for step in ["dragEnter", "dragOver", "drop"] {

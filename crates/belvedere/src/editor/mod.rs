@@ -2,6 +2,7 @@
 //!
 //! The document is everything: whatever a user does is an edit of it, and what is saved renders to the same picture elsewhere.
 
+mod beside;
 mod camera;
 mod data;
 mod live;
@@ -9,6 +10,7 @@ mod painter;
 mod place;
 mod rays;
 
+pub use beside::{THREADS, beside};
 pub use camera::{framed, navigation, set_camera};
 pub use data::open_files;
 pub use live::{Judged, LiveSession, Order, Pace, Shown, Sides};

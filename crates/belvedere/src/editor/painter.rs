@@ -1,9 +1,11 @@
 //! Pictures made beside the window: the newest wish counts, and a picture at rest gives way to a new one.
 
+use super::beside::{THREADS, beside};
 use super::live::{Judged, LiveSession, Order, Pace, Shown};
 use belvedere_scene::Progress;
-#[cfg(not(target_family = "wasm"))]
-use std::sync::{Arc, Condvar, Mutex};
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
 /// What a painter has to say.
 #[derive(Debug)]
@@ -16,174 +18,161 @@ pub enum Answer {
     Failed(String),
 }
 
-/// Called from the thread of the painter when there is an answer.
-type Wake = Box<dyn Fn() + Send>;
+/// Called from where the painter works when there is an answer, or something to ask for.
+type Wake = Box<dyn Fn() + Send + Sync>;
 
-/// Draws the newest order, on a thread of its own; where there are no threads, when [`Painter::answer`] is asked.
+/// Draws the newest order: beside the window, or where there are no threads, when [`Painter::answer`] is asked.
 pub struct Painter {
-    #[cfg(not(target_family = "wasm"))]
     desk: Arc<Desk>,
-    #[cfg(not(target_family = "wasm"))]
-    worker: Option<std::thread::JoinHandle<()>>,
-    #[cfg(not(target_family = "wasm"))]
-    answers: std::sync::mpsc::Receiver<Answer>,
-    #[cfg(target_family = "wasm")]
-    wake: Wake,
-    #[cfg(target_family = "wasm")]
-    session: LiveSession,
-    #[cfg(target_family = "wasm")]
-    order: Option<Order>,
-    #[cfg(target_family = "wasm")]
-    to_judge: Option<Order>,
-    /// Whether the last answer is still to be shown.
-    #[cfg(target_family = "wasm")]
+    outbox: Sender<Answer>,
+    answers: Receiver<Answer>,
+    /// Without threads: whether the last picture is still to be shown, before anything else is done.
     waits: bool,
 }
 
-/// Stack of the thread: deep enough for any document that passes the limits.
-#[cfg(not(target_family = "wasm"))]
-const STACK_BYTES: usize = 64 << 20;
-
-/// Where orders are laid down.
-#[cfg(not(target_family = "wasm"))]
-#[derive(Debug, Default)]
+/// Where orders are laid down, and whoever works at them.
 struct Desk {
     state: Mutex<State>,
-    news: Condvar,
+    /// Held by the one who works.
+    session: Mutex<LiveSession>,
+    wake: Wake,
 }
 
-#[cfg(not(target_family = "wasm"))]
 #[derive(Debug, Default)]
 struct State {
     order: Option<Order>,
+    /// The picture at rest that was drawn last and is not judged yet.
+    to_judge: Option<Order>,
     /// Cancels the work in hand, if that may give way.
     yielding: Option<Progress>,
-    ended: bool,
+    /// Whether somebody works.
+    at_work: bool,
 }
 
-#[cfg(not(target_family = "wasm"))]
-impl Desk {
-    fn state(&self) -> std::sync::MutexGuard<'_, State> {
-        // A painter that panicked left nothing half done in here.
-        self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
-    }
-
-    /// Waits for an order; `None` at the end. Work on it may be cancelled through what comes with it, if it is a picture at rest.
-    fn next(&self) -> Option<(Order, Progress)> {
-        let mut state = self.state();
-        loop {
-            if state.ended {
-                return None;
-            }
-            if let Some(order) = state.order.take() {
-                let progress = Progress::silent();
-                state.yielding = (order.pace == Pace::Resting).then(|| progress.clone());
-                return Some((order, progress));
-            }
-            state = self.news.wait(state).unwrap_or_else(std::sync::PoisonError::into_inner);
-        }
-    }
-}
-
-#[cfg(not(target_family = "wasm"))]
 impl Painter {
-    /// Starts the thread.
-    pub fn new(wake: Wake) -> Self {
-        let desk = Arc::new(Desk::default());
-        let (outbox, answers) = std::sync::mpsc::channel();
-        let own = desk.clone();
-        let work = move || {
-            let mut session = LiveSession::default();
-            while let Some((order, progress)) = own.next() {
-                let say = |answer: Answer| {
-                    let heard = outbox.send(answer).is_ok();
-                    wake();
-                    heard
-                };
-                let shown = match guarded(|| session.show(&order, &progress)) {
-                    Some(answer) => say(answer),
-                    None => true,
-                };
-                let judges = order.pace == Pace::Resting && !progress.is_cancelled();
-                let judged = if judges { judge(&session, &order, &progress) } else { None };
-                if !shown || judged.is_some_and(|answer| !say(answer)) {
-                    return;
-                }
-            }
-        };
-        // Without a thread every order is answered by silence; a system that starts none has worse to tell.
-        let worker = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(work).ok();
-        Self { desk, worker, answers }
+    /// A painter without an order.
+    ///
+    /// * `wake`: called when it is worth asking for an answer, from any thread.
+    pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
+        let (outbox, answers) = mpsc::channel();
+        let desk = Desk { state: Mutex::default(), session: Mutex::default(), wake: Box::new(wake) };
+        Self { desk: Arc::new(desk), outbox, answers, waits: false }
     }
 
     /// The next picture; one that was ordered before and is not begun is forgotten, one at rest that is begun is broken off.
     pub fn order(&mut self, order: Order) {
         let mut state = self.desk.state();
-        if let Some(progress) = state.yielding.take() {
-            progress.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
-        }
+        state.give_way();
         state.order = Some(order);
+        let begins = THREADS && !std::mem::replace(&mut state.at_work, true);
         drop(state);
-        self.desk.news.notify_one();
+        if !THREADS {
+            (self.desk.wake)();
+        } else if begins {
+            let (desk, outbox) = (self.desk.clone(), self.outbox.clone());
+            if let Err(reason) = beside(move || desk.work(&outbox)) {
+                self.desk.state().at_work = false;
+                let _ = self.outbox.send(Answer::Failed(reason));
+            }
+        }
     }
 
     /// The next answer, if there is one.
     pub fn answer(&mut self) -> Option<Answer> {
-        self.answers.try_recv().ok()
+        if THREADS { self.answers.try_recv().ok() } else { self.answer_in_turn() }
+    }
+
+    /// Draws what was ordered, if anything was; what a picture shows is judged when it is on the screen.
+    fn answer_in_turn(&mut self) -> Option<Answer> {
+        if std::mem::take(&mut self.waits) {
+            if self.desk.state().to_judge.is_some() {
+                (self.desk.wake)();
+            }
+            return None;
+        }
+        let (task, progress) = self.desk.next()?;
+        self.waits = matches!(task, Task::Show(_));
+        self.desk.perform(task, &progress)
     }
 
     /// The next answer within a time: for tests and scripts.
+    #[cfg(not(target_family = "wasm"))]
     pub fn answer_within(&mut self, time: std::time::Duration) -> Option<Answer> {
         self.answers.recv_timeout(time).ok()
     }
 }
 
-#[cfg(not(target_family = "wasm"))]
 impl Drop for Painter {
     fn drop(&mut self) {
         let mut state = self.desk.state();
-        state.ended = true;
-        if let Some(progress) = state.yielding.take() {
-            progress.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
-        }
-        drop(state);
-        self.desk.news.notify_one();
-        if let Some(worker) = self.worker.take() {
-            let _ = worker.join();
+        state.give_way();
+        (state.order, state.to_judge) = (None, None);
+    }
+}
+
+impl State {
+    fn give_way(&mut self) {
+        self.to_judge = None;
+        if let Some(progress) = self.yielding.take() {
+            progress.cancel_flag().store(true, Ordering::Relaxed);
         }
     }
 }
 
-#[cfg(target_family = "wasm")]
-impl Painter {
-    /// A painter without a thread.
-    pub fn new(wake: Wake) -> Self {
-        Self { wake, session: LiveSession::default(), order: None, to_judge: None, waits: false }
-    }
+/// One thing to do.
+enum Task {
+    Show(Order),
+    Judge(Order),
+}
 
-    /// The next picture; one that was ordered before is forgotten.
-    pub fn order(&mut self, order: Order) {
-        self.to_judge = None;
-        self.order = Some(order);
-        (self.wake)();
-    }
-
-    /// Draws what was ordered, if anything was; what a picture shows is judged when it is on the screen.
-    pub fn answer(&mut self) -> Option<Answer> {
-        let progress = Progress::silent();
-        if let Some(order) = self.order.take() {
-            self.waits = true;
-            self.to_judge = (order.pace == Pace::Resting).then(|| order.clone());
-            return guarded(|| self.session.show(&order, &progress));
-        }
-        if std::mem::take(&mut self.waits) {
-            if self.to_judge.is_some() {
+impl Desk {
+    /// Does everything that there is to do.
+    fn work(&self, outbox: &Sender<Answer>) {
+        while let Some((task, progress)) = self.next() {
+            if let Some(answer) = self.perform(task, &progress) {
+                // Whoever does not listen any more has withdrawn the orders, too.
+                let _ = outbox.send(answer);
                 (self.wake)();
             }
-            return None;
         }
-        let order = self.to_judge.take()?;
-        judge(&self.session, &order, &progress)
+    }
+
+    fn next(&self) -> Option<(Task, Progress)> {
+        let mut state = self.state();
+        let progress = Progress::silent();
+        let order = state.order.take();
+        let rests = order.as_ref().is_none_or(|order| order.pace == Pace::Resting);
+        let task = order.map(Task::Show).or_else(|| state.to_judge.take().map(Task::Judge));
+        state.yielding = (rests && task.is_some()).then(|| progress.clone());
+        state.at_work = task.is_some();
+        task.map(|task| (task, progress))
+    }
+
+    fn perform(&self, task: Task, progress: &Progress) -> Option<Answer> {
+        // A picture that panicked is made anew.
+        let mut session = self.session.lock().unwrap_or_else(PoisonError::into_inner);
+        match task {
+            Task::Show(order) => {
+                let answer = guarded(|| session.show(&order, progress));
+                let mut state = self.state();
+                if order.pace == Pace::Resting && !progress.is_cancelled() {
+                    state.to_judge = Some(order);
+                }
+                answer
+            }
+            Task::Judge(order) => judge(&session, &order, progress),
+        }
+    }
+
+    /// Never held for long. The page of a browser may not sleep, only try again.
+    fn state(&self) -> MutexGuard<'_, State> {
+        loop {
+            match self.state.try_lock() {
+                Ok(state) => return state,
+                Err(TryLockError::Poisoned(state)) => return state.into_inner(),
+                Err(TryLockError::WouldBlock) => std::thread::yield_now(),
+            }
+        }
     }
 }
 

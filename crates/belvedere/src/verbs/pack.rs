@@ -10,6 +10,11 @@ use std::path::{Component, Path, PathBuf};
 
 /// The files of the application.
 pub const APPLICATION: [&str; 3] = ["index.html", "belvedere.js", "belvedere_bg.wasm"];
+/// Folder with the application for many threads, if it was built.
+const THREADS: &str = "threads";
+/// For servers that read such a file (as Netlify and Cloudflare Pages do): workers may share memory.
+const HEADERS: (&str, &str) =
+    ("_headers", "/*\n  Cross-Origin-Opener-Policy: same-origin\n  Cross-Origin-Embedder-Policy: require-corp\n");
 /// What the page reads to know what else there is.
 pub const BUNDLE: &str = "bundle.json";
 /// Folder of the scene and its files.
@@ -37,6 +42,8 @@ pub struct PackRequest {
 pub struct Bundle {
     /// Title of the scene.
     pub title: String,
+    /// Whether there is an application for many threads, too.
+    pub threads: bool,
     /// Names of the files to open.
     pub open: Vec<String>,
     /// All files; paths from the folder on, with `/`.
@@ -63,11 +70,11 @@ pub struct Packed {
 /// files are too large for a page; [`IoError::Exists`] for files that are there already.
 pub fn pack(request: &PackRequest, progress: &Progress) -> Result<Packed, BelvedereError> {
     let application = application_files(&request.application)?;
-    let names = application.iter().map(|(name, _)| *name).chain([BUNDLE]);
+    let names = application.iter().map(|(name, _)| name.as_path()).chain([Path::new(BUNDLE)]);
     if request.out.is_dir() {
         names.into_iter().try_for_each(|name| atomic::check_output(&request.out.join(name), request.overwrite))?;
     }
-    let (bundle, contents) =
+    let (mut bundle, contents) =
         if request.files.is_empty() { Default::default() } else { scene_files(request, progress)? };
     let scene_bytes: u64 = bundle.files.iter().map(|file| file.bytes).sum();
     if scene_bytes > MAX_BYTES {
@@ -79,9 +86,11 @@ pub fn pack(request: &PackRequest, progress: &Progress) -> Result<Packed, Belved
         );
         return Err(BelvedereError::Output { path: request.out.clone(), reason });
     }
+    bundle.threads = application.iter().any(|(name, _)| name.starts_with(THREADS));
     let mut application_bytes = 0;
     for (name, bytes) in &application {
-        application_bytes += bytes.len() as u64;
+        // A visitor loads one of the two.
+        application_bytes += if name.starts_with(THREADS) { 0 } else { bytes.len() as u64 };
         put(&request.out.join(name), bytes, request.overwrite)?;
     }
     for (i, (file, bytes)) in bundle.files.iter().zip(&contents).enumerate() {
@@ -93,15 +102,35 @@ pub fn pack(request: &PackRequest, progress: &Progress) -> Result<Packed, Belved
     Ok(Packed { folder: request.out.clone(), bundle, application_bytes, scene_bytes })
 }
 
-fn application_files(folder: &Path) -> Result<Vec<(&'static str, Vec<u8>)>, BelvedereError> {
-    let read = |name: &'static str| {
-        let bytes = fs::read(folder.join(name)).map_err(|e| BelvedereError::Output {
+/// The application: names from its folder on, and contents.
+fn application_files(folder: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>, BelvedereError> {
+    let mut names: Vec<PathBuf> = APPLICATION.into_iter().map(PathBuf::from).collect();
+    names_below(folder, Path::new(THREADS), &mut names);
+    let read = |name: PathBuf| match fs::read(folder.join(&name)) {
+        Ok(bytes) => Ok((name, bytes)),
+        Err(e) => Err(BelvedereError::Output {
             path: folder.to_owned(),
-            reason: format!("holds no application for browsers ({name}: {e}); build it by apps/viewer/web/build"),
-        });
-        bytes.map(|bytes| (name, bytes))
+            reason: format!(
+                "holds no application for browsers ({}: {e}); build it by apps/viewer/web/build",
+                name.display()
+            ),
+        }),
     };
-    APPLICATION.into_iter().map(read).collect()
+    let mut files = names.into_iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    files.push((HEADERS.0.into(), HEADERS.1.into()));
+    Ok(files)
+}
+
+/// Adds the names of all files below a folder that may be there.
+fn names_below(root: &Path, folder: &Path, names: &mut Vec<PathBuf>) {
+    let Ok(entries) = std::fs::read_dir(root.join(folder)) else { return };
+    for entry in entries.flatten() {
+        let name = folder.join(entry.file_name());
+        match entry.file_type() {
+            Ok(kind) if kind.is_dir() => names_below(root, &name, names),
+            _ => names.push(name),
+        }
+    }
 }
 
 /// The scene with names that hold within the bundle, and every file that it takes, with its content.
@@ -131,7 +160,12 @@ fn scene_files(request: &PackRequest, progress: &Progress) -> Result<(Bundle, Ve
     let scene = format!("{SCENE_FOLDER}/{name}.toml");
     let text = output::document_toml(&document)?.into_bytes();
     let title = document.title.clone();
-    let mut bundle = Bundle { title, open: vec![scene.clone()], files: vec![InputFile::of(Path::new(&scene), &text)] };
+    let mut bundle = Bundle {
+        title,
+        threads: false,
+        open: vec![scene.clone()],
+        files: vec![InputFile::of(Path::new(&scene), &text)],
+    };
     let mut contents = vec![text];
     let count = layout.files.len() as f64;
     for (i, (file, packed)) in layout.files.into_iter().enumerate() {
