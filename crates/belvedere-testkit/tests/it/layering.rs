@@ -79,7 +79,17 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     (
         "belvedere-viewer",
         &["belvedere"],
-        &["eframe", "rfd", "serde", "serde_json", "thiserror", "wasm-bindgen", "wasm-bindgen-futures", "web-sys"],
+        &[
+            "eframe",
+            "rfd",
+            "serde",
+            "serde_json",
+            "thiserror",
+            "wasm-bindgen",
+            "wasm-bindgen-futures",
+            "wasm-bindgen-rayon",
+            "web-sys",
+        ],
     ),
     ("belvedere-testkit", &["belvedere-core", "belvedere-scene"], &["glam", "rayon"]),
     ("belvedere-mutants", &[], &["anyhow", "clap", "proc-macro2", "serde", "serde_json", "syn"]),
