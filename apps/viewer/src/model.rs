@@ -97,7 +97,7 @@ pub(crate) struct Model {
     pub(crate) pictures: u64,
     /// The last camera from above.
     pub(crate) overhead: Option<(Frame, belvedere::core::View)>,
-    /// What the last picture at rest shows.
+    /// What the last picture that was judged shows.
     pub(crate) judged: Option<Box<Judged>>,
     /// Why the document as it is cannot be drawn.
     pub(crate) violated: Option<String>,
@@ -283,6 +283,12 @@ impl Model {
         self.rested = true;
         self.send(wanted, image, Pace::Resting);
         None
+    }
+
+    /// Whether what is known of what must be seen is known of the picture in full of the document as it is.
+    pub(crate) fn is_judged(&self) -> bool {
+        let is_it = |judged: &Judged| judged.pace == Pace::Resting && Arc::ptr_eq(&judged.document, self.document());
+        self.judged.as_deref().is_some_and(is_it)
     }
 
     fn send(&mut self, wanted: Wanted, image: [u32; 2], pace: Pace) {

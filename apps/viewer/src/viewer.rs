@@ -146,6 +146,11 @@ impl Viewer {
         self.pending.is_none() && self.model.rests()
     }
 
+    /// Whether the shares on the screen are those of the document as it is.
+    pub fn is_judged(&self) -> bool {
+        self.model.is_judged()
+    }
+
     /// What its workers call.
     #[cfg(target_family = "wasm")]
     pub(crate) fn wake(&self) -> &Wake {

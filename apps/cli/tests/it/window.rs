@@ -175,3 +175,23 @@ fn without_a_display_one_line_says_what_to_do() {
     assert!(text.contains("no window can be opened") && text.contains("use render"), "{text}");
     assert!(place.fails(&["view", "none.tif"]).contains("there is no such file"));
 }
+
+#[test]
+fn what_the_application_saves_is_drawn_by_the_command_line_byte_by_byte() {
+    let place = Place::new();
+    place.write("scene.toml", &format!("{SCENE}[[stage]]\nkind = \"spline_bend\"\npresets = \"progressive\"\n"));
+    let progress = belvedere::scene::Progress::silent();
+    let mut editor = belvedere::editor::open_files(&[place.path("scene.toml")], &[], &progress).expect("opened");
+    // As a drag and a slider change it: numbers with many digits.
+    editor.edit(|document| {
+        document.camera.eye = belvedere::scene_file::PointDoc::Scene([4765.432_109_877, -5200.1, 3600.0]);
+        document.camera.image = [333, 187];
+    });
+    editor.save(&place.path("saved.toml")).expect("saved");
+    let session = editor.place.session((**editor.document()).clone(), &progress).expect("session");
+    let shown = session.render(&belvedere::picture::PictureOptions::default()).expect("drawn");
+    shown.write(&place.path("exported.png"), false).expect("exported");
+    let saved = place.path("saved.toml");
+    place.ok(&["render", saved.to_str().expect("name"), "-o", "rendered.png"]);
+    assert!(read(&place.path("exported.png")) == read(&place.path("rendered.png")), "the pictures differ");
+}

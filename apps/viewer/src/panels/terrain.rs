@@ -36,7 +36,14 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
         settings(ui, model, &stage);
     }
     ui.separator();
-    shares(ui, model);
+    let judged = model.is_judged();
+    // What is still being judged is shown as it was, in grey.
+    ui.scope(|ui| {
+        if !judged {
+            ui.set_opacity(0.5);
+        }
+        shares(ui, model);
+    });
 }
 
 fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {

@@ -4,6 +4,8 @@ mod authoring;
 mod controls;
 mod files;
 mod moving;
+mod screen;
+mod snapshots;
 
 use belvedere_viewer::{Opening, Viewer};
 use egui_kittest::kittest::Queryable;

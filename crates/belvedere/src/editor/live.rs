@@ -1,6 +1,6 @@
 //! A session that follows a document: everything is resolved again, nothing that stays is read again.
 
-use super::Place;
+use super::{Place, THREADS};
 use crate::fallback;
 use crate::overlays::grid;
 use crate::picture::{self, DisplacementReport, PictureOptions};
@@ -84,12 +84,16 @@ pub struct Shown {
 pub struct Judged {
     /// The document.
     pub document: Arc<Document>,
+    /// How much time there was for the picture.
+    pub pace: Pace,
     /// Visible shares by lines of sight.
     pub measures: Measures,
     /// What stays hidden, part by part.
     pub hidden: Vec<HiddenRun>,
 }
 
+/// Longest that judging may take while something is moved.
+const JUDGE_WITHIN: Duration = Duration::from_millis(40);
 /// Longest that solving may take while something is moved.
 const SOLVE_WITHIN: Duration = Duration::from_millis(120);
 
@@ -103,6 +107,10 @@ pub struct LiveSession {
     layer_warnings: Vec<String>,
     /// How long constructing took last.
     constructing: Duration,
+    /// That of the last picture.
+    shown: Option<Session>,
+    /// How long judging took last.
+    judging: Duration,
     ground: Ground,
 }
 
@@ -128,6 +136,7 @@ impl LiveSession {
             Pace::Resting => (self.resting(document, order, progress)?, None),
         };
         session.check_drawable()?;
+        self.shown = Some(session.clone());
         let (mut bent, mut straight, mut displacement) = (None, None, None);
         match order.pace {
             Pace::Moving { detail_px } => {
@@ -158,12 +167,24 @@ impl LiveSession {
         Ok(Shown { document, session, bent, straight, overhead, displacement, pace: order.pace, waits, milliseconds })
     }
 
-    /// What the view of the last resting picture shows of what must be seen; `None` if nothing must be.
+    /// Whether there is time to judge a picture: at rest there is, between moving ones if it took little before and is done beside.
+    pub fn has_time_to_judge(&self, pace: Pace) -> bool {
+        pace == Pace::Resting || (THREADS && self.judging <= JUDGE_WITHIN)
+    }
+
+    /// What the view of the last picture shows of what must be seen; `None` if nothing must be.
     ///
     /// # Errors
     /// [`BelvedereError::Construct`], [`BelvedereError::Cancelled`].
-    pub fn judge(&self, order: &Order, progress: &Progress) -> Result<Option<Judged>, BelvedereError> {
-        let Some(session) = &self.session else { return Ok(None) };
+    pub fn judge(&mut self, order: &Order, progress: &Progress) -> Result<Option<Judged>, BelvedereError> {
+        let began = Instant::now();
+        let judged = self.judged(order, progress);
+        self.judging = began.elapsed();
+        judged
+    }
+
+    fn judged(&self, order: &Order, progress: &Progress) -> Result<Option<Judged>, BelvedereError> {
+        let Some(session) = &self.shown else { return Ok(None) };
         if !session.scene().layers.iter().any(|layer| layer.must_see) {
             return Ok(None);
         }
@@ -171,7 +192,7 @@ impl LiveSession {
         let (scene, view) = (session.scene(), session.view());
         let measures = belvedere_construct::measure(scene, view, None, &options, progress)?;
         let hidden = belvedere_construct::measure::hidden(scene, view, &options, progress)?;
-        Ok(Some(Judged { document: order.document.clone(), measures, hidden }))
+        Ok(Some(Judged { document: order.document.clone(), pace: order.pace, measures, hidden }))
     }
 
     /// Everything is solved.

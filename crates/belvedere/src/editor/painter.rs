@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 pub enum Answer {
     /// A picture.
     Shown(Box<Shown>),
-    /// What the last picture at rest shows of what must be seen.
+    /// What the last picture shows of what must be seen.
     Judged(Box<Judged>),
     /// Why there is none, one sentence; what was shown before stays.
     Failed(String),
@@ -41,7 +41,7 @@ struct Desk {
 #[derive(Debug, Default)]
 struct State {
     order: Option<Order>,
-    /// The picture at rest that was drawn last and is not judged yet.
+    /// The picture that was drawn last and is not judged yet.
     to_judge: Option<Order>,
     /// Cancels the work in hand, if that may give way.
     yielding: Option<Progress>,
@@ -155,12 +155,12 @@ impl Desk {
             Task::Show(order) => {
                 let answer = guarded(|| session.show(&order, progress));
                 let mut state = self.state();
-                if order.pace == Pace::Resting && !progress.is_cancelled() {
+                if session.has_time_to_judge(order.pace) && !progress.is_cancelled() {
                     state.to_judge = Some(order);
                 }
                 answer
             }
-            Task::Judge(order) => judge(&session, &order, progress),
+            Task::Judge(order) => judge(&mut session, &order, progress),
         }
     }
 
@@ -187,6 +187,6 @@ fn guarded(show: impl FnOnce() -> Result<Shown, crate::BelvedereError>) -> Optio
 }
 
 /// What cannot be judged is not: the picture stands for itself.
-fn judge(session: &LiveSession, order: &Order, progress: &Progress) -> Option<Answer> {
+fn judge(session: &mut LiveSession, order: &Order, progress: &Progress) -> Option<Answer> {
     session.judge(order, progress).ok().flatten().map(|judged| Answer::Judged(Box::new(judged)))
 }

@@ -20,7 +20,8 @@ pub struct Place {
 }
 
 impl Place {
-    /// The session of a document that lies here, as the command line opens it.
+    /// The session of a document that lies here, as the command line opens it: if it is what the file of the scene says, that file is
+    /// among what pictures were made of.
     ///
     /// # Errors
     /// As [`Session::from_document`].
@@ -28,7 +29,9 @@ impl Place {
         let folder = Some(&self.roots.scene_dir).filter(|dir| !dir.as_os_str().is_empty());
         let allow_roots = folder.into_iter().chain(&self.roots.allowed).cloned().collect();
         let options = OpenOptions { allow_roots, progress: progress.clone(), ..OpenOptions::default() };
-        Session::from_document(SourceDocument::new(document), &options)
+        let file = self.scene.as_deref().and_then(|path| scene_file::read(path).ok());
+        let source = file.filter(|file| file.document == document);
+        Session::from_document(source.unwrap_or_else(|| SourceDocument::new(document)), &options)
     }
 }
 
