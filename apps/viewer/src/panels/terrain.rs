@@ -3,8 +3,10 @@
 use super::{percent, set_stage, slider};
 use crate::model::Model;
 use belvedere::core::DVec3;
+use belvedere::editor::Judged;
 use belvedere::scene_file::{LayerDoc, SolverMode, StageDoc, TerrainStageDoc};
 use eframe::egui::{ComboBox, Ui};
+use std::sync::Arc;
 
 const KIND: &str = "terrain_disocclusion";
 
@@ -36,7 +38,9 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
         settings(ui, model, &stage);
     }
     ui.separator();
-    let judged = model.is_judged();
+    let of_picture =
+        |judged: &Judged| model.shown.as_ref().is_some_and(|shown| Arc::ptr_eq(&shown.document, &judged.document));
+    let judged = model.judged.as_deref().is_some_and(of_picture);
     // What is still being judged is shown as it was, in grey.
     ui.scope(|ui| {
         if !judged {
