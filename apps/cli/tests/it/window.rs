@@ -184,7 +184,7 @@ fn what_the_application_saves_is_drawn_by_the_command_line_byte_by_byte() {
     let mut editor = belvedere::editor::open_files(&[place.path("scene.toml")], &[], &progress).expect("opened");
     // As a drag and a slider change it: numbers with many digits.
     editor.edit(|document| {
-        document.camera.eye = belvedere::scene_file::PointDoc::Scene([4765.432_109_877, -5200.1, 3600.0]);
+        document.camera.eye = belvedere::scene_file::PointDoc::Scene([4_765.432_109_877, -5200.1, 3600.0]);
         document.camera.image = [333, 187];
     });
     editor.save(&place.path("saved.toml")).expect("saved");
