@@ -7,7 +7,9 @@ use clap::{Args, ValueEnum};
 /// How representations of styling sections are put together.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(crate) enum CompositingKind {
-    /// Each sample shows one of them: one drawing
+    /// Mixed where they are one surface in different colours, elsewhere as by thresholds: one drawing
+    Single,
+    /// Each sample shows one of them, by its threshold: one drawing
     Dither,
     /// Each is drawn alone and the pictures are mixed, as published
     Layers,
@@ -35,7 +37,7 @@ pub(crate) struct DrawArgs {
     #[arg(long, default_value_t = 64, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub(crate) thresholds: u32,
     /// How representations of styling sections are put together
-    #[arg(long, value_enum, default_value = "dither")]
+    #[arg(long, value_enum, default_value = "single")]
     pub(crate) compositing: CompositingKind,
     /// Dark edges and shade behind what stands out, whatever the scene says
     #[arg(long)]

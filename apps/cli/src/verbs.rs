@@ -94,6 +94,7 @@ fn request(args: &DrawArgs, context: &Context) -> PictureOptions {
     request.quality.threads = context.common.threads;
     request.quality.samples = args.samples;
     request.quality.compositing = match args.compositing {
+        CompositingKind::Single => Compositing::Single,
         CompositingKind::Dither => Compositing::Dither,
         CompositingKind::Layers => Compositing::Layers,
     };

@@ -3,12 +3,14 @@
 //! Every sample has a threshold. At each place of the deformation curve the representations own intervals of all thresholds, as long as
 //! their weights, so exactly one of them is shown by a sample: no layers, one depth buffer. Pixels have different thresholds (an 8 x 8
 //! ordered dither), its samples again others, and their mean tends to the weighted composite.
+//!
+//! Layers that are one surface in different colours need no thresholds: the surface is drawn once, and its colours are mixed by weight.
 
 use crate::raster::thin::ThinShow;
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::sections::{MOST_REPRESENTATIONS, StylingSections};
 use belvedere_core::{Aabb, DVec3, Stage, View};
-use belvedere_scene::{RenderJob, Scene};
+use belvedere_scene::{Compositing, RenderJob, Scene};
 
 /// Which layers are shown where.
 #[derive(Debug, Clone)]
@@ -19,6 +21,10 @@ pub(crate) struct Sections<'a> {
     table: Table,
     /// For each layer the representations that show it, as bits.
     shown_by: Vec<u32>,
+    /// For each layer those that draw its surface: nothing where an earlier layer is the same surface, which is drawn for both.
+    drawn_by: Vec<u32>,
+    /// For each layer all layers of its surface if it is the first of several, else nothing.
+    one_surface: Vec<Vec<usize>>,
     /// The only representation that is drawn.
     only: Option<usize>,
 }
@@ -35,11 +41,12 @@ pub(crate) enum Shown {
 impl<'a> Sections<'a> {
     /// `None` for scenes without representations.
     pub(crate) fn new(job: &RenderJob<'a>) -> Option<Self> {
-        Self::of(job.scene, job.view, job.options.representation)
+        let options = job.options;
+        Self::of(job.scene, job.view, options.representation, options.compositing == Compositing::Single)
     }
 
-    /// * `only`: see [`belvedere_scene::RenderOptions::representation`].
-    pub(crate) fn of(scene: &Scene, view: &'a View, only: Option<usize>) -> Option<Self> {
+    /// * `only`: see [`belvedere_scene::RenderOptions::representation`]; `single`: whether layers of one surface are drawn once.
+    pub(crate) fn of(scene: &Scene, view: &'a View, only: Option<usize>, single: bool) -> Option<Self> {
         if scene.representations.is_empty() {
             return None;
         }
@@ -48,7 +55,38 @@ impl<'a> Sections<'a> {
         let shown_by = scene.shown_by(&styling.representations());
         let only = only.filter(|number| *number < styling.representations().len());
         let table = Table::new(&styling);
-        Some(Self { bend, styling, table, shown_by, only })
+        let one_surface = match single && only.is_none() {
+            true => one_surface(scene, &shown_by),
+            false => vec![Vec::new(); shown_by.len()],
+        };
+        let mut drawn_by = shown_by.clone();
+        for layers in one_surface.iter().filter(|layers| !layers.is_empty()) {
+            layers[1..].iter().for_each(|layer| drawn_by[layers[0]] |= std::mem::take(&mut drawn_by[*layer]));
+        }
+        Some(Self { bend, styling, table, shown_by, drawn_by, one_surface, only })
+    }
+
+    /// Whether any layer is drawn together with others that are the same surface.
+    pub(crate) fn has_one_surface(&self) -> bool {
+        self.one_surface.iter().any(|layers| !layers.is_empty())
+    }
+
+    /// The layers whose colours are mixed on the surface of a layer, itself the first; nothing where it is shown in its own alone.
+    pub(crate) fn mixed_on(&self, layer: usize) -> &[usize] {
+        &self.one_surface[layer]
+    }
+
+    /// Shares, 0..=1, of the colours of [`Self::mixed_on`] at a place; they sum to 1.
+    pub(crate) fn mixture(&self, layer: usize, p: DVec3) -> impl Iterator<Item = f64> {
+        let t = self.parameter(p);
+        let ids = self.styling.representations();
+        let weights: Vec<f64> = ids.iter().map(|id| self.styling.representation_weight(id, t)).collect();
+        let of = move |bits: u32| weights.iter().enumerate().filter(|(i, _)| bits >> i & 1 == 1).map(|(_, w)| w).sum();
+        let all: f64 = of(self.drawn_by[layer]);
+        self.mixed_on(layer).iter().enumerate().map(move |(k, other)| match all > 0.0 {
+            true => of(self.shown_by[*other]) / all,
+            false => f64::from(u8::from(k == 0)),
+        })
     }
 
     /// How many representations the sections name.
@@ -78,13 +116,13 @@ impl<'a> Sections<'a> {
     fn of_range(&self, layer: usize, range: [f64; 2]) -> Shown {
         let supported = self.styling.supported(range);
         if let Some(number) = self.only {
-            return match supported & self.shown_by[layer] & 1 << number {
+            return match supported & self.drawn_by[layer] & 1 << number {
                 0 => Shown::Nothing,
                 bit if bit == supported => Shown::Everything,
                 _ => Shown::Partly,
             };
         }
-        match supported & self.shown_by[layer] {
+        match supported & self.drawn_by[layer] {
             0 => Shown::Nothing,
             bits if bits == supported => Shown::Everything,
             _ => Shown::Partly,
@@ -98,13 +136,13 @@ impl<'a> Sections<'a> {
 
     /// Whether a sample with a threshold shows the layer at a place along the curve.
     pub(crate) fn shows(&self, layer: usize, parameter: f64, threshold: f64) -> bool {
-        self.is_shown_by(layer, self.intervals(parameter).holding(threshold))
+        self.is_drawn_by(layer, self.intervals(parameter).holding(threshold))
     }
 
-    /// Whether a representation, by its number, shows a layer; one that does not exist shows none.
+    /// Whether a representation, by its number, draws the surface of a layer; one that does not exist draws none.
     #[inline]
-    fn is_shown_by(&self, layer: usize, number: usize) -> bool {
-        self.shown_by[layer].checked_shr(number as u32).is_some_and(|bits| bits & 1 == 1)
+    fn is_drawn_by(&self, layer: usize, number: usize) -> bool {
+        self.drawn_by[layer].checked_shr(number as u32).is_some_and(|bits| bits & 1 == 1)
     }
 
     /// The intervals of thresholds at a place along the curve.
@@ -151,6 +189,23 @@ impl<'a> Sections<'a> {
     }
 }
 
+/// For each layer all layers of its surface if it is the first of several, each in representations of its own.
+fn one_surface(scene: &Scene, shown_by: &[u32]) -> Vec<Vec<usize>> {
+    let mut all: Vec<Vec<usize>> = vec![Vec::new(); shown_by.len()];
+    for i in 0..shown_by.len() {
+        let is_same = |first: &usize| scene.layers[*first].kind.is_surface_of(&scene.layers[i].kind);
+        let Some(first) = (0..i).find(is_same) else { continue };
+        let together = all[first].iter().fold(shown_by[first], |bits, other| bits | shown_by[*other]);
+        if together & shown_by[i] == 0 && shown_by[i] != 0 {
+            if all[first].is_empty() {
+                all[first].push(first);
+            }
+            all[first].push(i);
+        }
+    }
+    all
+}
+
 /// The intervals of thresholds of the representations at a place.
 pub(crate) struct Intervals {
     ends: [f64; MOST_REPRESENTATIONS],
@@ -189,7 +244,7 @@ impl ThinShow for LayerShow<'_> {
 
     #[inline]
     fn shows(&self, at: &Intervals, sample: usize, [x, y]: [i32; 2]) -> bool {
-        self.sections.is_shown_by(self.layer, at.holding(self.exposure.threshold(sample, x, y)))
+        self.sections.is_drawn_by(self.layer, at.holding(self.exposure.threshold(sample, x, y)))
     }
 }
 

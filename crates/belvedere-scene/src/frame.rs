@@ -76,8 +76,10 @@ pub struct Stylisation {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Compositing {
-    /// Each sample shows one of them, by its threshold: one drawing, no memory beside the picture's.
+    /// Where they are one surface in different colours it is drawn once and the colours are mixed; elsewhere as by thresholds.
     #[default]
+    Single,
+    /// Each sample shows one of them, by its threshold: one drawing, no memory beside the picture's.
     Dither,
     /// Each is drawn alone and the pictures are mixed: as many drawings and pictures as there are representations.
     Layers,

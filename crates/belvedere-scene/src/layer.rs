@@ -406,6 +406,26 @@ impl LayerKind {
         Some(name.as_str()).filter(|name| !name.is_empty())
     }
 
+    /// Whether both are known to be one surface and differ at most in colour: terrain on the same heights, meshes of the same triangles.
+    pub fn is_surface_of(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Terrain(a), Self::Terrain(b)) => Arc::ptr_eq(&a.heightfield, &b.heightfield),
+            (Self::Mesh(a), Self::Mesh(b)) => a.mesh.is_surface_of(&b.mesh),
+            _ => false,
+        }
+    }
+
+    /// Takes over the surface of another layer if it is equal, so that memory, and what is computed per surface, is spent once.
+    pub fn share_surface(&mut self, other: &Self) {
+        match (self, other) {
+            (Self::Terrain(a), Self::Terrain(b)) if a.heightfield == b.heightfield => {
+                a.heightfield = Arc::clone(&b.heightfield);
+            }
+            (Self::Mesh(a), Self::Mesh(b)) => a.mesh.share(&b.mesh),
+            _ => {}
+        }
+    }
+
     /// The triangles of a mesh, or of the surface of a molecule; `None` for everything else.
     pub fn triangles(&self) -> Option<&MeshLayer> {
         match self {

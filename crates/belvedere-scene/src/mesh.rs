@@ -5,6 +5,7 @@ mod parts;
 
 use belvedere_core::{Aabb, DVec3};
 use glam::{Vec2, Vec3};
+use std::sync::Arc;
 
 use crate::texture::Texturing;
 use crate::{Color, Placement};
@@ -24,12 +25,12 @@ pub enum MeshColors {
     PerTriangle(Vec<Color>),
 }
 
-/// Triangles over shared vertices. Plain data: finite, and every index has its vertex.
+/// Triangles over shared vertices. Plain data: finite, and every index has its vertex. Copies share vertices and triangles.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mesh {
     origin: DVec3,
-    positions: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
+    positions: Arc<Vec<Vec3>>,
+    triangles: Arc<Vec<[u32; 3]>>,
     normals: Option<Vec<Vec3>>,
     colors: MeshColors,
     /// Number of the part that each triangle belongs to; empty = one part.
@@ -148,11 +149,11 @@ impl Mesh {
         }
         let bounds = Aabb::of(positions.iter().copied());
         let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.center().round() };
-        let positions = positions.iter().map(|&p| (p - origin).as_vec3()).collect();
+        let positions: Vec<Vec3> = positions.iter().map(|&p| (p - origin).as_vec3()).collect();
         let mut mesh = Self {
             origin,
-            positions,
-            triangles,
+            positions: positions.into(),
+            triangles: triangles.into(),
             normals: None,
             colors,
             parts,
@@ -180,9 +181,9 @@ impl Mesh {
     pub fn placed(&self, at: &Placement) -> Self {
         let origin = at.apply(self.origin);
         let turned = |v: &Vec3| at.turn(v.as_dvec3()).as_vec3();
-        let positions = self.positions.iter().map(turned).collect();
+        let positions: Vec<Vec3> = self.positions.iter().map(turned).collect();
         let normals = self.normals.as_ref().map(|normals| normals.iter().map(turned).collect());
-        Self { origin, positions, normals, ..self.clone() }
+        Self { origin, positions: positions.into(), normals, ..self.clone() }
     }
 
     fn drop_degenerate(&mut self) {
@@ -198,7 +199,7 @@ impl Mesh {
     /// Leaves out triangles with all that belongs to them; their vertices stay.
     fn retain(&mut self, kept: &[bool]) {
         let mut keep = kept.iter();
-        self.triangles.retain(|_| keep.next() == Some(&true));
+        Arc::make_mut(&mut self.triangles).retain(|_| keep.next() == Some(&true));
         if let MeshColors::PerTriangle(colors) = &mut self.colors {
             let mut keep = kept.iter();
             colors.retain(|_| keep.next() == Some(&true));
@@ -212,6 +213,25 @@ impl Mesh {
             let mut keep = kept.iter();
             t.corners.retain(|_| keep.next() == Some(&true));
         }
+    }
+
+    /// Takes over the vertices and triangles of another mesh if they are equal, so that both are known to be one surface.
+    pub fn share(&mut self, other: &Self) {
+        let equal = self.origin == other.origin
+            && self.positions.len() == other.positions.len()
+            && self.triangles == other.triangles
+            && self.positions == other.positions;
+        if equal {
+            self.positions = Arc::clone(&other.positions);
+            self.triangles = Arc::clone(&other.triangles);
+        }
+    }
+
+    /// Whether both are known to be one surface, whatever their colours: copies, or made so by [`Mesh::share`].
+    pub fn is_surface_of(&self, other: &Self) -> bool {
+        self.origin == other.origin
+            && Arc::ptr_eq(&self.positions, &other.positions)
+            && Arc::ptr_eq(&self.triangles, &other.triangles)
     }
 
     /// Number of the part that a triangle belongs to; `None` if the mesh has no parts.

@@ -5,6 +5,7 @@ pub(crate) mod color;
 pub(crate) mod footprint;
 pub(crate) mod ground;
 mod mesh;
+mod mix;
 mod molecule;
 pub(crate) mod overlay;
 mod paint;

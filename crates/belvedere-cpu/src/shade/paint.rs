@@ -152,6 +152,8 @@ fn run_of(first: u32, prims: &[u32]) -> usize {
 struct Paint<'p> {
     shader: &'p Shader<'p>,
     samples: Samples<'p>,
+    /// In whose colours; `None` = those of the layer that was drawn.
+    colors_of: Option<u32>,
     painted: &'p mut Painted,
 }
 
@@ -161,7 +163,7 @@ impl Kernel for Paint<'_> {
     /// Runs of samples on one block, or of sky.
     #[inline(always)]
     fn run(self) {
-        let Self { shader, samples, painted } = self;
+        let Self { shader, samples, colors_of, painted } = self;
         let mut batch = Batch::new();
         let mut from = 0;
         while let Some(&prim) = samples.prim.get(from) {
@@ -171,11 +173,12 @@ impl Kernel for Paint<'_> {
             } else if prim & SOUP == 0
                 && let Some(block) = shader.blocks.list.get((prim >> CELL_BITS) as usize)
                 && let Geometry::Grid(nodes) = &block.geometry
-                && let LayerShade::Terrain(_) = shader.layers[block.layer as usize]
+                && let layer = colors_of.unwrap_or(block.layer) as usize
+                && let LayerShade::Terrain(_) = shader.layers[layer]
             {
-                batch.take(shader, (block, nodes), &samples, [from, to], painted);
+                batch.take(shader, (block, nodes, layer), &samples, [from, to], painted);
             } else {
-                (from..to).for_each(|k| shader.paint_one(&samples, k, &mut batch, painted));
+                (from..to).for_each(|k| shader.paint_one(&samples, (k, colors_of), &mut batch, painted));
             }
             from = to;
         }
@@ -186,8 +189,14 @@ impl Kernel for Paint<'_> {
 impl Shader<'_> {
     /// Colours of samples, in their order.
     pub(crate) fn paint(&self, samples: Samples<'_>, painted: &mut Painted) {
+        self.paint_as(None, samples, painted);
+        self.mix(samples, painted);
+    }
+
+    /// Colours of samples in those of a layer that is the same surface.
+    pub(super) fn paint_as(&self, colors_of: Option<u32>, samples: Samples<'_>, painted: &mut Painted) {
         painted.resize(samples.prim.len());
-        simd::run(Paint { shader: self, samples, painted });
+        simd::run(Paint { shader: self, samples, colors_of, painted });
     }
 
     #[inline(always)]
@@ -199,9 +208,15 @@ impl Shader<'_> {
 
     /// A sample of an explicit triangle.
     #[inline(never)]
-    fn paint_one(&self, samples: &Samples<'_>, k: usize, batch: &mut Batch, painted: &mut Painted) {
+    fn paint_one(
+        &self,
+        samples: &Samples<'_>,
+        (k, colors_of): (usize, Option<u32>),
+        batch: &mut Batch,
+        painted: &mut Painted,
+    ) {
         let Some(found) = self.blocks.find(samples.prim[k]) else { return painted.set(k, Rgb::ZERO, 0) };
-        let (layer, depth) = (found.block.layer, self.screen.depth_of(samples.q[k]));
+        let (layer, depth) = (colors_of.unwrap_or(found.block.layer), self.screen.depth_of(samples.q[k]));
         let (hit, footprint) =
             (SurfacePoint::new(&found, self.screen, samples.at(k)), self.screen.footprint(f64::from(depth)));
         let color = match &self.layers[layer as usize] {

@@ -1,5 +1,6 @@
 //! Colour of what a traced ray meets.
 
+use crate::shade::color::Rgb;
 use crate::shade::ground::terrain::TerrainShade;
 use crate::shade::{LayerShade, Shaded, Shader};
 use crate::trace::{Part, RayHit};
@@ -12,9 +13,16 @@ impl Shader<'_> {
         let Some(seen) = seen else {
             return Shaded { color: self.sky.at(pixel.as_vec2().to_array()), id: 0, world: DVec3::NAN };
         };
-        let layer = seen.layer as u32;
+        let (color, id) = self.mixed_at(seen.layer, seen.point, |layer| self.color_of(layer, view, seen, pixel));
+        let color = self.sky.through_air(color, seen.depth as f32);
+        Shaded { color, id, world: seen.point }
+    }
+
+    /// Colour and identity of what was hit, in the colours of a layer that is its surface.
+    fn color_of(&self, layer: usize, view: &View, seen: &RayHit, pixel: DVec2) -> (Rgb, u32) {
         let footprint = self.screen.footprint(seen.depth);
-        let (color, id) = match (&self.layers[seen.layer], seen.part) {
+        let sun = |p: DVec3, n: DVec3| self.sun_on(layer, p, n, footprint);
+        let (color, id) = match (&self.layers[layer], seen.part) {
             (LayerShade::Terrain(t), Part::Cell(cell, triangle)) => {
                 let facing = [DVec2::X * footprint, DVec2::Y * footprint];
                 let axes = t.ground_per_px(view, seen.point, cell, triangle).unwrap_or(facing);
@@ -22,18 +30,16 @@ impl Shader<'_> {
                 t.shade_at(self, seen.point.truncate(), fp, axes, seen.depth, pixel)
             }
             (LayerShade::Boxes(b, light), Part::Face(index, normal)) => match b.boxes.get(index) {
-                Some(shape) => (self.box_color(seen.layer, shape, light, normal, seen.point, footprint), None),
-                None => (crate::shade::Rgb::ZERO, None),
+                Some(shape) => (self.box_color(layer, shape, light, normal, seen.point, footprint), None),
+                None => (Rgb::ZERO, None),
             },
-            (LayerShade::Mesh(m), Part::Triangle(index, front)) => (
-                m.color_at(index, front, seen.point, footprint, &|p, n| self.sun_on(seen.layer, p, n, footprint)),
-                None,
-            ),
+            (LayerShade::Mesh(m), Part::Triangle(index, front)) => {
+                (m.color_at(index, front, seen.point, footprint, &sun), None)
+            }
             (LayerShade::Molecule(m), Part::Triangle(index, _)) => (m.color_at(index, seen.point), None),
-            _ => (crate::shade::Rgb::ZERO, None),
+            _ => (Rgb::ZERO, None),
         };
-        let color = self.sky.through_air(color, seen.depth as f32);
-        Shaded { color, id: id.unwrap_or(layer) + 1, world: seen.point }
+        (color, id.unwrap_or(layer as u32) + 1)
     }
 }
 

@@ -74,7 +74,7 @@ impl<'a> Tracer<'a> {
     ///
     /// Where styling sections show layers in part, a ray meets what its pixel's threshold shows.
     pub fn new(scene: &'a Scene, view: &'a View) -> Self {
-        Self::exposed(scene, view, Sections::of(scene, view, None), Exposure::new(1, 1))
+        Self::exposed(scene, view, Sections::of(scene, view, None, true), Exposure::new(1, 1))
     }
 
     /// * `exposure`: thresholds of the samples.

@@ -7,7 +7,8 @@ use belvedere_core::presets::PresetDocument;
 use belvedere_core::sections::TagPoint;
 use belvedere_core::{DVec3, Stage, View};
 use belvedere_scene::{
-    BoxLayer, BoxShape, Color, Compositing, Frame, LayerKind, Palette, RenderOptions, Representation, Scene,
+    BoxLayer, BoxShape, Color, Compositing, Frame, LayerKind, Mesh, MeshColors, MeshLayer, Palette, RenderOptions,
+    Representation, Scene,
 };
 
 const IMAGE: [u32; 2] = [160, 120];
@@ -53,7 +54,11 @@ fn parameter(view: &View, p: [f64; 3]) -> f64 {
 }
 
 fn placed(scene: &Scene, view: &View, exposures: u32) -> Frame {
-    let mut options = RenderOptions { exposures, ..options(1) };
+    composed(scene, view, exposures, Compositing::Dither)
+}
+
+fn composed(scene: &Scene, view: &View, exposures: u32, compositing: Compositing) -> Frame {
+    let mut options = RenderOptions { exposures, compositing, ..options(1) };
     options.aux.world = true;
     render(scene, view, &options)
 }
@@ -104,15 +109,19 @@ fn a_transition_shows_shares_of_both_and_exactly_one_of_them_at_each_sample() {
     assert!(whole.id.iter().zip(&frame.id).all(|(a, b)| (*a == 0) == (*b == 0)));
 }
 
-#[test]
-fn exposures_tend_to_the_weighted_composite_where_layers_see_one_surface() {
+/// The hills without towers in a wide transition, and their view.
+fn plain_transition() -> (Scene, View) {
     let (mut scene, view) = (land(), view(&[TagPoint { u: 0.5, delta: 0.3 }], &["near", "far"]));
     scene.layers[1].kind = LayerKind::Boxes(BoxLayer::default());
-    let mean = placed(&scene, &view, 64);
+    (scene, view)
+}
+
+/// Largest difference, in steps of 255, of a picture of [`plain_transition`] from the composite by weights of its layers, each drawn alone.
+fn off_by(scene: &Scene, view: &View, picture: &Frame) -> f64 {
     let only = |keep: &str| {
         let of = |id: &str| representation(id, if id == keep { &["relief", "plan"] } else { &[] });
         let layers = scene.layers.iter().filter(|l| l.id == keep).cloned().collect();
-        render(&Scene { layers, representations: vec![of(keep)], ..Scene::default() }, &view, &options(1))
+        render(&Scene { layers, representations: vec![of(keep)], ..Scene::default() }, view, &options(1))
     };
     let (relief, plan) = (only("relief"), only("plan"));
     let linear = |v: u8| {
@@ -121,20 +130,80 @@ fn exposures_tend_to_the_weighted_composite_where_layers_see_one_surface() {
     };
     let code = |v: f64| 255.0 * if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
     let (mut worst, mut mixed) = (0.0f64, 0);
-    for (i, p) in mean.world.as_ref().expect("asked for").iter().enumerate() {
-        let share = ((parameter(&view, *p) - 0.2) / 0.6).clamp(0.0, 1.0);
-        if mean.id[i] == 0 {
+    for (i, p) in picture.world.as_ref().expect("asked for").iter().enumerate() {
+        let share = ((parameter(view, *p) - 0.2) / 0.6).clamp(0.0, 1.0);
+        if picture.id[i] == 0 {
             continue;
         }
         mixed += usize::from(share > 0.0 && share < 1.0);
         for k in 0..3 {
             let want = (1.0 - share) * linear(relief.color[i][k]) + share * linear(plan.color[i][k]);
-            worst = worst.max((code(want) - f64::from(mean.color[i][k])).abs());
+            worst = worst.max((code(want) - f64::from(picture.color[i][k])).abs());
         }
     }
     assert!(mixed > 4000, "{mixed}");
+    worst
+}
+
+#[test]
+fn exposures_tend_to_the_weighted_composite_where_layers_see_one_surface() {
+    let (scene, view) = plain_transition();
+    let worst = off_by(&scene, &view, &placed(&scene, &view, 64));
     // Half a step of 64 between two colours, and rounding.
     assert!(worst <= 2.0, "{worst}");
+}
+
+#[test]
+fn one_surface_in_two_colours_is_drawn_once_and_mixed_by_weight() {
+    let (scene, view) = plain_transition();
+    let single = composed(&scene, &view, 1, Compositing::Single);
+    let worst = off_by(&scene, &view, &single);
+    // Rounding of three pictures.
+    assert!(worst <= 1.3, "{worst}");
+    let mean = placed(&scene, &view, 64);
+    let off = single.color.iter().zip(&mean.color).flat_map(|(a, b)| (0..3).map(|k| a[k].abs_diff(b[k]))).max();
+    assert!(off.is_some_and(|off| off <= 2), "{off:?} of 255");
+    let whole = render(&Scene { representations: vec![], ..scene.clone() }, &view, &options(1));
+    assert_eq!(2 * single.stats.triangles_drawn, whole.stats.triangles_drawn, "one ground instead of two");
+    // Each sample is called by the layer of the greater share.
+    for (id, p) in single.id.iter().zip(single.world.expect("asked for")).filter(|(id, _)| **id != 0) {
+        let t = parameter(&view, p);
+        assert!(*id == if t < 0.5 { 1 } else { 3 } || (t - 0.5).abs() < 1e-6, "{id} at {t}");
+    }
+}
+
+#[test]
+fn meshes_of_one_surface_are_mixed_and_others_are_not() {
+    let (mut scene, view) = plain_transition();
+    let corners = [[-400.0, -600.0, 150.0], [400.0, -600.0, 150.0], [400.0, 900.0, 150.0], [-400.0, 900.0, 150.0]];
+    let roof = |color: [u8; 3], lift: f64| {
+        let corners = corners.map(|p| DVec3::from_array(p) + lift * DVec3::Z);
+        let mesh = Mesh::new(&corners, vec![[0, 1, 2], [0, 2, 3]], MeshColors::Layer).expect("two triangles");
+        let [r, g, b] = color;
+        LayerKind::Mesh(MeshLayer::new(mesh, Color::rgb(r, g, b)))
+    };
+    scene.layers.push(layer("red", roof([230, 60, 40], 0.0)));
+    scene.layers.push(layer("blue", roof([40, 60, 230], 0.0)));
+    scene.representations[0].layers.push("red".into());
+    scene.representations[1].layers.push("blue".into());
+    let hues = |scene: &Scene| {
+        let frame = composed(scene, &view, 1, Compositing::Single);
+        let of_roof = frame.id.iter().zip(&frame.color).filter(|(id, _)| **id == 4 || **id == 5);
+        // Mixtures: neither channel prevails by much.
+        of_roof.fold([0, 0], |[all, mixed], (_, c)| [all + 1, mixed + usize::from(c[0].abs_diff(c[2]) < 40)])
+    };
+    let [all, mixed] = hues(&scene);
+    assert!(all > 1000 && mixed == 0, "two surfaces, for all that is known: {mixed} of {all}");
+    let (before, [blue]) = scene.layers.split_at_mut(4) else { panic!("five layers") };
+    blue.kind.share_surface(&before[3].kind);
+    let [all, mixed] = hues(&scene);
+    assert!(10 * mixed > all, "{mixed} of {all}");
+    let d = difference(&scene, &view);
+    assert!(d.judged > d.pixels / 2 && d.is_small(), "{d:?}");
+    scene.layers[4].kind = roof([40, 60, 230], 5.0);
+    let (before, [blue]) = scene.layers.split_at_mut(4) else { panic!("five layers") };
+    blue.kind.share_surface(&before[3].kind);
+    assert!(!blue.kind.is_surface_of(&before[3].kind), "five metres apart");
 }
 
 #[test]
@@ -162,7 +231,7 @@ fn sections_of_one_representation_are_the_plain_picture() {
 fn layers_are_the_mean_of_the_exposures_where_they_see_one_surface() {
     let (mut scene, view) = (land(), view(&[TagPoint { u: 0.5, delta: 0.3 }], &["near", "far"]));
     scene.layers[1].kind = LayerKind::Boxes(BoxLayer::default());
-    let mean = render(&scene, &view, &RenderOptions { exposures: 64, ..options(1) });
+    let mean = placed(&scene, &view, 64);
     let layers = render(&scene, &view, &RenderOptions { compositing: Compositing::Layers, ..options(1) });
     let off = mean.color.iter().zip(&layers.color).flat_map(|(a, b)| (0..3).map(|k| a[k].abs_diff(b[k]))).max();
     assert!(off.is_some_and(|off| off <= 2), "{off:?} of 255");

@@ -3,6 +3,7 @@
 use super::{Mesh, MeshColors};
 use belvedere_core::DVec3;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 impl Mesh {
     /// The triangles that `keep` wants, by their numbers, over the same vertices.
@@ -25,7 +26,8 @@ impl Mesh {
             }
             let key = by.to_array().map(f64::to_bits);
             for (corner, v) in self.triangles[t].into_iter().enumerate() {
-                out.triangles[t][corner] = *copies.entry((v, key)).or_insert_with(|| out.copy_of(v as usize, by));
+                let copy = *copies.entry((v, key)).or_insert_with(|| out.copy_of(v as usize, by));
+                Arc::make_mut(&mut out.triangles)[t][corner] = copy;
             }
         }
         out
@@ -33,7 +35,8 @@ impl Mesh {
 
     /// Appends a vertex like another, moved.
     fn copy_of(&mut self, v: usize, by: DVec3) -> u32 {
-        self.positions.push((self.positions[v].as_dvec3() + by).as_vec3());
+        let moved = (self.positions[v].as_dvec3() + by).as_vec3();
+        Arc::make_mut(&mut self.positions).push(moved);
         if let Some(normals) = &mut self.normals {
             normals.push(normals[v]);
         }

@@ -114,7 +114,19 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
         }
     }
     let Loader { inputs, warnings, areas, original, .. } = loader;
-    Ok(LoadedLayers { layers: layers.into_iter().flatten().collect(), crs, inputs, warnings, areas, original })
+    let mut layers: Vec<Layer> = layers.into_iter().flatten().collect();
+    share_surfaces(&mut layers);
+    Ok(LoadedLayers { layers, crs, inputs, warnings, areas, original })
+}
+
+/// Lets layers that were read from the same source know that they are one surface.
+fn share_surfaces(layers: &mut [Layer]) {
+    for i in 1..layers.len() {
+        let (before, [layer, ..]) = layers.split_at_mut(i) else { return };
+        for other in before {
+            layer.kind.share_surface(&other.kind);
+        }
+    }
 }
 
 fn first_terrain(layers: &[Option<Layer>]) -> Option<&Heightfield> {

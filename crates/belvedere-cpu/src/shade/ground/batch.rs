@@ -77,17 +77,17 @@ impl Batch {
         }
     }
 
-    /// Takes in samples of a block without odd triangles: those numbered `from..to`.
+    /// Takes in samples of a block without odd triangles, in the colours of a layer: those numbered `from..to`.
     #[inline(always)]
     pub(crate) fn take(
         &mut self,
         shader: &Shader<'_>,
-        (block, nodes): (&Block, &Nodes),
+        (block, nodes, layer): (&Block, &Nodes, usize),
         samples: &Samples<'_>,
         [from, to]: [usize; 2],
         painted: &mut Painted,
     ) {
-        self.turn_to(block.layer as usize, shader, samples, painted);
+        self.turn_to(layer, shader, samples, painted);
         let mut from = from;
         while from < to {
             if self.len == LANES {
