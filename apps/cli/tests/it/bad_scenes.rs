@@ -96,6 +96,18 @@ fn stages_are_checked_with_their_line() {
         &relief("range_m = [9, 2]"),
         "7: range is [9, 2]; the background must begin farther away than the foreground ends",
     );
+    refuses(
+        &relief("range_tag = 1"),
+        "7: range_tag needs a stage spline_bend after the relief; add one, or give range_m",
+    );
+    refuses(
+        &relief(&format!("range_tag = 1\n{spline}plane = {{ height_m = -200 }}\n")),
+        "7: range_tag is 1, the presets of the spline stage have 0 tag points at this viewing angle; give one of them, or range_m",
+    );
+    refuses(
+        &relief("range_tag = 1\nrange_m = [1, 2]"),
+        "7: range_m and range_tag both say where the background begins; leave one out",
+    );
     refuses(&relief("levelling = 0.5"), "7: levelling needs terrain over a level reference plane");
     refuses(&with(turn), "7: curved_rays has no turn; give at least one [[stage.turn]]");
     refuses(

@@ -101,3 +101,24 @@ fn sections_show_representations_and_unknown_ones_are_named() {
     let line = place.fails(&["check", "s.toml"]);
     assert!(line.contains("representation \"town\": there is no layer \"tower\"; did you mean \"towers\"?"), "{line}");
 }
+
+#[test]
+fn relief_lies_flat_behind_the_transition_of_its_tag() {
+    let place = Place::new();
+    let scene = belvedere_testkit::workspace_root().join("scenes/canyon_map.toml");
+    // Pairs of places 100 m one over the other: before, within and behind the transition.
+    place.write(
+        "p.json",
+        "[[0, -4500, 100], [0, -4500, 200], [50, -2000, 100], [50, -2000, 200], [0, 6000, 100], [0, 6000, 200]]",
+    );
+    let out = place.ok(&["displace", scene.to_str().expect("UTF-8"), "--points", "p.json"]);
+    let out: serde_json::Value = serde_json::from_str(&out).expect("JSON");
+    let at = |i: usize| -> Vec<f64> {
+        let point = out["points"][i]["displaced"].as_array().expect("three numbers");
+        point.iter().map(|v| v.as_f64().expect("a number")).collect()
+    };
+    let apart = |i: usize| at(i).iter().zip(at(i + 1)).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+    assert!((apart(0) - 100.0).abs() < 1e-6, "{}", apart(0));
+    assert!((20.0..80.0).contains(&apart(2)), "{}", apart(2));
+    assert!((apart(4) - 1.0).abs() < 1e-6, "{}", apart(4));
+}

@@ -1,12 +1,12 @@
 //! Relief stages.
 
-use super::stages::{StageContext, plane};
+use super::stages::{self, StageContext, plane};
 use crate::BelvedereError;
 use crate::scene_file::{OneOrTwo, PlaneDoc, ReliefStageDoc, StageDoc, Table};
 use belvedere_construct::large_forms;
 use belvedere_core::Stage;
 use belvedere_core::map::relief::{Relief, ReliefError, ReliefShape};
-use belvedere_core::map::spline::default_pivot;
+use belvedere_core::map::spline::{ReferencePlane, default_pivot};
 use std::sync::Arc;
 
 /// Foreground and background as shares of the distance of the pivot: those of the built-in presets.
@@ -22,10 +22,19 @@ pub(super) fn resolve(
 ) -> Result<(Stage, StageDoc), BelvedereError> {
     let pinhole = &context.camera.pinhole;
     let (plane, height) = plane(context, doc.plane.as_ref(), at)?;
-    let range = doc.range_m.unwrap_or_else(|| {
-        let distance = default_pivot(pinhole, &plane).distance(plane.foot(pinhole.eye));
-        RANGE.map(|share| share * distance.max(1.0))
-    });
+    let range = match (doc.range_m, doc.range_tag) {
+        (Some(_), Some(_)) => {
+            return Err(
+                at.error(&["range_tag"], "range_m and range_tag both say where the background begins; leave one out")
+            );
+        }
+        (Some(range), None) => range,
+        (None, Some(tag)) => transition(context, &plane, tag).map_err(|reason| at.error(&["range_tag"], reason))?,
+        (None, None) => {
+            let distance = default_pivot(pinhole, &plane).distance(plane.foot(pinhole.eye));
+            RANGE.map(|share| share * distance.max(1.0))
+        }
+    };
     let shape = ReliefShape {
         exaggeration: doc.exaggeration.map_or([1.0; 2], OneOrTwo::pair),
         oblique: doc.oblique.unwrap_or(0.0),
@@ -49,9 +58,33 @@ pub(super) fn resolve(
         levelling: Some(shape.levelling),
         levelling_scale_m: (shape.levelling > 0.0).then_some(scale),
         range_m: Some(range),
+        range_tag: None,
         plane: Some(PlaneDoc { normal: plane.normal().to_array(), height_m: Some(height) }),
     };
     Ok((Stage::Relief(relief), StageDoc::Relief(document)))
+}
+
+/// Distances from the eye, in plan along the heading, between which the transition at a tag point of the spline stage lies.
+fn transition(context: &StageContext<'_>, plane: &ReferencePlane, number: usize) -> Result<[f64; 2], String> {
+    let Some(bend) = stages::first_spline(context).map_err(|e| e.to_string())? else {
+        return Err("range_tag needs a stage spline_bend after the relief; add one, or give range_m".into());
+    };
+    let tags = bend.sections().tags();
+    let Some(tag) = number.checked_sub(1).and_then(|i| tags.get(i)) else {
+        return Err(format!(
+            "range_tag is {number}, the presets of the spline stage have {} tag points at this viewing angle; give one of them, or range_m",
+            tags.len()
+        ));
+    };
+    if !(tag.delta > 0.0) {
+        return Err(format!(
+            "tag point {number} has no transition, ground cannot pass over it; give it a delta above 0"
+        ));
+    }
+    let eye = plane.foot(context.camera.pinhole.eye);
+    let [_, heading, _] = bend.axes();
+    Ok([tag.u - tag.delta, tag.u + tag.delta]
+        .map(|t| (bend.unbent(t * bend.curve().length(), 0.0, 0.0) - eye).dot(heading)))
 }
 
 /// The key of the document that an error is about.

@@ -121,6 +121,17 @@ fn solved_terrain(
     Ok((Stage::TerrainDisocclusion(TerrainDisocclusion::new(grid)), StageDoc::TerrainDisocclusion(doc.clone())))
 }
 
+/// The bend of the first spline stage.
+pub(super) fn first_spline(context: &StageContext<'_>) -> Result<Option<SplineBend>, BelvedereError> {
+    for (i, stage) in context.source.document.stage.iter().enumerate() {
+        if let StageDoc::SplineBend(doc) = stage {
+            let (bend, _) = spline(context, doc, &mut Vec::new(), &mut Vec::new(), context.at(i))?;
+            return Ok(Some(bend));
+        }
+    }
+    Ok(None)
+}
+
 fn spline(
     context: &StageContext<'_>,
     doc: &SplineStageDoc,

@@ -27,6 +27,10 @@ pub struct ReliefStageDoc {
     /// Distances from the eye at which the foreground ends and the background begins, metres in plan; by default 0.5 and 1.9 times that of the pivot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub range_m: Option<[f64; 2]>,
+    /// In place of `range_m`: number of the tag point (1 = the nearest) of the spline stage that follows over whose transition the foreground
+    /// passes into the background. With an exaggeration of 0.01 there, ground lies flat in the sections behind.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub range_tag: Option<usize>,
     /// Reference plane, from which heights count.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plane: Option<PlaneDoc>,

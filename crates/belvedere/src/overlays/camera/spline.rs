@@ -1,7 +1,7 @@
 //! The deformation curve with its control points, the reference plane and the pivot.
 
 use super::rays;
-use super::subject::{CURVE, DARK, PLANE, Subject, line, point};
+use super::subject::{CURVE, DARK, PLANE, Subject, TAG, line, point};
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::{DVec2, DVec3, SpaceMap};
 use belvedere_scene::{Color, Hidden, Overlay, OverlayFace, OverlayLine, Symbol};
@@ -50,6 +50,15 @@ pub(super) fn draw(subject: &Subject<'_>, bend: &SplineBend, overlay: &mut Overl
     overlay.over.push(OverlayLine { hidden: Hidden::Show, ..line(controls.clone(), DARK.with_alpha(150), 1.0) });
     overlay.points.extend(controls.iter().map(|p| point(*p, Symbol::Square, 6.0, CURVE, "")));
     overlay.points.push(point(pivot, Symbol::Cross, 11.0, DARK, "pivot"));
+    let tags = bend.sections().tags();
+    for tag in tags {
+        let z = start + length * tag.u;
+        let ends = [-half, half].iter().filter_map(|a| bent(z, *a)).collect();
+        overlay.over.push(OverlayLine { hidden: Hidden::Show, ..line(ends, TAG, 2.4) });
+    }
+    if !tags.is_empty() {
+        legend.push((TAG, "tag points, between styling sections".into()));
+    }
     legend.push((PLANE, "reference plane".into()));
     legend.push((CURVE, "where it is bent to; the eye sees it straight".into()));
 }

@@ -33,6 +33,7 @@ const SEGMENTS: [Color; 5] = [
 ];
 pub(super) const DARK: Color = Color::rgb(30, 34, 44);
 pub(super) const CURVE: Color = Color::rgb(200, 60, 130);
+pub(super) const TAG: Color = Color::rgb(213, 94, 0);
 pub(super) const PLANE: Color = Color::rgb(0, 140, 110);
 
 pub(super) fn segment_color(segment: u32) -> Color {
