@@ -135,7 +135,7 @@ fn figures_of_multi_perspective_views_are_all_there() {
     let page = String::from_utf8(read(&place.path("views/spline.html"))).expect("UTF-8");
     let record: serde_json::Value = serde_json::from_slice(&read(&place.path("views/spline.json"))).expect("JSON");
     let figures = record.as_array().expect("figures");
-    for name in ["town", "canyon", "corners", "styles", "angles", "relief", "arc_length", "chain"] {
+    for name in ["town", "canyon", "corners", "styles", "angles", "relief", "arc_length", "frames", "chain"] {
         let figure = figures.iter().find(|f| f["name"] == name).unwrap_or_else(|| panic!("no figure {name}"));
         let picture = figure["picture"].as_str().expect("picture");
         assert!(
