@@ -207,7 +207,7 @@ pub(crate) struct RevealArgs {
     /// raw voxels, or a scene file
     #[arg(value_name = "DATA")]
     pub(crate) dem: String,
-    /// Routes, areas or points: GPX, GeoJSON, shapefiles, or builtin:massif?seed=7; with --see more models
+    /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages where they are built in, or builtin:massif?seed=7; with --see more models
     #[arg(required_unless_present = "see")]
     pub(crate) features: Vec<String>,
     /// What of a model must be seen: a file (by its name without ending) or layer, a named part of a mesh, atoms such as "chain B",
@@ -274,7 +274,7 @@ pub(crate) struct RevealArgs {
 pub(crate) struct DisoccludeArgs {
     /// Elevation model: GeoTIFF, .hgt, ESRI ASCII
     pub(crate) dem: PathBuf,
-    /// Routes, areas or points: GPX, GeoJSON, shapefiles
+    /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages where they are built in
     #[arg(required = true)]
     pub(crate) features: Vec<PathBuf>,
     /// Eye: x,y in the system of the elevation model (degrees if geographic), z in metres over its datum

@@ -10,9 +10,11 @@ use std::path::PathBuf;
 /// Buildings and streets.
 #[derive(Debug, Args)]
 pub(crate) struct GeneraliseArgs {
-    /// Buildings with their heights or storeys: CityJSON, CityGML, OSM PBF, or footprints as GeoJSON or shapefile
+    /// Buildings with their heights or storeys: CityJSON, CityGML, OSM PBF, or footprints as GeoJSON, shapefile or
+    /// GeoPackage (FILE.gpkg?table=NAME, where they are built in)
     pub(crate) city: PathBuf,
-    /// Streets, railways, rivers and land cover, where the city holds none: GeoJSON, shapefiles, OSM PBF
+    /// Streets, railways, rivers and land cover, where the city holds none: GeoJSON, shapefiles, OSM PBF,
+    /// GeoPackages
     pub(crate) roads: Vec<PathBuf>,
     /// Folder of the levels, the map, the plan drawings and the report
     #[arg(short, long, value_name = "DIR")]

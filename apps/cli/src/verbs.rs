@@ -354,7 +354,11 @@ fn measure_scene(args: &MeasureArgs, context: &Context) -> anyhow::Result<Goal> 
 fn view(args: crate::args::ViewArgs, context: &Context) -> anyhow::Result<Goal> {
     // What cannot be read is said here rather than in a window.
     for file in &args.files {
-        anyhow::ensure!(file.exists(), "{}: there is no such file; check the name", file.display());
+        anyhow::ensure!(
+            belvedere::io::split_table(file).0.exists(),
+            "{}: there is no such file; check the name",
+            file.display()
+        );
     }
     let (files, allowed) = (args.files, context.common.allow_root.clone());
     let state = belvedere_viewer::Opening::usual_state();

@@ -34,6 +34,7 @@ pub use raster::{Affine, Alpha, CrsKind, Limits, Photometric, Raster, RasterInfo
 pub use recognise::{Unread, recognise};
 pub use terrain::{CrsChoice, LoadedTerrain, ResampleError, TerrainRequest, load_terrain};
 pub use vector::{
-    Geometry, VectorFeature, Vectors, Vertex, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain,
+    Geometry, VectorFeature, Vectors, Vertex, areas_on_terrain, join_table, lines_on_terrain, load_vectors,
+    points_on_terrain, split_table,
 };
 pub use volume::{ByteOrder, Number, RawLayout, VolumeFile, VolumeRequest, is_volume, load_volume};

@@ -31,6 +31,8 @@ const NAME_PDB: &str = "it is read if its name ends in .pdb";
 const NAME_CIF: &str = "it is read if its name ends in .cif";
 const LATER: &str = "layers of this kind are planned";
 const AS_GEOJSON: &str = "ogr2ogr or QGIS turn it into GeoJSON";
+const AS_PACKAGE: &str =
+    "a program built with the cargo feature geopackage reads it, and ogr2ogr or QGIS turn it into GeoJSON";
 const AS_CITY: &str = "it is read by layers of kind city";
 const AS_GLTF: &str = "turn it into glTF or OBJ";
 const AS_GEOTIFF: &str = "gdal_translate turns it into GeoTIFF";
@@ -119,6 +121,7 @@ fn read_endings() -> impl Iterator<Item = &'static &'static str> {
 /// # Errors
 /// [`IoError::Os`].
 pub fn recognise(path: &Path) -> Result<Option<Unread>, IoError> {
+    let (path, _) = vector::split_table(path);
     let file = fs::File::open(path).map_err(|e| IoError::os(path, e))?;
     let reads = path.extension().is_some_and(|e| read_endings().any(|read| e.eq_ignore_ascii_case(read)));
     if reads || molecule::is_molecule(path) || volume::is_volume(path) {
@@ -135,12 +138,25 @@ pub fn recognise(path: &Path) -> Result<Option<Unread>, IoError> {
 pub(crate) fn explain(error: IoError) -> IoError {
     let IoError::Format { path, .. } = &error else { return error };
     match recognise(path) {
+        Ok(Some(known)) if known.is_broken(path) => IoError::format(path, known.broken()),
         Ok(Some(known)) => {
             let unread =
                 if known.meanwhile.starts_with("it is read") { "" } else { ", which this version does not read" };
             IoError::format(path, format!("is {known}{unread}; {}", known.meanwhile))
         }
         _ => error,
+    }
+}
+
+impl Unread {
+    /// Whether a file is of a format that is read, by its name or some word, but does not begin like one.
+    pub fn is_broken(&self, path: &Path) -> bool {
+        self.meanwhile == AS_CITY && !crate::city::is_city(path).unwrap_or(true)
+    }
+
+    /// What there is to say of such a file.
+    pub fn broken(&self) -> String {
+        format!("is {self} by its name, but does not begin like one; it is damaged or cut off, get it again")
     }
 }
 
@@ -160,7 +176,11 @@ fn of_content(head: &[u8]) -> Option<Unread> {
     }
     if at(0, b"SQLite format 3\0") {
         let package = at(68, b"GPKG") || at(68, b"GP10");
-        return Some(unread(if package { "GeoPackage" } else { "SQLite" }, DATABASE, AS_GEOJSON));
+        return match package {
+            true if cfg!(feature = "geopackage") => None,
+            true => Some(unread("GeoPackage", DATABASE, AS_PACKAGE)),
+            false => Some(unread("SQLite", DATABASE, AS_GEOJSON)),
+        };
     }
     if at(128, b"DICM") {
         return Some(unread("DICOM", VOLUME, LATER));
@@ -201,11 +221,11 @@ mod tests {
             (b"data_4ZKK\n#\nloop_\n_atom_site.group_PDB\n", "mmCIF"),
             (atom, "PDB"),
             (osm, "OSM PBF"),
-            (&package, "GeoPackage"),
             (b"<osm version=\"0.6\">", "OSM XML"),
         ] {
             assert_eq!(of(head), Some(format), "{}", String::from_utf8_lossy(head));
         }
+        assert_eq!(of(&package), (!cfg!(feature = "geopackage")).then_some("GeoPackage"));
         for read in [
             &b"<?xml version=\"1.0\"?><gpx version=\"1.1\"><trk/></gpx>"[..],
             b"{\"type\":\"FeatureCollection\",\"name\":\"CityJSON\",\"about\":\"CityModel\",\"features\":[]}",

@@ -12,7 +12,7 @@ use crate::session::Description;
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_core::View;
 use belvedere_io::terrain::OriginalTerrain;
-use belvedere_io::vector::load_vectors;
+use belvedere_io::vector::{join_table, load_vectors, split_table};
 use belvedere_scene::{Scene, Unit};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -129,8 +129,10 @@ fn locate(name: &str, roots: &mut Roots) -> Result<String, BelvedereError> {
     if name.starts_with("builtin:") {
         return Ok(name.to_owned());
     }
-    let path = belvedere_io::fs::canonicalize(name).map_err(|e| belvedere_io::IoError::os(name, e))?;
-    roots.allowed.extend(path.parent().map(Path::to_owned));
+    let (file, table) = split_table(Path::new(name));
+    let file = belvedere_io::fs::canonicalize(file).map_err(|e| belvedere_io::IoError::os(file, e))?;
+    roots.allowed.extend(file.parent().map(Path::to_owned));
+    let path = join_table(file, table);
     path.to_str().map(str::to_owned).ok_or_else(|| BelvedereError::not_utf8(name))
 }
 

@@ -2,7 +2,7 @@
 
 use crate::BelvedereError;
 use crate::scene_file::Document;
-use belvedere_io::fs;
+use belvedere_io::{fs, split_table};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// [`BelvedereError::Output`], [`BelvedereError::Io`].
 pub fn check(path: &Path, inputs: &[PathBuf], overwrite: bool) -> Result<(), BelvedereError> {
     if let Ok(real) = fs::canonicalize(path)
-        && inputs.iter().any(|input| fs::canonicalize(input).is_ok_and(|input| input == real))
+        && inputs.iter().any(|input| fs::canonicalize(split_table(input).0).is_ok_and(|input| input == real))
     {
         return Err(BelvedereError::Output {
             path: path.to_owned(),

@@ -3,6 +3,7 @@
 use crate::generalise_towns::{building, read, rectangle, town, way};
 use belvedere_construct::generalise::{GeneraliseError, GeneraliseSettings, Generalised, Level, generalise};
 use belvedere_core::DVec2;
+use belvedere_io::{Limits, load_city};
 use belvedere_scene::Progress;
 use belvedere_scene::city::{Building, City, CityArea, LandCover, Polygon, WayClass};
 use belvedere_testkit::{Random, data};
@@ -207,6 +208,27 @@ fn what_is_no_city_is_refused_with_a_reason() {
     progress.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
     let cancelled = generalise(&town(1, 1), &GeneraliseSettings::default(), &progress);
     assert!(matches!(cancelled, Err(GeneraliseError::Cancelled(_))));
+}
+
+/// Delft: solids instead of footprints, streets that are surfaces instead of lines.
+#[test]
+fn a_modelled_quarter() {
+    let Some(path) = data("city_delft/delft.city.json") else { return };
+    let mut city = load_city(&path, None, &Limits::default()).expect("a city").value.city;
+    assert_eq!((city.buildings.len(), city.ways.len()), (160, 0));
+    let plain = done(&city);
+    check_laws(&city, &plain);
+    for building in city.buildings.iter_mut().step_by(31) {
+        building.landmark = true;
+    }
+    let made = done(&city);
+    check_laws(&city, &made);
+    let [before, after] = [&plain, &made].map(|m| m.report.levels.iter().map(|l| l.landmarks).collect::<Vec<_>>());
+    for (level, (before, after)) in made.report.levels.iter().zip(before.iter().zip(&after)) {
+        assert!(level.volume_kept, "{} keeps {}", level.name, level.volume_share);
+        assert!(level.blocks > 0 && level.blocks < 16, "{} blocks", level.blocks);
+        assert!(after > before && *after >= 6, "{}: six more landmarks than {before}, not {after}", level.name);
+    }
 }
 
 #[test]

@@ -2,6 +2,11 @@
 
 use crate::bspline::BSplineError;
 
+/// A number without hundreds of digits.
+fn short(value: f64) -> String {
+    if value.abs() < 1e7 { value.to_string() } else { format!("{value:e}") }
+}
+
 /// A preset document that describes no usable deformation. `preset` is the name in quotes, or the position from 1 if it has none.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -24,7 +29,7 @@ pub enum PresetError {
         field: &'static str,
     },
     /// A value outside its range.
-    #[error("preset {preset}: {field} is {value}, it must be in {min}..={max}")]
+    #[error("preset {preset}: {field} is {}, it must be in {min}..={max}", short(*value))]
     Range {
         /// Preset.
         preset: String,
@@ -38,7 +43,7 @@ pub enum PresetError {
         max: f64,
     },
     /// `e <= s`.
-    #[error("preset {preset}: far depth e = {e} does not exceed near depth s = {s}; give e > s")]
+    #[error("preset {preset}: far depth e = {} does not exceed near depth s = {}; give e > s", short(*e), short(*s))]
     EndBeforeStart {
         /// Preset.
         preset: String,

@@ -7,6 +7,8 @@ const STOREY_M: f64 = 3.0;
 const ABOVE_M: f64 = 1.0;
 /// Height of buildings of which nothing is known, metres.
 const ASSUMED_M: f64 = 9.0;
+/// Longest number read.
+const MOST_DIGITS: usize = 40;
 /// Heights beyond are mistakes, metres.
 const MOST_M: f64 = 2000.0;
 
@@ -49,20 +51,20 @@ pub(super) trait Attributes {
     fn text(&self, key: &str) -> Option<String>;
 }
 
-/// Height over ground and where it is from, of what attributes say; values out of 0..=2000 m are counted and not believed.
+/// Height over ground and where it is from, of what attributes say; what is no number, or out of 0..=2000 m, is counted and not
+/// believed. No storeys at all say nothing.
 pub(super) fn height(of: &impl Attributes, odd: &mut usize) -> (f64, HeightSource) {
-    let mut believed = |value: Option<f64>| {
-        let fine = value.filter(|v| *v > 0.0 && *v <= MOST_M);
-        *odd += usize::from(value.is_some() && fine.is_none());
+    let mut believed = |text: Option<String>, metres: fn(&str) -> Option<f64>| {
+        let text = text?;
+        let fine = metres(&text).filter(|v| *v > 0.0 && *v <= MOST_M);
+        *odd += usize::from(fine.is_none());
         fine
     };
-    let metres = HEIGHTS.iter().find_map(|k| of.text(k));
-    if let Some(height) = believed(metres.as_deref().and_then(length_m)) {
+    if let Some(height) = believed(HEIGHTS.iter().find_map(|k| of.text(k)), length_m) {
         return (height, HeightSource::Stated);
     }
-    let levels = LEVELS.iter().find_map(|k| of.text(k));
-    let from_levels = levels.as_deref().and_then(first_number).map(|n| n * STOREY_M + ABOVE_M);
-    match believed(from_levels.filter(|h| *h != ABOVE_M)) {
+    let levels = LEVELS.iter().find_map(|k| of.text(k)).filter(|text| first_number(text).is_none_or(|(n, _)| n != 0.0));
+    match believed(levels, |text| first_number(text).filter(|(n, _)| *n > 0.0).map(|(n, _)| n * STOREY_M + ABOVE_M)) {
         Some(height) => (height, HeightSource::Levels),
         None => (ASSUMED_M, HeightSource::Assumed),
     }
@@ -81,16 +83,18 @@ pub(super) fn is_landmark(of: &impl Attributes) -> bool {
 
 /// A length such as `12`, `12.5 m`, `12,5m` or `40 ft`, metres.
 fn length_m(text: &str) -> Option<f64> {
-    let number = first_number(text)?;
-    let unit = text.trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | ' '));
+    let (number, unit) = first_number(text)?;
     let feet = unit.starts_with("ft") || unit.starts_with("feet") || unit.starts_with('\'');
     Some(if feet { 0.3048 * number } else { number })
 }
 
-fn first_number(text: &str) -> Option<f64> {
+/// The number that a text begins with, the longest there is, and what follows: `2;3` is 2, `10-12 m` is 10.
+fn first_number(text: &str) -> Option<(f64, String)> {
     let text = text.trim().replace(',', ".");
-    let end = text.find(|c: char| !(c.is_ascii_digit() || matches!(c, '+' | '-' | '.'))).unwrap_or(text.len());
-    text[..end].parse::<f64>().ok().filter(|v| v.is_finite())
+    let of_number = |c: &char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E');
+    let most = text.chars().take(MOST_DIGITS).take_while(of_number).count();
+    let number = |end: usize| Some((text[..end].parse::<f64>().ok()?, text[end..].trim_start().to_owned()));
+    (1..=most).rev().find_map(number).filter(|(value, _)| value.is_finite())
 }
 
 #[cfg(test)]
@@ -110,7 +114,9 @@ mod tests {
             (&[("height", "12,5 m")][..], 12.5, HeightSource::Stated),
             (&[("height", "40 ft")][..], 12.192, HeightSource::Stated),
             (&[("height", "40'")][..], 12.192, HeightSource::Stated),
-            (&[("height", "tall"), ("levels", "4")][..], 13.0, HeightSource::Levels),
+            (&[("height", "1e2")][..], 100.0, HeightSource::Stated),
+            (&[("height", "10-12 ft")][..], 3.048, HeightSource::Stated),
+            (&[("building:levels", "2;3")][..], 7.0, HeightSource::Levels),
             (&[("building:levels", "2.5")][..], 8.5, HeightSource::Levels),
             (&[("levels", "0")][..], 9.0, HeightSource::Assumed),
             (&[][..], 9.0, HeightSource::Assumed),
@@ -120,8 +126,14 @@ mod tests {
         }
         assert_eq!(odd, 0);
         assert_eq!(height(&&[("height", "-4"), ("levels", "3")][..], &mut odd), (10.0, HeightSource::Levels));
-        assert_eq!(height(&&[("height", "99999")][..], &mut odd), (9.0, HeightSource::Assumed));
-        assert_eq!(odd, 2);
+        for text in ["99999", "1e300", "1e999", "NaN", "inf", "0", "tall", "~12", "-"] {
+            assert_eq!(height(&&[("height", text)][..], &mut odd), (9.0, HeightSource::Assumed), "{text}");
+        }
+        assert_eq!(height(&&[("height", "tall"), ("levels", "4")][..], &mut odd), (13.0, HeightSource::Levels));
+        for text in ["-1", "1000", "two"] {
+            assert_eq!(height(&&[("levels", text)][..], &mut odd), (9.0, HeightSource::Assumed), "{text}");
+        }
+        assert_eq!(odd, 1 + 9 + 1 + 3);
         assert!(is_landmark(&&[("building", "Church;ruins")][..]) && !is_landmark(&&[("building", "towerblock")][..]));
     }
 }

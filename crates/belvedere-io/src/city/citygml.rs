@@ -19,16 +19,21 @@ pub(super) fn load(path: &Path, text: &str, lod: Option<&str>) -> Result<Loaded<
     if root.name != "CityModel" {
         return Err(fail(format!("its root is <{}>, not <CityModel>; choose another file", root.name)));
     }
+    if text.contains("opengis.net/citygml/3.") {
+        return Err(fail("is version 3; 1.0 and 2.0 are read, citygml-tools or FME turn it into 2.0".into()));
+    }
+    let version = if text.contains("opengis.net/citygml/2.0") { "2.0" } else { "1.0" };
     let mut document = Document::of(&root);
     let reference = Reference::of(document.srs);
     document.north_first = reference.north_first;
     let mut collector = Collector::new(lod);
     for object in document.objects() {
         let about = attributes(object);
-        let shown = document.shown(object).map_err(|e| fail(format!("{} \"{}\": {e}", object.name, object.id)))?;
+        let shown = document.shown(object).map_err(|e| {
+            fail(format!("{} \"{}\": {e}; correct it, or export the file again", object.name, object.id))
+        })?;
         collector.add(&object.id, kind(&object.name), &about, shown);
     }
-    let version = if text.contains("opengis.net/citygml/2.0") { "2.0" } else { "1.0" };
     collector.finish(path, format!("CityGML {version}"), reference)
 }
 
@@ -127,7 +132,7 @@ impl<'n> Document<'n> {
         }
         match self.ids.get(node.href.as_str()) {
             Some(target) => self.gather(target, &At { hops: at.hops + 1, ..at.clone() }, out),
-            None => Err(format!("line {}: \"#{}\" leads nowhere; the file is damaged", node.line, node.href)),
+            None => Err(format!("line {}: \"#{}\" leads nowhere", node.line, node.href)),
         }
     }
 
@@ -151,7 +156,10 @@ impl<'n> Document<'n> {
         };
         let place = place.ok_or_else(|| format!("line {}: a shape without a place", node.line))?;
         for (lod, mut face) in there.faces {
-            face.rings.iter_mut().flatten().for_each(|p| *p = matrix.transform_point3(*p) + place);
+            for p in face.rings.iter_mut().flatten() {
+                let there = plan::position(matrix.transform_point3(*p) + place);
+                *p = there.map_err(|e| format!("line {}: a shape {e}", node.line))?;
+            }
             out.faces.push((lod, face));
         }
         Ok(())
@@ -197,7 +205,9 @@ fn placed(node: &Node, dimension: Option<usize>) -> Result<Vec<DVec3>, String> {
         let (line, name, count) = (node.line, &node.name, values.len());
         return Err(format!("line {line}: {name} of {count} numbers does not divide into positions of {dimension}"));
     }
-    Ok(values.chunks_exact(dimension).map(|v| DVec3::new(v[0], v[1], v.get(2).copied().unwrap_or(0.0))).collect())
+    let place = |v: &[f64]| plan::position(DVec3::new(v[0], v[1], v.get(2).copied().unwrap_or(0.0)));
+    let places: Result<_, String> = values.chunks_exact(dimension).map(place).collect();
+    places.map_err(|e| format!("line {}: a position {e}", node.line))
 }
 
 fn numbers(node: &Node) -> Result<Vec<f64>, String> {

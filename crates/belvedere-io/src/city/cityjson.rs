@@ -51,10 +51,7 @@ impl Reader<'_> {
     /// Reads all documents of a text; the first, which says what holds for all, and the name of the format.
     fn read(&mut self, text: &str) -> Result<(Value, String), Fail> {
         if let Ok(whole) = serde_json::from_str::<Value>(text) {
-            let version = whole.get("version").and_then(Value::as_str).unwrap_or("of no version").to_owned();
-            if !["1.0", "1.1", "2.0"].iter().any(|v| version.starts_with(v)) {
-                return Err(format!("is CityJSON {version}; versions 1.0, 1.1 and 2.0 are read"));
-            }
+            let version = version(&whole)?;
             self.document(&whole, &whole)?;
             return Ok((whole, format!("CityJSON {version}")));
         }
@@ -62,6 +59,9 @@ impl Reader<'_> {
         for (i, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
             let value: Value = serde_json::from_str(line)
                 .map_err(|e| format!("line {}: no valid JSON ({e}); it is damaged or cut off", i + 1))?;
+            if head.is_none() {
+                version(&value).map_err(|e| format!("line {}: {e}", i + 1))?;
+            }
             self.document(&value, head.as_ref().unwrap_or(&value)).map_err(|e| format!("line {}: {e}", i + 1))?;
             head.get_or_insert(value);
         }
@@ -74,12 +74,18 @@ impl Reader<'_> {
         let objects = objects.ok_or("has no CityObjects; it is no CityJSON, or damaged")?;
         let vertices = Vertices::of(document, head)?;
         let mut shown: BTreeMap<&str, Shown> = BTreeMap::new();
+        let fail = |id: &str, e: &str| format!("object \"{id}\": {e}; the file is damaged, export it again");
         for (id, object) in objects {
             let root = root(objects, id);
             let all = shown.entry(root).or_default();
-            for geometry in object.get("geometry").and_then(Value::as_array).into_iter().flatten() {
+            let geometries = match object.get("geometry") {
+                Some(Value::Array(list)) => list.as_slice(),
+                None | Some(Value::Null) if object.is_object() => &[],
+                _ => return Err(fail(id, "its geometry is no list")),
+            };
+            for geometry in geometries {
                 let lod = lod(geometry);
-                let faces = vertices.faces(geometry).map_err(|e| format!("object \"{id}\": {e}"))?;
+                let faces = vertices.faces(geometry).map_err(|e| fail(id, &e))?;
                 all.faces.entry(lod).or_default().extend(faces);
             }
         }
@@ -95,6 +101,23 @@ impl Reader<'_> {
         let about = object.get("attributes").and_then(Value::as_object).unwrap_or(&empty);
         self.out.add(id, kind, about, shown);
     }
+}
+
+/// The version of a document that is read.
+fn version(document: &Value) -> Result<String, Fail> {
+    if document.get("type").is_some_and(|t| t == "CityJSONFeature") {
+        return Err("is a feature without the document that says its transform and system; put that (\"type\": \"CityJSON\") into the first line".into());
+    }
+    let version = match document.get("version") {
+        Some(Value::String(text)) if !text.trim().is_empty() => text.trim().to_owned(),
+        Some(Value::Number(number)) => number.to_string(),
+        _ => "of no version".to_owned(),
+    };
+    let is = |known: &str| version.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+    if !["1.0", "1.1", "2.0"].into_iter().any(is) {
+        return Err(format!("is CityJSON {version}; versions 1.0, 1.1 and 2.0 are read"));
+    }
+    Ok(version)
 }
 
 /// The object that an object is a part of, of a part of ...
@@ -113,17 +136,26 @@ fn root<'o>(objects: &'o Map<String, Value>, id: &'o str) -> &'o str {
 
 impl Vertices {
     fn of(document: &Value, head: &Value) -> Result<Self, Fail> {
-        let transform = document.get("transform").or(head.get("transform"));
+        let transform = document.get("transform").or(head.get("transform")).filter(|t| !t.is_null());
+        let optional = head.get("version").and_then(Value::as_str).is_some_and(|v| v.starts_with("1.0"));
+        if transform.is_none() && !optional {
+            return Err("has no transform, so its vertices are nowhere; export it again".into());
+        }
         let vector = |key: &str, default: f64| match transform.and_then(|t| t.get(key)) {
-            Some(value) => point(value).ok_or_else(|| format!("transform.{key} is not three finite numbers")),
+            Some(value) => point(value)
+                .ok_or_else(|| format!("transform.{key} is not three finite numbers; export the file again")),
             None => Ok(DVec3::splat(default)),
         };
         let (scale, translate) = (vector("scale", 1.0)?, vector("translate", 0.0)?);
+        if scale.min_element() <= 0.0 {
+            return Err(format!("transform.scale is {scale}, its numbers must be above 0; export the file again"));
+        }
         let list =
             document.get("vertices").and_then(Value::as_array).ok_or("has no list of vertices; it is damaged")?;
         let place = |(i, value): (usize, &Value)| {
-            let p = point(value).ok_or_else(|| format!("vertex {i} is not three finite numbers"))?;
-            Ok::<_, Fail>(scale * p + translate)
+            let p =
+                point(value).ok_or_else(|| format!("vertex {i} is not three finite numbers; export the file again"))?;
+            plan::position(scale * p + translate).map_err(|e| format!("vertex {i} {e}; correct it or the transform"))
         };
         let points = list.iter().enumerate().map(place).collect::<Result<_, _>>()?;
         let templates = head.get("geometry-templates").or(document.get("geometry-templates"));
@@ -156,17 +188,14 @@ impl Vertices {
         let matrix = DMat4::from_cols_array(&rows).transpose();
         let mut faces = faces(template, &self.template_points)?;
         for p in faces.iter_mut().flat_map(|f| &mut f.rings).flatten() {
-            *p = matrix.transform_point3(*p) + at;
-            if !p.is_finite() {
-                return Err("an instance lies nowhere: its matrix is not finite".into());
-            }
+            *p = plan::position(matrix.transform_point3(*p) + at).map_err(|e| format!("an instance {e}"))?;
         }
         Ok(faces)
     }
 }
 
 fn missing(index: u64, count: usize) -> Fail {
-    format!("vertex {index} does not exist, there are {count}; the file is damaged")
+    format!("vertex {index} does not exist, there are {count}")
 }
 
 fn point(value: &Value) -> Option<DVec3> {

@@ -1,4 +1,5 @@
-//! Cities: CityJSON, CityJSONSeq, CityGML and OpenStreetMap's PBF, and footprints, ways and land cover in GeoJSON and shapefiles.
+//! Cities: CityJSON, CityJSONSeq, CityGML and OpenStreetMap's PBF, and footprints, ways and land cover in GeoJSON,
+//! shapefiles and GeoPackages.
 
 mod attributes;
 mod citygml;
@@ -16,7 +17,7 @@ pub use place::reproject;
 pub use surface::{CityColors, CityGround, plate_extent, surface};
 
 use crate::crs::CoordinateSystem;
-use crate::vector::load_vectors;
+use crate::vector::{load_vectors, split_table};
 use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_scene::City;
 use std::path::{Path, PathBuf};
@@ -26,7 +27,7 @@ use std::path::{Path, PathBuf};
 pub struct CityFile {
     /// The file, for messages.
     pub path: PathBuf,
-    /// Format, for messages: "CityJSON 2.0", "CityJSONSeq", "CityGML 2.0", "OSM PBF", "GeoJSON" or "shapefile".
+    /// Format, for messages: "CityJSON 2.0", "CityJSONSeq", "CityGML 2.0", "OSM PBF", "GeoJSON", "shapefile" or "GeoPackage".
     pub format: String,
     /// Horizontal system of every coordinate; `None` if the file names none.
     pub crs: Option<CoordinateSystem>,
@@ -45,7 +46,8 @@ pub struct CityFile {
 /// # Errors
 /// [`IoError`]: unreadable, none of the formats, broken, too large for `limits`, or without anything to show.
 pub fn load_city(path: &Path, lod: Option<&str>, limits: &Limits) -> Result<Loaded<CityFile>, IoError> {
-    let size = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
+    let whole = split_table(path).0;
+    let size = fs::metadata(whole).map_err(|e| IoError::os(whole, e))?.len();
     // A tree of JSON takes several times the bytes of its text.
     limits.check(size.saturating_mul(8)).map_err(|reason| IoError::format(path, reason.replace("raster", "city")))?;
     if let Some(model) = model(path)? {
@@ -87,6 +89,7 @@ pub fn is_city(path: &Path) -> Result<bool, IoError> {
 fn model(path: &Path) -> Result<Option<Model>, IoError> {
     use std::io::Read;
     let mut head = Vec::new();
+    let (path, _) = split_table(path);
     let file = fs::File::open(path).map_err(|e| IoError::os(path, e))?;
     file.take(64 << 10).read_to_end(&mut head).map_err(|e| IoError::os(path, e))?;
     if osm::is_pbf(&head) {

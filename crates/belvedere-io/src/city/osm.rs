@@ -281,11 +281,7 @@ fn closed_rings(lines: &[&[i64]]) -> Vec<Vec<i64>> {
 fn contains(outer: &[DVec2], ring: &[DVec2]) -> bool {
     // A vertex that both share tells nothing.
     let Some(p) = ring.iter().find(|p| !outer.contains(p)) else { return false };
-    (0..outer.len()).fold(false, |within, k| {
-        let (a, b) = (outer[k], outer[(k + 1) % outer.len()]);
-        let crosses = (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y);
-        within != crosses
-    })
+    plan::contains(outer, *p)
 }
 
 #[cfg(test)]

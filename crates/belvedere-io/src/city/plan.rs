@@ -3,6 +3,11 @@
 use belvedere_scene::{CityFace, HeightSource, Polygon, Surface};
 use glam::{DVec2, DVec3};
 
+/// Coordinates beyond are mistakes: no system of the earth has them. Metres, or whatever the file's unit is.
+const FARTHEST: f64 = 1e8;
+/// Buildings higher than this are told of: their file may count in other units. Metres.
+const HIGHEST_M: f64 = 2000.0;
+
 /// What was repaired, for one warning each.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Repairs {
@@ -12,8 +17,14 @@ pub(super) struct Repairs {
     pub(super) flat_rings: usize,
     /// Footprints that cross themselves.
     pub(super) crossing: usize,
-    /// Heights out of range.
+    /// Heights out of range, or no numbers.
     pub(super) heights: usize,
+    /// Polygons with a vertex that is nowhere.
+    pub(super) far: usize,
+    /// Holes that are not within their outline.
+    pub(super) holes: usize,
+    /// Solids higher than any building.
+    pub(super) tall: usize,
 }
 
 impl Repairs {
@@ -23,7 +34,10 @@ impl Repairs {
             of(self.short_rings, "rings of fewer than 3 different vertices were dropped"),
             of(self.flat_rings, "rings without area were dropped"),
             of(self.crossing, "footprints cross themselves; their outlines are drawn as they are"),
-            of(self.heights, "heights out of 0..2000 m were not believed"),
+            of(self.holes, "holes that are not within their outline were dropped"),
+            of(self.far, "polygons with coordinates beyond 1e8 were dropped; correct their system"),
+            of(self.heights, "heights that are no numbers of metres in 0..2000 were not believed"),
+            of(self.tall, "buildings are higher than 2000 m by their shape; check the unit of their heights"),
         ]
         .into_iter()
         .flatten()
@@ -47,17 +61,39 @@ pub(super) fn normal(ring: &[DVec3]) -> DVec3 {
 pub(super) fn polygon(rings: impl IntoIterator<Item = Vec<DVec2>>, repairs: &mut Repairs) -> Option<Polygon> {
     let mut cleaned = rings.into_iter().map(|ring| clean(ring, repairs)).collect::<Vec<_>>().into_iter();
     let mut outer = cleaned.next()??;
+    if outer.iter().any(|p| !(p.abs().max_element() <= FARTHEST)) {
+        repairs.far += 1;
+        return None;
+    }
     if doubled_area(&outer) < 0.0 {
         outer.reverse();
     }
     repairs.crossing += usize::from(crosses_itself(&outer));
-    let holes = cleaned.flatten().map(|mut hole| {
+    let mut holes = Vec::new();
+    for mut hole in cleaned.flatten() {
+        if !is_hole(&outer, &hole) {
+            repairs.holes += 1;
+            continue;
+        }
         if doubled_area(&hole) > 0.0 {
             hole.reverse();
         }
-        hole
-    });
-    Some(Polygon { holes: holes.collect(), outer })
+        holes.push(hole);
+    }
+    Some(Polygon { holes, outer })
+}
+
+/// Whether a ring can be a hole of another: smaller, and with a vertex in it.
+fn is_hole(outer: &[DVec2], hole: &[DVec2]) -> bool {
+    doubled_area(hole).abs() < doubled_area(outer).abs() && hole.iter().any(|p| contains(outer, *p))
+}
+
+/// A position of a solid, or why it is none.
+pub(super) fn position(p: DVec3) -> Result<DVec3, String> {
+    if p.abs().max_element() <= FARTHEST {
+        return Ok(p);
+    }
+    Err(format!("lies at ({:e}, {:e}, {:e}), the limit is 1e8", p.x, p.y, p.z))
 }
 
 fn clean(mut ring: Vec<DVec2>, repairs: &mut Repairs) -> Option<Vec<DVec2>> {
@@ -69,6 +105,15 @@ fn clean(mut ring: Vec<DVec2>, repairs: &mut Repairs) -> Option<Vec<DVec2>> {
     repairs.short_rings += usize::from(short);
     repairs.flat_rings += usize::from(!short && flat);
     (!short && !flat).then_some(ring)
+}
+
+/// Whether a point lies inside a ring (even-odd rule).
+pub(super) fn contains(ring: &[DVec2], p: DVec2) -> bool {
+    (0..ring.len()).fold(false, |within, k| {
+        let (a, b) = (ring[k], ring[(k + 1) % ring.len()]);
+        let crosses = (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y);
+        within != crosses
+    })
 }
 
 /// Whether two edges of a ring cross; told for rings of up to 2000 vertices.
@@ -109,6 +154,7 @@ pub(super) fn of_solid(faces: &[CityFace], repairs: &mut Repairs) -> (Vec<Polygo
         polygon(rings, repairs)
     };
     let footprint = plan.iter().filter_map(flat).collect();
+    repairs.tall += usize::from(top - base > HIGHEST_M);
     (footprint, base, top - base)
 }
 

@@ -9,6 +9,7 @@ use std::path::Path;
 
 /// Deepest nesting of geometry collections.
 const MAX_DEPTH: usize = 16;
+const REMEDY: &str = "correct it, or export the file again";
 
 #[derive(Default)]
 struct Reader {
@@ -94,7 +95,7 @@ impl Reader {
 
     fn read_feature(&mut self, feature: &Value) -> Result<(), String> {
         if type_of(feature) != Some("Feature") {
-            return Err(format!("type is {:?}, not \"Feature\"", type_of(feature).unwrap_or("missing")));
+            return Err(format!("type is {:?}, not \"Feature\"; {REMEDY}", type_of(feature).unwrap_or("missing")));
         }
         let mut properties = BTreeMap::new();
         if let Some(members) = feature.get("properties").and_then(Value::as_object) {
@@ -116,18 +117,18 @@ impl Reader {
     }
 
     fn read_geometry(&mut self, g: &Value, properties: &BTreeMap<String, String>, depth: usize) -> Result<(), String> {
-        let kind = type_of(g).ok_or("geometry has no member \"type\"")?;
+        let kind = type_of(g).ok_or_else(|| format!("geometry has no member \"type\"; {REMEDY}"))?;
         if kind == "GeometryCollection" {
             let members = g
                 .get("geometries")
                 .and_then(Value::as_array)
-                .ok_or("GeometryCollection has no array \"geometries\"")?;
+                .ok_or_else(|| format!("GeometryCollection has no array \"geometries\"; {REMEDY}"))?;
             if depth >= MAX_DEPTH {
-                return Err(format!("geometry collections nest deeper than {MAX_DEPTH}"));
+                return Err(format!("geometry collections nest deeper than {MAX_DEPTH}; {REMEDY}"));
             }
             return members.iter().try_for_each(|m| self.read_geometry(m, properties, depth + 1));
         }
-        let c = g.get("coordinates").ok_or_else(|| format!("{kind} has no \"coordinates\""))?;
+        let c = g.get("coordinates").ok_or_else(|| format!("{kind} has no \"coordinates\"; {REMEDY}"))?;
         let geometry = match kind {
             "Point" if c.as_array().is_some_and(Vec::is_empty) => Geometry::Points(Vec::new()),
             "Point" => Geometry::Points(vec![position(c)?]),
@@ -192,7 +193,7 @@ fn type_of(v: &Value) -> Option<&str> {
 }
 
 fn array(v: &Value) -> Result<&Vec<Value>, String> {
-    v.as_array().ok_or_else(|| format!("coordinates hold {} where a list is needed", shorten(&v.to_string())))
+    v.as_array().ok_or_else(|| format!("coordinates hold {} where a list is needed; {REMEDY}", shorten(&v.to_string())))
 }
 
 fn positions(v: &Value) -> Result<Vec<Vertex>, String> {
@@ -205,5 +206,5 @@ fn position(v: &Value) -> Result<Vertex, String> {
         Some([x, y, rest @ ..]) => vertex(*x, *y, rest.first().copied()),
         _ => None,
     }
-    .ok_or_else(|| format!("position {} is not two or three numbers", shorten(&v.to_string())))
+    .ok_or_else(|| format!("position {} is not two or three numbers; {REMEDY}", shorten(&v.to_string())))
 }

@@ -1,14 +1,18 @@
-//! Lines, areas and points: GPX, GeoJSON and shapefiles, and how they come to lie on the terrain.
+//! Lines, areas and points: GPX, GeoJSON, shapefiles and GeoPackages, and how they come to lie on the terrain.
 
 mod area_kind;
 mod geojson;
+#[cfg(feature = "geopackage")]
+mod geopackage;
 mod gpx;
 mod on_terrain;
 mod rings;
 mod shapefile;
+mod table;
 
 pub use area_kind::{AreaKind, area_kind};
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
+pub use table::{join_table, split_table};
 
 use crate::crs::CoordinateSystem;
 use crate::recognise::explain;
@@ -18,7 +22,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Endings of the files that [`load_vectors`] reads, beside `.json`, which may be anything.
-pub const ENDINGS: &[&str] = &["gpx", "geojson", "shp"];
+pub const ENDINGS: &[&str] = &[
+    "gpx",
+    "geojson",
+    "shp",
+    #[cfg(feature = "geopackage")]
+    "gpkg",
+];
 /// Largest file read, bytes.
 const MAX_BYTES: u64 = 1 << 30;
 /// Most characters kept of one property.
@@ -53,6 +63,15 @@ impl Geometry {
             Self::Polygons(p) => Box::new(p.iter().flatten().flatten()),
         }
     }
+
+    /// Every vertex, in order, to be changed.
+    pub fn vertices_mut(&mut self) -> Box<dyn Iterator<Item = &mut Vertex> + '_> {
+        match self {
+            Self::Points(p) => Box::new(p.iter_mut()),
+            Self::Lines(l) => Box::new(l.iter_mut().flatten()),
+            Self::Polygons(p) => Box::new(p.iter_mut().flatten().flatten()),
+        }
+    }
 }
 
 /// One feature.
@@ -71,7 +90,7 @@ pub struct VectorFeature {
 pub struct Vectors {
     /// The file, for messages.
     pub path: PathBuf,
-    /// Format, for messages: "GPX", "GeoJSON" or "shapefile".
+    /// Format, for messages: "GPX", "GeoJSON", "shapefile" or "GeoPackage".
     pub format: &'static str,
     /// Name of the layer that the file states, possibly empty.
     pub layer: String,
@@ -94,7 +113,9 @@ impl Vectors {
     }
 }
 
-/// Reads a GPX, GeoJSON or shapefile; which of them is told by the content, not by the name.
+/// Reads a GPX, GeoJSON, shapefile or (with the feature `geopackage`) GeoPackage; which of them is told by the content, not by the name.
+///
+/// * `path`: of a GeoPackage with the table that is wanted behind it, see [`split_table`]; by default all of its tables are read.
 ///
 /// # Errors
 /// [`IoError`]: unreadable, none of the formats, broken, without any vertex, or in an unknown coordinate system.
@@ -103,6 +124,7 @@ pub fn load_vectors(path: &Path) -> Result<Loaded<Vectors>, IoError> {
 }
 
 fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
+    let (path, table) = split_table(path);
     let size = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     if size > MAX_BYTES {
         let mib = size >> 20;
@@ -112,6 +134,16 @@ fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
         ));
     }
     let (bytes, file) = InputFile::read(path)?;
+    #[cfg(feature = "geopackage")]
+    if bytes.starts_with(geopackage::MAGIC) {
+        return Ok(geopackage::load(path, table, bytes)?.with_file(file));
+    }
+    if let Some(table) = table.filter(|_| !bytes.starts_with(b"SQLite format 3\0")) {
+        return Err(IoError::format(
+            path,
+            format!("is no database, so it has no table \"{table}\"; it is damaged or something else"),
+        ));
+    }
     if bytes.starts_with(&shapefile::MAGIC) {
         return Ok(shapefile::load(path, &bytes)?.with_file(file));
     }

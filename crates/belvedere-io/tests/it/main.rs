@@ -1,11 +1,14 @@
 //! Tests of the loaders and writers.
 
 mod atomic;
+mod bad_cities;
 mod cities;
 mod city_gml;
 mod city_osm;
 mod crs;
 mod drape;
+#[cfg(feature = "geopackage")]
+mod geopackage;
 mod geotiff;
 mod geotiff_made;
 mod meshes;

@@ -8,7 +8,7 @@ use crate::verbs::reveal::{RevealRequest, reveal};
 use crate::verbs::reveal_target::{layer, unit_of};
 use crate::{BelvedereError, DataFiles, OpenOptions, Session};
 use belvedere_core::DVec3;
-use belvedere_io::fs;
+use belvedere_io::{fs, join_table, split_table};
 use belvedere_scene::Progress;
 use std::path::{Path, PathBuf};
 
@@ -30,7 +30,8 @@ pub fn open_files(paths: &[PathBuf], allowed: &[PathBuf], progress: &Progress) -
     }
     let (mut grounds, mut features, mut models) = (Vec::new(), Vec::new(), Vec::new());
     for path in paths {
-        let real = fs::canonicalize(path).map_err(|e| belvedere_io::IoError::os(path, e))?;
+        let (file, table) = split_table(path);
+        let real = join_table(fs::canonicalize(file).map_err(|e| belvedere_io::IoError::os(file, e))?, table);
         let name = real.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?.to_owned();
         match info::describe(&name, progress)? {
             FileInfo::Terrain(_) => grounds.push(name),
@@ -45,7 +46,8 @@ pub fn open_files(paths: &[PathBuf], allowed: &[PathBuf], progress: &Progress) -
         }
     }
     let options = OpenOptions { progress: progress.clone(), ..OpenOptions::default() };
-    let folders = paths.iter().filter_map(|path| fs::canonicalize(path).ok()?.parent().map(Path::to_owned));
+    let folders =
+        paths.iter().filter_map(|path| fs::canonicalize(split_table(path).0).ok()?.parent().map(Path::to_owned));
     let place = Place { scene: None, roots: Roots { scene_dir: PathBuf::new(), allowed: folders.collect() } };
     let title = paths.first().and_then(|path| path.file_name()?.to_str()?.split('.').next().map(str::to_owned));
     let mut document = match (grounds.as_slice(), features.is_empty(), models.is_empty()) {

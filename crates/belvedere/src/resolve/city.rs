@@ -13,6 +13,8 @@ use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::{CityFile, load_city};
 use belvedere_scene::{City, Crs, LayerKind, Mesh, MeshLayer};
 
+/// Format of cities that no file holds.
+const BUILT_IN: &str = "built in";
 /// Ground that is farther from the terrain than this is spoken of, metres.
 const NOTED_M: f64 = 1.0;
 
@@ -41,7 +43,7 @@ pub(super) fn files(loader: &mut Loader<'_>, index: usize, doc: &CityDoc) -> Res
 }
 
 fn built_in(name: &str, city: City) -> CityFile {
-    let (path, format) = (name.into(), "built in".into());
+    let (path, format) = (name.into(), BUILT_IN.into());
     CityFile { path, format, crs: None, reference: String::new(), lods: Vec::new(), city }
 }
 
@@ -88,6 +90,12 @@ pub(super) fn layer(
                     vec![format!("{lost} shapes lie outside the domain of {} and are left out", to.name())],
                 );
             }
+        } else if let (true, Crs::Epsg(_)) = (file.format != BUILT_IN, ground.crs) {
+            let (path, scene) = (file.path.display(), ground.crs);
+            let said = format!(
+                "{path}: names no system that is known and is taken as in {scene}, as the scene is; set crs if it is not"
+            );
+            loader.note(index, vec![said]);
         }
         city.buildings.extend(part.buildings);
         city.structures.extend(part.structures);
@@ -101,7 +109,8 @@ pub(super) fn layer(
     let terrain = |xy: DVec2| ground.terrain.and_then(|t| t.surface_at(xy));
     let terrain: Option<&dyn Fn(DVec2) -> Option<f64>> = if ground.terrain.is_some() { Some(&terrain) } else { None };
     if let Some(terrain) = terrain {
-        loader.note(index, remarks(&city, terrain));
+        let lost = leave_out_beyond(&mut city, terrain).map_err(|e| loader.fail(index, "source", e))?;
+        loader.note(index, lost.into_iter().chain(remarks(&city, terrain)).collect());
     }
     let mut layer = mesh(city, &colors, terrain).map_err(|e| loader.fail(index, "source", e))?;
     layer.mesh = with_ambient_occlusion(loader, index, layer.mesh, style.ambient_occlusion, ground)?;
@@ -149,6 +158,24 @@ pub(super) fn mesh(
     let mesh = Mesh::textured(&file.positions, file.triangles, file.colors, file.parts, None);
     let mesh = mesh.map_err(|e| e.to_string())?;
     Ok(MeshLayer { names: file.names, ..MeshLayer::new(mesh, colors.wall) })
+}
+
+/// Leaves buildings out that have neither a height of their own ground nor terrain under them, and says so.
+///
+/// # Errors
+/// If there is no other.
+fn leave_out_beyond(city: &mut City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Result<Option<String>, String> {
+    let under =
+        |b: &belvedere_scene::Building| b.footprint.iter().flat_map(|p| &p.outer).any(|xy| terrain(*xy).is_some());
+    let before = city.buildings.len();
+    city.buildings.retain(|b| b.base_m.is_some() || under(b));
+    let lost = before - city.buildings.len();
+    if lost > 0 && city.buildings.is_empty() && city.structures.is_empty() {
+        return Err(format!(
+            "none of its {before} buildings lies on the terrain; check the systems of both, and whether latitudes come before longitudes"
+        ));
+    }
+    Ok((lost > 0).then(|| format!("{lost} of {before} buildings lie outside the terrain and are left out")))
 }
 
 /// What does not fit the terrain.

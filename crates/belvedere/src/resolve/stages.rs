@@ -231,6 +231,9 @@ pub(super) fn presets(
             document
         }
     };
-    document.validate().map_err(|e| at.error(&["presets"], e))?;
+    document.validate().map_err(|e| match doc {
+        PresetsDoc::Named(name) => at.error(&["presets"], format!("{name}: {e}")),
+        PresetsDoc::Inline(_) => at.error(&["presets"], e),
+    })?;
     Ok(document)
 }

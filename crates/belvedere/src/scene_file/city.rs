@@ -4,7 +4,7 @@ use super::paths::Paths;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A city: CityJSON, CityJSONSeq, CityGML 1 or 2, OSM PBF, or footprints and land cover as GeoJSON or shapefile.
+/// A city: CityJSON, CityJSONSeq, CityGML 1 or 2, OSM PBF, or footprints and land cover as GeoJSON, shapefile or GeoPackage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CityDoc {

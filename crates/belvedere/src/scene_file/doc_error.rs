@@ -99,6 +99,7 @@ fn plain(expected: &dyn Expected) -> String {
         "a string" => "a text".into(),
         other => match other.strip_prefix("an array of length ") {
             Some(length) => format!("a list of {length}"),
+            None if other.starts_with("struct ") => "a table".into(),
             None => text,
         },
     }

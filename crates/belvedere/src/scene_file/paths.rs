@@ -2,7 +2,7 @@
 
 use super::{Document, LayerDoc, PaletteDoc, PresetsDoc, StageDoc, names_a_preset_file};
 use crate::BelvedereError;
-use belvedere_io::fs;
+use belvedere_io::{fs, join_table, split_table};
 use schemars::JsonSchema;
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, SeqAccess, Visitor};
@@ -130,7 +130,7 @@ impl Roots {
     /// The file that a scene means by `name`.
     ///
     /// It is looked for beside the scene file, then (relative names) in each allowed folder. After links are
-    /// followed it must lie in one of these folders.
+    /// followed it must lie in one of these folders. The table behind the name of a GeoPackage stays behind it.
     ///
     /// # Errors
     /// [`BelvedereError::Path`] if the name is refused or nothing is found.
@@ -143,7 +143,7 @@ impl Roots {
         let refuse = |reason: String| refused(reason, false);
         let outside = "use a path below that folder, or allow a folder";
         check_name(name).map_err(refuse)?;
-        let path = Path::new(name);
+        let (path, table) = split_table(Path::new(name));
         let leaves = path.is_absolute() || looks_absolute(name) || path.components().any(|c| c == Component::ParentDir);
         if leaves && self.allowed.is_empty() {
             return Err(refused(format!("leaves the folder of the scene file; {outside}"), true));
@@ -168,7 +168,7 @@ impl Roots {
             return Err(refused(format!("leads to {real}, outside the folder of the scene file; {outside}"), true));
         }
         match fs::metadata(&real) {
-            Ok(meta) if meta.is_file() => Ok(real),
+            Ok(meta) if meta.is_file() => Ok(join_table(real, table)),
             _ => Err(refuse("is not a regular file; give a file".into())),
         }
     }

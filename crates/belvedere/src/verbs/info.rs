@@ -207,11 +207,15 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
         return CityInfo::of(path).map(FileInfo::City);
     }
     if let Some(known) = belvedere_io::recognise(path)? {
+        if known.is_broken(path) {
+            return Err(belvedere_io::IoError::format(path, known.broken()).into());
+        }
         let note = format!("not read by this version; {}", known.meanwhile);
         let (path, format, holds) = (name.to_owned(), known.format, known.holds);
         return Ok(FileInfo::Unread(UnreadInfo { path, format, holds, note }));
     }
-    let ends = |list: &[&str]| path.extension().is_some_and(|e| list.iter().any(|l| e.eq_ignore_ascii_case(l)));
+    let plain = vector::split_table(path).0;
+    let ends = |list: &[&str]| plain.extension().is_some_and(|e| list.iter().any(|l| e.eq_ignore_ascii_case(l)));
     if ends(vector::ENDINGS) || ends(&["json"]) {
         return features(path);
     }
@@ -227,7 +231,7 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
     if !ends(belvedere_io::terrain::ENDINGS) {
         return Err(belvedere_io::IoError::format(
             path,
-            "it is of no kind that this version reads: terrain and pictures as GeoTIFF, SRTM .hgt (also .zip) or ESRI ASCII, features as GPX, GeoJSON or shapefile (.shp), meshes as OBJ, PLY, STL, glTF or GLB, molecules as PDB or mmCIF, volumes as .vti, NRRD or raw samples",
+            "it is of no kind that this version reads: terrain and pictures as GeoTIFF, SRTM .hgt (also .zip) or ESRI ASCII, features as GPX, GeoJSON, shapefile (.shp) or GeoPackage (.gpkg, where that is built in), meshes as OBJ, PLY, STL, glTF or GLB, molecules as PDB or mmCIF, volumes as .vti, NRRD or raw samples",
         )
         .into());
     }

@@ -2,7 +2,7 @@
 
 use crate::editor::{Editor, Place, open_files};
 use crate::{BelvedereError, output};
-use belvedere_io::{InputFile, IoError, atomic, fs};
+use belvedere_io::{InputFile, IoError, atomic, fs, split_table};
 use belvedere_scene::Progress;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -202,6 +202,11 @@ impl Layout {
 
     /// The name of a file in the bundle, from the folder of the scene on.
     fn place(&mut self, file: &Path) -> Result<String, BelvedereError> {
+        let (file, _) = split_table(file);
+        if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("gpkg")) {
+            let reason = "is a GeoPackage, which pages do not read; turn it into GeoJSON, as by ogr2ogr";
+            return Err(IoError::format(file, reason).into());
+        }
         let real = fs::canonicalize(file).map_err(|e| IoError::os(file, e))?;
         if let Some(packed) = self.files.get(&real) {
             return Ok(packed.clone());

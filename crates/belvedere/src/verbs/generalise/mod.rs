@@ -25,7 +25,7 @@ const MAP_MARGIN_M: f64 = 50.0;
 /// What is generalised.
 #[derive(Debug, Clone, Default)]
 pub struct GeneraliseRequest {
-    /// Buildings: CityJSON, CityGML, OSM PBF, or footprints as GeoJSON or shapefile.
+    /// Buildings: CityJSON, CityGML, OSM PBF, or footprints as GeoJSON, shapefile or GeoPackage.
     pub city: PathBuf,
     /// Streets, railways, water: the same formats.
     pub roads: Vec<PathBuf>,

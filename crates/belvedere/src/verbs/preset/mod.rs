@@ -73,7 +73,7 @@ pub fn load(source: &str) -> Result<PresetDocument, BelvedereError> {
     }
     let (text, _) = scene_file::read_text(path)?;
     let document = scene_file::parse_presets(path, &text)?;
-    document.validate()?;
+    document.validate().map_err(|e| scene_file::DocError::whole(e.to_string()).in_file(path))?;
     Ok(document)
 }
 

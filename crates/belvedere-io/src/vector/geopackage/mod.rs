@@ -1,0 +1,179 @@
+//! GeoPackage (OGC 12-128r19): tables of features in an SQLite database. Behind the feature `geopackage`, for SQLite is a C library.
+//!
+//! The file is read once, whole, and the database opened in memory: nothing is ever written beside it, and what is read is what was hashed.
+
+mod blob;
+mod database;
+
+use super::{Geometry, VectorFeature, Vectors, name_of, not_degrees, shorten, vertex};
+use crate::crs::{CoordinateSystem, CrsError, Transform};
+use crate::{IoError, Loaded, fs};
+use blob::Odd;
+use database::{Database, Table, Value};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// What SQLite files begin with.
+pub(super) const MAGIC: &[u8] = b"SQLite format 3\0";
+
+/// Reads a table of features, or all.
+///
+/// * `table`: its name; by default all tables are read, in the order of their names.
+pub(super) fn load(path: &Path, table: Option<&str>, bytes: Vec<u8>) -> Result<Loaded<Vectors>, IoError> {
+    let fail = |reason: String| IoError::format(path, reason);
+    let mut warnings = unwritten(path);
+    let database = Database::open(bytes).map_err(fail)?;
+    let tables = chosen(database.tables().map_err(fail)?, table).map_err(fail)?;
+    let mut features = Vec::new();
+    let mut crs: Option<CoordinateSystem> = None;
+    let mut counts = Vec::new();
+    for table in &tables {
+        let (mut read, odd) = rows(&database, table).map_err(|e| fail(format!("table \"{}\"{e}", table.name)))?;
+        warnings.extend(odd.warnings(&table.name));
+        let own = system_of(&database, table, &read, &mut warnings).map_err(fail)?;
+        let common = crs.get_or_insert_with(|| own.clone());
+        if own != *common {
+            let lost = reproject(&mut read, &own, common).map_err(|e| fail(e.to_string()))?;
+            warnings.push(format!(
+                "table \"{}\" is in {own} and was taken to {common}, the system of the first",
+                table.name
+            ));
+            if lost > 0 {
+                warnings.push(format!(
+                    "{lost} features of table \"{}\" lie outside the domain of {common} and were dropped",
+                    table.name
+                ));
+            }
+        }
+        counts.push(format!("\"{}\" ({})", table.name, read.len()));
+        features.extend(read);
+    }
+    let Some(crs) = crs.filter(|_| !features.is_empty()) else {
+        let names = counts.join(", ");
+        return Err(fail(format!("GeoPackage holds no usable geometry in its tables {names}; choose another file")));
+    };
+    if tables.len() > 1 {
+        let (count, names, first) = (tables.len(), counts.join(", "), &tables[0].name);
+        warnings
+            .push(format!("all {count} tables were read: {names}; put ?table={first} behind the name for one of them"));
+    }
+    let layer = match tables.as_slice() {
+        [one] => shorten(&one.identifier),
+        _ => String::new(),
+    };
+    let warnings = warnings.into_iter().map(|w| format!("{}: {w}", path.display())).collect();
+    Ok(Loaded::new(Vectors { path: path.into(), format: "GeoPackage", layer, crs, features }, warnings))
+}
+
+/// Whether another program has not yet written into the file what stands in a log beside it.
+fn unwritten(path: &Path) -> Vec<String> {
+    let beside = |ending: &str| {
+        let mut name = path.as_os_str().to_owned();
+        name.push(ending);
+        let bytes = fs::metadata(PathBuf::from(&name)).ok()?.len();
+        (bytes > 0).then(|| {
+            let name = PathBuf::from(name);
+            let name = name.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+            format!("{name} ({bytes} bytes) holds changes that are not in the file yet and were not read; close the program that edits it")
+        })
+    };
+    ["-wal", "-journal"].into_iter().filter_map(beside).collect()
+}
+
+/// The table of a name, whatever its case, else all.
+fn chosen(tables: Vec<Table>, wanted: Option<&str>) -> Result<Vec<Table>, String> {
+    let Some(wanted) = wanted else { return Ok(tables) };
+    let names: Vec<String> = tables.iter().map(|t| t.name.clone()).collect();
+    let found: Vec<Table> = tables.into_iter().filter(|t| t.name.eq_ignore_ascii_case(wanted)).collect();
+    if found.is_empty() {
+        return Err(format!("has no table of features \"{wanted}\"; it has {}", names.join(", ")));
+    }
+    Ok(found)
+}
+
+/// The features of a table, and what was odd among them.
+fn rows(database: &Database, table: &Table) -> Result<(Vec<VectorFeature>, Odd), String> {
+    let (mut features, mut odd) = (Vec::new(), Odd::default());
+    database.each_row(table, |place, blob, values| {
+        let Some(blob) = blob else {
+            odd.without_geometry += 1;
+            return Ok(());
+        };
+        let geometries = blob::geometries(blob, table.srs_id, &mut odd).map_err(|e| format!(", {place}: {e}"))?;
+        let properties: BTreeMap<String, String> =
+            values.iter().filter_map(|(name, value)| property(name, value)).collect();
+        let name = name_of(&properties);
+        let feature =
+            |geometry: Geometry| VectorFeature { name: name.clone(), properties: properties.clone(), geometry };
+        features.extend(geometries.into_iter().map(feature));
+        Ok(())
+    })?;
+    Ok((features, odd))
+}
+
+fn property(name: &str, value: &Value<'_>) -> Option<(String, String)> {
+    let text = match value {
+        Value::Text(text) => shorten(&String::from_utf8_lossy(text)),
+        Value::Integer(number) => number.to_string(),
+        Value::Real(number) => number.to_string(),
+        Value::Null | Value::Blob(_) => return None,
+    };
+    Some((shorten(name), text))
+}
+
+/// The coordinate system of a table: by its EPSG code, else by its text.
+fn system_of(
+    database: &Database,
+    table: &Table,
+    features: &[VectorFeature],
+    warnings: &mut Vec<String>,
+) -> Result<CoordinateSystem, String> {
+    let (name, id) = (&table.name, table.srs_id);
+    let remedy = "set it, as by ogr2ogr -a_srs EPSG:n";
+    let text = |e: CrsError| format!("table \"{name}\": {e}");
+    let crs = match id {
+        -1 => return Err(format!("table \"{name}\" is in an undefined plane (srs_id -1); {remedy}")),
+        0 => {
+            warnings.push(format!("table \"{name}\" is in undefined degrees (srs_id 0), taken as WGS 84"));
+            CoordinateSystem::wgs84().map_err(text)?
+        }
+        _ => {
+            let system = database.system(id)?;
+            let system = system.ok_or_else(|| {
+                format!("table \"{name}\" is in system {id}, which gpkg_spatial_ref_sys does not list; {remedy}")
+            })?;
+            let by_code = system.epsg.map(CoordinateSystem::from_epsg);
+            match by_code {
+                Some(Ok(crs)) => crs,
+                _ => {
+                    let by_text = system.definitions.iter().find_map(|text| CoordinateSystem::from_wkt(text).ok());
+                    let reason = by_code
+                        .and_then(Result::err)
+                        .map(|e| e.to_string())
+                        .unwrap_or_else(|| "its text is not understood".into());
+                    by_text.ok_or_else(|| {
+                        format!("table \"{name}\" is in \"{}\" (srs_id {id}): {reason}; {remedy}", system.name)
+                    })?
+                }
+            }
+        }
+    };
+    match not_degrees(features).filter(|_| crs.is_geographic()) {
+        Some(reason) => Err(format!("table \"{name}\": {reason}, but its system is {crs}; {remedy}")),
+        None => Ok(crs),
+    }
+}
+
+/// Takes features to another system; how many lie outside its domain and are dropped.
+fn reproject(
+    features: &mut Vec<VectorFeature>,
+    from: &CoordinateSystem,
+    to: &CoordinateSystem,
+) -> Result<usize, CrsError> {
+    let transform = Transform::new(from, to)?;
+    let before = features.len();
+    features.retain_mut(|feature| {
+        feature.geometry.vertices_mut().all(|v| transform.forward_one(v.xy).map(|xy| v.xy = xy).is_some())
+    });
+    Ok(before - features.len())
+}
