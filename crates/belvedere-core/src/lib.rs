@@ -27,5 +27,6 @@ pub use map::curved_rays::{CurvedRays, CurvedRaysError};
 pub use map::earth::EarthCurvature;
 pub use map::spline::SplineBend;
 pub use map::split_rays::SplitRays;
+pub use map::strip::Strip;
 pub use map::terrain::TerrainDisocclusion;
 pub use map::{Displaced, Miss, SpaceMap, Stage};

@@ -199,6 +199,8 @@ impl CameraPath {
         for stage in &mut document.stage {
             match (stage, self.pivot) {
                 (StageDoc::SplineBend(spline), None) => spline.pivot = None,
+                // Around the camera nothing moves, wherever it goes.
+                (StageDoc::Strip(strip), None) => strip.anchor = None,
                 (StageDoc::CurvedRays(rays), Some(pivot)) if pose.turn != 0.0 => {
                     turn_rays(rays, pivot, DQuat::from_rotation_z(pose.turn));
                 }

@@ -85,6 +85,7 @@ impl Session {
             overlay: source.document.overlay.clone().unwrap_or_default(),
             stylisation: source.document.stylisation.unwrap_or_default().strengths().unwrap_or_default(),
             terrain: resolved.terrain,
+            strip: resolved.strip,
             constructor: resolved.constructor,
             motions,
             warnings: loaded.warnings.into_iter().chain(resolved.warnings).collect(),
@@ -101,6 +102,9 @@ fn needs(source: &SourceDocument, options: &OpenOptions) -> Needs {
     let constructs = document.solves_terrain() || constructor::stated(source).is_some();
     match options.needs {
         _ if constructs && !options.unsolved => Needs::Everything,
+        _ if document.stage.iter().any(|s| matches!(s, StageDoc::Strip(strip) if strip.along.is_some())) => {
+            Needs::Everything
+        }
         Needs::View if ground_is_needed(document) => Needs::Ground,
         needs => needs,
     }
@@ -117,6 +121,8 @@ fn ground_is_needed(doc: &Document) -> bool {
             relief.levelling.is_some_and(|v| v > 0.0) || relief.plane.as_ref().is_none_or(|p| p.height_m.is_none())
         }
         StageDoc::TerrainDisocclusion(_) => true,
+        // Where the camera looks, if nothing says so.
+        StageDoc::Strip(strip) => strip.anchor.is_none(),
         StageDoc::CurvedRays(_) => false,
     });
     let needs_crs = points.into_iter().flatten().any(geographic)

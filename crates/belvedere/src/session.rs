@@ -1,6 +1,7 @@
 //! A scene with a view and a light: everything that a picture needs, nothing left to look up.
 
 use crate::record::{AreaRecord, InputFile};
+use crate::resolve::StripReport;
 use crate::resolve::constructor::{self, ConstructorReport, Memory};
 use crate::resolve::motion::Motions;
 use crate::resolve::terrain::{self, Solving};
@@ -26,6 +27,7 @@ pub struct Session {
     pub(crate) overlay: OverlayDoc,
     pub(crate) stylisation: Stylisation,
     pub(crate) terrain: Option<TerrainReport>,
+    pub(crate) strip: Option<StripReport>,
     pub(crate) constructor: Option<ConstructorReport>,
     pub(crate) motions: Option<Arc<Motions>>,
     pub(crate) warnings: Vec<String>,
@@ -56,6 +58,7 @@ impl Session {
             overlay: OverlayDoc::default(),
             stylisation: Stylisation::default(),
             terrain: None,
+            strip: None,
             constructor: None,
             motions: None,
             warnings: Vec::new(),
@@ -83,7 +86,7 @@ impl Session {
 
     /// The same scene in another view. A document that described the view before is left behind.
     pub fn with_view(self, view: View) -> Self {
-        Self { view, terrain: None, constructor: None, description: None, ..self }
+        Self { view, terrain: None, strip: None, constructor: None, description: None, ..self }
     }
 
     /// The same scene by another document of the same layers: everything that depends on camera and stages is resolved again.
@@ -103,6 +106,7 @@ impl Session {
             view: resolved.view,
             light: resolved.light,
             terrain: resolved.terrain,
+            strip: resolved.strip,
             constructor: resolved.constructor,
             description: Some(Description { source, resolved: resolved.document, roots }),
             ..self.clone()
@@ -131,6 +135,7 @@ impl Session {
             overlay: source.document.overlay.clone().unwrap_or_default(),
             stylisation: source.document.stylisation.unwrap_or_default().strengths().unwrap_or_default(),
             terrain: resolved.terrain,
+            strip: resolved.strip,
             constructor: resolved.constructor,
             warnings: about_layers.iter().cloned().chain(resolved.warnings).collect(),
             description: Some(Description { source, resolved: resolved.document, roots }),
@@ -151,6 +156,11 @@ impl Session {
     /// The light.
     pub fn light(&self) -> &Light {
         &self.light
+    }
+
+    /// What the strip along a route came to; `None` if the scene has none.
+    pub fn strip_report(&self) -> Option<&StripReport> {
+        self.strip.as_ref()
     }
 
     /// What the solver of terrain disocclusion came to; `None` if none ran.

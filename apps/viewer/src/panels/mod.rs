@@ -72,7 +72,7 @@ impl Panels {
 
 /// Puts a stage in its place of the chain, in place of one of its kind.
 pub(crate) fn set_stage(document: &mut Document, stage: StageDoc) {
-    const ORDER: [&str; 4] = ["terrain_disocclusion", "relief", "spline_bend", "curved_rays"];
+    const ORDER: [&str; 5] = ["terrain_disocclusion", "strip", "relief", "spline_bend", "curved_rays"];
     let rank = |stage: &StageDoc| ORDER.iter().position(|kind| *kind == stage.kind());
     document.stage.retain(|other| other.kind() != stage.kind());
     let at = document.stage.iter().take_while(|other| rank(other) < rank(&stage)).count();

@@ -21,7 +21,7 @@ pub struct View {
 pub enum ViewError {
     /// Wrong order or a repeated stage.
     #[error(
-        "stage {second} cannot follow stage {first}; the order is earth, terrain_disocclusion, relief, spline_bend, curved_rays, each at most once"
+        "stage {second} cannot follow stage {first}; the order is earth, terrain_disocclusion, strip, relief, spline_bend, curved_rays, each at most once"
     )]
     Order {
         /// Name of the earlier stage.
@@ -79,7 +79,7 @@ impl View {
     /// Chains `stages`, in order of application, before `pinhole`.
     ///
     /// # Errors
-    /// [`ViewError::Order`] unless the stages are in the order earth, terrain, relief, spline, curved rays, each at most once;
+    /// [`ViewError::Order`] unless the stages are in the order earth, terrain, strip, relief, spline, curved rays, each at most once;
     /// [`ViewError::OtherRoot`] if curved rays were built for a pinhole with other rays.
     pub fn new(pinhole: Pinhole, stages: Vec<Stage>) -> Result<Self, ViewError> {
         for pair in stages.windows(2) {
@@ -340,10 +340,14 @@ impl View {
         let (mut a, mut b, mut error) = (p0, p1, 0.0f64);
         for stage in self.earlier_stages() {
             let map = stage.as_map();
-            let (a1, b1) = (map.apply(a).ok()?, map.apply(b).ok()?);
             let carried = if error > 0.0 { error * stretch(map, a, b) } else { 0.0 };
-            error = carried + stage.edge_bound(a, b);
-            (a, b) = (a1, b1);
+            let bound;
+            (a, b, bound) = match stage {
+                // Both its ends and its bound need the same feet.
+                Stage::Strip(strip) => strip.edge(a, b)?,
+                _ => (map.apply(a).ok()?, map.apply(b).ok()?, stage.edge_bound(a, b)),
+            };
+            error = carried + bound;
         }
         Some((a, b, error))
     }

@@ -5,6 +5,7 @@ pub mod earth;
 pub mod relief;
 pub mod spline;
 pub mod split_rays;
+pub mod strip;
 pub mod terrain;
 
 use crate::Aabb;
@@ -49,6 +50,8 @@ pub enum Stage {
     EarthCurvature(earth::EarthCurvature),
     /// The ground moves so that routes are seen (Deng et al. 2013).
     TerrainDisocclusion(terrain::TerrainDisocclusion),
+    /// A strip along a route is unrolled in plan.
+    Strip(strip::Strip),
     /// Heights are raised, lowered, shown in plan or levelled.
     Relief(relief::Relief),
     /// Space is carried onto a B-spline over the reference plane (Pasewaldt et al. 2011).
@@ -65,6 +68,7 @@ impl Stage {
         match self {
             Self::EarthCurvature(m) => m,
             Self::TerrainDisocclusion(m) => m,
+            Self::Strip(m) => m,
             Self::Relief(m) => m,
             Self::SplineBend(m) => m,
             Self::CurvedRays(m) => m,
@@ -81,6 +85,7 @@ impl Stage {
         match self {
             Self::EarthCurvature(m) => Some(Self::EarthCurvature(*m)),
             Self::TerrainDisocclusion(m) => m.eased(share).map(Self::TerrainDisocclusion),
+            Self::Strip(m) => m.eased(share).map(Self::Strip),
             Self::Relief(m) => Some(Self::Relief(m.eased(share))),
             Self::SplineBend(m) => m.eased(share).map(Self::SplineBend),
             Self::CurvedRays(m) => m.eased(share).map(Self::CurvedRays),
@@ -98,14 +103,15 @@ impl Stage {
         matches!(self, Self::EarthCurvature(_) | Self::TerrainDisocclusion(_))
     }
 
-    /// Position in the fixed order of application: earth, terrain, relief, spline, curved rays.
+    /// Position in the fixed order of application: earth, terrain, strip, relief, spline, curved rays.
     pub fn rank(&self) -> u32 {
         match self {
             Self::EarthCurvature(_) => 0,
             Self::TerrainDisocclusion(_) => 1,
-            Self::Relief(_) => 2,
-            Self::SplineBend(_) => 3,
-            Self::CurvedRays(_) | Self::SplitRays(_) => 4,
+            Self::Strip(_) => 2,
+            Self::Relief(_) => 3,
+            Self::SplineBend(_) => 4,
+            Self::CurvedRays(_) | Self::SplitRays(_) => 5,
         }
     }
 
@@ -114,6 +120,7 @@ impl Stage {
         match self {
             Self::EarthCurvature(_) => "earth",
             Self::TerrainDisocclusion(_) => "terrain_disocclusion",
+            Self::Strip(_) => "strip",
             Self::Relief(_) => "relief",
             Self::SplineBend(_) => "spline_bend",
             Self::CurvedRays(_) | Self::SplitRays(_) => "curved_rays",
@@ -137,6 +144,7 @@ impl Stage {
         match self {
             Self::EarthCurvature(m) => m.edge_bound(p0, p1),
             Self::TerrainDisocclusion(m) => m.edge_bound(p0, p1),
+            Self::Strip(m) => m.edge_bound(p0, p1),
             Self::Relief(m) => m.edge_bound(p0, p1),
             Self::SplineBend(m) => m.edge_bound(p0, p1),
             Self::CurvedRays(m) => m.edge_bound(p0, p1),
@@ -149,10 +157,16 @@ impl Stage {
         match self {
             Self::EarthCurvature(m) => m.displaced_bounds(bounds),
             Self::TerrainDisocclusion(m) => m.displaced_bounds(bounds),
+            Self::Strip(m) => m.displaced_bounds(bounds),
             Self::Relief(m) => m.displaced_bounds(bounds),
             Self::SplineBend(m) => m.displaced_bounds(bounds),
             Self::CurvedRays(m) => m.displaced_bounds(bounds),
             Self::SplitRays(m) => m.displaced_bounds(bounds),
         }
+    }
+
+    /// Whether no point of `bounds` has an image; `false` also where that is not known.
+    pub fn misses(&self, bounds: &Aabb) -> bool {
+        matches!(self, Self::Strip(m) if m.misses(bounds))
     }
 }

@@ -11,5 +11,6 @@ mod spline_bounds;
 mod spline_curve;
 mod spline_figures;
 mod split_rays;
+mod strip;
 mod terrain;
 mod views;

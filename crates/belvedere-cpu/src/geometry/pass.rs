@@ -171,6 +171,9 @@ impl<'a> Pass<'a> {
 
     /// Where the record shows the box, judged by its displaced bounds.
     pub(crate) fn in_view(&self, screen: &Screen, bounds: &Aabb) -> InView {
+        if is_missed(self.view.stages(), bounds) {
+            return InView::No;
+        }
         if self.view.records() == 1 {
             return displaced(self.view.stages(), bounds)
                 .map_or(InView::Maybe(None), |b| image_of(screen, &b.corners()));
@@ -235,6 +238,12 @@ fn image_of(screen: &Screen, hull: &[DVec3]) -> InView {
 /// Whether a stage, not one of curved rays, makes heights point anywhere.
 fn turns_heights(stage: &Stage) -> bool {
     matches!(stage, Stage::Relief(_) | Stage::SplineBend(_))
+}
+
+/// Whether no point of a box comes through the stages.
+fn is_missed(stages: &[Stage], bounds: &Aabb) -> bool {
+    let Some(at) = stages.iter().position(|s| matches!(s, Stage::Strip(_))) else { return false };
+    displaced(&stages[..at], bounds).is_some_and(|b| stages[at].misses(&b))
 }
 
 pub(crate) fn displaced(stages: &[Stage], bounds: &Aabb) -> Option<Aabb> {

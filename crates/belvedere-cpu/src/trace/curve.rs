@@ -2,7 +2,7 @@
 
 use crate::trace::row::Row;
 use belvedere_core::map::curved_rays::{RayPiece, Shape};
-use belvedere_core::{DVec2, DVec3, EarthCurvature, RayPath, SplineBend, Stage, TerrainDisocclusion, View};
+use belvedere_core::{DVec2, DVec3, EarthCurvature, RayPath, SplineBend, Stage, Strip, TerrainDisocclusion, View};
 
 /// Spans that a ray of unknown shape is first looked at in.
 const SPANS: usize = 8;
@@ -19,6 +19,7 @@ pub(crate) struct Split<'a> {
     pub(crate) ground: Option<&'a TerrainDisocclusion>,
     earth: Option<Parabola>,
     bend: Option<&'a SplineBend>,
+    strip: Option<(&'a Strip, View)>,
     kind: Kind,
 }
 
@@ -76,8 +77,15 @@ impl<'a> Split<'a> {
             _ => None,
         });
         let relief = view.stages().iter().any(|s| matches!(s, Stage::Relief(_)));
+        let strip = view.stages().iter().position(|s| matches!(s, Stage::Strip(_)));
+        let strip = strip.and_then(|i| {
+            let Stage::Strip(strip) = &view.stages()[i] else { return None };
+            // The end of a chain is a chain.
+            let later = View::new(view.pinhole().clone(), view.stages()[i + 1..].to_vec()).ok()?;
+            Some((strip, later))
+        });
         let kind = match (bend, view.stages().iter().any(Stage::bends_rays)) {
-            _ if relief => Kind::Any,
+            _ if relief || strip.is_some() => Kind::Any,
             (None, _) => Kind::Pieces,
             (Some(bend), false) => {
                 let across = |axis: DVec3| view.pinhole().right.dot(axis).abs() <= ALIKE;
@@ -87,7 +95,7 @@ impl<'a> Split<'a> {
         };
         // A chain without one of its stages is in order if the chain is.
         let smooth = View::new(view.pinhole().clone(), stages).unwrap_or_else(|_| view.clone());
-        Self { view, smooth, ground, earth, bend, kind }
+        Self { view, smooth, ground, earth, bend, strip, kind }
     }
 
     /// Height by which the ground at a point is displaced.
@@ -122,7 +130,8 @@ impl<'a> Split<'a> {
             _ => Curved::Any(ray),
         };
         let earth = if matches!(shape, Curved::Any(_)) { None } else { self.earth };
-        Curve { shape, earth }
+        let strip = self.strip.as_ref().map(|(strip, later)| (*strip, later.ray(pixel)));
+        Curve { shape, earth, strip }
     }
 
     /// Whether at every depth the rays of a row lie on a line, evenly: what two of them clear between them, all between them clear.
@@ -140,6 +149,8 @@ impl<'a> Split<'a> {
 pub(crate) struct Curve<'s, 'a> {
     shape: Curved<'s, 'a>,
     earth: Option<Parabola>,
+    /// A strip, and the ray before it comes there.
+    strip: Option<(&'a Strip, RayPath<'s>)>,
 }
 
 enum Curved<'s, 'a> {
@@ -194,6 +205,18 @@ impl Curve<'_, '_> {
             Curved::Any(ray) => return ray.at(depth).ok().map(|p| p.point),
         };
         Some(self.raised(p))
+    }
+
+    /// Whether the ray may have points between two depths at which it has none; `None` where nothing tells.
+    ///
+    /// Before the strip is undone the ray is a line or nearly: it stays within the way to its ends of its middle.
+    pub(crate) fn may_enter(&self, span: &Span) -> Option<bool> {
+        let (strip, before) = self.strip.as_ref()?;
+        let at = |w: f64| before.at(w).ok().map(|p| p.point);
+        let middle = at(span.depth_at(0.5))?;
+        let ends = [at(span.depth[0])?, at(span.depth[1])?];
+        let way = ends.into_iter().map(|p| p.truncate().distance(middle.truncate())).fold(0.0, f64::max);
+        Some(strip.outside(middle) <= 1.05 * way)
     }
 
     /// Segment of the ray at a depth, see [`belvedere_core::Displaced::segment`].

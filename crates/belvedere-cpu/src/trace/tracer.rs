@@ -4,7 +4,7 @@ use crate::geometry::screen::Screen;
 use crate::sections::{Exposure, Sections, Shown};
 use crate::trace::curve::{Curve, Span, Split};
 use crate::trace::root::root;
-use belvedere_core::{Aabb, DVec2, DVec3, View};
+use belvedere_core::{Aabb, DVec2, DVec3, Stage, View};
 use belvedere_scene::{CellTriangle, Heightfield, NodeState, Scene};
 use belvedere_sight::{GridLine, Lift, Obstacles, UprightBox};
 use std::ops::ControlFlow;
@@ -14,6 +14,8 @@ const CHORD_PX: f64 = 1e-3;
 /// A span is halved at most this often, one without any point of the ray at most that often.
 const MAX_HALVINGS: u32 = 40;
 const MAX_HALVINGS_OF_NOTHING: u32 = 3;
+/// The same where it may enter a strip.
+const MAX_HALVINGS_BESIDE_STRIP: u32 = 12;
 
 /// What the ray of a pixel meets first.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -189,7 +191,26 @@ pub(crate) fn deepest(scene: &Scene, view: &View) -> f64 {
             }
         }
     }
+    for depth in strip_points(view, &bounds).into_iter().filter_map(|p| view.project(p).ok()).map(|image| image.depth) {
+        largest = largest.max(depth);
+    }
     (largest + step + 1e-6 * largest).min(far).max(near * (1.0 + 1e-9))
+}
+
+/// Points all over the part of a strip that lies in a box in plan, at its least and largest height; none without a strip.
+fn strip_points(view: &View, bounds: &Aabb) -> Vec<DVec3> {
+    const ALONG: usize = 400;
+    let strip = view.stages().iter().find_map(|s| if let Stage::Strip(strip) = s { Some(strip) } else { None });
+    let Some(strip) = strip else { return Vec::new() };
+    let size = (bounds.max - bounds.min).truncate().length();
+    let (length, [first, last]) = (strip.route().length(), strip.route().reach());
+    let (from, to) = (first.max(-size), last.min(length + size));
+    let places = (0..=ALONG).flat_map(|i| {
+        let at = strip.route().at(from + (to - from) * i as f64 / ALONG as f64);
+        [-1.0, -0.5, 0.0, 0.5, 1.0].map(|a| at.p + 0.999 * a * strip.half_width() * at.normal())
+    });
+    let inside = |xy: &DVec2| xy.cmpge(bounds.min.truncate()).all() && xy.cmple(bounds.max.truncate()).all();
+    places.filter(inside).flat_map(|xy| [bounds.min.z, bounds.max.z].map(|z| xy.extend(z))).collect()
 }
 
 /// Depth, layer and part of a hit.
@@ -221,7 +242,15 @@ impl Walk<'_, '_> {
                 }
             }
             None => {
-                if halvings >= if span.has_point() { MAX_HALVINGS } else { MAX_HALVINGS_OF_NOTHING } {
+                let most = match span.has_point() {
+                    true => MAX_HALVINGS,
+                    false => match self.curve.may_enter(&span) {
+                        Some(false) => return None,
+                        Some(true) => MAX_HALVINGS_BESIDE_STRIP,
+                        None => MAX_HALVINGS_OF_NOTHING,
+                    },
+                };
+                if halvings >= most {
                     return None;
                 }
             }

@@ -13,6 +13,7 @@ mod robust;
 mod sections;
 mod steady;
 mod steady_lines;
+mod strip;
 mod subdivision;
 mod support;
 mod support_views;

@@ -52,6 +52,7 @@ pub(crate) fn draw(
         volumes: VolumeRecord::all(session.scene()),
         areas: session.areas().to_vec(),
         disocclusion: session.terrain_report().filter(|_| !request.straight).cloned(),
+        strip: session.strip_report().filter(|_| !request.straight).cloned(),
         constructor: session.constructor_report().filter(|_| !request.straight).cloned(),
         target: None,
         fallback,

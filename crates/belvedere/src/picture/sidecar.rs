@@ -6,6 +6,7 @@ use super::volume_record::VolumeRecord;
 use crate::fallback::FallbackRecord;
 use crate::overlays::highlight::HighlightRecord;
 use crate::record::{AreaRecord, InputFile, ViewRecord};
+use crate::resolve::StripReport;
 use crate::resolve::constructor::ConstructorReport;
 use crate::scene_file::{Document, Inset};
 use crate::verbs::target_place::TargetPlace;
@@ -127,6 +128,9 @@ pub struct Sidecar {
     /// What the solver of terrain disocclusion came to; `None` if none ran.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub disocclusion: Option<TerrainReport>,
+    /// What the strip along a route came to; `None` if the scene has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub strip: Option<StripReport>,
     /// What the constructor of curved rays came to; `None` if the scene has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub constructor: Option<ConstructorReport>,

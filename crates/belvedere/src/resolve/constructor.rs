@@ -91,6 +91,9 @@ pub(super) fn check_stages(source: &SourceDocument) -> Result<(), BelvedereError
         StageDoc::SplineBend(_) if probes => {
             Some("auto_probe looks for free space where things stand, not where a spline bend carries them; remove the spline_bend stage")
         }
+        StageDoc::Strip(_) if previews || probes => {
+            Some("it works in space as it is, not as a strip unrolls it; remove the strip stage")
+        }
         StageDoc::Relief(_) if previews || probes => {
             Some("it works in space as it is, not as a relief stage changes it; remove the relief stage")
         }
@@ -168,7 +171,7 @@ fn preview(
     let earlier = base.stages().iter().filter_map(|stage| match stage {
         Stage::EarthCurvature(earth) => Some(Stage::EarthCurvature(EarthCurvature { eye: root.eye, ..*earth })),
         Stage::TerrainDisocclusion(_) => Some(stage.clone()),
-        Stage::Relief(_) | Stage::SplineBend(_) | Stage::CurvedRays(_) | Stage::SplitRays(_) => None,
+        Stage::Strip(_) | Stage::Relief(_) | Stage::SplineBend(_) | Stage::CurvedRays(_) | Stage::SplitRays(_) => None,
     });
     let stages = earlier.chain(seen.view.stages().iter().cloned()).collect();
     let view = View::new(root, stages).map_err(|e| source.error(&["constructor", "kind"], e))?;

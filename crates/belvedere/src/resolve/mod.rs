@@ -22,6 +22,7 @@ mod relief;
 pub(crate) mod representations;
 mod sea;
 pub(crate) mod stages;
+mod strip;
 pub(crate) mod terrain;
 mod transfer;
 pub(crate) mod validate;
@@ -31,3 +32,4 @@ pub(crate) mod volume;
 
 pub(crate) use areas::{fill_surfaces, restyle};
 pub(crate) use layers::{LayerRequest, load};
+pub use strip::StripReport;

@@ -2,6 +2,7 @@
 
 use super::camera::ResolvedCamera;
 use super::ground::Ground;
+use super::strip::StripReport;
 use super::terrain::{self, Solving};
 use crate::BelvedereError;
 use crate::scene_file::paths::Roots;
@@ -33,6 +34,8 @@ pub(super) struct ResolvedStages {
     pub(super) documents: Vec<StageDoc>,
     /// What the terrain solver came to, if it ran.
     pub(super) terrain: Option<TerrainReport>,
+    /// What the strip came to, if there is one.
+    pub(super) strip: Option<StripReport>,
 }
 
 /// What stages are resolved with.
@@ -54,7 +57,7 @@ pub(super) fn resolve(
     warnings: &mut Vec<String>,
 ) -> Result<ResolvedStages, BelvedereError> {
     let pinhole = context.camera.pinhole.clone();
-    let mut out = ResolvedStages { stages: Vec::new(), pinhole, documents: Vec::new(), terrain: None };
+    let mut out = ResolvedStages { stages: Vec::new(), pinhole, documents: Vec::new(), terrain: None, strip: None };
     let mut intent = None;
     for (i, stage) in context.source.document.stage.iter().enumerate() {
         let at = context.at(i);
@@ -66,6 +69,11 @@ pub(super) fn resolve(
                 continue;
             }
             StageDoc::TerrainDisocclusion(doc) => solved_terrain(context, doc, inputs, at)?,
+            StageDoc::Strip(doc) => {
+                let (stage, document, report) = super::strip::resolve(context, doc, warnings, at)?;
+                out.strip = Some(report);
+                (stage, document)
+            }
             StageDoc::Relief(doc) => super::relief::resolve(context, doc, at)?,
             StageDoc::SplineBend(doc) => {
                 let (bend, document) = spline(context, doc, inputs, warnings, at)?;

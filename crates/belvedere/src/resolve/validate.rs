@@ -193,9 +193,10 @@ pub(super) fn optional_color(key: &'static str, text: &str) -> Result<Option<bel
 fn rank(stage: &StageDoc) -> u32 {
     match stage {
         StageDoc::TerrainDisocclusion(_) => 1,
-        StageDoc::Relief(_) => 2,
-        StageDoc::SplineBend(_) => 3,
-        StageDoc::CurvedRays(_) => 4,
+        StageDoc::Strip(_) => 2,
+        StageDoc::Relief(_) => 3,
+        StageDoc::SplineBend(_) => 4,
+        StageDoc::CurvedRays(_) => 5,
     }
 }
 

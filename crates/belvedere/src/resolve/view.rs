@@ -2,6 +2,7 @@
 
 use super::constructor::{self, ConstructorReport};
 use super::ground::{Ground, earth};
+use super::strip::StripReport;
 use super::terrain::Solving;
 use super::{camera, light, stages, terrain};
 use crate::BelvedereError;
@@ -20,6 +21,8 @@ pub(crate) struct ResolvedView {
     pub(crate) light: Light,
     /// What the terrain solver came to, if it ran.
     pub(crate) terrain: Option<TerrainReport>,
+    /// What the strip came to, if there is one.
+    pub(crate) strip: Option<StripReport>,
     /// What the constructor of curved rays came to, if there is one.
     pub(crate) constructor: Option<ConstructorReport>,
     pub(crate) inputs: Vec<InputFile>,
@@ -55,5 +58,6 @@ pub(crate) fn resolve(
     document.crs = scene.crs.to_string();
     document.camera = camera.document;
     document.stage = resolved.documents;
-    Ok(ResolvedView { document, view, light, terrain: resolved.terrain, constructor, inputs, warnings })
+    let (terrain, strip) = (resolved.terrain, resolved.strip);
+    Ok(ResolvedView { document, view, light, terrain, strip, constructor, inputs, warnings })
 }

@@ -47,7 +47,7 @@ pub struct Document {
     /// are shown everywhere. A section may also name a layer.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub representations: BTreeMap<String, Vec<String>>,
-    /// Stages in order of application: terrain_disocclusion, relief, spline_bend, curved_rays.
+    /// Stages in order of application: terrain_disocclusion, strip, relief, spline_bend, curved_rays.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stage: Vec<StageDoc>,
     /// Builds stages from an intent.

@@ -15,6 +15,7 @@ mod palette;
 pub mod paths;
 mod relief;
 mod stages;
+mod strip;
 mod stylisation;
 mod toml_tree;
 mod volume;
@@ -38,6 +39,7 @@ pub use stages::{
     AxisDoc, DetailDoc, MergeDoc, PlaneDoc, PresetsDoc, RaysStageDoc, SolverMode, SplineStageDoc, SplitDoc, StageDoc,
     TerrainStageDoc, TurnDoc, WayDoc,
 };
+pub use strip::StripStageDoc;
 pub use stylisation::{StylisationDoc, SwitchOrStrength};
 pub use volume::VolumeDoc;
 
@@ -307,6 +309,7 @@ fn layer(kind: &str, node: &Node) -> Result<Option<LayerDoc>, DocError> {
 fn stage(kind: &str, node: &Node) -> Result<Option<StageDoc>, DocError> {
     Ok(Some(match kind {
         "terrain_disocclusion" => StageDoc::TerrainDisocclusion(de::from_node(node)?),
+        "strip" => StageDoc::Strip(de::from_node(node)?),
         "relief" => StageDoc::Relief(de::from_node(node)?),
         "spline_bend" => StageDoc::SplineBend(de::from_node(node)?),
         "curved_rays" => StageDoc::CurvedRays(de::from_node(node)?),

@@ -101,7 +101,7 @@ impl Document {
                     PresetsDoc::Named(name) if names_a_preset_file(name) => one(name),
                     _ => {}
                 },
-                StageDoc::Relief(_) | StageDoc::CurvedRays(_) => {}
+                StageDoc::Strip(_) | StageDoc::Relief(_) | StageDoc::CurvedRays(_) => {}
             }
         }
         self.animation.iter_mut().filter_map(|a| a.camera.as_mut()).for_each(&mut one);

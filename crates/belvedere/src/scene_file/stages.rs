@@ -1,6 +1,7 @@
 //! Stages of the scene document.
 
 use super::relief::ReliefStageDoc;
+use super::strip::StripStageDoc;
 use belvedere_core::map::curved_rays::{Model, Sharpness};
 use belvedere_core::presets::PresetDocument;
 use schemars::JsonSchema;
@@ -14,6 +15,8 @@ use serde::{Deserialize, Serialize};
 pub enum StageDoc {
     /// The ground moves so that required features are seen.
     TerrainDisocclusion(TerrainStageDoc),
+    /// A strip along a route is straightened.
+    Strip(StripStageDoc),
     /// Heights are raised, lowered, shown in plan or levelled.
     Relief(ReliefStageDoc),
     /// Space is carried onto a B-spline over the reference plane.
@@ -23,13 +26,14 @@ pub enum StageDoc {
 }
 
 /// Names of the kinds of stages.
-pub(super) const STAGE_KINDS: &[&str] = &["terrain_disocclusion", "relief", "spline_bend", "curved_rays"];
+pub(super) const STAGE_KINDS: &[&str] = &["terrain_disocclusion", "strip", "relief", "spline_bend", "curved_rays"];
 
 impl StageDoc {
     /// Name of the kind, as files write it.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::TerrainDisocclusion(_) => "terrain_disocclusion",
+            Self::Strip(_) => "strip",
             Self::Relief(_) => "relief",
             Self::SplineBend(_) => "spline_bend",
             Self::CurvedRays(_) => "curved_rays",

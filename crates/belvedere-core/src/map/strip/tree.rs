@@ -1,0 +1,105 @@
+//! Pieces of a curve in a tree of discs.
+
+use super::curve::Node;
+use glam::DVec2;
+
+/// A tree over pieces of equal length: the discs of a level lie around two of the level below.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Discs {
+    /// From the pieces up to the whole curve.
+    levels: Vec<Vec<Disc>>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Disc {
+    center: DVec2,
+    radius: f64,
+}
+
+impl Discs {
+    /// * `spacing`: arc length between nodes.
+    pub(super) fn new(nodes: &[Node], spacing: f64) -> Self {
+        // No place of a piece is farther from the middle of its chord than half its length.
+        let leaf = |pair: &[Node]| Disc { center: 0.5 * (pair[0].p + pair[1].p), radius: 0.5 * spacing };
+        let mut levels = vec![nodes.windows(2).map(leaf).collect::<Vec<_>>()];
+        while let Some(below) = levels.last().filter(|level| level.len() > 1) {
+            levels.push(below.chunks(2).map(around).collect());
+        }
+        Self { levels }
+    }
+
+    /// The first answer of `ask` to the pieces within `width` of a point, nearest branches first.
+    pub(super) fn find<T>(&self, q: DVec2, width: f64, ask: &mut impl FnMut(usize) -> Option<T>) -> Option<T> {
+        self.visit(self.levels.len() - 1, 0, q, width, ask)
+    }
+
+    fn visit<T>(
+        &self,
+        level: usize,
+        i: usize,
+        q: DVec2,
+        width: f64,
+        ask: &mut impl FnMut(usize) -> Option<T>,
+    ) -> Option<T> {
+        let disc = self.levels[level][i];
+        if disc.center.distance_squared(q) > (width + disc.radius) * (width + disc.radius) {
+            return None;
+        }
+        if level == 0 {
+            return ask(i);
+        }
+        let below = &self.levels[level - 1];
+        let (a, b) = (2 * i, 2 * i + 1);
+        if b >= below.len() {
+            return self.visit(level - 1, a, q, width, ask);
+        }
+        let off = |k: usize| below[k].center.distance_squared(q);
+        let (first, second) = if off(b) < off(a) { (b, a) } else { (a, b) };
+        self.visit(level - 1, first, q, width, ask).or_else(|| self.visit(level - 1, second, q, width, ask))
+    }
+
+    /// The piece whose middle is nearest, and how far that is.
+    pub(super) fn nearest(&self, q: DVec2) -> (usize, f64) {
+        let mut best = (0, f64::INFINITY);
+        self.closer(self.levels.len() - 1, 0, q, &mut best);
+        best
+    }
+
+    fn closer(&self, level: usize, i: usize, q: DVec2, best: &mut (usize, f64)) {
+        let disc = self.levels[level][i];
+        let distance = disc.center.distance(q);
+        if level == 0 {
+            if distance < best.1 {
+                *best = (i, distance);
+            }
+            return;
+        }
+        if distance - disc.radius > best.1 {
+            return;
+        }
+        let below = &self.levels[level - 1];
+        let (a, b) = (2 * i, 2 * i + 1);
+        let off = |k: usize| below[k].center.distance_squared(q);
+        let turned = b < below.len() && off(b) < off(a);
+        for k in if turned { [b, a] } else { [a, b] } {
+            if k < below.len() {
+                self.closer(level - 1, k, q, best);
+            }
+        }
+    }
+}
+
+fn around(discs: &[Disc]) -> Disc {
+    let [a, b] = [discs[0], discs[discs.len() - 1]];
+    let apart = a.center.distance(b.center);
+    if apart + b.radius <= a.radius {
+        return a;
+    }
+    if apart + a.radius <= b.radius {
+        return b;
+    }
+    let radius = 0.5 * (apart + a.radius + b.radius);
+    let center = a.center + (radius - a.radius) / apart * (b.center - a.center);
+    // A little more, for rounding.
+    Disc { center, radius: radius * (1.0 + 1e-12) }
+}
