@@ -22,6 +22,7 @@ mod presets;
 mod reveal;
 mod scenes;
 mod speed;
+mod strip;
 mod stylisation;
 mod terrain;
 mod volume_targets;

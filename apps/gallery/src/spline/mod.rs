@@ -7,6 +7,7 @@ mod canyon;
 mod corners;
 mod frames;
 mod relief;
+mod strip;
 mod styles;
 mod town;
 
@@ -58,6 +59,13 @@ const FIGURES: [Entry; 9] = [
         title: "Relief as panorama makers draw it",
         says: "Heights exaggerated towards the background, a curved horizon, and plan oblique relief: a stage of its own before any bend.",
         draw: relief::changes,
+    },
+    Entry {
+        name: "strip",
+        title: "A winding road, straightened",
+        says: "The ground follows the road in plan while that is unrolled, as in panoramas along a road; then space is bent. Lengths along the road and \
+               distances from it stay. Below, the plan on the way.",
+        draw: strip::unrolled,
     },
     Entry {
         name: "arc_length",
