@@ -78,7 +78,7 @@ pub(crate) fn turns(session: &Session) -> Result<Vec<TurnSpec>> {
 /// The session with boxes of its own, each in a layer of its name.
 pub(crate) fn with_boxes(session: &Session, boxes: impl IntoIterator<Item = (String, Vec<BoxShape>)>) -> Session {
     let mut scene = session.scene().clone();
-    let layer = |(id, boxes)| Layer { id, must_see: false, kind: LayerKind::Boxes(BoxLayer { boxes }) };
+    let layer = |(id, boxes)| Layer { id, must_see: false, kind: LayerKind::Boxes(BoxLayer::new(boxes)) };
     scene.layers.extend(boxes.into_iter().map(layer));
     Session::from_parts(scene, session.view().clone()).with_light(*session.light())
 }

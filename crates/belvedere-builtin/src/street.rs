@@ -80,7 +80,7 @@ pub fn street(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
         ground_layer(terrain, Palette::Plain),
         area_layer("blocks", blocks, Color::rgb(222, 217, 207)),
         area_layer("parks", parks, Color::rgb(146, 178, 120)),
-        Layer { id: "towers".into(), must_see: false, kind: LayerKind::Boxes(BoxLayer { boxes: towers }) },
+        Layer { id: "towers".into(), must_see: false, kind: LayerKind::Boxes(BoxLayer::new(towers)) },
         line_layer("route", LineFeature { name: "Route through town".into(), points }),
     ];
     let camera = SuggestedCamera { title: title.clone(), eye, look_at, fov_y: 45f64.to_radians() };

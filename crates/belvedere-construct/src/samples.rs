@@ -30,6 +30,8 @@ pub struct Sample {
     pub amount: f64,
     /// Outward unit normal, if the sample stands for a piece of a surface in space, just in front of which it lies.
     pub surface: Option<DVec3>,
+    /// Number of the triangle that it lies before: of a mesh, or of a molecule's surface; twelve to a box.
+    pub triangle: Option<u32>,
 }
 
 /// A feature of interest, sampled.
@@ -93,6 +95,7 @@ fn sample_layer(terrain: Option<&Heightfield>, index: usize, layer: &Layer, spac
                     lift: l.lift_m,
                     amount,
                     surface: None,
+                    triangle: None,
                 })
             };
             l.features.iter().enumerate().map(|(i, f)| feature(i, &f.name, Amount::Length, sampled(f))).collect()
@@ -101,15 +104,22 @@ fn sample_layer(terrain: Option<&Heightfield>, index: usize, layer: &Layer, spac
             let sampled = |f: &AreaFeature| {
                 let on_surface = |xy: DVec2, amount: f64| {
                     let ground = terrain.map_or(Some(0.0), |hf| hf.surface_at(xy))?;
-                    Some(Sample { p_world: xy.extend(ground + a.lift_m), lift: a.lift_m, amount, surface: None })
+                    Some(Sample {
+                        p_world: xy.extend(ground + a.lift_m),
+                        lift: a.lift_m,
+                        amount,
+                        surface: None,
+                        triangle: None,
+                    })
                 };
                 area_samples(f, spacing, &on_surface)
             };
             a.features.iter().enumerate().map(|(i, f)| feature(i, &f.name, Amount::Area, sampled(f))).collect()
         }
         LayerKind::Point(p) => {
-            let sampled =
-                |at: DVec3| vec![Sample { p_world: set(at, p.lift_m), lift: p.lift_m, amount: 1.0, surface: None }];
+            let sampled = |at: DVec3| {
+                vec![Sample { p_world: set(at, p.lift_m), lift: p.lift_m, amount: 1.0, surface: None, triangle: None }]
+            };
             p.features
                 .iter()
                 .enumerate()
@@ -153,7 +163,13 @@ fn area_samples(f: &AreaFeature, spacing: f64, on_surface: &dyn Fn(DVec2, f64) -
     let mut out = Vec::new();
     for ring in &f.rings {
         let closed: Vec<DVec3> = ring.iter().chain(ring.first()).map(|p| p.extend(0.0)).collect();
-        let band = |p: DVec3, length: f64| Sample { p_world: p, lift: 0.0, amount: 0.5 * step * length, surface: None };
+        let band = |p: DVec3, length: f64| Sample {
+            p_world: p,
+            lift: 0.0,
+            amount: 0.5 * step * length,
+            surface: None,
+            triangle: None,
+        };
         out.extend(
             along(&closed, spacing, band).into_iter().filter_map(|s| on_surface(s.p_world.truncate(), s.amount)),
         );
@@ -188,8 +204,9 @@ mod tests {
         let closed = open.iter().chain(open.first()).copied().collect();
         for ring in [open, closed] {
             let feature = AreaFeature { name: String::new(), rings: vec![ring] };
-            let flat =
-                |xy: DVec2, amount: f64| Some(Sample { p_world: xy.extend(0.0), lift: 0.0, amount, surface: None });
+            let flat = |xy: DVec2, amount: f64| {
+                Some(Sample { p_world: xy.extend(0.0), lift: 0.0, amount, surface: None, triangle: None })
+            };
             let samples = area_samples(&feature, 5.0, &flat);
             let side = |on: &dyn Fn(DVec3) -> bool| {
                 let on_side: Vec<f64> = samples.iter().filter(|s| on(s.p_world)).map(|s| s.amount).collect();

@@ -2,7 +2,7 @@
 
 use crate::samples::Sample;
 use belvedere_core::DVec3;
-use belvedere_scene::{BoxShape, LayerKind, MeshLayer, MoleculeLayer};
+use belvedere_scene::{BoxLayer, BoxShape, LayerKind, MeshLayer, MoleculeLayer};
 
 /// Samples of a surface, at least and at most.
 const SAMPLES: [f64; 2] = [1000.0, 6000.0];
@@ -27,8 +27,8 @@ pub(crate) struct SampledSurface {
 ///
 /// `None` for layers that are no surface of their own.
 pub(crate) fn surface(kind: &LayerKind, spacing: f64) -> Option<SampledSurface> {
-    let (name, triangles) = match kind {
-        LayerKind::Boxes(layer) => (String::new(), layer.boxes.iter().flat_map(box_triangles).collect()),
+    let (name, numbers, triangles) = match kind {
+        LayerKind::Boxes(layer) => of_boxes(layer),
         LayerKind::Molecule(layer) => of_molecule(layer),
         LayerKind::Mesh(layer) => of_mesh(layer),
         LayerKind::Terrain(_)
@@ -40,7 +40,24 @@ pub(crate) fn surface(kind: &LayerKind, spacing: f64) -> Option<SampledSurface> 
     let bounds = belvedere_core::Aabb::of(triangles.iter().flatten().copied());
     let area: f64 = triangles.iter().map(|t| 0.5 * cross(t).length()).sum();
     let count = (area / (spacing * spacing)).clamp(SAMPLES[0], SAMPLES[1]).ceil() as usize;
-    Some(SampledSurface { name, samples: spread(&triangles, count, IN_FRONT * (bounds.max - bounds.min).length()) })
+    let mut samples = spread(&triangles, count, IN_FRONT * (bounds.max - bounds.min).length());
+    for sample in &mut samples {
+        sample.triangle = sample.triangle.and_then(|t| numbers.get(t as usize).copied());
+    }
+    Some(SampledSurface { name, samples })
+}
+
+/// What is sampled: its name, and triangles with their numbers in the layer.
+type Surface = (String, Vec<u32>, Vec<[DVec3; 3]>);
+
+fn of_boxes(layer: &BoxLayer) -> Surface {
+    let mut numbers = Vec::new();
+    let mut triangles = Vec::new();
+    for (k, shape) in layer.boxes.iter().enumerate() {
+        triangles.extend(box_triangles(shape));
+        numbers.resize(triangles.len(), (BoxShape::TRIANGLES.len() * k) as u32);
+    }
+    (String::new(), numbers, triangles)
 }
 
 /// Walls and top of a box.
@@ -55,24 +72,27 @@ fn cross([a, b, c]: &[DVec3; 3]) -> DVec3 {
     (*b - *a).cross(*c - *a)
 }
 
-fn of_mesh(layer: &MeshLayer) -> (String, Vec<[DVec3; 3]>) {
+fn of_mesh(layer: &MeshLayer) -> Surface {
     let (mesh, wanted) = (&layer.mesh, layer.wanted.as_ref());
     let is_wanted = |t: &usize| wanted.is_none_or(|w| mesh.part(*t).is_some_and(|part| w.contains(&part)));
-    let triangles = (0..mesh.triangles().len()).filter(is_wanted).map(|t| mesh.corners(t));
+    let numbers: Vec<u32> = (0..mesh.triangles().len()).filter(is_wanted).map(|t| t as u32).collect();
+    let triangles = numbers.iter().map(|t| mesh.corners(*t as usize)).collect();
     let names: Vec<&str> =
         wanted.into_iter().flatten().filter_map(|&part| layer.names.get(part as usize)).map(String::as_str).collect();
-    (names.join(", "), triangles.collect())
+    (names.join(", "), numbers, triangles)
 }
 
-fn of_molecule(layer: &MoleculeLayer) -> (String, Vec<[DVec3; 3]>) {
+fn of_molecule(layer: &MoleculeLayer) -> Surface {
     let mesh = &layer.surface.mesh;
     let wanted = layer.wanted.as_ref().map(|w| w.mask(&layer.molecule));
     let is_wanted = |t: &usize| wanted.as_ref().is_none_or(|w| mesh.part(*t).is_some_and(|atom| w[atom as usize]));
-    let triangles = (0..mesh.triangles().len()).filter(is_wanted).map(|t| mesh.corners(t));
-    (layer.wanted.as_ref().map(ToString::to_string).unwrap_or_default(), triangles.collect())
+    let numbers: Vec<u32> = (0..mesh.triangles().len()).filter(is_wanted).map(|t| t as u32).collect();
+    let triangles = numbers.iter().map(|t| mesh.corners(*t as usize)).collect();
+    (layer.wanted.as_ref().map(ToString::to_string).unwrap_or_default(), numbers, triangles)
 }
 
-/// `count` points spread over triangles, each standing for an equal share of the area, `off` before the surface.
+/// `count` points spread over triangles, each standing for an equal share of the area, `off` before the surface; with the places of the
+/// triangles in the list.
 pub(crate) fn spread(triangles: &[[DVec3; 3]], count: usize, off: f64) -> Vec<Sample> {
     let total: f64 = triangles.iter().map(|t| 0.5 * cross(t).length()).sum();
     if !(total > 0.0 && total.is_finite()) {
@@ -82,14 +102,15 @@ pub(crate) fn spread(triangles: &[[DVec3; 3]], count: usize, off: f64) -> Vec<Sa
     let mut random = Random(SEED);
     let mut out = Vec::with_capacity(count);
     let (mut before, mut next) = (0.0, random.share() * each);
-    for t in triangles {
+    for (number, t) in triangles.iter().enumerate() {
         let normal = cross(t);
         let after = before + 0.5 * normal.length();
         while next < after && out.len() < count {
             let [u, v] = random.inside();
             let p = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
             let normal = normal.normalize_or(DVec3::Z);
-            out.push(Sample { p_world: p + off * normal, lift: 0.0, amount: each, surface: Some(normal) });
+            let triangle = Some(number as u32);
+            out.push(Sample { p_world: p + off * normal, lift: 0.0, amount: each, surface: Some(normal), triangle });
             next = (out.len() as f64 + random.share()) * each;
         }
         before = after;
@@ -124,7 +145,7 @@ impl Random {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere_scene::{BoxLayer, Color};
+    use belvedere_scene::Color;
 
     #[test]
     fn walls_and_tops_get_points_by_their_area_just_in_front_of_them() {
@@ -134,7 +155,7 @@ mod tests {
             yaw: 0.4,
             color: Color::rgb(1, 2, 3),
         };
-        let found = surface(&LayerKind::Boxes(BoxLayer { boxes: vec![shape] }), 0.1).unwrap();
+        let found = surface(&LayerKind::Boxes(BoxLayer::new(vec![shape])), 0.1).unwrap();
         // Walls 2 (6 + 3) 2, top 18.
         let area: f64 = found.samples.iter().map(|s| s.amount).sum();
         assert!(
@@ -155,7 +176,7 @@ mod tests {
         let left =
             found.samples.iter().filter(|s| s.surface.unwrap().z > 0.5 && (s.p_world - shape.base).dot(DVec3::X) < 0.0);
         assert!((left.count() as f64 / top - 0.5).abs() < 0.05);
-        assert_eq!(found.samples, surface(&LayerKind::Boxes(BoxLayer { boxes: vec![shape] }), 0.1).unwrap().samples);
+        assert_eq!(found.samples, surface(&LayerKind::Boxes(BoxLayer::new(vec![shape])), 0.1).unwrap().samples);
     }
 
     #[test]
@@ -164,7 +185,7 @@ mod tests {
         let one = [[DVec3::ZERO, DVec3::X, DVec3::Y]];
         assert_eq!(spread(&one, 77, 0.0).len(), 77);
         let shape = BoxShape { base: DVec3::ZERO, size: DVec3::ONE, yaw: 0.0, color: Color::rgb(1, 2, 3) };
-        let layer = LayerKind::Boxes(BoxLayer { boxes: vec![shape] });
+        let layer = LayerKind::Boxes(BoxLayer::new(vec![shape]));
         assert_eq!([1e-6, 1e6].map(|spacing| surface(&layer, spacing).unwrap().samples.len()), [6000, 1000]);
     }
 }

@@ -326,6 +326,31 @@ pub struct BoxShape {
 }
 
 impl BoxShape {
+    /// Numbers of the corners ([`BoxShape::corners`]) of the twelve triangles of a box, two per face.
+    pub const TRIANGLES: [[usize; 3]; 12] = [
+        [0, 2, 3],
+        [0, 3, 1],
+        [4, 5, 7],
+        [4, 7, 6],
+        [0, 1, 5],
+        [0, 5, 4],
+        [2, 6, 7],
+        [2, 7, 3],
+        [0, 4, 6],
+        [0, 6, 2],
+        [1, 3, 7],
+        [1, 7, 5],
+    ];
+
+    /// Outward unit normal of one of [`BoxShape::TRIANGLES`], by its number.
+    pub fn normal_of(&self, triangle: usize) -> DVec3 {
+        let corners = self.corners();
+        let [a, b, c] = Self::TRIANGLES[triangle % Self::TRIANGLES.len()].map(|k| corners[k]);
+        let n = (b - a).cross(c - a);
+        let outward = a - (self.base + DVec3::Z * 0.5 * self.size.z);
+        if n.dot(outward) < 0.0 { -n } else { n }.normalize_or(DVec3::Z)
+    }
+
     /// The eight corners: bit 0 = +x side, bit 1 = +y side, bit 2 = top.
     pub fn corners(&self) -> [DVec3; 8] {
         let (sin, cos) = self.yaw.sin_cos();
@@ -343,6 +368,15 @@ impl BoxShape {
 pub struct BoxLayer {
     /// Boxes.
     pub boxes: Vec<BoxShape>,
+    /// Whether each box is a rigid body, see [`crate::Bodies`].
+    pub rigid: bool,
+}
+
+impl BoxLayer {
+    /// Boxes that are displaced point by point.
+    pub fn new(boxes: Vec<BoxShape>) -> Self {
+        Self { boxes, rigid: false }
+    }
 }
 
 /// Content of a layer.
@@ -406,11 +440,12 @@ impl LayerKind {
         Some(name.as_str()).filter(|name| !name.is_empty())
     }
 
-    /// Whether both are known to be one surface and differ at most in colour: terrain on the same heights, meshes of the same triangles.
+    /// Whether both are known to be one surface and differ at most in colour: terrain on the same heights, meshes of the same triangles
+    /// that move alike.
     pub fn is_surface_of(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Terrain(a), Self::Terrain(b)) => Arc::ptr_eq(&a.heightfield, &b.heightfield),
-            (Self::Mesh(a), Self::Mesh(b)) => a.mesh.is_surface_of(&b.mesh),
+            (Self::Mesh(a), Self::Mesh(b)) => a.mesh.is_surface_of(&b.mesh) && a.rigid == b.rigid,
             _ => false,
         }
     }

@@ -1,6 +1,7 @@
 //! What is looked at: terrain, lines, areas, points, boxes, meshes, molecules and cities as plain data, never view-dependent;
 //! and the contract between pictures and whoever needs them ([`Renderer`], [`RenderJob`], [`Frame`]).
 
+pub mod bodies;
 pub mod cell;
 mod chain;
 pub mod city;
@@ -21,6 +22,7 @@ pub mod sea;
 pub mod texture;
 pub mod volume;
 
+pub use bodies::{Bodies, RigidParts};
 pub use cell::CellTriangle;
 pub use city::{
     Building, City, CityArea, CityFace, HeightSource, LandCover, Polygon, Structure, StructureKind, Surface, Way,

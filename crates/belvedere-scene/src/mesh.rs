@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
 use crate::texture::Texturing;
-use crate::{Color, Placement};
+use crate::{Color, Placement, RigidParts};
 use openness::Openness;
 
 pub use openness::triangle_lattice;
@@ -347,12 +347,14 @@ pub struct MeshLayer {
     pub names: Vec<String>,
     /// The parts that `must_see` means; `None` = the whole mesh.
     pub wanted: Option<Vec<u32>>,
+    /// The parts that bends carry as rigid bodies.
+    pub rigid: RigidParts,
 }
 
 impl MeshLayer {
     /// A mesh without names.
     pub fn new(mesh: Mesh, color: Color) -> Self {
-        Self { mesh, color, names: Vec::new(), wanted: None }
+        Self { mesh, color, names: Vec::new(), wanted: None, rigid: RigidParts::None }
     }
 
     /// Numbers of the parts whose path has a step of this name, or is it; capitals do not matter.

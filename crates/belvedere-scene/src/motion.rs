@@ -147,7 +147,7 @@ mod tests {
         let corners = shape.corners();
         let mesh = Mesh::new(&corners, vec![[0, 1, 2], [4, 5, 6]], MeshColors::Layer).unwrap();
         let at = Placement { translate: DVec3::new(5e5, 4.7e6, 100.0), yaw: 0.7 };
-        let boxes = LayerKind::Boxes(BoxLayer { boxes: vec![shape] }).placed(&at).unwrap();
+        let boxes = LayerKind::Boxes(BoxLayer::new(vec![shape])).placed(&at).unwrap();
         let mesh = LayerKind::Mesh(MeshLayer::new(mesh, Color::rgb(1, 2, 3))).placed(&at).unwrap();
         let (LayerKind::Boxes(boxes), LayerKind::Mesh(mesh)) = (boxes, mesh) else { panic!("the kind stays") };
         for (i, corner) in boxes.boxes[0].corners().into_iter().enumerate().take(7) {

@@ -1,6 +1,7 @@
 //! Ground as it is drawn, and lines of sight over it.
 
 mod boxes;
+mod carried;
 mod clip;
 mod crossings;
 mod displaced;
@@ -14,6 +15,7 @@ mod pyramid;
 mod voxels;
 
 pub use boxes::{BoxTree, UprightBox};
+pub use carried::{Carried, CarriedLayer};
 pub use clip::clip_segment;
 pub use crossings::{AT_NODE, SightLine, SightSample, guard_tau, sight_samples};
 pub use displaced::{DisplacedGround, Excess, SightVertex};

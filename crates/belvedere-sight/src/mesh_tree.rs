@@ -9,6 +9,7 @@ use obvhs::aabb::Aabb as Bounds;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::leaf_collapser::collapse;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+use std::borrow::Cow;
 
 /// Most triangles of a leaf, and what a step down the tree costs in tests of triangles.
 const LEAF: u32 = 4;
@@ -18,7 +19,7 @@ const STEP_COST: f32 = 2.0;
 ///
 /// The bounds are exact: vertices are single precision relative to [`Mesh::origin`], and so are they. Segments are double precision.
 pub struct MeshTree<'a> {
-    mesh: &'a Mesh,
+    mesh: Cow<'a, Mesh>,
     tree: Bvh2,
     lift: [f64; 2],
 }
@@ -41,17 +42,28 @@ impl<'a> MeshTree<'a> {
     /// The tree of a mesh whose points may be displaced vertically by something in a range of heights, scene units.
     pub fn lifted(mesh: &'a Mesh, lift: [f64; 2]) -> Self {
         let all = (0..mesh.triangles().len() as u32).collect();
-        Self::of(mesh, all, lift)
+        Self::of(Cow::Borrowed(mesh), all, lift)
+    }
+
+    /// The tree of a mesh of its own.
+    pub fn owned(mesh: Mesh) -> MeshTree<'static> {
+        let all = (0..mesh.triangles().len() as u32).collect();
+        MeshTree::of(Cow::Owned(mesh), all, [0.0; 2])
+    }
+
+    /// [`MeshTree::lifted`] over some triangles alone, by their numbers.
+    pub fn over(mesh: &'a Mesh, triangles: Vec<u32>, lift: [f64; 2]) -> Self {
+        Self::of(Cow::Borrowed(mesh), triangles, lift)
     }
 
     /// The tree over all triangles but those of some parts.
     pub fn without_parts(mesh: &'a Mesh, parts: &[u32]) -> Self {
         let kept = (0..mesh.triangles().len()).filter(|&t| mesh.part(t).is_none_or(|part| !parts.contains(&part)));
-        Self::of(mesh, kept.map(|t| t as u32).collect(), [0.0; 2])
+        Self::of(Cow::Borrowed(mesh), kept.map(|t| t as u32).collect(), [0.0; 2])
     }
 
-    fn of(mesh: &'a Mesh, held: Vec<u32>, lift: [f64; 2]) -> Self {
-        let triangles: Vec<Corners<'_>> = held.iter().map(|&t| Corners(mesh, mesh.triangles()[t as usize])).collect();
+    fn of(mesh: Cow<'a, Mesh>, held: Vec<u32>, lift: [f64; 2]) -> Self {
+        let triangles: Vec<Corners<'_>> = held.iter().map(|&t| Corners(&mesh, mesh.triangles()[t as usize])).collect();
         let mut tree = Bvh2::default();
         if !triangles.is_empty() {
             let all = (0..triangles.len() as u32).collect();
@@ -64,8 +76,8 @@ impl<'a> MeshTree<'a> {
     }
 
     /// The mesh.
-    pub fn mesh(&self) -> &'a Mesh {
-        self.mesh
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
     }
 
     /// Whether the mesh stands where it was put.

@@ -1,6 +1,6 @@
 //! Lines of sight along straight and curved rays, past terrain, boxes and meshes.
 
-use crate::{BoxTree, Ground, Lift, MeshTree};
+use crate::{BoxTree, Carried, Ground, Lift, MeshTree};
 use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{LayerKind, Scene};
 
@@ -9,6 +9,8 @@ pub struct Obstacles<'a> {
     grounds: Vec<(usize, Ground<'a>)>,
     boxes: BoxTree,
     meshes: Vec<(usize, MeshTree<'a>)>,
+    /// Rigid bodies where a view carries them to, and that view of them.
+    bodies: Option<Box<(Obstacles<'static>, View)>>,
 }
 
 /// How lines of sight are walked.
@@ -31,12 +33,12 @@ impl<'a> Obstacles<'a> {
 
     /// The same without some layers, by their index: what is looked for does not hide itself.
     pub fn without(scene: &'a Scene, layers: &[usize]) -> Self {
-        Self::of(scene, layers, None)
+        Self::of(scene, layers, None, None)
     }
 
     /// The same without some parts of a mesh, by the index of its layer and their numbers.
     pub fn without_parts(scene: &'a Scene, layer: usize, parts: &[u32]) -> Self {
-        let mut out = Self::of(scene, &[layer], None);
+        let mut out = Self::of(scene, &[layer], None, None);
         out.meshes.extend(
             scene
                 .layers
@@ -49,26 +51,59 @@ impl<'a> Obstacles<'a> {
 
     /// The same where the ground, and what stands on it, may be displaced vertically.
     pub fn lifted(scene: &'a Scene, lift: Option<Lift<'_>>) -> Self {
-        Self::of(scene, &[], lift)
+        Self::of(scene, &[], lift, None)
     }
 
-    fn of(scene: &'a Scene, without: &[usize], lift: Option<Lift<'_>>) -> Self {
+    /// The same without rigid bodies, see [`Obstacles::of_bodies`].
+    pub fn beside_bodies(scene: &'a Scene, lift: Option<Lift<'_>>, carried: &Carried) -> Self {
+        Self::of(scene, &[], lift, Some(carried))
+    }
+
+    /// Rigid bodies alone, where a view carries them to: in the space of [`Carried::after`]. Triangles are numbered by [`belvedere_scene::Mesh::part`].
+    pub fn of_bodies(scene: &Scene, carried: &Carried) -> Obstacles<'static> {
+        let mesh = |i: usize| Some((i, MeshTree::owned(carried.mesh(scene, i)?)));
+        let meshes = (0..scene.layers.len()).filter_map(mesh).collect();
+        Obstacles { grounds: Vec::new(), boxes: BoxTree::new([], None), meshes, bodies: None }
+    }
+
+    /// What stands in the way of the rays of `view`: where that carries rigid bodies as a whole, [`Obstacles::clearance`] of its rays (and of no
+    /// other view's) meets them where they are carried to.
+    pub fn seen_by(scene: &'a Scene, view: &View) -> Self {
+        match Carried::new(scene, view) {
+            Some(carried) => {
+                let bodies = Some(Box::new((Self::of_bodies(scene, &carried), carried.after().clone())));
+                Self { bodies, ..Self::beside_bodies(scene, None, &carried) }
+            }
+            None => Self::new(scene),
+        }
+    }
+
+    fn of(scene: &'a Scene, without: &[usize], lift: Option<Lift<'_>>, carried: Option<&Carried>) -> Self {
         let (mut grounds, mut boxes, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
         for (i, layer) in scene.layers.iter().enumerate().filter(|(i, _)| !without.contains(i)) {
             match &layer.kind {
                 LayerKind::Terrain(t) => grounds.push((i, Ground::lifted(&t.heightfield, lift))),
+                LayerKind::Boxes(_) if carried.is_some_and(|c| c.layer(i).is_some()) => {}
                 LayerKind::Boxes(b) => boxes.extend(b.boxes.iter().enumerate().map(|(k, shape)| ([i, k], shape))),
                 LayerKind::Mesh(_) | LayerKind::Molecule(_) => {
                     let Some(m) = layer.kind.triangles() else { continue };
                     let b = m.mesh.bounds();
                     let lift = lift.filter(|_| !b.is_empty()).map(|lift| lift(b.min.truncate(), b.max.truncate()));
-                    meshes.push((i, MeshTree::lifted(&m.mesh, lift.unwrap_or([0.0; 2]))));
+                    let lift = lift.unwrap_or([0.0; 2]);
+                    let loose = carried.and_then(|c| c.layer(i)).map(|bodies| {
+                        (0..m.mesh.triangles().len() as u32).filter(|t| !bodies.holds(*t as usize)).collect::<Vec<_>>()
+                    });
+                    match loose {
+                        Some(loose) if loose.is_empty() => {}
+                        Some(loose) => meshes.push((i, MeshTree::over(&m.mesh, loose, lift))),
+                        None => meshes.push((i, MeshTree::lifted(&m.mesh, lift))),
+                    }
                 }
                 // Voxels are no surface.
                 LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) | LayerKind::Volume(_) => {}
             }
         }
-        Self { grounds, boxes: BoxTree::new(boxes, lift), meshes }
+        Self { grounds, boxes: BoxTree::new(boxes, lift), meshes, bodies: None }
     }
 
     /// The terrain layers, each with its index in the scene.
@@ -153,11 +188,44 @@ impl<'a> Obstacles<'a> {
         (pixel, depth): (DVec2, f64),
         options: &SightOptions,
     ) -> f64 {
+        self.clearance_to(view, (Some(p_world), lift), (pixel, depth), options)
+    }
+
+    /// [`Obstacles::clearance`] of a point on a rigid body that the view carries as a whole: it is seen at `pixel` and `depth`, and where the ray of
+    /// other points is then does not matter.
+    pub fn clearance_of_body(&self, view: &View, (pixel, depth): (DVec2, f64), options: &SightOptions) -> f64 {
+        let end = view.ray(pixel).at(depth).ok().map(|r| r.point);
+        self.clearance_to(view, (end, 0.0), (pixel, depth), options)
+    }
+
+    fn clearance_to(
+        &self,
+        view: &View,
+        (p_world, lift): (Option<DVec3>, f64),
+        (pixel, depth): (DVec2, f64),
+        options: &SightOptions,
+    ) -> f64 {
+        let beside = self.clearance_beside_bodies(view, (p_world, lift), (pixel, depth), options);
+        let Some((bodies, after)) = self.bodies.as_deref().filter(|_| beside >= 0.0) else { return beside };
+        let Ok(end) = after.ray(pixel).at(depth) else { return beside };
+        // A surface has no depth: whether it is passed is all there is to tell.
+        let whether = SightOptions { cap_m: 0.0, ..*options };
+        let behind = bodies.clearance_beside_bodies(after, (Some(end.point), lift), (pixel, depth), &whether);
+        if behind < 0.0 { behind } else { beside }
+    }
+
+    fn clearance_beside_bodies(
+        &self,
+        view: &View,
+        (p_world, lift): (Option<DVec3>, f64),
+        (pixel, depth): (DVec2, f64),
+        options: &SightOptions,
+    ) -> f64 {
         let near = view.pinhole().near.min(depth);
         let ray = view.ray(pixel);
-        let at = |w: f64| if w >= depth { Some(p_world) } else { ray.at(w).ok().map(|r| r.point) };
+        let at = |w: f64| if w >= depth { p_world } else { ray.at(w).ok().map(|r| r.point) };
         let straight = view.stages().is_empty();
-        let guard_depth = self.guard_depth(&at, p_world, near, depth, options.guard_m);
+        let guard_depth = p_world.map_or(depth, |p| self.guard_depth(&at, p, near, depth, options.guard_m));
         let floor = if options.cap_m > 0.0 { f64::NEG_INFINITY } else { 0.0 };
         let walk = |from: f64, to: f64, cap: f64, floor: f64| {
             if straight {

@@ -23,7 +23,7 @@ pub fn run(folder: &Path) -> Result<[Option<String>; 2], Box<dyn std::error::Err
         yaw: 0.0,
         color: Color::rgb(201, 194, 184),
     };
-    let building = LayerKind::Boxes(BoxLayer { boxes: vec![building] });
+    let building = LayerKind::Boxes(BoxLayer::new(vec![building]));
     let scene = Scene::default().with_terrain("ground", ground).with_layer("building", building);
 
     let eye = DVec3::new(0.0, 0.0, 30.0);

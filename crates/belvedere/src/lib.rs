@@ -28,6 +28,7 @@
 //! in this crate: [`core`] (views and stages), [`scene`] (layers, frames), [`io`] (loaders), [`construct`], [`disocclusion`],
 //! [`cpu`] (renderers), [`builtin`] (generated scenes).
 
+mod bodies;
 mod camera_path;
 pub mod city_map;
 mod data;

@@ -20,6 +20,7 @@ mod pick;
 mod pictures;
 mod presets;
 mod reveal;
+mod rigid;
 mod scenes;
 mod speed;
 mod strip;

@@ -1,10 +1,15 @@
-//! Doubled control points, hard and spread.
+//! Doubled control points, hard and spread, and houses that keep their shape where they fold.
 
-use super::bent::{IN_THREE, curve, document, panel};
+use super::bent::{IN_THREE, TILE, curve, document, panel};
 use super::town::seen;
 use crate::easel::Easel;
 use crate::figure_set::Figure;
+use crate::sheet::Panel;
 use anyhow::Result;
+use belvedere::scene_file::parse;
+use std::path::Path;
+
+const NEAR: &str = include_str!("../../../../scenes/town_rigid.toml");
 
 pub(super) fn hard_and_soft(easel: &Easel<'_>) -> Result<Figure> {
     let town = seen(easel, 35.0, 900.0)?;
@@ -15,5 +20,25 @@ pub(super) fn hard_and_soft(easel: &Easel<'_>) -> Result<Figure> {
         panels.push(panel(easel, &town, &document, 0.0, title)?);
         panels.push(curve(&document, 35.0, title));
     }
+    for (rigid, title, note) in [
+        (
+            false,
+            "Near by, houses fold",
+            "seen from 370 m, space folds 37 m over the ground; walls lean and towers collapse",
+        ),
+        (true, "Each house a rigid body", "carried and turned with the ground under its foot, however tall it is"),
+    ] {
+        panels.push(near(easel, rigid, title, note)?);
+    }
     Ok(Figure { panels, columns: 2, seen: Vec::new() })
+}
+
+/// The town from near by, its houses rigid or not.
+fn near(easel: &Easel<'_>, rigid: bool, title: &str, note: &str) -> Result<Panel> {
+    let mut document = parse(Path::new("figure.toml"), NEAR)?.document;
+    for layer in &mut document.layer {
+        *layer = layer.with_rigid(rigid);
+    }
+    let session = easel.open(&belvedere::output::document_toml(&document)?, TILE)?;
+    easel.panel(&session, title, note.into())
 }

@@ -37,7 +37,7 @@ const FIGURES: [Entry; 9] = [
         name: "corners",
         title: "Hard transitions between three planes",
         says: "Control points that are doubled make nearly plane parts with short bends between them. Houses fold where the bend is sharper \
-               than they are high; spread points bend five times as gently.",
+               than they are high; spread points bend five times as gently, and rigid houses keep their shape.",
         draw: corners::hard_and_soft,
     },
     Entry {

@@ -50,6 +50,13 @@ fn one(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDoc) {
             model.edit(|d| d.layer[index] = d.layer[index].with_must_see(must_see));
         }
     }
+    if let Some(mut rigid) = layer.rigid() {
+        let words =
+            "Each building, box or part keeps its shape where space bends: walls stay straight, nothing of it folds.";
+        if ui.checkbox(&mut rigid, format!("{id} is rigid")).on_hover_text(words).changed() {
+            model.edit(|d| d.layer[index] = d.layer[index].with_rigid(rigid));
+        }
+    }
     CollapsingHeader::new(format!("Style of {id}")).show(ui, |ui| style(ui, model, index, layer));
 }
 

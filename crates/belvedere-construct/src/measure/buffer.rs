@@ -1,6 +1,6 @@
 //! Method (b): draw the picture and compare each sample's depth with the depth buffer.
 
-use super::image::{DepthTest, SampleImage};
+use super::image::{BodyViews, DepthTest, SampleImage};
 use super::surface;
 use crate::ConstructError;
 use crate::samples::{Sample, SampledFeature};
@@ -82,13 +82,16 @@ impl Job<'_> {
             });
         }
         let terrain = self.scene.terrain();
+        let bodies = BodyViews::new(self.scene, view);
         let finer = width as f64 / f64::from(original);
         for (feature, row) in features.iter().zip(images) {
             for (sample, j) in feature.samples.iter().zip(row.iter_mut()).filter(|(_, j)| j.in_frame) {
                 let finer = SampleImage { pixel: finer * j.pixel, ..*j };
                 j.in_buffer = Some(match sample.surface {
                     Some(normal) => {
-                        let seen = surface::in_buffer(view, (sample.p_world, normal), feature.layer, &finer, &frame);
+                        let seen = bodies.of(view, feature.layer, sample).is_some_and(|view| {
+                            surface::in_buffer(&view, (sample.p_world, normal), feature.layer, &finer, &frame)
+                        });
                         DepthTest { seen, missed: false }
                     }
                     None => in_buffer(view, terrain, sample, &finer, &frame),

@@ -1,11 +1,10 @@
 //! What a view hides of the features that must be seen, part by part.
 
-use super::image::{self, SampleImage};
+use super::image::{self, SampleImage, Sight};
 use super::{MeasureOptions, sight_options};
 use crate::samples::{Amount, SampledFeature, default_spacing, sample_features};
 use belvedere_core::View;
 use belvedere_scene::{Progress, Scene};
-use belvedere_sight::Obstacles;
 use serde::Serialize;
 
 /// Why a part of a feature is not seen.
@@ -59,7 +58,7 @@ pub fn hidden(
 ) -> Result<Vec<HiddenRun>, belvedere_scene::Cancelled> {
     progress.tick("what stays hidden", 0.0)?;
     let features = sample_features(scene, options.spacing_m.unwrap_or_else(|| default_spacing(scene)).max(1e-6));
-    let images = image::all(&Obstacles::new(scene), view, &features, &sight_options(scene, options));
+    let images = image::all(&Sight::new(scene, view), view, &features, &sight_options(scene, options));
     Ok(features.iter().zip(&images).flat_map(|(feature, images)| runs(feature, images)).collect())
 }
 
@@ -111,8 +110,13 @@ mod tests {
     use belvedere_core::DVec3;
 
     fn feature(amount: Amount, n: usize) -> SampledFeature {
-        let sample =
-            |i: usize| Sample { p_world: DVec3::new(i as f64, 0.0, 0.0), lift: 1.0, amount: 10.0, surface: None };
+        let sample = |i: usize| Sample {
+            p_world: DVec3::new(i as f64, 0.0, 0.0),
+            lift: 1.0,
+            amount: 10.0,
+            surface: None,
+            triangle: None,
+        };
         let samples = (0..n).map(sample).collect();
         SampledFeature { layer: 2, feature: 5, layer_id: "way".into(), name: "GR".into(), amount, samples }
     }

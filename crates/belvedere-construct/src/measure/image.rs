@@ -2,8 +2,10 @@
 
 use crate::samples::{Sample, SampledFeature};
 use belvedere_core::{DVec2, DVec3, View};
-use belvedere_sight::{Obstacles, SightOptions};
+use belvedere_scene::Scene;
+use belvedere_sight::{Carried, Obstacles, SightOptions};
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// Where a view shows one sample, and whether.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,17 +51,53 @@ pub(super) struct DepthTest {
     pub(super) missed: bool,
 }
 
-/// The images of all samples, in parallel.
-pub(super) fn all(
-    obstacles: &Obstacles<'_>,
-    view: &View,
-    features: &[SampledFeature],
-    sight: &SightOptions,
-) -> Vec<Vec<SampleImage>> {
-    features.iter().map(|f| f.samples.par_iter().map(|s| image(obstacles, view, s, sight)).collect()).collect()
+/// A scene as the rays of a view see it.
+pub(super) struct Sight<'a> {
+    pub(super) obstacles: Obstacles<'a>,
+    bodies: BodyViews,
 }
 
-fn image(obstacles: &Obstacles<'_>, view: &View, sample: &Sample, sight: &SightOptions) -> SampleImage {
+impl<'a> Sight<'a> {
+    pub(super) fn new(scene: &'a Scene, view: &View) -> Self {
+        Self { obstacles: Obstacles::seen_by(scene, view), bodies: BodyViews::new(scene, view) }
+    }
+}
+
+/// The views that samples on rigid bodies have their images by.
+pub(super) struct BodyViews(Option<Carried>);
+
+impl BodyViews {
+    pub(super) fn new(scene: &Scene, view: &View) -> Self {
+        Self(Carried::new(scene, view))
+    }
+
+    /// `view` itself where a sample is displaced by itself, that of the body where it is carried by one; `None` if that has no image.
+    pub(super) fn of<'v>(&self, view: &'v View, layer: usize, sample: &Sample) -> Option<Cow<'v, View>> {
+        let bodies = self.0.as_ref().and_then(|carried| carried.layer(layer));
+        match (bodies, sample.triangle.map(|t| t as usize)) {
+            (Some(bodies), Some(t)) if bodies.holds(t) => {
+                bodies.body(t).map(|(_, motion)| Cow::Owned(view.of_body(*motion)))
+            }
+            _ => Some(Cow::Borrowed(view)),
+        }
+    }
+}
+
+/// The images of all samples, in parallel.
+pub(super) fn all(
+    sight: &Sight<'_>,
+    view: &View,
+    features: &[SampledFeature],
+    options: &SightOptions,
+) -> Vec<Vec<SampleImage>> {
+    let of = |f: &SampledFeature| f.samples.par_iter().map(|s| image(sight, view, (f.layer, s), options)).collect();
+    features.iter().map(of).collect()
+}
+
+fn image(of: &Sight<'_>, view: &View, (layer, sample): (usize, &Sample), sight: &SightOptions) -> SampleImage {
+    let obstacles = &of.obstacles;
+    let (rays, Some(own)) = (view, of.bodies.of(view, layer, sample)) else { return SampleImage::UNSEEN };
+    let view = own.as_ref();
     let Ok(at) = view.project(sample.p_world) else { return SampleImage::UNSEEN };
     let displaced = view.displace(sample.p_world).ok().map(|d| d.point);
     let pinhole = view.pinhole();
@@ -72,6 +110,8 @@ fn image(obstacles: &Obstacles<'_>, view: &View, sample: &Sample, sight: &SightO
         if at.folded {
             // Orientation is reversed there: the picture shows the ground from below.
             -sight.cap_m.max(f64::MIN_POSITIVE)
+        } else if matches!(own, Cow::Owned(_)) {
+            obstacles.clearance_of_body(rays, (at.pixel, at.depth), sight)
         } else {
             obstacles.clearance(view, (sample.p_world, sample.lift), (at.pixel, at.depth), sight)
         }

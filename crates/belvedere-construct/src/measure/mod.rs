@@ -17,6 +17,7 @@ use crate::samples::{SampledFeature, default_spacing, sample_features};
 use belvedere_core::View;
 use belvedere_scene::{Light, Progress, Renderer, Scene};
 use belvedere_sight::{Obstacles, SightOptions};
+use image::Sight;
 
 /// How to measure.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,13 +62,17 @@ pub fn measure(
         return Err(ConstructError::NothingToSee { layers: scene.layers.len() });
     }
     let features = sample_features(scene, options.spacing_m.unwrap_or_else(|| default_spacing(scene)).max(1e-6));
-    let obstacles = Obstacles::new(scene);
-    let sight = sight_options(scene, options);
+    let options_of_sight = sight_options(scene, options);
     let straight_view = view.straightened();
+    let sight = Sight::new(scene, &straight_view);
     progress.tick("lines of sight, straight", 0.0)?;
-    let mut straight = image::all(&obstacles, &straight_view, &features, &sight);
+    let mut straight = image::all(&sight, &straight_view, &features, &options_of_sight);
     progress.tick("lines of sight, bent", 0.2)?;
-    let mut bent = if view.is_bent() { image::all(&obstacles, view, &features, &sight) } else { straight.clone() };
+    let mut bent = if view.is_bent() {
+        image::all(&Sight::new(scene, view), view, &features, &options_of_sight)
+    } else {
+        straight.clone()
+    };
     if let Some(renderer) = renderer {
         progress.tick("pictures for the depth test", 0.6)?;
         let light = Light::default();
@@ -80,8 +85,8 @@ pub fn measure(
         }
     }
     progress.tick("distortion and folds", 0.9)?;
-    let bend = bend::measure_bend(&obstacles, scene, view, &straight_view, &features);
-    let warnings = warnings(&obstacles, view, &features);
+    let bend = bend::measure_bend(&sight.obstacles, scene, view, &straight_view, &features);
+    let warnings = warnings(&sight.obstacles, view, &features);
     Ok(report::summarise(&features, &straight, &bent, options.near_miss_m, bend, warnings))
 }
 

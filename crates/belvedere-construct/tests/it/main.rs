@@ -9,5 +9,6 @@ mod measure;
 mod preview;
 mod probe;
 mod reveal;
+mod rigid;
 mod surfaces;
 mod tracking;

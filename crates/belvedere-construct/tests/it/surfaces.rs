@@ -20,7 +20,7 @@ fn boxed(base: [f64; 3], size: [f64; 3]) -> BoxShape {
 }
 
 fn boxes(list: &[BoxShape]) -> LayerKind {
-    LayerKind::Boxes(BoxLayer { boxes: list.to_vec() })
+    LayerKind::Boxes(BoxLayer::new(list.to_vec()))
 }
 
 fn pinhole(eye: [f64; 3]) -> Pinhole {

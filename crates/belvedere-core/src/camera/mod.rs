@@ -4,6 +4,7 @@ mod edges;
 mod navigate;
 mod pinhole;
 mod ray_path;
+mod rigid;
 mod view;
 
 pub use edges::{EdgePoint, Edges};

@@ -11,8 +11,8 @@ use std::ops::RangeInclusive;
 /// Plain data; everything that draws, measures or picks works on this.
 #[derive(Debug, Clone, PartialEq)]
 pub struct View {
-    pinhole: Pinhole,
-    stages: Vec<Stage>,
+    pub(super) pinhole: Pinhole,
+    pub(super) stages: Vec<Stage>,
 }
 
 /// Stages that cannot be chained.

@@ -3,6 +3,7 @@
 pub mod curved_rays;
 pub mod earth;
 pub mod relief;
+pub mod rigid;
 pub mod spline;
 pub mod split_rays;
 pub mod strip;
@@ -56,6 +57,8 @@ pub enum Stage {
     Relief(relief::Relief),
     /// Space is carried onto a B-spline over the reference plane (Pasewaldt et al. 2011).
     SplineBend(spline::SplineBend),
+    /// A body is carried as a whole, see [`crate::View::of_body`]: in place of all stages up to the spline bend.
+    Body(rigid::RigidMotion),
     /// Rays bend around occluders (Cui et al. 2010).
     CurvedRays(curved_rays::CurvedRays),
     /// Rays bend, and part at seams of the picture.
@@ -71,6 +74,7 @@ impl Stage {
             Self::Strip(m) => m,
             Self::Relief(m) => m,
             Self::SplineBend(m) => m,
+            Self::Body(m) => m,
             Self::CurvedRays(m) => m,
             Self::SplitRays(m) => m,
         }
@@ -88,6 +92,8 @@ impl Stage {
             Self::Strip(m) => m.eased(share).map(Self::Strip),
             Self::Relief(m) => Some(Self::Relief(m.eased(share))),
             Self::SplineBend(m) => m.eased(share).map(Self::SplineBend),
+            // A body moves by what the stages that carry it are: those are eased.
+            Self::Body(_) => None,
             Self::CurvedRays(m) => m.eased(share).map(Self::CurvedRays),
             Self::SplitRays(m) => m.eased(share).map(Self::SplitRays),
         }
@@ -110,7 +116,7 @@ impl Stage {
             Self::TerrainDisocclusion(_) => 1,
             Self::Strip(_) => 2,
             Self::Relief(_) => 3,
-            Self::SplineBend(_) => 4,
+            Self::SplineBend(_) | Self::Body(_) => 4,
             Self::CurvedRays(_) | Self::SplitRays(_) => 5,
         }
     }
@@ -123,6 +129,7 @@ impl Stage {
             Self::Strip(_) => "strip",
             Self::Relief(_) => "relief",
             Self::SplineBend(_) => "spline_bend",
+            Self::Body(_) => "body",
             Self::CurvedRays(_) | Self::SplitRays(_) => "curved_rays",
         }
     }
@@ -147,6 +154,7 @@ impl Stage {
             Self::Strip(m) => m.edge_bound(p0, p1),
             Self::Relief(m) => m.edge_bound(p0, p1),
             Self::SplineBend(m) => m.edge_bound(p0, p1),
+            Self::Body(_) => 0.0,
             Self::CurvedRays(m) => m.edge_bound(p0, p1),
             Self::SplitRays(m) => m.edge_bound(p0, p1),
         }
@@ -160,6 +168,7 @@ impl Stage {
             Self::Strip(m) => m.displaced_bounds(bounds),
             Self::Relief(m) => m.displaced_bounds(bounds),
             Self::SplineBend(m) => m.displaced_bounds(bounds),
+            Self::Body(m) => Some(Aabb::of(bounds.corners().map(|p| m.carry(p)))),
             Self::CurvedRays(m) => m.displaced_bounds(bounds),
             Self::SplitRays(m) => m.displaced_bounds(bounds),
         }

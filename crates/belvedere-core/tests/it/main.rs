@@ -6,6 +6,7 @@ mod preset_angles;
 mod preset_edit;
 mod presets;
 mod relief;
+mod rigid;
 mod spline_bend;
 mod spline_bounds;
 mod spline_curve;

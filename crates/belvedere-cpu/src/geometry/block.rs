@@ -37,6 +37,8 @@ pub(crate) struct Block {
     pub(crate) layer: u32,
     /// First and last record that displace it.
     pub(crate) records: [usize; 2],
+    /// Whether these are rigid bodies, drawn by the passes of what was carried.
+    pub(crate) bodies: bool,
     /// First column and row (terrain), first box or first triangle (mesh).
     pub(crate) origin: [usize; 2],
     /// Drawn cells of a terrain block.
@@ -125,7 +127,21 @@ impl Block {
         let (cover, geometry) = (cover_of(&soup), Geometry::Soup(soup));
         let (origin, seam) = ([first, 0], [false; 4]);
         let thin = Vec::new();
-        Some(Self { layer, records, origin, cells: [0; 2], step: 1, geometry, seam, soup_base: 0, cover, counts, thin })
+        let bodies = false;
+        Some(Self {
+            layer,
+            records,
+            bodies,
+            origin,
+            cells: [0; 2],
+            step: 1,
+            geometry,
+            seam,
+            soup_base: 0,
+            cover,
+            counts,
+            thin,
+        })
     }
 }
 

@@ -6,13 +6,13 @@ use crate::geometry::box_blocks::box_chunks;
 use crate::geometry::grid::{CELL_TRIANGLES, cell_weights};
 use crate::geometry::locate::{Held, JoinedPasses, Locator};
 use crate::geometry::lod::{SIDE, Tree};
-use crate::geometry::mesh_blocks::mesh_chunks;
-use crate::geometry::pass::{InView, Pass};
+use crate::geometry::mesh_blocks::Drawn;
+use crate::geometry::pass::{BodyPasses, InView, Pass};
 use crate::geometry::screen::Screen;
 use crate::geometry::select::{DetailSelector, Selection};
 use crate::raster::band::Band;
 use crate::sections::{Exposure, LayerShow, Sections, Shown};
-use belvedere_core::{Aabb, View};
+use belvedere_core::Aabb;
 use belvedere_scene::{LayerKind, RenderJob};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -27,7 +27,6 @@ pub(crate) const CELL_BITS: u32 = 11;
 /// * `draw`: a part, by its number.
 fn soups(
     locator: &Locator<'_>,
-    view: &View,
     bounds: &[Aabb],
     draw: impl Fn(&Pass<'_>, usize) -> Option<Block> + Sync,
 ) -> Vec<Block> {
@@ -45,7 +44,7 @@ fn soups(
     };
     let located: Vec<(Vec<u32>, bool)> = bounds.par_iter().map(locate).collect();
     let together = located.iter().filter(|(_, whole)| *whole).map(|(held, _)| &held[..]);
-    let joined = JoinedPasses::new(view, locator.passes, together);
+    let joined = JoinedPasses::new(locator.view, locator.passes, together);
     let parts = located.par_iter().enumerate();
     parts
         .flat_map_iter(|(k, (held, whole))| {
@@ -68,10 +67,11 @@ pub(crate) struct Blocks {
 
 impl Blocks {
     /// Displaces, projects, subdivides and clips every surface of the scene.
+    /// * `bodies`: if rigid bodies are carried as a whole.
     pub(crate) fn build(
         &mut self,
         job: &RenderJob<'_>,
-        passes: &[Pass<'_>],
+        (passes, bodies): (&[Pass<'_>], Option<&BodyPasses<'_>>),
         screen: &Screen,
         sections: Option<&Sections<'_>>,
         detail: &GroundCache<(), Arc<Tree>>,
@@ -82,6 +82,7 @@ impl Blocks {
         self.list.drain(..).for_each(|b| self.spare.keep(b.geometry));
         self.triangles_in = 0;
         let locator = Locator::new(view, passes, screen);
+        let body_locator = bodies.map(|b| Locator::new(b.carried.after(), &b.passes, screen));
         for (i, layer) in scene.layers.iter().enumerate() {
             if sections.is_some_and(|s| s.of_layer(i) == Shown::Nothing) {
                 continue;
@@ -118,13 +119,25 @@ impl Blocks {
                     self.list.par_extend(drawn);
                 }
                 LayerKind::Boxes(b) => {
-                    let parts = box_chunks(b);
-                    self.list.par_extend(soups(&locator, view, &parts, |pass, k| job.box_block(pass, b, k)));
+                    let carried = bodies.and_then(|bodies| bodies.carried.layer(i));
+                    let locator = body_locator.as_ref().filter(|_| carried.is_some()).unwrap_or(&locator);
+                    let parts = box_chunks(b, carried);
+                    self.list.par_extend(soups(locator, &parts, |pass, k| job.box_block(pass, b, carried, k)));
                 }
                 kind => {
-                    if let Some(m) = kind.triangles() {
-                        let parts = mesh_chunks(&m.mesh);
-                        self.list.par_extend(soups(&locator, view, &parts, |pass, k| job.mesh_block(pass, &m.mesh, k)));
+                    let Some(mesh) = kind.triangles().map(|m| &m.mesh) else { continue };
+                    let mut draw = |locator: &Locator<'_>, drawn: Drawn<'_>| {
+                        let parts = drawn.chunks();
+                        self.list.par_extend(soups(locator, &parts, |pass, k| job.mesh_block(pass, drawn, k)));
+                    };
+                    match (bodies.and_then(|bodies| bodies.carried.layer(i)), &body_locator) {
+                        (Some(carried), Some(body_locator)) => {
+                            if !carried.holds_all() {
+                                draw(&locator, Drawn::Loose(mesh, carried));
+                            }
+                            draw(body_locator, Drawn::Bodies(mesh, carried));
+                        }
+                        _ => draw(&locator, Drawn::All(mesh)),
                     }
                 }
             }

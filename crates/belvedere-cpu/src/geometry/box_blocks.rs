@@ -4,43 +4,48 @@ use crate::geometry::block::{Block, Counts, Job};
 use crate::geometry::pass::Pass;
 use crate::geometry::refine::Refiner;
 use crate::sections::Shown;
-use belvedere_core::Aabb;
+use belvedere_core::{Aabb, DVec3};
 use belvedere_scene::{BoxLayer, BoxShape};
+use belvedere_sight::CarriedLayer;
 use rayon::prelude::*;
 
 /// Boxes to a block.
 const BOXES: usize = 64;
-
-/// Corner numbers (see [`belvedere_scene::BoxShape::corners`]) of the twelve triangles of a box, two per face.
-pub(crate) const BOX_TRIANGLES: [[usize; 3]; 12] = [
-    [0, 2, 3],
-    [0, 3, 1],
-    [4, 5, 7],
-    [4, 7, 6],
-    [0, 1, 5],
-    [0, 5, 4],
-    [2, 6, 7],
-    [2, 7, 3],
-    [0, 4, 6],
-    [0, 6, 2],
-    [1, 3, 7],
-    [1, 7, 5],
-];
 
 /// The boxes that are drawn as a block each.
 fn chunk_of(layer: &BoxLayer, chunk: usize) -> &[BoxShape] {
     &layer.boxes[chunk * BOXES..layer.boxes.len().min((chunk + 1) * BOXES)]
 }
 
+/// Corners of the boxes of a part, where a view carries them to if they are rigid bodies; `None` for one without image.
+fn corners_of<'b>(
+    layer: &'b BoxLayer,
+    carried: Option<&'b CarriedLayer>,
+    chunk: usize,
+) -> impl Iterator<Item = Option<[DVec3; 8]>> + 'b {
+    chunk_of(layer, chunk).iter().enumerate().map(move |(k, shape)| match carried {
+        Some(bodies) => bodies.motion(chunk * BOXES + k).map(|motion| shape.corners().map(|p| motion.carry(p))),
+        None => Some(shape.corners()),
+    })
+}
+
 /// Bounds of the parts of a layer that are drawn as a block each.
-pub(crate) fn box_chunks(layer: &BoxLayer) -> Vec<Aabb> {
+/// * `carried`: if its boxes are rigid bodies.
+pub(crate) fn box_chunks(layer: &BoxLayer, carried: Option<&CarriedLayer>) -> Vec<Aabb> {
     let chunks = (0..layer.boxes.len().div_ceil(BOXES)).into_par_iter();
-    chunks.map(|i| Aabb::of(chunk_of(layer, i).iter().flat_map(|b| b.corners()))).collect()
+    chunks.map(|i| Aabb::of(corners_of(layer, carried, i).flatten().flatten())).collect()
 }
 
 impl Job<'_> {
     /// Displaces, projects, subdivides and clips a part of the boxes.
-    pub(crate) fn box_block(&self, pass: &Pass<'_>, layer: &BoxLayer, chunk: usize) -> Option<Block> {
+    /// * `carried`: if they are rigid bodies; then by a pass of what was carried.
+    pub(crate) fn box_block(
+        &self,
+        pass: &Pass<'_>,
+        layer: &BoxLayer,
+        carried: Option<&CarriedLayer>,
+        chunk: usize,
+    ) -> Option<Block> {
         let boxes = chunk_of(layer, chunk);
         let shown = self.shown(&Aabb::of(boxes.iter().flat_map(|b| b.corners())));
         if shown == Shown::Nothing {
@@ -49,20 +54,24 @@ impl Job<'_> {
         let mut refiner = Refiner::new(pass, self.screen, self.tolerance_px, self.spare.soup());
         let judge = !pass.is_straight();
         let mut missed = 0;
-        for (k, shape) in boxes.iter().enumerate() {
-            let corners = shape.corners().map(|p| refiner.corner(p));
+        for (k, corners) in corners_of(layer, carried, chunk).enumerate() {
+            let Some(corners) = corners.map(|c| c.map(|p| refiner.corner(p))) else {
+                missed += 8;
+                continue;
+            };
             missed += corners.iter().filter(|c| c.is_missing()).count() as u64;
-            for (t, tri) in BOX_TRIANGLES.iter().enumerate() {
+            for (t, tri) in BoxShape::TRIANGLES.iter().enumerate() {
                 let weights = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
                 refiner.triangle(tri.map(|n| corners[n]), weights, [judge; 3], (12 * k + t) as u32);
             }
         }
         let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };
         let block = Block::soup(self.layer, pass.records, chunk * BOXES, refiner.out, counts)?;
+        let block = Block { bodies: carried.is_some(), ..block };
         let Some(sections) = self.sections.filter(|_| shown == Shown::Partly) else { return Some(block) };
         Some(block.thinned(|parent| {
             let corners = boxes[parent as usize / 12].corners();
-            BOX_TRIANGLES[parent as usize % 12].map(|n| sections.parameter(corners[n]))
+            BoxShape::TRIANGLES[parent as usize % 12].map(|n| sections.parameter(corners[n]))
         }))
     }
 }

@@ -16,7 +16,7 @@ pub(crate) struct Held {
 
 /// The records of a frame.
 pub(crate) struct Locator<'a> {
-    view: &'a View,
+    pub(crate) view: &'a View,
     pub(crate) passes: &'a [Pass<'a>],
     pub(crate) screen: &'a Screen,
 }

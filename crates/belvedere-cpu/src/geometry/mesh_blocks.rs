@@ -7,17 +7,69 @@ use crate::geometry::screen::ScreenVertex;
 use crate::sections::Shown;
 use belvedere_core::{Aabb, DVec3, EdgePoint};
 use belvedere_scene::Mesh;
+use belvedere_sight::CarriedLayer;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Triangles to a block.
 const TRIANGLES: usize = 512;
 /// Weights of vertices 1 and 2 of a triangle at its corners.
 const WEIGHTS: [[f32; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 
-/// Bounds of the parts of a mesh that are drawn as a block each.
-pub(crate) fn mesh_chunks(mesh: &Mesh) -> Vec<Aabb> {
-    let chunks = mesh.triangles().par_chunks(TRIANGLES);
-    chunks.map(|part| Aabb::of(part.iter().flatten().map(|&v| mesh.vertex(v)))).collect()
+/// What is drawn of a mesh.
+#[derive(Clone, Copy)]
+pub(crate) enum Drawn<'a> {
+    /// All triangles.
+    All(&'a Mesh),
+    /// Those that belong to no rigid body.
+    Loose(&'a Mesh, &'a CarriedLayer),
+    /// The rigid bodies, where a view carries them to.
+    Bodies(&'a Mesh, &'a CarriedLayer),
+}
+
+impl<'a> Drawn<'a> {
+    fn mesh(self) -> &'a Mesh {
+        match self {
+            Self::All(mesh) | Self::Loose(mesh, _) | Self::Bodies(mesh, _) => mesh,
+        }
+    }
+
+    /// Key of the body of a triangle, over the number of a vertex; `None` if the triangle is not drawn.
+    fn key(self, triangle: usize) -> Option<u64> {
+        match self {
+            Self::All(_) => Some(0),
+            Self::Loose(_, bodies) => (!bodies.holds(triangle)).then_some(0),
+            Self::Bodies(_, bodies) => bodies.body(triangle).map(|(body, _)| (body as u64) << 32),
+        }
+    }
+
+    /// Numbers of the triangles of a part that are drawn, and their corners by key.
+    fn corners(self, part: Range<usize>) -> (Vec<u32>, Vec<[u64; 3]>) {
+        let mesh = self.mesh();
+        let drawn = part.filter_map(|t| Some((t as u32, self.key(t)?)));
+        drawn.map(|(t, key)| (t, mesh.triangles()[t as usize].map(|v| key | u64::from(v)))).unzip()
+    }
+
+    /// Where a corner is, by its key: before anything displaces it, and as a body leaves it.
+    fn place(self, key: u64) -> [DVec3; 2] {
+        let p = self.mesh().vertex(key as u32);
+        match self {
+            Self::Bodies(_, bodies) => [p, bodies.motion((key >> 32) as usize).map_or(p, |motion| motion.carry(p))],
+            _ => [p; 2],
+        }
+    }
+
+    fn part(self, chunk: usize) -> Range<usize> {
+        let count = self.mesh().triangles().len();
+        (chunk * TRIANGLES).min(count)..((chunk + 1) * TRIANGLES).min(count)
+    }
+
+    /// Bounds of the parts that are drawn as a block each.
+    pub(crate) fn chunks(self) -> Vec<Aabb> {
+        let chunks = (0..self.mesh().triangles().len().div_ceil(TRIANGLES)).into_par_iter();
+        let bounds = |chunk| Aabb::of(self.corners(self.part(chunk)).1.iter().flatten().map(|&key| self.place(key)[1]));
+        chunks.map(bounds).collect()
+    }
 }
 
 /// A vertex of a mesh on the image.
@@ -32,33 +84,35 @@ struct Vertex {
 
 impl Job<'_> {
     /// Displaces, projects, subdivides and clips a part of a mesh, every vertex once.
-    pub(crate) fn mesh_block(&self, pass: &Pass<'_>, mesh: &Mesh, chunk: usize) -> Option<Block> {
-        let first = chunk * TRIANGLES;
-        let triangles = mesh.triangles().get(first..mesh.triangles().len().min(first + TRIANGLES))?;
-        let (numbers, corners) = distinct(triangles);
-        let bounds = Aabb::of(numbers.iter().map(|&v| mesh.vertex(v)));
-        if self.shown(&bounds) == Shown::Nothing {
+    pub(crate) fn mesh_block(&self, pass: &Pass<'_>, drawn: Drawn<'_>, chunk: usize) -> Option<Block> {
+        let (part, mesh) = (drawn.part(chunk), drawn.mesh());
+        let first = part.start;
+        let (triangles, corners) = drawn.corners(part);
+        let (keys, corners) = distinct(&corners);
+        let places: Vec<[DVec3; 2]> = keys.iter().map(|&key| drawn.place(key)).collect();
+        let [bounds, carried] = [0, 1].map(|k| Aabb::of(places.iter().map(|p| p[k])));
+        if places.is_empty() || self.shown(&bounds) == Shown::Nothing {
             return None;
         }
-        let judge = !pass.is_straight_in(&bounds, self.tolerance_px);
-        let vertices: Vec<Vertex> = numbers.iter().map(|&v| self.mesh_vertex(pass, mesh.vertex(v), judge)).collect();
+        let judge = !pass.is_straight_in(&carried, self.tolerance_px);
+        let vertices: Vec<Vertex> = places.iter().map(|p| self.mesh_vertex(pass, p[1], judge)).collect();
         let missed = vertices.iter().filter(|v| v.missed).count() as u64;
         let mut refiner = Refiner::new(pass, self.screen, self.tolerance_px, self.spare.soup());
-        for (k, corners) in corners.iter().enumerate() {
-            let corners = corners.map(|c| &vertices[c as usize]);
+        for (t, corners) in triangles.iter().zip(&corners) {
+            let (parent, corners) = (t - first as u32, corners.map(|c| &vertices[c as usize]));
             match self.whole(pass, corners, judge) {
                 Some([a, b, c]) => {
                     let vertex = |screen, corner: usize| SoupVertex { screen, weights: WEIGHTS[corner] };
-                    let v = [vertex(a, 0), vertex(b, 1), vertex(c, 2)];
-                    refiner.out.push(SoupTriangle { v, parent: k as u32 });
+                    refiner.out.push(SoupTriangle { v: [vertex(a, 0), vertex(b, 1), vertex(c, 2)], parent });
                 }
-                None => refiner.triangle(corners.map(|v| refiner.corner(v.p)), WEIGHTS, [judge; 3], k as u32),
+                None => refiner.triangle(corners.map(|v| refiner.corner(v.p)), WEIGHTS, [judge; 3], parent),
             }
         }
         let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };
         let block = Block::soup(self.layer, pass.records, first, refiner.out, counts)?;
+        let block = Block { bodies: matches!(drawn, Drawn::Bodies(..)), ..block };
         let Some(sections) = self.sections.filter(|_| self.shown(&bounds) == Shown::Partly) else { return Some(block) };
-        Some(block.thinned(|k| triangles[k as usize].map(|v| sections.parameter(mesh.vertex(v)))))
+        Some(block.thinned(|k| mesh.corners(first + k as usize).map(|p| sections.parameter(p))))
     }
 
     fn mesh_vertex(&self, pass: &Pass<'_>, p: DVec3, judge: bool) -> Vertex {
@@ -85,17 +139,17 @@ impl Job<'_> {
     }
 }
 
-/// Numbers of the vertices of triangles, each once, and for every corner the place of its vertex among them.
-fn distinct(triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<[u32; 3]>) {
-    let mut order: Vec<(u32, u32)> =
-        triangles.as_flattened().iter().enumerate().map(|(slot, &v)| (v, slot as u32)).collect();
+/// Keys of the corners of triangles, each once, and for every corner the place of its key among them.
+fn distinct(triangles: &[[u64; 3]]) -> (Vec<u64>, Vec<[u32; 3]>) {
+    let mut order: Vec<(u64, u32)> =
+        triangles.as_flattened().iter().enumerate().map(|(slot, &key)| (key, slot as u32)).collect();
     order.sort_unstable();
-    let (mut numbers, mut corners) = (Vec::new(), vec![[0; 3]; triangles.len()]);
-    for (vertex, slot) in order {
-        if numbers.last() != Some(&vertex) {
-            numbers.push(vertex);
+    let (mut keys, mut corners) = (Vec::new(), vec![[0; 3]; triangles.len()]);
+    for (key, slot) in order {
+        if keys.last() != Some(&key) {
+            keys.push(key);
         }
-        corners.as_flattened_mut()[slot as usize] = numbers.len() as u32 - 1;
+        corners.as_flattened_mut()[slot as usize] = keys.len() as u32 - 1;
     }
-    (numbers, corners)
+    (keys, corners)
 }

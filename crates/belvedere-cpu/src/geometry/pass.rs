@@ -7,6 +7,7 @@ use crate::geometry::project::Projector;
 use crate::geometry::screen::{Row, Screen, ScreenVertex};
 use belvedere_core::{Aabb, DMat3, DVec2, DVec3, EdgePoint, Edges, Stage, View};
 use belvedere_scene::Heightfield;
+use belvedere_sight::Carried;
 
 /// A view prepared for a frame.
 #[derive(Debug)]
@@ -21,6 +22,18 @@ pub(crate) struct Pass<'a> {
     edges: Option<Edges<'a>>,
     projector: Option<Projector<'a>>,
     height: HeightPx,
+}
+
+/// The passes that draw rigid bodies, where the stages up to the spline bend have carried them.
+pub(crate) struct BodyPasses<'a> {
+    pub(crate) carried: &'a Carried,
+    pub(crate) passes: Vec<Pass<'a>>,
+}
+
+impl<'a> BodyPasses<'a> {
+    pub(crate) fn new(carried: &'a Carried) -> Self {
+        Self { carried, passes: Pass::all(carried.after()) }
+    }
 }
 
 /// What the image shows of a box.

@@ -22,6 +22,7 @@ impl Job<'_> {
         let (origin, last) = lod::nodes(hf, chosen.level, chosen.block);
         let step = 1 << chosen.level;
         let mut out = Block {
+            bodies: false,
             layer: self.layer,
             records: pass.records,
             origin,

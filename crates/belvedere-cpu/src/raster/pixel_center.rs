@@ -5,11 +5,10 @@
 //! true map, until its image is the centre of the pixel.
 
 use crate::geometry::block::DrawnTriangle;
-use crate::geometry::box_blocks::BOX_TRIANGLES;
-use crate::geometry::pass::Pass;
+use crate::geometry::pass::{BodyPasses, Pass};
 use crate::geometry::screen::Screen;
-use belvedere_core::{DVec2, DVec3};
-use belvedere_scene::{Heightfield, LayerKind, Scene};
+use belvedere_core::{DVec2, DVec3, RigidMotion};
+use belvedere_scene::{BoxShape, Heightfield, LayerKind, Scene};
 use glam::DMat3;
 
 /// Steps at most, and the distance from the centre that is near enough, pixels.
@@ -47,6 +46,7 @@ struct Ray {
 pub(crate) struct PixelCenters<'a> {
     scene: &'a Scene,
     passes: &'a [Pass<'a>],
+    bodies: Option<&'a BodyPasses<'a>>,
     screen: &'a Screen,
 }
 
@@ -64,8 +64,14 @@ enum Surface<'a> {
 }
 
 impl<'a> PixelCenters<'a> {
-    pub(crate) fn new(scene: &'a Scene, passes: &'a [Pass<'a>], screen: &'a Screen) -> Self {
-        Self { scene, passes, screen }
+    /// * `bodies`: if rigid bodies are carried as a whole.
+    pub(crate) fn new(
+        scene: &'a Scene,
+        passes: &'a [Pass<'a>],
+        bodies: Option<&'a BodyPasses<'a>>,
+        screen: &'a Screen,
+    ) -> Self {
+        Self { scene, passes, bodies, screen }
     }
 
     /// Point and depth that `pixel` sees of the surface found there, near `near`; `None` if it cannot be told better.
@@ -73,8 +79,16 @@ impl<'a> PixelCenters<'a> {
     /// Ground drawn in less detail may lack a fold of less than half a pixel that hides the point found, or have one that the true
     /// ground has not: the ray is followed over the cells around.
     pub(crate) fn exact(&self, found: &DrawnTriangle<'_>, near: DVec3, pixel: DVec2) -> Option<(DVec3, f32)> {
+        if found.block.bodies {
+            // Where it was carried to, the body is a surface like any other.
+            let (motion, bodies) = (self.motion(found)?, self.bodies?);
+            let [a, b, c] = self.corners(found)?.map(|p| motion.carry(p));
+            let (surface, near) = (Surface::through(a, b, c)?, motion.carry(near));
+            let settled = self.of_pass(&bodies.passes, found.block.records, near, pixel)?.settle(&surface, near, pixel);
+            return settled.map(|s| (motion.undo(s.p), s.depth as f32));
+        }
         let surface = self.surface(found)?;
-        let centers = self.of_pass(found.block.records, near, pixel)?;
+        let centers = self.of_pass(self.passes, found.block.records, near, pixel)?;
         let settled = centers.settle(&surface, near, pixel);
         let first = match surface {
             Surface::Ground(hf) => centers.first_on(hf, settled, near, pixel),
@@ -84,8 +98,14 @@ impl<'a> PixelCenters<'a> {
     }
 
     /// The pass, of those that drew the surface, that draws `p` nearest to `pixel`.
-    fn of_pass(&self, [first, last]: [usize; 2], p: DVec3, pixel: DVec2) -> Option<PassCenters<'a>> {
-        let mut all = self.passes.get(first..=last)?.iter().map(|pass| PassCenters { pass, screen: self.screen });
+    fn of_pass(
+        &self,
+        passes: &'a [Pass<'a>],
+        [first, last]: [usize; 2],
+        p: DVec3,
+        pixel: DVec2,
+    ) -> Option<PassCenters<'a>> {
+        let mut all = passes.get(first..=last)?.iter().map(|pass| PassCenters { pass, screen: self.screen });
         if first == last {
             return all.next();
         }
@@ -95,17 +115,31 @@ impl<'a> PixelCenters<'a> {
     }
 
     fn surface(&self, found: &DrawnTriangle<'_>) -> Option<Surface<'a>> {
+        if let LayerKind::Terrain(t) = &self.scene.layers.get(found.block.layer as usize)?.kind {
+            return Some(Surface::Ground(&t.heightfield));
+        }
+        let [a, b, c] = self.corners(found)?;
+        Surface::through(a, b, c)
+    }
+
+    /// Corners of a triangle of boxes or a mesh, scene coordinates.
+    fn corners(&self, found: &DrawnTriangle<'_>) -> Option<[DVec3; 3]> {
         let first = found.block.origin[0];
-        let corners = match &self.scene.layers.get(found.block.layer as usize)?.kind {
-            LayerKind::Terrain(t) => return Some(Surface::Ground(&t.heightfield)),
+        match &self.scene.layers.get(found.block.layer as usize)?.kind {
             LayerKind::Boxes(b) => {
                 let corners = b.boxes.get(first + (found.parent / 12) as usize)?.corners();
-                BOX_TRIANGLES[(found.parent % 12) as usize].map(|k| corners[k])
+                Some(BoxShape::TRIANGLES[(found.parent % 12) as usize].map(|k| corners[k]))
             }
-            kind => kind.triangles()?.mesh.corners(first + found.parent as usize),
-        };
-        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize()?;
-        Some(Surface::Plane(corners[0], normal))
+            kind => Some(kind.triangles()?.mesh.corners(first + found.parent as usize)),
+        }
+    }
+
+    /// Motion of the body that a triangle belongs to.
+    fn motion(&self, found: &DrawnTriangle<'_>) -> Option<&'a RigidMotion> {
+        let layer = found.block.layer as usize;
+        let per_origin = if matches!(self.scene.layers.get(layer)?.kind, LayerKind::Boxes(_)) { 12 } else { 1 };
+        let triangle = per_origin * found.block.origin[0] + found.parent as usize;
+        self.bodies?.carried.layer(layer)?.body(triangle).map(|(_, motion)| motion)
     }
 }
 
@@ -231,6 +265,10 @@ impl PassCenters<'_> {
 }
 
 impl Surface<'_> {
+    fn through(a: DVec3, b: DVec3, c: DVec3) -> Option<Self> {
+        Some(Self::Plane(a, (b - a).cross(c - a).try_normalize()?))
+    }
+
     /// Two directions along the surface.
     fn tangents(&self, p: DVec3) -> [DVec3; 2] {
         match self {

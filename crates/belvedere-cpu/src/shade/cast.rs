@@ -154,13 +154,13 @@ mod tests {
     /// A tower 20 wide and 50 high in the middle.
     fn tower() -> LayerKind {
         let (base, size) = (DVec3::ZERO, DVec3::new(20.0, 20.0, 50.0));
-        LayerKind::Boxes(BoxLayer { boxes: vec![BoxShape { base, size, yaw: 0.0, color: Color::rgb(200, 200, 200) }] })
+        LayerKind::Boxes(BoxLayer::new(vec![BoxShape { base, size, yaw: 0.0, color: Color::rgb(200, 200, 200) }]))
     }
 
     /// The same as triangles.
     fn tower_mesh() -> LayerKind {
         let LayerKind::Boxes(b) = tower() else { panic!("boxes") };
-        let triangles = crate::geometry::box_blocks::BOX_TRIANGLES.map(|t| t.map(|k| k as u32)).to_vec();
+        let triangles = BoxShape::TRIANGLES.map(|t| t.map(|k| k as u32)).to_vec();
         let mesh = Mesh::new(&b.boxes[0].corners(), triangles, MeshColors::Layer).unwrap();
         LayerKind::Mesh(MeshLayer::new(mesh, Color::rgb(200, 200, 200)))
     }

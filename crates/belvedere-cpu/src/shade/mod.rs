@@ -15,7 +15,6 @@ mod traced;
 
 use crate::geometry::block::{Block, DrawnTriangle};
 use crate::geometry::blocks::Blocks;
-use crate::geometry::box_blocks::BOX_TRIANGLES;
 use crate::geometry::grid::CELL_TRIANGLES;
 use crate::geometry::lod::DecimatedHeights;
 use crate::geometry::lod::SIDE;
@@ -268,10 +267,8 @@ impl SurfacePoint {
     fn on_box<'b>(&self, found: &DrawnTriangle<'_>, layer: &'b BoxLayer) -> (&'b BoxShape, DVec3, DVec3) {
         let shape = &layer.boxes[found.block.origin[0] + (found.parent / 12) as usize];
         let corners = shape.corners();
-        let p = BOX_TRIANGLES[(found.parent % 12) as usize].map(|k| corners[k]);
-        let centre = shape.base + DVec3::Z * 0.5 * shape.size.z;
-        let n = (p[1] - p[0]).cross(p[2] - p[0]);
-        let n = if n.dot(p[0] - centre) < 0.0 { -n } else { n }.normalize_or(DVec3::Z);
+        let p = BoxShape::TRIANGLES[(found.parent % 12) as usize].map(|k| corners[k]);
+        let n = shape.normal_of((found.parent % 12) as usize);
         (shape, p[0] * self.weights[0] + p[1] * self.weights[1] + p[2] * self.weights[2], n)
     }
 }

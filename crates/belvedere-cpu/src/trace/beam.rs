@@ -2,7 +2,7 @@
 
 use crate::trace::curve::{Curve, Span};
 use crate::trace::row::Row;
-use crate::trace::tracer::{RayHit, Tracer};
+use crate::trace::tracer::{RayHit, Tracer, nearer};
 use belvedere_core::{Aabb, DVec2, DVec3};
 
 /// Pixels that go together.
@@ -19,11 +19,14 @@ pub(crate) struct RowRays<'t, 'a> {
     y: f64,
     /// Number of the sample of a pixel.
     sample: usize,
+    /// The same rays among rigid bodies.
+    bodies: Option<Box<RowRays<'t, 'a>>>,
 }
 
 impl<'t, 'a> RowRays<'t, 'a> {
     pub(crate) fn new(tracer: &'t Tracer<'a>, y: f64, sample: usize) -> Self {
-        Self { tracer, row: tracer.split.row(y, tracer.range), y, sample }
+        let bodies = tracer.bodies.as_ref().map(|bodies| Box::new(RowRays::new(bodies, y, sample)));
+        Self { tracer, row: tracer.split.row(y, tracer.range), y, sample, bodies }
     }
 
     fn curve(&self, x: f64) -> Curve<'_, 'a> {
@@ -32,7 +35,8 @@ impl<'t, 'a> RowRays<'t, 'a> {
 
     /// First hit of one ray.
     pub(crate) fn first_hit(&self, x: f64) -> Option<RayHit> {
-        self.hit_from(x, self.tracer.range[0])
+        let bodies = self.bodies.as_ref().and_then(|bodies| bodies.first_hit(x));
+        nearer(self.hit_from(x, self.tracer.range[0]), bodies)
     }
 
     fn hit_from(&self, x: f64, start: f64) -> Option<RayHit> {
@@ -48,6 +52,11 @@ impl<'t, 'a> RowRays<'t, 'a> {
             for (k, out) in group.iter_mut().enumerate() {
                 *out = if start < self.tracer.range[1] { self.hit_from(x(k), start) } else { None };
             }
+        }
+        if let Some(bodies) = &self.bodies {
+            let mut others = vec![None; out.len()];
+            bodies.first_hits(&mut others);
+            out.iter_mut().zip(others).for_each(|(out, other)| *out = nearer(*out, other));
         }
     }
 

@@ -3,6 +3,7 @@
 use crate::trace::row::Row;
 use belvedere_core::map::curved_rays::{RayPiece, Shape};
 use belvedere_core::{DVec2, DVec3, EarthCurvature, RayPath, SplineBend, Stage, Strip, TerrainDisocclusion, View};
+use std::borrow::Cow;
 
 /// Spans that a ray of unknown shape is first looked at in.
 const SPANS: usize = 8;
@@ -14,7 +15,7 @@ const ALIKE: f64 = 1e-12;
 /// Earth curvature and terrain disocclusion both move points of a vertical line alike, so their order does not matter and the
 /// latter may be left on the ground: there it is a height per point of the map, kinks and all, and no curve has to follow it.
 pub(crate) struct Split<'a> {
-    pub(crate) view: &'a View,
+    pub(crate) view: Cow<'a, View>,
     smooth: View,
     pub(crate) ground: Option<&'a TerrainDisocclusion>,
     earth: Option<Parabola>,
@@ -62,18 +63,27 @@ impl Parabola {
 
 impl<'a> Split<'a> {
     pub(crate) fn new(view: &'a View) -> Self {
+        let bend = view.stages().iter().find_map(|s| match s {
+            Stage::SplineBend(b) => Some(b),
+            _ => None,
+        });
         let ground = view.stages().iter().find_map(|s| match s {
             Stage::TerrainDisocclusion(t) => Some(t),
             _ => None,
         });
+        Self::of(Cow::Borrowed(view), ground, bend)
+    }
+
+    /// Of a view of rigid bodies that were carried: nothing but curved rays bends it.
+    pub(crate) fn after_bodies(view: View) -> Self {
+        Self::of(Cow::Owned(view), None, None)
+    }
+
+    fn of(view: Cow<'a, View>, ground: Option<&'a TerrainDisocclusion>, bend: Option<&'a SplineBend>) -> Self {
         let stages: Vec<Stage> =
             view.stages().iter().filter(|s| !matches!(s, Stage::TerrainDisocclusion(_))).cloned().collect();
         let earth = stages.iter().find_map(|s| match s {
             Stage::EarthCurvature(e) => Some(Parabola::new(e)),
-            _ => None,
-        });
-        let bend = view.stages().iter().find_map(|s| match s {
-            Stage::SplineBend(b) => Some(b),
             _ => None,
         });
         let relief = view.stages().iter().any(|s| matches!(s, Stage::Relief(_)));
@@ -94,7 +104,7 @@ impl<'a> Split<'a> {
             _ => Kind::Any,
         };
         // A chain without one of its stages is in order if the chain is.
-        let smooth = View::new(view.pinhole().clone(), stages).unwrap_or_else(|_| view.clone());
+        let smooth = View::new(view.pinhole().clone(), stages).unwrap_or_else(|_| view.as_ref().clone());
         Self { view, smooth, ground, earth, bend, strip, kind }
     }
 

@@ -23,7 +23,7 @@ impl Walk<'_, '_> {
             } else {
                 tree.near(a, b, reach, &mut |triangle| {
                     let found = Plane::new(self, tree, triangle).meet(span, reach).map(|depth| (depth, triangle));
-                    let found = found.filter(|(depth, _)| self.shows(*layer, *depth));
+                    let found = found.filter(|(depth, _)| self.shows_triangle(*layer, tree, triangle, *depth));
                     if let Some(found) = found.filter(|f| best.is_none_or(|b| *f < b)) {
                         best = Some(found);
                     }

@@ -5,8 +5,8 @@ use crate::sections::{Exposure, Sections, Shown};
 use crate::trace::curve::{Curve, Span, Split};
 use crate::trace::root::root;
 use belvedere_core::{Aabb, DVec2, DVec3, Stage, View};
-use belvedere_scene::{CellTriangle, Heightfield, NodeState, Scene};
-use belvedere_sight::{GridLine, Lift, Obstacles, UprightBox};
+use belvedere_scene::{CellTriangle, Heightfield, LayerKind, NodeState, Scene};
+use belvedere_sight::{Carried, GridLine, Lift, MeshTree, Obstacles, UprightBox};
 use std::ops::ControlFlow;
 
 /// Largest distance of a ray from the chord that tells where to look for its hits, pixels.
@@ -69,6 +69,10 @@ pub struct Tracer<'a> {
     pub(crate) range: [f64; 2],
     sections: Option<Sections<'a>>,
     exposure: Exposure,
+    /// If what it meets are rigid bodies where the view carried them to.
+    carried: Option<(Carried, &'a Scene)>,
+    /// Meets the rigid bodies, if the view carries any.
+    pub(crate) bodies: Option<Box<Tracer<'a>>>,
 }
 
 impl<'a> Tracer<'a> {
@@ -94,10 +98,26 @@ impl<'a> Tracer<'a> {
             if inside { [lo, hi] } else { [lo.min(0.0), hi.max(0.0)] }
         };
         let lift: Option<Lift<'_>> = if split.ground.is_some() { Some(&lift) } else { None };
-        let obstacles = Obstacles::lifted(scene, lift);
+        let carried = Carried::new(scene, view);
+        let obstacles = match &carried {
+            Some(carried) => Obstacles::beside_bodies(scene, lift, carried),
+            None => Obstacles::lifted(scene, lift),
+        };
+        let bodies = carried.map(|c| Box::new(Self::of_bodies(scene, c, sections.clone(), exposure.clone())));
         let range = [view.pinhole().near, deepest(scene, view)];
         let (screen, solid) = (Screen::new(view.pinhole()), obstacles.solid_bounds());
-        Self { split, screen, obstacles, solid, range, sections, exposure }
+        Self { split, screen, obstacles, solid, range, sections, exposure, carried: None, bodies }
+    }
+
+    /// For rigid bodies, in the space that they are carried to.
+    fn of_bodies(scene: &'a Scene, carried: Carried, sections: Option<Sections<'a>>, exposure: Exposure) -> Self {
+        let view = carried.after();
+        let obstacles = Obstacles::of_bodies(scene, &carried);
+        let solid = obstacles.solid_bounds();
+        let range = [view.pinhole().near, deepest_in(&solid, view)];
+        let (screen, split) = (Screen::new(view.pinhole()), Split::after_bodies(view.clone()));
+        let carried = Some((carried, scene));
+        Self { split, screen, obstacles, solid, range, sections, exposure, carried, bodies: None }
     }
 
     /// What the ray of `pixel` meets first between the near and far depth of the camera; `None` for the sky.
@@ -105,7 +125,8 @@ impl<'a> Tracer<'a> {
     /// Of surfaces seen at the same depth the layer listed first counts.
     pub fn first_hit(&self, pixel: DVec2) -> Option<RayHit> {
         let row = self.split.row(pixel.y, self.range);
-        self.hit_on(&self.split.curve(pixel, row.as_ref()), self.range[0], self.threshold(0, pixel))
+        let hit = self.hit_on(&self.split.curve(pixel, row.as_ref()), self.range[0], self.threshold(0, pixel));
+        nearer(hit, self.bodies.as_ref().and_then(|bodies| bodies.first_hit(pixel)))
     }
 
     /// Threshold of a sample, by its number, of the pixel in which it lies.
@@ -124,7 +145,29 @@ impl<'a> Tracer<'a> {
             Part::Triangle(index, _) => Part::Triangle(index, self.is_front(layer, index, &|w| curve.at(w), depth)),
             cell => cell,
         };
-        Some(RayHit { layer, depth, point, segment: curve.segment(depth), part })
+        let hit = RayHit { layer, depth, point, segment: curve.segment(depth), part };
+        if self.carried.is_some() { self.taken_back(hit) } else { Some(hit) }
+    }
+
+    /// What is met of a body, as its layer holds it.
+    fn taken_back(&self, hit: RayHit) -> Option<RayHit> {
+        let Part::Triangle(index, front) = hit.part else { return None };
+        let (_, tree) = self.obstacles.meshes().iter().find(|(i, _)| *i == hit.layer)?;
+        let triangle = tree.mesh().part(index)? as usize;
+        let (carried, scene) = self.carried.as_ref()?;
+        let (_, motion) = carried.layer(hit.layer)?.body(triangle)?;
+        let part = match &scene.layers.get(hit.layer)?.kind {
+            LayerKind::Boxes(b) => Part::Face(triangle / 12, b.boxes.get(triangle / 12)?.normal_of(triangle % 12)),
+            _ => Part::Triangle(triangle, front),
+        };
+        Some(RayHit { point: motion.undo(hit.point), part, ..hit })
+    }
+
+    /// The place before any displacement of what a ray meets at a point of a triangle, by the triangle's number in its tree.
+    fn place_of(&self, layer: usize, tree: &MeshTree<'_>, triangle: usize, p: DVec3) -> Option<DVec3> {
+        let Some((carried, _)) = &self.carried else { return Some(p) };
+        let (_, motion) = carried.layer(layer)?.body(tree.mesh().part(triangle)? as usize)?;
+        Some(motion.undo(p))
     }
 
     /// Whether nothing of the scene lies in a box.
@@ -162,11 +205,22 @@ impl<'a> Tracer<'a> {
     }
 }
 
+/// The nearer of two hits; of two at one depth that of the layer listed first.
+pub(crate) fn nearer(a: Option<RayHit>, b: Option<RayHit>) -> Option<RayHit> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if (b.depth, b.layer) < (a.depth, a.layer) { b } else { a }),
+        (a, b) => a.or(b),
+    }
+}
+
 /// Depth beyond which nothing of the scene is seen: the largest depth of a lattice over its bounds and a step more.
 pub(crate) fn deepest(scene: &Scene, view: &View) -> f64 {
+    deepest_in(&scene.bounds(), view)
+}
+
+fn deepest_in(bounds: &Aabb, view: &View) -> f64 {
     const STEPS: usize = 24;
     let far = view.pinhole().far.unwrap_or(f64::INFINITY);
-    let bounds = scene.bounds();
     let near = view.pinhole().near;
     if bounds.is_empty() {
         return (2.0 * near).min(far);
@@ -309,6 +363,13 @@ impl Walk<'_, '_> {
     pub(crate) fn shows(&self, layer: usize, depth: f64) -> bool {
         let Some(sections) = &self.tracer.sections else { return true };
         self.true_point(depth).is_some_and(|p| sections.shows(layer, sections.parameter(p), self.threshold))
+    }
+
+    /// Whether the ray's sample shows a triangle, by its number in its tree, at a depth.
+    pub(crate) fn shows_triangle(&self, layer: usize, tree: &MeshTree<'_>, triangle: usize, depth: f64) -> bool {
+        let Some(sections) = &self.tracer.sections else { return true };
+        let place = self.true_point(depth).and_then(|p| self.tracer.place_of(layer, tree, triangle, p));
+        place.is_some_and(|p| sections.shows(layer, sections.parameter(p), self.threshold))
     }
 
     /// Whether the ray's sample shows the layer wherever it goes.

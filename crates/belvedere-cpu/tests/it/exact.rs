@@ -121,7 +121,7 @@ fn with_towers(hf: Heightfield) -> Scene {
     let boxes = [(-120.0, 60.0, 0.3), (140.0, -80.0, 1.1), (20.0, 260.0, 0.0)].map(|(x, y, yaw)| tower(&hf, x, y, yaw));
     scene(vec![
         layer("ground", LayerKind::Terrain(terrain(hf))),
-        layer("towers", LayerKind::Boxes(BoxLayer { boxes: boxes.to_vec() })),
+        layer("towers", LayerKind::Boxes(BoxLayer::new(boxes.to_vec()))),
         layer("church", church(DVec3::new(-150.0, -160.0, z - 10.0), false)),
     ])
 }

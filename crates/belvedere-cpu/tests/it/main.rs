@@ -9,6 +9,7 @@ mod marks;
 mod molecules;
 mod real_data;
 mod reference;
+mod rigid;
 mod robust;
 mod sections;
 mod steady;

@@ -119,7 +119,7 @@ fn hilly_scene() -> Scene {
         .map(|(x, y, yaw)| tower(x, y, hf.surface_at(DVec2::new(x, y)).expect("on the hills") - 20.0, yaw));
     scene(vec![
         layer("ground", LayerKind::Terrain(terrain(hf))),
-        layer("towers", LayerKind::Boxes(BoxLayer { boxes: boxes.to_vec() })),
+        layer("towers", LayerKind::Boxes(BoxLayer::new(boxes.to_vec()))),
     ])
 }
 

@@ -25,7 +25,7 @@ fn full_scene() -> Scene {
     };
     scene(vec![
         layer("ground", LayerKind::Terrain(terrain(hf))),
-        layer("house", LayerKind::Boxes(BoxLayer { boxes: vec![shape] })),
+        layer("house", LayerKind::Boxes(BoxLayer::new(vec![shape]))),
         layer("route", LayerKind::Line(line(route, Hidden::Dash))),
         layer("huts", LayerKind::Point(points)),
     ])

@@ -30,7 +30,7 @@ fn land() -> Scene {
         .collect();
     let layers = vec![
         layer("relief", LayerKind::Terrain(relief)),
-        layer("towers", LayerKind::Boxes(BoxLayer { boxes })),
+        layer("towers", LayerKind::Boxes(BoxLayer::new(boxes))),
         layer("plan", LayerKind::Terrain(plan)),
     ];
     let representations = vec![representation("near", &["relief", "towers"]), representation("far", &["plan"])];

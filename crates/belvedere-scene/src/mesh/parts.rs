@@ -1,6 +1,6 @@
 //! Meshes of some of the triangles of another, and with some of them moved.
 
-use super::{Mesh, MeshColors};
+use super::{Mesh, MeshColors, MeshError};
 use belvedere_core::DVec3;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -31,6 +31,31 @@ impl Mesh {
             }
         }
         out
+    }
+
+    /// The triangles that belong to a body, each corner where `carry` puts it (number of the body, scene coordinates; finite in single
+    /// precision), shape alone. [`Mesh::part`] of what comes out is the number of the triangle here.
+    ///
+    /// # Errors
+    /// [`MeshError`], for a corner that is not finite.
+    pub fn carried(
+        &self,
+        body: &dyn Fn(usize) -> Option<usize>,
+        carry: &dyn Fn(usize, DVec3) -> DVec3,
+    ) -> Result<Self, MeshError> {
+        let (mut places, mut triangles, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
+        let mut copies: HashMap<(u32, usize), u32> = HashMap::new();
+        for (t, corners) in self.triangles.iter().enumerate() {
+            let Some(body) = body(t) else { continue };
+            triangles.push(corners.map(|v| {
+                *copies.entry((v, body)).or_insert_with(|| {
+                    places.push(carry(body, self.vertex(v)));
+                    (places.len() - 1) as u32
+                })
+            }));
+            numbers.push(t as u32);
+        }
+        Self::in_parts(&places, triangles, MeshColors::Layer, numbers)
     }
 
     /// Appends a vertex like another, moved.

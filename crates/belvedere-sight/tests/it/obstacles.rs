@@ -99,7 +99,7 @@ fn curved_lines_of_sight_agree_with_a_dense_march() {
 fn boxes_hide_what_is_behind_them_only() {
     let tower =
         BoxShape { base: DVec3::ZERO, size: DVec3::new(10.0, 20.0, 30.0), yaw: 0.5, color: Color::rgb(1, 2, 3) };
-    let kind = LayerKind::Boxes(BoxLayer { boxes: vec![tower] });
+    let kind = LayerKind::Boxes(BoxLayer::new(vec![tower]));
     let scene = Scene { layers: vec![Layer { id: "towers".into(), must_see: false, kind }], ..Scene::default() };
     let obstacles = Obstacles::new(&scene);
     let gap = |a: [f64; 3], b: [f64; 3]| obstacles.min_gap(a.into(), b.into(), 100.0, f64::NEG_INFINITY);

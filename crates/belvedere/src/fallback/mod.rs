@@ -10,6 +10,7 @@ mod region;
 #[cfg(test)]
 mod tests;
 
+use crate::bodies::refusal;
 use crate::overlays::highlight::border;
 use crate::scene_file::ConstructorKind;
 use crate::verbs::reveal_target;
@@ -159,13 +160,16 @@ pub(crate) fn of_session(session: &Session, view: &View) -> Result<Option<Fallba
 /// * `target`: its name for the record, and itself.
 ///
 /// # Errors
-/// [`BelvedereError::Target`] for a rule of a layer that does not exist or cannot do it.
+/// [`BelvedereError::Target`] for a rule of a layer that does not exist or cannot do it, and for rigid layers behind a bend.
 pub fn plan(
     scene: &Scene,
     view: &View,
     (name, target): (&str, &Target),
     rules: &[Fallback],
 ) -> Result<FallbackPlan, BelvedereError> {
+    if let Some(reason) = refusal("a fallback", scene, view) {
+        return Err(BelvedereError::Target(format!("fallback: {reason}")));
+    }
     let height = f64::from(view.pinhole().image[1]);
     let margin_px = MARGIN_PX * (height / 720.0).max(0.4);
     let before = TargetSight::new(scene, target).share(view, 0.0);

@@ -18,8 +18,8 @@ fn scene() -> Scene {
     // Beside the target by a fraction of a pixel: it hides nothing.
     wall.push(shape([20.865, 80.0, -10.0], [8.0, 1.0, 20.0]));
     wall.push(shape([0.0, 200.0, -10.0], [30.0, 5.0, 30.0]));
-    let scene = Scene::default().with_layer("wall", LayerKind::Boxes(BoxLayer { boxes: wall }));
-    let block = BoxLayer { boxes: vec![shape([0.0, 100.0, -6.0], [40.0, 8.0, 12.0])] };
+    let scene = Scene::default().with_layer("wall", LayerKind::Boxes(BoxLayer::new(wall)));
+    let block = BoxLayer::new(vec![shape([0.0, 100.0, -6.0], [40.0, 8.0, 12.0])]);
     scene.with_layer("block", LayerKind::Boxes(block))
 }
 

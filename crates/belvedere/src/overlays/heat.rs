@@ -1,6 +1,7 @@
 //! How far the bend moves what is seen, as colours.
 
 use super::{INK, PAPER, length};
+use crate::bodies::RigidLayers;
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_cpu::canvas::{Canvas, text_size};
 use belvedere_scene::{Color, Frame};
@@ -46,15 +47,16 @@ pub(crate) fn light(color: [u8; 3]) -> f32 {
 
 /// Colours the surfaces of `frame`; what was drawn over them stays. Returns the largest displacement, scene units.
 /// * `bare`: the same picture without marks, with world positions.
-pub(crate) fn paint(frame: &mut Frame, bare: &Frame, view: &View) -> f64 {
+pub(crate) fn paint(frame: &mut Frame, bare: &Frame, (view, rigid): (&View, &RigidLayers)) -> f64 {
     let Some(world) = &bare.world else { return 0.0 };
     let straight = view.straightened();
     let moved: Vec<f64> = world
         .par_iter()
-        .map(|p| {
+        .enumerate()
+        .map(|(i, p)| {
             let p = DVec3::from_array(*p);
-            match (view.displace(p), straight.displace(p)) {
-                (Ok(bent), Ok(plain)) if p.is_finite() => bent.point.distance(plain.point),
+            match (rigid.displaced(view, bare, i, p), straight.displace(p)) {
+                (Some(bent), Ok(plain)) => bent.distance(plain.point),
                 _ => f64::NAN,
             }
         })

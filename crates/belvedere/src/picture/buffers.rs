@@ -2,16 +2,21 @@
 
 use super::options::AuxBuffer;
 use crate::BelvedereError;
+use crate::bodies::RigidLayers;
 use belvedere_core::{DVec3, View};
 use belvedere_io::open_exr::{self, Channel};
 use belvedere_scene::Frame;
 use std::path::Path;
 
-/// Displaced minus world position, NaN where there is none.
-pub(super) fn displacement(view: &View, p: [f64; 3]) -> [f64; 3] {
-    let p = DVec3::from_array(p);
-    let to = if p.is_finite() { view.displace(p).ok() } else { None };
-    to.map_or([f64::NAN; 3], |d| (d.point - p).to_array())
+/// Displaced minus world position of every pixel, NaN where there is none.
+pub(super) fn displacement<'f>(
+    (view, rigid): (&'f View, &'f RigidLayers),
+    frame: &'f Frame,
+) -> impl Iterator<Item = [f64; 3]> + 'f {
+    frame.world.iter().flatten().enumerate().map(move |(i, p)| {
+        let p = DVec3::from_array(*p);
+        rigid.displaced(view, frame, i, p).map_or([f64::NAN; 3], |to| (to - p).to_array())
+    })
 }
 
 /// Writes `depth.Z` (float), `id` (uint), `world.X/Y/Z` and `displacement.X/Y/Z` (float).
@@ -19,7 +24,7 @@ pub(super) fn displacement(view: &View, p: [f64; 3]) -> [f64; 3] {
 /// World positions count from whole numbers near the eye, attribute `worldOrigin`: the scene's own would not fit into 32 bits.
 pub(super) fn write(
     frame: &Frame,
-    view: &View,
+    (view, rigid): (&View, &RigidLayers),
     buffers: &[AuxBuffer],
     path: &Path,
     overwrite: bool,
@@ -27,17 +32,17 @@ pub(super) fn write(
     let origin = view.pinhole().eye.round().to_array();
     let world = frame.world.as_deref().unwrap_or_default();
     let mut channels: Vec<(String, Channel)> = Vec::new();
-    let mut vector = |name: &str, of: &dyn Fn([f64; 3]) -> [f64; 3]| {
-        let values: Vec<[f32; 3]> = world.iter().map(|p| of(*p).map(|v| v as f32)).collect();
+    let mut vector = |name: &str, of: &mut dyn Iterator<Item = [f64; 3]>| {
+        let values: Vec<[f32; 3]> = of.map(|p| p.map(|v| v as f32)).collect();
         for (i, axis) in ["X", "Y", "Z"].iter().enumerate() {
             channels.push((format!("{name}.{axis}"), Channel::Float(values.iter().map(|v| v[i]).collect())));
         }
     };
     if buffers.contains(&AuxBuffer::World) {
-        vector("world", &|p| std::array::from_fn(|i| p[i] - origin[i]));
+        vector("world", &mut world.iter().map(|p| std::array::from_fn(|i| p[i] - origin[i])));
     }
     if buffers.contains(&AuxBuffer::Displacement) {
-        vector("displacement", &|p| displacement(view, p));
+        vector("displacement", &mut displacement((view, rigid), frame));
     }
     if buffers.contains(&AuxBuffer::Depth) {
         channels.push(("depth.Z".into(), Channel::Float(frame.depth.clone())));

@@ -1,6 +1,7 @@
 //! How far a picture moves what it shows.
 
-use belvedere_core::{DVec2, View};
+use crate::bodies::RigidLayers;
+use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::Frame;
 use serde::{Deserialize, Serialize};
 
@@ -33,9 +34,22 @@ struct Moved {
     folded: bool,
 }
 
-fn at_pixel(view: &View, straight: &View, frame: &Frame, [col, row]: [usize; 2]) -> Option<Moved> {
+fn at_pixel(
+    (view, straight): (&View, &View),
+    rigid: &RigidLayers,
+    frame: &Frame,
+    [col, row]: [usize; 2],
+) -> Option<Moved> {
     let depth = f64::from(frame.depth[row * frame.width + col]);
     let pixel = DVec2::new(col as f64 + 0.5, row as f64 + 0.5);
+    let i = row * frame.width + col;
+    if rigid.shown_at(frame, i) {
+        // The rays of other points say nothing of it: the picture knows what it shows, and where.
+        let point = DVec3::from_array(*frame.world.as_ref()?.get(i)?);
+        let (bent, plain) = (rigid.displaced(view, frame, i, point)?, straight.displace(point).ok()?.point);
+        let by_px = straight.project(point).ok().map(|image| image.pixel.distance(pixel));
+        return Some(Moved { pixel: [col, row], by_m: bent.distance(plain), by_px, folded: false });
+    }
     let seen = view.ray(pixel).at(if depth.is_finite() { depth } else { -1.0 }).ok()?;
     let (bent, plain) = (view.displace(seen.point).ok()?, straight.displace(seen.point).ok()?);
     let by_px = straight.project(seen.point).ok().map(|image| image.pixel.distance(pixel));
@@ -43,12 +57,13 @@ fn at_pixel(view: &View, straight: &View, frame: &Frame, [col, row]: [usize; 2])
 }
 
 /// Samples the ground in view: where it would be without bends, in space and on the image.
-pub(super) fn measure(view: &View, frame: &Frame) -> DisplacementReport {
+/// * `frame`: with world positions if it shows rigid layers.
+pub(super) fn measure(view: &View, rigid: &RigidLayers, frame: &Frame) -> DisplacementReport {
     let straight = view.straightened();
     let step = (frame.width.max(frame.height) / 128).max(1);
     let rows = (step / 2..frame.height).step_by(step);
     let pixels = rows.flat_map(|row| (step / 2..frame.width).step_by(step).map(move |col| [col, row]));
-    let mut all: Vec<Moved> = pixels.filter_map(|at| at_pixel(view, &straight, frame, at)).collect();
+    let mut all: Vec<Moved> = pixels.filter_map(|at| at_pixel((view, &straight), rigid, frame, at)).collect();
     let mean = |sum: f64, count: usize| if count == 0 { 0.0 } else { sum / count as f64 };
     let on_image: Vec<f64> = all.iter().filter_map(|m| m.by_px).collect();
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
@@ -64,7 +79,7 @@ pub(super) fn measure(view: &View, frame: &Frame) -> DisplacementReport {
     for [col, row] in all.iter().take(LARGEST).map(|m| m.pixel) {
         let around = |at: usize, end: usize| at.saturating_sub(step)..(at + step + 1).min(end);
         for row in around(row, frame.height) {
-            let near = around(col, frame.width).filter_map(|col| at_pixel(view, &straight, frame, [col, row]));
+            let near = around(col, frame.width).filter_map(|col| at_pixel((view, &straight), rigid, frame, [col, row]));
             report.max_m = largest(&mut near.map(|m| m.by_m).chain([report.max_m]));
         }
     }

@@ -4,6 +4,7 @@ use super::displacement::{self, DisplacementReport};
 use super::options::{AuxBuffer, PictureOptions};
 use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, Sidecar, TerrainRecord};
 use super::volume_record::VolumeRecord;
+use crate::bodies::RigidLayers;
 use crate::fallback::{self, FallbackPlan, FallbackRecord};
 use crate::overlays::{badge, camera, curve_inset, ghost, grid, heat, highlight, thin};
 use crate::record::{self, InputFile, ViewRecord};
@@ -39,6 +40,7 @@ pub(crate) fn draw(
         None => draw_view(session, request, progress)?,
     };
     let Drawn { view, frame, straight, overlay, displacement, fallback } = drawn;
+    let rigid = RigidLayers::of(session.scene(), &view);
     let render_ms = started.elapsed().as_secs_f64() * 1e3;
     let sidecar = Sidecar {
         program: format!("belvedere {}", crate::VERSION),
@@ -50,6 +52,7 @@ pub(crate) fn draw(
         terrain: session.scene().terrain().map(TerrainRecord::of),
         molecules: MoleculeRecord::all_of(session.scene()),
         volumes: VolumeRecord::all(session.scene()),
+        rigid: rigid.ids(session.scene()),
         areas: session.areas().to_vec(),
         disocclusion: session.terrain_report().filter(|_| !request.straight).cloned(),
         strip: session.strip_report().filter(|_| !request.straight).cloned(),
@@ -66,7 +69,7 @@ pub(crate) fn draw(
     };
     let (aux, aux_format, crs) = (request.aux.clone(), request.aux_format, session.scene().crs);
     let unit = session.scene().unit;
-    Ok(Picture { frame, straight, sidecar, aux, aux_format, view, crs, unit })
+    Ok(Picture { frame, straight, sidecar, aux, aux_format, view, rigid, crs, unit })
 }
 
 /// Pictures with everything over them.
@@ -93,7 +96,8 @@ pub(crate) fn draw_view(
     let ghost = (request.ghost || wanted.ghost) && view.is_bent();
     let grid = request.grid.or(grid::stated(wanted));
     let grid_spacing = grid.and_then(|spacing| grid::spacing(scene, spacing));
-    let world = request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
+    let rigid = RigidLayers::of(scene, &view);
+    let world = rigid.any() || request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
     let exact = !request.aux.is_empty();
     let stylisation = request.stylisation.unwrap_or(session.stylisation);
     let mut options = RenderOptions { aux: Aux { world, exact }, stylisation, ..request.quality.clone() };
@@ -119,7 +123,7 @@ pub(crate) fn draw_view(
         let options = RenderOptions { marks: false, aux, ..request.quality.clone() };
         let job = RenderJob { scene, view: &view, light: session.light(), options: &options, progress };
         let bare = request.renderer.of(session).render(&job)?;
-        heatmap_max = Some(heat::paint(&mut frame, &bare, &view));
+        heatmap_max = Some(heat::paint(&mut frame, &bare, (&view, &rigid)));
     }
     let highlight = (!marks.is_empty() && !request.straight)
         .then(|| {
@@ -138,7 +142,7 @@ pub(crate) fn draw_view(
     if let Some(straight) = straight.as_ref().filter(|_| ghost) {
         ghost::draw(&mut frame, straight, scene);
     }
-    let displacement = view.is_bent().then(|| displacement::measure(&view, &frame));
+    let displacement = view.is_bent().then(|| displacement::measure(&view, &rigid, &frame));
     let mark = displacement
         .filter(|_| wanted.mark && !request.no_mark && badge::fits(frame.width, frame.height))
         .map(|moved| badge::words(frame.width, moved.max_m, scene.unit));
@@ -186,7 +190,10 @@ pub(crate) fn draw_camera(
     let title = if scene.title.is_empty() { "The camera" } else { &scene.title };
     camera::draw_legend(&mut Canvas::new(&mut frame.color, frame.width), &figure, title);
     let overlay = OverlayRecord { camera: Some(picture.name()), ..OverlayRecord::default() };
-    let displacement = figure.view.is_bent().then(|| displacement::measure(&figure.view, &frame));
+    let displacement = figure
+        .view
+        .is_bent()
+        .then(|| displacement::measure(&figure.view, &RigidLayers::of(scene, &figure.view), &frame));
     Ok(Drawn { view: figure.view, frame, straight: None, overlay, displacement, fallback: None })
 }
 

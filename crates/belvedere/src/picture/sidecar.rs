@@ -3,6 +3,7 @@
 use super::displacement::DisplacementReport;
 use super::options::{AuxBuffer, AuxFormat};
 use super::volume_record::VolumeRecord;
+use crate::bodies::RigidLayers;
 use crate::fallback::FallbackRecord;
 use crate::overlays::highlight::HighlightRecord;
 use crate::record::{AreaRecord, InputFile, ViewRecord};
@@ -122,6 +123,9 @@ pub struct Sidecar {
     /// How volumes were drawn.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub volumes: Vec<VolumeRecord>,
+    /// Ids of the layers whose parts were carried as rigid bodies.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rigid: Vec<String>,
     /// What areas were drawn as, and why.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub areas: Vec<AreaRecord>,
@@ -170,6 +174,7 @@ pub struct Picture {
     pub(crate) aux: Vec<AuxBuffer>,
     pub(crate) aux_format: AuxFormat,
     pub(crate) view: View,
+    pub(crate) rigid: RigidLayers,
     pub(crate) crs: Crs,
     pub(crate) unit: Unit,
 }

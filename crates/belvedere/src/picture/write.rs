@@ -46,7 +46,7 @@ impl Picture {
         output::write_text(&written[1], &output::pretty(&this.sidecar)?, overwrite)?;
         if self.aux_format == AuxFormat::Exr && !self.aux.is_empty() {
             let path = out.with_extension("exr");
-            buffers::write(&self.frame, &self.view, &self.aux, &path, overwrite)?;
+            buffers::write(&self.frame, (&self.view, &self.rigid), &self.aux, &path, overwrite)?;
             written.push(path);
             return Ok(written);
         }
@@ -141,7 +141,7 @@ impl Picture {
                 npy(path, overwrite, "<f8", &[h, w, 3], world.iter().flatten().map(|v| v.to_le_bytes()))
             }
             AuxBuffer::Displacement => {
-                let moved = world.iter().flat_map(|p| buffers::displacement(&self.view, *p));
+                let moved = buffers::displacement((&self.view, &self.rigid), &self.frame).flatten();
                 npy(path, overwrite, "<f8", &[h, w, 3], moved.map(|v| v.to_le_bytes()))
             }
         }

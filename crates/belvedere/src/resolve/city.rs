@@ -11,7 +11,7 @@ use belvedere_core::DVec2;
 use belvedere_io::city::{CityColors, CityGround, plate_extent, reproject, surface};
 use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::{CityFile, load_city};
-use belvedere_scene::{City, Crs, LayerKind, Mesh, MeshLayer};
+use belvedere_scene::{City, Crs, LayerKind, Mesh, MeshLayer, RigidParts};
 
 /// Format of cities that no file holds.
 const BUILT_IN: &str = "built in";
@@ -112,8 +112,13 @@ pub(super) fn layer(
         let lost = leave_out_beyond(&mut city, terrain).map_err(|e| loader.fail(index, "source", e))?;
         loader.note(index, lost.into_iter().chain(remarks(&city, terrain)).collect());
     }
+    // Part 0 is what lies between buildings; bridges and trees follow the buildings.
+    let buildings = (1..=city.buildings.len() as u32).collect();
     let mut layer = mesh(city, &colors, terrain).map_err(|e| loader.fail(index, "source", e))?;
     layer.mesh = with_ambient_occlusion(loader, index, layer.mesh, style.ambient_occlusion, ground)?;
+    if doc.rigid {
+        layer.rigid = RigidParts::Only(buildings);
+    }
     if let Some(select) = &doc.select {
         layer.wanted = Some(wanted(&layer, select).map_err(|e| loader.fail(index, "select", e))?);
     }

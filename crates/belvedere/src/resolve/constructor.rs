@@ -3,6 +3,7 @@
 use super::terrain::Solving;
 use super::{centreline, path};
 use crate::BelvedereError;
+use crate::bodies::refusal;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, ConstructorDoc, ConstructorKind, SourceDocument, StageDoc};
 use belvedere_construct::ConstructError;
@@ -123,6 +124,9 @@ pub(super) fn construct(
         let (view, report) = preview(source, roots, scene, &base, &mut solving.memory.preview, inputs)?;
         return Ok((view, Some(ConstructorReport::PathPreview(report))));
     }
+    if let Some(reason) = refusal("the constructor", scene, &base) {
+        return Err(source.error(&["constructor", "kind"], format!("constructor: {reason}")));
+    }
     if doc.kind == ConstructorKind::AutoProbe {
         let memory = &mut solving.memory.probe;
         let options = probe_options(doc);
@@ -171,7 +175,12 @@ fn preview(
     let earlier = base.stages().iter().filter_map(|stage| match stage {
         Stage::EarthCurvature(earth) => Some(Stage::EarthCurvature(EarthCurvature { eye: root.eye, ..*earth })),
         Stage::TerrainDisocclusion(_) => Some(stage.clone()),
-        Stage::Strip(_) | Stage::Relief(_) | Stage::SplineBend(_) | Stage::CurvedRays(_) | Stage::SplitRays(_) => None,
+        Stage::Strip(_)
+        | Stage::Relief(_)
+        | Stage::SplineBend(_)
+        | Stage::Body(_)
+        | Stage::CurvedRays(_)
+        | Stage::SplitRays(_) => None,
     });
     let stages = earlier.chain(seen.view.stages().iter().cloned()).collect();
     let view = View::new(root, stages).map_err(|e| source.error(&["constructor", "kind"], e))?;

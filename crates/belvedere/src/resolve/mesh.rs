@@ -8,7 +8,7 @@ use crate::scene_file::{MeshDoc, Paths, TransformDoc};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::{MeshFile, load_mesh};
-use belvedere_scene::{Crs, LayerKind, Mesh, MeshColors, MeshLayer, Texturing};
+use belvedere_scene::{Crs, LayerKind, Mesh, MeshColors, MeshLayer, RigidParts, Texturing};
 use belvedere_sight::{GroundHeight, OpennessSettings};
 use glam::{DMat3, EulerRot};
 
@@ -37,7 +37,8 @@ pub(super) fn layer(
     });
     let mesh = mesh.map_err(|e| loader.fail(index, "source", e))?;
     let mesh = with_ambient_occlusion(loader, index, mesh, doc.style.ambient_occlusion, ground)?;
-    let mut layer = MeshLayer { names, ..MeshLayer::new(mesh, color) };
+    let rigid = if doc.rigid { RigidParts::All } else { RigidParts::None };
+    let mut layer = MeshLayer { names, rigid, ..MeshLayer::new(mesh, color) };
     if let Some(select) = &doc.select {
         layer.wanted = Some(wanted(&layer, select).map_err(|e| loader.fail(index, "select", e))?);
     }

@@ -14,7 +14,7 @@ use belvedere_core::presets::{BUILTIN_NAMES, PresetDocument};
 use belvedere_core::{DVec3, Pinhole, SplineBend, Stage, TerrainDisocclusion, View};
 use belvedere_disocclusion::TerrainReport;
 use belvedere_io::InputFile;
-use belvedere_scene::Scene;
+use belvedere_scene::{Heightfield, Layer, LayerKind, RigidParts, Scene};
 
 /// Normal of the reference plane of the first spline stage.
 pub(crate) fn plane_normal(document: &Document) -> Option<DVec3> {
@@ -152,8 +152,7 @@ fn spline(
     let (plane, height) = plane(context, doc.plane.as_ref(), at)?;
     let pivot = doc.pivot.map_or_else(|| default_pivot(pinhole, &plane), DVec3::from_array);
     let bend = SplineBend::new(pinhole, &presets, &plane, pivot).map_err(|e| at.error(&["presets"], e))?;
-    let heights =
-        context.ground.terrain.map(|t| t.z_range().map(|z| z - height)).filter(|_| plane.normal() == DVec3::Z);
+    let heights = heights(context).map(|range| range.map(|z| z - height)).filter(|_| plane.normal() == DVec3::Z);
     let distance = bend.resolved().distance;
     warnings
         .extend(belvedere_core::map::spline::check_presets(&presets, distance, heights).iter().map(|w| w.to_string()));
@@ -166,6 +165,19 @@ fn spline(
         }),
     });
     Ok((bend, document))
+}
+
+/// Lowest and highest height of what the bend may fold: the terrain, and buildings that are no rigid bodies.
+fn heights(context: &StageContext<'_>) -> Option<[f64; 2]> {
+    let terrain = context.ground.terrain.map(Heightfield::z_range);
+    let solid = |layer: &Layer| match &layer.kind {
+        LayerKind::Boxes(boxes) => !boxes.rigid,
+        LayerKind::Mesh(mesh) => mesh.rigid == RigidParts::None,
+        _ => false,
+    };
+    let bounds = context.scene.layers.iter().filter(|l| solid(l)).map(Layer::bounds);
+    let solid = bounds.filter(|b| !b.is_empty()).map(|b| [b.min.z, b.max.z]);
+    terrain.into_iter().chain(solid).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
 }
 
 /// The reference plane and its height along the unit normal.
@@ -200,7 +212,7 @@ fn plane_point(context: &StageContext<'_>, at: Table<'_>) -> Result<DVec3, Belve
 }
 
 /// Median height of the nodes that have one.
-fn median_height(terrain: &belvedere_scene::Heightfield) -> f64 {
+fn median_height(terrain: &Heightfield) -> f64 {
     let with_data =
         |(h, s): (&f32, &belvedere_scene::NodeState)| (*s != belvedere_scene::NodeState::Void).then_some(*h);
     let mut heights: Vec<f32> = terrain.heights().iter().zip(terrain.states().iter()).filter_map(with_data).collect();

@@ -1,5 +1,6 @@
 //! Layers of cities in the scene document.
 
+use super::layers::is_false;
 use super::paths::Paths;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -31,6 +32,10 @@ pub struct CityDoc {
     /// Added to all heights of the files, metres: between their datum and that of the terrain.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub height_offset_m: f64,
+    /// Whether bends carry each building as a rigid body: moved and turned as a whole with the ground under its foot, so that walls stay straight
+    /// and nothing of it folds, however tall; neighbours may interpenetrate.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub rigid: bool,
     /// How it is drawn.
     #[serde(default)]
     pub style: CityStyleDoc,
@@ -56,6 +61,7 @@ impl CityDoc {
             lod: None,
             loa: 0,
             height_offset_m: 0.0,
+            rigid: false,
             style: CityStyleDoc::default(),
         }
     }

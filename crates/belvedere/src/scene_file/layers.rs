@@ -37,6 +37,11 @@ pub enum LayerDoc {
     Volume(VolumeDoc),
 }
 
+/// Whether a switch is off, as it is by default.
+pub(super) fn is_false(value: &bool) -> bool {
+    !value
+}
+
 /// Names of the kinds of layers.
 pub(super) const LAYER_KINDS: &[&str] =
     &["terrain", "mesh", "boxes", "city", "molecule", "volume", "line", "area", "point"];
@@ -70,6 +75,28 @@ impl LayerDoc {
             Self::City(l) => l.must_see,
             Self::Volume(l) => l.must_see,
         }
+    }
+
+    /// Whether bends carry its parts as rigid bodies; `None` for kinds that have none.
+    pub fn rigid(&self) -> Option<bool> {
+        match self {
+            Self::Boxes(l) => Some(l.rigid),
+            Self::Mesh(l) => Some(l.rigid),
+            Self::City(l) => Some(l.rigid),
+            _ => None,
+        }
+    }
+
+    /// The layer with or without rigid bodies; as it is if its kind has none.
+    pub fn with_rigid(&self, wanted: bool) -> Self {
+        let mut layer = self.clone();
+        match &mut layer {
+            Self::Boxes(l) => l.rigid = wanted,
+            Self::Mesh(l) => l.rigid = wanted,
+            Self::City(l) => l.rigid = wanted,
+            _ => {}
+        }
+        layer
     }
 
     /// The layer with another wish of whether it is seen; terrain has none.
@@ -417,6 +444,10 @@ pub struct BoxesDoc {
     /// Whether constructors and measures work for it.
     #[serde(default)]
     pub must_see: bool,
+    /// Whether bends carry each box as a rigid body: moved and turned as a whole with the ground under its foot, so that walls stay straight
+    /// and nothing of it folds, however tall; neighbours may interpenetrate.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub rigid: bool,
     /// How they are drawn.
     #[serde(default)]
     pub style: BoxStyleDoc,

@@ -1,5 +1,6 @@
 //! Layers of triangles in the scene document.
 
+use super::layers::is_false;
 use super::paths::Paths;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -36,6 +37,10 @@ pub struct MeshDoc {
     /// Names of parts (nodes, objects, groups), separated by commas, that `must_see` means; by default the whole mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub select: Option<String>,
+    /// Whether bends carry each part of the file (node, object, group; without parts the mesh) as a rigid body: moved and turned as a whole with the ground under its foot, so that walls stay straight
+    /// and nothing of it folds, however tall; neighbours may interpenetrate.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub rigid: bool,
     /// How it is drawn.
     #[serde(default)]
     pub style: MeshStyleDoc,
@@ -58,6 +63,7 @@ impl MeshDoc {
             source: Paths::One(source.to_owned()),
             must_see: false,
             select: None,
+            rigid: false,
             style: MeshStyleDoc::default(),
             transform: None,
             crs: None,

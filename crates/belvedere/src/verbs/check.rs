@@ -2,7 +2,7 @@
 
 use crate::scene_file::StageDoc;
 use crate::{BelvedereError, Session};
-use belvedere_scene::LayerKind;
+use belvedere_scene::{Bodies, LayerKind};
 use serde::Serialize;
 
 /// Answer of [`check`].
@@ -31,6 +31,9 @@ pub struct CheckedLayer {
     pub count: usize,
     /// Whether it must be seen.
     pub must_see: bool,
+    /// Whether bends carry its parts as rigid bodies.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub rigid: bool,
 }
 
 impl std::fmt::Display for CheckReport {
@@ -38,7 +41,8 @@ impl std::fmt::Display for CheckReport {
         writeln!(f, "{}: valid, {}, {} layers, {} stages", self.scene, self.crs, self.layers.len(), self.stages.len())?;
         for layer in &self.layers {
             let must = if layer.must_see { ", must be seen" } else { "" };
-            writeln!(f, "  {} ({}): {}{must}", layer.id, layer.kind, layer.count)?;
+            let rigid = if layer.rigid { ", rigid" } else { "" };
+            writeln!(f, "  {} ({}): {}{must}{rigid}", layer.id, layer.kind, layer.count)?;
         }
         self.stages.iter().try_for_each(|stage| writeln!(f, "  stage {stage}"))
     }
@@ -61,7 +65,8 @@ pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
             LayerKind::Molecule(l) => ("molecule", l.atoms),
             LayerKind::Volume(l) => ("volume", l.volume.values().len()),
         };
-        CheckedLayer { id: layer.id.clone(), kind, count, must_see: layer.must_see }
+        let rigid = Bodies::of(&layer.kind).is_some();
+        CheckedLayer { id: layer.id.clone(), kind, count, must_see: layer.must_see, rigid }
     });
     Ok(CheckReport {
         scene: session.name(),

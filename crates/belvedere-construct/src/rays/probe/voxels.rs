@@ -253,7 +253,7 @@ mod tests {
         let ground = Heightfield::measured(DVec2::new(-50.0, 50.0), DVec2::splat(10.0), 11, 11, heights).unwrap();
         let scene = Scene::default()
             .with_terrain("ground", ground)
-            .with_layer("box", LayerKind::Boxes(BoxLayer { boxes: vec![shape] }))
+            .with_layer("box", LayerKind::Boxes(BoxLayer::new(vec![shape])))
             .with_layer(
                 "mesh",
                 LayerKind::Mesh(MeshLayer {
@@ -302,7 +302,7 @@ mod tests {
             yaw: 0.0,
             color: Color::rgb(1, 2, 3),
         };
-        let scene = Scene::default().with_layer("wall", LayerKind::Boxes(BoxLayer { boxes: vec![wall] }));
+        let scene = Scene::default().with_layer("wall", LayerKind::Boxes(BoxLayer::new(vec![wall])));
         let voxels = Voxels::new(&scene, &region());
         let [left, right] = [-30.0, 30.0].map(|x| DVec3::new(x, 0.0, 5.0));
         assert!(!voxels.is_free(left, right, 0.0, 0.0) && !voxels.sees(left, right));

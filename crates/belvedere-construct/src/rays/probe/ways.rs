@@ -181,7 +181,7 @@ mod tests {
             yaw: 0.0,
             color: Color::rgb(1, 2, 3),
         };
-        let scene = Scene::default().with_layer("wall", LayerKind::Boxes(BoxLayer { boxes: vec![wall] }));
+        let scene = Scene::default().with_layer("wall", LayerKind::Boxes(BoxLayer::new(vec![wall])));
         let region = Aabb { min: DVec3::new(-60.0, -20.0, 0.0), max: DVec3::new(60.0, 80.0, 60.0) };
         Voxels::new(&scene, &region)
     }

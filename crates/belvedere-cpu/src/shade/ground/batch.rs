@@ -400,7 +400,7 @@ mod tests {
             let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &progress };
             let (screen, passes) = (Screen::new(view.pinhole()), Pass::all(&view));
             let (mut blocks, light_cache) = (Blocks::default(), LightCache::default());
-            blocks.build(&job, &passes, &screen, None, &GroundCache::default());
+            blocks.build(&job, (&passes, None), &screen, None, &GroundCache::default());
             let shader = Shader::new(&job, &screen, &blocks, &light_cache);
             let mut band = Band::new(0, 160, 331, sample_offsets(1));
             blocks.draw(&mut band);

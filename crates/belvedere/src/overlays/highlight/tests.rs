@@ -19,7 +19,7 @@ fn scene() -> Scene {
         yaw: 0.3,
         color: Color::rgb(180, 60, 60),
     };
-    let layer = |shape| LayerKind::Boxes(BoxLayer { boxes: vec![shape] });
+    let layer = |shape| LayerKind::Boxes(BoxLayer::new(vec![shape]));
     let mut scene = Scene::default().with_layer("wall", layer(shape([-4.0, 50.0, -12.0], [16.0, 3.0, 20.0])));
     scene = scene.with_layer("block", layer(shape([6.0, 110.0, -12.0], [24.0, 8.0, 30.0])));
     scene.layers[1].must_see = true;

@@ -1,0 +1,52 @@
+//! Bodies that keep their shape: what a view does to a building that it carries as a whole.
+
+use super::View;
+use crate::{Miss, RigidMotion, SpaceMap, Stage};
+use glam::{DMat3, DVec3};
+
+impl View {
+    /// Whether a rigid body is carried otherwise than point by point: whether a stage comes before the curved rays.
+    pub fn carries_bodies(&self) -> bool {
+        !self.stages().iter().all(Stage::bends_rays)
+    }
+
+    /// The motion of a rigid body whose foot is `foot`, scene coordinates, by all stages up to the spline bend: the foot goes where they carry
+    /// it, and the body turns with the strip and with the deformation curve there. Earth, terrain and relief move bodies without turning or
+    /// stretching them.
+    ///
+    /// Laws: an isometry; the identity where the stages are; on the reference plane the derivative of a spline bend at the foot.
+    ///
+    /// # Errors
+    /// [`Miss`] where a stage has no image of the foot.
+    pub fn body_motion(&self, foot: DVec3) -> Result<RigidMotion, Miss> {
+        let (mut to, mut rotation) = (foot, DMat3::IDENTITY);
+        for stage in self.stages().iter().filter(|stage| !stage.bends_rays()) {
+            rotation = match stage {
+                Stage::SplineBend(bend) => bend.rotation_at(to) * rotation,
+                Stage::Strip(strip) => turn_in_plan(strip.jacobian(to)?) * rotation,
+                _ => rotation,
+            };
+            to = stage.as_map().apply(to)?;
+        }
+        if to.is_finite() { Ok(RigidMotion::new(foot, to, rotation)) } else { Err(Miss::OutsideDomain) }
+    }
+
+    /// What is left to see of a body that [`View::body_motion`] has carried: the same pinhole behind the curved rays alone.
+    pub fn after_bodies(&self) -> Self {
+        let stages = self.stages().iter().filter(|stage| stage.bends_rays()).cloned().collect();
+        Self { pinhole: self.pinhole().clone(), stages }
+    }
+
+    /// This view as a body sees it that moves by `motion`: its points have images here where the picture shows them.
+    pub fn of_body(&self, motion: RigidMotion) -> Self {
+        let after = self.stages().iter().filter(|stage| stage.bends_rays()).cloned();
+        let stages = std::iter::once(Stage::Body(motion)).chain(after).collect();
+        Self { pinhole: self.pinhole().clone(), stages }
+    }
+}
+
+/// The rotation about the vertical nearest to a derivative that stretches along one horizontal direction.
+fn turn_in_plan(jacobian: DMat3) -> DMat3 {
+    let [x, y] = [jacobian.x_axis, jacobian.y_axis];
+    DMat3::from_rotation_z((x.y - y.x).atan2(x.x + y.y))
+}

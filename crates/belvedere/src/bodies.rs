@@ -1,0 +1,57 @@
+//! Rigid layers of a picture: which they are, where it shows them, and who does not know of them.
+
+use belvedere_core::{DVec2, DVec3, Stage, View};
+use belvedere_scene::{Bodies, Frame, Scene};
+
+/// The layers of a scene that a view carries, or parts of them, as rigid bodies.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct RigidLayers(Vec<bool>);
+
+impl RigidLayers {
+    pub(crate) fn of(scene: &Scene, view: &View) -> Self {
+        if !view.carries_bodies() {
+            return Self::default();
+        }
+        Self(scene.layers.iter().map(|layer| Bodies::of(&layer.kind).is_some()).collect())
+    }
+
+    /// Whether there are any.
+    pub(crate) fn any(&self) -> bool {
+        self.0.contains(&true)
+    }
+
+    /// Their ids.
+    pub(crate) fn ids(&self, scene: &Scene) -> Vec<String> {
+        scene.layers.iter().zip(&self.0).filter(|(_, rigid)| **rigid).map(|(layer, _)| layer.id.clone()).collect()
+    }
+
+    /// Whether a pixel shows one, by the pixel's number.
+    pub(crate) fn shown_at(&self, frame: &Frame, i: usize) -> bool {
+        frame.id[i].checked_sub(1).and_then(|layer| self.0.get(layer as usize)) == Some(&true)
+    }
+
+    /// Where the stages of `view` leave the point `p_world` that a pixel shows: of a rigid layer the picture itself tells; `None` if it has no
+    /// image.
+    pub(crate) fn displaced(&self, view: &View, frame: &Frame, i: usize, p_world: DVec3) -> Option<DVec3> {
+        if !p_world.is_finite() {
+            return None;
+        }
+        if self.shown_at(frame, i) {
+            let pixel = DVec2::new((i % frame.width) as f64 + 0.5, (i / frame.width) as f64 + 0.5);
+            return Some(view.pinhole().unproject(pixel, f64::from(frame.depth[i]))).filter(|p| p.is_finite());
+        }
+        view.displace(p_world).ok().map(|d| d.point)
+    }
+}
+
+/// Why `what`, which judges by rays that meet every point where the stages carry it by itself, cannot work for a scene with rigid layers;
+/// `None` where none is carried otherwise.
+pub(crate) fn refusal(what: &str, scene: &Scene, view: &View) -> Option<String> {
+    let bends = |s: &Stage| matches!(s, Stage::TerrainDisocclusion(_) | Stage::Relief(_) | Stage::SplineBend(_));
+    let stage = view.stages().iter().find(|stage| bends(stage))?.name();
+    let ids = RigidLayers::of(scene, view).ids(scene);
+    let id = ids.first()?;
+    Some(format!(
+        "{what} does not know rigid bodies behind {stage}, and layer \"{id}\" is rigid; set rigid = false there, or remove the {stage} stage"
+    ))
+}
