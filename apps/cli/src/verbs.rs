@@ -362,7 +362,7 @@ fn view(args: crate::args::ViewArgs, context: &Context) -> anyhow::Result<Goal> 
     }
     let (files, allowed) = (args.files, context.common.allow_root.clone());
     let state = belvedere_viewer::Opening::usual_state();
-    belvedere_viewer::run(&belvedere_viewer::Opening { files, allowed, state })?;
+    belvedere_viewer::run(&belvedere_viewer::Opening { files, allowed, state, system_dialogs: true })?;
     Ok(Goal::Reached)
 }
 

@@ -1,5 +1,6 @@
 //! Export: a picture of any size, an animation, a report; beside the window, with progress, to be cancelled.
 
+use crate::files::Choosing;
 use crate::model::Model;
 use crate::wake::Wake;
 use belvedere::editor::{Place, beside};
@@ -9,7 +10,7 @@ use belvedere::scene_file::{AnimationDoc, Document, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{AnimateRequest, animate};
 use belvedere::verbs::measure::{MeasureOptions, measure};
 use belvedere::{BelvedereError, RendererChoice, output};
-use eframe::egui::{Button, ComboBox, DragValue, ProgressBar, Ui};
+use eframe::egui::{Button, ComboBox, Context, DragValue, ProgressBar, Ui};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, mpsc};
@@ -35,7 +36,7 @@ pub(crate) struct Exporter {
     film: Film,
     job: Option<Job>,
     /// A window for choosing files is open elsewhere.
-    chosen: Option<(Want, mpsc::Receiver<Option<PathBuf>>)>,
+    chosen: Option<(Want, Choosing)>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,7 +75,7 @@ impl Exporter {
             if ui.button("Export picture…").clicked() {
                 self.ask(model, Want::Picture, "picture.png");
             }
-            ui.horizontal(|ui| {
+            ui.vertical(|ui| {
                 let film = ui.add_enabled(FILMS, Button::new("Export animation…"));
                 let film =
                     film.on_disabled_hover_text("in a browser there are no films; save the scene and animate it");
@@ -96,27 +97,16 @@ impl Exporter {
                 self.ask(model, Want::Report, "report.json");
             }
         });
-        self.follow(ui, model);
+        self.follow(ui);
     }
 
     fn ask(&mut self, model: &Model, want: Want, name: &str) {
         let folder = &model.editor.place.roots.scene_dir;
-        self.chosen = Some((want, crate::files::choose_output(folder, name)));
+        self.chosen = Some((want, crate::files::choose_output(folder, name, model.system_dialogs)));
     }
 
-    /// Progress, and what came of it.
-    fn follow(&mut self, ui: &mut Ui, model: &mut Model) {
-        if let Some((want, answer)) = &self.chosen {
-            match answer.try_recv() {
-                Ok(Some(path)) => {
-                    let want = *want;
-                    self.chosen = None;
-                    self.begin(want, &path, model, ui.ctx());
-                }
-                Ok(None) | Err(mpsc::TryRecvError::Disconnected) => self.chosen = None,
-                Err(mpsc::TryRecvError::Empty) => ui.ctx().request_repaint_after_secs(0.1),
-            }
-        }
+    /// Progress.
+    fn follow(&mut self, ui: &mut Ui) {
         let Some(job) = &mut self.job else { return };
         // The page of a browser may not wait for a lock.
         if let Ok(at) = job.at.try_lock() {
@@ -129,15 +119,31 @@ impl Exporter {
             job.progress.cancel_flag().store(true, Ordering::Relaxed);
         }
         ui.ctx().request_repaint_after_secs(0.1);
+    }
+
+    /// Takes what was chosen and what came of it, whatever panel is shown.
+    pub(crate) fn poll(&mut self, ctx: &Context, model: &mut Model) {
+        if let Some((want, choosing)) = &mut self.chosen
+            && let Some(answer) = choosing.answer(ctx)
+        {
+            let want = *want;
+            self.chosen = None;
+            match answer {
+                Ok(paths) => paths.iter().take(1).for_each(|path| self.begin(want, path, model, ctx)),
+                Err(reason) => model.notices.error(reason),
+            }
+        }
+        let Some(job) = &mut self.job else { return };
+        let now = ctx.input(|input| input.time);
         match job.done.try_recv() {
             Ok(Ok(written)) => {
                 let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
-                model.notices.say(format!("Written: {}", names.join(", ")), ui.input(|input| input.time));
+                model.notices.say(format!("Written: {}", names.join(", ")), now);
                 for reason in written.iter().filter_map(|path| crate::files::hand_over(path).err()) {
                     model.notices.error(reason);
                 }
             }
-            Ok(Err(e)) if e.is_cancelled() => model.notices.say("Export cancelled", ui.input(|input| input.time)),
+            Ok(Err(e)) if e.is_cancelled() => model.notices.say("Export cancelled", now),
             Ok(Err(e)) => model.notices.error(e.to_string()),
             Err(mpsc::TryRecvError::Empty) => return,
             Err(mpsc::TryRecvError::Disconnected) => model.notices.error("the export ended without a word"),
@@ -145,7 +151,7 @@ impl Exporter {
         self.job = None;
     }
 
-    fn begin(&mut self, want: Want, path: &Path, model: &mut Model, ctx: &eframe::egui::Context) {
+    fn begin(&mut self, want: Want, path: &Path, model: &mut Model, ctx: &Context) {
         let (document, place) = ((**model.document()).clone(), model.editor.place.clone());
         let animation = match self.film {
             Film::Scene => AnimationDoc::default(),

@@ -14,11 +14,13 @@ pub(crate) enum Choice {
     Builtin(usize),
     Recent(PathBuf),
     GoTo(usize),
+    /// Takes a bookmark away.
+    Forget(usize),
     Quit,
 }
 
 /// A camera to come back to.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Bookmark {
     pub(crate) name: String,
     pub(crate) camera: CameraDoc,
@@ -84,6 +86,15 @@ pub(crate) fn bar(ui: &mut Ui, model: &Model, recent: &[PathBuf], bookmarks: &[B
                     choice = Some(Choice::GoTo(i));
                 }
             }
+            ui.add_enabled_ui(!bookmarks.is_empty(), |ui| {
+                ui.menu_button("Remove a bookmark", |ui| {
+                    for (i, bookmark) in bookmarks.iter().enumerate() {
+                        if ui.button(format!("Remove {}", bookmark.name)).clicked() {
+                            choice = Some(Choice::Forget(i));
+                        }
+                    }
+                });
+            });
         });
         if ui.button("Help").clicked() {
             choice = Some(Choice::Command(Command::Help));

@@ -2,14 +2,17 @@
 
 use crate::notices::Notices;
 use belvedere::core::{DVec2, DVec3, Navigation};
-use belvedere::editor::{Answer, Editor, Judged, Order, Pace, Painter, Shown, Sides, navigation, set_camera};
+use belvedere::editor::{
+    Answer, Editor, Judged, Order, Pace, Painter, Shown, Sides, above_ground, navigation, object_at, set_camera,
+};
 use belvedere::scene::Frame;
 use belvedere::scene::Instant as Clock;
-use belvedere::scene_file::{Document, LayerDoc, StageDoc};
+use belvedere::scene_file::{ConstructorKind, Document, LayerDoc, StageDoc};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// How two pictures are compared.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Compare {
     /// One is shown.
     #[default]
@@ -21,7 +24,7 @@ pub(crate) enum Compare {
 }
 
 /// What the pointer does in the picture.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Tool {
     /// Drags the map.
     #[default]
@@ -33,7 +36,8 @@ pub(crate) enum Tool {
 }
 
 /// How the scene is looked at; no part of the document.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub(crate) struct Look {
     /// Bent or straight.
     pub(crate) bent: bool,
@@ -119,6 +123,10 @@ pub(crate) struct Model {
     /// Share of the pixels' width that moving pictures have.
     pub(crate) coarseness: f64,
     gesture: u64,
+    /// Whether files are chosen in windows of the system.
+    pub(crate) system_dialogs: bool,
+    /// How far the opening of files is, in words; while nothing was shown yet, nothing is drawn.
+    pub(crate) opening: Option<String>,
 }
 
 impl Model {
@@ -146,6 +154,8 @@ impl Model {
             moved_on_at: f64::NEG_INFINITY,
             coarseness: 1.0,
             gesture: 0,
+            system_dialogs: false,
+            opening: None,
         }
     }
 
@@ -188,9 +198,19 @@ impl Model {
         self.ordered.as_ref().map(|ordered| ordered.image)
     }
 
-    /// Moves the camera in the course of the gesture; what cannot be is not.
+    /// Moves the camera in the course of the gesture; what cannot be is not, and it stays above the ground.
     pub(crate) fn move_camera<E>(&mut self, change: impl FnOnce(&Navigation) -> Result<Navigation, E>) {
-        if let Some(next) = self.camera().and_then(|camera| change(&camera).ok()) {
+        if self.document().constructor.as_ref().is_some_and(|doc| doc.kind == ConstructorKind::PathPreview) {
+            self.notices.note(
+                "The preview along a path has a camera of its own; bend rays by hand to move it.",
+                self.moved_on_at,
+            );
+            return;
+        }
+        let next = self.camera().and_then(|camera| change(&camera).ok());
+        let scene = self.shown.as_ref().map(|shown| shown.session.scene());
+        if let (Some(next), Some(scene)) = (next, scene) {
+            let next = above_ground(next, scene);
             self.edit_on(|document| set_camera(document, &next));
         }
     }
@@ -211,6 +231,18 @@ impl Model {
         }
         let [w, h] = view.pinhole().image.map(f64::from);
         view.ray(share * DVec2::new(w, h)).at(depth).ok().map(|seen| seen.point)
+    }
+
+    /// The object that the picture shows at a share of it, where it shows that layer: what a constructor calls its target.
+    pub(crate) fn object_at(&self, share: DVec2, layer: &str) -> Option<String> {
+        let session = &self.shown.as_ref()?.session;
+        let [w, h] = session.view().pinhole().image.map(f64::from);
+        object_at(session, layer, share * DVec2::new(w, h), self.world_at(share))
+    }
+
+    /// How long a picture at rest has been worked at, seconds; `None` if there is none in the making.
+    pub(crate) fn works_since(&self) -> Option<f64> {
+        (self.waiting == Some(Pace::Resting)).then(|| self.changed.elapsed().as_secs_f64())
     }
 
     /// Id of the layer that the picture shows at a share of it.
@@ -255,6 +287,9 @@ impl Model {
     ///
     /// Returns the time after which it wants to be asked again.
     pub(crate) fn order(&mut self, image: [u32; 2], now: f64) -> Option<f64> {
+        if self.shown.is_none() && self.opening.is_some() {
+            return None;
+        }
         self.ease(now);
         let (sides, bend) = self.sides();
         let wanted = Wanted { document: self.document().clone(), image, sides, bend, overhead: self.look.overhead };
@@ -262,7 +297,8 @@ impl Model {
             (self.changed_at, self.changed) = (now, Clock::now());
             self.rested = false;
             self.ordered = Some(wanted.clone());
-            if self.shown.is_some() {
+            let takes_long = self.document().solves_terrain() || self.document().constructor.is_some();
+            if self.shown.is_some() || takes_long {
                 let size = image.map(|n| ((f64::from(n) * self.coarseness) as u32).max(16));
                 let detail_px = 1.0 / self.coarseness;
                 self.awaited.push((wanted.document.clone(), Clock::now()));
@@ -274,7 +310,8 @@ impl Model {
             return Some(0.0);
         }
         if self.rested {
-            return None;
+            // Whoever waits is told for how long.
+            return self.works_since().map(|_| 0.5);
         }
         let due = self.changed_at + REST_AFTER;
         if self.shown.is_some() && now < due {

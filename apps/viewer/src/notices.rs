@@ -2,11 +2,29 @@
 
 use eframe::egui;
 
+/// What a message is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Problem,
+    Done,
+    Note,
+}
+
+impl Kind {
+    fn heading(self) -> (&'static str, egui::Color32) {
+        match self {
+            Self::Problem => ("Problem", egui::Color32::from_rgb(190, 60, 40)),
+            Self::Done => ("Done", egui::Color32::from_rgb(40, 120, 80)),
+            Self::Note => ("Note", egui::Color32::from_rgb(50, 110, 180)),
+        }
+    }
+}
+
 /// One message.
 #[derive(Debug, Clone)]
 struct Notice {
     text: String,
-    is_error: bool,
+    kind: Kind,
     /// Time of the window at which it goes; `None` = when it is dismissed.
     until: Option<f64>,
 }
@@ -25,14 +43,21 @@ const MOST: usize = 5;
 impl Notices {
     /// Something went wrong; it stays until it is dismissed.
     pub(crate) fn error(&mut self, text: impl Into<String>) {
-        self.add(Notice { text: text.into(), is_error: true, until: None });
+        self.add(Notice { text: text.into(), kind: Kind::Problem, until: None });
     }
 
     /// Something happened; it goes by itself.
     ///
     /// * `now`: time of the window, seconds.
     pub(crate) fn say(&mut self, text: impl Into<String>, now: f64) {
-        self.add(Notice { text: text.into(), is_error: false, until: Some(now + STAYS) });
+        self.add(Notice { text: text.into(), kind: Kind::Done, until: Some(now + STAYS) });
+    }
+
+    /// Something to know; it goes by itself.
+    ///
+    /// * `now`: time of the window, seconds.
+    pub(crate) fn note(&mut self, text: impl Into<String>, now: f64) {
+        self.add(Notice { text: text.into(), kind: Kind::Note, until: Some(now + STAYS) });
     }
 
     fn add(&mut self, notice: Notice) {
@@ -46,18 +71,14 @@ impl Notices {
     pub(crate) fn show(&mut self, ctx: &egui::Context) {
         let now = ctx.input(|input| input.time);
         self.shown.retain(|notice| notice.until.is_none_or(|until| now < until));
-        let mut dismissed = None;
+        let (mut dismissed, mut top) = (None, 44.0);
         for (i, notice) in self.shown.iter().enumerate() {
-            let (heading, color) = if notice.is_error {
-                ("Problem", egui::Color32::from_rgb(190, 60, 40))
-            } else {
-                ("Done", egui::Color32::from_rgb(40, 120, 80))
-            };
-            egui::Window::new(format!("{heading} {}", i + 1))
+            let (heading, color) = notice.kind.heading();
+            let window = egui::Window::new(format!("{heading} {}", i + 1))
                 .id(egui::Id::unique(("notice", i)))
                 .title_bar(false)
                 .resizable(false)
-                .anchor(egui::Align2::RIGHT_TOP, [-12.0, 44.0 + 78.0 * i as f32])
+                .anchor(egui::Align2::RIGHT_TOP, [-12.0, top])
                 .show(ctx, |ui| {
                     ui.set_max_width(380.0);
                     ui.horizontal(|ui| {
@@ -68,6 +89,7 @@ impl Notices {
                     });
                     ui.label(&notice.text);
                 });
+            top += window.map_or(0.0, |window| window.response.rect.height() + 6.0);
         }
         if let Some(i) = dismissed {
             self.shown.remove(i);

@@ -14,6 +14,8 @@ use eframe::egui::{
 const MOST_PIXELS: f32 = 2.4e6;
 /// Time of one picture of a flicker, seconds.
 const FLICKER: f64 = 0.7;
+/// Work that takes longer is said, seconds.
+const PATIENT: f64 = 0.8;
 const INK: Color32 = Color32::from_rgb(28, 34, 44);
 const PAPER: Color32 = Color32::from_rgba_premultiplied(225, 225, 222, 225);
 
@@ -135,15 +137,23 @@ impl PictureView {
     /// What the picture has to say about itself.
     fn marks(&self, painter: &Painter, rect: Rect, model: &Model) {
         let Some(shown) = &model.shown else {
-            let words = model.violated.as_deref().unwrap_or("opening the scene");
+            let words = model.violated.as_deref().or(model.opening.as_deref()).unwrap_or("opening the scene");
             painter.text(rect.center(), Align2::CENTER_CENTER, words, FontId::proportional(15.0), Color32::GRAY);
             return;
         };
         let moving = matches!(shown.pace, Pace::Moving { .. });
         if moving && shown.session.view().is_bent() && shown.bent.is_some() {
-            label(painter, rect.left_bottom() + vec2(8.0, -30.0), Align2::LEFT_BOTTOM, "bent view");
+            label(painter, rect.right_bottom() + vec2(-8.0, -8.0), Align2::RIGHT_BOTTOM, "bent view");
         }
         let mut top = rect.center_top() + vec2(0.0, 8.0);
+        if let Some(opening) = &model.opening {
+            label(painter, top, Align2::CENTER_TOP, opening);
+            top.y += 26.0;
+        }
+        if let Some(since) = model.works_since().filter(|since| *since > PATIENT) {
+            label(painter, top, Align2::CENTER_TOP, &format!("working, {since:.0} s"));
+            top.y += 26.0;
+        }
         if let Some(waits) = shown.waits {
             label(painter, top, Align2::CENTER_TOP, waits);
             top.y += 26.0;
@@ -165,7 +175,8 @@ impl PictureView {
                 if moving { 100.0 * model.coarseness } else { 100.0 },
                 model.latency().unwrap_or_default(),
             );
-            label(painter, rect.right_bottom() + vec2(-8.0, -8.0), Align2::RIGHT_BOTTOM, &words);
+            // Over the mark that the picture itself bears.
+            label(painter, rect.right_bottom() + vec2(-8.0, -44.0), Align2::RIGHT_BOTTOM, &words);
         }
         if let Some((point, name)) = &self.picked
             && let Some(at) = image_of(*point, rect, model)
@@ -191,7 +202,8 @@ impl PictureView {
             return;
         };
         if model.look.tool == Tool::Track {
-            crate::panels::rays::track(model, &layer);
+            let target = model.object_at(at, &layer).unwrap_or(layer);
+            crate::panels::rays::track(model, &target);
             model.look.tool = Tool::Map;
             return;
         }

@@ -4,13 +4,13 @@ use crate::builtin::BUILTIN;
 use crate::files;
 use crate::keys::{self, Command};
 use crate::menu::{self, Bookmark, Choice};
-use crate::model::Model;
-use crate::panels::{Panels, set_stage};
+use crate::model::{Look, Model};
+use crate::panels::{Panels, Tab, set_stage};
 use crate::picture::{PictureView, image_of_frame};
 use crate::times::Times;
 use crate::wake::Wake;
 use crate::widgets::overhead::overhead;
-use belvedere::editor::{Editor, Place, Recovery, beside, open_files};
+use belvedere::editor::{Editor, Opened, Place, Recovery, beside, open_beside, open_files};
 use belvedere::io::fs;
 use belvedere::scene::Progress;
 use belvedere::scene_file::{self, CameraDoc, StageDoc};
@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError};
+use std::sync::{Arc, Mutex};
 
 /// What to open at the start.
 #[derive(Debug, Clone, Default)]
@@ -29,6 +30,8 @@ pub struct Opening {
     pub allowed: Vec<PathBuf>,
     /// Where the application remembers what it was doing; `None` = nowhere.
     pub state: Option<PathBuf>,
+    /// Whether files are chosen in windows of the system, where it has such; else in windows of the application.
+    pub system_dialogs: bool,
 }
 
 impl Opening {
@@ -53,8 +56,20 @@ struct Remembered {
     bookmarks: BTreeMap<PathBuf, Vec<Bookmark>>,
 }
 
-/// A file that is being opened beside the window.
-type Pending = Receiver<Result<Editor, String>>;
+/// A file that is being opened beside the window, and how far that is.
+struct Pending {
+    opened: Receiver<Result<Opened, String>>,
+    at: Arc<Mutex<String>>,
+}
+
+/// What is written down beside the document for the case of a crash.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+struct Extra {
+    look: Look,
+    tab: Tab,
+    bookmarks: Vec<Bookmark>,
+}
 
 /// The application.
 pub struct Viewer {
@@ -67,12 +82,13 @@ pub struct Viewer {
     allowed: Vec<PathBuf>,
     state: Option<PathBuf>,
     recovery: Option<Recovery>,
-    /// The document that was written down last, and since when it is another.
-    written: Option<std::sync::Arc<scene_file::Document>>,
+    /// What was written down last, and since when it is something else.
+    written: Option<(Arc<scene_file::Document>, Extra)>,
     dirty_since: Option<f64>,
     pending: Option<Pending>,
-    chosen_input: Option<files::Inputs>,
-    chosen_output: Option<Receiver<Option<PathBuf>>>,
+    dropped: Option<files::Inputs>,
+    chosen_input: Option<files::Choosing>,
+    chosen_output: Option<files::Choosing>,
     help: bool,
     times: Times,
     wake: Wake,
@@ -109,14 +125,19 @@ impl Viewer {
             written: None,
             dirty_since: None,
             pending: None,
+            dropped: None,
             chosen_input: None,
             chosen_output: None,
             help: false,
             times: Times::default(),
         };
+        viewer.model.system_dialogs = opening.system_dialogs;
         match left {
             Some(left) if opening.files.is_empty() => {
                 viewer.replace(left.editor);
+                let extra: Extra = serde_json::from_value(left.extra).unwrap_or_default();
+                (viewer.model.look, viewer.panels.tab) = (extra.look, extra.tab);
+                viewer.bookmarks = extra.bookmarks;
                 notes.push("The last session did not end as it should; here is its last state.".into());
             }
             Some(mut left) if left.editor.is_changed() => {
@@ -137,7 +158,7 @@ impl Viewer {
     }
 
     /// The document as it is.
-    pub fn document(&self) -> &std::sync::Arc<scene_file::Document> {
+    pub fn document(&self) -> &Arc<scene_file::Document> {
         self.model.document()
     }
 
@@ -170,16 +191,31 @@ impl Viewer {
         }
         let (outbox, inbox) = std::sync::mpsc::channel();
         let (allowed, wake) = (self.allowed.clone(), self.wake.clone());
+        let at = Arc::new(Mutex::new("opening".to_owned()));
+        self.model.opening = Some("opening".into());
+        let current = self.model.shown.is_some().then(|| self.model.document().clone());
+        let told = at.clone();
+        let progress = Progress::new(move |stage, share| {
+            // The page of a browser may not wait for a lock.
+            if let Ok(mut at) = told.try_lock() {
+                *at = format!("opening: {stage}, {:.0} %", 100.0 * share);
+            }
+        });
         let work = move || {
-            let opened = open_files(&paths, &allowed, &Progress::silent()).map_err(|e| e.to_string());
+            let opened = match &current {
+                Some(current) => open_beside(current, &paths, &allowed, &progress),
+                None => open_files(&paths, &allowed, &progress).map(|editor| Opened::Scene(Box::new(editor))),
+            };
+            let opened = opened.map_err(|e| e.to_string());
             let _ = outbox.send(opened);
             wake.call();
         };
         if let Err(e) = beside(work) {
             self.model.notices.error(e);
+            self.model.opening = None;
             return;
         }
-        self.pending = Some(inbox);
+        self.pending = Some(Pending { opened: inbox, at });
     }
 
     fn remember(&mut self, path: &Path) {
@@ -220,9 +256,17 @@ impl Viewer {
     /// Takes what was chosen or opened elsewhere.
     fn arrivals(&mut self, ctx: &Context) {
         if let Some(pending) = &self.pending {
-            match pending.try_recv() {
-                Ok(Ok(editor)) => {
-                    self.replace(editor);
+            if let Ok(at) = pending.at.try_lock() {
+                self.model.opening = Some(at.clone());
+            }
+            ctx.request_repaint_after_secs(0.1);
+            match pending.opened.try_recv() {
+                Ok(Ok(Opened::Scene(editor))) => {
+                    self.replace(*editor);
+                    self.pending = None;
+                }
+                Ok(Ok(Opened::Layers(layers, folders))) => {
+                    self.model.editor.add_layers(layers, folders);
                     self.pending = None;
                 }
                 Ok(Err(reason)) => {
@@ -237,26 +281,33 @@ impl Viewer {
                 }
                 Err(TryRecvError::Empty) => {}
             }
+            if self.pending.is_none() {
+                self.model.opening = None;
+            }
         }
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         if !dropped.is_empty() {
-            self.chosen_input = Some(files::dropped(&dropped));
+            self.dropped = Some(files::dropped(&dropped));
         }
-        if let Some(answer) = self.chosen_input.as_ref().and_then(|inbox| inbox.try_recv().ok()) {
-            self.chosen_input = None;
+        let dropped = self.dropped.as_ref().and_then(|inbox| inbox.try_recv().ok());
+        let chosen = self.chosen_input.as_mut().and_then(|choosing| choosing.answer(ctx));
+        self.dropped.take_if(|_| dropped.is_some());
+        self.chosen_input.take_if(|_| chosen.is_some());
+        if let Some(answer) = dropped.or(chosen) {
             match answer {
                 Ok(paths) if paths.is_empty() => {}
                 Ok(paths) => self.open(paths),
                 Err(reason) => self.model.notices.error(reason),
             }
         }
-        if let Some(answer) = self.chosen_output.as_ref().and_then(|inbox| inbox.try_recv().ok()) {
+        if let Some(answer) = self.chosen_output.as_mut().and_then(|choosing| choosing.answer(ctx)) {
             self.chosen_output = None;
-            if let Some(path) = answer {
-                self.save(ctx, &path);
+            match answer {
+                Ok(paths) => paths.iter().take(1).for_each(|path| self.save(ctx, path)),
+                Err(reason) => self.model.notices.error(reason),
             }
         }
-        if self.chosen_input.is_some() || self.chosen_output.is_some() {
+        if self.dropped.is_some() {
             ctx.request_repaint_after_secs(0.1);
         }
     }
@@ -285,12 +336,13 @@ impl Viewer {
 
     /// Lets the user choose where to write a scene.
     fn choose_output(&mut self) {
-        self.chosen_output = Some(files::choose_output(&self.model.editor.place.roots.scene_dir, "scene.toml"));
+        let (folder, system) = (&self.model.editor.place.roots.scene_dir, self.model.system_dialogs);
+        self.chosen_output = Some(files::choose_output(folder, "scene.toml", system));
     }
 
     fn command(&mut self, ctx: &Context, command: Command) {
         match command {
-            Command::Open => self.chosen_input = Some(files::choose_input()),
+            Command::Open => self.chosen_input = Some(files::choose_input(self.model.system_dialogs)),
             Command::Save => match self.model.editor.place.scene.clone() {
                 Some(path) => self.save(ctx, &path),
                 None => self.choose_output(),
@@ -304,7 +356,8 @@ impl Viewer {
             }
             Command::Bookmark => {
                 if let Some(camera) = self.model.camera() {
-                    let name = format!("View {}", self.bookmarks.len() + 1);
+                    let taken = |name: &String| self.bookmarks.iter().any(|bookmark| bookmark.name == *name);
+                    let name = (1..).map(|n| format!("View {n}")).find(|name| !taken(name)).unwrap_or_default();
                     let camera = CameraDoc::of(&camera.pinhole, camera.target);
                     self.bookmarks.push(Bookmark { name, camera });
                     self.remember_bookmarks();
@@ -329,6 +382,12 @@ impl Viewer {
                 if let Some(bookmark) = self.bookmarks.get(i).cloned() {
                     let image = self.model.document().camera.image;
                     self.model.edit(|document| document.camera = CameraDoc { image, ..bookmark.camera });
+                }
+            }
+            Choice::Forget(i) => {
+                if i < self.bookmarks.len() {
+                    self.bookmarks.remove(i);
+                    self.remember_bookmarks();
                 }
             }
             Choice::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
@@ -386,8 +445,11 @@ impl Viewer {
     fn write_down(&mut self, ctx: &Context) {
         let Some(recovery) = &self.recovery else { return };
         let now = ctx.input(|input| input.time);
-        let same = self.written.as_ref().is_some_and(|written| std::sync::Arc::ptr_eq(written, self.model.document()));
-        if same {
+        let extra = Extra { look: self.model.look.clone(), tab: self.panels.tab, bookmarks: self.bookmarks.clone() };
+        let is_written =
+            |(written, beside): &(_, Extra)| Arc::ptr_eq(written, self.model.document()) && *beside == extra;
+        // What is still being opened takes the place of what is there.
+        if self.written.as_ref().is_some_and(is_written) || (self.pending.is_some() && self.model.shown.is_none()) {
             self.dirty_since = None;
             return;
         }
@@ -396,9 +458,10 @@ impl Viewer {
             ctx.request_repaint_after_secs((WRITE_AFTER - (now - since)) as f32);
             return;
         }
-        self.written = Some(self.model.document().clone());
+        let beside = serde_json::to_value(&extra).unwrap_or_default();
+        self.written = Some((self.model.document().clone(), extra));
         self.dirty_since = None;
-        if let Err(e) = recovery.write(&self.model.editor, serde_json::Value::Null) {
+        if let Err(e) = recovery.write(&self.model.editor, beside) {
             self.model.notices.error(format!("what you do could not be written down for the case of a crash: {e}"));
         }
     }

@@ -13,6 +13,14 @@ pub struct Obstacles<'a> {
     bodies: Option<Box<(Obstacles<'static>, View)>>,
 }
 
+/// What is left out.
+#[derive(Debug, Clone, Copy, Default)]
+struct Without<'w> {
+    layers: &'w [usize],
+    /// Parts of a mesh or boxes of a layer, by its index and their numbers.
+    parts: Option<(usize, &'w [u32])>,
+}
+
 /// How lines of sight are walked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SightOptions {
@@ -33,30 +41,22 @@ impl<'a> Obstacles<'a> {
 
     /// The same without some layers, by their index: what is looked for does not hide itself.
     pub fn without(scene: &'a Scene, layers: &[usize]) -> Self {
-        Self::of(scene, layers, None, None)
+        Self::of(scene, Without { layers, ..Without::default() }, None, None)
     }
 
-    /// The same without some parts of a mesh, by the index of its layer and their numbers.
+    /// The same without some parts of a mesh, or some boxes of a layer of boxes, by the index of the layer and their numbers.
     pub fn without_parts(scene: &'a Scene, layer: usize, parts: &[u32]) -> Self {
-        let mut out = Self::of(scene, &[layer], None, None);
-        out.meshes.extend(
-            scene
-                .layers
-                .get(layer)
-                .and_then(|l| l.kind.triangles())
-                .map(|m| (layer, MeshTree::without_parts(&m.mesh, parts))),
-        );
-        out
+        Self::of(scene, Without { parts: Some((layer, parts)), ..Without::default() }, None, None)
     }
 
     /// The same where the ground, and what stands on it, may be displaced vertically.
     pub fn lifted(scene: &'a Scene, lift: Option<Lift<'_>>) -> Self {
-        Self::of(scene, &[], lift, None)
+        Self::of(scene, Without::default(), lift, None)
     }
 
     /// The same without rigid bodies, see [`Obstacles::of_bodies`].
     pub fn beside_bodies(scene: &'a Scene, lift: Option<Lift<'_>>, carried: &Carried) -> Self {
-        Self::of(scene, &[], lift, Some(carried))
+        Self::of(scene, Without::default(), lift, Some(carried))
     }
 
     /// Rigid bodies alone, where a view carries them to: in the space of [`Carried::after`]. Triangles are numbered by [`belvedere_scene::Mesh::part`].
@@ -78,15 +78,23 @@ impl<'a> Obstacles<'a> {
         }
     }
 
-    fn of(scene: &'a Scene, without: &[usize], lift: Option<Lift<'_>>, carried: Option<&Carried>) -> Self {
+    fn of(scene: &'a Scene, without: Without<'_>, lift: Option<Lift<'_>>, carried: Option<&Carried>) -> Self {
         let (mut grounds, mut boxes, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
-        for (i, layer) in scene.layers.iter().enumerate().filter(|(i, _)| !without.contains(i)) {
+        for (i, layer) in scene.layers.iter().enumerate().filter(|(i, _)| !without.layers.contains(i)) {
+            let left_out = without.parts.filter(|(layer, _)| *layer == i).map_or(&[][..], |(_, parts)| parts);
             match &layer.kind {
                 LayerKind::Terrain(t) => grounds.push((i, Ground::lifted(&t.heightfield, lift))),
                 LayerKind::Boxes(_) if carried.is_some_and(|c| c.layer(i).is_some()) => {}
-                LayerKind::Boxes(b) => boxes.extend(b.boxes.iter().enumerate().map(|(k, shape)| ([i, k], shape))),
+                LayerKind::Boxes(b) => {
+                    let held = b.boxes.iter().enumerate().filter(|(k, _)| !left_out.contains(&(*k as u32)));
+                    boxes.extend(held.map(|(k, shape)| ([i, k], shape)));
+                }
                 LayerKind::Mesh(_) | LayerKind::Molecule(_) => {
                     let Some(m) = layer.kind.triangles() else { continue };
+                    if !left_out.is_empty() {
+                        meshes.push((i, MeshTree::without_parts(&m.mesh, left_out)));
+                        continue;
+                    }
                     let b = m.mesh.bounds();
                     let lift = lift.filter(|_| !b.is_empty()).map(|lift| lift(b.min.truncate(), b.max.truncate()));
                     let lift = lift.unwrap_or([0.0; 2]);

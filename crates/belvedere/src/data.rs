@@ -136,6 +136,16 @@ fn locate(name: &str, roots: &mut Roots) -> Result<String, BelvedereError> {
     path.to_str().map(str::to_owned).ok_or_else(|| BelvedereError::not_utf8(name))
 }
 
+/// A layer of the features of a file, called by its name.
+pub(crate) fn features_of(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
+    let kind = kind_of(&load_vectors(path)?.value);
+    let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
+    let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("features");
+    let taken = |id: &str| others.iter().any(|layer| layer.id() == id);
+    let id = (1..).map(|k| if k == 1 { stem.to_owned() } else { format!("{stem}-{k}") }).find(|id| !taken(id));
+    Ok(feature_layer(id.unwrap_or_default(), Paths::One(name.to_owned()), kind))
+}
+
 fn feature_layer(id: String, source: Paths, kind: FeatureKind) -> LayerDoc {
     let must_see = true;
     match kind {

@@ -116,18 +116,18 @@ impl Session {
     /// The same scene by a document that was edited, opened as by `options`: as [`Session::from_document`] of that document, without
     /// reading the layers again.
     ///
-    /// * `about_layers`: warnings that stay.
+    /// * `about_layers`: warnings that stay. `memory`: what constructors remember of the document before.
     pub(crate) fn edited(
         &self,
         document: Document,
         options: &OpenOptions,
         about_layers: &[String],
+        memory: &mut Memory,
     ) -> Result<Self, BelvedereError> {
         let source = SourceDocument::new(document);
         validate::document(&source)?;
         let roots = Roots { allowed: options.allow_roots.clone(), ..Roots::default() };
-        let mut memory = Memory::default();
-        let mut solving = Solving { memory: &mut memory, time_step_s: None, progress: &options.progress };
+        let mut solving = Solving { memory, time_step_s: None, progress: &options.progress };
         let resolved = view::resolve(&source, &roots, &self.scene, (!options.unsolved).then_some(&mut solving))?;
         Ok(Self {
             view: resolved.view,

@@ -2,30 +2,51 @@
 
 use super::Inputs;
 use belvedere::io::fs;
-use eframe::egui::DroppedFileHandle;
+use eframe::egui::{Context, DroppedFileHandle};
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::mpsc::{self, Sender, TryRecvError};
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::spawn_local;
 use web_sys::js_sys::{Array, Uint8Array};
 use web_sys::{Blob, HtmlAnchorElement, Url};
 
+/// A question for files whose answer comes later.
+#[derive(Debug)]
+pub(crate) struct Choosing(Inputs);
+
+impl Choosing {
+    /// The answer, if there is one; no files if the user thought better of it.
+    ///
+    /// # Errors
+    /// One sentence about a file that could not be read.
+    pub(crate) fn answer(&mut self, ctx: &Context) -> Option<Result<Vec<PathBuf>, String>> {
+        match self.0.try_recv() {
+            Ok(answer) => Some(answer),
+            Err(TryRecvError::Disconnected) => Some(Ok(Vec::new())),
+            Err(TryRecvError::Empty) => {
+                ctx.request_repaint_after_secs(0.1);
+                None
+            }
+        }
+    }
+}
+
 /// Where to write: beside the scene, under the usual name; the browser asks the user what to do with it.
-pub(crate) fn choose_output(folder: &Path, name: &str) -> Receiver<Option<PathBuf>> {
+pub(crate) fn choose_output(folder: &Path, name: &str, _: bool) -> Choosing {
     let (outbox, inbox) = mpsc::channel();
-    let _ = outbox.send(Some(folder.join(name)));
-    inbox
+    let _ = outbox.send(Ok(vec![folder.join(name)]));
+    Choosing(inbox)
 }
 
 /// Lets the user choose a scene, or data.
-pub(crate) fn choose_input() -> Inputs {
-    later(|outbox| async move {
+pub(crate) fn choose_input(_: bool) -> Choosing {
+    Choosing(later(|outbox| async move {
         let mut paths = Vec::new();
         for file in rfd::AsyncFileDialog::new().pick_files().await.unwrap_or_default() {
             paths.push(keep(&file.file_name(), Ok(file.read().await)));
         }
         let _ = outbox.send(paths.into_iter().collect());
-    })
+    }))
 }
 
 /// Files that were dropped on the page.

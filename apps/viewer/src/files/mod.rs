@@ -1,14 +1,16 @@
 //! Files: chosen by the user, dropped on the window, handed over; where the application keeps what it remembers.
 
+#[cfg(not(target_family = "wasm"))]
+mod ask;
 #[cfg(target_family = "wasm")]
 mod browser;
 #[cfg(not(target_family = "wasm"))]
 mod native;
 
 #[cfg(target_family = "wasm")]
-pub(crate) use browser::{choose_input, choose_output, dropped, hand_over};
+pub(crate) use browser::{Choosing, choose_input, choose_output, dropped, hand_over};
 #[cfg(not(target_family = "wasm"))]
-pub(crate) use native::{choose_input, choose_output, dropped, hand_over, state_folder};
+pub(crate) use native::{Choosing, choose_input, choose_output, dropped, hand_over, state_folder};
 
 use std::path::PathBuf;
 use std::sync::mpsc::Receiver;

@@ -1,22 +1,69 @@
-//! Files of the system, chosen in its own windows.
+//! Files of the system, chosen in its own windows, or in ours where it has none.
 
 use super::Inputs;
-use eframe::egui::DroppedFileHandle;
+use super::ask::Ask;
+use eframe::egui::{Context, DroppedFileHandle};
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{self, Receiver};
+use std::sync::mpsc::{self, Receiver, TryRecvError};
+use std::time::{Duration, Instant};
+
+/// Nobody closes a window so soon: there was none.
+const TOO_SOON: Duration = Duration::from_millis(400);
+
+/// A question for files whose answer comes later.
+#[derive(Debug)]
+pub(crate) struct Choosing {
+    /// `None`: the system has no window for it.
+    inbox: Receiver<Option<Vec<PathBuf>>>,
+    own: Ask,
+    is_own: bool,
+}
+
+impl Choosing {
+    fn new(system: bool, own: Ask, ask: impl FnOnce() -> Option<Vec<PathBuf>> + Send + 'static) -> Self {
+        let (outbox, inbox) = mpsc::channel();
+        if system {
+            std::thread::spawn(move || {
+                let began = Instant::now();
+                let answer = ask().or_else(|| (began.elapsed() > TOO_SOON).then(Vec::new));
+                let _ = outbox.send(answer);
+            });
+        }
+        Self { inbox, own, is_own: !system }
+    }
+
+    /// The answer, if there is one; no files if the user thought better of it.
+    ///
+    /// # Errors
+    /// None.
+    pub(crate) fn answer(&mut self, ctx: &Context) -> Option<Result<Vec<PathBuf>, String>> {
+        if self.is_own {
+            return self.own.show(ctx).map(Ok);
+        }
+        match self.inbox.try_recv() {
+            Ok(Some(files)) => return Some(Ok(files)),
+            Ok(None) | Err(TryRecvError::Disconnected) => self.is_own = true,
+            Err(TryRecvError::Empty) => {}
+        }
+        ctx.request_repaint_after_secs(0.1);
+        None
+    }
+}
 
 /// Lets the user choose where to write; the answer comes later.
 ///
-/// * `folder`: where to look first.
-pub(crate) fn choose_output(folder: &Path, name: &str) -> Receiver<Option<PathBuf>> {
+/// * `folder`: where to look first. `system`: whether in a window of the system, if it has one.
+pub(crate) fn choose_output(folder: &Path, name: &str, system: bool) -> Choosing {
     let dialog = rfd::FileDialog::new().set_file_name(name);
     let dialog = if folder.as_os_str().is_empty() { dialog } else { dialog.set_directory(folder) };
-    elsewhere(move || dialog.save_file())
+    Choosing::new(system, Ask::output(folder, name), move || dialog.save_file().map(|path| vec![path]))
 }
 
 /// Lets the user choose a scene, or data.
-pub(crate) fn choose_input() -> Inputs {
-    elsewhere(|| Ok(rfd::FileDialog::new().pick_files().unwrap_or_default()))
+///
+/// * `system`: whether in a window of the system, if it has one.
+pub(crate) fn choose_input(system: bool) -> Choosing {
+    Choosing::new(system, Ask::input(), || rfd::FileDialog::new().pick_files())
 }
 
 /// Files that were dropped on the window.
@@ -29,14 +76,6 @@ pub(crate) fn dropped(files: &[DroppedFileHandle]) -> Inputs {
 /// A file that was written is where the user wanted it.
 pub(crate) fn hand_over(_: &Path) -> Result<(), String> {
     Ok(())
-}
-
-fn elsewhere<T: Send + 'static>(ask: impl FnOnce() -> T + Send + 'static) -> Receiver<T> {
-    let (outbox, inbox) = mpsc::channel();
-    std::thread::spawn(move || {
-        let _ = outbox.send(ask());
-    });
-    inbox
 }
 
 /// Where the application keeps what it remembers; `None` where the system has no such place.

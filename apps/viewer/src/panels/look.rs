@@ -110,7 +110,7 @@ fn light(ui: &mut Ui, model: &mut Model) {
     let azimuth = light.azimuth_deg.unwrap_or(315.0);
     set(ui, "sun from, degrees", azimuth, 0.0..=360.0, "clockwise from north", |l, v| l.azimuth_deg = Some(v));
     let altitude = light.altitude_deg.unwrap_or(45.0);
-    set(ui, "sun over the horizon, degrees", altitude, 1.0..=90.0, "", |l, v| l.altitude_deg = Some(v));
+    set(ui, "sun high, degrees", altitude, 1.0..=90.0, "over the horizon", |l, v| l.altitude_deg = Some(v));
     let mut shadows = light.shadows;
     if ui.checkbox(&mut shadows, "Shadows").changed() {
         model.edit(|document| document.light = Some(LightDoc { shadows, ..light }));

@@ -10,10 +10,11 @@ use crate::export::Exporter;
 use crate::model::Model;
 use belvedere::scene_file::{Document, StageDoc};
 use eframe::egui::{DragValue, ScrollArea, Slider, Ui};
+use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
 /// The side panel.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Tab {
     #[default]
     Layers,
@@ -53,7 +54,12 @@ impl Panels {
             }
         });
         ui.separator();
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| match self.tab {
+        if model.shown.is_none() && model.opening.is_some() {
+            ui.weak("opening");
+            return;
+        }
+        // The panel is as wide as the user wants it, whatever is in it.
+        ScrollArea::both().auto_shrink(false).show(ui, |ui| match self.tab {
             Tab::Layers => layers::show(ui, model),
             Tab::Look => look::show(ui, model),
             Tab::Rays => self.rays.show(ui, model),
@@ -67,6 +73,7 @@ impl Panels {
     pub(crate) fn play(&mut self, ctx: &eframe::egui::Context, model: &mut Model) {
         self.rays.play(ctx, model);
         self.spline.play(ctx, model);
+        self.exporter.poll(ctx, model);
     }
 }
 

@@ -4,13 +4,15 @@ use super::{number, set_stage, slider};
 use crate::model::{Model, Tool};
 use belvedere::core::DVec3;
 use belvedere::core::map::curved_rays::{Model as RayModel, Sharpness};
-use belvedere::editor::next_turn;
+use belvedere::editor::{next_turn, with_parallel_planes, with_pivot_line};
 use belvedere::scene_file::{ConstructorDoc, ConstructorKind, LayerDoc, RaysStageDoc, StageDoc, TurnDoc};
 use eframe::egui::{CollapsingHeader, ComboBox, Context, Ui};
 
 const KIND: &str = "curved_rays";
 /// Speed of a played preview, share of the previewed length per second.
 const PLAY: f64 = 0.25;
+/// Share of the previewed length that is still ahead where it ends: at the end of a path there is nothing to show.
+const AHEAD: f64 = 0.25;
 
 /// What the panel remembers.
 #[derive(Debug, Default)]
@@ -49,6 +51,7 @@ impl RaysPanel {
             change(&mut next);
             model.edit_on(|document| document.constructor = Some(next));
         };
+        paths(ui, model, constructor);
         let position = constructor.position_m.unwrap_or(0.0);
         if let Some(value) = slider(ui, model, "position", position, 0.0..=length, "along the path") {
             put(model, &|doc| doc.position_m = Some(value));
@@ -64,7 +67,12 @@ impl RaysPanel {
             self.playing = !self.playing;
             self.played_at = ui.input(|input| input.time);
             model.begin_gesture();
+            // At the end it begins again.
+            if self.playing && position >= length - AHEAD * ahead.min(length) {
+                put(model, &|doc| doc.position_m = Some(0.0));
+            }
         }
+        ui.weak("The preview has a camera of its own.");
     }
 
     /// Goes on along the path.
@@ -76,11 +84,12 @@ impl RaysPanel {
         };
         let now = ctx.input(|input| input.time);
         let length = path_length(model, &doc).unwrap_or(1000.0);
-        let speed = PLAY * doc.preview_m.unwrap_or(0.25 * length);
+        let ahead = doc.preview_m.unwrap_or(0.25 * length);
+        let (speed, end) = (PLAY * ahead, length - AHEAD * ahead.min(length));
         let next = doc.position_m.unwrap_or(0.0) + speed * (now - self.played_at).clamp(0.0, 0.2);
         self.played_at = now;
-        self.playing = next < length;
-        doc.position_m = Some(next.min(length));
+        self.playing = next < end;
+        doc.position_m = Some(next.min(end.max(doc.position_m.unwrap_or(0.0))));
         model.edit_on(|document| document.constructor = Some(doc));
         ctx.request_repaint();
     }
@@ -96,9 +105,25 @@ fn path_length(model: &Model, constructor: &ConstructorDoc) -> Option<f64> {
     line.features.iter().map(|feature| length(&feature.points)).reduce(f64::max)
 }
 
-/// Keeps a layer in sight.
-pub(crate) fn track(model: &mut Model, layer: &str) {
-    let target = Some(layer.to_owned());
+/// The path of a preview, where there are several.
+fn paths(ui: &mut Ui, model: &mut Model, constructor: &ConstructorDoc) {
+    let lines = model.layer_ids(|layer| matches!(layer, LayerDoc::Line(_)));
+    let Some(path) = constructor.path.as_ref().filter(|path| lines.len() > 1 && lines.contains(path)) else { return };
+    let mut chosen = path.clone();
+    ComboBox::from_label("Path").selected_text(&chosen).show_ui(ui, |ui| {
+        for line in &lines {
+            ui.selectable_value(&mut chosen, line.clone(), line);
+        }
+    });
+    if chosen != *path {
+        let next = ConstructorDoc { path: Some(chosen), position_m: None, preview_m: None, ..constructor.clone() };
+        model.edit(|document| document.constructor = Some(next));
+    }
+}
+
+/// Keeps something in sight: a layer, a part, a box.
+pub(crate) fn track(model: &mut Model, target: &str) {
+    let target = Some(target.to_owned());
     model.edit(|document| {
         document.constructor = Some(ConstructorDoc { target, ..ConstructorDoc::of(ConstructorKind::TargetTracking) });
     });
@@ -167,9 +192,15 @@ fn turns(ui: &mut Ui, model: &mut Model) {
     ray_model(ui, model, &stage);
     let mut next = stage.clone();
     let mut removed = None;
+    let eye = model.camera().map(|camera| camera.pinhole.eye);
     for (index, turn) in stage.turn.iter().enumerate() {
+        let before = match index.checked_sub(1) {
+            Some(last) => Some(DVec3::from_array(stage.turn[last].viewpoint)),
+            None => eye,
+        };
         CollapsingHeader::new(format!("Turn {}", index + 1)).default_open(index == 0).show(ui, |ui| {
             one(ui, model, index + 1, turn, &mut next.turn[index]);
+            planes(ui, model, (index + 1, before), turn, &mut next.turn[index]);
             if ui.button(format!("Remove turn {}", index + 1)).clicked() {
                 removed = Some(index);
             }
@@ -232,6 +263,21 @@ fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut Turn
                 }
             }
         });
+    }
+}
+
+/// Whether the planes of a turn share a line, and how sharp it is.
+///
+/// * `before`: the viewpoint before it.
+fn planes(ui: &mut Ui, model: &mut Model, (n, before): (usize, Option<DVec3>), turn: &TurnDoc, next: &mut TurnDoc) {
+    let mut pivots = turn.line.is_some();
+    let help = "planes that share a line turn the picture about it; else they are parallel";
+    let pivot = ui.checkbox(&mut pivots, format!("pivot line of turn {n}")).on_hover_text(help);
+    if pivot.changed() {
+        model.begin_gesture();
+        let before = before.unwrap_or(DVec3::from_array(turn.viewpoint));
+        *next = if pivots { with_pivot_line(next, before) } else { with_parallel_planes(next) };
+        model.look.overhead |= pivots;
     }
     let value = match turn.m {
         Sharpness::Value(value) => value,

@@ -8,7 +8,7 @@ use belvedere::core::presets::edit::{PresetChange, PresetOperation};
 use belvedere::core::presets::{BUILTINS, PresetDocument};
 use belvedere::scene_file::{PresetsDoc, SplineStageDoc, StageDoc};
 use belvedere::verbs::preset::{sketch, viewing_angle};
-use eframe::egui::{Color32, ComboBox, Context, Id, Role, Sense, Ui, WidgetInfo};
+use eframe::egui::{Color32, ComboBox, Context, Id, Role, Sense, TextWrapMode, Ui, WidgetInfo};
 
 const KIND: &str = "spline_bend";
 /// Speed of a played sweep, degrees per second.
@@ -47,7 +47,13 @@ impl SplinePanel {
         self.chosen = self.chosen.min(presets.presets.len().saturating_sub(1));
         let phi = model.shown.as_ref().and_then(|shown| viewing_angle(&shown.session).ok());
         self.angles(ui, model, &presets, phi);
-        let preset = &presets.presets[self.chosen];
+        // A copy may have been made, or a preset taken away.
+        let presets = match model.stage(KIND) {
+            Some(StageDoc::SplineBend(stage)) => presets_of(model, stage).unwrap_or(presets),
+            _ => presets,
+        };
+        self.chosen = self.chosen.min(presets.presets.len().saturating_sub(1));
+        let Some(preset) = presets.presets.get(self.chosen) else { return };
         ui.strong(if preset.name.is_empty() { format!("Preset {}", self.chosen + 1) } else { preset.name.clone() });
         let Some(drawing) = sketch(&presets, preset.phi, distance_of(model)) else { return };
         let id = ui.scope_id().with(("curve", self.chosen));
@@ -127,7 +133,9 @@ impl SplinePanel {
                 let id = Id::unique(("representation", name));
                 let response = ui
                     .dnd_drag_source(id, name.clone(), |ui| {
-                        ui.add(eframe::egui::Button::new(dark(name.clone())).fill(color_of(name)))
+                        // At the end of a row it goes to the next one whole.
+                        let button = eframe::egui::Button::new(dark(name.clone())).fill(color_of(name));
+                        ui.add(button.wrap_mode(TextWrapMode::Extend))
                     })
                     .response;
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Representation {name}")));

@@ -1,5 +1,6 @@
 //! The curve of a preset: control points, tags and transition widths to drag, the eye and what it sees.
 
+use super::nudged;
 use belvedere::core::DVec2;
 use belvedere::core::presets::edit::PresetChange;
 use belvedere::verbs::preset::{Sketch, SketchTag};
@@ -141,34 +142,11 @@ fn nearest(sketch: &Sketch, share: f64) -> belvedere::verbs::preset::SketchPoint
 fn handle(ui: &Ui, id: Id, at: Pos2, name: &str) -> Response {
     let response = ui.interact(Rect::from_center_size(at, vec2(2.0 * GRAB, 2.0 * GRAB)), id, Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
-    if response.clicked() {
-        response.request_focus();
-    }
-    if response.has_focus() {
-        // The arrow keys move it rather than the focus.
-        let filter = eframe::egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
-        ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
-    }
     response.on_hover_cursor(CursorIcon::Move).on_hover_text(name)
 }
 
 fn dragged_to(response: &Response) -> Option<Pos2> {
     (response.dragged() && response.drag_delta() != vec2(0.0, 0.0)).then(|| response.interact_pointer_pos()).flatten()
-}
-
-/// Steps of the arrow keys on a handle that has the focus.
-fn nudged(ui: &Ui, response: &Response) -> Option<[f64; 2]> {
-    use eframe::egui::Key;
-    if !response.has_focus() {
-        return None;
-    }
-    let keys = [
-        (Key::ArrowLeft, [-1.0, 0.0]),
-        (Key::ArrowRight, [1.0, 0.0]),
-        (Key::ArrowUp, [0.0, 1.0]),
-        (Key::ArrowDown, [0.0, -1.0]),
-    ];
-    ui.input(|input| keys.into_iter().find(|(key, _)| input.key_pressed(*key)).map(|(_, step)| step))
 }
 
 fn draw(painter: &Painter, scale: &Scale, sketch: &Sketch) {

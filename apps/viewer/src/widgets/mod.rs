@@ -3,3 +3,25 @@
 pub(crate) mod curve;
 pub(crate) mod overhead;
 pub(crate) mod ruler;
+
+use eframe::egui::{EventFilter, Key, Response, Ui};
+
+/// Steps of the arrow keys, right and up, on a handle that has the focus; a click gives it that.
+fn nudged(ui: &Ui, response: &Response) -> Option<[f64; 2]> {
+    if response.clicked() {
+        response.request_focus();
+    }
+    if !response.has_focus() {
+        return None;
+    }
+    // The arrow keys move it rather than the focus.
+    let filter = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    let keys = [
+        (Key::ArrowLeft, [-1.0, 0.0]),
+        (Key::ArrowRight, [1.0, 0.0]),
+        (Key::ArrowUp, [0.0, 1.0]),
+        (Key::ArrowDown, [0.0, -1.0]),
+    ];
+    ui.input(|input| keys.into_iter().find(|(key, _)| input.key_pressed(*key)).map(|(_, step)| step))
+}

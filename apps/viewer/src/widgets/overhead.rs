@@ -1,6 +1,9 @@
 //! The camera from above: its picture, and handles on viewpoints, planes and bend points.
 
+use super::nudged;
+use belvedere::core::map::curved_rays::Sharpness;
 use belvedere::core::{DVec2, DVec3, View};
+use belvedere::editor::{sharpness_at, sharpness_knob};
 use belvedere::scene_file::TurnDoc;
 use eframe::egui::{
     Color32, CursorIcon, FontId, Id, Pos2, Rect, Role, Sense, Stroke, TextureId, Ui, WidgetInfo, pos2, vec2,
@@ -19,6 +22,8 @@ pub(crate) enum Part {
     Line,
     /// Its direction.
     LineDirection,
+    /// How sharply the rays bend.
+    Sharpness,
 }
 
 /// What the user did: part of a turn, where to, whether the drag begins.
@@ -29,7 +34,7 @@ pub(crate) struct OverheadEdit {
     pub(crate) begins: bool,
 }
 
-const COLORS: [Color32; 7] = [
+const COLORS: [Color32; 8] = [
     Color32::from_rgb(30, 96, 170),
     Color32::from_rgb(0, 120, 96),
     Color32::from_rgb(200, 60, 130),
@@ -37,9 +42,12 @@ const COLORS: [Color32; 7] = [
     Color32::from_rgb(120, 120, 120),
     Color32::from_rgb(150, 90, 20),
     Color32::from_rgb(120, 120, 120),
+    Color32::from_rgb(120, 60, 170),
 ];
 /// Handles nearer together than this, points, are one: as of a line that stands upright.
 const APART: f32 = 14.0;
+/// Step of the arrow keys, points.
+const NUDGE: f32 = 4.0;
 
 /// Shows the picture with handles.
 ///
@@ -85,6 +93,14 @@ pub(crate) fn overhead(
         if let (Some(a), Some(b)) = (line.and_then(at), along.and_then(at)) {
             painter.line_segment([a, b], Stroke::new(1.5, COLORS[5]));
         }
+        let sharpness = match turn.m {
+            Sharpness::Value(value) => value,
+            _ => 1.0,
+        };
+        let knob = sharpness_knob(turn, sharpness);
+        if let (Some(a), Some(b)) = (at(DVec3::from_array(turn.t1)), at(knob)) {
+            painter.line_segment([a, b], Stroke::new(1.0, COLORS[7]));
+        }
         let parts = [
             (Part::Viewpoint, "Viewpoint", Some(DVec3::from_array(turn.viewpoint))),
             (Part::First, "First plane", Some(DVec3::from_array(turn.t0))),
@@ -93,14 +109,15 @@ pub(crate) fn overhead(
             (Part::Normal, "Bend direction", normal),
             (Part::Line, "Pivot line", line),
             (Part::LineDirection, "Direction of the pivot line", along),
+            (Part::Sharpness, "Sharpness", Some(knob)),
         ];
         for ((part, name, place), color) in parts.into_iter().zip(COLORS) {
             let Some((place, spot)) = place.and_then(|p| Some((p, at(p)?))) else { continue };
             let label = format!("{name} of turn {}", i + 1);
             // What lies outside the picture has its handle at the edge.
             let handle = rect.shrink(8.0).clamp(spot);
-            let response =
-                ui.interact(Rect::from_center_size(handle, vec2(18.0, 18.0)), id.with((i, name)), Sense::drag());
+            let own = id.with((i, name));
+            let response = ui.interact(Rect::from_center_size(handle, vec2(18.0, 18.0)), own, Sense::click_and_drag());
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
             painter.circle(handle, if response.hovered() { 7.0 } else { 5.5 }, color, Stroke::new(1.5, Color32::WHITE));
             if part == Part::Viewpoint {
@@ -115,6 +132,10 @@ pub(crate) fn overhead(
             if response.dragged() {
                 let to = back(spot + response.drag_delta(), place.z);
                 edit = Some(OverheadEdit { turn: i, part, to, begins: response.drag_started() });
+            }
+            if let Some([x, y]) = nudged(ui, &response) {
+                let to = back(spot + NUDGE * vec2(x as f32, -y as f32), place.z);
+                edit = Some(OverheadEdit { turn: i, part, to, begins: true });
             }
             response.on_hover_cursor(CursorIcon::Move).on_hover_text(label);
         }
@@ -140,6 +161,7 @@ impl OverheadEdit {
                     line.point = (DVec3::from_array(line.point) + by).to_array();
                 }
             }
+            Part::Sharpness => turn.m = Sharpness::Value((100.0 * sharpness_at(turn, self.to)).round() / 100.0),
             Part::Line => {
                 if let Some(line) = &mut turn.line {
                     line.point = to;

@@ -67,6 +67,9 @@ pub(crate) fn ruler(
             let to = (RANGE[0] + share * (RANGE[1] - RANGE[0])).clamp(RANGE[0], RANGE[1]);
             edit = Some(RulerEdit::Move(i, (2.0 * to).round() / 2.0, response.drag_started()));
         }
+        if let Some([step, _]) = super::nudged(ui, &response) {
+            edit = Some(RulerEdit::Move(i, (phi + 0.5 * step).clamp(RANGE[0], RANGE[1]), true));
+        }
         response.on_hover_text(label);
     }
     edit

@@ -53,3 +53,66 @@ fn a_progressive_preset_is_made_from_the_template_saved_and_drawn_elsewhere() {
     assert!(file.view().is_bent());
     assert!(drawn(file) == drawn(here), "the saved scene is drawn to another picture");
 }
+
+#[test]
+fn a_preset_is_copied_for_another_angle_and_taken_away_again() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    settle(&mut harness);
+    press(&mut harness, "Spline");
+    press(&mut harness, "Presets");
+    press(&mut harness, "progressive");
+    settle(&mut harness);
+    let presets = |harness: &egui_kittest::Harness<'_, belvedere_viewer::Viewer>| {
+        let Some(StageDoc::SplineBend(stage)) = harness.state().document().stage.first().cloned() else {
+            panic!("no spline")
+        };
+        match stage.presets {
+            PresetsDoc::Inline(presets) => presets.presets.len(),
+            PresetsDoc::Named(name) => {
+                belvedere::core::presets::PresetDocument::builtin(&name).expect("built in").presets.len()
+            }
+        }
+    };
+    let before = presets(&harness);
+    press(&mut harness, "Copy for this camera");
+    settle(&mut harness);
+    assert_eq!(presets(&harness), before + 1);
+    find(&harness, "preset 1");
+    press(&mut harness, "Remove preset");
+    settle(&mut harness);
+    assert_eq!(presets(&harness), before);
+}
+
+#[test]
+fn a_turn_gets_a_pivot_line_and_its_sharpness_by_hand() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    settle(&mut harness);
+    press(&mut harness, "Curved rays");
+    press(&mut harness, "Add a turn");
+    settle(&mut harness);
+    let turn = |harness: &egui_kittest::Harness<'_, belvedere_viewer::Viewer>| {
+        let Some(StageDoc::CurvedRays(stage)) = harness.state().document().stage.first().cloned() else {
+            panic!("no turn")
+        };
+        stage.turn[0].clone()
+    };
+    assert!(turn(&harness).line.is_none());
+    press(&mut harness, "pivot line of turn 1");
+    settle(&mut harness);
+    assert!(turn(&harness).line.is_some() && turn(&harness).normal.is_none());
+    find(&harness, "Pivot line of turn 1");
+    press(&mut harness, "pivot line of turn 1");
+    settle(&mut harness);
+    assert!(turn(&harness).line.is_none() && turn(&harness).normal.is_some());
+    // The handles listen to the arrow keys, too.
+    for (handle, key) in [("Sharpness of turn 1", Key::ArrowRight), ("Viewpoint of turn 1", Key::ArrowUp)] {
+        let before = turn(&harness);
+        find(&harness, handle).focus();
+        harness.step();
+        harness.key_press(key);
+        settle(&mut harness);
+        assert_ne!(turn(&harness), before, "{handle}");
+    }
+}

@@ -111,3 +111,16 @@ line = { point = [16700.0, 12000.0, 2280.0], dir = [0.0, 0.0, 1.0] }
     assert!(after.point[0] != before.point[0] && after.point[2] == before.point[2], "{before:?} {after:?}");
     assert_eq!(after.dir, before.dir);
 }
+
+#[test]
+fn the_picture_keeps_its_size_whatever_the_panel_shows() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    settle(&mut harness);
+    let before = harness.get_by_label("Picture").rect();
+    for tab in TABS {
+        press(&mut harness, tab);
+        harness.step();
+        assert_eq!(harness.get_by_label("Picture").rect(), before, "{tab}");
+    }
+}

@@ -84,3 +84,76 @@ fn what_is_saved_is_what_is_seen() {
     let saved = belvedere::scene_file::read(&path).expect("saved").document;
     assert_eq!(saved, **harness.state().document());
 }
+
+#[test]
+fn a_scene_of_no_file_comes_back_with_its_bookmarks_and_the_way_it_was_looked_at() {
+    let folder = tempfile::tempdir().expect("folder");
+    let state = folder.path().join("state");
+    let opening = Opening { state: Some(state.clone()), ..Opening::default() };
+    let mut harness = app(&opening);
+    settle(&mut harness);
+    harness.key_press(Key::ArrowLeft);
+    harness.step();
+    harness.key_press(Key::B);
+    harness.step();
+    press(&mut harness, "Look");
+    press(&mut harness, "Split");
+    settle(&mut harness);
+    let document = harness.state().document().clone();
+    let began = std::time::Instant::now();
+    let written = || std::fs::read_to_string(state.join("state-0.json")).unwrap_or_default();
+    while !(written().contains("\"Split\"") && written().contains("View 1")) {
+        assert!(began.elapsed() < crate::PATIENCE, "nothing was written down: {}", written());
+        harness.step();
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    drop(harness);
+    // Another file is opened: the scene that was never saved is kept all the same.
+    let other = folder.path().join("other");
+    std::fs::create_dir(&other).expect("folder");
+    std::fs::copy(state.join("state-0.json"), other.join("state-0.json")).expect("copied");
+    let file = opened(&[scene(folder.path())]);
+    app(&Opening { state: Some(other.clone()), ..file }).get_by_label_contains("its unsaved scene is kept in");
+    let kept = belvedere::scene_file::read(&other.join("recovered.toml")).expect("kept").document;
+    assert_eq!(kept.camera, document.camera);
+    let mut again = app(&opening);
+    settle(&mut again);
+    assert_eq!(**again.state().document(), *document);
+    again.get_by_label("Bar between straight and bent");
+    press(&mut again, "Places");
+    again.get_by_label("View 1");
+}
+
+#[test]
+fn without_windows_of_the_system_files_are_chosen_in_our_own() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = scene(folder.path());
+    let mut harness = app(&opened(std::slice::from_ref(&path)));
+    settle(&mut harness);
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::ArrowUp);
+    settle(&mut harness);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    harness.step();
+    press(&mut harness, "Export");
+    press(&mut harness, "Export picture…");
+    press(&mut harness, "Write");
+    let exported = folder.path().join("picture.png");
+    let began = std::time::Instant::now();
+    while !folder.path().join("picture.png.json").exists() {
+        assert!(began.elapsed() < crate::PATIENCE, "nothing is exported");
+        harness.step();
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    let session = belvedere::Session::open(&path, &belvedere::OpenOptions::default()).expect("saved scene");
+    let drawn = session.render(&belvedere::picture::PictureOptions::default()).expect("drawn");
+    drawn.write(&folder.path().join("again.png"), false).expect("written");
+    let read = |path: &std::path::Path| std::fs::read(path).expect("picture");
+    assert!(read(&exported) == read(&folder.path().join("again.png")), "the exported picture is another one");
+
+    press(&mut harness, "Layers");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::O);
+    harness.step();
+    harness.step();
+    press(&mut harness, "Cancel");
+    assert!(harness.query_by_label("Cancel").is_none());
+}

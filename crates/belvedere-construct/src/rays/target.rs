@@ -16,7 +16,7 @@ pub struct Target {
     pub bounds: Aabb,
     /// Layers that are the target themselves, by their index: they do not hide it.
     pub own_layers: Vec<usize>,
-    /// Parts of a mesh that are the target themselves: the index of its layer, and their numbers.
+    /// Parts of a mesh, or boxes of a layer, that are the target themselves: the index of the layer, and their numbers.
     pub own_parts: Option<(usize, Vec<u32>)>,
     /// The points are the middles of balls of this radius, scene units, and seen if the ball is; 0 for points of their own.
     pub radius: f64,
@@ -50,12 +50,19 @@ impl Target {
         }
     }
 
-    /// Named parts of a mesh, by their numbers, as the paper's box. `None` if there are none.
+    /// Named parts of a mesh, or boxes of a layer, by their numbers, as the paper's box. `None` if there are none.
     pub fn parts(scene: &Scene, index: usize, parts: &[u32]) -> Option<Self> {
-        let LayerKind::Mesh(layer) = &scene.layers.get(index)?.kind else { return None };
-        let mesh = &layer.mesh;
-        let own = (0..mesh.triangles().len()).filter(|&t| mesh.part(t).is_some_and(|part| parts.contains(&part)));
-        let bounds = Aabb::of(own.flat_map(|t| mesh.corners(t)));
+        let bounds = match &scene.layers.get(index)?.kind {
+            LayerKind::Mesh(layer) => {
+                let mesh = &layer.mesh;
+                let is_own = |&t: &usize| mesh.part(t).is_some_and(|part| parts.contains(&part));
+                Aabb::of((0..mesh.triangles().len()).filter(is_own).flat_map(|t| mesh.corners(t)))
+            }
+            LayerKind::Boxes(layer) => {
+                Aabb::of(parts.iter().filter_map(|&k| layer.boxes.get(k as usize)).flat_map(|shape| shape.corners()))
+            }
+            _ => return None,
+        };
         (!bounds.is_empty()).then(|| Self { own_parts: Some((index, parts.to_vec())), ..Self::around(bounds) })
     }
 

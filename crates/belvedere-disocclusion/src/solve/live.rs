@@ -80,12 +80,7 @@ impl LiveTerrain {
     /// # Errors
     /// Those of [`TerrainSolver::solve`], for this view or one of the last; the next view may be asked for all the same.
     pub fn frame(&mut self, base: &View) -> Result<LiveFrame, DisocclusionError> {
-        self.frame += 1;
-        let order = Order { frame: self.frame, view: base.clone() };
-        // A thread that has ended answers nothing, which is found below.
-        if let Some(orders) = &self.orders {
-            let _ = orders.send(order);
-        }
+        self.ask(base);
         while let Ok(answer) = self.answers.try_recv() {
             self.take(answer)?;
         }
@@ -97,6 +92,28 @@ impl LiveTerrain {
                     Err(_) => return Err(Cancelled.into()),
                 },
             }
+        }
+    }
+
+    /// Asks for ground for the view, and gives the newest that there is, whatever view it was solved for: nothing waits. `None`
+    /// before the first is solved.
+    ///
+    /// # Errors
+    /// As [`LiveTerrain::frame`].
+    pub fn newest(&mut self, base: &View) -> Result<Option<TerrainDisocclusion>, DisocclusionError> {
+        self.ask(base);
+        while let Ok(answer) = self.answers.try_recv() {
+            self.take(answer)?;
+        }
+        Ok(self.ground.as_ref().map(|ground| ground.stage.clone()))
+    }
+
+    fn ask(&mut self, base: &View) {
+        self.frame += 1;
+        let order = Order { frame: self.frame, view: base.clone() };
+        // A thread that has ended answers nothing: who waits for it finds that out.
+        if let Some(orders) = &self.orders {
+            let _ = orders.send(order);
         }
     }
 

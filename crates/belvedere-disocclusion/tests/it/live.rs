@@ -68,3 +68,23 @@ fn an_eye_under_the_ground_is_an_error_from_which_it_goes_on() {
     assert!(matches!(live.frame(&view(&scene, 0.0, -30.0)), Err(DisocclusionError::Eye(_))));
     assert!(live.frame(&view(&scene, 0.0, 250.0)).is_ok());
 }
+
+#[test]
+fn pictures_that_do_not_wait_get_the_newest_ground_there_is() {
+    let scene = scene();
+    let mut live = live(&scene);
+    let began = std::time::Instant::now();
+    assert!(live.newest(&view(&scene, 0.0, 250.0)).expect("no ground yet").is_none());
+    let first = loop {
+        if let Some(stage) = live.newest(&view(&scene, 0.0, 250.0)).expect("ground") {
+            break stage;
+        }
+        assert!(began.elapsed() < std::time::Duration::from_secs(60), "it is never solved");
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    };
+    // Whatever is asked for next: what there is comes at once.
+    assert_eq!(
+        live.newest(&view(&scene, 40.0, 250.0)).expect("ground").map(|stage| stage.grid().size()),
+        Some(first.grid().size())
+    );
+}

@@ -1,6 +1,7 @@
 //! A scene from whatever files somebody drops.
 
 use super::{Editor, Place, framed, set_camera};
+use crate::data::features_of;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, CameraDoc, Document, LayerDoc, Paths, SourceDocument, TerrainDoc, TerrainStyleDoc};
 use crate::verbs::info::{self, FileInfo};
@@ -70,6 +71,52 @@ pub fn open_files(paths: &[PathBuf], allowed: &[PathBuf], progress: &Progress) -
     Ok(Editor::new(document, place))
 }
 
+/// What files are to whoever has a scene open already.
+#[derive(Debug, Clone)]
+pub enum Opened {
+    /// A scene of their own.
+    Scene(Box<Editor>),
+    /// Routes, areas or points for the terrain that is there, and the folders that they lie in.
+    Layers(Vec<LayerDoc>, Vec<PathBuf>),
+}
+
+/// Opens files as [`open_files`], or, if they are nothing but features and `current` has terrain, as further layers of it.
+///
+/// # Errors
+/// As [`open_files`].
+pub fn open_beside(
+    current: &Document,
+    paths: &[PathBuf],
+    allowed: &[PathBuf],
+    progress: &Progress,
+) -> Result<Opened, BelvedereError> {
+    let has_terrain = current.layer.iter().any(|layer| matches!(layer, LayerDoc::Terrain(_)));
+    let (mut layers, mut folders) = (current.layer.clone(), Vec::new());
+    for path in paths.iter().filter(|_| has_terrain) {
+        let path = fs::canonicalize(path).map_err(|e| belvedere_io::IoError::os(path, e))?;
+        let is_scene = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) || is_json_scene(&path);
+        let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
+        if is_scene || !matches!(info::describe(name, progress)?, FileInfo::Features(_)) {
+            return open_files(paths, allowed, progress).map(|editor| Opened::Scene(Box::new(editor)));
+        }
+        layers.push(features_of(&path, &layers)?);
+        folders.extend(path.parent().map(Path::to_owned));
+    }
+    let new = layers.split_off(current.layer.len());
+    match new.is_empty() {
+        true => open_files(paths, allowed, progress).map(|editor| Opened::Scene(Box::new(editor))),
+        false => Ok(Opened::Layers(new, folders)),
+    }
+}
+
+impl Editor {
+    /// Adds layers whose files lie in those folders; one step of undo.
+    pub fn add_layers(&mut self, layers: Vec<LayerDoc>, folders: Vec<PathBuf>) {
+        self.place.roots.allowed.extend(folders);
+        self.edit(|document| document.layer.extend(layers));
+    }
+}
+
 fn is_json_scene(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) && scene_file::read(path).is_ok()
 }
@@ -101,4 +148,33 @@ fn shown(layers: Vec<LayerDoc>, crs: &str, place: &Place, options: &OpenOptions)
     document.camera.near = view.pinhole.near;
     set_camera(&mut document, &view);
     Ok(document)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene_file::parse;
+
+    #[test]
+    fn features_are_laid_on_the_terrain_that_is_open_and_other_files_are_scenes() {
+        let dir = tempfile::tempdir().expect("folder");
+        let ground = "format = 1\n[camera]\neye = [0, -900, 4000]\nlook_at = [0, 0, 300]\n\
+            [[layer]]\nkind = 'terrain'\nid = 'ground'\nsource = 'builtin:massif?seed=7&size=65'\n";
+        let document = parse(Path::new("s.toml"), ground).expect("scene").document;
+        let way = dir.path().join("way.geojson");
+        let line = r#"{"type":"LineString","coordinates":[[-500,-500],[0,0],[600,300]]}"#;
+        std::fs::write(&way, line).expect("file");
+        let open = |paths: &[PathBuf]| open_beside(&document, paths, &[], &Progress::silent());
+        let Ok(Opened::Layers(layers, folders)) = open(&[way.clone(), way.clone()]) else { panic!("no layers") };
+        let ids: Vec<&str> = layers.iter().map(LayerDoc::id).collect();
+        assert_eq!((ids, folders.len()), (vec!["way", "way-2"], 2));
+        assert!(layers.iter().all(LayerDoc::must_see));
+        let mut editor = Editor::new(document.clone(), Place::default());
+        editor.add_layers(layers, folders);
+        assert_eq!(editor.document().layer.len(), 3);
+        assert!(editor.undo() && editor.document().layer.len() == 1);
+        let scene = dir.path().join("other.toml");
+        std::fs::write(&scene, ground).expect("scene");
+        assert!(matches!(open(&[scene]), Ok(Opened::Scene(_))));
+    }
 }

@@ -1,10 +1,12 @@
 //! A session that follows a document: everything is resolved again, nothing that stays is read again.
 
+use super::thin::{self, Thin};
 use super::{Place, THREADS};
 use crate::fallback;
 use crate::overlays::grid;
 use crate::picture::{self, DisplacementReport, PictureOptions};
-use crate::scene_file::{Document, LayerDoc, SourceDocument, StageDoc};
+use crate::resolve::constructor::Memory;
+use crate::scene_file::{ConstructorKind, Document, LayerDoc, SourceDocument, StageDoc};
 use crate::{BelvedereError, CameraPicture, OpenOptions, Session};
 use belvedere_construct::measure::HiddenRun;
 use belvedere_construct::{MeasureOptions, Measures};
@@ -92,8 +94,11 @@ pub struct Judged {
     pub hidden: Vec<HiddenRun>,
 }
 
-/// Longest that judging may take while something is moved.
+/// Longest that judging may take between any two moving pictures.
 const JUDGE_WITHIN: Duration = Duration::from_millis(40);
+/// Longest that it may take between moving pictures at all, and how many times as long nothing is judged after that.
+const JUDGE_AT_MOST: Duration = Duration::from_millis(250);
+const JUDGE_SHARE: u32 = 6;
 /// Longest that solving may take while something is moved.
 const SOLVE_WITHIN: Duration = Duration::from_millis(120);
 
@@ -107,11 +112,15 @@ pub struct LiveSession {
     layer_warnings: Vec<String>,
     /// How long constructing took last.
     constructing: Duration,
+    /// What constructors remember of the last picture at rest.
+    memory: Memory,
     /// That of the last picture.
     shown: Option<Session>,
-    /// How long judging took last.
+    /// How long judging took last, and when that was.
     judging: Duration,
+    judged_at: Option<Instant>,
     ground: Ground,
+    thin: Thin,
 }
 
 /// Ground that makes way while something is moved.
@@ -140,11 +149,12 @@ impl LiveSession {
         let (mut bent, mut straight, mut displacement) = (None, None, None);
         match order.pace {
             Pace::Moving { detail_px } => {
+                let scene = self.thin.scene(session.scene.clone(), 1.0 / detail_px);
                 if order.sides != Sides::Straight {
-                    bent = Some(quick(&session, &eased(session.view(), order.bend), detail_px, progress)?);
+                    bent = Some(quick(&session, &scene, &eased(session.view(), order.bend), detail_px, progress)?);
                 }
                 if order.sides != Sides::Bent {
-                    straight = Some(quick(&session, &session.view().straightened(), detail_px, progress)?);
+                    straight = Some(quick(&session, &scene, &session.view().straightened(), detail_px, progress)?);
                 }
             }
             Pace::Resting => {
@@ -167,9 +177,12 @@ impl LiveSession {
         Ok(Shown { document, session, bent, straight, overhead, displacement, pace: order.pace, waits, milliseconds })
     }
 
-    /// Whether there is time to judge a picture: at rest there is, between moving ones if it took little before and is done beside.
+    /// Whether there is time to judge a picture: at rest there is, between moving ones if it is done beside and took little before, or
+    /// was not done for much longer than it takes.
     pub fn has_time_to_judge(&self, pace: Pace) -> bool {
-        pace == Pace::Resting || (THREADS && self.judging <= JUDGE_WITHIN)
+        let waited = || self.judged_at.is_none_or(|at| at.elapsed() >= JUDGE_SHARE * self.judging);
+        let in_time = || self.judging <= JUDGE_WITHIN || (self.judging <= JUDGE_AT_MOST && waited());
+        pace == Pace::Resting || (THREADS && in_time())
     }
 
     /// What the view of the last picture shows of what must be seen; `None` if nothing must be.
@@ -180,6 +193,7 @@ impl LiveSession {
         let began = Instant::now();
         let judged = self.judged(order, progress);
         self.judging = began.elapsed();
+        self.judged_at = Some(Instant::now());
         judged
     }
 
@@ -198,12 +212,15 @@ impl LiveSession {
     /// Everything is solved.
     fn resting(&mut self, document: Document, order: &Order, progress: &Progress) -> Result<Session, BelvedereError> {
         let options = options(order, progress);
-        let began = Instant::now();
         let session = match self.open(&document) {
-            Some(session) => session.edited(document.clone(), &options, &self.layer_warnings)?,
+            Some(session) => {
+                let (began, mut memory) = (Instant::now(), self.memory.of_path());
+                let session = session.edited(document.clone(), &options, &self.layer_warnings, &mut memory)?;
+                (self.constructing, self.memory) = (began.elapsed(), memory);
+                session
+            }
             None => self.reopened(&document, &options)?,
         };
-        self.constructing = began.elapsed();
         let is_terrain = |stage: &&Stage| matches!(stage, Stage::TerrainDisocclusion(_));
         self.ground.last = session.view().stages().iter().find(is_terrain).cloned();
         self.session = Some(session.clone());
@@ -220,7 +237,9 @@ impl LiveSession {
         const GROUND: &str = "the ground makes way when the view rests";
         const RAYS: &str = "rays are bent when the view rests";
         let (solves, constructs) = (document.solves_terrain(), document.constructor.is_some());
-        let in_time = constructs && !solves && self.constructing <= SOLVE_WITHIN;
+        // A preview has a camera of its own: without it the picture would be another one altogether.
+        let is_preview = document.constructor.as_ref().is_some_and(|doc| doc.kind == ConstructorKind::PathPreview);
+        let in_time = constructs && !solves && (is_preview || self.constructing <= SOLVE_WITHIN);
         let options = OpenOptions { unsolved: !in_time, ..options(order, progress) };
         let Some(session) = self.open(&document) else {
             let session = self.reopened(&document, &options)?;
@@ -228,7 +247,8 @@ impl LiveSession {
             return Ok((session, solves.then_some(GROUND).or((constructs && !in_time).then_some(RAYS))));
         };
         let document = with_known_planes(document, &session);
-        let session = session.edited(document, &options, &self.layer_warnings)?;
+        let mut memory = self.memory.of_path_sized(order.image);
+        let session = session.edited(document, &options, &self.layer_warnings, &mut memory)?;
         if solves {
             return match self.ground.under(&session)? {
                 Some(stage) => Ok((with_ground(session, stage)?, constructs.then_some(RAYS))),
@@ -239,7 +259,7 @@ impl LiveSession {
     }
 
     /// The session, if it holds the layers of a document.
-    fn open(&self, document: &Document) -> Option<Session> {
+    fn open(&mut self, document: &Document) -> Option<Session> {
         let (opened, session) = (self.opened.as_ref()?, self.session.as_ref()?);
         let must_see: Vec<bool> = document.layer.iter().map(LayerDoc::must_see).collect();
         let layers = session.scene().layers.iter();
@@ -257,7 +277,9 @@ impl LiveSession {
             (true, false) => {
                 let mut scene = Scene { title: document.title.clone(), ..session.scene().clone() };
                 scene.layers.iter_mut().zip(must_see).for_each(|(layer, must)| layer.must_see = must);
-                Some(Session { scene: Arc::new(scene), ..session.clone() })
+                let session = Session { scene: Arc::new(scene), ..session.clone() };
+                self.session = Some(session.clone());
+                Some(session)
             }
         }
     }
@@ -266,13 +288,14 @@ impl LiveSession {
         let session = Session::from_document(SourceDocument::new(document.clone()), options)?;
         self.layer_warnings = session.warnings().to_vec();
         self.opened = Some(document.clone());
-        self.ground = Ground::default();
+        (self.ground, self.memory, self.constructing) = (Ground::default(), Memory::default(), Duration::ZERO);
         Ok(session)
     }
 }
 
 impl Ground {
-    /// The newest ground there is for the view of a session in which nothing has moved it yet.
+    /// The newest ground there is for the view of a session in which nothing has moved it yet; before the first that of the last picture
+    /// at rest.
     #[cfg(not(target_family = "wasm"))]
     fn under(&mut self, session: &Session) -> Result<Option<Stage>, BelvedereError> {
         use belvedere_disocclusion::{LiveTerrain, TerrainSolver};
@@ -283,7 +306,7 @@ impl Ground {
             self.live = Some((stated, session.scene.clone(), LiveTerrain::new(solver, session.scene.clone())));
         }
         let Some((.., live)) = &mut self.live else { return Ok(None) };
-        Ok(Some(Stage::TerrainDisocclusion(live.frame(session.view())?.stage)))
+        Ok(live.newest(session.view())?.map(Stage::TerrainDisocclusion).or_else(|| self.last.clone()))
     }
 
     /// The ground of the last resting picture: there is no thread that could solve beside the drawing.
@@ -338,13 +361,21 @@ fn eased(view: &View, share: f64) -> View {
 }
 
 /// One sample per pixel, less detail, no marks that need further pictures.
-fn quick(session: &Session, view: &View, detail_px: f64, progress: &Progress) -> Result<Frame, BelvedereError> {
+///
+/// * `scene`: that of the session, its lines as thin as the picture is coarse.
+fn quick(
+    session: &Session,
+    scene: &Scene,
+    view: &View,
+    detail_px: f64,
+    progress: &Progress,
+) -> Result<Frame, BelvedereError> {
     let mut options =
         RenderOptions { samples: 1, lod_px: detail_px, stylisation: session.stylisation, ..RenderOptions::default() };
-    let scene = session.scene();
     let plan = if view.is_bent() { fallback::of_session(session, view)? } else { None };
     let scene = plan.as_ref().map_or(scene, |plan| plan.scene());
-    options.overlay.under.extend(grid::wanted(scene, grid::stated(&session.overlay)));
+    let grid = grid::wanted(scene, grid::stated(&session.overlay));
+    options.overlay.under.extend(grid.into_iter().map(|line| thin::line(line, 1.0 / detail_px)));
     let draw = |scene: &Scene, view: &View| {
         let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
         Ok::<_, BelvedereError>(session.renderer.render(&job)?)
@@ -361,4 +392,66 @@ fn overhead(session: &Session, progress: &Progress) -> Result<(Frame, View), Bel
     let request = PictureOptions { quality, ..PictureOptions::default() };
     let drawn = picture::draw_camera(session, &request, CameraPicture::Overhead, progress)?;
     Ok((drawn.frame, drawn.view))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene_file::parse;
+    use std::path::Path;
+
+    fn order(text: &str, pace: Pace) -> Order {
+        let document = Arc::new(parse(Path::new("s.toml"), text).expect("scene").document);
+        let (place, image) = (Place::default(), [160, 90]);
+        Order { document, place, image, pace, sides: Sides::Bent, bend: 1.0, overhead: false }
+    }
+
+    const MOVING: Pace = Pace::Moving { detail_px: 2.0 };
+
+    #[test]
+    fn a_preview_goes_along_its_path_while_it_is_played() {
+        let text = |position: f64| {
+            format!(
+                "{}position_m = {position}\n",
+                include_str!("../../../../scenes/canyon_preview.toml").replace("position_m = 4500.0\n", "")
+            )
+        };
+        let mut live = LiveSession::default();
+        let progress = Progress::silent();
+        let rest = live.show(&order(&text(4500.0), Pace::Resting), &progress).expect("picture");
+        let eye = |shown: &Shown| shown.session.view().pinhole().eye;
+        let mut last = eye(&rest);
+        for position in [4700.0, 4900.0] {
+            let shown = live.show(&order(&text(position), MOVING), &progress).expect("picture");
+            assert!(shown.session.view().is_bent() && shown.waits.is_none());
+            assert!(eye(&shown).distance(last) > 10.0, "the camera stands still");
+            last = eye(&shown);
+        }
+        // At rest the picture is that of a session that remembers nothing.
+        let settled = live.show(&order(&text(4900.0), Pace::Resting), &progress).expect("picture");
+        let alone = LiveSession::default().show(&order(&text(4900.0), Pace::Resting), &progress).expect("picture");
+        let color = |shown: &Shown| shown.bent.as_ref().map(|frame| frame.color.clone());
+        assert!(color(&settled) == color(&alone), "what was remembered changes the picture");
+    }
+
+    #[test]
+    fn a_moving_picture_does_not_wait_for_the_ground() {
+        let text = |x: f64| {
+            format!(
+                "format = 1\n[camera]\neye = [{x}, -5200.0, 3600.0]\nlook_at = [0.0, 0.0, 300.0]\n\
+                 [[layer]]\nkind = 'terrain'\nid = 'ground'\nsource = 'builtin:massif?seed=7&size=257'\n\
+                 [[layer]]\nkind = 'line'\nid = 'trail'\nsource = 'builtin:massif?seed=7&size=257'\nmust_see = true\n\
+                 [[stage]]\nkind = 'terrain_disocclusion'\n"
+            )
+        };
+        let mut live = LiveSession::default();
+        let progress = Progress::silent();
+        let first = live.show(&order(&text(6000.0), MOVING), &progress).expect("picture");
+        let second = live.show(&order(&text(6010.0), MOVING), &progress).expect("picture");
+        assert!(first.waits.is_some() && second.waits.is_some(), "somebody waited for the solver");
+        let rest = live.show(&order(&text(6010.0), Pace::Resting), &progress).expect("picture");
+        assert!(rest.session.view().is_bent());
+        let moved = live.show(&order(&text(6020.0), MOVING), &progress).expect("picture");
+        assert!(moved.waits.is_none() && moved.session.view().is_bent(), "the ground that there is is left out");
+    }
 }

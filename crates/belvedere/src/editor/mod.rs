@@ -6,17 +6,20 @@ mod beside;
 mod camera;
 mod data;
 mod live;
+mod object;
 mod painter;
 mod place;
 mod rays;
+mod thin;
 
 pub use beside::{THREADS, beside};
-pub use camera::{framed, navigation, set_camera};
-pub use data::open_files;
+pub use camera::{above_ground, framed, navigation, set_camera};
+pub use data::{Opened, open_beside, open_files};
 pub use live::{Judged, LiveSession, Order, Pace, Shown, Sides};
+pub use object::object_at;
 pub use painter::{Answer, Painter};
 pub use place::{Place, Recovered, Recovery};
-pub use rays::next_turn;
+pub use rays::{next_turn, sharpness_at, sharpness_knob, with_parallel_planes, with_pivot_line};
 
 use crate::scene_file::Document;
 use std::sync::Arc;
@@ -29,7 +32,8 @@ pub struct Editor {
     present: Arc<Document>,
     past: Vec<Arc<Document>>,
     future: Vec<Arc<Document>>,
-    saved: Arc<Document>,
+    /// What the file holds; `None` if that is not known.
+    saved: Option<Arc<Document>>,
     /// The gesture that the last edit belongs to.
     gesture: Option<u64>,
 }
@@ -41,7 +45,13 @@ impl Editor {
     /// A document without a past.
     pub fn new(document: Document, place: Place) -> Self {
         let present = Arc::new(document);
-        Self { place, saved: present.clone(), present, past: Vec::new(), future: Vec::new(), gesture: None }
+        let saved = Some(present.clone());
+        Self { place, saved, present, past: Vec::new(), future: Vec::new(), gesture: None }
+    }
+
+    /// A document that was changed since it was saved, if it ever was.
+    pub(crate) fn unsaved(document: Document, place: Place) -> Self {
+        Self { saved: None, ..Self::new(document, place) }
     }
 
     /// The document as it is.
@@ -51,12 +61,12 @@ impl Editor {
 
     /// Whether everything is in the file of the scene.
     pub fn is_saved(&self) -> bool {
-        self.place.scene.is_some() && *self.saved == *self.present
+        self.place.scene.is_some() && !self.is_changed()
     }
 
     /// Whether anything was changed since it was opened or saved.
     pub fn is_changed(&self) -> bool {
-        *self.saved != *self.present
+        self.saved.as_deref() != Some(&*self.present)
     }
 
     /// Edits the document; one step of undo.
@@ -119,7 +129,7 @@ impl Editor {
 
     /// What is there now is what the file holds.
     pub(crate) fn mark_saved(&mut self) {
-        self.saved = self.present.clone();
+        self.saved = Some(self.present.clone());
     }
 }
 

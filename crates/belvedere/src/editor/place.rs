@@ -187,12 +187,18 @@ fn recovered(text: &str) -> Option<Recovered> {
     let left: Left = serde_json::from_str(text).ok()?;
     let parsed: Document = scene_file::parse(Path::new("state.json"), &left.document.to_string()).ok()?.document;
     let roots = Roots { scene_dir: left.scene_dir, allowed: left.allowed };
-    // What was saved is in the file, if that is still there; else everything is new.
     let saved = left.scene.as_deref().and_then(|path| scene_file::read(path).ok()).map(|source| source.document);
-    let mut editor = Editor::new(saved.unwrap_or_else(|| parsed.clone()), Place { scene: left.scene, roots });
-    if left.changed {
-        editor.edit(|document| *document = parsed);
-    }
+    let place = Place { scene: left.scene, roots };
+    let editor = match (left.changed, saved) {
+        (true, Some(saved)) => {
+            let mut editor = Editor::new(saved, place);
+            editor.edit(|document| *document = parsed);
+            editor
+        }
+        // It was never saved, or its file is gone: it lives here alone.
+        (true, None) => Editor::unsaved(parsed, place),
+        (false, saved) => Editor::new(saved.unwrap_or(parsed), place),
+    };
     Some(Recovered { editor, extra: left.extra })
 }
 
@@ -227,6 +233,22 @@ mod tests {
         assert_eq!(left.editor.place.scene, editor.place.scene);
         recovery.end();
         assert!(Recovery::claim(&state).expect("place").1.is_none(), "an instance that ended left something");
+    }
+
+    #[test]
+    fn a_scene_that_was_never_saved_comes_back_changed() {
+        let dir = tempfile::tempdir().expect("folder");
+        let path = scene(dir.path());
+        let source = scene_file::read(&path).expect("scene");
+        let mut editor = Editor::new(source.document, Place::default());
+        editor.edit(|d| d.title = "changed".into());
+        let (recovery, _) = Recovery::claim(&dir.path().join("state")).expect("place");
+        recovery.write(&editor, serde_json::Value::Null).expect("written");
+        drop(recovery);
+        let mut left = Recovery::claim(&dir.path().join("state")).expect("place").1.expect("left behind").editor;
+        assert!(left.is_changed() && left.document().title == "changed");
+        left.save(&dir.path().join("t.toml")).expect("saved");
+        assert!(left.is_saved() && !left.is_changed());
     }
 
     #[test]

@@ -48,19 +48,19 @@ impl Extent {
 /// The parts of a layer that are no part of the target.
 fn parts(scene: &Scene, index: usize, target: &Target) -> Vec<Part> {
     let layer = &scene.layers[index];
+    let own = target.own_parts.as_ref().filter(|(layer, _)| *layer == index).map_or(&[][..], |(_, parts)| parts);
     let whole = |bounds: Aabb| vec![Part { layer: index, number: None, corners: bounds.corners().to_vec() }];
     match &layer.kind {
         _ if target.own_layers.contains(&index) => Vec::new(),
         LayerKind::Boxes(b) => {
             let part =
                 |(k, b): (usize, &BoxShape)| Part { layer: index, number: Some(k), corners: b.corners().to_vec() };
-            b.boxes.iter().enumerate().map(part).collect()
+            b.boxes.iter().enumerate().filter(|(k, _)| !own.contains(&(*k as u32))).map(part).collect()
         }
         LayerKind::Mesh(m) if m.mesh.part(0).is_some() => {
-            let own = target.own_parts.as_ref().filter(|(layer, _)| *layer == index).map(|(_, parts)| &parts[..]);
             let mut bounds = std::collections::BTreeMap::<u32, Aabb>::new();
             for t in 0..m.mesh.triangles().len() {
-                let Some(part) = m.mesh.part(t).filter(|p| own.is_none_or(|own| !own.contains(p))) else { continue };
+                let Some(part) = m.mesh.part(t).filter(|p| !own.contains(p)) else { continue };
                 let of = bounds.entry(part).or_insert(Aabb::EMPTY);
                 *of = of.union(Aabb::of(m.mesh.corners(t)));
             }

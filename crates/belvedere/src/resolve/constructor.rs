@@ -6,6 +6,7 @@ use crate::BelvedereError;
 use crate::bodies::refusal;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, ConstructorDoc, ConstructorKind, SourceDocument, StageDoc};
+use crate::verbs::reveal_target;
 use belvedere_construct::ConstructError;
 use belvedere_construct::centreline::CentrelineReport;
 use belvedere_construct::rays::{
@@ -29,6 +30,22 @@ pub(crate) struct Memory {
     pub(crate) probe: ProbeMemory,
     /// The preview of the frame before.
     pub(crate) preview: Option<Prepared>,
+}
+
+impl Memory {
+    /// Nothing but the path of a preview, which depends on the scene and the document alone.
+    pub(crate) fn of_path(&self) -> Self {
+        Self { preview: self.preview.clone(), ..Self::default() }
+    }
+
+    /// The same for a picture of another size: the preview keeps the camera that was fitted to the size before.
+    pub(crate) fn of_path_sized(&self, image: [u32; 2]) -> Self {
+        let mut memory = self.of_path();
+        if let Some(prepared) = &mut memory.preview {
+            prepared.made_from.1 = image;
+        }
+        memory
+    }
 }
 
 /// What a constructor of curved rays came to.
@@ -257,12 +274,15 @@ pub(crate) fn path_length(
     }
 }
 
-/// The layer to be kept in view.
+/// What is to be kept in view: a layer, or a part of one.
 fn target(source: &SourceDocument, scene: &Scene, id: &str) -> Result<Target, BelvedereError> {
     let fail = |reason: String| source.error(&["constructor", "target"], format!("constructor: {reason}"));
     let ids: Vec<&str> = scene.layers.iter().map(|l| l.id.as_str()).collect();
     let Some(index) = ids.iter().position(|other| *other == id) else {
-        return Err(fail(format!("target \"{id}\" is no layer of the scene; {}", scene_file::suggestion(id, &ids))));
+        return reveal_target::part(scene, id).ok_or_else(|| {
+            let near = scene_file::suggestion(id, &ids);
+            fail(format!("target \"{id}\" is no layer of the scene, no part of a mesh and no box LAYER/NUMBER; {near}"))
+        });
     };
     Target::layer(scene, index).ok_or_else(|| {
         fail(format!("layer \"{id}\" cannot be tracked: it is ground, an area, or holds nothing; name something that stands on it"))

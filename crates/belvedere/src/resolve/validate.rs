@@ -223,7 +223,7 @@ fn constructor(doc: &ConstructorDoc) -> Result<(), Complaint> {
     }
     match doc.kind {
         ConstructorKind::TargetTracking if doc.target.is_none() => {
-            Err(("kind", "target_tracking needs target, the layer to keep in view".into()))
+            Err(("kind", "target_tracking needs target, the layer, part or box to keep in view".into()))
         }
         ConstructorKind::PathPreview if doc.path.is_some() == doc.centreline.is_some() => {
             let given = if doc.path.is_some() { "both are given" } else { "neither is given" };

@@ -238,8 +238,14 @@ pub(crate) fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError>
     )))
 }
 
-/// The parts of a mesh that have a name: of the first mesh that has some.
-fn part(scene: &Scene, name: &str) -> Option<Target> {
+/// The parts of a mesh that have a name, of the first mesh that has some; or `LAYER/NUMBER`, a box of a layer, the first being 1.
+pub(crate) fn part(scene: &Scene, name: &str) -> Option<Target> {
+    if let Some((layer, number)) = name.rsplit_once('/')
+        && let (Some(index), Ok(number)) = (scene.layers.iter().position(|l| l.id == layer), number.parse::<u32>())
+        && let LayerKind::Boxes(_) = scene.layers[index].kind
+    {
+        return Target::parts(scene, index, &[number.checked_sub(1)?]);
+    }
     meshes(scene).find_map(|(index, mesh)| Target::parts(scene, index, &mesh.parts_named(name)))
 }
 
