@@ -71,15 +71,24 @@ impl<'a> Split<'a> {
             Stage::TerrainDisocclusion(t) => Some(t),
             _ => None,
         });
-        Self::of(Cow::Borrowed(view), ground, bend)
+        let strip = view.stages().iter().find_map(|s| match s {
+            Stage::Strip(s) => Some(s),
+            _ => None,
+        });
+        Self::of(Cow::Borrowed(view), ground, strip, bend)
     }
 
     /// Of a view of rigid bodies that were carried: nothing but curved rays bends it.
     pub(crate) fn after_bodies(view: View) -> Self {
-        Self::of(Cow::Owned(view), None, None)
+        Self::of(Cow::Owned(view), None, None, None)
     }
 
-    fn of(view: Cow<'a, View>, ground: Option<&'a TerrainDisocclusion>, bend: Option<&'a SplineBend>) -> Self {
+    fn of(
+        view: Cow<'a, View>,
+        ground: Option<&'a TerrainDisocclusion>,
+        strip: Option<&'a Strip>,
+        bend: Option<&'a SplineBend>,
+    ) -> Self {
         let stages: Vec<Stage> =
             view.stages().iter().filter(|s| !matches!(s, Stage::TerrainDisocclusion(_))).cloned().collect();
         let earth = stages.iter().find_map(|s| match s {
@@ -87,12 +96,10 @@ impl<'a> Split<'a> {
             _ => None,
         });
         let relief = view.stages().iter().any(|s| matches!(s, Stage::Relief(_)));
-        let strip = view.stages().iter().position(|s| matches!(s, Stage::Strip(_)));
-        let strip = strip.and_then(|i| {
-            let Stage::Strip(strip) = &view.stages()[i] else { return None };
+        let strip = strip.and_then(|strip| {
+            let later = view.stages().iter().skip_while(|s| !matches!(s, Stage::Strip(_))).skip(1).cloned().collect();
             // The end of a chain is a chain.
-            let later = View::new(view.pinhole().clone(), view.stages()[i + 1..].to_vec()).ok()?;
-            Some((strip, later))
+            Some((strip, View::new(view.pinhole().clone(), later).ok()?))
         });
         let kind = match (bend, view.stages().iter().any(Stage::bends_rays)) {
             _ if relief || strip.is_some() => Kind::Any,
