@@ -141,3 +141,72 @@ fn a_city_is_abstracted_on_loading() {
     place.write("s.toml", &scene("loa = 3\n"));
     assert!(place.fails(&["check", "s.toml"]).contains("loa is 3, it must be 0"));
 }
+
+#[test]
+fn several_sources_line_up_or_say_that_they_do_not() {
+    let place = Place::new();
+    let said = |name: &str, scene: &str| {
+        place.write("s.toml", scene);
+        let out = place.run(&["check", "s.toml"]);
+        let said = String::from_utf8_lossy(&out.stderr).into_owned() + &String::from_utf8_lossy(&out.stdout);
+        assert!(!said.contains("panicked"), "{name}: {said}");
+        (out.status.code(), said)
+    };
+    let camera = "[camera]\neye = [0, -900, 400]\nlook_at = [0, 0, 0]\n";
+    let solid = |z: i32, head: &str| {
+        format!(
+            r#"{{"type":"CityJSON","version":"1.1",{head}"transform":{{"scale":[1,1,1],"translate":[390000,5819000,{z}]}},
+            "vertices":[[0,0,0],[9,0,0],[9,9,0],[0,9,0],[0,0,7],[9,0,7],[9,9,7],[0,9,7]],"CityObjects":{{"h":{{"type":"Building",
+            "geometry":[{{"type":"Solid","lod":"1","boundaries":[[[[0,3,2,1]],[[4,5,6,7]],[[0,1,5,4]],[[1,2,6,5]],[[2,3,7,6]],[[3,0,4,7]]]]}}]}}}}}}"#
+        )
+    };
+    let crs = r#""metadata":{"referenceSystem":"https://www.opengis.net/def/crs/EPSG/0/25833"},"#;
+    place.write("a.city.json", &solid(35, crs));
+    place.write("b.city.json", &solid(35, ""));
+    let feature = |properties: &str, kind: &str, coordinates: &str| {
+        format!(
+            r#"{{"type":"FeatureCollection","features":[{{"type":"Feature","properties":{properties},
+            "geometry":{{"type":"{kind}","coordinates":{coordinates}}}}}]}}"#
+        )
+    };
+    place.write("way.geojson", &feature("{}", "LineString", "[[13.378,52.512],[13.379,52.513]]"));
+    let (city, way) = (layer("c", "city", "a.city.json"), layer("w", "line", "way.geojson"));
+    // Ways without heights lie on the ground of the city, whatever the order of the layers.
+    for layers in [format!("{city}{way}"), format!("{way}{city}")] {
+        let (code, text) = said("way", &format!("format = 1\n{layers}{camera}"));
+        assert!(code == Some(0) && text.contains("2 positions without height lie at 35.0 m"), "{text}");
+    }
+    // A city without a system is said to be taken as it stands.
+    let plain = layer("p", "city", "b.city.json");
+    let (_, text) = said("no system", &format!("format = 1\n{city}{plain}{camera}"));
+    assert!(text.contains("b.city.json: names no system that is known and is taken as in EPSG:25833"), "{text}");
+    assert!(!text.contains("a.city.json: names no system"), "{text}");
+    // Latitudes before longitudes: another continent.
+    let Some(dem) = data("swellendam/srtm_41_19_utm33s.tif") else { return };
+    let root = dem.parent().and_then(|p| p.to_str()).expect("folder").to_owned();
+    let house = |corners: &str| feature(r#"{"building":"yes","height":7}"#, "MultiPolygon", corners);
+    let right = "[[[20.44,-34.02],[20.441,-34.02],[20.441,-34.021],[20.44,-34.02]]]";
+    let swapped = "[[[-34.02,20.44],[-34.02,20.441],[-34.021,20.441],[-34.02,20.44]]]";
+    place.write("swapped.geojson", &house(&format!("[{swapped}]")));
+    let ground = layer("g", "terrain", dem.to_str().expect("UTF-8"));
+    let scene = |name: &str| format!("format = 1\n{ground}{}{camera}", layer("c", "city", name));
+    place.write("s.toml", &scene("swapped.geojson"));
+    let line = place.fails(&["check", "s.toml", "--allow-root", &root]);
+    assert!(line.contains("none of its 1 buildings lies on the terrain") && line.contains("latitudes"), "{line}");
+    let two = feature(r#"{"building":"yes"}"#, "Polygon", right).replace(
+        "\"features\":[",
+        &format!("\"features\":[{},", r#"{"type":"Feature","properties":{"building":"yes"},"geometry":{"type":"Polygon","coordinates":[[[25,-34],[25.1,-34],[25.1,-34.1],[25,-34]]]}}"#),
+    );
+    place.write("two.geojson", &two);
+    place.write(
+        "far.geojson",
+        &two.replace("[25,-34]", "[50,14]").replace("[25.1,-34]", "[50.1,14]").replace("[25.1,-34.1]", "[50.1,14.1]"),
+    );
+    place.write("s.toml", &format!("format = 1\n{}{camera}", layer("c", "city", "far.geojson")));
+    let line = place.fails(&["check", "s.toml"]);
+    assert!(line.contains("its shapes lie over") && line.contains("1500 km are possible"), "{line}");
+    place.write("s.toml", &scene("two.geojson"));
+    let out = place.run(&["check", "s.toml", "--allow-root", &root]);
+    let text = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert!(text.contains("1 of 2 buildings lie outside the terrain and are left out"), "{text}");
+}

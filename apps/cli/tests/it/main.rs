@@ -9,6 +9,7 @@ mod curve_inset;
 mod exact;
 mod figures;
 mod generalise;
+mod geopackage;
 mod layers;
 mod light_and_tints;
 mod marks;

@@ -81,3 +81,74 @@ fn what_fails_changes_nothing_and_says_where() {
     place.ok(&["preset", "set", "own.toml", "low.split=1", "low.split=1"]);
     assert_eq!(place.run(&["preset", "check", "own.toml", "--strict"]).status.code(), Some(1));
 }
+
+#[test]
+fn broken_documents_end_in_one_line_with_file_and_place() {
+    let place = Place::new();
+    place.ok(&["preset", "new", "-o", "good.json", "--from", "demo"]);
+    let good = json(&String::from_utf8(read(&place.path("good.json"))).expect("UTF-8"));
+    let refused = |about: &str, text: &str, words: &[&str]| {
+        place.write("p.json", text);
+        let start = std::time::Instant::now();
+        let line = place.fails(&["preset", "check", "p.json"]);
+        assert!(start.elapsed().as_secs_f64() < 10.0, "{about} takes {:?}", start.elapsed());
+        assert!(words.iter().all(|w| line.contains(w)) && line.contains("p.json"), "{about}: {line}");
+        assert!(line.len() < 400, "{about}: {line}");
+    };
+    // A change of the first preset, and what must be said of it.
+    let low = |key: &str, value: Value, words: &str| {
+        let mut document = good.clone();
+        document["presets"][0][key] = value.clone();
+        refused(&format!("{key} = {value}"), &document.to_string(), &["\"low\"", words]);
+    };
+    for (key, value, words) in [
+        ("phi", "91", "phi is 91, it must be in -90..=90"),
+        ("phi", "1e308", "phi is 1e308"),
+        ("tau", "-5", "tau is -5, it must be in 0..=90"),
+        ("a", "-5", "a is -5"),
+        ("b", "1e300", "b is 1e300"),
+        ("e", "0.4", "e = 0.4 does not exceed near depth s = 0.4; give e > s"),
+        ("e", "0.1", "does not exceed"),
+        ("s", "1e308", "s = 1e308; give e > s"),
+        ("control", "[[0, 0], [1, 0], [2, 0]]", "3 control points were given"),
+        ("control", "[]", "0 control points were given"),
+        ("control", "[[1, 1], [1, 1], [1, 1], [1, 1]]", "move its control points apart"),
+        ("knots", "[0, 0, 0, 1]", "4 knots were given, 4 control points need 8"),
+        ("knots", "[0, 0, 0, 0, 1, 0.5, 1, 1]", "sort the knots"),
+        ("sections", "[\"loa0\"]", "1 sections for 2 tags; exactly 3 are needed"),
+        ("phi", "42", "have the same phi = 42 degrees"),
+        ("angles", "[[0, 60], [0.5, 60]]", "remove the other"),
+        ("tags", "[{\"u\": 0.6, \"delta\": 0.05}, {\"u\": 0.3, \"delta\": 0.05}]", "tag 1 lies at u = 0.3"),
+        ("tags", "[{\"u\": 0.3, \"delta\": -0.1}, {\"u\": 0.6, \"delta\": 0.05}]", "tag delta is -0.1"),
+        ("tags", "[{\"u\": -0.3, \"delta\": 0.1}, {\"u\": 1.6, \"delta\": 0.05}]", "tag u is -0.3"),
+    ] {
+        low(key, json(value), words);
+    }
+    let text = good.to_string();
+    let many: Vec<String> = (0..34).map(|k| format!("\"r{k}\"")).collect();
+    let tags: Vec<String> = (1..34).map(|k| format!("{{\"u\":{},\"delta\":0}}", f64::from(k) / 34.0)).collect();
+    let mut document = good.clone();
+    document["presets"][0]["sections"] = json(&format!("[{}]", many.join(",")));
+    document["presets"][0]["tags"] = json(&format!("[{}]", tags.join(",")));
+    refused("many representations", &document.to_string(), &["different representations, 32 at most"]);
+    let keyed = |from: &str, to: &str| text.replacen(from, to, 1);
+    for (about, text, words) in [
+        ("NaN", keyed("25.0", "NaN"), "not finite"),
+        ("1e999", keyed("25.0", "1e999"), "not a finite number"),
+        ("null", keyed("25.0", "null"), "presets.0.phi: a number was expected, found null"),
+        ("text", keyed("25.0", "\"x\""), "presets.0.phi: a number was expected, found the text \"x\""),
+        ("unknown key", keyed("\"phi\"", "\"colour\""), "unknown key \"colour\""),
+        ("version 2", keyed("\"version\":1", "\"version\":2"), "has version 2, this program reads version 1"),
+        ("given twice", keyed("\"version\":1", "\"version\":1,\"version\":1"), "given twice"),
+        ("no presets", "{\"version\":1,\"presets\":[]}".into(), "holds 0 presets"),
+        ("deep", format!("{{\"x\":{}{}}}", "[".repeat(5000), "]".repeat(5000)), "nested more than 64 deep"),
+        ("large", format!("{text}{}", " ".repeat(17 << 20)), "has 17"),
+        ("empty", String::new(), "not valid JSON"),
+        ("a list", "[]".into(), "a table was expected, found a list"),
+    ] {
+        refused(about, &text, &[words]);
+    }
+    for k in 0..16 {
+        refused(&format!("cut at {k} of 16"), &text[..text.len() * k / 16], &["p.json"]);
+    }
+}

@@ -5,7 +5,7 @@ use super::ground::{Ground, epsg};
 use super::loader::Loader;
 use super::mesh::{wanted, with_ambient_occlusion};
 use crate::BelvedereError;
-use crate::scene_file::{CityDoc, Paths};
+use crate::scene_file::{CityDoc, LayerDoc, Paths};
 use belvedere_construct::generalise::{GeneraliseSettings, LandCoverMap, generalise, land_cover};
 use belvedere_core::DVec2;
 use belvedere_io::city::{CityColors, CityGround, plate_extent, reproject, surface};
@@ -13,6 +13,8 @@ use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::{CityFile, load_city};
 use belvedere_scene::{City, Crs, LayerKind, Mesh, MeshLayer, RigidParts};
 
+/// Widest city, with its rim, metres.
+const WIDEST_M: f64 = 1.5e6;
 /// Format of cities that no file holds.
 const BUILT_IN: &str = "built in";
 /// Ground that is farther from the terrain than this is spoken of, metres.
@@ -54,6 +56,21 @@ pub(super) fn crs(loader: &mut Loader<'_>, index: usize, doc: &CityDoc) -> Resul
     let stated = stated(loader, index, doc)?;
     let system = file.metric_system(stated.as_ref()).map_err(|e| loader.fail(index, "crs", e))?;
     Ok(system.and_then(|s| s.epsg()).map(Crs::Epsg))
+}
+
+/// Median height of the ground under the buildings of all cities; `None` if they say none.
+pub(super) fn floor(loader: &mut Loader<'_>) -> Result<Option<f64>, BelvedereError> {
+    let mut bases = Vec::new();
+    let docs = loader.layers;
+    for (index, doc) in docs.iter().enumerate() {
+        if let LayerDoc::City(doc) = doc {
+            let files = files(loader, index, doc)?;
+            let own = files.iter().flat_map(|f| &f.city.buildings).filter_map(|b| b.base_m);
+            bases.extend(own.map(|z| z + doc.height_offset_m));
+        }
+    }
+    let middle = bases.len() / 2;
+    Ok((!bases.is_empty()).then(|| *bases.select_nth_unstable_by(middle, f64::total_cmp).1))
 }
 
 /// The system that the document states for the files.
@@ -112,6 +129,7 @@ pub(super) fn layer(
         let lost = leave_out_beyond(&mut city, terrain).map_err(|e| loader.fail(index, "source", e))?;
         loader.note(index, lost.into_iter().chain(remarks(&city, terrain)).collect());
     }
+    compact(&city).map_err(|e| loader.fail(index, "source", e))?;
     // Part 0 is what lies between buildings; bridges and trees follow the buildings.
     let buildings = (1..=city.buildings.len() as u32).collect();
     let mut layer = mesh(city, &colors, terrain).map_err(|e| loader.fail(index, "source", e))?;
@@ -181,6 +199,19 @@ fn leave_out_beyond(city: &mut City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> 
         ));
     }
     Ok((lost > 0).then(|| format!("{lost} of {before} buildings lie outside the terrain and are left out")))
+}
+
+/// Refuses cities that are wider than any: something in them lies elsewhere.
+fn compact(city: &City) -> Result<(), String> {
+    let width_m = plate_extent(city).map_or(0.0, |[low, high]| (high - low).max_element());
+    if width_m <= WIDEST_M {
+        return Ok(());
+    }
+    Err(format!(
+        "its shapes lie over {:.0} km, {:.0} km are possible; look for some far away from the others, such as with latitudes before longitudes",
+        width_m / 1000.0,
+        WIDEST_M / 1000.0
+    ))
 }
 
 /// What does not fit the terrain.

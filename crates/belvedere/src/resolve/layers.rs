@@ -76,6 +76,7 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
         areas: Vec::new(),
         vectors,
         cities: BTreeMap::new(),
+        floor: None,
         keep_original,
         original: None,
     };
@@ -93,6 +94,9 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
         }
     }
     let crs = crs.or(fallback_crs).unwrap_or_default();
+    if needs == Needs::Everything && first_terrain(&layers).is_none() {
+        loader.floor = city::floor(&mut loader)?;
+    }
     for (i, doc) in docs.iter().enumerate().filter(|_| needs == Needs::Everything) {
         let ground = Ground { crs, terrain: first_terrain(&layers) };
         if let LayerDoc::Terrain(doc) = doc {

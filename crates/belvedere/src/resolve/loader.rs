@@ -28,6 +28,8 @@ pub(super) struct Loader<'a> {
     pub(super) vectors: BTreeMap<PathBuf, Loaded<Vectors>>,
     /// Cities that were read already, by the number of their layer.
     pub(super) cities: BTreeMap<usize, Vec<CityFile>>,
+    /// Height of the ground of cities, for features without heights where there is no terrain.
+    pub(super) floor: Option<f64>,
     /// Whether the samples of the terrain's file are kept as they are there, and where.
     pub(super) keep_original: bool,
     pub(super) original: Option<OriginalTerrain>,

@@ -47,12 +47,29 @@ fn all<T>(
     for file in loader.files(index, "source", paths)? {
         loader.options.progress.tick("reading features", 0.0)?;
         let vectors = loader.vectors.remove(&file).map_or_else(|| load_vectors(&file), Ok)?;
-        let vectors = loader.take(index, vectors);
+        let mut vectors = loader.take(index, vectors);
         inspect(&vectors);
+        stand(loader, index, &mut vectors);
         let found = on_terrain(&vectors, ground.crs, ground.terrain)?;
         features.extend(loader.take(index, found));
     }
     Ok(features)
+}
+
+/// Lays lines and points without heights on the ground of the cities, where there is no terrain.
+fn stand(loader: &mut Loader<'_>, index: usize, vectors: &mut Vectors) {
+    let Some(floor) = loader.floor else { return };
+    let flat = |g: &&mut Geometry| !matches!(g, Geometry::Polygons(_));
+    let vertices = vectors.features.iter_mut().map(|f| &mut f.geometry).filter(flat).flat_map(Geometry::vertices_mut);
+    let mut count = 0;
+    for v in vertices.filter(|v| v.z.is_none()) {
+        (v.z, count) = (Some(floor), count + 1);
+    }
+    if count > 0 {
+        let path = vectors.path.display();
+        let note = format!("{path}: {count} positions without height lie at {floor:.1} m, the ground of the city");
+        loader.note(index, vec![note]);
+    }
 }
 
 /// Lines of files, draped.

@@ -121,47 +121,43 @@ fn property(name: &str, value: &Value<'_>) -> Option<(String, String)> {
     Some((shorten(name), text))
 }
 
-/// The coordinate system of a table: by its EPSG code, else by its text.
+/// What to do about tables without a coordinate system that is known.
+const REMEDY: &str = "set it, as by ogr2ogr -a_srs EPSG:n";
+
+/// The coordinate system of a table.
 fn system_of(
     database: &Database,
     table: &Table,
     features: &[VectorFeature],
     warnings: &mut Vec<String>,
 ) -> Result<CoordinateSystem, String> {
-    let (name, id) = (&table.name, table.srs_id);
-    let remedy = "set it, as by ogr2ogr -a_srs EPSG:n";
-    let text = |e: CrsError| format!("table \"{name}\": {e}");
-    let crs = match id {
-        -1 => return Err(format!("table \"{name}\" is in an undefined plane (srs_id -1); {remedy}")),
+    let name = &table.name;
+    let crs = match table.srs_id {
+        -1 => return Err(format!("table \"{name}\" is in an undefined plane (srs_id -1); {REMEDY}")),
         0 => {
             warnings.push(format!("table \"{name}\" is in undefined degrees (srs_id 0), taken as WGS 84"));
-            CoordinateSystem::wgs84().map_err(text)?
+            CoordinateSystem::wgs84().map_err(|e| e.to_string())?
         }
-        _ => {
-            let system = database.system(id)?;
-            let system = system.ok_or_else(|| {
-                format!("table \"{name}\" is in system {id}, which gpkg_spatial_ref_sys does not list; {remedy}")
-            })?;
-            let by_code = system.epsg.map(CoordinateSystem::from_epsg);
-            match by_code {
-                Some(Ok(crs)) => crs,
-                _ => {
-                    let by_text = system.definitions.iter().find_map(|text| CoordinateSystem::from_wkt(text).ok());
-                    let reason = by_code
-                        .and_then(Result::err)
-                        .map(|e| e.to_string())
-                        .unwrap_or_else(|| "its text is not understood".into());
-                    by_text.ok_or_else(|| {
-                        format!("table \"{name}\" is in \"{}\" (srs_id {id}): {reason}; {remedy}", system.name)
-                    })?
-                }
-            }
-        }
+        id => listed_system(database, id).map_err(|e| format!("table \"{name}\" is in {e}; {REMEDY}"))?,
     };
     match not_degrees(features).filter(|_| crs.is_geographic()) {
-        Some(reason) => Err(format!("table \"{name}\": {reason}, but its system is {crs}; {remedy}")),
+        Some(reason) => Err(format!("table \"{name}\": {reason}, but its system is {crs}; {REMEDY}")),
         None => Ok(crs),
     }
+}
+
+/// A coordinate system that the file lists: by its EPSG code, else by its text.
+fn listed_system(database: &Database, id: i64) -> Result<CoordinateSystem, String> {
+    let system = database.system(id)?;
+    let system = system.ok_or_else(|| format!("system {id}, which gpkg_spatial_ref_sys does not list"))?;
+    let by_code = system.epsg.map(CoordinateSystem::from_epsg);
+    let reason = match by_code {
+        Some(Ok(crs)) => return Ok(crs),
+        Some(Err(e)) => e.to_string(),
+        None => "its text is not understood".into(),
+    };
+    let by_text = system.definitions.iter().find_map(|text| CoordinateSystem::from_wkt(text).ok());
+    by_text.ok_or_else(|| format!("\"{}\" (srs_id {id}): {reason}", system.name))
 }
 
 /// Takes features to another system; how many lie outside its domain and are dropped.
