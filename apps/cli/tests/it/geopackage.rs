@@ -36,7 +36,10 @@ fn geopackages_are_read_where_they_are_built_in() {
     let sidecar: serde_json::Value = serde_json::from_slice(&super::read(&place.path("a.png.json"))).expect("JSON");
     let inputs: Vec<&str> =
         sidecar["inputs"].as_array().expect("inputs").iter().filter_map(|i| i["path"].as_str()).collect();
-    assert!(inputs.contains(&path) && inputs.iter().all(|i| !i.contains('?')), "{inputs:?}");
+    assert!(
+        inputs.iter().filter(|i| i.ends_with("bubenec.gpkg")).count() == 1 && !inputs.iter().any(|i| i.contains('?')),
+        "{inputs:?}"
+    );
     // Show writes the names as they were, and they are read again.
     place.ok(&["show", "s.toml", "-o", "t.toml", "--allow-root", root]);
     place.ok(&["render", "t.toml", "-o", "b.png", "--allow-root", root]);

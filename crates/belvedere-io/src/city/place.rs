@@ -6,15 +6,18 @@ use crate::crs::{CoordinateSystem, CrsError, Transform, utm_epsg};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{City, Polygon};
 
+const WEB_MERCATOR: u32 = 3857;
+
 impl CityFile {
-    /// A system in metres for it: its own if that is one for scenes, else the UTM zone of its first place. `None` if the file names
+    /// A system in metres for it: its own if that is one for scenes (Web Mercator is none: away from the equator its metres are too
+    /// long, and houses would be too wide for their heights), else the UTM zone of its first place. `None` if the file names
     /// no system; `stated` stands in for what it names.
     ///
     /// # Errors
     /// [`IoError`]: places in no UTM zone.
     pub fn metric_system(&self, stated: Option<&CoordinateSystem>) -> Result<Option<CoordinateSystem>, IoError> {
         let Some(system) = stated.or(self.crs.as_ref()) else { return Ok(None) };
-        if system.suits_scenes() {
+        if system.suits_scenes() && system.epsg() != Some(WEB_MERCATOR) {
             return Ok(Some(system.clone()));
         }
         let fail = |e: CrsError| IoError::format(&self.path, e.to_string());

@@ -180,6 +180,9 @@ fn footprints_and_streets_make_a_city() {
     let city = |table| load_city(&at(&path, table), None, &Limits::default()).unwrap().value.city;
     assert_eq!((city("buildings").buildings.len(), city("streets").ways.len()), (144, 35));
     assert_eq!(city("buildings").buildings[0].id, "1", "fid");
+    let file = load_city(&at(&path, "buildings"), None, &Limits::default()).unwrap().value;
+    let system = file.metric_system(None).unwrap().unwrap();
+    assert_eq!((file.crs.unwrap().epsg(), system.epsg()), (Some(3857), Some(32633)), "metres of Web Mercator are none");
 }
 
 #[test]
