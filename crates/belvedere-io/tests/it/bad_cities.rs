@@ -6,6 +6,9 @@ use belvedere_scene::City;
 use serde_json::{Value, json};
 use std::time::Instant;
 
+/// What makes a file broken.
+type Change = Box<dyn Fn(&mut Value)>;
+
 /// What must come of a file.
 enum Want {
     /// An error that holds these words.
@@ -75,7 +78,7 @@ fn instance(template: usize) -> Value {
 fn cityjson() {
     let folder = Folder::new();
     let solid = |c: &mut Value, change: fn(&mut Value)| change(&mut c["CityObjects"]["b1"]["geometry"][0]);
-    let cases: Vec<(&str, Box<dyn Fn(&mut Value)>, Want)> = vec![
+    let cases: Vec<(&str, Change, Want)> = vec![
         ("as it is", Box::new(|_| {}), Fine),
         (
             "no vertices",

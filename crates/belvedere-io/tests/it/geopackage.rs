@@ -298,7 +298,7 @@ fn what_cannot_be_read_is_one_error_with_its_place() {
     let curve = LE.line(8, 2, SQUARE);
     let cases: Vec<(Package, &str)> = vec![
         (g(curve.clone()), "table \"t\", fid 1: its geometry is a CircularString"),
-        (g(LE.many(9, &[curve.clone()])), "CompoundCurve"),
+        (g(LE.many(9, std::slice::from_ref(&curve))), "CompoundCurve"),
         (g(LE.many(1012, &[])), "MultiSurface"),
         (g(LE.many(7, &[curve])), "fid 1"),
         (g(LE.head(2)), "fid 1: its well-known binary is damaged"),

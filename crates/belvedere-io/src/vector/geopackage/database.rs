@@ -148,7 +148,7 @@ impl Database {
         let key = self.key(table).map_err(said)?;
         let query = format!("SELECT * FROM \"{}\"", table.name.replace('"', "\"\""));
         let mut statement = self.connection.prepare(&query).map_err(said)?;
-        let names: Vec<String> = statement.column_names().into_iter().map(str::to_owned).collect();
+        let names: Vec<String> = statement.column_names().map(str::to_owned).collect();
         let is = |name: &str, wanted: &str| name.eq_ignore_ascii_case(wanted);
         let geometry = names.iter().position(|n| is(n, &table.column));
         let geometry = geometry.ok_or_else(|| {
