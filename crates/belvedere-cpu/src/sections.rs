@@ -9,7 +9,7 @@
 use crate::raster::thin::ThinShow;
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::sections::{MOST_REPRESENTATIONS, StylingSections};
-use belvedere_core::{Aabb, DVec3, Stage, View};
+use belvedere_core::{Aabb, DVec3, SpaceMap, Stage, Strip, View};
 use belvedere_scene::{Compositing, RenderJob, Scene};
 
 /// Which layers are shown where.
@@ -17,6 +17,7 @@ use belvedere_scene::{Compositing, RenderJob, Scene};
 pub(crate) struct Sections<'a> {
     /// `None` = one representation everywhere.
     bend: Option<&'a SplineBend>,
+    strip: Option<&'a Strip>,
     styling: StylingSections,
     table: Table,
     /// For each layer the representations that show it, as bits.
@@ -51,6 +52,7 @@ impl<'a> Sections<'a> {
             return None;
         }
         let bend = view.stages().iter().find_map(|s| if let Stage::SplineBend(bend) = s { Some(bend) } else { None });
+        let strip = view.stages().iter().find_map(|s| if let Stage::Strip(strip) = s { Some(strip) } else { None });
         let styling = bend.map_or_else(StylingSections::plain, |bend| bend.sections().clone());
         let shown_by = scene.shown_by(&styling.representations());
         let only = only.filter(|number| *number < styling.representations().len());
@@ -63,7 +65,7 @@ impl<'a> Sections<'a> {
         for layers in one_surface.iter().filter(|layers| !layers.is_empty()) {
             layers[1..].iter().for_each(|layer| drawn_by[layers[0]] |= std::mem::take(&mut drawn_by[*layer]));
         }
-        Some(Self { bend, styling, table, shown_by, drawn_by, one_surface, only })
+        Some(Self { bend, strip, styling, table, shown_by, drawn_by, one_surface, only })
     }
 
     /// Whether any layer is drawn together with others that are the same surface.
@@ -107,7 +109,12 @@ impl<'a> Sections<'a> {
     /// How much of a part of a layer is shown, by its bounds before any displacement.
     pub(crate) fn of_part(&self, layer: usize, bounds: &Aabb) -> Shown {
         let Some(bend) = self.bend else { return self.of_layer(layer) };
-        let places = bounds.corners().map(|p| bend.section_parameter(p));
+        let unrolled = match self.strip {
+            Some(strip) => strip.displaced_bounds(bounds),
+            None => Some(*bounds),
+        };
+        let Some(unrolled) = unrolled else { return self.of_layer(layer) };
+        let places = unrolled.corners().map(|p| bend.section_parameter(p));
         let range = places.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], t| [lo.min(t), hi.max(t)]);
         // What bounds hold by rounding alone is tested.
         self.of_range(layer, [range[0] - 1e-9, range[1] + 1e-9])
@@ -131,7 +138,7 @@ impl<'a> Sections<'a> {
 
     /// Place along the curve, as a share of its length.
     pub(crate) fn parameter(&self, p: DVec3) -> f64 {
-        self.bend.map_or(0.0, |bend| bend.section_parameter(p))
+        self.bend.map_or(0.0, |bend| bend.section_parameter(self.strip.map_or(p, |strip| unrolled(strip, p))))
     }
 
     /// Whether a sample with a threshold shows the layer at a place along the curve.
@@ -204,6 +211,17 @@ fn one_surface(scene: &Scene, shown_by: &[u32]) -> Vec<Vec<usize>> {
         }
     }
     all
+}
+
+/// Where a strip carries a point; one beside it as from the nearest place of the route, so that corners of triangles on the border have a
+/// place along the curve.
+fn unrolled(strip: &Strip, p: DVec3) -> DVec3 {
+    strip.apply(p).unwrap_or_else(|_| {
+        let g = strip.route().nearest(p.truncate());
+        let (from, to) = (strip.route().at(g), strip.unrolled().at(g));
+        let v = p.truncate() - from.p;
+        (to.p + v.dot(from.tangent) * to.tangent + v.dot(from.normal()) * to.normal()).extend(p.z)
+    })
 }
 
 /// The intervals of thresholds of the representations at a place.

@@ -95,10 +95,10 @@ fn strips_that_cannot_be_say_why() {
         &bare("path = [[0, 0], [3000, 0], [3000, 3000], [0, 3000], [0, 10]]"),
         "the route winds back to where it was",
     );
-    refuses(&scene("along = 'raod'"), "16: a strip along \"raod\": there is no such layer (did you mean \"road\"?)");
+    refuses(&scene("along = 'raod'"), "17: a strip along \"raod\": there is no such layer (did you mean \"road\"?)");
     refuses(
         &scene("along = 'ground'"),
-        "16: a strip along \"ground\": the layer is no line; name a layer of kind line",
+        "17: a strip along \"ground\": the layer is no line; name a layer of kind line",
     );
     refuses(&scene("along = 'road'\nwidth_m = 3"), "unknown key \"width_m\"");
 }

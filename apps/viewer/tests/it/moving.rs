@@ -84,3 +84,21 @@ fn views_are_bookmarked_beyond_the_window_and_compared() {
     settle(&mut harness);
     find(&harness, "Bar between straight and bent");
 }
+
+#[test]
+fn a_strip_along_a_route_is_drawn_while_the_camera_moves_and_at_rest() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = scene(folder.path());
+    let text = std::fs::read_to_string(&path).expect("scene");
+    std::fs::write(&path, text + "[[stage]]\nkind = \"strip\"\nalong = \"trail\"\n").expect("scene");
+    let mut harness = app(&opened(&[path]));
+    settle(&mut harness);
+    let before = eye(&harness);
+    for key in [Key::ArrowUp, Key::Plus, Key::Space, Key::ArrowLeft] {
+        harness.key_press_modifiers(Modifiers::NONE, key);
+        settle(&mut harness);
+    }
+    assert_ne!(eye(&harness), before);
+    assert_eq!(harness.state().document().stage[0].kind(), "strip");
+    assert!(find(&harness, "Picture").rect().width() > 100.0);
+}

@@ -35,7 +35,7 @@ pub enum StripError {
     },
     /// A loop, or a way there and back.
     #[error(
-        "the route winds back to where it was: smoothed until a strip of half width {half_width} fits, {left:.6} are left of its {length:.6}; take a narrower strip, or a part of the route"
+        "the route winds back to where it was: smoothed until a strip of half width {half_width} fits, {left:.2} are left of its {length:.2}; take a narrower strip, or a part of the route"
     )]
     Winds {
         /// Length in plan.
@@ -47,7 +47,7 @@ pub enum StripError {
     },
     /// Bends too sharp for the width.
     #[error(
-        "the smoothed route bends with a radius of {radius:.6} at ({:.6}, {:.6}), too sharp for a half width of {half_width}; the widest that works is {widest:.6}, or smooth more",
+        "the smoothed route bends with a radius of {radius:.2} at ({:.2}, {:.2}), too sharp for a half width of {half_width}; the widest that works is {widest:.2}, or smooth more",
         at.x, at.y
     )]
     Radius {
@@ -62,7 +62,7 @@ pub enum StripError {
     },
     /// A route beside itself.
     #[error(
-        "the strip overlaps itself at ({:.6}, {:.6}): two parts of the smoothed route are {distance:.6} apart, a half width of {half_width} needs more than twice that; the widest that works there is {widest:.6}, or smooth more",
+        "the strip overlaps itself at ({:.2}, {:.2}): two parts of the smoothed route are {distance:.2} apart, a half width of {half_width} needs more than twice that; the widest that works there is {widest:.2}, or smooth more",
         at.x, at.y
     )]
     Overlap {
@@ -77,7 +77,7 @@ pub enum StripError {
     },
     /// More nodes than are made.
     #[error(
-        "a route of {length:.6} with nodes {fine:.6} apart needs more than {most} of them; take a wider strip or smooth more"
+        "a route of {length:.2} with nodes {fine:.2} apart needs more than {most} of them; take a wider strip or smooth more"
     )]
     TooFine {
         /// Length of the route.
