@@ -182,6 +182,12 @@ impl<'a> Pass<'a> {
         edge_error_px(self.view, self.records, a, b)
     }
 
+    /// Whether an edge may cross a strip that both its ends lie beside.
+    pub(crate) fn crosses(&self, a: DVec3, b: DVec3) -> bool {
+        let stages = self.view.stages();
+        stages.iter().any(|s| matches!(s, Stage::Strip(_))) && !is_missed(stages, &Aabb::of([a, b]))
+    }
+
     /// Where the record shows the box, judged by its displaced bounds.
     pub(crate) fn in_view(&self, screen: &Screen, bounds: &Aabb) -> InView {
         if is_missed(self.view.stages(), bounds) {

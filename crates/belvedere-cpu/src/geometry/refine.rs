@@ -69,11 +69,14 @@ impl<'a> Refiner<'a> {
     }
 
     fn refine(&mut self, c: [Corner; 3], levels: [u8; 3], parent: u32) {
-        if c.iter().all(|c| c.v.is_none()) || (0..2).any(|m| c.iter().all(|c| !(c.margins[m] > 0.0))) {
+        if (0..2).any(|m| c.iter().all(|c| !(c.margins[m] > 0.0))) {
             return;
         }
         let errors: [f64; 3] =
             std::array::from_fn(|i| if levels[i] == FROZEN { 0.0 } else { self.edge_error(&c[i], &c[(i + 1) % 3]) });
+        if c.iter().all(|c| c.v.is_none()) && errors == [0.0; 3] {
+            return;
+        }
         let worst = errors.iter().fold(0.0f64, |a, &b| a.max(b));
         if self.is_off_image(&c, worst.min(MAX_MARGIN_PX)) {
             return;
@@ -91,6 +94,7 @@ impl<'a> Refiner<'a> {
     /// Error in pixels of drawing the edge straight; infinite where unknown, 0 where it does not matter.
     fn edge_error(&self, a: &Corner, b: &Corner) -> f64 {
         match (a.is_missing(), b.is_missing()) {
+            (true, true) if self.pass.crosses(a.p, b.p) => f64::INFINITY,
             (true, true) => 0.0,
             (false, false) => {
                 // Always in the same direction: two triangles must judge their common edge alike to the last bit.

@@ -65,14 +65,15 @@ fn rasteriser_and_tracer_agree_on_strips() {
 fn nothing_outside_the_strip_is_drawn_and_all_of_it_inside() {
     let (scene, image) = (ground(), [128, 96]);
     let above = pinhole(DVec3::new(0.0, -10.0, 1500.0), DVec3::ZERO, 50.0, image);
-    let view = View::new(above, vec![Stage::Strip(strip(1.0))]).expect("in order");
+    let map = strip(1.0);
+    let view = View::new(above, vec![Stage::Strip(map.clone())]).expect("in order");
     let frame = render(&scene, &view, &options(1));
     let tracer = Tracer::new(&scene, &view);
     let (mut inside, mut beside) = (0, 0);
     for (i, id) in frame.id.iter().enumerate() {
         let pixel = DVec2::new((i % frame.width) as f64 + 0.5, (i / frame.width) as f64 + 0.5);
         let on_ground = view.pinhole().unproject(pixel, 1500.0);
-        let off = strip(1.0).outside(on_ground);
+        let off = map.outside(on_ground);
         // Ground that is high or low is seen elsewhere than level ground.
         if off > 20.0 {
             beside += 1;

@@ -32,4 +32,4 @@ pub(crate) mod volume;
 
 pub(crate) use areas::{fill_surfaces, restyle};
 pub(crate) use layers::{LayerRequest, load};
-pub use strip::StripReport;
+pub(crate) use strip::StripReport;
