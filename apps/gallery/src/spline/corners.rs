@@ -24,7 +24,7 @@ pub(super) fn hard_and_soft(easel: &Easel<'_>) -> Result<Figure> {
         (
             false,
             "Near by, houses fold",
-            "seen from 370 m, space folds 37 m over the ground; walls lean and towers collapse",
+            "seen from 130 m, space folds 12 m over the ground; walls bow and lean, roofs collapse",
         ),
         (true, "Each house a rigid body", "carried and turned with the ground under its foot, however tall it is"),
     ] {

@@ -14,7 +14,7 @@ use belvedere_scene::{
 };
 use belvedere_sight::Carried;
 
-const IMAGE: [u32; 2] = [200, 150];
+const IMAGE: [u32; 2] = [120, 90];
 
 fn tower(x: f64, y: f64, height: f64, yaw: f64) -> BoxShape {
     let size = DVec3::new(14.0, 11.0, height);
@@ -95,7 +95,7 @@ fn the_rasteriser_draws_rigid_bodies_as_the_tracer_meets_them() {
         // They are not where the bend would put them.
         let (rigid, bent) = (render(&town(true), &view, &options(1)), render(&town(false), &view, &options(1)));
         let moved = rigid.depth.iter().zip(&bent.depth).filter(|(a, b)| (*a - *b).abs() > 0.01 * a.min(**b)).count();
-        assert!(moved > 500, "{name}: {moved}");
+        assert!(moved > 180, "{name}: {moved}");
     }
 }
 
@@ -123,7 +123,7 @@ fn what_is_seen_of_a_body_is_told_by_its_true_place() {
         (wanted.samples, wanted.aux.world, wanted.aux.exact) = (1, true, true);
         let frame = render(&town, &view, &wanted);
         let (mut boxes, mut parts, mut high) = (0, 0, 0);
-        for (i, p) in frame.world.as_ref().expect("asked for").iter().enumerate() {
+        for (i, p) in frame.world.as_ref().expect("asked for").iter().enumerate().step_by(5) {
             let pixel = DVec2::new((i % IMAGE[0] as usize) as f64 + 0.5, (i / IMAGE[0] as usize) as f64 + 0.5);
             let Some(hit) = tracer.first_hit(pixel) else { continue };
             if frame.id[i] as usize != hit.layer + 1 || (f64::from(frame.depth[i]) / hit.depth - 1.0).abs() > 1e-5 {
@@ -159,7 +159,7 @@ fn what_is_seen_of_a_body_is_told_by_its_true_place() {
             assert!(image.pixel.distance(pixel) < 0.02, "{name}: {p} has its image at {}, not {pixel}", image.pixel);
             assert!(!image.folded || body.is_none());
         }
-        assert!(boxes > 1000 && parts > 1000 && high > 100, "{name}: {boxes} {parts} {high}");
+        assert!(boxes > 100 && parts > 100 && high > 10, "{name}: {boxes} {parts} {high}");
     }
 }
 
@@ -220,5 +220,5 @@ fn styling_sections_show_rigid_bodies_by_their_true_places() {
     assert!(found.is_small(), "{found:?}");
     let shown = render(&scene, &view, &options(1));
     let count = |id: u32| shown.id.iter().filter(|i| **i == id).count();
-    assert!(count(1) > 500 && count(2) > 500, "{} {}", count(1), count(2));
+    assert!(count(1) > 180 && count(2) > 180, "{} {}", count(1), count(2));
 }
