@@ -22,7 +22,7 @@ fn rigid_layers_are_checked_shown_drawn_recorded_and_picked() {
         String::from_utf8_lossy(&out.stdout).into_owned() + &String::from_utf8_lossy(&out.stderr)
     };
     let (rigid, bent) = (text(&checked("rigid.toml")), text(&checked("bent.toml")));
-    assert!(rigid.contains("\"rigid\": true") && !rigid.contains("space folds"), "{rigid}");
+    assert!(rigid.contains("\"rigid\":true") && !rigid.contains("space folds"), "{rigid}");
     assert!(!bent.contains("\"rigid\"") && bent.contains("space folds"), "{bent}");
     let shown = place.ok(&["show", "rigid.toml"]);
     assert!(shown.contains("rigid = true"), "{shown}");
