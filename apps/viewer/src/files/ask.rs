@@ -59,6 +59,9 @@ impl Ask {
                 let label = ui.label("File, or folder to go to");
                 let field = ui.add(TextEdit::singleline(&mut self.name).desired_width(440.0)).labelled_by(label.id);
                 let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+                if self.writes && self.folder.join(self.name.trim()).is_file() {
+                    ui.label("This file is there already; it will be replaced.");
+                }
                 self.list(ui);
                 ui.horizontal(|ui| {
                     let go = if self.writes { "Write" } else { "Open" };
@@ -66,7 +69,7 @@ impl Ask {
                     if ui.add_enabled(ready, Button::new(go)).clicked() || (entered && ready) {
                         answer = self.decide();
                     }
-                    if ui.button("Cancel").clicked() {
+                    if ui.button("Cancel").clicked() || ui.input(|input| input.key_pressed(Key::Escape)) {
                         answer = Some(Vec::new());
                     }
                 });

@@ -82,9 +82,8 @@ fn pictures_that_do_not_wait_get_the_newest_ground_there_is() {
         assert!(began.elapsed() < std::time::Duration::from_secs(60), "it is never solved");
         std::thread::sleep(std::time::Duration::from_millis(2));
     };
-    // Whatever is asked for next: what there is comes at once.
-    assert_eq!(
-        live.newest(&view(&scene, 40.0, 250.0)).expect("ground").map(|stage| stage.grid().size()),
-        Some(first.grid().size())
-    );
+    // Whatever is asked for next: what there is comes at once, at first that for the view before.
+    let next = live.newest(&view(&scene, 40.0, 250.0)).expect("ground").expect("there is some");
+    let moves = |stage: &belvedere_core::TerrainDisocclusion| stage.grid().range() != [0.0; 2];
+    assert!(moves(&first) && moves(&next), "nothing makes way");
 }
