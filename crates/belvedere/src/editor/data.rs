@@ -162,7 +162,7 @@ mod tests {
             [[layer]]\nkind = 'terrain'\nid = 'ground'\nsource = 'builtin:massif?seed=7&size=65'\n";
         let document = parse(Path::new("s.toml"), ground).expect("scene").document;
         let way = dir.path().join("way.geojson");
-        let line = r#"{"type":"LineString","coordinates":[[-500,-500],[0,0],[600,300]]}"#;
+        let line = r#"{"type":"LineString","coordinates":[[1.50,42.50],[1.51,42.51],[1.52,42.50]]}"#;
         std::fs::write(&way, line).expect("file");
         let open = |paths: &[PathBuf]| open_beside(&document, paths, &[], &Progress::silent());
         let Ok(Opened::Layers(layers, folders)) = open(&[way.clone(), way.clone()]) else { panic!("no layers") };

@@ -40,7 +40,11 @@ fn thinned(scene: &Scene, scale: f64) -> Scene {
     let letters = |px: Option<f64>| px.map(|px| px * scale).filter(|px| *px >= LEGIBLE_PX);
     for layer in &mut scene.layers {
         match &mut layer.kind {
-            LayerKind::Line(line) => (line.width_px, line.label_px) = (line.width_px * scale, letters(line.label_px)),
+            LayerKind::Line(line) => {
+                (line.width_px, line.label_px) = (line.width_px * scale, letters(line.label_px));
+                // Distances are written as large as the letters of a grid.
+                line.markers = line.markers.filter(|_| GRID_PX * scale >= LEGIBLE_PX);
+            }
             LayerKind::Area(area) => area.width_px *= scale,
             LayerKind::Point(point) => {
                 (point.size_px, point.style.label_px) = (point.size_px * scale, letters(point.style.label_px));
