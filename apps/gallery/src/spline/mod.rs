@@ -17,7 +17,7 @@ use belvedere::OpenOptions;
 use std::path::{Path, PathBuf};
 
 /// In the order of the page.
-const FIGURES: [Entry; 9] = [
+const FIGURES: [Entry; 10] = [
     Entry {
         name: "town",
         title: "Progressive, degressive and hybrid views of a town",
