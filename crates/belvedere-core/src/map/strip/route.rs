@@ -157,7 +157,7 @@ impl Polyline {
     }
 
     fn finished(&self, curve: PlanCurve, smoothing: f64) -> SmoothedRoute {
-        let steps = ((4.0 * self.length() / curve.spacing()).ceil().min(MOST)).max(1.0) as usize;
+        let steps = (4.0 * self.length() / curve.spacing()).ceil().clamp(1.0, MOST) as usize;
         let off = |p: &DVec2| {
             let p = self.origin + *p;
             (curve.at(curve.nearest(p)).p.distance(p), p)
