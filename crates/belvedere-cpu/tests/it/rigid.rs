@@ -72,7 +72,7 @@ fn hybrid() -> View {
 fn around(view: &View, before: Vec<Stage>, rise: f64) -> View {
     let rays = turns(view.pinhole().clone(), Model::Modified, &[(330.0, rise)]);
     let stages = before.into_iter().chain(view.stages().iter().cloned());
-    let stages = stages.chain(rays.stages().iter().cloned().filter(|_| rise > 0.0)).collect();
+    let stages = stages.chain(rays.stages().iter().filter(|_| rise > 0.0).cloned()).collect();
     View::new(view.pinhole().clone(), stages).expect("in order")
 }
 
