@@ -261,6 +261,7 @@ mod tests {
                     color: Color::rgb(1, 2, 3),
                     names: Vec::new(),
                     wanted: None,
+                    rigid: belvedere_scene::RigidParts::None,
                 }),
             );
         let voxels = Voxels::new(&scene, &region());
