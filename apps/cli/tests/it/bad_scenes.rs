@@ -179,7 +179,7 @@ fn files_stay_in_their_folder() {
 fn constructors_are_read_and_refused() {
     refuses(
         &with("[constructor]\nkind = 'target_tracking'"),
-        "6: constructor: target_tracking needs target, the layer to keep in view",
+        "6: constructor: target_tracking needs target, the layer, part or box to keep in view",
     );
     refuses(
         &with("[constructor]\nkind = 'auto_probe'\nturns = 9"),

@@ -21,11 +21,7 @@ pub(super) fn hard_and_soft(easel: &Easel<'_>) -> Result<Figure> {
         panels.push(curve(&document, 35.0, title));
     }
     for (rigid, title, note) in [
-        (
-            false,
-            "Near by, houses fold",
-            "seen from 130 m, space folds 12 m over the ground; walls bow and lean, roofs collapse",
-        ),
+        (false, "Near by, houses fold", "seen from 130 m, space folds 12 m over the ground; walls bow and lean"),
         (true, "Each house a rigid body", "carried and turned with the ground under its foot, however tall it is"),
     ] {
         panels.push(near(easel, rigid, title, note)?);

@@ -81,9 +81,10 @@ pub(super) fn is_landmark(of: &impl Attributes) -> bool {
     })
 }
 
-/// A length such as `12`, `12.5 m`, `12,5m` or `40 ft`, metres.
+/// A length such as `12`, `12.5 m`, `12,5m`, `40 ft` or, from what is least, `10-12 ft`, metres.
 fn length_m(text: &str) -> Option<f64> {
-    let (number, unit) = first_number(text)?;
+    let (number, rest) = first_number(text)?;
+    let unit = rest.trim_start_matches(|c: char| !c.is_alphabetic() && c != '\'');
     let feet = unit.starts_with("ft") || unit.starts_with("feet") || unit.starts_with('\'');
     Some(if feet { 0.3048 * number } else { number })
 }

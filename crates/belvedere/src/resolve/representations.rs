@@ -6,18 +6,17 @@ use crate::scene_file::paths::Roots;
 use crate::scene_file::{SourceDocument, StageDoc, Table, suggestion};
 use belvedere_core::presets::{BUILTIN_NAMES, PresetDocument};
 use belvedere_scene::Representation;
-use std::collections::BTreeSet;
 
 /// What sections show where nothing is named: the first representation.
 const UNNAMED: &str = "all";
 
-/// The representations that the document states, and one of its own for each layer that a section names.
+/// The representations that the document states, and one of its own for each layer that a section names; those of near sections first.
 ///
 /// # Errors
 /// A layer or a section of no known name; presets that cannot be read.
 pub(crate) fn of(source: &SourceDocument, roots: &Roots) -> Result<Vec<Representation>, BelvedereError> {
     let layers: Vec<&str> = source.document.layer.iter().map(|layer| layer.id()).collect();
-    let mut all = Vec::new();
+    let mut all: Vec<Representation> = Vec::new();
     for (id, members) in &source.document.representations {
         if let Some(unknown) = members.iter().find(|layer| !layers.contains(&layer.as_str())) {
             let hint = suggestion(unknown, &layers);
@@ -30,8 +29,8 @@ pub(crate) fn of(source: &SourceDocument, roots: &Roots) -> Result<Vec<Represent
         let StageDoc::SplineBend(stage) = stage else { continue };
         let at = Table { origin: &source.origin, list: "stage", index: i };
         let presets = stages::presets(roots, &stage.presets, &mut Vec::new(), at)?;
-        let named: BTreeSet<&str> = presets.presets.iter().flat_map(|p| &p.sections).map(String::as_str).collect();
-        for id in named.into_iter().filter(|id| *id != UNNAMED) {
+        let named: Vec<&str> = presets.presets.iter().flat_map(|p| &p.sections).map(String::as_str).collect();
+        for &id in named.iter().filter(|id| **id != UNNAMED) {
             if all.iter().any(|r| r.id == id) {
                 continue;
             }
@@ -46,6 +45,8 @@ pub(crate) fn of(source: &SourceDocument, roots: &Roots) -> Result<Vec<Represent
                 return Err(at.error(&["presets"], reason));
             }
         }
+        // The first one is what pictures without the bend show: that of the nearest section.
+        all.sort_by_key(|r| named.iter().position(|id| *id == r.id).unwrap_or(named.len()));
     }
     Ok(all)
 }

@@ -75,3 +75,18 @@ fn the_record_of_a_picture_is_of_what_was_read() {
     let dem = dem.canonicalize().unwrap();
     assert_eq!(found, [(&*scene, text.len() as u64, &*of_scene), (&*dem, grid.len() as u64, &*of_dem)]);
 }
+
+#[test]
+fn pictures_without_the_bend_show_the_representation_of_the_nearest_section() {
+    let text = "format = 1\ncrs = 'local'\n[representations]\nback = ['map']\nfront = ['relief']\n\
+        [camera]\neye = [0.0, -5200.0, 3600.0]\nlook_at = [0.0, 0.0, 0.0]\nimage = [32, 24]\n\
+        [[layer]]\nid = 'map'\nkind = 'terrain'\nsource = 'builtin:massif?seed=7&size=65'\n\
+        [[layer]]\nid = 'relief'\nkind = 'terrain'\nsource = 'builtin:massif?seed=7&size=65'\n\
+        [[stage]]\nkind = 'spline_bend'\n[stage.presets]\nversion = 1\nunits = 'distance'\n\
+        [[stage.presets.presets]]\nphi = 33\ns = 0.4\ne = 1.6\ncontrol = [[0, -0.22], [0.45, -0.12], [0.80, 0.05], [0.98, 0.62]]\n\
+        tags = [{ u = 0.5, delta = 0.05 }]\nsections = ['front', 'back']\n";
+    let session = Session::from_text(Path::new("land.toml"), text, &OpenOptions::default()).unwrap();
+    let straight = PictureOptions { straight: true, ..PictureOptions::default() };
+    let ids = session.render(&straight).unwrap().frame.id;
+    assert!(ids.contains(&2) && !ids.contains(&1), "relief alone");
+}
