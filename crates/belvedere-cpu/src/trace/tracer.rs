@@ -245,7 +245,7 @@ fn deepest_in(bounds: &Aabb, view: &View) -> f64 {
             }
         }
     }
-    for depth in strip_points(view, &bounds).into_iter().filter_map(|p| view.project(p).ok()).map(|image| image.depth) {
+    for depth in strip_points(view, bounds).into_iter().filter_map(|p| view.project(p).ok()).map(|image| image.depth) {
         largest = largest.max(depth);
     }
     (largest + step + 1e-6 * largest).min(far).max(near * (1.0 + 1e-9))
