@@ -78,7 +78,8 @@ const FIGURES: [Entry; 10] = [
         name: "frames",
         title: "Frames at the paper's combinations of levels",
         says: "Generated towns with about as many triangles as the models that the paper measures, every frame drawn whole on the processor of \
-               this machine, by thresholds, in one pass. Wall time, five frames.",
+               this machine, by thresholds, in one pass, 1600 x 1200, four samples. Wall time of five frames; the paper's of 477 437 faces (1 219 884 \
+               vertices), 364 500 (380 689) and 720 587 (1 443 895) on a GeForce GTX 285.",
         draw: frames::table,
     },
     Entry {

@@ -111,6 +111,7 @@ impl Strip {
     /// Whether no point of a box has an image; `false` also where that is not known.
     pub fn misses(&self, bounds: &Aabb) -> bool {
         let radius = 0.5 * (bounds.max - bounds.min).truncate().length();
-        bounds.center().is_finite() && self.route.distance(bounds.center().truncate()) > self.half_width + radius
+        let center = bounds.center();
+        center.is_finite() && !self.route.may_come_within(center.truncate(), self.half_width + radius)
     }
 }

@@ -264,6 +264,16 @@ impl PlanCurve {
         places.fold((0.0, f64::INFINITY), |best, g| if off(g) < best.1 { (g, off(g)) } else { best }).0
     }
 
+    /// Whether the curve or its straight ends may come within `width` of a point; never wrongly false.
+    pub(super) fn may_come_within(&self, p: DVec2, width: f64) -> bool {
+        let q = p - self.origin;
+        if self.straight {
+            return self.beside_start(q).a.abs() <= width;
+        }
+        self.on_end(q).into_iter().flatten().any(|foot| foot.a.abs() <= width)
+            || self.discs.find(q, width, &mut |_| Some(())).is_some()
+    }
+
     /// A distance that `p` is at least away from the curve and its straight ends, less than the true one by no more than half that of nodes.
     pub fn distance(&self, p: DVec2) -> f64 {
         let q = p - self.origin;
