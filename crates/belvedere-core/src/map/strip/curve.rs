@@ -94,7 +94,7 @@ impl PlanCurve {
             let tangent = to.tangent.rotate(at.turned.conjugate()).normalize();
             nodes[k] = Node { p: to.p - at.way.rotate(tangent), tangent };
         }
-        let discs = Discs::new(&nodes, spacing);
+        let discs = Discs::new(&nodes, spacing, &curvature);
         let straight = curvature.iter().all(|k| *k == 0.0);
         Self { origin: p, spacing, curvature, nodes, discs, straight, reach: [f64::NEG_INFINITY, f64::INFINITY] }
     }
@@ -217,9 +217,8 @@ impl PlanCurve {
     /// Where the curve passes `q` square to the way there: the piece at whose ends `q` lies ahead and behind.
     fn foot_between(&self, q: DVec2, width: f64) -> Option<StripPoint> {
         let ahead = |i: usize| (q - self.nodes[i].p).dot(self.nodes[i].tangent);
-        self.discs.find(q, width, &mut |i| {
-            let ends = [ahead(i), ahead(i + 1)];
-            (ends[0] >= 0.0 && ends[1] <= 0.0).then(|| self.foot_on(q, i, ends)).filter(|foot| foot.a.abs() <= width)
+        self.discs.find(q, width, &ahead, &mut |i| {
+            Some(self.foot_on(q, i, [ahead(i), ahead(i + 1)])).filter(|foot| foot.a.abs() <= width)
         })
     }
 
@@ -270,8 +269,7 @@ impl PlanCurve {
         if self.straight {
             return self.beside_start(q).a.abs() <= width;
         }
-        self.on_end(q).into_iter().flatten().any(|foot| foot.a.abs() <= width)
-            || self.discs.find(q, width, &mut |_| Some(())).is_some()
+        self.on_end(q).into_iter().flatten().any(|foot| foot.a.abs() <= width) || self.discs.come_within(q, width)
     }
 
     /// A distance that `p` is at least away from the curve and its straight ends, less than the true one by no more than half that of nodes.

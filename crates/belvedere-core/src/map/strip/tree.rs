@@ -14,48 +14,79 @@ pub(super) struct Discs {
 struct Disc {
     center: DVec2,
     radius: f64,
+    /// Largest curvature of its pieces.
+    bend: f64,
 }
 
 impl Discs {
-    /// * `spacing`: arc length between nodes.
-    pub(super) fn new(nodes: &[Node], spacing: f64) -> Self {
+    /// * `spacing`: arc length between nodes; `curvature`: at the nodes, linear between them.
+    pub(super) fn new(nodes: &[Node], spacing: f64, curvature: &[f64]) -> Self {
         // No place of a piece is farther from the middle of its chord than half its length.
-        let leaf = |pair: &[Node]| Disc { center: 0.5 * (pair[0].p + pair[1].p), radius: 0.5 * spacing };
-        let mut levels = vec![nodes.windows(2).map(leaf).collect::<Vec<_>>()];
+        let leaf = |(pair, k): (&[Node], &[f64])| Disc {
+            center: 0.5 * (pair[0].p + pair[1].p),
+            radius: 0.5 * spacing,
+            bend: k[0].abs().max(k[1].abs()),
+        };
+        let mut levels = vec![nodes.windows(2).zip(curvature.windows(2)).map(leaf).collect::<Vec<_>>()];
         while let Some(below) = levels.last().filter(|level| level.len() > 1) {
             levels.push(below.chunks(2).map(around).collect());
         }
         Self { levels }
     }
 
-    /// The first answer of `ask` to the pieces within `width` of a point, nearest branches first.
-    pub(super) fn find<T>(&self, q: DVec2, width: f64, ask: &mut impl FnMut(usize) -> Option<T>) -> Option<T> {
-        self.visit(self.levels.len() - 1, 0, q, width, ask)
+    /// The first answer of `ask` to the pieces within `width` of a point that may hold its foot, nearest branches first.
+    ///
+    /// * `ahead`: how far the point lies ahead of a node, along the tangent there.
+    pub(super) fn find<T>(
+        &self,
+        q: DVec2,
+        width: f64,
+        ahead: &impl Fn(usize) -> f64,
+        ask: &mut impl FnMut(usize) -> Option<T>,
+    ) -> Option<T> {
+        self.visit(self.levels.len() - 1, 0, (q, width), ahead, ask)
     }
 
     fn visit<T>(
         &self,
         level: usize,
         i: usize,
-        q: DVec2,
-        width: f64,
+        (q, width): (DVec2, f64),
+        ahead: &impl Fn(usize) -> f64,
         ask: &mut impl FnMut(usize) -> Option<T>,
     ) -> Option<T> {
         let disc = self.levels[level][i];
         if disc.center.distance_squared(q) > (width + disc.radius) * (width + disc.radius) {
             return None;
         }
-        if level == 0 {
-            return ask(i);
+        if level == 0 || disc.bend * (width + 2.0 * disc.radius) < 1.0 {
+            // Nearer than the centres of curvature the point falls back all along these pieces: it passes square once at most.
+            return passed([i << level, ((i + 1) << level).min(self.levels[0].len())], ahead).and_then(ask);
         }
         let below = &self.levels[level - 1];
         let (a, b) = (2 * i, 2 * i + 1);
         if b >= below.len() {
-            return self.visit(level - 1, a, q, width, ask);
+            return self.visit(level - 1, a, (q, width), ahead, ask);
         }
         let off = |k: usize| below[k].center.distance_squared(q);
         let (first, second) = if off(b) < off(a) { (b, a) } else { (a, b) };
-        self.visit(level - 1, first, q, width, ask).or_else(|| self.visit(level - 1, second, q, width, ask))
+        let found = self.visit(level - 1, first, (q, width), ahead, ask);
+        found.or_else(|| self.visit(level - 1, second, (q, width), ahead, ask))
+    }
+
+    /// Whether a piece may come within `width` of a point; never wrongly false.
+    pub(super) fn come_within(&self, q: DVec2, width: f64) -> bool {
+        self.comes_within(self.levels.len() - 1, 0, q, width)
+    }
+
+    fn comes_within(&self, level: usize, i: usize, q: DVec2, width: f64) -> bool {
+        let Disc { center, radius, .. } = self.levels[level][i];
+        let off = center.distance(q);
+        if off > width + radius {
+            return false;
+        }
+        let below = |k: usize| k < self.levels[level - 1].len() && self.comes_within(level - 1, k, q, width);
+        level == 0 || off + radius <= width || below(2 * i) || below(2 * i + 1)
     }
 
     /// The piece whose middle is nearest, and how far that is.
@@ -89,17 +120,30 @@ impl Discs {
     }
 }
 
+/// Of the pieces between two nodes the one along which a point goes from ahead to behind, by halving; `None` if it does not.
+fn passed([mut first, mut last]: [usize; 2], ahead: &impl Fn(usize) -> f64) -> Option<usize> {
+    if !(ahead(first) >= 0.0 && ahead(last) <= 0.0) {
+        return None;
+    }
+    while last - first > 1 {
+        let middle = first.midpoint(last);
+        if ahead(middle) >= 0.0 { first = middle } else { last = middle }
+    }
+    Some(first)
+}
+
 fn around(discs: &[Disc]) -> Disc {
+    let bend = discs.iter().map(|d| d.bend).fold(0.0, f64::max);
     let [a, b] = [discs[0], discs[discs.len() - 1]];
     let apart = a.center.distance(b.center);
     if apart + b.radius <= a.radius {
-        return a;
+        return Disc { bend, ..a };
     }
     if apart + a.radius <= b.radius {
-        return b;
+        return Disc { bend, ..b };
     }
     let radius = 0.5 * (apart + a.radius + b.radius);
     let center = a.center + (radius - a.radius) / apart * (b.center - a.center);
     // A little more, for rounding.
-    Disc { center, radius: radius * (1.0 + 1e-12) }
+    Disc { center, radius: radius * (1.0 + 1e-12), bend }
 }
