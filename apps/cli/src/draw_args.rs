@@ -2,6 +2,7 @@
 
 use crate::args::RendererKind;
 use crate::parse::{parse_lod, parse_size};
+use belvedere::picture::THRESHOLDS;
 use clap::{Args, ValueEnum};
 
 /// How representations of styling sections are put together.
@@ -34,7 +35,7 @@ pub(crate) struct DrawArgs {
     #[arg(long, default_value_t = 4, value_name = "N")]
     pub(crate) samples: u32,
     /// Thresholds per pixel where styling sections pass into each other; 1 is a dither
-    #[arg(long, default_value_t = 64, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, default_value_t = THRESHOLDS, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub(crate) thresholds: u32,
     /// How representations of styling sections are put together
     #[arg(long, value_enum, default_value = "single")]

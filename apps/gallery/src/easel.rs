@@ -9,9 +9,6 @@ use belvedere::scene::{BoxLayer, BoxShape, Frame, Layer, LayerKind};
 use belvedere::{CameraPicture, OpenOptions, PictureOptions, Session};
 use std::path::Path;
 
-/// Thresholds of each sample where representations pass into each other: 64 a pixel.
-const EXPOSURES: u32 = 16;
-
 pub(crate) struct Easel<'a> {
     options: &'a OpenOptions,
 }
@@ -28,10 +25,7 @@ impl<'a> Easel<'a> {
     }
 
     fn request(&self) -> PictureOptions {
-        let mut request =
-            PictureOptions { no_mark: true, progress: self.options.progress.clone(), ..PictureOptions::default() };
-        request.quality.exposures = EXPOSURES;
-        request
+        PictureOptions { no_mark: true, progress: self.options.progress.clone(), ..PictureOptions::default() }
     }
 
     pub(crate) fn draw(&self, session: &Session) -> Result<Frame> {

@@ -122,3 +122,17 @@ fn relief_lies_flat_behind_the_transition_of_its_tag() {
     assert!((20.0..80.0).contains(&apart(2)), "{}", apart(2));
     assert!((apart(4) - 1.0).abs() < 1e-6, "{}", apart(4));
 }
+
+#[test]
+fn pictures_of_sections_are_those_of_the_library_and_of_the_application() {
+    let place = Place::new();
+    let scene = belvedere_testkit::workspace_root().join("scenes/town_sections.toml");
+    place.ok(&["render", scene.to_str().expect("UTF-8"), "-o", "town.png", "--size", "160x90"]);
+    let options = belvedere::OpenOptions { image: Some([160, 90]), ..belvedere::OpenOptions::default() };
+    let session = belvedere::Session::open(&scene, &options).expect("scene");
+    let picture = session.render(&belvedere::PictureOptions::default()).expect("picture");
+    picture.write(&place.path("library.png"), false).expect("written");
+    let [written, drawn] =
+        ["town.png", "library.png"].map(|name| super::light_and_tints::pixels(&super::read(&place.path(name))));
+    assert!(drawn == written, "another picture");
+}

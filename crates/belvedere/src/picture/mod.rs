@@ -10,7 +10,7 @@ mod write;
 
 pub use displacement::DisplacementReport;
 pub(crate) use draw::{draw, draw_camera, draw_view};
-pub use options::{AuxBuffer, AuxFormat, PictureOptions, RendererChoice};
+pub use options::{AuxBuffer, AuxFormat, PictureOptions, RendererChoice, THRESHOLDS};
 pub use sidecar::{MoleculeRecord, OverlayRecord, Picture, Sidecar, TerrainRecord};
 pub use volume_record::VolumeRecord;
 pub use write::{delta_path, outputs, side_by_side};

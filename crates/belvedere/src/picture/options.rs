@@ -5,10 +5,13 @@ use crate::{CameraPicture, Session};
 use belvedere_cpu::ExactRenderer;
 use belvedere_scene::{Progress, RenderOptions, Renderer, Stylisation};
 
+/// Thresholds of a pixel, all its samples together, where representations of styling sections pass into each other in pictures at rest.
+pub const THRESHOLDS: u32 = 64;
+
 /// What to draw, and how well.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct PictureOptions {
-    /// Samples, level of detail, threads and memory.
+    /// Samples, level of detail, threads and memory; by default with [`THRESHOLDS`].
     pub quality: RenderOptions,
     /// Without the bends.
     pub straight: bool,
@@ -36,6 +39,28 @@ pub struct PictureOptions {
     pub camera: Option<CameraPicture>,
     /// Progress and cancellation.
     pub progress: Progress,
+}
+
+impl Default for PictureOptions {
+    fn default() -> Self {
+        let quality = RenderOptions::default();
+        Self {
+            quality: RenderOptions { exposures: THRESHOLDS.div_ceil(quality.samples), ..quality },
+            straight: false,
+            compare: false,
+            aux: Vec::new(),
+            aux_format: AuxFormat::default(),
+            renderer: RendererChoice::default(),
+            stylisation: None,
+            grid: None,
+            heatmap: false,
+            ghost: false,
+            highlight: Vec::new(),
+            no_mark: false,
+            camera: None,
+            progress: Progress::default(),
+        }
+    }
 }
 
 /// Format of buffers beside a picture.

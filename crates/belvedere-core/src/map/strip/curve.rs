@@ -115,7 +115,7 @@ impl PlanCurve {
         (self.curvature.len() - 1) as f64 * self.spacing
     }
 
-    /// First and last arc length of the domain, see [`super::Strip::domain`].
+    /// First and last arc length of the domain, outside which [`super::Strip`] has no image.
     pub fn reach(&self) -> [f64; 2] {
         self.reach
     }
