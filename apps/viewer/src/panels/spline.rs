@@ -8,7 +8,7 @@ use belvedere::core::presets::edit::{PresetChange, PresetOperation};
 use belvedere::core::presets::{BUILTINS, PresetDocument};
 use belvedere::scene_file::{PresetsDoc, SplineStageDoc, StageDoc};
 use belvedere::verbs::preset::{sketch, viewing_angle};
-use eframe::egui::{Color32, ComboBox, Context, Id, Role, Sense, TextWrapMode, Ui, WidgetInfo};
+use eframe::egui::{Color32, ComboBox, Context, Id, Role, Sense, TextStyle, TextWrapMode, Ui, WidgetInfo, WidgetText};
 
 const KIND: &str = "spline_bend";
 /// Speed of a played sweep, degrees per second.
@@ -131,9 +131,18 @@ impl SplinePanel {
         ui.horizontal_wrapped(|ui| {
             for name in &known {
                 let id = Id::unique(("representation", name));
+                let galley = WidgetText::from(dark(name.clone())).into_galley(
+                    ui,
+                    Some(TextWrapMode::Extend),
+                    f32::INFINITY,
+                    TextStyle::Button,
+                );
+                // What is dragged does not go to the next row by itself.
+                if ui.available_size_before_wrap().x < galley.size().x + 2.0 * ui.spacing().button_padding.x {
+                    ui.end_row();
+                }
                 let response = ui
                     .dnd_drag_source(id, name.clone(), |ui| {
-                        // At the end of a row it goes to the next one whole.
                         let button = eframe::egui::Button::new(dark(name.clone())).fill(color_of(name));
                         ui.add(button.wrap_mode(TextWrapMode::Extend))
                     })
