@@ -33,13 +33,13 @@ pub enum PresetWarning {
     },
     /// A transition wider than a third of a section beside it.
     #[error(
-        "preset {preset}: the transition at tag {index} is {width:.3} wide, more than a third of the section beside it ({section:.3}); lower its delta"
+        "preset {preset}: the transition at tag {number} is {width:.3} wide, more than a third of the section beside it ({section:.3}); lower its delta"
     )]
     WideTransition {
         /// Preset.
         preset: String,
-        /// Tag, from 0.
-        index: usize,
+        /// Tag, 1 = the nearest.
+        number: usize,
         /// Full width, share of the curve.
         width: f64,
         /// Width of the smaller neighbour, share of the curve.
@@ -119,7 +119,12 @@ fn static_warnings(document: &PresetDocument) -> Vec<PresetWarning> {
             let after = preset.tags.get(index + 1).map_or(1.0, |t| t.u);
             let (width, section) = (2.0 * tag.delta, (tag.u - before).min(after - tag.u));
             if width > section / 3.0 + 1e-12 {
-                warnings.push(PresetWarning::WideTransition { preset: preset.label(i), index, width, section });
+                warnings.push(PresetWarning::WideTransition {
+                    preset: preset.label(i),
+                    number: index + 1,
+                    width,
+                    section,
+                });
             }
         }
     }
