@@ -97,14 +97,12 @@ pub(crate) enum Verb {
     /// The figures and tables of the papers on open data, with an index.html; needs no files
     Figures(FiguresArgs),
     /// The application: look, drag, tilt, author; a scene, data, or nothing: the built-in scenes
-    #[cfg(feature = "view")]
     View(ViewArgs),
     /// The application as a web page: a folder with a scene (or data, or the built-in scenes) that any web server can host
     Pack(PackArgs),
 }
 
 /// The application.
-#[cfg(feature = "view")]
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {
     /// A scene file; or models; or an elevation model, alone or with routes, areas or points

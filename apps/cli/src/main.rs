@@ -10,6 +10,7 @@ mod parse;
 mod preset;
 mod report;
 mod verbs;
+mod view;
 
 use args::Cli;
 use clap::Parser;
@@ -25,14 +26,6 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(e) => return report::usage(&e),
     };
-    #[cfg(feature = "view")]
-    if let args::Verb::View(_) = cli.verb {
-        // Windows belong to the main thread; whatever reads documents there has threads of its own.
-        return match std::panic::catch_unwind(|| run(cli)) {
-            Ok(code) => code,
-            Err(panic) => broken(&*panic),
-        };
-    }
     let worker = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(|| run(cli));
     match worker.map(std::thread::JoinHandle::join) {
         Ok(Ok(code)) => code,

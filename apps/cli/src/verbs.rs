@@ -57,8 +57,7 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::Schema(args) => schema(&args, context),
         Verb::Bench(args) => measure_machine(&args, context),
         Verb::Figures(args) => draw_figures(&args, context),
-        #[cfg(feature = "view")]
-        Verb::View(args) => view(args, context),
+        Verb::View(args) => crate::view::view(&args, context),
         Verb::Pack(args) => crate::pack::pack_scene(args, context),
     }
 }
@@ -348,22 +347,6 @@ fn measure_scene(args: &MeasureArgs, context: &Context) -> anyhow::Result<Goal> 
     let report =
         measure::measure(&session, &measure::MeasureOptions::default(), args.renderer.into(), &context.progress)?;
     answer("measure", &session, args.out.as_ref(), &output::json(&report)?, context)
-}
-
-#[cfg(feature = "view")]
-fn view(args: crate::args::ViewArgs, context: &Context) -> anyhow::Result<Goal> {
-    // What cannot be read is said here rather than in a window.
-    for file in &args.files {
-        anyhow::ensure!(
-            belvedere::io::split_table(file).0.exists(),
-            "{}: there is no such file; check the name",
-            file.display()
-        );
-    }
-    let (files, allowed) = (args.files, context.common.allow_root.clone());
-    let state = belvedere_viewer::Opening::usual_state();
-    belvedere_viewer::run(&belvedere_viewer::Opening { files, allowed, state, system_dialogs: true })?;
-    Ok(Goal::Reached)
 }
 
 fn draw_figures(args: &FiguresArgs, context: &Context) -> anyhow::Result<Goal> {

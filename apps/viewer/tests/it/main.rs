@@ -6,6 +6,8 @@ mod files;
 mod moving;
 mod screen;
 mod snapshots;
+#[cfg(target_os = "linux")]
+mod window;
 
 use belvedere_viewer::{Opening, Viewer};
 use egui_kittest::kittest::Queryable;

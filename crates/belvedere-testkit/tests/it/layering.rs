@@ -83,6 +83,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         "belvedere-viewer",
         &["belvedere"],
         &[
+            "clap",
             "eframe",
             "rfd",
             "serde",
@@ -98,7 +99,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     ("belvedere-mutants", &[], &["anyhow", "clap", "proc-macro2", "serde", "serde_json", "syn"]),
     (
         "belvedere-cli",
-        &["belvedere", "belvedere-bench", "belvedere-gallery", "belvedere-viewer"],
+        &["belvedere", "belvedere-bench", "belvedere-gallery"],
         &["anyhow", "clap", "ctrlc", "indicatif", "serde_json", "tracing", "tracing-subscriber"],
     ),
 ];
@@ -177,7 +178,6 @@ fn cargo_run_means_the_program() {
     let metadata = metadata();
     let default = metadata["workspace_default_members"].as_array().expect("default members");
     let packages = metadata["packages"].as_array().expect("packages").iter().filter(|p| default.contains(&p["id"]));
-    let targets = packages.flat_map(|p| p["targets"].as_array().expect("targets"));
-    let programs: Vec<_> = targets.filter(|t| t["kind"][0] == "bin").map(|t| &t["name"]).collect();
+    let programs: Vec<_> = packages.filter_map(|p| p["default_run"].as_str()).collect();
     assert_eq!(programs, ["belvedere"]);
 }

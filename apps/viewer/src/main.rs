@@ -1,0 +1,56 @@
+//! The program `belvedere-view`: the application in a window of its own. `belvedere view` starts it.
+
+#[cfg(not(target_family = "wasm"))]
+mod native {
+    use belvedere_viewer::Opening;
+    use clap::Parser;
+    use std::io::Write;
+    use std::path::PathBuf;
+    use std::process::ExitCode;
+
+    /// The application: look, drag, tilt, author
+    #[derive(Debug, Parser)]
+    #[command(name = "belvedere-view", version)]
+    struct Args {
+        /// A scene file; or models; or an elevation model, alone or with routes, areas or points; nothing: the built-in scenes
+        files: Vec<PathBuf>,
+        /// Folder outside the scene's own from which its files may come; may be given several times
+        #[arg(long, value_name = "DIR")]
+        allow_root: Vec<PathBuf>,
+    }
+
+    pub(super) fn main() -> ExitCode {
+        let args = Args::parse();
+        std::panic::set_hook(Box::new(|_| {}));
+        let opening = Opening {
+            files: args.files,
+            allowed: args.allow_root,
+            state: Opening::usual_state(),
+            system_dialogs: true,
+        };
+        // Windows belong to the main thread; whatever reads documents there has threads of its own.
+        let failure = match std::panic::catch_unwind(|| belvedere_viewer::run(&opening)) {
+            Ok(Ok(())) => return ExitCode::SUCCESS,
+            Ok(Err(e)) => e.to_string(),
+            Err(panic) => fault(&*panic),
+        };
+        let _ = writeln!(std::io::stderr(), "belvedere: {failure}");
+        ExitCode::from(2)
+    }
+
+    /// A fault of our own, in one line.
+    fn fault(panic: &(dyn std::any::Any + Send)) -> String {
+        let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+        let what = text.unwrap_or("no message").lines().next().unwrap_or_default();
+        format!("internal error ({what}); please report this with the command line and the files")
+    }
+}
+
+#[cfg(not(target_family = "wasm"))]
+fn main() -> std::process::ExitCode {
+    native::main()
+}
+
+/// In a browser the library is the program.
+#[cfg(target_family = "wasm")]
+fn main() {}
