@@ -2,6 +2,7 @@
 
 pub mod laws;
 mod random;
+pub mod rays;
 pub mod synthetic;
 
 pub use random::Random;

@@ -1,7 +1,8 @@
 //! Bounds for renderers: how far a straight edge is off, and where a box can go.
 //!
-//! phi is convex along every line that avoids the opposite wedge, so along an edge the truth is the straight edge between
-//! the displaced ends minus `delta d_j`, with `delta = lerp(phi) - phi >= 0`.
+//! phi, continued beyond the common line as `max(0, a - b)`, is convex: homogeneous of degree 1, convex in the wedge with the slopes of its
+//! neighbours at t0 and t2, and the largest of two linear functions everywhere else. So along an edge the truth is the straight edge
+//! between the displaced ends minus `delta d_j`, with `delta = lerp(phi) - phi >= 0`.
 
 use super::phi::{Hinge, Phi};
 use super::turn::Cell;
@@ -24,7 +25,7 @@ pub(crate) struct EdgeEnd {
 }
 
 impl Turn {
-    /// `None` in the opposite wedge.
+    /// `None` for numbers that are none.
     pub(crate) fn edge_end(&self, p: DVec3) -> Option<EdgeEnd> {
         let cell = self.cell(p).ok()?;
         Some(EdgeEnd { p, a: self.a.at(p), b: self.b.at(p), cell, phi: self.phi(p, cell).ok()? })
@@ -35,14 +36,11 @@ impl Turn {
         self.displaced_by(end.p, end.cell, end.phi.phi)
     }
 
-    /// Largest `lerp(phi) - phi` along an edge; `None` if it passes through the opposite wedge.
+    /// Largest `lerp(phi) - phi` along an edge; `None` if it is not known.
     ///
     /// With end slopes `D0 = (phi1 - phi0) - phi'(X0) (X1 - X0)` and `D1` alike, both >= 0 for a convex function:
     /// `delta <= D0 D1 / (D0 + D1)`, the height of the triangle that the end tangents leave.
     pub(crate) fn edge_delta(&self, end0: &EdgeEnd, end1: &EdgeEnd) -> Option<f64> {
-        if self.hinge != Hinge::Broken && !separable(&[(end0.a, end0.b), (end1.a, end1.b)]) {
-            return None;
-        }
         if end0.cell == end1.cell && end0.cell != Cell::Wedge {
             return Some(0.0);
         }
@@ -76,7 +74,7 @@ impl Turn {
         let middle = bounds.center();
         let corners = corners.map(|p| middle + 3.0 * (p - middle));
         let values = corners.map(|p| (self.a.at(p), self.b.at(p)));
-        if matches!(self.hinge, Hinge::Bezier { .. }) || (self.hinge != Hinge::Broken && !separable(&values)) {
+        if matches!(self.hinge, Hinge::Bezier { .. }) {
             return None;
         }
         let center = self.edge_end(middle)?;
@@ -91,9 +89,6 @@ impl Turn {
     /// Points whose hull contains the displaced box: its displaced corners, and those moved back along `d_j`.
     fn hull(&self, corners: &[DVec3; 8], center: DVec3) -> Result<[DVec3; 16], Miss> {
         let values = corners.map(|p| (self.a.at(p), self.b.at(p)));
-        if self.hinge != Hinge::Broken && !separable(&values) {
-            return Err(Miss::OutsideDomain);
-        }
         // phi lies above its tangent at the centre, so lerp(phi) - phi is at most the largest gap there is at a corner.
         let middle = self.phi(center, self.cell(center)?)?;
         let (a, b) = (self.a.at(center), self.b.at(center));
@@ -119,24 +114,6 @@ impl Turn {
     }
 }
 
-/// Whether the hull of points (a, b) keeps clear of the quadrant `a <= 0, b <= 0`: whether some `t a + (1 - t) b`, t in 0..=1, is positive at all of them.
-fn separable(points: &[(f64, f64)]) -> bool {
-    let (mut low, mut high) = (0.0f64, 1.0f64);
-    for &(a, b) in points {
-        // t (a - b) > -b
-        let slope = a - b;
-        if !(a > 0.0 || b > 0.0) {
-            return false;
-        }
-        if slope > 0.0 {
-            low = low.max(-b / slope);
-        } else if slope < 0.0 {
-            high = high.min(b / -slope);
-        }
-    }
-    low < high
-}
-
 impl CurvedRays {
     /// See [`crate::Stage::edge_bound`]. Infinite if the edge leaves the domain, or joins cells between which phi alone does not tell the way.
     pub fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
@@ -152,6 +129,14 @@ impl CurvedRays {
             return true;
         }
         let (Ok(hit0), Ok(hit1)) = (self.locate(p0), self.locate(p1)) else { return false };
+        if hit0.cell != Cell::Wedge && hit0.segment() == hit1.segment() {
+            return true;
+        }
+        // Beyond a common line a record may go on in another cell than the one that shows the point.
+        let drawn = |p: DVec3, hit: &Hit| self.turns()[hit.turn].cell(p) == Ok(hit.cell);
+        if !(drawn(p0, &hit0) && drawn(p1, &hit1)) {
+            return false;
+        }
         if let Some(record) = shared_record(&hit0, &hit1) {
             return self.record_edge_shift(record, p0, p1).map(&mut visit).is_some();
         }
@@ -163,7 +148,7 @@ impl CurvedRays {
         (first..=last).all(|record| self.record_edge_shift(record, p0, p1).map(&mut visit).is_some())
     }
 
-    /// `delta d` of the edge drawn with one record; `None` if it leaves the record's domain.
+    /// `delta d` of the edge drawn with one record; `None` if it is not known.
     pub(crate) fn record_edge_shift(&self, record: usize, p0: DVec3, p1: DVec3) -> Option<DVec3> {
         let Some(turn) = self.turns().get(record) else { return self.turns().is_empty().then_some(DVec3::ZERO) };
         Some(turn.edge_delta(&turn.edge_end(p0)?, &turn.edge_end(p1)?)? * turn.shift)
@@ -190,8 +175,7 @@ impl CurvedRays {
         Some(Aabb { min: out.min - grow, max: out.max + grow })
     }
 
-    /// Visits points, relative to the eye, whose hull contains the displaced image of the box by every record that may
-    /// displace part of it; `None` if part of it may have no image.
+    /// Visits points, relative to the eye, whose hull contains every image of the box; `None` if part of it may have none.
     pub(crate) fn displaced_hull(&self, bounds: &Aabb, mut visit: impl FnMut(DVec3)) -> Option<()> {
         let (corners, center) = (bounds.corners(), bounds.center());
         if bounds.is_empty() || !(bounds.min.is_finite() && bounds.max.is_finite()) {
@@ -204,6 +188,11 @@ impl CurvedRays {
             }
             turn.hull(&corners, center).ok()?.into_iter().for_each(&mut visit);
             any = true;
+        }
+        for segment in (0..self.segments()).step_by(2).filter(|&segment| self.leaves_out(segment, bounds)) {
+            if let Some(map) = self.straight_map(segment) {
+                corners.iter().for_each(|&p| visit(map.linear * (p - map.viewpoint)));
+            }
         }
         any.then_some(())
     }
@@ -218,7 +207,7 @@ impl CurvedRays {
     /// first turn also that.
     fn may_displace(&self, record: usize, corners: &[DVec3; 8]) -> bool {
         let turn = &self.turns()[record];
-        if record > 0 && corners.iter().all(|&p| turn.a.at(p) <= 0.0) {
+        if record > 0 && corners.iter().all(|&p| turn.cell(p) == Ok(Cell::Before)) {
             return false;
         }
         let past = |turn: &Turn| corners.iter().all(|&p| matches!(turn.cell(p), Ok(Cell::After)));

@@ -3,7 +3,7 @@
 //! On a separator, and wherever both its neighbours are straight, two consecutive records displace alike. A box in which each separator
 //! lies in such a gap, one behind the other, is displaced continuously by the record that every point belongs to: it can be drawn at once.
 
-use super::CurvedRays;
+use super::{CurvedRays, Turn};
 use super::form::LinearForm;
 use crate::Aabb;
 use glam::DVec3;
@@ -37,8 +37,10 @@ impl CurvedRays {
             return false;
         };
         let before = |form: &LinearForm| greatest(form, cut, -1.0, bounds) <= 0.0;
+        // Not beyond the next common line, where its record goes on in another way.
+        let not_begun = |next: &Turn| before(&next.a) && before(&next.h);
         let beyond = |form: &LinearForm, sign: f64| greatest(&form.scaled(sign), cut, 1.0, bounds) <= 0.0;
-        before(&next.a)
+        not_begun(next)
             && (!and_next || self.separator(k + 1).is_some_and(before))
             && beyond(&turn.b, 1.0)
             && beyond(&turn.a, -1.0)
@@ -56,13 +58,13 @@ impl CurvedRays {
 }
 
 /// Least and greatest value of a form in a box.
-fn values(form: &LinearForm, bounds: &Aabb) -> [f64; 2] {
+pub(super) fn values(form: &LinearForm, bounds: &Aabb) -> [f64; 2] {
     let (middle, half) = (form.at(bounds.center()), 0.5 * form.gradient.abs().dot(bounds.max - bounds.min));
     [middle - half, middle + half]
 }
 
 /// Greatest value of a form in the part of the box where `side * cut >= 0`; minus infinity if there is none.
-fn greatest(form: &LinearForm, cut: &LinearForm, side: f64, bounds: &Aabb) -> f64 {
+pub(super) fn greatest(form: &LinearForm, cut: &LinearForm, side: f64, bounds: &Aabb) -> f64 {
     let corners = bounds.corners();
     let (f, s) = (corners.map(|c| form.at(c)), corners.map(|c| side * cut.at(c)));
     let held = (0..8).filter(|&i| s[i] >= 0.0).map(|i| f[i]);

@@ -18,6 +18,7 @@ mod location;
 mod phi;
 mod ray;
 mod remedy;
+mod segments;
 mod spec;
 mod turn;
 
@@ -25,6 +26,7 @@ pub(crate) use bounds::EdgeEnd;
 pub use form::LinearForm;
 pub use phi::ViewpointValues;
 pub use ray::{Bend, C2Arc, RayPiece, Shape};
+pub use segments::StraightMap;
 pub use spec::{CurvedRaysError, Model, Pencil, Remedy, Sharpness, TurnSpec};
 pub use turn::Turn;
 
@@ -86,6 +88,7 @@ impl Hit {
     }
 }
 
+/// Number of the segment that a cell of a turn is.
 fn segment(turn: usize, cell: Cell) -> u32 {
     let first = 2 * u32::try_from(turn).unwrap_or(u32::MAX / 4);
     match cell {
@@ -152,14 +155,16 @@ impl CurvedRays {
 
     /// Displaced point and segment: the first cell in ray order inside the image, the sequential plane test outside it.
     ///
+    /// Inside the image the ray that reaches the point decides, so that every point of a ray has its pixel among the images.
+    ///
     /// # Errors
-    /// [`Miss::OutsideDomain`] beyond a common line; [`Miss::BehindEye`] where a later part looks backwards.
+    /// [`Miss::BehindEye`] where a later part looks backwards; [`Miss::OutsideDomain`] for numbers that are none.
     /// Points behind the eye before the first turn stay where they are.
     pub fn displace(&self, p: DVec3) -> Result<Displaced, Miss> {
         self.finish(p, self.locate(p)?)
     }
 
-    /// All images of `p`, in ray order: a point in two overlapping cells is truly visible twice.
+    /// All images of `p`, in ray order: a point that two parts of rays reach is truly visible twice.
     pub fn displace_all(&self, p: DVec3) -> Vec<Displaced> {
         let mut all = Vec::new();
         self.cells_in_image(p, |hit| {
@@ -172,10 +177,12 @@ impl CurvedRays {
         all
     }
 
-    /// Displacement by the record of turn `record` (0-based) alone, whatever the cell: for drawing once per record.
+    /// Displacement by the record of turn `record` (0-based) alone, whatever the cell: for drawing once per record. One continuous map of
+    /// space; beyond the common line t1 parts what goes on as before the turn from what goes on as after it, and what the rays reach there
+    /// on the other part as well is left to [`CurvedRays::displace_along`].
     ///
     /// # Errors
-    /// [`Miss::OutsideDomain`] beyond the common line of the turn, or if there is no such record.
+    /// [`Miss::OutsideDomain`] if there is no such record.
     pub fn displace_in(&self, record: usize, p: DVec3) -> Result<Displaced, Miss> {
         if self.turns.is_empty() && record == 0 {
             return self.displace(p);
@@ -214,7 +221,7 @@ impl CurvedRays {
         }
         let Some(first) = self.turns.first() else { return Ok((p_displaced, 0)) };
         if !(v.dot(self.root.forward) > 0.0) {
-            return if first.cell(p_displaced)? == Cell::Before { Ok((p_displaced, 0)) } else { Err(Miss::BehindEye) };
+            return if first.is_before(p_displaced) { Ok((p_displaced, 0)) } else { Err(Miss::BehindEye) };
         }
         let last = self.turns.len() - 1;
         for (index, turn) in self.turns.iter().enumerate() {
@@ -249,25 +256,31 @@ impl CurvedRays {
         let Some(last) = self.turns.len().checked_sub(1) else {
             return Ok(Hit { turn: 0, cell: Cell::Before, v: p - self.root.eye });
         };
-        let past = |turn: &Turn| matches!(turn.cell(p), Ok(Cell::After));
+        let past = |turn: &Turn| !turn.is_before(p) && turn.is_after(p);
         let record = self.turns.iter().position(|turn| !past(turn)).unwrap_or(last);
-        let hit = self.hit_in(record, p)?;
+        let turn = &self.turns[record];
+        let cell = if turn.is_before(p) { Cell::Before } else { turn.cell(p)? };
+        let hit = Hit { turn: record, cell, v: turn.displaced(p, cell)? };
         let root_part = record == 0 && hit.cell == Cell::Before;
         if root_part || hit.v.dot(self.root.forward) > 0.0 { Ok(hit) } else { Err(Miss::BehindEye) }
     }
 
-    /// Visits, in ray order, the cells whose planes hold the point and whose image of it lies in the image; `visit` says when to stop.
+    /// Visits, in ray order, the cells in which rays through the image reach the point; `visit` says when to stop.
+    ///
+    /// On a straight part one plane at either end decides, and that the image of the point by that part lies in the image: the forms of the
+    /// planes are affine along its rays, see [`Turn::is_before`] and [`Turn::is_after`].
     fn cells_in_image(&self, p: DVec3, mut visit: impl FnMut(Hit) -> bool) {
+        let mut held = |index: usize, cell: Cell| {
+            let v = self.turns[index].displaced(p, cell).ok().filter(|&v| self.in_image(v));
+            v.is_some_and(|v| visit(Hit { turn: index, cell, v }))
+        };
         for (index, turn) in self.turns.iter().enumerate() {
-            let Ok(cell) = turn.cell(p) else { continue };
-            let held = match cell {
-                // already visited as the straight part after the turn before
-                Cell::Before => index == 0,
-                Cell::Wedge => true,
-                Cell::After => self.turns.get(index + 1).is_none_or(|next| matches!(next.cell(p), Ok(Cell::Before))),
-            };
-            let Some(v) = held.then(|| turn.displaced(p, cell).ok()).flatten() else { continue };
-            if self.in_image(v) && visit(Hit { turn: index, cell, v }) {
+            let before_next = || self.turns.get(index + 1).is_none_or(|next| next.is_before(p));
+            // The straight part before a later turn is the one after the turn before it.
+            if (index == 0 && turn.is_before(p) && held(index, Cell::Before))
+                || (turn.cell(p) == Ok(Cell::Wedge) && held(index, Cell::Wedge))
+                || (turn.is_after(p) && before_next() && held(index, Cell::After))
+            {
                 return;
             }
         }

@@ -91,10 +91,31 @@ impl Turn {
         StraightPart { viewpoint: self.viewpoint, linear: self.after, inverse: self.after_inverse }
     }
 
-    /// Cell of a point; the opposite wedge beyond the common line belongs to none.
+    /// Cell by which the record of the turn displaces a point. In the opposite wedge, beyond the common line, a ray may reach a point
+    /// before the turn, after it, both times or never; there the record goes on continuously, with t1 as the border.
     pub(super) fn cell(&self, p: DVec3) -> Result<Cell, Miss> {
         let (a, b) = (self.a.at(p), self.b.at(p));
-        cell_of(a, b)
+        if !(a.is_finite() && b.is_finite()) {
+            return Err(Miss::OutsideDomain);
+        }
+        Ok(match (a > 0.0 && b > 0.0, a > b) {
+            (true, _) => Cell::Wedge,
+            (false, false) => Cell::Before,
+            (false, true) => Cell::After,
+        })
+    }
+
+    /// Whether a ray that reaches the point on the part before the turn has not yet met t0: on such a ray `a` is affine and changes its
+    /// sign there, once, whatever `b` is.
+    pub(super) fn is_before(&self, p: DVec3) -> bool {
+        self.a.at(p) <= 0.0
+    }
+
+    /// Whether a ray that reaches the point on the part after the turn has met t2: on such a ray `b` is affine and changes its sign there,
+    /// once, whatever `a` is. Where that happens `a` is positive; so the common line itself is before the turn.
+    pub(super) fn is_after(&self, p: DVec3) -> bool {
+        let b = self.b.at(p);
+        b < 0.0 || (b == 0.0 && self.a.at(p) > 0.0)
     }
 
     /// Displaced point relative to the eye.
@@ -140,34 +161,16 @@ impl Turn {
             return Err(Miss::OutsideDomain);
         }
         if alpha <= 0.0 {
-            return (cell_of(alpha, self.b.at(y))? == Cell::Before)
-                .then_some((y, Cell::Before))
-                .ok_or(Miss::OutsideDomain);
+            return Ok((y, Cell::Before));
         }
         let b_far = self.b.at(far);
         if !b_far.is_finite() {
             return Err(Miss::OutsideDomain);
         }
         if b_far <= 0.0 || self.hinge == Hinge::Broken {
-            return (self.a.at(far) > 0.0 || self.hinge == Hinge::Broken)
-                .then_some((far, Cell::After))
-                .ok_or(Miss::OutsideDomain);
+            return Ok((far, Cell::After));
         }
         let phi = self.hinge.phi_of_displaced(&self.values, alpha, b_far).ok_or(Miss::OutsideDomain)?;
         Ok((y - phi * (self.viewpoint - self.viewpoint_before), Cell::Wedge))
-    }
-}
-
-fn cell_of(a: f64, b: f64) -> Result<Cell, Miss> {
-    if !(a.is_finite() && b.is_finite()) {
-        return Err(Miss::OutsideDomain);
-    }
-    match (a > 0.0, b > 0.0) {
-        (false, true) => Ok(Cell::Before),
-        (true, true) => Ok(Cell::Wedge),
-        (true, false) => Ok(Cell::After),
-        // On t1 of a turn of width 0, and on the common line itself, all formulas agree.
-        (false, false) if a == 0.0 && b == 0.0 => Ok(Cell::Before),
-        (false, false) => Err(Miss::OutsideDomain),
     }
 }

@@ -4,6 +4,7 @@ mod acceptance;
 mod bounds;
 mod cameras;
 mod chains;
+mod every_ray;
 mod laws;
 mod literal;
 mod pieces;
