@@ -70,7 +70,7 @@ impl RandomRays {
             let gentle = 1.0 - f64::from(attempt) / 70.0;
             let (turn, next) = random_turn(random, end, gentle);
             self.turns.push(turn);
-            if CurvedRays::new(&self.pinhole, self.model, &self.turns).is_ok() {
+            if CurvedRays::if_valid(&self.pinhole, self.model, &self.turns).is_some() {
                 return Some(next);
             }
             self.turns.pop();
@@ -119,9 +119,10 @@ fn random_turn(random: &mut Random, end: &End, gentle: f64) -> (TurnSpec, End) {
     };
     let inside = dir.cross(across).normalize_or(axle);
     let inside = if random.unit() < 0.15 { -inside } else { inside };
-    let line = bend + half * random.range(0.8, 3.5) * inside;
-    let open = narrow * gentle * random.range(2.0, 150.0f64).to_radians();
-    let share = random.range(0.15, 0.85);
+    let wide = random.unit() < 0.4;
+    let line = bend + half * if wide { random.range(0.9, 1.6) } else { random.range(0.8, 3.5) } * inside;
+    let open = if wide { random.range(90.0, 150.0f64) } else { narrow * gentle * random.range(2.0, 150.0f64) }.to_radians();
+    let share = if wide { random.range(0.2, 0.6) } else { random.range(0.15, 0.85) };
     let turned = |by: f64| line + DQuat::from_axis_angle(dir, by) * (bend - line);
     // The way round the line that leads on.
     let on = if (turned(1e-3) - bend).dot(across) > 0.0 { 1.0 } else { -1.0 };

@@ -1,9 +1,9 @@
 //! From a specification to a chain.
 
-use super::check::{PreviousTurn, TurnContext, UnscaledTurn, corner_direction, numbers};
+use super::check::{PreviousTurn, TurnContext, UnscaledTurn, corner_direction, crossing, numbers};
 use super::form::{Forms, LinearForm, StraightPart};
 use super::phi::Hinge;
-use super::remedy::report;
+use super::remedy::{rays_cross, report};
 use super::spec::{CurvedRaysError, Model, Sharpness, TurnSpec};
 use super::turn::Turn;
 use super::{CurvedRays, Remedy};
@@ -11,11 +11,13 @@ use crate::Pinhole;
 use glam::{DMat3, DVec2};
 
 /// * `corners`: of the part of the image that the chain draws.
+/// * `advise`: whether errors name the nearest valid value.
 pub(super) fn build(
     root: &Pinhole,
     model: Model,
     spec: &[TurnSpec],
     corners: &[DVec2],
+    advise: bool,
 ) -> Result<CurvedRays, CurvedRaysError> {
     if root.is_orthographic() {
         return Err(CurvedRaysError::Orthographic);
@@ -24,7 +26,7 @@ pub(super) fn build(
     let mut previous: Option<PreviousTurn<'_>> = None;
     let mut turns: Vec<Turn> = Vec::with_capacity(spec.len());
     for (index, turn_spec) in spec.iter().enumerate() {
-        let context = TurnContext { root, corners, turn: index + 1, part, previous };
+        let context = TurnContext { root, corners, turn: index + 1, part, previous, advise };
         numbers(turn_spec, context.turn)?;
         let unscaled = UnscaledTurn::new(turn_spec, context.turn, &part)?;
         let forms = unscaled.check(turn_spec, &context).map_err(|violation| report(violation, turn_spec, &context))?;
@@ -47,8 +49,7 @@ fn hinge(model: Model, spec: &TurnSpec, forms: &Forms, context: &TurnContext<'_>
     Ok(match model {
         Model::C0 => Hinge::Broken,
         Model::C2 => Hinge::C2,
-        // Only a first guess: m = 1 serves where the bend point's own ray has none.
-        Model::Original => Hinge::Bezier { start: forms.values.m_sigma(forms.sigma).unwrap_or(1.0) },
+        Model::Original => Hinge::Bezier { sigma: original_range(spec, forms, context)? },
         Model::Modified => Hinge::Conic { m: sharpness(spec, forms, context)? },
         Model::Circular => {
             // Our reading of beta: the angle between the planes t0 and t2, normals along the rays, by which a ray that
@@ -61,6 +62,19 @@ fn hinge(model: Model, spec: &TurnSpec, forms: &Forms, context: &TurnContext<'_>
             Hinge::Conic { m: 1.0 / half_square.sqrt() }
         }
     })
+}
+
+/// Least and greatest sigma of the picture, between which no rays of the original model may cross.
+fn original_range(
+    spec: &TurnSpec,
+    forms: &Forms,
+    context: &TurnContext<'_>,
+) -> Result<[f64; 2], CurvedRaysError> {
+    let (range, crossed) = crossing(forms, context);
+    match crossed {
+        None => Ok(range),
+        Some((pixel, sigma)) => Err(rays_cross(pixel, sigma, spec, context)),
+    }
 }
 
 /// The one sharpness of a turn of the modified model. Computed values are not clamped.

@@ -1,7 +1,7 @@
 //! Which turns are valid: one condition after the other, each with its own error.
 
 use super::form::{Forms, LinearForm, StraightPart};
-use super::phi::ViewpointValues;
+use super::phi::{ViewpointValues, arcs_cross};
 use super::spec::{CurvedRaysError, Pencil, Sharpness, TurnSpec};
 use crate::Pinhole;
 use glam::{DVec2, DVec3};
@@ -26,6 +26,8 @@ pub(super) struct TurnContext<'a> {
     pub(super) part: StraightPart,
     /// The turn before.
     pub(super) previous: Option<PreviousTurn<'a>>,
+    /// Whether the nearest valid value is looked for where a condition does not hold, which costs a hundred times the check.
+    pub(super) advise: bool,
 }
 
 /// The turn before the one that is checked.
@@ -260,6 +262,23 @@ impl Forms {
         let limit = self.values.b1;
         if sigma < limit { Ok(()) } else { Err(Violation::EndNotReached { pixel, sigma, limit }) }
     }
+}
+
+/// How finely the range of sigma is searched for rays that cross.
+const CROSSING_STEPS: usize = 64;
+
+/// Least and greatest sigma of the picture, and where rays of the original model cross, if they do: the corner on the side on which they
+/// do, and the sigma nearest to the middle of the picture.
+pub(super) fn crossing(forms: &Forms, context: &TurnContext<'_>) -> ([f64; 2], Option<(DVec2, f64)>) {
+    let sigma = |px: DVec2| forms.sigma_on(corner_direction(px, context.root, &context.part));
+    let corners = context.corners.iter().map(|&px| (px, sigma(px)));
+    let by_sigma = |a: &(DVec2, f64), b: &(DVec2, f64)| a.1.total_cmp(&b.1);
+    let (Some(low), Some(high)) = (corners.clone().min_by(by_sigma), corners.max_by(by_sigma)) else {
+        return ([forms.sigma; 2], None);
+    };
+    let at = |k: usize| low.1 + (high.1 - low.1) * k as f64 / CROSSING_STEPS as f64;
+    let crossed = (0..=CROSSING_STEPS).map(at).find(|&sigma| arcs_cross(&forms.values, sigma));
+    ([low.1, high.1], crossed.map(|sigma| (high.0, sigma)))
 }
 
 /// Unit direction of the central ray of the part before a turn.

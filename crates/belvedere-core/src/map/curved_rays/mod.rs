@@ -104,7 +104,13 @@ impl CurvedRays {
     /// # Errors
     /// Every [`CurvedRaysError`]: the first condition, turn by turn, that does not hold, with the nearest valid value.
     pub fn new(root: &Pinhole, model: Model, turns: &[TurnSpec]) -> Result<Self, CurvedRaysError> {
-        build::build(root, model, turns, &check::corner_pixels(root))
+        build::build(root, model, turns, &check::corner_pixels(root), true)
+    }
+
+    /// The same for those who try many: `None` where [`CurvedRays::new`] says what is wrong and what would be right, which takes a
+    /// hundred times as long.
+    pub fn if_valid(root: &Pinhole, model: Model, turns: &[TurnSpec]) -> Option<Self> {
+        build::build(root, model, turns, &check::corner_pixels(root), false).ok()
     }
 
     /// The same for a part of the image: the conditions hold within the convex polygon of `corners`, pixels.
@@ -114,13 +120,13 @@ impl CurvedRays {
         turns: &[TurnSpec],
         corners: &[DVec2],
     ) -> Result<Self, CurvedRaysError> {
-        build::build(root, model, turns, corners)
+        build::build(root, model, turns, corners, true)
     }
 
     /// These rays at a share of their strength: viewpoints on their way from the eye. `None` if they cannot turn like that.
     pub(crate) fn eased(&self, share: f64) -> Option<Self> {
         let turns: Vec<TurnSpec> = self.spec.iter().map(|turn| turn.eased(self.root.eye, share)).collect();
-        Self::new(&self.root, self.model, &turns).ok()
+        Self::if_valid(&self.root, self.model, &turns)
     }
 
     /// The pinhole that the rays start in.
@@ -166,14 +172,20 @@ impl CurvedRays {
 
     /// All images of `p`, in ray order: a point that two parts of rays reach is truly visible twice.
     pub fn displace_all(&self, p: DVec3) -> Vec<Displaced> {
+        let mut all = self.displace_into_image(p);
+        if all.is_empty() {
+            all.extend(self.displace(p));
+        }
+        all
+    }
+
+    /// The same for images inside the picture only.
+    pub(crate) fn displace_into_image(&self, p: DVec3) -> Vec<Displaced> {
         let mut all = Vec::new();
         self.cells_in_image(p, |hit| {
             all.extend(self.finish(p, hit));
             false
         });
-        if all.is_empty() {
-            all.extend(self.displace(p));
-        }
         all
     }
 

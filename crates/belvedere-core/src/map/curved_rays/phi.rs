@@ -43,8 +43,9 @@ impl ViewpointValues {
 pub(super) enum Hinge {
     /// Conic arcs of constant sharpness m.
     Conic { m: f64 },
-    /// Quadratic Bezier arcs: m follows the ray; `start` is m of the bend point.
-    Bezier { start: f64 },
+    /// Quadratic Bezier arcs: m follows the ray. `sigma`: least and greatest one of the picture; rays beside it bend with the same m as
+    /// those, so that no two cross.
+    Bezier { sigma: [f64; 2] },
     /// Broken rays.
     Broken,
     /// Curvature-continuous rays.
@@ -64,7 +65,7 @@ impl Hinge {
     pub(super) fn phi(self, pencil: &ViewpointValues, a: f64, b: f64) -> Option<Phi> {
         let out = match self {
             Self::Conic { m } => conic_phi(m, a, b),
-            Self::Bezier { start } => bezier_phi(pencil, start, a, b)?,
+            Self::Bezier { sigma } => bezier_phi(pencil, sigma, a, b)?,
             Self::Broken => {
                 if a > b {
                     Phi { phi: a - b, phi_a: 1.0, phi_b: -1.0 }
@@ -82,11 +83,11 @@ impl Hinge {
     pub(super) fn phi_of_displaced(self, pencil: &ViewpointValues, alpha: f64, b_far: f64) -> Option<f64> {
         let phi = match self {
             Self::Conic { m } => conic_phi_of_displaced(m, pencil, alpha, b_far),
-            Self::Bezier { .. } => {
+            Self::Bezier { sigma: [low, high] } => {
                 // From b_far = alpha - (lambda - 1) p, the same on the whole ray of one S.
                 let lambda = 1.0 + (alpha - b_far) / pencil.p();
                 let sigma = (alpha + pencil.a0 * (lambda - 1.0)) / lambda;
-                conic_phi_of_displaced(pencil.m_sigma(sigma)?, pencil, alpha, b_far)
+                conic_phi_of_displaced(pencil.m_sigma(sigma.max(low).min(high))?, pencil, alpha, b_far)
             }
             Self::Broken => ((alpha - b_far) / pencil.p()).max(0.0),
             Self::C2 => c2_phi_of_displaced(pencil, alpha, b_far)?,
@@ -161,21 +162,78 @@ pub(super) fn c2_parameter(pencil: &ViewpointValues, alpha: f64, b_far: f64) -> 
     })
 }
 
-/// Original model: m depends on sigma of the ray, which depends on phi. One root of a quartic, bracketed.
-fn bezier_phi(pencil: &ViewpointValues, start: f64, a: f64, b: f64) -> Option<Phi> {
-    let first = conic_phi(start, a, b).phi;
-    let value = |phi: f64| BezierResidual::new(pencil, a, b, phi);
-    let phi = falling_root((a - b).max(0.0), a, first, |phi| {
-        let r = value(phi);
-        (r.value, r.by_phi)
-    })?;
-    let r = value(phi);
+/// Original model: m depends on sigma of the ray, which depends on phi. Of the rays that do not cross ([`arcs_cross`]) each meets the plane
+/// of a pencil parameter at a `c = a + b` of its own, which grows with sigma: so there is one root, and it is bracketed by the picture.
+fn bezier_phi(pencil: &ViewpointValues, [low, high]: [f64; 2], a: f64, b: f64) -> Option<Phi> {
+    let c = a + b;
+    let s = a / c;
+    // Negative where the ray of sigma meets the plane of s nearer to the common line than (a, b) lies.
+    let short_of = |sigma: f64| {
+        let g = conic_phi(pencil.m_sigma(sigma)?, s, b / c).phi;
+        let g_star = g + (b - a) / c;
+        let shift = s + g * pencil.a1 - g_star * pencil.a0 / pencil.k0;
+        Some(sigma * (1.0 / c + (g - g_star / pencil.k0)) - shift)
+    };
+    let of = |sigma: f64| Some(conic_phi(pencil.m_sigma(sigma)?, a, b));
+    let ends = [short_of(low)?, short_of(high)?];
+    if !(ends[1] > 0.0) {
+        return of(high);
+    }
+    if !(ends[0] < 0.0) {
+        return of(low);
+    }
+    let sigma = rising_root([low, high], ends, short_of)?;
+    let m = pencil.m_sigma(sigma)?;
+    let phi = conic_phi(m, a, b).phi;
+    let r = BezierResidual::new(pencil, a, b, phi);
     Some(Phi { phi, phi_a: -r.by_a / r.by_phi, phi_b: -r.by_b / r.by_phi })
 }
 
-/// `lambda^2 ((a - phi)^2 - m_sigma(sigma)^2 phi psi)` and its derivatives; sigma is a rational function of phi.
+/// Zero between two places where a function is negative and positive: false position, with the Illinois rule against creeping.
+fn rising_root(ends: [f64; 2], values: [f64; 2], f: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+    let ([mut low, mut high], [mut at_low, mut at_high]) = (ends, values);
+    let mut last = 0.0;
+    for step in 0..120 {
+        // Halving in between costs little where the function is steep at one end.
+        let x = if step % 4 == 3 { 0.5 * (low + high) } else { low - at_low * ((high - low) / (at_high - at_low)) };
+        if !(x > low && x < high) || high - low <= f64::EPSILON * high {
+            break;
+        }
+        let value = f(x)?;
+        if value == 0.0 {
+            return Some(x);
+        }
+        if value < 0.0 {
+            (low, at_low) = (x, value);
+            at_high *= if last < 0.0 { 0.5 } else { 1.0 };
+        } else {
+            (high, at_high) = (x, value);
+            at_low *= if last > 0.0 { 0.5 } else { 1.0 };
+        }
+        last = value;
+    }
+    Some(if -at_low < at_high { low } else { high })
+}
+
+/// Whether Bezier rays cross those next to them at a sigma: they do not where the Jacobian of (sigma, u / (1 - u)) -> (a, b) keeps its sign,
+/// a cubic with positive ends.
+pub(super) fn arcs_cross(pencil: &ViewpointValues, sigma: f64) -> bool {
+    let ViewpointValues { k0, a0, b0, a1, b1 } = *pencil;
+    let (to_start, to_end) = (sigma - a0, b1 - sigma);
+    let c0 = -a0 * k0 / (to_start * to_start);
+    let c1 = k0 / to_start * (2.0 - a0 * (sigma - a1) / (to_start * to_end));
+    let c2 = (2.0 + b1 * (b0 - sigma) / (to_end * to_start)) / to_end;
+    let c3 = b1 / (to_end * to_end);
+    let discriminant = c2 * c2 - 3.0 * c1 * c3;
+    if c2 >= 0.0 || discriminant <= 0.0 {
+        return false;
+    }
+    let r = (discriminant.sqrt() - c2) / (3.0 * c3);
+    !(c0 + r * (c1 + r * (c2 + r * c3)) > 0.0)
+}
+
+/// Derivatives of `lambda^2 ((a - phi)^2 - m_sigma(sigma)^2 phi psi)`, which is 0; sigma is a rational function of phi.
 struct BezierResidual {
-    value: f64,
     by_phi: f64,
     by_a: f64,
     by_b: f64,
@@ -194,7 +252,6 @@ impl BezierResidual {
         let four = 4.0 / k0;
         let both = phi * psi;
         Self {
-            value: lambda * lambda * rest * rest - four * u * v * both,
             by_phi: 2.0 * lambda * stretch * rest * rest
                 - 2.0 * lambda * lambda * rest
                 - four * ((u_phi * v + u * v_phi) * both + u * v * (psi + phi)),
@@ -246,7 +303,7 @@ mod tests {
         [0.2, 1.0, 20.0]
             .map(|m| Hinge::Conic { m })
             .into_iter()
-            .chain([Hinge::Bezier { start: 1.0 }, Hinge::C2])
+            .chain([Hinge::Bezier { sigma: [0.05, 0.4] }, Hinge::C2])
             .collect::<Vec<_>>()
             .try_into()
             .unwrap()

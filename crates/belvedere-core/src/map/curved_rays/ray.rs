@@ -188,6 +188,10 @@ impl Turn {
         let conic = |weight: f64| Shape::Conic(Bend { curve: ConicArc { t, s, q, weight }, depths });
         let shape = match self.hinge {
             Hinge::Conic { m } => conic(m / values.m_sigma(sigma).ok_or(Miss::OutsideDomain)?),
+            Hinge::Bezier { sigma: [low, high] } if sigma < low || sigma > high => {
+                let m = |sigma: f64| values.m_sigma(sigma).ok_or(Miss::OutsideDomain);
+                conic(m(sigma.max(low).min(high))? / m(sigma)?)
+            }
             Hinge::Bezier { .. } => conic(1.0),
             Hinge::C2 => {
                 let to_viewpoints = [self.viewpoint_before - s, self.viewpoint - s];

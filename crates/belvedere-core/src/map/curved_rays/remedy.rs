@@ -1,6 +1,6 @@
 //! From a violated condition to an error with the nearest valid value.
 
-use super::check::{PreviousTurn, TurnContext, UnscaledTurn, Violation, axis, corner_direction};
+use super::check::{PreviousTurn, TurnContext, UnscaledTurn, Violation, axis, corner_direction, crossing};
 use super::spec::{CurvedRaysError, Pencil, Remedy, TurnSpec};
 use glam::{DVec2, DVec3};
 
@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 pub(super) fn report(violation: Violation, spec: &TurnSpec, context: &TurnContext<'_>) -> CurvedRaysError {
     let turn = context.turn;
     let viewpoint = turn - 1;
-    let remedy = remedy(violation, spec, context);
+    let remedy = if context.advise { remedy(violation, spec, context) } else { Remedy::Rebuild };
     match violation {
         Violation::Order { depths: [t0, t1, t2] } => {
             CurvedRaysError::PlaneOrder { turn, viewpoint, t0, t1, t2, remedy }
@@ -28,6 +28,19 @@ pub(super) fn report(violation: Violation, spec: &TurnSpec, context: &TurnContex
             CurvedRaysError::NearPastStart { pixel, near: context.root.near, start, remedy }
         }
     }
+}
+
+/// The error for rays of the original model that cross in the picture: t2 nearer to the bend, or another model.
+pub(super) fn rays_cross(pixel: DVec2, sigma: f64, spec: &TurnSpec, context: &TurnContext<'_>) -> CurvedRaysError {
+    let parted = |candidate: &TurnSpec| {
+        let forms = UnscaledTurn::new(candidate, context.turn, &context.part).ok()?.check(candidate, context).ok()?;
+        crossing(&forms, context).1.is_none().then_some(())
+    };
+    let healed = |t: f64| parted(&end_at(spec, t)).is_some();
+    let remedy = if context.advise { smallest(healed, 1.0) } else { None };
+    let remedy = remedy
+        .map_or(Remedy::OtherModel, |t| Remedy::MovePoint { name: "t2", to: end_at(spec, t).t2 });
+    CurvedRaysError::RaysCross { turn: context.turn, pixel, sigma, remedy }
 }
 
 fn remedy(violation: Violation, spec: &TurnSpec, context: &TurnContext<'_>) -> Remedy {

@@ -150,6 +150,8 @@ pub enum Remedy {
     SwapPlanes,
     /// Choose a bend point that the picture's rays bend around.
     BendInPicture,
+    /// Choose another model of rays.
+    OtherModel,
     /// No single parameter heals it.
     Rebuild,
 }
@@ -167,6 +169,7 @@ impl std::fmt::Display for Remedy {
             Self::Near { near } => write!(f, "near may be at most {near:.6}, or move t0 away from the eye"),
             Self::SwapPlanes => write!(f, "exchange t0 and t2"),
             Self::BendInPicture => write!(f, "move t1 into the picture, or give m as a number"),
+            Self::OtherModel => write!(f, "no t2 parts them"),
             Self::Rebuild => {
                 write!(f, "place t0, t1, t2 in this order ahead of both viewpoints, or use parallel planes")
             }
@@ -362,6 +365,18 @@ pub enum CurvedRaysError {
         sigma: f64,
         /// Value of t2's form at the viewpoint.
         limit: f64,
+        /// Nearest valid value.
+        remedy: Remedy,
+    },
+    /// Rays of the original model cross their neighbours.
+    #[error("turn {turn}: rays of the original model cross near the pixel ({}, {}) (from sigma = {sigma:.6} on): they would show places twice, once mirrored; {remedy}, or set model = \"modified\", whose rays never cross", pixel.x, pixel.y)]
+    RaysCross {
+        /// Turn, from 1.
+        turn: usize,
+        /// Image corner.
+        pixel: DVec2,
+        /// Value of both plane forms where the first ray that crosses another meets t1.
+        sigma: f64,
         /// Nearest valid value.
         remedy: Remedy,
     },

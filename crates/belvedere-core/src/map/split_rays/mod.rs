@@ -134,14 +134,18 @@ impl SplitRays {
         here.unwrap_or(&self.branches[0])
     }
 
-    /// All images of `p`, branch by branch, and which branch.
+    /// All images of `p`, branch by branch, and which branch; images beside the picture where it has none inside.
     pub fn displace_all(&self, p: DVec3) -> Vec<(usize, Displaced)> {
-        let mut all = Vec::new();
-        for (i, branch) in self.branches.iter().enumerate() {
-            let shown = |d: &Displaced| std::ptr::eq(self.branch_of(d.point), branch);
-            all.extend(branch.rays.displace_all(p).into_iter().filter(shown).map(|d| (i, d)));
-        }
-        all
+        let images = |of: &dyn Fn(&CurvedRays) -> Vec<Displaced>| {
+            let mut all = Vec::new();
+            for (i, branch) in self.branches.iter().enumerate() {
+                let shown = |d: &Displaced| std::ptr::eq(self.branch_of(d.point), branch);
+                all.extend(of(&branch.rays).into_iter().filter(shown).map(|d| (i, d)));
+            }
+            all
+        };
+        let inside = images(&|rays| rays.displace_into_image(p));
+        if inside.is_empty() { images(&|rays| rays.displace_all(p)) } else { inside }
     }
 
     /// Displaced point and segment, of the first branch that shows the point.
