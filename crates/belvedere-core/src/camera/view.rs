@@ -243,6 +243,26 @@ impl View {
         }
     }
 
+    /// `p_world` after all stages, the curved rays by one segment of the rays alone ([`CurvedRays::displace_along`]).
+    ///
+    /// # Errors
+    /// Those of [`View::displace`]; [`Miss::OutsideDomain`] if there is no such segment.
+    pub fn displace_along(&self, segment: u32, p_world: DVec3) -> Result<Displaced, Miss> {
+        let d = self.displace_earlier(p_world)?;
+        let rays = self.curved_rays().ok_or(Miss::OutsideDomain)?;
+        Ok(Displaced { folded: d.folded, ..rays.displace_along(segment, d.point)? })
+    }
+
+    /// Signed distances to the planes at the ends of a segment ([`CurvedRays::segment_planes`]), infinite where it has no end: rays reach
+    /// only places where both are not negative. Negative infinity where earlier stages have no image.
+    pub fn segment_margins(&self, segment: u32, p_world: DVec3) -> [f64; 2] {
+        let (Ok(d), Some(rays)) = (self.displace_earlier(p_world), self.curved_rays()) else {
+            return [f64::NEG_INFINITY; 2];
+        };
+        let at = |plane: Option<crate::map::curved_rays::LinearForm>| plane.map_or(f64::INFINITY, |form| form.at(d.point));
+        rays.segment_planes(segment).map(at).map(|d| if d.is_nan() { f64::NEG_INFINITY } else { d })
+    }
+
     /// All images of a point, in ray order. More than one only where cells of a curved-ray chain overlap, or where several
     /// branches of rays that part show it.
     pub fn project_all(&self, p_world: DVec3) -> Vec<Projected> {
@@ -300,6 +320,20 @@ impl View {
         let shifts = (ends[0].min(ends[1])..=ends[0].max(ends[1])).map(|record| rays.record_edge_shift(record, a, b));
         let shifts: Option<Vec<DVec3>> = shifts.collect();
         shifts.map_or(f64::INFINITY, |shifts| self.image_error([a1.point, b1.point], error, &shifts))
+    }
+
+    /// The same by one segment alone, see [`View::displace_along`].
+    pub fn edge_error_px_along(&self, segment: u32, p0: DVec3, p1: DVec3) -> f64 {
+        let Some(map) = self.curved_rays().and_then(|rays| rays.straight_map(segment)) else {
+            return self.edge_error_px_in(segment as usize / 2, p0, p1);
+        };
+        let Some((a, b, error)) = self.earlier_error(p0, p1) else { return f64::INFINITY };
+        if error == 0.0 {
+            return 0.0;
+        }
+        let stretch = map.linear.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
+        let ends = [a, b].map(|p| self.pinhole.eye + map.linear * (p - map.viewpoint));
+        self.image_error(ends, error * stretch, &[])
     }
 
     fn edge_error(&self, p0: DVec3, p1: DVec3, record: Option<usize>) -> f64 {

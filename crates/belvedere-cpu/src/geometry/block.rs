@@ -35,8 +35,8 @@ pub(crate) enum Geometry {
 #[derive(Debug)]
 pub(crate) struct Block {
     pub(crate) layer: u32,
-    /// First and last record that displace it.
-    pub(crate) records: [usize; 2],
+    /// First and last of the passes of the view that draw it.
+    pub(crate) passes: [usize; 2],
     /// Whether these are rigid bodies, drawn by the passes of what was carried.
     pub(crate) bodies: bool,
     /// First column and row (terrain), first box or first triangle (mesh).
@@ -116,7 +116,7 @@ impl Block {
     /// Explicit triangles of the boxes or triangles from number `first` on; `None` if there are none.
     pub(crate) fn soup(
         layer: u32,
-        records: [usize; 2],
+        passes: [usize; 2],
         first: usize,
         soup: Vec<SoupTriangle>,
         counts: Counts,
@@ -130,7 +130,7 @@ impl Block {
         let bodies = false;
         Some(Self {
             layer,
-            records,
+            passes,
             bodies,
             origin,
             cells: [0; 2],

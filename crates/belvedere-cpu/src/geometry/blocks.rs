@@ -22,7 +22,8 @@ pub(crate) const SOUP: u32 = 1 << 31;
 /// Bits of a grid primitive below the block number: 10 of the cell, 1 of the triangle.
 pub(crate) const CELL_BITS: u32 = 11;
 
-/// Blocks of boxes or triangles: each part of a layer once for each record that shows it, or once if its records may draw it at once.
+/// Blocks of boxes or triangles: each part of a layer once for each record that shows it, or once if its records may draw it at once, and
+/// once for each segment that shows what records leave out.
 /// * `bounds`: of the parts.
 /// * `draw`: a part, by its number.
 fn soups(
@@ -33,22 +34,22 @@ fn soups(
     let locate = |bounds: &Aabb| {
         let mut list = Vec::new();
         let all = locator.all(&mut list);
-        let Held { records, whole } = locator.locate(bounds, &all, &mut list);
+        let Held { records, segments, whole } = locator.locate(bounds, &all, &mut list);
         let mut held = list[records].to_vec();
         if whole && !held.iter().any(|&record| locator.shows(record, bounds)) {
             held.clear();
         } else if !whole {
             held.retain(|&record| locator.shows(record, bounds));
         }
-        (held, whole)
+        (held, list[segments].to_vec(), whole)
     };
-    let located: Vec<(Vec<u32>, bool)> = bounds.par_iter().map(locate).collect();
-    let together = located.iter().filter(|(_, whole)| *whole).map(|(held, _)| &held[..]);
+    let located: Vec<(Vec<u32>, Vec<u32>, bool)> = bounds.par_iter().map(locate).collect();
+    let together = located.iter().filter(|(_, _, whole)| *whole).map(|(held, ..)| &held[..]);
     let joined = JoinedPasses::new(locator.view, locator.passes, together);
     let parts = located.par_iter().enumerate();
     parts
-        .flat_map_iter(|(k, (held, whole))| {
-            joined.of(held, *whole).filter_map(|pass| draw(pass, k)).collect::<Vec<_>>()
+        .flat_map_iter(|(k, (held, segments, whole))| {
+            joined.of([held, segments], *whole).filter_map(|pass| draw(pass, k)).collect::<Vec<_>>()
         })
         .collect()
 }
@@ -102,19 +103,19 @@ impl Blocks {
                     };
                     chooser.choose(&mut self.choice);
                     let choice = &self.choice;
-                    let whole = choice.list.iter().filter(|c| c.held.whole).map(|c| choice.held(&c.held));
+                    let whole = choice.list.iter().filter(|c| c.held.whole).map(|c| choice.held(&c.held)[0]);
                     let joined = JoinedPasses::new(view, passes, whole);
                     let (job, tree) = (&job, &tree);
                     let drawn = choice.list.par_iter().flat_map_iter(|c| {
                         let bounds = tree.bounds(hf, c.level, c.block);
                         let shown = bounds.map_or(Shown::Everything, |b| job.shown(&b));
-                        let bounds = bounds.filter(|_| !c.held.whole);
+                        let seen_in = bounds.filter(|_| !c.held.whole);
                         let passes =
                             joined.of(choice.held(&c.held), c.held.whole).filter(move |_| shown != Shown::Nothing);
                         let seen =
-                            passes.filter(move |pass| bounds.is_none_or(|b| pass.in_view(screen, &b) != InView::No));
+                            passes.filter(move |pass| seen_in.is_none_or(|b| pass.in_view(screen, &b) != InView::No));
                         let thin = shown == Shown::Partly;
-                        seen.filter_map(move |pass| job.terrain_block(pass, hf, &tree.sparse, c, thin))
+                        seen.filter_map(move |pass| job.terrain_block(pass, hf, &tree.sparse, (c, bounds), thin))
                     });
                     self.list.par_extend(drawn);
                 }

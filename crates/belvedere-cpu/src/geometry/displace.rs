@@ -5,9 +5,9 @@
 
 use crate::geometry::points::{Points, each};
 use crate::geometry::spline_table::SplineTable;
-use belvedere_core::map::curved_rays::Turn;
+use crate::geometry::pass::Way;
+use belvedere_core::map::curved_rays::{StraightMap, Turn};
 use belvedere_core::{CurvedRays, DVec3, Stage, View};
-use std::ops::RangeInclusive;
 
 /// All stages of a view for one pass over the scene.
 #[derive(Debug)]
@@ -26,6 +26,11 @@ enum Step<'a> {
         m: f64,
         eye: DVec3,
         first: bool,
+    },
+    /// A straight part of curved rays.
+    Straight {
+        map: StraightMap,
+        eye: DVec3,
     },
     /// A record of curved rays of another model.
     Record {
@@ -53,6 +58,7 @@ impl<'a> Step<'a> {
             Step::Stage(stage) => each(p, |p| stage.as_map().apply(p).ok()),
             Step::Spline(table) => table.row(p),
             Step::Conic { turn, m, eye, first } => conic(turn, *m, *eye, *first, p),
+            Step::Straight { map, eye } => each(p, |p| Some(*eye + map.linear * (p - map.viewpoint))),
             Step::Record { rays, record } => each(p, |p| rays.displace_in(*record, p).ok().map(|d| d.point)),
             Step::Chain { rays, first, steps } => {
                 let of = |p: &Points<'_>, i: usize| {
@@ -74,15 +80,20 @@ impl<'a> Step<'a> {
 }
 
 impl<'a> Displacer<'a> {
-    /// * `records`: one, see [`View::displace_in`], or several that displace as one map.
-    pub(crate) fn new(view: &'a View, records: RangeInclusive<usize>) -> Self {
+    pub(crate) fn new(view: &'a View, way: Way) -> Self {
         let step = |stage: &'a Stage| match stage {
             Stage::SplineBend(bend) => Step::Spline(SplineTable::new(bend)),
-            Stage::CurvedRays(rays) if records.start() == records.end() => Step::record(rays, *records.start()),
-            Stage::CurvedRays(rays) => {
-                let steps = records.clone().map(|record| Step::record(rays, record)).collect();
-                Step::Chain { rays, first: *records.start(), steps }
-            }
+            Stage::CurvedRays(rays) => match way {
+                Way::Records([first, last]) if first == last => Step::record(rays, first),
+                Way::Records([first, last]) => {
+                    let steps = (first..=last).map(|record| Step::record(rays, record)).collect();
+                    Step::Chain { rays, first, steps }
+                }
+                Way::Segment(number) => match rays.straight_map(number) {
+                    Some(map) => Step::Straight { map, eye: rays.root().eye },
+                    None => Step::record(rays, number as usize / 2),
+                },
+            },
             other => Step::Stage(other),
         };
         Self { steps: view.stages().iter().map(step).collect() }
@@ -108,8 +119,8 @@ impl<'a> Displacer<'a> {
     }
 }
 
-/// `X' = eye + before (X - C') + phi(a, b) shift`, the first record `X' = X + phi shift`; phi is 0 before t0 and `a - b`
-/// after t2. Without branches, so that several points are computed at once, unless all of them lie on one side.
+/// `X' = eye + before (X - C') + phi(a, b) shift`, the first record `X' = X + phi shift`; phi is `max(0, a - b)` outside the wedge.
+/// Without branches, so that several points are computed at once, unless all of them lie on one side.
 fn conic(turn: &Turn, m: f64, eye: DVec3, first: bool, points: &mut Points<'_>) -> bool {
     let n = points.x.len();
     let (xs, ys, zs) = (&mut points.x[..n], &mut points.y[..n], &mut points.z[..n]);
@@ -117,8 +128,8 @@ fn conic(turn: &Turn, m: f64, eye: DVec3, first: bool, points: &mut Points<'_>) 
     for i in 0..n {
         let p = DVec3::new(xs[i], ys[i], zs[i]);
         let (a, b) = (turn.a.at(p), turn.b.at(p));
-        before &= (a <= 0.0) & (b > 0.0);
-        after &= (a > 0.0) & (b <= 0.0);
+        before &= (a <= 0.0) & (a <= b);
+        after &= (b <= 0.0) & (a > b);
     }
     if before && first {
         return true;
@@ -133,20 +144,17 @@ fn conic(turn: &Turn, m: f64, eye: DVec3, first: bool, points: &mut Points<'_>) 
         }
         return true;
     }
-    let mut known = true;
     for i in 0..n {
         let p = DVec3::new(xs[i], ys[i], zs[i]);
         let (a, b) = (turn.a.at(p), turn.b.at(p));
-        // Beyond the common line there is no image; NaN is not greater than anything.
-        known &= (a > 0.0) | (b > 0.0) | ((a == 0.0) & (b == 0.0));
         let wedge = wedge_phi(m, a, b);
-        let phi = if b > 0.0 { wedge } else { turn.h.at(p) };
-        let phi = if a > 0.0 { phi } else { 0.0 };
+        let outside = if a > b { turn.h.at(p) } else { 0.0 };
+        let phi = if (a > 0.0) & (b > 0.0) { wedge } else { outside };
         let base = if first { p } else { eye + turn.before * (p - turn.viewpoint_before) };
         let q = base + phi * turn.shift;
         (xs[i], ys[i], zs[i]) = (q.x, q.y, q.z);
     }
-    known
+    true
 }
 
 /// phi of the modified model between the planes: `a = phi + m q`, `b = psi + m q`, `q = sqrt(phi psi)`; sums of positive
@@ -221,7 +229,7 @@ mod tests {
         ];
         for (k, view) in views.iter().enumerate() {
             for record in 0..view.records() {
-                let displacer = Displacer::new(view, record..=record);
+                let displacer = Displacer::new(view, Way::Records([record; 2]));
                 let (mut worst, mut seen) = (0.0f64, 0);
                 for p in ground(90) {
                     let exact = view.displace_in(record, p).ok().map(|d| d.point);
@@ -246,7 +254,7 @@ mod tests {
     #[test]
     fn rows_and_single_points_agree_to_the_last_bit() {
         for view in [rays(Model::Modified, Sharpness::Bend), spline("progressive")] {
-            let displacer = Displacer::new(&view, 0..=0);
+            let displacer = Displacer::new(&view, Way::Records([0; 2]));
             for row in ground(66).chunks(33) {
                 let coordinate = |k: usize| row.iter().map(|p| p[k]).collect::<Vec<f64>>();
                 let (mut x, mut y, mut z) = (coordinate(0), coordinate(1), coordinate(2));
@@ -259,9 +267,15 @@ mod tests {
     }
 
     #[test]
-    fn points_beyond_the_common_line_have_no_image() {
+    fn straight_parts_place_points_like_the_rays_themselves() {
         let view = rays(Model::Modified, Sharpness::Bend);
-        assert!(view.project(view.pinhole().eye + DVec3::new(0.0, 5000.0, -100.0)).is_ok());
-        assert_eq!(Displacer::new(&view, 0..=0).point(DVec3::NAN), None);
+        for segment in [0, 2, 4] {
+            let displacer = Displacer::new(&view, Way::Segment(segment));
+            for p in ground(20) {
+                let (exact, fast) = (view.displace_along(segment, p).unwrap().point, displacer.point(p).unwrap());
+                assert!(exact.distance(fast) < 1e-6, "segment {segment}: {exact} {fast}");
+            }
+        }
+        assert_eq!(Displacer::new(&view, Way::Records([0; 2])).point(DVec3::NAN), None);
     }
 }

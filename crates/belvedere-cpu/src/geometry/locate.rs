@@ -6,15 +6,18 @@ use belvedere_core::{Aabb, Stage, View};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// The records that may hold part of a box, as a range in a list, in order.
+/// The passes that draw a box, as ranges in a list, in order.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Held {
+    /// The records that may hold part of it.
     pub(crate) records: Range<usize>,
+    /// The segments that draw what these leave out.
+    pub(crate) segments: Range<usize>,
     /// Whether they displace the whole box as one map: it is drawn once, uncut.
     pub(crate) whole: bool,
 }
 
-/// The records of a frame.
+/// The passes of a frame.
 pub(crate) struct Locator<'a> {
     pub(crate) view: &'a View,
     pub(crate) passes: &'a [Pass<'a>],
@@ -22,52 +25,66 @@ pub(crate) struct Locator<'a> {
 }
 
 impl<'a> Locator<'a> {
-    /// * `passes`: one for each record.
+    /// * `passes`: all of the view, see [`Pass::all`].
     pub(crate) fn new(view: &'a View, passes: &'a [Pass<'a>], screen: &'a Screen) -> Self {
         Self { view, passes, screen }
     }
 
-    /// All records, whatever the box.
+    /// All passes, whatever the box.
     pub(crate) fn all(&self, list: &mut Vec<u32>) -> Held {
+        let records = self.view.records();
         list.clear();
         list.extend(0..self.passes.len() as u32);
-        Held { records: 0..list.len(), whole: list.len() == 1 }
+        Held { records: 0..records, segments: records..list.len(), whole: records == 1 }
     }
 
-    /// Which of the records that may hold part of a larger box may hold part of this one; written behind the list.
+    /// Which of the passes that may draw part of a larger box may draw part of this one; written behind the list.
     pub(crate) fn locate(&self, bounds: &Aabb, larger: &Held, list: &mut Vec<u32>) -> Held {
         if self.passes.len() == 1 {
             return larger.clone();
         }
-        let from = list.len();
         let Some((Stage::CurvedRays(rays), earlier)) = self.view.stages().split_last() else { return larger.clone() };
+        let one = self.view.records() == 1;
         // Without bounds before the rays nothing is known.
-        let Some(before) = displaced(earlier, bounds) else { return Held { whole: false, ..larger.clone() } };
-        for i in larger.records.clone() {
-            if rays.may_hold(list[i] as usize, &before) {
+        let Some(before) = displaced(earlier, bounds) else { return Held { whole: one, ..larger.clone() } };
+        let (mut records, mut whole) = (larger.records.clone(), true);
+        if !one {
+            let from = list.len();
+            for i in larger.records.clone() {
+                if rays.may_hold(list[i] as usize, &before) {
+                    list.push(list[i]);
+                }
+            }
+            records = from..list.len();
+            let held = &list[records.clone()];
+            whole = held.first().zip(held.last()).is_none_or(|(&first, &last)| {
+                (last - first) as usize + 1 == held.len()
+                    && rays.is_continuous(first as usize..=last as usize, &before)
+            });
+        }
+        let from = list.len();
+        for i in larger.segments.clone() {
+            let number = list[i] - self.view.records() as u32;
+            if rays.leaves_out(number, &before) && self.shows(list[i], bounds) {
                 list.push(list[i]);
             }
         }
-        let held = &list[from..];
-        let whole = held.first().zip(held.last()).is_some_and(|(&first, &last)| {
-            (last - first) as usize + 1 == held.len() && rays.is_continuous(first as usize..=last as usize, &before)
-        });
-        Held { records: from..list.len(), whole }
+        Held { records, segments: from..list.len(), whole }
     }
 
-    /// Pixels that a unit of height inside the box can make on the image, infinite where unknown; `None` if no record shows it.
-    pub(crate) fn px_per_height(&self, bounds: &Aabb, held: &[u32]) -> Option<f64> {
-        let of = |&record: &u32| {
-            let pass = &self.passes[record as usize];
+    /// Pixels that a unit of height inside the box can make on the image, infinite where unknown; `None` if no pass shows it.
+    pub(crate) fn px_per_height(&self, bounds: &Aabb, passes: impl Iterator<Item = u32>) -> Option<f64> {
+        let of = |number: u32| {
+            let pass = &self.passes[number as usize];
             let InView::Maybe(extent) = pass.in_view(self.screen, bounds) else { return None };
             Some(pass.px_per_height(self.screen, bounds, extent))
         };
-        held.iter().filter_map(of).reduce(f64::max)
+        passes.filter_map(of).reduce(f64::max)
     }
 
-    /// Whether a record shows part of the box.
-    pub(crate) fn shows(&self, record: u32, bounds: &Aabb) -> bool {
-        self.passes[record as usize].in_view(self.screen, bounds) != InView::No
+    /// Whether a pass shows part of the box.
+    pub(crate) fn shows(&self, number: u32, bounds: &Aabb) -> bool {
+        self.passes[number as usize].in_view(self.screen, bounds) != InView::No
     }
 }
 
@@ -87,11 +104,15 @@ impl<'a> JoinedPasses<'a> {
         Self { passes, joined }
     }
 
-    /// The one pass that draws what `records` hold, or one for each of them.
-    pub(crate) fn of<'s>(&'s self, records: &'s [u32], whole: bool) -> impl Iterator<Item = &'s Pass<'a>> {
+    /// The one pass that draws what `records` hold, or one for each of them; then those of `segments`.
+    pub(crate) fn of<'s>(
+        &'s self,
+        [records, segments]: [&'s [u32]; 2],
+        whole: bool,
+    ) -> impl Iterator<Item = &'s Pass<'a>> {
         let together = ends(records).filter(|_| whole).and_then(|ends| self.joined.get(&ends));
         let each = if together.is_some() { &[] } else { records };
-        together.into_iter().chain(each.iter().map(|&record| &self.passes[record as usize]))
+        together.into_iter().chain(each.iter().chain(segments).map(|&number| &self.passes[number as usize]))
     }
 }
 

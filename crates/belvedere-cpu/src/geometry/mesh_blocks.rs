@@ -109,7 +109,7 @@ impl Job<'_> {
             }
         }
         let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };
-        let block = Block::soup(self.layer, pass.records, first, refiner.out, counts)?;
+        let block = Block::soup(self.layer, pass.numbers, first, refiner.out, counts)?;
         let block = Block { bodies: matches!(drawn, Drawn::Bodies(..)), ..block };
         let Some(sections) = self.sections.filter(|_| self.shown(&bounds) == Shown::Partly) else { return Some(block) };
         Some(block.thinned(|k| mesh.corners(first + k as usize).map(|p| sections.parameter(p))))

@@ -1,21 +1,33 @@
-//! One drawing of the scene, or of part of it: a record of a curved-ray chain, several that displace as one map, or the only one there is.
+//! One drawing of the scene, or of part of it: a record of a curved-ray chain, several that displace as one map, a segment of the rays
+//! where records leave something out, or the only one there is.
 
 use crate::geometry::displace::Displacer;
 use crate::geometry::lod::{DecimatedHeights, NODES};
 use crate::geometry::points::Points;
 use crate::geometry::project::Projector;
 use crate::geometry::screen::{Row, Screen, ScreenVertex};
-use belvedere_core::{Aabb, DMat3, DVec2, DVec3, EdgePoint, Edges, Stage, View};
+use belvedere_core::{Aabb, CurvedRays, DMat3, DVec2, DVec3, EdgePoint, Edges, Stage, View};
 use belvedere_scene::Heightfield;
 use belvedere_sight::Carried;
+
+/// By what curved rays displace.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// A record ([`View::displace_in`]), or the first and the last one of several that displace as one map
+    /// ([`CurvedRays::is_continuous`]). Views without curved rays have one record.
+    Records([usize; 2]),
+    /// A segment of the rays, see [`View::displace_along`].
+    Segment(u32),
+}
 
 /// A view prepared for a frame.
 #[derive(Debug)]
 pub(crate) struct Pass<'a> {
     view: &'a View,
-    /// The first and the last record.
-    pub(crate) records: [usize; 2],
-    /// Whether what does not belong to the record is cut off.
+    way: Way,
+    /// Numbers of the first and the last of all passes of the view that it is.
+    pub(crate) numbers: [usize; 2],
+    /// Whether what does not belong to the record or segment is cut off.
     cut: bool,
     displacer: Displacer<'a>,
     /// Where one turn is all that bends edges.
@@ -77,27 +89,36 @@ impl Columns {
 }
 
 impl<'a> Pass<'a> {
-    /// The passes that together draw every image of every point once.
+    /// The passes of a view: one for each record, then one for each segment of curved rays. The records together draw every image of every
+    /// point once, but for what they leave out ([`CurvedRays::leaves_out`]); that the segments concerned draw.
     pub(crate) fn all(view: &'a View) -> Vec<Self> {
-        let cut = view.records() > 1;
-        (0..view.records()).map(|record| Self::new(view, [record; 2], cut)).collect()
+        let records = view.records();
+        let segments = view.curved_rays().filter(|rays| rays.turn_count() > 0).map_or(0, CurvedRays::segments);
+        let of_records = (0..records).map(|record| Self::new(view, Way::Records([record; 2]), [record; 2], records > 1));
+        let of_segments = (0..segments).map(|k| Self::new(view, Way::Segment(k), [records + k as usize; 2], true));
+        of_records.chain(of_segments).collect()
     }
 
     /// The pass for what records from the first to the last displace as one map, see [`CurvedRays::is_continuous`].
     pub(crate) fn between(view: &'a View, records: [usize; 2]) -> Self {
-        Self::new(view, records, false)
+        Self::new(view, Way::Records(records), records, false)
     }
 
-    fn new(view: &'a View, records: [usize; 2], cut: bool) -> Self {
-        let [first, last] = records;
+    fn new(view: &'a View, way: Way, numbers: [usize; 2], cut: bool) -> Self {
+        let edges = match way {
+            Way::Records([first, last]) if first == last => view.edges(first),
+            Way::Segment(number) if number % 2 == 1 => view.edges(number as usize / 2),
+            _ => None,
+        };
         Self {
             view,
-            records,
+            way,
+            numbers,
             cut,
-            displacer: Displacer::new(view, first..=last),
-            edges: if first == last { view.edges(first) } else { None },
-            projector: Projector::new(view, first..=last),
-            height: HeightPx::new(view, first),
+            displacer: Displacer::new(view, way),
+            edges,
+            projector: Projector::new(view, way),
+            height: HeightPx::new(view, way),
         }
     }
 
@@ -159,12 +180,31 @@ impl<'a> Pass<'a> {
 
     /// Signed distances that must be positive for the point to belong to this pass.
     pub(crate) fn margins(&self, p: DVec3) -> [f64; 2] {
-        if self.cut { self.view.record_margins(self.records[0], p) } else { [f64::INFINITY; 2] }
+        match self.way {
+            _ if !self.cut => [f64::INFINITY; 2],
+            Way::Records([record, _]) => self.view.record_margins(record, p),
+            Way::Segment(number) => self.view.segment_margins(number, p),
+        }
+    }
+
+    /// Whether part of a box may be cut off from a segment.
+    pub(crate) fn cuts(&self, bounds: &Aabb) -> bool {
+        let (Way::Segment(number), Some(rays)) = (self.way, self.view.curved_rays()) else { return false };
+        let planes = rays.segment_planes(number);
+        let earlier = &self.view.stages()[..self.view.stages().len() - 1];
+        displaced(earlier, bounds)
+            .is_none_or(|b| b.corners().iter().any(|&p| planes.iter().flatten().any(|plane| !(plane.at(p) > 0.0))))
+    }
+
+    /// Whether edges stay straight wherever they are.
+    pub(crate) fn keeps_edges(&self) -> bool {
+        let straight_part = matches!(self.way, Way::Segment(number) if number % 2 == 0);
+        self.is_straight() || (straight_part && self.view.stages().len() == 1)
     }
 
     /// Whether all edges inside a box may be drawn straight; `false` also where that is not known.
     pub(crate) fn is_straight_in(&self, bounds: &Aabb, tolerance_px: f64) -> bool {
-        self.is_straight() || self.edges.as_ref().is_some_and(|edges| edges.box_error_px(bounds) <= tolerance_px)
+        self.keeps_edges() || self.edges.as_ref().is_some_and(|edges| edges.box_error_px(bounds) <= tolerance_px)
     }
 
     /// What [`Pass::edge_error_between`] needs; `None` where it is not known.
@@ -179,7 +219,7 @@ impl<'a> Pass<'a> {
 
     /// See [`View::edge_error_px`].
     pub(crate) fn edge_error_px(&self, a: DVec3, b: DVec3) -> f64 {
-        edge_error_px(self.view, self.records, a, b)
+        edge_error_px(self.view, self.way, a, b)
     }
 
     /// Whether an edge may cross a strip that both its ends lie beside.
@@ -193,16 +233,26 @@ impl<'a> Pass<'a> {
         if is_missed(self.view.stages(), bounds) {
             return InView::No;
         }
-        if self.view.records() == 1 {
+        let Some((Stage::CurvedRays(rays), earlier)) = self.view.stages().split_last() else {
             return displaced(self.view.stages(), bounds)
                 .map_or(InView::Maybe(None), |b| image_of(screen, &b.corners()));
-        }
-        let hull = self.view.stages().split_last().and_then(|(last, earlier)| {
-            let Stage::CurvedRays(rays) = last else { return None };
-            rays.displaced_hull_in(self.records[0], &displaced(earlier, bounds)?)
-        });
+        };
+        let Some(before) = displaced(earlier, bounds) else { return InView::Maybe(None) };
         let eye = self.view.pinhole().eye;
-        hull.map_or(InView::Maybe(None), |hull| image_of(screen, &hull.map(|v| eye + v)))
+        let record = match self.way {
+            _ if rays.turn_count() == 0 => return image_of(screen, &before.corners()),
+            Way::Records([record, _]) => record,
+            Way::Segment(number) => match rays.straight_map(number) {
+                Some(map) => {
+                    let image = before.corners().map(|p| eye + map.linear * (p - map.viewpoint));
+                    return image_of(screen, &image);
+                }
+                None => number as usize / 2,
+            },
+        };
+        let Some(hull) = rays.displaced_hull_in(record, &before) else { return InView::Maybe(None) };
+        let hull = hull.map(|v| eye + v);
+        if self.view.records() == 1 { image_of(screen, &Aabb::of(hull).corners()) } else { image_of(screen, &hull) }
     }
 
     /// Bound in pixels on what a unit of height inside the box can change on the image; infinite where unknown.
@@ -235,9 +285,13 @@ impl<'a> Pass<'a> {
     }
 }
 
-/// See [`View::edge_error_px`]; by one record, or by several that displace as one map.
-pub(crate) fn edge_error_px(view: &View, [first, last]: [usize; 2], a: DVec3, b: DVec3) -> f64 {
-    if first == last { view.edge_error_px_in(first, a, b) } else { view.edge_error_px_between(first..=last, a, b) }
+/// See [`View::edge_error_px`].
+pub(crate) fn edge_error_px(view: &View, way: Way, a: DVec3, b: DVec3) -> f64 {
+    match way {
+        Way::Records([first, last]) if first == last => view.edge_error_px_in(first, a, b),
+        Way::Records([first, last]) => view.edge_error_px_between(first..=last, a, b),
+        Way::Segment(number) => view.edge_error_px_along(number, a, b),
+    }
 }
 
 /// What the image shows of the hull of displaced points.
@@ -283,26 +337,33 @@ enum HeightPx {
 }
 
 impl HeightPx {
-    fn new(view: &View, record: usize) -> Self {
+    fn new(view: &View, way: Way) -> Self {
         let ph = view.pinhole();
-        let way = |d: DVec3| {
+        let project = |d: DVec3| {
             let depth = if ph.is_orthographic() { 0.0 } else { d.dot(ph.forward) };
             (DVec2::new(d.dot(ph.right), d.dot(ph.down)) * ph.scale_px(), depth)
         };
+        let norm = |m: &DMat3| m.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
         let splined = view.stages().iter().any(turns_heights);
-        let turn = view.curved_rays().and_then(|rays| rays.turns().get(record));
-        match (turn, splined) {
-            (None, false) => Self::Ways(vec![way(DVec3::Z)]),
-            (None, true) => Self::Any(1.0),
-            (Some(turn), false) => {
+        let rays = view.curved_rays();
+        let (record, map) = match way {
+            Way::Records([first, _]) => (first, None),
+            Way::Segment(number) => (number as usize / 2, rays.and_then(|rays| rays.straight_map(number))),
+        };
+        let turn = rays.and_then(|rays| rays.turns().get(record)).filter(|_| map.is_none());
+        match (turn, map, splined) {
+            (None, None, false) => Self::Ways(vec![project(DVec3::Z)]),
+            (None, None, true) => Self::Any(1.0),
+            (None, Some(map), false) => Self::Ways(vec![project(map.linear * DVec3::Z)]),
+            (None, Some(map), true) => Self::Any(norm(&map.linear)),
+            (Some(turn), _, false) => {
                 let (a, b) = (turn.a.gradient.z, -turn.b.gradient.z);
                 let sums = [a.min(0.0) + b.min(0.0), a.max(0.0) + b.max(0.0)];
-                Self::Ways(sums.map(|t| way(turn.before * DVec3::Z + t * turn.shift)).to_vec())
+                Self::Ways(sums.map(|t| project(turn.before * DVec3::Z + t * turn.shift)).to_vec())
             }
-            (Some(turn), true) => {
-                let before = turn.before.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
+            (Some(turn), _, true) => {
                 let slopes = turn.a.gradient.length() + turn.b.gradient.length();
-                Self::Any(before + turn.shift.length() * slopes)
+                Self::Any(norm(&turn.before) + turn.shift.length() * slopes)
             }
         }
     }
@@ -329,7 +390,7 @@ mod tests {
     use super::*;
     use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
     use belvedere_core::map::earth::EarthCurvature;
-    use belvedere_core::{CurvedRays, Pinhole, Projection};
+    use belvedere_core::{Pinhole, Projection};
 
     fn views() -> Vec<View> {
         let (eye, target) = (DVec3::new(300.0, -9000.0, 2600.0), DVec3::new(0.0, 0.0, -900.0));

@@ -6,15 +6,15 @@
 
 mod cameras;
 
+use crate::geometry::pass::Way;
 use crate::geometry::screen::{Row, SUB};
 use crate::simd;
-use belvedere_core::map::curved_rays::{LinearForm, Turn};
+use belvedere_core::map::curved_rays::{LinearForm, StraightMap, Turn};
 use belvedere_core::map::terrain::TerrainDisocclusion;
 use belvedere_core::{DVec2, DVec3, Pinhole, Stage, View};
 use belvedere_scene::Heightfield;
 use cameras::{Bend, Form, Run};
 use rayon::prelude::*;
-use std::ops::RangeInclusive;
 
 /// Nodes lifted at a time.
 const CHUNK: usize = 64;
@@ -51,8 +51,7 @@ struct Part {
 
 impl<'a> Projector<'a> {
     /// `None` if the chain has a stage without this form.
-    /// * `records`: one, see [`View::displace_in`], or several that displace as one map.
-    pub(crate) fn new(view: &'a View, records: RangeInclusive<usize>) -> Option<Self> {
+    pub(crate) fn new(view: &'a View, way: Way) -> Option<Self> {
         let p = view.pinhole();
         let high = p.eye.z as f32;
         let mut out = Self {
@@ -76,11 +75,20 @@ impl<'a> Projector<'a> {
                 Stage::TerrainDisocclusion(t) => out.lift = Some(t),
                 Stage::CurvedRays(rays) if rays.turns().is_empty() => {}
                 Stage::CurvedRays(rays) => {
-                    let part = |record| Part::of(p, rays.turns().get(record)?);
-                    let form = |y: &LinearForm| Form::new(y.gradient, y.at(p.eye));
-                    out.parts = records.clone().map(part).collect::<Option<_>>()?;
-                    out.separators =
-                        (*records.start()..*records.end()).filter_map(|k| rays.separator(k)).map(form).collect();
+                    let of_record = |record| Part::of(p, rays.turns().get(record)?);
+                    match way {
+                        Way::Records([first, last]) => {
+                            let form = |y: &LinearForm| Form::new(y.gradient, y.at(p.eye));
+                            out.parts = (first..=last).map(of_record).collect::<Option<_>>()?;
+                            out.separators = (first..last).filter_map(|k| rays.separator(k)).map(form).collect();
+                        }
+                        Way::Segment(number) => {
+                            out.parts = vec![match rays.straight_map(number) {
+                                Some(map) => Part { view: Part::view_of(p, &map), bend: None },
+                                None => of_record(number as usize / 2)?,
+                            }];
+                        }
+                    }
                 }
                 _ => return None,
             }
@@ -162,13 +170,17 @@ impl<'a> Projector<'a> {
 }
 
 impl Part {
+    /// View space of a straight part.
+    fn view_of(p: &Pinhole, map: &StraightMap) -> [Form; 3] {
+        [p.right, p.down, p.forward].map(|axis| {
+            let gradient = map.linear.transpose() * axis;
+            Form::new(gradient, gradient.dot(p.eye - map.viewpoint))
+        })
+    }
+
     fn of(p: &Pinhole, turn: &Turn) -> Option<Self> {
         let axes = [p.right, p.down, p.forward];
-        let from = p.eye - turn.viewpoint_before;
-        let view = axes.map(|axis| {
-            let gradient = turn.before.transpose() * axis;
-            Form::new(gradient, gradient.dot(from))
-        });
+        let view = Self::view_of(p, &StraightMap { viewpoint: turn.viewpoint_before, linear: turn.before });
         let bend = Bend {
             a: Form::new(turn.a.gradient, turn.a.at(p.eye)),
             b: Form::new(turn.b.gradient, turn.b.at(p.eye)),
@@ -197,7 +209,7 @@ impl GroundImage {
     /// Projects every node, holes included, by a record of the view; `false` if a stage has no form in single precision, or
     /// if a node has no image or lies more than 16 000 px from the image centre (its values are then unspecified).
     pub fn project(&mut self, hf: &Heightfield, view: &View, record: usize) -> bool {
-        let Some(projector) = Projector::new(view, record..=record) else { return false };
+        let Some(projector) = Projector::new(view, Way::Records([record; 2])) else { return false };
         let n = hf.heights().len();
         self.x.resize(n, 0);
         self.y.resize(n, 0);
@@ -275,7 +287,7 @@ mod tests {
         let (xs, ys, zs) = ground();
         for (k, view) in views().iter().enumerate() {
             for record in 0..view.records() {
-                let projector = Projector::new(view, record..=record).expect("has a form");
+                let projector = Projector::new(view, Way::Records([record; 2])).expect("has a form");
                 let (mut worst, mut seen) = (0.0f64, 0);
                 for (r, &y) in ys.iter().enumerate() {
                     for (c, &x) in xs.iter().enumerate() {
@@ -311,7 +323,7 @@ mod tests {
     fn a_row_and_its_nodes_agree_to_the_last_bit() {
         let (xs, ys, zs) = ground();
         for view in views() {
-            let projector = Projector::new(&view, 0..=0).expect("has a form");
+            let projector = Projector::new(&view, Way::Records([0; 2])).expect("has a form");
             let relative: Vec<f32> = xs.iter().map(|&x| projector.relative(DVec2::new(x, 0.0))[0]).collect();
             for (r, &y) in ys.iter().enumerate().step_by(7) {
                 let (mut x, mut py, mut q) = ([0; 33], [0; 33], [0.0; 33]);
@@ -335,7 +347,7 @@ mod tests {
     fn all_versions_give_the_same_bits() {
         let (xs, ys, zs) = ground();
         for view in views() {
-            let projector = Projector::new(&view, 0..=0).expect("has a form");
+            let projector = Projector::new(&view, Way::Records([0; 2])).expect("has a form");
             let relative: Vec<f32> = xs.iter().map(|&x| projector.relative(DVec2::new(x, 0.0))[0]).collect();
             for (r, &y) in ys.iter().enumerate().step_by(7) {
                 let y = projector.relative(DVec2::new(0.0, y))[1];

@@ -2,7 +2,7 @@
 
 use crate::geometry::locate::{Held, Locator};
 use crate::geometry::lod::{Tree, nodes};
-use crate::geometry::pass::edge_error_px;
+use crate::geometry::pass::{Way, edge_error_px};
 use belvedere_core::{Aabb, View};
 use belvedere_scene::Heightfield;
 
@@ -13,7 +13,7 @@ pub(crate) struct SelectedBlock {
     pub(crate) block: [usize; 2],
     /// Whether straight edges of its cells may be too far off.
     pub(crate) edges: bool,
-    /// The records that draw it, in [`Selection::records`].
+    /// The passes that draw it, in [`Selection::passes`].
     pub(crate) held: Held,
     /// Sides (north, east, south, west) along which the neighbour's edges may be split too.
     pub(crate) judged: [bool; 4],
@@ -32,7 +32,7 @@ pub(crate) struct Selection {
     starts: Vec<usize>,
     cols: Vec<usize>,
     pub(crate) list: Vec<SelectedBlock>,
-    pub(crate) records: Vec<u32>,
+    pub(crate) passes: Vec<u32>,
 }
 
 const NOTHING: u32 = 0;
@@ -60,7 +60,7 @@ impl DetailSelector<'_> {
     pub(crate) fn choose(&self, out: &mut Selection) {
         out.clear(self.tree);
         let top = self.tree.levels() - 1;
-        let all = self.locator.all(&mut out.records);
+        let all = self.locator.all(&mut out.passes);
         self.visit(top, [0, 0], &all, self.view.stages().is_empty(), out);
         let mut i = 0;
         while i < out.list.len() {
@@ -84,8 +84,8 @@ impl DetailSelector<'_> {
     /// * `larger`: the records of the block around.
     fn visit(&self, level: usize, block: [usize; 2], larger: &Held, mut plain: bool, out: &mut Selection) {
         let Some(bounds) = self.tree.bounds(self.hf, level, block) else { return };
-        let held = self.locator.locate(&bounds, larger, &mut out.records);
-        let Some(px_per_unit) = self.locator.px_per_height(&bounds, out.held(&held)) else { return };
+        let held = self.locator.locate(&bounds, larger, &mut out.passes);
+        let Some(px_per_unit) = self.locator.px_per_height(&bounds, out.drawn_by(&held)) else { return };
         let height_px = f64::from(self.tree.span(level, block).error) * px_per_unit;
         // Where records are cut from each other, all of them must cut the same triangles.
         let coarse = level > 0 && held.whole && height_px <= self.lod_px && self.lod_px > 0.0;
@@ -93,7 +93,7 @@ impl DetailSelector<'_> {
         if !self.view.stages().is_empty() && (coarse || !plain) {
             let (from, to) = nodes(self.hf, level, block);
             let n = (to[0] - from[0]).max(to[1] - from[1]).div_ceil(1 << level);
-            bend_px = if held.whole { self.cells_error(&bounds, out.held(&held), n) } else { f64::INFINITY };
+            bend_px = if held.whole { self.cells_error(&bounds, out.ways(&held, self.view), n) } else { f64::INFINITY };
             plain |= bend_px / (1 << level) as f64 <= self.tolerance_px;
         }
         if level == 0 || (coarse && height_px + bend_px <= self.lod_px) {
@@ -128,18 +128,19 @@ impl DetailSelector<'_> {
     ///
     /// The chord of a curve that turns by a given angle deviates in proportion to its length, so the bound of the box's
     /// long edges, shared out over its cells with a factor 2 in hand, covers the cells' edges.
-    /// * `held`: records that displace the box as one map.
-    fn cells_error(&self, bounds: &Aabb, held: &[u32], n: usize) -> f64 {
-        let (Some(&first), Some(&last)) = (held.first(), held.last()) else { return f64::INFINITY };
+    /// * `ways`: of all passes that draw the box.
+    fn cells_error(&self, bounds: &Aabb, ways: impl Iterator<Item = Way>, n: usize) -> f64 {
         let c = bounds.corners();
         let pairs = [(0, 7), (1, 6), (2, 5), (3, 4), (0, 1), (2, 3), (0, 2), (1, 3), (4, 7), (5, 6)];
         let mut worst = 0.0f64;
-        for (a, b) in pairs {
-            let error = edge_error_px(self.view, [first, last].map(|k| k as usize), c[a], c[b]);
-            if !error.is_finite() {
-                return f64::INFINITY;
+        for way in ways {
+            for (a, b) in pairs {
+                let error = edge_error_px(self.view, way, c[a], c[b]);
+                if !error.is_finite() {
+                    return f64::INFINITY;
+                }
+                worst = worst.max(error);
             }
-            worst = worst.max(error);
         }
         worst * 2.0 / n as f64
     }
@@ -170,8 +171,8 @@ impl DetailSelector<'_> {
                 continue;
             }
             let Some(bounds) = self.tree.bounds(self.hf, level, block) else { continue };
-            let held = self.locator.locate(&bounds, &parent.held, &mut out.records);
-            if let Some(px_per_unit) = self.locator.px_per_height(&bounds, out.held(&held)) {
+            let held = self.locator.locate(&bounds, &parent.held, &mut out.passes);
+            if let Some(px_per_unit) = self.locator.px_per_height(&bounds, out.drawn_by(&held)) {
                 out.add(SelectedBlock { level, block, px_per_unit, held, ..parent });
             }
         }
@@ -207,9 +208,23 @@ impl Selection {
         self.cols = (0..tree.levels()).map(|level| tree.size(level)[0]).collect();
     }
 
-    /// Records of a block.
-    pub(crate) fn held(&self, held: &Held) -> &[u32] {
-        &self.records[held.records.clone()]
+    /// Records and segments that draw a block.
+    pub(crate) fn held(&self, held: &Held) -> [&[u32]; 2] {
+        [&self.passes[held.records.clone()], &self.passes[held.segments.clone()]]
+    }
+
+    /// Numbers of the passes that draw a block.
+    fn drawn_by(&self, held: &Held) -> impl Iterator<Item = u32> {
+        self.held(held).into_iter().flatten().copied()
+    }
+
+    /// By what curved rays displace a block whose records do so as one map.
+    fn ways(&self, held: &Held, view: &View) -> impl Iterator<Item = Way> {
+        let [records, segments] = self.held(held);
+        let all = records.first().zip(records.last());
+        let records = view.records() as u32;
+        let joined = all.map(|(&first, &last)| Way::Records([first as usize, last as usize]));
+        joined.into_iter().chain(segments.iter().map(move |number| Way::Segment(number - records)))
     }
 
     fn at(&self, level: usize, [x, y]: [usize; 2]) -> usize {

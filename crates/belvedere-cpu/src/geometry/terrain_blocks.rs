@@ -7,16 +7,18 @@ use crate::geometry::pass::Pass;
 use crate::geometry::refine::{Corner, Refiner};
 use crate::geometry::screen::{Row, SUB, ScreenVertex};
 use crate::geometry::select::SelectedBlock;
+use belvedere_core::Aabb;
 use belvedere_scene::{Heightfield, NodeState};
 
 impl Job<'_> {
     /// A block of ground at its level of detail; `None` if nothing of it is on the image.
+    /// * `bounds`: of the block.
     pub(crate) fn terrain_block(
         &self,
         pass: &Pass<'_>,
         hf: &Heightfield,
         sparse: &DecimatedHeights,
-        chosen: &SelectedBlock,
+        (chosen, bounds): (&SelectedBlock, Option<Aabb>),
         thin: bool,
     ) -> Option<Block> {
         let (origin, last) = lod::nodes(hf, chosen.level, chosen.block);
@@ -24,7 +26,7 @@ impl Job<'_> {
         let mut out = Block {
             bodies: false,
             layer: self.layer,
-            records: pass.records,
+            passes: pass.numbers,
             origin,
             cells: [0, 1].map(|axis| (last[axis] - origin[axis]) / step),
             step,
@@ -35,7 +37,8 @@ impl Job<'_> {
             counts: Counts::default(),
             thin: Vec::new(),
         };
-        let careful = thin || chosen.edges || !chosen.held.whole || chosen.judged.contains(&true);
+        let judges = !pass.keeps_edges() && (chosen.edges || chosen.judged.contains(&true));
+        let careful = thin || judges || !chosen.held.whole || bounds.is_none_or(|b| pass.cuts(&b));
         if !careful && let Some(mut nodes) = self.project_grid(pass, hf, sparse, &out) {
             nodes.close_seams(chosen.seam);
             out.cover = nodes.cover();
@@ -119,6 +122,7 @@ impl Job<'_> {
         let mut refiner = Refiner::new(pass, self.screen, self.tolerance_px, self.spare.soup());
         let (cells, seam) = (block.cells, block.seam);
         let [cols, rows] = cells;
+        let ([north, east, south, west], judge) = (chosen.judged, !pass.keeps_edges());
         let corners: Vec<Option<Corner>> = (0..(cols + 1) * (rows + 1))
             .map(|i| {
                 let kept = kept_node(seam, cells, [i % (cols + 1), i / (cols + 1)]);
@@ -135,12 +139,11 @@ impl Job<'_> {
                         continue;
                     };
                     // Edges 0-1, 1-2, 2-0 of the triangle: north, east or west, south; the diagonal is the last.
-                    let [north, east, south, west] = chosen.judged;
-                    let side = |on_side: bool, judged: bool| if on_side { judged } else { chosen.edges };
+                    let side = |on_side: bool, judged: bool| judge && if on_side { judged } else { chosen.edges };
                     let split = if k == 0 {
-                        [side(r == 0, north), side(c + 1 == cols, east), chosen.edges]
+                        [side(r == 0, north), side(c + 1 == cols, east), side(false, false)]
                     } else {
-                        [side(c == 0, west), side(r + 1 == rows, south), chosen.edges]
+                        [side(c == 0, west), side(r + 1 == rows, south), side(false, false)]
                     };
                     let weights = cell_weights(seam, cells, [c, r], k);
                     refiner.triangle([a, b, d], weights, split, ((r * SIDE + c) as u32) << 1 | k as u32);

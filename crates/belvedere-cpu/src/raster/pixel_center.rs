@@ -84,11 +84,11 @@ impl<'a> PixelCenters<'a> {
             let (motion, bodies) = (self.motion(found)?, self.bodies?);
             let [a, b, c] = self.corners(found)?.map(|p| motion.carry(p));
             let (surface, near) = (Surface::through(a, b, c)?, motion.carry(near));
-            let settled = self.of_pass(&bodies.passes, found.block.records, near, pixel)?.settle(&surface, near, pixel);
+            let settled = self.of_pass(&bodies.passes, found.block.passes, near, pixel)?.settle(&surface, near, pixel);
             return settled.map(|s| (motion.undo(s.p), s.depth as f32));
         }
         let surface = self.surface(found)?;
-        let centers = self.of_pass(self.passes, found.block.records, near, pixel)?;
+        let centers = self.of_pass(self.passes, found.block.passes, near, pixel)?;
         let settled = centers.settle(&surface, near, pixel);
         let first = match surface {
             Surface::Ground(hf) => centers.first_on(hf, settled, near, pixel),

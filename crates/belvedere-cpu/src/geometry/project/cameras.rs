@@ -110,9 +110,7 @@ impl Camera for Bent<'_, '_> {
         let [vx, vy, vz] = self.straight.view(x, z);
         let v = [vx + phi * shift[0], vy + phi * shift[1], vz + phi * shift[2]];
         let q = 1.0 / v[2];
-        let (px, py, q, missed) = self.straight.photograph(v, self.straight.projector.scale * q, q);
-        // Beyond the common line there is no image; NaN is not greater than anything.
-        (px, py, q, missed | u32::from(!((a > 0.0) | (b > 0.0))))
+        self.straight.photograph(v, self.straight.projector.scale * q, q)
     }
 }
 
@@ -185,7 +183,7 @@ impl Run<'_, '_, '_> {
     }
 }
 
-/// phi of the modified model in single precision: 0 before t0, `a - b` after t2, between them
+/// phi of the modified model in single precision: `max(0, a - b)` outside the wedge, in it
 /// `a = phi + m q`, `b = psi + m q`, `q = sqrt(phi psi)`.
 ///
 /// With `d = m (a + b) + sqrt(m^2 (a - b)^2 + 4 a b)` it is `q = 2 a b / d`, and of phi and psi the larger one is
@@ -197,8 +195,8 @@ fn phi(m: f32, a: f32, b: f32) -> f32 {
     let d = m * (a + b) + (difference * difference + 4.0 * ab).sqrt();
     let n = (if a > b { a } else { b }) * d - 2.0 * m * ab;
     let wedge = if a > b { [n, d] } else { [4.0 * ab * ab, n * d] };
-    let phi = if b > 0.0 { wedge[0] / wedge[1] } else { a - b };
-    if a > 0.0 { phi } else { 0.0 }
+    let outside = if a > b { a - b } else { 0.0 };
+    if (a > 0.0) & (b > 0.0) { wedge[0] / wedge[1] } else { outside }
 }
 
 /// Nearest 1/256 pixel of a length below [`REACH_PX`].
