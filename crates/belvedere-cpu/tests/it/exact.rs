@@ -21,13 +21,13 @@ use std::f64::consts::TAU;
 const DEPTH: f64 = 1e-4;
 
 /// Default tolerance, and depths by the true map: what `--aux depth` asks for.
-fn exactly() -> RenderOptions {
+pub(crate) fn exactly() -> RenderOptions {
     let options = options(1);
     assert_eq!(options.tolerance_px, RenderOptions::default().tolerance_px);
     RenderOptions { aux: Aux { exact: true, ..Aux::default() }, ..options }
 }
 
-fn trace(scene: &Scene, view: &View, options: &RenderOptions) -> Frame {
+pub(crate) fn trace(scene: &Scene, view: &View, options: &RenderOptions) -> Frame {
     let job = RenderJob { scene, view, light: &Light::default(), options, progress: &Progress::silent() };
     ExactRenderer.render(&job).expect("picture is possible")
 }
@@ -44,7 +44,7 @@ pub(crate) struct Difference {
 }
 
 impl Difference {
-    fn add(&mut self, other: Self) {
+    pub(crate) fn add(&mut self, other: Self) {
         self.pixels += other.pixels;
         self.judged += other.judged;
         self.ids += other.ids;
@@ -81,7 +81,7 @@ fn compare(reference: &Frame, other: &Frame) -> Difference {
 /// Largest step of depth between neighbours on one surface, as a share of it.
 const STEP: f64 = 0.04;
 
-fn on_silhouette(frame: &Frame, i: usize) -> bool {
+pub(crate) fn on_silhouette(frame: &Frame, i: usize) -> bool {
     let (w, h) = (frame.width, frame.height);
     let (x, y, id, depth) = (i % w, i / w, frame.id[i], frame.depth[i]);
     (y.saturating_sub(1)..(y + 2).min(h)).any(|v| {
