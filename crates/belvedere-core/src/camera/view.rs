@@ -294,7 +294,7 @@ impl View {
     }
 
     /// Bound in pixels on the error of drawing the edge `p0 p1` as a straight image edge between its projected ends.
-    /// Infinite if an end has no image or no bound is known.
+    /// Infinite if no bound is known, or if an end of an edge that bends lies behind the eye.
     pub fn edge_error_px(&self, p0: DVec3, p1: DVec3) -> f64 {
         self.edge_error(p0, p1, None)
     }
@@ -391,6 +391,9 @@ impl View {
     /// A shift by -d moves a pixel by at most |d_xy - pixel d_w| / (depth - |d_w|), in pixels and from the image centre;
     /// the numerator is convex in the pixel, so the ends decide.
     fn image_error(&self, ends: [DVec3; 2], error: f64, shifts: &[DVec3]) -> f64 {
+        if error == 0.0 && shifts.iter().all(|d| *d == DVec3::ZERO) {
+            return 0.0;
+        }
         let ph = &self.pinhole;
         let (Ok((pixel0, depth0)), Ok((pixel1, depth1))) = (ph.project(ends[0]), ph.project(ends[1])) else {
             return f64::INFINITY;

@@ -8,7 +8,7 @@ use belvedere_core::DVec3;
 /// An edge is halved at most this often.
 const MAX_HALVINGS: u8 = 10;
 /// The same where no bound of the error is known (beside the near plane, at the border of the domain).
-const MAX_BLIND_HALVINGS: u8 = 6;
+const MAX_BLIND_HALVINGS: u8 = 9;
 /// How far beyond the image a triangle whose bend is unknown is still followed.
 const MAX_MARGIN_PX: f64 = 4096.0;
 /// Level of an edge that must not be split.
@@ -93,18 +93,19 @@ impl<'a> Refiner<'a> {
 
     /// Error in pixels of drawing the edge straight; infinite where unknown, 0 where it does not matter.
     fn edge_error(&self, a: &Corner, b: &Corner) -> f64 {
-        match (a.is_missing(), b.is_missing()) {
-            (true, true) if self.pass.crosses(a.p, b.p) => f64::INFINITY,
-            (true, true) => 0.0,
-            (false, false) => {
-                // Always in the same direction: two triangles must judge their common edge alike to the last bit.
-                let swap = a.p.to_array().partial_cmp(&b.p.to_array()) == Some(std::cmp::Ordering::Greater);
-                let (a, b) = if swap { (b, a) } else { (a, b) };
-                self.pass.edge_error_px(a.p, b.p)
-            }
-            // One end without image: halve towards the border of what can be seen.
-            _ => f64::INFINITY,
+        let missing = [a.is_missing(), b.is_missing()];
+        if missing == [true; 2] && self.pass.crosses(a.p, b.p) {
+            return f64::INFINITY;
         }
+        // Always in the same direction: two triangles must judge their common edge alike to the last bit.
+        let swap = a.p.to_array().partial_cmp(&b.p.to_array()) == Some(std::cmp::Ordering::Greater);
+        let (from, to) = if swap { (b, a) } else { (a, b) };
+        let error = self.pass.edge_error_px(from.p, to.p);
+        if error == 0.0 || missing == [false; 2] {
+            return error;
+        }
+        // What bends is halved towards the border of what can be seen; an edge without any image only beside one that has some.
+        if a.v.is_none() && b.v.is_none() { 0.0 } else { f64::INFINITY }
     }
 
     fn is_off_image(&self, c: &[Corner; 3], margin_px: f64) -> bool {
