@@ -121,7 +121,8 @@ fn random_turn(random: &mut Random, end: &End, gentle: f64) -> (TurnSpec, End) {
     let inside = if random.unit() < 0.15 { -inside } else { inside };
     let wide = random.unit() < 0.4;
     let line = bend + half * if wide { random.range(0.9, 1.6) } else { random.range(0.8, 3.5) } * inside;
-    let open = if wide { random.range(90.0, 150.0f64) } else { narrow * gentle * random.range(2.0, 150.0f64) }.to_radians();
+    let open =
+        if wide { random.range(90.0, 150.0f64) } else { narrow * gentle * random.range(2.0, 150.0f64) }.to_radians();
     let share = if wide { random.range(0.2, 0.6) } else { random.range(0.15, 0.85) };
     let turned = |by: f64| line + DQuat::from_axis_angle(dir, by) * (bend - line);
     // The way round the line that leads on.

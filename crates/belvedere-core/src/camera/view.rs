@@ -259,7 +259,8 @@ impl View {
         let (Ok(d), Some(rays)) = (self.displace_earlier(p_world), self.curved_rays()) else {
             return [f64::NEG_INFINITY; 2];
         };
-        let at = |plane: Option<crate::map::curved_rays::LinearForm>| plane.map_or(f64::INFINITY, |form| form.at(d.point));
+        let at =
+            |plane: Option<crate::map::curved_rays::LinearForm>| plane.map_or(f64::INFINITY, |form| form.at(d.point));
         rays.segment_planes(segment).map(at).map(|d| if d.is_nan() { f64::NEG_INFINITY } else { d })
     }
 

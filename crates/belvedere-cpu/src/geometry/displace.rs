@@ -3,9 +3,9 @@
 //! Everything that is drawn goes through here, points in rows and single ones alike, by the same arithmetic in the same
 //! order: two pieces of a surface that share a point place it alike to the last bit.
 
+use crate::geometry::pass::Way;
 use crate::geometry::points::{Points, each};
 use crate::geometry::spline_table::SplineTable;
-use crate::geometry::pass::Way;
 use belvedere_core::map::curved_rays::{StraightMap, Turn};
 use belvedere_core::{CurvedRays, DVec3, Stage, View};
 

@@ -58,8 +58,7 @@ impl<'a> Locator<'a> {
             records = from..list.len();
             let held = &list[records.clone()];
             whole = held.first().zip(held.last()).is_none_or(|(&first, &last)| {
-                (last - first) as usize + 1 == held.len()
-                    && rays.is_continuous(first as usize..=last as usize, &before)
+                (last - first) as usize + 1 == held.len() && rays.is_continuous(first as usize..=last as usize, &before)
             });
         }
         let from = list.len();

@@ -94,7 +94,8 @@ impl<'a> Pass<'a> {
     pub(crate) fn all(view: &'a View) -> Vec<Self> {
         let records = view.records();
         let segments = view.curved_rays().filter(|rays| rays.turn_count() > 0).map_or(0, CurvedRays::segments);
-        let of_records = (0..records).map(|record| Self::new(view, Way::Records([record; 2]), [record; 2], records > 1));
+        let of_records =
+            (0..records).map(|record| Self::new(view, Way::Records([record; 2]), [record; 2], records > 1));
         let of_segments = (0..segments).map(|k| Self::new(view, Way::Segment(k), [records + k as usize; 2], true));
         of_records.chain(of_segments).collect()
     }
@@ -185,6 +186,13 @@ impl<'a> Pass<'a> {
             Way::Records([record, _]) => self.view.record_margins(record, p),
             Way::Segment(number) => self.view.segment_margins(number, p),
         }
+    }
+
+    /// Whether the records may leave something out in a box that this segment has to draw.
+    pub(crate) fn is_left_out(&self, bounds: &Aabb) -> bool {
+        let (Way::Segment(number), Some(rays)) = (self.way, self.view.curved_rays()) else { return false };
+        let earlier = &self.view.stages()[..self.view.stages().len() - 1];
+        displaced(earlier, bounds).is_none_or(|b| rays.leaves_out(number, &b))
     }
 
     /// Whether part of a box may be cut off from a segment.

@@ -13,12 +13,12 @@ mod symbol;
 mod visibility;
 
 use crate::canvas::Canvas;
-use crate::geometry::pass::Pass;
+use crate::geometry::pass::{InView, Pass};
 use crate::geometry::screen::Screen;
 use crate::raster::band::BAND;
 use crate::sections::Sections;
 use crate::shade::color::{Packed, linear};
-use belvedere_core::{DVec2, DVec3};
+use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{
     AreaLayer, Color, Hidden, LayerKind, LineLayer, Overlay, OverlayLine, OverlayPoint, PointLayer, PointStyle,
     RenderJob, Scene, Symbol,
@@ -64,6 +64,7 @@ impl Marks {
             sections: sections.as_ref(),
             scene: job.scene,
             passes,
+            records: job.view.records(),
             screen,
             tolerance_px,
             map,
@@ -89,7 +90,10 @@ impl Marks {
         sheets.extend(overlay.over.iter().map(|l| builder.overlay_line(l, &mut requests)));
         sheets.extend(overlay.points.iter().map(|p| builder.overlay_point(p, &mut requests)));
         let under = overlay.under.iter().map(|l| builder.overlay_line(l, &mut requests)).collect();
-        let faces = overlay.faces.iter().flat_map(|f| passes.iter().filter_map(|p| Face::new(f, p, screen)));
+        let faces = overlay
+            .faces
+            .iter()
+            .flat_map(|f| passes.iter().take(job.view.records()).filter_map(|p| Face::new(f, p, screen)));
         Self { under, faces: faces.collect(), sheets, labels: Labels::place(requests, 2.0 * screen.center) }
     }
 
@@ -124,7 +128,9 @@ impl Marks {
 struct MarkBuilder<'a> {
     sections: Option<&'a Sections<'a>>,
     scene: &'a Scene,
+    /// All passes of the view, the first ones of its records.
     passes: &'a [Pass<'a>],
+    records: usize,
     screen: &'a Screen,
     tolerance_px: f64,
     map: DepthMap<'a>,
@@ -147,6 +153,17 @@ struct Marker {
     half_px: f64,
     casing: bool,
     hidden: Hidden,
+}
+
+impl<'a> MarkBuilder<'a> {
+    /// The passes that draw what lies in some boxes, each image once: the records, or, where they leave something out, the segments, which
+    /// part at the ends of the turns.
+    fn passes_for(&self, boxes: impl Iterator<Item = Aabb>) -> &'a [Pass<'a>] {
+        let (records, segments) = self.passes.split_at(self.records.min(self.passes.len()));
+        let mut boxes = boxes;
+        let left_out = |b: &Aabb| segments.iter().any(|s| s.is_left_out(b) && s.in_view(self.screen, b) != InView::No);
+        if !segments.is_empty() && boxes.any(|b| left_out(&b)) { segments } else { records }
+    }
 }
 
 impl MarkBuilder<'_> {
@@ -220,7 +237,8 @@ impl MarkBuilder<'_> {
     fn runs(&self, line: &[LinePoint], style: Style) -> Vec<(usize, Run)> {
         let reach = style.half_px + 4.0;
         let mut runs = Vec::new();
-        for (i, pass) in self.passes.iter().enumerate() {
+        let pairs = line.windows(2).map(|pair| Aabb::of([pair[0].p, pair[1].p]));
+        for (i, pass) in self.passes_for(pairs).iter().enumerate() {
             let judge =
                 LineVisibility { pass, screen: self.screen, map: self.map, sight: self.sight, lift_m: style.lift_m };
             for piece in path::project(pass, self.screen, line, self.tolerance_px) {
@@ -320,8 +338,8 @@ impl MarkBuilder<'_> {
     /// Draws a marker at every image of a point; returns where a name belongs.
     fn mark(&self, on_line: &LinePoint, lift_m: f64, marker: Marker, out: &mut Vec<Stroke>) -> Vec<DVec2> {
         let mut named = Vec::new();
-        for pass in self.passes {
-            let p = self.sight.on_surface(on_line, lift_m);
+        let p = self.sight.on_surface(on_line, lift_m);
+        for pass in self.passes_for(std::iter::once(Aabb::of([p; 2]))) {
             let Some(v) = pass.displace(p).map(|d| self.screen.view_from(d)) else { continue };
             if !v.is_finite() || !self.screen.is_drawable(v) || pass.margins(p).iter().any(|m| !(*m >= 0.0)) {
                 continue;

@@ -94,7 +94,9 @@ impl<'a> PixelCenters<'a> {
             Surface::Ground(hf) => centers.first_on(hf, settled, near, pixel),
             Surface::Plane(..) => None,
         };
-        first.or(settled).map(|s| (s.p, s.depth as f32))
+        // What a record shows elsewhere, continued, no ray sees.
+        let belongs = |s: &Solution| centers.pass.margins(s.p).iter().all(|m| *m >= -1e-6 * s.depth);
+        first.filter(belongs).or(settled.filter(belongs)).map(|s| (s.p, s.depth as f32))
     }
 
     /// The pass, of those that drew the surface, that draws `p` nearest to `pixel`.

@@ -65,11 +65,7 @@ fn hinge(model: Model, spec: &TurnSpec, forms: &Forms, context: &TurnContext<'_>
 }
 
 /// Least and greatest sigma of the picture, between which no rays of the original model may cross.
-fn original_range(
-    spec: &TurnSpec,
-    forms: &Forms,
-    context: &TurnContext<'_>,
-) -> Result<[f64; 2], CurvedRaysError> {
+fn original_range(spec: &TurnSpec, forms: &Forms, context: &TurnContext<'_>) -> Result<[f64; 2], CurvedRaysError> {
     let (range, crossed) = crossing(forms, context);
     match crossed {
         None => Ok(range),

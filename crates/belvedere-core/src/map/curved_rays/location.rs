@@ -3,8 +3,8 @@
 //! On a separator, and wherever both its neighbours are straight, two consecutive records displace alike. A box in which each separator
 //! lies in such a gap, one behind the other, is displaced continuously by the record that every point belongs to: it can be drawn at once.
 
-use super::{CurvedRays, Turn};
 use super::form::LinearForm;
+use super::{CurvedRays, Turn};
 use crate::Aabb;
 use glam::DVec3;
 use std::ops::RangeInclusive;

@@ -38,8 +38,7 @@ pub(super) fn rays_cross(pixel: DVec2, sigma: f64, spec: &TurnSpec, context: &Tu
     };
     let healed = |t: f64| parted(&end_at(spec, t)).is_some();
     let remedy = if context.advise { smallest(healed, 1.0) } else { None };
-    let remedy = remedy
-        .map_or(Remedy::OtherModel, |t| Remedy::MovePoint { name: "t2", to: end_at(spec, t).t2 });
+    let remedy = remedy.map_or(Remedy::OtherModel, |t| Remedy::MovePoint { name: "t2", to: end_at(spec, t).t2 });
     CurvedRaysError::RaysCross { turn: context.turn, pixel, sigma, remedy }
 }
 

@@ -110,7 +110,8 @@ impl CurvedRays {
                     || next.is_some_and(|turn| {
                         let part = part(1.0);
                         let beyond_it = self.separator(k);
-                        reaches(&turn.h, 1.0, &part, bounds) || beyond_it.is_some_and(|y| reaches(y, 1.0, &part, bounds))
+                        reaches(&turn.h, 1.0, &part, bounds)
+                            || beyond_it.is_some_and(|y| reaches(y, 1.0, &part, bounds))
                     })
             }
             None => false,

@@ -194,9 +194,13 @@ fn boxes_and_edges_around_the_common_line_are_bounded_too() {
     let mut random = Random::new(12);
     for _ in 0..2000 {
         let p = random.point(&around);
-        for segment in (0..rays.segments()).filter(|&k| rays.segment_planes(k).iter().flatten().all(|f| f.at(p) >= 0.0)) {
+        for segment in (0..rays.segments()).filter(|&k| rays.segment_planes(k).iter().flatten().all(|f| f.at(p) >= 0.0))
+        {
             let image = rays.displace_along(segment, p).unwrap().point;
-            assert!(image.cmpge(bounds.min - 1e-9).all() && image.cmple(bounds.max + 1e-9).all(), "{p}: {image} {bounds:?}");
+            assert!(
+                image.cmpge(bounds.min - 1e-9).all() && image.cmple(bounds.max + 1e-9).all(),
+                "{p}: {image} {bounds:?}"
+            );
         }
     }
     let (a, b) = (DVec3::new(-80.0, 60.0, 0.0), DVec3::new(-90.0, 130.0, 0.0));

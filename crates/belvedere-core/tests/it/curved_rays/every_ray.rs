@@ -98,7 +98,8 @@ fn check(
             (tried.worst_px, tried.worst_depth) = (tried.worst_px.max(px), tried.worst_depth.max(share));
             let turns = rays.turns();
             let near = [seen.segment as usize / 2, (seen.segment as usize / 2).wrapping_sub(1)];
-            let beyond = |k: &usize| turns.get(*k).is_some_and(|t| t.a.at(seen.point) < 0.0 && t.b.at(seen.point) < 0.0);
+            let beyond =
+                |k: &usize| turns.get(*k).is_some_and(|t| t.a.at(seen.point) < 0.0 && t.b.at(seen.point) < 0.0);
             if seen.segment % 2 == 0 && near.iter().any(beyond) {
                 tried.beyond_line += 1;
                 tried.before += usize::from(beyond(&near[0]));
@@ -171,5 +172,8 @@ fn every_point_of_a_ray_has_its_pixel_and_depth() {
     );
     assert!(count == 0, "{count} of {} points: {some:#?}", tried.points);
     assert!(cameras.iter().sum::<usize>() >= 10_000 && cameras.iter().all(|n| *n > 500), "{cameras:?}");
-    assert!(tried.beyond_line > 1000 && tried.before > 200 && tried.twice > 100 && tried.back > 10_000, "the cameras are too tame");
+    assert!(
+        tried.beyond_line > 1000 && tried.before > 200 && tried.twice > 100 && tried.back > 10_000,
+        "the cameras are too tame"
+    );
 }
