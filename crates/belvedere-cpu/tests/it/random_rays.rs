@@ -12,7 +12,7 @@ use belvedere_testkit::Random;
 use belvedere_testkit::rays::{MODELS, RandomRays, random_split};
 
 const VIEWS: usize = 200;
-const IMAGE: [u32; 2] = [64, 48];
+const IMAGE: [u32; 2] = [48, 36];
 /// Of these every eighth one parts its rays.
 const SPLITS: usize = 8;
 
@@ -94,7 +94,6 @@ fn rasteriser_and_tracer_agree_along_random_rays() {
             break;
         }
     }
-    println!("{total:#?} {worst:#?}");
     assert_eq!(views, VIEWS);
     for d in total {
         assert!(d.judged > d.pixels / 3 && d.is_small(), "{d:?}; {worst:#?}");
@@ -137,11 +136,10 @@ fn volumes_are_seen_along_random_rays_as_sample_by_sample() {
         if off * 1000 > a.color.len() {
             worst.push(format!("view {seed}: {off}"));
         }
-        if views == 40 {
+        if views == 24 {
             break;
         }
     }
-    println!("{views} views, {other} of {pixels} pixels, {seen} on bodies: {worst:?}");
-    assert!(views == 40 && seen * 50 > pixels, "{seen} of {pixels} pixels show a body");
+    assert!(views == 24 && seen * 50 > pixels, "{seen} of {pixels} pixels show a body");
     assert!(other * 1000 <= pixels, "{other} of {pixels} pixels: {worst:?}");
 }

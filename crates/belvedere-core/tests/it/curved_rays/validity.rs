@@ -3,7 +3,9 @@
 use super::cameras::{self, pinhole};
 use belvedere_core::map::curved_rays::{CurvedRays, CurvedRaysError as E, Model, Pencil, Remedy, Sharpness, TurnSpec};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, Stage, View};
+use belvedere_testkit::Random;
 use belvedere_testkit::laws::Similarity;
+use belvedere_testkit::rays::RandomRays;
 
 fn root() -> Pinhole {
     pinhole(&Similarity::IDENTITY, DVec3::ZERO, DVec3::Y)
@@ -228,6 +230,27 @@ fn end_that_is_never_reached() {
     new(&[healed(&turn, remedy)]).unwrap_or_else(|again| panic!("{e}\nbut then: {again}"));
 }
 
+/// Bezier arcs of rays that hardly reach t2 cross: places would be seen twice, once mirrored.
+#[test]
+fn rays_of_the_original_model_that_cross() {
+    let mut crossed = 0;
+    for seed in 0..4000 {
+        let mut random = Random::new(seed);
+        let Some(made) = RandomRays::new(&mut random, Model::Modified, 1, [64, 48]) else { continue };
+        let original = |turn: TurnSpec| CurvedRays::new(&made.pinhole, Model::Original, &[turn]);
+        let Err(e) = original(made.turns[0]) else { continue };
+        let E::RaysCross { turn: 1, remedy, .. } = &e else { continue };
+        assert!(
+            e.to_string().len() < 400 && CurvedRays::if_valid(&made.pinhole, Model::Original, &made.turns).is_none()
+        );
+        crossed += 1;
+        if *remedy != Remedy::OtherModel {
+            original(healed(&made.turns[0], remedy)).unwrap_or_else(|again| panic!("{e}\nbut then: {again}"));
+        }
+    }
+    assert!(crossed > 5, "{crossed} cameras");
+}
+
 #[test]
 fn turns_that_overlap() {
     let mut turns = cameras::long_bend().turns;
@@ -307,7 +330,7 @@ fn unusual_but_valid() {
 /// Any numbers whatever: an error of one readable sentence, or a camera without NaN.
 #[test]
 fn hostile_specifications_never_panic() {
-    let mut random = belvedere_testkit::Random::new(0x405);
+    let mut random = Random::new(0x405);
     let values = [0.0, 1.0, -1.0, 50.0, 75.0, 100.0, 1e-300, 1e-9, 1e9, 1e160, 1e300, f64::MAX];
     let mut accepted = 0;
     for _ in 0..20_000 {
