@@ -117,12 +117,17 @@ impl Vertices {
 
     /// A ring without vertices that became one; `None` for fewer than three.
     fn ring(&mut self, points: &[DVec3]) -> Option<Value> {
+        let places = self.ring_places(points);
+        (places.len() >= 3).then(|| json!(places))
+    }
+
+    fn ring_places(&mut self, points: &[DVec3]) -> Vec<usize> {
         let mut places: Vec<usize> = points.iter().map(|p| self.place(*p)).collect();
         places.dedup();
         if places.len() > 1 && places.first() == places.last() {
             places.pop();
         }
-        (places.len() >= 3).then(|| json!(places))
+        places
     }
 
     /// A surface: outer ring and holes; `None` without an area.
@@ -175,6 +180,7 @@ fn building_object(vertices: &mut Vertices, building: &Building, figures: Option
     if let Some(base) = building.base_m {
         attributes.insert("base".into(), json!(base));
     }
+    let is_block = figures.is_some();
     let figures = figures.copied().unwrap_or(BlockFigures { coverage: 1.0, count: 1 });
     attributes.insert("coverage".into(), json!(figures.coverage));
     attributes.insert("count".into(), json!(figures.count));
@@ -183,6 +189,9 @@ fn building_object(vertices: &mut Vertices, building: &Building, figures: Option
     }
     if !building.faces.is_empty() {
         let surfaces: Vec<Face> = building.faces.iter().map(|f| (f.rings.clone(), f.surface)).collect();
+        if is_block && let Some(solids) = solids(vertices, &surfaces) {
+            return object("Building", attributes, solids);
+        }
         return object("Building", attributes, vec![multi_surface(vertices, &surfaces, true)]);
     }
     let solids = building.footprint.iter().map(|polygon| {
@@ -243,6 +252,38 @@ fn solid(vertices: &mut Vertices, faces: &[Face]) -> Option<Value> {
         json!({ "type": "Solid", "lod": "1.2", "boundaries": [shell],
             "semantics": { "surfaces": semantics(), "values": [values] } })
     })
+}
+
+/// Faces as one solid for each piece of them that hangs together; `None` unless every piece is closed and seen from outside.
+fn solids(vertices: &mut Vertices, faces: &[Face]) -> Option<Vec<Option<Value>>> {
+    let rings: Vec<Vec<Vec<usize>>> =
+        faces.iter().map(|(rings, _)| rings.iter().map(|ring| vertices.ring_places(ring)).collect()).collect();
+    let edges = |rings: &[Vec<usize>]| {
+        let of = |ring: &Vec<usize>| (0..ring.len()).map(|k| [ring[k], ring[(k + 1) % ring.len()]]).collect::<Vec<_>>();
+        rings.iter().filter(|ring| ring.len() >= 3).flat_map(of).collect::<Vec<_>>()
+    };
+    let mut face_left_of: HashMap<[usize; 2], usize> = HashMap::new();
+    for (number, rings) in rings.iter().enumerate() {
+        if edges(rings).into_iter().any(|edge| face_left_of.insert(edge, number).is_some()) {
+            return None;
+        }
+    }
+    let mut piece = vec![usize::MAX; faces.len()];
+    let mut pieces = 0;
+    for start in 0..faces.len() {
+        let mut todo = vec![start];
+        while let Some(face) = todo.pop().filter(|_| piece[start] == usize::MAX || piece[start] == pieces) {
+            if piece[face] == usize::MAX {
+                piece[face] = pieces;
+                for [a, b] in edges(&rings[face]) {
+                    todo.push(*face_left_of.get(&[b, a])?);
+                }
+            }
+        }
+        pieces += usize::from(piece[start] == pieces);
+    }
+    let of_piece = |number| faces.iter().zip(&piece).filter(move |(_, p)| **p == number).map(|(face, _)| face.clone());
+    Some((0..pieces).map(|number| solid(vertices, &of_piece(number).collect::<Vec<_>>())).collect())
 }
 
 fn multi_surface(vertices: &mut Vertices, faces: &[Face], with_semantics: bool) -> Option<Value> {

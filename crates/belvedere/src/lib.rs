@@ -30,6 +30,7 @@
 
 mod bodies;
 mod camera_path;
+mod city_blocks;
 pub mod city_map;
 mod data;
 pub mod editor;

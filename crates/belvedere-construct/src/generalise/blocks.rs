@@ -1,14 +1,16 @@
 //! Blocks: what stands for the buildings of a cell.
 
 use super::settings::GeneraliseSettings;
-use super::shapes::{Land, area, closed, common, grown, shrunk, simplified, union, without_specks};
+use super::shapes::{
+    Land, area, closed, common, filled_below, grown, one, rectangle_round, shrunk, simplified, union, without_specks,
+};
 use geo::{Area, BooleanOps, MultiPolygon};
 
 /// What a cell is drawn as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CellKind {
-    /// Hardly built: no block.
+    /// Hardly built: the ground is green, blocks follow the buildings.
     Green,
     /// Built here and there: the block follows the buildings.
     Sparse,
@@ -31,42 +33,129 @@ pub(super) fn kind(coverage: f64, ordinary: usize, settings: &GeneraliseSettings
     }
 }
 
-/// Footprint of the block of a cell: inside the cell, clear of the landmarks, never empty where there are buildings in the cell.
-pub(super) fn footprint(
-    cell: &Land,
-    kind: CellKind,
-    ordinary: &[&Land],
-    landmarks: &[&Land],
-    settings: &GeneraliseSettings,
-) -> Land {
-    let cell = main_pieces(cell, settings.smallest_cell_m2);
-    let standing = |lands: &[&Land]| union(lands.iter().map(|l| (*l).clone()).collect());
-    // Narrow cells keep what distance from the street they can.
-    let insets = [settings.inset_m, 0.5 * settings.inset_m, 0.0];
-    let shapes = insets.iter().map(|inset| {
-        let free = shrunk(&cell, *inset);
-        let free = if landmarks.is_empty() {
-            free
-        } else {
-            without_specks(free.difference(&grown(&standing(landmarks), settings.inset_m)))
-        };
-        match kind {
-            CellKind::Sparse => common(&closed(&standing(ordinary), settings.closing_m), &free),
-            _ => free,
-        }
-    });
-    let least = 0.25 * ordinary.iter().map(|l| area(l)).sum::<f64>();
-    let mut best: Land = MultiPolygon(Vec::new());
-    for (shape, inset) in shapes.zip(insets) {
-        let shape = without_slivers(shape);
-        if area(&shape) > area(&best) {
-            best = common(&simplified(&shape, settings.simplify_m.min(inset)), &cell);
-        }
-        if area(&best) >= least && !best.0.is_empty() {
-            break;
+/// Parts of buildings outside their block that are left there, m^2.
+const LEFT_OUT_M2: f64 = 0.5;
+/// Smaller holes are chinks between what was put together, m^2.
+const CHINK_M2: f64 = 25.0;
+/// How far outlines may reach out of their cell where no building does, metres.
+const STRAY_M: f64 = 1.0;
+/// Least share of a piece of a block that buildings cover.
+const LEAST_BUILT: f64 = 0.05;
+/// Share of its rectangle from which on an outline is drawn as that.
+const AS_RECTANGLE: f64 = 0.8;
+
+/// How coarsely blocks follow buildings.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Grain {
+    /// Gaps twice as wide are closed, metres.
+    pub closing_m: f64,
+    /// Largest distance by which outlines move, metres.
+    pub simplify_m: f64,
+    /// Smaller holes are filled, m^2.
+    pub hole_m2: f64,
+}
+
+impl Grain {
+    /// That of the finer level (`times` = 1), or of the coarser one (2).
+    pub(super) fn of(settings: &GeneraliseSettings, times: f64) -> Self {
+        let closing_m = times * settings.closing_m;
+        Self { closing_m, simplify_m: 0.25 * closing_m, hole_m2: (2.0 * closing_m).powi(2) }
+    }
+}
+
+/// What a block is made of.
+pub(super) struct Site<'a> {
+    /// Ground of the cell.
+    pub cell: &'a Land,
+    /// Buildings that the block stands for, at least one.
+    pub ordinary: &'a [&'a Land],
+    /// Buildings that keep their shape.
+    pub landmarks: &'a [&'a Land],
+    /// Blocks of the finer level that it holds.
+    pub finer: &'a [&'a Land],
+}
+
+/// Footprint of a block, and how it lies over its buildings.
+pub(super) struct Footprint {
+    /// Outline.
+    pub land: Land,
+    /// Ground that its buildings cover, each place once, m^2.
+    pub built_m2: f64,
+    /// What of that lies in the outline, m^2.
+    pub covered_m2: f64,
+}
+
+/// Footprint of the block of a cell: all of its buildings but for slivers lie in it, each piece of it holds some, and it keeps clear
+/// of landmarks. A piece of the cell that is built well becomes part of the block as a whole.
+pub(super) fn footprint(site: &Site<'_>, grain: Grain, settings: &GeneraliseSettings) -> Footprint {
+    let joined = |lands: &[&Land]| union(lands.iter().map(|l| (*l).clone()).collect());
+    let (mut buildings, landmarks) = (joined(site.ordinary), joined(site.landmarks));
+    let mut ground = main_pieces(site.cell, settings.smallest_cell_m2);
+    if !landmarks.0.is_empty() {
+        ground = without_specks(ground.difference(&grown(&landmarks, settings.inset_m)));
+        buildings = without_specks(buildings.difference(&landmarks));
+    }
+    let built_m2 = area(&buildings);
+    let standing = match site.finer {
+        [] => buildings.clone(),
+        finer => union(finer.iter().map(|l| (*l).clone()).chain([buildings.clone()]).collect()),
+    };
+    let alone = ground.0.len() == 1;
+    let built = |piece: &Land| if alone { built_m2 } else { area(&common(piece, &buildings)) };
+    let built_well = |piece: &Land| built(piece) >= settings.sparse_below * area(piece);
+    let (well, other): (Vec<Land>, Vec<Land>) = ground.into_iter().map(one).partition(built_well);
+    let whole = union(well.iter().map(|piece| whole(piece, settings)).collect());
+    let rest = if well.is_empty() { buildings.clone() } else { buildings.difference(&union(well)) };
+    let rest = large_pieces(rest, LEFT_OUT_M2);
+    let mut land = whole;
+    if !rest.0.is_empty() {
+        let other = MultiPolygon(other.into_iter().flatten().collect());
+        let near = common(&closed(&standing, grain.closing_m), &other);
+        let followed = following(&union(vec![near, rest]), &other, &landmarks, grain);
+        land = if land.0.is_empty() { followed } else { union(vec![land, followed]) };
+    }
+    let outside = large_pieces(buildings.difference(&land), LEFT_OUT_M2);
+    if !outside.0.is_empty() {
+        land = union(vec![land, outside]);
+    }
+    let land = occupied(filled_below(&land, &landmarks, CHINK_M2), &buildings);
+    let covered_m2 = built_m2 - area(&buildings.difference(&land));
+    Footprint { land, built_m2, covered_m2 }
+}
+
+/// Polygons larger than this, m^2.
+fn large_pieces(mut land: Land, than: f64) -> Land {
+    land.0.retain(|p| p.unsigned_area() > than);
+    land
+}
+
+/// A piece of a cell as a block: clear of the streets where it is wide enough.
+fn whole(piece: &Land, settings: &GeneraliseSettings) -> Land {
+    let least = 0.5 * area(piece);
+    for inset in [settings.inset_m, 0.5 * settings.inset_m] {
+        let free = shrunk(piece, inset);
+        if area(&free) >= least {
+            return common(&simplified(&free, settings.simplify_m.min(inset)), piece);
         }
     }
-    best
+    piece.clone()
+}
+
+/// Outlines around buildings with gaps closed, `near`, made simple; they leave `ground` by little, and keep clear of `landmarks`.
+fn following(near: &Land, ground: &Land, landmarks: &Land, grain: Grain) -> Land {
+    let near = filled_below(near, landmarks, grain.hole_m2);
+    let simple = near.iter().map(|polygon| {
+        if let Some(rectangle) = rectangle_round(polygon, AS_RECTANGLE) {
+            return one(rectangle);
+        }
+        let by = grain.simplify_m.min(0.1 * polygon.unsigned_area().sqrt());
+        simplified(&grown(&one(polygon.clone()), 0.5 * by), by)
+    });
+    let simple = union(simple.collect());
+    let stray = simple.difference(&union(vec![grown(ground, STRAY_M), near.clone()]));
+    let stray = large_pieces(stray, LEFT_OUT_M2);
+    let simple = if stray.0.is_empty() { simple } else { simple.difference(&stray) };
+    if landmarks.0.is_empty() { simple } else { simple.difference(landmarks) }
 }
 
 /// The pieces of a cell that are large enough for themselves, or all if none is.
@@ -75,11 +164,14 @@ fn main_pieces(cell: &Land, smallest: f64) -> Land {
     if large.is_empty() { cell.clone() } else { MultiPolygon(large) }
 }
 
-/// Pieces of at least 10 m^2, or the largest.
-fn without_slivers(land: Land) -> Land {
-    const SLIVER_M2: f64 = 10.0;
-    let areas: Vec<f64> = land.iter().map(|p| p.unsigned_area()).collect();
-    let most = areas.iter().copied().fold(0.0, f64::max);
-    let kept = land.into_iter().zip(areas).filter(|(_, area)| *area >= SLIVER_M2.min(most)).map(|(p, _)| p);
-    MultiPolygon(kept.collect())
+/// The pieces on which buildings stand, or the one that holds most of them.
+fn occupied(land: Land, buildings: &Land) -> Land {
+    if land.0.len() < 2 {
+        return land;
+    }
+    let built = |p: &geo::Polygon<f64>| area(&common(&one(p.clone()), buildings));
+    let pieces: Vec<_> = land.into_iter().map(|p| (built(&p), p)).collect();
+    let most = pieces.iter().map(|(built, _)| *built).fold(0.0, f64::max);
+    let stays = |built: f64, p: &geo::Polygon<f64>| built >= most || built >= LEAST_BUILT * p.unsigned_area();
+    MultiPolygon(pieces.into_iter().filter(|(built, p)| stays(*built, p)).map(|(_, p)| p).collect())
 }

@@ -1,10 +1,10 @@
 //! One level of abstraction: cells, landmarks, blocks and their volumes, put together as a city.
 
-use super::blocks::{CellKind, footprint, kind};
+use super::blocks::{CellKind, Footprint, Grain, Site, footprint, kind};
 use super::landmarks::{Volume, landmarks, mean_height};
-use super::report::{FailingCell, LevelReport};
+use super::report::{BlockReport, FailingCell, LevelReport};
 use super::settings::GeneraliseSettings;
-use super::shapes::{Land, area, polygons_of};
+use super::shapes::{Land, area, polygons_of, triangles};
 use super::streets::Dividers;
 use belvedere_scene::city::{Building, City, CityArea, HeightSource, LandCover, Polygon, StructureKind};
 use geo::{Area, InteriorPoint, MultiPolygon};
@@ -73,6 +73,11 @@ impl Input<'_> {
         self.volumes[i].area_m2 * self.volumes[i].height_m
     }
 
+    /// Triangles of buildings as prisms.
+    pub(super) fn triangles(&self, buildings: &[usize]) -> usize {
+        buildings.iter().map(|i| triangles(&self.lands[*i])).sum()
+    }
+
     pub(super) fn volume_of(&self, buildings: &[usize]) -> f64 {
         buildings.iter().map(|i| self.volume(*i)).sum()
     }
@@ -85,19 +90,52 @@ struct Made {
     kind: CellKind,
     ordinary: Vec<usize>,
     landmarks: Vec<usize>,
-    block: Option<(Land, f64, f64)>,
+    block: Option<MadeBlock>,
 }
 
-/// The level, its figures, and its landmarks (places in `input`). Only `candidates` can be landmarks.
+struct MadeBlock {
+    shape: Footprint,
+    height_m: f64,
+}
+
+impl MadeBlock {
+    /// Share of the footprint that its buildings cover.
+    fn coverage(&self) -> f64 {
+        (self.shape.covered_m2 / area(&self.shape.land).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+    }
+
+    fn covered_share(&self) -> f64 {
+        (self.shape.covered_m2 / self.shape.built_m2.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+    }
+
+    fn volume_m3(&self) -> f64 {
+        self.shape.covered_m2 * self.height_m
+    }
+}
+
+/// Blocks of the finer level with one building of each, place in [`Input`]; and landmarks of it.
+pub(super) struct Finer {
+    pub blocks: Vec<(Land, usize)>,
+    pub landmarks: Vec<usize>,
+}
+
+/// What tells one level from the other.
+pub(super) struct Plan<'a> {
+    pub name: &'static str,
+    /// The level that the blocks are put together from.
+    pub finer: Option<&'a Finer>,
+    pub grain: Grain,
+}
+
+/// The level, its figures, and its blocks and landmarks for the next. Landmarks are some of the finer level's.
 pub(super) fn level(
-    name: &'static str,
+    plan: &Plan<'_>,
     input: &Input<'_>,
     (lands, merged): (Vec<Land>, usize),
     of: &[Option<usize>],
     dividers: &Dividers,
-    candidates: impl Fn(usize) -> bool + Sync,
     settings: &GeneraliseSettings,
-) -> (Level, LevelReport, Vec<usize>) {
+) -> (Level, LevelReport, Finer) {
     let mut members = vec![Vec::new(); lands.len()];
     let mut homeless = Vec::new();
     for (building, cell) in of.iter().enumerate() {
@@ -106,23 +144,37 @@ pub(super) fn level(
             None => homeless.push(building),
         }
     }
+    let mut finer: Vec<Vec<&Land>> = vec![Vec::new(); lands.len()];
+    for (land, building) in plan.finer.iter().flat_map(|f| &f.blocks) {
+        if let Some(cell) = of[*building] {
+            finer[cell].push(land);
+        }
+    }
     let of_size = |land: &Land, members: &Vec<usize>| !members.is_empty() || area(land) >= settings.smallest_cell_m2;
     let found = lands.len();
-    let cells: Vec<(Land, Vec<usize>)> = lands.into_iter().zip(members).filter(|(l, m)| of_size(l, m)).collect();
+    let cells = lands.into_iter().zip(members).zip(finer).filter(|((l, m), _)| of_size(l, m));
+    let cells: Vec<_> = cells.map(|((land, members), finer)| (land, members, finer)).collect();
     let dropped = found - cells.len();
-    let made: Vec<Made> =
-        cells.into_par_iter().map(|(land, members)| make(input, land, &members, &candidates, settings)).collect();
-    let report = figures(name, input, &made, &homeless, dividers, [merged, dropped]);
+    let mut candidate = vec![plan.finer.is_none(); input.lands.len()];
+    plan.finer.iter().flat_map(|f| &f.landmarks).for_each(|i| candidate[*i] = true);
+    let make_one = |(land, members, finer): (Land, Vec<usize>, Vec<&Land>)| {
+        make(input, land, &members, &finer, &|i| candidate[i], (plan.grain, settings))
+    };
+    let made: Vec<Made> = cells.into_par_iter().map(make_one).collect();
+    let report = figures(plan.name, input, &made, &homeless, dividers, [merged, dropped]);
     let landmarks = made.iter().flat_map(|m| m.landmarks.iter().copied()).chain(homeless.iter().copied()).collect();
-    (assemble(name, input, made, &homeless, dividers), report, landmarks)
+    let blocks = made.iter().filter_map(|m| Some((m.block.as_ref()?.shape.land.clone(), *m.ordinary.first()?)));
+    let next = Finer { blocks: blocks.collect(), landmarks };
+    (assemble(plan.name, input, made, &homeless, dividers), report, next)
 }
 
 fn make(
     input: &Input<'_>,
     land: Land,
     members: &[usize],
+    finer: &[&Land],
     candidates: &impl Fn(usize) -> bool,
-    settings: &GeneraliseSettings,
+    (grain, settings): (Grain, &GeneraliseSettings),
 ) -> Made {
     let built: f64 = members.iter().map(|i| input.volumes[*i].area_m2).sum();
     let coverage = built / area(&land).max(f64::MIN_POSITIVE);
@@ -130,13 +182,13 @@ fn make(
     let ordinary: Vec<usize> = members.iter().copied().filter(|i| !landmarks.contains(i)).collect();
     let kind = kind(coverage, ordinary.len(), settings);
     let lands_of = |places: &[usize]| places.iter().map(|i| &input.lands[*i]).collect::<Vec<_>>();
-    let block = matches!(kind, CellKind::Sparse | CellKind::Built).then(|| {
-        let shape = footprint(&land, kind, &lands_of(&ordinary), &lands_of(&landmarks), settings);
-        let built: f64 = ordinary.iter().map(|i| input.volumes[*i].area_m2).sum();
-        let coverage = (built / area(&shape).max(f64::MIN_POSITIVE)).min(1.0);
-        (shape, mean_height(ordinary.iter().map(|i| input.volumes[*i])), coverage)
+    let block = (!ordinary.is_empty()).then(|| {
+        let (ordinary_lands, landmark_lands) = (lands_of(&ordinary), lands_of(&landmarks));
+        let site = Site { cell: &land, ordinary: &ordinary_lands, landmarks: &landmark_lands, finer };
+        let shape = footprint(&site, grain, settings);
+        MadeBlock { shape, height_m: mean_height(ordinary.iter().map(|i| input.volumes[*i])) }
     });
-    let block = block.filter(|(shape, ..)| !shape.0.is_empty());
+    let block = block.filter(|b| !b.shape.land.0.is_empty());
     Made { land, coverage, kind, ordinary, landmarks, block }
 }
 
@@ -154,46 +206,78 @@ fn figures(
     [merged, dropped]: [usize; 2],
 ) -> LevelReport {
     let green = || made.iter().filter(|m| m.kind == CellKind::Green);
-    let shown = |m: &Made| {
-        let block = m.block.as_ref().map_or(0.0, |(shape, height, coverage)| area(shape) * height * coverage);
-        block + input.volume_of(&m.landmarks)
-    };
-    let failing = |(number, m): (usize, &Made)| {
-        let held = input.volume_of(&m.ordinary) + input.volume_of(&m.landmarks);
-        let shown = shown(m);
-        let reason = match (&m.block, m.kind) {
-            (_, CellKind::Green) => "green",
-            (None, _) => "no room for a block",
-            (Some(_), _) => "buildings overlap or reach out of the cell",
-        };
-        ((shown - held).abs() > 0.1 * held).then(|| FailingCell {
-            cell: cell_name(name, number),
-            at: point_of(&m.land),
-            reason,
-            buildings: m.ordinary.len() + m.landmarks.len(),
-            volume_in_m3: held,
-            volume_out_m3: shown,
-        })
-    };
-    let all: f64 = (0..input.volumes.len()).map(|i| input.volume(i)).sum();
-    let volume = made.iter().map(shown).sum::<f64>() + input.volume_of(homeless);
-    let share = volume / all.max(f64::MIN_POSITIVE);
+    let blocks = || made.iter().filter_map(|m| m.block.as_ref());
+    let sum = |of: fn(&MadeBlock) -> f64| blocks().map(of).sum::<f64>();
+    let (built, covered) = (sum(|b| b.shape.built_m2), sum(|b| b.shape.covered_m2));
+    let landmarks: Vec<usize> = made.iter().flat_map(|m| &m.landmarks).chain(homeless).copied().collect();
+    let all: Vec<usize> = (0..input.volumes.len()).collect();
+    let volume = sum(MadeBlock::volume_m3) + input.volume_of(&landmarks);
+    let share = volume / input.volume_of(&all).max(f64::MIN_POSITIVE);
+    let numbered = || made.iter().enumerate();
     LevelReport {
         name,
         streets: dividers.ways.len(),
         cells: made.len(),
         cells_merged: merged,
         cells_dropped: dropped,
-        blocks: made.iter().filter(|m| m.block.is_some()).count(),
+        blocks: blocks().count(),
         green_cells: green().count(),
         buildings_in_green: green().map(|m| m.ordinary.len()).sum(),
         volume_in_green_m3: green().map(|m| input.volume_of(&m.ordinary)).sum(),
-        landmarks: made.iter().map(|m| m.landmarks.len()).sum::<usize>() + homeless.len(),
+        landmarks: landmarks.len(),
+        block_area_m2: sum(|b| area(&b.shape.land)),
+        built_area_m2: built,
+        covered_share: if built > 0.0 { covered / built } else { 1.0 },
+        triangles: blocks().map(|b| triangles(&b.shape.land)).sum::<usize>() + input.triangles(&landmarks),
         volume_m3: volume,
         volume_share: share,
         volume_kept: (0.9..=1.1).contains(&share),
-        cells_failing: made.iter().enumerate().filter_map(failing).collect(),
+        cells_failing: numbered().filter_map(|(number, m)| failing(input, cell_name(name, number), m)).collect(),
+        each_block: numbered().filter_map(|(number, m)| block_report(input, cell_name(name, number), m)).collect(),
     }
+}
+
+/// Least share of the ground of a block's buildings that has to lie in it, and how far volumes may differ.
+const LEAST_COVERED: f64 = 0.9;
+const VOLUME_OFF: f64 = 0.1;
+
+/// A cell that misses the bars of coverage or volume.
+fn failing(input: &Input<'_>, cell: String, m: &Made) -> Option<FailingCell> {
+    let held = input.volume_of(&m.ordinary) + input.volume_of(&m.landmarks);
+    let shown = m.block.as_ref().map_or(0.0, MadeBlock::volume_m3) + input.volume_of(&m.landmarks);
+    let covered_share = m.block.as_ref().map_or(f64::from(m.ordinary.is_empty()), MadeBlock::covered_share);
+    let reason = if m.block.is_none() && !m.ordinary.is_empty() {
+        "no room for a block"
+    } else if covered_share < LEAST_COVERED {
+        "buildings reach out of the block"
+    } else if (shown - held).abs() > VOLUME_OFF * held {
+        "buildings overlap each other"
+    } else {
+        return None;
+    };
+    Some(FailingCell {
+        cell,
+        at: point_of(&m.land),
+        reason,
+        buildings: m.ordinary.len() + m.landmarks.len(),
+        volume_in_m3: held,
+        volume_out_m3: shown,
+        covered_share,
+    })
+}
+
+fn block_report(input: &Input<'_>, block: String, m: &Made) -> Option<BlockReport> {
+    let made = m.block.as_ref()?;
+    Some(BlockReport {
+        block,
+        buildings: m.ordinary.len(),
+        area_m2: area(&made.shape.land),
+        height_m: made.height_m,
+        covered_share: made.covered_share(),
+        coverage: made.coverage(),
+        volume_in_m3: input.volume_of(&m.ordinary),
+        volume_out_m3: made.volume_m3(),
+    })
 }
 
 fn cell_name(level: &str, number: usize) -> String {
@@ -213,13 +297,15 @@ fn assemble(name: &'static str, input: &Input<'_>, made: Vec<Made>, homeless: &[
     for (number, made) in made.into_iter().enumerate() {
         let polygons = polygons_of(&made.land);
         let (id, ordinary) = (cell_name(name, number), places(&made.ordinary));
-        if let Some((shape, height_m, coverage)) = made.block {
+        if let Some(made) = made.block {
+            let coverage = made.coverage();
+            let MadeBlock { shape, height_m } = made;
             let bases = ordinary.iter().filter_map(|i| from.buildings[*i].base_m);
             city.buildings.push(Building {
                 id: id.clone(),
                 name: String::new(),
                 landmark: false,
-                footprint: polygons_of(&shape),
+                footprint: polygons_of(&shape.land),
                 base_m: bases.min_by(f64::total_cmp),
                 height_m,
                 height_source: HeightSource::Stated,

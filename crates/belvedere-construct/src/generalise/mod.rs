@@ -24,15 +24,16 @@ pub use blocks::CellKind;
 pub use error::GeneraliseError;
 pub use land_cover::{LandCoverMap, land_cover};
 pub use level::{Block, Cell, Level};
-pub use report::{FailingCell, GeneraliseReport, LevelReport};
+pub use report::{BlockReport, FailingCell, GeneraliseReport, LevelReport};
 pub use settings::{GeneraliseSettings, half_width_m, is_main};
 
 use belvedere_core::DVec2;
 use belvedere_scene::Instant;
 use belvedere_scene::Progress;
 use belvedere_scene::city::City;
+use blocks::Grain;
 use landmarks::Volume;
-use level::Input;
+use level::{Input, Plan};
 use rayon::prelude::*;
 
 /// Smallest footprint that counts, m^2.
@@ -74,18 +75,18 @@ pub fn generalise(
     let of_coarse = cells::assign_by_cells(&coarse_cells.lands, &fine_cells.lands, &of_fine, &input.lands);
     progress.tick("blocks", 0.7)?;
     let whole = |cells: cells::Cells| (cells.lands, cells.merged);
-    let (loa1, report1, kept) = level::level("loa1", &input, whole(fine_cells), &of_fine, &fine, |_| true, settings);
+    let plan = Plan { name: "loa1", finer: None, grain: Grain::of(settings, 1.0) };
+    let (loa1, report1, finer) = level::level(&plan, &input, whole(fine_cells), &of_fine, &fine, settings);
     progress.tick("blocks", 0.85)?;
-    let mut stays = vec![false; input.lands.len()];
-    kept.into_iter().for_each(|i| stays[i] = true);
-    let (loa2, report2, _) =
-        level::level("loa2", &input, whole(coarse_cells), &of_coarse, &coarse, |i| stays[i], settings);
+    let plan = Plan { name: "loa2", finer: Some(&finer), grain: Grain::of(settings, 2.0) };
+    let (loa2, report2, _) = level::level(&plan, &input, whole(coarse_cells), &of_coarse, &coarse, settings);
     progress.tick("blocks", 1.0)?;
     let all: Vec<usize> = (0..input.volumes.len()).collect();
     let report = GeneraliseReport {
         buildings: city.buildings.len(),
         without_area: city.buildings.len() - input.lands.len(),
         volume_m3: input.volume_of(&all),
+        triangles: input.triangles(&all),
         levels: vec![report1, report2],
         notes: notes_of(notes, [&loa1, &loa2]),
         seconds: begun.elapsed().as_secs_f64(),
@@ -103,7 +104,7 @@ fn notes_of(mut notes: Vec<String>, levels: [&Level; 2]) -> Vec<String> {
         }
         if !inhabited.is_empty() && inhabited.iter().all(|c| c.kind == CellKind::Green) {
             notes.push(format!(
-                "{}: every cell is green, there are no blocks; lower green_below or margin_m",
+                "{}: every cell is hardly built and drawn as green ground, blocks follow their buildings",
                 level.name
             ));
         }

@@ -11,6 +11,8 @@ pub struct GeneraliseReport {
     pub without_area: usize,
     /// Footprint area times height over all other buildings, m^3.
     pub volume_m3: f64,
+    /// Triangles of all other buildings as prisms.
+    pub triangles: usize,
     /// The levels, finest first.
     pub levels: Vec<LevelReport>,
     /// What was odd or assumed.
@@ -34,22 +36,53 @@ pub struct LevelReport {
     pub cells_dropped: usize,
     /// Blocks.
     pub blocks: usize,
-    /// Cells without a block that are green.
+    /// Cells that are hardly built; their ground is green.
     pub green_cells: usize,
-    /// Buildings in green cells, which are not shown.
+    /// Buildings in green cells; blocks follow them.
     pub buildings_in_green: usize,
     /// Their volume, m^3.
     pub volume_in_green_m3: f64,
     /// Buildings kept in their own shape.
     pub landmarks: usize,
-    /// Area times height times coverage of the blocks, and the volume of the landmarks, m^3.
+    /// Footprints of the blocks, m^2.
+    pub block_area_m2: f64,
+    /// Ground of the buildings that blocks stand for, each place once, m^2.
+    pub built_area_m2: f64,
+    /// Share of that which lies in their blocks.
+    pub covered_share: f64,
+    /// Triangles of blocks and landmarks on level ground.
+    pub triangles: usize,
+    /// Area of the blocks over their buildings times height, and the volume of the landmarks, m^3.
     pub volume_m3: f64,
     /// The same as a share of all that came in.
     pub volume_share: f64,
     /// Whether that share lies in 0.9..=1.1.
     pub volume_kept: bool,
-    /// Cells whose own volume is not kept to 10 %, green ones included.
+    /// Cells whose own volume is not kept to 10 %, or whose block leaves a tenth of its buildings' ground out.
     pub cells_failing: Vec<FailingCell>,
+    /// Figures of every block, in the order of the level's buildings.
+    pub each_block: Vec<BlockReport>,
+}
+
+/// Figures of one block.
+#[derive(Debug, Clone, Serialize)]
+pub struct BlockReport {
+    /// Name, that of its cell.
+    pub block: String,
+    /// Buildings that it stands for.
+    pub buildings: usize,
+    /// Footprint, m^2.
+    pub area_m2: f64,
+    /// Height over its ground, metres.
+    pub height_m: f64,
+    /// Share of its buildings' ground that lies in the footprint.
+    pub covered_share: f64,
+    /// Share of the footprint that its buildings cover.
+    pub coverage: f64,
+    /// Volume of its buildings, m^3.
+    pub volume_in_m3: f64,
+    /// Footprint times coverage times height, m^3.
+    pub volume_out_m3: f64,
 }
 
 /// A cell whose block does not hold the volume of its buildings.
@@ -67,4 +100,6 @@ pub struct FailingCell {
     pub volume_in_m3: f64,
     /// Volume of its block and landmarks, m^3.
     pub volume_out_m3: f64,
+    /// Share of its buildings' ground that lies in its block or in landmarks.
+    pub covered_share: f64,
 }

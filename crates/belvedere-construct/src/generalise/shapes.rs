@@ -4,7 +4,7 @@ use belvedere_core::DVec2;
 use belvedere_scene::city::Polygon;
 use geo::algorithm::buffer::{BufferStyle, LineCap, LineJoin};
 use geo::algorithm::orient::{Direction, Orient};
-use geo::{Area as _, BooleanOps, Buffer, Coord, LineString, MultiPolygon, Simplify, Validation};
+use geo::{Area as _, BooleanOps, Buffer, Coord, LineString, MinimumRotatedRect, MultiPolygon, Simplify, Validation};
 use rayon::prelude::*;
 
 /// Several polygons, none overlapping another.
@@ -121,9 +121,36 @@ pub(super) fn filled(land: Land) -> Land {
     geo::unary_union(&whole)
 }
 
+/// The land with those holes filled that are smaller than `below` m^2, but for those with something of `kept` in them.
+pub(super) fn filled_below(land: &Land, kept: &Land, below: f64) -> Land {
+    let stays = |hole: &LineString<f64>| {
+        let hole = geo::Polygon::new(hole.clone(), Vec::new());
+        hole.unsigned_area() >= below || (!kept.0.is_empty() && !common(&one(hole), kept).0.is_empty())
+    };
+    let of = |p: &geo::Polygon<f64>| {
+        let holes = p.interiors().iter().filter(|h| stays(h)).cloned().collect();
+        geo::Polygon::new(p.exterior().clone(), holes)
+    };
+    MultiPolygon(land.iter().map(of).collect())
+}
+
+/// The least rectangle round an outline of more than four corners, if the outline fills at least `share` of it.
+pub(super) fn rectangle_round(polygon: &geo::Polygon<f64>, share: f64) -> Option<geo::Polygon<f64>> {
+    if polygon.exterior().0.len() <= 5 && polygon.interiors().is_empty() {
+        return Some(polygon.clone());
+    }
+    let rectangle = polygon.minimum_rotated_rect()?;
+    (polygon.unsigned_area() >= share * rectangle.unsigned_area()).then_some(rectangle)
+}
+
+/// One polygon as land.
+pub(super) fn one(polygon: geo::Polygon<f64>) -> Land {
+    MultiPolygon(vec![polygon])
+}
+
 /// The land with outlines of fewer vertices, none moved by more than `by` metres; an outline that would cross itself takes less.
 pub(super) fn simplified(land: &Land, by: f64) -> Land {
-    let one = |polygon: &geo::Polygon<f64>| {
+    let simple = |polygon: &geo::Polygon<f64>| {
         let mut tolerance = by;
         while tolerance > 0.05 {
             let simple = polygon.simplify(tolerance);
@@ -134,7 +161,7 @@ pub(super) fn simplified(land: &Land, by: f64) -> Land {
         }
         polygon.clone()
     };
-    MultiPolygon(land.iter().map(one).collect())
+    MultiPolygon(land.iter().map(simple).collect())
 }
 
 /// What of `land` lies in `other`.
@@ -145,4 +172,14 @@ pub(super) fn common(land: &Land, other: &Land) -> Land {
 /// Area, m^2.
 pub(super) fn area(land: &Land) -> f64 {
     land.unsigned_area()
+}
+
+/// Triangles of the land as prisms: roofs and walls.
+pub(super) fn triangles(land: &Land) -> usize {
+    let of = |p: &geo::Polygon<f64>| {
+        let rings = std::iter::once(p.exterior()).chain(p.interiors());
+        let corners: usize = rings.map(|r| r.0.len().saturating_sub(1)).sum();
+        3 * corners + 2 * p.interiors().len() - 2
+    };
+    land.iter().filter(|p| p.exterior().0.len() > 3).map(of).sum()
 }

@@ -11,9 +11,12 @@ mod osm;
 mod place;
 mod plan;
 mod reference;
+mod roof;
 mod surface;
+mod tin;
 
 pub use place::reproject;
+pub use roof::prism_on;
 pub use surface::{CityColors, CityGround, plate_extent, surface};
 
 use crate::crs::CoordinateSystem;

@@ -1,6 +1,6 @@
 //! The surface of a city as triangles: roofs, walls, land cover and the ground that all stands on.
 
-use super::plan::normal;
+use super::plan::{contains, normal};
 use crate::MeshFile;
 use belvedere_scene::{Building, City, CityFace, Color, LandCover, MeshColors, Polygon, StructureKind, Surface};
 use earcut::Earcut;
@@ -25,6 +25,14 @@ impl Default for CityColors {
 
 /// The ground reaches beyond the city by this share of its size.
 const MARGIN: f64 = 0.15;
+
+/// Least height of a roof over the highest ground under it, or the height of the building if that is less, metres.
+const CLEAR_M: f64 = 2.5;
+/// Spacing of the places on outlines, and within wide ones, at which the ground under a building is looked at, metres.
+const LOOK_EVERY_M: f64 = 5.0;
+const WIDE_M: f64 = 15.0;
+/// Most parts of an edge, or rows of places, for it.
+const MOST_PARTS: f64 = 40.0;
 
 /// What a city stands on.
 #[derive(Clone, Copy)]
@@ -52,8 +60,8 @@ pub fn surface(city: &City, colors: &CityColors, ground: CityGround<'_>) -> Mesh
     for building in &city.buildings {
         out.part(if building.name.is_empty() { building.id.clone() } else { building.name.clone() });
         if building.faces.is_empty() {
-            let base = building.base_m.unwrap_or_else(|| lowest(building, ground).unwrap_or(plate));
-            out.extruded(building, base, colors);
+            let [base, top] = stands(building, ground, plate);
+            out.extruded(building, base, top, colors);
         } else {
             building.faces.iter().for_each(|face| out.face(face, color_of(face.surface, colors)));
         }
@@ -103,11 +111,32 @@ fn plate_height(city: &City) -> f64 {
     if bases.is_empty() { 0.0 } else { *bases.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
-/// Lowest ground under a building.
-fn lowest(building: &Building, ground: CityGround<'_>) -> Option<f64> {
-    let CityGround::Terrain(terrain) = ground else { return None };
-    let under = building.footprint.iter().flat_map(|p| &p.outer).filter_map(|xy| terrain(*xy));
-    under.reduce(f64::min)
+/// Heights of the foot of the walls and of the flat roof of a building. On a slope the roof lies over the highest ground, too.
+fn stands(building: &Building, ground: CityGround<'_>, plate: f64) -> [f64; 2] {
+    let (height, CityGround::Terrain(terrain)) = (building.height_m, ground) else {
+        let base = building.base_m.unwrap_or(plate);
+        return [base, base + building.height_m];
+    };
+    if let Some(base) = building.base_m {
+        return [base, base + height];
+    }
+    let under = building.footprint.iter().flat_map(places_under).filter_map(terrain);
+    let [low, high] = under.fold([f64::MAX, f64::MIN], |[a, b], z| [a.min(z), b.max(z)]);
+    if low > high { [plate, plate + height] } else { [low, (low + height).max(high + height.min(CLEAR_M))] }
+}
+
+/// Corners of an outline, places along its edges, and where it is wide some within.
+fn places_under(polygon: &Polygon) -> impl Iterator<Item = DVec2> + '_ {
+    let along = |k: usize| {
+        let [a, b] = [polygon.outer[k], polygon.outer[(k + 1) % polygon.outer.len()]];
+        let parts = (a.distance(b) / LOOK_EVERY_M).ceil().clamp(1.0, MOST_PARTS);
+        (0..parts as usize).map(move |i| a.lerp(b, i as f64 / parts))
+    };
+    let [low, high] = polygon.outer.iter().fold([DVec2::MAX, DVec2::MIN], |[a, b], p| [a.min(*p), b.max(*p)]);
+    let parts = ((high - low) / WIDE_M).floor().clamp(DVec2::ZERO, DVec2::splat(MOST_PARTS)).as_uvec2();
+    let step = (high - low) / (parts + 1).as_dvec2();
+    let grid = (1..=parts.x).flat_map(move |x| (1..=parts.y).map(move |y| low + step * glam::uvec2(x, y).as_dvec2()));
+    (0..polygon.outer.len()).flat_map(along).chain(grid.filter(|p| contains(&polygon.outer, *p)))
 }
 
 struct Builder {
@@ -167,8 +196,7 @@ impl Builder {
     }
 
     /// Walls over the footprint, and a flat roof.
-    fn extruded(&mut self, building: &Building, base: f64, colors: &CityColors) {
-        let top = base + building.height_m;
+    fn extruded(&mut self, building: &Building, base: f64, top: f64, colors: &CityColors) {
         for polygon in &building.footprint {
             self.flat(polygon, top, colors.roof);
             for ring in std::iter::once(&polygon.outer).chain(&polygon.holes) {

@@ -5,13 +5,14 @@ use super::ground::{Ground, epsg};
 use super::loader::Loader;
 use super::mesh::{wanted, with_ambient_occlusion};
 use crate::BelvedereError;
+use crate::city_blocks;
 use crate::scene_file::{CityDoc, LayerDoc, Paths};
 use belvedere_construct::generalise::{GeneraliseSettings, LandCoverMap, generalise, land_cover};
 use belvedere_core::DVec2;
 use belvedere_io::city::{CityColors, CityGround, plate_extent, reproject, surface};
 use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::{CityFile, load_city};
-use belvedere_scene::{City, Crs, LayerKind, Mesh, MeshLayer, RigidParts};
+use belvedere_scene::{City, Crs, LayerKind, Mesh, MeshLayer, RigidParts, Surface};
 
 /// Widest city, with its rim, metres.
 const WIDEST_M: f64 = 1.5e6;
@@ -120,11 +121,11 @@ pub(super) fn layer(
         city.areas.extend(part.areas);
     }
     lift(&mut city, doc.height_offset_m);
-    if doc.loa > 0 {
-        city = abstraction(loader, index, &city, doc.loa)?;
-    }
     let terrain = |xy: DVec2| ground.terrain.and_then(|t| t.surface_at(xy));
     let terrain: Option<&dyn Fn(DVec2) -> Option<f64>> = if ground.terrain.is_some() { Some(&terrain) } else { None };
+    if doc.loa > 0 {
+        city = abstraction(loader, index, &city, doc.loa, terrain)?;
+    }
     if let Some(terrain) = terrain {
         let lost = leave_out_beyond(&mut city, terrain).map_err(|e| loader.fail(index, "source", e))?;
         loader.note(index, lost.into_iter().chain(remarks(&city, terrain)).collect());
@@ -144,11 +145,23 @@ pub(super) fn layer(
 }
 
 /// A city at a level of abstraction.
-fn abstraction(loader: &mut Loader<'_>, index: usize, city: &City, loa: u8) -> Result<City, BelvedereError> {
+fn abstraction(
+    loader: &mut Loader<'_>,
+    index: usize,
+    city: &City,
+    loa: u8,
+    terrain: Option<&dyn Fn(DVec2) -> Option<f64>>,
+) -> Result<City, BelvedereError> {
     let progress = &loader.options.progress;
     let found = generalise(city, &GeneraliseSettings::default(), progress).map_err(|e| loader.fail(index, "loa", e))?;
     let [fine, coarse] = found.levels;
-    let level = if loa == 1 { fine } else { coarse };
+    let mut level = if loa == 1 { fine } else { coarse };
+    if terrain.is_some() {
+        city_blocks::stand(&mut level, city, terrain);
+        // Floors lie in the ground.
+        let blocks = level.city.buildings.iter_mut().take(level.blocks.len());
+        blocks.for_each(|b| b.faces.retain(|f| f.surface != Surface::Ground));
+    }
     let notes = found.report.notes.into_iter().filter(|n| n.starts_with(level.name)).collect();
     loader.note(index, notes);
     let missed = found.report.levels.iter().find(|l| l.name == level.name && !l.volume_kept);

@@ -2,6 +2,7 @@
 
 mod read;
 
+use crate::city_blocks;
 use crate::city_map::overview::{Panel, overview};
 use crate::city_map::{MapPicture, bounds, map_picture};
 use crate::record::{self, InputFile};
@@ -64,7 +65,8 @@ struct Record<'a> {
 pub fn generalise(request: &GeneraliseRequest, progress: &Progress) -> Result<GeneralisedCity, BelvedereError> {
     progress.tick("read", 0.0)?;
     let read::Read { city, epsg, inputs, warnings } = read::read(&request.city, &request.roads)?;
-    let generalised = belvedere_construct::generalise::generalise(&city, &request.settings, progress)?;
+    let mut generalised = belvedere_construct::generalise::generalise(&city, &request.settings, progress)?;
+    generalised.levels.iter_mut().for_each(|level| city_blocks::stand(level, &city, None));
     Ok(GeneralisedCity { city, epsg, generalised, warnings, inputs: record::inputs(&inputs)? })
 }
 

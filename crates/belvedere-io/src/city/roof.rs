@@ -1,0 +1,158 @@
+//! Blocks on slopes: roofs that follow the ground under them, walls from there down to it.
+
+use super::tin::Tin;
+use belvedere_scene::{CityFace, Polygon, Surface};
+use earcut::Earcut;
+use glam::{DMat3, DVec2, DVec3};
+
+/// Spacing of the places at which ground is looked at, metres.
+const LOOK_EVERY_M: f64 = 8.0;
+/// How far a roof may be off the height over its ground, share of that height, and metres.
+const OFF: [f64; 2] = [0.25, 1.0];
+/// Least share of its height by which a roof lies over its ground everywhere.
+const CLEAR: f64 = 0.5;
+/// Least ground for each triangle of a roof, m^2.
+const LEAST_TRIANGLE_M2: f64 = 60.0;
+
+/// A prism on ground that is not level, closed: its roof lies `height_m` over the ground, flat where one plane is near enough, else
+/// in facets; its floor lies as far below.
+///
+/// * `ground`: height of the ground by place; `None` where it is not known, which then is taken as the mean.
+/// * `foot_m`: how far the walls reach into the ground, metres, >= 0.
+///
+/// `None` if the ground under it is known nowhere.
+pub fn prism_on(
+    footprint: &[Polygon],
+    height_m: f64,
+    foot_m: f64,
+    ground: &dyn Fn(DVec2) -> Option<f64>,
+) -> Option<Vec<CityFace>> {
+    let mut earcut = Earcut::new();
+    let mut faces = Vec::new();
+    for polygon in footprint {
+        if let Some(tin) = Tin::of(polygon, &mut earcut) {
+            faces.extend(part_on(polygon, tin, height_m, foot_m, ground)?);
+        } else {
+            let rim = polygon.outer.iter().filter_map(|p| ground(*p));
+            let [low, high] = rim.fold([f64::MAX, f64::MIN], |[a, b], z| [a.min(z), b.max(z)]);
+            if low > high {
+                return None;
+            }
+            faces.extend(between(polygon, &|_| low - foot_m, &|_| high + height_m));
+        }
+    }
+    Some(faces)
+}
+
+/// Ground as far as it is known, and the plane through it.
+struct Under {
+    mean: f64,
+    origin: DVec2,
+    /// Heights along x, y, and over the origin.
+    plane: DVec3,
+}
+
+impl Under {
+    fn of(tin: &Tin, ground: &dyn Fn(DVec2) -> Option<f64>) -> Option<Self> {
+        let origin = tin.points[0];
+        let (mut matrix, mut right, mut sum) = (DMat3::ZERO, DVec3::ZERO, [0.0; 2]);
+        for sample in (0..tin.triangles.len()).flat_map(|t| tin.samples(t, LOOK_EVERY_M)) {
+            let Some(z) = ground(sample.at) else { continue };
+            let (row, weight) = ((sample.at - origin).extend(1.0), sample.area_m2.max(1e-6));
+            matrix += DMat3::from_cols(row * row.x, row * row.y, row * row.z) * weight;
+            right += row * z * weight;
+            sum = [sum[0] + weight, sum[1] + weight * z];
+        }
+        let mean = (sum[0] > 0.0).then(|| sum[1] / sum[0])?;
+        // Nearly level, or known along a line only: level.
+        let solved = matrix.inverse() * (right - matrix * DVec3::new(0.0, 0.0, mean));
+        let plane = if solved.is_finite() && solved.truncate().length() < 4.0 { solved } else { DVec3::ZERO };
+        Some(Self { mean, origin, plane: plane + DVec3::new(0.0, 0.0, mean) })
+    }
+
+    fn plane_at(&self, p: DVec2) -> f64 {
+        self.plane.dot((p - self.origin).extend(1.0))
+    }
+}
+
+/// One polygon of a block.
+fn part_on(
+    polygon: &Polygon,
+    mut tin: Tin,
+    height_m: f64,
+    foot_m: f64,
+    ground: &dyn Fn(DVec2) -> Option<f64>,
+) -> Option<Vec<CityFace>> {
+    let under = Under::of(&tin, ground)?;
+    let tolerance = (OFF[0] * height_m).max(OFF[1]);
+    let range = |tin: &Tin, surface: &dyn Fn(usize, [f64; 3], DVec2) -> f64| {
+        let samples = (0..tin.triangles.len()).flat_map(|t| tin.samples(t, LOOK_EVERY_M));
+        samples.fold([0.0f64; 2], |[below, above], s| {
+            let off = ground(s.at).map_or(0.0, |z| z - surface(s.triangle, s.shares, s.at));
+            [below.min(off), above.max(off)]
+        })
+    };
+    let heights = |[below, above]: [f64; 2]| {
+        let roof = height_m + (above - (1.0 - CLEAR) * height_m).max(0.0);
+        [below - foot_m, roof]
+    };
+    let plane = range(&tin, &|_, _, at| under.plane_at(at));
+    if plane[1] - plane[0] <= 2.0 * tolerance && plane[1].max(-plane[0]) <= 1.5 * tolerance {
+        let [floor, roof] = heights(plane);
+        return Some(between(polygon, &|p| under.plane_at(p) + floor, &|p| under.plane_at(p) + roof));
+    }
+    let at = |p: DVec2| ground(p).unwrap_or(under.mean);
+    let area: f64 = (0..tin.triangles.len()).flat_map(|t| tin.samples(t, f64::MAX)).map(|s| s.area_m2).sum();
+    let most = tin.triangles.len() + (area / LEAST_TRIANGLE_M2) as usize;
+    tin.refine(tolerance, most, |tin, number| {
+        let z = tin.triangles[number].map(|v| at(tin.points[v as usize]));
+        let off = |s: super::tin::Sample| {
+            ground(s.at).map_or(0.0, |g| (g - (0..3).map(|k| s.shares[k] * z[k]).sum::<f64>()).abs())
+        };
+        tin.samples(number, LOOK_EVERY_M).map(off).fold(0.0, f64::max)
+    });
+    let z: Vec<f64> = tin.points.iter().map(|p| at(*p)).collect();
+    let off = range(&tin, &|t, shares, _| (0..3).map(|k| shares[k] * z[tin.triangles[t][k] as usize]).sum());
+    Some(faceted(&tin, &z, heights(off)))
+}
+
+/// A prism between two heights over a polygon.
+fn between(polygon: &Polygon, low: &dyn Fn(DVec2) -> f64, high: &dyn Fn(DVec2) -> f64) -> Vec<CityFace> {
+    let rings = || std::iter::once(&polygon.outer).chain(&polygon.holes);
+    let lifted = |z: &dyn Fn(DVec2) -> f64| -> Vec<Vec<DVec3>> {
+        rings().map(|ring| ring.iter().map(|p| p.extend(z(*p))).collect()).collect()
+    };
+    let mut floor = lifted(low);
+    floor.iter_mut().for_each(|ring| ring.reverse());
+    let mut faces = vec![
+        CityFace { surface: Surface::Ground, rings: floor },
+        CityFace { surface: Surface::Roof, rings: lifted(high) },
+    ];
+    for ring in rings() {
+        for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+            faces.push(wall([a.extend(low(*a)), b.extend(low(*b))], [high(*a), high(*b)]));
+        }
+    }
+    faces
+}
+
+fn wall([a, b]: [DVec3; 2], [top_a, top_b]: [f64; 2]) -> CityFace {
+    let ring = vec![a, b, b.truncate().extend(top_b), a.truncate().extend(top_a)];
+    CityFace { surface: Surface::Wall, rings: vec![ring] }
+}
+
+/// A prism of triangles whose corners lie at the heights `z` and these above.
+fn faceted(tin: &Tin, z: &[f64], [floor, roof]: [f64; 2]) -> Vec<CityFace> {
+    let corner = |v: u32, by: f64| tin.points[v as usize].extend(z[v as usize] + by);
+    let mut faces = Vec::new();
+    for [a, b, c] in &tin.triangles {
+        let of = |corners: [u32; 3], by: f64| vec![corners.map(|v| corner(v, by)).to_vec()];
+        faces.push(CityFace { surface: Surface::Ground, rings: of([*a, *c, *b], floor) });
+        faces.push(CityFace { surface: Surface::Roof, rings: of([*a, *b, *c], roof) });
+    }
+    for [a, b] in tin.rim() {
+        let tops = [a, b].map(|v| z[v as usize] + roof);
+        faces.push(wall([corner(a, floor), corner(b, floor)], tops));
+    }
+    faces
+}
