@@ -2,7 +2,8 @@
 
 use super::settings::GeneraliseSettings;
 use super::shapes::{
-    Land, area, closed, common, filled_below, grown, one, rectangle_round, shrunk, simplified, union, without_specks,
+    Land, area, closed, common, filled_below, grown, one, parted, rectangle_round, shrunk, simplified, union,
+    without_specks,
 };
 use geo::{Area, BooleanOps, MultiPolygon};
 
@@ -34,15 +35,17 @@ pub(super) fn kind(coverage: f64, ordinary: usize, settings: &GeneraliseSettings
 }
 
 /// Parts of buildings outside their block that are left there, m^2.
-const LEFT_OUT_M2: f64 = 0.5;
+const LEFT_OUT_M2: f64 = 2.0;
+/// How far such parts are widened to join the block, metres.
+const JOINT_M: f64 = 0.1;
+/// Share of the largest simplification by which what was put together is simplified.
+const FINE: f64 = 0.2;
 /// Smaller holes are chinks between what was put together, m^2.
 const CHINK_M2: f64 = 25.0;
-/// How far outlines may reach out of their cell where no building does, metres.
-const STRAY_M: f64 = 1.0;
+/// How far outlines may reach out of their cell where no building does, share of the largest simplification.
+const STRAY: f64 = 0.6;
 /// Least share of a piece of a block that buildings cover.
 const LEAST_BUILT: f64 = 0.05;
-/// Share of its rectangle from which on an outline is drawn as that.
-const AS_RECTANGLE: f64 = 0.8;
 
 /// How coarsely blocks follow buildings.
 #[derive(Debug, Clone, Copy)]
@@ -51,15 +54,25 @@ pub(super) struct Grain {
     pub closing_m: f64,
     /// Largest distance by which outlines move, metres.
     pub simplify_m: f64,
+    /// The same of small outlines, share of the square root of their area.
+    pub of_size: f64,
     /// Smaller holes are filled, m^2.
     pub hole_m2: f64,
+    /// Share of its rectangle from which on an outline is drawn as that.
+    pub as_rectangle: f64,
 }
 
 impl Grain {
     /// That of the finer level (`times` = 1), or of the coarser one (2).
     pub(super) fn of(settings: &GeneraliseSettings, times: f64) -> Self {
         let closing_m = times * settings.closing_m;
-        Self { closing_m, simplify_m: 0.25 * closing_m, hole_m2: (2.0 * closing_m).powi(2) }
+        Self {
+            closing_m,
+            simplify_m: 0.125 * (1.0 + times) * closing_m,
+            of_size: 0.04 + 0.08 * times,
+            hole_m2: (2.0 * closing_m).powi(2),
+            as_rectangle: 0.95 - 0.2 * times,
+        }
     }
 }
 
@@ -71,7 +84,7 @@ pub(super) struct Site<'a> {
     pub ordinary: &'a [&'a Land],
     /// Buildings that keep their shape.
     pub landmarks: &'a [&'a Land],
-    /// Blocks of the finer level that it holds.
+    /// Blocks and landmarks of the finer level that it holds; none if there is no finer level.
     pub finer: &'a [&'a Land],
 }
 
@@ -98,7 +111,7 @@ pub(super) fn footprint(site: &Site<'_>, grain: Grain, settings: &GeneraliseSett
     let built_m2 = area(&buildings);
     let standing = match site.finer {
         [] => buildings.clone(),
-        finer => union(finer.iter().map(|l| (*l).clone()).chain([buildings.clone()]).collect()),
+        finer => joined(finer),
     };
     let alone = ground.0.len() == 1;
     let built = |piece: &Land| if alone { built_m2 } else { area(&common(piece, &buildings)) };
@@ -114,12 +127,16 @@ pub(super) fn footprint(site: &Site<'_>, grain: Grain, settings: &GeneraliseSett
         let followed = following(&union(vec![near, rest]), &other, &landmarks, grain);
         land = if land.0.is_empty() { followed } else { union(vec![land, followed]) };
     }
-    let outside = large_pieces(buildings.difference(&land), LEFT_OUT_M2);
-    if !outside.0.is_empty() {
-        land = union(vec![land, outside]);
+    land = filled_below(&land, &landmarks, CHINK_M2);
+    let mut outside = buildings.difference(&land);
+    if outside.iter().any(|p| p.unsigned_area() > LEFT_OUT_M2) {
+        land = union(vec![land, grown(&large_pieces(outside, LEFT_OUT_M2), JOINT_M)]);
+        land = if landmarks.0.is_empty() { land } else { land.difference(&landmarks) };
+        land = simplified(&filled_below(&land, &landmarks, CHINK_M2), FINE * grain.simplify_m);
+        outside = buildings.difference(&land);
     }
-    let land = occupied(filled_below(&land, &landmarks, CHINK_M2), &buildings);
-    let covered_m2 = built_m2 - area(&buildings.difference(&land));
+    let covered_m2 = built_m2 - area(&outside);
+    let land = occupied(parted(land), &buildings);
     Footprint { land, built_m2, covered_m2 }
 }
 
@@ -145,15 +162,16 @@ fn whole(piece: &Land, settings: &GeneraliseSettings) -> Land {
 fn following(near: &Land, ground: &Land, landmarks: &Land, grain: Grain) -> Land {
     let near = filled_below(near, landmarks, grain.hole_m2);
     let simple = near.iter().map(|polygon| {
-        if let Some(rectangle) = rectangle_round(polygon, AS_RECTANGLE) {
+        if let Some(rectangle) = rectangle_round(polygon, grain.as_rectangle) {
             return one(rectangle);
         }
-        let by = grain.simplify_m.min(0.1 * polygon.unsigned_area().sqrt());
-        simplified(&grown(&one(polygon.clone()), 0.5 * by), by)
+        let by = grain.simplify_m.min(grain.of_size * polygon.unsigned_area().sqrt());
+        simplified(&grown(&one(polygon.clone()), STRAY * by), by)
     });
     let simple = union(simple.collect());
-    let stray = simple.difference(&union(vec![grown(ground, STRAY_M), near.clone()]));
+    let stray = simple.difference(&grown(ground, STRAY * grain.simplify_m));
     let stray = large_pieces(stray, LEFT_OUT_M2);
+    let stray = if stray.0.is_empty() { stray } else { large_pieces(stray.difference(&near), LEFT_OUT_M2) };
     let simple = if stray.0.is_empty() { simple } else { simple.difference(&stray) };
     if landmarks.0.is_empty() { simple } else { simple.difference(landmarks) }
 }
@@ -172,6 +190,8 @@ fn occupied(land: Land, buildings: &Land) -> Land {
     let built = |p: &geo::Polygon<f64>| area(&common(&one(p.clone()), buildings));
     let pieces: Vec<_> = land.into_iter().map(|p| (built(&p), p)).collect();
     let most = pieces.iter().map(|(built, _)| *built).fold(0.0, f64::max);
-    let stays = |built: f64, p: &geo::Polygon<f64>| built >= most || built >= LEAST_BUILT * p.unsigned_area();
+    let stays = |built: f64, p: &geo::Polygon<f64>| {
+        built >= most || built >= (LEAST_BUILT * p.unsigned_area()).max(LEFT_OUT_M2)
+    };
     MultiPolygon(pieces.into_iter().filter(|(built, p)| stays(*built, p)).map(|(_, p)| p).collect())
 }

@@ -150,6 +150,11 @@ pub(super) fn level(
             finer[cell].push(land);
         }
     }
+    for building in plan.finer.iter().flat_map(|f| &f.landmarks) {
+        if let Some(cell) = of[*building] {
+            finer[cell].push(&input.lands[*building]);
+        }
+    }
     let of_size = |land: &Land, members: &Vec<usize>| !members.is_empty() || area(land) >= settings.smallest_cell_m2;
     let found = lands.len();
     let cells = lands.into_iter().zip(members).zip(finer).filter(|((l, m), _)| of_size(l, m));

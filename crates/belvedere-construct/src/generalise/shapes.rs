@@ -24,18 +24,17 @@ fn ring(points: &[DVec2]) -> Option<LineString<f64>> {
 
 /// The land of an outline; rings that cross themselves or each other are put in order, rings that are no numbers left out.
 pub(super) fn land_of(polygons: &[Polygon]) -> Land {
-    let nothing: Land = MultiPolygon(Vec::new());
     let parts: Vec<Land> = polygons
         .iter()
         .filter_map(|p| {
             let holes = p.holes.iter().filter_map(|h| ring(h)).collect();
             let polygon = geo::Polygon::new(ring(&p.outer)?, holes);
             // The rule of odd and even crossings needs no orientation of rings.
-            Some(if polygon.is_valid() { polygon.orient(Direction::Default).into() } else { polygon.union(&nothing) })
+            Some(if polygon.is_valid() { polygon.orient(Direction::Default).into() } else { polygon.union(&nothing()) })
         })
         .collect();
     without_specks(if parts.len() == 1 {
-        parts.into_iter().next().unwrap_or(nothing)
+        parts.into_iter().next().unwrap_or_else(nothing)
     } else {
         geo::unary_union(&parts)
     })
@@ -139,7 +138,8 @@ pub(super) fn rectangle_round(polygon: &geo::Polygon<f64>, share: f64) -> Option
     if polygon.exterior().0.len() <= 5 && polygon.interiors().is_empty() {
         return Some(polygon.clone());
     }
-    let rectangle = polygon.minimum_rotated_rect()?;
+    // Unions and buffers need the outer ring counter-clockwise.
+    let rectangle = polygon.minimum_rotated_rect()?.orient(Direction::Default);
     (polygon.unsigned_area() >= share * rectangle.unsigned_area()).then_some(rectangle)
 }
 
@@ -148,20 +148,49 @@ pub(super) fn one(polygon: geo::Polygon<f64>) -> Land {
     MultiPolygon(vec![polygon])
 }
 
-/// The land with outlines of fewer vertices, none moved by more than `by` metres; an outline that would cross itself takes less.
+/// The land with outlines of fewer vertices, none moved by more than `by` metres; what then would cross itself is put in order.
 pub(super) fn simplified(land: &Land, by: f64) -> Land {
     let simple = |polygon: &geo::Polygon<f64>| {
+        let size = polygon.unsigned_area();
+        let kept = |land: &Land| (0.7 * size..1.4 * size).contains(&area(land));
         let mut tolerance = by;
         while tolerance > 0.05 {
             let simple = polygon.simplify(tolerance);
-            if simple.unsigned_area() > 0.5 * polygon.unsigned_area() && simple.is_valid() {
+            let simple = if simple.is_valid() { one(simple) } else { without_specks(simple.union(&nothing())) };
+            if kept(&simple) {
                 return simple;
             }
             tolerance *= 0.5;
         }
-        polygon.clone()
+        one(polygon.clone())
     };
-    MultiPolygon(land.iter().map(simple).collect())
+    MultiPolygon(land.iter().flat_map(simple).collect())
+}
+
+fn nothing() -> Land {
+    MultiPolygon(Vec::new())
+}
+
+/// The land with outlines that touch themselves, or each other within a polygon, grown together there.
+pub(super) fn parted(land: Land) -> Land {
+    const TOUCH_M: f64 = 0.02;
+    let key = |c: &Coord<f64>| [c.x, c.y].map(|v| (v * 200.0).round() as i64);
+    let touches = |p: &geo::Polygon<f64>| {
+        let rings = std::iter::once(p.exterior()).chain(p.interiors());
+        let mut keys: Vec<_> = rings.flat_map(|r| r.0.iter().skip(1)).map(key).collect();
+        let corners = keys.len();
+        keys.sort_unstable();
+        keys.dedup();
+        keys.len() < corners
+    };
+    let of = |p: geo::Polygon<f64>| {
+        if !touches(&p) {
+            return one(p);
+        }
+        let wide = simplified(&grown(&one(p), 5.0 * TOUCH_M), 2.0 * TOUCH_M);
+        MultiPolygon(wide.into_iter().map(|p| p.simplify(TOUCH_M)).collect())
+    };
+    MultiPolygon(land.into_iter().flat_map(of).collect())
 }
 
 /// What of `land` lies in `other`.
