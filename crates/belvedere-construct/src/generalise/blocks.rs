@@ -47,6 +47,9 @@ const STRAY: f64 = 0.6;
 /// Least share of a piece of a block that buildings cover.
 const LEAST_BUILT: f64 = 0.05;
 
+/// Least distance of blocks from landmarks that buildings touch, metres.
+const BY_LANDMARKS_M: f64 = 0.2;
+
 /// How coarsely blocks follow buildings.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Grain {
@@ -65,10 +68,10 @@ pub(super) struct Grain {
 impl Grain {
     /// That of the finer level (`times` = 1), or of the coarser one (2).
     pub(super) fn of(settings: &GeneraliseSettings, times: f64) -> Self {
-        let closing_m = times * settings.closing_m;
+        let closing_m = 0.5 * (1.0 + times) * settings.closing_m;
         Self {
             closing_m,
-            simplify_m: 0.125 * (1.0 + times) * closing_m,
+            simplify_m: 0.25 * times * closing_m,
             of_size: 0.04 + 0.08 * times,
             hole_m2: (2.0 * closing_m).powi(2),
             as_rectangle: 0.95 - 0.2 * times,
@@ -102,11 +105,12 @@ pub(super) struct Footprint {
 /// of landmarks. A piece of the cell that is built well becomes part of the block as a whole.
 pub(super) fn footprint(site: &Site<'_>, grain: Grain, settings: &GeneraliseSettings) -> Footprint {
     let joined = |lands: &[&Land]| union(lands.iter().map(|l| (*l).clone()).collect());
-    let (mut buildings, landmarks) = (joined(site.ordinary), joined(site.landmarks));
+    let (mut buildings, mut landmarks) = (joined(site.ordinary), joined(site.landmarks));
     let mut ground = main_pieces(site.cell, settings.smallest_cell_m2);
     if !landmarks.0.is_empty() {
         ground = without_specks(ground.difference(&grown(&landmarks, settings.inset_m)));
         buildings = without_specks(buildings.difference(&landmarks));
+        landmarks = simplified(&grown(&landmarks, BY_LANDMARKS_M), BY_LANDMARKS_M);
     }
     let built_m2 = area(&buildings);
     let standing = match site.finer {
@@ -160,19 +164,20 @@ fn whole(piece: &Land, settings: &GeneraliseSettings) -> Land {
 
 /// Outlines around buildings with gaps closed, `near`, made simple; they leave `ground` by little, and keep clear of `landmarks`.
 fn following(near: &Land, ground: &Land, landmarks: &Land, grain: Grain) -> Land {
-    let near = filled_below(near, landmarks, grain.hole_m2);
-    let simple = near.iter().map(|polygon| {
-        if let Some(rectangle) = rectangle_round(polygon, grain.as_rectangle) {
-            return one(rectangle);
+    let filled = filled_below(near, landmarks, grain.hole_m2);
+    let simple = filled.iter().map(|polygon| {
+        if let Some(rectangle) = rectangle_round(polygon, grain.as_rectangle).map(one)
+            && (polygon.exterior().0.len() <= 5 || area(&common(&rectangle, ground)) > 0.97 * area(&rectangle))
+        {
+            return rectangle;
         }
         let by = grain.simplify_m.min(grain.of_size * polygon.unsigned_area().sqrt());
         simplified(&grown(&one(polygon.clone()), STRAY * by), by)
     });
     let simple = union(simple.collect());
-    let stray = simple.difference(&grown(ground, STRAY * grain.simplify_m));
-    let stray = large_pieces(stray, LEFT_OUT_M2);
-    let stray = if stray.0.is_empty() { stray } else { large_pieces(stray.difference(&near), LEFT_OUT_M2) };
-    let simple = if stray.0.is_empty() { simple } else { simple.difference(&stray) };
+    let reach = grown(ground, STRAY * grain.simplify_m);
+    let strays = !large_pieces(simple.difference(&reach), LEFT_OUT_M2).0.is_empty();
+    let simple = if strays { common(&simple, &union(vec![reach, near.clone()])) } else { simple };
     if landmarks.0.is_empty() { simple } else { simple.difference(landmarks) }
 }
 

@@ -41,6 +41,9 @@ fn distance_to_outline(polygons: &[Polygon], p: DVec2) -> f64 {
         .fold(f64::MAX, f64::min)
 }
 
+/// Blocks may reach out of their cells by this where their outlines are made simple, metres.
+const REACH_M: f64 = 6.0;
+
 /// What holds for every city: cells share the settled ground without streets, blocks lie in cells, every building is in one
 /// cell, blocks and landmarks hold the volume of what they stand for.
 fn check_laws(city: &City, made: &Generalised) {
@@ -62,10 +65,17 @@ fn check_laws(city: &City, made: &Generalised) {
         for (block, shape) in level.blocks.iter().zip(&level.city.buildings) {
             let cell = &level.cells[block.cell];
             assert_eq!(shape.id, cell.name);
-            assert!(area(&shape.footprint) > 0.0 && area(&shape.footprint) <= cell.area_m2 + 1e-3);
-            for p in shape.footprint.iter().flat_map(|p| &p.outer) {
-                let out = distance_to_outline(&cell.polygons, *p);
-                assert!(in_any(&cell.polygons, *p) || out < 1e-3, "{}: a corner lies {out} m outside", cell.name);
+            assert!(area(&shape.footprint) > 0.0);
+            let rings = |p: &Polygon| std::iter::once(p.outer.clone()).chain(p.holes.clone()).collect::<Vec<_>>();
+            for p in shape.footprint.iter().flat_map(rings).flatten() {
+                let near = |polygons: &[Polygon], by| in_any(polygons, p) || distance_to_outline(polygons, p) < by;
+                let by_building = cell.buildings.iter().any(|i| near(&city.buildings[*i].footprint, REACH_M));
+                assert!(
+                    near(&cell.polygons, REACH_M) || by_building,
+                    "{}: {p} lies {} m outside",
+                    cell.name,
+                    distance_to_outline(&cell.polygons, p)
+                );
             }
             let held: f64 =
                 cell.buildings.iter().map(|i| area(&city.buildings[*i].footprint) * city.buildings[*i].height_m).sum();
@@ -190,7 +200,7 @@ fn odd_cities_become_something_sensible_and_it_is_said() {
     assert_eq!(made.report.without_area, 2);
     assert!((made.report.volume_m3 - (9.0 * 14.0 * 14.0 + 9.0 * 7.0 * 14.0)).abs() < 1.0, "{}", made.report.volume_m3);
     assert!(made.report.notes.iter().any(|n| n.contains("no usable height")), "{:?}", made.report.notes);
-    assert!(made.report.notes.iter().any(|n| n.contains("every cell is green")), "{:?}", made.report.notes);
+    assert!(made.report.notes.iter().any(|n| n.contains("every cell is hardly built")), "{:?}", made.report.notes);
 }
 
 #[test]
