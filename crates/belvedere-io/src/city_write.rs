@@ -391,6 +391,27 @@ mod tests {
     }
 
     #[test]
+    fn a_block_on_a_slope_is_one_closed_solid_for_each_piece() {
+        let mut sloped = block();
+        let mut second = sloped.footprint[0].clone();
+        second.outer.iter_mut().chain(second.holes.iter_mut().flatten()).for_each(|p| p.x += 50.0);
+        sloped.footprint.push(second);
+        let ground = |p: DVec2| Some(0.3 * (p.x - 1000.0) + 2.0 * (p.y / 5.0).sin());
+        sloped.faces = crate::city::prism_on(&sloped.footprint, 8.0, 0.0, &ground).expect("a prism");
+        let city = City { buildings: vec![sloped.clone()], ..City::default() };
+        let figures = [BlockFigures { coverage: 0.5, count: 7 }];
+        let document: Value = serde_json::from_str(&city_json(&city, &figures, None).expect("text")).expect("JSON");
+        let pieces = document["CityObjects"]["loa1-1"]["geometry"].as_array().expect("a list");
+        assert_eq!(pieces.iter().map(|g| g["type"].clone()).collect::<Vec<_>>(), ["Solid", "Solid"]);
+        let expected = 2.0 * 500.0 * 8.0;
+        assert!((expected - 0.1..1.3 * expected).contains(&volume(&document)), "{}", volume(&document));
+        sloped.faces.pop();
+        let open = City { buildings: vec![sloped], ..City::default() };
+        let document: Value = serde_json::from_str(&city_json(&open, &figures, None).expect("text")).expect("JSON");
+        assert_eq!(document["CityObjects"]["loa1-1"]["geometry"][0]["type"], "MultiSurface", "a wall is missing");
+    }
+
+    #[test]
     fn equal_ids_are_told_apart_and_no_numbers_refused() {
         let mut city = City { buildings: vec![block(), block()], ..City::default() };
         let document: Value = serde_json::from_str(&city_json(&city, &[], None).expect("a document")).expect("JSON");

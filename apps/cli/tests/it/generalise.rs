@@ -95,3 +95,67 @@ fn a_mapped_town_keeps_its_volume() {
     }
     assert!(FILES.iter().all(|name| place.path(&format!("town/{name}")).exists()));
 }
+
+/// Share of an overhead picture of `loa` that buildings fill, m^2, on ground that rises by `slope` and swings.
+fn seen_from_above(place: &Place, loa: u8, slope: f64) -> f64 {
+    let (side, spacing, px) = (420.0, 20.0, 420);
+    let nodes = 32;
+    let mut grid = format!(
+        "ncols {nodes}\nnrows {nodes}\nxllcenter 499900\nyllcenter 4999900\ncellsize {spacing}\nNODATA_value -9999\n"
+    );
+    for row in (0..nodes).rev() {
+        let height = |column: i32| {
+            let [x, y] = [column, row].map(|k| spacing * f64::from(k) - 100.0);
+            200.0 + slope * (0.8 * y + 0.6 * x) + 4.0 * (x / 50.0).sin() * (y / 60.0).cos()
+        };
+        grid += &(0..nodes).map(|c| format!("{:.2} ", height(c))).collect::<String>();
+        grid.push('\n');
+    }
+    place.write("hill.asc", &grid);
+    place.write(
+        "hill.toml",
+        &format!(
+            "format = 1\ncrs = \"EPSG:32632\"\n[[layer]]\nid = \"g\"\nkind = \"terrain\"\nsource = \"hill.asc\"\n\
+             source_crs = \"EPSG:32632\"\n[[layer]]\nid = \"c\"\nkind = \"city\"\n\
+             source = [\"hill_houses.geojson\", \"hill_streets.geojson\"]\nloa = {loa}\n[camera]\n\
+             projection = \"orthographic\"\northo_height_m = {side}\neye = [500110, 5000110, 4000]\n\
+             look_at = [500110, 5000110, 0]\nup = [0, 1, 0]\nimage = [{px}, {px}]\n"
+        ),
+    );
+    place.ok(&["render", "hill.toml", "-o", "hill.png", "--overwrite", "--aux", "id"]);
+    let bytes = read(&place.path("hill.id.npy"));
+    let city = bytes[bytes.len() - 4 * px * px..].chunks_exact(4).filter(|b| **b == 2u32.to_le_bytes()).count();
+    city as f64 * (side / px as f64).powi(2)
+}
+
+#[test]
+fn blocks_on_slopes_are_seen_from_above_as_their_buildings_are() {
+    let place = Place::new();
+    let feature = |kind: &str, coordinates: Value, properties: Value| {
+        let geometry = json!({ "type": kind, "coordinates": coordinates });
+        json!({ "type": "Feature", "properties": properties, "geometry": geometry })
+    };
+    let at = |x: f64, y: f64| json!([500_000.0 + x, 5_000_000.0 + y]);
+    let houses = (0..36).map(|number| {
+        let (block, house) = (number / 9, number % 9);
+        let x = 110.0 * f64::from(block % 2) + 12.0 + 28.0 * f64::from(house % 3);
+        let y = 110.0 * f64::from(block / 2) + 12.0 + 28.0 * f64::from(house / 3);
+        let ring = [[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0], [0.0, 0.0]].map(|d| at(x + d[0], y + d[1]));
+        feature("Polygon", json!([ring]), json!({ "building": "yes", "height": "7" }))
+    });
+    let roads = [(0.0, "secondary"), (105.0, "residential"), (210.0, "secondary")].into_iter().flat_map(|(k, class)| {
+        let ends = [[at(k, -40.0), at(k, 250.0)], [at(-40.0, k), at(250.0, k)]];
+        ends.map(|ends| feature("LineString", json!(ends), json!({ "highway": class })))
+    });
+    let crs = json!({ "type": "name", "properties": { "name": "urn:ogc:def:crs:EPSG::32632" } });
+    let (houses, roads): (Vec<Value>, Vec<Value>) = (houses.collect(), roads.collect());
+    for (name, features) in [("hill_houses.geojson", houses), ("hill_streets.geojson", roads)] {
+        place.write(name, &json!({ "type": "FeatureCollection", "crs": crs, "features": features }).to_string());
+    }
+    let plan = 36.0 * 400.0;
+    for slope in [0.1, 0.35, 0.6] {
+        let seen = [0, 1, 2].map(|loa| seen_from_above(&place, loa, slope));
+        assert!((seen[0] / plan - 1.0).abs() < 0.02, "slope {slope}: {} of {plan} m^2 at level 0", seen[0]);
+        assert!(seen[1] >= 0.9 * seen[0] && seen[2] >= 0.9 * seen[0], "slope {slope}: {seen:?} m^2");
+    }
+}

@@ -4,6 +4,7 @@ mod bars;
 mod centreline;
 mod flight;
 mod generalise;
+mod generalise_coverage;
 mod generalise_towns;
 mod measure;
 mod preview;

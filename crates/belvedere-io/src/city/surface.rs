@@ -258,4 +258,32 @@ mod tests {
         let lowest = on_ground.positions.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
         assert_eq!((lowest, on_ground.names.len()), (100.0, 2));
     }
+
+    #[test]
+    fn roofs_of_buildings_lie_over_the_ground_on_any_slope() {
+        let building = |height_m: f64| Building {
+            id: "b".into(),
+            name: String::new(),
+            landmark: false,
+            footprint: vec![Polygon { outer: square(0.0, 60.0), holes: Vec::new() }],
+            base_m: None,
+            height_m,
+            height_source: HeightSource::Stated,
+            faces: Vec::new(),
+        };
+        // A ridge in the middle of the building, off its outline.
+        let ridge = |xy: DVec2| Some(100.0 + 20.0 * (1.0 - ((xy - 30.0).abs().max_element() / 30.0)).max(0.0));
+        let slope = |xy: DVec2| Some(100.0 + 0.6 * xy.x);
+        let grounds: [&dyn Fn(DVec2) -> Option<f64>; 2] = [&ridge, &slope];
+        for (ground, highest) in grounds.into_iter().zip([115.0, 136.0]) {
+            for height in [2.0, 7.0, 80.0] {
+                let city = City { buildings: vec![building(height)], ..City::default() };
+                let mesh = surface(&city, &CityColors::default(), CityGround::Terrain(ground));
+                let top = mesh.positions.iter().map(|p| p.z).fold(f64::MIN, f64::max);
+                let low = mesh.positions.iter().map(|p| p.z).fold(f64::MAX, f64::min);
+                assert!(top > highest + height.min(2.0) - 1e-9 && top >= 100.0 + height, "{top} with {height}");
+                assert!((low - 100.0).abs() < 1e-9, "{low}");
+            }
+        }
+    }
 }
