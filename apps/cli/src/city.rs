@@ -46,5 +46,6 @@ pub(crate) fn generalise_city(args: GeneraliseArgs, context: &Context) -> anyhow
     context.warn(&found.warnings);
     context.warn(&found.generalised.report.notes);
     context.warn(&found.missed());
+    context.warn(&found.failing());
     Ok(if found.missed().is_empty() { Goal::Reached } else { Goal::Missed })
 }

@@ -143,10 +143,11 @@ fn blocks_on_slopes_are_seen_from_above_as_their_buildings_are() {
         let ring = [[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0], [0.0, 0.0]].map(|d| at(x + d[0], y + d[1]));
         feature("Polygon", json!([ring]), json!({ "building": "yes", "height": "7" }))
     });
-    let roads = [(0.0, "secondary"), (105.0, "residential"), (210.0, "secondary")].into_iter().flat_map(|(k, class)| {
-        let ends = [[at(k, -40.0), at(k, 250.0)], [at(-40.0, k), at(250.0, k)]];
-        ends.map(|ends| feature("LineString", json!(ends), json!({ "highway": class })))
-    });
+    let roads =
+        [(0.0, "secondary"), (105.0, "residential"), (210.0, "secondary")].into_iter().flat_map(|(k, class)| {
+            let ends = [[at(k, -40.0), at(k, 250.0)], [at(-40.0, k), at(250.0, k)]];
+            ends.map(|ends| feature("LineString", json!(ends), json!({ "highway": class })))
+        });
     let crs = json!({ "type": "name", "properties": { "name": "urn:ogc:def:crs:EPSG::32632" } });
     let (houses, roads): (Vec<Value>, Vec<Value>) = (houses.collect(), roads.collect());
     for (name, features) in [("hill_houses.geojson", houses), ("hill_streets.geojson", roads)] {

@@ -64,6 +64,30 @@ pub struct LevelReport {
     pub each_block: Vec<BlockReport>,
 }
 
+/// Most names of one sentence.
+const MOST_NAMES: usize = 5;
+
+impl LevelReport {
+    /// Which cells fail, one sentence for each reason.
+    pub fn failing(&self) -> Vec<String> {
+        let mut reasons: Vec<&str> = self.cells_failing.iter().map(|c| c.reason).collect();
+        reasons.sort_unstable();
+        reasons.dedup();
+        let text = |reason: &str| {
+            let of: Vec<&FailingCell> = self.cells_failing.iter().filter(|c| c.reason == reason).collect();
+            let one = |c: &&FailingCell| {
+                let volume = 100.0 * c.volume_out_m3 / c.volume_in_m3.max(f64::MIN_POSITIVE);
+                format!("{} ({volume:.0} % of the volume, {:.0} % covered)", c.cell, 100.0 * c.covered_share)
+            };
+            let more = of.len().saturating_sub(MOST_NAMES);
+            let names = of.iter().take(MOST_NAMES).map(one).collect::<Vec<_>>().join(", ");
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            format!("{}: {reason} in {names}{more}", self.name)
+        };
+        reasons.into_iter().map(text).collect()
+    }
+}
+
 /// Figures of one block.
 #[derive(Debug, Clone, Serialize)]
 pub struct BlockReport {

@@ -164,6 +164,8 @@ fn abstraction(
     }
     let notes = found.report.notes.into_iter().filter(|n| n.starts_with(level.name)).collect();
     loader.note(index, notes);
+    let failing = found.report.levels.iter().filter(|l| l.name == level.name).flat_map(|l| l.failing());
+    loader.note(index, failing.collect());
     let missed = found.report.levels.iter().find(|l| l.name == level.name && !l.volume_kept);
     if let Some(missed) = missed {
         loader.note(index, vec![format!("{} keeps {:.0} % of the volume", missed.name, 100.0 * missed.volume_share)]);

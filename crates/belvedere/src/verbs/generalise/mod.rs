@@ -8,7 +8,7 @@ use crate::city_map::{MapPicture, bounds, map_picture};
 use crate::record::{self, InputFile};
 use crate::{BelvedereError, output};
 pub use belvedere_construct::generalise::GeneraliseSettings;
-use belvedere_construct::generalise::{GeneraliseReport, Generalised};
+use belvedere_construct::generalise::{GeneraliseReport, Generalised, LevelReport};
 use belvedere_core::DVec2;
 use belvedere_io::city_write::{BlockFigures, write_city_json};
 use belvedere_io::png;
@@ -98,15 +98,15 @@ impl GeneralisedCity {
     /// Levels that do not keep the volume, one sentence each.
     pub fn missed(&self) -> Vec<String> {
         let levels = self.generalised.report.levels.iter().filter(|l| !l.volume_kept);
-        let text = |l: &belvedere_construct::generalise::LevelReport| {
-            format!(
-                "{} keeps {:.0} % of the volume, 90 to 110 are good; {} buildings stand in green cells, a smaller margin_m keeps more",
-                l.name,
-                100.0 * l.volume_share,
-                l.buildings_in_green
-            )
+        let text = |l: &LevelReport| {
+            format!("{} keeps {:.0} % of the volume, 90 to 110 are good", l.name, 100.0 * l.volume_share)
         };
         levels.map(text).collect()
+    }
+
+    /// Blocks that do not keep the volume of their buildings or leave some of them out, one sentence for each reason.
+    pub fn failing(&self) -> Vec<String> {
+        self.generalised.report.levels.iter().flat_map(LevelReport::failing).collect()
     }
 
     /// One line per level.
@@ -115,13 +115,15 @@ impl GeneralisedCity {
         let mut text = format!("{} buildings, {:.1} s", report.buildings, report.seconds);
         for l in &report.levels {
             text += &format!(
-                "\n{}: {} blocks in {} cells ({} green), {} landmarks, {:.1} % of the volume",
+                "\n{}: {} blocks in {} cells ({} green), {} landmarks, {:.1} % of the volume, {:.1} % of the built ground, {:.0} % of the triangles",
                 l.name,
                 l.blocks,
                 l.cells,
                 l.green_cells,
                 l.landmarks,
-                100.0 * l.volume_share
+                100.0 * l.volume_share,
+                100.0 * l.covered_share,
+                100.0 * l.triangles as f64 / report.triangles.max(1) as f64
             );
         }
         text
@@ -164,9 +166,8 @@ impl GeneralisedCity {
     /// Plan drawings of the city and its levels side by side: RGB pixels and the width.
     pub fn overview(&self) -> (Vec<[u8; 3]>, usize) {
         let [fine, coarse] = &self.generalised.levels;
-        let counted = |level: &belvedere_construct::generalise::LevelReport| {
-            format!("{}, {}", many(level.blocks, "block"), many(level.landmarks, "landmark"))
-        };
+        let counted =
+            |level: &LevelReport| format!("{}, {}", many(level.blocks, "block"), many(level.landmarks, "landmark"));
         let figures = &self.generalised.report.levels;
         let notes = [many(self.city.buildings.len(), "building"), counted(&figures[0]), counted(&figures[1])];
         let titles = ["The city as mapped", "Blocks between all streets", "Blocks between main streets"];
