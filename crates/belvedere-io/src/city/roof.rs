@@ -6,13 +6,13 @@ use earcut::Earcut;
 use glam::{DMat3, DVec2, DVec3};
 
 /// Spacing of the places at which ground is looked at, metres.
-const LOOK_EVERY_M: f64 = 8.0;
+const LOOK_EVERY_M: f64 = 6.0;
 /// How far a roof may be off the height over its ground, share of that height, and metres.
 const OFF: [f64; 2] = [0.25, 1.0];
 /// Least share of its height by which a roof lies over its ground everywhere.
 const CLEAR: f64 = 0.5;
-/// Least ground for each triangle of a roof, m^2.
-const LEAST_TRIANGLE_M2: f64 = 60.0;
+/// Ground for each triangle that a roof may have more than its outline needs, m^2: a quarter of those of the houses of a suburb.
+const LEAST_TRIANGLE_M2: f64 = 250.0;
 
 /// A prism on ground that is not level, closed: its roof lies `height_m` over the ground, flat where one plane is near enough, else
 /// in facets; its floor lies as far below.

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 /// Edges shorter than this are not halved, metres.
 const SHORTEST_M: f64 = 4.0;
 /// Most pieces along an edge of a triangle between which heights are compared.
-const MOST_STEPS: usize = 12;
+const MOST_STEPS: usize = 24;
 /// Rounds of refinement.
 const ROUNDS: usize = 14;
 
@@ -75,7 +75,7 @@ impl Tin {
         edges.filter(|[a, b]| !self.left_of.contains_key(&[*b, *a])).collect()
     }
 
-    /// Places over a triangle, edges among them, at most `step` metres apart where 13 along an edge are enough.
+    /// Places over a triangle, edges among them, at most `step` metres apart where 25 along an edge are enough.
     pub(super) fn samples(&self, number: usize, step: f64) -> impl Iterator<Item = Sample> + '_ {
         let corners = self.triangles[number];
         let longest = edges(corners).map(|e| self.length(e)).into_iter().fold(0.0, f64::max);
