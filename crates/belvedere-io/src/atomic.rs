@@ -109,7 +109,7 @@ fn temporary_beside(target: &Path) -> io::Result<NamedTempFile> {
 #[cfg(unix)]
 fn sync_folder(folder: &Path) {
     // some file systems cannot do this; the data are safe already
-    if let Ok(folder) = fs::File::open(folder) {
+    if let Ok(folder) = std::fs::File::open(folder) {
         let _ = folder.sync_all();
     }
 }

@@ -4,6 +4,7 @@
 //! Longitudes and latitudes are degrees. Datum shifts are Helmert shifts (three or seven parameters); grid shifts are not
 //! applied, see [`CoordinateSystem::datum_note`].
 
+mod tables;
 mod wkt;
 
 use belvedere_scene::Crs;
@@ -41,6 +42,11 @@ pub enum CrsError {
     /// A scene without georeference was asked for geographic positions.
     #[error("a scene with crs = \"local\" has no geographic positions; set crs to \"auto\" or an EPSG code")]
     Local,
+    /// Positions in a system that nobody stated are to be placed on the earth.
+    #[error(
+        "their coordinate system is not stated, and the numbers are no longitudes and latitudes; state its EPSG code in the file (a \"crs\" member, a .prj), or use them with terrain in a local scene"
+    )]
+    Unstated,
 }
 
 /// A geographic or projected system, ready to transform from and to.
@@ -48,6 +54,7 @@ pub enum CrsError {
 pub struct CoordinateSystem {
     name: String,
     epsg: Option<u32>,
+    local: bool,
     proj_string: String,
     proj: Arc<Proj>,
 }
@@ -80,10 +87,10 @@ impl CoordinateSystem {
     /// # Errors
     /// [`CrsError::UnknownCode`], [`CrsError::Unsupported`].
     pub fn from_epsg(code: u32) -> Result<Self, CrsError> {
-        let definition = u16::try_from(code).ok().and_then(crs_definitions::from_code);
-        let definition = definition.ok_or(CrsError::UnknownCode { code })?;
+        let code = tables::current_code(code);
+        let definition = tables::definition(code)?;
         let name = format!("EPSG:{code}");
-        let mut system = Self::build(&name, definition.proj4)?;
+        let mut system = Self::build(&name, &definition)?;
         system.epsg = Some(code);
         Ok(system)
     }
@@ -103,6 +110,38 @@ impl CoordinateSystem {
     /// [`CrsError::Text`], [`CrsError::Unsupported`], [`CrsError::UnknownCode`].
     pub fn from_wkt(text: &str) -> Result<Self, CrsError> {
         wkt::parse(text)
+    }
+
+    /// The plane of a file that states no system; it can be joined with scenes without georeference alone.
+    pub fn local() -> Self {
+        let proj = Proj::from_proj_string("+proj=eqc +ellps=WGS84 +units=m").unwrap_or_else(|_| unreachable!());
+        let name = "no stated system".to_owned();
+        Self { name, epsg: None, local: true, proj_string: "local".to_owned(), proj: Arc::new(proj) }
+    }
+
+    /// A system by its name: `EPSG:25832`, `urn:ogc:def:crs:EPSG::25832`, `ESRI:102100`, a bare number, well-known text, or the name that
+    /// texts give it.
+    ///
+    /// # Errors
+    /// [`CrsError::Text`], [`CrsError::Unsupported`], [`CrsError::UnknownCode`].
+    pub fn from_text(text: &str) -> Result<Self, CrsError> {
+        let text = text.trim();
+        if text.contains(['[', '(']) {
+            return Self::from_wkt(text);
+        }
+        let last = text.rsplit([':', '/', '#']).next().unwrap_or(text);
+        match last.parse::<u32>() {
+            Ok(code) => Self::from_epsg(code),
+            Err(_) => wkt::by_name(text).unwrap_or_else(|| {
+                let reason = format!("{text:.60?} is neither a code nor a name that is known");
+                Err(CrsError::Text { reason })
+            }),
+        }
+    }
+
+    /// Whether it is the plane of a file that states no system.
+    pub fn is_local(&self) -> bool {
+        self.local
     }
 
     /// Longitude and latitude on WGS 84 (EPSG:4326, x = longitude).
@@ -146,7 +185,7 @@ impl CoordinateSystem {
         if !proj.has_forward() || !proj.has_inverse() || !(proj.to_meter() > 0.0) {
             return Err(unsupported("its projection has no inverse".into()));
         }
-        Ok(Self { name: name.to_owned(), epsg: None, proj_string, proj: Arc::new(proj) })
+        Ok(Self { name: name.to_owned(), epsg: None, local: false, proj_string, proj: Arc::new(proj) })
     }
 
     /// Name for messages: `EPSG:32631`, or what the file called it.
@@ -176,12 +215,15 @@ impl CoordinateSystem {
 
     /// Whether scenes can use it as it is: projected in metres, x to the east, y to the north, with an EPSG code.
     pub fn suits_scenes(&self) -> bool {
-        self.epsg.is_some() && self.metres_per_unit() == Some(1.0) && self.proj.is_normalized_axis()
+        !self.local && self.epsg.is_some() && self.metres_per_unit() == Some(1.0) && self.proj.is_normalized_axis()
     }
 
     /// What is approximate about its datum, if anything: one sentence for warnings. Positions in systems without a note
     /// agree with PROJ's own to 1e-6 m.
     pub fn datum_note(&self) -> Option<String> {
+        if self.local {
+            return None;
+        }
         let value = |key: &str| self.proj_string.split(' ').find_map(|p| p.strip_prefix(key));
         if self.proj_string.contains(NAD27_SHIFT) {
             return Some(format!(
@@ -189,8 +231,7 @@ impl CoordinateSystem {
             ));
         }
         if let Some(shift) = value("+towgs84=") {
-            let null = shift.split(',').all(|v| v.parse::<f64>().is_ok_and(|v| v == 0.0));
-            return (!null).then(|| {
+            return (!is_small(shift)).then(|| {
                 format!(
                     "{self} is joined to WGS 84 by a Helmert shift without a grid: positions may be off by a few metres"
                 )
@@ -209,6 +250,20 @@ impl CoordinateSystem {
     }
 }
 
+/// Whether a Helmert shift moves nothing by more than a few metres.
+fn is_small(shift: &str) -> bool {
+    /// Radius of the earth in metres per arc second, and per part of a million.
+    const PER_SECOND: f64 = 31.0;
+    const PER_MILLION: f64 = 6.4;
+    let numbers: Vec<f64> = shift.split(',').map(|v| v.parse().unwrap_or(f64::INFINITY)).collect();
+    let length = |part: Option<&[f64]>| part.map_or(0.0, |p| p.iter().map(|v| v * v).sum::<f64>().sqrt());
+    let turn = PER_SECOND * length(numbers.get(3..6));
+    length(numbers.get(..3)) + turn + PER_MILLION * numbers.get(6).map_or(0.0, |s| s.abs()) <= SMALL_SHIFT_M
+}
+
+/// Shifts up to this need no warning, metres.
+const SMALL_SHIFT_M: f64 = 3.0;
+
 /// Largest coordinate that a transform returns, metres or degrees; beyond it a projection has left its domain.
 const MAX_COORDINATE: f64 = 1.0e8;
 /// Below this many points one thread is faster.
@@ -226,8 +281,11 @@ impl Transform {
     /// From one system to another.
     ///
     /// # Errors
-    /// None today: systems that cannot be transformed are refused earlier. Transforms by grid files would need it.
+    /// [`CrsError::Unstated`]: one of them is not known.
     pub fn new(from: &CoordinateSystem, to: &CoordinateSystem) -> Result<Self, CrsError> {
+        if from.local != to.local {
+            return Err(CrsError::Unstated);
+        }
         Ok(Self { from: from.clone(), to: to.clone(), identity: from == to })
     }
 

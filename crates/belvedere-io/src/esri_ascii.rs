@@ -34,6 +34,8 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     limits.check(length).map_err(bad)?;
     let (bytes, file) = InputFile::read(path)?;
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+    let commas = text.contains(&b',').then(|| with_points(text));
+    let text = commas.as_deref().unwrap_or(text);
     let mut words = text.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()).peekable();
     let header = header(&mut words).map_err(bad)?;
     let missing = |what: &str| bad(format!("the header lacks {what}; it is no ESRI ASCII grid or is damaged"));
@@ -57,6 +59,9 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
         return Err(bad(too_few(cols, rows, values.len())));
     }
     let mut warnings = Vec::new();
+    if commas.is_some() {
+        warnings.push(format!("{}: its numbers have decimal commas; they are read as points", path.display()));
+    }
     let extra = words.count();
     if extra > 0 {
         warnings.push(format!("{}: {extra} values after the {expected} of the grid are ignored", path.display()));
@@ -70,6 +75,13 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     Ok(Loaded::new(Raster { info, samples: Samples::F32(values), mask: None }, warnings).with_file(file))
 }
 
+/// Numbers with decimal commas, as some locales write them, with points. Commas between numbers stay what they are, and are no numbers.
+fn with_points(text: &[u8]) -> Vec<u8> {
+    let digit = |at: Option<usize>| at.and_then(|at| text.get(at)).is_some_and(u8::is_ascii_digit);
+    let decimal = |at: usize| text[at] == b',' && (digit(at.checked_sub(1)) || digit(Some(at + 1)));
+    (0..text.len()).map(|at| if decimal(at) { b'.' } else { text[at] }).collect()
+}
+
 fn too_few(cols: usize, rows: usize, found: usize) -> String {
     let expected = cols * rows;
     format!(
@@ -80,7 +92,7 @@ fn too_few(cols: usize, rows: usize, found: usize) -> String {
 fn not_a_number(word: &[u8], index: usize, cols: usize) -> String {
     let shown: String = String::from_utf8_lossy(word).chars().take(20).collect();
     let (col, row) = (index % cols, index / cols);
-    format!("{shown:?} at column {col}, row {row} is not a number; use decimal points and blanks between values")
+    format!("{shown:?} at column {col}, row {row} is not a number; numbers with a decimal point or comma and blanks between them are needed")
 }
 
 fn header<'a>(words: &mut std::iter::Peekable<impl Iterator<Item = &'a [u8]>>) -> Result<Header, String> {

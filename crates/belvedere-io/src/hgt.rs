@@ -1,4 +1,4 @@
-//! SRTM elevation tiles: `.hgt`, also inside `.zip`.
+//! SRTM elevation tiles: `.hgt`.
 //!
 //! A square of big-endian 16-bit heights of one degree by one degree, north-west first; rows and columns on both edges
 //! are shared with the neighbours. The name gives the south-west corner: `N42E001.hgt`. Source: NASA, SRTM user's guide.
@@ -7,7 +7,7 @@ use crate::fs::File;
 use crate::{Affine, CrsKind, InputFile, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs};
 use rayon::prelude::*;
 use std::ffi::OsStr;
-use std::io::{Cursor, Read};
+use std::io::Read;
 use std::path::Path;
 
 /// Stored value of a void.
@@ -18,13 +18,12 @@ const MAX_SIDE: usize = 3601;
 /// Reads a tile.
 ///
 /// # Errors
-/// [`IoError::Os`]; [`IoError::Format`] if the name gives no corner, the size is no tile's (a truncated file), the archive
-/// holds no or more than one tile, or the tile passes the limit.
+/// [`IoError::Os`]; [`IoError::Format`] if neither the name nor that of the archive gives a corner, the size is no tile's (a
+/// truncated file), or the tile passes the limit.
 pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
-    let zipped = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("zip"));
-    let Tile { name, bytes, file } = if zipped { unzip(path)? } else { plain(path)? };
+    let Tile { name, bytes, file } = plain(path)?;
     let bad = |reason: String| IoError::format(path, reason);
-    let Some([lon, lat]) = corner(&name).or_else(|| corner(&file_name(path))) else {
+    let Some([lon, lat]) = corner(&name).or_else(|| corner(&file_name(path.parent().unwrap_or(path)))) else {
         return Err(bad(format!(
             "the name {name:?} does not tell the tile's south-west corner; rename it like N42E001.hgt"
         )));
@@ -44,6 +43,7 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     info.crs = SourceCrs::Epsg(4326);
     info.crs_kind = CrsKind::Geographic;
     info.vertical_epsg = Some(5773);
+    info.vertical_unit_said = true;
     info.nodata = Some(f64::from(VOID));
     Ok(Loaded::clean(Raster { info, samples: Samples::I16(samples), mask: None }).with_file(file))
 }
@@ -71,32 +71,6 @@ fn plain(path: &Path) -> Result<Tile, IoError> {
 
 fn max_bytes() -> u64 {
     2 * (MAX_SIDE as u64).pow(2)
-}
-
-fn unzip(path: &Path) -> Result<Tile, IoError> {
-    let bad = |reason: String| IoError::format(path, reason);
-    let broken = |e: zip::result::ZipError| match e {
-        zip::result::ZipError::Io(e) if e.kind() != std::io::ErrorKind::UnexpectedEof => IoError::os(path, e),
-        e => bad(format!("the archive cannot be read ({e}); get it again")),
-    };
-    let (packed, file) = InputFile::read(path)?;
-    let mut archive = zip::ZipArchive::new(Cursor::new(packed)).map_err(broken)?;
-    let names = archive.file_names().flatten();
-    let tiles: Vec<String> =
-        names.filter(|n| n.to_ascii_lowercase().ends_with(".hgt")).map(|n| n.into_owned()).collect();
-    let [tile] = tiles.as_slice() else {
-        return Err(bad(format!(
-            "the archive holds {} .hgt tiles, exactly one is needed; unpack it and name the tiles",
-            tiles.len()
-        )));
-    };
-    let entry = archive.by_name(tile).map_err(broken)?;
-    let mut bytes = Vec::new();
-    entry
-        .take(max_bytes() + 1)
-        .read_to_end(&mut bytes)
-        .map_err(|e| bad(format!("{tile} in the archive cannot be unpacked ({e}); get it again")))?;
-    Ok(Tile { name: file_name(Path::new(tile)), bytes, file })
 }
 
 /// Longitude and latitude of the south-west corner by the name.
@@ -142,22 +116,5 @@ mod tests {
         for bad in [0, 2, 777_777, 2_884_800, 2 * 1200 * 1200, usize::MAX] {
             assert_eq!(side_of(bad), None, "{bad}");
         }
-    }
-
-    #[test]
-    fn the_largest_tile_comes_out_of_an_archive_and_a_byte_more_is_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("N42E001.hgt.zip");
-        let pack = |bytes: usize| {
-            let mut archive = zip::ZipWriter::new(File::create(&path).unwrap());
-            let options = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Deflated);
-            archive.start_file("N42E001.hgt", options).unwrap();
-            std::io::Write::write_all(&mut archive, &vec![0; bytes]).unwrap();
-            archive.finish().unwrap();
-            read(&path, &Limits::default())
-        };
-        assert_eq!(pack(25_934_402).unwrap().value.info.width, 3601);
-        let error = pack(25_934_403).unwrap_err().to_string();
-        assert!(error.contains("not a whole tile"), "{error}");
     }
 }

@@ -23,8 +23,14 @@ fn displayed<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Erro
 }
 
 impl InputFile {
-    /// The record of a file with this content.
+    /// The record of a file with this content. Of what lies in an archive it is that of the archive.
     pub fn of(path: &Path, content: &[u8]) -> Self {
+        let archive = fs::archive_of(path);
+        if archive != path
+            && let Ok(packed) = fs::read(&archive)
+        {
+            return Self { path: archive, bytes: packed.len() as u64, sha256: sha256(&packed) };
+        }
         Self { path: path.to_owned(), bytes: content.len() as u64, sha256: sha256(content) }
     }
 

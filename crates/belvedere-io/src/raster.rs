@@ -261,6 +261,8 @@ pub struct RasterInfo {
     pub vertical_epsg: Option<u32>,
     /// Metres per unit of the heights; 1 unless the file says otherwise.
     pub vertical_unit_m: f64,
+    /// Whether the file says it, or its format does.
+    pub vertical_unit_said: bool,
     /// Stored value that means "no data", as stored (before [`Self::scaling`]).
     pub nodata: Option<f64>,
     /// Per band `[scale, offset]`: value = stored * scale + offset. Empty = values as stored.
@@ -287,6 +289,7 @@ impl RasterInfo {
             linear_unit_m: None,
             vertical_epsg: None,
             vertical_unit_m: 1.0,
+            vertical_unit_said: false,
             nodata: None,
             scaling: Vec::new(),
             overviews: Vec::new(),

@@ -43,7 +43,7 @@ const fn unread(format: &'static str, holds: &'static str, meanwhile: &'static s
 }
 
 /// Bytes at the beginning of binary files.
-const MAGIC: [(&[u8], Unread); 13] = [
+const MAGIC: [(&[u8], Unread); 19] = [
     (b"LASF", unread("LAS or LAZ", CLOUD, AS_DEM)),
     (b"ASTM-E57", unread("E57", CLOUD, AS_DEM)),
     (b"fgb\x03", unread("FlatGeobuf", "map features", AS_GEOJSON)),
@@ -53,6 +53,12 @@ const MAGIC: [(&[u8], Unread); 13] = [
     (b"GRIB", unread("GRIB", GRID, AS_GEOTIFF)),
     (b"ISO-10303-21", unread("IFC or STEP", SOLID, AS_GLTF)),
     (b"Kaydara FBX Binary", unread("FBX", "triangles", AS_GLTF)),
+    (b"7z\xbc\xaf", unread("7-Zip", "packed files", "unpack it, or pack as ZIP or gzip")),
+    (b"Rar!", unread("RAR", "packed files", "unpack it, or pack as ZIP or gzip")),
+    (b"BZh", unread("bzip2", "a packed file", "unpack it, or pack it as gzip")),
+    (b"\xfd7zXZ", unread("xz", "a packed file", "unpack it, or pack it as gzip")),
+    (b"(\xb5/\xfd", unread("Zstandard", "a packed file", "unpack it, or pack it as gzip")),
+    (b"PAR1", unread("GeoParquet", "map features", AS_GEOJSON)),
     (b"%PDF", unread("PDF", "pages", "give the data behind it")),
     (
         b"\x89PNG\r\n",
@@ -81,7 +87,7 @@ const TEXT: [(&str, Unread); 11] = [
 ];
 
 /// Endings of names, where content tells nothing; longer ones first.
-const ENDINGS: [(&str, Unread); 27] = [
+const ENDINGS: [(&str, Unread); 48] = [
     (".city.jsonl", unread("CityJSONSeq", CITY, AS_CITY)),
     (".city.json", unread("CityJSON", CITY, AS_CITY)),
     (".osm.bz2", unread("OSM XML", OSM, "osmium export turns it into GeoJSON")),
@@ -108,6 +114,27 @@ const ENDINGS: [(&str, Unread); 27] = [
     (".3mf", unread("3MF", "triangles", AS_GLTF)),
     (".usdz", unread("USD", "triangles", AS_GLTF)),
     (".e00", unread("ArcInfo export", "map features or a grid", AS_GEOJSON)),
+    (".tar", unread("tar", "packed files", "unpack it, or pack as ZIP")),
+    (".tgz", unread("tar", "packed files", "unpack it, or pack as ZIP")),
+    (".tar.gz", unread("tar", "packed files", "unpack it, or pack as ZIP")),
+    (".vtk", unread("legacy VTK", "a mesh or grid of science", "ParaView turns it into PLY or OBJ")),
+    (".vtp", unread("VTK XML", "a mesh or grid of science", "ParaView turns it into PLY or OBJ")),
+    (".vtu", unread("VTK XML", "a mesh or grid of science", "ParaView turns it into PLY or OBJ")),
+    (".las", unread("LAS or LAZ", CLOUD, AS_DEM)),
+    (".laz", unread("LAS or LAZ", CLOUD, AS_DEM)),
+    (".xyz", unread("XYZ", "lines of coordinates", AS_DEM)),
+    (".dem", unread("USGS DEM", "a raster", AS_GEOTIFF)),
+    (".dt2", unread("DTED", "a raster", AS_GEOTIFF)),
+    (".dt1", unread("DTED", "a raster", AS_GEOTIFF)),
+    (".bil", unread("ESRI BIL", "a raster", AS_GEOTIFF)),
+    (".flt", unread("ESRI float grid", "a raster", AS_GEOTIFF)),
+    (".adf", unread("ArcInfo grid", "a raster", AS_GEOTIFF)),
+    (".nc", unread("netCDF", GRID, AS_GEOTIFF)),
+    (".csv", unread("a table", "rows of text", "ogr2ogr or QGIS turn its coordinates into GeoJSON")),
+    (".blend", unread("Blender", "triangles", "export it as glTF")),
+    (".dae", unread("COLLADA", "triangles", AS_GLTF)),
+    (".wkt", unread("well-known text", "map features", AS_GEOJSON)),
+    (".topojson", unread("TopoJSON", "map features", AS_GEOJSON)),
     (".img", unread("Erdas Imagine", "a raster", AS_GEOTIFF)),
 ];
 
@@ -123,13 +150,14 @@ fn read_endings() -> impl Iterator<Item = &'static &'static str> {
 pub fn recognise(path: &Path) -> Result<Option<Unread>, IoError> {
     let (path, _) = vector::split_table(path);
     let file = fs::File::open(path).map_err(|e| IoError::os(path, e))?;
-    let reads = path.extension().is_some_and(|e| read_endings().any(|read| e.eq_ignore_ascii_case(read)));
+    let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let tar = name.ends_with(".tar.gz");
+    let reads = !tar && path.extension().is_some_and(|e| read_endings().any(|read| e.eq_ignore_ascii_case(read)));
     if reads || molecule::is_molecule(path) || volume::is_volume(path) {
         return Ok(None);
     }
     let mut head = Vec::new();
     file.take(HEAD).read_to_end(&mut head).map_err(|e| IoError::os(path, e))?;
-    let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
     Ok(of_content(&head)
         .or_else(|| ENDINGS.iter().find(|(ending, _)| name.ends_with(ending)).map(|(_, unread)| *unread)))
 }

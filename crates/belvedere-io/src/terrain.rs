@@ -9,6 +9,7 @@ mod grid_map;
 mod original;
 mod resample;
 mod sea_voids;
+mod sentinels;
 mod source;
 
 use crate::crs::{CoordinateSystem, Transform, utm_epsg};
@@ -55,6 +56,8 @@ pub struct TerrainRequest {
     pub source_crs: Option<u32>,
     /// Stored value that means "no data", instead of what the files say.
     pub nodata: Option<f64>,
+    /// Metres per unit of the heights, instead of what the files say; > 0.
+    pub vertical_unit_m: Option<f64>,
     /// Bound on the 99th percentile of the resampling error at the source's samples, metres. Where the relief is too
     /// rough for it the grid is made up to twice as fine as the source, within [`Self::refine_to_nodes`].
     pub max_error_p99_m: f64,
@@ -73,6 +76,7 @@ impl Default for TerrainRequest {
             max_nodes: 16_000_000,
             source_crs: None,
             nodata: None,
+            vertical_unit_m: None,
             max_error_p99_m: 2.0,
             refine_to_nodes: 2_000_000,
         }
@@ -117,7 +121,7 @@ pub struct LoadedTerrain {
 const UTM_MAX_HALF_WIDTH_DEG: f64 = 20.0;
 
 /// Endings of the files that [`load_terrain`] reads.
-pub const ENDINGS: &[&str] = &["tif", "tiff", "hgt", "zip", "asc", "grd", "txt"];
+pub const ENDINGS: &[&str] = &["tif", "tiff", "hgt", "zip", "gz", "asc", "grd", "txt"];
 
 /// Resampling errors above this are worth a warning; below it they are within what global elevation models promise, metres.
 const WARN_P99_M: f64 = 16.0;
@@ -293,11 +297,11 @@ fn choose_target(
     }
     if let Some(source) = unknown {
         if sources.iter().any(|s| s.system.is_some()) || request.crs != CrsChoice::Auto {
-            let reason = "the file states no CRS that is understood; set source_crs to its EPSG code";
+            let reason = "the file states no CRS that is understood; set its EPSG code (source_crs of its layer, or --source-crs)";
             return Err(IoError::format(&source.path, reason));
         }
         warnings.push(format!(
-            "{}: no coordinate system is known, so the scene is local; set source_crs to place it on the earth",
+            "{}: no coordinate system is known, so the scene is local; source_crs of its layer, or --source-crs, places it on the earth",
             source.path.display()
         ));
         return Ok(local);
@@ -337,7 +341,7 @@ fn auto_target(sources: &[SourceGrid]) -> Result<Target, IoError> {
         return Ok(Target { crs: Crs::Epsg(code), system: Some(system.clone()) });
     }
     let off_earth =
-        || IoError::format(&first.path, "no part of it lies on the earth; check its georeference or set source_crs");
+        || IoError::format(&first.path, "no part of it lies on the earth; check its georeference, or set source_crs of its layer (--source-crs)");
     let Extent { bounds: [west, south, east, north], .. } = extent(sources).ok_or_else(off_earth)?;
     let centre = DVec2::new(0.5 * (west + east), 0.5 * (south + north));
     let nearest_equator = if south * north < 0.0 { 0.0 } else { south.abs().min(north.abs()) };

@@ -75,7 +75,8 @@ pub(super) fn city(vectors: Vectors) -> Result<Loaded<CityFile>, IoError> {
         .map(|w| format!("{}: {w}", path.display()));
     let (warnings, reference) = (warnings.collect(), vectors.crs.name().to_owned());
     let format = vectors.format.to_owned();
-    let file = CityFile { path, format, crs: Some(vectors.crs), reference, lods: vec!["0".into()], city };
+    let crs = Some(vectors.crs).filter(|crs| !crs.is_local());
+    let file = CityFile { path, format, crs, reference, lods: vec!["0".into()], city };
     Ok(Loaded::new(file, warnings))
 }
 

@@ -20,7 +20,8 @@ pub use roof::prism_on;
 pub use surface::{CityColors, CityGround, plate_extent, surface};
 
 use crate::crs::CoordinateSystem;
-use crate::vector::{load_vectors, split_table};
+use crate::packed::{content, ends};
+use crate::vector::{self, load_vectors, split_table};
 use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_scene::City;
 use std::path::{Path, PathBuf};
@@ -49,6 +50,7 @@ pub struct CityFile {
 /// # Errors
 /// [`IoError`]: unreadable, none of the formats, broken, too large for `limits`, or without anything to show.
 pub fn load_city(path: &Path, lod: Option<&str>, limits: &Limits) -> Result<Loaded<CityFile>, IoError> {
+    let path = &meant(path, limits)?;
     let whole = split_table(path).0;
     let size = fs::metadata(whole).map_err(|e| IoError::os(whole, e))?.len();
     // A tree of JSON takes several times the bytes of its text.
@@ -87,6 +89,12 @@ enum Model {
 /// [`IoError::Os`].
 pub fn is_city(path: &Path) -> Result<bool, IoError> {
     model(path).map(|model| model.is_some())
+}
+
+/// The city or map that is meant by the name of an archive, or the file itself.
+fn meant(path: &Path, limits: &Limits) -> Result<PathBuf, IoError> {
+    let reads = |p: &Path| ends(p, vector::ENDINGS) || ends(p, &["json", "jsonl", "gml", "xml", "citygml", "pbf"]);
+    if split_table(path).1.is_some() { Ok(path.to_owned()) } else { content(path, limits.max_bytes, &reads) }
 }
 
 fn model(path: &Path) -> Result<Option<Model>, IoError> {

@@ -1,7 +1,9 @@
 //! Well-known text of coordinate systems, OGC 1 and 2 and ESRI.
 
-use super::{CoordinateSystem, CrsError};
+use super::{CoordinateSystem, CrsError, tables};
 use std::fmt::Write;
+
+mod register;
 
 /// Deeper nesting than any real text has.
 const MAX_DEPTH: usize = 32;
@@ -108,8 +110,10 @@ pub(super) fn parse(text: &str) -> Result<CoordinateSystem, CrsError> {
     let mut rest = text.trim_start_matches('\u{feff}').trim();
     let root = node(&mut rest, 0)?;
     let horizontal = find(&root).ok_or_else(|| text_error(format!("{} holds no horizontal system", root.keyword)))?;
-    if let Some(code) = horizontal.epsg().or_else(|| code_by_name(horizontal.name())) {
-        return CoordinateSystem::from_epsg(code);
+    // Codes of other registers are passed over, and those that no table has: names and parameters may tell.
+    let stated = horizontal.epsg().map(CoordinateSystem::from_epsg).and_then(Result::ok);
+    if let Some(system) = stated.or_else(|| code_by_name(horizontal.name()).and_then(|c| CoordinateSystem::from_epsg(c).ok())) {
+        return Ok(system);
     }
     let name = match horizontal.name() {
         "" => "the system of the file",
@@ -121,7 +125,22 @@ pub(super) fn parse(text: &str) -> Result<CoordinateSystem, CrsError> {
     {
         return CoordinateSystem::from_proj_string(name, proj);
     }
-    CoordinateSystem::from_proj_string(name, &proj_string(horizontal)?)
+    let text = proj_string(horizontal)?;
+    match register::code_of(horizontal, &text).map(CoordinateSystem::from_epsg) {
+        Some(Ok(system)) => Ok(system),
+        _ => CoordinateSystem::from_proj_string(name, &register::on_known_datum(horizontal, &text)),
+    }
+}
+
+/// The system that a name alone means, such as `RD_New` or `GCS_Amersfoort`; `None` if it is not known.
+pub(super) fn by_name(name: &str) -> Option<Result<CoordinateSystem, CrsError>> {
+    let named = |name: &str| tables::geographic(&format!("={}", plain(name)));
+    code_by_name(name).or_else(|| named(name)).map(CoordinateSystem::from_epsg)
+}
+
+/// Letters and digits of a name, in lower case.
+fn plain(name: &str) -> String {
+    name.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase()
 }
 
 /// The projected or geographic node of a (possibly compound or bound) system.
@@ -134,7 +153,7 @@ fn find(node: &Node) -> Option<&Node> {
 
 /// EPSG codes of names that texts without codes use, mostly ESRI's.
 fn code_by_name(name: &str) -> Option<u32> {
-    let plain: String = name.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase();
+    let plain = plain(name);
     let fixed = match plain.as_str() {
         "gcswgs1984" | "wgs84" | "wgs1984" => 4326,
         "gcsnorthamerican1983" | "nad83" => 4269,
@@ -142,6 +161,12 @@ fn code_by_name(name: &str) -> Option<u32> {
         "gcsetrs1989" | "etrs89" => 4258,
         "wgs1984webmercatorauxiliarysphere" | "wgs84pseudomercator" | "webmercator" => 3857,
         "ch1903lv95" | "ch1903lv95lv95" => 2056,
+        "ch1903lv03" => 21781,
+        "rdnew" | "amersfoortrdnew" => 28992,
+        "mgiaustrialambert" => 31287,
+        "sjtskkrovakeastnorth" => 5514,
+        "hungarian1972egysegesorszagosvetuleti" | "hd72eov" => 23700,
+        "stereo1970" | "stereo70" | "pulkovo194258stereo70" => 3844,
         "britishnationalgrid" | "osgb1936britishnationalgrid" => 27700,
         "rgf1993lambert93" | "rgf93lambert93" => 2154,
         "etrs1989laea" | "etrs89laeaeurope" | "etrs89extendedlaeaeurope" => 3035,
@@ -204,8 +229,7 @@ fn degrees(value: f64, angle_rad: f64) -> f64 {
 fn datum(geographic: &Node) -> Result<String, CrsError> {
     let datum = geographic.child(&["DATUM", "GEODETICDATUM", "TRF", "ENSEMBLE"]);
     let datum = datum.ok_or_else(|| text_error("it has no datum"))?;
-    let plain: String =
-        datum.name().chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase();
+    let plain = plain(datum.name());
     match plain.as_str() {
         "dwgs1984" | "wgs1984" | "worldgeodeticsystem1984" | "worldgeodeticsystem1984ensemble" => {
             return Ok("+datum=WGS84".into());
@@ -236,7 +260,7 @@ fn datum(geographic: &Node) -> Result<String, CrsError> {
 fn projection(system: &Node, angle_rad: f64) -> Result<String, CrsError> {
     let method = system.child(&["PROJECTION"]).map(Node::name);
     let method = method.ok_or_else(|| text_error("it has no EPSG code and no PROJECTION element of WKT 1"))?;
-    let plain: String = method.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase();
+    let plain = plain(method);
     let proj = match plain.as_str() {
         "transversemercator" | "gausskruger" => "tmerc",
         "lambertconformalconic" | "lambertconformalconic1sp" | "lambertconformalconic2sp" => "lcc",
@@ -252,6 +276,10 @@ fn projection(system: &Node, angle_rad: f64) -> Result<String, CrsError> {
         "cassini" | "cassinisoldner" => "cass",
         "sinusoidal" => "sinu",
         "polyconic" => "poly",
+        "krovak" => "krovak",
+        "swissobliquecylindrical" | "swissobliquemercator" => "somerc",
+        "hotineobliquemercatorazimuthcenter" | "obliquemercator" | "hotineobliquemercatorvariantb" => "omerc",
+        "hotineobliquemercator" | "hotineobliquemercatorazimuthnaturalorigin" | "hotineobliquemercatorvarianta" => "omerc",
         _ => {
             let name = system.name().to_owned();
             return Err(CrsError::Unsupported {
@@ -260,12 +288,42 @@ fn projection(system: &Node, angle_rad: f64) -> Result<String, CrsError> {
             });
         }
     };
+    let value = |names: &[&str]| {
+        let named = |c: &&Node| c.is(&["PARAMETER"]) && names.iter().any(|n| c.name().eq_ignore_ascii_case(n));
+        system.children.iter().find(named).and_then(|p| p.numbers.first().copied())
+    };
+    if proj == "omerc" {
+        return Ok(oblique(&plain, &value, angle_rad, unit(system).unwrap_or(1.0)));
+    }
+    if proj == "krovak" && value(&["X_Scale"]).is_some_and(|x| x > 0.0) {
+        let name = system.name().to_owned();
+        let reason = "its Krovak axes run south and west".to_owned();
+        return Err(CrsError::Unsupported { name, reason });
+    }
     let mut out = format!("+proj={proj}");
     for parameter in system.children.iter().filter(|c| c.is(&["PARAMETER"])) {
         let Some(&value) = parameter.numbers.first() else { continue };
         push(&mut out, &proj_parameter(proj, &plain, parameter.name(), value, angle_rad, unit(system).unwrap_or(1.0)));
     }
     Ok(out)
+}
+
+/// The oblique Mercator projections: their line of azimuth 90 degrees makes the Swiss one, which is simpler.
+fn oblique(method: &str, value: &dyn Fn(&[&str]) -> Option<f64>, angle_rad: f64, unit_m: f64) -> String {
+    let angle = |names: &[&str]| value(names).map(|v| degrees(v, angle_rad));
+    let azimuth = angle(&["azimuth", "Azimuth_of_initial_line"]).unwrap_or(90.0);
+    let grid = angle(&["rectified_grid_angle", "XY_Plane_Rotation", "Angle_from_Rectified_to_Skew_Grid"]).unwrap_or(azimuth);
+    let lat = angle(&["latitude_of_center", "latitude_of_origin", "Latitude_of_projection_centre"]).unwrap_or(0.0);
+    let lon = angle(&["longitude_of_center", "central_meridian", "Longitude_of_projection_centre"]).unwrap_or(0.0);
+    let k = value(&["scale_factor"]).unwrap_or(1.0);
+    let shift = [value(&["false_easting"]), value(&["false_northing"])].map(|v| v.unwrap_or(0.0) * unit_m);
+    let common = format!("+k_0={k} +x_0={} +y_0={}", shift[0], shift[1]);
+    let at_centre = method.contains("center") || method.contains("variantb") || method == "obliquemercator";
+    if (azimuth - 90.0).abs() < 1e-9 && (grid - 90.0).abs() < 1e-9 && at_centre {
+        return format!("+proj=somerc +lat_0={lat} +lon_0={lon} {common}");
+    }
+    let origin = if at_centre { "" } else { " +no_uoff" };
+    format!("+proj=omerc +lat_0={lat} +lonc={lon} +alpha={azimuth} +gamma={grid}{origin} {common}")
 }
 
 fn proj_parameter(proj: &str, method: &str, name: &str, value: f64, angle_rad: f64, unit_m: f64) -> String {
@@ -289,6 +347,8 @@ fn proj_parameter(proj: &str, method: &str, name: &str, value: f64, angle_rad: f
         }
         "latitude_of_origin" | "latitude_of_center" => format!("+lat_0={angle}"),
         "satellite_height" => format!("+h={value}"),
+        "azimuth" if proj == "krovak" => format!("+alpha={angle}"),
+        "pseudo_standard_parallel_1" | "x_scale" | "y_scale" | "xy_plane_rotation" => String::new(),
         _ => String::new(),
     }
 }

@@ -1,11 +1,19 @@
 //! The file system that everything is read from and written to: the system's own, or in a browser files in memory, by the same names.
+//! Files in archives have names, too: see [`packed`].
 
 #[cfg(not(target_family = "wasm"))]
-pub use std::fs::{File, canonicalize, metadata, read, read_to_string, symlink_metadata};
+use std::fs as plain;
 
 #[cfg(target_family = "wasm")]
-pub use memory::{File, Metadata, canonicalize, metadata, read, read_to_string, remove_file, symlink_metadata, write};
+use memory as plain;
+
+#[cfg(target_family = "wasm")]
+pub use memory::{remove_file, write};
+
+pub use packed::{File, Metadata, canonicalize, metadata, read, read_to_string, symlink_metadata};
+pub(crate) use packed::{archive_of, names_in, unpacked_size};
 
 #[cfg(any(test, target_family = "wasm"))]
 #[cfg_attr(not(target_family = "wasm"), allow(dead_code, unreachable_pub))]
 mod memory;
+mod packed;

@@ -109,6 +109,7 @@ pub(super) fn georeference(container: &Container, ifd: &Ifd, info: &mut RasterIn
         None => None,
     };
     info.vertical_epsg = keys.code(key::VERTICAL).filter(|&c| c != USER_DEFINED);
+    info.vertical_unit_said = keys.code(key::VERTICAL_UNIT).is_some() || info.vertical_epsg.is_some();
     info.vertical_unit_m = match (keys.code(key::VERTICAL_UNIT), info.vertical_epsg) {
         (Some(code), _) => unit_m(code).unwrap_or_else(|| {
             warnings.push(format!("unit of heights (EPSG:{code}) is not known, metres are assumed"));

@@ -80,9 +80,12 @@ fn gdal_metadata(xml: &str, info: &mut RasterInfo, warnings: &mut Vec<String>) {
                 }
             }
             Some("unittype") if band == 0 => match text.to_ascii_lowercase().as_str() {
-                "ft" | "foot" | "feet" => info.vertical_unit_m = FOOT_M,
-                "us-ft" | "ft_us" | "us survey foot" => info.vertical_unit_m = US_FOOT_M,
-                "" | "m" | "metre" | "meter" | "metres" | "meters" => {}
+                "ft" | "foot" | "feet" => (info.vertical_unit_m, info.vertical_unit_said) = (FOOT_M, true),
+                "us-ft" | "ft_us" | "us survey foot" => {
+                    (info.vertical_unit_m, info.vertical_unit_said) = (US_FOOT_M, true);
+                }
+                "" => {}
+                "m" | "metre" | "meter" | "metres" | "meters" => info.vertical_unit_said = true,
                 other => warnings.push(format!("unit of the values is \"{other}\"; metres are assumed")),
             },
             Some("colorinterp") => {

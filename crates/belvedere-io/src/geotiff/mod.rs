@@ -87,6 +87,9 @@ impl GeoTiff {
     pub fn input(&self) -> Result<InputFile, IoError> {
         let (path, source) = (&self.info.path, &self.container.source);
         let sha256 = source.sha256().map_err(|reason| IoError::format(path, reason))?;
+        if crate::fs::archive_of(path) != *path {
+            return Ok(InputFile::of(path, &[]));
+        }
         Ok(InputFile { path: path.clone(), bytes: source.len(), sha256 })
     }
 

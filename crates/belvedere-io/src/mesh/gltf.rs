@@ -3,6 +3,7 @@
 //!
 //! Buffers lie in the file or below its folder; nothing is fetched. Every reading of a buffer is checked against its size.
 
+use super::gltf_check;
 use super::gltf_pictures::Pictures;
 use super::{MeshFile, beside, color};
 use crate::{InputFile, IoError, Limits, Loaded};
@@ -16,11 +17,19 @@ use std::path::Path;
 
 pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<MeshFile>, IoError> {
     let bad = |reason: String| IoError::format(path, reason);
-    let gltf = gltf::Gltf::from_slice(bytes).map_err(|e| {
+    let said = |e: gltf::Error| {
         let said: String = e.to_string().chars().take(160).collect();
         bad(format!("{said}; it is damaged or no glTF 2.0"))
-    })?;
-    let (buffers, mut files) = buffers(path, &gltf.document, gltf.blob, limits)?;
+    };
+    let (json, blob) = if bytes.starts_with(b"glTF") {
+        let glb = gltf::Glb::from_slice(bytes).map_err(said)?;
+        (glb.json, glb.bin.map(std::borrow::Cow::into_owned))
+    } else {
+        (bytes.into(), None)
+    };
+    let json = gltf_check::checked(&json).map_err(bad)?;
+    let gltf = gltf::Gltf::from_slice(&json).map_err(said)?;
+    let (buffers, mut files) = buffers(path, &gltf.document, blob, limits)?;
     let out = MeshFile { format: "glTF", ..MeshFile::default() };
     let mut builder = Builder { buffers, out, pictures: Pictures::new(path, limits), ..Builder::default() };
     // A tree visits every node once: more visits than nodes are a cycle.
@@ -91,7 +100,7 @@ fn buffers(
                         .ok_or_else(|| bad("it holds a buffer that is no base64; it is damaged".into()))?
                 }
                 None => {
-                    let file = beside(path, &uri.replace("%20", " ")).map_err(bad)?;
+                    let file = beside(path, &gltf_check::decoded(uri)).map_err(bad)?;
                     let bytes = super::read_bytes(&file, limits)?;
                     files.push(InputFile::of(&file, &bytes));
                     bytes

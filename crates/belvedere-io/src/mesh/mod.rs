@@ -1,12 +1,15 @@
 //! Triangle meshes: OBJ, PLY, STL, glTF and GLB.
 
 mod gltf;
+mod gltf_check;
 mod gltf_pictures;
 mod obj;
+mod obj_text;
 mod picture;
 mod ply;
 mod stl;
 
+use crate::packed::{content, ends};
 use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_scene::{Color, MeshColors, Texturing};
 use glam::DVec3;
@@ -44,6 +47,7 @@ type Reader = fn(&Path, &[u8], &Limits) -> Result<Loaded<MeshFile>, IoError>;
 /// # Errors
 /// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, too large for `limits`, or has no triangle.
 pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoError> {
+    let path = &content(path, limits.max_bytes, &|p| ends(p, ENDINGS))?;
     let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let read: Reader = match ending.as_str() {
         "obj" => obj::read,

@@ -1,6 +1,6 @@
 //! Wavefront OBJ, with the diffuse colours and pictures of its MTL file, its objects and groups as parts.
 
-use super::{MeshFile, color, neighbour, picture};
+use super::{MeshFile, color, neighbour, obj_text, picture};
 use crate::{InputFile, IoError, Limits, Loaded};
 use belvedere_scene::{Color, MeshColors, Texture, Texturing};
 use glam::{DVec3, Vec2};
@@ -14,17 +14,23 @@ const PLAIN: Color = Color::rgb(200, 196, 190);
 pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<MeshFile>, IoError> {
     let options = tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, single_index: false };
     let files = std::cell::RefCell::new(Vec::new());
+    let odd = std::cell::RefCell::new(Vec::new());
     let materials = |name: &Path| {
         let name = name.to_str().ok_or(tobj::LoadError::OpenFileFailed)?;
         let (bytes, file) = neighbour(path, name, limits).map_err(|_| tobj::LoadError::OpenFileFailed)?;
         files.borrow_mut().push(file);
-        tobj::load_mtl_buf(&mut bytes.as_slice())
+        tobj::load_mtl_buf(&mut obj_text::materials(&bytes, &mut odd.borrow_mut()).as_bytes())
     };
-    let (models, materials) = tobj::load_obj_buf(&mut &*bytes, &options, materials)
+    let (models, materials) = tobj::load_obj_buf(&mut obj_text::statements(bytes).as_bytes(), &options, materials)
         .map_err(|e| IoError::format(path, format!("{e}; it is damaged or no OBJ file")))?;
     let mut warnings = Vec::new();
     if let Err(e) = &materials {
         warnings.push(format!("{}: its materials cannot be read ({e}), the layer's colour is used", path.display()));
+    }
+    let odd = odd.into_inner();
+    if let Some(first) = odd.first() {
+        let count = odd.len();
+        warnings.push(format!("{}: {count} lines of its materials are not read, the first is {first:?}", path.display()));
     }
     let mut materials = Materials::new(path, materials.unwrap_or_default(), limits);
     let mut builder = Builder::default();

@@ -3,27 +3,26 @@
 use super::MeshFile;
 use crate::{IoError, Limits, Loaded};
 use glam::DVec3;
-use std::io::Cursor;
 use std::path::Path;
 
 /// Bytes before the triangles of a binary file, and of a triangle.
 const HEAD: usize = 84;
 const TRIANGLE: usize = 50;
+/// Bytes of a text in which its first facet is looked for; names of solids may be long.
+const TEXT_HEAD: usize = 4096;
+
+type Triangle = [[f32; 3]; 3];
 
 pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshFile>, IoError> {
     let bad = |reason: String| IoError::format(path, reason);
     // Many binary files begin with the word that marks text: the size tells.
     let declared = bytes.get(80..HEAD).and_then(|b| b.try_into().ok()).map_or(0, |b| u32::from_le_bytes(b) as usize);
     let is_binary = bytes.len() >= HEAD && bytes.len() - HEAD == declared.saturating_mul(TRIANGLE);
-    let text = bytes.trim_ascii_start();
     let mut warnings = Vec::new();
     let triangles = if is_binary {
         binary(&bytes[HEAD..])
-    } else if text.starts_with(b"solid") {
-        let mut text = Cursor::new(text);
-        let mesh = stl_io::read_stl(&mut text).map_err(|e| bad(format!("{e}; it is damaged or no STL file")))?;
-        let corner = |i: usize| mesh.vertices[i].0;
-        mesh.faces.iter().map(|f| f.vertices.map(corner)).collect()
+    } else if is_text(bytes) {
+        text(bytes).map_err(bad)?
     } else {
         let whole = bytes.len().saturating_sub(HEAD) / TRIANGLE;
         if whole == 0 || whole < declared {
@@ -41,14 +40,52 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
     Ok(Loaded::new(joined(&triangles), warnings))
 }
 
-fn binary(bytes: &[u8]) -> Vec<[[f32; 3]; 3]> {
+/// Whether a file that is not as long as its binary header says is text: "solid" first, in any case, and a facet or the end soon after.
+fn is_text(bytes: &[u8]) -> bool {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    let head = bytes[..bytes.len().min(TEXT_HEAD)].to_ascii_lowercase();
+    let holds = |word: &[u8]| head.windows(word.len()).any(|w| w == word);
+    head.starts_with(b"solid") && !head.contains(&0) && (holds(b"facet") || holds(b"endsolid"))
+}
+
+/// Triangles of a text: the vertices of each loop. Words count in any case; what stands on the line of `solid` is its name.
+fn text(bytes: &[u8]) -> Result<Vec<Triangle>, String> {
+    let (mut out, mut corners): (Vec<Triangle>, Vec<[f32; 3]>) = (Vec::new(), Vec::new());
+    for (k, line) in bytes.split(|b| matches!(b, b'\n' | b'\r')).enumerate() {
+        let mut words = line.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty());
+        // Some writers put a whole facet on one line.
+        while let Some(word) = words.next() {
+            let is = |name: &[u8]| word.eq_ignore_ascii_case(name);
+            if is(b"solid") || is(b"endsolid") {
+                break;
+            }
+            if is(b"vertex") {
+                let mut number = || std::str::from_utf8(words.next()?).ok()?.parse::<f32>().ok();
+                let corner = [number(), number(), number()];
+                let [Some(x), Some(y), Some(z)] = corner else {
+                    return Err(format!("the vertex on line {} has no three numbers; it is damaged", k + 1));
+                };
+                corners.push([x, y, z]);
+            } else if is(b"endloop") || is(b"endfacet") {
+                if matches!(corners.len(), 1 | 2) {
+                    return Err(format!("the facet that ends on line {} has no three vertices; it is damaged", k + 1));
+                }
+                out.extend(corners.windows(2).skip(1).map(|w| [corners[0], w[0], w[1]]));
+                corners.clear();
+            }
+        }
+    }
+    if corners.is_empty() { Ok(out) } else { Err("it ends inside a facet; it is cut off, get it again".into()) }
+}
+
+fn binary(bytes: &[u8]) -> Vec<Triangle> {
     let number = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
     let position = |b: &[u8]| [number(&b[0..4]), number(&b[4..8]), number(&b[8..12])];
     bytes.chunks_exact(TRIANGLE).map(|t| [position(&t[12..24]), position(&t[24..36]), position(&t[36..48])]).collect()
 }
 
 /// Corners at exactly the same position become one vertex.
-fn joined(triangles: &[[[f32; 3]; 3]]) -> MeshFile {
+fn joined(triangles: &[Triangle]) -> MeshFile {
     let mut out = MeshFile { format: "STL", ..MeshFile::default() };
     let mut known = std::collections::HashMap::new();
     for triangle in triangles {

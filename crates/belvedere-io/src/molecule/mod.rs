@@ -4,9 +4,9 @@ mod mmcif;
 mod pdb;
 mod sites;
 
+use crate::packed::content;
 use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_scene::Molecule;
-use std::io::Read;
 use std::path::Path;
 
 /// Endings of the files that [`load_molecule`] reads; any of them may be followed by `.gz`.
@@ -40,13 +40,13 @@ pub fn is_molecule(path: &Path) -> bool {
 /// # Errors
 /// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, too large for `limits`, or has no atom.
 pub fn load_molecule(path: &Path, limits: &Limits) -> Result<Loaded<MoleculeFile>, IoError> {
+    let path = &content(path, limits.max_bytes, &is_molecule)?;
     let bad = |reason: String| IoError::format(path, reason);
     let too_large = |reason: String| bad(reason.replace("raster", "molecule"));
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     // An atom takes a few times the bytes of its line.
     limits.check(length.saturating_mul(4)).map_err(too_large)?;
     let (bytes, file) = InputFile::read(path)?;
-    let bytes = if bytes.starts_with(b"\x1f\x8b") { unpacked(&bytes, limits).map_err(too_large)? } else { bytes };
     let text = String::from_utf8_lossy(&bytes);
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
     let is_cif = name.contains(".cif") || name.contains(".mmcif");
@@ -56,13 +56,4 @@ pub fn load_molecule(path: &Path, limits: &Limits) -> Result<Loaded<MoleculeFile
     let (models, alternates, named_bonds) = (found.models, found.alternates, found.named_bonds);
     let value = MoleculeFile { format, molecule, models, alternates, named_bonds };
     Ok(Loaded::new(value, found.warnings).with_file(file))
-}
-
-fn unpacked(bytes: &[u8], limits: &Limits) -> Result<Vec<u8>, String> {
-    let most = limits.max_bytes / 4;
-    let mut out = Vec::new();
-    let mut reader = flate2::read::MultiGzDecoder::new(bytes).take(most + 1);
-    reader.read_to_end(&mut out).map_err(|e| format!("its compressed part is damaged ({e}); get it again"))?;
-    limits.check((out.len() as u64).saturating_mul(4))?;
-    Ok(out)
 }

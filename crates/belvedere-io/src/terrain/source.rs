@@ -1,9 +1,10 @@
 //! Reading the sources of a terrain: samples as heights in metres, voids as NaN.
 
-use super::{CrsChoice, TerrainRequest};
+use super::{CrsChoice, TerrainRequest, sentinels};
 use crate::crs::CoordinateSystem;
 use crate::fs::File;
-use crate::{Affine, GeoTiff, IoError, Loaded, Photometric, Raster, RasterInfo, Samples, SourceCrs, esri_ascii, hgt};
+use crate::packed::{content, ends};
+use crate::{Affine, GeoTiff, IoError, Limits, Loaded, Photometric, Raster, RasterInfo, Samples, SourceCrs, esri_ascii, hgt};
 use belvedere_scene::Progress;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -112,15 +113,24 @@ pub(super) fn read_all(
     Ok(out)
 }
 
+/// The raster that is meant by the name of an archive, or the file itself.
+pub(crate) fn meant(path: &Path, limits: &Limits) -> Result<PathBuf, IoError> {
+    content(path, limits.max_bytes, &|p| ends(p, super::ENDINGS) && !ends(p, &["txt"]))
+}
+
 fn read_one(
     path: &Path,
     request: &TerrainRequest,
     budget: usize,
     progress: &Progress,
 ) -> Result<Loaded<SourceGrid>, IoError> {
+    let path = &meant(path, &request.limits)?;
     let Loaded { value: (mut raster, factor), mut warnings, files } = read_raster(path, request, budget, progress)?;
     if let Some(nodata) = request.nodata {
         raster.info.nodata = Some(nodata);
+    }
+    if let Some(unit) = request.vertical_unit_m {
+        raster.info.vertical_unit_m = unit;
     }
     check_shape(&raster.info)?;
     let bands = raster.info.bands - usize::from(raster.info.alpha.band().is_some());
@@ -131,14 +141,21 @@ fn read_one(
     let absurd = void_absurd(&mut heights);
     if absurd > 0 {
         warnings.push(format!(
-            "{}: {absurd} samples beyond +-{MAX_HEIGHT_M:.0} m are taken as voids; set nodata if the file does not declare them",
+            "{}: {absurd} samples beyond +-{MAX_HEIGHT_M:.0} m are taken as voids; nodata of its layer, or --nodata, says what they are if the file does not",
             path.display()
         ));
+    }
+    if request.nodata.is_none() && raster.info.scaling.is_empty() {
+        let unit = raster.info.vertical_unit_m as f32;
+        warnings.extend(sentinels::void(&mut heights, unit).map(|said| format!("{}: {said}", path.display())));
     }
     let (cols, rows) = (raster.info.width, raster.info.height);
     let voids = heights.iter().filter(|h| h.is_nan()).count();
     let samples = heights.len();
     let system = system_of(&raster.info, request, &mut warnings)?;
+    if request.vertical_unit_m.is_none() {
+        warnings.extend(unit_unsaid(&raster.info, system.as_ref()).map(|said| format!("{}: {said}", path.display())));
+    }
     warn_about_frame(path, &heights, cols, rows, &mut warnings);
     let to_model = raster.info.pixel_to_model.unwrap_or(Affine([1.0, 0.0, 0.0, 0.0, -1.0, rows as f64]));
     let model_from_index = to_model.after_scale_and_shift(1.0, 1.0, 0.5, 0.5);
@@ -183,10 +200,9 @@ fn read_raster(
     }
     let loaded = match extension.as_str() {
         "hgt" => hgt::read(path, &request.limits)?,
-        "zip" => hgt::read(path, &request.limits)?,
         "asc" | "grd" | "txt" => esri_ascii::read(path, &request.limits)?,
         _ => {
-            let reason = "it is none of the known elevation formats: GeoTIFF, SRTM .hgt (also .zip), ESRI ASCII .asc";
+            let reason = "it is none of the known elevation formats: GeoTIFF, SRTM .hgt, ESRI ASCII .asc (all also in .zip and .gz)";
             return Err(IoError::format(path, reason));
         }
     };
@@ -250,6 +266,22 @@ fn heights(raster: &Raster) -> Vec<f32> {
     }
 }
 
+/// That heights count in metres though the plane counts in feet, where nothing says in which unit heights are.
+fn unit_unsaid(info: &RasterInfo, system: Option<&CoordinateSystem>) -> Option<String> {
+    let plane = info.linear_unit_m.or_else(|| system?.metres_per_unit())?;
+    if info.vertical_unit_said || (plane - 1.0).abs() < 1e-6 {
+        return None;
+    }
+    let (unit, option) = match plane {
+        u if (u - 1200.0 / 3937.0).abs() < 1e-9 => ("US survey feet".to_owned(), "us-ft"),
+        u if (u - 0.3048).abs() < 1e-9 => ("feet".to_owned(), "ft"),
+        u => (format!("units of {u} m"), "ft"),
+    };
+    Some(format!(
+        "its plane counts in {unit} and nothing says in which unit heights are, so they count as metres; if they are feet the relief is 3.28 times too high: vertical_unit = \"{option}\" of its layer, or --vertical-unit {option}, settles it (\"m\" confirms metres)"
+    ))
+}
+
 /// Makes samples that are no heights void; their number.
 fn void_absurd(heights: &mut [f32]) -> usize {
     heights
@@ -282,7 +314,7 @@ pub(crate) fn stated_system(
     warnings: &mut Vec<String>,
 ) -> Result<Option<CoordinateSystem>, IoError> {
     let failed = |e: crate::crs::CrsError| {
-        IoError::format(&info.path, format!("its coordinate system cannot be used: {e}; or set source_crs"))
+        IoError::format(&info.path, format!("its coordinate system cannot be used: {e}; or set source_crs of its layer (--source-crs)"))
     };
     let Some(to_model) = info.pixel_to_model else {
         return Ok(None);
@@ -295,12 +327,14 @@ pub(crate) fn stated_system(
         SourceCrs::Wkt(text) => CoordinateSystem::from_wkt(text).map(Some).map_err(failed),
         SourceCrs::UserDefined(_) if local => Ok(None),
         SourceCrs::UserDefined(text) => {
-            let reason = format!("its coordinate system cannot be used ({text}); set source_crs to an EPSG code");
+            let reason = format!(
+                "its coordinate system cannot be used ({text}); set its EPSG code (source_crs of its layer, or --source-crs), or crs = \"local\" (--crs local) to draw it without georeference"
+            );
             Err(IoError::format(&info.path, reason))
         }
         SourceCrs::Unknown if !local && looks_geographic(info, &to_model) => {
             warnings.push(format!(
-                "{}: no coordinate system is stated and the coordinates look like degrees, so EPSG:4326 is assumed; set source_crs if that is wrong",
+                "{}: no coordinate system is stated and the coordinates look like degrees, so EPSG:4326 is assumed; source_crs of its layer, or --source-crs, says otherwise",
                 info.path.display()
             ));
             CoordinateSystem::from_epsg(4326).map(Some).map_err(failed)
@@ -357,7 +391,7 @@ fn warn_about_frame(path: &Path, heights: &[f32], cols: usize, rows: usize, warn
     let share = count as f64 / heights.len() as f64;
     if share >= FRAME_SHARE && count < heights.len() {
         warnings.push(format!(
-            "{}: {count} samples ({:.1} %) at the edge are all exactly {value}: sea, or voids that the file does not declare; set nodata = {value} if they are voids",
+            "{}: {count} samples ({:.1} %) at the edge are all exactly {value}: sea, or voids that the file does not declare; nodata = {value} of its layer, or --nodata {value}, makes them voids",
             path.display(),
             100.0 * share
         ));

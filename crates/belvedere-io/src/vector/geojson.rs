@@ -15,17 +15,21 @@ const REMEDY: &str = "correct it, or export the file again";
 struct Reader {
     features: Vec<VectorFeature>,
     without_geometry: usize,
+    null_members: usize,
     short_lines: usize,
+    one_position: usize,
     short_rings: usize,
 }
 
 pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> {
     let fail = |reason: String| IoError::format(path, reason);
-    let root: Value =
-        serde_json::from_str(text).map_err(|e| fail(format!("is no valid JSON ({e}); it is damaged or cut off")))?;
-    let (crs, stated) = system_of(&root).map_err(fail)?;
+    let records = records(text).map_err(fail)?;
+    let (crs, mut stated) = system_of(&records).map_err(fail)?;
     let mut reader = Reader::default();
-    reader.read_root(&root).map_err(fail)?;
+    for (k, record) in records.iter().enumerate() {
+        let place = |e: String| if records.len() > 1 { format!("record {k}: {e}") } else { e };
+        reader.read_root(record).map_err(|e| fail(place(e)))?;
+    }
     let mut warnings = Vec::new();
     let mut warn = |count: usize, what: &str| {
         if count > 0 {
@@ -33,47 +37,59 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
         }
     };
     warn(reader.without_geometry, "features without geometry were dropped");
+    warn(reader.null_members, "members that are null where a feature, geometry or position is needed were dropped");
     warn(reader.short_lines, "lines of fewer than 2 points were dropped");
+    warn(reader.one_position, "lines of one position only were dropped, a line needs 2 that differ");
     warn(reader.short_rings, "polygon rings of fewer than 3 points were dropped");
     if reader.features.is_empty() {
         return Err(fail(format!(
-            "GeoJSON holds no usable geometry ({} features without any, {} lines and {} rings too short); choose another file",
-            reader.without_geometry, reader.short_lines, reader.short_rings
+            "GeoJSON holds no usable geometry ({} features without any, {} lines and {} rings too short, {} lines of one position only); choose another file",
+            reader.without_geometry, reader.short_lines, reader.short_rings, reader.one_position
         )));
     }
+    let mut crs = crs;
     if let Some(reason) = not_degrees(&reader.features).filter(|_| crs.is_geographic()) {
-        let system = if stated { crs.name() } else { "longitude and latitude, the default" };
-        return Err(fail(format!(
-            "{reason}, but the file's system is {system}; add a \"crs\" member with its EPSG code"
-        )));
+        if stated {
+            return Err(fail(format!("{reason}, but the file's system is {crs}; correct its \"crs\" member")));
+        }
+        (crs, stated) = (CoordinateSystem::local(), false);
     }
-    let layer = root.get("name").and_then(Value::as_str).map(shorten).unwrap_or_default();
-    let value = Vectors { path: path.into(), format: "GeoJSON", layer, crs, features: reader.features };
+    let layer = records.first().and_then(|r| r.get("name")).and_then(Value::as_str).map(shorten).unwrap_or_default();
+    let format = if records.len() > 1 { "GeoJSONSeq" } else { "GeoJSON" };
+    let value = Vectors { path: path.into(), format, layer, crs, crs_stated: stated, features: reader.features };
     Ok(Loaded::new(value, warnings))
 }
 
+/// The JSON values of a file: one, or as many as a sequence has (RFC 8142, or one per line), or the members of a list.
+fn records(text: &str) -> Result<Vec<Value>, String> {
+    let broken = |e: serde_json::Error| format!("is no valid JSON ({e}); it is damaged or cut off");
+    let text = if text.contains('\u{1e}') { text.replace('\u{1e}', " ").into() } else { std::borrow::Cow::from(text) };
+    let records: Result<Vec<Value>, _> = serde_json::Deserializer::from_str(&text).into_iter().collect();
+    let mut records = records.map_err(broken)?;
+    if let [Value::Array(list)] = records.as_mut_slice() {
+        records = std::mem::take(list);
+    }
+    if records.is_empty() { Err("holds no JSON value; it is empty or cut off".into()) } else { Ok(records) }
+}
+
 /// The system, and whether the file states one.
-fn system_of(root: &Value) -> Result<(CoordinateSystem, bool), String> {
+fn system_of(records: &[Value]) -> Result<(CoordinateSystem, bool), String> {
     let default = || CoordinateSystem::wgs84().map_err(|e| e.to_string());
-    let Some(crs) = root.get("crs").filter(|c| !c.is_null()) else {
+    let Some(crs) = records.iter().filter_map(|r| r.get("crs")).find(|c| !c.is_null()) else {
         return Ok((default()?, false));
     };
     let properties = crs.get("properties");
-    let name = properties.and_then(|p| p.get("name")).and_then(Value::as_str);
-    let code = properties.and_then(|p| p.get("code")).and_then(Value::as_u64);
-    let epsg = match (name, code) {
+    let name = properties.and_then(|p| p.get("name")).and_then(Value::as_str).or_else(|| crs.as_str());
+    let code = properties.and_then(|p| p.get("code"));
+    let code = code.and_then(|c| c.as_u64().map(|n| n.to_string()).or_else(|| c.as_str().map(str::to_owned)));
+    match (name, code) {
         (Some(name), _) if name.to_ascii_uppercase().contains("CRS84") => return Ok((default()?, true)),
-        (Some(name), _) if name.to_ascii_uppercase().contains("EPSG") => {
-            name.rsplit([':', '/']).next().and_then(|c| c.parse::<u32>().ok())
-        }
-        (None, Some(code)) => u32::try_from(code).ok(),
-        _ => None,
-    };
-    let Some(epsg) = epsg else {
-        return Err(format!("\"crs\" {} is not understood; name an EPSG code", shorten(&crs.to_string())));
-    };
-    let system = CoordinateSystem::from_epsg(epsg).map_err(|e: CrsError| e.to_string())?;
-    Ok((system, true))
+        (Some(name), _) => CoordinateSystem::from_text(name),
+        (None, Some(code)) => CoordinateSystem::from_text(&code),
+        _ => return Err(format!("\"crs\" {} is not understood; name an EPSG code", shorten(&crs.to_string()))),
+    }
+    .map(|system| (system, true))
+    .map_err(|e: CrsError| e.to_string())
 }
 
 impl Reader {
@@ -82,9 +98,10 @@ impl Reader {
             Some("FeatureCollection") => {
                 let features = root.get("features").and_then(Value::as_array);
                 let features = features.ok_or("FeatureCollection has no array \"features\"; it is damaged")?;
-                features
-                    .iter()
-                    .enumerate()
+                self.null_members += features.iter().filter(|f| f.is_null()).count();
+                let there = features.iter().enumerate().filter(|(_, f)| !f.is_null());
+                there
+                    .into_iter()
                     .try_for_each(|(k, f)| self.read_feature(f).map_err(|e| format!("feature {k}: {e}")))
             }
             Some("Feature") => self.read_feature(root),
@@ -126,13 +143,19 @@ impl Reader {
             if depth >= MAX_DEPTH {
                 return Err(format!("geometry collections nest deeper than {MAX_DEPTH}; {REMEDY}"));
             }
-            return members.iter().try_for_each(|m| self.read_geometry(m, properties, depth + 1));
+            self.null_members += members.iter().filter(|m| m.is_null()).count();
+            let mut there = members.iter().filter(|m| !m.is_null());
+            return there.try_for_each(|m| self.read_geometry(m, properties, depth + 1));
+        }
+        if g.get("coordinates").is_some_and(Value::is_null) {
+            self.without_geometry += 1;
+            return Ok(());
         }
         let c = g.get("coordinates").ok_or_else(|| format!("{kind} has no \"coordinates\"; {REMEDY}"))?;
         let geometry = match kind {
             "Point" if c.as_array().is_some_and(Vec::is_empty) => Geometry::Points(Vec::new()),
             "Point" => Geometry::Points(vec![position(c)?]),
-            "MultiPoint" => Geometry::Points(positions(c)?),
+            "MultiPoint" => Geometry::Points(self.positions(c)?),
             "LineString" => Geometry::Lines(self.lines([c])?),
             "MultiLineString" => Geometry::Lines(self.lines(array(c)?)?),
             "Polygon" => Geometry::Polygons(self.polygons([c])?),
@@ -149,11 +172,27 @@ impl Reader {
         Ok(())
     }
 
+    /// Positions that are there; those that are null, or of nulls, are counted.
+    fn positions(&mut self, v: &Value) -> Result<Vec<Vertex>, String> {
+        let is_null = |p: &Value| {
+            p.is_null() || p.as_array().is_some_and(|a| a.iter().take(2).any(Value::is_null) && !a.is_empty())
+        };
+        let list = array(v)?;
+        self.null_members += list.iter().filter(|p| is_null(p)).count();
+        list.iter().filter(|p| !is_null(p)).map(position).collect()
+    }
+
     fn lines<'a>(&mut self, lines: impl IntoIterator<Item = &'a Value>) -> Result<Vec<Vec<Vertex>>, String> {
         let mut out = Vec::new();
         for line in lines {
-            let line = positions(line)?;
-            if line.len() >= 2 {
+            if line.is_null() {
+                self.null_members += 1;
+                continue;
+            }
+            let line = self.positions(line)?;
+            if line.len() >= 2 && line.iter().all(|v| v.xy == line[0].xy) {
+                self.one_position += 1;
+            } else if line.len() >= 2 {
                 out.push(line);
             } else {
                 self.short_lines += 1;
@@ -166,8 +205,12 @@ impl Reader {
         let mut out = Vec::new();
         for polygon in polygons {
             let mut rings = Vec::new();
+            if polygon.is_null() {
+                self.null_members += 1;
+                continue;
+            }
             for (k, ring) in array(polygon)?.iter().enumerate() {
-                let mut ring = positions(ring)?;
+                let mut ring = if ring.is_null() { Vec::new() } else { self.positions(ring)? };
                 if ring.len() > 1 && ring.first().map(|v| v.xy) == ring.last().map(|v| v.xy) {
                     ring.pop();
                 }
@@ -194,10 +237,6 @@ fn type_of(v: &Value) -> Option<&str> {
 
 fn array(v: &Value) -> Result<&Vec<Value>, String> {
     v.as_array().ok_or_else(|| format!("coordinates hold {} where a list is needed; {REMEDY}", shorten(&v.to_string())))
-}
-
-fn positions(v: &Value) -> Result<Vec<Vertex>, String> {
-    array(v)?.iter().map(position).collect()
 }
 
 fn position(v: &Value) -> Result<Vertex, String> {

@@ -1,5 +1,6 @@
 //! GPX 1.0 and 1.1: tracks, routes and waypoints. Extensions and everything else are passed over.
 
+use super::phantom::{self, Phantoms, Recorded};
 use super::{Geometry, VectorFeature, Vectors, Vertex, shorten, vertex};
 use crate::crs::CoordinateSystem;
 use crate::{IoError, Loaded};
@@ -21,14 +22,19 @@ struct Parser {
     text: String,
     name: String,
     properties: BTreeMap<String, String>,
-    segments: Vec<Vec<Vertex>>,
-    points: Vec<Vertex>,
+    segments: Vec<Vec<Recorded>>,
+    points: Vec<Recorded>,
     /// Position of the open point; `None` inside if it is not usable.
-    point: Option<Option<Vertex>>,
+    point: Option<Option<Recorded>>,
     features: Vec<VectorFeature>,
     dropped_points: usize,
     empty_segments: usize,
     single_points: usize,
+    /// Lines of equal points.
+    one_position: usize,
+    /// Segments of one point each that were joined.
+    joined: usize,
+    phantoms: Phantoms,
     elements: [usize; 3],
 }
 
@@ -36,6 +42,9 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
     let mut parser = Parser::default();
     parser.read(text).map_err(|reason| IoError::format(path, reason))?;
     let [tracks, routes, waypoints] = parser.elements;
+    if parser.features.is_empty() && parser.one_position > 0 {
+        return Err(IoError::format(path, parser.one_position_only()));
+    }
     if parser.features.is_empty() {
         return Err(IoError::format(
             path,
@@ -53,8 +62,11 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
     warn(parser.dropped_points, "points without a valid latitude and longitude were dropped");
     warn(parser.empty_segments, "segments without points were dropped");
     warn(parser.single_points, "tracks, segments or routes of a single point were dropped, a line needs 2");
+    warn(parser.one_position, "tracks, segments or routes of one position only were dropped, a line needs 2");
+    warn(parser.joined, "segments of a single point each were joined to lines");
+    warnings.extend(parser.phantoms.say().map(|found| format!("{}: {found}", path.display())));
     let crs = CoordinateSystem::wgs84().map_err(|e| IoError::format(path, e.to_string()))?;
-    let value = Vectors { path: path.into(), format: "GPX", layer: String::new(), crs, features: parser.features };
+    let value = Vectors { path: path.into(), format: "GPX", layer: String::new(), crs, crs_stated: true, features: parser.features };
     Ok(Loaded::new(value, warnings))
 }
 
@@ -125,7 +137,8 @@ impl Parser {
                     value.value.trim().parse::<f64>().ok()
                 };
                 let position = degrees("lon").zip(degrees("lat")).and_then(|(lon, lat)| vertex(lon, lat, None));
-                self.point = Some(position.filter(|v| v.xy.y.abs() <= 90.0 && v.xy.x.abs() <= 360.0));
+                let on_earth = |v: &Vertex| v.xy.y.abs() <= 90.0 && v.xy.x.abs() <= 360.0;
+                self.point = Some(position.filter(on_earth).map(|v| (v, None)));
             }
         }
         self.open.push(name);
@@ -144,8 +157,13 @@ impl Parser {
         let parent = self.open.last().map_or("", String::as_str);
         match (name.as_str(), parent) {
             ("ele", "trkpt" | "rtept" | "wpt") => {
-                if let Some(Some(v)) = &mut self.point {
+                if let Some(Some((v, _))) = &mut self.point {
                     v.z = text.parse().ok().filter(|z: &f64| z.is_finite());
+                }
+            }
+            ("time", "trkpt") => {
+                if let Some(Some((_, time))) = &mut self.point {
+                    *time = seconds(&text);
                 }
             }
             ("name", "trk" | "rte" | "wpt") => self.name = text,
@@ -155,17 +173,17 @@ impl Parser {
             ("trkpt" | "rtept", _) => self.end_point(),
             ("trkseg", _) => {
                 let segment = std::mem::take(&mut self.points);
-                self.add_segment(segment);
+                self.segments.push(segment);
             }
             ("trk", _) => self.finish("track"),
             ("rte", _) => {
                 let route = std::mem::take(&mut self.points);
-                self.add_segment(route);
+                self.segments.push(route);
                 self.finish("route");
             }
             ("wpt", _) => {
                 self.end_point();
-                let points = std::mem::take(&mut self.points);
+                let points: Vec<Vertex> = std::mem::take(&mut self.points).into_iter().map(|(v, _)| v).collect();
                 if !points.is_empty() {
                     self.push("waypoint", Geometry::Points(points));
                 }
@@ -182,19 +200,50 @@ impl Parser {
         }
     }
 
-    fn add_segment(&mut self, segment: Vec<Vertex>) {
-        match segment.len() {
-            0 => self.empty_segments += 1,
-            1 => self.single_points += 1,
-            _ => self.segments.push(segment),
+    /// Segments of the open track or route as lines. Some programs put every point into a segment of its own.
+    fn finish(&mut self, kind: &str) {
+        let mut lines: Vec<Vec<Recorded>> = Vec::new();
+        let mut single = false;
+        for segment in std::mem::take(&mut self.segments) {
+            if segment.len() == 1 && single {
+                self.joined += 1;
+                if let Some(line) = lines.last_mut() {
+                    self.joined += usize::from(line.len() == 1);
+                    line.extend(segment);
+                }
+                continue;
+            }
+            single = segment.len() == 1;
+            lines.push(segment);
+        }
+        let mut kept = Vec::new();
+        for line in lines {
+            if line.is_empty() {
+                self.empty_segments += 1;
+                continue;
+            }
+            let runs = if kind == "track" { phantom::runs(&line, &mut self.phantoms) } else { vec![line] };
+            let parted = runs.len() > 1;
+            for run in runs {
+                let run: Vec<Vertex> = run.into_iter().map(|(v, _)| v).collect();
+                match run.as_slice() {
+                    [_] if parted => {} // counted as a jump
+                    [_] => self.single_points += 1,
+                    [first, rest @ ..] if rest.iter().all(|v| v.xy == first.xy) => self.one_position += 1,
+                    _ => kept.push(run),
+                }
+            }
+        }
+        if !kept.is_empty() {
+            self.push(kind, Geometry::Lines(kept));
         }
     }
 
-    fn finish(&mut self, kind: &str) {
-        let segments = std::mem::take(&mut self.segments);
-        if !segments.is_empty() {
-            self.push(kind, Geometry::Lines(segments));
-        }
+    fn one_position_only(&self) -> String {
+        format!(
+            "GPX holds {} lines of one position only and nothing else; a line needs 2 that differ, choose another file",
+            self.one_position
+        )
     }
 
     fn push(&mut self, kind: &str, geometry: Geometry) {
@@ -204,6 +253,41 @@ impl Parser {
     }
 }
 
+/// Seconds from 1970 on of a time such as `2024-07-06T10:00:00.5Z`; time zones are passed over, for only differences count.
+fn seconds(text: &str) -> Option<f64> {
+    let (date, time) = text.trim().split_once('T')?;
+    let mut date = date.splitn(3, '-').map(|n| n.parse::<i64>().ok());
+    let (year, month, day) = (date.next()??, date.next()??, date.next()??);
+    let clock: String = time.chars().take_while(|c| c.is_ascii_digit() || matches!(c, ':' | '.')).collect();
+    let mut clock = clock.splitn(3, ':').map(|n| n.parse::<f64>().ok());
+    let (hours, minutes, seconds) = (clock.next()??, clock.next()??, clock.next().flatten().unwrap_or(0.0));
+    let fine = (1..=12).contains(&month) && (1..=31).contains(&day) && (0..=9999).contains(&year);
+    // Days from the first of March of year 0 on: months from March have 30.6 days when rounded down.
+    let (y, m) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
+    let days = 365 * y + y.div_euclid(4) - y.div_euclid(100) + y.div_euclid(400) + (153 * m + 2) / 5 + day;
+    fine.then(|| 86_400.0 * (days - 719_469) as f64 + 3600.0 * hours + 60.0 * minutes + seconds)
+}
+
 fn other_root(root: &str) -> String {
     format!("is XML with the root <{root}>, not a GPX; convert it to GPX or GeoJSON")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_seconds() {
+        for (text, want) in [
+            ("1970-01-01T00:00:00Z", 0.0),
+            ("2024-03-01T00:00:00Z", 1_709_251_200.0),
+            ("2024-02-29T23:59:59.5+02:00", 1_709_251_199.5),
+            ("2000-12-31T12:00Z", 978_264_000.0),
+        ] {
+            assert_eq!(seconds(text), Some(want), "{text}");
+        }
+        for text in ["", "2024-03-01", "x-y-zT1:2:3", "2024-13-01T00:00:00Z"] {
+            assert_eq!(seconds(text), None, "{text}");
+        }
+    }
 }

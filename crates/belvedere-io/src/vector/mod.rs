@@ -6,25 +6,32 @@ mod geojson;
 mod geopackage;
 mod gpx;
 mod on_terrain;
+mod phantom;
 mod rings;
 mod shapefile;
 mod table;
+mod text;
 
 pub use area_kind::{AreaKind, area_kind};
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
 pub use table::{join_table, split_table};
 
 use crate::crs::CoordinateSystem;
+use crate::packed::{content, ends};
 use crate::recognise::explain;
 use crate::{InputFile, IoError, Loaded, fs};
 use glam::DVec2;
 use std::collections::BTreeMap;
+use phantom::Phantoms;
 use std::path::{Path, PathBuf};
 
 /// Endings of the files that [`load_vectors`] reads, beside `.json`, which may be anything.
 pub const ENDINGS: &[&str] = &[
     "gpx",
     "geojson",
+    "geojsonl",
+    "geojsons",
+    "ndjson",
     "shp",
     #[cfg(feature = "geopackage")]
     "gpkg",
@@ -94,8 +101,10 @@ pub struct Vectors {
     pub format: &'static str,
     /// Name of the layer that the file states, possibly empty.
     pub layer: String,
-    /// Coordinate system of every vertex.
+    /// Coordinate system of every vertex; local if the file states none and its numbers are no degrees.
     pub crs: CoordinateSystem,
+    /// Whether the file states its system; else it is the one that its format has by default, or local.
+    pub crs_stated: bool,
     /// Features, in file order.
     pub features: Vec<VectorFeature>,
 }
@@ -120,7 +129,19 @@ impl Vectors {
 /// # Errors
 /// [`IoError`]: unreadable, none of the formats, broken, without any vertex, or in an unknown coordinate system.
 pub fn load_vectors(path: &Path) -> Result<Loaded<Vectors>, IoError> {
-    load_known(path).map_err(explain)
+    let reads = |p: &Path| ends(p, ENDINGS) || ends(p, &["json", "jsonl"]);
+    let path = match split_table(path) {
+        (_, Some(_)) => path.to_owned(),
+        (file, None) => content(file, MAX_BYTES, &reads)?,
+    };
+    let mut loaded = load_known(&path).map_err(explain)?;
+    let mut found = Phantoms::default();
+    phantom::drop_zeros(&mut loaded.value, &mut found);
+    loaded.warnings.extend(found.say().map(|said| format!("{}: {said}", path.display())));
+    if loaded.value.features.is_empty() {
+        return Err(IoError::format(&path, "holds nothing but positions at exactly 0, 0; choose another file"));
+    }
+    Ok(loaded)
 }
 
 fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
@@ -155,10 +176,11 @@ fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
         ));
     }
     let mut warnings = Vec::new();
-    let text = text_of(&bytes, &mut warnings);
+    let text = text::text_of(&bytes, &mut warnings);
+    warnings.iter_mut().for_each(|w| *w = format!("{}: {w}", path.display()));
     let loaded = match text.trim_start().chars().next() {
         Some('<') => gpx::load(path, &text)?,
-        Some('{' | '[') => geojson::load(path, &text)?,
+        Some('{' | '[' | '\u{1e}') => geojson::load(path, &text)?,
         None => return Err(IoError::format(path, "is empty; a GPX, GeoJSON or shapefile is needed")),
         Some(_) => {
             return Err(IoError::format(path, "is no GPX (XML), GeoJSON or shapefile; convert it to one of these"));
@@ -166,25 +188,6 @@ fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
     };
     warnings.extend(loaded.warnings);
     Ok(Loaded::new(loaded.value, warnings).with_file(file))
-}
-
-/// UTF-8 (with or without byte order mark), UTF-16 with byte order mark, else Latin-1 with a warning.
-fn text_of(bytes: &[u8], warnings: &mut Vec<String>) -> String {
-    let utf16 = |unit: fn([u8; 2]) -> u16| {
-        let units = bytes.chunks_exact(2).skip(1).map(|c| unit([c[0], c[1]]));
-        char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
-    };
-    match bytes {
-        [0xff, 0xfe, ..] => return utf16(u16::from_le_bytes),
-        [0xfe, 0xff, ..] => return utf16(u16::from_be_bytes),
-        _ => {}
-    }
-    let bytes = bytes.strip_prefix(&[0xef, 0xbb, 0xbf]).unwrap_or(bytes);
-    String::from_utf8(bytes.to_vec()).unwrap_or_else(|e| {
-        let at = e.utf8_error().valid_up_to();
-        warnings.push(format!("text is not UTF-8 (byte {at}); read as Latin-1, so names may look odd"));
-        bytes.iter().map(|&b| char::from(b)).collect()
-    })
 }
 
 /// Drops NaN and infinities: `None` unless both are finite.
@@ -201,13 +204,27 @@ fn not_degrees(features: &[VectorFeature]) -> Option<String> {
         .map(|p| format!("position ({}, {}) is no longitude and latitude (limits 360 and 90 degrees)", p.x, p.y))
 }
 
-/// The name among properties: `name` in any spelling, else the first of some usual substitutes.
+/// Fields that hold names, by what they are called: the best first.
+const NAME_FIELDS: [&str; 24] = [
+    "name", "name:en", "name_en", "int_name", "ref", "title", "label", "nom", "nombre", "nome", "namn", "navn", "naam", "nazwa",
+    "nazev", "nimi", "bezeichnun", "bezeichnung", "toponym", "fullname", "full_name", "gnis_name", "geo_name", "lakename",
+];
+
+/// The field that names features among these, if any: one of those that are usual, in any spelling, else the first that ends
+/// in "name" and is no name of a file, layer or user.
+pub fn name_field<'k>(keys: impl Iterator<Item = &'k str> + Clone) -> Option<&'k str> {
+    let usual = NAME_FIELDS.iter().find_map(|field| keys.clone().find(|k| k.eq_ignore_ascii_case(field)));
+    let ends_so = |k: &&str| {
+        let key = k.to_ascii_lowercase();
+        key.ends_with("name") && !["file", "layer", "user", "table"].iter().any(|w| key.contains(w))
+    };
+    usual.or_else(|| keys.clone().find(ends_so))
+}
+
+/// The name among properties, see [`name_field`]; empty if there is none.
 fn name_of(properties: &BTreeMap<String, String>) -> String {
-    ["name", "ref", "title", "label"]
-        .iter()
-        .find_map(|key| properties.iter().find(|(k, v)| k.eq_ignore_ascii_case(key) && !v.is_empty()))
-        .map(|(_, v)| v.clone())
-        .unwrap_or_default()
+    let filled = properties.iter().filter(|(_, v)| !v.is_empty()).map(|(k, _)| k.as_str());
+    name_field(filled).and_then(|field| properties.get(field)).cloned().unwrap_or_default()
 }
 
 fn shorten(text: &str) -> String {

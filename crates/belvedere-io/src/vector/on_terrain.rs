@@ -236,11 +236,11 @@ impl<'a> Reprojection<'a> {
             warnings: Vec::new(),
         };
         match CoordinateSystem::from_scene(scene_crs) {
-            Err(CrsError::Local) if !vectors.crs.is_geographic() => {
+            Err(CrsError::Local) if !vectors.crs.is_geographic() || reprojection.could_be_local() => {
                 reprojection.warn("coordinates are taken as they are, for the scene has no coordinate system".into());
             }
             Err(CrsError::Local) => {
-                return Err(vectors.fail("is in longitude and latitude, but the scene has no coordinate system; set crs to the terrain's EPSG code"));
+                return Err(vectors.fail("is in longitude and latitude, but the scene has no coordinate system; state that of the terrain: source_crs of its layer, or --source-crs"));
             }
             Err(e) => return Err(fail(e)),
             Ok(system) => reprojection.transform = Some(Transform::new(&vectors.crs, &system).map_err(fail)?),
@@ -248,9 +248,18 @@ impl<'a> Reprojection<'a> {
         reprojection
             .warnings
             .extend(reprojection.transform.iter().filter(|t| !t.is_identity()).filter_map(|t| t.from().datum_note()));
-        reprojection.near_lon = if vectors.crs.is_geographic() { reprojection.middle_lon() } else { None };
+        reprojection.near_lon = if reprojection.transform.is_some() && vectors.crs.is_geographic() { reprojection.middle_lon() } else { None };
         reprojection.near = reprojection.surroundings();
         Ok(reprojection)
+    }
+
+    /// Whether numbers that nobody called degrees lie on the terrain as they are.
+    fn could_be_local(&self) -> bool {
+        let (Some(ground), Some([lo, hi])) = (self.terrain.map(Heightfield::bounds), self.vectors.extent()) else {
+            return false;
+        };
+        let meets = hi.cmpge(ground.min.truncate()).all() && lo.cmple(ground.max.truncate()).all();
+        !self.vectors.crs_stated && meets
     }
 
     fn warn(&mut self, text: String) {

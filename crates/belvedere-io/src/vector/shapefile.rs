@@ -1,5 +1,6 @@
 //! ESRI shapefiles: points, multipoints, polylines and polygons, with Z and M, names from the .dbf, system from the .prj.
 
+use super::text::table_encoding;
 use super::{Geometry, VectorFeature, Vectors, Vertex, name_of, not_degrees, rings, shorten, vertex};
 use crate::crs::CoordinateSystem;
 use crate::{IoError, Loaded, fs};
@@ -12,10 +13,13 @@ pub(super) const MAGIC: [u8; 4] = [0, 0, 0x27, 0x0a];
 pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError> {
     let fail = |reason: String| IoError::format(path, reason);
     let mut warnings = Vec::new();
-    let shapes = read_shapes(bytes, &mut warnings).map_err(fail)?;
+    let index = sidecar(path, "shx").and_then(|p| fs::read(p).ok()).and_then(|bytes| read_index(&bytes));
+    let shapes = read_shapes(bytes, index.as_deref(), &mut warnings).map_err(fail)?;
     let count = shapes.len();
+    let code_page = sidecar(path, "cpg").and_then(|p| fs::read(p).ok());
+    let code_page = code_page.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     let table = match sidecar(path, "dbf") {
-        Some(p) => read_dbf(&fs::read(&p).map_err(|e| IoError::os(&p, e))?).unwrap_or_else(|reason| {
+        Some(p) => read_dbf(&fs::read(&p).map_err(|e| IoError::os(&p, e))?, code_page.as_deref()).unwrap_or_else(|reason| {
             warnings.push(format!("{}: {reason}; features stay without names", p.display()));
             Vec::new()
         }),
@@ -41,9 +45,9 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError
     if features.len() < count {
         warnings.push(format!("{} of {count} shapes are empty and were dropped", count - features.len()));
     }
-    let crs = system_of(path, &features, &mut warnings)?;
+    let (crs, crs_stated) = system_of(path, &features, &mut warnings)?;
     let warnings = warnings.into_iter().map(|w| format!("{}: {w}", path.display())).collect();
-    let value = Vectors { path: path.into(), format: "shapefile", layer: String::new(), crs, features };
+    let value = Vectors { path: path.into(), format: "shapefile", layer: String::new(), crs, crs_stated, features };
     Ok(Loaded::new(value, warnings))
 }
 
@@ -55,7 +59,12 @@ fn sidecar(path: &Path, extension: &str) -> Option<PathBuf> {
         .find(|p| fs::metadata(p).is_ok_and(|m| m.is_file()))
 }
 
-fn system_of(path: &Path, features: &[VectorFeature], warnings: &mut Vec<String>) -> Result<CoordinateSystem, IoError> {
+/// The system, and whether a .prj states it.
+fn system_of(
+    path: &Path,
+    features: &[VectorFeature],
+    warnings: &mut Vec<String>,
+) -> Result<(CoordinateSystem, bool), IoError> {
     let bad = not_degrees(features);
     if let Some(prj) = sidecar(path, "prj") {
         let text = fs::read(&prj).map_err(|e| IoError::os(&prj, e))?;
@@ -65,17 +74,14 @@ fn system_of(path: &Path, features: &[VectorFeature], warnings: &mut Vec<String>
             Some(reason) => {
                 Err(IoError::format(path, format!("{reason}, but the .prj says {crs}; correct one of them")))
             }
-            None => Ok(crs),
+            None => Ok((crs, true)),
         };
     }
-    if let Some(reason) = bad {
-        return Err(IoError::format(
-            path,
-            format!("has no .prj file and {reason}; add the .prj with its coordinate system"),
-        ));
+    if bad.is_some() {
+        return Ok((CoordinateSystem::local(), false));
     }
     warnings.push("has no .prj file; taken as longitude and latitude on WGS 84".into());
-    CoordinateSystem::wgs84().map_err(|e| IoError::format(path, e.to_string()))
+    CoordinateSystem::wgs84().map(|crs| (crs, false)).map_err(|e| IoError::format(path, e.to_string()))
 }
 
 /// Numbers at byte offsets; `None` past the end.
@@ -101,8 +107,23 @@ impl Bytes<'_> {
     }
 }
 
-/// One geometry per record; `None` for null and empty shapes.
-fn read_shapes(bytes: &[u8], warnings: &mut Vec<String>) -> Result<Vec<Option<Geometry>>, String> {
+/// Where the records lie by the index (.shx), bytes from the beginning of the .shp; `None` if it is no whole index.
+fn read_index(bytes: &[u8]) -> Option<Vec<usize>> {
+    let file = Bytes(bytes);
+    if !bytes.starts_with(&MAGIC) || bytes.len() < 100 || !(bytes.len() - 100).is_multiple_of(8) {
+        return None;
+    }
+    let word = |at: usize| file.be_i32(at).and_then(|w| usize::try_from(w).ok()).map(|w| w * 2);
+    (100..bytes.len()).step_by(8).map(word).collect()
+}
+
+/// One geometry per record; `None` for null and empty shapes. Where `index` leads to records, they are taken from there: there may be
+/// anything between them and behind them.
+fn read_shapes(
+    bytes: &[u8],
+    index: Option<&[usize]>,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Option<Geometry>>, String> {
     let file = Bytes(bytes);
     let stated = file.be_i32(24).map(|words| i64::from(words) * 2);
     if bytes.len() < 100 {
@@ -119,20 +140,50 @@ fn read_shapes(bytes: &[u8], warnings: &mut Vec<String>) -> Result<Vec<Option<Ge
     if end < bytes.len() {
         warnings.push(format!("{} bytes after the end stated in the header were ignored", bytes.len() - end));
     }
-    let (mut shapes, mut at, mut odd) = (Vec::new(), 100usize, 0usize);
+    let mut odd = 0usize;
+    let shapes = match in_order(bytes, end, &mut odd) {
+        Ok(shapes) if index.is_none_or(|i| i.len() == shapes.len()) => shapes,
+        found => {
+            let mut odd_there = 0;
+            let by_index = index.and_then(|index| by_index(bytes, index, &mut odd_there));
+            match (by_index, found) {
+                (Some(shapes), _) => {
+                    odd = odd_there;
+                    shapes
+                }
+                (None, found) => found?,
+            }
+        }
+    };
+    if odd > 0 {
+        warnings.push(format!("{odd} parts with too few points, of one position only or with positions that are not finite were dropped"));
+    }
+    Ok(shapes)
+}
+
+/// Records one behind the other.
+fn in_order(bytes: &[u8], end: usize, odd: &mut usize) -> Result<Vec<Option<Geometry>>, String> {
+    let (mut shapes, mut at) = (Vec::new(), 100usize);
     while at + 8 <= end {
         let number = shapes.len() + 1;
         let broken = |what: &str| format!("record {number} at byte {at} {what}; the file is damaged, get it again");
-        let length = file.be_i32(at + 4).and_then(|w| usize::try_from(w).ok()).map(|w| w * 2);
-        let content = length.and_then(|n| bytes.get(at + 8..(at + 8).checked_add(n)?));
-        let content = content.ok_or_else(|| broken("claims more bytes than the file has"))?;
-        shapes.push(read_shape(content, &mut odd).map_err(|e| broken(&e))?);
+        let content = content_at(bytes, at).ok_or_else(|| broken("claims more bytes than the file has"))?;
+        shapes.push(read_shape(content, odd).map_err(|e| broken(&e))?);
         at += 8 + content.len();
     }
-    if odd > 0 {
-        warnings.push(format!("{odd} parts with too few points or positions that are not finite were dropped"));
-    }
     Ok(shapes)
+}
+
+/// Records where the index says; `None` if one of them is none.
+fn by_index(bytes: &[u8], index: &[usize], odd: &mut usize) -> Option<Vec<Option<Geometry>>> {
+    index.iter().map(|&at| read_shape(content_at(bytes, at)?, odd).ok()).collect()
+}
+
+/// Content of the record whose header stands at a byte.
+fn content_at(bytes: &[u8], at: usize) -> Option<&[u8]> {
+    let from = at.checked_add(8)?;
+    let length = Bytes(bytes).be_i32(at + 4).and_then(|w| usize::try_from(w).ok())? * 2;
+    bytes.get(from..from.checked_add(length)?)
 }
 
 fn read_shape(content: &[u8], odd: &mut usize) -> Result<Option<Geometry>, String> {
@@ -205,6 +256,11 @@ fn shape_of_parts(parts: Vec<Vec<Option<Vertex>>>, area: bool, odd: &mut usize) 
             *odd += 1;
         }
     }
+    if !area {
+        let before = kept.len();
+        kept.retain(|line| line.iter().any(|v| v.xy != line[0].xy));
+        *odd += before - kept.len();
+    }
     if kept.is_empty() {
         return None;
     }
@@ -217,18 +273,23 @@ fn shape_of_parts(parts: Vec<Vec<Option<Vertex>>>, area: bool, odd: &mut usize) 
 }
 
 /// Rows of a dBASE table as text, deleted ones included (shapes count them too).
-fn read_dbf(bytes: &[u8]) -> Result<Vec<BTreeMap<String, String>>, String> {
+fn read_dbf(bytes: &[u8], code_page: Option<&str>) -> Result<Vec<BTreeMap<String, String>>, String> {
     let file = Bytes(bytes);
     let short = || format!("table of {} bytes is cut off", bytes.len());
     let rows = file.count(4).ok_or_else(short)?;
     let word = |at: usize| file.array(at).map(u16::from_le_bytes).map(usize::from);
     let (header, width) = (word(8).ok_or_else(short)?, word(10).ok_or_else(short)?);
+    let encoding = table_encoding(code_page, bytes.get(29).copied().unwrap_or(0));
+    let text = |bytes: &[u8]| match encoding {
+        Some(encoding) => encoding.decode_without_bom_handling(bytes).0.into_owned(),
+        None => latin1_or_utf8(bytes),
+    };
     let mut fields: Vec<(String, usize, usize)> = Vec::new();
     let (mut at, mut column) = (32, 1);
     while at + 32 <= header.min(bytes.len()) && bytes.get(at) != Some(&0x0d) {
         let name: Vec<u8> = bytes[at..at + 11].iter().copied().take_while(|b| *b != 0).collect();
         let length = usize::from(bytes[at + 16]);
-        fields.push((latin1_or_utf8(&name), column, length));
+        fields.push((text(&name), column, length));
         column += length;
         at += 32;
     }
@@ -238,7 +299,7 @@ fn read_dbf(bytes: &[u8]) -> Result<Vec<BTreeMap<String, String>>, String> {
     let row = |r: usize| -> BTreeMap<String, String> {
         let record = bytes.get(header + r * width..header + (r + 1) * width).unwrap_or_default();
         let value =
-            |column: usize, length: usize| latin1_or_utf8(record.get(column..column + length).unwrap_or_default());
+            |column: usize, length: usize| text(record.get(column..column + length).unwrap_or_default());
         fields
             .iter()
             .map(|(name, column, length)| (name.clone(), shorten(value(*column, *length).trim_matches('\0'))))

@@ -11,6 +11,7 @@ mod vti_stream;
 pub use number::{ByteOrder, Number};
 pub use raw::RawLayout;
 
+use crate::packed::content;
 use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_scene::VoxelValues;
 use flate2::read::MultiGzDecoder;
@@ -70,6 +71,7 @@ pub fn is_volume(path: &Path) -> bool {
 /// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, larger than the limits allow, or of a kind that is not supported.
 /// What is allocated is bounded by the size of the file.
 pub fn load_volume(path: &Path, request: &VolumeRequest) -> Result<Loaded<VolumeFile>, IoError> {
+    let path = &content(path, request.limits.max_bytes, &is_volume)?;
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
     let format = |reason: String| IoError::format(path, reason);
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();

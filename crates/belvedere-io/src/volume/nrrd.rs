@@ -99,6 +99,12 @@ impl Header {
         })?;
         let dims = self.dims()?;
         let (axes, origin) = self.place()?;
+        let mut warnings = Vec::new();
+        let turn = match self.get("space") {
+            Some(space) => to_lps(space, &mut warnings),
+            None => DVec3::ONE,
+        };
+        let (axes, origin) = (DMat3::from_diagonal(turn) * axes, turn * origin);
         let data = self.skipped(data)?;
         let encoding = self.need("encoding")?.to_lowercase();
         let (values, changed) = match encoding.as_str() {
@@ -131,7 +137,8 @@ impl Header {
             }
         };
         let file = VolumeFile { format: "NRRD", array: None, stored: number, dims, axes, origin, values };
-        Ok(Loaded::new(file, odd_values(source.path, &changed)))
+        let said = warnings.into_iter().map(|w| format!("{}: {w}", source.path.display()));
+        Ok(Loaded::new(file, said.chain(odd_values(source.path, &changed)).collect()))
     }
 
     fn dims(&self) -> Result<[usize; 3], String> {
@@ -183,7 +190,7 @@ impl Header {
         }
     }
 
-    /// Axes and origin. Coordinates stay those of the file, whichever anatomical directions it names.
+    /// Axes and origin in the space of the file.
     fn place(&self) -> Result<(DMat3, DVec3), String> {
         let bad = |key: &str, text: &str| {
             let shown: String = text.chars().take(60).collect();
@@ -204,6 +211,32 @@ impl Header {
         // Unknown spacings are written as nan.
         let list = list.map(|s| if s.is_nan() { 1.0 } else { s });
         Ok((DMat3::from_diagonal(DVec3::from_array(list)), DVec3::ZERO))
+    }
+}
+
+/// Signs that take coordinates of a space to left, posterior, superior, the directions of DICOM, so that one body stands at one place
+/// and is never mirrored, whichever directions a file names. Other spaces stay as they are.
+fn to_lps(space: &str, warnings: &mut Vec<String>) -> DVec3 {
+    let name = space.trim().to_lowercase();
+    let long: Vec<&str> = name.split('-').collect();
+    let letters: Vec<char> = match long.as_slice() {
+        [one] => one.chars().collect(),
+        several => several.iter().filter_map(|word| word.chars().next()).collect(),
+    };
+    let sign = |at: usize, plus: char, minus: char| match letters.get(at) {
+        Some(c) if *c == plus => Some(1.0),
+        Some(c) if *c == minus => Some(-1.0),
+        _ => None,
+    };
+    let anatomical = sign(0, 'l', 'r').zip(sign(1, 'p', 'a')).zip(sign(2, 's', 'i'));
+    match (anatomical, name.as_str()) {
+        (Some(((x, y), z)), _) => DVec3::new(x, y, z),
+        (None, "3d-left-handed" | "3d-left-handed-time") => DVec3::new(1.0, -1.0, 1.0),
+        (None, "scanner-xyz" | "scanner-xyz-time" | "3d-right-handed" | "3d-right-handed-time") => DVec3::ONE,
+        _ => {
+            warnings.push(format!("its space {space:.40?} is not known; coordinates stay as they are"));
+            DVec3::ONE
+        }
     }
 }
 

@@ -1,0 +1,127 @@
+//! Tables beside the register of PROJ strings: systems that it lacks, datum shifts that it has not or has no longer right, and which
+//! geographic system belongs to a datum and to a projected system.
+//!
+//! The facts are of the EPSG Geodetic Parameter Dataset, as PROJ 9.5 chooses transformations without grids at the middle of a system's
+//! area of use. Lines hold what they say first, then codes, `a-b` being all from a to b.
+
+use super::CrsError;
+
+/// `code PROJ-string`.
+const SYSTEMS: &str = include_str!("systems.txt");
+/// `towgs84 codes`.
+const SHIFTS: &str = include_str!("shifts.txt");
+/// `geographic-code projected-codes`.
+const BASES: &str = include_str!("bases.txt");
+/// `geographic-code names`, in lower case without anything but letters and digits; `=` before names of systems, the others are of datums.
+const DATUMS: &str = include_str!("datums.txt");
+
+fn codes(list: &str) -> impl Iterator<Item = std::ops::RangeInclusive<u32>> + '_ {
+    list.split_whitespace().filter_map(|part| {
+        let (from, to) = part.split_once('-').unwrap_or((part, part));
+        Some(from.parse().ok()?..=to.parse().ok()?)
+    })
+}
+
+/// The rest of the first line that begins with a word.
+fn line_of<'t>(table: &'t str, word: &str) -> Option<&'t str> {
+    table.lines().find_map(|line| line.strip_prefix(word)?.strip_prefix(' '))
+}
+
+/// The code of today for codes of other registers and of the past that are in use: ESRI's, and unofficial ones.
+pub(super) fn current_code(code: u32) -> u32 {
+    match code {
+        900_913 | 3785 | 102_100 | 102_113 | 41_001 => 3857,
+        54_004 => 3395,
+        102_039 => 5070,
+        102_067 => 5514,
+        104_199 | 104_000 => 4326,
+        code => code,
+    }
+}
+
+/// The PROJ string of an EPSG code, with the datum shift of today.
+pub(super) fn definition(code: u32) -> Result<String, CrsError> {
+    let listed = u16::try_from(code).ok().and_then(crs_definitions::from_code).map(|d| d.proj4);
+    let text = listed.or_else(|| line_of(SYSTEMS, &code.to_string())).ok_or(CrsError::UnknownCode { code })?;
+    let shift = SHIFTS.lines().filter_map(|line| line.split_once(' ')).find(|(_, list)| {
+        codes(list).any(|range| range.contains(&code))
+    });
+    Ok(match shift {
+        Some((shift, _)) => with_shift(text, shift),
+        None => text.to_owned(),
+    })
+}
+
+/// A PROJ string with another datum shift on the same ellipsoid.
+fn with_shift(text: &str, shift: &str) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    for part in text.split_whitespace() {
+        match part.split_once('=') {
+            Some(("+towgs84" | "+nadgrids", _)) => {}
+            Some(("+datum", datum)) => parts.push(format!("+ellps={}", ellipsoid(datum))),
+            _ => parts.push(part.to_owned()),
+        }
+    }
+    parts.push(format!("+towgs84={shift}"));
+    parts.join(" ")
+}
+
+/// The ellipsoid of a datum that PROJ knows by name.
+fn ellipsoid(datum: &str) -> &'static str {
+    match datum {
+        "potsdam" | "hermannskogel" => "bessel",
+        "carthage" => "clrk80ign",
+        "ire65" => "mod_airy",
+        "nzgd49" => "intl",
+        "OSGB36" => "airy",
+        "NAD27" => "clrk66",
+        "GGRS87" | "NAD83" => "GRS80",
+        _ => "WGS84",
+    }
+}
+
+/// The geographic system of a datum, or of that name, in letters and digits of lower case.
+pub(super) fn geographic(datum: &str) -> Option<u32> {
+    let line = DATUMS.lines().find(|line| line.split(' ').skip(1).any(|name| name == datum))?;
+    line.split(' ').next()?.parse().ok()
+}
+
+/// The projected systems on a geographic one.
+pub(super) fn projected_on(geographic: u32) -> impl Iterator<Item = u32> {
+    line_of(BASES, &geographic.to_string()).into_iter().flat_map(codes).flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::crs::CoordinateSystem;
+
+    #[test]
+    fn every_line_is_of_systems_that_can_be_built() {
+        assert!(SYSTEMS.lines().count() > 400 && SHIFTS.lines().count() > 50 && BASES.lines().count() > 300);
+        for line in SYSTEMS.lines() {
+            let code = line.split(' ').next().and_then(|c| c.parse().ok()).expect(line);
+            CoordinateSystem::from_epsg(code).unwrap_or_else(|e| panic!("{line}: {e}"));
+        }
+        for (table, first) in [(SHIFTS, false), (BASES, true)] {
+            for line in table.lines() {
+                let (head, list) = line.split_once(' ').expect(line);
+                assert_eq!(codes(list).count(), list.split_whitespace().count(), "{line}");
+                let some = codes(list).next().map(|r| *r.start()).expect(line);
+                CoordinateSystem::from_epsg(some).unwrap_or_else(|e| panic!("{some}: {e}"));
+                if first {
+                    assert!(head.parse::<u32>().is_ok(), "{line}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_datum_has_its_geographic_system() {
+        for (name, code) in [("dch1903", 4149), ("=gcswgs1984", 4326), ("damersfoort", 4289), ("dsjtsk", 4156)] {
+            assert_eq!(geographic(name), Some(code), "{name}");
+        }
+        assert_eq!(geographic("nowhere"), None);
+        assert!(projected_on(4289).any(|c| c == 28992));
+    }
+}

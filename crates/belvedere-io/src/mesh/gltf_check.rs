@@ -1,0 +1,148 @@
+//! What is looked at in a glTF file before it is read: which extensions it needs, and whether its parts name parts that there are.
+
+use serde_json::Value;
+
+/// Extensions that may be required: what they add is read, or changes nothing that is drawn but light and pictures.
+const READ: [&str; 16] = [
+    "KHR_mesh_quantization",
+    "KHR_lights_punctual",
+    "KHR_materials_unlit",
+    "KHR_materials_clearcoat",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_variants",
+    "KHR_materials_volume",
+    "KHR_materials_anisotropy",
+    "KHR_materials_dispersion",
+    "KHR_xmp_json_ld",
+    "KHR_node_visibility",
+];
+/// Compressions of triangles, by their extensions.
+const COMPRESSED: [(&str, &str); 3] = [
+    ("KHR_draco_mesh_compression", "Draco"),
+    ("EXT_meshopt_compression", "meshopt"),
+    ("KHR_meshopt_compression", "meshopt"),
+];
+
+/// Which member of which list names parts of which other list.
+const NAMES: [(&str, &[&str], &str); 9] = [
+    ("scenes", &["nodes"], "nodes"),
+    ("nodes", &["children"], "nodes"),
+    ("nodes", &["mesh"], "meshes"),
+    ("accessors", &["bufferView"], "bufferViews"),
+    ("bufferViews", &["buffer"], "buffers"),
+    ("textures", &["source"], "images"),
+    ("textures", &["sampler"], "samplers"),
+    ("images", &["bufferView"], "bufferViews"),
+    ("materials", &["pbrMetallicRoughness", "baseColorTexture", "index"], "textures"),
+];
+
+/// The document without requirements that are met.
+///
+/// # Errors
+/// One sentence: what it requires and is not read, or which part names one that there is not.
+pub(super) fn checked(json: &[u8]) -> Result<Vec<u8>, String> {
+    let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
+    let mut root: Value =
+        serde_json::from_slice(json).map_err(|e| format!("its JSON cannot be read ({e}); it is damaged or no glTF 2.0"))?;
+    let required: Vec<String> = strings(root.get("extensionsRequired"));
+    for name in &required {
+        if let Some((_, what)) = COMPRESSED.iter().find(|(extension, _)| extension == name) {
+            return Err(format!(
+                "its triangles are compressed with {what} ({name}), which this version does not read; write it without compression, as by gltf-transform or Blender"
+            ));
+        }
+        if !READ.contains(&name.as_str()) {
+            return Err(format!(
+                "it requires the extension {name:.60}, which this version does not read; write it without"
+            ));
+        }
+    }
+    if let Some(root) = root.as_object_mut() {
+        root.remove("extensionsRequired");
+    }
+    for (list, members, of) in NAMES {
+        for (k, part) in items(&root, list).iter().enumerate() {
+            let named = members.iter().try_fold(part, |at, member| at.get(member));
+            check(named, of, &root).map_err(|e| format!("part {k} of its {list} {e}"))?;
+        }
+    }
+    for (k, mesh) in items(&root, "meshes").iter().enumerate() {
+        for primitive in mesh.get("primitives").and_then(Value::as_array).into_iter().flatten() {
+            let attributes = primitive.get("attributes").and_then(Value::as_object);
+            let accessors = attributes.into_iter().flat_map(|a| a.values()).chain(primitive.get("indices"));
+            for accessor in accessors {
+                check(Some(accessor), "accessors", &root).map_err(|e| format!("mesh {k} {e}"))?;
+            }
+            check(primitive.get("material"), "materials", &root).map_err(|e| format!("mesh {k} {e}"))?;
+        }
+    }
+    check(root.get("scene"), "scenes", &root).map_err(|e| format!("it {e}"))?;
+    serde_json::to_vec(&root).map_err(|e| e.to_string())
+}
+
+fn items<'r>(root: &'r Value, list: &str) -> &'r [Value] {
+    root.get(list).and_then(Value::as_array).map_or(&[], Vec::as_slice)
+}
+
+fn strings(list: Option<&Value>) -> Vec<String> {
+    let list = list.and_then(Value::as_array).into_iter().flatten();
+    list.filter_map(|v| v.as_str().map(str::to_owned)).collect()
+}
+
+/// Whether an index, or each of a list, is one of a list of the document.
+fn check(named: Option<&Value>, of: &str, root: &Value) -> Result<(), String> {
+    let count = items(root, of).len();
+    let fine = |v: &Value| v.as_u64().is_some_and(|n| n < count as u64);
+    let all = match named {
+        None => return Ok(()),
+        Some(Value::Array(list)) => list.as_slice(),
+        Some(one) => std::slice::from_ref(one),
+    };
+    match all.iter().find(|v| !fine(v)) {
+        Some(v) => Err(format!("names number {v} of {count} {of}; it is damaged")),
+        None => Ok(()),
+    }
+}
+
+/// A relative address with its percent signs decoded.
+pub(super) fn decoded(uri: &str) -> String {
+    let hex = |b: u8| char::from(b).to_digit(16);
+    let (bytes, mut out, mut k) = (uri.as_bytes(), Vec::with_capacity(uri.len()), 0);
+    while k < bytes.len() {
+        let pair = bytes.get(k + 1).copied().and_then(hex).zip(bytes.get(k + 2).copied().and_then(hex));
+        match (bytes[k], pair) {
+            (b'%', Some((high, low))) => {
+                out.push((16 * high + low) as u8);
+                k += 3;
+            }
+            (byte, _) => {
+                out.push(byte);
+                k += 1;
+            }
+        }
+    }
+    String::from_utf8(out).unwrap_or_else(|_| uri.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_are_decoded() {
+        for (uri, want) in [
+            ("a%20b.bin", "a b.bin"),
+            ("W%C3%BCrfel.bin", "Würfel.bin"),
+            ("100%.bin", "100%.bin"),
+            ("%zz%4", "%zz%4"),
+            ("%ff.bin", "%ff.bin"),
+        ] {
+            assert_eq!(decoded(uri), want, "{uri}");
+        }
+    }
+}

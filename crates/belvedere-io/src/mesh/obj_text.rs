@@ -1,0 +1,79 @@
+//! Text of OBJ and MTL files as their reader takes it: one statement per line, in UTF-8, without what it stumbles over.
+
+/// Statements of an OBJ file: lines that end in a backslash are joined with the next, comments behind numbers are cut off.
+pub(super) fn statements(bytes: &[u8]) -> String {
+    let mut out = String::with_capacity(bytes.len());
+    let text = decoded(bytes);
+    let lines = text.split('\n').flat_map(|line| line.trim_end_matches('\r').split('\r'));
+    for line in lines {
+        let open = line.trim_end().strip_suffix('\\');
+        let part = open.unwrap_or(line);
+        let numbers = ["v ", "vn ", "vt ", "f ", "v\t", "f\t"].iter().any(|k| part.trim_start().starts_with(k));
+        out.push_str(if numbers { part.split('#').next().unwrap_or(part) } else { part });
+        out.push(if open.is_some() { ' ' } else { '\n' });
+    }
+    out
+}
+
+/// Statements of an MTL file; a colour of one value is a grey of it (MTL specification, Kd r g b: "if only r is specified, then g and b
+/// are assumed to be equal to r"). What no number stands behind is left out and named.
+pub(super) fn materials(bytes: &[u8], left_out: &mut Vec<String>) -> String {
+    let text = statements(bytes);
+    let mut out = String::with_capacity(text.len());
+    for line in text.lines() {
+        let mut words = line.split_whitespace();
+        let key = words.next().unwrap_or("");
+        let wanted = match key {
+            "Ka" | "Kd" | "Ks" => 3,
+            "Ns" | "Ni" | "d" | "illum" => 1,
+            _ => 0,
+        };
+        if wanted == 0 {
+            out.push_str(line);
+            out.push('\n');
+            continue;
+        }
+        let words: Vec<&str> = words.collect();
+        let numbers: Vec<&str> =
+            words.iter().copied().take_while(|w| w.parse::<f64>().is_ok_and(f64::is_finite)).take(wanted).collect();
+        let whole = key != "illum" || numbers.iter().all(|n| n.parse::<u8>().is_ok());
+        match numbers.as_slice() {
+            [grey] if wanted == 3 => out.push_str(&format!("{key} {grey} {grey} {grey}\n")),
+            [r, g, ..] if wanted == 3 => {
+                let b = numbers.get(2).unwrap_or(g);
+                out.push_str(&format!("{key} {r} {g} {b}\n"));
+            }
+            [one] if whole => out.push_str(&format!("{key} {one}\n")),
+            _ => left_out.push(line.trim().chars().take(40).collect()),
+        }
+    }
+    out
+}
+
+fn decoded(bytes: &[u8]) -> String {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => encoding_rs::WINDOWS_1252.decode_without_bom_handling(bytes).0.into_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_joined_and_comments_cut_off() {
+        let text = statements(b"v 0 0 0 # first\r\nf 1 2 \\\r\n 3\n# f 9 9 9\rusemtl a#b\\\nc");
+        assert_eq!(text, "v 0 0 0 \nf 1 2   3\n# f 9 9 9\nusemtl a#b c\n");
+        assert_eq!(statements(b"o T\xfcr\n"), "o Tür\n\n");
+    }
+
+    #[test]
+    fn colours_of_one_value_are_grey_and_odd_ones_are_left_out() {
+        let mut odd = Vec::new();
+        let text = materials(b"newmtl m\nKd 0.8\nKs 1 0 0 9\nKa spectral x.rfl\nd -halo 0.5\nillum 2\nNs nan\nmap_Kd a b.png\n", &mut odd);
+        assert_eq!(text.trim_end(), "newmtl m\nKd 0.8 0.8 0.8\nKs 1 0 0\nillum 2\nmap_Kd a b.png");
+        assert_eq!(odd, ["Ka spectral x.rfl", "d -halo 0.5", "Ns nan"]);
+    }
+}

@@ -1,0 +1,92 @@
+//! What is meant by the name of an archive: the one file in it that a loader reads.
+
+use crate::fs::{names_in, unpacked_size};
+use crate::{IoError, Limits, mesh, molecule, terrain, vector, volume};
+use std::path::{Path, PathBuf};
+
+/// Names that an error lists.
+const LISTED: usize = 6;
+/// Archives that are files of a format of their own.
+const FORMATS: [&str; 5] = [".raw.gz", ".nii.gz", ".kmz", ".3mf", ".usdz"];
+
+/// The file that is meant by `path`: the one file in it for which `reads` holds if it is a ZIP or gzip, else itself.
+///
+/// * `most`: bytes that may come out of it.
+/// * `reads`: by the name of an entry. An archive of one file alone means that file.
+///
+/// # Errors
+/// [`IoError::Os`]; [`IoError::Format`] if the archive holds no such file, or several.
+pub(crate) fn content(path: &Path, most: u64, reads: &dyn Fn(&Path) -> bool) -> Result<PathBuf, IoError> {
+    let mut path = path.to_owned();
+    // Archives in archives, as deep as names lead into them.
+    for _ in 0..3 {
+        let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
+        if FORMATS.iter().any(|f| name.ends_with(f)) {
+            return Ok(path);
+        }
+        let Some(names) = names_in(&path).map_err(|e| IoError::os(&path, e))? else { return Ok(path) };
+        let name = one_of(&path, names, reads)?;
+        if unpacked_size(&path, &name, most).map_err(|e| IoError::os(&path, e))? > most {
+            let mib = most >> 20;
+            let reason = format!("{name} in the archive has more than {mib} MiB; allow more memory, or take a part of it");
+            return Err(IoError::format(path, reason));
+        }
+        path = path.join(name);
+    }
+    Ok(path)
+}
+
+fn one_of(path: &Path, names: Vec<String>, reads: &dyn Fn(&Path) -> bool) -> Result<String, IoError> {
+    let bad = |reason: String| Err(IoError::format(path, reason));
+    let packed = |n: &&String| {
+        let inner = Path::new(n.as_str());
+        reads(inner) || ["zip", "gz"].iter().any(|e| inner.extension().is_some_and(|x| x.eq_ignore_ascii_case(e)))
+    };
+    let fit: Vec<&String> = names.iter().filter(packed).collect();
+    match (fit.as_slice(), names.as_slice()) {
+        ([one], _) => Ok((*one).clone()),
+        ([], [one]) => Ok(one.clone()),
+        ([], []) => bad("the archive holds no file; get it again".into()),
+        ([], _) => bad(format!("the archive holds no file of this kind (it holds {})", listed(names.iter()))),
+        (several, _) => {
+            let first = path.join(several[0].as_str());
+            bad(format!(
+                "the archive holds {} files of this kind ({}); name the one that is meant: {}",
+                several.len(),
+                listed(several.iter().copied()),
+                first.display()
+            ))
+        }
+    }
+}
+
+fn listed<'a>(names: impl ExactSizeIterator<Item = &'a String>) -> String {
+    let more = names.len().saturating_sub(LISTED);
+    let mut text = names.take(LISTED).map(String::as_str).collect::<Vec<_>>().join(", ");
+    if more > 0 {
+        text.push_str(&format!(" and {more} more"));
+    }
+    text
+}
+
+/// Whether a name ends in one of these.
+pub(crate) fn ends(path: &Path, endings: &[&str]) -> bool {
+    path.extension().is_some_and(|e| endings.iter().any(|end| e.eq_ignore_ascii_case(end)))
+}
+
+/// The file that is meant by a name, whatever reads it.
+///
+/// # Errors
+/// As those of loaders for archives: no file that is read, or several.
+pub fn inside(path: &Path) -> Result<PathBuf, IoError> {
+    content(path, Limits::default().max_bytes, &|p| {
+        let rasters = terrain::ENDINGS.iter().filter(|e| **e != "txt").any(|e| ends(p, &[e]));
+        let cities = ends(p, &["json", "jsonl", "gml", "pbf", "png"]);
+        rasters
+            || cities
+            || ends(p, vector::ENDINGS)
+            || ends(p, mesh::ENDINGS)
+            || molecule::is_molecule(p)
+            || volume::is_volume(p)
+    })
+}

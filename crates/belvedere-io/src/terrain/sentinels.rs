@@ -1,0 +1,123 @@
+//! Values that mean "no data" by custom, in files that do not declare them.
+
+use rayon::prelude::*;
+
+/// Such values, in the file's unit of height.
+const CUSTOMARY: [f32; 16] = [
+    -9999.0, -99999.0, -999.0, -9998.0, -9999.9, -999.9, -32768.0, -32767.0, -32766.0, -10000.0, 9999.0, 99999.0, 32767.0, 32768.0, 65535.0,
+    65534.0,
+];
+/// Such a value is a height all the same where another height is nearer than this, metres, or than this share of the relief.
+const GAP_M: f32 = 400.0;
+const GAP_SHARE: f32 = 0.2;
+
+/// Makes customary values void where they stand apart from all other heights; one sentence about it.
+///
+/// * `heights`: metres, NaN = void.
+/// * `unit`: metres per unit of the file's heights.
+pub(super) fn void(heights: &mut [f32], unit: f32) -> Option<String> {
+    let mut said = Vec::new();
+    let mut count = 0;
+    // One after the other, the farthest out first: one of them must not make another look like a neighbour.
+    while let Some((value, stored)) = apart(heights, unit) {
+        let found: usize = heights
+            .par_iter_mut()
+            .with_min_len(1 << 16)
+            .map(|h| {
+                let absent = *h == value;
+                if absent {
+                    *h = f32::NAN;
+                }
+                usize::from(absent)
+            })
+            .sum();
+        count += found;
+        said.push(format!("{stored}"));
+    }
+    if count == 0 {
+        return None;
+    }
+    let values = said.join(" and ");
+    Some(format!(
+        "{count} samples of {values}, far from all other heights, are taken as voids though the file does not declare them; nodata of its layer, or --nodata, says otherwise"
+    ))
+}
+
+/// The lowest or the highest height, if it is a customary value and stands apart from the next one; also as stored.
+fn apart(heights: &[f32], unit: f32) -> Option<(f32, f32)> {
+    let [low, next_low, next_high, high] = outermost(heights)?;
+    let customary = |value: f32| CUSTOMARY.into_iter().find(|c| c * unit == value);
+    let alone = |value: f32, next: f32, inner: f32| {
+        let stored = customary(value)?;
+        ((value - next).abs() >= GAP_M.max(GAP_SHARE * inner)).then_some((value, stored))
+    };
+    alone(low, next_low, high - next_low).or_else(|| alone(high, next_high, next_high - low))
+}
+
+/// Lowest, next to lowest, next to highest and highest of at least two different heights.
+fn outermost(heights: &[f32]) -> Option<[f32; 4]> {
+    let ends = |of: &[f32]| {
+        let mut out = [f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY];
+        for &h in of.iter().filter(|h| h.is_finite()) {
+            insert(&mut out, h);
+        }
+        out
+    };
+    let all = heights.par_chunks(1 << 16).map(ends).reduce_with(|mut a, b| {
+        b.into_iter().filter(|h| h.is_finite()).for_each(|h| insert(&mut a, h));
+        a
+    })?;
+    all.iter().all(|h| h.is_finite()).then_some(all)
+}
+
+fn insert(out: &mut [f32; 4], h: f32) {
+    if h < out[0] {
+        (out[0], out[1]) = (h, out[0]);
+    } else if h > out[0] && h < out[1] {
+        out[1] = h;
+    }
+    if h > out[3] {
+        (out[3], out[2]) = (h, out[3]);
+    } else if h < out[3] && h > out[2] {
+        out[2] = h;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn voids(mut heights: Vec<f32>, unit: f32) -> (usize, Option<String>) {
+        let said = void(&mut heights, unit);
+        (heights.iter().filter(|h| h.is_nan()).count(), said)
+    }
+
+    /// Hills between two heights, with a few samples of other values.
+    fn hills(low: f32, high: f32, odd: &[f32]) -> Vec<f32> {
+        (0..1000).map(|k| low + (high - low) * (k as f32 * 0.37).sin().abs()).chain(odd.iter().copied()).collect()
+    }
+
+    #[test]
+    fn values_far_from_all_others_are_voids() {
+        for value in [-9999.0, -32768.0, -32767.0, -99999.0, -999.0, 9999.0, 32767.0, 65535.0] {
+            let (count, said) = voids(hills(200.0, 1900.0, &[value; 3]), 1.0);
+            assert_eq!(count, 3, "{value}");
+            assert!(said.is_some_and(|s| s.contains(&format!("3 samples of {value},"))), "{value}");
+        }
+        let (count, said) = voids(hills(200.0, 1900.0, &[-9999.0, 65535.0, -32768.0]), 1.0);
+        assert_eq!(count, 3, "{said:?}");
+        // in feet
+        assert_eq!(voids(hills(200.0, 1900.0, &[-9999.0 * 0.3048]), 0.3048).0, 1);
+        assert_eq!(voids(hills(100.0, 100.0, &[-9999.0]), 1.0).0, 1, "flat ground");
+    }
+
+    #[test]
+    fn heights_near_others_stay() {
+        assert_eq!(voids(hills(-10500.0, 3000.0, &[-9999.0]), 1.0), (0, None), "a trench");
+        assert_eq!(voids(hills(200.0, 1900.0, &[]), 1.0), (0, None));
+        assert_eq!(voids(hills(-1200.0, -700.0, &[-999.0]), 1.0), (0, None));
+        assert_eq!(voids(hills(0.0, 8849.0, &[9999.0]), 1.0), (0, None), "no gap of a fifth of the relief");
+        assert_eq!(voids(vec![-9999.0; 40], 1.0), (0, None), "nothing else");
+        assert_eq!(voids(hills(200.0, 1900.0, &[-5000.0]), 1.0), (0, None), "no custom");
+    }
+}

@@ -1,0 +1,256 @@
+//! Positions that nobody was at: exactly 0, 0 far from everything else (a receiver without a fix, a field left empty), and jumps in
+//! recorded tracks that no walker makes.
+
+use super::{Geometry, Vectors, Vertex};
+use glam::DVec2;
+
+/// Mean radius of the earth, metres.
+const EARTH_M: f64 = 6_371_008.8;
+/// 0, 0 is believed where something else lies as near as this, degrees and metres.
+const NEAR_DEG: f64 = 1.0;
+const NEAR_M: f64 = 100_000.0;
+/// 0, 0 is believed where the other vertices of a line are apart by more than this share of their distance to it.
+const STEP_SHARE: f64 = 0.1;
+/// Speeds that recorded tracks pass by jumps alone, m/s, and times their median speed.
+const FASTEST: f64 = 150.0;
+const FASTER: f64 = 8.0;
+/// Steps shorter than this, metres, or than so many times the median step, are no jumps.
+const LEAST_M: f64 = 300.0;
+const LEAST_STEPS: f64 = 20.0;
+/// Without times: a step longer than this, metres, and than so many times the median step, is a jump.
+const FAR_M: f64 = 5_000.0;
+const FAR_STEPS: f64 = 50.0;
+/// Without times: so few vertices, away by more than this, metres, and back, are an excursion that nobody made.
+const AWAY_M: f64 = 1_000.0;
+const AWAY_VERTICES: usize = 3;
+
+/// What was found.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub(super) struct Phantoms {
+    /// Positions at exactly 0, 0 that were dropped.
+    pub(super) zeros: usize,
+    /// Jumps at which lines were split.
+    pub(super) jumps: usize,
+    /// Length of the longest, metres.
+    pub(super) longest_m: f64,
+}
+
+impl Phantoms {
+    /// One sentence, if anything was found.
+    pub(super) fn say(&self) -> Option<String> {
+        let zeros = format!(
+            "{} positions at exactly 0, 0, far from everything else, were dropped, and lines were split there",
+            self.zeros
+        );
+        let jumps = format!(
+            "{} jumps of up to {:.1} km that no walker makes split its tracks",
+            self.jumps,
+            self.longest_m / 1000.0
+        );
+        match (self.zeros, self.jumps) {
+            (0, 0) => None,
+            (_, 0) => Some(zeros),
+            (0, _) => Some(jumps),
+            _ => Some(format!("{zeros}; {jumps}")),
+        }
+    }
+}
+
+/// A vertex of a recorded track, and its time, seconds.
+pub(super) type Recorded = (Vertex, Option<f64>);
+
+/// Metres between two positions in degrees.
+fn metres(a: DVec2, b: DVec2) -> f64 {
+    let lon = (b.x - a.x + 180.0).rem_euclid(360.0) - 180.0;
+    DVec2::new(lon * (0.5 * (a.y + b.y)).to_radians().cos(), b.y - a.y).length().to_radians() * EARTH_M
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// Whether 0, 0 is nobody's position in a line of these vertices. `near`: how near something else makes it one.
+fn is_phantom_zero(line: &[DVec2], near: f64) -> bool {
+    let others = || line.iter().copied().filter(|p| *p != DVec2::ZERO);
+    let nearest = others().map(DVec2::length).fold(f64::INFINITY, f64::min);
+    if !nearest.is_finite() || nearest <= near {
+        return false;
+    }
+    let known: Vec<DVec2> = others().collect();
+    let step = median(known.windows(2).map(|w| w[0].distance(w[1])).collect());
+    step <= STEP_SHARE * nearest
+}
+
+/// The runs of a line between positions at exactly 0, 0 where nobody was.
+fn between_zeros<T: Copy>(line: &[T], at: impl Fn(&T) -> DVec2, near: f64, found: &mut Phantoms) -> Vec<Vec<T>> {
+    let places: Vec<DVec2> = line.iter().map(&at).collect();
+    if !places.contains(&DVec2::ZERO) || !is_phantom_zero(&places, near) {
+        return vec![line.to_vec()];
+    }
+    found.zeros += places.iter().filter(|p| **p == DVec2::ZERO).count();
+    line.split(|v| at(v) == DVec2::ZERO).filter(|run| !run.is_empty()).map(<[T]>::to_vec).collect()
+}
+
+/// The runs of a recorded track without positions where nobody was; longitudes and latitudes.
+pub(super) fn runs(track: &[Recorded], found: &mut Phantoms) -> Vec<Vec<Recorded>> {
+    let runs = between_zeros(track, |(v, _)| v.xy, NEAR_DEG, found);
+    runs.into_iter().flat_map(|run| without_jumps(&run, found)).collect()
+}
+
+fn without_jumps(track: &[Recorded], found: &mut Phantoms) -> Vec<Vec<Recorded>> {
+    let steps: Vec<f64> = track.windows(2).map(|w| metres(w[0].0.xy, w[1].0.xy)).collect();
+    let step = median(steps.iter().copied().filter(|s| *s > 0.0).collect());
+    let seconds = |k: usize| track[k].1.zip(track[k + 1].1).map(|(a, b)| (b - a).abs());
+    let speeds: Vec<Option<f64>> =
+        steps.iter().enumerate().map(|(k, s)| seconds(k).map(|t| s / t.max(0.001))).collect();
+    let speed = median(speeds.iter().flatten().copied().filter(|v| *v > 0.0).collect());
+    let mut jumps: Vec<bool> = (0..steps.len())
+        .map(|k| match speeds[k] {
+            Some(v) => v > FASTEST.max(FASTER * speed) && steps[k] > LEAST_M.max(LEAST_STEPS * step),
+            None => steps[k] > FAR_M.max(FAR_STEPS * step),
+        })
+        .collect();
+    mark_excursions(track, &steps, step, &speeds, &mut jumps);
+    let mut out = vec![Vec::new()];
+    for (k, recorded) in track.iter().enumerate() {
+        if k > 0 && jumps[k - 1] {
+            found.jumps += 1;
+            found.longest_m = found.longest_m.max(steps[k - 1]);
+            out.push(Vec::new());
+        }
+        if let Some(run) = out.last_mut() {
+            run.push(*recorded);
+        }
+    }
+    out
+}
+
+/// A few vertices away from where the track is before and after them.
+fn mark_excursions(track: &[Recorded], steps: &[f64], step: f64, speeds: &[Option<f64>], jumps: &mut [bool]) {
+    let away = |k: usize| steps[k] > AWAY_M.max(LEAST_STEPS * step) && speeds[k].is_none();
+    for k in (0..steps.len()).filter(|k| away(*k)) {
+        let back = (k + 1..steps.len().min(k + 1 + AWAY_VERTICES)).find(|j| away(*j));
+        if let Some(j) = back
+            && metres(track[k].0.xy, track[j + 1].0.xy) < 0.25 * steps[k].min(steps[j])
+        {
+            (jumps[k], jumps[j]) = (true, true);
+        }
+    }
+}
+
+/// Drops positions at exactly 0, 0 from everything in a file, splitting lines there. Files in unknown systems stay as they are.
+pub(super) fn drop_zeros(vectors: &mut Vectors, found: &mut Phantoms) {
+    let near = match (vectors.crs.is_local(), vectors.crs.metres_per_unit()) {
+        (true, _) => return,
+        (_, Some(m)) => NEAR_M / m,
+        (_, None) => NEAR_DEG,
+    };
+    let others = vectors.features.iter().flat_map(|f| f.geometry.vertices()).map(|v| v.xy);
+    let nearest = others.filter(|p| *p != DVec2::ZERO).map(DVec2::length).fold(f64::INFINITY, f64::min);
+    let alone = nearest.is_finite() && nearest > near;
+    if !alone {
+        return;
+    }
+    for feature in &mut vectors.features {
+        match &mut feature.geometry {
+            Geometry::Points(points) => {
+                let before = points.len();
+                points.retain(|v| v.xy != DVec2::ZERO);
+                found.zeros += before - points.len();
+            }
+            Geometry::Lines(lines) => {
+                let runs = lines.iter().flat_map(|line| between_zeros(line, |v| v.xy, near, found));
+                let runs: Vec<Vec<Vertex>> = runs.filter(|run| run.len() >= 2).collect();
+                *lines = runs;
+            }
+            Geometry::Polygons(polygons) => {
+                for ring in polygons.iter_mut().flatten() {
+                    let places: Vec<DVec2> = ring.iter().map(|v| v.xy).collect();
+                    if places.contains(&DVec2::ZERO) && is_phantom_zero(&places, near) {
+                        let before = ring.len();
+                        ring.retain(|v| v.xy != DVec2::ZERO);
+                        found.zeros += before - ring.len();
+                    }
+                }
+                polygons.retain_mut(|rings| {
+                    let outer = rings.first().is_some_and(|ring| ring.len() >= 3);
+                    rings.retain(|ring| ring.len() >= 3);
+                    outer
+                });
+            }
+        }
+    }
+    vectors.features.retain(|f| f.geometry.vertices().next().is_some());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(lon: f64, lat: f64, time: Option<f64>) -> Recorded {
+        (Vertex { xy: DVec2::new(lon, lat), z: None }, time)
+    }
+
+    /// A walk of 200 steps of about 14 m, a second or ten apart.
+    fn walk(seconds: Option<f64>) -> Vec<Recorded> {
+        (0..200)
+            .map(|k| at(11.0 + 1e-4 * f64::from(k), 47.0 + 1e-4 * f64::from(k % 7), seconds.map(|s| s * f64::from(k))))
+            .collect()
+    }
+
+    fn lengths(track: &[Recorded]) -> (Vec<usize>, Phantoms) {
+        let mut found = Phantoms::default();
+        let runs = runs(track, &mut found);
+        (runs.iter().map(Vec::len).collect(), found)
+    }
+
+    #[test]
+    fn an_ordinary_track_stays_whole() {
+        for seconds in [None, Some(1.0), Some(10.0)] {
+            assert_eq!(lengths(&walk(seconds)), (vec![200], Phantoms::default()));
+        }
+        // a flight, a ride with a break and a train between, and a plan of few points
+        let flight: Vec<_> = (0..100).map(|k| at(8.0 + 0.003 * f64::from(k), 47.0, Some(f64::from(k)))).collect();
+        assert_eq!(lengths(&flight).0, [100]);
+        let mut ride = walk(Some(10.0));
+        ride[100..].iter_mut().for_each(|(v, t)| (v.xy.y, *t) = (v.xy.y + 0.2, t.map(|t| t + 3600.0)));
+        assert_eq!(lengths(&ride).0, [200]);
+        let plan: Vec<_> = (0..9).map(|k| at(8.0 + 0.1 * f64::from(k), 47.0, None)).collect();
+        assert_eq!(lengths(&plan).0, [9]);
+    }
+
+    #[test]
+    fn zeros_and_jumps_split_a_track_and_are_counted() {
+        for seconds in [None, Some(1.0)] {
+            let mut track = walk(seconds);
+            track[60].0.xy = DVec2::ZERO;
+            track[61].0.xy = DVec2::ZERO;
+            let (runs, found) = lengths(&track);
+            assert_eq!((runs, found.zeros, found.jumps), (vec![60, 138], 2, 0), "{seconds:?}");
+            let mut track = walk(seconds);
+            track[60].0.xy.x += 0.5;
+            let (runs, found) = lengths(&track);
+            assert_eq!((runs, found.jumps), (vec![60, 1, 139], 2), "{seconds:?}");
+            assert!((found.longest_m - 37_900.0).abs() < 300.0, "{found:?}");
+            let mut track = walk(seconds);
+            track[120..].iter_mut().for_each(|(v, _)| v.xy.y += 0.3);
+            assert_eq!(lengths(&track).0, [120, 80], "{seconds:?}");
+        }
+        // two vertices 2 km away, without times
+        let mut track = walk(None);
+        track[60..62].iter_mut().for_each(|(v, _)| v.xy.y += 0.02);
+        assert_eq!(lengths(&track).0, [60, 2, 138]);
+    }
+
+    #[test]
+    fn tracks_over_null_island_and_round_the_equator_stay() {
+        let near: Vec<_> = (-20..=20).map(|k| at(0.01 * f64::from(k), 0.0, None)).collect();
+        assert_eq!(lengths(&near).0, [41]);
+        let equator: Vec<_> = (-18..=18).map(|k| at(10.0 * f64::from(k), 0.0, None)).collect();
+        assert_eq!(lengths(&equator).0, [37]);
+    }
+}
