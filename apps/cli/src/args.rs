@@ -2,6 +2,7 @@
 
 use crate::city::GeneraliseArgs;
 use crate::draw_args::DrawArgs;
+use crate::ground_args::{GroundArgs, InfoArgs};
 use crate::pack::PackArgs;
 use crate::parse::{
     parse_bytes, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_place, parse_seconds, parse_size,
@@ -187,17 +188,6 @@ pub(crate) struct DemoArgs {
     pub(crate) size: Option<[u32; 2]>,
 }
 
-/// Files to describe.
-#[derive(Debug, Args)]
-pub(crate) struct InfoArgs {
-    /// Rasters, features, or builtin:NAME
-    #[arg(required_unless_present = "adapters")]
-    pub(crate) files: Vec<String>,
-    /// Describe what this machine can draw with
-    #[arg(long)]
-    pub(crate) adapters: bool,
-}
-
 /// Terrain and features.
 #[derive(Debug, Args)]
 pub(crate) struct RevealArgs {
@@ -256,6 +246,8 @@ pub(crate) struct RevealArgs {
     /// Coordinate system of the scene: auto, EPSG:n or local
     #[arg(long, value_name = "CRS")]
     pub(crate) crs: Option<String>,
+    #[command(flatten)]
+    pub(crate) ground: GroundArgs,
     /// Straight picture
     #[arg(long, value_name = "OUT.png")]
     pub(crate) before: Option<PathBuf>,
@@ -317,6 +309,8 @@ pub(crate) struct DisoccludeArgs {
     /// Coordinate system to solve in: auto, EPSG:n or local
     #[arg(long, value_name = "CRS")]
     pub(crate) crs: Option<String>,
+    #[command(flatten)]
+    pub(crate) ground: GroundArgs,
 }
 
 /// A scene to measure.

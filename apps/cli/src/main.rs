@@ -5,6 +5,7 @@
 mod args;
 mod city;
 mod draw_args;
+mod ground_args;
 mod pack;
 mod parse;
 mod preset;

@@ -1,11 +1,12 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, FigureKind, FiguresArgs, InfoArgs,
+    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, FigureKind, FiguresArgs,
     MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs,
     TechniqueKind, Verb,
 };
 use crate::draw_args::{CompositingKind, DrawArgs};
+use crate::ground_args::InfoArgs;
 use crate::report::{Context, done, print};
 use anyhow::Context as _;
 use belvedere::picture::{self, AuxBuffer, AuxFormat, PictureOptions};
@@ -183,6 +184,9 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
             features: args.features.iter().map(|path| named(path)).collect(),
             crs: args.crs,
             area_style: args.area_style.map(Into::into),
+            source_crs: args.ground.source_crs,
+            nodata: args.ground.nodata,
+            vertical_unit: args.ground.vertical_unit.map(Into::into),
             ..DataFiles::default()
         },
         eye: args.eye,
@@ -315,6 +319,9 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
             palette: PaletteDoc::of(&args.palette),
             no_sea: args.no_sea,
             area_style: args.area_style.map(Into::into),
+            source_crs: args.ground.source_crs,
+            nodata: args.ground.nodata,
+            vertical_unit: args.ground.vertical_unit.map(Into::into),
         },
         viewpoint,
         fov_y_deg: args.fov,
@@ -398,9 +405,23 @@ fn describe(args: &InfoArgs, context: &Context) -> anyhow::Result<Goal> {
     if args.adapters {
         result["machine"] = serde_json::from_str(&output::json(&info::machine())?)?;
     }
-    let mut files = Vec::new();
+    let request = info::InfoRequest {
+        source_crs: args.ground.source_crs.clone(),
+        nodata: args.ground.nodata,
+        vertical_unit: args.ground.vertical_unit.map(Into::into),
+        max_bytes: context.common.max_mem,
+    };
+    let (mut files, mut bad) = (Vec::new(), Vec::new());
     for file in &args.files {
-        files.push(serde_json::from_str(&output::json(&info::describe(file, &context.progress)?)?)?);
+        match info::describe_as(file, &request, &context.progress) {
+            Ok(found) => files.push(serde_json::from_str(&output::json(&found)?)?),
+            Err(e) if e.is_cancelled() || args.files.len() == 1 => return Err(e.into()),
+            Err(e) => {
+                let reason = e.to_string();
+                files.push(serde_json::json!({ "kind": "error", "path": file, "error": reason }));
+                bad.push(reason);
+            }
+        }
     }
     context.finish();
     if !files.is_empty() {
@@ -411,7 +432,12 @@ fn describe(args: &InfoArgs, context: &Context) -> anyhow::Result<Goal> {
     } else {
         print(&check::plain(&result))?;
     }
-    Ok(Goal::Reached)
+    match bad.as_slice() {
+        [] => Ok(Goal::Reached),
+        [first, ..] => {
+            Err(anyhow::anyhow!("{} of {} files cannot be described: {first}", bad.len(), args.files.len()))
+        }
+    }
 }
 
 fn project(args: &ProjectArgs, context: &Context) -> anyhow::Result<Goal> {

@@ -54,7 +54,8 @@ pub struct Building {
     pub height_m: f64,
     /// Where the height is from.
     pub height_source: HeightSource,
-    /// Its surfaces; empty = the footprint extruded to its height under a flat roof.
+    /// Its surfaces; empty = the footprint extruded to its height under a flat roof. Their heights are over the file's datum, or over the
+    /// ground where it stands on the terrain (`base_m` is `None`).
     pub faces: Vec<CityFace>,
 }
 

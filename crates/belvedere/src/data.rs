@@ -1,12 +1,12 @@
 //! Terrain and features straight from their files, without a scene file.
 
 use crate::record::{AreaRecord, InputFile};
-use crate::resolve::vectors::{FeatureKind, kind_of};
+use crate::resolve::vectors::{FeatureKind, kind_of, kinds_of};
 use crate::resolve::{self, LayerRequest};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
     AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LineDoc, LineStyleDoc, Origin, PaletteDoc, Paths,
-    PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc,
+    PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, VerticalUnit,
 };
 use crate::session::Description;
 use crate::{BelvedereError, OpenOptions, Session};
@@ -38,6 +38,12 @@ pub struct DataFiles {
     pub no_sea: bool,
     /// What areas are drawn as; automatic if left out.
     pub area_style: Option<SurfaceDoc>,
+    /// `EPSG:n` of the terrain, instead of what its file says.
+    pub source_crs: Option<String>,
+    /// Stored value of the terrain that means "no data", instead of what its file says.
+    pub nodata: Option<f64>,
+    /// Unit of the terrain's heights, instead of what its file says.
+    pub vertical_unit: Option<VerticalUnit>,
 }
 
 /// What the files hold.
@@ -63,8 +69,9 @@ impl DataFiles {
             source: Paths::One(dem),
             fill_voids: !self.keep_voids,
             largest_hole: (!self.keep_voids).then_some(LARGEST_HOLE),
-            source_crs: None,
-            nodata: None,
+            source_crs: self.source_crs.clone(),
+            nodata: self.nodata,
+            vertical_unit: self.vertical_unit,
             drape: None,
             style: TerrainStyleDoc { palette, sea: !self.no_sea, ..TerrainStyleDoc::default() },
         })];
@@ -74,13 +81,16 @@ impl DataFiles {
         let mut vectors = BTreeMap::new();
         for (i, name) in self.features.iter().enumerate() {
             let source = locate(name, &mut roots)?;
-            let mut kind = FeatureKind::Lines;
+            let mut kinds = vec![FeatureKind::Lines];
             if !source.starts_with("builtin:") {
                 let read = load_vectors(Path::new(&source))?;
-                kind = kind_of(&read.value);
+                kinds = kinds_of(&read.value);
                 vectors.insert(PathBuf::from(&source), read);
             }
-            layers.push(feature_layer(format!("features{}", i + 1), Paths::One(source), kind));
+            for (k, kind) in kinds.into_iter().enumerate() {
+                let id = if k == 0 { format!("features{}", i + 1) } else { format!("features{}-{}", i + 1, kind.plural()) };
+                layers.push(feature_layer(id, Paths::One(source.clone()), kind));
+            }
         }
         let crs = self.crs.as_deref().unwrap_or("auto");
         let request =

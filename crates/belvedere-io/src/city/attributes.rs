@@ -82,11 +82,13 @@ pub(super) fn is_landmark(of: &impl Attributes) -> bool {
 }
 
 /// A length such as `12`, `12.5 m`, `12,5m`, `40 ft` or, from what is least, `10-12 ft`, metres.
-fn length_m(text: &str) -> Option<f64> {
+pub(super) fn length_m(text: &str) -> Option<f64> {
     let (number, rest) = first_number(text)?;
     let unit = rest.trim_start_matches(|c: char| !c.is_alphabetic() && c != '\'');
     let feet = unit.starts_with("ft") || unit.starts_with("feet") || unit.starts_with('\'');
-    Some(if feet { 0.3048 * number } else { number })
+    // `65'6"`: feet and inches.
+    let inches = rest.strip_prefix('\'').and_then(|after| first_number(after)).map_or(0.0, |(inches, _)| inches);
+    Some(if feet { 0.3048 * (number + inches / 12.0) } else { number })
 }
 
 /// The number that a text begins with, the longest there is, and what follows: `2;3` is 2, `10-12 m` is 10.
@@ -115,6 +117,7 @@ mod tests {
             (&[("height", "12,5 m")][..], 12.5, HeightSource::Stated),
             (&[("height", "40 ft")][..], 12.192, HeightSource::Stated),
             (&[("height", "40'")][..], 12.192, HeightSource::Stated),
+            (&[("height", "65'6\"")][..], 19.9644, HeightSource::Stated),
             (&[("height", "1e2")][..], 100.0, HeightSource::Stated),
             (&[("height", "10-12 ft")][..], 3.048, HeightSource::Stated),
             (&[("building:levels", "2;3")][..], 7.0, HeightSource::Levels),

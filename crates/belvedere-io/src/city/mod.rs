@@ -8,10 +8,12 @@ mod collect;
 mod footprints;
 mod gml;
 mod osm;
+mod parts;
 mod place;
 mod plan;
 mod reference;
 mod roof;
+mod roofs;
 mod surface;
 mod tin;
 

@@ -2,10 +2,11 @@
 
 use super::attributes;
 use super::footprints::{cover, way_class};
+use super::parts::{self, Tagged};
 use super::plan::{self, Repairs};
 use super::{CityFile, IoError, Loaded};
 use crate::crs::CoordinateSystem;
-use belvedere_scene::{Building, City, CityArea, Polygon, Way, WayClass};
+use belvedere_scene::{City, CityArea, Polygon, Way, WayClass};
 use glam::DVec2;
 use osmpbf::{Element, ElementReader, RelMemberType};
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -53,6 +54,7 @@ struct Lost {
     nodes: usize,
     polygons: usize,
     relations: usize,
+    underground: usize,
 }
 
 /// Whether a file is OpenStreetMap's PBF: the kind of its first block is named in its first bytes.
@@ -80,6 +82,7 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<CityFile>, IoErro
         .warnings()
         .chain(say(lost.nodes, "vertices of ways are not in the file; their ways are cut there"))
         .chain(say(lost.polygons, "polygons with vertices that are not in the file were left out"))
+        .chain(say(lost.underground, "buildings and ways that lie underground were left out"))
         .chain(say(lost.relations, "multipolygons do not close in the file and were left out"))
         .map(|w| format!("{}: {w}", path.display()))
         .collect();
@@ -137,12 +140,18 @@ impl Map {
 
     fn city(&self, lost: &mut Lost, repairs: &mut Repairs) -> City {
         let mut city = City::default();
+        let mut buildings = Vec::new();
         for relation in &self.relations {
+            if is_building(&relation.tags) && parts::is_underground(&relation.tags) {
+                lost.underground += 1;
+                continue;
+            }
             let polygons = self.polygons(&relation.ways, repairs);
             if polygons.is_empty() {
                 lost.relations += 1;
             } else {
-                add(&mut city, &format!("relation/{}", relation.id), &relation.tags, polygons, repairs);
+                let id = format!("relation/{}", relation.id);
+                add(&mut city, &mut buildings, id, &relation.tags, polygons, repairs);
             }
         }
         let of_building = |r: &&Relation| is_building(&r.tags);
@@ -151,12 +160,17 @@ impl Map {
             if is_building(&line.tags) && drawn.contains(id) {
                 continue; // tagged twice: the outline of a building with courtyards
             }
+            if is_building(&line.tags) && parts::is_underground(&line.tags) || is_tunnel(&line.tags) {
+                lost.underground += 1;
+                continue;
+            }
             let closed = line.nodes.len() > 3 && line.nodes.first() == line.nodes.last();
             if closed && is_area(&line.tags) {
                 match self.places(&line.nodes) {
                     Some(ring) => {
                         let polygon = plan::polygon([ring], repairs);
-                        add(&mut city, &format!("way/{id}"), &line.tags, polygon.into_iter().collect(), repairs);
+                        let polygons = polygon.into_iter().collect();
+                        add(&mut city, &mut buildings, format!("way/{id}"), &line.tags, polygons, repairs);
                     }
                     None => lost.polygons += 1,
                 }
@@ -167,6 +181,7 @@ impl Map {
                 }
             }
         }
+        city.buildings = parts::assembled(buildings).0;
         city
     }
 
@@ -211,7 +226,17 @@ fn owned<'t>(tags: impl Iterator<Item = (&'t str, &'t str)>) -> Tags {
 }
 
 fn is_building(tags: &Tags) -> bool {
-    tags.get("building").is_some_and(|b| b != "no")
+    tags.get("building").is_some_and(|b| b != "no") || is_part(tags)
+}
+
+fn is_part(tags: &Tags) -> bool {
+    tags.get("building:part").is_some_and(|b| b != "no") && tags.get("building").is_none_or(|b| b == "no")
+}
+
+/// Whether it is a street or railway under the ground; passages through buildings are none.
+fn is_tunnel(tags: &Tags) -> bool {
+    let dug = tags.get("tunnel").is_some_and(|t| t == "yes") || tags.get("location").is_some_and(|l| l == "underground");
+    dug && !is_building(tags) && (tags.contains_key("highway") || tags.contains_key("railway"))
 }
 
 fn is_area(tags: &Tags) -> bool {
@@ -230,27 +255,21 @@ fn is_wanted(tags: &Tags) -> bool {
     is_area(tags) || class(tags).is_some()
 }
 
-fn add(city: &mut City, id: &str, tags: &Tags, polygons: Vec<Polygon>, repairs: &mut Repairs) {
+fn add(
+    city: &mut City,
+    buildings: &mut Vec<Tagged>,
+    id: String,
+    tags: &Tags,
+    polygons: Vec<Polygon>,
+    repairs: &mut Repairs,
+) {
     if polygons.is_empty() {
         return;
     }
-    let name = attributes::name(tags);
     if is_building(tags) {
-        let (height_m, height_source) = attributes::height(tags, &mut repairs.heights);
-        let landmark = attributes::is_landmark(tags);
-        let id = id.to_owned();
-        city.buildings.push(Building {
-            id,
-            name,
-            landmark,
-            footprint: polygons,
-            base_m: None,
-            height_m,
-            height_source,
-            faces: Vec::new(),
-        });
+        buildings.push(Tagged::new(id, tags, polygons, is_part(tags), repairs));
     } else if let Some(cover) = cover(tags) {
-        city.areas.push(CityArea { name, cover, polygons });
+        city.areas.push(CityArea { name: attributes::name(tags), cover, polygons });
     }
 }
 

@@ -63,7 +63,9 @@ pub fn surface(city: &City, colors: &CityColors, ground: CityGround<'_>) -> Mesh
             let [base, top] = stands(building, ground, plate);
             out.extruded(building, base, top, colors);
         } else {
-            building.faces.iter().for_each(|face| out.face(face, color_of(face.surface, colors)));
+            // Without a ground of its own, heights of its surfaces count from the ground.
+            let base = if building.base_m.is_some() { 0.0 } else { lowest(building, ground).unwrap_or(plate) };
+            building.faces.iter().for_each(|face| out.face(face, base, color_of(face.surface, colors)));
         }
     }
     for structure in &city.structures {
@@ -73,7 +75,7 @@ pub fn surface(city: &City, colors: &CityColors, ground: CityGround<'_>) -> Mesh
             StructureKind::Vegetation => Color::rgb(126, 158, 104),
             StructureKind::Other => Color::rgb(206, 202, 194),
         };
-        structure.faces.iter().for_each(|face| out.face(face, color));
+        structure.faces.iter().for_each(|face| out.face(face, 0.0, color));
     }
     MeshFile { colors: MeshColors::PerTriangle(out.colors), ..out.mesh }
 }
@@ -185,8 +187,10 @@ impl Builder {
         }
     }
 
-    fn face(&mut self, face: &CityFace, color: Color) {
+    fn face(&mut self, face: &CityFace, base: f64, color: Color) {
+        let first = self.mesh.positions.len();
         self.rings(&face.rings, color);
+        self.mesh.positions[first..].iter_mut().for_each(|p| p.z += base);
     }
 
     fn flat(&mut self, polygon: &Polygon, z: f64, color: Color) {

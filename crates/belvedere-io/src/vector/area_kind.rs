@@ -279,6 +279,7 @@ mod tests {
             format: "GeoJSON",
             layer: layer.into(),
             crs: CoordinateSystem::wgs84().unwrap(),
+            crs_stated: false,
             features: areas.iter().map(feature).collect(),
         }
     }

@@ -130,6 +130,7 @@ fn ground(mut files: Vec<String>) -> LayerDoc {
         largest_hole: Some(crate::LARGEST_HOLE),
         source_crs: None,
         nodata: None,
+        vertical_unit: None,
         drape: None,
         style: TerrainStyleDoc::default(),
     })

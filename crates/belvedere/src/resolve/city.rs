@@ -256,7 +256,7 @@ fn remarks(city: &City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Vec<String> {
 /// Adds to all heights.
 fn lift(city: &mut City, by: f64) {
     city.buildings.iter_mut().filter_map(|b| b.base_m.as_mut()).for_each(|z| *z += by);
-    let faces = city.buildings.iter_mut().flat_map(|b| &mut b.faces);
+    let faces = city.buildings.iter_mut().filter(|b| b.base_m.is_some()).flat_map(|b| &mut b.faces);
     let faces = faces.chain(city.structures.iter_mut().flat_map(|s| &mut s.faces));
     faces.flat_map(|f| &mut f.rings).flatten().for_each(|p| p.z += by);
 }

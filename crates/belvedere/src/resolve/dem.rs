@@ -2,7 +2,7 @@
 
 use super::loader::Loader;
 use crate::BelvedereError;
-use crate::scene_file::TerrainDoc;
+use crate::scene_file::{TerrainDoc, VerticalUnit};
 use belvedere_io::terrain::{CrsChoice, TerrainRequest, load_original, load_terrain};
 use belvedere_scene::{Crs, Heightfield};
 
@@ -31,6 +31,7 @@ pub(super) fn load(
         largest_hole: doc.largest_hole.unwrap_or(1.0),
         source_crs,
         nodata: doc.nodata,
+        vertical_unit_m: doc.vertical_unit.map(VerticalUnit::metres),
         sea: doc.style.sea,
         limits: loader.options.limits(),
         ..TerrainRequest::default()

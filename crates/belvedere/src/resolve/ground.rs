@@ -9,7 +9,7 @@ use belvedere_scene::{Crs, Heightfield, Scene};
 const MEAN_EARTH_RADIUS_M: f64 = 6_371_008.8;
 
 /// The code of `EPSG:n`.
-pub(super) fn epsg(text: &str) -> Option<u32> {
+pub(crate) fn epsg(text: &str) -> Option<u32> {
     let text = text.trim();
     text.get(..5).filter(|p| p.eq_ignore_ascii_case("epsg:")).and_then(|_| text[5..].trim().parse().ok())
 }

@@ -3,12 +3,13 @@
 use super::ground::Ground;
 use super::loader::Loader;
 use crate::BelvedereError;
-use crate::scene_file::Paths;
+use crate::scene_file::{LayerDoc, Paths};
 use belvedere_io::vector::{
     AreaKind, Geometry, Vectors, area_kind, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain,
 };
 use belvedere_io::{IoError, Loaded};
 use belvedere_scene::{AreaFeature, AreaSurface, Crs, Heightfield, LineFeature, PointFeature};
+use std::mem::take;
 
 /// What a file of features is mostly about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,6 +34,62 @@ pub(crate) fn kind_of(vectors: &Vectors) -> FeatureKind {
     }
 }
 
+impl FeatureKind {
+    /// Its word for several.
+    pub(crate) fn plural(self) -> &'static str {
+        match self {
+            Self::Lines => "lines",
+            Self::Areas => "areas",
+            Self::Points => "points",
+        }
+    }
+
+    fn is(self, geometry: &Geometry) -> bool {
+        match self {
+            Self::Lines => matches!(geometry, Geometry::Lines(_)),
+            Self::Areas => matches!(geometry, Geometry::Polygons(_)),
+            Self::Points => matches!(geometry, Geometry::Points(_)),
+        }
+    }
+}
+
+/// All kinds that a file has, the one it is mostly about first.
+pub(crate) fn kinds_of(vectors: &Vectors) -> Vec<FeatureKind> {
+    let kinds = [FeatureKind::Lines, FeatureKind::Areas, FeatureKind::Points];
+    let has = |kind: &FeatureKind| vectors.features.iter().any(|f| kind.is(&f.geometry));
+    kinds.into_iter().filter(has).collect()
+}
+
+/// What of a file no layer of the scene draws: one sentence, if it has features of kinds that its layers are not of.
+fn left_out(loader: &Loader<'_>, index: usize, file: &str, vectors: &Vectors) -> Option<String> {
+    // Outlines of areas are lines, too.
+    let drawn = |layer: &LayerDoc, kind: FeatureKind| match layer {
+        LayerDoc::Line(l) => l.source.as_ref().is_some_and(|s| names(s, file)) && kind != FeatureKind::Points,
+        LayerDoc::Area(l) => names(&l.source, file) && kind == FeatureKind::Areas,
+        LayerDoc::Point(l) => names(&l.source, file) && kind == FeatureKind::Points,
+        LayerDoc::City(l) => names(&l.source, file),
+        _ => false,
+    };
+    let first = loader.layers.iter().position(|l| kinds_of(vectors).iter().any(|kind| drawn(l, *kind)));
+    if first != Some(index) {
+        return None; // said once
+    }
+    let count = |kind: FeatureKind| vectors.features.iter().filter(|f| kind.is(&f.geometry)).count();
+    let lost: Vec<String> = kinds_of(vectors)
+        .into_iter()
+        .filter(|kind| !loader.layers.iter().any(|l| drawn(l, *kind)))
+        .map(|kind| format!("{} features that are {}", count(kind), kind.plural()))
+        .collect();
+    (!lost.is_empty()).then(|| {
+        let path = vectors.path.display();
+        format!("{path}: {} are drawn by no layer; add layers of kind line, area or point of the same file", lost.join(" and "))
+    })
+}
+
+fn names(paths: &Paths, file: &str) -> bool {
+    paths.as_slice().iter().any(|name| name == file)
+}
+
 type OnTerrain<T> = fn(&Vectors, Crs, Option<&Heightfield>) -> Result<Loaded<Vec<T>>, IoError>;
 
 fn all<T>(
@@ -44,10 +101,15 @@ fn all<T>(
     mut inspect: impl FnMut(&Vectors),
 ) -> Result<Vec<T>, BelvedereError> {
     let mut features = Vec::new();
-    for file in loader.files(index, "source", paths)? {
+    for (name, file) in paths.as_slice().iter().zip(loader.files(index, "source", paths)?) {
         loader.options.progress.tick("reading features", 0.0)?;
-        let vectors = loader.vectors.remove(&file).map_or_else(|| load_vectors(&file), Ok)?;
+        let known = loader.vectors.get_mut(&file).map(|known| {
+            // What there is to say is said once.
+            Loaded { value: known.value.clone(), warnings: take(&mut known.warnings), files: take(&mut known.files) }
+        });
+        let vectors = known.map_or_else(|| load_vectors(&file), Ok)?;
         let mut vectors = loader.take(index, vectors);
+        loader.note(index, left_out(loader, index, name, &vectors).into_iter().collect());
         inspect(&vectors);
         stand(loader, index, &mut vectors);
         let found = on_terrain(&vectors, ground.crs, ground.terrain)?;

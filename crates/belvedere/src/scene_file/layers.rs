@@ -161,12 +161,40 @@ pub struct TerrainDoc {
     /// Stored value that means "no data", instead of what the files say.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nodata: Option<f64>,
+    /// Unit of the heights, instead of what the files say: `m`, `ft` or `us-ft`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vertical_unit: Option<VerticalUnit>,
     /// Georeferenced pictures laid over the ground, later ones on top.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub drape: Option<Paths>,
     /// How it is drawn.
     #[serde(default)]
     pub style: TerrainStyleDoc,
+}
+
+/// A unit of heights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum VerticalUnit {
+    /// Metres.
+    #[serde(rename = "m")]
+    Metre,
+    /// Feet of 0.3048 m.
+    #[serde(rename = "ft")]
+    Foot,
+    /// US survey feet, 1200/3937 m.
+    #[serde(rename = "us-ft")]
+    UsFoot,
+}
+
+impl VerticalUnit {
+    /// Metres per unit.
+    pub fn metres(self) -> f64 {
+        match self {
+            Self::Metre => 1.0,
+            Self::Foot => 0.3048,
+            Self::UsFoot => 1200.0 / 3937.0,
+        }
+    }
 }
 
 /// How terrain is drawn.

@@ -9,12 +9,14 @@ pub use volume::VolumeInfo;
 
 use crate::BelvedereError;
 use crate::resolve::builtin;
+use crate::scene_file::VerticalUnit;
 use belvedere_core::DVec2;
-use belvedere_io::terrain::{TerrainRequest, load_terrain};
-use belvedere_io::vector::{self, Geometry, load_vectors};
+use belvedere_io::terrain::{TerrainRequest, load_original};
+use belvedere_io::vector::{self, Geometry, Vectors, join_table, load_vectors};
 use belvedere_io::{GeoTiff, Limits};
-use belvedere_scene::{NodeState, Progress};
+use belvedere_scene::Progress;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Description of one file.
@@ -83,31 +85,61 @@ pub struct MeshInfo {
     pub warnings: Vec<String>,
 }
 
-/// Heights.
+/// Heights: the file as it is, and the ground that a scene gets from it.
 #[derive(Debug, Clone, Serialize)]
 pub struct TerrainInfo {
     /// The file.
     pub path: String,
-    /// Format, size and system of the file.
-    pub sources: Vec<String>,
-    /// Coordinate system that a scene gets from it.
-    pub scene_crs: String,
-    /// Columns and rows of the scene's grid.
-    pub nodes: [usize; 2],
-    /// Spacing of the scene's grid, metres.
-    pub spacing_m: [f64; 2],
-    /// Scene x, y: west, south, east, north.
+    /// Columns and rows of the file.
+    pub size: [usize; 2],
+    /// Coordinate system of the file.
+    pub crs: String,
+    /// Unit of its plane.
+    pub unit: String,
+    /// Distances of its samples, in that unit.
+    pub spacing: [f64; 2],
+    /// First and last samples in the file's system: west, south, east, north.
     pub extent: [f64; 4],
     /// Longitude and latitude: west, south, east, north; degrees.
     pub extent_deg: Option<[f64; 4]>,
-    /// Lowest and highest height, metres.
-    pub heights_m: [f64; 2],
+    /// Lowest and highest height of the file, metres.
+    pub heights_m: Option<[f32; 2]>,
     /// Samples of the file without data.
     pub voids: usize,
     /// Their share, 0..=1.
     pub void_share: f64,
+    /// The ground of a scene.
+    pub scene: GroundInfo,
     /// What was odd.
     pub warnings: Vec<String>,
+}
+
+/// The ground that a scene gets from a file.
+#[derive(Debug, Clone, Serialize)]
+pub struct GroundInfo {
+    /// Coordinate system of the scene.
+    pub crs: String,
+    /// Columns and rows.
+    pub nodes: [usize; 2],
+    /// Distances of the nodes, metres.
+    pub spacing_m: [f64; 2],
+    /// Scene x, y: west, south, east, north.
+    pub extent: [f64; 4],
+    /// Whether the samples of the file are its nodes; else they were resampled.
+    pub as_in_file: bool,
+}
+
+/// What is said of files instead of what they say themselves.
+#[derive(Debug, Clone, Default)]
+pub struct InfoRequest {
+    /// `EPSG:n` of terrain.
+    pub source_crs: Option<String>,
+    /// Stored value of terrain that means "no data".
+    pub nodata: Option<f64>,
+    /// Unit of heights.
+    pub vertical_unit: Option<VerticalUnit>,
+    /// Most bytes of decoded samples; 4 GiB if left out.
+    pub max_bytes: Option<u64>,
 }
 
 /// A picture.
@@ -144,12 +176,29 @@ pub struct FeatureInfo {
     pub areas: usize,
     /// Features with points.
     pub points: usize,
+    /// Field that their names are taken from, if any.
+    pub name_field: Option<String>,
+    /// Features with a name.
+    pub named: usize,
+    /// Their properties, at most fifty.
+    pub properties: Vec<PropertyInfo>,
     /// Vertices of all.
     pub vertices: usize,
     /// Smallest x, y and largest x, y in the file's system.
     pub extent: Option<[DVec2; 2]>,
     /// What was odd.
     pub warnings: Vec<String>,
+}
+
+/// A property of features.
+#[derive(Debug, Clone, Serialize)]
+pub struct PropertyInfo {
+    /// Its name.
+    pub name: String,
+    /// Features that have it.
+    pub features: usize,
+    /// What one of them says, shortened.
+    pub example: String,
 }
 
 /// A built-in scene.
@@ -199,10 +248,23 @@ pub fn machine() -> MachineInfo {
 /// # Errors
 /// [`BelvedereError::Io`] with what is wrong with it.
 pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereError> {
+    describe_as(name, &InfoRequest::default(), progress)
+}
+
+/// As [`describe`], with what is known of the file besides.
+///
+/// # Errors
+/// [`BelvedereError::Io`] with what is wrong with it.
+pub fn describe_as(name: &str, request: &InfoRequest, progress: &Progress) -> Result<FileInfo, BelvedereError> {
     if name.starts_with("builtin:") {
         return built_in(name);
     }
-    let path = Path::new(name);
+    let meant = match vector::split_table(Path::new(name)) {
+        (whole, Some(_)) => join_table(whole.to_owned(), vector::split_table(Path::new(name)).1),
+        (whole, None) => belvedere_io::inside(whole)?,
+    };
+    let (path, name) = (meant.as_path(), meant.display().to_string());
+    let request = request.terrain(path)?;
     if belvedere_io::city::is_city(path)? {
         return CityInfo::of(path).map(FileInfo::City);
     }
@@ -211,12 +273,12 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
             return Err(belvedere_io::IoError::format(path, known.broken()).into());
         }
         let note = format!("not read by this version; {}", known.meanwhile);
-        let (path, format, holds) = (name.to_owned(), known.format, known.holds);
+        let (path, format, holds) = (name, known.format, known.holds);
         return Ok(FileInfo::Unread(UnreadInfo { path, format, holds, note }));
     }
     let plain = vector::split_table(path).0;
     let ends = |list: &[&str]| plain.extension().is_some_and(|e| list.iter().any(|l| e.eq_ignore_ascii_case(l)));
-    if ends(vector::ENDINGS) || ends(&["json"]) {
+    if ends(vector::ENDINGS) || ends(&["json", "jsonl"]) {
         return features(path);
     }
     if ends(belvedere_io::mesh::ENDINGS) {
@@ -231,19 +293,40 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
     if !ends(belvedere_io::terrain::ENDINGS) {
         return Err(belvedere_io::IoError::format(
             path,
-            "it is of no kind that this version reads: terrain and pictures as GeoTIFF, SRTM .hgt (also .zip) or ESRI ASCII, features as GPX, GeoJSON, shapefile (.shp) or GeoPackage (.gpkg, where that is built in), meshes as OBJ, PLY, STL, glTF or GLB, molecules as PDB or mmCIF, volumes as .vti, NRRD or raw samples",
+            "it is of no kind that this version reads: terrain and pictures as GeoTIFF, SRTM .hgt or ESRI ASCII, features as GPX, GeoJSON, shapefile (.shp) or GeoPackage (.gpkg, where that is built in), meshes as OBJ, PLY, STL, glTF or GLB, molecules as PDB or mmCIF, volumes as .vti, NRRD or raw samples; all of them also in .zip and .gz",
         )
         .into());
     }
     if ends(&["tif", "tiff"]) {
-        return geotiff(path, name, progress);
+        return geotiff(path, &name, &request, progress);
     }
-    terrain(path, progress)
+    terrain(path, &request, progress)
+}
+
+impl InfoRequest {
+    fn terrain(&self, path: &Path) -> Result<TerrainRequest, BelvedereError> {
+        let code = |text: &String| {
+            let reason = format!("source_crs \"{text}\" is not known; give EPSG:n");
+            crate::resolve::ground::epsg(text).ok_or_else(|| belvedere_io::IoError::format(path, reason))
+        };
+        Ok(TerrainRequest {
+            source_crs: self.source_crs.as_ref().map(code).transpose()?,
+            nodata: self.nodata,
+            vertical_unit_m: self.vertical_unit.map(VerticalUnit::metres),
+            limits: self.max_bytes.map_or_else(Limits::default, |max_bytes| Limits { max_bytes }),
+            ..TerrainRequest::default()
+        })
+    }
 }
 
 /// A picture, terrain, or else the raster alone.
-fn geotiff(path: &Path, name: &str, progress: &Progress) -> Result<FileInfo, BelvedereError> {
-    let opened = GeoTiff::open(path, Limits::default())?;
+fn geotiff(
+    path: &Path,
+    name: &str,
+    request: &TerrainRequest,
+    progress: &Progress,
+) -> Result<FileInfo, BelvedereError> {
+    let opened = GeoTiff::open(path, request.limits)?;
     let (file, info) = (&opened.value, opened.value.info());
     let picture = PictureInfo {
         path: name.to_owned(),
@@ -257,7 +340,7 @@ fn geotiff(path: &Path, name: &str, progress: &Progress) -> Result<FileInfo, Bel
     if info.bands >= 3 || matches!(info.photometric, belvedere_io::Photometric::Palette(_)) {
         return Ok(FileInfo::Picture(picture));
     }
-    match terrain(path, progress) {
+    match terrain(path, request, progress) {
         // Whole and readable, only no ground of a scene as it stands.
         Err(reason) if !reason.is_cancelled() && file.read(0, progress).is_ok() => {
             let warnings = picture.warnings.iter().cloned().chain([reason.to_string()]).collect();
@@ -267,31 +350,62 @@ fn geotiff(path: &Path, name: &str, progress: &Progress) -> Result<FileInfo, Bel
     }
 }
 
-fn terrain(path: &Path, progress: &Progress) -> Result<FileInfo, BelvedereError> {
-    let loaded = load_terrain(&[path.to_owned()], &TerrainRequest::default(), progress)?;
+fn terrain(path: &Path, request: &TerrainRequest, progress: &Progress) -> Result<FileInfo, BelvedereError> {
+    let file = load_original(path, request, progress)?;
+    let (original, mut warnings) = (&file.value, file.warnings);
+    let loaded = original.in_scene(request, progress)?;
+    warnings.extend(loaded.warnings);
     let (terrain, field) = (&loaded.value, &loaded.value.heightfield);
     let b = field.bounds();
-    let filled = field.share_of(NodeState::Filled);
-    debug_assert!(filled == 0.0, "nothing was asked to be filled");
     Ok(FileInfo::Terrain(TerrainInfo {
         path: path.display().to_string(),
-        sources: terrain.sources.clone(),
-        scene_crs: terrain.crs.to_string(),
-        nodes: [field.cols(), field.rows()],
-        spacing_m: field.spacing().to_array(),
-        extent: [b.min.x, b.min.y, b.max.x, b.max.y],
+        size: original.size(),
+        crs: original.system_name().to_owned(),
+        unit: original.unit(),
+        spacing: original.spacing(),
+        extent: original.extent(),
         extent_deg: terrain.extent_deg,
-        heights_m: field.z_range(),
+        heights_m: original.heights_range(),
         voids: terrain.void_samples,
         void_share: terrain.void_share,
-        warnings: loaded.warnings,
+        scene: GroundInfo {
+            crs: terrain.crs.to_string(),
+            nodes: [field.cols(), field.rows()],
+            spacing_m: field.spacing().to_array(),
+            extent: [b.min.x, b.min.y, b.max.x, b.max.y],
+            as_in_file: terrain.resample_error.is_none() && original.size() == [field.cols(), field.rows()],
+        },
+        warnings,
     }))
+}
+
+/// Most properties that are listed, and most characters of an example.
+const LISTED: usize = 50;
+const EXAMPLE: usize = 60;
+
+/// The properties of features, those that most have first.
+fn properties(vectors: &Vectors) -> Vec<PropertyInfo> {
+    let mut found: BTreeMap<&str, (usize, &str)> = BTreeMap::new();
+    for (name, value) in vectors.features.iter().flat_map(|f| &f.properties) {
+        let entry = found.entry(name).or_insert((0, value));
+        entry.0 += 1;
+    }
+    let info = |(name, (features, example)): (&str, (usize, &str))| PropertyInfo {
+        name: name.to_owned(),
+        features,
+        example: example.chars().take(EXAMPLE).collect(),
+    };
+    let mut list: Vec<PropertyInfo> = found.into_iter().map(info).collect();
+    list.sort_by_key(|p| std::cmp::Reverse(p.features));
+    list.truncate(LISTED);
+    list
 }
 
 fn features(path: &Path) -> Result<FileInfo, BelvedereError> {
     let loaded = load_vectors(path)?;
     let vectors = &loaded.value;
     let count = |wanted: fn(&Geometry) -> bool| vectors.features.iter().filter(|f| wanted(&f.geometry)).count();
+    let all = properties(vectors);
     Ok(FileInfo::Features(FeatureInfo {
         path: path.display().to_string(),
         format: vectors.format,
@@ -299,6 +413,9 @@ fn features(path: &Path) -> Result<FileInfo, BelvedereError> {
         lines: count(|g| matches!(g, Geometry::Lines(_))),
         areas: count(|g| matches!(g, Geometry::Polygons(_))),
         points: count(|g| matches!(g, Geometry::Points(_))),
+        name_field: vector::name_field(all.iter().map(|p| p.name.as_str())).map(str::to_owned),
+        named: vectors.features.iter().filter(|f| !f.name.is_empty()).count(),
+        properties: all,
         vertices: vectors.vertex_count(),
         extent: vectors.extent(),
         warnings: loaded.warnings.clone(),
