@@ -17,7 +17,7 @@ const QUIET_FOR: Duration = Duration::from_millis(500);
 
 /// `belvedere: text` on standard error; a closed pipe is nobody's fault.
 pub(crate) fn complain(text: &str) {
-    let _ = writeln!(std::io::stderr(), "belvedere: {text}");
+    let _ = writeln!(std::io::stderr(), "belvedere: {}", escaped(text));
 }
 
 /// An error as one line.
@@ -201,10 +201,23 @@ pub(crate) fn done(verb: &str, outputs: &[PathBuf], warnings: &[String]) -> serd
     serde_json::json!({ "verb": verb, "outputs": outputs, "warnings": warnings })
 }
 
+/// Text without characters that steer a terminal: names come from files.
+pub(crate) fn escaped(text: &str) -> std::borrow::Cow<'_, str> {
+    let steers = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
+    if !text.contains(steers) {
+        return text.into();
+    }
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        if steers(c) { out.extend(c.escape_default()) } else { out.push(c) }
+    }
+    out.into()
+}
+
 /// Text on standard output; a reader that has gone away ends the output, not the program.
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(escaped(text).as_bytes()).and_then(|()| out.flush()) {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(anyhow::anyhow!("standard output: {e}")),
         _ => Ok(()),
     }

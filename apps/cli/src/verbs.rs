@@ -1,9 +1,8 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, FigureKind, FiguresArgs,
-    MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs,
-    TechniqueKind, Verb,
+    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, FigureKind, FiguresArgs, MeasureArgs,
+    PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs, TechniqueKind, Verb,
 };
 use crate::draw_args::{CompositingKind, DrawArgs};
 use crate::ground_args::InfoArgs;
@@ -434,9 +433,7 @@ fn describe(args: &InfoArgs, context: &Context) -> anyhow::Result<Goal> {
     }
     match bad.as_slice() {
         [] => Ok(Goal::Reached),
-        [first, ..] => {
-            Err(anyhow::anyhow!("{} of {} files cannot be described: {first}", bad.len(), args.files.len()))
-        }
+        [first, ..] => Err(anyhow::anyhow!("{} of {} files cannot be described: {first}", bad.len(), args.files.len())),
     }
 }
 

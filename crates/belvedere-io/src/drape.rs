@@ -1,8 +1,8 @@
 //! Georeferenced pictures draped over terrain: GeoTIFF, and PNG with a world file.
 
 use crate::crs::{CoordinateSystem, Transform};
-use crate::terrain::{Geometry, GridMap, Link, stated_system};
 use crate::packed::{content, ends};
+use crate::terrain::{Geometry, GridMap, Link, stated_system};
 use crate::{Affine, GeoTiff, InputFile, IoError, Limits, Loaded, Raster, SourceCrs, esri_ascii, fs, png};
 use belvedere_scene::{Crs, Drape, Heightfield, Progress};
 use glam::DVec2;

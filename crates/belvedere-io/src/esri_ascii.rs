@@ -92,7 +92,9 @@ fn too_few(cols: usize, rows: usize, found: usize) -> String {
 fn not_a_number(word: &[u8], index: usize, cols: usize) -> String {
     let shown: String = String::from_utf8_lossy(word).chars().take(20).collect();
     let (col, row) = (index % cols, index / cols);
-    format!("{shown:?} at column {col}, row {row} is not a number; numbers with a decimal point or comma and blanks between them are needed")
+    format!(
+        "{shown:?} at column {col}, row {row} is not a number; numbers with a decimal point or comma and blanks between them are needed"
+    )
 }
 
 fn header<'a>(words: &mut std::iter::Peekable<impl Iterator<Item = &'a [u8]>>) -> Result<Header, String> {

@@ -28,7 +28,8 @@ pub(crate) fn content(path: &Path, most: u64, reads: &dyn Fn(&Path) -> bool) -> 
         let name = one_of(&path, names, reads)?;
         if unpacked_size(&path, &name, most).map_err(|e| IoError::os(&path, e))? > most {
             let mib = most >> 20;
-            let reason = format!("{name} in the archive has more than {mib} MiB; allow more memory, or take a part of it");
+            let reason =
+                format!("{name} in the archive has more than {mib} MiB; allow more memory, or take a part of it");
             return Err(IoError::format(path, reason));
         }
         path = path.join(name);

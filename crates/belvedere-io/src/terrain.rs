@@ -340,8 +340,12 @@ fn auto_target(sources: &[SourceGrid]) -> Result<Target, IoError> {
     {
         return Ok(Target { crs: Crs::Epsg(code), system: Some(system.clone()) });
     }
-    let off_earth =
-        || IoError::format(&first.path, "no part of it lies on the earth; check its georeference, or set source_crs of its layer (--source-crs)");
+    let off_earth = || {
+        IoError::format(
+            &first.path,
+            "no part of it lies on the earth; check its georeference, or set source_crs of its layer (--source-crs)",
+        )
+    };
     let Extent { bounds: [west, south, east, north], .. } = extent(sources).ok_or_else(off_earth)?;
     let centre = DVec2::new(0.5 * (west + east), 0.5 * (south + north));
     let nearest_equator = if south * north < 0.0 { 0.0 } else { south.abs().min(north.abs()) };

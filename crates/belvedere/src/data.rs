@@ -88,7 +88,8 @@ impl DataFiles {
                 vectors.insert(PathBuf::from(&source), read);
             }
             for (k, kind) in kinds.into_iter().enumerate() {
-                let id = if k == 0 { format!("features{}", i + 1) } else { format!("features{}-{}", i + 1, kind.plural()) };
+                let id =
+                    if k == 0 { format!("features{}", i + 1) } else { format!("features{}-{}", i + 1, kind.plural()) };
                 layers.push(feature_layer(id, Paths::One(source.clone()), kind));
             }
         }

@@ -75,7 +75,7 @@ impl Reader<'_> {
         let vertices = Vertices::of(document, head)?;
         let mut shown: BTreeMap<&str, Shown> = BTreeMap::new();
         let fail = |id: &str, e: &str| format!("object \"{id}\": {e}; the file is damaged, export it again");
-        for (id, object) in objects {
+        for (id, object) in objects.iter().filter(|(_, object)| !object.is_null()) {
             let root = root(objects, id);
             let all = shown.entry(root).or_default();
             let geometries = match object.get("geometry") {
@@ -83,10 +83,16 @@ impl Reader<'_> {
                 None | Some(Value::Null) if object.is_object() => &[],
                 _ => return Err(fail(id, "its geometry is no list")),
             };
-            for geometry in geometries {
-                let lod = lod(geometry);
-                let faces = vertices.faces(geometry).map_err(|e| fail(id, &e))?;
-                all.faces.entry(lod).or_default().extend(faces);
+            let read = geometries.iter().filter(|g| !g.is_null()).map(|g| (lod(g), vertices.faces(g)));
+            let read: Vec<_> = read.collect();
+            let other = read.iter().any(|(_, faces)| faces.as_ref().is_ok_and(|f| !f.is_empty()));
+            for (lod, faces) in read {
+                match faces {
+                    Ok(faces) => all.faces.entry(lod).or_default().extend(faces),
+                    // Another level of detail shows the object.
+                    Err(_) if other => self.out.unread += 1,
+                    Err(e) => return Err(fail(id, &e)),
+                }
             }
         }
         for (id, shown) in shown {

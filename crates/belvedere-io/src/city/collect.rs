@@ -34,6 +34,8 @@ pub(super) struct Collector<'l> {
     wanted: Option<&'l str>,
     left_out: BTreeMap<String, usize>,
     without_faces: usize,
+    /// Geometries that cannot be read, of objects that have others.
+    pub(super) unread: usize,
 }
 
 impl<'l> Collector<'l> {
@@ -73,7 +75,7 @@ impl<'l> Collector<'l> {
     /// What a file says, with its oddities.
     pub(super) fn finish(self, path: &Path, format: String, reference: Reference) -> Result<Loaded<CityFile>, IoError> {
         let fail = |reason: String| IoError::format(path, reason);
-        let Self { mut city, repairs, lods, wanted, left_out, without_faces } = self;
+        let Self { mut city, repairs, lods, wanted, left_out, without_faces, unread } = self;
         let lods: Vec<String> = lods.into_iter().map(|lod| lod.1).collect();
         if let Some(wanted) = wanted.filter(|w| !lods.iter().any(|lod| lod == w)) {
             return Err(fail(format!("has no level of detail {wanted}; it has {}", lods.join(", "))));
@@ -83,6 +85,11 @@ impl<'l> Collector<'l> {
         }
         city.buildings.sort_by(|a, b| a.id.cmp(&b.id));
         let mut warnings: Vec<String> = reference.warning.into_iter().chain(repairs.warnings()).collect();
+        if unread > 0 {
+            warnings.push(format!(
+                "{unread} geometries cannot be read; their objects are drawn at another level of detail"
+            ));
+        }
         if without_faces > 0 {
             warnings.push(format!("{without_faces} objects have no geometry that is read and were left out"));
         }
@@ -95,11 +102,16 @@ impl<'l> Collector<'l> {
         Ok(Loaded::new(CityFile { path: path.into(), format, crs, reference, lods, city }, warnings))
     }
 
-    /// The faces of the level of detail that is wanted, else of the highest.
+    /// The faces of the level of detail that is wanted, else of the highest that has any.
     fn chosen(&self, mut shown: Shown) -> Option<Vec<CityFace>> {
         let of_wanted = |wanted: &str| shown.faces.keys().find(|lod| lod.1 == wanted).cloned();
-        let lod = self.wanted.and_then(of_wanted).or_else(|| shown.faces.keys().next_back().cloned())?;
-        shown.faces.remove(&lod).filter(|faces| !faces.is_empty())
+        let wanted = self.wanted.and_then(of_wanted).and_then(|lod| shown.faces.remove(&lod));
+        // Levels of points, lines and other things that make no surface are none.
+        let shows = |faces: &Vec<CityFace>| faces.iter().any(|f| f.rings.first().is_some_and(|r| r.len() >= 3));
+        let mut levels: Vec<Vec<CityFace>> =
+            wanted.into_iter().chain(shown.faces.into_values().rev()).filter(|faces| !faces.is_empty()).collect();
+        let best = levels.iter().position(shows).unwrap_or(0);
+        (!levels.is_empty()).then(|| levels.swap_remove(best))
     }
 
     /// Drops rings that are none.

@@ -235,7 +235,8 @@ fn is_part(tags: &Tags) -> bool {
 
 /// Whether it is a street or railway under the ground; passages through buildings are none.
 fn is_tunnel(tags: &Tags) -> bool {
-    let dug = tags.get("tunnel").is_some_and(|t| t == "yes") || tags.get("location").is_some_and(|l| l == "underground");
+    let dug =
+        tags.get("tunnel").is_some_and(|t| t == "yes") || tags.get("location").is_some_and(|l| l == "underground");
     dug && !is_building(tags) && (tags.contains_key("highway") || tags.contains_key("railway"))
 }
 

@@ -123,9 +123,9 @@ impl Plan {
         let longest = edges.max_by(|a, b| a.length().total_cmp(&b.length())).unwrap_or(DVec2::X);
         let mut u = longest.normalize_or(DVec2::X);
         let size = |axis: DVec2| {
-            let [lo, hi] = ring.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], p| {
-                [lo.min(p.dot(axis)), hi.max(p.dot(axis))]
-            });
+            let [lo, hi] = ring
+                .iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], p| [lo.min(p.dot(axis)), hi.max(p.dot(axis))]);
             [0.5 * (lo + hi), 0.5 * (hi - lo)]
         };
         if (size(u)[1] < size(u.perp())[1]) != across {
@@ -193,7 +193,8 @@ fn planes(roof: &Roof, plan: &Plan) -> Vec<Plane> {
                 None => v,
             };
             let along = |p: &DVec2| (*p - plan.centre).dot(down);
-            let [lo, hi] = plan.ring.iter().map(along).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], d| [l.min(d), h.max(d)]);
+            let [lo, hi] =
+                plan.ring.iter().map(along).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], d| [l.min(d), h.max(d)]);
             let length = (hi - lo).max(1e-6);
             vec![Plane { slope: -down / length, at: hi / length }]
         }
@@ -202,10 +203,13 @@ fn planes(roof: &Roof, plan: &Plan) -> Vec<Plane> {
                 let angle = (k as f64 + 0.5) / AROUND as f64 * std::f64::consts::TAU;
                 let out = DVec2::new(angle.cos() / hu, angle.sin() / hv);
                 let axis = out.x * u + out.y * v;
-                round.windows(2).map(move |w| {
-                    let fall = (w[1].1 - w[0].1) / (w[1].0 - w[0].0);
-                    Plane { slope: fall * axis, at: w[0].1 - fall * w[0].0 }
-                }).collect::<Vec<_>>()
+                round
+                    .windows(2)
+                    .map(move |w| {
+                        let fall = (w[1].1 - w[0].1) / (w[1].0 - w[0].0);
+                        Plane { slope: fall * axis, at: w[0].1 - fall * w[0].0 }
+                    })
+                    .collect::<Vec<_>>()
             })
             .collect(),
     }
@@ -241,7 +245,8 @@ pub(super) fn solid(polygon: &Polygon, heights: Heights, roof: &Roof) -> Vec<Cit
         return out;
     }
     let rise = heights.top - heights.eaves;
-    let share = |p: DVec2| planes.iter().map(|q| q.height(p - plan.centre)).fold(f64::INFINITY, f64::min).clamp(0.0, 1.0);
+    let share =
+        |p: DVec2| planes.iter().map(|q| q.height(p - plan.centre)).fold(f64::INFINITY, f64::min).clamp(0.0, 1.0);
     let lifted = |p: DVec2| plan.degrees(p).extend(heights.eaves + rise * share(p));
     for (k, plane) in planes.iter().enumerate() {
         let mut piece = plan.ring.clone();
@@ -327,7 +332,10 @@ mod tests {
     fn house(turn: f64) -> Polygon {
         let scale = DVec2::new(DEGREE_M * 47f64.to_radians().cos(), DEGREE_M);
         let corner = |x: f64, y: f64| DVec2::new(11.0, 47.0) + DVec2::from_angle(turn).rotate(DVec2::new(x, y)) / scale;
-        Polygon { outer: vec![corner(-10.0, -5.0), corner(10.0, -5.0), corner(10.0, 5.0), corner(-10.0, 5.0)], holes: vec![] }
+        Polygon {
+            outer: vec![corner(-10.0, -5.0), corner(10.0, -5.0), corner(10.0, 5.0), corner(-10.0, 5.0)],
+            holes: vec![],
+        }
     }
 
     /// Volume within faces, cubic metres, by the divergence theorem; and how far they are from closed.
@@ -395,7 +403,8 @@ mod tests {
         let outer = corners.map(|(x, y)| DVec2::new(11.0, 47.0) + DVec2::new(x, y) / scale).to_vec();
         for shape in ["gabled", "hipped", "skillion", "pyramidal", "dome"] {
             let heights = Heights { under: 0.0, eaves: 6.0, top: 10.0 };
-            let faces = solid(&Polygon { outer: outer.clone(), holes: vec![] }, heights, &roof(&[("roof:shape", shape)]));
+            let faces =
+                solid(&Polygon { outer: outer.clone(), holes: vec![] }, heights, &roof(&[("roof:shape", shape)]));
             let (volume, open) = volume(&faces);
             assert!(open < 1e-2 && (216.0 * 6.0..216.0 * 10.0).contains(&volume), "{shape}: {volume} {open}");
         }

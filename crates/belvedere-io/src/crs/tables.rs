@@ -15,6 +15,9 @@ const BASES: &str = include_str!("bases.txt");
 /// `geographic-code names`, in lower case without anything but letters and digits; `=` before names of systems, the others are of datums.
 const DATUMS: &str = include_str!("datums.txt");
 
+/// Krovak systems whose register has southings and westings, and whose PROJ strings do not.
+const SOUTH_WEST: [u32; 2] = [2065, 5513];
+
 fn codes(list: &str) -> impl Iterator<Item = std::ops::RangeInclusive<u32>> + '_ {
     list.split_whitespace().filter_map(|part| {
         let (from, to) = part.split_once('-').unwrap_or((part, part));
@@ -41,11 +44,16 @@ pub(super) fn current_code(code: u32) -> u32 {
 
 /// The PROJ string of an EPSG code, with the datum shift of today.
 pub(super) fn definition(code: u32) -> Result<String, CrsError> {
+    if SOUTH_WEST.contains(&code) {
+        let reason = "its axes run south and west (EPSG:5514 is the same with axes to the east and north)".to_owned();
+        return Err(CrsError::Unsupported { name: format!("EPSG:{code}"), reason });
+    }
     let listed = u16::try_from(code).ok().and_then(crs_definitions::from_code).map(|d| d.proj4);
     let text = listed.or_else(|| line_of(SYSTEMS, &code.to_string())).ok_or(CrsError::UnknownCode { code })?;
-    let shift = SHIFTS.lines().filter_map(|line| line.split_once(' ')).find(|(_, list)| {
-        codes(list).any(|range| range.contains(&code))
-    });
+    let shift = SHIFTS
+        .lines()
+        .filter_map(|line| line.split_once(' '))
+        .find(|(_, list)| codes(list).any(|range| range.contains(&code)));
     Ok(match shift {
         Some((shift, _)) => with_shift(text, shift),
         None => text.to_owned(),

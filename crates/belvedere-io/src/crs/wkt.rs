@@ -112,7 +112,9 @@ pub(super) fn parse(text: &str) -> Result<CoordinateSystem, CrsError> {
     let horizontal = find(&root).ok_or_else(|| text_error(format!("{} holds no horizontal system", root.keyword)))?;
     // Codes of other registers are passed over, and those that no table has: names and parameters may tell.
     let stated = horizontal.epsg().map(CoordinateSystem::from_epsg).and_then(Result::ok);
-    if let Some(system) = stated.or_else(|| code_by_name(horizontal.name()).and_then(|c| CoordinateSystem::from_epsg(c).ok())) {
+    if let Some(system) =
+        stated.or_else(|| code_by_name(horizontal.name()).and_then(|c| CoordinateSystem::from_epsg(c).ok()))
+    {
         return Ok(system);
     }
     let name = match horizontal.name() {
@@ -279,7 +281,9 @@ fn projection(system: &Node, angle_rad: f64) -> Result<String, CrsError> {
         "krovak" => "krovak",
         "swissobliquecylindrical" | "swissobliquemercator" => "somerc",
         "hotineobliquemercatorazimuthcenter" | "obliquemercator" | "hotineobliquemercatorvariantb" => "omerc",
-        "hotineobliquemercator" | "hotineobliquemercatorazimuthnaturalorigin" | "hotineobliquemercatorvarianta" => "omerc",
+        "hotineobliquemercator" | "hotineobliquemercatorazimuthnaturalorigin" | "hotineobliquemercatorvarianta" => {
+            "omerc"
+        }
         _ => {
             let name = system.name().to_owned();
             return Err(CrsError::Unsupported {
@@ -312,7 +316,8 @@ fn projection(system: &Node, angle_rad: f64) -> Result<String, CrsError> {
 fn oblique(method: &str, value: &dyn Fn(&[&str]) -> Option<f64>, angle_rad: f64, unit_m: f64) -> String {
     let angle = |names: &[&str]| value(names).map(|v| degrees(v, angle_rad));
     let azimuth = angle(&["azimuth", "Azimuth_of_initial_line"]).unwrap_or(90.0);
-    let grid = angle(&["rectified_grid_angle", "XY_Plane_Rotation", "Angle_from_Rectified_to_Skew_Grid"]).unwrap_or(azimuth);
+    let grid =
+        angle(&["rectified_grid_angle", "XY_Plane_Rotation", "Angle_from_Rectified_to_Skew_Grid"]).unwrap_or(azimuth);
     let lat = angle(&["latitude_of_center", "latitude_of_origin", "Latitude_of_projection_centre"]).unwrap_or(0.0);
     let lon = angle(&["longitude_of_center", "central_meridian", "Longitude_of_projection_centre"]).unwrap_or(0.0);
     let k = value(&["scale_factor"]).unwrap_or(1.0);

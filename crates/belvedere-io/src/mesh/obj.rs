@@ -30,7 +30,8 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
     let odd = odd.into_inner();
     if let Some(first) = odd.first() {
         let count = odd.len();
-        warnings.push(format!("{}: {count} lines of its materials are not read, the first is {first:?}", path.display()));
+        warnings
+            .push(format!("{}: {count} lines of its materials are not read, the first is {first:?}", path.display()));
     }
     let mut materials = Materials::new(path, materials.unwrap_or_default(), limits);
     let mut builder = Builder::default();

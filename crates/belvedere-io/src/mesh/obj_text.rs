@@ -72,7 +72,10 @@ mod tests {
     #[test]
     fn colours_of_one_value_are_grey_and_odd_ones_are_left_out() {
         let mut odd = Vec::new();
-        let text = materials(b"newmtl m\nKd 0.8\nKs 1 0 0 9\nKa spectral x.rfl\nd -halo 0.5\nillum 2\nNs nan\nmap_Kd a b.png\n", &mut odd);
+        let text = materials(
+            b"newmtl m\nKd 0.8\nKs 1 0 0 9\nKa spectral x.rfl\nd -halo 0.5\nillum 2\nNs nan\nmap_Kd a b.png\n",
+            &mut odd,
+        );
         assert_eq!(text.trim_end(), "newmtl m\nKd 0.8 0.8 0.8\nKs 1 0 0\nillum 2\nmap_Kd a b.png");
         assert_eq!(odd, ["Ka spectral x.rfl", "d -halo 0.5", "Ns nan"]);
     }

@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 /// Such values, in the file's unit of height.
 const CUSTOMARY: [f32; 16] = [
-    -9999.0, -99999.0, -999.0, -9998.0, -9999.9, -999.9, -32768.0, -32767.0, -32766.0, -10000.0, 9999.0, 99999.0, 32767.0, 32768.0, 65535.0,
-    65534.0,
+    -9999.0, -99999.0, -999.0, -9998.0, -9999.9, -999.9, -32768.0, -32767.0, -32766.0, -10000.0, 9999.0, 99999.0,
+    32767.0, 32768.0, 65535.0, 65534.0,
 ];
 /// Such a value is a height all the same where another height is nearer than this, metres, or than this share of the relief.
 const GAP_M: f32 = 400.0;

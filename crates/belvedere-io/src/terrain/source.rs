@@ -4,7 +4,9 @@ use super::{CrsChoice, TerrainRequest, sentinels};
 use crate::crs::CoordinateSystem;
 use crate::fs::File;
 use crate::packed::{content, ends};
-use crate::{Affine, GeoTiff, IoError, Limits, Loaded, Photometric, Raster, RasterInfo, Samples, SourceCrs, esri_ascii, hgt};
+use crate::{
+    Affine, GeoTiff, IoError, Limits, Loaded, Photometric, Raster, RasterInfo, Samples, SourceCrs, esri_ascii, hgt,
+};
 use belvedere_scene::Progress;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -314,7 +316,10 @@ pub(crate) fn stated_system(
     warnings: &mut Vec<String>,
 ) -> Result<Option<CoordinateSystem>, IoError> {
     let failed = |e: crate::crs::CrsError| {
-        IoError::format(&info.path, format!("its coordinate system cannot be used: {e}; or set source_crs of its layer (--source-crs)"))
+        IoError::format(
+            &info.path,
+            format!("its coordinate system cannot be used: {e}; or set source_crs of its layer (--source-crs)"),
+        )
     };
     let Some(to_model) = info.pixel_to_model else {
         return Ok(None);

@@ -1,6 +1,6 @@
 //! GeoJSON (RFC 7946, and the `crs` member of its 2008 draft).
 
-use super::{Geometry, VectorFeature, Vectors, Vertex, name_of, not_degrees, shorten, vertex};
+use super::{Geometry, VectorFeature, Vectors, Vertex, certainly_not_degrees, name_of, not_degrees, shorten, vertex};
 use crate::crs::{CoordinateSystem, CrsError};
 use crate::{IoError, Loaded};
 use serde_json::Value;
@@ -49,8 +49,9 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
     }
     let mut crs = crs;
     if let Some(reason) = not_degrees(&reader.features).filter(|_| crs.is_geographic()) {
-        if stated {
-            return Err(fail(format!("{reason}, but the file's system is {crs}; correct its \"crs\" member")));
+        if stated || !certainly_not_degrees(&reader.features) {
+            let crs = if stated { crs.name() } else { "longitude and latitude, the default" };
+            return Err(fail(format!("{reason}, but the file's system is {crs}; correct them, or its \"crs\" member")));
         }
         (crs, stated) = (CoordinateSystem::local(), false);
     }
@@ -100,9 +101,7 @@ impl Reader {
                 let features = features.ok_or("FeatureCollection has no array \"features\"; it is damaged")?;
                 self.null_members += features.iter().filter(|f| f.is_null()).count();
                 let there = features.iter().enumerate().filter(|(_, f)| !f.is_null());
-                there
-                    .into_iter()
-                    .try_for_each(|(k, f)| self.read_feature(f).map_err(|e| format!("feature {k}: {e}")))
+                there.into_iter().try_for_each(|(k, f)| self.read_feature(f).map_err(|e| format!("feature {k}: {e}")))
             }
             Some("Feature") => self.read_feature(root),
             Some(_) => self.read_geometry(root, &BTreeMap::new(), 0),

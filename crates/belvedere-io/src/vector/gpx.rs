@@ -66,7 +66,14 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
     warn(parser.joined, "segments of a single point each were joined to lines");
     warnings.extend(parser.phantoms.say().map(|found| format!("{}: {found}", path.display())));
     let crs = CoordinateSystem::wgs84().map_err(|e| IoError::format(path, e.to_string()))?;
-    let value = Vectors { path: path.into(), format: "GPX", layer: String::new(), crs, crs_stated: true, features: parser.features };
+    let value = Vectors {
+        path: path.into(),
+        format: "GPX",
+        layer: String::new(),
+        crs,
+        crs_stated: true,
+        features: parser.features,
+    };
     Ok(Loaded::new(value, warnings))
 }
 

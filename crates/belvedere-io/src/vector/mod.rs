@@ -21,8 +21,8 @@ use crate::packed::{content, ends};
 use crate::recognise::explain;
 use crate::{InputFile, IoError, Loaded, fs};
 use glam::DVec2;
-use std::collections::BTreeMap;
 use phantom::Phantoms;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Endings of the files that [`load_vectors`] reads, beside `.json`, which may be anything.
@@ -204,10 +204,37 @@ fn not_degrees(features: &[VectorFeature]) -> Option<String> {
         .map(|p| format!("position ({}, {}) is no longitude and latitude (limits 360 and 90 degrees)", p.x, p.y))
 }
 
+/// Whether some number is too large to be a mistaken degree, so that the file counts in something else.
+fn certainly_not_degrees(features: &[VectorFeature]) -> bool {
+    features.iter().flat_map(|f| f.geometry.vertices()).any(|v| v.xy.abs().max_element() > 360.0)
+}
+
 /// Fields that hold names, by what they are called: the best first.
 const NAME_FIELDS: [&str; 24] = [
-    "name", "name:en", "name_en", "int_name", "ref", "title", "label", "nom", "nombre", "nome", "namn", "navn", "naam", "nazwa",
-    "nazev", "nimi", "bezeichnun", "bezeichnung", "toponym", "fullname", "full_name", "gnis_name", "geo_name", "lakename",
+    "name",
+    "name:en",
+    "name_en",
+    "int_name",
+    "ref",
+    "title",
+    "label",
+    "nom",
+    "nombre",
+    "nome",
+    "namn",
+    "navn",
+    "naam",
+    "nazwa",
+    "nazev",
+    "nimi",
+    "bezeichnun",
+    "bezeichnung",
+    "toponym",
+    "fullname",
+    "full_name",
+    "gnis_name",
+    "geo_name",
+    "lakename",
 ];
 
 /// The field that names features among these, if any: one of those that are usual, in any spelling, else the first that ends

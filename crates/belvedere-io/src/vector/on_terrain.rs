@@ -224,7 +224,15 @@ struct Reprojection<'a> {
 
 impl<'a> Reprojection<'a> {
     fn new(vectors: &'a Vectors, scene_crs: Crs, terrain: Option<&'a Heightfield>) -> Result<Self, IoError> {
-        let fail = |e: CrsError| vectors.fail(format!("cannot be brought to {scene_crs}: {e}"));
+        let first = vectors.features.iter().find_map(|f| f.geometry.vertices().next()).map_or(DVec2::ZERO, |v| v.xy);
+        let fail = |e: CrsError| {
+            let at = if e == CrsError::Unstated {
+                format!(" (the first is at {}, {})", first.x, first.y)
+            } else {
+                String::new()
+            };
+            vectors.fail(format!("cannot be brought to {scene_crs}{at}: {e}"))
+        };
         let mut reprojection = Self {
             vectors,
             terrain,
@@ -248,7 +256,11 @@ impl<'a> Reprojection<'a> {
         reprojection
             .warnings
             .extend(reprojection.transform.iter().filter(|t| !t.is_identity()).filter_map(|t| t.from().datum_note()));
-        reprojection.near_lon = if reprojection.transform.is_some() && vectors.crs.is_geographic() { reprojection.middle_lon() } else { None };
+        reprojection.near_lon = if reprojection.transform.is_some() && vectors.crs.is_geographic() {
+            reprojection.middle_lon()
+        } else {
+            None
+        };
         reprojection.near = reprojection.surroundings();
         Ok(reprojection)
     }

@@ -1,7 +1,9 @@
 //! ESRI shapefiles: points, multipoints, polylines and polygons, with Z and M, names from the .dbf, system from the .prj.
 
 use super::text::table_encoding;
-use super::{Geometry, VectorFeature, Vectors, Vertex, name_of, not_degrees, rings, shorten, vertex};
+use super::{
+    Geometry, VectorFeature, Vectors, Vertex, certainly_not_degrees, name_of, not_degrees, rings, shorten, vertex,
+};
 use crate::crs::CoordinateSystem;
 use crate::{IoError, Loaded, fs};
 use std::collections::BTreeMap;
@@ -19,10 +21,12 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError
     let code_page = sidecar(path, "cpg").and_then(|p| fs::read(p).ok());
     let code_page = code_page.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     let table = match sidecar(path, "dbf") {
-        Some(p) => read_dbf(&fs::read(&p).map_err(|e| IoError::os(&p, e))?, code_page.as_deref()).unwrap_or_else(|reason| {
-            warnings.push(format!("{}: {reason}; features stay without names", p.display()));
-            Vec::new()
-        }),
+        Some(p) => {
+            read_dbf(&fs::read(&p).map_err(|e| IoError::os(&p, e))?, code_page.as_deref()).unwrap_or_else(|reason| {
+                warnings.push(format!("{}: {reason}; features stay without names", p.display()));
+                Vec::new()
+            })
+        }
         None => Vec::new(),
     };
     if !table.is_empty() && table.len() != count {
@@ -77,7 +81,13 @@ fn system_of(
             None => Ok((crs, true)),
         };
     }
-    if bad.is_some() {
+    if let Some(reason) = bad {
+        if !certainly_not_degrees(features) {
+            return Err(IoError::format(
+                path,
+                format!("has no .prj file and {reason}; add the .prj with its coordinate system"),
+            ));
+        }
         return Ok((CoordinateSystem::local(), false));
     }
     warnings.push("has no .prj file; taken as longitude and latitude on WGS 84".into());
@@ -156,7 +166,9 @@ fn read_shapes(
         }
     };
     if odd > 0 {
-        warnings.push(format!("{odd} parts with too few points, of one position only or with positions that are not finite were dropped"));
+        warnings.push(format!(
+            "{odd} parts with too few points, of one position only or with positions that are not finite were dropped"
+        ));
     }
     Ok(shapes)
 }
@@ -298,8 +310,7 @@ fn read_dbf(bytes: &[u8], code_page: Option<&str>) -> Result<Vec<BTreeMap<String
     }
     let row = |r: usize| -> BTreeMap<String, String> {
         let record = bytes.get(header + r * width..header + (r + 1) * width).unwrap_or_default();
-        let value =
-            |column: usize, length: usize| text(record.get(column..column + length).unwrap_or_default());
+        let value = |column: usize, length: usize| text(record.get(column..column + length).unwrap_or_default());
         fields
             .iter()
             .map(|(name, column, length)| (name.clone(), shorten(value(*column, *length).trim_matches('\0'))))

@@ -188,6 +188,65 @@ fn ways_and_multipolygons_become_a_city() {
     }
 }
 
+/// What the surfaces of a building reach over its ground: underside and top, metres.
+fn reach(b: &belvedere_scene::Building) -> [f64; 2] {
+    let all = b.faces.iter().flat_map(|f| &f.rings).flatten().map(|p| p.z);
+    all.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], z| [lo.min(z), hi.max(z)])
+}
+
+#[test]
+fn parts_float_stand_on_each_other_and_hide_underground() {
+    let mut e = Extract { member_type: 1, ..Extract::default() };
+    let mut way = |id: i64, half: f64, tags: Tags<'_>| {
+        let ring = square(&mut e, 100 * id, half);
+        e.way(id, tags, &ring);
+    };
+    way(1, 0.001, &[("building", "yes"), ("height", "60"), ("name", "Tower")]);
+    way(2, 0.0009, &[("building:part", "yes"), ("height", "10")]);
+    way(3, 0.0002, &[("building:part", "yes"), ("height", "50"), ("min_height", "10")]);
+    way(
+        4,
+        0.0006,
+        &[
+            ("building:part", "yes"),
+            ("height", "66"),
+            ("min_height", "50"),
+            ("roof:shape", "pyramidal"),
+            ("roof:height", "6"),
+        ],
+    );
+    way(5, 0.01, &[("building", "yes"), ("height", "12"), ("location", "underground")]);
+    way(6, 0.02, &[("building", "yes"), ("building:levels", "7"), ("building:min_level", "4")]);
+    way(7, 0.03, &[("building", "house"), ("height", "10"), ("roof:shape", "gabled"), ("roof:height", "4")]);
+    way(8, 0.04, &[("building", "roof"), ("height", "5")]);
+    way(9, 0.05, &[("building", "yes"), ("height", "65'6\"")]);
+    way(10, 0.06, &[("building", "no"), ("building:part", "no"), ("height", "30")]);
+    e.way(20, &[("highway", "primary"), ("tunnel", "yes")], &[100, 101]);
+    e.way(21, &[("highway", "residential"), ("tunnel", "building_passage")], &[100, 102]);
+    let Loaded { value, warnings, .. } = load(&e.bytes()).unwrap();
+    let find = |id: &str| value.city.buildings.iter().find(|b| b.id == id);
+    let tower = find("way/1").expect("there");
+    assert_eq!((tower.name.as_str(), tower.height_m, reach(tower)), ("Tower", 66.0, [0.0, 66.0]));
+    assert!(["way/2", "way/3", "way/4", "way/5", "way/10"].iter().all(|id| find(id).is_none()));
+    // between 10 and 50 m there is the shaft alone: no wall of the outline
+    let wide = |z: f64| {
+        let crossing =
+            tower.faces.iter().filter(|f| f.rings[0].iter().any(|p| p.z < z) && f.rings[0].iter().any(|p| p.z > z));
+        crossing.flat_map(|f| &f.rings[0]).map(|p| (p.x - 1.5).abs()).fold(0.0, f64::max)
+    };
+    for (z, half) in [(5.0, 0.0009), (30.0, 0.0002), (55.0, 0.0006)] {
+        assert!((wide(z) - half).abs() < 1e-6, "{z}: {}", wide(z));
+    }
+    for (id, want) in [("way/6", [12.0, 22.0]), ("way/7", [0.0, 10.0]), ("way/8", [4.6, 5.0])] {
+        let found = reach(find(id).expect(id));
+        assert!((found[0] - want[0]).abs() < 1e-6 && (found[1] - want[1]).abs() < 1e-6, "{id}: {found:?}");
+    }
+    let block = find("way/9").expect("there");
+    assert!(block.faces.is_empty() && (block.height_m - 19.9644).abs() < 1e-9);
+    assert_eq!(value.city.ways.len(), 1, "the passage");
+    assert!(warnings.iter().any(|w| w.contains("2 buildings and ways that lie underground")), "{warnings:?}");
+}
+
 #[test]
 fn broken_files_end_in_one_sentence() {
     let whole = town().bytes();
@@ -231,7 +290,8 @@ fn andorra_is_a_town_among_mountains() {
     assert_eq!(city.buildings.len(), 292);
     assert!((89..131).contains(&count(WayClass::Waterway)), "{}", count(WayClass::Waterway));
     assert!(streets > 1000, "{streets} streets");
-    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    assert!(warnings[0].contains("lie underground"), "{warnings:?}");
     assert!(city.areas.iter().any(|a| a.cover == LandCover::Water));
     let all = city.buildings.iter().flat_map(|b| &b.footprint).flat_map(|p| &p.outer);
     assert!(all.clone().all(|p| (1.0..2.0).contains(&p.x) && (42.0..43.0).contains(&p.y)));

@@ -143,13 +143,13 @@ fn well_known_text_of_the_usual_kinds() {
     for (text, code) in [(esri_wgs84, 4326), (esri_utm, 32733), (compound, 25833), (wkt2, 4326)] {
         assert_eq!(CoordinateSystem::from_wkt(text).unwrap().epsg(), Some(code), "{text}");
     }
-    // no code and no known name: from the parameters
+    // no code and no known name: by the parameters
     let albers = r#"PROJCS["USA_Contiguous_Albers_Equal_Area_Conic_USGS_version",GEOGCS["GCS_North_American_1983",DATUM["D_North_American_1983",SPHEROID["GRS_1980",6378137.0,298.257222101]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],PROJECTION["Albers"],PARAMETER["false_easting",0.0],PARAMETER["false_northing",0.0],PARAMETER["central_meridian",-96.0],PARAMETER["standard_parallel_1",29.5],PARAMETER["standard_parallel_2",45.5],PARAMETER["latitude_of_origin",23.0],UNIT["Meter",1.0]]"#;
     let system = CoordinateSystem::from_wkt(albers).unwrap();
     let t = Transform::new(&CoordinateSystem::wgs84().unwrap(), &system).unwrap();
     let got = t.forward_one(DVec2::new(-105.5, 40.3)).unwrap();
     assert!((got - DVec2::new(-799222.3720468193, 1960569.398264937)).length() < 1e-6, "{got}");
-    assert_eq!(system.epsg(), None);
+    assert_eq!(system.epsg(), Some(5070), "by its parameters");
 }
 
 /// The codes are those of the EPSG register.

@@ -22,12 +22,10 @@ fn hgt_tiles_stand_where_their_name_says() {
 #[test]
 fn broken_tiles_are_one_sentence() {
     let folder = Folder::new("hgt-broken");
-    let cases: [(&str, Vec<u8>, &str); 6] = [
+    let cases: [(&str, Vec<u8>, &str); 4] = [
         ("N42E001.hgt", vec![0; 2 * 101 * 101 - 1], "truncated"),
         ("N42E001.hgt", Vec::new(), "truncated"),
         ("mountain.hgt", vec![0; 2 * 101 * 101], "south-west corner"),
-        ("N42E001.zip", vec![0; 500], "archive"),
-        ("N42E001.hgt.zip", b"PK\x03\x04 and then nothing".to_vec(), "archive"),
         ("N99E001.hgt", vec![0; 2 * 101 * 101], "south-west corner"),
     ];
     for (name, bytes, words) in cases {
@@ -70,7 +68,7 @@ fn broken_ascii_grids_are_one_sentence() {
         (String::new(), "ncols"),
         (format!("{head}1 2 3 4 5"), "truncated"),
         (format!("{head}1 2 3 4 5 x"), "\"x\""),
-        (format!("{head}1,5 2 3 4 5 6"), "1,5"),
+        (format!("{head}1,5,2 2 3 4 5 6"), "1.5.2"),
         ("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\n1 2 3 4 5 6".into(), "cellsize"),
         ("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 0\n".into(), "cellsize"),
         ("ncols 999999\nnrows 999999\nxllcorner 0\nyllcorner 0\ncellsize 1\n1".into(), "truncated"),

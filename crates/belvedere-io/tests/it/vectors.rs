@@ -183,8 +183,11 @@ fn geojson_states_its_system_or_is_in_degrees() {
     for n in ["urn:ogc:def:crs:EPSG::25833", "EPSG:25833", "http://www.opengis.net/def/crs/EPSG/0/25833"] {
         assert_eq!(load_vectors(&write(&dir, "a.json", name(n))).unwrap().value.crs.epsg(), Some(25833));
     }
-    let text = load_vectors(&write(&dir, "a.json", line(""))).unwrap_err().to_string();
+    let unstated = load_vectors(&write(&dir, "a.json", line(""))).unwrap().value;
+    assert!(unstated.crs.is_local() && !unstated.crs_stated);
+    let text = lines_on_terrain(&unstated, Crs::Epsg(25833), None).unwrap_err().to_string();
     assert!(text.contains("5819214") && text.contains("crs"), "{text}");
+    assert_eq!(lines_on_terrain(&unstated, Crs::Local, None).unwrap().value.len(), 1);
     let text = load_vectors(&write(&dir, "a.json", name("my own system"))).unwrap_err().to_string();
     assert!(text.contains("my own system"), "{text}");
 }

@@ -82,7 +82,10 @@ fn left_out(loader: &Loader<'_>, index: usize, file: &str, vectors: &Vectors) ->
         .collect();
     (!lost.is_empty()).then(|| {
         let path = vectors.path.display();
-        format!("{path}: {} are drawn by no layer; add layers of kind line, area or point of the same file", lost.join(" and "))
+        format!(
+            "{path}: {} are drawn by no layer; add layers of kind line, area or point of the same file",
+            lost.join(" and ")
+        )
     })
 }
 

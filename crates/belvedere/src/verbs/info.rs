@@ -320,12 +320,7 @@ impl InfoRequest {
 }
 
 /// A picture, terrain, or else the raster alone.
-fn geotiff(
-    path: &Path,
-    name: &str,
-    request: &TerrainRequest,
-    progress: &Progress,
-) -> Result<FileInfo, BelvedereError> {
+fn geotiff(path: &Path, name: &str, request: &TerrainRequest, progress: &Progress) -> Result<FileInfo, BelvedereError> {
     let opened = GeoTiff::open(path, request.limits)?;
     let (file, info) = (&opened.value, opened.value.info());
     let picture = PictureInfo {

@@ -62,7 +62,10 @@ pub(super) fn load(path: &Path, table: Option<&str>, bytes: Vec<u8>) -> Result<L
         _ => String::new(),
     };
     let warnings = warnings.into_iter().map(|w| format!("{}: {w}", path.display())).collect();
-    Ok(Loaded::new(Vectors { path: path.into(), format: "GeoPackage", layer, crs, crs_stated: true, features }, warnings))
+    Ok(Loaded::new(
+        Vectors { path: path.into(), format: "GeoPackage", layer, crs, crs_stated: true, features },
+        warnings,
+    ))
 }
 
 /// Whether another program has not yet written into the file what stands in a log beside it.
