@@ -50,3 +50,32 @@ fn ctrl_c_ends_cleanly() {
     let left: Vec<_> = std::fs::read_dir(place.path(".")).expect("folder").collect();
     assert!(left.is_empty(), "{left:?}");
 }
+
+#[test]
+fn info_goes_on_after_a_bad_file_and_tells_files_as_they_are() {
+    let place = Place::new();
+    place.write("bad.gpx", "<gpx><trk>");
+    place.write("way.geojson", r#"{"type":"Feature","properties":{"NAMN":"Leden","n":3},"geometry":{"type":"LineString","coordinates":[[1,2],[1.1,2]]}}"#);
+    place.write("dem.asc", "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 46\ncellsize 0.01\n1 2 3\n4 5 6\n");
+    let out = place.run(&["info", "bad.gpx", "way.geojson", "dem.asc", "--json"]);
+    assert_eq!(out.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert!(said.starts_with("belvedere: 1 of 3 files cannot be described: bad.gpx") && said.lines().count() == 1, "{said}");
+    let found: serde_json::Value = serde_json::from_slice(&out.stdout).expect("JSON");
+    let files = &found["files"];
+    assert_eq!((&files[0]["kind"], &files[1]["kind"], &files[2]["kind"]), (&"error".into(), &"features".into(), &"terrain".into()));
+    assert_eq!((&files[1]["name_field"], &files[1]["named"]), (&"NAMN".into(), &1.into()));
+    assert_eq!(files[1]["properties"].as_array().map(Vec::len), Some(2));
+    // degrees and the file's own heights, not those of the resampled ground
+    assert_eq!((&files[2]["size"], &files[2]["unit"]), (&serde_json::json!([3, 2]), &"degrees".into()));
+    assert_eq!(files[2]["heights_m"], serde_json::json!([1.0, 6.0]));
+    assert_eq!(files[2]["scene"]["as_in_file"], false);
+}
+
+#[test]
+fn names_from_files_do_not_steer_the_terminal() {
+    let place = Place::new();
+    place.write("s.toml", "format=1\ntitle=\"t\"\ncrs=\"local\"\n[[layer]]\nid=\"\\u001b[31mevil\"\nkind=\"boxes\"\nsource=\"builtin:street\"\n[camera]\neye=[0,-300,100]\nlook_at=[0,0,0]\nimage=[64,48]\n");
+    let said = place.ok(&["check", "s.toml"]);
+    assert!(!said.contains('\u{1b}') && said.contains("\\u{1b}[31mevil"), "{said}");
+}

@@ -3,7 +3,7 @@
 mod polygon;
 mod text;
 
-pub use text::{FONT_BYTES, TextSize, text_size};
+pub use text::{FONT_BYTES, TextSize, can_set, text_size};
 
 use crate::shade::color::{encode, linear};
 use belvedere_core::DVec2;

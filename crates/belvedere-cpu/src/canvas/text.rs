@@ -25,6 +25,13 @@ pub struct TextSize {
     pub descent: f64,
 }
 
+/// Whether the embedded font has all letters of a text.
+pub fn can_set(text: &str) -> bool {
+    let plain = |c: char| c.is_control() || c.is_whitespace();
+    let none = GlyphId::default();
+    FONT.as_ref().is_some_and(|font| text.chars().filter(|c| !plain(*c)).all(|c| font.glyph_id(c) != none))
+}
+
 /// Room that `text` takes with letters of `size_px`.
 pub fn text_size(size_px: f64, text: &str) -> TextSize {
     let Some(font) = FONT.as_ref() else { return TextSize { width: 0.0, ascent: 0.0, descent: 0.0 } };

@@ -260,6 +260,10 @@ fn line(
         return Err(loader.fail(index, "source", "no line lies on the terrain; check that the source covers it"));
     }
     let style = &doc.style;
+    if style.labels {
+        let said = vectors::unset_names(features.iter().map(|f| f.name.as_str()));
+        loader.note(index, said.into_iter().collect());
+    }
     Ok(LayerKind::Line(LineLayer {
         features,
         color: loader.color(index, &style.color)?,
@@ -320,6 +324,10 @@ fn point(
         return Err(loader.fail(index, "source", "no point lies on the terrain; check that the source covers it"));
     }
     let style = &doc.style;
+    if style.labels {
+        let said = vectors::unset_names(features.iter().map(|f| f.name.as_str()));
+        loader.note(index, said.into_iter().collect());
+    }
     Ok(LayerKind::Point(PointLayer {
         features,
         color: loader.color(index, &style.color)?,

@@ -137,6 +137,14 @@ fn stand(loader: &mut Loader<'_>, index: usize, vectors: &mut Vectors) {
     }
 }
 
+/// How many names have letters that the font has not, and the first of them: one sentence, if there are any.
+pub(super) fn unset_names<'n>(names: impl Iterator<Item = &'n str>) -> Option<String> {
+    let unset: Vec<&str> = names.filter(|name| !belvedere_cpu::canvas::can_set(name)).collect();
+    let first = unset.first()?;
+    let count = unset.len();
+    Some(format!("{count} names have letters that are not set (Latin, Greek and Cyrillic are), the first is \"{first}\"; they are left out or incomplete"))
+}
+
 /// Lines of files, draped.
 pub(super) fn lines(
     loader: &mut Loader<'_>,
@@ -170,4 +178,16 @@ pub(super) fn points(
     ground: &Ground<'_>,
 ) -> Result<Vec<PointFeature>, BelvedereError> {
     all(loader, index, paths, ground, points_on_terrain, |_| ())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_in_scripts_that_are_not_set_are_counted() {
+        assert_eq!(unset_names(["Tälchen", "Эльбрус", "Όλυμπος", "", "a b"].into_iter()), None);
+        let said = unset_names(["Fuji", "富士山", "עין גדי"].into_iter()).expect("said");
+        assert!(said.starts_with("2 names") && said.contains("富士山"), "{said}");
+    }
 }
