@@ -60,10 +60,16 @@ fn info_goes_on_after_a_bad_file_and_tells_files_as_they_are() {
     let out = place.run(&["info", "bad.gpx", "way.geojson", "dem.asc", "--json"]);
     assert_eq!(out.status.code(), Some(2));
     let said = String::from_utf8_lossy(&out.stderr).into_owned();
-    assert!(said.starts_with("belvedere: 1 of 3 files cannot be described: bad.gpx") && said.lines().count() == 1, "{said}");
+    assert!(
+        said.starts_with("belvedere: 1 of 3 files cannot be described: bad.gpx") && said.lines().count() == 1,
+        "{said}"
+    );
     let found: serde_json::Value = serde_json::from_slice(&out.stdout).expect("JSON");
     let files = &found["files"];
-    assert_eq!((&files[0]["kind"], &files[1]["kind"], &files[2]["kind"]), (&"error".into(), &"features".into(), &"terrain".into()));
+    assert_eq!(
+        (&files[0]["kind"], &files[1]["kind"], &files[2]["kind"]),
+        (&"error".into(), &"features".into(), &"terrain".into())
+    );
     assert_eq!((&files[1]["name_field"], &files[1]["named"]), (&"NAMN".into(), &1.into()));
     assert_eq!(files[1]["properties"].as_array().map(Vec::len), Some(2));
     // degrees and the file's own heights, not those of the resampled ground

@@ -64,7 +64,7 @@ pub fn surface(city: &City, colors: &CityColors, ground: CityGround<'_>) -> Mesh
             out.extruded(building, base, top, colors);
         } else {
             // Without a ground of its own, heights of its surfaces count from the ground.
-            let base = if building.base_m.is_some() { 0.0 } else { lowest(building, ground).unwrap_or(plate) };
+            let base = if building.base_m.is_some() { 0.0 } else { stands(building, ground, plate)[0] };
             building.faces.iter().for_each(|face| out.face(face, base, color_of(face.surface, colors)));
         }
     }

@@ -142,7 +142,9 @@ pub(super) fn unset_names<'n>(names: impl Iterator<Item = &'n str>) -> Option<St
     let unset: Vec<&str> = names.filter(|name| !belvedere_cpu::canvas::can_set(name)).collect();
     let first = unset.first()?;
     let count = unset.len();
-    Some(format!("{count} names have letters that are not set (Latin, Greek and Cyrillic are), the first is \"{first}\"; they are left out or incomplete"))
+    Some(format!(
+        "{count} names have letters that are not set (Latin, Greek and Cyrillic are), the first is \"{first}\"; they are left out or incomplete"
+    ))
 }
 
 /// Lines of files, draped.
