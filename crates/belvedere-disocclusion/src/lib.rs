@@ -30,7 +30,9 @@ use cells::{Cells, NO_CELL};
 use greedy::{BlockMaxima, GreedyCounters, Naive};
 use in_view::{LeftOut, Wedge, check_eye, in_view};
 use metrics::{Deformation, TerrainMetrics};
-use points::{PointKind, ReferencePoint, Unusable, UnusableReason, candidate_points, reference_points};
+use points::{
+    PointKind, ReferencePoint, Unusable, UnusableReason, candidate_points, counted, judged_points, reference_points,
+};
 use settings::stated_spacing;
 use smooth::{Hierarchy, SmoothPass, Smoother, grid_weight, temporal_weight};
 use viewpoint::{ViewpointEnergy, adjust_viewpoint, height_slope};

@@ -3,6 +3,7 @@
 use super::{Field, TerrainSettings};
 use belvedere_core::DVec2;
 use belvedere_scene::{AreaFeature, Layer, LayerKind, LineFeature, Scene};
+use std::collections::BTreeSet;
 
 /// Points along one line or rim, and inside one area, at most; a longer feature gets wider spacing.
 const MOST_POINTS: f64 = 50_000.0;
@@ -91,6 +92,26 @@ pub(super) fn candidate_points(scene: &Scene, field: &Field, settings: &TerrainS
     collect_points(PointCollector::new(field, true), scene, settings, settings.candidates).0
 }
 
+/// Points by which a result is judged: as [`reference_points`] `spacing` apart, but inside areas on the edges of the ground's triangles.
+/// Ground hides of a flat triangle what lies beyond a straight edge, farthest at the rim of the triangle or of the area: where no edge is
+/// hidden, nothing between them is.
+pub(super) fn judged_points(
+    scene: &Scene,
+    field: &Field,
+    settings: &TerrainSettings,
+    spacing: f64,
+) -> Vec<ReferencePoint> {
+    let out = PointCollector { edges: true, ..PointCollector::new(field, false) };
+    collect_points(out, scene, settings, spacing).0
+}
+
+/// Which points count in the share of what is seen: of an area its inside alone, of which equal parts have equally many points.
+pub(super) fn counted(points: &[ReferencePoint]) -> Vec<bool> {
+    let inside = |p: &&ReferencePoint| p.kind == PointKind::Inside;
+    let areas: BTreeSet<_> = points.iter().filter(inside).map(|p| (p.layer, p.feature)).collect();
+    points.iter().map(|p| p.kind != PointKind::Rim || !areas.contains(&(p.layer, p.feature))).collect()
+}
+
 /// A feature that must be seen, with all that its points depend on besides the ground and the parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct RequiredFeature {
@@ -161,6 +182,8 @@ struct PointCollector<'a> {
     field: &'a Field,
     /// Whether points along paths move to bends.
     bends: bool,
+    /// Whether areas have points on the edges of triangles in place of a lattice.
+    edges: bool,
     layer: usize,
     feature: usize,
     lift: f64,
@@ -170,7 +193,7 @@ struct PointCollector<'a> {
 
 impl<'a> PointCollector<'a> {
     fn new(field: &'a Field, bends: bool) -> Self {
-        Self { field, bends, layer: 0, feature: 0, lift: 0.0, usable: Vec::new(), unusable: Vec::new() }
+        Self { field, bends, edges: false, layer: 0, feature: 0, lift: 0.0, usable: Vec::new(), unusable: Vec::new() }
     }
 
     fn put(&mut self, grid: DVec2, along_m: f64, kind: PointKind) {
@@ -234,6 +257,9 @@ impl<'a> PointCollector<'a> {
         if !(extent.x > 0.0 && extent.y > 0.0) {
             return;
         }
+        if self.edges {
+            return self.on_edges(rings, [low, high]);
+        }
         // Neither finer than the data nor beside it.
         let last = DVec2::new((self.field.cols() - 1) as f64, (self.field.rows() - 1) as f64);
         let step = (4.0 * spacing).max((extent.x * extent.y / MOST_POINTS).sqrt());
@@ -250,6 +276,53 @@ impl<'a> PointCollector<'a> {
             }
         }
     }
+}
+
+/// Points on the edges of triangles inside one area, at most about.
+const MOST_ON_EDGES: f64 = 800_000.0;
+
+impl PointCollector<'_> {
+    /// Points on the edges of the ground's triangles in a box that lie inside the rings: each cell has those of its node, and of its
+    /// upper, left and diagonal edge.
+    fn on_edges(&mut self, rings: &[Vec<DVec2>], [low, high]: [DVec2; 2]) {
+        let last = DVec2::new((self.field.cols() - 1) as f64, (self.field.rows() - 1) as f64);
+        let (low, high) = (low.floor().max(DVec2::ZERO), high.ceil().min(last));
+        let cells = (high - low).max(DVec2::ZERO).element_product();
+        // Nothing of visible size hides between points a fifth of a cell apart; on huge areas halves of edges, then nodes, have to do.
+        let points = |parts: usize| (3 * parts - 2) as f64 * cells;
+        let parts = [5, 2].into_iter().find(|&parts| points(parts) <= MOST_ON_EDGES).unwrap_or(1);
+        let every = (points(parts) / MOST_ON_EDGES).sqrt().ceil().max(1.0);
+        let mut crossings = Vec::new();
+        let mut row = low.y;
+        while row <= high.y {
+            for part in 0..parts {
+                let down = part as f64 / parts as f64;
+                let y = row + down;
+                crossings.clear();
+                crossings.extend(rings.iter().flat_map(|ring| ring_crossings(ring, y)));
+                crossings.sort_by(f64::total_cmp);
+                let across: &[usize] = if part == 0 { &[0, 1, 2, 3, 4][..parts] } else { &[0, part] };
+                for pair in crossings.chunks_exact(2) {
+                    let mut col = (pair[0].max(low.x) / every).floor() * every;
+                    while col <= pair[1].min(high.x) {
+                        let xs = across.iter().map(|k| col + *k as f64 / parts as f64);
+                        let within = xs.filter(|x| *x > pair[0] && *x <= pair[1] && *x <= last.x && y <= last.y);
+                        for x in within.collect::<Vec<_>>() {
+                            self.put(DVec2::new(x, y), 0.0, PointKind::Inside);
+                        }
+                        col += every;
+                    }
+                }
+            }
+            row += every;
+        }
+    }
+}
+
+/// Where a closed ring crosses a line of constant y.
+fn ring_crossings(ring: &[DVec2], y: f64) -> impl Iterator<Item = f64> + '_ {
+    let sides = (0..ring.len()).map(move |i| (ring[i], ring[(i + 1) % ring.len()]));
+    sides.filter(move |(a, b)| (a.y > y) != (b.y > y)).map(move |(a, b)| a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x))
 }
 
 /// The share of a straight way, `share` or less than `reach` away from it, at which the way ends or crosses the mesh.

@@ -16,7 +16,20 @@ pub struct DisplacedGround<'a> {
     faceted: bool,
     /// Nothing is higher than this.
     highest: f64,
+    table: Option<Table>,
 }
+
+/// What many lines of sight over one ground share.
+struct Table {
+    /// Displacement of the nodes.
+    moved: Vec<f64>,
+    /// Nothing in a block of [`BLOCK`] x [`BLOCK`] cells is higher.
+    highest: Vec<f64>,
+    blocks: [usize; 2],
+}
+
+/// Cells per side of a block that a line of sight passes at once where it stays above it.
+const BLOCK: usize = 8;
 
 /// A vertex of a line of sight: grid coordinates and height.
 pub type SightVertex = (DVec2, f64);
@@ -36,12 +49,34 @@ impl<'a> DisplacedGround<'a> {
     /// * `delta`: displacement upwards, scene units; 0 beside its grid.
     pub fn new(field: &'a Field, delta: &'a Grid) -> Self {
         let highest = field.datum() + field.relief() + delta.range()[1].max(0.0);
-        Self { field, delta, faceted: false, highest }
+        Self { field, delta, faceted: false, highest, table: None }
     }
 
     /// Flat triangles between the displaced nodes; likewise.
     pub fn faceted(field: &'a Field, delta: &'a Grid) -> Self {
         Self { faceted: true, ..Self::new(field, delta) }
+    }
+
+    /// Prepared for many lines of sight: one pass over the nodes.
+    pub fn prepared(mut self) -> Self {
+        let [cols, rows] = self.field.nodes();
+        let node = |i: usize| self.displacement(DVec2::new((i % cols) as f64, (i / cols) as f64));
+        let moved: Vec<f64> = (0..cols * rows).map(node).collect();
+        let blocks = [cols, rows].map(|n| (n - 1).div_ceil(BLOCK));
+        let height = self.field.heights();
+        let top = |b: usize| {
+            let [x, y] = [b % blocks[0], b / blocks[0]].map(|k| k * BLOCK);
+            let [across, down] = [x..=(x + BLOCK).min(cols - 1), y..=(y + BLOCK).min(rows - 1)];
+            let nodes = down.flat_map(|y| across.clone().map(move |x| y * cols + x));
+            // Between nodes ground and displacement may be highest at different ones.
+            let [h, u, sum] = nodes.fold([f64::NEG_INFINITY; 3], |[h, u, sum], i| {
+                [h.max(height[i]), u.max(moved[i]), sum.max(height[i] + moved[i])]
+            });
+            if self.faceted { sum } else { h + u }
+        };
+        let highest = (0..blocks[0] * blocks[1]).map(top).collect();
+        self.table = Some(Table { moved, highest, blocks });
+        self
     }
 
     fn displacement(&self, g: DVec2) -> f64 {
@@ -61,6 +96,10 @@ impl<'a> DisplacedGround<'a> {
 
     /// Displacement of the corners of a cell: north-west, north-east, south-west, south-east.
     fn at_corners(&self, [col, row]: [usize; 2]) -> [f64; 4] {
+        if let Some(table) = &self.table {
+            let (cols, nw) = (self.field.cols(), row * self.field.cols() + col);
+            return [nw, nw + 1, nw + cols, nw + cols + 1].map(|i| table.moved[i]);
+        }
         [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| self.displacement(DVec2::new((col + x) as f64, (row + y) as f64)))
     }
 
@@ -84,15 +123,35 @@ impl<'a> DisplacedGround<'a> {
         let Some([mut t, last]) = line.over(self.field.nodes(), 0.0) else { return };
         // Enough to step over a border in spite of rounding.
         let nudge = 1e-9 * line.dir.abs().max_element().recip().min(1e9);
-        let cells = self.field.nodes().map(|n| n - 1);
         while t < last {
             // Above everything, and rising from here.
             if height.1 >= 0.0 && height.0 + t * height.1 > self.highest {
                 break;
             }
+            let Some(table) = &self.table else {
+                self.in_cells(&line, height, [t, last], nudge, worst);
+                break;
+            };
+            let (block, leave) = line.block(BLOCK as f64, table.blocks, t + nudge);
+            let leave = leave.max(t + nudge).min(last);
+            let low = height.0 + (t * height.1).min(leave * height.1);
+            if table.highest[block[1] * table.blocks[0] + block[0]] - low > worst.over {
+                self.in_cells(&line, height, [t, leave], nudge, worst);
+            }
+            t = if leave > t { leave } else { last };
+        }
+    }
+
+    /// The same over the cells of a part of it.
+    fn in_cells(&self, line: &GridLine, height: (f64, f64), [mut t, last]: [f64; 2], nudge: f64, worst: &mut Excess) {
+        let cells = self.field.nodes().map(|n| n - 1);
+        while t < last {
+            if height.1 >= 0.0 && height.0 + t * height.1 > self.highest {
+                break;
+            }
             let (cell, leave) = line.block(1.0, cells, t + nudge);
             let leave = leave.max(t + nudge).min(last);
-            self.in_cell(&line, height, cell, [t, leave], worst);
+            self.in_cell(line, height, cell, [t, leave], worst);
             t = if leave > t { leave } else { last };
         }
     }

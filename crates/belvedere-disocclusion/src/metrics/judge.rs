@@ -1,7 +1,7 @@
 //! What the displaced ground hides, by lines of sight over it: as it is rasterised and written, and as it is traced.
 
 use super::super::visibility_qp::LinesOfSight;
-use super::super::{Field, ReferencePoint};
+use super::super::{Field, ReferencePoint, counted};
 use belvedere_core::DVec2;
 use belvedere_core::grid::{Grid, GridError};
 use belvedere_sight::{DisplacedGround, SightVertex};
@@ -9,6 +9,8 @@ use rayon::prelude::*;
 
 /// Rays that run this far under the ground are still clear: rounding. Scene units.
 const TOUCH: f64 = 1e-6;
+/// Points from which on grounds are prepared for them.
+const MANY: usize = 20_000;
 
 /// No displacement at all.
 pub(crate) fn still(field: &Field) -> Result<Grid, GridError> {
@@ -54,10 +56,12 @@ impl Verdict {
     }
 }
 
-/// Share of the points on the ground that are seen, 0..=1; 1 if there are none.
-pub(crate) fn share_seen(verdicts: &[Verdict]) -> f64 {
-    let on_ground = verdicts.iter().filter(|v| **v != Verdict::NoGround).count();
-    let hidden = verdicts.iter().filter(|v| v.hides().is_some()).count();
+/// Share of what the points stand for that is seen, 0..=1; 1 if there are none. See [`counted`].
+pub(crate) fn share_seen(points: &[ReferencePoint], verdicts: &[Verdict]) -> f64 {
+    let counted = counted(points);
+    let of = |which: &dyn Fn(&Verdict) -> bool| verdicts.iter().zip(&counted).filter(|(v, c)| **c && which(v)).count();
+    let on_ground = of(&|v| *v != Verdict::NoGround);
+    let hidden = of(&|v| v.hides().is_some());
     1.0 - hidden as f64 / on_ground.max(1) as f64
 }
 
@@ -82,6 +86,14 @@ impl<'a> Judge<'a> {
     /// Over both.
     pub(crate) fn of_both(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
         Self { grounds: vec![DisplacedGround::faceted(field, delta), DisplacedGround::new(field, delta)], sight }
+    }
+
+    /// Prepares the grounds where there are so many points that it is worth it.
+    pub(crate) fn prepared(mut self, points: usize) -> Self {
+        if points >= MANY {
+            self.grounds = self.grounds.into_iter().map(DisplacedGround::prepared).collect();
+        }
+        self
     }
 
     /// Calls `visit` with each ground and the line of sight of a point at grid coordinates, `lift` above it; `None` beside the ground.
@@ -122,10 +134,11 @@ impl<'a> Judge<'a> {
 
     /// For each point and each ground (facets first) the place that hides the point most, with how far it rises over the line; `None`
     /// where the point is seen, has no line, or no ground.
-    pub(crate) fn hiding(&self, points: &[(DVec2, f64)]) -> Vec<[Option<(DVec2, f64)>; 2]> {
+    pub(crate) fn hiding(self, points: &[(DVec2, f64)]) -> Vec<[Option<(DVec2, f64)>; 2]> {
+        let judge = self.prepared(points.len());
         let of = |&(g, lift): &(DVec2, f64)| {
             let mut out = [None; 2];
-            self.each(g, lift, |i, ground, line| {
+            judge.each(g, lift, |i, ground, line| {
                 let worst = ground.excess(line, 0.0);
                 out[i] = (worst.over > TOUCH && worst.over.is_finite()).then_some((worst.at, worst.over));
             });

@@ -96,6 +96,7 @@ pub(super) struct Judged {
 pub(super) fn judged(of: &Deformation<'_>) -> Judged {
     let u = change::at_nodes(of.field, of.delta);
     let judge = if of.traced { Judge::of_both } else { Judge::faceted }(of.field, of.delta, of.sight);
+    let judge = judge.prepared(of.dense.len());
     let [points, dense] = [of.points, of.dense].map(|points| judge.judge(points, of.guard));
     let hidden = |all: &[Verdict]| -> Vec<(usize, Hides)> {
         all.iter().enumerate().filter_map(|(i, verdict)| Some((i, verdict.hides()?))).collect()
@@ -119,8 +120,8 @@ fn figures(of: &Deformation<'_>, u: &[f64], points: &[Verdict], dense: &[Verdict
         FrameChange { rms_m: change.rms, max_m: change.max }
     });
     TerrainMetrics {
-        visible: share_seen(points),
-        visible_dense: share_seen(dense),
+        visible: share_seen(of.points, points),
+        visible_dense: share_seen(of.dense, dense),
         hidden_in_guard: in_guard / on_ground,
         hidden_worst_m: over.filter(|over| over.is_finite()).fold(0.0, f64::max),
         rms_m: size.rms,

@@ -14,7 +14,7 @@ use super::{at_every_node, fallback, on_grid};
 use crate::DisocclusionError;
 use belvedere_core::DVec2;
 use belvedere_scene::Progress;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Judgements at most.
 const ROUNDS: usize = 8;
@@ -72,7 +72,7 @@ impl Agreement<'_> {
                 break;
             }
             let before = told.clone();
-            for Found { candidate, at, over } in &found {
+            for Found { candidate, at, over } in &worst_of_cells(&found) {
                 if known.insert(candidate.id) {
                     asked.push(*candidate);
                 } else if candidate.grid.distance(*at) > self.options.guard.max(NEAR) {
@@ -131,5 +131,27 @@ impl Agreement<'_> {
         let (cols, rows) = (self.field.cols(), self.field.rows());
         let nw = index(at.y, rows) * cols + index(at.x, cols);
         [nw, nw + 1, nw + cols, nw + cols + 1]
+    }
+}
+
+/// New candidates from one judgement at most, about: what is near them is mostly seen with them.
+const MOST_NEW: usize = 4000;
+
+/// Of the hidden points of one cell, or of some cells where there are very many, the one that is hidden most.
+fn worst_of_cells(found: &[Found]) -> Vec<&Found> {
+    let mut size = 1.0;
+    loop {
+        let mut worst = BTreeMap::new();
+        for f in found {
+            let cell = (f.candidate.grid / size).floor();
+            let slot = worst.entry((cell.x as i64, cell.y as i64, f.candidate.faceted)).or_insert(f);
+            if f.over > slot.over {
+                *slot = f;
+            }
+        }
+        if worst.len() <= MOST_NEW {
+            return worst.into_values().collect();
+        }
+        size *= 2.0;
     }
 }

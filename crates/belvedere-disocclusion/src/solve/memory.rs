@@ -4,7 +4,7 @@ use super::super::settings::MOST_W;
 use super::super::visibility_qp::{Candidate, QpOptions, QpSolver};
 use super::super::{
     BlockMaxima, Cells, Field, Hierarchy, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings, Unusable,
-    candidate_points, grid_weight, reference_points, stated_spacing, temporal_weight,
+    candidate_points, grid_weight, judged_points, reference_points, stated_spacing, temporal_weight,
 };
 use super::agreement::BILINEAR;
 use crate::DisocclusionError;
@@ -161,7 +161,7 @@ impl Prepared {
         let (points, unusable) = reference_points(scene, &level, settings, settings.spacing);
         let with_qp = settings.mode != SolverMode::Paper;
         let dense = if with_qp { candidate_points(scene, &level, settings) } else { Vec::new() };
-        let check = reference_points(scene, &level, settings, CHECK_CELLS).0;
+        let check = judged_points(scene, &level, settings, CHECK_CELLS);
         let cells = (settings.mode != SolverMode::Qp).then(|| {
             let keep = settings.cells.unwrap_or_else(|| Cells::default_count(&level));
             let cells = Cells::new(&level, keep);

@@ -231,8 +231,8 @@ pub(super) fn report(
     let judgement = judged(&of);
     let metrics = judgement.metrics;
     let still = still(field)?;
-    let undisplaced = Judge::faceted(field, &still, &*in_view.sight);
-    let before = |points: &[ReferencePoint]| share_seen(&undisplaced.judge(points, guard));
+    let undisplaced = Judge::faceted(field, &still, &*in_view.sight).prepared(dense.len());
+    let before = |points: &[ReferencePoint]| share_seen(points, &undisplaced.judge(points, guard));
     let (unresolved, hidden) = (unresolved(c, done, &judgement), hidden(c, &judgement, &dense));
     let (guards, qp_met) = (c.settings.mode != SolverMode::Paper, done.qp_unresolved.is_empty());
     let stated_m = stated_spacing(field.cols(), field.rows(), field.spacing());
