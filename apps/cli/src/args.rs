@@ -243,6 +243,10 @@ pub(crate) struct RevealArgs {
     /// What bends the picture; a spline, or curved rays with --see, if left out
     #[arg(long, value_enum)]
     pub(crate) technique: Option<TechniqueKind>,
+    /// Let the ground sink deeper and become steeper than ground that looks like ground: more than a fifth of the relief below the lowest,
+    /// more than twice as steep as all but a thousandth of the terrain
+    #[arg(long)]
+    pub(crate) no_limits: bool,
     /// Coordinate system of the scene: auto, EPSG:n or local
     #[arg(long, value_name = "CRS")]
     pub(crate) crs: Option<String>,
@@ -279,6 +283,10 @@ pub(crate) struct DisoccludeArgs {
     /// Passes of the solver; qp guarantees, paper is as published
     #[arg(long, value_name = "MODE", value_parser = ["paper", "paper+qp", "qp"])]
     pub(crate) mode: Option<String>,
+    /// Let the ground sink deeper and become steeper than ground that looks like ground: more than a fifth of the relief below the lowest,
+    /// more than twice as steep as all but a thousandth of the terrain
+    #[arg(long)]
+    pub(crate) no_limits: bool,
     /// Any other key of a terrain_disocclusion stage, such as w=0.6; may be given several times
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,

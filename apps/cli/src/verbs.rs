@@ -176,7 +176,8 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
         output::check(&path, &inputs, context.common.overwrite)?;
     }
     let mode = args.mode.map(|mode| format!("mode=\"{mode}\""));
-    let set: Vec<String> = args.set.into_iter().chain(mode).collect();
+    let limits = args.no_limits.then(|| "limits=false".to_owned());
+    let set: Vec<String> = args.set.into_iter().chain(mode).chain(limits).collect();
     let request = DisoccludeRequest {
         data: DataFiles {
             dem: named(&args.dem),
@@ -327,6 +328,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         image: args.size,
         curved_earth: args.curved_earth,
         technique: technique.into(),
+        no_limits: args.no_limits,
         ..RevealRequest::default()
     };
     quality(&mut request.picture);

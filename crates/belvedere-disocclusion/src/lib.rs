@@ -42,7 +42,9 @@ pub mod report {
     pub use crate::greedy::GreedyCounters;
     pub use crate::metrics::{FrameChange, TerrainMetrics};
     pub use crate::points::PointKind;
-    pub use crate::solve::{Covered, Fallback, FeatureCost, QpReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
+    pub use crate::solve::{
+        Covered, Fallback, FeatureCost, LimitsReport, QpReport, TerrainTimes, UnresolvedReason, UnresolvedRun,
+    };
 }
 
 /// The inside of the solver, for measurements, figures and tests. Not stable: any name may change or go without notice.

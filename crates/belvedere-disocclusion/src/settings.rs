@@ -74,6 +74,9 @@ pub struct TerrainSettings {
     pub candidates: f64,
     /// Only features up to this distance along the path from the eye, metres; `None` = all.
     pub ahead_m: Option<f64>,
+    /// Whether the ground must still look like ground: no more than a fifth of the relief below the lowest, nor more than twice as steep as
+    /// all but a thousandth of the terrain. Of modes with a quadratic program.
+    pub limits: bool,
     /// Price of a metre of occlusion squared, > 0: what costs more to clear stays covered; `None` = everything is cleared.
     pub slack_price: Option<f64>,
 }
@@ -98,6 +101,7 @@ impl Default for TerrainSettings {
             margin_m: 1.0,
             candidates: 0.25,
             ahead_m: None,
+            limits: true,
             slack_price: None,
         }
     }

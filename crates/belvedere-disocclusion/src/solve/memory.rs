@@ -7,6 +7,7 @@ use super::super::{
     candidate_points, grid_weight, judged_points, reference_points, stated_spacing, temporal_weight,
 };
 use super::agreement::BILINEAR;
+use super::limits::LimitedTerrain;
 use crate::DisocclusionError;
 use crate::points::{RequiredFeature, required_features};
 use belvedere_core::{DVec2, DVec3, View};
@@ -46,6 +47,8 @@ pub(super) struct Prepared {
     pub(super) dense: Vec<ReferencePoint>,
     /// Points every fifth of a cell, by which the result is judged.
     check: Vec<ReferencePoint>,
+    /// Where the ground must stay plausible.
+    pub(super) limited: Option<Arc<LimitedTerrain>>,
     /// Of modes with a greedy pass.
     pub(super) cells: Option<Arc<(Cells, BlockMaxima)>>,
     /// Of modes with a greedy pass.
@@ -162,6 +165,7 @@ impl Prepared {
         let with_qp = settings.mode != SolverMode::Paper;
         let dense = if with_qp { candidate_points(scene, &level, settings) } else { Vec::new() };
         let check = judged_points(scene, &level, settings, CHECK_CELLS);
+        let limited = (with_qp && settings.limits).then(|| Arc::new(LimitedTerrain::new(&level, &grid)));
         let cells = (settings.mode != SolverMode::Qp).then(|| {
             let keep = settings.cells.unwrap_or_else(|| Cells::default_count(&level));
             let cells = Cells::new(&level, keep);
@@ -194,6 +198,7 @@ impl Prepared {
             unusable,
             dense,
             check,
+            limited,
             cells,
             smooth,
             still,

@@ -5,6 +5,7 @@ mod agreement;
 mod entering;
 mod fallback;
 mod in_picture;
+mod limits;
 mod live;
 mod memory;
 mod passes;
@@ -12,6 +13,7 @@ mod points_in_view;
 mod report;
 
 pub use fallback::Fallback;
+pub use limits::LimitsReport;
 pub use live::{LiveFrame, LiveTerrain};
 pub use memory::TerrainMemory;
 pub use report::{Covered, FeatureCost, QpReport, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
@@ -240,6 +242,8 @@ struct Outcome {
     fine: Option<(Hierarchy, Vec<f64>)>,
     /// Ways out of contradicting rows that were taken.
     fallbacks: Vec<Fallback>,
+    /// What kept the ground plausible, where it had to.
+    limited: Option<LimitsReport>,
     greedy: Option<super::GreedyCounters>,
     greedy_unresolved: Vec<usize>,
     qp: Option<QpReport>,

@@ -51,6 +51,7 @@ impl Passes<'_> {
             coarse: vec![0.0; prepared.grid.nodes()],
             full: None,
             fine: None,
+            limited: None,
             fallbacks: Vec::new(),
             greedy: None,
             greedy_unresolved: Vec::new(),
@@ -80,7 +81,26 @@ impl Passes<'_> {
                 None
             }
         };
+        self.limit(prepared, &mut done);
         Ok(done)
+    }
+
+    /// Fills up what is dug too deep or too steep.
+    fn limit(&self, prepared: &Prepared, done: &mut Outcome) {
+        let Some(limited) = &prepared.limited else { return };
+        let coarse = done.full.is_none() && done.fine.is_none();
+        if coarse && limited.surely_kept(&prepared.grid, &done.coarse) {
+            return;
+        }
+        let mut u = match (&done.full, &done.fine) {
+            (Some(full), _) => full.clone(),
+            (None, Some((grid, u))) => grid.prolong(u),
+            (None, None) => prepared.grid.prolong(&done.coarse),
+        };
+        done.limited = limited.keep(&prepared.level, &mut u);
+        if done.limited.is_some() {
+            done.full = Some(u);
+        }
     }
 
     /// Greedy and smooth pass; answers the change of detail at every node, if detail is scaled.

@@ -7,7 +7,7 @@ use super::super::{
     Unusable, UnusableReason, stated_spacing,
 };
 use super::memory::{CHECK_CELLS, Prepared};
-use super::{Fallback, Outcome, PointsInView, since};
+use super::{Fallback, LimitsReport, Outcome, PointsInView, since};
 use crate::DisocclusionError;
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
@@ -15,9 +15,8 @@ use belvedere_scene::Instant;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Share of the length in view that must be seen for a promise to be kept: places between two candidates may lie a little under
-/// the line of sight.
-const AGREES: f64 = 0.995;
+/// Share of what is in view that must be seen for a promise to be kept: a hair's breadth is left to rounding.
+const AGREES: f64 = 0.9999;
 
 /// Everything about a solved displacement. Lengths in scene units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -50,8 +49,10 @@ pub struct TerrainReport {
     pub costliest: Vec<FeatureCost>,
     /// Ways out of contradicting rows that were taken, in their order; empty as a rule.
     pub fallbacks: Vec<Fallback>,
+    /// What was filled up because it was dug deeper or steeper than ground is; `None` where nothing was.
+    pub limited: Option<LimitsReport>,
     /// Whether every candidate in view is guaranteed to be seen in this picture, and the judge agrees: of the length in view at
-    /// least 0.995 is seen ([`TerrainMetrics::visible_dense`]); `hidden` names the rest. Where nothing is asked for nothing is
+    /// least 0.9999 is seen ([`TerrainMetrics::visible_dense`]); `hidden` names the rest. Where nothing is asked for nothing is
     /// guaranteed.
     pub guaranteed: bool,
     /// Whether the solver was out of time and ended with the best it had.
@@ -166,6 +167,11 @@ pub enum UnresolvedReason {
         /// How far the ground rises over its line of sight.
         over_m: f64,
     },
+    /// Showing it takes ground deeper or steeper than the limits.
+    Limits {
+        /// How far the ground rises over its line of sight.
+        over_m: f64,
+    },
     /// Ground nearer to it than the guard hides it.
     InsideGuard {
         /// How far that ground rises over its line of sight.
@@ -233,7 +239,7 @@ pub(super) fn report(
     let still = still(field)?;
     let undisplaced = Judge::faceted(field, &still, &*in_view.sight).prepared(dense.len());
     let before = |points: &[ReferencePoint]| share_seen(points, &undisplaced.judge(points, guard));
-    let (unresolved, hidden) = (unresolved(c, done, &judgement), hidden(c, &judgement, &dense));
+    let (unresolved, hidden) = (unresolved(c, done, &judgement), hidden(c, done, &judgement, &dense));
     let (guards, qp_met) = (c.settings.mode != SolverMode::Paper, done.qp_unresolved.is_empty());
     let stated_m = stated_spacing(field.cols(), field.rows(), field.spacing());
     let w = c.settings.smoothness(stated_m);
@@ -251,6 +257,7 @@ pub(super) fn report(
         qp: done.qp,
         costliest: costliest(prepared, &done.rows),
         fallbacks: done.fallbacks.clone(),
+        limited: done.limited,
         guaranteed: guards
             && !in_view.candidates.is_empty()
             && qp_met
@@ -299,7 +306,7 @@ fn costliest(prepared: &Prepared, rows: &[SolvedRow]) -> Vec<FeatureCost> {
 }
 
 /// Dense points that are hidden although no place that is named stands for them.
-fn hidden(c: &Context<'_>, judgement: &Judged, dense: &[ReferencePoint]) -> Vec<UnresolvedRun> {
+fn hidden(c: &Context<'_>, done: &Outcome, judgement: &Judged, dense: &[ReferencePoint]) -> Vec<UnresolvedRun> {
     let mut runs = Runs::new(c.field, CHECK_CELLS);
     // At a price the report names what stays covered.
     if c.settings.slack_price.is_some() {
@@ -307,6 +314,9 @@ fn hidden(c: &Context<'_>, judgement: &Judged, dense: &[ReferencePoint]) -> Vec<
     }
     for (i, hides) in &judgement.dense {
         let reason = match *hides {
+            Hides::Ground(over_m) | Hides::InGuard(over_m) if done.limited.is_some() && over_m.is_finite() => {
+                UnresolvedReason::Limits { over_m }
+            }
             Hides::InGuard(over_m) => UnresolvedReason::InsideGuard { over_m },
             Hides::Ground(over_m) if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,
             Hides::Ground(over_m) if c.settings.mode == SolverMode::Paper => UnresolvedReason::Smoothed { over_m },
@@ -357,6 +367,7 @@ fn unresolved(c: &Context<'_>, done: &Outcome, judgement: &Judged) -> Vec<Unreso
             let reason = match c.settings.mode {
                 _ if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,
                 SolverMode::Paper => UnresolvedReason::Smoothed { over_m },
+                _ if done.limited.is_some() => UnresolvedReason::Limits { over_m },
                 SolverMode::PaperQp | SolverMode::Qp => UnresolvedReason::Judged { over_m },
             };
             runs.put(&c.prepared.points[i], reason);
@@ -404,10 +415,11 @@ impl<'a> Runs<'a> {
 
 /// Of two reasons of one kind the first, with the larger rise of ground over a line of sight.
 fn worse(first: UnresolvedReason, next: UnresolvedReason) -> UnresolvedReason {
-    use UnresolvedReason::{Between, InsideGuard, Judged, Smoothed};
+    use UnresolvedReason::{Between, InsideGuard, Judged, Limits, Smoothed};
     match (first, next) {
         (Smoothed { over_m: a }, Smoothed { over_m: b }) => Smoothed { over_m: a.max(b) },
         (Judged { over_m: a }, Judged { over_m: b }) => Judged { over_m: a.max(b) },
+        (Limits { over_m: a }, Limits { over_m: b }) => Limits { over_m: a.max(b) },
         (Between { over_m: a }, Between { over_m: b }) => Between { over_m: a.max(b) },
         (InsideGuard { over_m: a }, InsideGuard { over_m: b }) => InsideGuard { over_m: a.max(b) },
         _ => first,

@@ -67,6 +67,7 @@ pub(crate) fn settings(doc: &TerrainStageDoc) -> Result<TerrainSettings, (&'stat
         margin_m: doc.margin_m.unwrap_or(usual.margin_m),
         candidates: doc.candidates.unwrap_or(usual.candidates),
         ahead_m: doc.ahead_m,
+        limits: doc.limits.unwrap_or(usual.limits),
         slack_price: doc.slack_price,
     })
 }
@@ -100,6 +101,7 @@ pub(crate) fn document(settings: &TerrainSettings, scene: &Scene) -> TerrainStag
         margin_m: Some(settings.margin_m),
         candidates: Some(settings.candidates),
         ahead_m: settings.ahead_m,
+        limits: Some(settings.limits),
         slack_price: settings.slack_price,
         adjust_viewpoint: None,
     }
@@ -205,11 +207,28 @@ pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<String> {
             if report.parameters.slack_price.is_some() { "`covered`" } else { "`unresolved` and `hidden`" }
         ));
     }
+    out.extend(held(report));
     out.extend(implausible(report, scene));
     if report.asked == 0 {
         out.push(nothing_asked(report.parameters.ahead_m));
     }
     out
+}
+
+/// That limits kept the ground from being dug deeper or steeper, where that hides something.
+fn held(report: &TerrainReport) -> Option<String> {
+    let limits = report.limited?;
+    let hidden = 1.0 - report.metrics.visible_dense;
+    (hidden > 0.0 && !report.guaranteed).then(|| {
+        format!(
+            "terrain_disocclusion: not all can be shown on ground that looks like ground, no lower than {:.0} m and no steeper than {:.0} \
+             degrees: {:.2} % of what is in view stays hidden, which the report names; look from higher up or elsewhere, or lift the \
+             limits (--no-limits, limits = false)",
+            limits.floor_m,
+            limits.steepest_deg,
+            100.0 * hidden
+        )
+    })
 }
 
 /// That the ground moved farther than any ground looks like, and for what.

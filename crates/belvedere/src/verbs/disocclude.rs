@@ -69,7 +69,8 @@ pub fn parameters(texts: &[String]) -> Result<TerrainStageDoc, BelvedereError> {
             return Err(BelvedereError::Setting(format!("{text} has no value; give key=value, such as w=0.6")));
         };
         let (key, value) = (key.trim(), value.trim());
-        let plain = value.parse::<f64>().is_ok() && !value.eq_ignore_ascii_case("infinity");
+        let plain = matches!(value, "true" | "false")
+            || value.parse::<f64>().is_ok() && !value.eq_ignore_ascii_case("infinity");
         let value = if plain || value.starts_with('"') { value.to_owned() } else { format!("{value:?}") };
         toml += &format!("{key} = {value}\n");
     }

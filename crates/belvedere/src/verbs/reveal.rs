@@ -45,6 +45,8 @@ pub struct RevealRequest {
     pub curved_earth: bool,
     /// What bends the picture.
     pub technique: Technique,
+    /// Lets the ground be dug deeper and steeper than ground is.
+    pub no_limits: bool,
     /// Quality of the pictures.
     pub picture: PictureOptions,
 }
@@ -202,7 +204,11 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
         let began = Instant::now();
         let next = match technique {
             Technique::CurvedRays => around_what_hides(&spline, &found.straight, &options.progress)?,
-            _ => disoccluded(&spline, technique, if is_auto { progress } else { &options.progress })?,
+            _ => disoccluded(
+                &spline,
+                (technique, request.no_limits),
+                if is_auto { progress } else { &options.progress },
+            )?,
         };
         let reached = final_shares(&next, technique, &options.progress)?;
         let out_of_time = next.terrain_report().is_some_and(|r| r.out_of_time);
@@ -242,12 +248,17 @@ fn shortfall(visible: f64) -> String {
 }
 
 /// The session with terrain disocclusion, beside the spline or in its place.
-fn disoccluded(session: &Session, technique: Technique, progress: &Progress) -> Result<Session, BelvedereError> {
+fn disoccluded(
+    session: &Session,
+    (technique, no_limits): (Technique, bool),
+    progress: &Progress,
+) -> Result<Session, BelvedereError> {
     let Some(mut document) = session.resolved().cloned() else { return Ok(session.clone()) };
     if technique == Technique::Terrain {
         document.stage.clear();
     }
-    document.stage.insert(0, StageDoc::TerrainDisocclusion(TerrainStageDoc::default()));
+    let stage = TerrainStageDoc { limits: no_limits.then_some(false), ..TerrainStageDoc::default() };
+    document.stage.insert(0, StageDoc::TerrainDisocclusion(stage));
     let mut memory = Memory::default();
     session.with_document(document, Some(&mut Solving { memory: &mut memory, time_step_s: None, progress }))
 }
