@@ -1,0 +1,271 @@
+//! Ground that still looks like ground: neither far below the lowest of the terrain nor much steeper than its steepest.
+//!
+//! The program knows no such limits. What it digs too deep or too steep is filled up again: with the least ground over it that keeps
+//! them. That is never higher than the terrain was, for the terrain keeps them itself. Over a level floor below the eye nothing that
+//! was seen is hidden: lines of sight run above the floor. Where steep sides are filled up, something may be hidden; the judge sees that.
+
+use super::super::{Field, Hierarchy};
+use serde::Serialize;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// The ground may lie below the lowest of the terrain by this share of the relief.
+const DEEPER: f64 = 0.2;
+/// And be so many times as steep as all but a thousandth of the terrain.
+const STEEPER: f64 = 2.0;
+const STEEP_SHARE: f64 = 0.999;
+/// Ways along rows, columns and diagonals that are at most this share as steep bound the slope in all directions between.
+const DIRECTIONS: f64 = 0.923_879_532_511_286_7;
+/// Ground within this of a limit keeps it, metres.
+const KEPT: f64 = 1e-6;
+
+/// What is asked of the displaced ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Limits {
+    /// Lowest height.
+    floor: f64,
+    /// Steepest way between two nodes, but for those that were steeper.
+    slope: f64,
+}
+
+/// What the limits did.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LimitsReport {
+    /// Lowest height that the ground may have: a fifth of the relief below the lowest.
+    pub floor_m: f64,
+    /// Steepest that it may become where it was not steeper, degrees: twice the slope that 999 of 1000 triangles stay below.
+    pub steepest_deg: f64,
+    /// Share of the ground that the program alone would have sunk deeper or made steeper, 0..=1.
+    pub held_share: f64,
+    /// How much deeper at most, metres.
+    pub held_most_m: f64,
+}
+
+/// The terrain by cells of the solver's grid, so that most displacements are known to keep the limits without a look at every node.
+#[derive(Debug, Clone)]
+pub(super) struct LimitedTerrain {
+    limits: Limits,
+    /// Lowest node and steepest way of the blocks.
+    blocks: Vec<[f64; 2]>,
+    spacing: f64,
+}
+
+impl LimitedTerrain {
+    pub(super) fn new(field: &Field, grid: &Hierarchy) -> Self {
+        let limits = Limits::of(field);
+        let [cols, rows] = [grid.cols().max(2) - 1, grid.rows().max(2) - 1];
+        let mut blocks = vec![[f64::INFINITY, 0.0f64]; cols * rows];
+        let step = grid.step();
+        let index = |v: f64, n: usize| (v as usize).min(n - 1);
+        for i in 0..field.heights().len() {
+            let (x, y) = (i % field.cols(), i / field.cols());
+            if field.void()[i] {
+                continue;
+            }
+            let steepest =
+                ways(field, i).map(|(j, d)| (field.heights()[j] - field.heights()[i]).abs() / d).fold(0.0, f64::max);
+            // A node on the border belongs to both sides.
+            let [c0, c1] = [(x as f64 - 0.5) / step.x, x as f64 / step.x].map(|v| index(v.max(0.0), cols));
+            let [r0, r1] = [(y as f64 - 0.5) / step.y, y as f64 / step.y].map(|v| index(v.max(0.0), rows));
+            for block in [r0 * cols + c0, r0 * cols + c1, r1 * cols + c0, r1 * cols + c1] {
+                let [low, steep] = &mut blocks[block];
+                (*low, *steep) = (low.min(field.heights()[i]), steep.max(steepest));
+            }
+        }
+        Self { limits, blocks, spacing: field.spacing().min_element() }
+    }
+
+    /// Whether a displacement surely keeps the limits.
+    pub(super) fn surely_kept(&self, grid: &Hierarchy, u: &[f64]) -> bool {
+        let cols = grid.cols().max(2) - 1;
+        let reach = grid.step().min_element() * self.spacing;
+        self.blocks.iter().enumerate().all(|(i, [low, steep])| {
+            let (x, y) = (i % cols, i / cols);
+            let node =
+                |dx: usize, dy: usize| u[(y + dy).min(grid.rows() - 1) * grid.cols() + (x + dx).min(grid.cols() - 1)];
+            let corners = [node(0, 0), node(1, 0), node(0, 1), node(1, 1)];
+            let [least, most] =
+                corners.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
+            let across = (most - least) / reach;
+            // Along a diagonal both slopes add up.
+            low + least >= self.limits.floor
+                && (across == 0.0 || steep + std::f64::consts::SQRT_2 * across <= self.limits.slope)
+        })
+    }
+
+    /// Makes a displacement of the nodes keep the limits; `None` if it does already.
+    pub(super) fn keep(&self, field: &Field, u: &mut [f64]) -> Option<LimitsReport> {
+        self.limits.keep(field, u)
+    }
+}
+
+impl Limits {
+    fn of(field: &Field) -> Self {
+        let mut slopes = facet_slopes(field);
+        let steep = match slopes.len() {
+            0 => 0.0,
+            n => *slopes.select_nth_unstable_by(((n - 1) as f64 * STEEP_SHARE) as usize, f64::total_cmp).1,
+        };
+        Self { floor: field.datum() - DEEPER * field.relief(), slope: DIRECTIONS * STEEPER * steep }
+    }
+
+    /// The least ground over the displaced one that keeps the limits.
+    fn keep(&self, field: &Field, u: &mut [f64]) -> Option<LimitsReport> {
+        let h = field.heights();
+        let solid = |i: usize| !field.void()[i];
+        let mut ground: Vec<f64> = h.iter().zip(u.iter()).map(|(h, u)| (h + u).max(self.floor.min(*h))).collect();
+        let allowed = |i: usize, j: usize, d: f64| (self.slope * d).max((h[i] - h[j]).abs());
+        let short = |ground: &[f64], i: usize| {
+            ways(field, i).any(|(j, d)| solid(j) && ground[j] < ground[i] - allowed(i, j, d) - KEPT)
+        };
+        let mut open: BinaryHeap<Node> =
+            (0..h.len()).filter(|&i| solid(i) && short(&ground, i)).map(|i| Node(ground[i], i)).collect();
+        while let Some(Node(height, i)) = open.pop() {
+            if height < ground[i] {
+                continue;
+            }
+            for (j, d) in ways(field, i).filter(|(j, _)| solid(*j)) {
+                let least = height - allowed(i, j, d);
+                if ground[j] < least {
+                    ground[j] = least;
+                    open.push(Node(least, j));
+                }
+            }
+        }
+        let (mut held, mut most, mut nodes) = (0usize, 0.0f64, 0usize);
+        for i in (0..h.len()).filter(|&i| solid(i)) {
+            let raised = ground[i] - h[i] - u[i];
+            nodes += 1;
+            if raised > KEPT {
+                (held, most) = (held + 1, most.max(raised));
+                u[i] = ground[i] - h[i];
+            }
+        }
+        (held > 0).then(|| LimitsReport {
+            floor_m: self.floor,
+            steepest_deg: (self.slope / DIRECTIONS).atan().to_degrees(),
+            held_share: held as f64 / nodes as f64,
+            held_most_m: most,
+        })
+    }
+}
+
+/// A node and its height, the highest first.
+struct Node(f64, usize);
+
+impl Ord for Node {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.total_cmp(&other.0).then(other.1.cmp(&self.1))
+    }
+}
+
+impl PartialOrd for Node {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Node {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Node {}
+
+/// The neighbours of a node in all eight directions, with their distances in plan.
+fn ways(field: &Field, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    let (cols, rows, d) = (field.cols() as isize, field.rows() as isize, field.spacing());
+    let (x, y) = (i as isize % cols, i as isize / cols);
+    let all = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
+    all.into_iter().filter_map(move |(dx, dy)| {
+        let (col, row) = (x + dx, y + dy);
+        let inside = col >= 0 && row >= 0 && col < cols && row < rows;
+        inside.then(|| ((row * cols + col) as usize, (dx as f64 * d.x).hypot(dy as f64 * d.y)))
+    })
+}
+
+/// Slopes of the triangles with data, rise over run.
+fn facet_slopes(field: &Field) -> Vec<f64> {
+    let (cols, rows, h, d) = (field.cols(), field.rows(), field.heights(), field.spacing());
+    let mut out = Vec::with_capacity(2 * h.len());
+    for row in 0..rows.saturating_sub(1) {
+        for nw in row * cols..row * cols + cols - 1 {
+            let [ne, sw, se] = [nw + 1, nw + cols, nw + cols + 1];
+            for (corners, x, y) in
+                [([nw, ne, se], h[ne] - h[nw], h[se] - h[ne]), ([nw, sw, se], h[se] - h[sw], h[sw] - h[nw])]
+            {
+                if corners.iter().all(|&k| !field.void()[k]) {
+                    out.push((x / d.x).hypot(y / d.y));
+                }
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::DVec2;
+    use belvedere_scene::{Heightfield, NodeState};
+
+    fn field(height: impl Fn(usize, usize) -> f32) -> Field {
+        let heights = (0..30 * 24).map(|i| height(i % 30, i / 30)).collect();
+        let states = vec![NodeState::Measured; 30 * 24];
+        let hf = Heightfield::new(DVec2::ZERO, DVec2::new(10.0, 20.0), 30, 24, heights, states).unwrap();
+        Field::new(&hf, |_| 0.0).unwrap()
+    }
+
+    fn rough(x: usize, y: usize) -> f32 {
+        (((x * 7919 + y * 104_729) % 1013) as f32).mul_add(0.02, (x as f32 * 0.4).sin() * 30.0)
+    }
+
+    #[test]
+    fn what_is_filled_up_is_the_least_ground_that_keeps_the_limits() {
+        let field = field(rough);
+        let limits = Limits::of(&field);
+        let dug: Vec<f64> = (0..field.heights().len()).map(|i| -(((i * 31) % 97) as f64) * 3.0).collect();
+        let mut u = dug.clone();
+        let told = limits.keep(&field, &mut u).expect("deep pits");
+        assert!(told.held_share > 0.1 && told.held_most_m > 10.0, "{told:?}");
+        let h = field.heights();
+        for i in 0..h.len() {
+            assert!(u[i] >= dug[i] && u[i] <= 1e-9, "between what was dug and the terrain");
+            assert!(h[i] + u[i] >= limits.floor - 1e-9);
+            let mut stands_on_a_limit = u[i] == dug[i] || (h[i] + u[i] - limits.floor).abs() < 1e-9;
+            for (j, d) in ways(&field, i) {
+                let allowed = (limits.slope * d).max((h[i] - h[j]).abs());
+                let fall = h[j] + u[j] - h[i] - u[i];
+                assert!(fall <= allowed + 1e-5, "{i} {j}: {fall} of {allowed}");
+                stands_on_a_limit |= fall > allowed - 1e-5;
+            }
+            assert!(stands_on_a_limit, "node {i} could lie lower");
+        }
+        let again = u.clone();
+        assert!(
+            limits.keep(&field, &mut u).is_none_or(|r| r.held_most_m < 1e-4)
+                && u.iter().zip(&again).all(|(a, b)| (a - b).abs() < 1e-4)
+        );
+    }
+
+    #[test]
+    fn a_displacement_that_is_surely_within_the_limits_is_within_them() {
+        let field = field(rough);
+        let grid = Hierarchy::whole(30, 24, 8);
+        let limited = LimitedTerrain::new(&field, &grid);
+        let (mut sure, mut held) = (0, 0);
+        for k in 0..200u32 {
+            let depth = 0.4 * f64::from(k);
+            let u: Vec<f64> = (0..grid.nodes()).map(|i| -depth * (((i * 37) % 11) as f64) / 11.0).collect();
+            let mut fine = grid.prolong(&u);
+            let report = limited.keep(&field, &mut fine);
+            if limited.surely_kept(&grid, &u) {
+                sure += 1;
+                assert!(report.is_none(), "depth {depth}");
+            }
+            held += usize::from(report.is_some());
+        }
+        assert!(sure > 3 && held > 3, "{sure} {held}");
+    }
+}
