@@ -5,6 +5,7 @@
 //! was seen is hidden: lines of sight run above the floor. Where steep sides are filled up, something may be hidden; the judge sees that.
 
 use super::super::{Field, Hierarchy};
+use rayon::prelude::*;
 use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -54,24 +55,12 @@ impl LimitedTerrain {
     pub(super) fn new(field: &Field, grid: &Hierarchy) -> Self {
         let limits = Limits::of(field);
         let [cols, rows] = [grid.cols().max(2) - 1, grid.rows().max(2) - 1];
-        let mut blocks = vec![[f64::INFINITY, 0.0f64]; cols * rows];
-        let step = grid.step();
-        let index = |v: f64, n: usize| (v as usize).min(n - 1);
-        for i in 0..field.heights().len() {
-            let (x, y) = (i % field.cols(), i / field.cols());
-            if field.void()[i] {
-                continue;
-            }
-            let steepest =
-                ways(field, i).map(|(j, d)| (field.heights()[j] - field.heights()[i]).abs() / d).fold(0.0, f64::max);
-            // A node on the border belongs to both sides.
-            let [c0, c1] = [(x as f64 - 0.5) / step.x, x as f64 / step.x].map(|v| index(v.max(0.0), cols));
-            let [r0, r1] = [(y as f64 - 0.5) / step.y, y as f64 / step.y].map(|v| index(v.max(0.0), rows));
-            for block in [r0 * cols + c0, r0 * cols + c1, r1 * cols + c0, r1 * cols + c1] {
-                let [low, steep] = &mut blocks[block];
-                (*low, *steep) = (low.min(field.heights()[i]), steep.max(steepest));
-            }
-        }
+        let [across, down] = [grid.step().x as usize, grid.step().y as usize];
+        let block = |b: usize| {
+            let (x, y) = (b % cols * across, b / cols * down);
+            lowest_and_steepest(field, [x, (x + across).min(field.cols() - 1)], [y, (y + down).min(field.rows() - 1)])
+        };
+        let blocks = (0..cols * rows).into_par_iter().map(block).collect();
         Self { limits, blocks, spacing: field.spacing().min_element() }
     }
 
@@ -104,7 +93,10 @@ impl Limits {
         let mut slopes = facet_slopes(field);
         let steep = match slopes.len() {
             0 => 0.0,
-            n => *slopes.select_nth_unstable_by(((n - 1) as f64 * STEEP_SHARE) as usize, f64::total_cmp).1,
+            n => {
+                let k = ((n - 1) as f64 * STEEP_SHARE) as usize;
+                f64::from(*slopes.select_nth_unstable_by(k, f32::total_cmp).1).sqrt()
+            }
         };
         Self { floor: field.datum() - DEEPER * field.relief(), slope: DIRECTIONS * STEEPER * steep }
     }
@@ -185,23 +177,50 @@ fn ways(field: &Field, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
     })
 }
 
-/// Slopes of the triangles with data, rise over run.
-fn facet_slopes(field: &Field) -> Vec<f64> {
-    let (cols, rows, h, d) = (field.cols(), field.rows(), field.heights(), field.spacing());
-    let mut out = Vec::with_capacity(2 * h.len());
-    for row in 0..rows.saturating_sub(1) {
-        for nw in row * cols..row * cols + cols - 1 {
-            let [ne, sw, se] = [nw + 1, nw + cols, nw + cols + 1];
-            for (corners, x, y) in
-                [([nw, ne, se], h[ne] - h[nw], h[se] - h[ne]), ([nw, sw, se], h[se] - h[sw], h[sw] - h[nw])]
-            {
-                if corners.iter().all(|&k| !field.void()[k]) {
-                    out.push((x / d.x).hypot(y / d.y));
+/// Lowest node and steepest way between neighbours of a block of cells, from its first to its last columns and rows of nodes.
+fn lowest_and_steepest(field: &Field, [x0, x1]: [usize; 2], [y0, y1]: [usize; 2]) -> [f64; 2] {
+    let (cols, h, void, d) = (field.cols(), field.heights(), field.void(), field.spacing());
+    let steps = [(1, 0, d.x), (0, 1, d.y), (1, 1, d.length()), (-1, 1, d.length())].map(|(x, y, d)| (x, y, d.recip()));
+    let (mut low, mut steepest) = (f64::INFINITY, 0.0f64);
+    for y in y0..=y1 {
+        for x in x0..=x1 {
+            let i = y * cols + x;
+            if void[i] {
+                continue;
+            }
+            low = low.min(h[i]);
+            for (dx, dy, per) in steps {
+                let (col, row) = (x as isize + dx, y + dy);
+                if col >= x0 as isize && col <= x1 as isize && row <= y1 {
+                    let j = row * cols + col as usize;
+                    let slope = (h[j] - h[i]).abs() * per;
+                    if slope > steepest && !void[j] {
+                        steepest = slope;
+                    }
                 }
             }
         }
     }
-    out
+    [low, steepest]
+}
+
+/// Squared slopes of the triangles with data, rise over run.
+fn facet_slopes(field: &Field) -> Vec<f32> {
+    let (cols, h, d) = (field.cols(), field.heights(), field.spacing());
+    let per = [d.x.recip(), d.y.recip()];
+    let row = |row: usize| {
+        (row * cols..row * cols + cols - 1).flat_map(move |nw| {
+            let [ne, sw, se] = [nw + 1, nw + cols, nw + cols + 1];
+            let halves = [([nw, ne, se], h[ne] - h[nw], h[se] - h[ne]), ([nw, sw, se], h[se] - h[sw], h[sw] - h[nw])];
+            halves.into_iter().filter(|(corners, ..)| corners.iter().all(|&k| !field.void()[k])).map(
+                move |(_, x, y)| {
+                    let (x, y) = (x * per[0], y * per[1]);
+                    (x * x + y * y) as f32
+                },
+            )
+        })
+    };
+    (0..field.rows().saturating_sub(1)).into_par_iter().flat_map_iter(row).collect()
 }
 
 #[cfg(test)]

@@ -262,7 +262,8 @@ pub(super) fn report(
             && !in_view.candidates.is_empty()
             && qp_met
             && !done.stopped
-            && metrics.visible_dense >= AGREES,
+            && metrics.visible_dense >= AGREES
+            && (done.limited.is_none() || hidden.is_empty()),
         out_of_time: done.stopped,
         unresolved,
         hidden,
@@ -381,12 +382,17 @@ struct Runs<'a> {
     /// Points of a line or rim farther apart along it have others between them, which are seen.
     gap_m: f64,
     out: Vec<UnresolvedRun>,
+    /// Runs inside areas by the blocks of the ground in which they lie, of so many cells.
+    blocks: BTreeMap<(usize, usize, i64, i64), usize>,
 }
+
+/// Cells per side of the blocks by which hidden places inside areas are gathered.
+const BLOCK: f64 = 4.0;
 
 impl<'a> Runs<'a> {
     /// * `spacing`: of the points, cells.
     fn new(field: &'a Field, spacing: f64) -> Self {
-        Self { field, gap_m: 1.5 * spacing * field.spacing().max_element(), out: Vec::new() }
+        Self { field, gap_m: 1.5 * spacing * field.spacing().max_element(), out: Vec::new(), blocks: BTreeMap::new() }
     }
 
     fn put(&mut self, p: &ReferencePoint, reason: UnresolvedReason) {
@@ -398,8 +404,23 @@ impl<'a> Runs<'a> {
         (layer, feature, kind, along, grid): (usize, usize, PointKind, f64, DVec2),
         reason: UnresolvedReason,
     ) {
+        let (x, y) = ((grid.x / BLOCK).floor() as i64, (grid.y / BLOCK).floor() as i64);
+        if kind == PointKind::Inside {
+            // Places inside an area are gathered by where they lie.
+            let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (layer, feature, x + dx, y + dy)));
+            let mut known = around.filter_map(|block| self.blocks.get(&block).copied());
+            let same = |k: &usize| std::mem::discriminant(&self.out[*k].reason) == std::mem::discriminant(&reason);
+            if let Some(k) = known.find(same) {
+                let run = &mut self.out[k];
+                (run.points, run.reason) = (run.points + 1, worse(run.reason, reason));
+                self.blocks.insert((layer, feature, x, y), k);
+                return;
+            }
+            self.blocks.insert((layer, feature, x, y), self.out.len());
+        }
         let same = |r: &UnresolvedRun| {
-            (r.layer, r.feature, r.kind) == (layer, feature, kind)
+            kind != PointKind::Inside
+                && (r.layer, r.feature, r.kind) == (layer, feature, kind)
                 && (along - r.to_m).abs() <= self.gap_m
                 && std::mem::discriminant(&r.reason) == std::mem::discriminant(&reason)
         };
