@@ -1,7 +1,7 @@
 //! Method (b): draw the picture and compare each sample's depth with the depth buffer.
 
 use super::image::{BodyViews, DepthTest, SampleImage};
-use super::surface;
+use super::{pinpoint, surface};
 use crate::ConstructError;
 use crate::samples::{Sample, SampledFeature};
 use belvedere_core::{CurvedRays, DVec2, DVec3, Pinhole, SplitRays, Stage, View};
@@ -82,8 +82,10 @@ impl Job<'_> {
             });
         }
         let terrain = self.scene.terrain();
+        let pinpoint = Pinpoint::new(self.scene, view, features, images, original);
         let bodies = BodyViews::new(self.scene, view);
         let finer = width as f64 / f64::from(original);
+        let mut pinpointed = pinpoint.depths.chunks_exact(PLACES);
         for (feature, row) in features.iter().zip(images) {
             for (sample, j) in feature.samples.iter().zip(row.iter_mut()).filter(|(_, j)| j.in_frame) {
                 let finer = SampleImage { pixel: finer * j.pixel, ..*j };
@@ -94,12 +96,75 @@ impl Job<'_> {
                         });
                         DepthTest { seen, missed: false }
                     }
-                    None => in_buffer(view, terrain, sample, &finer, &frame),
+                    None => {
+                        let coarse = in_buffer(view, terrain, sample, &finer, &frame);
+                        let exact = pinpointed.next().and_then(|depths| pinpointed_seen(depths, &finer, &frame));
+                        DepthTest { seen: exact.unwrap_or(coarse.seen), ..coarse }
+                    }
                 });
             }
         }
         Ok(())
     }
+}
+
+/// Depths for one sample: at its own place, then at the four pixel centres around it.
+const PLACES: usize = 5;
+/// Drawn depths that differ from pinpointed ones by more than this share are another surface, or wrong.
+const AGREES: f64 = 1e-3;
+/// The ground of a sample without lift lies at its own depth: rounding.
+const TOUCH: f64 = 1e-7;
+
+/// Depths of the terrain at the places of all samples in the frame that lie on it.
+struct Pinpoint {
+    depths: Vec<f64>,
+}
+
+impl Pinpoint {
+    fn new(
+        scene: &Scene,
+        view: &View,
+        features: &[SampledFeature],
+        images: &[Vec<SampleImage>],
+        original: u32,
+    ) -> Self {
+        if scene.terrain().is_none() {
+            return Self { depths: Vec::new() };
+        }
+        let finer = f64::from(view.pinhole().image[0]) / f64::from(original);
+        let mut places = Vec::new();
+        for (feature, row) in features.iter().zip(images) {
+            let framed = feature.samples.iter().zip(row).filter(|(s, j)| j.in_frame && s.surface.is_none());
+            for (_, j) in framed {
+                let at = finer * j.pixel;
+                places.push(at);
+                places.extend(around(at));
+            }
+        }
+        Self { depths: pinpoint::depths(scene, view, &places) }
+    }
+}
+
+/// The four pixel centres around a place.
+fn around(at: DVec2) -> [DVec2; 4] {
+    let corner = (at - 0.5).floor() + 0.5;
+    [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(dx, dy)| corner + DVec2::new(dx, dy))
+}
+
+/// Whether the terrain leaves a sample free, between the pixels too; `None` where the picture shows other depths than the terrain's.
+fn pinpointed_seen(depths: &[f64], j: &SampleImage, frame: &Frame) -> Option<bool> {
+    let centres = around(j.pixel);
+    let mut same = 0;
+    for (centre, &depth) in centres.iter().zip(&depths[1..]) {
+        let column = (centre.x.max(0.0) as usize).min(frame.width - 1);
+        let row = (centre.y.max(0.0) as usize).min(frame.height - 1);
+        let inside =
+            centre.x >= 0.0 && centre.y >= 0.0 && centre.x < frame.width as f64 && centre.y < frame.height as f64;
+        let drawn = f64::from(frame.depth[row * frame.width + column]);
+        same += usize::from(!inside || drawn == depth || (drawn - depth).abs() <= AGREES * depth.min(drawn));
+    }
+    // An edge of the terrain may run through one pixel centre: rounding decides there.
+    (same >= 3).then(|| depths[0] >= j.depth * (1.0 - TOUCH))
 }
 
 /// Whether the depths around the sample's pixel belong to the ground the sample stands on, or to something behind it.

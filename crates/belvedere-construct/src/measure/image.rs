@@ -1,9 +1,10 @@
 //! Where a view shows the samples of features, and whether by line of sight.
 
+use super::displaced::DisplacedSight;
 use crate::samples::{Sample, SampledFeature};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::Scene;
-use belvedere_sight::{Carried, Obstacles, SightOptions};
+use belvedere_sight::{Carried, DisplacedGround, Obstacles, SightOptions};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
@@ -55,11 +56,21 @@ pub(super) struct DepthTest {
 pub(super) struct Sight<'a> {
     pub(super) obstacles: Obstacles<'a>,
     bodies: BodyViews,
+    /// Displaced ground behind which rays are straight.
+    displaced: Option<DisplacedSight>,
+    /// What hides beside that ground.
+    beside: Option<Obstacles<'a>>,
 }
+
+/// The displaced ground, ready for lines of sight.
+type Displaced<'s> = (&'s DisplacedSight, [DisplacedGround<'s>; 2]);
 
 impl<'a> Sight<'a> {
     pub(super) fn new(scene: &'a Scene, view: &View) -> Self {
-        Self { obstacles: Obstacles::seen_by(scene, view), bodies: BodyViews::new(scene, view) }
+        let bodies = BodyViews::new(scene, view);
+        let displaced = DisplacedSight::new(scene, view).filter(|_| bodies.0.is_none());
+        let beside = displaced.as_ref().map(|d| Obstacles::without(scene, &[d.layer()]));
+        Self { obstacles: Obstacles::seen_by(scene, view), bodies, displaced, beside }
     }
 }
 
@@ -90,8 +101,37 @@ pub(super) fn all(
     features: &[SampledFeature],
     options: &SightOptions,
 ) -> Vec<Vec<SampleImage>> {
-    let of = |f: &SampledFeature| f.samples.par_iter().map(|s| image(sight, view, (f.layer, s), options)).collect();
+    let displaced: Option<Displaced<'_>> = sight.displaced.as_ref().map(|d| (d, d.grounds()));
+    let judged = |layer: usize, s: &Sample| {
+        let mut found = image(sight, view, (layer, s), options);
+        if let (Some(displaced), Some(c)) =
+            (&displaced, found.clearance.filter(|_| !found.folded && s.surface.is_none()))
+        {
+            found.clearance = Some(over_displaced(sight, displaced, view, (s, &found, c), options));
+        }
+        found
+    };
+    let of = |f: &SampledFeature| f.samples.par_iter().map(|s| judged(f.layer, s)).collect();
     features.iter().map(of).collect()
+}
+
+/// The clearance of a sample on displaced ground, `c` by chords, with the judge's word on whether it is seen.
+fn over_displaced(
+    of: &Sight<'_>,
+    (displaced, grounds): &Displaced<'_>,
+    view: &View,
+    (sample, image, c): (&Sample, &SampleImage, f64),
+    options: &SightOptions,
+) -> f64 {
+    match displaced.over(grounds, sample) {
+        None => c,
+        Some(over) if over > 0.0 => c.min(-over),
+        Some(_) if c >= 0.0 => c,
+        // Chords saw something: other things than the ground may hide it.
+        Some(_) => of.beside.as_ref().map_or(c, |beside| {
+            beside.clearance(view, (sample.p_world, sample.lift), (image.pixel, image.depth), options)
+        }),
+    }
 }
 
 fn image(of: &Sight<'_>, view: &View, (layer, sample): (usize, &Sample), sight: &SightOptions) -> SampleImage {

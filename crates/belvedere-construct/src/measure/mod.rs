@@ -3,8 +3,10 @@
 
 pub(crate) mod bend;
 mod buffer;
+mod displaced;
 mod hidden;
 mod image;
+mod pinpoint;
 mod report;
 mod surface;
 

@@ -45,7 +45,7 @@ pub(super) struct Prepared {
     pub(super) unusable: Vec<Unusable>,
     /// Candidates of the quadratic program along the features.
     pub(super) dense: Vec<ReferencePoint>,
-    /// Points every fifth of a cell, by which the result is judged.
+    /// Points every tenth of a cell, by which the result is judged.
     check: Vec<ReferencePoint>,
     /// Where the ground must stay plausible.
     pub(super) limited: Option<Arc<LimitedTerrain>>,
@@ -90,7 +90,7 @@ impl Weights {
 }
 
 /// Spacing of the points by which the result is judged, cells.
-pub(super) const CHECK_CELLS: f64 = 0.2;
+pub(super) const CHECK_CELLS: f64 = 0.1;
 /// The view jumped if the eye moved by more than this share of the terrain's diagonal, or turned by more than this angle.
 const JUMP_SHARE: f64 = 0.05;
 const JUMP_COS: f64 = 0.939_692_620_785_908_4;
@@ -206,7 +206,7 @@ impl Prepared {
         })
     }
 
-    /// Points every fifth of a cell that the picture shows.
+    /// Points every tenth of a cell that the picture shows.
     pub(super) fn dense_in_view(&self, in_view: &super::PointsInView<'_>) -> Vec<ReferencePoint> {
         in_view.indices(&self.check).0.into_iter().map(|i| self.check[i]).collect()
     }

@@ -1,0 +1,73 @@
+//! Lines of sight over displaced ground where rays run straight behind it: by the judge of terrain disocclusion itself, triangle by
+//! triangle. Chords of a bent ray may step over a narrow ridge.
+
+use crate::samples::Sample;
+use belvedere_core::grid::Grid;
+use belvedere_core::{DVec2, SpaceMap, Stage, View};
+use belvedere_scene::{LayerKind, Scene};
+use belvedere_sight::{DisplacedGround, Field};
+
+/// Rays that run this far under the ground are still clear: rounding. Scene units.
+const TOUCH: f64 = 1e-6;
+
+/// The ground of a scene as a view displaces it, and the eye.
+pub(super) struct DisplacedSight {
+    layer: usize,
+    field: Field,
+    delta: Grid,
+    eye: DVec2,
+    z: f64,
+}
+
+impl DisplacedSight {
+    /// `None` where the view does not displace the ground, or bends its rays besides.
+    pub(super) fn new(scene: &Scene, view: &View) -> Option<Self> {
+        if view.pinhole().is_orthographic() {
+            return None;
+        }
+        let (mut earth, mut delta) = (None, None);
+        for stage in view.stages() {
+            match stage {
+                Stage::EarthCurvature(e) if delta.is_none() => earth = Some(*e),
+                Stage::TerrainDisocclusion(t) if delta.is_none() => delta = Some(t.grid().clone()),
+                _ => return None,
+            }
+        }
+        let delta = delta?;
+        let mut grounds = scene.layers.iter().enumerate().filter_map(|(i, l)| match &l.kind {
+            LayerKind::Terrain(t) => Some((i, &t.heightfield)),
+            _ => None,
+        });
+        let (layer, hf) = grounds.next()?;
+        if grounds.next().is_some() {
+            return None;
+        }
+        let drop = |p: DVec2| earth.and_then(|e| e.apply(p.extend(0.0)).ok()).map_or(0.0, |q| -q.z);
+        let field = Field::new(hf, drop).ok()?;
+        let eye = view.pinhole().eye;
+        Some(Self { layer, eye: field.grid_from_scene(eye.truncate()), z: eye.z, field, delta })
+    }
+
+    /// The terrain's layer.
+    pub(super) fn layer(&self) -> usize {
+        self.layer
+    }
+
+    /// The ground as it is rasterised and written, and as it is traced.
+    pub(super) fn grounds(&self) -> [DisplacedGround<'_>; 2] {
+        let (field, delta) = (&self.field, &self.delta);
+        [DisplacedGround::faceted(field, delta), DisplacedGround::new(field, delta)].map(DisplacedGround::prepared)
+    }
+
+    /// How far one of the grounds rises over the line of sight of a sample, at most; 0 where none does, `None` beside the ground.
+    pub(super) fn over(&self, grounds: &[DisplacedGround<'_>; 2], sample: &Sample) -> Option<f64> {
+        let at = self.field.grid_from_scene(sample.p_world.truncate());
+        let mut worst = 0.0f64;
+        for ground in grounds {
+            let z = ground.height_at(at)? + sample.lift;
+            let over = ground.excess(&[(at, z), (self.eye, self.z)], 0.0).over;
+            worst = worst.max(if over > TOUCH { over } else { 0.0 });
+        }
+        Some(worst)
+    }
+}
