@@ -5,7 +5,9 @@ use super::{pinpoint, surface};
 use crate::ConstructError;
 use crate::samples::{Sample, SampledFeature};
 use belvedere_core::{CurvedRays, DVec2, DVec3, Pinhole, SplitRays, Stage, View};
-use belvedere_scene::{Aux, Frame, Heightfield, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
+use belvedere_scene::{
+    Aux, Frame, Heightfield, Layer, LayerKind, Light, Progress, RenderJob, RenderOptions, Renderer, Scene,
+};
 
 pub(super) struct Job<'a> {
     pub(super) scene: &'a Scene,
@@ -82,7 +84,7 @@ impl Job<'_> {
             });
         }
         let terrain = self.scene.terrain();
-        let pinpoint = Pinpoint::new(self.scene, view, features, images, original);
+        let pinpoint = Pinpoint::new(self.scene, (view, original), features, images, &frame);
         let bodies = BodyViews::new(self.scene, view);
         let finer = width as f64 / f64::from(original);
         let mut pinpointed = pinpoint.depths.chunks_exact(PLACES);
@@ -98,7 +100,7 @@ impl Job<'_> {
                     }
                     None => {
                         let coarse = in_buffer(view, terrain, sample, &finer, &frame);
-                        let exact = pinpointed.next().and_then(|depths| pinpointed_seen(depths, &finer, &frame));
+                        let exact = pinpointed.next().and_then(|depths| pinpoint.seen(depths, &finer, &frame));
                         DepthTest { seen: exact.unwrap_or(coarse.seen), ..coarse }
                     }
                 });
@@ -112,24 +114,37 @@ impl Job<'_> {
 const PLACES: usize = 5;
 /// Drawn depths that differ from pinpointed ones by more than this share are another surface, or wrong.
 const AGREES: f64 = 1e-3;
+/// Where ground is seen slantwise or breaks off, renderers may draw what lies a part of a pixel beside: up to this share beyond what lies around.
+const BESIDE: f64 = 0.01;
+/// Share of the pixel centres that a picture must show as pinpointed, to be trusted with that.
+const TRUSTED: f64 = 0.5;
 /// The ground of a sample without lift lies at its own depth: rounding.
 const TOUCH: f64 = 1e-7;
 
-/// Depths of the terrain at the places of all samples in the frame that lie on it.
+/// Depths of the terrain at the places of all samples in the frame that stand for no surface in space.
 struct Pinpoint {
     depths: Vec<f64>,
+    /// Whether the picture shows the terrain where it is.
+    trusted: bool,
+    /// Whether a layer, by its index, can hide the terrain.
+    solid: Vec<bool>,
 }
 
 impl Pinpoint {
     fn new(
         scene: &Scene,
-        view: &View,
+        (view, original): (&View, u32),
         features: &[SampledFeature],
         images: &[Vec<SampleImage>],
-        original: u32,
+        frame: &Frame,
     ) -> Self {
+        let is_solid = |l: &Layer| {
+            use LayerKind::{Area, Line, Point, Terrain};
+            !matches!(l.kind, Terrain(_) | Line(_) | Area(_) | Point(_))
+        };
+        let solid = scene.layers.iter().map(is_solid).collect();
         if scene.terrain().is_none() {
-            return Self { depths: Vec::new() };
+            return Self { depths: Vec::new(), trusted: false, solid };
         }
         let finer = f64::from(view.pinhole().image[0]) / f64::from(original);
         let mut places = Vec::new();
@@ -141,7 +156,31 @@ impl Pinpoint {
                 places.extend(around(at));
             }
         }
-        Self { depths: pinpoint::depths(scene, view, &places) }
+        let depths = pinpoint::depths(scene, view, &places);
+        let centres = || {
+            places.chunks_exact(PLACES).zip(depths.chunks_exact(PLACES)).flat_map(|(p, d)| p[1..].iter().zip(&d[1..]))
+        };
+        let all = centres().filter(|(p, _)| pixel(**p, frame).is_some()).count();
+        let same = centres().filter(|(p, d)| pixel(**p, frame).is_some_and(|k| is_same(frame, k, **d))).count();
+        Self { trusted: same as f64 >= TRUSTED * all as f64, depths, solid }
+    }
+
+    /// Whether the terrain leaves a sample free, between the pixels too; `None` where the picture shows something else than the terrain.
+    fn seen(&self, depths: &[f64], j: &SampleImage, frame: &Frame) -> Option<bool> {
+        let [nearest, farthest] = depths.iter().fold([f64::INFINITY, 0.0], |[lo, hi], d| [d.min(lo), d.max(hi)]);
+        let mut explained = 0;
+        for (centre, &depth) in around(j.pixel).into_iter().zip(&depths[1..]) {
+            let Some(k) = pixel(centre, frame) else {
+                explained += 1;
+                continue;
+            };
+            let drawn = f64::from(frame.depth[k]);
+            let covered = (frame.id[k] as usize).checked_sub(1).is_some_and(|layer| self.solid[layer]);
+            let near = drawn >= (1.0 - BESIDE) * nearest && drawn <= (1.0 + BESIDE) * farthest;
+            explained += usize::from(!covered && (is_same(frame, k, depth) || (self.trusted && near)));
+        }
+        // One pixel may show another ridge.
+        (explained >= 3).then(|| depths[0] >= j.depth * (1.0 - TOUCH))
     }
 }
 
@@ -151,20 +190,15 @@ fn around(at: DVec2) -> [DVec2; 4] {
     [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(dx, dy)| corner + DVec2::new(dx, dy))
 }
 
-/// Whether the terrain leaves a sample free, between the pixels too; `None` where the picture shows other depths than the terrain's.
-fn pinpointed_seen(depths: &[f64], j: &SampleImage, frame: &Frame) -> Option<bool> {
-    let centres = around(j.pixel);
-    let mut same = 0;
-    for (centre, &depth) in centres.iter().zip(&depths[1..]) {
-        let column = (centre.x.max(0.0) as usize).min(frame.width - 1);
-        let row = (centre.y.max(0.0) as usize).min(frame.height - 1);
-        let inside =
-            centre.x >= 0.0 && centre.y >= 0.0 && centre.x < frame.width as f64 && centre.y < frame.height as f64;
-        let drawn = f64::from(frame.depth[row * frame.width + column]);
-        same += usize::from(!inside || drawn == depth || (drawn - depth).abs() <= AGREES * depth.min(drawn));
-    }
-    // An edge of the terrain may run through one pixel centre: rounding decides there.
-    (same >= 3).then(|| depths[0] >= j.depth * (1.0 - TOUCH))
+/// Index of the pixel at a place; `None` beside the picture.
+fn pixel(at: DVec2, frame: &Frame) -> Option<usize> {
+    let inside = at.x >= 0.0 && at.y >= 0.0 && at.x < frame.width as f64 && at.y < frame.height as f64;
+    inside.then(|| at.y as usize * frame.width + at.x as usize)
+}
+
+fn is_same(frame: &Frame, k: usize, depth: f64) -> bool {
+    let drawn = f64::from(frame.depth[k]);
+    drawn == depth || (drawn - depth).abs() <= AGREES * depth.min(drawn)
 }
 
 /// Whether the depths around the sample's pixel belong to the ground the sample stands on, or to something behind it.
