@@ -308,6 +308,9 @@ pub(crate) struct DisoccludeArgs {
     /// The ground before and after from the eye, side by side; its record lies beside it
     #[arg(long, value_name = "OUT.png")]
     pub(crate) picture: Option<PathBuf>,
+    /// Fill holes of the elevation model in place of leaving them open, in the written heights, too
+    #[arg(long)]
+    pub(crate) fill_voids: bool,
     /// What areas of the picture are drawn as, instead of what their properties and names say
     #[arg(long, value_enum, value_name = "STYLE")]
     pub(crate) area_style: Option<AreaStyleKind>,

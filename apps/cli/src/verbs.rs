@@ -189,6 +189,7 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
             vertical_unit: args.ground.vertical_unit.map(Into::into),
             ..DataFiles::default()
         },
+        fill_voids: args.fill_voids,
         eye: args.eye,
         look: args.look,
         fov_x_deg: args.fov,

@@ -17,6 +17,7 @@ mod points;
 mod settings;
 mod smooth;
 mod solve;
+mod spikes;
 mod viewpoint;
 mod visibility_qp;
 
@@ -45,6 +46,7 @@ pub mod report {
     pub use crate::solve::{
         Covered, Fallback, FeatureCost, LimitsReport, QpReport, TerrainTimes, UnresolvedReason, UnresolvedRun,
     };
+    pub use super::spikes::Spike;
 }
 
 /// The inside of the solver, for measurements, figures and tests. Not stable: any name may change or go without notice.

@@ -162,6 +162,11 @@ impl CameraPath {
         self.poses.len()
     }
 
+    /// Whether the camera goes where the constructor of a path preview puts it.
+    pub(crate) fn is_previewed(&self) -> bool {
+        !self.positions.is_empty()
+    }
+
     /// The session in a frame.
     ///
     /// # Errors

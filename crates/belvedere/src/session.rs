@@ -102,12 +102,15 @@ impl Session {
         };
         let source = SourceDocument { origin, document };
         let resolved = view::resolve(&source, &roots, &self.scene, solving)?;
+        let mut warnings = self.warnings.clone();
+        warnings.extend(resolved.warnings.into_iter().filter(|w| !self.warnings.contains(w)));
         Ok(Self {
             view: resolved.view,
             light: resolved.light,
             terrain: resolved.terrain,
             strip: resolved.strip,
             constructor: resolved.constructor,
+            warnings,
             description: Some(Description { source, resolved: resolved.document, roots }),
             ..self.clone()
         })

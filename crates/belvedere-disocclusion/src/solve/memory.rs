@@ -10,6 +10,7 @@ use super::agreement::BILINEAR;
 use super::limits::LimitedTerrain;
 use crate::DisocclusionError;
 use crate::points::{RequiredFeature, required_features};
+use crate::spikes::{Spike, without_spikes};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Heightfield, Scene};
 use std::collections::BTreeMap;
@@ -37,6 +38,9 @@ struct Last {
 pub(super) struct Prepared {
     settings: TerrainSettings,
     ground: Arc<Heightfield>,
+    /// The same with spikes at the median of their neighbours: what is solved on.
+    pub(super) despiked: Arc<Heightfield>,
+    pub(super) spikes: Vec<Spike>,
     features: Vec<RequiredFeature>,
     weights: Weights,
     pub(super) level: Arc<Field>,
@@ -159,7 +163,8 @@ impl Prepared {
         settings: &TerrainSettings,
         weights: Weights,
     ) -> Result<Self, DisocclusionError> {
-        let level = Field::new(heightfield, |_| 0.0)?;
+        let (despiked, spikes) = without_spikes(heightfield);
+        let level = Field::new(&despiked, |_| 0.0)?;
         let grid = Hierarchy::whole(level.cols(), level.rows(), settings.solver_nodes);
         let (points, unusable) = reference_points(scene, &level, settings, settings.spacing);
         let with_qp = settings.mode != SolverMode::Paper;
@@ -190,6 +195,8 @@ impl Prepared {
         Ok(Self {
             settings: settings.clone(),
             ground: heightfield.clone(),
+            despiked,
+            spikes,
             features,
             weights,
             level: Arc::new(level),

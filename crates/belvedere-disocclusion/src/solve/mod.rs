@@ -144,7 +144,7 @@ impl TerrainSolver {
             _ => None,
         });
         let field = match &earth {
-            Some(earth) => Arc::new(Field::new(heightfield, |p| drop_at(earth, p))?),
+            Some(earth) => Arc::new(Field::new(&prepared.despiked, |p| drop_at(earth, p))?),
             None => prepared.level.clone(),
         };
         let eye = base.pinhole().eye;

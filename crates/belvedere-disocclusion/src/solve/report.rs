@@ -9,6 +9,7 @@ use super::super::{
 use super::memory::{CHECK_CELLS, Prepared};
 use super::{Fallback, LimitsReport, Outcome, PointsInView, since};
 use crate::DisocclusionError;
+use crate::spikes::Spike;
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
 use belvedere_scene::Instant;
@@ -51,6 +52,9 @@ pub struct TerrainReport {
     pub fallbacks: Vec<Fallback>,
     /// What was filled up because it was dug deeper or steeper than ground is; `None` where nothing was.
     pub limited: Option<LimitsReport>,
+    /// Spikes of the elevation model, the farthest out first: for solving they were taken to be as high as their neighbours.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub spikes: Vec<Spike>,
     /// Whether every candidate in view is guaranteed to be seen in this picture, and the judge agrees: of the length in view at
     /// least 0.9999 is seen ([`TerrainMetrics::visible_dense`]); `hidden` names the rest. Where nothing is asked for nothing is
     /// guaranteed.
@@ -258,6 +262,7 @@ pub(super) fn report(
         costliest: costliest(prepared, &done.rows),
         fallbacks: done.fallbacks.clone(),
         limited: done.limited,
+        spikes: prepared.spikes.clone(),
         guaranteed: guards
             && !in_view.candidates.is_empty()
             && qp_met

@@ -100,6 +100,19 @@ impl OriginalTerrain {
     /// # Errors
     /// [`IoError`] if the file's coordinate system cannot be joined with that of the scene.
     pub fn moved(&self, scene: Crs, delta: impl Fn(DVec2) -> f64 + Sync) -> Result<[Raster; 2], IoError> {
+        self.moved_and_filled(scene, delta, |_| None)
+    }
+
+    /// As [`Self::moved`], but where the file has no data the height before the move is `fill` (metres, at scene x, y), if that has one.
+    ///
+    /// # Errors
+    /// As [`Self::moved`].
+    pub fn moved_and_filled(
+        &self,
+        scene: Crs,
+        delta: impl Fn(DVec2) -> f64 + Sync,
+        fill: impl Fn(DVec2) -> Option<f64> + Sync,
+    ) -> Result<[Raster; 2], IoError> {
         let source = &self.source;
         let failed = |e: crate::crs::CrsError| IoError::format(&source.path, e.to_string());
         let transform = match (&source.system, scene) {
@@ -118,8 +131,10 @@ impl OriginalTerrain {
                     Some(t) => t.forward_one(DVec2::from(at)),
                     None => Some(DVec2::from(at)),
                 };
-                let moved = scene_xy.map(&delta).filter(|d| d.is_finite() && source.heights[i].is_finite());
-                moved.map_or([NODATA; 2], |d| [(f64::from(source.heights[i]) + d) as f32, d as f32])
+                let own = f64::from(source.heights[i]);
+                let height = |p: DVec2| if own.is_finite() { Some(own) } else { fill(p) };
+                let moved = scene_xy.and_then(|p| Some((height(p)?, delta(p)))).filter(|(h, d)| (h + d).is_finite());
+                moved.map_or([NODATA; 2], |(h, d)| [(h + d) as f32, d as f32])
             })
             .collect();
         Ok([0, 1].map(|k| self.raster(pairs.iter().map(|p| p[k]).collect())))

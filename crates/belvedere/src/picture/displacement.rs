@@ -13,7 +13,8 @@ pub struct DisplacementReport {
     pub max_m: f64,
     /// Root mean square, scene units.
     pub rms_m: f64,
-    /// Largest distance between the bent and the straight image of a point, pixels.
+    /// Largest distance between the bent and the straight image of a point, pixels. What the straight picture would show farther than
+    /// one picture beside itself does not count: beside the eye such images lie anywhere.
     pub max_px: f64,
     /// Root mean square of that distance, pixels.
     pub rms_px: f64,
@@ -34,6 +35,16 @@ struct Moved {
     folded: bool,
 }
 
+/// From a pixel to the straight image of the point that it shows; `None` for images farther than one picture beside the straight one.
+fn distance_px(straight: &View, point: DVec3, pixel: DVec2) -> Option<f64> {
+    let image = straight.project(point).ok()?;
+    let size = DVec2::from(straight.pinhole().image.map(f64::from));
+    let near = image.depth >= straight.pinhole().near
+        && image.pixel.cmpge(-size).all()
+        && image.pixel.cmple(2.0 * size).all();
+    near.then(|| image.pixel.distance(pixel))
+}
+
 fn at_pixel(
     (view, straight): (&View, &View),
     rigid: &RigidLayers,
@@ -47,12 +58,12 @@ fn at_pixel(
         // The rays of other points say nothing of it: the picture knows what it shows, and where.
         let point = DVec3::from_array(*frame.world.as_ref()?.get(i)?);
         let (bent, plain) = (rigid.displaced(view, frame, i, point)?, straight.displace(point).ok()?.point);
-        let by_px = straight.project(point).ok().map(|image| image.pixel.distance(pixel));
+        let by_px = distance_px(straight, point, pixel);
         return Some(Moved { pixel: [col, row], by_m: bent.distance(plain), by_px, folded: false });
     }
     let seen = view.ray(pixel).at(if depth.is_finite() { depth } else { -1.0 }).ok()?;
     let (bent, plain) = (view.displace(seen.point).ok()?, straight.displace(seen.point).ok()?);
-    let by_px = straight.project(seen.point).ok().map(|image| image.pixel.distance(pixel));
+    let by_px = distance_px(straight, seen.point, pixel);
     Some(Moved { pixel: [col, row], by_m: bent.point.distance(plain.point), by_px, folded: bent.folded })
 }
 

@@ -6,7 +6,7 @@ use crate::BelvedereError;
 use crate::scene_file::{DetailDoc, PointDoc, SolverMode as ModeDoc, SourceDocument, StageDoc, Table, TerrainStageDoc};
 use belvedere_core::{DVec3, Pinhole, Stage, View};
 use belvedere_disocclusion::DisocclusionError;
-use belvedere_disocclusion::report::FeatureCost;
+use belvedere_disocclusion::report::{FeatureCost, Spike};
 use belvedere_disocclusion::{
     Detail, Solved, SolverMode, TerrainReport, TerrainSettings, TerrainSolver, ViewpointOptions,
 };
@@ -21,7 +21,7 @@ pub(crate) struct Solving<'a> {
 }
 
 /// Ranges of the parameters of a document.
-pub(super) fn check(doc: &TerrainStageDoc) -> Result<(), (&'static str, String)> {
+pub(crate) fn check(doc: &TerrainStageDoc) -> Result<(), (&'static str, String)> {
     if let Err(DisocclusionError::Setting { key, value, range }) = TerrainSolver::new(settings(doc)?) {
         return Err((key, DisocclusionError::Setting { key, value, range }.to_string()));
     }
@@ -172,6 +172,8 @@ const WORTH_SAYING: f64 = 0.005;
 /// terrain's own.
 const IMPLAUSIBLE_SHARE: f64 = 0.2;
 const IMPLAUSIBLE_DEG: f64 = 5.0;
+/// Spikes that are named.
+const SPIKES_NAMED: usize = 3;
 
 /// What a user should know of a solution: one sentence each.
 pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<String> {
@@ -209,10 +211,29 @@ pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<String> {
     }
     out.extend(held(report));
     out.extend(implausible(report, scene));
+    out.extend(spiky(&report.spikes));
     if report.asked == 0 {
         out.push(nothing_asked(report.parameters.ahead_m));
     }
     out
+}
+
+/// That samples of the elevation model stand apart from all their neighbours.
+fn spiky(spikes: &[Spike]) -> Option<String> {
+    let place = |s: &Spike| {
+        let (by, side) = ((s.height_m - s.taken_m).abs(), if s.height_m > s.taken_m { "above" } else { "below" });
+        format!("{by:.0} m {side} at {:.0},{:.0} ({:.0} m)", s.at[0], s.at[1], s.height_m)
+    };
+    let places: Vec<String> = spikes.iter().take(SPIKES_NAMED).map(place).collect();
+    let more = if spikes.len() > SPIKES_NAMED { ", and more in the report" } else { "" };
+    let samples = if spikes.len() == 1 { "1 sample stands".into() } else { format!("{} samples stand", spikes.len()) };
+    (!spikes.is_empty()).then(|| {
+        format!(
+            "terrain_disocclusion: {samples} far from all neighbours, as spikes do that are faults of the elevation model: {}{more}; the ground \
+             does not make way for them, and they may hide something; set them to no data, or smooth them, in the elevation model",
+            places.join(", ")
+        )
+    })
 }
 
 /// That limits kept the ground from being dug deeper or steeper, where that hides something.

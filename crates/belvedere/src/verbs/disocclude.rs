@@ -10,7 +10,7 @@ use crate::scene_file::{self, CameraDoc, EarthDoc, StageDoc, TerrainStageDoc};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::MeasureOptions;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, TerrainDisocclusion, View};
-use belvedere_disocclusion::{Solved, TerrainMemory, TerrainReport, TerrainSolver};
+use belvedere_disocclusion::{Solved, TerrainMemory, TerrainReport, TerrainSolver, ViewpointOptions};
 use belvedere_io::IoError;
 use belvedere_io::TerrainRequest;
 use belvedere_io::crs::{CoordinateSystem, Transform};
@@ -25,14 +25,18 @@ use std::sync::Arc;
 
 /// Sides of the picture that the field of view belongs to, pixels.
 const IMAGE: [u32; 2] = [1280, 720];
+/// Share from which on a promise is kept on resampled heights.
+const KEPT_SHARE: f64 = 0.9999;
 /// Share of the length in view that is wanted visible.
 const VISIBLE_LENGTH: f64 = 0.995;
 
 /// What to show, and from where.
 #[derive(Debug, Clone, Default)]
 pub struct DisoccludeRequest {
-    /// Elevation model (one file) and features; holes stay holes.
+    /// Elevation model (one file) and features; whether holes stay holes is up to `fill_voids`.
     pub data: DataFiles,
+    /// Fills holes of the elevation model of at most [`crate::data::LARGEST_HOLE`] of it, in the files that are written, too.
+    pub fill_voids: bool,
     /// Eye: x, y in the system of the elevation model (degrees if geographic), z metres over its datum.
     pub eye: [f64; 3],
     /// Point looked at, x, y likewise.
@@ -100,6 +104,9 @@ struct Record {
     program: String,
     crs: String,
     eye: [f64; 3],
+    /// Where adjust_viewpoint moved the eye, in `crs`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    adjusted_eye: Option<[f64; 3]>,
     look: [f64; 2],
     fov_x_deg: f64,
     earth: &'static str,
@@ -107,6 +114,8 @@ struct Record {
     /// Share of what is in view that is seen on the heights as they are written, where those are resampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     visible_written: Option<f64>,
+    /// That of the report, if it holds for the heights as they are written.
+    guaranteed: bool,
     layers: Vec<String>,
     inputs: Vec<InputFile>,
     warnings: Vec<String>,
@@ -142,14 +151,17 @@ impl DisoccludeFiles {
 /// [`BelvedereError::FieldOfView`], [`BelvedereError::Position`], [`BelvedereError::EyeIsTarget`], [`BelvedereError::Setting`],
 /// [`BelvedereError::Disocclusion`]; those of the loaders.
 pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Disoccluded, BelvedereError> {
+    intent::check(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
     let settings = intent::settings(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
     let solver = TerrainSolver::new(settings)?;
-    let mut data = DataFiles { keep_voids: true, ..request.data.clone() }.load(true, options)?;
+    let mut data = DataFiles { keep_voids: !request.fill_voids, ..request.data.clone() }.load(true, options)?;
     let dem = &request.data.dem;
     let original = data.original.take().ok_or_else(|| IoError::format(dem, "is no file; give an elevation model"))?;
     let radius = request.curved_earth.then(|| earth_radius(&data.scene, &mut data.warnings));
     data.warnings.extend(original.georeference_note());
-    let camera = LevelCamera::new(request, &original, data.scene.crs, radius)?;
+    let mut camera = LevelCamera::new(request, &original, data.scene.crs, radius)?;
+    let moved_eye = camera.adjust(request.parameters.adjust_viewpoint, &solver, &data.scene, &options.progress)?;
+    data.warnings.extend(moved_eye.as_ref().map(|(_, said)| said.clone()));
     let view = camera.view(camera.target.extend(camera.eye.z), None)?;
     let solved = solver.solve(&data.scene, &view, &mut TerrainMemory::default(), &options.progress)?;
     data.warnings.extend(intent::remarks(&solved, &data.scene));
@@ -157,7 +169,8 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
     let (rasters, visible_written) = match (request.grid, data.scene.terrain()) {
         (WrittenGrid::Scene, Some(terrain)) => (moved_terrain(terrain, data.scene.crs, delta), None),
         _ => {
-            let rasters = original.moved(data.scene.crs, delta)?;
+            let surface = |p: DVec2| data.scene.terrain().filter(|_| request.fill_voids)?.surface_at(p);
+            let rasters = original.moved_and_filled(data.scene.crs, delta, surface)?;
             let resampled = data.scene.terrain().is_some_and(|terrain| !original.is_grid_of(terrain));
             let share =
                 if resampled { written_share(&data.scene, &view, &original, &rasters[0], options)? } else { None };
@@ -176,11 +189,13 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
         program: format!("belvedere {}", crate::VERSION),
         crs: session.scene.crs.to_string(),
         eye: request.eye,
+        adjusted_eye: moved_eye.map(|(eye, _)| eye.to_array()),
         look: request.look,
         fov_x_deg: request.fov_x_deg,
         earth: if request.curved_earth { "curved" } else { "flat" },
         grid: request.grid,
         visible_written,
+        guaranteed: solved.report.guaranteed && visible_written.is_none_or(|share| share >= KEPT_SHARE),
         layers: session.scene.layers.iter().map(|l| l.id.clone()).collect(),
         inputs: record::inputs(session.inputs())?,
         warnings: session.warnings.clone(),
@@ -216,11 +231,13 @@ fn written_share(
 
 /// That resampling hides again what was solved for.
 fn resampled_away(share: f64, solved: &Solved) -> Option<String> {
-    (share < VISIBLE_LENGTH && share < solved.report.metrics.visible_dense).then(|| {
+    let lost = solved.report.metrics.visible_dense - share;
+    (lost > 1.0 - KEPT_SHARE).then(|| {
         format!(
-            "written on the grid of the input, the heights show {:.1} % of what is in view, for its samples are not those that were \
-             solved on; grid = scene writes the latter",
-            100.0 * share
+            "written on the grid of the input, the heights show {:.2} % of what is in view, {:.2} % less than the ground that was solved \
+             on, for its samples are others; --grid scene writes the latter",
+            100.0 * share,
+            100.0 * lost
         )
     })
 }
@@ -264,6 +281,33 @@ impl LevelCamera {
         Ok(Self { eye, target, fov_x: deg.to_radians(), earth })
     }
 
+    /// Moves the eye where `slider` allows it and that saves ground; answers where to, and a sentence that says so.
+    fn adjust(
+        &mut self,
+        slider: Option<f64>,
+        solver: &TerrainSolver,
+        scene: &Scene,
+        progress: &Progress,
+    ) -> Result<Option<(DVec3, String)>, BelvedereError> {
+        // At 1 the eye stays where it is.
+        let Some(slider) = slider.filter(|slider| *slider < 1.0) else { return Ok(None) };
+        let target = self.target.extend(self.eye.z);
+        let options = ViewpointOptions { slider, ..ViewpointOptions::default() };
+        let found = solver.adjust(scene, &self.view(target, None)?, target, &options, progress)?;
+        Ok(found.filter(|found| found.moved_m > 0.0).map(|found| {
+            self.eye = found.eye;
+            if let Some(Stage::EarthCurvature(earth)) = &mut self.earth {
+                earth.eye = found.eye;
+            }
+            let [x, y, z] = found.eye.to_array();
+            let said = format!(
+                "adjust_viewpoint moved the eye by {:.0} m, to {x:.1},{y:.1},{z:.1} in {}: from there less ground has to move",
+                found.moved_m, scene.crs
+            );
+            (found.eye, said)
+        }))
+    }
+
     /// The view of `look_at`. A level one includes what lies above or below the picture as well, for the ground moves up and down.
     fn view(&self, look_at: DVec3, ground: Option<Stage>) -> Result<View, BelvedereError> {
         let [width, height] = IMAGE.map(f64::from);
@@ -291,7 +335,7 @@ impl Disoccluded {
                 r.points
             ));
         }
-        let length = r.metrics.visible_dense;
+        let length = self.visible();
         if length < VISIBLE_LENGTH {
             out.push(format!(
                 "{:.2} % of the length in view is visible, {:.1} % were wanted",
@@ -302,13 +346,19 @@ impl Disoccluded {
         out
     }
 
+    /// Visible share of the features in view on the heights as they are written, 0..=1.
+    pub fn visible(&self) -> f64 {
+        let solved = self.report().metrics.visible_dense;
+        self.record.visible_written.map_or(solved, |written| written.min(solved))
+    }
+
     /// One sentence: what is visible before and after, and what that takes.
     pub fn summary(&self) -> String {
         let r = self.report();
         format!(
             "visible of the features in view: {:.1} % before, {:.1} % after; all the ground, in the picture or not, moved by {:.1} m rms, {:.1} m at most",
             100.0 * r.visible_dense_before,
-            100.0 * r.metrics.visible_dense,
+            100.0 * self.visible(),
             r.metrics.rms_m,
             r.metrics.max_m
         )

@@ -157,7 +157,9 @@ fn draw_missing(
 ) -> Result<usize, BelvedereError> {
     let missing: Vec<usize> = (0..path.len()).filter(|&f| manifest.frames[f].is_none()).collect();
     // What a solver remembers depends on every frame before: those that are there are solved again, not drawn.
-    let solves = session.resolved().is_some_and(Document::solves_terrain) || session.tracks();
+    // Straight frames need nothing solved, unless the camera follows a path that a constructor leads it along.
+    let solved = !request.picture.straight || path.is_previewed();
+    let solves = solved && (session.resolved().is_some_and(Document::solves_terrain) || session.tracks());
     let last = missing.last().map_or(0, |f| f + 1);
     let work: Vec<usize> = if solves { (0..last).collect() } else { missing.clone() };
     let quiet = progress.unheard();
@@ -167,7 +169,7 @@ fn draw_missing(
         let share = manifest.done as f64 / path.len() as f64;
         progress.tick(&remaining(frame, path.len(), step, work.len(), started), share)?;
         let mut solving = Solving { memory: &mut memory, time_step_s: Some(1.0 / path.fps), progress: &quiet };
-        let session = path.session(session, frame, Some(&mut solving))?;
+        let session = path.session(session, frame, solved.then_some(&mut solving))?;
         if manifest.frames[frame].is_some() {
             continue;
         }

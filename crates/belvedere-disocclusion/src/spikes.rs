@@ -1,0 +1,197 @@
+//! Spikes: single samples of an elevation model that stand far above or below all their neighbours.
+//!
+//! Ground that makes way for a spike is dug into a funnel around a fault of the data. So the solver takes a spike for as high as the
+//! median of its neighbours, and says so. A summit is none: towers have sides, and what stands alone on coarse grids is no farther above
+//! its neighbours than ground of the same model is steep elsewhere, or than its neighbours differ.
+
+use belvedere_core::DVec2;
+use belvedere_scene::{Heightfield, NodeState};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::sync::Arc;
+
+/// Samples that differ less from any neighbour, as a slope, are looked at no closer.
+const SLOPE: f64 = 0.5;
+/// The slope to all neighbours is so many times that which all but a thousandth of the neighbours in the model have.
+const STEEPER: f64 = 3.0;
+const STEEP_SHARE: f64 = 0.999;
+/// The difference is so many times the root mean square distance of the surroundings from a plane.
+const ROUGHER: f64 = 6.0;
+
+/// A single sample far above or below all its neighbours.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Spike {
+    /// Scene x, y.
+    pub at: [f64; 2],
+    /// Height in the data.
+    pub height_m: f64,
+    /// Median height of its neighbours, which is solved with.
+    pub taken_m: f64,
+}
+
+/// The terrain with its spikes cut down or filled up to the median of their neighbours, and the spikes, the farthest out first.
+pub(crate) fn without_spikes(terrain: &Arc<Heightfield>) -> (Arc<Heightfield>, Vec<Spike>) {
+    let (cols, step) = (terrain.cols(), terrain.spacing().min_element());
+    let near: Vec<(usize, f64)> = (0..terrain.heights().len())
+        .into_par_iter()
+        .with_min_len(4096)
+        .filter_map(|i| Some((i, apart(terrain, i)?)).filter(|(_, apart)| *apart > SLOPE * step))
+        .collect();
+    if near.is_empty() {
+        return (terrain.clone(), Vec::new());
+    }
+    let least = STEEPER * usual_slope(terrain) * step;
+    let mut found: Vec<(usize, Spike)> = Vec::new();
+    for (i, apart) in near {
+        if apart > least && apart > ROUGHER * roughness(terrain, i) {
+            let taken_m = median(around(terrain, i, 1).map(|(_, h)| h).collect());
+            let at = terrain.node_xy(i % cols, i / cols).to_array();
+            found.push((i, Spike { at, height_m: f64::from(terrain.heights()[i]), taken_m }));
+        }
+    }
+    if found.is_empty() {
+        return (terrain.clone(), Vec::new());
+    }
+    let mut heights = terrain.heights().to_vec();
+    for (i, spike) in &found {
+        heights[*i] = spike.taken_m as f32;
+    }
+    let states = terrain.states().to_vec();
+    let smooth = Heightfield::new(terrain.north_west(), terrain.spacing(), cols, terrain.rows(), heights, states);
+    let mut spikes: Vec<Spike> = found.into_iter().map(|(_, spike)| spike).collect();
+    spikes.sort_by(|a, b| (b.height_m - b.taken_m).abs().total_cmp(&(a.height_m - a.taken_m).abs()));
+    // The same grid with other finite heights is valid.
+    smooth.map_or_else(|_| (terrain.clone(), Vec::new()), |smooth| (Arc::new(smooth), spikes))
+}
+
+/// Nodes with data up to `reach` columns and rows from a node, without it: offset in scene units, and height.
+fn around(terrain: &Heightfield, i: usize, reach: isize) -> impl Iterator<Item = (DVec2, f64)> + '_ {
+    let (cols, rows) = (terrain.cols() as isize, terrain.rows() as isize);
+    let (col, row) = (i as isize % cols, i as isize / cols);
+    let side = 2 * reach + 1;
+    (0..side * side).filter_map(move |k| {
+        let (dx, dy) = (k % side - reach, k / side - reach);
+        let (x, y) = (col + dx, row + dy);
+        let inside = x >= 0 && y >= 0 && x < cols && y < rows && (dx, dy) != (0, 0);
+        let j = if inside { (y * cols + x) as usize } else { return None };
+        let offset = DVec2::new(dx as f64, dy as f64) * terrain.spacing();
+        (terrain.states()[j] != NodeState::Void).then(|| (offset, f64::from(terrain.heights()[j])))
+    })
+}
+
+/// By how much a node lies above all its neighbours, or below all; `None` if neither, or if it has fewer than three.
+fn apart(terrain: &Heightfield, i: usize) -> Option<f64> {
+    if terrain.states()[i] == NodeState::Void {
+        return None;
+    }
+    let h = f64::from(terrain.heights()[i]);
+    let (mut count, mut above, mut below) = (0, f64::INFINITY, f64::INFINITY);
+    for (_, other) in around(terrain, i, 1) {
+        (count, above, below) = (count + 1, above.min(h - other), below.min(other - h));
+        if above <= 0.0 && below <= 0.0 {
+            return None;
+        }
+    }
+    (count >= 3).then_some(above.max(below))
+}
+
+/// Slope between neighbours of a row or a column that all but a thousandth stay below.
+fn usual_slope(terrain: &Heightfield) -> f64 {
+    let (cols, d, h) = (terrain.cols(), terrain.spacing(), terrain.heights());
+    let solid = |i: usize| terrain.states()[i] != NodeState::Void;
+    let of = |i: usize| {
+        let east = ((i + 1) % cols != 0).then_some((i + 1, d.x));
+        let south = (i + cols < h.len()).then_some((i + cols, d.y));
+        let pairs = [east, south].into_iter().flatten().filter(move |(j, _)| solid(i) && solid(*j));
+        pairs.map(move |(j, d)| (h[j] - h[i]).abs() / d as f32)
+    };
+    let mut slopes: Vec<f32> = (0..h.len()).flat_map(of).collect();
+    if slopes.is_empty() {
+        return 0.0;
+    }
+    // Few slopes of small terrain are a thousandth: the four of a spike are not to set the measure.
+    let last = slopes.len().saturating_sub(1);
+    let k = ((last as f64 * STEEP_SHARE) as usize).min(last.saturating_sub(40));
+    f64::from(*slopes.select_nth_unstable_by(k, f32::total_cmp).1)
+}
+
+/// Root mean square distance of the nodes around a node from the plane that fits them best, the node left out.
+fn roughness(terrain: &Heightfield, i: usize) -> f64 {
+    let nodes: Vec<(DVec2, f64)> = around(terrain, i, 2).collect();
+    let n = nodes.len().max(1) as f64;
+    let middle = nodes.iter().map(|(p, _)| *p).sum::<DVec2>() / n;
+    let mean = nodes.iter().map(|(_, h)| h).sum::<f64>() / n;
+    let [mut xx, mut xy, mut yy, mut xh, mut yh] = [0.0; 5];
+    for (p, h) in &nodes {
+        let (q, dh) = (*p - middle, h - mean);
+        (xx, xy, yy) = (xx + q.x * q.x, xy + q.x * q.y, yy + q.y * q.y);
+        (xh, yh) = (xh + q.x * dh, yh + q.y * dh);
+    }
+    let det = xx * yy - xy * xy;
+    let slope = if det > 1e-9 * xx * yy {
+        DVec2::new(yy * xh - xy * yh, xx * yh - xy * xh) / det
+    } else {
+        DVec2::ZERO
+    };
+    (nodes.iter().map(|(p, h)| (h - mean - slope.dot(*p - middle)).powi(2)).sum::<f64>() / n).sqrt()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let k = values.len() / 2;
+    if values.len() % 2 == 1 { values[k] } else { 0.5 * (values[k.saturating_sub(1)] + values[k]) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIDE: usize = 60;
+
+    fn terrain(spacing: f64, height: impl Fn(f64, f64) -> f64) -> Arc<Heightfield> {
+        let heights = (0..SIDE * SIDE).map(|i| height((i % SIDE) as f64, (i / SIDE) as f64) as f32).collect();
+        let states = vec![NodeState::Measured; SIDE * SIDE];
+        let made = Heightfield::new(DVec2::ZERO, DVec2::splat(spacing), SIDE, SIDE, heights, states);
+        Arc::new(made.expect("terrain"))
+    }
+
+    fn hills(x: f64, y: f64) -> f64 {
+        let noise = ((x * 12.9898 + y * 78.233).sin() * 43_758.545).fract();
+        300.0 * (x * 0.13).sin() * (y * 0.11).cos() + 900.0 + 3.0 * noise
+    }
+
+    #[test]
+    fn spikes_of_both_signs_are_found_where_they_are_and_nothing_else() {
+        assert!(without_spikes(&terrain(30.0, hills)).1.is_empty());
+        let at = [((7.0, 9.0), 800.0), ((40.0, 33.0), -600.0), ((0.0, 0.0), 500.0), ((59.0, 20.0), -3000.0)];
+        let spiked = |x: f64, y: f64| hills(x, y) + at.iter().find(|(p, _)| *p == (x, y)).map_or(0.0, |(_, h)| *h);
+        let spiked = terrain(30.0, spiked);
+        let (smooth, spikes) = without_spikes(&spiked);
+        let places: Vec<[f64; 2]> = spikes.iter().map(|s| [s.at[0] / 30.0, -s.at[1] / 30.0]).collect();
+        assert_eq!(places, [[59.0, 20.0], [7.0, 9.0], [40.0, 33.0], [0.0, 0.0]], "the farthest out first");
+        for (i, (h, before)) in smooth.heights().iter().zip(spiked.heights()).enumerate() {
+            let (x, y) = ((i % SIDE) as f64, (i / SIDE) as f64);
+            match at.iter().any(|(p, _)| *p == (x, y)) {
+                true => assert!((f64::from(*h) - hills(x, y)).abs() < 60.0, "{x} {y}: {h}"),
+                false => assert_eq!(h, before),
+            }
+        }
+    }
+
+    #[test]
+    fn true_summits_are_no_spikes() {
+        // A tower with walls of 82 degrees, three samples wide; a sharp cone; a needle no steeper than the cliffs around.
+        let tower = |x: f64, y: f64| {
+            let wide = (x - 20.0).abs() <= 1.0 && (y - 20.0).abs() <= 1.0;
+            hills(x, y) + if wide { 220.0 } else { 0.0 }
+        };
+        let cone = |x: f64, y: f64| 40.0 * (30.0 - (x - 30.0).hypot(y - 30.0)).max(0.0);
+        let cliffs = |x: f64, y: f64| {
+            let needle = if (x, y) == (15.0, 15.0) { 250.0 } else { 0.0 };
+            hills(x, y) + needle + 240.0 * (x / 6.0).floor()
+        };
+        assert_eq!(without_spikes(&terrain(30.0, tower)).1, []);
+        assert_eq!(without_spikes(&terrain(30.0, cone)).1, []);
+        assert_eq!(without_spikes(&terrain(30.0, cliffs)).1, []);
+    }
+}
