@@ -40,13 +40,13 @@ use viewpoint::{ViewpointEnergy, adjust_viewpoint, height_slope};
 
 /// What a [`TerrainReport`] is made of.
 pub mod report {
+    pub use super::spikes::Spike;
     pub use crate::greedy::GreedyCounters;
     pub use crate::metrics::{FrameChange, TerrainMetrics};
     pub use crate::points::PointKind;
     pub use crate::solve::{
         Covered, Fallback, FeatureCost, LimitsReport, QpReport, TerrainTimes, UnresolvedReason, UnresolvedRun,
     };
-    pub use super::spikes::Spike;
 }
 
 /// The inside of the solver, for measurements, figures and tests. Not stable: any name may change or go without notice.

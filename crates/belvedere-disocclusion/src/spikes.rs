@@ -4,7 +4,6 @@
 //! median of its neighbours, and says so. A summit is none: towers have sides, and what stands alone on coarse grids is no farther above
 //! its neighbours than ground of the same model is steep elsewhere, or than its neighbours differ.
 
-use belvedere_core::DVec2;
 use belvedere_scene::{Heightfield, NodeState};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -12,10 +11,11 @@ use std::sync::Arc;
 
 /// Samples that differ less from any neighbour, as a slope, are looked at no closer.
 const SLOPE: f64 = 0.5;
-/// The slope to all neighbours is so many times that which all but a thousandth of the neighbours in the model have.
-const STEEPER: f64 = 3.0;
-const STEEP_SHARE: f64 = 0.999;
-/// The difference is so many times the root mean square distance of the surroundings from a plane.
+/// The slope to all neighbours is so many times that which all but a hundredth of the neighbours in the model have: bad models have a
+/// spike in every few hundred samples.
+const STEEPER: f64 = 5.0;
+const STEEP_SHARE: f64 = 0.99;
+/// The difference is so many times that by which half of the surroundings differ from their median.
 const ROUGHER: f64 = 6.0;
 
 /// A single sample far above or below all its neighbours.
@@ -44,7 +44,7 @@ pub(crate) fn without_spikes(terrain: &Arc<Heightfield>) -> (Arc<Heightfield>, V
     let mut found: Vec<(usize, Spike)> = Vec::new();
     for (i, apart) in near {
         if apart > least && apart > ROUGHER * roughness(terrain, i) {
-            let taken_m = median(around(terrain, i, 1).map(|(_, h)| h).collect());
+            let taken_m = median(around(terrain, i, 1).collect());
             let at = terrain.node_xy(i % cols, i / cols).to_array();
             found.push((i, Spike { at, height_m: f64::from(terrain.heights()[i]), taken_m }));
         }
@@ -64,8 +64,8 @@ pub(crate) fn without_spikes(terrain: &Arc<Heightfield>) -> (Arc<Heightfield>, V
     smooth.map_or_else(|_| (terrain.clone(), Vec::new()), |smooth| (Arc::new(smooth), spikes))
 }
 
-/// Nodes with data up to `reach` columns and rows from a node, without it: offset in scene units, and height.
-fn around(terrain: &Heightfield, i: usize, reach: isize) -> impl Iterator<Item = (DVec2, f64)> + '_ {
+/// Heights of the nodes with data up to `reach` columns and rows from a node, without it.
+fn around(terrain: &Heightfield, i: usize, reach: isize) -> impl Iterator<Item = f64> + '_ {
     let (cols, rows) = (terrain.cols() as isize, terrain.rows() as isize);
     let (col, row) = (i as isize % cols, i as isize / cols);
     let side = 2 * reach + 1;
@@ -74,8 +74,7 @@ fn around(terrain: &Heightfield, i: usize, reach: isize) -> impl Iterator<Item =
         let (x, y) = (col + dx, row + dy);
         let inside = x >= 0 && y >= 0 && x < cols && y < rows && (dx, dy) != (0, 0);
         let j = if inside { (y * cols + x) as usize } else { return None };
-        let offset = DVec2::new(dx as f64, dy as f64) * terrain.spacing();
-        (terrain.states()[j] != NodeState::Void).then(|| (offset, f64::from(terrain.heights()[j])))
+        (terrain.states()[j] != NodeState::Void).then(|| f64::from(terrain.heights()[j]))
     })
 }
 
@@ -86,7 +85,7 @@ fn apart(terrain: &Heightfield, i: usize) -> Option<f64> {
     }
     let h = f64::from(terrain.heights()[i]);
     let (mut count, mut above, mut below) = (0, f64::INFINITY, f64::INFINITY);
-    for (_, other) in around(terrain, i, 1) {
+    for other in around(terrain, i, 1) {
         (count, above, below) = (count + 1, above.min(h - other), below.min(other - h));
         if above <= 0.0 && below <= 0.0 {
             return None;
@@ -95,7 +94,7 @@ fn apart(terrain: &Heightfield, i: usize) -> Option<f64> {
     (count >= 3).then_some(above.max(below))
 }
 
-/// Slope between neighbours of a row or a column that all but a thousandth stay below.
+/// Slope between neighbours of a row or a column that all but a hundredth stay below.
 fn usual_slope(terrain: &Heightfield) -> f64 {
     let (cols, d, h) = (terrain.cols(), terrain.spacing(), terrain.heights());
     let solid = |i: usize| terrain.states()[i] != NodeState::Void;
@@ -109,31 +108,17 @@ fn usual_slope(terrain: &Heightfield) -> f64 {
     if slopes.is_empty() {
         return 0.0;
     }
-    // Few slopes of small terrain are a thousandth: the four of a spike are not to set the measure.
+    // Few slopes of small terrain are a hundredth: the eight of two spikes are not to set the measure.
     let last = slopes.len().saturating_sub(1);
-    let k = ((last as f64 * STEEP_SHARE) as usize).min(last.saturating_sub(40));
+    let k = ((last as f64 * STEEP_SHARE) as usize).min(last.saturating_sub(8));
     f64::from(*slopes.select_nth_unstable_by(k, f32::total_cmp).1)
 }
 
-/// Root mean square distance of the nodes around a node from the plane that fits them best, the node left out.
+/// By how much half of the nodes around a node, without it, differ from their median.
 fn roughness(terrain: &Heightfield, i: usize) -> f64 {
-    let nodes: Vec<(DVec2, f64)> = around(terrain, i, 2).collect();
-    let n = nodes.len().max(1) as f64;
-    let middle = nodes.iter().map(|(p, _)| *p).sum::<DVec2>() / n;
-    let mean = nodes.iter().map(|(_, h)| h).sum::<f64>() / n;
-    let [mut xx, mut xy, mut yy, mut xh, mut yh] = [0.0; 5];
-    for (p, h) in &nodes {
-        let (q, dh) = (*p - middle, h - mean);
-        (xx, xy, yy) = (xx + q.x * q.x, xy + q.x * q.y, yy + q.y * q.y);
-        (xh, yh) = (xh + q.x * dh, yh + q.y * dh);
-    }
-    let det = xx * yy - xy * xy;
-    let slope = if det > 1e-9 * xx * yy {
-        DVec2::new(yy * xh - xy * yh, xx * yh - xy * xh) / det
-    } else {
-        DVec2::ZERO
-    };
-    (nodes.iter().map(|(p, h)| (h - mean - slope.dot(*p - middle)).powi(2)).sum::<f64>() / n).sqrt()
+    let heights: Vec<f64> = around(terrain, i, 2).collect();
+    let middle = median(heights.clone());
+    median(heights.into_iter().map(|h| (h - middle).abs()).collect())
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
@@ -145,6 +130,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use belvedere_core::DVec2;
 
     const SIDE: usize = 60;
 

@@ -65,6 +65,10 @@ impl Agreement<'_> {
         let mut told = ground.to_vec();
         let mut asked = problem.candidates.to_vec();
         let mut known: BTreeSet<u32> = asked.iter().map(|c| c.id).collect();
+        // Where time is up the report says what is hidden.
+        if self.progress.should_end() {
+            return Ok(QpResult { stopped: true, ..result });
+        }
         let mut found = self.hidden(problem, &result)?;
         let (mut best, mut fewest) = (result, found.len());
         for _ in 1..ROUNDS {
@@ -86,6 +90,10 @@ impl Agreement<'_> {
             }
             let next = qp.solve_with(&QpProblem { candidates: &asked, ..*problem }, self.progress)?;
             if next.stopped || fallback::stuck(&next) > fallback::stuck(&best) {
+                break;
+            }
+            if self.progress.should_end() {
+                best.stopped = true;
                 break;
             }
             found = self.hidden(problem, &next)?;

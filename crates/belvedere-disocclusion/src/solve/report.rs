@@ -18,6 +18,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Share of what is in view that must be seen for a promise to be kept: a hair's breadth is left to rounding.
 const AGREES: f64 = 0.9999;
+/// Dense points that are judged at most, about, in frames of films and where time was up.
+const MOST_SAMPLED: usize = 1000;
 
 /// Everything about a solved displacement. Lengths in scene units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -38,6 +40,9 @@ pub struct TerrainReport {
     /// What is seen and how far the ground moved, by a judge that knows nothing of the solver; dense points lie every fifth of a cell.
     #[serde(flatten)]
     pub metrics: TerrainMetrics,
+    /// Of so many dense points one was judged: 1, but more in the frames of films and where time was up, whose judgement is not to take
+    /// longer than their solution. There a guarantee needs all reference points and all judged ones to be seen.
+    pub judged_every: usize,
     /// [`TerrainMetrics::visible`] before the ground gave way.
     pub visible_before: f64,
     /// [`TerrainMetrics::visible_dense`] before.
@@ -226,7 +231,10 @@ pub(super) fn report(
 ) -> Result<TerrainReport, DisocclusionError> {
     let (field, prepared, in_view, guard) = (c.field, c.prepared, c.in_view, c.settings.guard);
     let points: Vec<ReferencePoint> = in_view.points.iter().map(|&i| prepared.points[i]).collect();
-    let dense = prepared.dense_in_view(in_view);
+    let all = prepared.dense_in_view(in_view);
+    let sampled = !c.traced || done.stopped;
+    let every = if sampled { all.len().div_ceil(MOST_SAMPLED).max(1) } else { 1 };
+    let dense: Vec<ReferencePoint> = all.into_iter().step_by(every).collect();
     let of = Deformation {
         field,
         delta: c.delta,
@@ -243,7 +251,7 @@ pub(super) fn report(
     let still = still(field)?;
     let undisplaced = Judge::faceted(field, &still, &*in_view.sight).prepared(dense.len());
     let before = |points: &[ReferencePoint]| share_seen(points, &undisplaced.judge(points, guard));
-    let (unresolved, hidden) = (unresolved(c, done, &judgement), hidden(c, done, &judgement, &dense));
+    let (unresolved, hidden) = (unresolved(c, done, &judgement), hidden(c, done, &judgement, (&dense, every)));
     let (guards, qp_met) = (c.settings.mode != SolverMode::Paper, done.qp_unresolved.is_empty());
     let stated_m = stated_spacing(field.cols(), field.rows(), field.spacing());
     let w = c.settings.smoothness(stated_m);
@@ -255,6 +263,7 @@ pub(super) fn report(
         points: points.len(),
         asked: in_view.candidates.len(),
         metrics,
+        judged_every: every,
         visible_before: before(&points),
         visible_dense_before: before(&dense),
         greedy: done.greedy,
@@ -268,6 +277,7 @@ pub(super) fn report(
             && qp_met
             && !done.stopped
             && metrics.visible_dense >= AGREES
+            && (every == 1 || judgement.points.is_empty() && judgement.dense.is_empty())
             && (done.limited.is_none() || hidden.is_empty()),
         out_of_time: done.stopped,
         unresolved,
@@ -312,8 +322,13 @@ fn costliest(prepared: &Prepared, rows: &[SolvedRow]) -> Vec<FeatureCost> {
 }
 
 /// Dense points that are hidden although no place that is named stands for them.
-fn hidden(c: &Context<'_>, done: &Outcome, judgement: &Judged, dense: &[ReferencePoint]) -> Vec<UnresolvedRun> {
-    let mut runs = Runs::new(c.field, CHECK_CELLS);
+fn hidden(
+    c: &Context<'_>,
+    done: &Outcome,
+    judgement: &Judged,
+    (dense, every): (&[ReferencePoint], usize),
+) -> Vec<UnresolvedRun> {
+    let mut runs = Runs::new(c.field, CHECK_CELLS * every as f64);
     // At a price the report names what stays covered.
     if c.settings.slack_price.is_some() {
         return runs.out;

@@ -39,9 +39,8 @@ struct Moved {
 fn distance_px(straight: &View, point: DVec3, pixel: DVec2) -> Option<f64> {
     let image = straight.project(point).ok()?;
     let size = DVec2::from(straight.pinhole().image.map(f64::from));
-    let near = image.depth >= straight.pinhole().near
-        && image.pixel.cmpge(-size).all()
-        && image.pixel.cmple(2.0 * size).all();
+    let near =
+        image.depth >= straight.pinhole().near && image.pixel.cmpge(-size).all() && image.pixel.cmple(2.0 * size).all();
     near.then(|| image.pixel.distance(pixel))
 }
 
