@@ -11,6 +11,8 @@ use std::sync::Arc;
 
 /// Samples that differ less from any neighbour, as a slope, are looked at no closer.
 const SLOPE: f64 = 0.5;
+/// Neighbours that may belong to a spike, too: resampling spreads a sample over up to four nodes.
+const SHARED: usize = 3;
 /// The slope to all neighbours is so many times that which all but a hundredth of the neighbours in the model have: bad models have a
 /// spike in every few hundred samples.
 const STEEPER: f64 = 5.0;
@@ -44,7 +46,11 @@ pub(crate) fn without_spikes(terrain: &Arc<Heightfield>) -> (Arc<Heightfield>, V
     let mut found: Vec<(usize, Spike)> = Vec::new();
     for (i, apart) in near {
         if apart > least && apart > ROUGHER * roughness(terrain, i) {
-            let taken_m = median(around(terrain, i, 1).collect());
+            // Nodes of terrain that is two or three wide have no others.
+            if ring(terrain, i).next().is_none() {
+                continue;
+            }
+            let taken_m = median(ring(terrain, i).collect());
             let at = terrain.node_xy(i % cols, i / cols).to_array();
             found.push((i, Spike { at, height_m: f64::from(terrain.heights()[i]), taken_m }));
         }
@@ -66,6 +72,11 @@ pub(crate) fn without_spikes(terrain: &Arc<Heightfield>) -> (Arc<Heightfield>, V
 
 /// Heights of the nodes with data up to `reach` columns and rows from a node, without it.
 fn around(terrain: &Heightfield, i: usize, reach: isize) -> impl Iterator<Item = f64> + '_ {
+    offsets(terrain, i, reach).map(|(.., h)| h)
+}
+
+/// The same with how many columns and rows they are away.
+fn offsets(terrain: &Heightfield, i: usize, reach: isize) -> impl Iterator<Item = (isize, isize, f64)> + '_ {
     let (cols, rows) = (terrain.cols() as isize, terrain.rows() as isize);
     let (col, row) = (i as isize % cols, i as isize / cols);
     let side = 2 * reach + 1;
@@ -74,24 +85,37 @@ fn around(terrain: &Heightfield, i: usize, reach: isize) -> impl Iterator<Item =
         let (x, y) = (col + dx, row + dy);
         let inside = x >= 0 && y >= 0 && x < cols && y < rows && (dx, dy) != (0, 0);
         let j = if inside { (y * cols + x) as usize } else { return None };
-        (terrain.states()[j] != NodeState::Void).then(|| f64::from(terrain.heights()[j]))
+        (terrain.states()[j] != NodeState::Void).then(|| (dx, dy, f64::from(terrain.heights()[j])))
     })
 }
 
-/// By how much a node lies above all its neighbours, or below all; `None` if neither, or if it has fewer than three.
+/// Heights of the nodes with data two columns or rows from a node.
+fn ring(terrain: &Heightfield, i: usize) -> impl Iterator<Item = f64> + '_ {
+    offsets(terrain, i, 2).filter(|(dx, dy, _)| dx.abs() == 2 || dy.abs() == 2).map(|(.., h)| h)
+}
+
+/// By how much a node lies above what is around it, or below: above all nodes two columns or rows away, and all but three of its
+/// neighbours, which may belong to the same sample where a file was resampled. `None` if neither, or beside too few nodes.
 fn apart(terrain: &Heightfield, i: usize) -> Option<f64> {
     if terrain.states()[i] == NodeState::Void {
         return None;
     }
     let h = f64::from(terrain.heights()[i]);
-    let (mut count, mut above, mut below) = (0, f64::INFINITY, f64::INFINITY);
+    let (mut count, mut near) = (0, [0.0; 8]);
     for other in around(terrain, i, 1) {
-        (count, above, below) = (count + 1, above.min(h - other), below.min(other - h));
-        if above <= 0.0 && below <= 0.0 {
-            return None;
-        }
+        near[count] = h - other;
+        count += 1;
     }
-    (count >= 3).then_some(above.max(below))
+    let near = &mut near[..count];
+    near.sort_by(f64::total_cmp);
+    let spare = SHARED.min(count.saturating_sub(1));
+    let sides = [near.get(spare).copied()?, near.get(count - 1 - spare).map(|d| -d)?];
+    if count < 3 || sides.iter().all(|d| *d <= 0.0) {
+        return None;
+    }
+    let farther = ring(terrain, i);
+    let sides = farther.fold(sides, |[up, down], other| [up.min(h - other), down.min(other - h)]);
+    Some(sides[0].max(sides[1])).filter(|apart| *apart > 0.0)
 }
 
 /// Slope between neighbours of a row or a column that all but a hundredth stay below.
@@ -158,7 +182,7 @@ mod tests {
         for (i, (h, before)) in smooth.heights().iter().zip(spiked.heights()).enumerate() {
             let (x, y) = ((i % SIDE) as f64, (i / SIDE) as f64);
             match at.iter().any(|(p, _)| *p == (x, y)) {
-                true => assert!((f64::from(*h) - hills(x, y)).abs() < 60.0, "{x} {y}: {h}"),
+                true => assert!((f64::from(*h) - hills(x, y)).abs() < 100.0, "{x} {y}: {h}"),
                 false => assert_eq!(h, before),
             }
         }

@@ -40,7 +40,8 @@ const VIEW: [&str; 4] = ["--eye", "8.022,46.002,1500", "--look", "8.024,46.03"];
 
 fn report(place: &Place, more: &[&str]) -> serde_json::Value {
     let args = ["disocclude", "dem.asc", "way.geojson", "-o", "out.tif", "--report", "r.json", "--overwrite"];
-    place.ok(&[&args[..], &VIEW, more].concat());
+    // These hills are so rough that limits would keep some of the way hidden.
+    place.ok(&[&args[..], &VIEW, &["--no-limits"], more].concat());
     serde_json::from_slice(&super::read(&place.path("r.json"))).expect("JSON")
 }
 
@@ -276,7 +277,7 @@ fn what_runs_out_of_time_says_so_and_promises_nothing() {
     assert!(short["out_of_time"] == true && short["guaranteed"] == false, "{short}");
     assert!(number(&short["visible_dense"]) < 0.995, "{short}");
     assert!(short["warnings"].to_string().contains("out of time"), "{}", short["warnings"]);
-    let enough = report(&place, &["--time-limit", "600"]);
+    let enough = report(&place, &["--time-limit", "600", "--grid", "scene"]);
     assert!(enough["out_of_time"] == false && enough["guaranteed"] == true, "{enough}");
 }
 
@@ -288,7 +289,14 @@ fn what_resampling_hides_again_is_said_and_another_grid_keeps_it() {
     assert_eq!(input["grid"], "input");
     let share = number(&input["visible_written"]);
     assert!((0.3..=1.0).contains(&share), "{share}");
-    assert_eq!(share < 0.995, input["warnings"].to_string().contains("written on the grid of the input"), "{input}");
+    let solved = number(&input["visible_dense"]);
+    let said = input["warnings"].to_string().contains("written on the grid of the input");
+    assert_eq!(solved - share > 1e-4, said, "{input}");
+    assert_eq!(input["guaranteed"], share >= 0.9999, "no promise that the file does not keep: {input}");
+    // The figure that is printed is that of the file.
+    let args = ["disocclude", "dem.asc", "way.geojson", "-o", "out.tif", "--overwrite", "--no-limits"];
+    let printed = place.ok(&[&args[..], &VIEW].concat());
+    assert!(printed.contains(&format!("{:.1} % after", 100.0 * share.min(solved))), "{printed}: {share}");
     let scene = report(&place, &["--grid", "scene"]);
     assert!(scene["grid"] == "scene" && scene["visible_written"].is_null(), "{scene}");
     assert_eq!(scene["guaranteed"], true);
@@ -470,4 +478,64 @@ fn areas_and_points_are_written_on_the_ground_that_makes_way_for_them() {
         let k = ring.iter().position(|v| v == vertex).expect("there");
         assert!(lowered(vertex, &tags["true_coordinates"][0][k], *corner) > -0.5, "{vertex}");
     }
+}
+
+#[test]
+fn the_eye_moves_where_it_may_and_that_is_said() {
+    let place = place(|r, c| Some(hills(r, c)));
+    let still = report(&place, &["--set", "adjust_viewpoint=1"]);
+    assert!(still["adjusted_eye"].is_null() && !still["warnings"].to_string().contains("moved the eye"), "{still}");
+    let moved = report(&place, &["--set", "adjust_viewpoint=0.2"]);
+    assert!(moved["adjusted_eye"][2].is_f64() && moved["warnings"].to_string().contains("moved the eye by"), "{moved}");
+    assert!(number(&moved["rms_m"]) < number(&still["rms_m"]), "less ground has to move: {moved} {still}");
+    let wrong = ["disocclude", "dem.asc", "way.geojson", "-o", "no.tif", "--set", "adjust_viewpoint=2"];
+    let line = place.fails(&[&wrong[..], &VIEW].concat());
+    assert!(line.contains("adjust_viewpoint is 2"), "{line}");
+}
+
+#[test]
+fn holes_are_filled_in_what_is_written_where_that_is_asked_for() {
+    let place = place(|r, c| Some(hills(r, c)).filter(|_| !((30..32).contains(&r) && (8..10).contains(&c))));
+    let voids = |more: &[&str]| {
+        report(&place, more);
+        number(&place.json(&["info", "out.tif", "--json"])["files"][0]["void_share"])
+    };
+    let (open, filled) = (voids(&[]), voids(&["--fill-voids"]));
+    assert!(open > filled, "{open} {filled}");
+}
+
+#[test]
+fn a_spike_is_said_and_not_dug_round() {
+    let spiked = place(|r, c| Some(hills(r, c) + if (r, c) == (38, 20) { 2500.0 } else { 0.0 }));
+    let [spiked, plain] = [spiked, place(|r, c| Some(hills(r, c)))].map(|place| {
+        let solved = report(&place, &["--grid", "scene"]);
+        let reveal =
+            ["reveal", "dem.asc", "way.geojson", "--technique", "terrain", "-o", "p.png", "--report", "v.json"];
+        place.ok(&[&reveal[..], &VIEW, &["--size", "64x36"]].concat());
+        let revealed: serde_json::Value = serde_json::from_slice(&super::read(&place.path("v.json"))).expect("JSON");
+        (solved, revealed["scene_warnings"].to_string())
+    });
+    assert!(plain.0["spikes"].is_null() && !plain.1.contains("from all neighbours"), "{}", plain.0);
+    // The file's sample is spread over up to four nodes of the grid in metres.
+    assert!(spiked.0["spikes"].as_array().is_some_and(|s| (1..=4).contains(&s.len())), "{}", spiked.0);
+    let ground = |r: &serde_json::Value| number(&r["max_m"]);
+    assert!(ground(&spiked.0) < 0.3 * 2500.0 + ground(&plain.0), "{} {}", spiked.0, plain.0);
+    assert!(spiked.0["warnings"].to_string().contains("far from all neighbours"), "{}", spiked.0);
+    // What the solver has to say is passed on.
+    assert!(spiked.1.contains("far from all neighbours"), "{}", spiked.1);
+}
+
+#[test]
+fn straight_films_solve_nothing() {
+    let place = place(|r, c| Some(hills(r, c)));
+    let animation = "[animation]\nalong = 'way'\nframes = 2\n";
+    place.write("s.toml", &(scene("") + animation));
+    let solved = |name: &str, more: &[&str]| {
+        place.ok(&[&["animate", "s.toml", "-o", name][..], more].concat());
+        let record = super::read(&place.path(&format!("{name}/animation.json")));
+        let record: serde_json::Value = serde_json::from_slice(&record).expect("JSON");
+        !record["frames"][1]["terrain"].is_null()
+    };
+    assert!(solved("bent", &[]));
+    assert!(!solved("straight", &["--straight"]));
 }
