@@ -2,9 +2,10 @@
 
 use crate::report::{Context, done, print};
 use crate::verbs::Goal;
+use belvedere::core::presets::PresetDocument;
 use belvedere::core::presets::edit::{PresetChange, PresetOperation};
 use belvedere::io::png;
-use belvedere::verbs::preset::{self, Shape};
+use belvedere::verbs::preset::{self, Shape, Verdict};
 use belvedere::{Needs, Session, output};
 use clap::{Args, Subcommand};
 use serde_json::json;
@@ -55,7 +56,7 @@ pub(crate) enum PresetWork {
         #[arg(short, long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
-    /// Whether a document is good: facing, folds, sections
+    /// A verdict: valid, usable at which viewing angles, or not; facing, sections
     Check {
         /// Built-in name or file
         preset: String,
@@ -150,13 +151,16 @@ fn line(shape: &Shape) -> String {
 fn check(source: &str, context: &Context) -> anyhow::Result<Goal> {
     let found = preset::check(&preset::load(source)?);
     if context.common.json {
-        context.print(&json!({ "verb": "preset", "presets": found.presets, "warnings": found.warnings }))?;
+        let mut answer = serde_json::to_value(&found)?;
+        answer["verb"] = "preset".into();
+        context.print(&answer)?;
     } else {
-        let lines: Vec<String> = found.presets.iter().map(line).collect();
-        print(&format!("{}\n", lines.join("\n")))?;
+        let lines = found.presets.iter().map(line).chain(found.still_words()).chain([found.words()]);
+        print(&format!("{}\n", lines.collect::<Vec<_>>().join("\n")))?;
         context.warn(&found.warnings);
     }
-    Ok(if found.warnings.is_empty() { Goal::Reached } else { Goal::Missed })
+    let good = found.verdict == Verdict::Valid && found.warnings.is_empty();
+    Ok(if good { Goal::Reached } else { Goal::Missed })
 }
 
 fn set(
@@ -176,9 +180,16 @@ fn set(
     anyhow::ensure!(!operations.is_empty(), "nothing to do; give operations such as low.phi=25, or --capture");
     let source = file.to_string_lossy();
     anyhow::ensure!(file.exists(), "{source}: there is no such file; preset new -o {source} --from NAME makes one");
-    let document = preset::set(&preset::load(&source)?, &operations)?;
+    let (document, clamped) = preset::set(&load_file(&source)?, &operations)?;
     let to = out.clone().unwrap_or_else(|| file.to_owned());
     // What is changed in place is meant to be replaced.
     output::write_text(&to, &preset::text(&document, &to)?, out.is_none() || context.common.overwrite)?;
-    written(&[to], &preset::check(&document).warnings, context)
+    let clamped = clamped.iter().map(ToString::to_string);
+    written(&[to], &clamped.chain(preset::check(&document).warnings).collect::<Vec<_>>(), context)
+}
+
+/// The document of a file, which may be called like a built-in one.
+fn load_file(source: &str) -> anyhow::Result<PresetDocument> {
+    let here = Path::new(".").join(source);
+    Ok(preset::load(if Path::new(source).is_absolute() { source } else { here.to_str().unwrap_or(source) })?)
 }

@@ -81,7 +81,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     let passes = Pass::all(job.view);
     let marks = Marks::new(job, &passes, &screen, tolerance_px, &buffers.depth);
     job.progress.tick("lines", 0.0)?;
-    finish(job, &marks, &screen, &mut buffers);
+    finish(job, &marks, &screen, None, &mut buffers);
     job.progress.tick("lines", 1.0)?;
     let triangles_in = job.scene.layers.iter().map(|l| match &l.kind {
         LayerKind::Terrain(t) => 2 * ((t.heightfield.cols() - 1) * (t.heightfield.rows() - 1)) as u64,

@@ -5,7 +5,7 @@ use crate::marks::Marks;
 use crate::raster::band::BAND;
 use crate::shade::color::{self, Packed};
 use crate::shade::ground_bytes;
-use crate::stylise;
+use crate::stylise::{self, Relief};
 use belvedere_scene::{Frame, LayerKind, RenderError, RenderJob};
 use rayon::prelude::*;
 
@@ -45,32 +45,45 @@ pub(crate) struct Buffers {
 impl Buffers {
     pub(crate) fn new(job: &RenderJob<'_>) -> Self {
         let open = Self::reuse(job, Vec::new(), Frame::default());
-        let color = vec![Packed::default(); open.out.len()];
-        Self { open: true, color, ..open }
+        let n = open.out.len();
+        // Where only centres are known, edges between faces are found by their places.
+        let world = (job.options.aux.world || stylise::is_on(job)).then(|| vec![[f64::NAN; 3]; n]);
+        Self { open: true, color: vec![Packed::default(); n], world, ..open }
     }
 
     /// Buffers of the size of the picture in the memory of older ones; every pixel is yet to be written.
     pub(crate) fn reuse(job: &RenderJob<'_>, mut color: Vec<Packed>, old: Frame) -> Self {
         let n = job.view.pinhole().image.map(|s| s as usize).iter().product();
         let Frame { color: mut out, mut depth, mut id, .. } = old;
-        let styled = stylise::is_on(job);
-        let open = Marks::are_in(job) || styled;
+        let open = Marks::are_in(job) || stylise::is_on(job);
         if open {
             color.resize(n, Packed::default());
         }
         out.resize(n, [0; 3]);
         depth.resize(n, f32::INFINITY);
         id.resize(n, 0);
-        let world = (job.options.aux.world || styled).then(|| vec![[f64::NAN; 3]; n]);
+        let world = job.options.aux.world.then(|| vec![[f64::NAN; 3]; n]);
         Self { open, color, depth, id, world, out }
     }
 }
 
 /// Stylisation, lines and points over the surfaces, and the stored colours.
-pub(crate) fn finish(job: &RenderJob<'_>, marks: &Marks, screen: &Screen, buffers: &mut Buffers) {
+/// * `relief`: of the samples, if known.
+pub(crate) fn finish(
+    job: &RenderJob<'_>,
+    marks: &Marks,
+    screen: &Screen,
+    relief: Option<Relief>,
+    buffers: &mut Buffers,
+) {
     if stylise::is_on(job) {
-        stylise::apply(job, screen.width as usize, buffers);
+        stylise::apply(job, screen.width as usize, relief, buffers);
     }
+    draw_marks(marks, screen, buffers);
+}
+
+/// Lines and points over the surfaces, and the stored colours.
+pub(crate) fn draw_marks(marks: &Marks, screen: &Screen, buffers: &mut Buffers) {
     let chunk = BAND * screen.width as usize;
     let Buffers { depth, color, id, out, .. } = buffers;
     let encoding = color::encoding();
@@ -94,7 +107,7 @@ fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
     let samples = job.options.samples;
     let pixels = u64::from(width) * u64::from(height);
     let per_pixel =
-        3 + 4 + 4 + 6 + if job.options.aux.world { 24 } else { 0 } + if stylise::is_on(job) { 64 } else { 0 };
+        3 + 4 + 4 + 6 + if job.options.aux.world { 24 } else { 0 } + if stylise::is_on(job) { 64 + Relief::bytes(u64::from(samples)) } else { 0 };
     let threads = if job.options.threads == 0 { rayon::current_num_threads() } else { job.options.threads } as u64;
     let bands = threads * (BAND as u64) * u64::from(width) * (u64::from(samples) + 1) * 8;
     // What lies beside the picture, where planes cross, may be drawn by several records.

@@ -1,34 +1,65 @@
 //! Styling sections composed of whole layers: every representation drawn alone wherever it has a weight, and the pictures put together by
-//! the weights. The published way, kept to compare with; thresholds ([`crate::sections`]) need no memory per representation.
+//! the weights. The published way, kept to compare with, and that of pictures with edges; thresholds ([`crate::sections`]) need no memory
+//! per representation, but their depths are those of single samples.
 //!
 //! Source: Pasewaldt et al. 2011, section 4.4; dividing by the sum of the weights, where layers see different places, is ours.
 
+use crate::frame::{Buffers, draw_marks};
+use crate::geometry::pass::Pass;
+use crate::geometry::screen::Screen;
+use crate::marks::Marks;
 use crate::sections::Sections;
-use crate::shade::color::{Rgb, encode, linear};
+use crate::shade::color::{Packed, Rgb, encode, linear};
+use crate::stylise;
 use belvedere_core::DVec3;
-use belvedere_scene::{Compositing, Frame, FrameStats, RenderError, RenderJob, RenderOptions};
+use belvedere_scene::{Compositing, Frame, FrameStats, Overlay, RenderError, RenderJob, RenderOptions};
 use rayon::prelude::*;
 
 /// Weights below this count for nothing.
 const LEAST: f64 = 1e-9;
 
-/// Draws a job by `draw`, representation by representation where that is asked for and there are several.
+/// Draws a job by `draw`, representation by representation where there are several and that is asked for, or edges are drawn: those
+/// of a representation end where it does, not where single samples of others begin.
+///
+/// Lines, points and names lie over the whole picture, but in the published way.
 pub(crate) fn draw(
     job: &RenderJob<'_>,
     draw: impl Fn(&RenderJob<'_>) -> Result<Frame, RenderError>,
 ) -> Result<Frame, RenderError> {
     let options = job.options;
-    let sections = Sections::new(job).filter(|_| options.compositing == Compositing::Layers);
+    let published = options.compositing == Compositing::Layers;
+    let sections = if published || stylise::is_on(job) { Sections::new(job) } else { None };
     let Some(sections) = sections.filter(|s| s.representations() > 1 && options.representation.is_none()) else {
         return draw(job);
     };
     let alone = |number: usize| {
-        let mut options = RenderOptions { representation: Some(number), exposures: 1, ..options.clone() };
+        let marks = options.marks && published;
+        let mut options = RenderOptions { representation: Some(number), exposures: 1, marks, ..options.clone() };
         options.aux.world = true;
+        if !marks {
+            options.overlay = Overlay::default();
+        }
         draw(&RenderJob { options: &options, ..*job })
     };
     let layers = (0..sections.representations()).map(alone).collect::<Result<Vec<_>, _>>()?;
-    Ok(composite(&layers, &sections, options.aux.world))
+    let frame = composite(&layers, &sections, options.aux.world);
+    Ok(if published { frame } else { with_marks(job, frame) })
+}
+
+/// A picture with the lines, points and names of its job over it.
+fn with_marks(job: &RenderJob<'_>, mut frame: Frame) -> Frame {
+    if !Marks::are_in(job) {
+        return frame;
+    }
+    let (passes, screen) = (Pass::all(job.view), Screen::new(job.view.pinhole()));
+    let marks = Marks::new(job, &passes, &screen, job.options.tolerance_px.max(0.01), &frame.depth);
+    let color = frame.color.iter().map(|c| Packed::new(linear(*c))).collect();
+    let (depth, id, out) = (frame.depth, frame.id, frame.color);
+    let mut buffers = Buffers { open: true, color, depth, id, world: frame.world, out };
+    draw_marks(&marks, &screen, &mut buffers);
+    let Buffers { depth, id, world, out, .. } = buffers;
+    (frame.depth, frame.id, frame.world, frame.color) = (depth, id, world, out);
+    frame
 }
 
 fn composite(layers: &[Frame], sections: &Sections<'_>, keep_world: bool) -> Frame {

@@ -11,10 +11,12 @@ use crate::layers;
 use crate::marks::Marks;
 use crate::raster::band::{BAND, Band, sample_offsets};
 use crate::raster::pixel_center::PixelCenters;
+use crate::raster::relief::resolve_relief;
 use crate::raster::resolve::{Colors, Rows, resolve};
 use crate::sections::{Exposure, Sections};
 use crate::shade::color::Packed;
 use crate::shade::{LightCache, Shader};
+use crate::stylise::Relief;
 use crate::volume::{self, Way};
 use belvedere_scene::Instant;
 use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
@@ -107,13 +109,14 @@ impl CpuRenderer {
         let mut buffers = Buffers::reuse(job, std::mem::take(color), frame);
         let centers = job.options.aux.exact.then(|| PixelCenters::new(job.scene, &passes, bodies.as_ref(), &screen));
         let surfaces = Surfaces { job, screen: &screen, blocks, shader: &shader, centers: centers.as_ref() };
-        surfaces.draw(sections.as_ref(), bands, &mut buffers)?;
+        let mut relief = Relief::room(job, sample_offsets(job.options.samples).len().max(2) - 1);
+        surfaces.draw(sections.as_ref(), bands, &mut buffers, relief.as_mut())?;
         let samples = volume::compose(job, Way::Fast, &mut buffers)?;
         if buffers.open {
             let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
             let marks = Marks::new(job, &passes, &screen, tolerance_px, &buffers.depth);
             job.progress.tick("lines", 0.0)?;
-            finish(job, &marks, &screen, &mut buffers);
+            finish(job, &marks, &screen, relief, &mut buffers);
             job.progress.tick("lines", 1.0)?;
         }
         let counts = blocks.counts();
@@ -155,6 +158,7 @@ impl Surfaces<'_> {
         sections: Option<&Sections<'_>>,
         spare: &Mutex<Vec<Band>>,
         buffers: &mut Buffers,
+        relief: Option<&mut Relief>,
     ) -> Result<(), RenderError> {
         let Self { job, screen, blocks, shader, centers } = *self;
         let chunk = BAND * screen.width as usize;
@@ -166,6 +170,10 @@ impl Surfaces<'_> {
             Some(w) => w.chunks_mut(chunk).map(Some).collect(),
             None => (0..bands).map(|_| None).collect(),
         };
+        let mut relief = match relief {
+            Some(relief) => relief.bands(chunk),
+            None => (0..bands).map(|_| None).collect(),
+        };
         let mut colors: Vec<Colors<'_>> = if buffers.open {
             buffers.color.chunks_mut(chunk).map(Colors::Open).collect()
         } else {
@@ -173,8 +181,8 @@ impl Surfaces<'_> {
         };
         let depth = buffers.depth.par_chunks_mut(chunk);
         let id = buffers.id.par_chunks_mut(chunk);
-        colors.par_iter_mut().zip(depth).zip(id).zip(worlds.par_iter_mut()).enumerate().try_for_each(
-            |(i, (((color, depth), id), world))| {
+        colors.par_iter_mut().zip(depth).zip(id).zip(worlds.par_iter_mut()).zip(relief.par_iter_mut()).enumerate().try_for_each(
+            |(i, ((((color, depth), id), world), relief))| {
                 let y0 = (i * BAND) as i32;
                 let mut band = lock(spare).pop().unwrap_or_default();
                 band.clear(y0, (y0 + BAND as i32).min(screen.height), screen.width, &offsets);
@@ -182,6 +190,9 @@ impl Surfaces<'_> {
                 if let Some(sections) = sections.filter(|_| blocks.are_thin_in(&band)) {
                     band.expose(exposure.offsets(&offsets));
                     blocks.draw_thin(&mut band, screen.ortho, sections, &exposure);
+                }
+                if let Some(relief) = relief {
+                    resolve_relief(&band, shader, relief);
                 }
                 resolve(&band, shader, screen, &mut Rows { color, depth, id, world: world.as_deref_mut(), centers });
                 lock(spare).push(band);

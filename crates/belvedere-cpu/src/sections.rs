@@ -177,13 +177,6 @@ impl<'a> Sections<'a> {
         if of > 0.0 { (sum(held) / of).clamp(0.0, 1.0) } else { 0.0 }
     }
 
-    /// How far one representation is alone at a place: 1 where it is, 0 where others have a fiftieth of the weight.
-    pub(crate) fn purity(&self, p: DVec3) -> f64 {
-        let t = self.parameter(p);
-        let most = (0..self.representations()).map(|number| self.weight(number, t)).fold(0.0, f64::max);
-        (1.0 - 50.0 * (1.0 - most)).clamp(0.0, 1.0)
-    }
-
     /// Whether a layer throws shadows on a place of another: on what is shown together with it.
     pub(crate) fn throws(&self, layer: usize, onto: usize, p: DVec3) -> bool {
         let (thrown, seen) = (self.shown_by[layer], self.shown_by[onto]);

@@ -3,10 +3,9 @@
 //! Source: edges in reciprocal depth, which is affine on planes, are ours; depth unsharp masking after Luft, Colditz and Deussen 2006.
 
 use crate::frame::Buffers;
-use crate::sections::Sections;
 use crate::shade::color::{Packed, smoothstep};
 use belvedere_scene::{LayerKind, RenderJob, Stylisation};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use rayon::prelude::*;
 
 /// Share of the reciprocal depth by which it bends at an edge: from nothing to all of it.
@@ -25,15 +24,122 @@ pub(crate) fn is_on(job: &RenderJob<'_>) -> bool {
     job.options.stylisation != Stylisation::default()
 }
 
+/// What edges of a picture are found from: depths and faces of the samples of every pixel, so that edges are as smooth as outlines.
+#[derive(Debug, Default)]
+pub(crate) struct Relief {
+    /// Samples per pixel in different places.
+    places: usize,
+    /// Those of a pixel one after the other, row by row: nearness as the rasteriser has it, 1 / depth, of parallel projections -depth.
+    near: Vec<f32>,
+    face: Vec<Face>,
+}
+
+/// What a sample is of, and the unit normal of its face in 127ths where edges between faces are drawn, else 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Face {
+    normal: [i8; 3],
+    solid: bool,
+}
+
+/// The sky.
+pub(crate) const SKY_NEAR: f32 = f32::NAN;
+
+impl Face {
+    /// A face of a solid, its normal towards the eye.
+    pub(crate) fn solid(normal: DVec3) -> Self {
+        let n = normal.normalize_or_zero();
+        Self { normal: n.to_array().map(|v| (127.0 * v).round() as i8), solid: true }
+    }
+
+    /// 1 - n n' of two faces; 0 unless both are known.
+    fn turn(self, other: Self) -> f32 {
+        let known = |f: Self| f.normal != [0; 3];
+        if !(known(self) && known(other)) {
+            return 0.0;
+        }
+        let dot = |a: Self, b: Self| (0..3).map(|k| i32::from(a.normal[k]) * i32::from(b.normal[k])).sum::<i32>() as f32;
+        1.0 - dot(self, other) / (dot(self, self) * dot(other, other)).sqrt()
+    }
+}
+
+/// Part of a [`Relief`] that a band fills.
+pub(crate) struct ReliefRows<'r> {
+    pub(crate) places: usize,
+    pub(crate) near: &'r mut [f32],
+    pub(crate) face: &'r mut [Face],
+}
+
+impl Relief {
+    /// Room for a picture whose edges are to be drawn; none where there are none.
+    /// * `places`: samples per pixel in different places.
+    pub(crate) fn room(job: &RenderJob<'_>, places: usize) -> Option<Self> {
+        let n = job.view.pinhole().image.map(|s| s as usize).iter().product::<usize>() * places;
+        let wanted = job.options.stylisation.edges > 0.0;
+        wanted.then(|| Self { places, near: vec![SKY_NEAR; n], face: vec![Face::default(); n] })
+    }
+
+    /// Bytes of a pixel.
+    pub(crate) fn bytes(places: u64) -> u64 {
+        places * (size_of::<f32>() + size_of::<Face>()) as u64
+    }
+
+    /// Bands of so many pixels.
+    pub(crate) fn bands(&mut self, pixels: usize) -> Vec<Option<ReliefRows<'_>>> {
+        let (places, n) = (self.places, pixels * self.places);
+        let rows = self.near.chunks_mut(n).zip(self.face.chunks_mut(n));
+        rows.map(|(near, face)| Some(ReliefRows { places, near, face })).collect()
+    }
+
+    /// From what the centres of pixels see; faces by the true places of neighbours.
+    fn of_centres(buffers: &Buffers, width: usize, ortho: bool, kinds: &[Kind]) -> Self {
+        let nearness = nearness(&buffers.depth, ortho);
+        let world = buffers.world.as_deref().unwrap_or_default();
+        let solid = |i: usize| kind_of(kinds, buffers.id[i]) == Some(Kind::Solid);
+        let height = nearness.len() / width;
+        let face = (0..nearness.len()).into_par_iter().map(|i| {
+            if world.is_empty() || !solid(i) {
+                return Face::default();
+            }
+            let (x, y) = (i % width, i / width);
+            let place = |i: usize| DVec3::from_array(world[i]);
+            // Of both neighbours the one whose depth differs less lies on the same face.
+            let step = |before: Option<usize>, after: Option<usize>| {
+                let off = |j: Option<usize>| {
+                    j.filter(|j| solid(*j)).map_or(f32::INFINITY, |j| (nearness[j] - nearness[i]).abs())
+                };
+                let (a, b) = (off(before), off(after));
+                if a < b {
+                    before.map(|j| place(i) - place(j))
+                } else {
+                    after.filter(|_| b.is_finite()).map(|j| place(j) - place(i))
+                }
+            };
+            let across = step((x > 0).then(|| i - 1), (x + 1 < width).then(|| i + 1));
+            let down = step((y > 0).then(|| i - width), (y + 1 < height).then(|| i + width));
+            let normal = across.zip(down).map_or(DVec3::ZERO, |(a, d)| d.cross(a));
+            Face::solid(if normal.is_finite() { normal } else { DVec3::ZERO })
+        });
+        let near = |d: &f32| match (d.is_finite(), ortho) {
+            (false, _) => SKY_NEAR,
+            (true, true) => -d,
+            (true, false) => 1.0 / d.max(f32::MIN_POSITIVE),
+        };
+        Self { places: 1, near: buffers.depth.iter().map(near).collect(), face: face.collect() }
+    }
+}
+
 /// Draws edges and shades into the open colours of surfaces.
-pub(crate) fn apply(job: &RenderJob<'_>, width: usize, buffers: &mut Buffers) {
+/// * `relief`: of all samples, if known.
+pub(crate) fn apply(job: &RenderJob<'_>, width: usize, relief: Option<Relief>, buffers: &mut Buffers) {
     let Stylisation { edges, unsharp } = job.options.stylisation;
     let ortho = job.view.pinhole().is_orthographic();
     let n = buffers.color.len();
     let mut light = vec![1.0f32; n];
     if edges > 0.0 {
         let kinds: Vec<Kind> = job.scene.layers.iter().map(|l| Kind::of(&l.kind)).collect();
-        let seen = Seen::new(buffers, width, ortho, &kinds);
+        let relief = relief.unwrap_or_else(|| Relief::of_centres(buffers, width, ortho, &kinds));
+        let cloud = buffers.id.iter().map(|id| kind_of(&kinds, *id) == Some(Kind::Cloud)).collect();
+        let seen = Seen::new(relief, width, ortho, cloud);
         light.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
             for (x, light) in row.iter_mut().enumerate() {
                 *light = 1.0 - edges * INK * seen.edge(x, y);
@@ -43,17 +149,6 @@ pub(crate) fn apply(job: &RenderJob<'_>, width: usize, buffers: &mut Buffers) {
     if unsharp > 0.0 {
         let behind = behind(&buffers.depth, width, ortho);
         light.par_iter_mut().zip(&behind).for_each(|(light, off)| *light *= 1.0 + (unsharp * off).clamp(-DARKEST, 0.0));
-    }
-    // Where representations pass into each other the depths are those of single samples.
-    if let Some(sections) = Sections::new(job).filter(|s| s.representations() > 1)
-        && let Some(world) = &buffers.world
-    {
-        light.par_iter_mut().zip(world).for_each(|(light, p)| {
-            let p = DVec3::from_array(*p);
-            if p.is_finite() {
-                *light = 1.0 - (1.0 - *light) * sections.purity(p) as f32;
-            }
-        });
     }
     buffers.color.par_iter_mut().zip(&light).for_each(|(color, light)| {
         if *light < 1.0 {
@@ -86,70 +181,60 @@ impl Kind {
     }
 }
 
+fn kind_of(kinds: &[Kind], id: u32) -> Option<Kind> {
+    kinds.get((id as usize).wrapping_sub(1)).copied()
+}
+
 /// What edges are found from.
 struct Seen {
     width: usize,
     height: usize,
-    /// Reciprocal depth, of parallel projections depth turned round: affine on planes; 0 in the sky.
+    places: usize,
+    /// Reciprocal depth, of parallel projections depth turned round: affine on planes; 0 in the sky. As in [`Relief`].
     nearness: Vec<f32>,
-    /// Unit normals of solids where they are known, else 0.
-    normal: Vec<Vec3>,
+    face: Vec<Face>,
     cloud: Vec<bool>,
 }
 
 impl Seen {
-    fn new(buffers: &Buffers, width: usize, ortho: bool, kinds: &[Kind]) -> Self {
-        let height = buffers.depth.len() / width;
-        let kind = |id: u32| kinds.get((id as usize).wrapping_sub(1)).copied();
-        let nearness = nearness(&buffers.depth, ortho);
-        let world = buffers.world.as_deref().unwrap_or_default();
-        let normal = (0..nearness.len()).into_par_iter().map(|i| {
-            let solid = |i: usize| kind(buffers.id[i]) == Some(Kind::Solid);
-            if world.is_empty() || !solid(i) {
-                return Vec3::ZERO;
-            }
-            let (x, y) = (i % width, i / width);
-            let place = |i: usize| DVec3::from_array(world[i]);
-            // Of both neighbours the one whose depth differs less lies on the same face.
-            let step = |before: Option<usize>, after: Option<usize>| {
-                let off = |j: Option<usize>| {
-                    j.filter(|j| solid(*j)).map_or(f32::INFINITY, |j| (nearness[j] - nearness[i]).abs())
-                };
-                let (a, b) = (off(before), off(after));
-                if a < b {
-                    before.map(|j| place(i) - place(j))
-                } else {
-                    after.filter(|_| b.is_finite()).map(|j| place(j) - place(i))
-                }
-            };
-            let across = step((x > 0).then(|| i - 1), (x + 1 < width).then(|| i + 1));
-            let down = step((y > 0).then(|| i - width), (y + 1 < height).then(|| i + width));
-            let normal = across.zip(down).map(|(a, d)| d.cross(a).normalize_or_zero().as_vec3());
-            normal.filter(|n| n.is_finite()).unwrap_or(Vec3::ZERO)
-        });
-        let cloud = buffers.id.iter().map(|id| kind(*id) == Some(Kind::Cloud)).collect();
-        Self { width, height, normal: normal.collect(), nearness, cloud }
+    fn new(relief: Relief, width: usize, ortho: bool, cloud: Vec<bool>) -> Self {
+        let Relief { places, near: mut nearness, face } = relief;
+        let height = cloud.len() / width;
+        if ortho {
+            let of_depth: Vec<f32> = nearness.par_iter().map(|q| if q.is_nan() { f32::INFINITY } else { -q }).collect();
+            let range = depth_range(&of_depth);
+            nearness.par_iter_mut().zip(&of_depth).for_each(|(near, depth)| *near = near_of(*depth, true, range));
+        } else {
+            nearness.par_iter_mut().filter(|near| near.is_nan()).for_each(|near| *near = 0.0);
+        }
+        Self { width, height, places, nearness, face, cloud }
     }
 
-    /// How much of an edge lies on a pixel, 0..=1: on the nearer side alone, so that edges are a pixel wide.
+    /// How much of an edge lies on a pixel, 0..=1: the mean over its samples.
     fn edge(&self, x: usize, y: usize) -> f32 {
-        let i = y * self.width + x;
+        if self.cloud[y * self.width + x] {
+            return 0.0;
+        }
+        (0..self.places).map(|place| self.edge_at(x, y, place)).sum::<f32>() / self.places as f32
+    }
+
+    /// The same of the samples in one place of their pixels: on the nearer side alone, so that edges are a pixel wide.
+    fn edge_at(&self, x: usize, y: usize, place: usize) -> f32 {
+        let (step, row) = (self.places, self.width * self.places);
+        let i = y * row + x * step + place;
         let at = self.nearness[i];
-        if !(at > 0.0) || self.cloud[i] {
+        if !(at > 0.0) {
             return 0.0;
         }
         let bend = |before: Option<usize>, after: Option<usize>| match (before, after) {
             (Some(a), Some(b)) => (2.0 * at - self.nearness[a] - self.nearness[b]).max(0.0),
             _ => 0.0,
         };
-        let right = (x + 1 < self.width).then(|| i + 1);
-        let below = (y + 1 < self.height).then(|| i + self.width);
-        let bends = bend((x > 0).then(|| i - 1), right) + bend((y > 0).then(|| i - self.width), below);
-        let turn = |j: Option<usize>| {
-            let (n, m) = (self.normal[i], j.map_or(Vec3::ZERO, |j| self.normal[j]));
-            if n == Vec3::ZERO || m == Vec3::ZERO { 0.0 } else { 1.0 - n.dot(m) }
-        };
-        let turns = turn(right).max(turn(below));
+        let right = (x + 1 < self.width).then(|| i + step);
+        let below = (y + 1 < self.height).then(|| i + row);
+        let bends = bend((x > 0).then(|| i - step), right) + bend((y > 0).then(|| i - row), below);
+        let turn = |j: Option<usize>| j.map_or(0.0, |j| self.face[i].turn(self.face[j]));
+        let turns = if self.face[i].solid { turn(right).max(turn(below)) } else { 0.0 };
         let [depth, normal] = [(DEPTH_EDGE, bends / at), (NORMAL_EDGE, turns)].map(|([a, b], v)| smoothstep(a, b, v));
         depth.max(normal)
     }
@@ -165,14 +250,18 @@ fn depth_range(depth: &[f32]) -> Option<[f32; 2]> {
 }
 
 fn nearness(depth: &[f32], ortho: bool) -> Vec<f32> {
-    let [lo, hi] = depth_range(depth).unwrap_or([0.0, 1.0]);
-    let size = (hi - lo).max(f32::MIN_POSITIVE);
-    let of = |d: f32| match (d.is_finite(), ortho) {
+    let range = if ortho { depth_range(depth) } else { None };
+    depth.par_iter().map(|d| near_of(*d, ortho, range)).collect()
+}
+
+/// * `range`: of the depths of a parallel projection.
+fn near_of(d: f32, ortho: bool, range: Option<[f32; 2]>) -> f32 {
+    let [lo, hi] = range.unwrap_or([0.0, 1.0]);
+    match (d.is_finite(), ortho) {
         (false, _) => 0.0,
-        (true, true) => 1.0 + (hi - d) / size,
+        (true, true) => 1.0 + (hi - d) / (hi - lo).max(f32::MIN_POSITIVE),
         (true, false) => 1.0 / d.max(f32::MIN_POSITIVE),
-    };
-    depth.par_iter().map(|d| of(*d)).collect()
+    }
 }
 
 /// How much nearer the surroundings of each pixel are than itself, as a share of the range of depths, negative; 0 in the sky.
@@ -257,8 +346,9 @@ mod tests {
         Seen {
             width: W,
             height: H,
+            places: 1,
             nearness: nearness(&depth, ortho),
-            normal: vec![Vec3::ZERO; n],
+            face: vec![Face::default(); n],
             cloud: vec![false; n],
         }
     }

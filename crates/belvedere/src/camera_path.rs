@@ -10,6 +10,7 @@ use crate::scene_file::{
 use crate::session::Description;
 use crate::{BelvedereError, Session};
 use belvedere_construct::{Flight, FlightOptions};
+use belvedere_core::presets::BendFrame;
 use belvedere_core::{DVec2, DVec3, Stage};
 use belvedere_scene::{LayerKind, Progress, Scene};
 use glam::DQuat;
@@ -98,15 +99,21 @@ fn defaults(scene: &Document, animation: &mut AnimationDoc) -> Result<(), Belved
     Ok(())
 }
 
-/// Smallest and largest viewing angle that the presets of a document are made for, degrees.
+/// Smallest and largest viewing angle at which the picture of a document turns, degrees: those that its presets are made for, up to
+/// straight down where it follows the camera, all where it stands still in the world.
 fn preset_range(document: &Document) -> Option<[f64; 2]> {
     let spline = document.stage.iter().find_map(|s| match s {
         StageDoc::SplineBend(spline) => Some(spline),
         _ => None,
     })?;
     let PresetsDoc::Inline(presets) = &spline.presets else { return None };
+    if presets.frame == BendFrame::Plane && presets.presets.len() == 1 {
+        return Some([0.0, 90.0]);
+    }
     let low = presets.presets.iter().map(|p| p.phi - p.tau).fold(90.0, f64::min);
     let high = presets.presets.iter().map(|p| p.phi + p.tau).fold(0.0, f64::max);
+    let follows = presets.follow && presets.frame == BendFrame::Camera;
+    let high = if follows { 90.0 } else { high };
     (low < high).then(|| [low.max(0.0), high.min(90.0)])
 }
 

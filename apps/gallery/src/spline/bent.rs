@@ -16,7 +16,7 @@ pub(super) const TILE: [u32; 2] = [720, 600];
 /// A built-in document after operations, see `preset set`.
 pub(super) fn document(name: &str, operations: &[&str]) -> Result<PresetDocument> {
     let operations = operations.iter().map(|text| text.parse()).collect::<Result<Vec<_>, _>>()?;
-    Ok(preset::set(&PresetDocument::builtin(name)?, &operations)?)
+    Ok(preset::set(&PresetDocument::builtin(name)?, &operations)?.0)
 }
 
 /// The operations that divide a preset of one section into three, even ones.

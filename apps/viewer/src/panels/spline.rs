@@ -3,7 +3,7 @@
 use super::{number, set_stage};
 use crate::model::Model;
 use crate::widgets::curve::curve;
-use crate::widgets::ruler::{RulerEdit, ruler};
+use crate::widgets::ruler::{RANGE, RulerEdit, ruler};
 use belvedere::core::presets::edit::{PresetChange, PresetOperation};
 use belvedere::core::presets::{BUILTINS, PresetDocument};
 use belvedere::scene_file::{PresetsDoc, SplineStageDoc, StageDoc};
@@ -22,6 +22,10 @@ pub(crate) struct SplinePanel {
     playing: bool,
     played_at: f64,
     downwards: bool,
+    /// What the last change did less far than the pointer went.
+    clamped: Option<String>,
+    /// The same of the change that is about to be made.
+    stopped: Option<String>,
 }
 
 impl SplinePanel {
@@ -63,6 +67,9 @@ impl SplinePanel {
             }
             self.change(model, &presets, edit.change);
         }
+        if let Some(clamped) = &self.clamped {
+            ui.colored_label(ui.visuals().warn_fg_color, clamped);
+        }
         self.sections(ui, model, &presets);
         self.numbers(ui, model, &presets);
     }
@@ -77,6 +84,7 @@ impl SplinePanel {
                 if begins {
                     model.begin_gesture();
                 }
+                let to = self.within("the viewing angle", to, RANGE);
                 self.change(model, presets, PresetChange::Phi(to));
             }
             None => {}
@@ -180,7 +188,8 @@ impl SplinePanel {
         if let Some(tau) =
             number(ui, model, "holds within ± degrees", preset.tau, 0.1, "half width of the range of angles")
         {
-            self.change(model, presets, PresetChange::Tau(tau.max(0.0)));
+            let tau = self.within("the range of angles", tau, [0.0, 90.0]);
+            self.change(model, presets, PresetChange::Tau(tau));
         }
         let own = preset.fov_y_deg;
         let mut has = own.is_some();
@@ -190,36 +199,49 @@ impl SplinePanel {
         if let Some(fov) = own
             && let Some(fov) = number(ui, model, "field of view", fov, 0.2, "degrees")
         {
-            self.change(model, presets, PresetChange::FieldOfView(Some(fov.clamp(0.05, 170.0))));
+            let fov = self.within("the field of view", fov, [0.05, 170.0]);
+            self.change(model, presets, PresetChange::FieldOfView(Some(fov)));
         }
         for (i, tag) in preset.tags.iter().enumerate() {
             let name = format!("transition of tag {}", i + 1);
             if let Some(delta) = number(ui, model, &name, tag.delta, 0.002, "half width, share of the curve's length") {
-                self.change(model, presets, PresetChange::TagWidth(i + 1, delta.clamp(0.0, 0.5)));
+                let delta = self.within("the half width of a transition", delta, [0.0, 0.5]);
+                self.change(model, presets, PresetChange::TagWidth(i + 1, delta));
             }
         }
     }
 
     /// An operation that is a step of its own.
-    fn step(&self, model: &mut Model, presets: &PresetDocument, change: PresetChange) {
+    fn step(&mut self, model: &mut Model, presets: &PresetDocument, change: PresetChange) {
         model.begin_gesture();
         self.change(model, presets, change);
     }
 
     /// An operation on the chosen preset in the course of the gesture; what cannot be is said.
-    fn change(&self, model: &mut Model, presets: &PresetDocument, change: PresetChange) {
+    fn change(&mut self, model: &mut Model, presets: &PresetDocument, change: PresetChange) {
         let preset = (self.chosen + 1).to_string();
-        match presets.edited(&PresetOperation::Preset { preset, change }) {
-            Ok(next) => model.edit_on(|document| {
-                let stages = document.stage.iter_mut();
-                for stage in stages {
-                    if let StageDoc::SplineBend(stage) = stage {
-                        stage.presets = PresetsDoc::Inline(Box::new(next.clone()));
+        let stopped = self.stopped.take();
+        match presets.edited_saying(&PresetOperation::Preset { preset, change }) {
+            Ok((next, clamped)) => {
+                self.clamped = stopped.or_else(|| clamped.first().map(ToString::to_string));
+                model.edit_on(|document| {
+                    let stages = document.stage.iter_mut();
+                    for stage in stages {
+                        if let StageDoc::SplineBend(stage) = stage {
+                            stage.presets = PresetsDoc::Inline(Box::new(next.clone()));
+                        }
                     }
-                }
-            }),
+                });
+            }
             Err(e) => model.violated = Some(e.to_string()),
         }
+    }
+
+    /// A value within its limits; that it was stopped there is said with the change.
+    fn within(&mut self, what: &str, value: f64, [least, most]: [f64; 2]) -> f64 {
+        let stopped = !(least..=most).contains(&value);
+        self.stopped = stopped.then(|| format!("{what} stops at its limit: {least} to {most} are possible"));
+        value.clamp(least, most)
     }
 
     /// Goes on with the sweep: up and down through the viewing angles.

@@ -123,7 +123,7 @@ fn tag_handles(
     let response = handle(ui, id.with(("width", i)), knob, &format!("Transition width of tag {}", i + 1));
     painter.line_segment([scale.at(end.at), knob], Stroke::new(1.0, TAG));
     painter.circle_filled(knob, if response.hovered() { 5.0 } else { 3.5 }, TAG);
-    let width = |share: f64| PresetChange::TagWidth(i + 1, (share - tag.share).abs().clamp(0.0, 0.5));
+    let width = |share: f64| PresetChange::TagWidth(i + 1, (share - tag.share).abs().clamp(0.0, 1.0));
     if let Some(to) = dragged_to(&response) {
         let to = scale.back(to);
         let near = sketch.curve.iter().min_by(|a, b| a.at.distance(to).total_cmp(&b.at.distance(to)))?;

@@ -4,13 +4,13 @@ use eframe::egui::{Align2, Color32, FontId, Id, Role, Sense, Stroke, Ui, WidgetI
 
 const HEIGHT: f32 = 52.0;
 /// Range of angles, degrees.
-const RANGE: [f64; 2] = [0.0, 90.0];
+pub(crate) const RANGE: [f64; 2] = [0.0, 90.0];
 
 /// What the user did.
 pub(crate) enum RulerEdit {
     /// Chose the preset of that number.
     Choose(usize),
-    /// Drags it to an angle, degrees; whether the drag begins.
+    /// Drags it to an angle, degrees, possibly outside [`RANGE`]; whether the drag begins.
     Move(usize, f64, bool),
 }
 
@@ -64,11 +64,11 @@ pub(crate) fn ruler(
             && let Some(to) = response.interact_pointer_pos()
         {
             let share = f64::from((to.x - inner.left()) / inner.width());
-            let to = (RANGE[0] + share * (RANGE[1] - RANGE[0])).clamp(RANGE[0], RANGE[1]);
+            let to = RANGE[0] + share * (RANGE[1] - RANGE[0]);
             edit = Some(RulerEdit::Move(i, (2.0 * to).round() / 2.0, response.drag_started()));
         }
         if let Some([step, _]) = super::nudged(ui, &response) {
-            edit = Some(RulerEdit::Move(i, (phi + 0.5 * step).clamp(RANGE[0], RANGE[1]), true));
+            edit = Some(RulerEdit::Move(i, phi + 0.5 * step, true));
         }
         response.on_hover_text(label);
     }

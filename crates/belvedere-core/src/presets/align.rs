@@ -14,10 +14,11 @@ pub(super) struct Aligned {
 
 /// Both presets' sections, split so that there are equally many and like stands beside like.
 ///
-/// The cheapest edit is taken: the same id 0, another id 1, a section without partner 0.5 + its length. Where a section has no
+/// Lists of equal length are matched by index, as in Pasewaldt et al. 2011, section 5: like ids in other places blend where they stand.
+/// Of lists of different lengths the cheapest edit is taken: the same id 0, another id 1, a section without partner 0.5 + its length. Where a section has no
 /// partner the other preset's neighbouring section is split in two of the same id, with a border of no width, which changes no weight.
 pub(super) fn align(p: &Preset, q: &Preset) -> [Aligned; 2] {
-    let pairs = pair(p, q);
+    let pairs = if p.sections.len() == q.sections.len() { by_index(p.sections.len()) } else { pair(p, q) };
     let indices = |side: fn(&Pair) -> Option<usize>| -> Vec<usize> {
         let first = pairs.iter().find_map(side).unwrap_or(0);
         pairs
@@ -30,6 +31,11 @@ pub(super) fn align(p: &Preset, q: &Preset) -> [Aligned; 2] {
     };
     let (at_p, at_q) = (indices(|pair| pair.0), indices(|pair| pair.1));
     [split(p, &at_p, q, &at_q), split(q, &at_q, p, &at_p)]
+}
+
+/// Partners of lists of equal length.
+fn by_index(count: usize) -> Vec<Pair> {
+    (0..count).map(|i| (Some(i), Some(i))).collect()
 }
 
 /// Start and end of section `i` on the curve.

@@ -2,6 +2,7 @@
 
 use super::{BendFrame, DepthUnits, Ease, Preset, PresetDocument, PresetError, one_section};
 use crate::sections::TagPoint;
+use glam::DVec2;
 
 /// Names of the built-in documents; `identity` also takes an angle in degrees, as in `identity(35)`.
 pub const BUILTIN_NAMES: [&str; 8] = {
@@ -48,7 +49,7 @@ pub const BUILTINS: [Builtin; 8] = [
     Builtin {
         name: "demo",
         aliases: &[],
-        effect: "degressive, progressive, map by viewing angle, with levels of abstraction",
+        effect: "degressive, progressive, map by viewing angle, turning evenly, with levels of abstraction",
     },
     Builtin {
         name: "demo-orthographic",
@@ -87,7 +88,7 @@ impl PresetDocument {
             "demo" => demo(),
             "demo-orthographic" => {
                 let mut document = demo();
-                if let Some(map) = document.presets.last_mut() {
+                if let Some(map) = document.presets.iter_mut().find(|p| p.name == "high") {
                     map.fov_y_deg = Some(PARALLEL_FOV_DEG);
                 }
                 document
@@ -167,18 +168,35 @@ fn straight(phi: f64) -> Preset {
     preset("identity", phi, [0.4, 1.6], &control)
 }
 
-/// Three presets over the whole range of viewing angles, with levels of abstraction `loa0` (detailed) to `loa2`.
+/// A curve for level views: the degressive one, turned down by 10 degrees.
+fn horizon() -> Preset {
+    preset("horizon", 0.0, [0.4, 1.6], &[[-0.044, -0.119], [0.416, -0.098], [0.791, 0.008], [1.067, 0.538]])
+}
+
+/// A plane seen under 80 degrees whose control points lie where the way to it from the progressive curve is even.
+fn even_map() -> Preset {
+    let along = DVec2::from_angle(80f64.to_radians());
+    let control = [-0.34, 0.31, 0.43, 0.85].map(|l| (DVec2::X * 0.7 + l * along).to_array());
+    preset("map", 80.0, [0.2, 1.4], &control)
+}
+
+/// Three presets and their way down to the horizon, with levels of abstraction `loa0` (detailed) to `loa2`.
+///
+/// They hold at their angles alone (tau 0): a picture that stands still over a range of angles turns the faster beside it. Angles and
+/// control points are such that the picture changes about as fast at every angle; a test over all angles keeps it so.
 fn demo() -> PresetDocument {
-    let styled = |name: &str, preset: Preset, tau: f64, sections: [&str; 3]| Preset {
+    let styled = |name: &str, preset: Preset, sections: [&str; 3], borders: [[f64; 2]; 2]| Preset {
         name: name.to_owned(),
-        tau,
-        tags: [1.0, 2.0].map(|i| TagPoint { u: i / 3.0, delta: 0.05 }).to_vec(),
+        tags: borders.map(|[u, delta]| TagPoint { u, delta }).to_vec(),
         sections: sections.map(str::to_owned).to_vec(),
         ..preset
     };
+    let thirds = [1.0, 2.0].map(|i| [i / 3.0, 0.05]);
+    let levels = ["loa0", "loa1", "loa2"];
     document(vec![
-        styled("low", degressive(25.0), 3.0, ["loa0", "loa1", "loa2"]),
-        styled("medium", progressive(42.0), 4.0, ["loa0", "loa1", "loa2"]),
-        styled("high", map(), 5.0, ["loa1", "loa1", "loa2"]),
+        styled("low", degressive(25.0), levels, thirds),
+        styled("medium", progressive(50.0), levels, thirds),
+        styled("high", even_map(), ["loa1", "loa1", "loa2"], [[0.5, 0.05], [0.85, 0.025]]),
+        styled("horizon", horizon(), levels, thirds),
     ])
 }

@@ -138,6 +138,16 @@ pub enum PresetError {
         /// The angle, degrees.
         phi: f64,
     },
+    /// Two presets of one name.
+    #[error("two presets are named {name:?} (phi = {first} and {second} degrees); rename one of them, operations tell presets by name")]
+    DuplicateName {
+        /// The name.
+        name: String,
+        /// Viewing angle of one of them, degrees.
+        first: f64,
+        /// Of the other, degrees.
+        second: f64,
+    },
     /// No built-in document of that name.
     #[error("there is no built-in preset {name:?}; use one of {}", super::BUILTIN_NAMES.join(", "))]
     UnknownName {

@@ -120,7 +120,7 @@ pub struct PresetDocument {
     /// Whether the picture tilts with the camera above the last preset's range (frame `camera` only).
     #[serde(default)]
     pub follow: bool,
-    /// Presets in any order, no two for the same angle, at least one.
+    /// Presets in any order, no two for the same angle or of the same name, at least one.
     pub presets: Vec<Preset>,
 }
 
@@ -269,6 +269,12 @@ impl PresetDocument {
             if pair[0].phi == pair[1].phi {
                 let [first, second] = [0, 1].map(|i| format!("{:?}", pair[i].name));
                 return Err(PresetError::DuplicatePhi { first, second, phi: pair[0].phi });
+            }
+        }
+        for (i, preset) in sorted.iter().enumerate().filter(|(_, p)| !p.name.is_empty()) {
+            if let Some(other) = sorted[..i].iter().find(|p| p.name == preset.name) {
+                let (first, second) = (other.phi, preset.phi);
+                return Err(PresetError::DuplicateName { name: preset.name.clone(), first, second });
             }
         }
         Ok(())

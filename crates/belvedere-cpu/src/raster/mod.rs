@@ -3,6 +3,7 @@
 pub(crate) mod band;
 pub(crate) mod cells;
 pub(crate) mod pixel_center;
+pub(crate) mod relief;
 pub(crate) mod resolve;
 pub(crate) mod thin;
 pub(crate) mod triangle;

@@ -13,6 +13,13 @@ pub(crate) type Sun<'s> = dyn Fn(DVec3, DVec3) -> f32 + 's;
 /// Openness that a point is shaded with that no light from around reaches.
 const DARKEST: f32 = 0.25;
 
+/// Whether the side is seen from which the corners of a triangle run counter-clockwise.
+pub(super) fn is_front(found: &DrawnTriangle<'_>) -> bool {
+    let [a, b, c] = found.v.map(|v| [i64::from(v.screen.x), i64::from(v.screen.y)]);
+    // y runs down the image: counter-clockwise in space is clockwise here.
+    (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]) <= 0
+}
+
 /// A mesh layer ready for colouring.
 pub(crate) struct MeshShade<'a> {
     layer: &'a MeshLayer,
@@ -35,13 +42,15 @@ impl<'a> MeshShade<'a> {
         corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
     }
 
+    /// Unit normal of a triangle, to the side from which its corners run counter-clockwise.
+    pub(super) fn face_normal(&self, triangle: usize) -> DVec3 {
+        self.layer.mesh.face_normal(triangle)
+    }
+
     /// Colour of a sample.
     pub(crate) fn shade(&self, found: &DrawnTriangle<'_>, weights: [f64; 3], footprint: f64, sun: &Sun<'_>) -> Rgb {
         let triangle = found.block.origin[0] + found.parent as usize;
-        let [a, b, c] = found.v.map(|v| [i64::from(v.screen.x), i64::from(v.screen.y)]);
-        // y runs down the image: counter-clockwise in space is clockwise here.
-        let front = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]) <= 0;
-        self.color(triangle, weights, front, (self.place(found, weights), footprint), sun)
+        self.color(triangle, weights, is_front(found), (self.place(found, weights), footprint), sun)
     }
 
     /// * `footprint`: size of a pixel there, scene units; `front`: whether the side is seen from which the corners run counter-clockwise.

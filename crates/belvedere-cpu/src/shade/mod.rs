@@ -23,6 +23,7 @@ use crate::raster::band::SKY;
 use crate::raster::pixel_center::PixelCenters;
 use crate::sections::Sections;
 use crate::simd::nearest;
+use crate::stylise::Face;
 use belvedere_core::{DVec2, DVec3, Stage};
 use belvedere_scene::{AreaSurface, BoxLayer, BoxShape, Heightfield, LayerKind, Relief, RenderJob};
 use cast::Casters;
@@ -168,6 +169,20 @@ impl<'a> Shader<'a> {
 }
 
 impl Shader<'_> {
+    /// The face of a solid that a primitive is of, towards the eye; nothing of others.
+    pub(crate) fn face(&self, prim: u32) -> Face {
+        let found = if prim == SKY { None } else { self.blocks.find(prim) };
+        let Some(found) = found else { return Face::default() };
+        let parent = found.parent as usize;
+        let normal = match &self.layers[found.block.layer as usize] {
+            LayerShade::Boxes(b, _) => b.boxes.get(found.block.origin[0] + parent / 12).map(|s| s.normal_of(parent % 12)),
+            LayerShade::Mesh(m) => Some(m.face_normal(found.block.origin[0] + parent)),
+            _ => None,
+        };
+        let front = mesh::is_front(&found);
+        normal.map_or_else(Face::default, |n| Face::solid(if front { n } else { -n }))
+    }
+
     /// Share of the sun that a surface sees, all of it without cast shadows.
     /// * `layer`: of the surface; `n`: unit normal to the side that is seen; `footprint`: size of a pixel there, scene units.
     fn sun_on(&self, layer: usize, p: DVec3, n: DVec3, footprint: f64) -> f32 {

@@ -73,6 +73,9 @@ pub enum PresetWarning {
     },
 }
 
+/// Sines that are 0 but for rounding: ground that is seen edge-on does not face away, such as level ground from an eye on it.
+pub const EDGE_ON: f64 = 1e-9;
+
 /// Warnings about a valid `document`, seen with its pivot in the image centre at `distance` scene units, over viewing angles from the first to
 /// the last preset in steps of at most one degree. `heights`: lowest and highest data over the reference plane, scene units, if known.
 pub fn check_presets(document: &PresetDocument, distance: f64, heights: Option<[f64; 2]>) -> Vec<PresetWarning> {
@@ -83,7 +86,7 @@ pub fn check_presets(document: &PresetDocument, distance: f64, heights: Option<[
     let angles = (0..=steps).map(|i| first.phi + (last.phi - first.phi) * f64::from(i) / f64::from(steps));
     let bends: Vec<(f64, SplineBend)> = angles.filter_map(|a| Some((a, bend_at(document, a, distance)?))).collect();
     let facing = bends.iter().map(|(a, b)| (*a, b.facing())).min_by(|a, b| a.1.total_cmp(&b.1));
-    if let Some((phi_deg, facing)) = facing.filter(|f| f.1 <= 0.0) {
+    if let Some((phi_deg, facing)) = facing.filter(|f| f.1 < -EDGE_ON) {
         warnings.push(PresetWarning::FacesAway { phi_deg, facing });
     }
     let Some([data_min, data_max]) = heights else { return warnings };

@@ -9,7 +9,7 @@ mod plane;
 mod resolve;
 
 pub use arc_length::CurveTooShort;
-pub use check::{PresetWarning, check_presets};
+pub use check::{EDGE_ON, PresetWarning, check_presets};
 pub use curve::{CurveFrame, DeformationCurve};
 pub use plane::{ReferencePlane, default_pivot, viewing_angle};
 pub use resolve::{ResolvedPreset, SplineError};

@@ -1,10 +1,12 @@
 //! Authoring: operations on preset documents, one at a time, each of which ends in a valid document or leaves the old one.
 
+mod clamped;
 mod curve;
 mod history;
 mod sections;
 mod text;
 
+pub use clamped::Clamped;
 pub use history::PresetHistory;
 
 use super::{BendFrame, DepthUnits, Ease, Preset, PresetDocument, PresetError};

@@ -22,16 +22,7 @@ impl Edited<'_> {
         let spline = self.preset.spline().map_err(|e| self.bad_curve(e))?;
         let curve = DeformationCurve::new(&spline)
             .map_err(|e| PresetError::CurveTooShort { preset: self.label.to_owned(), length: e.length })?;
-        let length = curve.length();
-        let off = |u: f64| curve.at(u * length).0.distance_squared(to);
-        let place = |i: usize| i as f64 / PLACES as f64;
-        let nearest = (0..=PLACES).min_by(|a, b| off(place(*a)).total_cmp(&off(place(*b)))).unwrap_or(0);
-        let (mut lo, mut hi) = (place(nearest.saturating_sub(1)), place((nearest + 1).min(PLACES)));
-        for _ in 0..60 {
-            let [a, b] = [lo + (hi - lo) / 3.0, hi - (hi - lo) / 3.0];
-            if off(a) < off(b) { hi = b } else { lo = a }
-        }
-        self.place_tag(number, 0.5 * (lo + hi))
+        self.place_tag(number, nearest_share(&curve, to))
     }
 
     pub(super) fn place_tag(self, number: usize, u: f64) -> Result<(), EditError> {
@@ -96,4 +87,18 @@ impl Edited<'_> {
         let tags = &self.preset.tags;
         [index.checked_sub(1).map_or(0.0, |i| tags[i].u), tags.get(index).map_or(1.0, |t| t.u)]
     }
+}
+
+/// Share of a curve's length at its place nearest to a point.
+pub(super) fn nearest_share(curve: &DeformationCurve, to: DVec2) -> f64 {
+    let length = curve.length();
+    let off = |u: f64| curve.at(u * length).0.distance_squared(to);
+    let place = |i: usize| i as f64 / PLACES as f64;
+    let nearest = (0..=PLACES).min_by(|a, b| off(place(*a)).total_cmp(&off(place(*b)))).unwrap_or(0);
+    let (mut lo, mut hi) = (place(nearest.saturating_sub(1)), place((nearest + 1).min(PLACES)));
+    for _ in 0..60 {
+        let [a, b] = [lo + (hi - lo) / 3.0, hi - (hi - lo) / 3.0];
+        if off(a) < off(b) { hi = b } else { lo = a }
+    }
+    0.5 * (lo + hi)
 }

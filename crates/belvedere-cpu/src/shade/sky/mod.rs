@@ -48,6 +48,9 @@ const EVEN_OFF: f32 = 0.25;
 /// Largest share of a colour that haze takes.
 const THICKEST: f32 = 0.54;
 
+/// Downward parts of the direction of view between which haze goes: a map seen from above has none.
+const FROM_ABOVE: [f32; 2] = [0.77, 0.985];
+
 /// The same in a studio, and its backdrop: above, in the middle, below.
 const THICKEST_IN_STUDIO: f32 = 0.32;
 const STUDIO: [[u8; 3]; 3] = [[252, 252, 251], [243, 245, 246], [222, 228, 234]];
@@ -73,7 +76,7 @@ pub(crate) struct Sky {
     /// Depth at which haze begins, and how fast it thickens, per scene unit.
     haze_from: f32,
     haze_per: f32,
-    /// Largest share of a colour that haze takes: none in a parallel projection, whose eye is nowhere.
+    /// Largest share of a colour that haze takes: none in a parallel projection, whose eye is nowhere, and none straight down.
     thickest: f32,
 }
 
@@ -93,6 +96,7 @@ impl Sky {
         // Full contrast over the nearer part of the scene, whose depths end at these.
         let [near, far]: [f32; 2] = depths;
         let span = (far - near).max(1e-6);
+        let from_above = smoothstep(FROM_ABOVE[0], FROM_ABOVE[1], -pinhole.forward.z as f32);
         // The second derivative of the sine along a row is 1.2 at most, the distance from a chord an eighth of it.
         let off = 0.15 * (LANES as f64 * per_px).powi(2) * f64::from(STEPS);
         Self {
@@ -104,7 +108,7 @@ impl Sky {
             even: off <= f64::from(EVEN_OFF),
             haze_from: near + 0.22 * span,
             haze_per: 1.0 / ((1.15 - 0.22) * span),
-            thickest: if pinhole.is_orthographic() { 0.0 } else { THICKEST },
+            thickest: if pinhole.is_orthographic() { 0.0 } else { THICKEST * (1.0 - from_above) },
         }
     }
 
@@ -115,7 +119,7 @@ impl Sky {
             return sky;
         }
         // Its light and dark are those of the picture, whichever way the camera is turned.
-        let thickest = sky.thickest.min(THICKEST_IN_STUDIO);
+        let thickest = if pinhole.is_orthographic() { 0.0 } else { THICKEST_IN_STUDIO };
         Self { steps: steps(studio), haze: linear(STUDIO[1]), up: [0.0, 0.0, -1.0], thickest, ..sky }
     }
 

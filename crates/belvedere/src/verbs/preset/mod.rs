@@ -1,15 +1,17 @@
 //! `preset`: preset documents listed, read, changed, checked and plotted.
 
+mod check;
 mod plot;
 mod sketch;
 
+pub use check::{PresetCheck, Usable, Verdict, check};
 pub use plot::{Plot, plot};
 pub use sketch::{Sketch, SketchPoint, SketchTag, sketch};
 
 use crate::scene_file;
 use crate::{BelvedereError, output};
-use belvedere_core::map::spline::{ReferencePlane, SplineBend, check_presets};
-use belvedere_core::presets::edit::PresetOperation;
+use belvedere_core::map::spline::{ReferencePlane, SplineBend};
+use belvedere_core::presets::edit::{Clamped, PresetOperation};
 use belvedere_core::presets::{BUILTINS, PresetDocument};
 use belvedere_core::{DVec3, Pinhole, Projection};
 use serde::Serialize;
@@ -53,23 +55,20 @@ pub struct Shape {
     pub fold_heights: [Option<f64>; 2],
 }
 
-/// Answer of [`check`].
-#[derive(Debug, Clone, Serialize)]
-pub struct PresetCheck {
-    /// The presets by rising viewing angle.
-    pub presets: Vec<Shape>,
-    /// What will look bad.
-    pub warnings: Vec<String>,
-}
-
 /// The document of a file, or a built-in one by name or alias.
+///
+/// Names of built-in documents mean these whatever files and folders there are; `./demo` means a file of that name.
 ///
 /// # Errors
 /// [`BelvedereError::Scene`], [`BelvedereError::Io`], [`BelvedereError::Preset`].
 pub fn load(source: &str) -> Result<PresetDocument, BelvedereError> {
     let path = Path::new(source);
-    if belvedere_io::fs::metadata(path).is_err() && !scene_file::names_a_preset_file(source) {
-        return Ok(PresetDocument::builtin(source)?);
+    if !scene_file::names_a_preset_file(source) {
+        match PresetDocument::builtin(source) {
+            Ok(document) => return Ok(document),
+            Err(_) if belvedere_io::fs::metadata(path).is_ok_and(|m| m.is_file()) => {}
+            Err(e) => return Err(e.into()),
+        }
     }
     let (text, _) = scene_file::read_text(path)?;
     let document = scene_file::parse_presets(path, &text)?;
@@ -88,12 +87,22 @@ pub fn text(document: &PresetDocument, path: &Path) -> Result<String, BelvedereE
     toml::to_string(document).map_err(|e| BelvedereError::Text { what: "the preset document", reason: e.to_string() })
 }
 
-/// The document after operations, all of them or none.
+/// The document after operations, all of them or none, and what was done less far than asked.
 ///
 /// # Errors
 /// [`BelvedereError::PresetEdit`].
-pub fn set(document: &PresetDocument, operations: &[PresetOperation]) -> Result<PresetDocument, BelvedereError> {
-    Ok(operations.iter().try_fold(document.clone(), |document, operation| document.edited(operation))?)
+pub fn set(
+    document: &PresetDocument,
+    operations: &[PresetOperation],
+) -> Result<(PresetDocument, Vec<Clamped>), BelvedereError> {
+    let mut clamped = Vec::new();
+    let mut document = document.clone();
+    for operation in operations {
+        let (next, said) = document.edited_saying(operation)?;
+        document = next;
+        clamped.extend(said);
+    }
+    Ok((document, clamped))
 }
 
 /// The built-in documents.
@@ -106,12 +115,6 @@ pub fn list() -> Result<Vec<Listed>, BelvedereError> {
         Ok(Listed { name: b.name, aliases: b.aliases, effect: b.effect, presets })
     };
     BUILTINS.iter().map(listed).collect()
-}
-
-/// What will look bad of a document, for data that reach no heights.
-pub fn check(document: &PresetDocument) -> PresetCheck {
-    let warnings = check_presets(document, DISTANCE, None).iter().map(ToString::to_string).collect();
-    PresetCheck { presets: shapes(document), warnings }
 }
 
 fn shapes(document: &PresetDocument) -> Vec<Shape> {
