@@ -1,6 +1,9 @@
 //! A city as it is mapped: buildings, ways and land cover; plain data that pictures and generalisation start from.
 
+use crate::Texture;
 use belvedere_core::{DVec2, DVec3};
+use glam::Vec2;
+use std::sync::Arc;
 
 /// What is known of a city. Coordinates are those of its holder: of the file after loading, of the scene once it is placed there.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -13,6 +16,8 @@ pub struct City {
     pub ways: Vec<Way>,
     /// Land cover.
     pub areas: Vec<CityArea>,
+    /// Pictures that faces wear.
+    pub pictures: Vec<Arc<Texture>>,
 }
 
 /// A polygon in plan.
@@ -90,6 +95,17 @@ pub struct CityFace {
     pub surface: Surface,
     /// Rings, outer first, then holes, closed implicitly; the outer one counter-clockwise seen from outside.
     pub rings: Vec<Vec<DVec3>>,
+    /// The picture that it wears.
+    pub picture: Option<FacePicture>,
+}
+
+/// A picture on a face.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FacePicture {
+    /// Its number in [`City::pictures`].
+    pub number: u32,
+    /// Place in it of every vertex of the face's rings: (0, 0) is its top left corner, (1, 1) its bottom right.
+    pub rings: Vec<Vec<Vec2>>,
 }
 
 /// Semantics of a face.

@@ -25,7 +25,7 @@ pub mod volume;
 pub use bodies::{Bodies, RigidParts};
 pub use cell::CellTriangle;
 pub use city::{
-    Building, City, CityArea, CityFace, HeightSource, LandCover, Polygon, Structure, StructureKind, Surface, Way,
+    Building, City, CityArea, CityFace, FacePicture, HeightSource, LandCover, Polygon, Structure, StructureKind, Surface, Way,
     WayClass,
 };
 pub use drape::{Draped, drape_polyline};

@@ -111,5 +111,5 @@ pub(super) fn stacked(rings: &[Vec<DVec3>]) -> Vec<CityFace> {
 }
 
 pub(super) fn face(surface: Surface, ring: Vec<DVec3>) -> CityFace {
-    CityFace { surface, rings: vec![ring] }
+    CityFace { surface, rings: vec![ring], picture: None }
 }

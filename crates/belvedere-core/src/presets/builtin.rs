@@ -168,9 +168,13 @@ fn straight(phi: f64) -> Preset {
     preset("identity", phi, [0.4, 1.6], &control)
 }
 
-/// A curve for level views: the degressive one, turned down by 10 degrees.
+/// A curve for level views: the degressive one, turned down by 10 degrees; a hundredth larger, for curves between turned ones are smaller
+/// and would fold at lower heights.
 fn horizon() -> Preset {
-    preset("horizon", 0.0, [0.4, 1.6], &[[-0.044, -0.119], [0.416, -0.098], [0.791, 0.008], [1.067, 0.538]])
+    let low = degressive(25.0);
+    let turn = DVec2::from_angle(-10f64.to_radians());
+    let control = low.control.iter().map(|p| (1.01 * turn.rotate(DVec2::from(*p))).to_array()).collect();
+    Preset { name: "horizon".into(), phi: 0.0, control, ..low }
 }
 
 /// A plane seen under 80 degrees whose control points lie where the way to it from the progressive curve is even.

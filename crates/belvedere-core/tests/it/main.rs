@@ -4,6 +4,7 @@ mod curved_rays;
 mod eased;
 mod preset_angles;
 mod preset_edit;
+mod preset_sweeps;
 mod presets;
 mod relief;
 mod rigid;

@@ -81,7 +81,7 @@ fn operations_do_what_they_say() {
     assert!(pushed.tags[0].u < pushed.tags[1].u && pushed.tags[0].u > low.tags[1].u - 0.01);
     let d = after(&demo(), &["high.duplicate=top, 88", "add=steep-flat,far,10", "top.name=plan", "low.remove"]);
     let names: Vec<&str> = d.presets.iter().map(|p| p.name.as_str()).collect();
-    assert_eq!(names, ["medium", "high", "plan", "far"]);
+    assert_eq!(names, ["medium", "high", "horizon", "plan", "far"]);
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn what_cannot_be_done_is_said_and_leaves_the_document() {
         ("low.add-point=2", "preset \"low\": curve parameter is 2, it must be in 0.000001..=0.999999"),
         ("low.point.1=NaN,0", "preset \"low\": control is not a finite number; give a finite value"),
         ("low.range=5,4", "preset \"low\": far depth e = 4 does not exceed near depth s = 5; give e > s"),
-        ("low.phi=42", "presets \"low\" and \"medium\" have the same phi = 42 degrees; change one of them"),
+        ("low.phi=50", "presets \"low\" and \"medium\" have the same phi = 50 degrees; change one of them"),
         ("low.merge=3", "preset \"low\": section 3 is the last one; merge the one before it"),
         ("low.tag.3=0.5", "preset \"low\": there is no tag 3; there are 2, counted from 1"),
         ("low.name=high", "there is a preset \"high\" already; give another name"),
@@ -233,4 +233,24 @@ fn whatever_is_done_ends_in_a_valid_document_or_an_error() {
         }
     }
     assert!(done > 3000, "{done}");
+}
+
+#[test]
+fn what_neighbours_stop_is_said() {
+    let said = |text: &str| {
+        let operation: PresetOperation = text.parse().unwrap();
+        let (document, clamped) = demo().edited_saying(&operation).unwrap();
+        assert_eq!(document, demo().edited(&operation).unwrap());
+        clamped.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    for fine in ["low.tag.1=0.4", "low.width.1=0.1", "low.phi=3", "low.tag.2=0.7", "follow=false"] {
+        assert_eq!(said(fine), [""; 0], "{fine}");
+    }
+    let stopped = said("low.tag.1=0.9");
+    assert!(stopped[0].contains("tag 1 is 0.6657, not 0.9000"), "{stopped:?}");
+    assert!(stopped[1].contains("half width of the transition at tag 1"), "{stopped:?}");
+    assert!(said("low.width.2=0.5")[0].contains("is 0.1667, not 0.5000"));
+    // Dragged in the plane of the curve: beyond the far end lies the second tag's place.
+    assert_eq!(said("low.tag.1=2,2").len(), 2);
+    assert_eq!(said("low.tag.2=2,2").len(), 2);
 }

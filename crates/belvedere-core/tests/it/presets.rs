@@ -149,6 +149,7 @@ fn numbers_that_are_none_are_refused_everywhere() {
 
 fn three(phi_tau: [(f64, f64); 3]) -> PresetDocument {
     let mut document = PresetDocument::builtin("demo").unwrap();
+    document.presets.truncate(3);
     for (preset, (phi, tau)) in document.presets.iter_mut().zip(phi_tau) {
         (preset.phi, preset.tau) = (phi, tau);
     }
@@ -325,4 +326,39 @@ fn check_warns_of_what_will_look_bad() {
     rising.presets[0].control = vec![[0.0, -0.2], [0.3, 0.35], [0.5, 0.5], [1.0, 0.55]];
     let warnings = check_presets(&rising, 1000.0, None);
     assert!(warnings.iter().any(|w| matches!(w, PresetWarning::FacesAway { .. })), "{warnings:?}");
+}
+
+/// Lists of equal length are matched by index, as in the paper: what stands in other places blends there and does not slide.
+#[test]
+fn sections_of_equal_number_blend_where_they_stand() {
+    let mut document = three([(25.0, 2.0), (55.0, 2.0), (80.0, 0.0)]);
+    let sections = [["A", "B"], ["B", "A"]];
+    for (preset, (sections, (u, delta))) in document.presets.iter_mut().zip(sections.into_iter().zip([(0.3, 0.1), (0.5, 0.05)])) {
+        preset.sections = sections.map(str::to_owned).to_vec();
+        preset.tags = vec![TagPoint { u, delta }];
+    }
+    document.presets.truncate(2);
+    let middle = document.select(40.0).unwrap();
+    let sections = middle.interpolate(45.0).unwrap().sections;
+    assert_eq!((middle.sigma, sections.beta(), sections.len()), (0.5, 0.8, 2));
+    let tag = sections.tags()[0];
+    assert!((tag.u - 0.4).abs() < 1e-12 && (tag.delta - 0.075).abs() < 1e-12, "{tag:?}");
+    let weight = |id: &str, t: f64| sections.representation_weight(id, t);
+    assert!((weight("A", 0.0) - 0.2).abs() < 1e-12 && (weight("A", 1.0) - 0.8).abs() < 1e-12);
+    for i in 0..=100 {
+        let t = f64::from(i) / 100.0;
+        let far = ((t - 0.325) / 0.15).clamp(0.0, 1.0);
+        assert!((weight("A", t) - (0.2 * (1.0 - far) + 0.8 * far)).abs() < 1e-12, "at {t}");
+        assert!((weight("A", t) + weight("B", t) - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn two_presets_of_one_name_are_refused_and_nameless_ones_are_not() {
+    let mut document = three([(20.0, 0.0), (40.0, 0.0), (80.0, 0.0)]);
+    document.presets[2].name = "low".into();
+    let error = document.validate().unwrap_err().to_string();
+    assert!(error.contains("two presets are named \"low\" (phi = 20 and 80 degrees)"), "{error}");
+    document.presets.iter_mut().for_each(|p| p.name.clear());
+    document.validate().unwrap();
 }

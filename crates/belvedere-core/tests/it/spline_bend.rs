@@ -281,9 +281,9 @@ fn following_tilts_the_picture_above_the_last_plateau_only() {
     let mut document = PresetDocument::builtin("demo").unwrap();
     let camera = camera_at(89.0, 1000.0);
     let follows = bend(&document, &camera);
-    assert!((follows.resolved().follow_deg - 4.0).abs() < 1e-9);
+    assert!((follows.resolved().follow_deg - 9.0).abs() < 1e-9);
     // The world deformed at the end of the plateau stands still from there on.
-    let at_end = bend(&document, &camera_at(85.0, 1000.0));
+    let at_end = bend(&document, &camera_at(80.0, 1000.0));
     assert_eq!(at_end.resolved().follow_deg, 0.0);
     for p in [DVec3::new(10.0, 300.0, 20.0), DVec3::new(-200.0, -250.0, 5.0)] {
         let error = (follows.apply(p).unwrap() - at_end.apply(p).unwrap()).length();
@@ -341,7 +341,7 @@ fn bend_over(camera: &Pinhole, document: &PresetDocument, plane: &ReferencePlane
 fn a_presets_field_of_view_keeps_the_scale_at_the_pivot() {
     let mut document = PresetDocument::builtin("demo").unwrap();
     document.presets[2].fov_y_deg = Some(20.0);
-    for (phi_deg, fov_deg) in [(20.0, 50.0), (42.0, 50.0), (60.5, 35.0), (80.0, 20.0)] {
+    for (phi_deg, fov_deg) in [(20.0, 50.0), (50.0, 50.0), (65.0, 35.0), (80.0, 20.0)] {
         let camera = camera_at(phi_deg, 1000.0);
         let map = bend(&document, &camera);
         let adapted = map.adapted_pinhole(&camera);

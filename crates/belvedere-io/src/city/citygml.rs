@@ -2,9 +2,12 @@
 
 use super::collect::{Collector, Lod, Shown};
 use super::gml::{self, Node};
+use super::looks::Looks;
+use super::pictures::PictureList;
 use super::plan;
 use super::reference::Reference;
 use super::{CityFile, IoError, Loaded};
+use crate::Limits;
 use belvedere_scene::{CityFace, Surface};
 use glam::{DMat4, DVec3};
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -13,7 +16,12 @@ use std::path::Path;
 /// References to references to references: no model goes deeper.
 const MAX_HOPS: usize = 8;
 
-pub(super) fn load(path: &Path, text: &str, lod: Option<&str>) -> Result<Loaded<CityFile>, IoError> {
+pub(super) fn load(
+    path: &Path,
+    text: &str,
+    lod: Option<&str>,
+    limits: &Limits,
+) -> Result<Loaded<CityFile>, IoError> {
     let fail = |reason: String| IoError::format(path, format!("CityGML: {reason}"));
     let root = gml::parse(text.trim_start_matches('\u{feff}')).map_err(fail)?;
     if root.name != "CityModel" {
@@ -27,14 +35,15 @@ pub(super) fn load(path: &Path, text: &str, lod: Option<&str>) -> Result<Loaded<
     let reference = Reference::of(document.srs);
     document.north_first = reference.north_first;
     let mut collector = Collector::new(lod);
+    document.looks = Looks::of(&root, &mut collector.pictures);
     for object in document.objects() {
         let about = attributes(object);
-        let shown = document.shown(object).map_err(|e| {
+        let shown = document.shown(object, &mut collector.pictures).map_err(|e| {
             fail(format!("{} \"{}\": {e}; correct it, or export the file again", object.name, object.id))
         })?;
         collector.add(&object.id, kind(&object.name), &about, shown);
     }
-    collector.finish(path, format!("CityGML {version}"), reference)
+    collector.finish(path, format!("CityGML {version}"), reference, limits)
 }
 
 /// A document and where its references lead.
@@ -43,6 +52,7 @@ struct Document<'n> {
     ids: HashMap<&'n str, &'n Node>,
     srs: &'n str,
     north_first: bool,
+    looks: Looks<'n>,
 }
 
 /// Where gathering stands: what holds for all within an element.
@@ -57,10 +67,14 @@ struct At {
 
 /// What an object has shown so far.
 struct Gathered<'n> {
-    faces: Vec<(String, CityFace)>,
+    /// Level of detail, ids of the rings, turned round or not, and the face.
+    faces: Vec<(String, Vec<(&'n str, bool)>, CityFace)>,
     /// Ids within the object: references to them would show a face twice.
     own: HashSet<&'n str>,
 }
+
+/// A face, and the ids of its rings, possibly empty, and whether they are turned round.
+type NamedFace<'n> = (Vec<(&'n str, bool)>, CityFace);
 
 impl<'n> Document<'n> {
     fn of(root: &'n Node) -> Self {
@@ -73,7 +87,7 @@ impl<'n> Document<'n> {
                 srs = &node.srs;
             }
         });
-        Self { root, ids, srs, north_first: false }
+        Self { root, ids, srs, north_first: false, looks: Looks::default() }
     }
 
     fn objects(&self) -> impl Iterator<Item = &'n Node> + use<'n> {
@@ -83,7 +97,7 @@ impl<'n> Document<'n> {
         members.flat_map(|member| &member.children)
     }
 
-    fn shown(&self, object: &'n Node) -> Result<Shown, String> {
+    fn shown(&self, object: &'n Node, pictures: &mut PictureList) -> Result<Shown, String> {
         let mut gathered = Gathered { faces: Vec::new(), own: HashSet::new() };
         object.walk(&mut |node| {
             gathered.own.insert(&node.id);
@@ -91,7 +105,8 @@ impl<'n> Document<'n> {
         let at = At { lod: "0".into(), surface: None, dimension: None, reversed: false, hops: 0 };
         self.gather(object, &at, &mut gathered)?;
         let mut shown = Shown::default();
-        for (lod, face) in gathered.faces {
+        for (lod, rings, mut face) in gathered.faces {
+            self.looks.dress(&rings, &mut face, pictures);
             shown.faces.entry(Lod::of_text(&lod)).or_default().push(face);
         }
         Ok(shown)
@@ -115,7 +130,7 @@ impl<'n> Document<'n> {
             "ImplicitGeometry" => return self.implicit(node, &at, out),
             "Polygon" | "PolygonPatch" | "Triangle" | "Rectangle" => {
                 let face = self.face(node, &at)?;
-                out.faces.extend(face.map(|face| (at.lod.clone(), face)));
+                out.faces.extend(face.map(|(rings, face)| (at.lod.clone(), rings, face)));
                 return Ok(());
             }
             _ => {}
@@ -141,7 +156,7 @@ impl<'n> Document<'n> {
         let Some(shape) = node.child("relativeGMLGeometry") else { return Ok(()) };
         let mut there = Gathered { faces: Vec::new(), own: HashSet::new() };
         let plain = At { dimension: None, ..at.clone() };
-        Self { north_first: false, ids: self.ids.clone(), ..*self }.gather(shape, &plain, &mut there)?;
+        Self { north_first: false, ids: self.ids.clone(), looks: Looks::default(), ..*self }.gather(shape, &plain, &mut there)?;
         let matrix = match node.child("transformationMatrix") {
             Some(matrix) => numbers(matrix)?,
             None => DMat4::IDENTITY.to_cols_array().to_vec(),
@@ -155,21 +170,27 @@ impl<'n> Document<'n> {
             None => None,
         };
         let place = place.ok_or_else(|| format!("line {}: a shape without a place", node.line))?;
-        for (lod, mut face) in there.faces {
+        for (lod, rings, mut face) in there.faces {
             for p in face.rings.iter_mut().flatten() {
                 let there = plan::position(matrix.transform_point3(*p) + place);
                 *p = there.map_err(|e| format!("line {}: a shape {e}", node.line))?;
             }
-            out.faces.push((lod, face));
+            out.faces.push((lod, rings, face));
         }
         Ok(())
     }
 
-    fn face(&self, node: &Node, at: &At) -> Result<Option<CityFace>, String> {
+    fn face(&self, node: &'n Node, at: &At) -> Result<Option<NamedFace<'n>>, String> {
         let dimension = node.dimension.or(at.dimension);
         let of = |names: [&'static str; 2]| node.children.iter().filter(move |c| names.contains(&c.name.as_str()));
         let bounds = of(["exterior", "outerBoundaryIs"]).take(1).chain(of(["interior", "innerBoundaryIs"]));
-        let mut rings = bounds.map(|ring| self.positions(ring, dimension)).collect::<Result<Vec<_>, _>>()?;
+        let bounds: Vec<&Node> = bounds.collect();
+        let name = |bound: &&'n Node| {
+            let ring = bound.children.iter().find(|c| matches!(c.name.as_str(), "LinearRing" | "Ring"));
+            (ring.map_or("", |ring| ring.id.as_str()), at.reversed)
+        };
+        let names = bounds.iter().map(name).collect();
+        let mut rings = bounds.iter().map(|ring| self.positions(ring, dimension)).collect::<Result<Vec<_>, _>>()?;
         if at.reversed {
             rings.iter_mut().for_each(|ring| ring.reverse());
         }
@@ -177,7 +198,7 @@ impl<'n> Document<'n> {
             return Ok(None);
         }
         let surface = at.surface.unwrap_or_else(|| plan::surface_of(&rings));
-        Ok(Some(CityFace { surface, rings }))
+        Ok(Some((names, CityFace { surface, rings, picture: None })))
     }
 
     /// All positions within an element.

@@ -4,9 +4,11 @@ use super::attributes::Attributes;
 use super::collect::{Collector, Lod, Shown};
 use super::plan;
 use super::reference::Reference;
+use super::pictures::{PictureList, wrap};
 use super::{CityFile, IoError, Loaded};
+use crate::Limits;
 use belvedere_scene::{CityFace, Surface};
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, Vec2};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -34,13 +36,18 @@ struct Vertices {
 
 type Fail = String;
 
-pub(super) fn load(path: &Path, text: &str, lod: Option<&str>) -> Result<Loaded<CityFile>, IoError> {
+pub(super) fn load(
+    path: &Path,
+    text: &str,
+    lod: Option<&str>,
+    limits: &Limits,
+) -> Result<Loaded<CityFile>, IoError> {
     let mut reader = Reader { out: Collector::new(lod) };
     let (head, format) =
         reader.read(text.trim_start_matches('\u{feff}')).map_err(|reason| IoError::format(path, reason))?;
     let said = head.pointer("/metadata/referenceSystem").and_then(Value::as_str).unwrap_or_default();
     // Coordinates of CityJSON are x, y, z whatever the name of the system demands.
-    reader.out.finish(path, format, Reference::of(said))
+    reader.out.finish(path, format, Reference::of(said), limits)
 }
 
 struct Reader<'l> {
@@ -73,6 +80,7 @@ impl Reader<'_> {
         let objects = document.get("CityObjects").and_then(Value::as_object);
         let objects = objects.ok_or("has no CityObjects; it is no CityJSON, or damaged")?;
         let vertices = Vertices::of(document, head)?;
+        let looks = Looks::of(document, head, &mut self.out.pictures);
         let mut shown: BTreeMap<&str, Shown> = BTreeMap::new();
         let fail = |id: &str, e: &str| format!("object \"{id}\": {e}; the file is damaged, export it again");
         for (id, object) in objects.iter().filter(|(_, object)| !object.is_null()) {
@@ -83,8 +91,9 @@ impl Reader<'_> {
                 None | Some(Value::Null) if object.is_object() => &[],
                 _ => return Err(fail(id, "its geometry is no list")),
             };
-            let read = geometries.iter().filter(|g| !g.is_null()).map(|g| (lod(g), vertices.faces(g)));
-            let read: Vec<_> = read.collect();
+            let pictures = &mut self.out.pictures;
+            let shapes = geometries.iter().filter(|g| !g.is_null());
+            let read: Vec<_> = shapes.map(|g| (lod(g), vertices.faces(g, &looks, pictures))).collect();
             let other = read.iter().any(|(_, faces)| faces.as_ref().is_ok_and(|f| !f.is_empty()));
             for (lod, faces) in read {
                 match faces {
@@ -173,15 +182,17 @@ impl Vertices {
         Ok(Self { points, templates: array("templates"), template_points })
     }
 
-    fn faces(&self, geometry: &Value) -> Result<Vec<CityFace>, Fail> {
+    fn faces(&self, geometry: &Value, looks: &Looks<'_>, pictures: &mut PictureList) -> Result<Vec<CityFace>, Fail> {
         if geometry.get("type").is_some_and(|t| t == "GeometryInstance") {
-            return self.instance(geometry);
+            return self.instance(geometry, looks, pictures);
         }
-        faces(geometry, &self.points)
+        let mut faces = faces(geometry, &self.points)?;
+        looks.dress(geometry, &mut faces, pictures);
+        Ok(faces)
     }
 
     /// A template, moved to its place.
-    fn instance(&self, geometry: &Value) -> Result<Vec<CityFace>, Fail> {
+    fn instance(&self, geometry: &Value, looks: &Looks<'_>, pictures: &mut PictureList) -> Result<Vec<CityFace>, Fail> {
         let number = geometry.get("template").and_then(Value::as_u64).ok_or("an instance names no template")? as usize;
         let template = self.templates.get(number);
         let template =
@@ -193,10 +204,74 @@ impl Vertices {
         let rows: [f64; 16] = rows.try_into().map_err(|_| "the matrix of an instance is not 16 numbers")?;
         let matrix = DMat4::from_cols_array(&rows).transpose();
         let mut faces = faces(template, &self.template_points)?;
+        looks.dress(template, &mut faces, pictures);
         for p in faces.iter_mut().flat_map(|f| &mut f.rings).flatten() {
             *p = plan::position(matrix.transform_point3(*p) + at).map_err(|e| format!("an instance {e}"))?;
         }
         Ok(faces)
+    }
+}
+
+/// How faces of a document look: its `appearance`.
+struct Looks<'d> {
+    /// Numbers of the pictures.
+    pictures: Vec<u32>,
+    places: Vec<Vec2>,
+    theme: Option<&'d str>,
+}
+
+impl<'d> Looks<'d> {
+    /// * `head`: whose appearance holds where the document has none.
+    fn of(document: &'d Value, head: &'d Value, pictures: &mut PictureList) -> Self {
+        let appearance = document.get("appearance").or(head.get("appearance"));
+        let list = |key: &str| appearance.and_then(|a| a.get(key)).and_then(Value::as_array).into_iter().flatten();
+        let picture = |texture: &Value| {
+            let text = |key: &str| texture.get(key).and_then(Value::as_str).unwrap_or_default();
+            pictures.number(text("image"), wrap(text("wrapMode")))
+        };
+        let numbers = list("textures").map(picture).collect();
+        let place = |uv: &Value| {
+            let at = |k: usize| uv.get(k).and_then(Value::as_f64).unwrap_or(f64::NAN) as f32;
+            Vec2::new(at(0), at(1))
+        };
+        let theme = appearance.and_then(|a| a.get("default-theme-texture")).and_then(Value::as_str);
+        Self { pictures: numbers, places: list("vertices-texture").map(place).collect(), theme }
+    }
+
+    /// Gives the faces of a geometry, in their order, the pictures that it says.
+    fn dress(&self, geometry: &Value, faces: &mut [CityFace], pictures: &mut PictureList) {
+        let Some(themes) = geometry.get("texture").and_then(Value::as_object) else { return };
+        let theme = self.theme.and_then(|name| themes.get(name)).or_else(|| themes.values().next());
+        let Some(values) = theme.and_then(|t| t.get("values")) else { return };
+        let Some(boundaries) = geometry.get("boundaries") else { return };
+        let mut of_faces = Vec::with_capacity(faces.len());
+        pair(boundaries, Some(values), &mut of_faces);
+        for (face, rings) in faces.iter_mut().zip(of_faces) {
+            let Some(rings) = rings.and_then(Value::as_array) else { continue };
+            let indices = |ring: &Value| ring.as_array().map(|list| list.iter().map(Value::as_u64).collect::<Vec<_>>());
+            let rings: Vec<Vec<Option<u64>>> = rings.iter().filter_map(indices).collect();
+            // No number: no picture.
+            let Some(Some(picture)) = rings.first().and_then(|ring| ring.first()) else { continue };
+            let place = |i: &Option<u64>| i.and_then(|i| self.places.get(i as usize)).copied().unwrap_or(Vec2::NAN);
+            let places = rings.iter().map(|ring| ring.iter().skip(1).map(place).collect()).collect();
+            match self.pictures.get(*picture as usize) {
+                Some(number) => face.picture = pictures.on(*number, places, face),
+                None => pictures.odd += 1,
+            }
+        }
+    }
+}
+
+/// What is said of each surface, in the order of [`gather`]: lists of lists of numbers are surfaces.
+fn pair<'v>(boundaries: &Value, values: Option<&'v Value>, out: &mut Vec<Option<&'v Value>>) {
+    let Some(list) = boundaries.as_array() else { return };
+    let is_ring = |ring: &Value| ring.as_array().is_some_and(|ring| ring.iter().all(Value::is_u64));
+    if !list.is_empty() && list.iter().all(is_ring) {
+        out.push(values.filter(|v| v.is_array()));
+        return;
+    }
+    for (i, part) in list.iter().enumerate() {
+        pair(part, values.and_then(|v| v.get(i)), out);
     }
 }
 
@@ -254,7 +329,7 @@ fn gather(
     let rings = list.iter().map(ring).collect::<Result<Vec<_>, _>>()?;
     let told = values.and_then(Value::as_u64).and_then(|i| semantics.get(i as usize)).copied();
     let surface = told.unwrap_or_else(|| plan::surface_of(&rings));
-    out.push(CityFace { surface, rings });
+    out.push(CityFace { surface, rings, picture: None });
     Ok(())
 }
 

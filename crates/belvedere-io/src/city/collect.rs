@@ -1,10 +1,13 @@
 //! The objects of city models as a city: one level of detail of each, cleaned, sorted by what they are.
 
 use super::attributes::{self, Attributes};
+use super::pictures::PictureList;
 use super::plan::{self, Repairs};
 use super::reference::Reference;
 use super::{CityFile, IoError, Loaded};
+use crate::Limits;
 use belvedere_scene::{Building, City, CityArea, CityFace, HeightSource, LandCover, Structure, StructureKind};
+use glam::{DVec3, Vec2};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -33,6 +36,7 @@ pub(super) struct Collector<'l> {
     lods: BTreeSet<Lod>,
     wanted: Option<&'l str>,
     left_out: BTreeMap<String, usize>,
+    pub(super) pictures: PictureList,
     without_faces: usize,
     /// Geometries that cannot be read, of objects that have others.
     pub(super) unread: usize,
@@ -73,9 +77,15 @@ impl<'l> Collector<'l> {
     }
 
     /// What a file says, with its oddities.
-    pub(super) fn finish(self, path: &Path, format: String, reference: Reference) -> Result<Loaded<CityFile>, IoError> {
+    pub(super) fn finish(
+        self,
+        path: &Path,
+        format: String,
+        reference: Reference,
+        limits: &Limits,
+    ) -> Result<Loaded<CityFile>, IoError> {
         let fail = |reason: String| IoError::format(path, reason);
-        let Self { mut city, repairs, lods, wanted, left_out, without_faces, unread } = self;
+        let Self { mut city, repairs, lods, wanted, left_out, pictures, without_faces, unread } = self;
         let lods: Vec<String> = lods.into_iter().map(|lod| lod.1).collect();
         if let Some(wanted) = wanted.filter(|w| !lods.iter().any(|lod| lod == w)) {
             return Err(fail(format!("has no level of detail {wanted}; it has {}", lods.join(", "))));
@@ -97,9 +107,11 @@ impl<'l> Collector<'l> {
             let kinds: Vec<String> = left_out.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
             warnings.push(format!("of kinds that are not drawn: {}", kinds.join(", ")));
         }
+        let (files, said) = pictures.load(&mut city, path, limits);
+        warnings.extend(said);
         let warnings = warnings.into_iter().map(|w| format!("{}: {w}", path.display())).collect();
         let (crs, reference) = (reference.crs, reference.said);
-        Ok(Loaded::new(CityFile { path: path.into(), format, crs, reference, lods, city }, warnings))
+        Ok(Loaded { files, ..Loaded::new(CityFile { path: path.into(), format, crs, reference, lods, city }, warnings) })
     }
 
     /// The faces of the level of detail that is wanted, else of the highest that has any.
@@ -120,18 +132,22 @@ impl<'l> Collector<'l> {
         faces.retain_mut(|face| {
             // Holes of a face without an outline are none.
             let mut has_outline = None;
+            let mut places = face.picture.as_mut().map(|p| std::mem::take(&mut p.rings)).unwrap_or_default().into_iter();
+            let mut kept = Vec::new();
             face.rings.retain_mut(|ring| {
-                ring.dedup();
-                while ring.len() > 1 && ring.first() == ring.last() {
-                    ring.pop();
-                }
+                let places = places.next().unwrap_or_default();
+                let places = without_repeats(ring, places);
                 let (short, flat) = (ring.len() < 3, plan::normal(ring).length() < 1e-9);
                 repairs.short_rings += usize::from(short);
                 repairs.flat_rings += usize::from(!short && flat);
                 let fine = !short && !flat;
                 has_outline.get_or_insert(fine);
+                kept.extend(fine.then_some(places));
                 fine
             });
+            if let Some(picture) = &mut face.picture {
+                picture.rings = kept;
+            }
             has_outline == Some(true)
         });
     }
@@ -164,6 +180,20 @@ impl<'l> Collector<'l> {
             self.city.areas.push(CityArea { name, cover, polygons });
         }
     }
+}
+
+/// Drops vertices of a ring that repeat the one before, and the last ones that repeat the first, and their places in a picture.
+fn without_repeats(ring: &mut Vec<DVec3>, mut places: Vec<Vec2>) -> Vec<Vec2> {
+    let mut keep: Vec<bool> = (0..ring.len()).map(|i| i == 0 || ring[i] != ring[i - 1]).collect();
+    let first = ring.first().copied();
+    for i in (1..ring.len()).rev().take_while(|i| Some(ring[*i]) == first || !keep[*i]) {
+        keep[i] = false;
+    }
+    let mut kept = keep.iter();
+    ring.retain(|_| kept.next() == Some(&true));
+    let mut kept = keep.iter();
+    places.retain(|_| kept.next() == Some(&true));
+    places
 }
 
 /// What a surface on the ground is; `None` for solids.

@@ -14,7 +14,7 @@ pub(super) struct Node {
     pub(super) name: String,
     /// `gml:id`, possibly empty.
     pub(super) id: String,
-    /// Where `xlink:href` leads, without its `#`, possibly empty.
+    /// Where `xlink:href`, or `uri` or `ring` of a texture, leads, without its `#`, possibly empty.
     pub(super) href: String,
     /// `srsName`, possibly empty.
     pub(super) srs: String,
@@ -50,7 +50,7 @@ impl Node {
             let value = || attribute.value.to_string();
             match attribute.key.local_name().as_ref() {
                 "id" => node.id = value(),
-                "href" => node.href = value().trim_start_matches('#').to_owned(),
+                "href" | "uri" | "ring" => node.href = value().trim_start_matches('#').to_owned(),
                 "srsName" => node.srs = value().trim().to_owned(),
                 "srsDimension" => node.dimension = value().trim().parse().ok(),
                 "orientation" => node.reversed = value().trim() == "-",

@@ -7,8 +7,10 @@ mod cityjson;
 mod collect;
 mod footprints;
 mod gml;
+mod looks;
 mod osm;
 mod parts;
+mod pictures;
 mod place;
 mod plan;
 mod reference;
@@ -61,8 +63,8 @@ pub fn load_city(path: &Path, lod: Option<&str>, limits: &Limits) -> Result<Load
         let (bytes, file) = InputFile::read(path)?;
         let loaded = match model {
             Model::OsmPbf => osm::load(path, &bytes)?,
-            Model::CityJson => cityjson::load(path, text(path, &bytes)?, lod)?,
-            Model::CityGml => citygml::load(path, text(path, &bytes)?, lod)?,
+            Model::CityJson => cityjson::load(path, text(path, &bytes)?, lod, limits)?,
+            Model::CityGml => citygml::load(path, text(path, &bytes)?, lod, limits)?,
         };
         return Ok(loaded.with_file(file));
     }

@@ -2,9 +2,11 @@
 
 use super::plan::{contains, normal};
 use crate::MeshFile;
-use belvedere_scene::{Building, City, CityFace, Color, LandCover, MeshColors, Polygon, StructureKind, Surface};
+use belvedere_scene::{
+    Building, City, CityFace, Color, LandCover, MeshColors, Polygon, StructureKind, Surface, Texturing,
+};
 use earcut::Earcut;
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec2};
 
 /// Colours of a city.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,8 +50,12 @@ pub enum CityGround<'a> {
 /// On a plate, buildings without ground of their own stand at the median height of the others, or at 0.
 pub fn surface(city: &City, colors: &CityColors, ground: CityGround<'_>) -> MeshFile {
     let plate = plate_height(city);
-    let mut out =
-        Builder { mesh: MeshFile { format: "city", ..MeshFile::default() }, colors: Vec::new(), earcut: Earcut::new() };
+    let mut out = Builder {
+        mesh: MeshFile { format: "city", ..MeshFile::default() },
+        colors: Vec::new(),
+        worn: Texturing { textures: city.pictures.clone(), ..Texturing::default() },
+        earcut: Earcut::new(),
+    };
     out.part(String::new());
     if let CityGround::Plate(bare) = ground {
         bare.iter().for_each(|p| out.flat(p, plate, colors.ground));
@@ -77,7 +83,8 @@ pub fn surface(city: &City, colors: &CityColors, ground: CityGround<'_>) -> Mesh
         };
         structure.faces.iter().for_each(|face| out.face(face, 0.0, color));
     }
-    MeshFile { colors: MeshColors::PerTriangle(out.colors), ..out.mesh }
+    let texturing = Some(out.worn).filter(|worn| !worn.textures.is_empty());
+    MeshFile { colors: MeshColors::PerTriangle(out.colors), texturing, ..out.mesh }
 }
 
 fn color_of(surface: Surface, colors: &CityColors) -> Color {
@@ -144,6 +151,8 @@ fn places_under(polygon: &Polygon) -> impl Iterator<Item = DVec2> + '_ {
 struct Builder {
     mesh: MeshFile,
     colors: Vec<Color>,
+    /// How the triangles wear pictures.
+    worn: Texturing,
     earcut: Earcut<f64>,
 }
 
@@ -154,6 +163,8 @@ impl Builder {
     }
 
     fn triangle(&mut self, corners: [u32; 3], color: Color) {
+        self.worn.of_triangle.push(Texturing::NONE);
+        self.worn.corners.push([Vec2::ZERO; 3]);
         self.mesh.triangles.push(corners);
         self.colors.push(color);
         self.mesh.parts.push(self.mesh.names.len() as u32 - 1);
@@ -188,9 +199,18 @@ impl Builder {
     }
 
     fn face(&mut self, face: &CityFace, base: f64, color: Color) {
-        let first = self.mesh.positions.len();
+        let [triangle, vertex] = [self.mesh.triangles.len(), self.mesh.positions.len()];
+        // Pictures multiply the colour.
+        let color = if face.picture.is_some() { Color::rgb(255, 255, 255) } else { color };
         self.rings(&face.rings, color);
-        self.mesh.positions[first..].iter_mut().for_each(|p| p.z += base);
+        self.mesh.positions[vertex..].iter_mut().for_each(|p| p.z += base);
+        let Some(picture) = &face.picture else { return };
+        let places: Vec<Vec2> = picture.rings.iter().flatten().copied().collect();
+        for i in triangle..self.mesh.triangles.len() {
+            let place = |v: u32| places.get(v as usize - vertex).copied().unwrap_or_default();
+            self.worn.of_triangle[i] = picture.number;
+            self.worn.corners[i] = self.mesh.triangles[i].map(place);
+        }
     }
 
     fn flat(&mut self, polygon: &Polygon, z: f64, color: Color) {

@@ -5,7 +5,7 @@ mod gltf_check;
 mod gltf_pictures;
 mod obj;
 mod obj_text;
-mod picture;
+pub(crate) mod picture;
 mod ply;
 mod stl;
 
@@ -86,7 +86,7 @@ fn read_bytes(path: &Path, limits: &Limits) -> Result<Vec<u8>, IoError> {
 }
 
 /// A picture or a file of materials beside `path`, if it can be read.
-fn neighbour(path: &Path, name: &str, limits: &Limits) -> Result<(Vec<u8>, InputFile), String> {
+pub(crate) fn neighbour(path: &Path, name: &str, limits: &Limits) -> Result<(Vec<u8>, InputFile), String> {
     let file = beside(path, name)?;
     let bytes = read_bytes(&file, limits).map_err(|e| e.to_string())?;
     let record = InputFile::of(&file, &bytes);

@@ -9,7 +9,7 @@ use zune_jpeg::zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options:
 const LARGEST: usize = 16_384;
 
 /// The picture in these bytes; an error begins with what is wrong with it and ends with what to do.
-pub(super) fn read(bytes: &[u8], wrap: [Wrap; 2], limits: &Limits) -> Result<Texture, String> {
+pub(crate) fn read(bytes: &[u8], wrap: [Wrap; 2], limits: &Limits) -> Result<Texture, String> {
     let (width, height, pixels) = if bytes.starts_with(b"\x89PNG") {
         png(bytes, limits)?
     } else if bytes.starts_with(b"\xff\xd8") {

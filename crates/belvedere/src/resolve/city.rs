@@ -12,7 +12,7 @@ use belvedere_core::DVec2;
 use belvedere_io::city::{CityColors, CityGround, plate_extent, reproject, surface};
 use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::{CityFile, load_city};
-use belvedere_scene::{City, Crs, LayerKind, Mesh, MeshLayer, RigidParts, Surface};
+use belvedere_scene::{City, Crs, HeightSource, LayerKind, Mesh, MeshLayer, RigidParts, Surface};
 
 /// Widest city, with its rim, metres.
 const WIDEST_M: f64 = 1.5e6;
@@ -115,12 +115,17 @@ pub(super) fn layer(
             );
             loader.note(index, vec![said]);
         }
+        renumber(&mut part, city.pictures.len() as u32);
+        city.pictures.extend(part.pictures);
         city.buildings.extend(part.buildings);
         city.structures.extend(part.structures);
         city.ways.extend(part.ways);
         city.areas.extend(part.areas);
     }
     lift(&mut city, doc.height_offset_m);
+    loader.note(index, without_height(&city));
+    // Levels of abstraction of one city end alike.
+    let extent = plate_extent(&city);
     let terrain = |xy: DVec2| ground.terrain.and_then(|t| t.surface_at(xy));
     let terrain: Option<&dyn Fn(DVec2) -> Option<f64>> = if ground.terrain.is_some() { Some(&terrain) } else { None };
     if doc.loa > 0 {
@@ -133,7 +138,7 @@ pub(super) fn layer(
     compact(&city).map_err(|e| loader.fail(index, "source", e))?;
     // Part 0 is what lies between buildings; bridges and trees follow the buildings.
     let buildings = (1..=city.buildings.len() as u32).collect();
-    let mut layer = mesh(city, &colors, terrain).map_err(|e| loader.fail(index, "source", e))?;
+    let mut layer = mesh(city, &colors, terrain, extent).map_err(|e| loader.fail(index, "source", e))?;
     layer.mesh = with_ambient_occlusion(loader, index, layer.mesh, style.ambient_occlusion, ground)?;
     if doc.rigid {
         layer.rigid = RigidParts::Only(buildings);
@@ -175,16 +180,34 @@ fn abstraction(
     Ok(City { areas, ..level.city })
 }
 
-/// A city as triangles, its buildings as parts; without terrain on a plate of its land cover.
+/// Pictures of faces count from `first` on.
+fn renumber(city: &mut City, first: u32) {
+    let faces = city.buildings.iter_mut().flat_map(|b| &mut b.faces);
+    let faces = faces.chain(city.structures.iter_mut().flat_map(|s| &mut s.faces));
+    faces.filter_map(|f| f.picture.as_mut()).for_each(|picture| picture.number += first);
+}
+
+/// Buildings whose height nothing tells, in words.
+fn without_height(city: &City) -> Vec<String> {
+    let (all, assumed) =
+        (city.buildings.len(), city.buildings.iter().filter(|b| b.height_source == HeightSource::Assumed).count());
+    let height = city.buildings.iter().find(|b| b.height_source == HeightSource::Assumed).map(|b| b.height_m);
+    height.map(|height| {
+        format!("{assumed} of {all} buildings have no height and are drawn {height} m high; give them an attribute height or levels")
+    }).into_iter().collect()
+}
+
+/// A city as triangles, its buildings as parts; without terrain on a plate of its land cover, as wide as `extent`.
 pub(super) fn mesh(
     mut city: City,
     colors: &CityColors,
     terrain: Option<&dyn Fn(DVec2) -> Option<f64>>,
+    extent: Option<[DVec2; 2]>,
 ) -> Result<MeshLayer, String> {
     let file = match terrain {
         Some(terrain) => surface(&city, colors, CityGround::Terrain(terrain)),
         None => {
-            let cover = plate_extent(&city).map(|extent| land_cover(&city.areas, extent));
+            let cover = extent.map(|extent| land_cover(&city.areas, extent));
             let LandCoverMap { areas, bare } = cover.unwrap_or_default();
             city.areas = areas;
             surface(&city, colors, CityGround::Plate(&bare))
@@ -193,7 +216,7 @@ pub(super) fn mesh(
     if file.triangles.is_empty() {
         return Err("it has no building or other surface to draw; ways alone are drawn by a line layer".into());
     }
-    let mesh = Mesh::textured(&file.positions, file.triangles, file.colors, file.parts, None);
+    let mesh = Mesh::textured(&file.positions, file.triangles, file.colors, file.parts, file.texturing);
     let mesh = mesh.map_err(|e| e.to_string())?;
     Ok(MeshLayer { names: file.names, ..MeshLayer::new(mesh, colors.wall) })
 }

@@ -1,0 +1,111 @@
+//! Pictures that the faces of city models wear: PNG and JPEG beside the model or below its folder.
+
+use crate::mesh::{neighbour, picture};
+use crate::{InputFile, Limits};
+use belvedere_scene::{City, CityFace, FacePicture, Texture, Wrap};
+use glam::Vec2;
+use std::collections::{BTreeMap, HashMap};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Names of pictures that are told in a warning.
+const TOLD: usize = 3;
+
+/// The pictures that a model names.
+#[derive(Debug, Default)]
+pub(super) struct PictureList {
+    named: Vec<(String, [Wrap; 2])>,
+    known: HashMap<(String, bool, bool), u32>,
+    /// Faces whose places in their picture do not fit their rings.
+    pub(super) odd: usize,
+}
+
+/// What lies beyond the edge of a picture, by the word of CityJSON and CityGML.
+pub(super) fn wrap(word: &str) -> Wrap {
+    match word.trim().to_ascii_lowercase().as_str() {
+        "mirror" => Wrap::Mirror,
+        "clamp" | "border" | "none" => Wrap::Clamp,
+        _ => Wrap::Repeat,
+    }
+}
+
+impl PictureList {
+    /// Number of a picture.
+    ///
+    /// * `name`: as the model says it, relative to it.
+    pub(super) fn number(&mut self, name: &str, wrap: Wrap) -> u32 {
+        let name = name.trim().replace('\\', "/").replace("%20", " ");
+        let key = (name.clone(), wrap == Wrap::Mirror, wrap == Wrap::Clamp);
+        *self.known.entry(key).or_insert_with(|| {
+            self.named.push((name, [wrap; 2]));
+            self.named.len() as u32 - 1
+        })
+    }
+
+    /// The picture of a face whose vertices lie at these places, v up; `None` where they do not fit the rings, which is counted.
+    pub(super) fn on(&mut self, number: u32, places: Vec<Vec<Vec2>>, face: &CityFace) -> Option<FacePicture> {
+        let fits = places.len() == face.rings.len()
+            && places.iter().zip(&face.rings).all(|(p, ring)| p.len() == ring.len())
+            && places.iter().flatten().all(|p| p.is_finite());
+        self.odd += usize::from(!fits);
+        let down = |ring: Vec<Vec2>| ring.into_iter().map(|p| Vec2::new(p.x, 1.0 - p.y)).collect();
+        fits.then(|| FacePicture { number, rings: places.into_iter().map(down).collect() })
+    }
+
+    /// Reads the pictures that the faces of a city wear; faces whose picture cannot be read wear none. Answers the files read and what
+    /// is missing.
+    pub(super) fn load(self, city: &mut City, path: &Path, limits: &Limits) -> (Vec<InputFile>, Vec<String>) {
+        let (mut files, mut warnings, mut room) = (Vec::new(), Vec::new(), limits.max_bytes);
+        let (mut read, mut missing) = (HashMap::<u32, Option<u32>>::new(), BTreeMap::<String, (String, usize)>::new());
+        let mut bare = 0;
+        let faces = city.buildings.iter_mut().flat_map(|b| &mut b.faces);
+        for face in faces.chain(city.structures.iter_mut().flat_map(|s| &mut s.faces)) {
+            let Some(worn) = &mut face.picture else { continue };
+            let number = *read.entry(worn.number).or_insert_with(|| {
+                let (name, wrap) = self.named.get(worn.number as usize)?;
+                match decoded(path, name, *wrap, room) {
+                    Ok((texture, file, bytes)) => {
+                        room = room.saturating_sub(bytes);
+                        files.push(file);
+                        city.pictures.push(Arc::new(texture));
+                        Some(city.pictures.len() as u32 - 1)
+                    }
+                    Err(e) => {
+                        missing.insert(name.clone(), (e, 0));
+                        None
+                    }
+                }
+            });
+            match number {
+                Some(number) => worn.number = number,
+                None => {
+                    bare += 1;
+                    face.picture = None;
+                }
+            }
+        }
+        if !missing.is_empty() {
+            let told: Vec<String> = missing.iter().take(TOLD).map(|(name, (e, _))| format!("{name:?}: {e}")).collect();
+            let more = if missing.len() > TOLD { format!(", and {} more", missing.len() - TOLD) } else { String::new() };
+            warnings.push(format!(
+                "{} of {} pictures cannot be read and {bare} faces go without ({}{more})",
+                missing.len(),
+                read.len(),
+                told.join("; ")
+            ));
+        }
+        if self.odd > 0 {
+            warnings.push(format!("{} faces go without their picture: its places do not fit their vertices", self.odd));
+        }
+        (files, warnings)
+    }
+}
+
+fn decoded(path: &Path, name: &str, wrap: [Wrap; 2], room: u64) -> Result<(Texture, InputFile, u64), String> {
+    let limits = Limits { max_bytes: room };
+    let (bytes, file) = neighbour(path, name, &limits)?;
+    let texture = picture::read(&bytes, wrap, &limits)?;
+    // With its coarser copies.
+    let held = 6 * (texture.width() * texture.height()) as u64;
+    Ok((texture, file, held))
+}
