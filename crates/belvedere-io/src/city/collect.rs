@@ -186,9 +186,9 @@ impl<'l> Collector<'l> {
 fn without_repeats(ring: &mut Vec<DVec3>, mut places: Vec<Vec2>) -> Vec<Vec2> {
     let mut keep: Vec<bool> = (0..ring.len()).map(|i| i == 0 || ring[i] != ring[i - 1]).collect();
     let first = ring.first().copied();
-    for i in (1..ring.len()).rev().take_while(|i| Some(ring[*i]) == first || !keep[*i]) {
-        keep[i] = false;
-    }
+    let closing = (1..ring.len()).rev().take_while(|i| Some(ring[*i]) == first || !keep[*i]).count();
+    let from = ring.len() - closing;
+    keep[from..].fill(false);
     let mut kept = keep.iter();
     ring.retain(|_| kept.next() == Some(&true));
     let mut kept = keep.iter();

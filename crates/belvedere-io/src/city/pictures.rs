@@ -106,6 +106,6 @@ fn decoded(path: &Path, name: &str, wrap: [Wrap; 2], room: u64) -> Result<(Textu
     let (bytes, file) = neighbour(path, name, &limits)?;
     let texture = picture::read(&bytes, wrap, &limits)?;
     // With its coarser copies.
-    let held = 6 * (texture.width() * texture.height()) as u64;
+    let held = 6 * texture.size().iter().product::<usize>() as u64;
     Ok((texture, file, held))
 }
