@@ -58,7 +58,8 @@ impl<'a> MeshTree<'a> {
 
     /// The tree over all triangles but those of some parts.
     pub fn without_parts(mesh: &'a Mesh, parts: &[u32]) -> Self {
-        let kept = (0..mesh.triangles().len()).filter(|&t| mesh.part(t).is_none_or(|part| !parts.contains(&part)));
+        let out: std::collections::HashSet<u32> = parts.iter().copied().collect();
+        let kept = (0..mesh.triangles().len()).filter(|&t| mesh.part(t).is_none_or(|part| !out.contains(&part)));
         Self::of(Cow::Borrowed(mesh), kept.map(|t| t as u32).collect(), [0.0; 2])
     }
 

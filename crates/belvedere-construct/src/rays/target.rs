@@ -16,7 +16,8 @@ pub struct Target {
     pub bounds: Aabb,
     /// Layers that are the target themselves, by their index: they do not hide it.
     pub own_layers: Vec<usize>,
-    /// Parts of a mesh, or boxes of a layer, that are the target themselves: the index of the layer, and their numbers.
+    /// Parts of a mesh, atoms of a molecule, or boxes of a layer, that are the target themselves: the index of the layer, and their
+    /// numbers, rising.
     pub own_parts: Option<(usize, Vec<u32>)>,
     /// The points are the middles of balls of this radius, scene units, and seen if the ball is; 0 for points of their own.
     pub radius: f64,
@@ -28,8 +29,8 @@ const MOST_BALLS: usize = 64;
 const SEEN: f64 = 0.5;
 
 impl Target {
-    /// A whole layer, by its index, as the paper's box: points all over its surface. `None` if the layer has no extent in space
-    /// of its own (terrain, areas) or holds nothing.
+    /// A whole layer, by its index, as the paper's box: points all over its surface; of a molecule with a selection of what must be
+    /// seen, the atoms of that. `None` if the layer has no extent in space of its own (terrain, areas) or holds nothing.
     pub fn layer(scene: &Scene, index: usize) -> Option<Self> {
         let layer = scene.layers.get(index)?;
         let bounds = layer.bounds();
@@ -42,6 +43,10 @@ impl Target {
                 Some(Self::points(l.features.iter().flat_map(|f| &f.points).map(|&p| p + l.lift_m * DVec3::Z)))
             }
             LayerKind::Point(l) => Some(Self::points(l.features.iter().map(|f| f.position + l.lift_m * DVec3::Z))),
+            LayerKind::Molecule(m) if m.wanted.is_some() => {
+                let mask = m.wanted.as_ref()?.mask(&m.molecule);
+                Self::atoms(scene, index, &(0..mask.len()).filter(|&i| mask[i]).collect::<Vec<_>>())
+            }
             LayerKind::Volume(layer) => {
                 let points = layer.visible_voxels(MOST_BALLS);
                 (!points.is_empty()).then(|| Self { own_layers: vec![index], ..Self::points(points) })
@@ -52,10 +57,12 @@ impl Target {
 
     /// Named parts of a mesh, or boxes of a layer, by their numbers, as the paper's box. `None` if there are none.
     pub fn parts(scene: &Scene, index: usize, parts: &[u32]) -> Option<Self> {
+        let mut parts = parts.to_vec();
+        parts.sort_unstable();
         let bounds = match &scene.layers.get(index)?.kind {
             LayerKind::Mesh(layer) => {
                 let mesh = &layer.mesh;
-                let is_own = |&t: &usize| mesh.part(t).is_some_and(|part| parts.contains(&part));
+                let is_own = |&t: &usize| mesh.part(t).is_some_and(|part| parts.binary_search(&part).is_ok());
                 Aabb::of((0..mesh.triangles().len()).filter(is_own).flat_map(|t| mesh.corners(t)))
             }
             LayerKind::Boxes(layer) => {
@@ -63,7 +70,24 @@ impl Target {
             }
             _ => return None,
         };
-        (!bounds.is_empty()).then(|| Self { own_parts: Some((index, parts.to_vec())), ..Self::around(bounds) })
+        (!bounds.is_empty()).then(|| Self { own_parts: Some((index, parts)), ..Self::around(bounds) })
+    }
+
+    /// Atoms of a molecule, by their numbers, as balls; those that are not drawn are left out. `None` if none is drawn.
+    pub fn atoms(scene: &Scene, index: usize, atoms: &[usize]) -> Option<Self> {
+        let LayerKind::Molecule(layer) = &scene.layers.get(index)?.kind else { return None };
+        let mesh = &layer.surface.mesh;
+        let mut drawn = vec![false; layer.molecule.atoms().len()];
+        for part in (0..mesh.triangles().len()).filter_map(|t| mesh.part(t)) {
+            drawn[part as usize] = true;
+        }
+        let mut own: Vec<usize> = atoms.iter().copied().filter(|&i| drawn.get(i) == Some(&true)).collect();
+        own.sort_unstable();
+        own.dedup();
+        let radius = |i: usize| layer.molecule.atoms()[i].element.van_der_waals_radius();
+        let balls = Self::balls(own.iter().map(|&i| (layer.center(i), radius(i))));
+        let numbers = own.iter().map(|&i| i as u32).collect();
+        (!own.is_empty()).then_some(Self { own_parts: Some((index, numbers)), ..balls })
     }
 
     /// What lies in a box.

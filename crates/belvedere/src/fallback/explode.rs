@@ -1,6 +1,6 @@
 //! Parts moved aside, each just as far as its image needs to leave that of the target.
 
-use super::occluders::{Extent, Part};
+use super::occluders::{Extent, Part, is_one_of};
 use belvedere_core::{DVec3, View};
 use belvedere_scene::{LayerKind, Scene, Unit};
 
@@ -58,7 +58,12 @@ pub(super) fn moved(scene: &Scene, moves: &[(&Part, DVec3)]) -> Scene {
         match &mut layer.kind {
             LayerKind::Boxes(b) => b.boxes.iter_mut().enumerate().for_each(|(k, b)| b.base += of(k)),
             LayerKind::Mesh(m) => m.mesh = m.mesh.moved(&|t| of(m.mesh.part(t).unwrap_or(0) as usize)),
-            LayerKind::Molecule(m) => m.surface.mesh = m.surface.mesh.moved(&|_| of(0)),
+            LayerKind::Molecule(m) => {
+                let spared = moves.iter().find(|(part, _)| part.layer == i).map_or(&[][..], |(part, _)| &part.spared);
+                let mesh = &m.surface.mesh;
+                let by = |t: usize| if is_one_of(spared, mesh.part(t)) { DVec3::ZERO } else { of(0) };
+                m.surface.mesh = mesh.moved(&by);
+            }
             _ => {}
         }
     }

@@ -29,6 +29,8 @@ const OPACITY: f32 = 0.3;
 const MARGIN_PX: f64 = 10.0;
 /// A target of which so much is seen needs no fallback.
 const ENOUGH: f64 = 0.99;
+/// Depths of the same thing in two pictures differ by less than this share of them.
+const SAME_DEPTH: f64 = 2e-4;
 const EDGE: [Color; 2] = [Color::rgb(255, 255, 255), Color::rgb(60, 60, 60)];
 
 /// How something gives the view free.
@@ -77,10 +79,14 @@ impl std::str::FromStr for Fallback {
 pub struct FallbackRecord {
     /// What is shown.
     pub target: String,
-    /// Share of its points with a free line of sight before, 0..=1.
+    /// Share of it that was seen before, 0..=1: of the pixels that it fills where it is drawn alone, those that show it. Of points
+    /// and lines the share with a free line of sight.
     pub visible_before: f64,
-    /// The same afterwards.
+    /// The same in the picture that was drawn.
     pub visible: f64,
+    /// Pixels that it fills where it is drawn alone; left out for points and lines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pixels_alone: Option<usize>,
     /// Layer by layer what was done.
     pub changed: Vec<FallbackChange>,
 }
@@ -222,7 +228,7 @@ pub fn plan(
     let scene = explode::moved(scene, &by);
     let open = occluders::without(&scene, &transparent.iter().chain(&cut).collect::<Vec<_>>());
     let visible = TargetSight::new(&open, target).share(view, 0.0);
-    let record = FallbackRecord { target: name.into(), visible_before: before, visible, changed };
+    let record = FallbackRecord { target: name.into(), visible_before: before, visible, pixels_alone: None, changed };
     Ok(FallbackPlan { scene, target: target.clone(), transparent, cut, moves, margin_px, record })
 }
 
@@ -263,7 +269,7 @@ impl FallbackPlan {
             let cut: Vec<&Part> = self.cut.iter().collect();
             let mut open = self.blended(&cut, view, draw)?;
             self.look_into_volumes(&mut open, view, draw)?;
-            let region = region::mask(view, &self.target, self.margin_px, [frame.width, frame.height]);
+            let region = self.region(view, draw, [frame.width, frame.height])?;
             let gone: Vec<bool> = (0..region.len()).map(|i| region[i] && open.color[i] != frame.color[i]).collect();
             for i in (0..region.len()).filter(|i| region[*i]) {
                 copy(&mut frame, &open, i);
@@ -290,6 +296,52 @@ impl FallbackPlan {
             }
         }
         Ok(frame)
+    }
+
+    /// What the picture shows of the target, by ids, and by depths where other things of its layer may hide it.
+    /// * `before`: the scene as it was; `frame`: the picture that [`FallbackPlan::draw`] made.
+    ///
+    /// # Errors
+    /// Those of `draw`.
+    pub fn measured(
+        &self,
+        view: &View,
+        (before, frame): (&Scene, &Frame),
+        draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
+    ) -> Result<FallbackRecord, BelvedereError> {
+        let Some(alone) = occluders::target_alone(&self.scene, &self.target) else { return Ok(self.record.clone()) };
+        let alone = draw(&alone, view)?;
+        let own: Vec<usize> = (0..alone.id.len()).filter(|&i| self.is_target(alone.id[i])).collect();
+        let share = |frame: &Frame| {
+            let is_seen = |i: &&usize| {
+                let (here, there) = (f64::from(frame.depth[**i]), f64::from(alone.depth[**i]));
+                let same_depth = self.target.own_parts.is_none() || (here - there).abs() <= SAME_DEPTH * there;
+                self.is_target(frame.id[**i]) && same_depth
+            };
+            own.iter().filter(is_seen).count() as f64 / own.len().max(1) as f64
+        };
+        let visible_before = share(&draw(before, view)?);
+        let (visible, pixels_alone) = (share(frame), Some(own.len()));
+        Ok(FallbackRecord { visible_before, visible, pixels_alone, ..self.record.clone() })
+    }
+
+    /// Whether an id of a picture is that of the target's layer.
+    fn is_target(&self, id: u32) -> bool {
+        let is = |layer: usize| id as usize == layer + 1;
+        self.target.own_layers.iter().any(|&layer| is(layer)) || self.target.own_parts.as_ref().is_some_and(|p| is(p.0))
+    }
+
+    /// Pixel by pixel whether a cutaway cuts there: around what atoms fill in the picture, else around the target's box or points.
+    fn region(
+        &self,
+        view: &View,
+        draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
+        size: [usize; 2],
+    ) -> Result<Vec<bool>, BelvedereError> {
+        let alone = occluders::target_alone(&self.scene, &self.target).filter(|_| self.target.radius > 0.0);
+        let Some(alone) = alone else { return Ok(region::mask(view, &self.target, self.margin_px, size)) };
+        let image: Vec<bool> = draw(&alone, view)?.id.iter().map(|id| self.is_target(*id)).collect();
+        Ok(region::around(&image, self.margin_px, size))
     }
 
     /// The scene without the parts of `gone`, the transparent ones blended over the rest.

@@ -2,6 +2,7 @@
 
 use belvedere_construct::rays::{Target, TargetSight};
 use belvedere_core::{Aabb, DVec2, DVec3, View};
+use belvedere_scene::molecule::MoleculeLayer;
 use belvedere_scene::{BoxLayer, BoxShape, Layer, LayerKind, Scene};
 
 /// Depths nearer than this many near distances of the camera count as its near plane.
@@ -16,6 +17,8 @@ pub(super) struct Part {
     pub(super) number: Option<usize>,
     /// Corners of a box around it, scene coordinates.
     pub(super) corners: Vec<DVec3>,
+    /// What of the layer is the target and stays as it is: atoms of a molecule, by their numbers, rising.
+    pub(super) spared: Vec<u32>,
 }
 
 /// An axis-parallel rectangle in the picture, pixels, and the depths of what it holds.
@@ -49,12 +52,18 @@ impl Extent {
 fn parts(scene: &Scene, index: usize, target: &Target) -> Vec<Part> {
     let layer = &scene.layers[index];
     let own = target.own_parts.as_ref().filter(|(layer, _)| *layer == index).map_or(&[][..], |(_, parts)| parts);
-    let whole = |bounds: Aabb| vec![Part { layer: index, number: None, corners: bounds.corners().to_vec() }];
+    let spared = Vec::new;
+    let whole =
+        |bounds: Aabb| vec![Part { layer: index, number: None, corners: bounds.corners().to_vec(), spared: spared() }];
     match &layer.kind {
         _ if target.own_layers.contains(&index) => Vec::new(),
         LayerKind::Boxes(b) => {
-            let part =
-                |(k, b): (usize, &BoxShape)| Part { layer: index, number: Some(k), corners: b.corners().to_vec() };
+            let part = |(k, b): (usize, &BoxShape)| Part {
+                layer: index,
+                number: Some(k),
+                corners: b.corners().to_vec(),
+                spared: spared(),
+            };
             b.boxes.iter().enumerate().filter(|(k, _)| !own.contains(&(*k as u32))).map(part).collect()
         }
         LayerKind::Mesh(m) if m.mesh.part(0).is_some() => {
@@ -64,13 +73,58 @@ fn parts(scene: &Scene, index: usize, target: &Target) -> Vec<Part> {
                 let of = bounds.entry(part).or_insert(Aabb::EMPTY);
                 *of = of.union(Aabb::of(m.mesh.corners(t)));
             }
-            let part =
-                |(k, b): (u32, Aabb)| Part { layer: index, number: Some(k as usize), corners: b.corners().to_vec() };
+            let part = |(k, b): (u32, Aabb)| Part {
+                layer: index,
+                number: Some(k as usize),
+                corners: b.corners().to_vec(),
+                spared: spared(),
+            };
             bounds.into_iter().map(part).collect()
+        }
+        LayerKind::Molecule(m) if !own.is_empty() => {
+            let mesh = &m.surface.mesh;
+            let others = (0..mesh.triangles().len()).filter(|&t| !is_one_of(own, mesh.part(t)));
+            let rest = Aabb::of(others.flat_map(|t| mesh.corners(t)));
+            let part = |b: Aabb| Part { spared: own.to_vec(), ..whole(b).remove(0) };
+            Some(rest).filter(|b| !b.is_empty()).map(part).into_iter().collect()
         }
         LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) => Vec::new(),
         _ => Some(layer.bounds()).filter(|b| !b.is_empty()).map_or_else(Vec::new, whole),
     }
+}
+
+/// Whether a triangle's part is among numbers, which rise.
+pub(super) fn is_one_of(numbers: &[u32], part: Option<u32>) -> bool {
+    part.is_some_and(|part| numbers.binary_search(&part).is_ok())
+}
+
+/// The scene with the target alone; `None` for points and lines, which have no surface of their own.
+pub(super) fn target_alone(scene: &Scene, target: &Target) -> Option<Scene> {
+    if target.own_layers.is_empty() && target.own_parts.is_none() {
+        return None;
+    }
+    let own = target.own_parts.as_ref();
+    Some(filtered(scene, &|i| {
+        let mut kind = scene.layers[i].kind.clone();
+        if target.own_layers.contains(&i) {
+            return Some(kind);
+        }
+        let (_, numbers) = own.filter(|(layer, _)| *layer == i)?;
+        match &mut kind {
+            LayerKind::Boxes(b) => {
+                b.boxes = numbers.iter().filter_map(|&k| b.boxes.get(k as usize).copied()).collect();
+            }
+            LayerKind::Mesh(m) => m.mesh = m.mesh.only(&|t| is_one_of(numbers, m.mesh.part(t))),
+            LayerKind::Molecule(m) => keep_atoms(m, numbers),
+            _ => {}
+        }
+        Some(kind)
+    }))
+}
+
+fn keep_atoms(layer: &mut MoleculeLayer, atoms: &[u32]) {
+    let mesh = &layer.surface.mesh;
+    layer.surface.mesh = mesh.only(&|t| is_one_of(atoms, mesh.part(t)));
 }
 
 /// The parts of the layers that stand in the way of lines of sight to `target`, each judged as if it were alone.
@@ -124,10 +178,16 @@ fn only(layer: &Layer, number: Option<usize>) -> LayerKind {
 pub(super) fn without(scene: &Scene, parts: &[&Part]) -> Scene {
     filtered(scene, &|i| {
         let gone: Vec<Option<usize>> = parts.iter().filter(|p| p.layer == i).map(|p| p.number).collect();
-        if gone.contains(&None) {
-            return None;
-        }
         let mut kind = scene.layers[i].kind.clone();
+        if let Some(whole) = parts.iter().find(|p| p.layer == i && p.number.is_none()) {
+            return match &mut kind {
+                LayerKind::Molecule(m) if !whole.spared.is_empty() => {
+                    keep_atoms(m, &whole.spared);
+                    Some(kind)
+                }
+                _ => None,
+            };
+        }
         let stays = |k: usize| !gone.contains(&Some(k));
         match &mut kind {
             LayerKind::Boxes(b) if !gone.is_empty() => {

@@ -5,7 +5,7 @@ use belvedere_core::{DVec2, DVec3, View};
 
 /// Pixel by pixel whether it lies in the region.
 pub(super) fn mask(view: &View, target: &Target, margin_px: f64, [width, height]: [usize; 2]) -> Vec<bool> {
-    let solid = !target.own_layers.is_empty() || target.own_parts.is_some();
+    let solid = target.radius == 0.0 && (!target.own_layers.is_empty() || target.own_parts.is_some());
     let image = |p: &DVec3| view.project(*p).ok().filter(|i| i.depth >= view.pinhole().near).map(|i| i.pixel);
     let shapes: Vec<(Vec<DVec2>, f64)> = if solid {
         vec![(hull(target.bounds.corners().iter().filter_map(image).collect()), margin_px)]
@@ -23,6 +23,29 @@ pub(super) fn mask(view: &View, target: &Target, margin_px: f64, [width, height]
         for y in low.y.max(0.0) as usize..(high.y.max(0.0).ceil() as usize).min(height) {
             for x in low.x.max(0.0) as usize..(high.x.max(0.0).ceil() as usize).min(width) {
                 out[y * width + x] |= distance(shape, DVec2::new(x as f64 + 0.5, y as f64 + 0.5)) <= *margin;
+            }
+        }
+    }
+    out
+}
+
+/// Pixel by pixel whether it lies in an image, or at most `margin_px` from it.
+pub(super) fn around(image: &[bool], margin_px: f64, [width, height]: [usize; 2]) -> Vec<bool> {
+    let mut out = image.to_vec();
+    let reach = margin_px.floor() as isize;
+    let at = |x: isize, y: isize| {
+        let inside = (0..width as isize).contains(&x) && (0..height as isize).contains(&y);
+        inside.then(|| y as usize * width + x as usize)
+    };
+    for i in (0..image.len()).filter(|i| image[*i]) {
+        let (x, y) = ((i % width) as isize, (i / width) as isize);
+        let beside = [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)];
+        if beside.into_iter().filter_map(|(x, y)| at(x, y)).all(|k| image[k]) {
+            continue;
+        }
+        for (dx, dy) in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy))) {
+            if let Some(k) = at(x + dx, y + dy).filter(|_| ((dx * dx + dy * dy) as f64).sqrt() <= margin_px) {
+                out[k] = true;
             }
         }
     }

@@ -67,7 +67,7 @@ fn whatever_gives_way_the_target_is_seen_and_only_what_hides_it_gives_way() {
 }
 
 fn whole(layer: usize) -> Part {
-    Part { layer, number: None, corners: Vec::new() }
+    Part { layer, number: None, corners: Vec::new(), spared: Vec::new() }
 }
 
 #[test]

@@ -107,6 +107,8 @@ pub(crate) fn draw_view(
         Ok::<_, BelvedereError>(request.renderer.of(session).render(&job)?)
     };
     let mut frame = plan.as_ref().map_or_else(|| draw(scene, &view), |plan| plan.draw(&view, &draw))?;
+    // Measured before other pictures are laid over it.
+    let fallback = plan.as_ref().map(|plan| plan.measured(&view, (session.scene(), &frame), &draw)).transpose()?;
     if let Some(covered) =
         session.terrain_report().map(|r| &r.covered[..]).filter(|c| !c.is_empty() && !request.straight)
         && let Some(cut) = thin::cut(scene, &view, covered)?
@@ -171,7 +173,6 @@ pub(crate) fn draw_view(
         highlight,
         camera: None,
     };
-    let fallback = plan.map(|plan| plan.record);
     Ok(Drawn { view, frame, straight: straight.filter(|_| request.compare), overlay, displacement, fallback })
 }
 

@@ -207,24 +207,21 @@ pub(crate) fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError>
     if let Some(target) = part(scene, see) {
         return Ok(target);
     }
-    let molecules = scene.layers.iter().filter_map(|l| match &l.kind {
-        LayerKind::Molecule(m) => Some(m),
+    let molecules = scene.layers.iter().enumerate().filter_map(|(index, l)| match &l.kind {
+        LayerKind::Molecule(m) => Some((index, m)),
         _ => None,
     });
     let mut complaint = None;
-    for layer in molecules {
+    for (index, layer) in molecules {
         match Selection::parse(see) {
             Ok(selection) => {
                 let mask = selection.mask(&layer.molecule);
                 let atoms: Vec<usize> = (0..mask.len()).filter(|i| mask[*i]).collect();
-                if !atoms.is_empty() {
-                    return Ok(Target::balls(
-                        atoms
-                            .iter()
-                            .map(|&i| (layer.center(i), layer.molecule.atoms()[i].element.van_der_waals_radius())),
-                    ));
+                if let Some(target) = Target::atoms(scene, index, &atoms) {
+                    return Ok(target);
                 }
-                complaint = Some(format!("no atom is meant by \"{see}\""));
+                let what = if atoms.is_empty() { "no atom is meant by" } else { "no atom is drawn of those meant by" };
+                complaint = Some(format!("{what} \"{see}\""));
             }
             Err(e) => complaint = Some(e.to_string()),
         }
