@@ -100,7 +100,8 @@ pub struct TrackingReport {
 /// The camera of a frame that keeps `target` in sight.
 ///
 /// * `base`: the camera, with other stages but curved rays if need be;
-/// * `time_step_s`: seconds since the frame before; `None` for a picture of its own, which takes the goal at once.
+/// * `time_step_s`: seconds since the frame before; `None` for a picture of its own, which takes the goal at once, as the first
+///   frame of a film does.
 ///
 /// # Errors
 /// [`ConstructError::Parameter`], [`ConstructError::Rays`].
@@ -118,7 +119,9 @@ pub fn track_target(
     let straight = search.share(0.0, 0.0);
     let goal = search.goal(memory, time_step_s);
     let before = memory.f;
-    memory.f = match time_step_s {
+    // A film begins where its first frame wants to be.
+    let is_first = memory.right.is_none();
+    memory.f = match time_step_s.filter(|_| !is_first) {
         Some(dt) => before + (goal - before).clamp(-options.cap_per_s * dt, options.cap_per_s * dt),
         None => goal,
     };

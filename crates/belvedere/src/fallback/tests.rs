@@ -3,7 +3,10 @@
 use super::*;
 use belvedere_core::Projection;
 use belvedere_cpu::{CpuRenderer, ExactRenderer};
-use belvedere_scene::{Aux, BoxLayer, BoxShape, Light, Progress, RenderJob, RenderOptions, Renderer};
+use belvedere_scene::molecule::{
+    Atom, Element, ModelTransform, Molecule, MoleculeLayer, MoleculeStyle, Representation, Residue,
+};
+use belvedere_scene::{Aux, BoxLayer, BoxShape, Light, Progress, RenderJob, RenderOptions, Renderer, Unit};
 
 /// Five boxes side by side before the eye, a block behind their middle, and two boxes that hide nothing.
 fn scene() -> Scene {
@@ -136,4 +139,46 @@ fn rules_that_cannot_be_followed_say_why() {
     assert!(
         possible(&LayerKind::Line(belvedere_scene::LineLayer::new(vec![], EDGE[0])), FallbackKind::Cutaway).is_err()
     );
+}
+
+/// An atom of oxygen, alone in its residue, in the middle of a ball of carbon atoms that hides it from all sides.
+fn molecule() -> Scene {
+    let residue = |name: &str, number| Residue { name: name.into(), number, chain: "A".into(), ..Residue::default() };
+    let atom =
+        |serial, element, residue, position| Atom { serial, name: format!("X{serial}"), element, residue, position };
+    let middle = DVec3::new(0.0, 40.0, 0.0);
+    let around = (0..400).map(|k| {
+        let z = 1.0 - (2.0 * f64::from(k) + 1.0) / 400.0;
+        let (sin, cos) = (2.399_963 * f64::from(k)).sin_cos();
+        middle + 7.0 * DVec3::new((1.0 - z * z).sqrt() * cos, (1.0 - z * z).sqrt() * sin, z)
+    });
+    let mut atoms = vec![atom(0, Element::O, 0, middle)];
+    atoms.extend(around.enumerate().map(|(k, p)| atom(k as i64 + 1, Element::C, 1, p)));
+    let molecule = Molecule::new(atoms, vec![residue("COR", 1), residue("SHL", 2)], &[]).unwrap();
+    let style = MoleculeStyle { representation: Representation::SpaceFilling, ..MoleculeStyle::default() };
+    let layer = MoleculeLayer::new(molecule, &style, ModelTransform::default()).unwrap();
+    Scene { unit: Unit::Angstrom, ..Scene::default() }.with_layer("ball", LayerKind::Molecule(Box::new(layer)))
+}
+
+#[test]
+fn atoms_of_a_molecule_are_spared_by_what_shows_them_and_measured_in_the_picture() {
+    let scene = molecule();
+    let target = Target::atoms(&scene, 0, &[0]).unwrap();
+    for rule in ["transparency", "cutaway", "explosion"] {
+        let plan = plan(&scene, &view(), ("COR", &target), &[rule.parse().unwrap()]).unwrap();
+        assert_eq!(plan.record.changed.len(), 1, "{rule}: {:?}", plan.record);
+        for renderer in [&CpuRenderer::default() as &dyn Renderer, &ExactRenderer] {
+            let draw = |scene: &Scene, view: &View| by(renderer, scene, view);
+            let frame = plan.draw(&view(), &draw).unwrap();
+            let record = plan.measured(&view(), (&scene, &frame), &draw).unwrap();
+            assert!(record.pixels_alone > Some(50), "{rule}: {record:?}");
+            assert!(record.visible_before == 0.0 && record.visible >= 0.99, "{rule}: {record:?}");
+            // Oxygen is red, carbon grey: the colours say the same.
+            let [r, g, _] = frame.color[60 * 180 + 90];
+            assert!(r > g + 40, "{rule}: {r} {g}");
+            // A picture that does not show the target is not said to.
+            let full = by(renderer, &scene, &view()).unwrap();
+            assert_eq!(plan.measured(&view(), (&scene, &full), &draw).unwrap().visible, 0.0, "{rule}");
+        }
+    }
 }

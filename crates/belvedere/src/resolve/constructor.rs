@@ -5,7 +5,7 @@ use super::{centreline, path};
 use crate::BelvedereError;
 use crate::bodies::refusal;
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{self, ConstructorDoc, ConstructorKind, SourceDocument, StageDoc};
+use crate::scene_file::{ConstructorDoc, ConstructorKind, SourceDocument, StageDoc};
 use crate::verbs::reveal_target;
 use belvedere_construct::ConstructError;
 use belvedere_construct::centreline::CentrelineReport;
@@ -274,17 +274,10 @@ pub(crate) fn path_length(
     }
 }
 
-/// What is to be kept in view: a layer, or a part of one.
+/// What is to be kept in view: a layer, a part or box of one, atoms, or a point.
 fn target(source: &SourceDocument, scene: &Scene, id: &str) -> Result<Target, BelvedereError> {
-    let fail = |reason: String| source.error(&["constructor", "target"], format!("constructor: {reason}"));
-    let ids: Vec<&str> = scene.layers.iter().map(|l| l.id.as_str()).collect();
-    let Some(index) = ids.iter().position(|other| *other == id) else {
-        return reveal_target::part(scene, id).ok_or_else(|| {
-            let near = scene_file::suggestion(id, &ids);
-            fail(format!("target \"{id}\" is no layer of the scene, no part of a mesh and no box LAYER/NUMBER; {near}"))
-        });
-    };
-    Target::layer(scene, index).ok_or_else(|| {
-        fail(format!("layer \"{id}\" cannot be tracked: it is ground, an area, or holds nothing; name something that stands on it"))
+    reveal_target::target(scene, id).map_err(|e| {
+        let hint = if scene.layers.iter().any(|l| l.id == id) { "; name something that stands on it" } else { "" };
+        source.error(&["constructor", "target"], format!("constructor: target: {e}{hint}"))
     })
 }
