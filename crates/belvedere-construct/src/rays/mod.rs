@@ -4,6 +4,7 @@
 //! in place of boxes in the image, bends in any direction, and the search for the smallest bend that shows a target are ours.
 
 mod around;
+mod film;
 mod path;
 mod preview;
 mod probe;
@@ -13,6 +14,7 @@ mod tracking;
 mod turns;
 
 pub use around::{AroundOptions, BendFound, BendReport, bend_around};
+pub use film::{FilmPlanner, PlannedBend};
 pub use preview::{Lens, PathPreview, PreviewReport, Previewed};
 pub use probe::{ProbeMemory, ProbeOptions, ProbeReport, Probed, auto_probe};
 pub use sidestep::Sidestep;

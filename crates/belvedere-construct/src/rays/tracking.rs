@@ -4,14 +4,15 @@
 //! speed. The paper compares boxes in the image; here lines of sight to points of the target's box decide, for boxes of walls and
 //! ground hide everything. Planes, steps and speeds are not given by the paper: ours.
 
-use super::{Sidestep, Target, TargetSight};
+use super::film::DIRECTIONS_DEG;
+use super::{PlannedBend, Sidestep, Target, TargetSight};
 use crate::ConstructError;
 use belvedere_core::{DVec3, View};
 use belvedere_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// Shares from here on count as the whole target.
-const WHOLE: f64 = 0.999;
+pub(super) const WHOLE: f64 = 0.999;
 /// A target must have been clear, with twice the margin, for so long before the rays straighten again, seconds.
 const CLEAR_FOR_S: f64 = 0.25;
 /// Where the whole target cannot be shown, so much more of it is worth bending for.
@@ -39,7 +40,7 @@ impl Default for TrackingOptions {
 }
 
 impl TrackingOptions {
-    fn check(&self) -> Result<(), ConstructError> {
+    pub(super) fn check(&self) -> Result<(), ConstructError> {
         let parameters = [
             ("z0", self.z0.unwrap_or(1.0), f64::INFINITY, "be a number greater than 0"),
             ("a", self.a.unwrap_or(1.0), f64::INFINITY, "be a number greater than 0"),
@@ -71,6 +72,21 @@ pub struct TrackingMemory {
     clear_s: f64,
     /// The direction of f, of the frame before.
     right: Option<DVec3>,
+    /// Direction of f > 0 across the view, degrees from the right of the picture upwards.
+    direction_deg: f64,
+    /// What a plan says of the next frame.
+    planned: Option<PlannedBend>,
+}
+
+impl TrackingMemory {
+    /// The next frame takes this bend; searches for one of its own if there is none.
+    pub fn follow(&mut self, bend: Option<PlannedBend>) {
+        self.planned = bend;
+    }
+
+    pub(super) fn keep_side(&mut self, right: DVec3) {
+        self.right = Some(right);
+    }
 }
 
 /// The camera of one frame.
@@ -89,6 +105,9 @@ pub struct TrackingReport {
     pub f: f64,
     /// Where it goes to.
     pub goal: f64,
+    /// Direction of f > 0 across the view, degrees from the right of the picture upwards; 0 unless only that shows the target.
+    #[serde(default)]
+    pub direction_deg: f64,
     /// Share of the target that straight rays show.
     pub visible_straight: f64,
     /// Share that the picture shows.
@@ -117,11 +136,23 @@ pub fn track_target(
     let sight = TargetSight::new(scene, target);
     let mut search = Search::new(base, target, options, &sight, memory);
     let straight = search.share(0.0, 0.0);
-    let goal = search.goal(memory, time_step_s);
+    let planned = memory.planned.take();
+    let goal = match planned {
+        Some(bend) => {
+            search.direction_deg = bend.direction_deg;
+            bend.f
+        }
+        None => {
+            let goal = search.goal(memory, time_step_s);
+            let may_turn = memory.f == 0.0 || time_step_s.is_none();
+            if may_turn { search.in_other_directions(goal) } else { goal }
+        }
+    };
+    memory.direction_deg = search.direction_deg;
     let before = memory.f;
     // A film begins where its first frame wants to be.
     let is_first = memory.right.is_none();
-    memory.f = match time_step_s.filter(|_| !is_first) {
+    memory.f = match time_step_s.filter(|_| !is_first && planned.is_none()) {
         Some(dt) => before + (goal - before).clamp(-options.cap_per_s * dt, options.cap_per_s * dt),
         None => goal,
     };
@@ -131,12 +162,14 @@ pub fn track_target(
     (memory.goal, memory.right) = (goal, Some(search.right));
     let view = search.view(memory.f)?;
     let visible = search.share(memory.f, 0.0);
-    let report = TrackingReport { f: memory.f, goal, visible_straight: straight, visible, tried: search.tried };
+    let direction_deg = search.direction_deg;
+    let report =
+        TrackingReport { f: memory.f, goal, direction_deg, visible_straight: straight, visible, tried: search.tried };
     Ok(Tracked { view, report })
 }
 
 /// The cameras of one frame.
-struct Search<'a> {
+pub(super) struct Search<'a> {
     base: &'a View,
     sight: &'a TargetSight<'a>,
     options: &'a TrackingOptions,
@@ -145,11 +178,12 @@ struct Search<'a> {
     reach: f64,
     /// `None`: the target is so near that there is no room for a bend.
     planes: Option<[f64; 3]>,
+    direction_deg: f64,
     tried: usize,
 }
 
 impl<'a> Search<'a> {
-    fn new(
+    pub(super) fn new(
         base: &'a View,
         target: &Target,
         options: &'a TrackingOptions,
@@ -164,20 +198,55 @@ impl<'a> Search<'a> {
         // Passing overhead turns the camera's right round; the viewpoint stays on its side.
         let turned = memory.right.is_some_and(|before| before.dot(pinhole.right) < 0.0);
         let right = if turned { -pinhole.right } else { pinhole.right };
-        Self { base, sight, options, right, reach: options.a.unwrap_or(0.5 * depth), planes, tried: 0 }
+        let direction_deg = if memory.f == 0.0 { DIRECTIONS_DEG[0] } else { memory.direction_deg };
+        let reach = options.a.unwrap_or(0.5 * depth);
+        Self { base, sight, options, right, reach, planes, direction_deg, tried: 0 }
+    }
+
+    pub(super) fn right(&self) -> DVec3 {
+        self.right
     }
 
     fn view(&self, f: f64) -> Result<View, ConstructError> {
+        self.view_in(f, self.direction_deg)
+    }
+
+    fn view_in(&self, f: f64, direction_deg: f64) -> Result<View, ConstructError> {
+        let (sin, cos) = direction_deg.to_radians().sin_cos();
+        let across = if direction_deg == 0.0 { self.right } else { cos * self.right - sin * self.base.pinhole().down };
         match self.planes {
-            Some(planes) if f != 0.0 => Sidestep { offset: f * self.reach * self.right, planes }.view(self.base),
+            Some(planes) if f != 0.0 => Sidestep { offset: f * self.reach * across, planes }.view(self.base),
             _ => Ok(self.base.clone()),
         }
+    }
+
+    /// Share of the target that is seen with f in a direction, degrees; nothing through a camera that is not possible.
+    pub(super) fn seen(&self, (f, direction_deg): (f64, f64), grow_px: f64) -> f64 {
+        self.view_in(f, direction_deg).map_or(0.0, |view| self.sight.share(&view, grow_px))
+    }
+
+    /// `goal`, or where going sideways does not show the whole target, where going up or aslant shows more.
+    fn in_other_directions(&mut self, goal: f64) -> f64 {
+        let mut best = (self.share(goal, 0.0), goal, self.direction_deg);
+        for direction in DIRECTIONS_DEG {
+            if best.0 >= WHOLE || self.planes.is_none() {
+                break;
+            }
+            self.direction_deg = direction;
+            let f = self.nearest(0.0, 1.0);
+            let share = self.share(f, 0.0);
+            if share > best.0 + WORTH {
+                best = (share, f, direction);
+            }
+        }
+        self.direction_deg = best.2;
+        best.1
     }
 
     /// Share of the target that is seen; nothing through a camera that is not possible.
     fn share(&mut self, f: f64, grow_px: f64) -> f64 {
         self.tried += 1;
-        self.view(f).map_or(0.0, |view| self.sight.share(&view, grow_px))
+        self.seen((f, self.direction_deg), grow_px)
     }
 
     /// Where f should go: to 0 where straight rays show the target; nowhere where the present ones do; else to the nearest camera

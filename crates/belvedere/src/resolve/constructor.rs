@@ -10,8 +10,8 @@ use crate::verbs::reveal_target;
 use belvedere_construct::ConstructError;
 use belvedere_construct::centreline::CentrelineReport;
 use belvedere_construct::rays::{
-    Lens, PathPreview, PreviewReport, ProbeMemory, ProbeOptions, ProbeReport, Target, TrackingMemory, TrackingOptions,
-    TrackingReport, auto_probe, track_target,
+    FilmPlanner, Lens, PathPreview, PreviewReport, ProbeMemory, ProbeOptions, ProbeReport, Target, TrackingMemory,
+    TrackingOptions, TrackingReport, auto_probe, track_target,
 };
 use belvedere_core::{EarthCurvature, Stage, View};
 use belvedere_disocclusion::TerrainMemory;
@@ -151,6 +151,20 @@ pub(super) fn construct(
         let probed = probed.map_err(|e| fail(source, e))?;
         return Ok((probed.view, Some(ConstructorReport::AutoProbe(probed.report))));
     }
+    let (options, target) = tracking(source, doc, scene, &base)?;
+    let memory = &mut solving.memory.tracking;
+    let tracked = track_target(scene, &base, &target, &options, solving.time_step_s, memory);
+    let tracked = tracked.map_err(|e| fail(source, e))?;
+    Ok((tracked.view, Some(ConstructorReport::TargetTracking(tracked.report))))
+}
+
+/// How a document's target is tracked, and what that is.
+fn tracking(
+    source: &SourceDocument,
+    doc: &ConstructorDoc,
+    scene: &Scene,
+    base: &View,
+) -> Result<(TrackingOptions, Target), BelvedereError> {
     let usual = TrackingOptions::default();
     let options = TrackingOptions {
         z0: doc.z0,
@@ -159,11 +173,35 @@ pub(super) fn construct(
         cap_per_s: doc.cap_per_s.unwrap_or(usual.cap_per_s),
         grow_px: doc.grow_px.unwrap_or(usual.grow_px * f64::from(base.pinhole().image[1]) / 720.0),
     };
-    let target = target(source, scene, doc.target.as_deref().unwrap_or_default())?;
-    let memory = &mut solving.memory.tracking;
-    let tracked = track_target(scene, &base, &target, &options, solving.time_step_s, memory);
-    let tracked = tracked.map_err(|e| fail(source, e))?;
-    Ok((tracked.view, Some(ConstructorReport::TargetTracking(tracked.report))))
+    Ok((options, target(source, scene, doc.target.as_deref().unwrap_or_default())?))
+}
+
+/// Takes a frame of a film into the plan of its target tracking; `base` is the view without the turns of that. Nothing happens for
+/// other constructors, and where [`construct`] refuses the view.
+pub(crate) fn plan_frame(
+    source: &SourceDocument,
+    scene: &Scene,
+    base: &View,
+    time_step_s: f64,
+    (sideways, planner): (bool, &mut Option<FilmPlanner>),
+) -> Result<(), BelvedereError> {
+    let Some(doc) = stated(source).filter(|doc| doc.kind == ConstructorKind::TargetTracking) else { return Ok(()) };
+    if refusal("the constructor", scene, base).is_some() {
+        return Ok(());
+    }
+    let (options, target) = tracking(source, doc, scene, base)?;
+    if planner.is_none() {
+        *planner = Some(FilmPlanner::new(options, time_step_s, sideways).map_err(|e| fail(source, e))?);
+    }
+    if let Some(planner) = planner {
+        planner.add(scene, base, &target);
+    }
+    Ok(())
+}
+
+/// Whether a document tracks a target.
+pub(crate) fn tracks_target(source: &SourceDocument) -> bool {
+    stated(source).is_some_and(|doc| doc.kind == ConstructorKind::TargetTracking)
 }
 
 fn fail(source: &SourceDocument, e: ConstructError) -> BelvedereError {

@@ -2,6 +2,7 @@
 
 mod film;
 mod manifest;
+mod tracking;
 
 pub use film::Film;
 pub use manifest::{FrameRecord, FrameTerrain, Manifest, Settings, frame_name};
@@ -164,10 +165,12 @@ fn draw_missing(
     let work: Vec<usize> = if solves { (0..last).collect() } else { missing.clone() };
     let quiet = progress.unheard();
     let mut memory = Memory::default();
+    let bends = if work.is_empty() { Vec::new() } else { tracking::plan(session, path, progress)? };
     let started = Instant::now();
     for (step, &frame) in work.iter().enumerate() {
         let share = manifest.done as f64 / path.len() as f64;
         progress.tick(&remaining(frame, path.len(), step, work.len(), started), share)?;
+        memory.tracking.follow(bends.get(frame).copied());
         let mut solving = Solving { memory: &mut memory, time_step_s: Some(1.0 / path.fps), progress: &quiet };
         let session = path.session(session, frame, solved.then_some(&mut solving))?;
         if manifest.frames[frame].is_some() {

@@ -1,0 +1,45 @@
+//! The bends that keep a target in sight, planned over all frames of a film before the first is drawn.
+
+use crate::camera_path::CameraPath;
+use crate::resolve::constructor;
+use crate::{BelvedereError, Session};
+use belvedere_construct::rays::{FilmPlanner, PlannedBend};
+use belvedere_scene::Progress;
+
+/// The bend of every frame: to the left and right where that shows the whole target throughout, else up and aslant as well.
+/// Empty without target tracking.
+pub(super) fn plan(
+    session: &Session,
+    path: &CameraPath,
+    progress: &Progress,
+) -> Result<Vec<PlannedBend>, BelvedereError> {
+    if !session.description.as_ref().is_some_and(|d| constructor::tracks_target(&d.source)) {
+        return Ok(Vec::new());
+    }
+    let mut planner = None;
+    for sideways in [true, false] {
+        planner = pass(session, path, sideways, progress)?;
+        if !planner.as_ref().is_some_and(FilmPlanner::hides) {
+            break;
+        }
+    }
+    Ok(planner.map_or_else(Vec::new, FilmPlanner::finish))
+}
+
+fn pass(
+    session: &Session,
+    path: &CameraPath,
+    sideways: bool,
+    progress: &Progress,
+) -> Result<Option<FilmPlanner>, BelvedereError> {
+    let mut planner = None;
+    for frame in 0..path.len() {
+        progress.tick("planning how the target stays in sight", frame as f64 / path.len() as f64)?;
+        let framed = path.session(session, frame, None)?;
+        if let Some(description) = &framed.description {
+            let (scene, base) = (framed.scene(), framed.view());
+            constructor::plan_frame(&description.source, scene, base, 1.0 / path.fps, (sideways, &mut planner))?;
+        }
+    }
+    Ok(planner)
+}
