@@ -284,6 +284,21 @@ impl FallbackPlan {
                 canvas.disc(at, 0.9 * scale, EDGE[1]);
             }
         }
+        if !self.moves.is_empty() {
+            self.draw_leaders(&mut frame, view, draw)?;
+        }
+        Ok(frame)
+    }
+
+    /// Lines from where parts were to where they are now, behind the target.
+    fn draw_leaders(
+        &self,
+        frame: &mut Frame,
+        view: &View,
+        draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
+    ) -> Result<(), BelvedereError> {
+        let region = self.region(view, draw, [frame.width, frame.height])?;
+        let bare = frame.color.clone();
         let mut canvas = Canvas::new(&mut frame.color, frame.width);
         let scale = (canvas.size().y / 720.0).max(0.4);
         for (width, color) in [3.2, 1.4].into_iter().zip(EDGE) {
@@ -295,7 +310,10 @@ impl FallbackPlan {
                 }
             }
         }
-        Ok(frame)
+        for i in (0..bare.len()).filter(|&i| region[i] && self.is_target(frame.id[i])) {
+            frame.color[i] = bare[i];
+        }
+        Ok(())
     }
 
     /// What the picture shows of the target, by ids, and by depths where other things of its layer may hide it.

@@ -23,8 +23,8 @@ pub enum ConstructorKind {
 pub struct ConstructorDoc {
     /// Which one.
     pub kind: ConstructorKind,
-    /// What to keep in view: the id of a layer, the name of a part of a mesh, or `LAYER/NUMBER`, a box of a layer, the first being 1; of
-    /// a fallback also atoms, or a point `x,y,z`.
+    /// What to keep in view: the id of a layer, the name of a part of a mesh, or `LAYER/NUMBER`, a box of a layer, the first being 1;
+    /// atoms, such as `chain B`; or a point `x,y,z`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<String>,
     /// What shows the target where no bend does, or always with kind `manual`: `transparency`, `cutaway` or `explosion` of all that
