@@ -80,6 +80,9 @@ pub struct PreviewReport {
     pub position_m: f64,
     /// Length of the path that is followed from there, scene units: less than wanted where more turns would not fit.
     pub reach_m: f64,
+    /// Length that was asked for, as far as the path goes, scene units.
+    #[serde(default)]
+    pub wanted_m: f64,
     /// Turns of the rays.
     pub turns: usize,
     /// Largest distance of the path from the simplified one, scene units.
@@ -241,13 +244,15 @@ impl PathPreview {
             });
             count -= usize::from(found.is_none());
         }
-        let reach = match legs.turns.get(count) {
+        let wanted_m = self.wanted(position);
+        let reach_m = match legs.turns.get(count) {
             Some(turn) => turn.s - position,
-            None => self.wanted(position),
+            None => wanted_m,
         };
         let root = found.as_ref().map_or(root, |rays| rays.root().clone());
         let stages = found.map(Stage::CurvedRays).into_iter().collect();
-        let report = PreviewReport { position_m: position, reach_m: reach, turns: count, tolerance_m: self.tolerance };
+        let report =
+            PreviewReport { position_m: position, reach_m, wanted_m, turns: count, tolerance_m: self.tolerance };
         Ok(Previewed { view: View::new(root, stages)?, report })
     }
 

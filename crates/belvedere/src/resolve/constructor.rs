@@ -60,6 +60,21 @@ pub enum ConstructorReport {
     AutoProbe(ProbeReport),
 }
 
+/// A preview is said to be short below this share of the length asked for.
+const SHORT: f64 = 0.95;
+
+/// Says that a preview follows less of the path than asked.
+pub(super) fn remark(report: Option<&ConstructorReport>) -> Option<String> {
+    let Some(ConstructorReport::PathPreview(PathReport { preview, .. })) = report else { return None };
+    let PreviewReport { position_m, reach_m, wanted_m, .. } = *preview;
+    (reach_m < SHORT * wanted_m).then(|| {
+        format!(
+            "constructor: from {position_m:.1} the preview follows {reach_m:.1} of the {wanted_m:.1} asked for: no more turns fit into \
+             the picture; give a shorter preview_m or a narrower lens"
+        )
+    })
+}
+
 /// What a path preview came to, and the path that was traced for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathReport {
@@ -318,4 +333,20 @@ fn target(source: &SourceDocument, scene: &Scene, id: &str) -> Result<Target, Be
         let hint = if scene.layers.iter().any(|l| l.id == id) { "; name something that stands on it" } else { "" };
         source.error(&["constructor", "target"], format!("constructor: target: {e}{hint}"))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn previews_shorter_than_asked_are_said() {
+        let report = |reach_m: f64| {
+            let preview = PreviewReport { position_m: 10.0, reach_m, wanted_m: 200.0, turns: 1, tolerance_m: 1.0 };
+            ConstructorReport::PathPreview(PathReport { preview, centreline: None })
+        };
+        let said = remark(Some(&report(120.0))).expect("a warning");
+        assert!(said.contains("120.0 of the 200.0"), "{said}");
+        assert!(remark(Some(&report(200.0))).is_none() && remark(None).is_none());
+    }
 }

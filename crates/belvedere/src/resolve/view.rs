@@ -53,6 +53,7 @@ pub(crate) fn resolve(
         Some(solving) => constructor::construct(source, roots, scene, view, solving, &mut inputs)?,
         None => (view, None),
     };
+    warnings.extend(constructor::remark(constructor.as_ref()));
     let light = light::resolve(source, &ground, view.pinhole().eye, &mut warnings)?;
     let mut document = source.document.clone();
     document.crs = scene.crs.to_string();
