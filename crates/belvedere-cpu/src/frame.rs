@@ -106,8 +106,12 @@ fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
     let [width, height] = job.view.pinhole().image;
     let samples = job.options.samples;
     let pixels = u64::from(width) * u64::from(height);
-    let per_pixel =
-        3 + 4 + 4 + 6 + if job.options.aux.world { 24 } else { 0 } + if stylise::is_on(job) { 64 + Relief::bytes(u64::from(samples)) } else { 0 };
+    let per_pixel = 3
+        + 4
+        + 4
+        + 6
+        + if job.options.aux.world { 24 } else { 0 }
+        + if stylise::is_on(job) { 64 + Relief::bytes(u64::from(samples)) } else { 0 };
     let threads = if job.options.threads == 0 { rayon::current_num_threads() } else { job.options.threads } as u64;
     let bands = threads * (BAND as u64) * u64::from(width) * (u64::from(samples) + 1) * 8;
     // What lies beside the picture, where planes cross, may be drawn by several records.

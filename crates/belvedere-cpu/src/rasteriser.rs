@@ -181,8 +181,14 @@ impl Surfaces<'_> {
         };
         let depth = buffers.depth.par_chunks_mut(chunk);
         let id = buffers.id.par_chunks_mut(chunk);
-        colors.par_iter_mut().zip(depth).zip(id).zip(worlds.par_iter_mut()).zip(relief.par_iter_mut()).enumerate().try_for_each(
-            |(i, ((((color, depth), id), world), relief))| {
+        colors
+            .par_iter_mut()
+            .zip(depth)
+            .zip(id)
+            .zip(worlds.par_iter_mut())
+            .zip(relief.par_iter_mut())
+            .enumerate()
+            .try_for_each(|(i, ((((color, depth), id), world), relief))| {
                 let y0 = (i * BAND) as i32;
                 let mut band = lock(spare).pop().unwrap_or_default();
                 band.clear(y0, (y0 + BAND as i32).min(screen.height), screen.width, &offsets);
@@ -198,7 +204,6 @@ impl Surfaces<'_> {
                 lock(spare).push(band);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 Ok(job.progress.tick("draw", done as f64 / bands as f64)?)
-            },
-        )
+            })
     }
 }

@@ -57,7 +57,8 @@ impl Face {
         if !(known(self) && known(other)) {
             return 0.0;
         }
-        let dot = |a: Self, b: Self| (0..3).map(|k| i32::from(a.normal[k]) * i32::from(b.normal[k])).sum::<i32>() as f32;
+        let dot =
+            |a: Self, b: Self| (0..3).map(|k| i32::from(a.normal[k]) * i32::from(b.normal[k])).sum::<i32>() as f32;
         1.0 - dot(self, other) / (dot(self, self) * dot(other, other)).sqrt()
     }
 }

@@ -25,8 +25,8 @@ pub mod volume;
 pub use bodies::{Bodies, RigidParts};
 pub use cell::CellTriangle;
 pub use city::{
-    Building, City, CityArea, CityFace, FacePicture, HeightSource, LandCover, Polygon, Structure, StructureKind, Surface, Way,
-    WayClass,
+    Building, City, CityArea, CityFace, FacePicture, HeightSource, LandCover, Polygon, Structure, StructureKind,
+    Surface, Way, WayClass,
 };
 pub use drape::{Draped, drape_polyline};
 pub use frame::{Aux, Compositing, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer, Stylisation};

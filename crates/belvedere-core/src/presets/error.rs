@@ -139,7 +139,9 @@ pub enum PresetError {
         phi: f64,
     },
     /// Two presets of one name.
-    #[error("two presets are named {name:?} (phi = {first} and {second} degrees); rename one of them, operations tell presets by name")]
+    #[error(
+        "two presets are named {name:?} (phi = {first} and {second} degrees); rename one of them, operations tell presets by name"
+    )]
     DuplicateName {
         /// The name.
         name: String,

@@ -333,7 +333,9 @@ fn check_warns_of_what_will_look_bad() {
 fn sections_of_equal_number_blend_where_they_stand() {
     let mut document = three([(25.0, 2.0), (55.0, 2.0), (80.0, 0.0)]);
     let sections = [["A", "B"], ["B", "A"]];
-    for (preset, (sections, (u, delta))) in document.presets.iter_mut().zip(sections.into_iter().zip([(0.3, 0.1), (0.5, 0.05)])) {
+    for (preset, (sections, (u, delta))) in
+        document.presets.iter_mut().zip(sections.into_iter().zip([(0.3, 0.1), (0.5, 0.05)]))
+    {
         preset.sections = sections.map(str::to_owned).to_vec();
         preset.tags = vec![TagPoint { u, delta }];
     }

@@ -175,7 +175,9 @@ impl Shader<'_> {
         let Some(found) = found else { return Face::default() };
         let parent = found.parent as usize;
         let normal = match &self.layers[found.block.layer as usize] {
-            LayerShade::Boxes(b, _) => b.boxes.get(found.block.origin[0] + parent / 12).map(|s| s.normal_of(parent % 12)),
+            LayerShade::Boxes(b, _) => {
+                b.boxes.get(found.block.origin[0] + parent / 12).map(|s| s.normal_of(parent % 12))
+            }
             LayerShade::Mesh(m) => Some(m.face_normal(found.block.origin[0] + parent)),
             _ => None,
         };

@@ -16,12 +16,7 @@ use std::path::Path;
 /// References to references to references: no model goes deeper.
 const MAX_HOPS: usize = 8;
 
-pub(super) fn load(
-    path: &Path,
-    text: &str,
-    lod: Option<&str>,
-    limits: &Limits,
-) -> Result<Loaded<CityFile>, IoError> {
+pub(super) fn load(path: &Path, text: &str, lod: Option<&str>, limits: &Limits) -> Result<Loaded<CityFile>, IoError> {
     let fail = |reason: String| IoError::format(path, format!("CityGML: {reason}"));
     let root = gml::parse(text.trim_start_matches('\u{feff}')).map_err(fail)?;
     if root.name != "CityModel" {
@@ -156,7 +151,8 @@ impl<'n> Document<'n> {
         let Some(shape) = node.child("relativeGMLGeometry") else { return Ok(()) };
         let mut there = Gathered { faces: Vec::new(), own: HashSet::new() };
         let plain = At { dimension: None, ..at.clone() };
-        Self { north_first: false, ids: self.ids.clone(), looks: Looks::default(), ..*self }.gather(shape, &plain, &mut there)?;
+        Self { north_first: false, ids: self.ids.clone(), looks: Looks::default(), ..*self }
+            .gather(shape, &plain, &mut there)?;
         let matrix = match node.child("transformationMatrix") {
             Some(matrix) => numbers(matrix)?,
             None => DMat4::IDENTITY.to_cols_array().to_vec(),

@@ -2,9 +2,9 @@
 
 use super::attributes::Attributes;
 use super::collect::{Collector, Lod, Shown};
+use super::pictures::{PictureList, wrap};
 use super::plan;
 use super::reference::Reference;
-use super::pictures::{PictureList, wrap};
 use super::{CityFile, IoError, Loaded};
 use crate::Limits;
 use belvedere_scene::{CityFace, Surface};
@@ -36,12 +36,7 @@ struct Vertices {
 
 type Fail = String;
 
-pub(super) fn load(
-    path: &Path,
-    text: &str,
-    lod: Option<&str>,
-    limits: &Limits,
-) -> Result<Loaded<CityFile>, IoError> {
+pub(super) fn load(path: &Path, text: &str, lod: Option<&str>, limits: &Limits) -> Result<Loaded<CityFile>, IoError> {
     let mut reader = Reader { out: Collector::new(lod) };
     let (head, format) =
         reader.read(text.trim_start_matches('\u{feff}')).map_err(|reason| IoError::format(path, reason))?;

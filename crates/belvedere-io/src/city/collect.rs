@@ -111,7 +111,10 @@ impl<'l> Collector<'l> {
         warnings.extend(said);
         let warnings = warnings.into_iter().map(|w| format!("{}: {w}", path.display())).collect();
         let (crs, reference) = (reference.crs, reference.said);
-        Ok(Loaded { files, ..Loaded::new(CityFile { path: path.into(), format, crs, reference, lods, city }, warnings) })
+        Ok(Loaded {
+            files,
+            ..Loaded::new(CityFile { path: path.into(), format, crs, reference, lods, city }, warnings)
+        })
     }
 
     /// The faces of the level of detail that is wanted, else of the highest that has any.
@@ -132,7 +135,8 @@ impl<'l> Collector<'l> {
         faces.retain_mut(|face| {
             // Holes of a face without an outline are none.
             let mut has_outline = None;
-            let mut places = face.picture.as_mut().map(|p| std::mem::take(&mut p.rings)).unwrap_or_default().into_iter();
+            let mut places =
+                face.picture.as_mut().map(|p| std::mem::take(&mut p.rings)).unwrap_or_default().into_iter();
             let mut kept = Vec::new();
             face.rings.retain_mut(|ring| {
                 let places = places.next().unwrap_or_default();

@@ -86,7 +86,8 @@ impl PictureList {
         }
         if !missing.is_empty() {
             let told: Vec<String> = missing.iter().take(TOLD).map(|(name, (e, _))| format!("{name:?}: {e}")).collect();
-            let more = if missing.len() > TOLD { format!(", and {} more", missing.len() - TOLD) } else { String::new() };
+            let more =
+                if missing.len() > TOLD { format!(", and {} more", missing.len() - TOLD) } else { String::new() };
             warnings.push(format!(
                 "{} of {} pictures cannot be read and {bare} faces go without ({}{more})",
                 missing.len(),

@@ -125,8 +125,8 @@ fn between(polygon: &Polygon, low: &dyn Fn(DVec2) -> f64, high: &dyn Fn(DVec2) -
     let mut floor = lifted(low);
     floor.iter_mut().for_each(|ring| ring.reverse());
     let mut faces = vec![
-        CityFace { surface: Surface::Ground, rings: floor },
-        CityFace { surface: Surface::Roof, rings: lifted(high) },
+        CityFace { surface: Surface::Ground, rings: floor, picture: None },
+        CityFace { surface: Surface::Roof, rings: lifted(high), picture: None },
     ];
     for ring in rings() {
         for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
@@ -138,7 +138,7 @@ fn between(polygon: &Polygon, low: &dyn Fn(DVec2) -> f64, high: &dyn Fn(DVec2) -
 
 fn wall([a, b]: [DVec3; 2], [top_a, top_b]: [f64; 2]) -> CityFace {
     let ring = vec![a, b, b.truncate().extend(top_b), a.truncate().extend(top_a)];
-    CityFace { surface: Surface::Wall, rings: vec![ring] }
+    CityFace { surface: Surface::Wall, rings: vec![ring], picture: None }
 }
 
 /// A prism of triangles whose corners lie at the heights `z` and these above.
@@ -147,8 +147,8 @@ fn faceted(tin: &Tin, z: &[f64], [floor, roof]: [f64; 2]) -> Vec<CityFace> {
     let mut faces = Vec::new();
     for [a, b, c] in &tin.triangles {
         let of = |corners: [u32; 3], by: f64| vec![corners.map(|v| corner(v, by)).to_vec()];
-        faces.push(CityFace { surface: Surface::Ground, rings: of([*a, *c, *b], floor) });
-        faces.push(CityFace { surface: Surface::Roof, rings: of([*a, *b, *c], roof) });
+        faces.push(CityFace { surface: Surface::Ground, rings: of([*a, *c, *b], floor), picture: None });
+        faces.push(CityFace { surface: Surface::Roof, rings: of([*a, *b, *c], roof), picture: None });
     }
     for [a, b] in tin.rim() {
         let tops = [a, b].map(|v| z[v as usize] + roof);

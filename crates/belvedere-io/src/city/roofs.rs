@@ -218,7 +218,7 @@ fn planes(roof: &Roof, plan: &Plan) -> Vec<Plane> {
 /// The surfaces of a solid over one polygon (longitudes and latitudes), heights over its ground. Roofs over courtyards are flat.
 pub(super) fn solid(polygon: &Polygon, heights: Heights, roof: &Roof) -> Vec<CityFace> {
     let mut out = Vec::new();
-    let face = |surface: Surface, rings: Vec<Vec<DVec3>>| CityFace { surface, rings };
+    let face = |surface: Surface, rings: Vec<Vec<DVec3>>| CityFace { surface, rings, picture: None };
     let rings: Vec<&Vec<DVec2>> = std::iter::once(&polygon.outer).chain(&polygon.holes).collect();
     let level = |z: f64, turned: bool| -> Vec<Vec<DVec3>> {
         let at = |ring: &&Vec<DVec2>| {

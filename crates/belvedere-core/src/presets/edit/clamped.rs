@@ -63,9 +63,9 @@ fn clamped(old: &Preset, new: &Preset, change: &PresetChange, label: &str) -> Ve
     // A transition that a move of its tag makes narrower was asked to stay.
     let width = width.unwrap_or(before.delta);
     let found = |what: String, asked: f64, got: f64, why| Clamped { preset: label.to_owned(), what, asked, got, why };
-    let place = place.filter(|u| (u - now.u).abs() > SAME).map(|u| {
-        found(format!("tag {number}"), u, now.u, "the tag or end of the curve beside it is in the way")
-    });
+    let place = place
+        .filter(|u| (u - now.u).abs() > SAME)
+        .map(|u| found(format!("tag {number}"), u, now.u, "the tag or end of the curve beside it is in the way"));
     let width = Some(width).filter(|d| (d - now.delta).abs() > SAME).map(|d| {
         let why = "it reaches at most half of the way to the tag or end of the curve beside it";
         found(format!("the half width of the transition at tag {number}"), d, now.delta, why)

@@ -67,7 +67,8 @@ impl PresetCheck {
                 format!("usable at viewing angles of {} degrees; beyond, the ground faces away", listed(&self.usable))
             }
             Verdict::NotUsable => {
-                "not usable: at every viewing angle some of the ground faces away; lower the far end of the curve".into()
+                "not usable: at every viewing angle some of the ground faces away; lower the far end of the curve"
+                    .into()
             }
         }
     }
@@ -75,7 +76,8 @@ impl PresetCheck {
     /// Where the picture stands still, in words; `None` where it never does.
     pub fn still_words(&self) -> Option<String> {
         let all = listed(&self.still);
-        (!self.still.is_empty()).then(|| format!("while the camera tilts through {all} degrees the picture stands still"))
+        (!self.still.is_empty())
+            .then(|| format!("while the camera tilts through {all} degrees the picture stands still"))
     }
 }
 
