@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 /// How representations of styling sections are put together.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(crate) enum CompositingKind {
-    /// Mixed where they are one surface in different colours, elsewhere as by thresholds: one drawing
+    /// Mixed where they are one surface in different colours, elsewhere as by thresholds; as layers where no two are one surface
     Single,
     /// Each sample shows one of them, by its threshold: one drawing
     Dither,

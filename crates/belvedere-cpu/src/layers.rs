@@ -1,5 +1,5 @@
 //! Styling sections composed of whole layers: every representation drawn alone wherever it has a weight, and the pictures put together by
-//! the weights. The published way, kept to compare with, and that of pictures with edges; thresholds ([`crate::sections`]) need no memory
+//! the weights: the published way, and that of pictures with edges or without surfaces in common; thresholds ([`crate::sections`]) need no memory
 //! per representation, but their depths are those of single samples.
 //!
 //! Source: Pasewaldt et al. 2011, section 4.4; dividing by the sum of the weights, where layers see different places, is ours.
@@ -12,14 +12,15 @@ use crate::sections::Sections;
 use crate::shade::color::{Packed, Rgb, encode, linear};
 use crate::stylise;
 use belvedere_core::DVec3;
+use belvedere_core::sections::MOST_REPRESENTATIONS;
 use belvedere_scene::{Compositing, Frame, FrameStats, Overlay, RenderError, RenderJob, RenderOptions};
 use rayon::prelude::*;
 
 /// Weights below this count for nothing.
 const LEAST: f64 = 1e-9;
 
-/// Draws a job by `draw`, representation by representation where there are several and that is asked for, or edges are drawn: those
-/// of a representation end where it does, not where single samples of others begin.
+/// Draws a job by `draw`, representation by representation where there are several and that is asked for, or is as quick and as good: where
+/// no two show one surface, and where edges are drawn, which end where a representation does, not where single samples of others begin.
 ///
 /// Lines, points and names lie over the whole picture, but in the published way.
 pub(crate) fn draw(
@@ -28,8 +29,12 @@ pub(crate) fn draw(
 ) -> Result<Frame, RenderError> {
     let options = job.options;
     let published = options.compositing == Compositing::Layers;
-    let sections = if published || stylise::is_on(job) { Sections::new(job) } else { None };
-    let Some(sections) = sections.filter(|s| s.representations() > 1 && options.representation.is_none()) else {
+    let by_layers = |s: &Sections<'_>| {
+        let apart = options.compositing == Compositing::Single && !s.has_one_surface();
+        s.representations() > 1 && (published || apart || stylise::is_on(job))
+    };
+    let sections = if options.representation.is_none() { Sections::new(job) } else { None };
+    let Some(sections) = sections.filter(by_layers) else {
         return draw(job);
     };
     let alone = |number: usize| {
@@ -69,7 +74,9 @@ fn composite(layers: &[Frame], sections: &Sections<'_>, keep_world: bool) -> Fra
         if p.is_finite() { sections.weight(number, sections.parameter(p)) } else { 0.0 }
     };
     let pixel = |i: usize| {
-        let weights: Vec<f64> = (0..layers.len()).map(|number| weight(number, i)).collect();
+        let mut weights = [0.0; MOST_REPRESENTATIONS];
+        (0..layers.len()).for_each(|number| weights[number] = weight(number, i));
+        let weights = &weights[..layers.len()];
         let sum: f64 = weights.iter().sum();
         // The greatest weight tells depth and identity, of equal ones the nearest.
         let first = |a: &usize, b: &usize| {

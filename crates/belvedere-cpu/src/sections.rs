@@ -80,11 +80,9 @@ impl<'a> Sections<'a> {
 
     /// Shares, 0..=1, of the colours of [`Self::mixed_on`] at a place; they sum to 1.
     pub(crate) fn mixture(&self, layer: usize, p: DVec3) -> impl Iterator<Item = f64> {
-        let t = self.parameter(p);
-        let ids = self.styling.representations();
-        let weights: Vec<f64> = ids.iter().map(|id| self.styling.representation_weight(id, t)).collect();
-        let of = move |bits: u32| weights.iter().enumerate().filter(|(i, _)| bits >> i & 1 == 1).map(|(_, w)| w).sum();
-        let all: f64 = of(self.drawn_by[layer]);
+        let intervals = self.table.intervals(&self.styling, self.parameter(p));
+        let of = move |bits: u32| intervals.length_of(bits);
+        let all = of(self.drawn_by[layer]);
         self.mixed_on(layer).iter().enumerate().map(move |(k, other)| match all > 0.0 {
             true => of(self.shown_by[*other]) / all,
             false => f64::from(u8::from(k == 0)),
@@ -98,7 +96,7 @@ impl<'a> Sections<'a> {
 
     /// Weight of a representation at a place along the curve.
     pub(crate) fn weight(&self, number: usize, parameter: f64) -> f64 {
-        self.styling.representation_weight(self.styling.representations()[number], parameter)
+        self.table.intervals(&self.styling, parameter).length(number)
     }
 
     /// How much of a layer the image shows at most.
@@ -167,14 +165,9 @@ impl<'a> Sections<'a> {
         if held == all || held == 0 {
             return if held == 0 { 0.0 } else { 1.0 };
         }
-        let t = self.parameter(p);
-        let ids = self.styling.representations();
-        let sum = |bits: u32| {
-            let members = ids.iter().enumerate().filter(|(i, _)| bits >> i & 1 == 1);
-            members.map(|(_, id)| self.styling.representation_weight(id, t)).sum::<f64>()
-        };
-        let of = sum(all);
-        if of > 0.0 { (sum(held) / of).clamp(0.0, 1.0) } else { 0.0 }
+        let intervals = self.table.intervals(&self.styling, self.parameter(p));
+        let of = intervals.length_of(all);
+        if of > 0.0 { (intervals.length_of(held) / of).clamp(0.0, 1.0) } else { 0.0 }
     }
 
     /// Whether a layer throws shadows on a place of another: on what is shown together with it.
@@ -235,6 +228,17 @@ impl Intervals {
     #[inline]
     fn holding(&self, threshold: f64) -> usize {
         self.first + self.ends[..self.count - 1].iter().take_while(|end| threshold >= **end).count()
+    }
+
+    /// Length of the interval of a representation: its weight.
+    fn length(&self, number: usize) -> f64 {
+        let from = if number == 0 { 0.0 } else { self.ends[number - 1] };
+        (self.ends[number] - from).max(0.0)
+    }
+
+    /// The same of several, as bits.
+    fn length_of(&self, numbers: u32) -> f64 {
+        (0..self.count).filter(|number| numbers >> number & 1 == 1).map(|number| self.length(number)).sum()
     }
 }
 

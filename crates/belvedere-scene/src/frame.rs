@@ -76,7 +76,8 @@ pub struct Stylisation {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Compositing {
-    /// Where they are one surface in different colours it is drawn once and the colours are mixed; elsewhere as by thresholds.
+    /// Where they are one surface in different colours it is drawn once and the colours are mixed, and what else there is by thresholds; where
+    /// no two share a surface each is drawn alone and the pictures are mixed.
     #[default]
     Single,
     /// Each sample shows one of them, by its threshold: one drawing, no memory beside the picture's.

@@ -8,7 +8,7 @@ use belvedere_core::sections::TagPoint;
 use belvedere_core::{DVec3, Stage, View};
 use belvedere_scene::{
     BoxLayer, BoxShape, Color, Compositing, Frame, LayerKind, Mesh, MeshColors, MeshLayer, Palette, RenderOptions,
-    Representation, Scene,
+    Representation, Scene, Stylisation,
 };
 
 const IMAGE: [u32; 2] = [160, 120];
@@ -246,4 +246,29 @@ fn layers_that_see_different_places_leave_no_hole() {
     let mean = render(&scene, &view, &options(1));
     let sky = |frame: &Frame| frame.id.iter().filter(|id| **id == 0).count();
     assert!(sky(&layers) <= sky(&mean) && layers.id.contains(&2), "towers");
+}
+
+#[test]
+fn edges_are_those_of_each_representation_alone() {
+    let (scene, tags) = (land(), [TagPoint { u: 0.5, delta: 0.2 }]);
+    let view = view(&tags, &["near", "far"]);
+    let drawn = |representation: Option<usize>, edges: f32| {
+        let stylisation = Stylisation { edges, unsharp: 0.0 };
+        let mut options = RenderOptions { representation, stylisation, ..options(4) };
+        options.aux.world = true;
+        render(&scene, &view, &options)
+    };
+    let (picture, plain) = (drawn(None, 1.0), drawn(None, 0.0));
+    let alone = [0, 1].map(|number| drawn(Some(number), 1.0));
+    let (mut whole, mut inked) = ([0; 2], 0);
+    for i in 0..picture.color.len() {
+        let seen = [0, 1].map(|number: usize| !alone[number].world.as_ref().expect("asked for")[i][0].is_nan());
+        // Where one of them alone shows anything, it is all that is seen.
+        let ([true, false] | [false, true]) = seen else { continue };
+        let number = usize::from(seen[1]);
+        whole[number] += 1;
+        assert_eq!(picture.color[i], alone[number].color[i], "pixel {i}");
+        inked += usize::from(plain.color[i] != picture.color[i]);
+    }
+    assert!(whole.iter().all(|n| *n > 500) && inked > 100, "{whole:?} pixels, {inked} with edges");
 }

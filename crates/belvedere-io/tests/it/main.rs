@@ -5,6 +5,7 @@ mod bad_cities;
 mod cities;
 mod city_gml;
 mod city_osm;
+mod city_pictures;
 mod crs;
 mod drape;
 #[cfg(feature = "geopackage")]
