@@ -27,6 +27,7 @@ fn a_preset_is_made_from_the_template_in_a_few_operations_and_drawn() {
     let operations = [
         "low.remove",
         "high.remove",
+        "horizon.remove",
         "medium.name=own",
         "own.point.4=1,0.24",
         "own.range=0.45,2",

@@ -232,8 +232,12 @@ impl<'a> Pass<'a> {
 
     /// Whether an edge may cross a strip that both its ends lie beside.
     pub(crate) fn crosses(&self, a: DVec3, b: DVec3) -> bool {
-        let stages = self.view.stages();
-        stages.iter().any(|s| matches!(s, Stage::Strip(_))) && !is_missed(stages, &Aabb::of([a, b]))
+        self.has_strip() && !is_missed(self.view.stages(), &Aabb::of([a, b]))
+    }
+
+    /// Whether what lies beside a strip has no image.
+    pub(crate) fn has_strip(&self) -> bool {
+        self.view.stages().iter().any(|s| matches!(s, Stage::Strip(_)))
     }
 
     /// Where the record shows the box, judged by its displaced bounds.

@@ -7,8 +7,10 @@ use belvedere_core::DVec3;
 
 /// An edge is halved at most this often.
 const MAX_HALVINGS: u8 = 10;
-/// The same where no bound of the error is known (beside the near plane, at the border of the domain).
+/// The same where no bound of the error is known: beside the near plane, where images are large, and at the borders of a strip, which are
+/// long.
 const MAX_BLIND_HALVINGS: u8 = 9;
+const MAX_BLIND_HALVINGS_BESIDE_STRIPS: u8 = 6;
 /// How far beyond the image a triangle whose bend is unknown is still followed.
 const MAX_MARGIN_PX: f64 = 4096.0;
 /// Level of an edge that must not be split.
@@ -38,6 +40,7 @@ pub(crate) struct Refiner<'a> {
     pass: &'a Pass<'a>,
     screen: &'a Screen,
     tolerance_px: f64,
+    blind_halvings: u8,
     pub(crate) out: Vec<SoupTriangle>,
     pub(crate) splits: u64,
 }
@@ -46,7 +49,8 @@ impl<'a> Refiner<'a> {
     /// * `out`: memory to use.
     pub(crate) fn new(pass: &'a Pass<'a>, screen: &'a Screen, tolerance_px: f64, mut out: Vec<SoupTriangle>) -> Self {
         out.clear();
-        Self { pass, screen, tolerance_px, out, splits: 0 }
+        let blind_halvings = if pass.has_strip() { MAX_BLIND_HALVINGS_BESIDE_STRIPS } else { MAX_BLIND_HALVINGS };
+        Self { pass, screen, tolerance_px, blind_halvings, out, splits: 0 }
     }
 
     pub(crate) fn corner(&self, p: DVec3) -> Corner {
@@ -82,7 +86,7 @@ impl<'a> Refiner<'a> {
             return;
         }
         let split: [bool; 3] = std::array::from_fn(|i| {
-            let limit = if errors[i].is_finite() { MAX_HALVINGS } else { MAX_BLIND_HALVINGS };
+            let limit = if errors[i].is_finite() { MAX_HALVINGS } else { self.blind_halvings };
             levels[i] < limit && errors[i] > self.tolerance_px
         });
         if split == [false; 3] {
@@ -97,6 +101,10 @@ impl<'a> Refiner<'a> {
         if missing == [true; 2] && self.pass.crosses(a.p, b.p) {
             return f64::INFINITY;
         }
+        // An edge without any image matters only beside one that has some.
+        if a.v.is_none() && b.v.is_none() {
+            return 0.0;
+        }
         // Always in the same direction: two triangles must judge their common edge alike to the last bit.
         let swap = a.p.to_array().partial_cmp(&b.p.to_array()) == Some(std::cmp::Ordering::Greater);
         let (from, to) = if swap { (b, a) } else { (a, b) };
@@ -104,8 +112,8 @@ impl<'a> Refiner<'a> {
         if error == 0.0 || missing == [false; 2] {
             return error;
         }
-        // What bends is halved towards the border of what can be seen; an edge without any image only beside one that has some.
-        if a.v.is_none() && b.v.is_none() { 0.0 } else { f64::INFINITY }
+        // What bends is halved towards the border of what can be seen.
+        f64::INFINITY
     }
 
     fn is_off_image(&self, c: &[Corner; 3], margin_px: f64) -> bool {
