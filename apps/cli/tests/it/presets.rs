@@ -117,7 +117,7 @@ fn broken_documents_end_in_one_line_with_file_and_place() {
         ("knots", "[0, 0, 0, 1]", "4 knots were given, 4 control points need 8"),
         ("knots", "[0, 0, 0, 0, 1, 0.5, 1, 1]", "sort the knots"),
         ("sections", "[\"loa0\"]", "1 sections for 2 tags; exactly 3 are needed"),
-        ("phi", "42", "have the same phi = 42 degrees"),
+        ("phi", "50", "have the same phi = 50 degrees"),
         ("angles", "[[0, 60], [0.5, 60]]", "remove the other"),
         ("tags", "[{\"u\": 0.6, \"delta\": 0.05}, {\"u\": 0.3, \"delta\": 0.05}]", "tag 1 lies at u = 0.3"),
         ("tags", "[{\"u\": 0.3, \"delta\": -0.1}, {\"u\": 0.6, \"delta\": 0.05}]", "tag delta is -0.1"),
