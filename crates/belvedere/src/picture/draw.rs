@@ -189,7 +189,7 @@ pub(crate) fn draw_camera(
     let job = RenderJob { scene, view, light, options: &options, progress };
     let mut frame = request.renderer.of(session).render(&job)?;
     let title = if scene.title.is_empty() { "The camera" } else { &scene.title };
-    camera::draw_legend(&mut Canvas::new(&mut frame.color, frame.width), &figure, title);
+    camera::draw_legend(&mut Canvas::new(&mut frame.color, frame.width), &figure, (title, scene.unit));
     let overlay = OverlayRecord { camera: Some(picture.name()), ..OverlayRecord::default() };
     let displacement = figure
         .view

@@ -86,6 +86,27 @@ impl Turn {
         }
     }
 
+    /// The paper's intermediate viewpoint R: from it the point of a bent ray in the plane of the pencil at `s` is seen where, from the
+    /// viewpoint after the turn, the end of the bend on t2 is. It lies on the line of the two viewpoints, between them, and moves to the one
+    /// after the turn while `s` rises.
+    ///
+    /// * `s`: `a / (a + b)`, 0 on t0, 1/2 on t1, 1 on t2.
+    ///
+    /// `None` outside 0..=1; for rays with a kink, which have none in between; for the original model, where it differs from ray to ray.
+    ///
+    /// Source: Cui et al. 2010, section 4; the closed form is ours.
+    pub fn intermediate_viewpoint(&self, s: f64) -> Option<DVec3> {
+        let single = matches!(self.hinge, Hinge::Conic { .. } | Hinge::C2);
+        if !single || !(0.0..=1.0).contains(&s) {
+            return None;
+        }
+        let psi = self.hinge.phi(&self.values, s, 1.0 - s)?.phi - (2.0 * s - 1.0);
+        let ViewpointValues { k0, b0, b1, .. } = self.values;
+        let rest = k0 * (1.0 - s);
+        let share = if s < 1.0 { (rest - b0 * psi) / (rest + (b1 - b0) * psi) } else { 1.0 };
+        Some(self.viewpoint_before.lerp(self.viewpoint, share))
+    }
+
     /// The part of the chain after this turn.
     pub(super) fn part_after(&self) -> StraightPart {
         StraightPart { viewpoint: self.viewpoint, linear: self.after, inverse: self.after_inverse }

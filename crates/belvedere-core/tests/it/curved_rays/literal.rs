@@ -157,6 +157,42 @@ fn modified_projection_is_the_one_through_the_intermediate_viewpoint() {
     }
 }
 
+/// R as constructed: the reference arc's point in a plane of the pencil, joined with the arc's end on t2, meets the line of the viewpoints.
+#[test]
+fn intermediate_viewpoints_are_those_of_the_construction() {
+    for spec in [cameras::street_corner(), cameras::zigzag(), cameras::long_bend()] {
+        let view = spec.view(Model::Modified, &Similarity::IDENTITY);
+        let rays = view.curved_rays().unwrap();
+        for (j, turn) in spec.turns.iter().enumerate() {
+            let eye = if j == 0 { DVec3::ZERO } else { spec.turns[j - 1].viewpoint };
+            let made = &rays.turns()[j];
+            let mut last = 0.0;
+            for pixel in pixels(61 + j as u64, 40) {
+                let reference = control_points(eye, turn, reference_s(eye, turn, s_of_pixel(&spec, j, pixel).1));
+                for u in [0.03, 0.3, 0.5, 0.8, 0.97] {
+                    let p_n = bezier(reference, u);
+                    let (a, b) = (made.a.at(p_n), made.b.at(p_n));
+                    let expected = meet_lines(p_n, reference[2], eye, turn.viewpoint);
+                    let found = made.intermediate_viewpoint(a / (a + b)).unwrap();
+                    let baseline = eye.distance(turn.viewpoint);
+                    assert!(found.distance(expected) < 1e-6 * baseline, "turn {j}, {u}: {found} is not {expected}");
+                }
+            }
+            for k in 0..=20 {
+                let r = made.intermediate_viewpoint(f64::from(k) / 20.0).unwrap();
+                let share = (r - eye).dot(turn.viewpoint - eye) / (turn.viewpoint - eye).length_squared();
+                assert!(share > last && share <= 1.0 + 1e-12, "turn {j}, {k}: {share} after {last}");
+                last = share;
+            }
+            assert!((last - 1.0).abs() < 1e-12);
+        }
+        for model in [Model::C0, Model::Original] {
+            let view = spec.view(model, &Similarity::IDENTITY);
+            assert_eq!(view.curved_rays().unwrap().turns()[0].intermediate_viewpoint(0.5), None, "{model:?}");
+        }
+    }
+}
+
 #[test]
 fn original_arcs_are_bezier_arcs() {
     for spec in [cameras::street_corner(), cameras::sideways(), cameras::zigzag(), cameras::long_bend()] {

@@ -4,12 +4,15 @@ use super::super::{INK, PAPER, length, round_below};
 use super::subject::CameraFigure;
 use belvedere_core::DVec2;
 use belvedere_cpu::canvas::{Canvas, text_size};
+use belvedere_scene::Unit;
 
 const LETTERS_PX: f64 = 12.0;
 const ROW: f64 = 17.0;
 
 /// Draws legend, and from above also scale bar and north.
-pub(crate) fn draw(canvas: &mut Canvas<'_>, figure: &CameraFigure, title: &str) {
+///
+/// * `title`, `unit`: of the scene.
+pub(crate) fn draw(canvas: &mut Canvas<'_>, figure: &CameraFigure, (title, unit): (&str, Unit)) {
     let size = canvas.size();
     let widest = figure.legend.iter().map(|(_, text)| text_size(LETTERS_PX, text).width + 42.0);
     let width = widest.fold(text_size(14.0, title).width + 20.0, f64::max);
@@ -27,11 +30,11 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, figure: &CameraFigure, title: &str) 
     }
     let pinhole = figure.view.pinhole();
     if pinhole.is_orthographic() {
-        scale_bar(canvas, size, pinhole.scale_px());
+        scale_bar(canvas, size, pinhole.scale_px(), unit);
     }
 }
 
-fn scale_bar(canvas: &mut Canvas<'_>, size: DVec2, px_per_unit: f64) {
+fn scale_bar(canvas: &mut Canvas<'_>, size: DVec2, px_per_unit: f64, unit: Unit) {
     let units = round_below(0.2 * size.x / px_per_unit);
     let bar = units * px_per_unit;
     if !(bar > 20.0) {
@@ -42,7 +45,11 @@ fn scale_bar(canvas: &mut Canvas<'_>, size: DVec2, px_per_unit: f64) {
     let [a, b] = [lo + DVec2::new(12.0, 24.0), lo + DVec2::new(12.0 + bar, 24.0)];
     let tick = DVec2::new(0.0, 5.0);
     canvas.line(&[a - tick, a, b, b - tick], 1.6, INK);
-    let text = length(units);
+    let text = match unit {
+        Unit::Metre => length(units),
+        Unit::Angstrom => format!("{units} angstrom"),
+        Unit::Voxel => format!("{units} voxels"),
+    };
     let middle = a.x + 0.5 * (bar - text_size(11.0, &text).width);
     canvas.text(DVec2::new(middle, a.y - 5.0), 11.0, &text, INK, None);
     let north = lo + DVec2::new(bar + 34.0, 8.0);

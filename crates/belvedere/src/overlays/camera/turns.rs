@@ -1,12 +1,17 @@
 //! Viewpoints and transition planes of curved rays.
 
 use super::subject::{Subject, line, point, segment_color};
-use belvedere_core::map::curved_rays::LinearForm;
+use belvedere_core::map::curved_rays::{LinearForm, Turn};
 use belvedere_core::{CurvedRays, DVec2, DVec3};
 use belvedere_scene::{Color, Overlay, OverlayFace, Symbol};
 
 /// Depths tried along a corner's ray before the crossing with a plane is halved.
 const STEPS: usize = 400;
+/// Intermediate viewpoints that are marked per turn.
+const BETWEEN: u32 = 7;
+
+/// Colour of what lies between two viewpoints.
+const BASELINE: Color = Color::rgb(110, 60, 160);
 
 /// * `ways`: curved rays and the corners of the part of the image that they draw.
 pub(super) fn draw(
@@ -19,12 +24,16 @@ pub(super) fn draw(
         way(subject, camera, corners, overlay);
     }
     legend.push((Color::rgb(120, 124, 132), "planes t0, t1, t2: the rays bend between them".into()));
+    if ways.iter().any(|(camera, _)| camera.turns().iter().any(|turn| turn.intermediate_viewpoint(0.5).is_some())) {
+        legend.push((BASELINE, "viewpoints in between, while the rays bend".into()));
+    }
 }
 
 fn way(subject: &Subject<'_>, camera: &CurvedRays, pixels: &[DVec2], overlay: &mut Overlay) {
     for (j, turn) in camera.turns().iter().enumerate() {
         let after = segment_color(2 * j as u32 + 2);
         overlay.points.push(point(turn.viewpoint, Symbol::Dot, 9.0, after, &format!("viewpoint {}", j + 1)));
+        between(turn, overlay);
         // From where the rays past the turn seem to come.
         for &corner in pixels {
             if let Some(p) = crossing(subject, inward(corner, pixels), &turn.b) {
@@ -47,6 +56,16 @@ fn way(subject: &Subject<'_>, camera: &CurvedRays, pixels: &[DVec2], overlay: &m
             overlay.points.push(point(top, Symbol::Square, 4.0, color, name));
         }
     }
+}
+
+/// The line of the viewpoints before and after a turn, and on it those from which the rays seem to come while they bend.
+fn between(turn: &Turn, overlay: &mut Overlay) {
+    let share = |k: u32| f64::from(k) / f64::from(BETWEEN + 1);
+    let places: Vec<DVec3> = (1..=BETWEEN).filter_map(|k| turn.intermediate_viewpoint(share(k))).collect();
+    if !places.is_empty() {
+        overlay.over.push(line(vec![turn.viewpoint_before, turn.viewpoint], BASELINE.with_alpha(150), 1.0));
+    }
+    overlay.points.extend(places.into_iter().map(|place| point(place, Symbol::Dot, 4.0, BASELINE, "")));
 }
 
 /// A corner moved a little into its part of the image: on a seam its ray would be the neighbour's.
@@ -75,4 +94,35 @@ fn crossing(subject: &Subject<'_>, pixel: DVec2, form: &LinearForm) -> Option<DV
         }
     }
     at(0.5 * (lo + hi))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
+    use belvedere_core::{Pinhole, Projection};
+
+    #[test]
+    fn viewpoints_in_between_lie_in_order_from_the_eye_to_the_second_viewpoint() {
+        let lens = Projection::Perspective { fov_y: 0.7 };
+        let root = Pinhole::look_at(DVec3::ZERO, DVec3::Y, DVec3::Z, lens, [640, 360], 0.1, None).unwrap();
+        let viewpoint = DVec3::new(30.0, 5.0, 4.0);
+        let at = |y: f64| DVec3::new(0.0, y, 0.0);
+        let pencil = Pencil::Parallel { normal: DVec3::Y };
+        let turn = TurnSpec { viewpoint, t0: at(40.0), t1: at(50.0), t2: at(60.0), pencil, m: Sharpness::Bend };
+        let marked = |model| {
+            let mut overlay = Overlay::default();
+            between(&CurvedRays::new(&root, model, &[turn]).unwrap().turns()[0], &mut overlay);
+            overlay.points.iter().map(|p| p.position).collect::<Vec<_>>()
+        };
+        let places = marked(Model::Modified);
+        assert_eq!(places.len(), BETWEEN as usize);
+        let mut last = 0.0;
+        for place in places {
+            let share = place.dot(viewpoint) / viewpoint.length_squared();
+            assert!(place.distance(share * viewpoint) < 1e-9 && share > last && share < 1.0, "{place} after {last}");
+            last = share;
+        }
+        assert!(marked(Model::C0).is_empty(), "rays with a kink have none");
+    }
 }
