@@ -138,7 +138,7 @@ fn bent_edges(session: &Session) -> f64 {
     boxes.flatten().map(|shape| bent_edges_of(shape, session.view())).fold(0.0, f64::max)
 }
 
-fn bent_edges_of(shape: &BoxShape, view: &View) -> f64 {
+pub(crate) fn bent_edges_of(shape: &BoxShape, view: &View) -> f64 {
     let corners = shape.corners();
     let edges = (0..8usize).flat_map(|a| [1, 2, 4].map(|bit| (a, a | bit))).filter(|(a, b)| a != b);
     edges.filter_map(|(a, b)| bow(corners[a], corners[b], view)).fold(0.0, f64::max)

@@ -2,12 +2,17 @@
 
 use crate::sheet::Panel;
 use anyhow::{Context, Result};
+use belvedere::construct::rays::Target;
 use belvedere::core::map::curved_rays::{Model, TurnSpec};
 use belvedere::core::map::split_rays::{Fork, Seam, SplitSpec};
-use belvedere::core::{CurvedRays, SplitRays, Stage, View};
-use belvedere::scene::{BoxLayer, BoxShape, Frame, Layer, LayerKind};
-use belvedere::{CameraPicture, OpenOptions, PictureOptions, Session};
+use belvedere::core::{CurvedRays, DVec2, DVec3, SplitRays, Stage, View};
+use belvedere::cpu::Tracer;
+use belvedere::scene::{BoxLayer, BoxShape, Color, Frame, Hidden, Layer, LayerKind, LineFeature, LineLayer, Scene};
+use belvedere::{CameraPicture, OpenOptions, PictureOptions, Session, fallback};
 use std::path::Path;
+
+/// Points of a ray that is followed.
+const RAY_POINTS: usize = 320;
 
 pub(crate) struct Easel<'a> {
     options: &'a OpenOptions,
@@ -43,6 +48,30 @@ impl<'a> Easel<'a> {
     }
 }
 
+/// What a picture shows of a layer that is to be seen.
+pub(crate) struct Shown {
+    /// Of the pixels that it fills where it is drawn alone, the share that show it.
+    pub(crate) share: f64,
+    /// Pixels that it fills where it is drawn alone.
+    pub(crate) pixels: usize,
+}
+
+impl Easel<'_> {
+    /// How much of a layer, of a molecule what must be seen of it, the picture of a session shows.
+    pub(crate) fn shown(&self, session: &Session, layer: &str) -> Result<Shown> {
+        let at = session.scene().layers.iter().position(|l| l.id == layer);
+        let target = at.and_then(|at| Target::layer(session.scene(), at)).with_context(|| format!("no {layer}"))?;
+        let draw = |scene: &Scene, view: &View| {
+            let session = Session::from_parts(scene.clone(), view.clone()).with_light(*session.light());
+            Ok(session.render(&self.request())?.frame)
+        };
+        let (scene, view) = (session.scene(), session.view());
+        let record = fallback::plan(scene, view, (layer, &target), &[])?;
+        let record = record.measured(view, (scene, &draw(scene, view)?), &draw)?;
+        Ok(Shown { share: record.visible, pixels: record.pixels_alone.unwrap_or(0) })
+    }
+}
+
 /// The session with its rays bent by turns instead of what bent them.
 pub(crate) fn bent(session: &Session, model: Model, turns: &[TurnSpec]) -> Result<Session> {
     let pinhole = session.view().pinhole().clone();
@@ -50,10 +79,10 @@ pub(crate) fn bent(session: &Session, model: Model, turns: &[TurnSpec]) -> Resul
     Ok(session.clone().with_view(View::new(pinhole, vec![Stage::CurvedRays(rays)])?))
 }
 
-/// The session with rays that part in the middle of the picture, the left and the right half with a turn each.
-pub(crate) fn parted(session: &Session, model: Model, turns: [TurnSpec; 2]) -> Result<Session> {
+/// The session with rays that part in the middle of the picture, the left and the right half with turns of their own.
+pub(crate) fn parted(session: &Session, model: Model, turns: [Vec<TurnSpec>; 2]) -> Result<Session> {
     let pinhole = session.view().pinhole().clone();
-    let sides = turns.map(|turn| SplitSpec { turns: vec![turn], fork: None });
+    let sides = turns.map(|turns| SplitSpec { turns, fork: None });
     let fork = Fork { seam: Seam::MIDDLE, sides, merge: None };
     let rays = SplitRays::new(&pinhole, model, &SplitSpec { turns: Vec::new(), fork: Some(Box::new(fork)) })?;
     Ok(session.clone().with_view(View::new(pinhole, vec![Stage::SplitRays(rays)])?))
@@ -75,6 +104,28 @@ pub(crate) fn with_boxes(session: &Session, boxes: impl IntoIterator<Item = (Str
     let layer = |(id, boxes)| Layer { id, must_see: false, kind: LayerKind::Boxes(BoxLayer::new(boxes)) };
     scene.layers.extend(boxes.into_iter().map(layer));
     Session::from_parts(scene, session.view().clone()).with_light(*session.light())
+}
+
+/// The session with lines of its own, each set in a layer of its name, drawn over everything.
+pub(crate) fn with_lines(
+    session: &Session,
+    lines: impl IntoIterator<Item = (&'static str, Vec<Vec<DVec3>>, Color, f64)>,
+) -> Session {
+    let mut scene = session.scene().clone();
+    let layer = |(id, lines, color, width_px): (&str, Vec<Vec<DVec3>>, _, _)| {
+        let feature = |points| LineFeature { name: String::new(), points };
+        let features = lines.into_iter().map(feature).collect();
+        let layer = LineLayer { width_px, hidden: Hidden::Show, lift_m: 0.0, ..LineLayer::new(features, color) };
+        Layer { id: id.to_owned(), must_see: false, kind: LayerKind::Line(layer) }
+    };
+    scene.layers.extend(lines.into_iter().map(layer));
+    Session::from_parts(scene, session.view().clone()).with_light(*session.light())
+}
+
+/// Points of the ray of a pixel up to what it meets, or to `far`; the last one is where it ends.
+pub(crate) fn ray_points(view: &View, tracer: &Tracer<'_>, pixel: DVec2, far: f64) -> Vec<DVec3> {
+    let depth = tracer.first_hit(pixel).map_or(far, |hit| hit.depth.min(far));
+    view.ray(pixel).samples(1e-4 * depth, depth, RAY_POINTS).map_while(Result::ok).map(|p| p.point).collect()
 }
 
 /// Pixels that show a layer.

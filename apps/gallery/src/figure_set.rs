@@ -7,14 +7,41 @@ use anyhow::{Context, Result};
 use belvedere::OpenOptions;
 use belvedere::output::{self, pretty};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// A figure: panels of one size in rows.
+#[derive(Default)]
 pub(crate) struct Figure {
     pub(crate) panels: Vec<Panel>,
     pub(crate) columns: usize,
     /// How much of what matters each panel shows, in the unit of its note; empty where that is not the point.
     pub(crate) seen: Vec<f64>,
+    /// What the figure shows, measured; by name.
+    pub(crate) facts: Facts,
+    /// A table under the picture.
+    pub(crate) table: Option<Table>,
+}
+
+/// Measured values by name.
+pub(crate) type Facts = BTreeMap<&'static str, f64>;
+
+/// A table of texts.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Table {
+    pub(crate) head: Vec<String>,
+    pub(crate) rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    fn html(&self) -> String {
+        let row = |cells: &[String], tag: &str| {
+            let cells: String = cells.iter().map(|c| format!("<{tag}>{}</{tag}>", escape(c))).collect();
+            format!("<tr>{cells}</tr>\n")
+        };
+        let rows: String = self.rows.iter().map(|r| row(r, "td")).collect();
+        format!("<table>\n{}{rows}</table>\n", row(&self.head, "th"))
+    }
 }
 
 /// A figure that can be drawn.
@@ -73,9 +100,10 @@ impl FigureSet<'_> {
         let section = |r: &FigureRecord| {
             let picture = html::picture(&r.picture, &escape(r.title));
             format!(
-                "<section>\n<h2>{}</h2>\n<p>{}</p>\n<figure>{picture}</figure>\n</section>\n",
+                "<section>\n<h2>{}</h2>\n<p>{}</p>\n<figure>{picture}</figure>\n{}</section>\n",
                 escape(r.title),
-                escape(r.says)
+                escape(r.says),
+                r.table.as_ref().map_or_else(String::new, Table::html)
             )
         };
         let sections: String = records.iter().map(section).collect();
@@ -86,7 +114,7 @@ impl FigureSet<'_> {
             belvedere::VERSION,
             self.name
         );
-        html::page(&format!("Belvedere: {}", self.title.to_lowercase()), "", &body)
+        html::page(&format!("Belvedere: {}", self.title.to_lowercase()), html::TABLES, &body)
     }
 }
 
@@ -101,6 +129,10 @@ struct FigureRecord {
     /// How much of what matters each panel shows, in the unit of its note.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     seen: Vec<f64>,
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    facts: Facts,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    table: Option<Table>,
 }
 
 /// What stands under a panel.
@@ -120,6 +152,8 @@ impl FigureRecord {
             picture,
             panels: panels.collect(),
             seen: figure.seen.clone(),
+            facts: figure.facts.clone(),
+            table: figure.table.clone(),
         }
     }
 }

@@ -48,7 +48,7 @@ fn curved_rays(easel: &Easel<'_>) -> Result<Figure> {
         easel.panel(&session, "Bent", "rays part, and each half turns round its corner".into())?,
         easel.camera(&session, CameraPicture::Overhead, "The camera from above", "rays, planes, viewpoints".into())?,
     ];
-    Ok(Figure { panels, columns: 3, seen: Vec::new() })
+    Ok(Figure { panels, columns: 3, ..Figure::default() })
 }
 
 fn terrain(easel: &Easel<'_>) -> Result<Figure> {
@@ -57,7 +57,7 @@ fn terrain(easel: &Easel<'_>) -> Result<Figure> {
         easel.panel(&straight(&session), "Straight", "what lies behind ridges is dashed".into())?,
         easel.panel(&session, "The ground makes way", "as little as it can".into())?,
     ];
-    Ok(Figure { panels, columns: 2, seen: Vec::new() })
+    Ok(Figure { panels, columns: 2, ..Figure::default() })
 }
 
 fn spline(easel: &Easel<'_>) -> Result<Figure> {
@@ -66,5 +66,5 @@ fn spline(easel: &Easel<'_>) -> Result<Figure> {
         easel.panel(&straight(&session), "Straight", String::new())?,
         easel.panel(&session, "Progressive", "steep in the foreground, flat towards the horizon".into())?,
     ];
-    Ok(Figure { panels, columns: 2, seen: Vec::new() })
+    Ok(Figure { panels, columns: 2, ..Figure::default() })
 }

@@ -38,5 +38,5 @@ pub(super) fn kink_and_curve(easel: &Easel<'_>) -> Result<Figure> {
         easel.panel(&kink, "C0: rays with a kink", "the mast breaks where the rays do".into())?,
         easel.panel(&curve, "C1: curved rays", "the mast bends as the rays do".into())?,
     ];
-    Ok(Figure { panels, columns: 3, seen: Vec::new() })
+    Ok(Figure { panels, columns: 3, ..Figure::default() })
 }

@@ -36,7 +36,7 @@ pub(super) fn curvature(easel: &Easel<'_>) -> Result<Figure> {
             format!("rays turn by {angle:.0} degrees"),
         )?);
     }
-    Ok(Figure { panels, columns: 3, seen: Vec::new() })
+    Ok(Figure { panels, columns: 3, ..Figure::default() })
 }
 
 /// Three stages of planes that draw together, and their rays.
@@ -53,5 +53,5 @@ pub(super) fn collapse(easel: &Easel<'_>) -> Result<Figure> {
         let outside = CameraPicture::Outside(Some([[-420.0, -40.0, 190.0], [80.0, -40.0, 110.0]]));
         cameras.push(easel.camera(&turned, outside, title, "the rays from beside".into())?);
     }
-    Ok(Figure { panels: pictures.into_iter().chain(cameras).collect(), columns: 3, seen: Vec::new() })
+    Ok(Figure { panels: pictures.into_iter().chain(cameras).collect(), columns: 3, ..Figure::default() })
 }

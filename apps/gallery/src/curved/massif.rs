@@ -32,7 +32,7 @@ pub(super) fn viewpoints(easel: &Easel<'_>) -> Result<Figure> {
         )?);
         seen.push(visible);
     }
-    Ok(Figure { panels, columns: 3, seen })
+    Ok(Figure { panels, columns: 3, seen, ..Figure::default() })
 }
 
 /// Visible share of the trail in the picture.

@@ -1,11 +1,18 @@
 //! `figures curved`: the figures of Cui et al. 2010, drawn again on generated scenes.
 
+mod between;
 mod canyon;
+mod car;
 mod crossing;
 mod engine;
 mod helix;
 mod massif;
+pub(crate) mod merge;
+mod models;
 mod street;
+mod street_rays;
+mod table;
+mod town;
 
 use crate::figure_set::{Entry, FigureSet};
 use anyhow::Result;
@@ -13,11 +20,11 @@ use belvedere::OpenOptions;
 use std::path::{Path, PathBuf};
 
 /// In the order of the page.
-const FIGURES: [Entry; 11] = [
+const FIGURES: [Entry; 17] = [
     Entry {
         name: "street",
         title: "Round the corner",
-        says: "Straight rays end at the walls of the street. Bent ones turn at the crossing: the bus, the van and the lorry that wait in \
+        says: "Straight rays end at the walls of the street. Bent ones turn at the crossing: the bus, the car and the lorry that wait in \
                side streets come into one continuous picture, and nothing in front of them is cut away.",
         draw: street::corners,
     },
@@ -25,8 +32,15 @@ const FIGURES: [Entry; 11] = [
         name: "street_rays",
         title: "The rays of the street corner",
         says: "From outside and from above: straight up to the first plane, bent between the planes, straight again as if they came from \
-               the second viewpoint.",
-        draw: street::rays,
+               the second viewpoint, and so into the side streets.",
+        draw: street_rays::rays,
+    },
+    Entry {
+        name: "together",
+        title: "Forward and to the right",
+        says: "The left half of the rays goes on along the avenue, the right half turns at the crossing: the tram ahead and the car in the \
+               side street are in one picture.",
+        draw: street::ahead_and_aside,
     },
     Entry {
         name: "helix",
@@ -49,14 +63,14 @@ const FIGURES: [Entry; 11] = [
     Entry {
         name: "models",
         title: "Modified and original rays",
-        says: "Conic arcs, which project in closed form, beside the parabolas of the original model, for a turn by a right angle. The difference \
-               is drawn twenty times as strong.",
-        draw: street::models,
+        says: "Conic arcs, which project in closed form, beside and over the parabolas of the original model, for a turn by a right angle. \
+               The difference is drawn twenty times as strong.",
+        draw: models::models,
     },
     Entry {
         name: "collapse",
         title: "Planes that collapse",
-        says: "The planes of a turn draw together until the rays have a kink: a preview folds a turn away like this before it leaves the path.",
+        says: "The planes of a turn draw together until the rays have a kink.",
         draw: engine::collapse,
     },
     Entry {
@@ -66,8 +80,21 @@ const FIGURES: [Entry; 11] = [
         draw: crossing::kink_and_curve,
     },
     Entry {
+        name: "car",
+        title: "A car in the transition",
+        says: "A car stands across the transition. Rays with a kink break its edges, curved ones bend them less and without a corner.",
+        draw: car::across,
+    },
+    Entry {
+        name: "between",
+        title: "Viewpoints in between",
+        says: "Where a ray bends it seems to come from a viewpoint between the eye and the second viewpoint, which moves from the one to \
+               the other along the bend.",
+        draw: between::viewpoints,
+    },
+    Entry {
         name: "viewpoints",
-        title: "Intermediate viewpoints",
+        title: "The second viewpoint on its way",
         says: "The second viewpoint moves from the eye to its place, and the valley behind the pass opens; the foreground stays.",
         draw: massif::viewpoints,
     },
@@ -78,10 +105,30 @@ const FIGURES: [Entry; 11] = [
         draw: canyon::preview,
     },
     Entry {
+        name: "collapse_path",
+        title: "A turn that collapses on the way",
+        says: "Towards a turn of the river its planes draw together, so that it is gone when it is passed.",
+        draw: canyon::collapse,
+    },
+    Entry {
         name: "turns",
         title: "A camera of four turns",
         says: "The camera that sees a stretch of the river, drawn over the canyon from above.",
         draw: canyon::turns,
+    },
+    Entry {
+        name: "merge",
+        title: "Apart, and one again",
+        says: "The left and the right half of the rays pass the front helix on their side of it and become one again behind it: the helix \
+               behind is seen whole, without a break along the seam.",
+        draw: merge::round_both_sides,
+    },
+    Entry {
+        name: "table",
+        title: "Times of frames",
+        says: "Straight, with a kink and curved, 1280 x 720 pixels, one sample, on this machine's processor; the scenes are generated and \
+               most are smaller than the paper's, whose times are those of a graphics card of 2009: ratios can be compared, times cannot.",
+        draw: table::times,
     },
 ];
 

@@ -27,5 +27,5 @@ pub(super) fn sweep(easel: &Easel<'_>) -> Result<Figure> {
         });
         panels.push(easel.panel(&session, &format!("Viewing angle {phi:.0}°"), note)?);
     }
-    Ok(Figure { panels, columns: 3, seen: Vec::new() })
+    Ok(Figure { panels, columns: 3, ..Figure::default() })
 }

@@ -96,5 +96,5 @@ pub(super) fn against_samples(_: &Easel<'_>) -> Result<Figure> {
         panel("Place on the curve", "error, curve units, log10", places, paper.place)?,
         panel("Lengths along the curve", "relative error, log10", stretches, paper.stretch)?,
     ];
-    Ok(Figure { panels, columns: 2, seen: Vec::new() })
+    Ok(Figure { panels, columns: 2, ..Figure::default() })
 }

@@ -29,7 +29,7 @@ pub(super) fn sections(easel: &Easel<'_>) -> Result<Figure> {
         easel.panel(&session, "Relief becomes a map", "heights pass to nothing over the transition".into())?,
         curve(&document, phi, "The curve"),
     ];
-    Ok(Figure { panels, columns: 2, seen: Vec::new() })
+    Ok(Figure { panels, columns: 2, ..Figure::default() })
 }
 
 /// The spline stage of a session and its presets.

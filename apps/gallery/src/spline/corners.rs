@@ -26,7 +26,7 @@ pub(super) fn hard_and_soft(easel: &Easel<'_>) -> Result<Figure> {
     ] {
         panels.push(near(easel, rigid, title, note)?);
     }
-    Ok(Figure { panels, columns: 2, seen: Vec::new() })
+    Ok(Figure { panels, columns: 2, ..Figure::default() })
 }
 
 /// The town from near by, its houses rigid or not.

@@ -43,7 +43,7 @@ pub(super) fn table(easel: &Easel<'_>) -> Result<Figure> {
         );
         panels.push(easel.panel(&easel.open(&text, TILE)?, &format!("LoA {}", levels.join("/")), note)?);
     }
-    Ok(Figure { panels, columns: 3, seen: Vec::new() })
+    Ok(Figure { panels, columns: 3, ..Figure::default() })
 }
 
 /// A town with a section for each level, bent progressively.

@@ -31,7 +31,7 @@ pub(super) fn changes(easel: &Easel<'_>) -> Result<Figure> {
         panels.push(easel.panel(&straight(&session), before, String::new())?);
         panels.push(easel.panel(&session, after, note.into())?);
     }
-    Ok(Figure { panels, columns: 2, seen: Vec::new() })
+    Ok(Figure { panels, columns: 2, ..Figure::default() })
 }
 
 /// Stage by stage.
@@ -44,5 +44,5 @@ pub(super) fn chain(easel: &Easel<'_>) -> Result<Figure> {
         let view = View::new(session.view().pinhole().clone(), stages[..=k].to_vec())?;
         panels.push(easel.panel(&session.clone().with_view(view), title, stages[k].name().replace('_', " "))?);
     }
-    Ok(Figure { panels, columns: 3, seen: Vec::new() })
+    Ok(Figure { panels, columns: 3, ..Figure::default() })
 }

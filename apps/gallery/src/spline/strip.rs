@@ -28,7 +28,7 @@ pub(super) fn unrolled(easel: &Easel<'_>) -> Result<Figure> {
         let view = plan(strip, share)?;
         panels.push(easel.panel(&session.clone().with_view(view), title, "from above, in one scale".into())?);
     }
-    Ok(Figure { panels, columns: 3, seen: Vec::new() })
+    Ok(Figure { panels, columns: 3, ..Figure::default() })
 }
 
 /// The strip at a share of the way, from straight above: all of what the three of them need.

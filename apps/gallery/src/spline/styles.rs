@@ -22,5 +22,5 @@ pub(super) fn side_by_side(easel: &Easel<'_>) -> Result<Figure> {
         let session = towns[town].clone().with_stylisation(Stylisation { edges, unsharp });
         panels.push(panel(easel, &session, &document, 0.0, title)?);
     }
-    Ok(Figure { panels, columns: 2, seen: Vec::new() })
+    Ok(Figure { panels, columns: 2, ..Figure::default() })
 }

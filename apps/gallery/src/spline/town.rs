@@ -58,5 +58,5 @@ pub(super) fn views(easel: &Easel<'_>) -> Result<Figure> {
         let phi = document.presets[0].phi;
         panels.push(panel(easel, &from(&session, phi, 900.0)?, &document, 0.0, title)?);
     }
-    Ok(Figure { panels, columns: 3, seen: Vec::new() })
+    Ok(Figure { panels, columns: 3, ..Figure::default() })
 }

@@ -1,0 +1,58 @@
+//! The viewpoints between the first and the second one, from which bent rays seem to come.
+
+use super::town::{CROSSING, town, turn};
+use crate::easel::{Easel, bent, with_lines};
+use crate::figure_set::{Facts, Figure};
+use anyhow::{Context, Result};
+use belvedere::CameraPicture;
+use belvedere::core::map::curved_rays::{Model, Turn};
+use belvedere::core::{DVec2, DVec3, View};
+use belvedere::scene::Color;
+
+/// Places on a ray from which lines are drawn.
+const PLACES: u32 = 7;
+const LINE: Color = Color::rgb(110, 60, 160);
+
+/// The turn to the left from above: on one of its rays some places, each joined with the viewpoint that sees it.
+pub(super) fn viewpoints(easel: &Easel<'_>) -> Result<Figure> {
+    let town = town(easel, [720, 720])?;
+    let session = bent(&town, Model::Modified, &[turn(CROSSING, -1.0)])?;
+    let view = session.view();
+    let rays = view.curved_rays().context("the street's rays are bent")?;
+    let turn = rays.turns().first().context("the street's rays turn once")?;
+    let [w, h] = view.pinhole().image.map(f64::from);
+    let (mut lines, mut shares) = (Vec::new(), Vec::new());
+    let baseline = turn.viewpoint - turn.viewpoint_before;
+    for k in 1..=PLACES {
+        let s = f64::from(k) / f64::from(PLACES + 1);
+        let between = turn.intermediate_viewpoint(s).context("modified rays have viewpoints in between")?;
+        let place = place_at(view, turn, DVec2::new(0.5 * w, 0.5 * h), s).context("the ray bends")?;
+        shares.push((between - turn.viewpoint_before).dot(baseline) / baseline.length_squared());
+        lines.push(vec![between, place]);
+    }
+    let rising = shares.windows(2).all(|p| p[0] < p[1]);
+    let inside = shares.iter().all(|s| *s > 0.0 && *s < 1.0);
+    let facts = Facts::from([
+        ("viewpoints between", if rising && inside { shares.len() as f64 } else { 0.0 }),
+        ("first share of the way", shares[0]),
+        ("last share of the way", shares[shares.len() - 1]),
+    ]);
+    let marked = with_lines(&session, [("lines of sight", lines, LINE, 1.4)]);
+    let note = format!("{PLACES} places of the middle ray, each with the viewpoint that it seems to be seen from");
+    let panel = easel.camera(&marked, CameraPicture::Overhead, "Between the eye and viewpoint 1", note)?;
+    Ok(Figure { panels: vec![panel], columns: 1, facts, ..Figure::default() })
+}
+
+/// Where the ray of a pixel passes the plane of the pencil at `s`, see [`Turn::intermediate_viewpoint`].
+fn place_at(view: &View, turn: &Turn, pixel: DVec2, s: f64) -> Option<DVec3> {
+    let ray = view.ray(pixel);
+    let [mut low, mut high] = ray.pieces().ok()?.get(1)?.depth;
+    let at = |depth: f64| ray.at(depth).ok().map(|p| p.point);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        let p = at(middle)?;
+        let (a, b) = (turn.a.at(p), turn.b.at(p));
+        if a / (a + b) < s { low = middle } else { high = middle }
+    }
+    at(low)
+}
