@@ -5,9 +5,12 @@ use anyhow::{Context, Result};
 use belvedere::construct::rays::Target;
 use belvedere::core::map::curved_rays::{Model, TurnSpec};
 use belvedere::core::map::split_rays::{Fork, Seam, SplitSpec};
-use belvedere::core::{CurvedRays, DVec2, DVec3, SplitRays, Stage, View};
+use belvedere::core::{CurvedRays, DVec2, DVec3, Pinhole, Projection, SplitRays, Stage, View};
 use belvedere::cpu::Tracer;
-use belvedere::scene::{BoxLayer, BoxShape, Color, Frame, Hidden, Layer, LayerKind, LineFeature, LineLayer, Scene};
+use belvedere::scene::{
+    BoxLayer, BoxShape, Color, Frame, Hidden, Layer, LayerKind, LineFeature, LineLayer, PointFeature, PointLayer,
+    PointStyle, Scene,
+};
 use belvedere::{CameraPicture, OpenOptions, PictureOptions, Session, fallback};
 use std::path::Path;
 
@@ -48,28 +51,39 @@ impl<'a> Easel<'a> {
     }
 }
 
-/// What a picture shows of a layer that is to be seen.
+/// A picture, and what it shows of a layer.
 pub(crate) struct Shown {
-    /// Of the pixels that it fills where it is drawn alone, the share that show it.
+    /// Of the pixels that the layer fills where it is drawn alone, the share that show it.
     pub(crate) share: f64,
-    /// Pixels that it fills where it is drawn alone.
-    pub(crate) pixels: usize,
+    pub(crate) frame: Frame,
 }
 
 impl Easel<'_> {
-    /// How much of a layer, of a molecule what must be seen of it, the picture of a session shows.
+    /// The picture of a session, and how much it shows of a layer; of a molecule, of what must be seen of it.
     pub(crate) fn shown(&self, session: &Session, layer: &str) -> Result<Shown> {
-        let at = session.scene().layers.iter().position(|l| l.id == layer);
-        let target = at.and_then(|at| Target::layer(session.scene(), at)).with_context(|| format!("no {layer}"))?;
-        let draw = |scene: &Scene, view: &View| {
-            let session = Session::from_parts(scene.clone(), view.clone()).with_light(*session.light());
+        let (scene, view) = (session.scene(), session.view());
+        let at = scene.layers.iter().position(|l| l.id == layer);
+        let target = at.and_then(|at| Target::layer(scene, at)).with_context(|| format!("no {layer}"))?;
+        let frame = session.render(&self.request())?.frame;
+        let draw = |other: &Scene, view: &View| {
+            if std::ptr::eq(other, scene) {
+                return Ok(frame.clone());
+            }
+            let session = Session::from_parts(other.clone(), view.clone()).with_light(*session.light());
             Ok(session.render(&self.request())?.frame)
         };
-        let (scene, view) = (session.scene(), session.view());
-        let record = fallback::plan(scene, view, (layer, &target), &[])?;
-        let record = record.measured(view, (scene, &draw(scene, view)?), &draw)?;
-        Ok(Shown { share: record.visible, pixels: record.pixels_alone.unwrap_or(0) })
+        let plan = fallback::plan(scene, view, (layer, &target), &[])?;
+        let share = plan.measured(view, (scene, &frame), &draw)?.visible;
+        Ok(Shown { share, frame })
     }
+}
+
+/// From straight above and without perspective, `size` scene units of ground around a place.
+pub(crate) fn above(session: &Session, middle: DVec3, size: f64) -> Result<Session> {
+    let lens = Projection::Orthographic { height: size };
+    let eye = middle + 2.0 * size.max(500.0) * DVec3::Z;
+    let camera = Pinhole::look_at(eye, middle, DVec3::Y, lens, session.view().pinhole().image, 1.0, None)?;
+    Ok(session.clone().with_view(View::straight(camera)))
 }
 
 /// The session with its rays bent by turns instead of what bent them.
@@ -119,6 +133,22 @@ pub(crate) fn with_lines(
         Layer { id: id.to_owned(), must_see: false, kind: LayerKind::Line(layer) }
     };
     scene.layers.extend(lines.into_iter().map(layer));
+    Session::from_parts(scene, session.view().clone()).with_light(*session.light())
+}
+
+/// The session with named points, drawn over everything.
+pub(crate) fn with_points(session: &Session, points: &[(&str, DVec3)], color: Color) -> Session {
+    let mut scene = session.scene().clone();
+    let feature = |(name, position): &(&str, DVec3)| PointFeature { name: (*name).to_owned(), position: *position };
+    let layer = PointLayer {
+        features: points.iter().map(feature).collect(),
+        color,
+        size_px: 9.0,
+        style: PointStyle { label_px: Some(13.0), ..PointStyle::default() },
+        hidden: Hidden::Show,
+        lift_m: 0.0,
+    };
+    scene.layers.push(Layer { id: "marks".into(), must_see: false, kind: LayerKind::Point(layer) });
     Session::from_parts(scene, session.view().clone()).with_light(*session.light())
 }
 

@@ -24,6 +24,12 @@ const SET: FigureSet<'_> = FigureSet {
             draw: curved_rays,
         },
         Entry {
+            name: "merge",
+            title: "Apart, and one again",
+            says: "Rays part before what hides, pass it on both sides, and become one again behind it.",
+            draw: merge,
+        },
+        Entry {
             name: "terrain",
             title: "Terrain disocclusion",
             says: "The ground makes way for a trail.",
@@ -46,6 +52,16 @@ fn curved_rays(easel: &Easel<'_>) -> Result<Figure> {
     let panels = vec![
         easel.panel(&straight(&session), "Straight", "houses hide the side streets".into())?,
         easel.panel(&session, "Bent", "rays part, and each half turns round its corner".into())?,
+        easel.camera(&session, CameraPicture::Overhead, "The camera from above", "rays, planes, viewpoints".into())?,
+    ];
+    Ok(Figure { panels, columns: 3, ..Figure::default() })
+}
+
+fn merge(easel: &Easel<'_>) -> Result<Figure> {
+    let session = easel.open(crate::curved::MERGE, [512, 384])?;
+    let panels = vec![
+        easel.panel(&straight(&session), "Straight", "the front helix hides the one behind".into())?,
+        easel.panel(&session, "Round both sides", "rays part, and are one again behind it".into())?,
         easel.camera(&session, CameraPicture::Overhead, "The camera from above", "rays, planes, viewpoints".into())?,
     ];
     Ok(Figure { panels, columns: 3, ..Figure::default() })

@@ -73,11 +73,42 @@ fn figures_of_curved_rays_show_what_was_hidden() {
         let figure = figures.iter().find(|f| f["name"] == name).unwrap_or_else(|| panic!("no figure {name}"));
         figure["seen"].as_array().expect("seen").iter().map(|v| v.as_f64().expect("number")).collect()
     };
+    let fact = |name: &str, key: &str| -> f64 {
+        let figure = figures.iter().find(|f| f["name"] == name).unwrap_or_else(|| panic!("no figure {name}"));
+        figure["facts"][key].as_f64().unwrap_or_else(|| panic!("{name} says nothing of {key}: {}", figure["facts"]))
+    };
     // Straight rays show none of the vehicles, every bend its own.
     let street = seen("street");
-    assert!(street.len() >= 4 && street[0] == 0.0 && street[1..].iter().all(|n| *n > 800.0), "{street:?}");
+    assert!(street.len() >= 5 && street[0] == 0.0 && street[1..].iter().all(|n| *n > 500.0), "{street:?}");
+    // Rays end in the streets that they turn into, those of either half in theirs.
+    for way in
+        ["To the left", "To the right", "Forward, then to the right", "both: left", "both: right", "ahead", "aside"]
+    {
+        assert!(fact("street_rays", way) > 0.8, "{way}: {}", fact("street_rays", way));
+    }
+    assert_eq!(fact("together", "straight: car, pixels"), 0.0);
+    assert!(fact("together", "together: car, pixels") > 500.0 && fact("together", "together: tram, pixels") > 1000.0);
+    // What is marked is seen whole, in its box.
     let helix = seen("helix");
-    assert!(helix[0] < 0.02 && helix[1] > 0.15, "{helix:?}");
+    assert!(helix[0] < 0.05 && helix[1] > 0.95, "{helix:?}");
+    assert!(fact("helix", "marked atoms in their box") > 0.999);
+    // Curved rays bend a car less than rays with a kink.
+    assert!(fact("car", "straight") < 1e-9 && fact("car", "curved") < 0.5 * fact("car", "kink"));
+    assert!(seen("car").iter().all(|pixels| *pixels > 10_000.0), "{:?}", seen("car"));
+    assert_eq!(fact("between", "viewpoints between"), 7.0);
+    // Modified rays run over original ones, and both are there to see.
+    assert!(fact("models", "rays, most apart, m") < 0.01 * fact("models", "arcs, longest, m"));
+    assert!(fact("models", "pixels of modified rays") > 500.0 && fact("models", "pixels of original rays") > 500.0);
+    // The planes of a turn draw together on the way to it.
+    let planes = seen("collapse_path");
+    assert!(planes.windows(2).all(|w| w[0] > w[1]) && planes[3] < 0.2 * planes[0], "{planes:?}");
+    // Rays that parted are one again behind what they passed.
+    let merge = seen("merge");
+    assert!(merge[0] < 0.05 && merge[1] > 0.8, "{merge:?}");
+    assert!(fact("merge", "seam: apart amid") > 20.0 && fact("merge", "seam: apart past the merge") < 1e-3);
+    let table = figures.iter().find(|f| f["name"] == "table").expect("a table");
+    assert_eq!(table["table"]["rows"].as_array().map(Vec::len), Some(5));
+    assert!(page.contains("<td>canyon</td>"), "the page shows the table");
     // Further bends show more.
     for (name, times) in [("viewpoints", 2.0), ("preview", 2.0)] {
         let seen = seen(name);
@@ -155,7 +186,7 @@ fn the_pictures_of_the_guide_are_those_that_it_shows() {
         .iter()
         .map(|page| String::from_utf8(read(&guide.join(format!("{page}.md")))).expect("UTF-8"))
         .collect();
-    for what in ["curved_rays", "terrain", "spline"] {
+    for what in ["curved_rays", "merge", "terrain", "spline"] {
         let name = format!("guide_{what}.png");
         assert!(pages.contains(&format!("images/{name}")), "{name} is shown nowhere");
         // Rounding may differ from machine to machine; another picture has another size.

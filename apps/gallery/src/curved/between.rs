@@ -1,21 +1,26 @@
 //! The viewpoints between the first and the second one, from which bent rays seem to come.
 
-use super::town::{CROSSING, town, turn};
-use crate::easel::{Easel, bent, with_lines};
+use super::town::{AVENUE, CROSSING, town, turn};
+use crate::easel::{Easel, above, bent, with_lines, with_points};
 use crate::figure_set::{Facts, Figure};
 use anyhow::{Context, Result};
-use belvedere::CameraPicture;
 use belvedere::core::map::curved_rays::{Model, Turn};
 use belvedere::core::{DVec2, DVec3, View};
 use belvedere::scene::Color;
 
 /// Places on a ray from which lines are drawn.
 const PLACES: u32 = 7;
+/// Rays drawn, extent of the ground that is shown, metres, and the crossing.
+const RAYS: u32 = 9;
+const SHOWN: f64 = 135.0;
+const CROSSING_AT: DVec3 = DVec3::new(AVENUE, CROSSING, 12.0);
 const LINE: Color = Color::rgb(110, 60, 160);
+const RAY: Color = Color::rgb(230, 150, 0);
+const END: Color = Color::rgb(0, 96, 168);
 
 /// The turn to the left from above: on one of its rays some places, each joined with the viewpoint that sees it.
 pub(super) fn viewpoints(easel: &Easel<'_>) -> Result<Figure> {
-    let town = town(easel, [720, 720])?;
+    let town = town(easel, [640, 640])?;
     let session = bent(&town, Model::Modified, &[turn(CROSSING, -1.0)])?;
     let view = session.view();
     let rays = view.curved_rays().context("the street's rays are bent")?;
@@ -37,10 +42,29 @@ pub(super) fn viewpoints(easel: &Easel<'_>) -> Result<Figure> {
         ("first share of the way", shares[0]),
         ("last share of the way", shares[shares.len() - 1]),
     ]);
-    let marked = with_lines(&session, [("lines of sight", lines, LINE, 1.4)]);
-    let note = format!("{PLACES} places of the middle ray, each with the viewpoint that it seems to be seen from");
-    let panel = easel.camera(&marked, CameraPicture::Overhead, "Between the eye and viewpoint 1", note)?;
+    let ends = [("eye (C0)", turn.viewpoint_before), ("second viewpoint (C1)", turn.viewpoint)];
+    let dots: Vec<(&str, DVec3)> = lines.iter().map(|l| ("", l[0])).collect();
+    let middle = CROSSING_AT.lerp(turn.viewpoint_before.midpoint(turn.viewpoint), 0.5);
+    let baseline = vec![vec![turn.viewpoint_before, turn.viewpoint]];
+    let marked = with_lines(
+        &session,
+        [("rays", fan(view), RAY, 1.2), ("baseline", baseline, LINE, 1.2), ("lines of sight", lines, LINE, 1.6)],
+    );
+    let marked = with_points(&with_points(&marked, &dots, LINE), &ends, END);
+    let note = format!("{PLACES} places of the middle ray, joined with where they are seen from");
+    let panel = easel.panel(&above(&marked, middle, SHOWN)?, "From above: bent rays and their viewpoints", note)?;
     Ok(Figure { panels: vec![panel], columns: 1, facts, ..Figure::default() })
+}
+
+/// Rays along the horizon of the picture, to just past their bend.
+fn fan(view: &View) -> Vec<Vec<DVec3>> {
+    let [w, h] = view.pinhole().image.map(f64::from);
+    let points = |i: u32| {
+        let ray = view.ray(DVec2::new(w * (f64::from(i) + 0.5) / f64::from(RAYS), 0.5 * h));
+        let end = ray.pieces().ok()?.get(1)?.depth[1];
+        Some(ray.samples(1e-3 * end, 1.2 * end, 120).map_while(Result::ok).map(|p| p.point).collect())
+    };
+    (0..RAYS).filter_map(points).collect()
 }
 
 /// Where the ray of a pixel passes the plane of the pencil at `s`, see [`Turn::intermediate_viewpoint`].

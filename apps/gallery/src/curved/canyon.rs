@@ -1,12 +1,12 @@
 //! A river in a canyon, previewed.
 
-use crate::easel::{Easel, turns as specs};
+use crate::easel::{Easel, above, turns as specs, with_lines};
 use crate::figure_set::{Facts, Figure};
 use anyhow::{Context, Result};
 use belvedere::construct::{self, MeasureOptions};
-use belvedere::core::DVec3;
 use belvedere::core::map::curved_rays::TurnSpec;
-use belvedere::scene::{LayerKind, Progress};
+use belvedere::core::{DVec2, DVec3};
+use belvedere::scene::{Color, LayerKind, Progress};
 use belvedere::{CameraPicture, Session};
 
 const SCENE: &str = include_str!("../../../../scenes/canyon_preview.toml");
@@ -27,6 +27,12 @@ const WAYS: [f64; 4] = [0.0, 0.5, 0.8, 0.95];
 const SHORT: f64 = 1500.0;
 const LENS: &str = "lens = { behind_m = 1500.0, width_m = 375.0, rise_m = 150.0 }\n";
 const SAME: f64 = 60.0;
+/// Ground shown around the turn, metres; rays drawn; colours of them and of the planes where they begin and end to bend.
+const AROUND: f64 = 520.0;
+const RAYS: u32 = 9;
+const RAY: Color = Color::rgb(230, 150, 0);
+const BEFORE: Color = Color::rgb(0, 96, 168);
+const AFTER: Color = Color::rgb(200, 60, 130);
 
 /// What is said of a preview, and metres of the river that it shows.
 fn note(session: &Session) -> Result<(String, f64)> {
@@ -69,7 +75,7 @@ pub(super) fn collapse(easel: &Easel<'_>) -> Result<Figure> {
     let at = |position: f64| -> Result<Session> {
         let text = SCENE.replace(LENGTH, &format!("preview_m = {SHORT:.1}\n{LENS}"));
         anyhow::ensure!(text.contains(POSITION), "the canyon's scene does not say {POSITION}");
-        easel.open(&text.replace(POSITION, &format!("position_m = {position:.1}")), [640, 480])
+        easel.open(&text.replace(POSITION, &format!("position_m = {position:.1}")), [480, 360])
     };
     let first = *specs(&at(START)?)?.first().context("the river turns ahead")?;
     let way = along_river(&at(START)?, first.t1)? - START;
@@ -80,11 +86,32 @@ pub(super) fn collapse(easel: &Easel<'_>) -> Result<Figure> {
         let same = |t: &&TurnSpec| t.t1.truncate().distance(first.t1.truncate()) < SAME;
         let width = specs(&session)?.iter().find(same).map_or(0.0, |t| t.t0.distance(t.t2));
         let title = format!("{:.0} m before the turn", (1.0 - share) * way);
-        let note = format!("its planes are {width:.0} m apart");
-        panels.push(easel.camera(&session, CameraPicture::Overhead, &title, note)?);
+        let note = format!("its planes t0 and t2 are {width:.0} m apart");
+        let index = specs(&session)?.iter().position(|t| same(&t));
+        let marked = with_lines(&session, marks(&session, index));
+        panels.push(easel.panel(&above(&marked, first.t1, AROUND)?, &title, note)?);
         seen.push(width);
     }
     Ok(Figure { panels, columns: 2, seen, facts: Facts::from([("way, m", way)]), ..Figure::default() })
+}
+
+/// Rays along the middle of the picture up to some way past a turn, and where they pass its planes.
+fn marks(session: &Session, turn: Option<usize>) -> Vec<(&'static str, Vec<Vec<DVec3>>, Color, f64)> {
+    let view = session.view();
+    let [w, h] = view.pinhole().image.map(f64::from);
+    let (mut rays, mut planes) = (Vec::new(), [Vec::new(), Vec::new()]);
+    for i in 0..RAYS {
+        let ray = view.ray(DVec2::new(w * (f64::from(i) + 0.5) / f64::from(RAYS), 0.5 * h));
+        let bend = ray.pieces().ok().zip(turn).and_then(|(pieces, j)| Some(pieces.get(2 * j + 1)?.depth));
+        let [t0, t2] = bend.unwrap_or([view.pinhole().near; 2]);
+        let points = ray.samples(view.pinhole().near, t2 + AROUND, 160).map_while(Result::ok).map(|p| p.point);
+        rays.push(points.collect());
+        for (plane, depth) in planes.iter_mut().zip([t0, t2]) {
+            plane.extend(bend.and(ray.at(depth).ok()).map(|p| p.point));
+        }
+    }
+    let [t0, t2] = planes.map(|plane| if plane.len() > 1 { vec![plane] } else { Vec::new() });
+    vec![("rays", rays, RAY, 1.4), ("t0", t0, BEFORE, 4.0), ("t2", t2, AFTER, 4.0)]
 }
 
 /// Arc length of the point of the river nearest to a place in plan, metres.

@@ -1,8 +1,9 @@
 //! A car that stands across a transition.
 
 use crate::compare::bent_edges_of;
-use crate::easel::{Easel, bent, straight, with_boxes};
+use crate::easel::{Easel, bent, pixels_of, straight, with_boxes};
 use crate::figure_set::{Facts, Figure};
+use crate::sheet::Panel;
 use anyhow::Result;
 use belvedere::Session;
 use belvedere::core::DVec3;
@@ -55,9 +56,10 @@ pub(super) fn across(easel: &Easel<'_>) -> Result<Figure> {
     ] {
         let edges = bent_edges(&session);
         facts.insert(name, edges);
-        seen.push(easel.shown(&session, CAR)?.pixels as f64);
+        let frame = easel.draw(&session)?;
+        seen.push(pixels_of(&frame, &session, CAR) as f64);
         let note = format!("edges of the car bend by up to {:.1} % of their length", 100.0 * edges);
-        panels.push(easel.panel(&session, title, note)?);
+        panels.push(Panel { title: title.into(), note, frame });
     }
     Ok(Figure { panels, columns: 3, seen, facts, ..Figure::default() })
 }

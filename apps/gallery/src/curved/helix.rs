@@ -1,6 +1,6 @@
 //! Two double helices, one behind the other.
 
-use crate::easel::{Easel, bent, straight, turns};
+use crate::easel::{Easel, Shown, bent, straight, turns};
 use crate::figure_set::{Facts, Figure};
 use crate::sheet::Panel;
 use anyhow::{Context, Result};
@@ -39,7 +39,7 @@ fn wanted_box(session: &Session) -> Result<Aabb> {
 
 /// A picture with a box drawn over it, edges bent as the rays bend them.
 fn boxed(easel: &Easel<'_>, session: &Session, around: &Aabb, title: &str) -> Result<(Panel, f64, f64)> {
-    let mut frame = easel.draw(session)?;
+    let Shown { share: seen, mut frame } = easel.shown(session, BEHIND)?;
     let mut canvas = Canvas::new(&mut frame.color, frame.width);
     let corners = around.corners();
     let mut outline = Vec::new();
@@ -50,7 +50,6 @@ fn boxed(easel: &Easel<'_>, session: &Session, around: &Aabb, title: &str) -> Re
         canvas.line(&points, 2.0, GOLD);
         outline.extend(points);
     }
-    let seen = easel.shown(session, BEHIND)?.share;
     let note = format!("{:.0} % of the marked atoms' picture is seen", 100.0 * seen);
     Ok((Panel { title: title.into(), note, frame }, seen, inside(session, &hull(outline))?))
 }
@@ -114,14 +113,14 @@ pub(super) fn directions(easel: &Easel<'_>) -> Result<Figure> {
     for (title, [x, y, z]) in [
         ("No bend", [0.0; 3]),
         ("Lateral", [104.0, 40.0, 0.0]),
-        ("Vertical", [0.0, 40.0, 104.0]),
+        ("Vertical", [0.0, 40.0, 56.0]),
         ("Diagonal", [90.0, 40.0, 52.0]),
     ] {
         let spec = TurnSpec { viewpoint: eye + DVec3::new(x, y, z), ..turn };
         let turned = if x + z > 0.0 { bent(&session, Model::Modified, &[spec])? } else { straight(&session) };
-        let share = easel.shown(&turned, BEHIND)?.share;
+        let Shown { share, frame } = easel.shown(&turned, BEHIND)?;
         let note = format!("second viewpoint {x} angstrom to the right, {z} up; {:.0} % seen", 100.0 * share);
-        panels.push(easel.panel(&turned, title, note)?);
+        panels.push(Panel { title: title.into(), note, frame });
         seen.push(share);
     }
     Ok(Figure { panels, columns: 2, seen, ..Figure::default() })

@@ -1,7 +1,8 @@
 //! Rays that part before a helix and are one again behind it.
 
-use crate::easel::{Easel, straight};
+use crate::easel::{Easel, Shown, straight};
 use crate::figure_set::{Facts, Figure};
+use crate::sheet::Panel;
 use anyhow::{Context, Result};
 use belvedere::core::DVec2;
 use belvedere::{CameraPicture, Session};
@@ -15,19 +16,18 @@ const PAST: f64 = 215.0;
 
 /// Straight, round both sides, and the rays.
 pub(super) fn round_both_sides(easel: &Easel<'_>) -> Result<Figure> {
-    let session = easel.open(SCENE, [560, 420])?;
-    let plain = straight(&session);
-    let [before, after] = [&plain, &session].map(|s| easel.shown(s, BEHIND));
-    let (before, after) = (before?.share, after?.share);
-    let note = |share: f64| format!("{:.0} % of the marked atoms' picture is seen", 100.0 * share);
-    let panels = vec![
-        easel.panel(&plain, "Straight rays", note(before))?,
-        easel.panel(&session, "Round both sides", note(after))?,
-        easel.camera(&session, CameraPicture::Overhead, "Their rays", "apart, and one again".into())?,
-    ];
+    let session = easel.open(SCENE, [760, 420])?;
+    let (mut panels, mut seen) = (Vec::new(), Vec::new());
+    for (title, session) in [("Straight rays", straight(&session)), ("Round both sides", session.clone())] {
+        let Shown { share, frame } = easel.shown(&session, BEHIND)?;
+        let note = format!("{:.0} % of the marked atoms' picture is seen", 100.0 * share);
+        panels.push(Panel { title: title.into(), note, frame });
+        seen.push(share);
+    }
+    panels.push(easel.camera(&session, CameraPicture::Overhead, "Their rays", "apart, and one again".into())?);
     let facts =
         Facts::from([("seam: apart amid", gap(&session, AMID)?), ("seam: apart past the merge", gap(&session, PAST)?)]);
-    Ok(Figure { panels, columns: 3, seen: vec![before, after], facts, ..Figure::default() })
+    Ok(Figure { panels, columns: 2, seen, facts, ..Figure::default() })
 }
 
 /// Largest distance at a depth between the rays just left and right of the seam in the middle of the picture.

@@ -7,12 +7,14 @@ mod crossing;
 mod engine;
 mod helix;
 mod massif;
-pub(crate) mod merge;
+mod merge;
 mod models;
 mod street;
 mod street_rays;
 mod table;
 mod town;
+
+pub(crate) use merge::SCENE as MERGE;
 
 use crate::figure_set::{Entry, FigureSet};
 use anyhow::Result;
@@ -51,7 +53,7 @@ const FIGURES: [Entry; 17] = [
     Entry {
         name: "bends",
         title: "Which way to bend",
-        says: "The second viewpoint may lie anywhere: beside, above, or both.",
+        says: "The second viewpoint may lie anywhere: beside, above, or both. Past something upright, beside is the way.",
         draw: helix::directions,
     },
     Entry {

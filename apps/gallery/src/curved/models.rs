@@ -2,13 +2,13 @@
 
 use super::street::TILE;
 use super::town::{CROSSING, town, turn};
-use crate::easel::{Easel, bent, with_lines};
+use crate::easel::{Easel, above, bent, with_lines};
 use crate::figure_set::{Facts, Figure};
 use crate::sheet::Panel;
 use anyhow::Result;
 use belvedere::Session;
 use belvedere::core::map::curved_rays::Model;
-use belvedere::core::{DVec2, DVec3, Pinhole, Projection, View};
+use belvedere::core::{DVec2, DVec3};
 use belvedere::scene::{Color, Frame};
 
 /// Differences are drawn this many times as strong.
@@ -53,13 +53,9 @@ fn rays_over_each_other(easel: &Easel<'_>, town: &Session, both: [&Session; 2]) 
     let off =
         modified.iter().zip(&original).flat_map(|(m, o)| m.iter().map(|p| to_polyline(*p, o))).fold(0.0, f64::max);
     let long = modified.iter().map(|m| m.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>()).fold(0.0, f64::max);
-    let middle = 0.5 * (low + high);
-    let size = (high - low).truncate().max_element();
-    let lens = Projection::Orthographic { height: 1.2 * size };
-    let eye = middle.with_z(400.0);
-    let camera = Pinhole::look_at(eye, middle.with_z(0.0), DVec3::Y, lens, TILE, 1.0, None)?;
+    let size = 1.2 * (high - low).truncate().max_element();
     let lines = [("original rays", original, ORIGINAL, 7.0), ("modified rays", modified, MODIFIED, 2.0)];
-    let session = with_lines(town, lines).with_view(View::straight(camera));
+    let session = above(&with_lines(town, lines), 0.5 * (low + high), size)?;
     let note = format!("original rays broad, modified ones thin: at most {off:.2} m apart in arcs of {long:.0} m");
     let panel = easel.panel(&session, "Modified over original rays", note)?;
     let shown = |color: Color| {

@@ -1,6 +1,6 @@
 //! A street corner: what waits in the side streets.
 
-use super::town::{BUS, CAR, CROSSING, LORRY, NEXT_CROSSING, TRAM, ahead_and_right, both_sides, town, turn};
+use super::town::{BUS, CAR, CROSSING, LORRY, NEXT_CROSSING, TRAM, ahead_and_right, both_sides, town, town_for, turn};
 use crate::easel::{Easel, bent, pixels_of, straight};
 use crate::figure_set::{Facts, Figure};
 use crate::sheet::Panel;
@@ -32,7 +32,7 @@ pub(super) fn corners(easel: &Easel<'_>) -> Result<Figure> {
     let (first, pixels) = picture(easel, &straight(&town), "Straight rays", &[BUS, CAR, LORRY])?;
     let (mut panels, mut seen) = (vec![first], vec![pixels]);
     for (title, crossing, side, vehicle) in TURNS {
-        let session = bent(&town, Model::Modified, &[turn(crossing, side)])?;
+        let session = bent(&town_for(easel, TILE, crossing)?, Model::Modified, &[turn(crossing, side)])?;
         let (panel, pixels) = picture(easel, &session, title, &[vehicle])?;
         panels.push(panel);
         seen.push(pixels);

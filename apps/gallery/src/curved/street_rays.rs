@@ -1,7 +1,7 @@
 //! The rays of the street corner, and where they end.
 
 use super::street::TURNS;
-use super::town::{CROSSING, ahead_and_right, ahead_on_avenue, both_sides, in_side_street, town, turn};
+use super::town::{CROSSING, ahead_and_right, ahead_on_avenue, both_sides, in_side_street, town, town_for, turn};
 use crate::easel::{Easel, bent, ray_points};
 use crate::figure_set::{Facts, Figure};
 use anyhow::Result;
@@ -10,7 +10,8 @@ use belvedere::core::{DVec2, DVec3};
 use belvedere::cpu::Tracer;
 use belvedere::{CameraPicture, Session};
 
-/// Rays across the picture, and the rows of it in which they start, shares of its height: from the horizon down.
+/// Panels; rays across the picture, and the rows of it in which they start, shares of its height: from the horizon down.
+const TILE: [u32; 2] = [560, 560];
 const ACROSS: u32 = 24;
 const ROWS: [f64; 3] = [0.5, 0.55, 0.6];
 /// Rays that meet nothing are followed so far, metres.
@@ -36,11 +37,11 @@ fn reaching(session: &Session, part: [f64; 2], there: &dyn Fn(DVec3) -> bool) ->
 
 /// The cameras of the bent pictures, from above; one of them and the parted one from outside as well.
 pub(super) fn rays(easel: &Easel<'_>) -> Result<Figure> {
-    let town = town(easel, [560, 560])?;
+    let town = town(easel, TILE)?;
     let (mut panels, mut facts) = (Vec::new(), Facts::new());
     let whole = [0.0, 1.0];
     for (title, crossing, side, _) in TURNS {
-        let session = bent(&town, Model::Modified, &[turn(crossing, side)])?;
+        let session = bent(&town_for(easel, TILE, crossing)?, Model::Modified, &[turn(crossing, side)])?;
         let share = reaching(&session, whole, &|p| in_side_street(p, crossing, side));
         let note = format!("{:.0} % of the rays reach the side street", 100.0 * share);
         panels.push(easel.camera(&session, CameraPicture::Overhead, title, note)?);

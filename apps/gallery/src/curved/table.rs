@@ -2,12 +2,13 @@
 
 use crate::easel::{Easel, bent, straight, with_boxes};
 use crate::figure_set::{Facts, Figure, Table};
+use crate::sheet::Panel;
 use anyhow::Result;
 use belvedere::Session;
 use belvedere::core::DVec3;
 use belvedere::core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere::cpu::CpuRenderer;
-use belvedere::scene::{BoxShape, Color, Frame, Progress, RenderJob, RenderOptions, Renderer};
+use belvedere::scene::{BoxShape, Color, Frame, Light, Progress, RenderJob, RenderOptions, Renderer};
 use std::time::Instant;
 
 const BLOCKS: &str = include_str!("scenes/mast.toml");
@@ -16,11 +17,12 @@ const CANYON: &str = include_str!("../../../../scenes/canyon_preview.toml");
 const CITY: &str = include_str!("../../../../scenes/town.toml");
 const ENGINE: &str = include_str!("../../../../scenes/engine_curved_rays.toml");
 
-/// Frames that are measured, and panels.
+/// Frames that are measured.
 const IMAGE: [u32; 2] = [1280, 720];
-const TILE: [u32; 2] = [400, 225];
+/// Panels are so many times smaller.
+const SMALLER: usize = 3;
 /// Rounds of frames, after one that makes what the others share; the fastest frame of each camera counts.
-const ROUNDS: usize = 2;
+const ROUNDS: usize = 1;
 /// Houses along a side of the blocks.
 const SIDE: u32 = 60;
 /// Planes of the turn, shares of the depth of the scene's middle; how far aside the second viewpoint is, a share of that.
@@ -49,11 +51,10 @@ pub(super) fn times(easel: &Easel<'_>) -> Result<Figure> {
     let paper = ["paper: size", "paper: C0 to straight", "paper: curved to straight"];
     let (mut panels, mut rows, mut facts) = (Vec::new(), Vec::new(), Facts::new());
     for load in &LOADS {
-        let [_, _, small] = cameras(&load.open(easel, TILE)?)?;
-        let (ms, size) = measured(&cameras(&load.open(easel, IMAGE)?)?)?;
+        let (ms, frame) = measured(&cameras(&load.open(easel)?)?)?;
         let [straight, c0, curved] = ms;
         let [hz_straight, hz_c0, hz_curved] = load.paper_hz;
-        let mut row = vec![load.name.to_owned(), size];
+        let mut row = vec![load.name.to_owned(), size(&frame)];
         row.extend(ms.map(|ms| format!("{ms:.1} ms")));
         row.extend([c0 / straight, curved / straight].map(|r| format!("{r:.2}")));
         row.push(load.paper.to_owned());
@@ -61,7 +62,7 @@ pub(super) fn times(easel: &Easel<'_>) -> Result<Figure> {
         rows.push(row);
         facts.insert(load.name, curved / straight);
         let note = format!("curved {curved:.0} ms, straight {straight:.0} ms");
-        panels.push(easel.panel(&small, load.name, note)?);
+        panels.push(Panel { title: load.name.into(), note, frame: smaller(&frame) });
     }
     let table = Table { head: head.iter().chain(&paper).map(|s| (*s).to_owned()).collect(), rows };
     Ok(Figure { panels, columns: 3, facts, table: Some(table), ..Figure::default() })
@@ -69,13 +70,19 @@ pub(super) fn times(easel: &Easel<'_>) -> Result<Figure> {
 
 impl Load {
     /// The scene, without what would bend its view.
-    fn open(&self, easel: &Easel<'_>, image: [u32; 2]) -> Result<Session> {
+    fn open(&self, easel: &Easel<'_>) -> Result<Session> {
         let plain = |text: &'static str| {
             ["[[stage]]", "[constructor]"].iter().fold(text, |t, end| t.split(end).next().unwrap_or(t))
         };
-        let session = easel.open(plain(self.scene), image)?;
+        let session = easel.open(plain(self.scene), IMAGE)?;
         let blocks = || (0..SIDE * SIDE).map(|i| house(i % SIDE, i / SIDE)).collect();
-        Ok(if self.scene == BLOCKS { with_boxes(&session, [("blocks".to_owned(), blocks())]) } else { session })
+        if self.scene != BLOCKS {
+            return Ok(session);
+        }
+        let built = with_boxes(&session, [("blocks".to_owned(), blocks())]);
+        let mut scene = built.scene().clone();
+        scene.layers.retain(|layer| layer.id == "blocks");
+        Ok(Session::from_parts(scene, session.view().clone()))
     }
 }
 
@@ -105,16 +112,16 @@ fn cameras(session: &Session) -> Result<[Session; 3]> {
     Ok([straight(session), bent(session, Model::C0, &turn)?, bent(session, Model::Modified, &turn)?])
 }
 
-/// Milliseconds of the fastest frame of each, frames in turn, and the size of the scene in words.
-fn measured(sessions: &[Session; 3]) -> Result<([f64; 3], String)> {
-    let (renderer, progress) = (CpuRenderer::default(), Progress::silent());
+/// Milliseconds of the fastest frame of each, frames in turn, without cast shadows; and the last curved frame.
+fn measured(sessions: &[Session; 3]) -> Result<([f64; 3], Frame)> {
+    let (renderer, progress, light) = (CpuRenderer::default(), Progress::silent(), Light::default());
     let options = RenderOptions { samples: 1, lod_px: 0.0, ..RenderOptions::default() };
     let mut best = [f64::INFINITY; 3];
     let mut frame = Frame::default();
     for round in 0..=ROUNDS {
         for (session, best) in sessions.iter().zip(&mut best) {
-            let (scene, view, light) = (session.scene(), session.view(), session.light());
-            let job = RenderJob { scene, view, light, options: &options, progress: &progress };
+            let (scene, view) = (session.scene(), session.view());
+            let job = RenderJob { scene, view, light: &light, options: &options, progress: &progress };
             let start = Instant::now();
             frame = renderer.render(&job)?;
             if round > 0 {
@@ -122,10 +129,28 @@ fn measured(sessions: &[Session; 3]) -> Result<([f64; 3], String)> {
             }
         }
     }
-    let size = match (frame.stats.triangles_in, frame.stats.samples) {
+    Ok((best, frame))
+}
+
+/// How much is drawn, in words.
+fn size(frame: &Frame) -> String {
+    match (frame.stats.triangles_in, frame.stats.samples) {
         (0, samples) => format!("{:.1} million samples", 1e-6 * samples as f64),
         (n, _) if n < 1_000_000 => format!("{} thousand triangles", n / 1000),
         (n, _) => format!("{:.2} million triangles", 1e-6 * n as f64),
+    }
+}
+
+/// A frame of a third of the width and height, each pixel the mean of nine.
+fn smaller(frame: &Frame) -> Frame {
+    let (width, height) = (frame.width / SMALLER, frame.height / SMALLER);
+    let count = SMALLER * SMALLER;
+    let mean = |x: usize, y: usize| {
+        let at = |k: usize| (y * SMALLER + k / SMALLER) * frame.width + x * SMALLER + k % SMALLER;
+        std::array::from_fn(|c| {
+            ((0..count).map(|k| u32::from(frame.color[at(k)][c])).sum::<u32>() / count as u32) as u8
+        })
     };
-    Ok((best, size))
+    let color = (0..width * height).map(|i| mean(i % width, i / width)).collect();
+    Frame { width, height, color, ..Frame::default() }
 }

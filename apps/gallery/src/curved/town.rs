@@ -22,6 +22,11 @@ const ASIDE: f64 = 6.0;
 /// Height of the ground, metres.
 const GROUND: f64 = 12.0;
 
+/// What the scene says about its lens; lenses for turns at the first crossing and at the next one, degrees.
+const FOV: &str = "fov_y_deg = 24.0";
+const NEAR_FOV: f64 = 24.0;
+const FAR_FOV: f64 = 9.0;
+
 /// Layers with a vehicle each.
 pub(super) const BUS: &str = "bus";
 pub(super) const CAR: &str = "car";
@@ -46,17 +51,31 @@ fn vehicle(id: &str, [x, y]: [f64; 2], yaw: f64, size: [f64; 3], [r, g, b]: [u8;
 }
 
 /// The town with vehicles: in both side streets, in the street of the next crossing, and on the avenue ahead.
-pub(super) fn town(easel: &Easel<'_>, image: [u32; 2]) -> Result<Session> {
+///
+/// * `fov_deg`: narrower for crossings farther ahead, so that the rays keep between the walls.
+fn town_in(easel: &Easel<'_>, image: [u32; 2], fov_deg: f64) -> Result<Session> {
+    anyhow::ensure!(SCENE.contains(FOV), "the town's scene does not say {FOV}");
+    let scene = SCENE.replace(FOV, &format!("fov_y_deg = {fov_deg:.1}"));
     let (_, car) = super::car::boxes(DVec3::new(-104.0, CROSSING - 1.0, GROUND), -0.75, 1.25);
     Ok(with_boxes(
-        &easel.open(SCENE, image)?,
+        &easel.open(&scene, image)?,
         [
             vehicle(BUS, [-196.0, CROSSING - 2.0], 0.9, [12.0, 3.0, 4.2], [200, 40, 36]),
             (CAR.to_owned(), car),
             vehicle(LORRY, [-112.0, NEXT_CROSSING], 0.9, [13.0, 3.4, 5.2], [36, 130, 84]),
-            vehicle(TRAM, [AVENUE - 6.0, -92.0], 1.45, [22.0, 3.0, 4.6], [36, 84, 160]),
+            vehicle(TRAM, [AVENUE - 8.0, -92.0], 1.45, [22.0, 3.0, 4.6], [36, 84, 160]),
         ],
     ))
+}
+
+/// The town as seen for turns at the first crossing.
+pub(super) fn town(easel: &Easel<'_>, image: [u32; 2]) -> Result<Session> {
+    town_in(easel, image, NEAR_FOV)
+}
+
+/// The town as seen for a turn at a crossing.
+pub(super) fn town_for(easel: &Easel<'_>, image: [u32; 2], crossing: f64) -> Result<Session> {
+    town_in(easel, image, if crossing > CROSSING { FAR_FOV } else { NEAR_FOV })
 }
 
 /// A quarter turn at a crossing, to the west (`side` = -1) or to the east (1).
