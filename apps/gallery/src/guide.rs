@@ -48,7 +48,7 @@ pub fn figures(folder: &Path, options: &OpenOptions, overwrite: bool) -> Result<
 }
 
 fn curved_rays(easel: &Easel<'_>) -> Result<Figure> {
-    let session = easel.open(STREET, TILE)?;
+    let session = easel.open(STREET, [640, 400])?;
     let panels = vec![
         easel.panel(&straight(&session), "Straight", "houses hide the side streets".into())?,
         easel.panel(&session, "Bent", "rays part, and each half turns round its corner".into())?,
@@ -58,7 +58,7 @@ fn curved_rays(easel: &Easel<'_>) -> Result<Figure> {
 }
 
 fn merge(easel: &Easel<'_>) -> Result<Figure> {
-    let session = easel.open(crate::curved::MERGE, [512, 384])?;
+    let session = easel.open(crate::curved::MERGE, [640, 400])?;
     let panels = vec![
         easel.panel(&straight(&session), "Straight", "the front helix hides the one behind".into())?,
         easel.panel(&session, "Round both sides", "rays part, and are one again behind it".into())?,

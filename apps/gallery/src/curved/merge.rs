@@ -27,7 +27,7 @@ pub(super) fn round_both_sides(easel: &Easel<'_>) -> Result<Figure> {
     panels.push(easel.camera(&session, CameraPicture::Overhead, "Their rays", "apart, and one again".into())?);
     let facts =
         Facts::from([("seam: apart amid", gap(&session, AMID)?), ("seam: apart past the merge", gap(&session, PAST)?)]);
-    Ok(Figure { panels, columns: 2, seen, facts, ..Figure::default() })
+    Ok(Figure { panels, columns: 3, seen, facts, ..Figure::default() })
 }
 
 /// Largest distance at a depth between the rays just left and right of the seam in the middle of the picture.

@@ -2,12 +2,14 @@
 
 use super::super::{INK, PAPER, length, round_below};
 use super::subject::CameraFigure;
-use belvedere_core::DVec2;
+use belvedere_core::{DVec2, DVec3};
 use belvedere_cpu::canvas::{Canvas, text_size};
 use belvedere_scene::Unit;
 
 const LETTERS_PX: f64 = 12.0;
 const ROW: f64 = 17.0;
+/// Between the legend and the rim of the picture, pixels.
+const MARGIN: f64 = 10.0;
 
 /// Draws legend, and from above also scale bar and north.
 ///
@@ -20,7 +22,7 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, figure: &CameraFigure, (title, unit)
     if size.x < width + 20.0 || size.y < height + 20.0 {
         return;
     }
-    let lo = DVec2::splat(10.0);
+    let lo = corner(figure, size, DVec2::new(width, height));
     canvas.rect(lo, lo + DVec2::new(width, height), 5.0, PAPER);
     canvas.text(lo + DVec2::new(10.0, 18.0), 14.0, title, INK, None);
     for (i, (color, text)) in figure.legend.iter().enumerate() {
@@ -32,6 +34,22 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, figure: &CameraFigure, (title, unit)
     if pinhole.is_orthographic() {
         scale_bar(canvas, size, pinhole.scale_px(), unit);
     }
+}
+
+/// Upper left corner of the legend: where it covers least of the rays; the upper left one of the picture if nothing speaks against it.
+fn corner(figure: &CameraFigure, size: DVec2, legend: DVec2) -> DVec2 {
+    let far = size - legend - MARGIN;
+    let covered = |lo: DVec2| {
+        let inside = |p: DVec3| {
+            let at = figure.view.project(p).map_or(DVec2::NAN, |image| image.pixel);
+            at.cmpgt(lo).all() && at.cmplt(lo + legend).all()
+        };
+        let lines = figure.overlay.over.iter().filter(|line| line.color.a == 255);
+        let marks = figure.overlay.points.iter().map(|mark| mark.position);
+        lines.flat_map(|line| line.points.iter().copied()).chain(marks).filter(|p| inside(*p)).count()
+    };
+    let places = [DVec2::splat(MARGIN), DVec2::new(far.x, MARGIN), far];
+    places.into_iter().min_by_key(|lo| covered(*lo)).unwrap_or(places[0])
 }
 
 fn scale_bar(canvas: &mut Canvas<'_>, size: DVec2, px_per_unit: f64, unit: Unit) {

@@ -17,19 +17,26 @@ pub(super) fn view(session: &Session, picture: CameraPicture, overlay: &Overlay)
     let points: Vec<DVec3> = lines.chain(overlay.points.iter().map(|p| p.position)).collect();
     let shown = Aabb::of(points.iter().copied());
     let pinhole = match picture {
-        CameraPicture::Overhead => overhead(&shown, subject.image),
+        CameraPicture::Overhead => overhead(&shown, top(session, &shown), subject.image),
         CameraPicture::Outside(Some(eye_and_target)) => outside(eye_and_target.map(DVec3::from_array), subject.image),
         CameraPicture::Outside(None) => outside(beside(&shown, &points, subject), subject.image),
     };
     Ok(View::straight(pinhole?))
 }
 
-fn overhead(shown: &Aabb, image: [u32; 2]) -> Result<Pinhole, PinholeError> {
+/// Height over which nothing is, of the scene and of what is drawn over it.
+fn top(session: &Session, shown: &Aabb) -> f64 {
+    let bounds = session.scene().bounds();
+    if bounds.is_empty() { shown.max.z } else { shown.max.z.max(bounds.max.z) }
+}
+
+/// * `top`: what lies higher would be cut off.
+fn overhead(shown: &Aabb, top: f64, image: [u32; 2]) -> Result<Pinhole, PinholeError> {
     let [w, h] = image.map(f64::from);
     let size = (shown.max - shown.min).truncate() * MARGIN;
     let height = size.y.max(size.x * h / w).max(1e-3);
     let middle = 0.5 * (shown.min + shown.max);
-    let above = shown.max.z + 0.01 * height;
+    let above = top + 0.01 * height;
     let projection = Projection::Orthographic { height };
     let [eye, below] = [above, above - height].map(|z| middle.with_z(z));
     Pinhole::look_at(eye, below, DVec3::Y, projection, image, 1e-3 * height, None)
@@ -62,4 +69,38 @@ fn beside(shown: &Aabb, points: &[DVec3], subject: &Pinhole) -> [DVec3; 2] {
         best = nearer;
     }
     best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_scene::{BoxLayer, BoxShape, Color, Layer, LayerKind, OverlayPoint, Scene, Symbol};
+
+    #[test]
+    fn from_above_no_tower_is_cut_off_however_tall() {
+        let tower = BoxShape {
+            base: DVec3::new(40.0, 0.0, 0.0),
+            size: DVec3::new(20.0, 20.0, 300.0),
+            yaw: 0.0,
+            color: Color::rgb(200, 200, 200),
+        };
+        let kind = LayerKind::Boxes(BoxLayer::new(vec![tower]));
+        let layers = vec![Layer { id: "towers".into(), must_see: false, kind }];
+        let lens = Projection::Perspective { fov_y: FOV_Y };
+        let camera =
+            Pinhole::look_at(DVec3::Z, DVec3::new(0.0, 1.0, 1.0), DVec3::Z, lens, [64, 64], 0.1, None).unwrap();
+        let session = Session::from_parts(Scene { layers, ..Scene::default() }, View::straight(camera));
+        let mark = |x: f64| OverlayPoint {
+            position: DVec3::new(x, 0.5 * x, 1.0),
+            symbol: Symbol::Dot,
+            size_px: 4.0,
+            color: Color::rgb(0, 0, 0),
+            hidden: belvedere_scene::Hidden::Show,
+            label: String::new(),
+        };
+        let overlay = Overlay { points: vec![mark(0.0), mark(60.0)], ..Overlay::default() };
+        let above = view(&session, CameraPicture::Overhead, &overlay).unwrap();
+        let depth = above.project(DVec3::new(40.0, 0.0, 300.0)).unwrap().depth;
+        assert!(depth > above.pinhole().near, "{depth}");
+    }
 }
