@@ -3,6 +3,7 @@
 use crate::city::GeneraliseArgs;
 use crate::draw_args::DrawArgs;
 use crate::ground_args::{GroundArgs, InfoArgs};
+use crate::kinds::{AreaStyleKind, RendererKind, TechniqueKind};
 use crate::pack::PackArgs;
 use crate::parse::{
     parse_bytes, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_place, parse_seconds, parse_size,
@@ -10,8 +11,7 @@ use crate::parse::{
 };
 use crate::preset::PresetArgs;
 use belvedere::RendererChoice;
-use belvedere::scene_file::{HighlightMark, SurfaceDoc};
-use belvedere::verbs::reveal::Technique;
+use belvedere::scene_file::HighlightMark;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -46,7 +46,8 @@ pub(crate) struct Common {
     /// Memory for one picture, and for the samples of one file, such as 2GiB or 800MiB
     #[arg(long, global = true, value_name = "SIZE", value_parser = parse_bytes)]
     pub(crate) max_mem: Option<u64>,
-    /// Time for solving the ground of one picture; when it is up the best so far is taken, and said so
+    /// Time for the whole command, in animate and view for solving the ground of each picture; when it is up the best
+    /// so far is taken, and said so
     #[arg(long, global = true, value_name = "SECONDS", value_parser = parse_seconds)]
     pub(crate) time_limit: Option<f64>,
     /// Seed of whatever is generated, instead of the scene's
@@ -55,6 +56,13 @@ pub(crate) struct Common {
     /// Folder outside the scene's own from which its files may come; may be given several times
     #[arg(long, global = true, value_name = "DIR")]
     pub(crate) allow_root: Vec<PathBuf>,
+}
+
+impl Verb {
+    /// Whether it makes many pictures, each of which may take as long as the limit of time says.
+    pub(crate) fn makes_many_pictures(&self) -> bool {
+        matches!(self, Self::Animate(_) | Self::Bench(_) | Self::Demo(_) | Self::Figures(_) | Self::View(_))
+    }
 }
 
 /// What to do.
@@ -526,76 +534,4 @@ pub(crate) struct SchemaArgs {
     /// Output; standard output if left out
     #[arg(short, long, value_name = "OUT.json")]
     pub(crate) out: Option<PathBuf>,
-}
-
-/// What bends a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum TechniqueKind {
-    /// What shows most of the techniques that are tried, 120 s of solving each (or --time-limit): a spline; both; terrain disocclusion
-    Auto,
-    /// A spline over the mean ground
-    Spline,
-    /// Terrain disocclusion
-    Terrain,
-    /// Spline and terrain
-    Both,
-    /// Rays that bend once, around what hides most; what bends models with --see
-    #[value(name = "curved_rays")]
-    CurvedRays,
-}
-
-impl From<TechniqueKind> for Technique {
-    fn from(kind: TechniqueKind) -> Self {
-        match kind {
-            TechniqueKind::Auto => Self::Auto,
-            TechniqueKind::Spline => Self::Spline,
-            TechniqueKind::Terrain => Self::Terrain,
-            TechniqueKind::Both => Self::Both,
-            TechniqueKind::CurvedRays => Self::CurvedRays,
-        }
-    }
-}
-
-/// What areas are drawn as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum AreaStyleKind {
-    /// What properties and names say, else outline
-    Auto,
-    /// A line, and a light fill that everything shows through
-    Outline,
-    /// A grey fill
-    Plain,
-    /// Water: flat, with a shore line
-    Water,
-    /// Forest
-    Forest,
-    /// Ice
-    Glacier,
-    /// A line, and a light green fill that everything shows through
-    Park,
-}
-
-impl From<AreaStyleKind> for SurfaceDoc {
-    fn from(kind: AreaStyleKind) -> Self {
-        match kind {
-            AreaStyleKind::Auto => Self::Auto,
-            AreaStyleKind::Outline => Self::Outline,
-            AreaStyleKind::Plain => Self::Plain,
-            AreaStyleKind::Water => Self::Water,
-            AreaStyleKind::Forest => Self::Forest,
-            AreaStyleKind::Glacier => Self::Glacier,
-            AreaStyleKind::Park => Self::Park,
-        }
-    }
-}
-
-/// Renderers of this version.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum RendererKind {
-    /// The best there is: today the cpu
-    Auto,
-    /// On the processor, without a GPU
-    Cpu,
-    /// Every sample along its own curved ray: slower, no subdivision error, the reference for the others
-    Exact,
 }

@@ -1,6 +1,6 @@
 //! Arguments that all pictures and frames have in common.
 
-use crate::args::RendererKind;
+use crate::kinds::RendererKind;
 use crate::parse::{parse_lod, parse_size};
 use belvedere::picture::THRESHOLDS;
 use clap::{Args, ValueEnum};

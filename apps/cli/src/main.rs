@@ -6,6 +6,7 @@ mod args;
 mod city;
 mod draw_args;
 mod ground_args;
+mod kinds;
 mod pack;
 mod parse;
 mod preset;
@@ -47,7 +48,7 @@ fn broken(panic: &(dyn std::any::Any + Send)) -> ExitCode {
 }
 
 fn run(cli: Cli) -> ExitCode {
-    let context = Context::new(cli.common);
+    let context = Context::new(cli.common, cli.verb.makes_many_pictures());
     match verbs::run(cli.verb, &context) {
         Ok(goal) => {
             context.finish();

@@ -107,7 +107,9 @@ pub(crate) struct Context {
 
 impl Context {
     /// Installs Ctrl-C (once: stop cleanly; twice: stop at once) and the progress bar.
-    pub(crate) fn new(common: Common) -> Self {
+    ///
+    /// * `many_pictures`: a limit of time is one for each of them, not for the whole command.
+    pub(crate) fn new(common: Common, many_pictures: bool) -> Self {
         let bar: Arc<Mutex<Option<indicatif::ProgressBar>>> = Arc::default();
         let progress = match (common.quiet, std::io::stderr().is_terminal()) {
             (true, _) => Progress::silent(),
@@ -115,7 +117,8 @@ impl Context {
             (false, false) => with_lines(),
         };
         let progress = match common.time_limit {
-            Some(seconds) => progress.limited(Duration::from_secs_f64(seconds)),
+            Some(seconds) if many_pictures => progress.limited(Duration::from_secs_f64(seconds)),
+            Some(seconds) => progress.limited(Duration::from_secs_f64(seconds)).begin(),
             None => progress,
         };
         let flag = progress.cancel_flag();

@@ -2,10 +2,11 @@
 
 use crate::args::{
     AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, FigureKind, FiguresArgs, MeasureArgs,
-    PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs, TechniqueKind, Verb,
+    PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs, Verb,
 };
 use crate::draw_args::{CompositingKind, DrawArgs};
 use crate::ground_args::InfoArgs;
+use crate::kinds::TechniqueKind;
 use crate::report::{Context, done, print};
 use anyhow::Context as _;
 use belvedere::picture::{self, AuxBuffer, AuxFormat, PictureOptions};

@@ -18,8 +18,29 @@ pub struct Progress {
     report: Option<Arc<Report>>,
     cancelled: Arc<AtomicBool>,
     limit: Option<Duration>,
-    deadline: Option<Instant>,
+    span: Option<Span>,
 }
+
+/// A piece of work with a limit of time.
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    /// When all of the work began.
+    began: Instant,
+    /// Time for all of it.
+    whole: Duration,
+    /// When this piece should end.
+    deadline: Instant,
+}
+
+impl Span {
+    fn left(&self) -> Duration {
+        self.deadline.saturating_duration_since(Instant::now())
+    }
+}
+
+/// What is left for the work after a piece, at least and at most, as a share of the time that is left.
+const LEAST_REST: f64 = 0.15;
+const MOST_REST: f64 = 0.5;
 
 impl std::fmt::Debug for Progress {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -56,8 +77,44 @@ impl Progress {
     /// The same for a piece of work that begins now, to which the limit of time applies from here on; inside such a piece nothing
     /// changes.
     pub fn begin(&self) -> Self {
-        let deadline = || self.limit.and_then(|limit| Instant::now().checked_add(limit));
-        Self { deadline: self.deadline.or_else(deadline), ..self.clone() }
+        let span = || {
+            let (began, whole) = (Instant::now(), self.limit?);
+            Some(Span { began, whole, deadline: began.checked_add(whole)? })
+        };
+        Self { span: self.span.or_else(span), ..self.clone() }
+    }
+
+    /// Whether a piece of work with a limit of time has begun.
+    pub fn is_limited(&self) -> bool {
+        self.span.is_some()
+    }
+
+    /// Time that is left; `None` without a limit.
+    pub fn left(&self) -> Option<Duration> {
+        self.span.map(|span| span.left())
+    }
+
+    /// For a piece of the work that may take this share of the time that is left, 0..=1.
+    pub fn part(&self, share: f64) -> Self {
+        self.until(|span| Instant::now() + span.left().mul_f64(share.clamp(0.0, 1.0)))
+    }
+
+    /// For a piece of the work after which more is to be done that takes about `rest` times as long as all that was done so far:
+    /// between 0.15 and 0.5 of the time that is left is kept for that.
+    pub fn before(&self, rest: f64) -> Self {
+        self.until(|span| {
+            let (left, wanted) = (span.left(), span.began.elapsed().mul_f64(rest.clamp(0.0, 1e6)));
+            Instant::now() + left.saturating_sub(wanted.clamp(left.mul_f64(LEAST_REST), left.mul_f64(MOST_REST)))
+        })
+    }
+
+    /// For a piece of the work without which all would be in vain: it may take at least this share of the time for all of the work.
+    pub fn at_least(&self, share: f64) -> Self {
+        self.until(|span| span.deadline.max(Instant::now() + span.whole.mul_f64(share.clamp(0.0, 1.0))))
+    }
+
+    fn until(&self, deadline: impl Fn(&Span) -> Instant) -> Self {
+        Self { span: self.span.map(|span| Span { deadline: deadline(&span), ..span }), ..self.clone() }
     }
 
     /// Flag to set from elsewhere (a signal handler, a button) to cancel.
@@ -77,7 +134,7 @@ impl Progress {
 
     /// Whether the time is up.
     pub fn is_late(&self) -> bool {
-        self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+        self.span.is_some_and(|span| Instant::now() >= span.deadline)
     }
 
     /// Reports `done` (0..=1) of `stage`.
@@ -105,7 +162,26 @@ mod tests {
         assert!(work.tick("work", 0.5).is_ok(), "time that is up is no reason to lose everything");
         let longer = Progress::silent().limited(Duration::from_secs(3600)).begin();
         assert!(!longer.begin().should_end());
+        assert!(longer.is_limited() && !Progress::silent().begin().is_limited());
         longer.cancel_flag().store(true, Ordering::Relaxed);
         assert!(longer.should_end() && longer.tick("work", 0.5).is_err());
+    }
+
+    #[test]
+    fn pieces_of_the_work_leave_time_for_the_others() {
+        let seconds = |p: &Progress| p.left().unwrap().as_secs_f64();
+        let work = Progress::silent().limited(Duration::from_secs(1000)).begin();
+        assert!((seconds(&work.part(0.3)) - 300.0).abs() < 10.0);
+        assert!((seconds(&work.before(0.0)) - 850.0).abs() < 10.0, "something is always left for the rest");
+        assert!((seconds(&work.before(1e9)) - 500.0).abs() < 10.0, "and half of the time at most");
+        assert!((seconds(&work.part(0.5).part(0.5)) - 250.0).abs() < 10.0);
+        let late = work.part(0.0);
+        assert!(late.is_late() && !work.is_late());
+        assert!((seconds(&late.at_least(0.1)) - 100.0).abs() < 10.0, "of all the time");
+        assert!((seconds(&work.at_least(0.1)) - 1000.0).abs() < 10.0);
+        let free = Progress::silent();
+        assert!(
+            free.part(0.5).left().is_none() && free.before(1.0).left().is_none() && free.at_least(1.0).left().is_none()
+        );
     }
 }

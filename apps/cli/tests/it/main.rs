@@ -27,6 +27,7 @@ mod speed;
 mod strip;
 mod stylisation;
 mod terrain;
+mod time_limit;
 mod volume_targets;
 mod volumes;
 #[cfg(target_os = "linux")]

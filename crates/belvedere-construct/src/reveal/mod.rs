@@ -88,7 +88,8 @@ pub struct RevealReport {
 /// Chooses a view (unless `base` gives one) and a spline bend that show more of the layers that must be seen.
 ///
 /// * `base`: a camera, with earth curvature at most; its other stages are left out.
-/// * `memory`: where the search of an earlier frame ended.
+/// * `memory`: where the search of an earlier frame ended;
+/// * `progress`: where its time is up the best so far is taken.
 ///
 /// Everything is evaluated by line of sight along the rays, so no renderer is needed; [`crate::measure()`] with a renderer
 /// is the independent check. Deterministic, whatever the number of threads.
@@ -120,7 +121,8 @@ pub fn reveal(
     progress.tick("refining the bend", 0.8)?;
     let (base_view, straight) = &bases[chosen.view];
     let mut search = BendSearch::new(&evaluator, base_view, *straight, stride_for(evaluator.samples.len(), options));
-    let (start, best) = search.refine(&chosen.start, 8).ok_or(ConstructError::NoView { tried: eyes_tried })?;
+    let (start, best) =
+        search.refine(&chosen.start, 8, progress).ok_or(ConstructError::NoView { tried: eyes_tried })?;
     bends_tried += search.tried;
     memory.start = Some(start);
     progress.tick("refining the bend", 1.0)?;
@@ -172,6 +174,9 @@ const VIEWS_KEPT: usize = 10;
 /// Views whose bend is improved before one is chosen.
 const VIEWS_REFINED: usize = 3;
 
+/// Eyes that are evaluated even where time is up.
+const EYES_AT_LEAST: usize = 24;
+
 /// Evaluates every eye by its straight picture and keeps the best, not two from nearly the same direction.
 fn promising_views(
     evaluator: &Evaluator<'_>,
@@ -184,7 +189,12 @@ fn promising_views(
     let stride = 2 * stride_for(evaluator.samples.len(), options);
     let mut evaluated: Vec<(f64, Eye, View, Evaluation)> = eyes
         .into_par_iter()
-        .filter_map(|eye| {
+        .enumerate()
+        .filter_map(|(i, eye)| {
+            // Where time is up the rest of the eyes is left out, but not those that promise most.
+            if i >= EYES_AT_LEAST && progress.should_end() {
+                return None;
+            }
             let stages = options.earth_radius.map(|radius| {
                 let refraction = EarthCurvature::REFRACTION;
                 Stage::EarthCurvature(EarthCurvature { eye: eye.pinhole.eye, radius, refraction })
@@ -238,19 +248,25 @@ fn best_bend_of_all(
     for (view, (base, straight)) in bases.iter().enumerate() {
         progress.tick("bending the picture", 0.3 + 0.3 * view as f64 / bases.len() as f64)?;
         let mut search = BendSearch::new(evaluator, base, *straight, stride);
-        let remembered = memory.start.as_ref().and_then(|start| search.refine(start, 0));
+        let remembered = memory.start.as_ref().and_then(|start| search.refine(start, 0, progress));
         let view_score = straight_score(straight, 0.0, options);
         let best = search.coarse().into_iter().chain(remembered).max_by(|a, b| a.1.score.total_cmp(&b.1.score));
         found.extend(best.map(|(start, t)| Best { view, start, score: t.score + view_score }));
         tried += search.tried;
+        if !found.is_empty() && progress.should_end() {
+            break;
+        }
     }
     found.sort_by(|a, b| b.score.total_cmp(&a.score));
     found.truncate(VIEWS_REFINED);
     for (i, chosen) in found.iter_mut().enumerate() {
+        if progress.should_end() {
+            break;
+        }
         progress.tick("bending the picture", 0.6 + 0.2 * i as f64 / VIEWS_REFINED as f64)?;
         let (base, straight) = &bases[chosen.view];
         let mut search = BendSearch::new(evaluator, base, *straight, stride);
-        if let Some((start, better)) = search.refine(&chosen.start, 3) {
+        if let Some((start, better)) = search.refine(&chosen.start, 3, progress) {
             *chosen = Best { start, score: better.score + straight_score(straight, 0.0, options), ..*chosen };
         }
         tried += search.tried;

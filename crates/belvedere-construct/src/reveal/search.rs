@@ -4,6 +4,7 @@ use super::evaluate::{Evaluation, Evaluator, quantile};
 use super::options::RevealOptions;
 use super::shape::{BendShape, BuiltBend};
 use belvedere_core::{Projection, View};
+use belvedere_scene::Progress;
 use rayon::prelude::*;
 
 /// A bend that was evaluated.
@@ -161,12 +162,20 @@ impl<'a, 'b> BendSearch<'a, 'b> {
         self.best_of(&grid, stride).map(|(k, t)| (SearchStart(k), t))
     }
 
-    /// Improves a start by ever smaller steps of one or two parameters.
-    pub(crate) fn refine(&mut self, start: &SearchStart, rounds: usize) -> Option<(SearchStart, Candidate)> {
+    /// Improves a start by ever smaller steps of one or two parameters, as long as there is time.
+    pub(crate) fn refine(
+        &mut self,
+        start: &SearchStart,
+        rounds: usize,
+        progress: &Progress,
+    ) -> Option<(SearchStart, Candidate)> {
         let stride = self.stride;
         let mut best = self.best_of(&[start.0], stride)?;
         let mut step = 0.2;
         for _ in 0..rounds {
+            if progress.should_end() {
+                break;
+            }
             let at = best.0.get();
             let mut around = Vec::with_capacity(16);
             for i in 0..at.len() {

@@ -8,6 +8,7 @@ mod in_picture;
 mod limits;
 mod live;
 mod memory;
+mod out_of_time;
 mod passes;
 mod points_in_view;
 mod report;
@@ -16,6 +17,7 @@ pub use fallback::Fallback;
 pub use limits::LimitsReport;
 pub use live::{LiveFrame, LiveTerrain};
 pub use memory::TerrainMemory;
+pub use out_of_time::Taken;
 pub use report::{Covered, FeatureCost, QpReport, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
 
 use super::visibility_qp::{SolvedRow, Unresolved};
@@ -30,6 +32,9 @@ use memory::{Prepared, Weights};
 use passes::Passes;
 use points_in_view::PointsInView;
 use std::sync::Arc;
+
+/// Share of the time for solving; the rest is for judging.
+const SOLVING: f64 = 0.85;
 
 /// Terrain disocclusion as a constructor: the ground of a scene makes way for what must be seen.
 #[derive(Debug, Clone)]
@@ -86,7 +91,8 @@ impl TerrainSolver {
         memory: &mut TerrainMemory,
         progress: &Progress,
     ) -> Result<Solved, DisocclusionError> {
-        let frame_result = self.run(scene, base, memory, None, progress)?;
+        let progress = &progress.begin();
+        let frame_result = self.run(scene, base, memory, None, &progress.part(SOLVING))?;
         progress.tick("figures of the displaced terrain", 0.95)?;
         let began = Instant::now();
         let delta = frame_result.delta()?;
@@ -101,6 +107,7 @@ impl TerrainSolver {
             delta: &delta,
             traced: self.frame().is_none(),
             previous: previous.as_ref(),
+            progress,
         };
         let report = report::report(&context, &done, times, began)?;
         memory.keep(prepared, base, done.coarse);
@@ -194,13 +201,21 @@ struct SolvedFrame {
 impl SolvedFrame {
     /// The displacement over the scene.
     fn delta(&self) -> Result<Grid, GridError> {
-        match &self.done.full {
-            Some(full) => at_every_node(&self.field, full),
-            None => match &self.done.fine {
-                Some((grid, u)) => on_grid(&self.field, grid, u),
-                None => on_grid(&self.field, &self.prepared.grid, &self.done.coarse),
-            },
-        }
+        let Outcome { coarse, full, fine, .. } = &self.done;
+        delta_of(&self.field, &self.prepared.grid, (coarse, full.as_deref(), fine.as_ref()))
+    }
+}
+
+/// The displacement over the scene: at every node if there is that, else on the finer grid if there is one, else on the solver's.
+fn delta_of(
+    field: &Field,
+    grid: &Hierarchy,
+    (coarse, full, fine): (&[f64], Option<&[f64]>, Option<&(Hierarchy, Vec<f64>)>),
+) -> Result<Grid, GridError> {
+    match (full, fine) {
+        (Some(full), _) => at_every_node(field, full),
+        (None, Some((grid, u))) => on_grid(field, grid, u),
+        (None, None) => on_grid(field, grid, coarse),
     }
 }
 
@@ -250,6 +265,8 @@ struct Outcome {
     qp_unresolved: Vec<Unresolved>,
     /// Whether the program was told to end before its end.
     stopped: bool,
+    /// The ground that was taken then.
+    taken: Option<Taken>,
     /// Rows of the quadratic program with a multiplier.
     rows: Vec<SolvedRow>,
 }

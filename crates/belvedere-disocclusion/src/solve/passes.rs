@@ -5,12 +5,16 @@ use super::super::{BlockMaxima, Field, Hierarchy, Naive, ReferencePoint, Smoothe
 use super::agreement::Agreement;
 use super::fallback::{self, Fallback};
 use super::memory::{self, Prepared, Weights};
+use super::out_of_time::Ground;
 use super::{Outcome, PointsInView, QpReport, TerrainTimes, scales, since};
 use crate::DisocclusionError;
 use belvedere_core::DVec3;
 use belvedere_scene::Instant;
 use belvedere_scene::Progress;
 use std::borrow::Cow;
+
+/// Share of the time that the quadratic program has; the rest is for what is taken where it is not done by then.
+const PROGRAM_TIME: f64 = 0.6;
 
 /// What finer grids are tried on.
 struct Finer<'a> {
@@ -58,14 +62,22 @@ impl Passes<'_> {
             qp: None,
             qp_unresolved: Vec::new(),
             stopped: false,
+            taken: None,
             rows: Vec::new(),
         };
-        let mut detail = None;
+        let (mut detail, mut samples) = (None, Vec::new());
         if prepared.cells.is_some() {
             detail = self.paper(prepared, in_view, &mut done, times)?;
         }
         if prepared.still.is_some() {
-            self.guarantee(prepared, in_view, &mut detail, &mut done, times)?;
+            if prepared.cells.is_some() && self.progress.is_limited() {
+                samples.push(Ground::single_pass(&prepared.grid, &done.coarse, detail.as_deref()));
+            }
+            let in_time = Passes { progress: &self.progress.part(PROGRAM_TIME), ..*self };
+            in_time.guarantee(prepared, in_view, &mut detail, &mut done, times)?;
+            if done.stopped {
+                samples.extend(self.samples_of(prepared, in_view, detail.as_deref())?);
+            }
         }
         let fine = done.fine.take();
         done.full = match (fine, detail) {
@@ -82,7 +94,27 @@ impl Passes<'_> {
             }
         };
         self.limit(prepared, &mut done);
+        if done.stopped {
+            self.take_best(prepared, in_view, &mut done, samples)?;
+        }
         Ok(done)
+    }
+
+    /// See [`Self::samples`]; none where the ground's detail changed, which they would not know, and in films.
+    fn samples_of(
+        &self,
+        prepared: &mut Prepared,
+        in_view: &PointsInView<'_>,
+        detail: Option<&[f64]>,
+    ) -> Result<Vec<Ground>, DisocclusionError> {
+        let usual = detail.is_none() && self.frame.is_none() && self.settings.mode == SolverMode::Qp;
+        let Some(program) = prepared.still.as_mut().filter(|_| usual) else { return Ok(Vec::new()) };
+        let qp = &mut program.solver;
+        program.foreign = true;
+        qp.set_heights(self.field.heights())?;
+        qp.set_options(memory::options(self.settings, false));
+        let (candidates, sight) = (&in_view.candidates[..], &*in_view.sight);
+        self.samples(qp, &QpProblem { candidates, sight, target: None, ceilings: None })
     }
 
     /// Fills up what is dug too deep or too steep.
@@ -235,15 +267,7 @@ impl Passes<'_> {
             let grids = Finer { coarse, ground: &ground, detail, weights, options, check: &check };
             result = self.on_finer_grids(&grids, &problem, result, done)?;
         }
-        done.qp = Some(QpReport {
-            rounds: result.rounds,
-            rows: result.rows,
-            active: result.active.len(),
-            added: result.added,
-            kept: result.kept,
-            candidates: in_view.candidates.len(),
-            energy: result.energy,
-        });
+        done.qp = Some(QpReport::of(&result, in_view.candidates.len()));
         done.stopped = result.stopped || (fallback::stuck(&result) > 0 && self.progress.is_late());
         done.qp_unresolved = result.unresolved;
         done.rows = result.active;

@@ -1,18 +1,18 @@
 //! What a displacement achieves and what it costs, ready for JSON.
 
 use super::super::metrics::{Hides, Judge, Judged, judged, share_seen, still};
-use super::super::visibility_qp::{Reason, SolvedRow, Unresolved};
+use super::super::visibility_qp::{QpResult, Reason, SolvedRow, Unresolved};
 use super::super::{
     Deformation, Field, GreedyCounters, PointKind, ReferencePoint, SolverMode, TerrainMetrics, TerrainSettings,
     Unusable, UnusableReason, stated_spacing,
 };
 use super::memory::{CHECK_CELLS, Prepared};
-use super::{Fallback, LimitsReport, Outcome, PointsInView, since};
+use super::{Fallback, LimitsReport, Outcome, PointsInView, Taken, since};
 use crate::DisocclusionError;
 use crate::spikes::Spike;
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
-use belvedere_scene::Instant;
+use belvedere_scene::{Instant, Progress};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -66,6 +66,9 @@ pub struct TerrainReport {
     pub guaranteed: bool,
     /// Whether the solver was out of time and ended with the best it had.
     pub out_of_time: bool,
+    /// Which ground that was: what shows most of those that could be had in the time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub taken: Option<Taken>,
     /// What cannot be seen, and why.
     pub unresolved: Vec<UnresolvedRun>,
     /// What else the judge finds hidden of the length in view, and why: places between two that were looked after.
@@ -116,6 +119,14 @@ pub struct QpReport {
     pub candidates: usize,
     /// Half the squared norm of the displacement against its target.
     pub energy: f64,
+}
+
+impl QpReport {
+    /// * `candidates`: points that had to be seen.
+    pub(super) fn of(result: &QpResult, candidates: usize) -> Self {
+        let QpResult { rounds, rows, added, kept, energy, .. } = *result;
+        Self { rounds, rows, active: result.active.len(), added, kept, candidates, energy }
+    }
 }
 
 /// Wall times, milliseconds.
@@ -221,6 +232,25 @@ pub(super) struct Context<'a> {
     pub(super) traced: bool,
     /// That of the frame before.
     pub(super) previous: Option<&'a Grid>,
+    /// Where time is short not every dense point is judged.
+    pub(super) progress: &'a Progress,
+}
+
+/// Dense points to judge, all or about [`MOST_SAMPLED`]; of how many each is one.
+pub(super) fn sampled(all: Vec<ReferencePoint>, few: bool) -> (Vec<ReferencePoint>, usize) {
+    let every = if few { all.len().div_ceil(MOST_SAMPLED).max(1) } else { 1 };
+    (if every == 1 { all } else { all.into_iter().step_by(every).collect() }, every)
+}
+
+/// Whether to judge all of so many dense points would take more than half of the time that is left, by what a sample takes.
+fn too_many(progress: &Progress, judge: &Judge<'_>, all: &[ReferencePoint], guard: f64) -> bool {
+    let Some(left) = progress.left() else { return false };
+    let every = all.len().div_ceil(MOST_SAMPLED / 4).max(1);
+    let few: Vec<ReferencePoint> = all.iter().step_by(every).copied().collect();
+    let began = Instant::now();
+    judge.judge(&few, guard);
+    // Before and after, there over two grounds.
+    began.elapsed().mul_f64(3.0 * every as f64) > left.mul_f64(0.5)
 }
 
 pub(super) fn report(
@@ -232,9 +262,10 @@ pub(super) fn report(
     let (field, prepared, in_view, guard) = (c.field, c.prepared, c.in_view, c.settings.guard);
     let points: Vec<ReferencePoint> = in_view.points.iter().map(|&i| prepared.points[i]).collect();
     let all = prepared.dense_in_view(in_view);
-    let sampled = !c.traced || done.stopped;
-    let every = if sampled { all.len().div_ceil(MOST_SAMPLED).max(1) } else { 1 };
-    let dense: Vec<ReferencePoint> = all.into_iter().step_by(every).collect();
+    let still = still(field)?;
+    let undisplaced = Judge::faceted(field, &still, &*in_view.sight);
+    let few = !c.traced || done.stopped || too_many(c.progress, &undisplaced, &all, guard);
+    let (dense, every) = sampled(all, few);
     let of = Deformation {
         field,
         delta: c.delta,
@@ -248,8 +279,7 @@ pub(super) fn report(
     };
     let judgement = judged(&of);
     let metrics = judgement.metrics;
-    let still = still(field)?;
-    let undisplaced = Judge::faceted(field, &still, &*in_view.sight).prepared(dense.len());
+    let undisplaced = undisplaced.prepared(dense.len());
     let before = |points: &[ReferencePoint]| share_seen(points, &undisplaced.judge(points, guard));
     let (unresolved, hidden) = (unresolved(c, done, &judgement), hidden(c, done, &judgement, (&dense, every)));
     let (guards, qp_met) = (c.settings.mode != SolverMode::Paper, done.qp_unresolved.is_empty());
@@ -280,6 +310,7 @@ pub(super) fn report(
             && (every == 1 || judgement.points.is_empty() && judgement.dense.is_empty())
             && (done.limited.is_none() || hidden.is_empty()),
         out_of_time: done.stopped,
+        taken: done.taken,
         unresolved,
         hidden,
         covered: covered(c, &judgement, &dense),

@@ -9,5 +9,6 @@ mod memory;
 mod qp;
 mod smooth;
 mod smoothing;
+mod time_limit;
 mod trends;
 mod viewpoint;

@@ -6,7 +6,7 @@ use crate::BelvedereError;
 use crate::scene_file::{DetailDoc, PointDoc, SolverMode as ModeDoc, SourceDocument, StageDoc, Table, TerrainStageDoc};
 use belvedere_core::{DVec3, Pinhole, Stage, View};
 use belvedere_disocclusion::DisocclusionError;
-use belvedere_disocclusion::report::{FeatureCost, Spike};
+use belvedere_disocclusion::report::{FeatureCost, Spike, Taken};
 use belvedere_disocclusion::{
     Detail, Solved, SolverMode, TerrainReport, TerrainSettings, TerrainSolver, ViewpointOptions,
 };
@@ -107,6 +107,11 @@ pub(crate) fn document(settings: &TerrainSettings, scene: &Scene) -> TerrainStag
     }
 }
 
+/// Judging and drawing takes about so many times as long as what comes before solving.
+const DRAWING: f64 = 1.5;
+/// Share of the time that is left for moving the camera.
+const ADJUSTING: f64 = 0.4;
+
 /// Solves the intent for the picture of `base` (earth and later stages).
 pub(super) fn solve(
     settings: TerrainSettings,
@@ -122,7 +127,7 @@ pub(super) fn solve(
     if let Some(seconds) = solving.time_step_s {
         solver = solver.with_time_step(seconds);
     }
-    Ok(solver.solve(scene, base, &mut solving.memory.terrain, solving.progress)?)
+    Ok(solver.solve(scene, base, &mut solving.memory.terrain, &solving.progress.before(DRAWING))?)
 }
 
 /// Moves the camera where the scene allows it and that saves ground; films keep theirs.
@@ -152,7 +157,7 @@ pub(super) fn adjust(
     let solver = TerrainSolver::new(settings)?;
     let view = View::new(camera.pinhole.clone(), earth).map_err(|e| source.error(&["stage"], e))?;
     let options = ViewpointOptions { slider, ..ViewpointOptions::default() };
-    let found = solver.adjust(scene, &view, target, &options, solving.progress)?;
+    let found = solver.adjust(scene, &view, target, &options, &solving.progress.part(ADJUSTING))?;
     let Some(found) = found.filter(|f| f.moved_m > 0.0) else { return Ok(()) };
     let from = &camera.pinhole;
     let up = DVec3::from_array(source.document.camera.up);
@@ -194,10 +199,16 @@ pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<String> {
         ));
     }
     if report.out_of_time {
-        out.push(
-            "terrain_disocclusion: the solver was out of time and ended with the best ground it had; give it more time"
-                .into(),
-        );
+        out.push(format!(
+            "terrain_disocclusion: the solver was out of time and ended with the best ground it had{}; give it more time",
+            match report.taken {
+                Some(Taken::Unmoved) => ", that which did not move".into(),
+                Some(Taken::FrameBefore) => ", that of the frame before".into(),
+                Some(Taken::Sample { every }) => format!(", solved for one of {every} of the points"),
+                Some(Taken::SinglePass) => ", that of the greedy and the smooth pass".into(),
+                Some(Taken::Unfinished) | None => String::new(),
+            }
+        ));
     }
     let hidden = 1.0 - report.metrics.visible_dense;
     if hidden > WORTH_SAYING && report.parameters.mode != SolverMode::Paper {

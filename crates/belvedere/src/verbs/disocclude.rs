@@ -1,5 +1,6 @@
 //! `disocclude`: an elevation model in, one in which features can be seen from an eye out.
 
+use super::in_time;
 use crate::data::DataFiles;
 use crate::output::{self, pretty};
 use crate::picture::{self, PictureOptions};
@@ -8,7 +9,6 @@ use crate::resolve::ground::earth_radius;
 use crate::resolve::terrain as intent;
 use crate::scene_file::{self, CameraDoc, EarthDoc, StageDoc, TerrainStageDoc};
 use crate::{BelvedereError, OpenOptions, Session};
-use belvedere_construct::MeasureOptions;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, TerrainDisocclusion, View};
 use belvedere_disocclusion::{Solved, TerrainMemory, TerrainReport, TerrainSolver, ViewpointOptions};
 use belvedere_io::IoError;
@@ -27,6 +27,10 @@ use std::sync::Arc;
 const IMAGE: [u32; 2] = [1280, 720];
 /// Share from which on a promise is kept on resampled heights.
 const KEPT_SHARE: f64 = 0.9999;
+/// Share of the time that is left for moving the eye.
+const ADJUSTING: f64 = 0.4;
+/// Judging and writing the ground takes about so many times as long as reading it.
+const WRITING: f64 = 1.5;
 /// Share of the length in view that is wanted visible.
 const VISIBLE_LENGTH: f64 = 0.995;
 
@@ -160,10 +164,12 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
     let radius = request.curved_earth.then(|| earth_radius(&data.scene, &mut data.warnings));
     data.warnings.extend(original.georeference_note());
     let mut camera = LevelCamera::new(request, &original, data.scene.crs, radius)?;
-    let moved_eye = camera.adjust(request.parameters.adjust_viewpoint, &solver, &data.scene, &options.progress)?;
+    let adjusting = options.progress.part(ADJUSTING);
+    let moved_eye = camera.adjust(request.parameters.adjust_viewpoint, &solver, &data.scene, &adjusting)?;
     data.warnings.extend(moved_eye.as_ref().map(|(_, said)| said.clone()));
     let view = camera.view(camera.target.extend(camera.eye.z), None)?;
-    let solved = solver.solve(&data.scene, &view, &mut TerrainMemory::default(), &options.progress)?;
+    let solving = options.progress.before(WRITING);
+    let solved = solver.solve(&data.scene, &view, &mut TerrainMemory::default(), &solving)?;
     data.warnings.extend(intent::remarks(&solved, &data.scene));
     let delta = |p: DVec2| solved.stage.delta_at(p.extend(0.0));
     let (rasters, visible_written) = match (request.grid, data.scene.terrain()) {
@@ -223,7 +229,7 @@ fn written_share(
             terrain.heightfield = Arc::new(read.heightfield.clone());
         }
     }
-    let measures = belvedere_construct::measure(&scene, straight, None, &MeasureOptions::default(), &options.progress)?;
+    let (measures, _) = in_time::measured(&scene, straight, &options.progress)?;
     let kinds = [measures.lines.as_ref(), measures.areas.as_ref(), measures.points.as_ref()];
     let shares = kinds.into_iter().flatten().filter_map(|kind| kind.straight.sight.share);
     Ok(shares.min_by(f64::total_cmp))

@@ -4,6 +4,7 @@ pub mod animate;
 pub mod check;
 pub mod disocclude;
 pub mod generalise;
+mod in_time;
 pub mod info;
 pub mod measure;
 mod molecule_info;

@@ -1,5 +1,6 @@
 //! `reveal`: terrain and routes in, a picture in which the routes are visible out.
 
+use super::in_time;
 use crate::data::DataFiles;
 use crate::output::{self, document_toml, pretty};
 use crate::picture::{DisplacementReport, Picture, PictureOptions, TerrainRecord};
@@ -14,7 +15,7 @@ use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::measure::HiddenRun;
 use belvedere_construct::rays::{AroundOptions, Target, bend_around};
 use belvedere_construct::{
-    Goal, MeasureOptions, RevealMemory, RevealOptions, RevealReport, Revealed, default_spacing, sample_features,
+    Goal, RevealMemory, RevealOptions, RevealReport, Revealed, default_spacing, sample_features,
 };
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::TerrainReport;
@@ -89,6 +90,12 @@ const SAMPLES_TO_BEND_FOR: usize = 150;
 /// Time for solving the ground of each technique that is tried, where nothing else is said.
 const TRY_FOR: Duration = Duration::from_secs(120);
 
+/// Share of the time that is left for the search of a view and a bend: where nothing comes after it but the picture, and else.
+const SEARCH_ALONE: f64 = 0.5;
+const SEARCH: f64 = 0.2;
+/// And for the first of two techniques.
+const FIRST_TRY: f64 = 0.6;
+
 /// A technique that was tried.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Tried {
@@ -128,6 +135,8 @@ pub struct RevealAnswer {
     pub tried: Vec<Tried>,
     /// What of the features in the picture stays hidden, part by part.
     pub hidden: Vec<HiddenRun>,
+    /// The shares and `hidden` are judged by samples so many times as far apart as usual: 1, but more where time was short.
+    pub measured_every: u32,
     missed: Vec<String>,
 }
 
@@ -147,6 +156,7 @@ struct ReportFile<'a> {
     tried: &'a [Tried],
     /// What of the features in the picture stays hidden.
     hidden: &'a [HiddenRun],
+    measured_every: u32,
     displacement: Option<DisplacementReport>,
     view: &'a crate::record::ViewRecord,
     crs: String,
@@ -175,7 +185,8 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     };
     let mut memory = RevealMemory::default();
     let searched = Instant::now();
-    let found = belvedere_construct::reveal(&data.scene, base.as_ref(), &search, &mut memory, &options.progress)?;
+    let searching = options.progress.part(if request.technique == Technique::Spline { SEARCH_ALONE } else { SEARCH });
+    let found = belvedere_construct::reveal(&data.scene, base.as_ref(), &search, &mut memory, &searching)?;
     let pinhole = found.straight.pinhole();
     let ahead = (found.pivot - pinhole.eye).length().max(1.0);
     let camera = CameraDoc::of(pinhole, pinhole.eye + ahead * pinhole.forward);
@@ -195,7 +206,7 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     };
     let is_auto = request.technique == Technique::Auto;
     let progress = &options.progress.clone().limited_unless_stated(TRY_FOR);
-    let (spline, mut shares, mut tried) = (session.clone(), None, Vec::new());
+    let (spline, mut shares, mut tried, mut measured_every) = (session.clone(), None, Vec::new(), 1);
     let mut most = if is_auto { found.report.bent.visible } else { f64::NEG_INFINITY };
     for &technique in candidates {
         if is_auto && most >= ENOUGH {
@@ -207,10 +218,11 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
             _ => disoccluded(
                 &spline,
                 (technique, request.no_limits),
-                if is_auto { progress } else { &options.progress },
+                &if is_auto { progress.part(FIRST_TRY) } else { options.progress.clone() },
             )?,
         };
-        let reached = final_shares(&next, technique, &options.progress)?;
+        let (reached, every) = final_shares(&next, technique, &options.progress)?;
+        measured_every = every.max(measured_every);
         let out_of_time = next.terrain_report().is_some_and(|r| r.out_of_time);
         let (visible, seconds) = (reached.visible_bent, began.elapsed().as_secs_f64());
         tried.push(Tried { technique, visible, seconds, out_of_time });
@@ -227,10 +239,13 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     } else {
         tried.clear();
     }
+    if candidates.is_empty() && options.progress.is_limited() {
+        measured_every = in_time::measured(&session.scene, &session.view, &options.progress)?.1;
+    }
     let hidden = belvedere_construct::measure::hidden(
         &session.scene,
         &session.view,
-        &MeasureOptions::default(),
+        &in_time::options(&session.scene, measured_every),
         &options.progress,
     )?;
     let pair = PictureOptions {
@@ -240,7 +255,7 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
         ..request.picture.clone()
     };
     let picture = session.render(&pair)?;
-    Ok(RevealAnswer { session, picture, report: found.report, shares, tried, hidden, missed })
+    Ok(RevealAnswer { session, picture, report: found.report, shares, tried, hidden, measured_every, missed })
 }
 
 fn shortfall(visible: f64) -> String {
@@ -280,17 +295,21 @@ fn around_what_hides(session: &Session, straight: &View, progress: &Progress) ->
     session.with_document(document, None)
 }
 
-/// Judges the whole chain of stages.
-fn final_shares(session: &Session, technique: Technique, progress: &Progress) -> Result<FinalShares, BelvedereError> {
-    let measures =
-        belvedere_construct::measure(&session.scene, &session.view, None, &MeasureOptions::default(), progress)?;
+/// Judges the whole chain of stages; also how many times as far apart as usual the samples are.
+fn final_shares(
+    session: &Session,
+    technique: Technique,
+    progress: &Progress,
+) -> Result<(FinalShares, u32), BelvedereError> {
+    let (measures, every) = in_time::measured(&session.scene, &session.view, progress)?;
     let all =
         measures.lines.as_ref().or(measures.areas.as_ref()).or(measures.points.as_ref()).or(measures.surfaces.as_ref());
-    Ok(FinalShares {
+    let shares = FinalShares {
         technique,
         visible_straight: all.and_then(|m| m.straight.sight.share),
         visible_bent: all.and_then(|m| m.bent.sight.share),
-    })
+    };
+    Ok((shares, every))
 }
 
 impl RevealAnswer {
@@ -348,6 +367,7 @@ impl RevealAnswer {
                 disocclusion: self.session.terrain_report(),
                 tried: &self.tried,
                 hidden: &self.hidden,
+                measured_every: self.measured_every,
                 displacement: sidecar.displacement,
                 view: &sidecar.view,
                 crs: self.session.scene.crs.to_string(),

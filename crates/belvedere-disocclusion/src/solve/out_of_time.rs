@@ -1,0 +1,215 @@
+//! What is taken where time is up: of several grounds the one that shows most.
+//!
+//! A program that is stopped leaves ground that is right for nothing: it may show less than the ground that did not move. So the same
+//! program is solved for a sample of what was asked, which takes a fraction of the time; and where not even that is done, the greedy and
+//! smooth pass is made, which takes about as long as one round. Each ground is made plausible and judged as the report judges it.
+
+use super::super::metrics::{Judge, share_seen, still};
+use super::super::visibility_qp::{Candidate, QpProblem, QpResult, QpSolver, SolvedRow, Unresolved};
+use super::super::{BlockMaxima, Cells, Hierarchy, Naive, ReferencePoint, SmoothPass, SolverMode, TerrainSettings};
+use super::memory::Prepared;
+use super::passes::Passes;
+use super::{LimitsReport, Outcome, PointsInView, QpReport, delta_of, report};
+use crate::DisocclusionError;
+use belvedere_core::DVec2;
+use serde::Serialize;
+
+/// The ground that was taken where time was up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(tag = "ground", rename_all = "snake_case")]
+pub enum Taken {
+    /// As it was: nothing else showed more.
+    Unmoved,
+    /// That of the frame before.
+    FrameBefore,
+    /// The quadratic program's for a sample of what was asked.
+    Sample {
+        /// Of so many points one was asked for.
+        every: usize,
+    },
+    /// The quadratic program's, unfinished.
+    Unfinished,
+    /// That of the greedy and the smooth pass.
+    SinglePass,
+}
+
+/// Of so many candidates one is asked for, one solution after the other.
+const SAMPLES: [usize; 3] = [32, 8, 3];
+/// Fewer candidates than these are not worth a solution of their own.
+const FEWEST: usize = 24;
+/// Share of the time for all of the work that the first sample has at least.
+const FIRST_SAMPLE: f64 = 0.1;
+/// Share of what is in view that is worth another ground that moves more.
+const WORTH: f64 = 0.001;
+/// Nothing else is tried for what is seen up to this share.
+const ENOUGH: f64 = 0.9;
+
+/// A ground that could be taken.
+pub(super) struct Ground {
+    taken: Taken,
+    coarse: Vec<f64>,
+    full: Option<Vec<f64>>,
+    limited: Option<LimitsReport>,
+    qp: Option<QpReport>,
+    unresolved: Vec<Unresolved>,
+    rows: Vec<SolvedRow>,
+}
+
+impl Ground {
+    fn plain(taken: Taken, coarse: Vec<f64>) -> Self {
+        Self { taken, coarse, full: None, limited: None, qp: None, unresolved: Vec::new(), rows: Vec::new() }
+    }
+
+    /// The greedy and the smooth pass, with the change of detail at every node.
+    pub(super) fn single_pass(grid: &Hierarchy, coarse: &[f64], detail: Option<&[f64]>) -> Self {
+        let whole = |detail: &[f64]| grid.prolong(coarse).iter().zip(detail).map(|(u, d)| u + d).collect();
+        Self { full: detail.map(whole), ..Self::plain(Taken::SinglePass, coarse.to_vec()) }
+    }
+
+    fn solved(every: usize, result: QpResult, candidates: usize) -> Self {
+        let qp = Some(QpReport::of(&result, candidates));
+        let QpResult { u, unresolved, active, .. } = result;
+        Self { qp, unresolved, rows: active, ..Self::plain(Taken::Sample { every }, u) }
+    }
+}
+
+impl Passes<'_> {
+    /// Solutions for samples of what was asked, the coarsest first, as many as there is time for.
+    pub(super) fn samples(&self, qp: &mut QpSolver, problem: &QpProblem<'_>) -> Result<Vec<Ground>, DisocclusionError> {
+        let mut out = Vec::new();
+        let worth = SAMPLES.into_iter().filter(|every| problem.candidates.len() / every >= FEWEST);
+        for (k, every) in worth.enumerate() {
+            let progress = if k == 0 { self.progress.at_least(FIRST_SAMPLE) } else { self.progress.clone() };
+            if progress.should_end() {
+                break;
+            }
+            self.progress.tick("quadratic program for a sample", 0.9)?;
+            qp.reset();
+            let few: Vec<Candidate> = problem.candidates.iter().step_by(every).copied().collect();
+            let result = qp.solve_with(&QpProblem { candidates: &few, ..*problem }, &progress)?;
+            let done = !result.stopped;
+            out.push(Ground::solved(every, result, few.len()));
+            if !done {
+                break;
+            }
+        }
+        // No frame after is to begin where time was up.
+        qp.reset();
+        Ok(out)
+    }
+
+    /// Puts the ground that shows most in the place of the unfinished one.
+    pub(super) fn take_best(
+        &self,
+        prepared: &Prepared,
+        in_view: &PointsInView<'_>,
+        done: &mut Outcome,
+        samples: Vec<Ground>,
+    ) -> Result<(), DisocclusionError> {
+        let (points, _) = report::sampled(prepared.dense_in_view(in_view), true);
+        let unfinished = self.share_of(
+            prepared,
+            in_view,
+            &points,
+            (done.coarse.as_slice(), done.full.as_deref()),
+            done.fine.as_ref(),
+        )?;
+        let mut best =
+            (self.share_unmoved(in_view, &points)?, Ground::plain(Taken::Unmoved, vec![0.0; done.coarse.len()]));
+        let mut kept = false;
+        let before = self.last.map(|u| Ground::plain(Taken::FrameBefore, u.to_vec()));
+        for mut ground in before.into_iter().chain(samples) {
+            let share = self.share_limited(prepared, in_view, &points, &mut ground)?;
+            if share > best.0 + WORTH {
+                best = (share, ground);
+            }
+        }
+        if unfinished > best.0 + WORTH {
+            (best.0, kept) = (unfinished, true);
+        }
+        if best.0 < ENOUGH && self.frame.is_none() {
+            let pass = self.single_pass(prepared, in_view)?;
+            if let Some(mut ground) = pass.map(|u| Ground::plain(Taken::SinglePass, u)) {
+                let share = self.share_limited(prepared, in_view, &points, &mut ground)?;
+                if share > best.0 + WORTH {
+                    (best, kept) = ((share, ground), false);
+                }
+            }
+        }
+        if kept {
+            done.taken = Some(Taken::Unfinished);
+            return Ok(());
+        }
+        let Ground { taken, coarse, full, limited, qp, unresolved, rows } = best.1;
+        (done.taken, done.coarse, done.full, done.fine) = (Some(taken), coarse, full, None);
+        (done.limited, done.qp_unresolved, done.rows) = (limited, unresolved, rows);
+        done.qp = qp.or(done.qp);
+        done.fallbacks.clear();
+        Ok(())
+    }
+
+    /// Makes a ground plausible and judges it.
+    fn share_limited(
+        &self,
+        prepared: &Prepared,
+        in_view: &PointsInView<'_>,
+        points: &[ReferencePoint],
+        ground: &mut Ground,
+    ) -> Result<f64, DisocclusionError> {
+        if let Some(limited) = &prepared.limited
+            && (ground.full.is_some() || !limited.surely_kept(&prepared.grid, &ground.coarse))
+        {
+            let mut u = ground.full.take().unwrap_or_else(|| prepared.grid.prolong(&ground.coarse));
+            ground.limited = limited.keep(&prepared.level, &mut u);
+            ground.full = Some(u);
+        }
+        self.share_of(prepared, in_view, points, (&ground.coarse, ground.full.as_deref()), None)
+    }
+
+    fn share_of(
+        &self,
+        prepared: &Prepared,
+        in_view: &PointsInView<'_>,
+        points: &[ReferencePoint],
+        (coarse, full): (&[f64], Option<&[f64]>),
+        fine: Option<&(Hierarchy, Vec<f64>)>,
+    ) -> Result<f64, DisocclusionError> {
+        let delta = delta_of(self.field, &prepared.grid, (coarse, full, fine))?;
+        let judge = if self.frame.is_none() { Judge::of_both } else { Judge::faceted };
+        Ok(share_seen(points, &judge(self.field, &delta, &*in_view.sight).judge(points, self.settings.guard)))
+    }
+
+    fn share_unmoved(&self, in_view: &PointsInView<'_>, points: &[ReferencePoint]) -> Result<f64, DisocclusionError> {
+        let still = still(self.field)?;
+        let judge = Judge::faceted(self.field, &still, &*in_view.sight);
+        Ok(share_seen(points, &judge.judge(points, self.settings.guard)))
+    }
+
+    /// The greedy and the smooth pass as published, detail kept as it is; `None` where they were made already.
+    fn single_pass(
+        &self,
+        prepared: &Prepared,
+        in_view: &PointsInView<'_>,
+    ) -> Result<Option<Vec<f64>>, DisocclusionError> {
+        if self.settings.mode != SolverMode::Qp {
+            return Ok(None);
+        }
+        self.progress.tick("greedy and smooth pass", 0.9)?;
+        let field = self.field;
+        let settings = TerrainSettings { mode: SolverMode::Paper, ..self.settings.clone() };
+        let cells = Cells::new(field, settings.cells.unwrap_or_else(|| Cells::default_count(field)));
+        let blocks = BlockMaxima::new(field);
+        let point = |&i: &usize| {
+            let p = prepared.points[i];
+            ReferencePoint { ground: field.surface_at(p.grid).unwrap_or(p.ground), ..p }
+        };
+        let points: Vec<ReferencePoint> = in_view.points.iter().map(point).collect();
+        let naive = Naive::new(field, &cells, Some(&blocks), &settings, self.eye, &points);
+        let summit = |&i: &u32| DVec2::new((i as usize % field.cols()) as f64, (i as usize / field.cols()) as f64);
+        let rows: Vec<DVec2> =
+            prepared.points.iter().map(|p| p.grid).chain(cells.summits().iter().map(summit)).collect();
+        let w = settings.smoothness_on(&prepared.despiked);
+        let mut pass = SmoothPass::new(prepared.grid.clone(), w, settings.rows_weight, &rows)?;
+        Ok(Some(pass.run(&naive.displacement(field, &cells), None, None).u))
+    }
+}
