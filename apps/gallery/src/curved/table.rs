@@ -103,7 +103,7 @@ fn cameras(session: &Session) -> Result<[Session; 3]> {
     let pinhole = session.view().pinhole();
     // Without the ground, which may reach far beyond what the scene is about.
     let things = session.scene().layers.iter().filter(|l| l.id != "ground").map(belvedere::scene::Layer::bounds);
-    let bounds = things.filter(|b| !b.is_empty()).last().unwrap_or_else(|| session.scene().bounds());
+    let bounds = things.filter(|b| !b.is_empty()).next_back().unwrap_or_else(|| session.scene().bounds());
     let middle = (bounds.center() - pinhole.eye).dot(pinhole.forward);
     let [t0, t1, t2] = PLANES.map(|share| pinhole.eye + share * middle * pinhole.forward);
     let pencil = Pencil::Parallel { normal: -pinhole.forward };
