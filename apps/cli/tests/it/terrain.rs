@@ -283,7 +283,7 @@ fn what_runs_out_of_time_says_so_and_promises_nothing() {
     let place = place(|r, c| Some(hills(r, c)));
     let short = report(&place, &["--time-limit", "0.000001"]);
     assert!(short["out_of_time"] == true && short["guaranteed"] == false, "{short}");
-    assert!(number(&short["visible_dense"]) < 0.995, "{short}");
+    assert!(number(&short["visible_dense"]) >= number(&short["visible_dense_before"]), "{short}");
     assert!(short["warnings"].to_string().contains("out of time"), "{}", short["warnings"]);
     let enough = report(&place, &["--time-limit", "600", "--grid", "scene"]);
     assert!(enough["out_of_time"] == false && enough["guaranteed"] == true, "{enough}");

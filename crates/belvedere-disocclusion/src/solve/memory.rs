@@ -163,7 +163,8 @@ impl Prepared {
         settings: &TerrainSettings,
         weights: Weights,
     ) -> Result<Self, DisocclusionError> {
-        let (despiked, spikes) = without_spikes(heightfield);
+        let (despiked, spikes) =
+            if settings.limits { without_spikes(heightfield) } else { (heightfield.clone(), Vec::new()) };
         let level = Field::new(&despiked, |_| 0.0)?;
         let grid = Hierarchy::whole(level.cols(), level.rows(), settings.solver_nodes);
         let (points, unusable) = reference_points(scene, &level, settings, settings.spacing);

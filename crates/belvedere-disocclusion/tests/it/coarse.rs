@@ -49,6 +49,7 @@ fn scaled_detail_hides_nothing_that_the_program_holds_for_seen() {
             detail: Some(detail),
             solver_nodes: 33,
             cells: Some(12),
+            limits: false,
             ..TerrainSettings::default()
         };
         for eye in EYES {
@@ -69,7 +70,8 @@ fn what_the_judge_finds_hidden_is_named() {
     let scene = scene();
     let (mut between, mut inside, mut smoothed) = (0, 0, 0);
     for mode in [SolverMode::Paper, SolverMode::PaperQp, SolverMode::Qp] {
-        let settings = TerrainSettings { mode, solver_nodes: 33, cells: Some(12), ..TerrainSettings::default() };
+        let settings =
+            TerrainSettings { mode, solver_nodes: 33, cells: Some(12), limits: false, ..TerrainSettings::default() };
         for eye in EYES {
             let report = report(&scene, eye, &settings);
             let named: usize = report

@@ -133,7 +133,7 @@ pub struct TerrainStageDoc {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ahead_m: Option<f64>,
     /// Whether the ground must still look like ground: no more than a fifth of the relief below the lowest, nor more than twice as steep
-    /// as all but a thousandth of the terrain; true by default. What cannot be shown then is named.
+    /// as all but a thousandth of the terrain; true by default. What cannot be shown then is named, and spikes of the data are passed over.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limits: Option<bool>,
     /// Price of a metre of occlusion squared, > 0: what costs more to clear stays covered by ground that is drawn see-through;
