@@ -252,7 +252,7 @@ pub(crate) struct RevealArgs {
     #[arg(long, value_enum)]
     pub(crate) technique: Option<TechniqueKind>,
     /// Let the ground sink deeper and become steeper than ground that looks like ground: more than a fifth of the relief below the lowest,
-    /// more than twice as steep as all but a thousandth of the terrain; take spikes of the data for ground
+    /// more than twice as steep as all but a thousandth of the terrain
     #[arg(long)]
     pub(crate) no_limits: bool,
     /// Coordinate system of the scene: auto, EPSG:n or local
@@ -292,7 +292,7 @@ pub(crate) struct DisoccludeArgs {
     #[arg(long, value_name = "MODE", value_parser = ["paper", "paper+qp", "qp"])]
     pub(crate) mode: Option<String>,
     /// Let the ground sink deeper and become steeper than ground that looks like ground: more than a fifth of the relief below the lowest,
-    /// more than twice as steep as all but a thousandth of the terrain; take spikes of the data for ground
+    /// more than twice as steep as all but a thousandth of the terrain
     #[arg(long)]
     pub(crate) no_limits: bool,
     /// Any other key of a terrain_disocclusion stage, such as w=0.6; may be given several times

@@ -75,8 +75,10 @@ pub struct TerrainSettings {
     /// Only features up to this distance along the path from the eye, metres; `None` = all.
     pub ahead_m: Option<f64>,
     /// Whether the ground must still look like ground: no more than a fifth of the relief below the lowest, nor more than twice as steep as
-    /// all but a thousandth of the terrain, of modes with a quadratic program; and whether spikes of the data are passed over.
+    /// all but a thousandth of the terrain. Of modes with a quadratic program.
     pub limits: bool,
+    /// Whether spikes of the data are ground, to be dug round like other ground.
+    pub spikes: bool,
     /// Price of a metre of occlusion squared, > 0: what costs more to clear stays covered; `None` = everything is cleared.
     pub slack_price: Option<f64>,
 }
@@ -102,6 +104,7 @@ impl Default for TerrainSettings {
             candidates: 0.25,
             ahead_m: None,
             limits: true,
+            spikes: false,
             slack_price: None,
         }
     }

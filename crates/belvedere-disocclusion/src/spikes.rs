@@ -123,7 +123,7 @@ fn usual_slope(terrain: &Heightfield) -> f64 {
     let (cols, d, h) = (terrain.cols(), terrain.spacing(), terrain.heights());
     let solid = |i: usize| terrain.states()[i] != NodeState::Void;
     let of = |i: usize| {
-        let east = ((i + 1) % cols != 0).then_some((i + 1, d.x));
+        let east = (!(i + 1).is_multiple_of(cols)).then_some((i + 1, d.x));
         let south = (i + cols < h.len()).then_some((i + cols, d.y));
         let pairs = [east, south].into_iter().flatten().filter(move |(j, _)| solid(i) && solid(*j));
         pairs.map(move |(j, d)| (h[j] - h[i]).abs() / d as f32)

@@ -102,8 +102,8 @@ fn house(column: u32, row: u32) -> BoxShape {
 fn cameras(session: &Session) -> Result<[Session; 3]> {
     let pinhole = session.view().pinhole();
     // Without the ground, which may reach far beyond what the scene is about.
-    let things = session.scene().layers.iter().filter(|l| l.id != "ground").map(belvedere::scene::Layer::bounds);
-    let bounds = things.filter(|b| !b.is_empty()).next_back().unwrap_or_else(|| session.scene().bounds());
+    let mut things = session.scene().layers.iter().filter(|l| l.id != "ground").map(belvedere::scene::Layer::bounds);
+    let bounds = things.rfind(|b| !b.is_empty()).unwrap_or_else(|| session.scene().bounds());
     let middle = (bounds.center() - pinhole.eye).dot(pinhole.forward);
     let [t0, t1, t2] = PLANES.map(|share| pinhole.eye + share * middle * pinhole.forward);
     let pencil = Pencil::Parallel { normal: -pinhole.forward };

@@ -164,7 +164,7 @@ impl Prepared {
         weights: Weights,
     ) -> Result<Self, DisocclusionError> {
         let (despiked, spikes) =
-            if settings.limits { without_spikes(heightfield) } else { (heightfield.clone(), Vec::new()) };
+            if settings.spikes { (heightfield.clone(), Vec::new()) } else { without_spikes(heightfield) };
         let level = Field::new(&despiked, |_| 0.0)?;
         let grid = Hierarchy::whole(level.cols(), level.rows(), settings.solver_nodes);
         let (points, unusable) = reference_points(scene, &level, settings, settings.spacing);

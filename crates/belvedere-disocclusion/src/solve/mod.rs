@@ -206,12 +206,11 @@ impl SolvedFrame {
     }
 }
 
+/// Displacements of the nodes of the solver's grid, of every node, and of a finer grid.
+type Displaced<'u> = (&'u [f64], Option<&'u [f64]>, Option<&'u (Hierarchy, Vec<f64>)>);
+
 /// The displacement over the scene: at every node if there is that, else on the finer grid if there is one, else on the solver's.
-fn delta_of(
-    field: &Field,
-    grid: &Hierarchy,
-    (coarse, full, fine): (&[f64], Option<&[f64]>, Option<&(Hierarchy, Vec<f64>)>),
-) -> Result<Grid, GridError> {
+fn delta_of(field: &Field, grid: &Hierarchy, (coarse, full, fine): Displaced<'_>) -> Result<Grid, GridError> {
     match (full, fine) {
         (Some(full), _) => at_every_node(field, full),
         (None, Some((grid, u))) => on_grid(field, grid, u),

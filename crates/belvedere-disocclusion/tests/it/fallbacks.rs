@@ -37,7 +37,7 @@ fn solve(scene: &Scene, eye: DVec3, look: DVec3, settings: &TerrainSettings) -> 
 
 /// Posts and pits of one node are taken as they are, and dug round however deep.
 fn free() -> TerrainSettings {
-    TerrainSettings { limits: false, ..TerrainSettings::default() }
+    TerrainSettings { limits: false, spikes: true, ..TerrainSettings::default() }
 }
 
 fn five_nodes() -> TerrainSettings {

@@ -87,7 +87,7 @@ pub(super) fn length_m(text: &str) -> Option<f64> {
     let unit = rest.trim_start_matches(|c: char| !c.is_alphabetic() && c != '\'');
     let feet = unit.starts_with("ft") || unit.starts_with("feet") || unit.starts_with('\'');
     // `65'6"`: feet and inches.
-    let inches = rest.strip_prefix('\'').and_then(|after| first_number(after)).map_or(0.0, |(inches, _)| inches);
+    let inches = rest.strip_prefix('\'').and_then(first_number).map_or(0.0, |(inches, _)| inches);
     Some(if feet { 0.3048 * (number + inches / 12.0) } else { number })
 }
 

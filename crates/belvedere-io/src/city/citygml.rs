@@ -62,13 +62,13 @@ struct At {
 
 /// What an object has shown so far.
 struct Gathered<'n> {
-    /// Level of detail, ids of the rings, turned round or not, and the face.
-    faces: Vec<(String, Vec<(&'n str, bool)>, CityFace)>,
+    /// Level of detail and face.
+    faces: Vec<(String, NamedFace<'n>)>,
     /// Ids within the object: references to them would show a face twice.
     own: HashSet<&'n str>,
 }
 
-/// A face, and the ids of its rings, possibly empty, and whether they are turned round.
+/// The ids of the rings of a face, possibly empty, whether they are turned round, and the face.
 type NamedFace<'n> = (Vec<(&'n str, bool)>, CityFace);
 
 impl<'n> Document<'n> {
@@ -100,7 +100,7 @@ impl<'n> Document<'n> {
         let at = At { lod: "0".into(), surface: None, dimension: None, reversed: false, hops: 0 };
         self.gather(object, &at, &mut gathered)?;
         let mut shown = Shown::default();
-        for (lod, rings, mut face) in gathered.faces {
+        for (lod, (rings, mut face)) in gathered.faces {
             self.looks.dress(&rings, &mut face, pictures);
             shown.faces.entry(Lod::of_text(&lod)).or_default().push(face);
         }
@@ -125,7 +125,7 @@ impl<'n> Document<'n> {
             "ImplicitGeometry" => return self.implicit(node, &at, out),
             "Polygon" | "PolygonPatch" | "Triangle" | "Rectangle" => {
                 let face = self.face(node, &at)?;
-                out.faces.extend(face.map(|(rings, face)| (at.lod.clone(), rings, face)));
+                out.faces.extend(face.map(|face| (at.lod.clone(), face)));
                 return Ok(());
             }
             _ => {}
@@ -166,12 +166,12 @@ impl<'n> Document<'n> {
             None => None,
         };
         let place = place.ok_or_else(|| format!("line {}: a shape without a place", node.line))?;
-        for (lod, rings, mut face) in there.faces {
+        for (lod, (rings, mut face)) in there.faces {
             for p in face.rings.iter_mut().flatten() {
                 let there = plan::position(matrix.transform_point3(*p) + place);
                 *p = there.map_err(|e| format!("line {}: a shape {e}", node.line))?;
             }
-            out.faces.push((lod, rings, face));
+            out.faces.push((lod, (rings, face)));
         }
         Ok(())
     }

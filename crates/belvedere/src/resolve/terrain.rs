@@ -68,6 +68,7 @@ pub(crate) fn settings(doc: &TerrainStageDoc) -> Result<TerrainSettings, (&'stat
         candidates: doc.candidates.unwrap_or(usual.candidates),
         ahead_m: doc.ahead_m,
         limits: doc.limits.unwrap_or(usual.limits),
+        spikes: doc.spikes.unwrap_or(usual.spikes),
         slack_price: doc.slack_price,
     })
 }
@@ -102,6 +103,7 @@ pub(crate) fn document(settings: &TerrainSettings, scene: &Scene) -> TerrainStag
         candidates: Some(settings.candidates),
         ahead_m: settings.ahead_m,
         limits: Some(settings.limits),
+        spikes: Some(settings.spikes),
         slack_price: settings.slack_price,
         adjust_viewpoint: None,
     }

@@ -133,9 +133,13 @@ pub struct TerrainStageDoc {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ahead_m: Option<f64>,
     /// Whether the ground must still look like ground: no more than a fifth of the relief below the lowest, nor more than twice as steep
-    /// as all but a thousandth of the terrain; true by default. What cannot be shown then is named, and spikes of the data are passed over.
+    /// as all but a thousandth of the terrain; true by default. What cannot be shown then is named.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limits: Option<bool>,
+    /// Whether spikes, single samples far above or below all their neighbours, are ground that must make way; by default they are said and
+    /// passed over.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spikes: Option<bool>,
     /// Price of a metre of occlusion squared, > 0: what costs more to clear stays covered by ground that is drawn see-through;
     /// by default everything is cleared.
     #[serde(skip_serializing_if = "Option::is_none")]
