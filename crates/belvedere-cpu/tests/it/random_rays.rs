@@ -30,7 +30,7 @@ fn place(view: &View, random: &mut Random) -> DVec3 {
 
 fn boxes(view: &View, random: &mut Random) -> LayerKind {
     let shape = |i: usize, random: &mut Random| {
-        let size = 10f64.powf(random.range(0.6, if i % 8 == 0 { 2.6 } else { 1.8 }));
+        let size = 10f64.powf(random.range(0.6, if i.is_multiple_of(8) { 2.6 } else { 1.8 }));
         let size = size * DVec3::new(random.range(0.3, 1.0), random.range(0.3, 1.0), random.range(0.3, 1.0));
         let base = place(view, random) - 0.5 * size;
         BoxShape { base, size, yaw: random.range(0.0, 3.0), color: Color::rgb(190, 180, 170) }
@@ -70,7 +70,7 @@ fn scene_of(kind: usize, view: &View, random: &mut Random) -> Scene {
 fn random_view(seed: usize) -> Option<View> {
     let mut random = Random::new(0x5eed + seed as u64);
     let model = MODELS[seed % 5];
-    if seed % SPLITS == 0 {
+    if seed.is_multiple_of(SPLITS) {
         return random_split(&mut random, model, IMAGE).map(|(view, _)| view);
     }
     RandomRays::new(&mut random, model, 1 + seed / 5 % 4, IMAGE).map(|made| made.view())

@@ -188,9 +188,11 @@ mod tests {
         faces.iter().flat_map(|f| &f.rings).map(of).sum::<f64>() / 6.0
     }
 
+    type Ground = Box<dyn Fn(DVec2) -> Option<f64>>;
+
     /// Grounds of all slopes, plane, bent, stepped.
-    fn grounds() -> Vec<(String, Box<dyn Fn(DVec2) -> Option<f64>>)> {
-        let mut out: Vec<(String, Box<dyn Fn(DVec2) -> Option<f64>>)> = Vec::new();
+    fn grounds() -> Vec<(String, Ground)> {
+        let mut out: Vec<(String, Ground)> = Vec::new();
         for slope in [0.0, 0.1, 0.3, 0.6, 1.0] {
             let along = move |p: DVec2| (p - 500_000.0).dot(DVec2::new(0.6, 0.8));
             out.push((format!("plane {slope}"), Box::new(move |p| Some(900.0 + slope * along(p)))));

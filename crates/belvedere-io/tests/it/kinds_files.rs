@@ -310,7 +310,7 @@ fn grid(folder: &Folder, name: &str, number: impl Fn(f64) -> String, odd: &str) 
 fn grids_with_commas_customary_voids_and_feet() {
     let folder = Folder::new();
     let load = |path: &std::path::PathBuf, request: &TerrainRequest| {
-        load_terrain(&[path.clone()], request, &Progress::silent()).unwrap()
+        load_terrain(std::slice::from_ref(path), request, &Progress::silent()).unwrap()
     };
     let usual = TerrainRequest::default();
     let point = |v: f64| format!("{v:.2}");

@@ -68,7 +68,10 @@ fn read(path: &Path, kind: &str) -> Result<String, String> {
     }
 }
 
-fn kinds() -> Vec<(&'static str, Vec<(&'static str, Vec<u8>)>)> {
+/// A kind of file, and the names and bytes of one and of what belongs to it.
+type Kind = (&'static str, Vec<(&'static str, Vec<u8>)>);
+
+fn kinds() -> Vec<Kind> {
     let asc = "ncols 3\nnrows 2\nxllcorner 680000\nyllcorner 5196000\ncellsize 60\n1 2 3\n4 5 6\n";
     let utm = r#"PROJCS["WGS_1984_UTM_Zone_32N",GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],UNIT["Meter",1.0]]"#;
     let hgt: Vec<u8> = (0..101 * 101).flat_map(|k: i32| ((k % 900) as i16).to_be_bytes()).collect();

@@ -166,14 +166,14 @@ fn every_point_of_a_ray_has_its_pixel_and_depth() {
         tried.add(more);
     }
     let (count, some) = (tried.wrong.len(), &tried.wrong[..tried.wrong.len().min(8)]);
-    println!(
+    let figures = format!(
         "{cameras:?} cameras, {} points, {} beyond a common line ({} before the turn), {} seen twice, {} gone back; worst {:e} px, depth {:e}",
         tried.points, tried.beyond_line, tried.before, tried.twice, tried.back, tried.worst_px, tried.worst_depth
     );
-    assert!(count == 0, "{count} of {} points: {some:#?}", tried.points);
+    assert!(count == 0, "{count} wrong of {figures}: {some:#?}");
     assert!(cameras.iter().sum::<usize>() >= 10_000 && cameras.iter().all(|n| *n > 500), "{cameras:?}");
     assert!(
         tried.beyond_line > 1000 && tried.before > 200 && tried.twice > 100 && tried.back > 3000,
-        "the cameras are too tame"
+        "the cameras are too tame: {figures}"
     );
 }
