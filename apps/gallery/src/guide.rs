@@ -58,7 +58,7 @@ fn curved_rays(easel: &Easel<'_>) -> Result<Figure> {
 }
 
 fn merge(easel: &Easel<'_>) -> Result<Figure> {
-    let session = easel.open(crate::curved::MERGE, [640, 400])?;
+    let session = easel.open(crate::curved::MERGE, [480, 300])?;
     let panels = vec![
         easel.panel(&straight(&session), "Straight", "the front helix hides the one behind".into())?,
         easel.panel(&session, "Round both sides", "rays part, and are one again behind it".into())?,
