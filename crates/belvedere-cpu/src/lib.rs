@@ -19,6 +19,7 @@ mod branches;
 mod cache;
 pub mod canvas;
 mod exact;
+mod fast;
 mod frame;
 mod geometry;
 mod layers;

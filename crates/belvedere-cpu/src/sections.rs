@@ -9,7 +9,7 @@
 use crate::raster::thin::ThinShow;
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::sections::{MOST_REPRESENTATIONS, StylingSections};
-use belvedere_core::{Aabb, DVec3, SpaceMap, Stage, Strip, View};
+use belvedere_core::{Aabb, DVec3, SpaceMap, Strip, View};
 use belvedere_scene::{Compositing, RenderJob, Scene};
 
 /// Which layers are shown where.
@@ -51,8 +51,7 @@ impl<'a> Sections<'a> {
         if scene.representations.is_empty() {
             return None;
         }
-        let bend = view.stages().iter().find_map(|s| if let Stage::SplineBend(bend) = s { Some(bend) } else { None });
-        let strip = view.stages().iter().find_map(|s| if let Stage::Strip(strip) = s { Some(strip) } else { None });
+        let (bend, strip) = (view.spline_bend(), view.strip());
         let styling = bend.map_or_else(StylingSections::plain, |bend| bend.sections().clone());
         let shown_by = scene.shown_by(&styling.representations());
         let only = only.filter(|number| *number < styling.representations().len());

@@ -2,7 +2,7 @@
 
 use crate::solve::Covered;
 use crate::visibility_qp::{LinesOfSight, ViewSight};
-use belvedere_core::{DVec2, SpaceMap, Stage, View};
+use belvedere_core::{DVec2, SpaceMap, View};
 use belvedere_scene::{Heightfield, NodeState};
 use belvedere_sight::{Field, FieldError};
 
@@ -24,16 +24,8 @@ pub fn opacity(slack_m: f64, half_m: f64) -> f64 {
 /// # Errors
 /// [`FieldError`] if the terrain holds no data.
 pub fn cut_open(terrain: &Heightfield, view: &View, covered: &[Covered]) -> Result<Heightfield, FieldError> {
-    let stages = view.stages();
-    let fallen = |xy: DVec2| {
-        let earth = stages.iter().find_map(|s| if let Stage::EarthCurvature(earth) = s { Some(earth) } else { None });
-        earth.and_then(|e| e.apply(xy.extend(0.0)).ok()).map_or(0.0, |p| -p.z)
-    };
-    let delta = |xy: DVec2| {
-        let moved =
-            |s: &Stage| if let Stage::TerrainDisocclusion(t) = s { Some(t.delta_at(xy.extend(0.0))) } else { None };
-        stages.iter().find_map(moved).unwrap_or(0.0)
-    };
+    let fallen = |xy: DVec2| view.earth().and_then(|e| e.apply(xy.extend(0.0)).ok()).map_or(0.0, |p| -p.z);
+    let delta = |xy: DVec2| view.ground().map_or(0.0, |ground| ground.delta_at(xy.extend(0.0)));
     let field = Field::new(terrain, fallen)?;
     let sight = ViewSight::new(view, &field);
     let mut heights = terrain.heights().to_vec();

@@ -1,63 +1,79 @@
-//! A displacement of one's own, and the law that makes it a camera: what a pixel's ray meets is seen at that pixel.
+//! A displacement of one's own as a stage of a view: drawn, picked and measured like those of scene files.
 //!
-//! Renderers draw the stages of [`belvedere::core::Stage`]; research code implements [`SpaceMap`] and has everything that is
-//! computed from a map: projection, rays, depth.
+//! [`SpaceMap`] is all that has to be written; [`StageMap`] answers what drawing asks beyond it, and takes better answers where a map has them.
 
-use belvedere::core::map::Miss;
-use belvedere::core::{DMat3, DVec2, DVec3, Pinhole, Projection, SpaceMap};
+use belvedere::core::map::{Miss, StageMap};
+use belvedere::core::{DMat3, DVec2, DVec3, Pinhole, Projection, SpaceMap, Stage, View};
+use belvedere::scene::{BoxLayer, BoxShape, Color, Heightfield, LayerKind, Progress, Scene};
+use belvedere::verbs::pick::pick;
+use belvedere::{BelvedereError, PictureOptions, Session};
+use std::path::Path;
 
-/// Lowers what lies farther from the eye, smoothly: `z' = z - drop * s^2 / (s^2 + reach^2)` with `s = y` ahead of the eye.
+/// Raises what lies farther to the north, smoothly: `z' = z + rise * y^2 / (y^2 + reach^2)` for `y > 0`.
+#[derive(Debug)]
 struct Ramp {
-    drop: f64,
+    rise: f64,
     reach: f64,
 }
 
 impl Ramp {
-    fn lowered(&self, y: f64) -> f64 {
-        let s = y.max(0.0);
-        self.drop * s * s / (s * s + self.reach * self.reach)
+    fn raised(&self, y: f64) -> f64 {
+        let y = y.max(0.0);
+        self.rise * y * y / (y * y + self.reach * self.reach)
     }
 }
 
 impl SpaceMap for Ramp {
     fn apply(&self, p: DVec3) -> Result<DVec3, Miss> {
-        Ok(p - self.lowered(p.y) * DVec3::Z)
+        Ok(p + self.raised(p.y) * DVec3::Z)
     }
 
-    fn invert(&self, p: DVec3) -> Result<DVec3, Miss> {
-        Ok(p + self.lowered(p.y) * DVec3::Z)
+    fn invert(&self, p_displaced: DVec3) -> Result<DVec3, Miss> {
+        Ok(p_displaced - self.raised(p_displaced.y) * DVec3::Z)
     }
 
     fn jacobian(&self, p: DVec3) -> Result<DMat3, Miss> {
-        let (s, r) = (p.y.max(0.0), self.reach * self.reach);
-        let slope = self.drop * 2.0 * s * r / (s * s + r).powi(2);
-        Ok(DMat3::from_cols(DVec3::X, DVec3::new(0.0, 1.0, -slope), DVec3::Z))
+        let (y, r) = (p.y.max(0.0), self.reach * self.reach);
+        let slope = self.rise * 2.0 * y * r / (y * y + r).powi(2);
+        Ok(DMat3::from_cols(DVec3::X, DVec3::new(0.0, 1.0, slope), DVec3::Z))
     }
 }
 
-/// Largest distance, in pixels, between a pixel and the image of what its ray meets at several depths; and the least determinant of
-/// the map there, which must be above 0.
-pub fn run() -> Result<[f64; 2], Box<dyn std::error::Error>> {
-    let map = Ramp { drop: 300.0, reach: 2000.0 };
-    let lens = Projection::Perspective { fov_y: 0.8 };
-    let camera =
-        Pinhole::look_at(DVec3::new(0.0, 0.0, 400.0), DVec3::Y * 3000.0, DVec3::Z, lens, [640, 360], 1.0, None)?;
-    let (mut worst, mut least) = (0.0f64, f64::INFINITY);
-    for i in 0..1000u32 {
-        let pixel = DVec2::new(f64::from(i * 37 % 640), f64::from(i * 91 % 360));
-        let depth = 10.0 + 5.0 * f64::from(i);
-        let point = map.invert(camera.unproject(pixel, depth)).map_err(|miss| format!("{miss:?}"))?;
-        let displaced = map.apply(point).map_err(|miss| format!("{miss:?}"))?;
-        let (image, _) = camera.project(displaced).map_err(|miss| format!("{miss:?}"))?;
-        worst = worst.max(image.distance(pixel));
-        least = least.min(map.jacobian(point).map_err(|miss| format!("{miss:?}"))?.determinant());
-    }
-    Ok([worst, least])
+impl StageMap for Ramp {}
+
+/// The layer that a view shows where it has the image of a point, if any.
+fn layer_at(session: &Session, point: DVec3) -> Result<Option<String>, BelvedereError> {
+    let Ok(image) = session.view().project(point) else { return Ok(None) };
+    let seen = pick(session, &[image.pixel.to_array()], &Progress::silent())?;
+    Ok(seen.pixels.into_iter().flatten().next().map(|seen| seen.layer))
+}
+
+/// The layer that a straight view and one with the ramp show in the direction of a point behind a building; draws the latter.
+pub fn run(folder: &Path) -> Result<[Option<String>; 2], Box<dyn std::error::Error>> {
+    let ground = Heightfield::measured(DVec2::new(-300.0, 600.0), DVec2::splat(10.0), 61, 61, vec![0.0; 61 * 61])?;
+    let building = BoxShape {
+        base: DVec3::new(0.0, 100.0, 0.0),
+        size: DVec3::new(80.0, 20.0, 20.0),
+        yaw: 0.0,
+        color: Color::rgb(201, 194, 184),
+    };
+    let scene = Scene::default()
+        .with_terrain("ground", ground)
+        .with_layer("building", LayerKind::Boxes(BoxLayer::new(vec![building])));
+
+    let lens = Projection::Perspective { fov_y: 70f64.to_radians() };
+    let (eye, target) = (DVec3::new(0.0, 0.0, 30.0), DVec3::new(0.0, 100.0, 40.0));
+    let camera = Pinhole::look_at(eye, target, DVec3::Z, lens, [320, 240], 1.0, None)?;
+    let straight = Session::from_parts(scene, View::straight(camera.clone()));
+    let bent = straight.clone().with_view(View::new(camera, vec![Stage::own(Ramp { rise: 400.0, reach: 400.0 })])?);
+    bent.render(&PictureOptions::default())?.write(&folder.join("own_stage.png"), true)?;
+    let behind = DVec3::new(0.0, 260.0, 0.0);
+    Ok([layer_at(&straight, behind)?, layer_at(&bent, behind)?])
 }
 
 #[allow(clippy::print_stdout, reason = "a program, not a library")]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let [worst, least] = run()?;
-    println!("rays and projection agree within {worst:e} pixels; the least determinant is {least}");
+    let [straight, ramp] = run(Path::new("."))?.map(|layer| layer.unwrap_or_else(|| "nothing".into()));
+    println!("towards a point behind the building the straight view shows {straight}, the one with the ramp {ramp}");
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! Rigid layers of a picture: which they are, where it shows them, and who does not know of them.
 
-use belvedere_core::{DVec2, DVec3, Stage, View};
+use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Bodies, Frame, Scene};
 
 /// The layers of a scene that a view carries, or parts of them, as rigid bodies.
@@ -47,8 +47,7 @@ impl RigidLayers {
 /// Why `what`, which judges by rays that meet every point where the stages carry it by itself, cannot work for a scene with rigid layers;
 /// `None` where none is carried otherwise.
 pub(crate) fn refusal(what: &str, scene: &Scene, view: &View) -> Option<String> {
-    let bends = |s: &Stage| matches!(s, Stage::TerrainDisocclusion(_) | Stage::Relief(_) | Stage::SplineBend(_));
-    let stage = view.stages().iter().find(|stage| bends(stage))?.name();
+    let stage = view.stages().iter().find(|stage| !stage.is_of_world() && !stage.bends_rays())?.name();
     let ids = RigidLayers::of(scene, view).ids(scene);
     let id = ids.first()?;
     Some(format!(

@@ -11,7 +11,7 @@ use crate::session::Description;
 use crate::{BelvedereError, Session};
 use belvedere_construct::{Flight, FlightOptions};
 use belvedere_core::presets::BendFrame;
-use belvedere_core::{DVec2, DVec3, Stage};
+use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{LayerKind, Progress, Scene};
 use glam::DQuat;
 use serde::Deserialize;
@@ -391,10 +391,7 @@ fn at(keys: &[Numbers], t: f64) -> Numbers {
 
 /// The point about which the camera turns: the pivot of a spline, else the point looked at.
 fn pivot(session: &Session, scene: &Document) -> Result<DVec3, BelvedereError> {
-    let of_spline = session.view().stages().iter().find_map(|s| match s {
-        Stage::SplineBend(bend) => Some(bend.pivot()),
-        _ => None,
-    });
+    let of_spline = session.view().spline_bend().map(|bend| bend.pivot());
     let looked_at = match scene.camera.look_at {
         Some(PointDoc::Scene(p)) => Some(DVec3::from_array(p)),
         _ => None,

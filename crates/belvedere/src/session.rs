@@ -9,7 +9,7 @@ use crate::resolve::{validate, view};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{Document, OverlayDoc, SourceDocument, StageDoc};
 use crate::{BelvedereError, OpenOptions};
-use belvedere_core::{SpaceMap, Stage, View};
+use belvedere_core::{SpaceMap, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
 use belvedere_scene::{Light, Scene, Stylisation};
@@ -284,11 +284,9 @@ impl Session {
             return Ok(());
         }
         let eye = self.view.pinhole().eye;
-        let moved = self.view.stages().iter().any(|s| matches!(s, Stage::TerrainDisocclusion(_)));
+        let moved = self.view.stages().iter().any(|s| s.moves_ground());
         // The ground that a strip carries under the eye; beside the strip there is none.
-        let strip =
-            self.view.stages().iter().find_map(|s| if let Stage::Strip(strip) = s { Some(strip) } else { None });
-        let over = strip.map_or(Some(eye), |strip| strip.invert(eye).ok());
+        let over = self.view.strip().map_or(Some(eye), |strip| strip.invert(eye).ok());
         let ground = over.and_then(|p| self.scene.terrain().and_then(|t| t.surface_at(p.truncate())));
         match ground {
             Some(ground_m) if eye.z < ground_m && !moved => Err(BelvedereError::UnderGround { eye_m: eye.z, ground_m }),

@@ -2,7 +2,7 @@
 
 use super::image::SampleImage;
 use crate::samples::SampledFeature;
-use belvedere_core::{DVec2, DVec3, SpaceMap, View};
+use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Heightfield, Scene};
 use belvedere_sight::Obstacles;
 use serde::Serialize;
@@ -172,8 +172,7 @@ fn in_frame(view: &View, pixel: DVec2, depth: f64) -> bool {
 pub(crate) fn facing(view: &View, p_world: DVec3) -> f64 {
     let (mut p, mut east, mut north) = (p_world, DVec3::X, DVec3::Y);
     for stage in view.stages() {
-        let map: &dyn SpaceMap = stage.as_map();
-        let (Ok(j), Ok(next)) = (map.jacobian(p), map.apply(p)) else { return f64::INFINITY };
+        let (Ok(j), Ok(next)) = (stage.jacobian(p), stage.apply(p)) else { return f64::INFINITY };
         (p, east, north) = (next, j * east, j * north);
     }
     let pinhole = view.pinhole();

@@ -3,7 +3,7 @@
 use crate::measure::bend::{facing, median_height, nodes};
 use crate::samples::{Sample, SampledFeature};
 use belvedere_core::map::spline::ReferencePlane;
-use belvedere_core::{DVec2, DVec3, Stage, View};
+use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Heightfield, Scene};
 use belvedere_sight::{Obstacles, SightOptions};
 use serde::Serialize;
@@ -156,10 +156,7 @@ impl<'a> Evaluator<'a> {
     /// Smallest factor by which the bend squeezes lengths over the terrain inside the image (0 = fold), and the
     /// smallest sine of the angle at which the ground plane is seen there.
     pub(crate) fn fold_and_facing(&self, view: &View) -> (f64, f64) {
-        let Some(bend) = view.stages().iter().find_map(|s| if let Stage::SplineBend(b) = s { Some(b) } else { None })
-        else {
-            return (1.0, 1.0);
-        };
+        let Some(bend) = view.spline_bend() else { return (1.0, 1.0) };
         let pinhole = view.pinhole();
         let (mut squeeze, mut faced) = (f64::INFINITY, bend.facing());
         for &p in &self.ground {

@@ -80,7 +80,7 @@ fn the_document_describes_the_bend() {
     let bend = belvedere_core::SplineBend::new(found.view.pinhole(), &document, &plane, found.pivot).unwrap();
     let p = scene.bounds().center();
     let stage = belvedere_core::Stage::SplineBend(bend);
-    let again = stage.as_map().apply(p).unwrap();
+    let again = stage.apply(p).unwrap();
     assert!(again.distance(found.view.displace(p).unwrap().point) < 1e-9);
 }
 

@@ -56,9 +56,9 @@ impl<'a> RayPath<'a> {
         (0..n).map(move |i| self.at(if i + 1 == n && n > 1 { far } else { near + step * i as f64 }))
     }
 
-    /// The ray as straight and bent pieces, from the eye to infinity, as the last stage bends it.
+    /// The ray as straight and bent pieces, from the eye to infinity, as the curved rays bend it; one straight piece without them.
     ///
-    /// With earlier stages these are the pieces in the space that those stages lead to; without, they lie in the world.
+    /// With other stages these are the pieces in the space that those stages lead to; without, they lie in the world.
     ///
     /// # Errors
     /// [`Miss::OutsideDomain`] if the pixel lies so far outside the image that its ray does not pass all turns.

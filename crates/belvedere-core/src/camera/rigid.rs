@@ -1,17 +1,17 @@
 //! Bodies that keep their shape: what a view does to a building that it carries as a whole.
 
 use super::View;
-use crate::{Miss, RigidMotion, SpaceMap, Stage};
+use crate::{Miss, RigidMotion, Stage};
 use glam::{DMat3, DVec3};
 
 impl View {
     /// Whether a rigid body is carried otherwise than point by point: whether a stage comes before the curved rays.
     pub fn carries_bodies(&self) -> bool {
-        !self.stages().iter().all(Stage::bends_rays)
+        !self.stages().iter().all(|stage| stage.bends_rays())
     }
 
-    /// The motion of a rigid body whose foot is `foot`, scene coordinates, by all stages up to the spline bend: the foot goes where they carry
-    /// it, and the body turns with the strip and with the deformation curve there. Earth, terrain and relief move bodies without turning or
+    /// The motion of a rigid body whose foot is `foot`, scene coordinates, by all stages before the curved rays: the foot goes where they carry
+    /// it, and the body turns with the strip and with the deformation curve there ([`crate::map::StageMap::rotation_of_body`]). Earth, terrain and relief move bodies without turning or
     /// stretching them.
     ///
     /// Laws: an isometry; the identity where the stages are; on the reference plane the derivative of a spline bend at the foot.
@@ -21,12 +21,8 @@ impl View {
     pub fn body_motion(&self, foot: DVec3) -> Result<RigidMotion, Miss> {
         let (mut to, mut rotation) = (foot, DMat3::IDENTITY);
         for stage in self.stages().iter().filter(|stage| !stage.bends_rays()) {
-            rotation = match stage {
-                Stage::SplineBend(bend) => bend.rotation_at(to) * rotation,
-                Stage::Strip(strip) => turn_in_plan(strip.jacobian(to)?) * rotation,
-                _ => rotation,
-            };
-            to = stage.as_map().apply(to)?;
+            rotation = stage.rotation_of_body(to)? * rotation;
+            to = stage.apply(to)?;
         }
         if to.is_finite() { Ok(RigidMotion::new(foot, to, rotation)) } else { Err(Miss::OutsideDomain) }
     }
@@ -43,10 +39,4 @@ impl View {
         let stages = std::iter::once(Stage::Body(motion)).chain(after).collect();
         Self { pinhole: self.pinhole().clone(), stages }
     }
-}
-
-/// The rotation about the vertical nearest to a derivative that stretches along one horizontal direction.
-fn turn_in_plan(jacobian: DMat3) -> DMat3 {
-    let [x, y] = [jacobian.x_axis, jacobian.y_axis];
-    DMat3::from_rotation_z((x.y - y.x).atan2(x.x + y.y))
 }

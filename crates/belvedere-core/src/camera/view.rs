@@ -2,7 +2,9 @@
 
 use super::{Pinhole, Projected, RayPath};
 use crate::map::split_rays::{Branch, SplitRays};
-use crate::{Aabb, CurvedRays, Displaced, Miss, SpaceMap, Stage};
+use crate::{
+    Aabb, CurvedRays, Displaced, EarthCurvature, Miss, SpaceMap, SplineBend, Stage, Strip, TerrainDisocclusion,
+};
 use glam::{DVec2, DVec3};
 use std::ops::RangeInclusive;
 
@@ -21,7 +23,7 @@ pub struct View {
 pub enum ViewError {
     /// Wrong order or a repeated stage.
     #[error(
-        "stage {second} cannot follow stage {first}; the order is earth, terrain_disocclusion, strip, relief, spline_bend, curved_rays, each at most once"
+        "stage {second} cannot follow stage {first}; the order is earth, terrain_disocclusion, strip, relief, spline_bend, own maps, curved_rays, each at most once but own maps"
     )]
     Order {
         /// Name of the earlier stage.
@@ -79,11 +81,12 @@ impl View {
     /// Chains `stages`, in order of application, before `pinhole`.
     ///
     /// # Errors
-    /// [`ViewError::Order`] unless the stages are in the order earth, terrain, strip, relief, spline, curved rays, each at most once;
+    /// [`ViewError::Order`] unless the stages are in the order of [`Stage::rank`], each at most once but own maps;
     /// [`ViewError::OtherRoot`] if curved rays were built for a pinhole with other rays.
     pub fn new(pinhole: Pinhole, stages: Vec<Stage>) -> Result<Self, ViewError> {
         for pair in stages.windows(2) {
-            if pair[0].rank() >= pair[1].rank() {
+            let both_own = pair.iter().all(|stage| matches!(stage, Stage::Own(_)));
+            if pair[0].rank() >= pair[1].rank() && !both_own {
                 return Err(ViewError::Order { first: pair[0].name(), second: pair[1].name() });
             }
         }
@@ -113,14 +116,14 @@ impl View {
         &self.stages
     }
 
-    /// Whether any stage but the earth's curvature bends the picture.
+    /// Whether any stage bends the picture: any but those of the world, which is the earth's curvature.
     pub fn is_bent(&self) -> bool {
-        self.stages.iter().any(|s| !matches!(s, Stage::EarthCurvature(_)))
+        self.stages.iter().any(|s| !s.is_of_world())
     }
 
     /// The same camera without the bends (the earth's curvature stays): the "straight" picture.
     pub fn straightened(&self) -> Self {
-        let stages = self.stages.iter().filter(|s| matches!(s, Stage::EarthCurvature(_))).cloned().collect();
+        let stages = self.stages.iter().filter(|s| s.is_of_world()).cloned().collect();
         Self { pinhole: self.pinhole.clone(), stages }
     }
 
@@ -166,13 +169,29 @@ impl View {
         let mut segment = 0;
         let mut p = p_displaced;
         for stage in self.stages.iter().rev() {
-            match stage {
-                Stage::CurvedRays(rays) => (p, segment) = rays.undisplace(p)?,
-                Stage::SplitRays(rays) => (p, segment) = rays.undisplace(p)?,
-                _ => p = stage.as_map().invert(p)?,
-            }
+            (p, segment) = stage.undisplace(p)?;
         }
         Ok((p, segment))
+    }
+
+    /// The earth's curvature, if it is a stage.
+    pub fn earth(&self) -> Option<&EarthCurvature> {
+        self.stages.iter().find_map(|s| if let Stage::EarthCurvature(earth) = s { Some(earth) } else { None })
+    }
+
+    /// The displacement of the ground, if it is a stage.
+    pub fn ground(&self) -> Option<&TerrainDisocclusion> {
+        self.stages.iter().find_map(|s| if let Stage::TerrainDisocclusion(ground) = s { Some(ground) } else { None })
+    }
+
+    /// The strip, if it is a stage.
+    pub fn strip(&self) -> Option<&Strip> {
+        self.stages.iter().find_map(|s| if let Stage::Strip(strip) = s { Some(strip) } else { None })
+    }
+
+    /// The spline bend, if it is a stage.
+    pub fn spline_bend(&self) -> Option<&SplineBend> {
+        self.stages.iter().find_map(|s| if let Stage::SplineBend(bend) = s { Some(bend) } else { None })
     }
 
     /// The rays that part at seams, if the chain ends with them.
@@ -201,8 +220,8 @@ impl View {
     }
 
     /// The stages before the curved rays, all of them if there are none.
-    fn earlier_stages(&self) -> &[Stage] {
-        let last = self.stages.last().is_some_and(Stage::bends_rays);
+    pub fn earlier_stages(&self) -> &[Stage] {
+        let last = self.stages.last().is_some_and(|s| s.bends_rays());
         &self.stages[..self.stages.len() - usize::from(last)]
     }
 
@@ -287,8 +306,8 @@ impl View {
         let mut p = p_world;
         let mut chain = glam::DMat3::IDENTITY;
         for stage in &self.stages {
-            chain = stage.as_map().jacobian(p)? * chain;
-            p = stage.as_map().apply(p)?;
+            chain = stage.jacobian(p)? * chain;
+            p = stage.apply(p)?;
         }
         let rows = self.pinhole.jacobian(p)?.map(|row| chain.transpose() * row);
         if rows.iter().all(|r| r.is_finite()) { Ok(rows) } else { Err(Miss::OutsideDomain) }
@@ -374,14 +393,9 @@ impl View {
     fn earlier_error(&self, p0: DVec3, p1: DVec3) -> Option<(DVec3, DVec3, f64)> {
         let (mut a, mut b, mut error) = (p0, p1, 0.0f64);
         for stage in self.earlier_stages() {
-            let map = stage.as_map();
-            let carried = if error > 0.0 { error * stretch(map, a, b) } else { 0.0 };
+            let carried = if error > 0.0 { error * stretch(&**stage, a, b) } else { 0.0 };
             let bound;
-            (a, b, bound) = match stage {
-                // Both its ends and its bound need the same feet.
-                Stage::Strip(strip) => strip.edge(a, b)?,
-                _ => (map.apply(a).ok()?, map.apply(b).ok()?, stage.edge_bound(a, b)),
-            };
+            (a, b, bound) = stage.edge(a, b)?;
             error = carried + bound;
         }
         Some((a, b, error))

@@ -145,7 +145,7 @@ fn displaced_bounds_hold_every_point() {
             let out = map.displaced_bounds(&bounds).unwrap();
             for _ in 0..50 {
                 let t = DVec3::new(random.range(0.0, 1.0), random.range(0.0, 1.0), random.range(0.0, 1.0));
-                let q = map.as_map().apply(bounds.min + t * (bounds.max - bounds.min)).unwrap();
+                let q = map.apply(bounds.min + t * (bounds.max - bounds.min)).unwrap();
                 assert!((q - out.min).min_element() >= -1e-9 && (out.max - q).min_element() >= -1e-9, "{q} {out:?}");
             }
         }

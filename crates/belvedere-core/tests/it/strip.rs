@@ -187,7 +187,7 @@ fn displaced_bounds_hold_every_point_and_missed_boxes_have_none() {
     for _ in 0..3000 {
         let a = random.point(&region());
         let bounds = Aabb::of([a, a + random.range(1.0, 300.0) * random.direction()]);
-        let inside = |random: &mut Random| map.as_map().apply(random.point(&bounds));
+        let inside = |random: &mut Random| map.apply(random.point(&bounds));
         if map.misses(&bounds) {
             missed += 1;
             (0..40).for_each(|_| assert_eq!(inside(&mut random), Err(Miss::OutsideDomain)));

@@ -3,6 +3,7 @@
 //! Everything that is drawn goes through here, points in rows and single ones alike, by the same arithmetic in the same
 //! order: two pieces of a surface that share a point place it alike to the last bit.
 
+use crate::fast::Fast;
 use crate::geometry::pass::Way;
 use crate::geometry::points::{Points, each};
 use crate::geometry::spline_table::SplineTable;
@@ -55,7 +56,7 @@ impl<'a> Step<'a> {
 
     fn row(&self, p: &mut Points<'_>) -> bool {
         match self {
-            Step::Stage(stage) => each(p, |p| stage.as_map().apply(p).ok()),
+            Step::Stage(stage) => each(p, |p| stage.apply(p).ok()),
             Step::Spline(table) => table.row(p),
             Step::Conic { turn, m, eye, first } => conic(turn, *m, *eye, *first, p),
             Step::Straight { map, eye } => each(p, |p| Some(*eye + map.linear * (p - map.viewpoint))),
@@ -81,9 +82,9 @@ impl<'a> Step<'a> {
 
 impl<'a> Displacer<'a> {
     pub(crate) fn new(view: &'a View, way: Way) -> Self {
-        let step = |stage: &'a Stage| match stage {
-            Stage::SplineBend(bend) => Step::Spline(SplineTable::new(bend)),
-            Stage::CurvedRays(rays) => match way {
+        let step = |stage: &'a Stage| match Fast::of(stage) {
+            Fast::Spline(bend) => Step::Spline(SplineTable::new(bend)),
+            Fast::Rays(rays) => match way {
                 Way::Records([first, last]) if first == last => Step::record(rays, first),
                 Way::Records([first, last]) => {
                     let steps = (first..=last).map(|record| Step::record(rays, record)).collect();
@@ -94,7 +95,7 @@ impl<'a> Displacer<'a> {
                     None => Step::record(rays, number as usize / 2),
                 },
             },
-            other => Step::Stage(other),
+            Fast::Earth(_) | Fast::Ground(_) | Fast::None => Step::Stage(stage),
         };
         Self { steps: view.stages().iter().map(step).collect() }
     }

@@ -2,7 +2,7 @@
 
 use crate::geometry::pass::{InView, Pass, displaced};
 use crate::geometry::screen::Screen;
-use belvedere_core::{Aabb, Stage, View};
+use belvedere_core::{Aabb, View};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -43,10 +43,12 @@ impl<'a> Locator<'a> {
         if self.passes.len() == 1 {
             return larger.clone();
         }
-        let Some((Stage::CurvedRays(rays), earlier)) = self.view.stages().split_last() else { return larger.clone() };
+        let Some(rays) = self.view.curved_rays() else { return larger.clone() };
         let one = self.view.records() == 1;
         // Without bounds before the rays nothing is known.
-        let Some(before) = displaced(earlier, bounds) else { return Held { whole: one, ..larger.clone() } };
+        let Some(before) = displaced(self.view.earlier_stages(), bounds) else {
+            return Held { whole: one, ..larger.clone() };
+        };
         let (mut records, mut whole) = (larger.records.clone(), true);
         if !one {
             let from = list.len();

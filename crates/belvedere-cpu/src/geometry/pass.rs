@@ -191,16 +191,14 @@ impl<'a> Pass<'a> {
     /// Whether the records may leave something out in a box that this segment has to draw.
     pub(crate) fn is_left_out(&self, bounds: &Aabb) -> bool {
         let (Way::Segment(number), Some(rays)) = (self.way, self.view.curved_rays()) else { return false };
-        let earlier = &self.view.stages()[..self.view.stages().len() - 1];
-        displaced(earlier, bounds).is_none_or(|b| rays.leaves_out(number, &b))
+        displaced(self.view.earlier_stages(), bounds).is_none_or(|b| rays.leaves_out(number, &b))
     }
 
     /// Whether part of a box may be cut off from a segment.
     pub(crate) fn cuts(&self, bounds: &Aabb) -> bool {
         let (Way::Segment(number), Some(rays)) = (self.way, self.view.curved_rays()) else { return false };
         let planes = rays.segment_planes(number);
-        let earlier = &self.view.stages()[..self.view.stages().len() - 1];
-        displaced(earlier, bounds)
+        displaced(self.view.earlier_stages(), bounds)
             .is_none_or(|b| b.corners().iter().any(|&p| planes.iter().flatten().any(|plane| !(plane.at(p) > 0.0))))
     }
 
@@ -230,14 +228,14 @@ impl<'a> Pass<'a> {
         edge_error_px(self.view, self.way, a, b)
     }
 
-    /// Whether an edge may cross a strip that both its ends lie beside.
+    /// Whether an edge may have an image between its ends where neither end has one.
     pub(crate) fn crosses(&self, a: DVec3, b: DVec3) -> bool {
-        self.has_strip() && !is_missed(self.view.stages(), &Aabb::of([a, b]))
+        self.has_border() && !is_missed(self.view.stages(), &Aabb::of([a, b]))
     }
 
-    /// Whether what lies beside a strip has no image.
-    pub(crate) fn has_strip(&self) -> bool {
-        self.view.stages().iter().any(|s| matches!(s, Stage::Strip(_)))
+    /// See [`belvedere_core::map::StageMap::has_border`].
+    pub(crate) fn has_border(&self) -> bool {
+        self.view.stages().iter().any(|s| s.has_border())
     }
 
     /// Where the record shows the box, judged by its displaced bounds.
@@ -245,11 +243,11 @@ impl<'a> Pass<'a> {
         if is_missed(self.view.stages(), bounds) {
             return InView::No;
         }
-        let Some((Stage::CurvedRays(rays), earlier)) = self.view.stages().split_last() else {
+        let Some(rays) = self.view.curved_rays() else {
             return displaced(self.view.stages(), bounds)
                 .map_or(InView::Maybe(None), |b| image_of(screen, &b.corners()));
         };
-        let Some(before) = displaced(earlier, bounds) else { return InView::Maybe(None) };
+        let Some(before) = displaced(self.view.earlier_stages(), bounds) else { return InView::Maybe(None) };
         let eye = self.view.pinhole().eye;
         let record = match self.way {
             _ if rays.turn_count() == 0 => return image_of(screen, &before.corners()),
@@ -271,11 +269,11 @@ impl<'a> Pass<'a> {
     /// * `extent`: of the box, see [`InView::Maybe`].
     pub(crate) fn px_per_height(&self, screen: &Screen, bounds: &Aabb, extent: Option<Extent>) -> f64 {
         let Some(Extent { depth, image }) = extent else { return f64::INFINITY };
-        let stages = self.view.stages().iter();
-        let oblique = stages.clone().any(|s| matches!(s, Stage::Relief(_)));
-        let stretch = stages.filter(|s| turns_heights(s)).map(|stage| {
-            // A spline lengthens upright heights by that of the z axis, oblique ones by no more than the norm.
-            let upright = !oblique || matches!(stage, Stage::Relief(_));
+        let turning = self.view.stages().iter().filter(|s| s.turns_heights());
+        let stretch = turning.enumerate().map(|(i, stage)| {
+            // Heights are upright up to the first stage that turns them: it lengthens them by that of the z axis, later ones by no more
+            // than the norm.
+            let upright = i == 0;
             let length = |j: DMat3| {
                 if upright {
                     j.z_axis.length()
@@ -284,7 +282,7 @@ impl<'a> Pass<'a> {
                 }
             };
             let points = bounds.corners().into_iter().chain([bounds.center()]);
-            points.map(|p| stage.as_map().jacobian(p).map_or(f64::INFINITY, length)).fold(0.0, f64::max)
+            points.map(|p| stage.jacobian(p).map_or(f64::INFINITY, length)).fold(0.0, f64::max)
         });
         // What lies beyond the image is not drawn.
         let image = image.map(|at| at.clamp(-screen.center.abs(), screen.center.abs()));
@@ -320,15 +318,10 @@ fn image_of(screen: &Screen, hull: &[DVec3]) -> InView {
     if code != 0 { InView::No } else { InView::Maybe((depth > 0.0).then_some(Extent { depth, image })) }
 }
 
-/// Whether a stage, not one of curved rays, makes heights point anywhere.
-fn turns_heights(stage: &Stage) -> bool {
-    matches!(stage, Stage::Relief(_) | Stage::SplineBend(_))
-}
-
 /// Whether no point of a box comes through the stages.
 fn is_missed(stages: &[Stage], bounds: &Aabb) -> bool {
-    let Some(at) = stages.iter().position(|s| matches!(s, Stage::Strip(_))) else { return false };
-    displaced(&stages[..at], bounds).is_some_and(|b| stages[at].misses(&b))
+    let mut with_border = stages.iter().enumerate().filter(|(_, stage)| stage.has_border());
+    with_border.any(|(at, stage)| displaced(&stages[..at], bounds).is_some_and(|b| stage.misses(&b)))
 }
 
 pub(crate) fn displaced(stages: &[Stage], bounds: &Aabb) -> Option<Aabb> {
@@ -356,7 +349,7 @@ impl HeightPx {
             (DVec2::new(d.dot(ph.right), d.dot(ph.down)) * ph.scale_px(), depth)
         };
         let norm = |m: &DMat3| m.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
-        let splined = view.stages().iter().any(turns_heights);
+        let splined = view.stages().iter().any(|s| s.turns_heights());
         let rays = view.curved_rays();
         let (record, map) = match way {
             Way::Records([first, _]) => (first, None),

@@ -6,12 +6,13 @@
 
 mod cameras;
 
+use crate::fast::Fast;
 use crate::geometry::pass::Way;
 use crate::geometry::screen::{Row, SUB};
 use crate::simd;
 use belvedere_core::map::curved_rays::{LinearForm, StraightMap, Turn};
 use belvedere_core::map::terrain::TerrainDisocclusion;
-use belvedere_core::{DVec2, DVec3, Pinhole, Stage, View};
+use belvedere_core::{DVec2, DVec3, Pinhole, View};
 use belvedere_scene::Heightfield;
 use cameras::{Bend, Form, Run};
 use rayon::prelude::*;
@@ -68,13 +69,13 @@ impl<'a> Projector<'a> {
             far: p.far.map_or(f32::INFINITY, |far| far as f32),
         };
         for stage in view.stages() {
-            match stage {
-                Stage::EarthCurvature(e) if e.eye.truncate() == p.eye.truncate() => {
+            match Fast::of(stage) {
+                Fast::Earth(e) if e.eye.truncate() == p.eye.truncate() => {
                     out.earth = ((1.0 - e.refraction) / (2.0 * e.radius)) as f32;
                 }
-                Stage::TerrainDisocclusion(t) => out.lift = Some(t),
-                Stage::CurvedRays(rays) if rays.turns().is_empty() => {}
-                Stage::CurvedRays(rays) => {
+                Fast::Ground(t) => out.lift = Some(t),
+                Fast::Rays(rays) if rays.turns().is_empty() => {}
+                Fast::Rays(rays) => {
                     let of_record = |record| Part::of(p, rays.turns().get(record)?);
                     match way {
                         Way::Records([first, last]) => {
@@ -233,7 +234,7 @@ mod tests {
     use crate::simd::Kernel;
     use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
     use belvedere_core::map::earth::EarthCurvature;
-    use belvedere_core::{CurvedRays, Projection};
+    use belvedere_core::{CurvedRays, Projection, Stage};
 
     fn camera(screen: Projection) -> Pinhole {
         let (eye, target) = (DVec3::new(512_345.678, 4_712_345.432, 3021.37), DVec3::new(513_000.0, 4.725e6, 0.0));

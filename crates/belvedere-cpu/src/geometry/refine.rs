@@ -49,7 +49,7 @@ impl<'a> Refiner<'a> {
     /// * `out`: memory to use.
     pub(crate) fn new(pass: &'a Pass<'a>, screen: &'a Screen, tolerance_px: f64, mut out: Vec<SoupTriangle>) -> Self {
         out.clear();
-        let blind_halvings = if pass.has_strip() { MAX_BLIND_HALVINGS_BESIDE_STRIPS } else { MAX_BLIND_HALVINGS };
+        let blind_halvings = if pass.has_border() { MAX_BLIND_HALVINGS_BESIDE_STRIPS } else { MAX_BLIND_HALVINGS };
         Self { pass, screen, tolerance_px, blind_halvings, out, splits: 0 }
     }
 

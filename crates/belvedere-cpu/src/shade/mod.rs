@@ -24,7 +24,7 @@ use crate::raster::pixel_center::PixelCenters;
 use crate::sections::Sections;
 use crate::simd::nearest;
 use crate::stylise::Face;
-use belvedere_core::{DVec2, DVec3, Stage};
+use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{AreaSurface, BoxLayer, BoxShape, Heightfield, LayerKind, Relief, RenderJob};
 use cast::Casters;
 use color::{Rgb, linear, smoothstep};
@@ -79,7 +79,7 @@ pub(crate) struct Shaded {
 /// and before, shadows, and both pictures of the lit ground.
 pub(crate) fn ground_bytes(job: &RenderJob<'_>, hf: &Heightfield) -> u64 {
     let nodes = hf.heights().len() as u64;
-    let lifted = job.view.stages().iter().any(|s| matches!(s, Stage::TerrainDisocclusion(_)));
+    let lifted = job.view.stages().iter().any(|s| s.moves_ground());
     let shadows = if job.light.shadows { nodes * 4 / 3 } else { 0 };
     let pixels = job.view.pinhole().image.map(u64::from).iter().product();
     let lit = 2 * tiles::most_bytes([hf.cols(), hf.rows()], pixels);

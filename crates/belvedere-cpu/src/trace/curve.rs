@@ -1,5 +1,6 @@
 //! The curved ray of a pixel as chords with a bound on their distance from it.
 
+use crate::fast::Fast;
 use crate::trace::row::Row;
 use belvedere_core::map::curved_rays::{RayPiece, Shape};
 use belvedere_core::{DVec2, DVec3, EarthCurvature, RayPath, SplineBend, Stage, Strip, TerrainDisocclusion, View};
@@ -63,19 +64,7 @@ impl Parabola {
 
 impl<'a> Split<'a> {
     pub(crate) fn new(view: &'a View) -> Self {
-        let bend = view.stages().iter().find_map(|s| match s {
-            Stage::SplineBend(b) => Some(b),
-            _ => None,
-        });
-        let ground = view.stages().iter().find_map(|s| match s {
-            Stage::TerrainDisocclusion(t) => Some(t),
-            _ => None,
-        });
-        let strip = view.stages().iter().find_map(|s| match s {
-            Stage::Strip(s) => Some(s),
-            _ => None,
-        });
-        Self::of(Cow::Borrowed(view), ground, strip, bend)
+        Self::of(Cow::Borrowed(view), view.ground(), view.strip(), view.spline_bend())
     }
 
     /// Of a view of rigid bodies that were carried: nothing but curved rays bends it.
@@ -90,19 +79,16 @@ impl<'a> Split<'a> {
         bend: Option<&'a SplineBend>,
     ) -> Self {
         let stages: Vec<Stage> =
-            view.stages().iter().filter(|s| !matches!(s, Stage::TerrainDisocclusion(_))).cloned().collect();
-        let earth = stages.iter().find_map(|s| match s {
-            Stage::EarthCurvature(e) => Some(Parabola::new(e)),
-            _ => None,
-        });
-        let relief = view.stages().iter().any(|s| matches!(s, Stage::Relief(_)));
+            view.stages().iter().filter(|s| !matches!(Fast::of(s), Fast::Ground(_))).cloned().collect();
+        let earth = view.earth().map(Parabola::new);
         let strip = strip.and_then(|strip| {
-            let later = view.stages().iter().skip_while(|s| !matches!(s, Stage::Strip(_))).skip(1).cloned().collect();
+            let later = view.stages().iter().skip_while(|s| !s.has_border()).skip(1).cloned().collect();
             // The end of a chain is a chain.
             Some((strip, View::new(view.pinhole().clone(), later).ok()?))
         });
-        let kind = match (bend, view.stages().iter().any(Stage::bends_rays)) {
-            _ if relief || strip.is_some() => Kind::Any,
+        let unknown = stages.iter().any(|s| matches!(Fast::of(s), Fast::None) && !s.bends_rays());
+        let kind = match (bend, stages.iter().any(Stage::bends_rays)) {
+            _ if unknown => Kind::Any,
             (None, _) => Kind::Pieces,
             (Some(bend), false) => {
                 let across = |axis: DVec3| view.pinhole().right.dot(axis).abs() <= ALIKE;
@@ -153,7 +139,7 @@ impl<'a> Split<'a> {
 
     /// Whether at every depth the rays of a row lie on a line, evenly: what two of them clear between them, all between them clear.
     pub(crate) fn rows_are_straight(&self) -> bool {
-        self.kind == Kind::Rows || (self.kind == Kind::Pieces && !self.view.stages().iter().any(Stage::bends_rays))
+        self.kind == Kind::Rows || (self.kind == Kind::Pieces && !self.view.stages().iter().any(|s| s.bends_rays()))
     }
 
     /// How far two points of rays of a row at one depth may lie above the rays between them, for the earth's curvature.

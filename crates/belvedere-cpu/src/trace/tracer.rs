@@ -4,7 +4,7 @@ use crate::geometry::screen::Screen;
 use crate::sections::{Exposure, Sections, Shown};
 use crate::trace::curve::{Curve, Span, Split};
 use crate::trace::root::root;
-use belvedere_core::{Aabb, DVec2, DVec3, Stage, View};
+use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{CellTriangle, Heightfield, LayerKind, NodeState, Scene};
 use belvedere_sight::{Carried, GridLine, Lift, MeshTree, Obstacles, UprightBox};
 use std::ops::ControlFlow;
@@ -254,8 +254,7 @@ fn deepest_in(bounds: &Aabb, view: &View) -> f64 {
 /// Points all over the part of a strip that lies in a box in plan, at its least and largest height; none without a strip.
 fn strip_points(view: &View, bounds: &Aabb) -> Vec<DVec3> {
     const ALONG: usize = 400;
-    let strip = view.stages().iter().find_map(|s| if let Stage::Strip(strip) = s { Some(strip) } else { None });
-    let Some(strip) = strip else { return Vec::new() };
+    let Some(strip) = view.strip() else { return Vec::new() };
     let size = (bounds.max - bounds.min).truncate().length();
     let (length, [first, last]) = (strip.route().length(), strip.route().reach());
     let (from, to) = (first.max(-size), last.min(length + size));

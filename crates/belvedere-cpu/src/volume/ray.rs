@@ -4,7 +4,7 @@ use super::cubic::Cubic;
 use crate::trace::curve::{Curve, Span, Split};
 use belvedere_core::conic::ConicArc;
 use belvedere_core::map::curved_rays::{Bend, C2Arc, RayPiece, Shape};
-use belvedere_core::{DVec2, DVec3, Stage, View};
+use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::Volume;
 
 /// How far a segment may be from the ray, voxels.
@@ -51,7 +51,7 @@ pub(super) struct Rays<'a> {
 impl<'a> Rays<'a> {
     /// * `range`: nearest depth, and one beyond which nothing of the scene is seen.
     pub(super) fn new(view: &'a View, range: [f64; 2]) -> Self {
-        let pieces = view.stages().iter().all(Stage::bends_rays);
+        let pieces = view.stages().iter().all(|s| s.bends_rays());
         Self { view, split: Split::new(view), pieces, range }
     }
 

@@ -5,8 +5,11 @@ use super::ray::{Rays, Segment};
 use super::{Gathered, reference};
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
+use belvedere_core::map::{Miss, StageMap};
 use belvedere_core::presets::PresetDocument;
-use belvedere_core::{CurvedRays, DMat3, DVec2, DVec3, EarthCurvature, Pinhole, Projection, SplineBend, Stage, View};
+use belvedere_core::{
+    CurvedRays, DMat3, DVec2, DVec3, EarthCurvature, Pinhole, Projection, SpaceMap, SplineBend, Stage, View,
+};
 use belvedere_scene::{
     Color, Crs, Layer, LayerKind, Scene, TransferFunction, TransferPoint, Unit, Volume, VolumeLayer, VolumeModel,
     VoxelValues,
@@ -58,8 +61,27 @@ fn views() -> Vec<(&'static str, View)> {
         ("two turns", bent(Model::Modified, &[(130.0, side), (165.0, -side)])),
         ("spline", spline),
         ("small planet", View::new(camera(), vec![Stage::EarthCurvature(earth)]).unwrap()),
+        ("a map of one's own", View::new(camera(), vec![Stage::own(Swayed)]).unwrap()),
     ]
 }
+
+/// `x' = x + 6 sin(y / 10)`.
+#[derive(Debug)]
+struct Swayed;
+
+impl SpaceMap for Swayed {
+    fn apply(&self, p: DVec3) -> Result<DVec3, Miss> {
+        Ok(p + 6.0 * (0.1 * p.y).sin() * DVec3::X)
+    }
+    fn invert(&self, p_displaced: DVec3) -> Result<DVec3, Miss> {
+        Ok(p_displaced - 6.0 * (0.1 * p_displaced.y).sin() * DVec3::X)
+    }
+    fn jacobian(&self, p: DVec3) -> Result<DMat3, Miss> {
+        Ok(DMat3::from_cols(DVec3::X, DVec3::new(0.6 * (0.1 * p.y).cos(), 1.0, 0.0), DVec3::Z))
+    }
+}
+
+impl StageMap for Swayed {}
 
 const RANGE: [f64; 2] = [1.0, 2000.0];
 

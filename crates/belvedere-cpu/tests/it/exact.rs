@@ -262,7 +262,7 @@ fn random_turns(random: &mut Random, ph: &Pinhole, model: Model, turns: usize) -
 fn count_curves(scene: &Scene, view: &View, counts: &mut BTreeMap<String, usize>) {
     let tracer = Tracer::new(scene, view);
     let [w, h] = view.pinhole().image.map(f64::from);
-    let names: Vec<&str> = view.stages().iter().map(Stage::name).collect();
+    let names: Vec<&str> = view.stages().iter().map(|s| s.name()).collect();
     for i in 0..96 {
         let pixel = DVec2::new((f64::from(i % 12) + 0.5) * w / 12.0, (f64::from(i / 12) + 0.5) * h / 8.0);
         let Some(seen) = tracer.first_hit(pixel) else { continue };
@@ -300,7 +300,7 @@ fn rasteriser_and_tracer_agree_on_random_views_of_all_stages() {
         total.add(d);
         count_curves(scene, &view, &mut curves);
         if (d.ids + d.depths) as f64 > 2e-3 * d.pixels as f64 {
-            let names: Vec<&str> = view.stages().iter().map(Stage::name).collect();
+            let names: Vec<&str> = view.stages().iter().map(|s| s.name()).collect();
             worst.push(format!("view {judged_views} {names:?}: {d:?}"));
         }
         judged_views += 1;
@@ -337,7 +337,7 @@ fn less_detail_and_the_tracer_agree_on_random_views_of_all_stages() {
         let d = compare(&trace(scene, &view, &exactly()), &drawn);
         total.add(d);
         if !d.is_small() {
-            let names: Vec<&str> = view.stages().iter().map(Stage::name).collect();
+            let names: Vec<&str> = view.stages().iter().map(|s| s.name()).collect();
             worst.push(format!("view {views} {names:?}: {d:?}"));
         }
         views += 1;

@@ -7,6 +7,7 @@ mod lines;
 mod lod;
 mod marks;
 mod molecules;
+mod own_stage;
 mod random_rays;
 mod real_data;
 mod reference;

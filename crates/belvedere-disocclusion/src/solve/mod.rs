@@ -25,7 +25,7 @@ use super::{Detail, Field, Hierarchy, SolverMode, TerrainSettings, check_eye};
 use crate::DisocclusionError;
 use adjust::RequiredPoints;
 use belvedere_core::grid::{Grid, GridError};
-use belvedere_core::{DVec2, EarthCurvature, SpaceMap, Stage, TerrainDisocclusion, View};
+use belvedere_core::{DVec2, EarthCurvature, SpaceMap, TerrainDisocclusion, View};
 use belvedere_scene::Instant;
 use belvedere_scene::{Heightfield, LayerKind, Progress, Scene};
 use memory::{Prepared, Weights};
@@ -146,10 +146,7 @@ impl TerrainSolver {
         progress.tick("cells and points of the terrain", 0.0)?;
         let weights = Weights::new(&self.settings, heightfield, self.frame());
         let mut prepared = memory.prepared_for(scene, heightfield, &self.settings, weights)?;
-        let earth = base.stages().iter().find_map(|s| match s {
-            Stage::EarthCurvature(earth) => Some(*earth),
-            _ => None,
-        });
+        let earth = base.earth().copied();
         let field = match &earth {
             Some(earth) => Arc::new(Field::new(&prepared.despiked, |p| drop_at(earth, p))?),
             None => prepared.level.clone(),

@@ -5,7 +5,7 @@ use super::super::{Field, LeftOut, ReferencePoint, TerrainSettings, Wedge, in_vi
 use super::entering::{self, EnteringSight};
 use super::in_picture;
 use super::memory::{self, Prepared};
-use belvedere_core::{Stage, View};
+use belvedere_core::View;
 
 /// What of the features the picture is asked to show.
 pub(super) struct PointsInView<'a> {
@@ -36,7 +36,7 @@ impl<'a> PointsInView<'a> {
         settings: &TerrainSettings,
         film: bool,
     ) -> Self {
-        let bent = base.pinhole().is_orthographic() || !base.stages().iter().all(Stage::is_upright);
+        let bent = base.pinhole().is_orthographic() || !base.stages().iter().all(|s| s.is_upright());
         let eye = base.pinhole().eye;
         let wedge = if bent { Wedge::all_around(eye.truncate()) } else { Wedge::of_pinhole(base.pinhole()) };
         let straight = StraightSight { eye: field.grid_from_scene(eye.truncate()), z: eye.z };

@@ -52,3 +52,32 @@ fn nothing_is_left_unfinished_or_silently_skipped() {
     }
     assert_eq!(found, Vec::<String>::new());
 }
+
+#[test]
+fn the_renderer_names_techniques_in_one_place() {
+    const NAMES: [&str; 9] = [
+        "EarthCurvature",
+        "TerrainDisocclusion",
+        "Strip",
+        "Relief",
+        "SplineBend",
+        "Body",
+        "Own",
+        "CurvedRays",
+        "SplitRays",
+    ];
+    let (mut files, mut found, mut here) = (Vec::new(), Vec::new(), 0);
+    rust_files(&belvedere_testkit::workspace_root().join("crates/belvedere-cpu/src"), &mut files);
+    for file in files.iter().filter(|f| f.file_name().is_some_and(|n| n != "tests.rs")) {
+        let text = fs::read_to_string(file).expect("source");
+        let drawing = text.split("#[cfg(test)]").next().unwrap_or_default();
+        let named = NAMES.iter().filter(|name| drawing.contains(&format!("Stage::{name}"))).count();
+        if file.ends_with("fast.rs") {
+            here = named;
+        } else if named > 0 {
+            found.push(file.display().to_string());
+        }
+    }
+    assert!(here >= 4, "fast.rs names {here} stages");
+    assert_eq!(found, Vec::<String>::new());
+}

@@ -221,8 +221,7 @@ impl LiveSession {
             }
             None => self.reopened(&document, &options)?,
         };
-        let is_terrain = |stage: &&Stage| matches!(stage, Stage::TerrainDisocclusion(_));
-        self.ground.last = session.view().stages().iter().find(is_terrain).cloned();
+        self.ground.last = session.view().stages().iter().find(|stage| stage.moves_ground()).cloned();
         self.session = Some(session.clone());
         Ok(session)
     }
@@ -339,7 +338,7 @@ fn with_known_planes(mut document: Document, session: &Session) -> Document {
 /// The session with moved ground in its chain.
 fn with_ground(session: Session, ground: Stage) -> Result<Session, BelvedereError> {
     let (pinhole, mut stages) = (session.view().pinhole().clone(), session.view().stages().to_vec());
-    let at = stages.iter().take_while(|stage| matches!(stage, Stage::EarthCurvature(_))).count();
+    let at = stages.iter().take_while(|stage| stage.rank() < ground.rank()).count();
     stages.insert(at, ground);
     let view = View::new(pinhole, stages).map_err(|e| BelvedereError::Setting(e.to_string()))?;
     Ok(Session { view, ..session })

@@ -3,7 +3,7 @@
 
 use super::{INK, PAPER};
 use belvedere_core::map::spline::SplineBend;
-use belvedere_core::{DVec2, Stage, View};
+use belvedere_core::{DVec2, View};
 use belvedere_cpu::canvas::{Canvas, text_size};
 use belvedere_scene::Color;
 
@@ -37,8 +37,7 @@ pub(crate) struct CurveFigure {
 impl CurveFigure {
     /// The curve of a view; `None` without a spline bend.
     pub(crate) fn of(view: &View) -> Option<Self> {
-        let bend =
-            view.stages().iter().find_map(|s| if let Stage::SplineBend(bend) = s { Some(bend) } else { None })?;
+        let bend = view.spline_bend()?;
         let (curve, pinhole, resolved) = (bend.curve(), view.pinhole(), bend.resolved());
         let at = |share: f64| curve.at(share * curve.length()).0;
         let place = |i: usize| at((1.0 + 2.0 * BEYOND) * i as f64 / POINTS as f64 - BEYOND);

@@ -7,7 +7,6 @@ use crate::BelvedereError;
 use crate::output;
 use crate::overlays::badge;
 use crate::scene_file::StageDoc;
-use belvedere_core::Stage;
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::Frame;
 use std::path::{Path, PathBuf};
@@ -65,10 +64,7 @@ impl Picture {
         overwrite: bool,
         written: &mut Vec<PathBuf>,
     ) -> Result<Option<Self>, BelvedereError> {
-        let solved = self.view.stages().iter().find_map(|s| match s {
-            Stage::TerrainDisocclusion(terrain) => Some(terrain),
-            _ => None,
-        });
+        let solved = self.view.ground();
         let (Some(solved), Some(_)) = (solved, &self.sidecar.disocclusion) else { return Ok(None) };
         let path = delta_path(out);
         crate::resolve::delta::write(&path, solved.grid(), self.crs, overwrite)?;

@@ -244,13 +244,7 @@ fn preview(
     // The camera is another one; what hangs on the world stays.
     let earlier = base.stages().iter().filter_map(|stage| match stage {
         Stage::EarthCurvature(earth) => Some(Stage::EarthCurvature(EarthCurvature { eye: root.eye, ..*earth })),
-        Stage::TerrainDisocclusion(_) => Some(stage.clone()),
-        Stage::Strip(_)
-        | Stage::Relief(_)
-        | Stage::SplineBend(_)
-        | Stage::Body(_)
-        | Stage::CurvedRays(_)
-        | Stage::SplitRays(_) => None,
+        stage => stage.moves_ground().then(|| stage.clone()),
     });
     let stages = earlier.chain(seen.view.stages().iter().cloned()).collect();
     let view = View::new(root, stages).map_err(|e| source.error(&["constructor", "kind"], e))?;

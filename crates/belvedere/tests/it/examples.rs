@@ -45,9 +45,12 @@ fn rays_reach_the_ground_behind_a_box() {
 }
 
 #[test]
-fn a_map_of_ones_own_keeps_the_law() {
-    let [worst_px, least_determinant] = own_stage::run().unwrap();
-    assert!(worst_px < 1e-9 && least_determinant > 0.0, "{worst_px} {least_determinant}");
+fn a_map_of_ones_own_is_drawn_and_picked() {
+    let folder = tempfile::tempdir().unwrap();
+    let [straight, ramp] = own_stage::run(folder.path()).unwrap();
+    assert_eq!([straight.as_deref(), ramp.as_deref()], [Some("building"), Some("ground")]);
+    let record = std::fs::read_to_string(folder.path().join("own_stage.png.json")).unwrap();
+    assert!(record.contains("\"own\""), "{record}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Ground that a stage moves up and down: its heights, and its light, kept from frame to frame where it did not move on.
 
 use crate::cache::GroundCache;
+use crate::fast::Fast;
 use crate::shade::ground::lit::{LitGround, LitKey};
 use crate::shade::ground::surface::{MipPyramid, Surface};
 use belvedere_core::{DVec3, Stage, TerrainDisocclusion};
@@ -23,10 +24,10 @@ const SURROUNDINGS: usize = 256;
 pub(crate) fn heights(hf: &Heightfield, stages: &[Stage]) -> Vec<f32> {
     let step = hf.spacing().min_element() * STEP;
     let rounded = |h: f32, by: f64| (f64::from(h) + (by / step).round() * step) as f32;
-    if let [Stage::TerrainDisocclusion(ground)] = stages {
+    if let [Fast::Ground(ground)] = *stages.iter().map(Fast::of).collect::<Vec<_>>() {
         return lifted(hf, ground, &rounded);
     }
-    let moved = |p: DVec3| stages.iter().try_fold(p, |p, s| s.as_map().apply(p)).ok().filter(|p| p.is_finite());
+    let moved = |p: DVec3| stages.iter().try_fold(p, |p, s| s.apply(p)).ok().filter(|p| p.is_finite());
     let mut heights = hf.heights().to_vec();
     heights.par_chunks_mut(hf.cols()).enumerate().for_each(|(r, row)| {
         for (c, h) in row.iter_mut().enumerate() {

@@ -16,7 +16,7 @@ use crate::shade::overlay::area::AreaMap;
 use crate::shade::overlay::drape::DrapeMap;
 use crate::shade::relief::ReliefLight;
 use crate::shade::{Shader, lod};
-use belvedere_core::{DVec2, DVec3, Stage};
+use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{AreaSurface, Heightfield, Light, RenderJob, Shading, TerrainLayer};
 use std::sync::Arc;
 
@@ -253,7 +253,7 @@ fn fill(area: &AreaMap, xy: DVec2, inside: f32, print: &Footprint) -> Rgb {
 /// ridge keeps its old shadow.
 fn lit_surface<'a>(layer: &'a TerrainLayer, job: &RenderJob<'a>) -> Surface<'a> {
     let (hf, stages) = (&layer.heightfield, job.view.stages());
-    let ground = stages.iter().position(|s| matches!(s, Stage::TerrainDisocclusion(_)));
+    let ground = stages.iter().position(|s| s.moves_ground());
     let deformed = match layer.shading {
         Some(Shading::Map) => return Surface::of_map(hf),
         Some(Shading::Deformed) => stages,
@@ -262,9 +262,9 @@ fn lit_surface<'a>(layer: &'a TerrainLayer, job: &RenderJob<'a>) -> Surface<'a> 
             None => return Surface::of_map(hf),
         },
     };
-    if deformed.iter().all(Stage::is_upright) {
+    if deformed.iter().all(|s| s.is_upright()) {
         return Surface::lifted(hf, Arc::new(displaced::heights(hf, deformed)));
     }
-    let moved = move |p: DVec3| deformed.iter().try_fold(p, |p, s| s.as_map().apply(p)).ok().filter(|p| p.is_finite());
+    let moved = move |p: DVec3| deformed.iter().try_fold(p, |p, s| s.apply(p)).ok().filter(|p| p.is_finite());
     Surface::bent(hf, Arc::new(moved))
 }

@@ -34,11 +34,7 @@ pub(crate) fn figure(session: &Session, picture: CameraPicture) -> Result<Camera
                 let ways: Vec<_> = split.branches().iter().map(|b| (&b.rays, b.region.corners())).collect();
                 turns::draw(&subject, &ways, &mut overlay, &mut legend);
             }
-            Stage::EarthCurvature(_)
-            | Stage::TerrainDisocclusion(_)
-            | Stage::Strip(_)
-            | Stage::Relief(_)
-            | Stage::Body(_) => {}
+            _ => {}
         }
     }
     let view = position::view(session, picture, &overlay)?;

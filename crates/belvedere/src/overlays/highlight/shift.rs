@@ -42,7 +42,7 @@ impl Parts {
                 }
             };
             match stage {
-                Stage::EarthCurvature(_) => {}
+                stage if stage.is_of_world() => {}
                 Stage::CurvedRays(rays) if (2..=MOST_TURNS).contains(&rays.turn_count()) => {
                     for k in 1..rays.turn_count() {
                         if let Ok(first) = CurvedRays::new(rays.root(), rays.model(), &rays.spec()[..k]) {

@@ -1,0 +1,31 @@
+//! Which stages this renderer has a faster form for than what [`belvedere_core::map::StageMap`] says of any map: the one place where it
+//! names techniques. Everything else asks a stage what it does.
+
+use belvedere_core::{CurvedRays, EarthCurvature, SplineBend, Stage, TerrainDisocclusion};
+
+/// A stage as the renderer computes it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Fast<'a> {
+    /// One addition, of the squared distance from the eye.
+    Earth(&'a EarthCurvature),
+    /// One addition, read from a grid; the ground is moved instead of bending rays.
+    Ground(&'a TerrainDisocclusion),
+    /// A table of the curve; the rays of an image row bend alike.
+    Spline(&'a SplineBend),
+    /// Closed forms of records and of the pieces of rays.
+    Rays(&'a CurvedRays),
+    /// The stage's own answers.
+    None,
+}
+
+impl<'a> Fast<'a> {
+    pub(crate) fn of(stage: &'a Stage) -> Self {
+        match stage {
+            Stage::EarthCurvature(earth) => Self::Earth(earth),
+            Stage::TerrainDisocclusion(ground) => Self::Ground(ground),
+            Stage::SplineBend(bend) => Self::Spline(bend),
+            Stage::CurvedRays(rays) => Self::Rays(rays),
+            _ => Self::None,
+        }
+    }
+}
