@@ -83,7 +83,7 @@ fn png_named(path: &Path) -> anyhow::Result<()> {
 
 fn answer(verb: &str, session: &Session, out: Option<&PathBuf>, text: &str, context: &Context) -> anyhow::Result<Goal> {
     ready(out, &session.inputs().iter().map(|file| file.path.as_path()).collect::<Vec<_>>(), context)?;
-    context.deliver(verb, out.map(PathBuf::as_path), text, session.warnings())?;
+    context.deliver(verb, out.map(PathBuf::as_path), text, &session.warnings())?;
     Ok(Goal::Reached)
 }
 
@@ -146,7 +146,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     let picture = session.render(&request)?;
     let written = picture.write(&args.out, context.common.overwrite)?;
     if context.common.json {
-        let mut result = done("render", &written, session.warnings());
+        let mut result = done("render", &written, &session.warnings());
         result["displacement"] = serde_json::json!(picture.sidecar.displacement);
         result["render_ms"] = serde_json::json!(picture.sidecar.render_ms);
         result["fallback"] = serde_json::json!(picture.sidecar.fallback);
@@ -155,7 +155,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         context.finish();
         print(&format!("{fallback}\n"))?;
     }
-    context.warn(session.warnings());
+    context.warn(&session.warnings());
     Ok(Goal::Reached)
 }
 
@@ -202,13 +202,13 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
     let written = found.write(&files, context.common.overwrite, &context.progress)?;
     context.finish();
     if context.common.json {
-        let mut result = done("disocclude", &written, found.session.warnings());
+        let mut result = done("disocclude", &written, &found.session.warnings());
         result["report"] = serde_json::from_str(&output::json(found.report())?)?;
         context.print(&result)?;
     } else if !context.common.quiet {
         print(&format!("{}\n", found.summary()))?;
     }
-    context.warn(found.session.warnings());
+    context.warn(&found.session.warnings());
     context.warn(&found.missed());
     Ok(if found.missed().is_empty() { Goal::Reached } else { Goal::Missed })
 }
@@ -244,13 +244,13 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
         Film::Unwanted => None,
     };
     if context.common.json {
-        let mut result = done("animate", &outputs, session.warnings());
+        let mut result = done("animate", &outputs, &session.warnings());
         result["frames"] = serde_json::json!(made.manifest.frames.len());
         result["drawn"] = serde_json::json!(made.drawn);
         result["fps"] = serde_json::json!(made.manifest.settings.fps);
         context.print(&result)?;
     }
-    context.warn(session.warnings());
+    context.warn(&session.warnings());
     context.warn(missing.as_slice());
     Ok(if missing.is_some() { Goal::Missed } else { Goal::Reached })
 }
@@ -337,7 +337,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
     let answer = reveal::reveal(&request, &context.options(Needs::Everything, None))?;
     let written = answer.write(&out, context.common.overwrite)?;
     if context.common.json {
-        let mut result = done("reveal", &written, answer.session.warnings());
+        let mut result = done("reveal", &written, &answer.session.warnings());
         result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
         result["shares"] = serde_json::from_str(&output::json(&answer.shares)?)?;
         result["hidden"] = serde_json::from_str(&output::json(&answer.hidden)?)?;
@@ -346,7 +346,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         context.finish();
         print(&format!("{}\n", answer.summary()))?;
     }
-    context.warn(answer.session.warnings());
+    context.warn(&answer.session.warnings());
     context.warn(answer.missed());
     Ok(if answer.missed().is_empty() { Goal::Reached } else { Goal::Missed })
 }
@@ -484,7 +484,7 @@ fn check_scene(args: &SceneArgs, context: &Context) -> anyhow::Result<Goal> {
     } else if !context.common.quiet {
         print(&report.to_string())?;
     }
-    context.warn(session.warnings());
+    context.warn(&session.warnings());
     Ok(Goal::Reached)
 }
 
@@ -496,7 +496,7 @@ fn show(args: &ShowArgs, context: &Context) -> anyhow::Result<Goal> {
     let json = if args.out.is_some() { named_json } else { context.common.json };
     let document = session.resolved().context("the scene has no document")?;
     let text = if json { output::document_json(document)? } else { output::document_toml(document)? };
-    context.deliver("show", args.out.as_deref(), &text, session.warnings())?;
+    context.deliver("show", args.out.as_deref(), &text, &session.warnings())?;
     Ok(Goal::Reached)
 }
 

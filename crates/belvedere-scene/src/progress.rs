@@ -40,7 +40,7 @@ impl Span {
 
 /// What is left for the work after a piece, at least and at most, as a share of the time that is left.
 const LEAST_REST: f64 = 0.15;
-const MOST_REST: f64 = 0.5;
+const MOST_REST: f64 = 0.75;
 
 impl std::fmt::Debug for Progress {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -100,7 +100,7 @@ impl Progress {
     }
 
     /// For a piece of the work after which more is to be done that takes about `rest` times as long as all that was done so far:
-    /// between 0.15 and 0.5 of the time that is left is kept for that.
+    /// between 0.15 and 0.75 of the time that is left is kept for that.
     pub fn before(&self, rest: f64) -> Self {
         self.until(|span| {
             let (left, wanted) = (span.left(), span.began.elapsed().mul_f64(rest.clamp(0.0, 1e6)));
@@ -175,7 +175,7 @@ mod tests {
         std::thread::sleep(Duration::from_millis(2));
         assert!((seconds(&work.part(0.3)) - 300.0).abs() < 10.0);
         assert!((seconds(&work.before(0.0)) - 850.0).abs() < 10.0, "something is always left for the rest");
-        assert!((seconds(&work.before(1e9)) - 500.0).abs() < 10.0, "and half of the time at most");
+        assert!((seconds(&work.before(1e9)) - 250.0).abs() < 10.0, "and three quarters of the time at most");
         assert!((seconds(&work.part(0.5).part(0.5)) - 250.0).abs() < 10.0);
         let late = work.part(0.0);
         assert!(late.is_late() && !work.is_late());

@@ -123,7 +123,7 @@ impl CameraPath {
     /// # Errors
     /// [`BelvedereError::NoAnimation`], [`BelvedereError::NoSweepRange`], [`BelvedereError::Animation`].
     pub(crate) fn new(session: &Session, given: &AnimationDoc) -> Result<Self, BelvedereError> {
-        let Some(Description { resolved: scene, roots, .. }) = &session.description else {
+        let Some(Description { resolved: scene, roots, .. }) = &session.resolved.description else {
             return Err(BelvedereError::NoAnimation);
         };
         let mut animation = merged(scene, given);
@@ -132,11 +132,11 @@ impl CameraPath {
             || animation.camera.is_some()
             || animation.sweep.is_some()
             || animation.turntable.is_some();
-        let Some(Description { source, .. }) = &session.description else { return Err(BelvedereError::NoAnimation) };
+        let Some(Description { source, .. }) = &session.resolved.description else { return Err(BelvedereError::NoAnimation) };
         let image = session.view().pinhole().image;
         let preview_m = constructor::path_length(source, roots, session.scene(), image)?;
-        let probe_frames = constructor::frames_of_probe(source, fps).filter(|_| session.motions.is_none());
-        if !moves_camera && session.motions.is_none() && preview_m.is_none() && probe_frames.is_none() {
+        let probe_frames = constructor::frames_of_probe(source, fps).filter(|_| session.loaded.motions.is_none());
+        if !moves_camera && session.loaded.motions.is_none() && preview_m.is_none() && probe_frames.is_none() {
             return Err(BelvedereError::NoAnimation);
         }
         defaults(scene, &mut animation)?;
@@ -286,7 +286,7 @@ fn resting(
     frames: Option<f64>,
     animation: &mut AnimationDoc,
 ) -> Result<Vec<Pose>, BelvedereError> {
-    let until_rest = || session.motions.as_ref().map_or(0.0, |m| m.end()) * animation.fps.unwrap_or(FPS);
+    let until_rest = || session.loaded.motions.as_ref().map_or(0.0, |m| m.end()) * animation.fps.unwrap_or(FPS);
     let lasts = frames.unwrap_or_else(until_rest);
     let frames = *animation.frames.get_or_insert(checked(lasts.floor().min(1e9) as u32 + 1)?);
     let pinhole = session.view().pinhole();

@@ -8,7 +8,7 @@ use crate::scene_file::{
     AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LineDoc, LineStyleDoc, Origin, PaletteDoc, Paths,
     PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, VerticalUnit,
 };
-use crate::session::Description;
+use crate::session::{Description, Loaded};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_core::View;
 use belvedere_io::terrain::OriginalTerrain;
@@ -125,13 +125,9 @@ impl Data {
             animation: None,
         };
         let (source, resolved) = (SourceDocument::new(document.clone()), document);
-        Session {
-            warnings: self.warnings,
-            areas: self.areas,
-            inputs: self.inputs,
-            description: Some(Description { source, resolved, roots: self.roots }),
-            ..Session::from_parts(self.scene, view)
-        }
+        let Self { scene, areas, inputs, warnings, roots, .. } = self;
+        let loaded = Loaded { scene, motions: None, areas, inputs, warnings };
+        Session::of_view(loaded, view, Description { source, resolved, roots })
     }
 }
 

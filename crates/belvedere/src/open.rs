@@ -3,10 +3,10 @@
 use crate::resolve::constructor::{self, Memory};
 use crate::resolve::motion::Motions;
 use crate::resolve::terrain::Solving;
-use crate::resolve::{self, LayerRequest, representations, validate, view};
+use crate::resolve::{self, LayerRequest, representations, validate};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, Document, EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc};
-use crate::session::Description;
+use crate::session::Loaded;
 use crate::{BelvedereError, Needs, OpenOptions, Session};
 use belvedere_io::crs::utm_epsg;
 use belvedere_scene::{Crs, Scene};
@@ -77,22 +77,14 @@ impl Session {
         }
         let mut memory = Memory::default();
         let mut solving = Solving { memory: &mut memory, time_step_s: None, progress: &options.progress };
-        let resolved = view::resolve(&source, &roots, &scene, (!options.unsolved).then_some(&mut solving))?;
-        let file = source.input().cloned();
-        Ok(Self {
-            light: resolved.light,
-            areas: loaded.areas,
-            overlay: source.document.overlay.clone().unwrap_or_default(),
-            stylisation: source.document.stylisation.unwrap_or_default().strengths().unwrap_or_default(),
-            terrain: resolved.terrain,
-            strip: resolved.strip,
-            constructor: resolved.constructor,
+        let loaded = Loaded {
+            scene,
             motions,
-            warnings: loaded.warnings.into_iter().chain(resolved.warnings).collect(),
-            inputs: file.into_iter().chain(inputs).chain(resolved.inputs).collect(),
-            description: Some(Description { source, resolved: resolved.document, roots }),
-            ..Self::from_parts(scene, resolved.view)
-        })
+            areas: loaded.areas,
+            inputs: source.input().cloned().into_iter().chain(inputs).collect(),
+            warnings: loaded.warnings,
+        };
+        Self::of_document(loaded, source, roots, (!options.unsolved).then_some(&mut solving))
     }
 }
 

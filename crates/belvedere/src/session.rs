@@ -12,16 +12,33 @@ use crate::{BelvedereError, OpenOptions};
 use belvedere_core::{SpaceMap, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
-use belvedere_scene::{Light, Scene, Stylisation};
+use belvedere_scene::{Light, Renderer, Scene, Stylisation};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Scene, view and light, from memory ([`Session::from_parts`]) or from a scene file ([`Session::open`]).
 ///
 /// Clones share the scene and the renderer, with what that remembers from picture to picture.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Session {
+    pub(crate) loaded: Loaded,
+    pub(crate) resolved: Resolved,
+    pub(crate) renderer: Arc<dyn Renderer + Send + Sync>,
+}
+
+/// What was read from files; it stays while the view changes.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Loaded {
     pub(crate) scene: Arc<Scene>,
+    pub(crate) motions: Option<Arc<Motions>>,
+    pub(crate) areas: Vec<AreaRecord>,
+    pub(crate) inputs: Vec<InputFile>,
+    pub(crate) warnings: Vec<String>,
+}
+
+/// What was made of a document over it.
+#[derive(Debug, Clone)]
+pub(crate) struct Resolved {
     pub(crate) view: View,
     pub(crate) light: Light,
     pub(crate) overlay: OverlayDoc,
@@ -29,12 +46,9 @@ pub struct Session {
     pub(crate) terrain: Option<TerrainReport>,
     pub(crate) strip: Option<StripReport>,
     pub(crate) constructor: Option<ConstructorReport>,
-    pub(crate) motions: Option<Arc<Motions>>,
-    pub(crate) warnings: Vec<String>,
-    pub(crate) areas: Vec<AreaRecord>,
     pub(crate) inputs: Vec<InputFile>,
+    pub(crate) warnings: Vec<String>,
     pub(crate) description: Option<Description>,
-    pub(crate) renderer: Arc<CpuRenderer>,
 }
 
 /// The document that a session was made from.
@@ -48,11 +62,21 @@ pub(crate) struct Description {
     pub(crate) roots: Roots,
 }
 
-impl Session {
-    /// A session of layers and a view made in memory, under the default light (north-west, 45 degrees high).
-    pub fn from_parts(scene: impl Into<Arc<Scene>>, view: View) -> Self {
+impl std::fmt::Debug for Session {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { loaded, resolved, renderer } = self;
+        f.debug_struct("Session")
+            .field("loaded", loaded)
+            .field("resolved", resolved)
+            .field("renderer", &renderer.name())
+            .finish()
+    }
+}
+
+impl Resolved {
+    /// A view under the default light (north-west, 45 degrees high), of no document.
+    fn of_view(view: View) -> Self {
         Self {
-            scene: scene.into(),
             view,
             light: Light::default(),
             overlay: OverlayDoc::default(),
@@ -60,170 +84,205 @@ impl Session {
             terrain: None,
             strip: None,
             constructor: None,
-            motions: None,
-            warnings: Vec::new(),
-            areas: Vec::new(),
             inputs: Vec::new(),
+            warnings: Vec::new(),
             description: None,
-            renderer: Arc::default(),
         }
+    }
+
+    /// What a document makes of what was loaded. Without `solving` an intent of terrain disocclusion is left out.
+    fn of(
+        source: SourceDocument,
+        roots: Roots,
+        scene: &Scene,
+        solving: Option<&mut Solving<'_>>,
+    ) -> Result<Self, BelvedereError> {
+        let made = view::resolve(&source, &roots, scene, solving)?;
+        Ok(Self {
+            light: made.light,
+            overlay: source.document.overlay.clone().unwrap_or_default(),
+            stylisation: source.document.stylisation.unwrap_or_default().strengths().unwrap_or_default(),
+            terrain: made.terrain,
+            strip: made.strip,
+            constructor: made.constructor,
+            inputs: made.inputs,
+            warnings: made.warnings,
+            description: Some(Description { source, resolved: made.document, roots }),
+            ..Self::of_view(made.view)
+        })
+    }
+}
+
+impl Session {
+    /// A session of layers and a view made in memory, under the default light (north-west, 45 degrees high).
+    pub fn from_parts(scene: impl Into<Arc<Scene>>, view: View) -> Self {
+        let loaded = Loaded { scene: scene.into(), ..Loaded::default() };
+        Self::together(loaded, Resolved::of_view(view))
+    }
+
+    /// What was loaded and what a document makes of it: every session of a document comes from here.
+    pub(crate) fn of_document(
+        loaded: Loaded,
+        source: SourceDocument,
+        roots: Roots,
+        solving: Option<&mut Solving<'_>>,
+    ) -> Result<Self, BelvedereError> {
+        let resolved = Resolved::of(source, roots, &loaded.scene, solving)?;
+        Ok(Self::together(loaded, resolved))
+    }
+
+    /// What was loaded in a view that a verb has found and describes.
+    pub(crate) fn of_view(loaded: Loaded, view: View, description: Description) -> Self {
+        Self::together(loaded, Resolved { description: Some(description), ..Resolved::of_view(view) })
+    }
+
+    fn together(loaded: Loaded, resolved: Resolved) -> Self {
+        Self { loaded, resolved, renderer: Arc::new(CpuRenderer::default()) }
+    }
+
+    /// The same drawn by another renderer.
+    pub fn with_renderer(self, renderer: Arc<dyn Renderer + Send + Sync>) -> Self {
+        Self { renderer, ..self }
     }
 
     /// The same under another light.
     pub fn with_light(self, light: Light) -> Self {
-        Self { light, ..self }
+        Self { resolved: Resolved { light, ..self.resolved }, ..self }
     }
 
     /// The same with other marks over the picture.
     pub fn with_overlay(self, overlay: OverlayDoc) -> Self {
-        Self { overlay, ..self }
+        Self { resolved: Resolved { overlay, ..self.resolved }, ..self }
     }
 
     /// The same with its surfaces drawn over.
     pub fn with_stylisation(self, stylisation: Stylisation) -> Self {
-        Self { stylisation, ..self }
+        Self { resolved: Resolved { stylisation, ..self.resolved }, ..self }
     }
 
     /// The same scene in another view. A document that described the view before is left behind.
     pub fn with_view(self, view: View) -> Self {
-        Self { view, terrain: None, strip: None, constructor: None, description: None, ..self }
+        let Resolved { light, overlay, stylisation, .. } = self.resolved;
+        Self { resolved: Resolved { light, overlay, stylisation, ..Resolved::of_view(view) }, ..self }
     }
 
-    /// The same scene by another document of the same layers: everything that depends on camera and stages is resolved again.
-    /// Without `solving` an intent of terrain disocclusion is left out.
+    /// The same scene by another document of the same layers: everything that depends on camera and stages is resolved again, marks and
+    /// stylisation stay. Without `solving` an intent of terrain disocclusion is left out.
     pub(crate) fn with_document(
         &self,
         document: Document,
         solving: Option<&mut Solving<'_>>,
     ) -> Result<Self, BelvedereError> {
-        let (origin, roots) = match &self.description {
+        let (origin, roots) = match &self.resolved.description {
             Some(d) => (d.source.origin.clone(), d.roots.clone()),
             None => Default::default(),
         };
-        let source = SourceDocument { origin, document };
-        let resolved = view::resolve(&source, &roots, &self.scene, solving)?;
-        let mut warnings = self.warnings.clone();
-        warnings.extend(resolved.warnings.into_iter().filter(|w| !self.warnings.contains(w)));
-        Ok(Self {
-            view: resolved.view,
-            light: resolved.light,
-            terrain: resolved.terrain,
-            strip: resolved.strip,
-            constructor: resolved.constructor,
-            warnings,
-            description: Some(Description { source, resolved: resolved.document, roots }),
-            ..self.clone()
-        })
+        let resolved = Resolved::of(SourceDocument { origin, document }, roots, &self.loaded.scene, solving)?;
+        let Resolved { overlay, stylisation, .. } = self.resolved.clone();
+        Ok(Self { resolved: Resolved { overlay, stylisation, ..resolved }, ..self.clone() })
     }
 
     /// The same scene by a document that was edited, opened as by `options`: as [`Session::from_document`] of that document, without
     /// reading the layers again.
     ///
-    /// * `about_layers`: warnings that stay. `memory`: what constructors remember of the document before.
+    /// * `memory`: what constructors remember of the document before.
     pub(crate) fn edited(
         &self,
         document: Document,
         options: &OpenOptions,
-        about_layers: &[String],
         memory: &mut Memory,
     ) -> Result<Self, BelvedereError> {
         let source = SourceDocument::new(document);
         validate::document(&source)?;
         let roots = Roots { allowed: options.allow_roots.clone(), ..Roots::default() };
         let mut solving = Solving { memory, time_step_s: None, progress: &options.progress };
-        let resolved = view::resolve(&source, &roots, &self.scene, (!options.unsolved).then_some(&mut solving))?;
-        Ok(Self {
-            view: resolved.view,
-            light: resolved.light,
-            overlay: source.document.overlay.clone().unwrap_or_default(),
-            stylisation: source.document.stylisation.unwrap_or_default().strengths().unwrap_or_default(),
-            terrain: resolved.terrain,
-            strip: resolved.strip,
-            constructor: resolved.constructor,
-            warnings: about_layers.iter().cloned().chain(resolved.warnings).collect(),
-            description: Some(Description { source, resolved: resolved.document, roots }),
-            ..self.clone()
-        })
+        let solving = (!options.unsolved).then_some(&mut solving);
+        Ok(Self { resolved: Resolved::of(source, roots, &self.loaded.scene, solving)?, ..self.clone() })
     }
 
     /// Layers, unit and coordinate system.
     pub fn scene(&self) -> &Scene {
-        &self.scene
+        &self.loaded.scene
     }
 
     /// The view.
     pub fn view(&self) -> &View {
-        &self.view
+        &self.resolved.view
     }
 
     /// The light.
     pub fn light(&self) -> &Light {
-        &self.light
+        &self.resolved.light
     }
 
     /// What the strip along a route came to; `None` if the scene has none.
     pub fn strip_report(&self) -> Option<&StripReport> {
-        self.strip.as_ref()
+        self.resolved.strip.as_ref()
     }
 
     /// What the solver of terrain disocclusion came to; `None` if none ran.
     pub fn terrain_report(&self) -> Option<&TerrainReport> {
-        self.terrain.as_ref()
+        self.resolved.terrain.as_ref()
     }
 
     /// What the constructor of curved rays came to; `None` if the scene has none.
     pub fn constructor_report(&self) -> Option<&ConstructorReport> {
-        self.constructor.as_ref()
+        self.resolved.constructor.as_ref()
     }
 
     /// The same with every layer where its motion has brought it at a time, seconds; the view stays as it is.
     pub(crate) fn at_time(&self, t: f64) -> Self {
-        match &self.motions {
-            Some(motions) => Self { scene: Arc::new(motions.at(t)), ..self.clone() },
+        match &self.loaded.motions {
+            Some(motions) => {
+                let loaded = Loaded { scene: Arc::new(motions.at(t)), ..self.loaded.clone() };
+                Self { loaded, ..self.clone() }
+            }
             None => self.clone(),
         }
     }
 
     /// Whether the view of a frame depends on the frames before.
     pub(crate) fn tracks(&self) -> bool {
-        self.description.as_ref().is_some_and(|d| constructor::tracks(&d.source))
+        self.resolved.description.as_ref().is_some_and(|d| constructor::tracks(&d.source))
     }
 
-    /// What was odd: one sentence each.
-    pub fn warnings(&self) -> &[String] {
-        &self.warnings
+    /// What was odd, of loading first: one sentence each.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut all = self.loaded.warnings.clone();
+        all.extend(self.resolved.warnings.iter().filter(|w| !self.loaded.warnings.contains(w)).cloned());
+        all
     }
 
     /// What the areas of each layer are drawn as, and why; nothing for a session from parts.
     pub fn areas(&self) -> &[AreaRecord] {
-        &self.areas
+        &self.loaded.areas
     }
 
     /// Files that were read, the scene file first.
-    pub fn inputs(&self) -> &[InputFile] {
-        &self.inputs
+    pub fn inputs(&self) -> Vec<InputFile> {
+        self.loaded.inputs.iter().chain(&self.resolved.inputs).cloned().collect()
     }
 
     /// Their paths.
     pub fn input_paths(&self) -> Vec<PathBuf> {
-        self.inputs.iter().map(|file| file.path.clone()).collect()
+        self.inputs().into_iter().map(|file| file.path).collect()
     }
 
     /// The scene file; `None` for a session from memory.
     pub fn path(&self) -> Option<&Path> {
-        self.description.as_ref().and_then(|d| d.source.path())
+        self.resolved.description.as_ref().and_then(|d| d.source.path())
     }
 
     /// The document with every default filled in and every position, name and rule replaced by its value; it opens to the same
     /// view. `None` for a session from parts.
     pub fn resolved(&self) -> Option<&Document> {
-        self.description.as_ref().map(|d| &d.resolved)
+        self.resolved.description.as_ref().map(|d| &d.resolved)
     }
 
     /// Terrain disocclusion that the document asks for and a solver has to find.
     #[cfg(not(target_family = "wasm"))]
     pub(crate) fn stated_terrain(&self) -> Option<crate::scene_file::TerrainStageDoc> {
-        let mut stages = self.description.iter().flat_map(|d| &d.source.document.stage);
+        let mut stages = self.resolved.description.iter().flat_map(|d| &d.source.document.stage);
         stages.find_map(|stage| match stage {
             StageDoc::TerrainDisocclusion(doc) if doc.delta.is_none() => Some(doc.clone()),
             _ => None,
@@ -235,7 +294,7 @@ impl Session {
     /// # Errors
     /// [`BelvedereError::Setting`] with the parameter that is out of range.
     pub fn terrain_settings(&self) -> Result<TerrainSettings, BelvedereError> {
-        let mut stages = self.description.iter().flat_map(|d| &d.source.document.stage);
+        let mut stages = self.resolved.description.iter().flat_map(|d| &d.source.document.stage);
         let stated = stages.find_map(|stage| match stage {
             StageDoc::TerrainDisocclusion(doc) => Some(doc.clone()),
             _ => None,
@@ -246,12 +305,12 @@ impl Session {
 
     /// The scene file, or the title of the scene, for reports.
     pub(crate) fn name(&self) -> String {
-        self.path().map_or_else(|| self.scene.title.clone(), |path| path.display().to_string())
+        self.path().map_or_else(|| self.loaded.scene.title.clone(), |path| path.display().to_string())
     }
 
     /// Names of the stages of the view, in order of application.
     pub(crate) fn stage_names(&self) -> Vec<&'static str> {
-        self.view.stages().iter().map(|s| s.name()).collect()
+        self.resolved.view.stages().iter().map(|s| s.name()).collect()
     }
 
     /// Depth at which rays end: `far` if given, else the camera's, else the largest depth of the scene.
@@ -259,11 +318,11 @@ impl Session {
     /// # Errors
     /// [`BelvedereError::NoRayEnd`] if there is none of them.
     pub fn ray_end(&self, far: Option<f64>) -> Result<f64, BelvedereError> {
-        let view = &self.view;
+        let view = &self.resolved.view;
         if let Some(far) = far.or(view.pinhole().far) {
             return Ok(far);
         }
-        let bounds = self.scene.bounds();
+        let bounds = self.loaded.scene.bounds();
         let corners = bounds.corners();
         let straight = corners.iter().map(|&c| (c - view.pinhole().eye).dot(view.pinhole().forward));
         let bent = corners.iter().filter_map(|&c| view.project(c).ok()).map(|image| image.depth);
@@ -279,15 +338,15 @@ impl Session {
     /// # Errors
     /// [`BelvedereError::UnderGround`].
     pub fn check_drawable(&self) -> Result<(), BelvedereError> {
-        if matches!(self.constructor, Some(ConstructorReport::PathPreview(_))) {
+        if matches!(self.resolved.constructor, Some(ConstructorReport::PathPreview(_))) {
             // Its eye lies far behind the path, and nothing is drawn before that.
             return Ok(());
         }
-        let eye = self.view.pinhole().eye;
-        let moved = self.view.stages().iter().any(|s| s.moves_ground());
+        let eye = self.resolved.view.pinhole().eye;
+        let moved = self.resolved.view.stages().iter().any(|s| s.moves_ground());
         // The ground that a strip carries under the eye; beside the strip there is none.
-        let over = self.view.strip().map_or(Some(eye), |strip| strip.invert(eye).ok());
-        let ground = over.and_then(|p| self.scene.terrain().and_then(|t| t.surface_at(p.truncate())));
+        let over = self.resolved.view.strip().map_or(Some(eye), |strip| strip.invert(eye).ok());
+        let ground = over.and_then(|p| self.loaded.scene.terrain().and_then(|t| t.surface_at(p.truncate())));
         match ground {
             Some(ground_m) if eye.z < ground_m && !moved => Err(BelvedereError::UnderGround { eye_m: eye.z, ground_m }),
             _ => Ok(()),

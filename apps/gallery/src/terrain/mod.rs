@@ -116,7 +116,7 @@ fn figures_of(area: &Area, folder: &Path, overwrite: bool, written: &mut Vec<Pat
         eta,
         eyes,
         timing,
-        warnings: area.session.warnings().to_vec(),
+        warnings: area.session.warnings(),
     })
 }
 

@@ -2,6 +2,7 @@
 
 use super::thin::{self, Thin};
 use super::{Place, THREADS};
+use crate::session::{Loaded, Resolved};
 use crate::fallback;
 use crate::overlays::grid;
 use crate::picture::{self, DisplacementReport, PictureOptions};
@@ -12,7 +13,7 @@ use belvedere_construct::measure::HiddenRun;
 use belvedere_construct::{MeasureOptions, Measures};
 use belvedere_core::{Stage, View};
 use belvedere_scene::Instant;
-use belvedere_scene::{Frame, Progress, RenderJob, RenderOptions, Renderer, Scene};
+use belvedere_scene::{Frame, Progress, RenderJob, RenderOptions, Scene};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -108,8 +109,6 @@ pub struct LiveSession {
     session: Option<Session>,
     /// The document that its layers were read by.
     opened: Option<Document>,
-    /// Warnings about the layers, which stay while the view changes.
-    layer_warnings: Vec<String>,
     /// How long constructing took last.
     constructing: Duration,
     /// What constructors remember of the last picture at rest.
@@ -149,7 +148,7 @@ impl LiveSession {
         let (mut bent, mut straight, mut displacement) = (None, None, None);
         match order.pace {
             Pace::Moving { detail_px } => {
-                let scene = self.thin.scene(session.scene.clone(), 1.0 / detail_px);
+                let scene = self.thin.scene(session.loaded.scene.clone(), 1.0 / detail_px);
                 if order.sides != Sides::Straight {
                     bent = Some(quick(&session, &scene, &eased(session.view(), order.bend), detail_px, progress)?);
                 }
@@ -215,7 +214,7 @@ impl LiveSession {
         let session = match self.open(&document) {
             Some(session) => {
                 let (began, mut memory) = (Instant::now(), self.memory.of_path());
-                let session = session.edited(document.clone(), &options, &self.layer_warnings, &mut memory)?;
+                let session = session.edited(document.clone(), &options, &mut memory)?;
                 (self.constructing, self.memory) = (began.elapsed(), memory);
                 session
             }
@@ -247,7 +246,7 @@ impl LiveSession {
         };
         let document = with_known_planes(document, &session);
         let mut memory = self.memory.of_path_sized(order.image);
-        let session = session.edited(document, &options, &self.layer_warnings, &mut memory)?;
+        let session = session.edited(document, &options, &mut memory)?;
         if solves {
             return match self.ground.under(&session)? {
                 Some(stage) => Ok((with_ground(session, stage)?, constructs.then_some(RAYS))),
@@ -276,7 +275,8 @@ impl LiveSession {
             (true, false) => {
                 let mut scene = Scene { title: document.title.clone(), ..session.scene().clone() };
                 scene.layers.iter_mut().zip(must_see).for_each(|(layer, must)| layer.must_see = must);
-                let session = Session { scene: Arc::new(scene), ..session.clone() };
+                let loaded = Loaded { scene: Arc::new(scene), ..session.loaded.clone() };
+                let session = Session { loaded, ..session.clone() };
                 self.session = Some(session.clone());
                 Some(session)
             }
@@ -285,7 +285,6 @@ impl LiveSession {
 
     fn reopened(&mut self, document: &Document, options: &OpenOptions) -> Result<Session, BelvedereError> {
         let session = Session::from_document(SourceDocument::new(document.clone()), options)?;
-        self.layer_warnings = session.warnings().to_vec();
         self.opened = Some(document.clone());
         (self.ground, self.memory, self.constructing) = (Ground::default(), Memory::default(), Duration::ZERO);
         Ok(session)
@@ -299,10 +298,10 @@ impl Ground {
     fn under(&mut self, session: &Session) -> Result<Option<Stage>, BelvedereError> {
         use belvedere_disocclusion::{LiveTerrain, TerrainSolver};
         let Some(stated) = session.stated_terrain() else { return Ok(None) };
-        let fits = |(doc, scene, _): &(_, Arc<Scene>, _)| *doc == stated && Arc::ptr_eq(scene, &session.scene);
+        let fits = |(doc, scene, _): &(_, Arc<Scene>, _)| *doc == stated && Arc::ptr_eq(scene, &session.loaded.scene);
         if !self.live.as_ref().is_some_and(fits) {
             let solver = TerrainSolver::new(session.terrain_settings()?)?;
-            self.live = Some((stated, session.scene.clone(), LiveTerrain::new(solver, session.scene.clone())));
+            self.live = Some((stated, session.loaded.scene.clone(), LiveTerrain::new(solver, session.loaded.scene.clone())));
         }
         let Some((.., live)) = &mut self.live else { return Ok(None) };
         Ok(live.newest(session.view())?.map(Stage::TerrainDisocclusion).or_else(|| self.last.clone()))
@@ -341,7 +340,7 @@ fn with_ground(session: Session, ground: Stage) -> Result<Session, BelvedereErro
     let at = stages.iter().take_while(|stage| stage.rank() < ground.rank()).count();
     stages.insert(at, ground);
     let view = View::new(pinhole, stages).map_err(|e| BelvedereError::Setting(e.to_string()))?;
-    Ok(Session { view, ..session })
+    Ok(Session { resolved: Resolved { view, ..session.resolved }, ..session })
 }
 
 fn options(order: &Order, progress: &Progress) -> OpenOptions {
@@ -370,10 +369,10 @@ fn quick(
     progress: &Progress,
 ) -> Result<Frame, BelvedereError> {
     let mut options =
-        RenderOptions { samples: 1, lod_px: detail_px, stylisation: session.stylisation, ..RenderOptions::default() };
+        RenderOptions { samples: 1, lod_px: detail_px, stylisation: session.resolved.stylisation, ..RenderOptions::default() };
     let plan = if view.is_bent() { fallback::of_session(session, view)? } else { None };
     let scene = plan.as_ref().map_or(scene, |plan| plan.scene());
-    let grid = grid::wanted(scene, grid::stated(&session.overlay));
+    let grid = grid::wanted(scene, grid::stated(&session.resolved.overlay));
     options.overlay.under.extend(grid.into_iter().map(|line| thin::line(line, 1.0 / detail_px)));
     let draw = |scene: &Scene, view: &View| {
         let job = RenderJob { scene, view, light: session.light(), options: &options, progress };

@@ -148,7 +148,7 @@ pub struct FallbackPlan {
 
 /// The plan that a session's document asks for in `view`; `None` if it asks for none, or the view shows the target anyway.
 pub(crate) fn of_session(session: &Session, view: &View) -> Result<Option<FallbackPlan>, BelvedereError> {
-    let Some(source) = session.description.as_ref().map(|d| &d.source) else { return Ok(None) };
+    let Some(source) = session.resolved.description.as_ref().map(|d| &d.source) else { return Ok(None) };
     let Some(doc) = source.document.constructor.as_ref().filter(|doc| !doc.fallback.is_empty()) else {
         return Ok(None);
     };

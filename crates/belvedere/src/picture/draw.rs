@@ -22,7 +22,7 @@ impl Session {
     /// [`BelvedereError::UnderGround`], [`BelvedereError::Render`], [`BelvedereError::Io`] if an input has gone,
     /// [`BelvedereError::Cancelled`].
     pub fn render(&self, options: &PictureOptions) -> Result<Picture, BelvedereError> {
-        draw(self, options, record::inputs(self.inputs())?, &options.progress)
+        draw(self, options, record::inputs(&self.inputs())?, &options.progress)
     }
 }
 
@@ -63,7 +63,7 @@ pub(crate) fn draw(
         scene: session.resolved().cloned(),
         title: session.scene().title.clone(),
         inputs,
-        warnings: session.warnings().to_vec(),
+        warnings: session.warnings(),
         stats: frame.stats.clone(),
         render_ms,
     };
@@ -91,7 +91,7 @@ pub(crate) fn draw_view(
     let view = if request.straight { session.view().straightened() } else { session.view().clone() };
     let plan = if request.straight { None } else { fallback::of_session(session, &view)? };
     let scene = plan.as_ref().map_or(session.scene(), FallbackPlan::scene);
-    let wanted = &session.overlay;
+    let wanted = &session.resolved.overlay;
     let (marks, heatmap) = highlight::chosen((&request.highlight, request.heatmap), wanted)?;
     let ghost = (request.ghost || wanted.ghost) && view.is_bent();
     let grid = request.grid.or(grid::stated(wanted));
@@ -99,7 +99,7 @@ pub(crate) fn draw_view(
     let rigid = RigidLayers::of(scene, &view);
     let world = rigid.any() || request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
     let exact = !request.aux.is_empty();
-    let stylisation = request.stylisation.unwrap_or(session.stylisation);
+    let stylisation = request.stylisation.unwrap_or(session.resolved.stylisation);
     let mut options = RenderOptions { aux: Aux { world, exact }, stylisation, ..request.quality.clone() };
     options.overlay.under.extend(grid::wanted(scene, grid));
     let draw = |scene: &Scene, view: &View| {

@@ -110,7 +110,7 @@ pub(crate) fn document(settings: &TerrainSettings, scene: &Scene) -> TerrainStag
 }
 
 /// Judging and drawing takes about so many times as long as what comes before solving.
-const DRAWING: f64 = 1.5;
+const DRAWING: f64 = 3.0;
 /// Share of the time that is left for moving the camera.
 const ADJUSTING: f64 = 0.4;
 

@@ -73,7 +73,7 @@ pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
         crs: session.scene().crs.to_string(),
         layers: layers.collect(),
         stages: stages(session),
-        warnings: session.warnings().to_vec(),
+        warnings: session.warnings(),
     })
 }
 

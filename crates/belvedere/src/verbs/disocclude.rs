@@ -190,10 +190,11 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
     let stage = StageDoc::TerrainDisocclusion(intent::document(solver.settings(), &data.scene));
     let earth = if request.curved_earth { EarthDoc::Curved } else { EarthDoc::Flat };
     let camera = CameraDoc::of(view.pinhole(), look_at);
-    let session = Session { terrain: Some(solved.report.clone()), ..data.session(view, camera, vec![stage], earth) };
+    let mut session = data.session(view, camera, vec![stage], earth);
+    session.resolved.terrain = Some(solved.report.clone());
     let record = Record {
         program: format!("belvedere {}", crate::VERSION),
-        crs: session.scene.crs.to_string(),
+        crs: session.scene().crs.to_string(),
         eye: request.eye,
         adjusted_eye: moved_eye.map(|(eye, _)| eye.to_array()),
         look: request.look,
@@ -202,9 +203,9 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
         grid: request.grid,
         visible_written,
         guaranteed: solved.report.guaranteed && visible_written.is_none_or(|share| share >= KEPT_SHARE),
-        layers: session.scene.layers.iter().map(|l| l.id.clone()).collect(),
-        inputs: record::inputs(session.inputs())?,
-        warnings: session.warnings.clone(),
+        layers: session.scene().layers.iter().map(|l| l.id.clone()).collect(),
+        inputs: record::inputs(&session.inputs())?,
+        warnings: session.warnings(),
     };
     Ok(Disoccluded { session, solved, rasters, record })
 }
@@ -413,7 +414,7 @@ impl Disoccluded {
 /// Features on the displaced ground: GeoJSON in WGS 84 (scene coordinates without georeference), heights those of the displaced
 /// ground, the true positions as the property `true_coordinates`.
 fn moved_features(session: &Session, stage: &TerrainDisocclusion) -> Result<Value, BelvedereError> {
-    let scene = &session.scene;
+    let scene = session.scene();
     let to_wgs84 = match scene.crs {
         Crs::Local => None,
         crs => Some(Transform::new(&CoordinateSystem::from_scene(crs)?, &CoordinateSystem::wgs84()?)?),

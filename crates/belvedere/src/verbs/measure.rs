@@ -48,6 +48,6 @@ pub fn measure(
         renderer: renderer.name(),
         terrain: session.terrain_report().cloned(),
         measures,
-        scene_warnings: session.warnings().to_vec(),
+        scene_warnings: session.warnings(),
     })
 }

@@ -192,7 +192,7 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     let camera = CameraDoc::of(pinhole, pinhole.eye + ahead * pinhole.forward);
     let earth = if request.curved_earth { EarthDoc::Curved } else { EarthDoc::Flat };
     let mut session = data.session(found.view.clone(), camera, vec![spline_stage(&found)], earth);
-    session.warnings.extend(found.report.warnings.iter().cloned());
+    session.loaded.warnings.extend(found.report.warnings.iter().cloned());
     let candidates: &[Technique] = match request.technique {
         Technique::Spline => &[],
         Technique::CurvedRays => &[Technique::CurvedRays],
@@ -240,12 +240,12 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
         tried.clear();
     }
     if candidates.is_empty() && options.progress.is_limited() {
-        measured_every = in_time::measured(&session.scene, &session.view, &options.progress)?.1;
+        measured_every = in_time::measured(session.scene(), session.view(), &options.progress)?.1;
     }
     let hidden = belvedere_construct::measure::hidden(
-        &session.scene,
-        &session.view,
-        &in_time::options(&session.scene, measured_every),
+        session.scene(),
+        session.view(),
+        &in_time::options(session.scene(), measured_every),
         &options.progress,
     )?;
     let pair = PictureOptions {
@@ -301,7 +301,7 @@ fn final_shares(
     technique: Technique,
     progress: &Progress,
 ) -> Result<(FinalShares, u32), BelvedereError> {
-    let (measures, every) = in_time::measured(&session.scene, &session.view, progress)?;
+    let (measures, every) = in_time::measured(session.scene(), session.view(), progress)?;
     let all =
         measures.lines.as_ref().or(measures.areas.as_ref()).or(measures.points.as_ref()).or(measures.surfaces.as_ref());
     let shares = FinalShares {
@@ -370,10 +370,10 @@ impl RevealAnswer {
                 measured_every: self.measured_every,
                 displacement: sidecar.displacement,
                 view: &sidecar.view,
-                crs: self.session.scene.crs.to_string(),
+                crs: self.session.scene().crs.to_string(),
                 terrain: sidecar.terrain,
                 inputs: &sidecar.inputs,
-                scene_warnings: self.session.warnings(),
+                scene_warnings: &self.session.warnings(),
             };
             output::write_text(path, &pretty(&report)?, overwrite)?;
             written.push(path.clone());

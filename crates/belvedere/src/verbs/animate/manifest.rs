@@ -130,7 +130,7 @@ impl Manifest {
         Ok(Self {
             program: format!("belvedere {}", crate::VERSION),
             scene_sha256: belvedere_io::sha256(output::json(&document)?.as_bytes()),
-            inputs: record::inputs(session.inputs())?,
+            inputs: record::inputs(&session.inputs())?,
             settings: Settings {
                 animation: path.animation.clone(),
                 fps: path.fps,

@@ -13,7 +13,7 @@ pub(super) fn plan(
     path: &CameraPath,
     progress: &Progress,
 ) -> Result<Vec<PlannedBend>, BelvedereError> {
-    if !session.description.as_ref().is_some_and(|d| constructor::tracks_target(&d.source)) {
+    if !session.resolved.description.as_ref().is_some_and(|d| constructor::tracks_target(&d.source)) {
         return Ok(Vec::new());
     }
     let mut planner = None;
@@ -36,7 +36,7 @@ fn pass(
     for frame in 0..path.len() {
         progress.tick("planning how the target stays in sight", frame as f64 / path.len() as f64)?;
         let framed = path.session(session, frame, None)?;
-        if let Some(description) = &framed.description {
+        if let Some(description) = &framed.resolved.description {
             let (scene, base) = (framed.scene(), framed.view());
             constructor::plan_frame(&description.source, scene, base, 1.0 / path.fps, (sideways, &mut planner))?;
         }
