@@ -132,7 +132,9 @@ impl CameraPath {
             || animation.camera.is_some()
             || animation.sweep.is_some()
             || animation.turntable.is_some();
-        let Some(Description { source, .. }) = &session.resolved.description else { return Err(BelvedereError::NoAnimation) };
+        let Some(Description { source, .. }) = &session.resolved.description else {
+            return Err(BelvedereError::NoAnimation);
+        };
         let image = session.view().pinhole().image;
         let preview_m = constructor::path_length(source, roots, session.scene(), image)?;
         let probe_frames = constructor::frames_of_probe(source, fps).filter(|_| session.loaded.motions.is_none());

@@ -169,7 +169,9 @@ impl View {
         let mut segment = 0;
         let mut p = p_displaced;
         for stage in self.stages.iter().rev() {
-            (p, segment) = stage.undisplace(p)?;
+            let (before, of_stage) = stage.undisplace(p)?;
+            // Only one stage, the last, has segments.
+            (p, segment) = (before, segment.max(of_stage));
         }
         Ok((p, segment))
     }

@@ -2,12 +2,12 @@
 
 use super::thin::{self, Thin};
 use super::{Place, THREADS};
-use crate::session::{Loaded, Resolved};
 use crate::fallback;
 use crate::overlays::grid;
 use crate::picture::{self, DisplacementReport, PictureOptions};
 use crate::resolve::constructor::Memory;
 use crate::scene_file::{ConstructorKind, Document, LayerDoc, SourceDocument, StageDoc};
+use crate::session::{Loaded, Resolved};
 use crate::{BelvedereError, CameraPicture, OpenOptions, Session};
 use belvedere_construct::measure::HiddenRun;
 use belvedere_construct::{MeasureOptions, Measures};
@@ -301,7 +301,8 @@ impl Ground {
         let fits = |(doc, scene, _): &(_, Arc<Scene>, _)| *doc == stated && Arc::ptr_eq(scene, &session.loaded.scene);
         if !self.live.as_ref().is_some_and(fits) {
             let solver = TerrainSolver::new(session.terrain_settings()?)?;
-            self.live = Some((stated, session.loaded.scene.clone(), LiveTerrain::new(solver, session.loaded.scene.clone())));
+            self.live =
+                Some((stated, session.loaded.scene.clone(), LiveTerrain::new(solver, session.loaded.scene.clone())));
         }
         let Some((.., live)) = &mut self.live else { return Ok(None) };
         Ok(live.newest(session.view())?.map(Stage::TerrainDisocclusion).or_else(|| self.last.clone()))
@@ -368,8 +369,12 @@ fn quick(
     detail_px: f64,
     progress: &Progress,
 ) -> Result<Frame, BelvedereError> {
-    let mut options =
-        RenderOptions { samples: 1, lod_px: detail_px, stylisation: session.resolved.stylisation, ..RenderOptions::default() };
+    let mut options = RenderOptions {
+        samples: 1,
+        lod_px: detail_px,
+        stylisation: session.resolved.stylisation,
+        ..RenderOptions::default()
+    };
     let plan = if view.is_bent() { fallback::of_session(session, view)? } else { None };
     let scene = plan.as_ref().map_or(scene, |plan| plan.scene());
     let grid = grid::wanted(scene, grid::stated(&session.resolved.overlay));

@@ -4,3 +4,4 @@ mod examples;
 mod names;
 mod sessions;
 mod sweeps;
+mod warnings;
