@@ -1,7 +1,7 @@
 //! B-DNA: two strands of random sequence wound about the z axis, built from the place of each atom in a base pair.
 
 use super::{BuiltinError, SuggestedCamera};
-use crate::noise::Random;
+use crate::noise::seeded;
 use belvedere_core::DVec3;
 use belvedere_scene::molecule::{Atom, Element, ModelTransform, Residue};
 use belvedere_scene::{Crs, Layer, LayerKind, Molecule, MoleculeLayer, MoleculeStyle, Scene, Unit};
@@ -128,7 +128,7 @@ fn helix(seed: u64, pairs: usize) -> Result<Molecule, BuiltinError> {
     if !(PAIRS[0]..=PAIRS[1]).contains(&pairs) {
         return Err(BuiltinError::Pairs { pairs });
     }
-    let mut random = Random::new(seed);
+    let mut random = seeded(seed);
     let sequence: Vec<usize> = (0..pairs).map(|_| (4.0 * random.unit()).min(3.0) as usize).collect();
     let mut builder = Builder { pairs, atoms: Vec::new(), residues: Vec::new() };
     for (k, &base) in sequence.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use super::erosion::{Drainage, Land};
 use super::lake::{Lake, dam};
-use super::noise::{Noise, Random};
+use super::noise::{Noise, seeded};
 use super::viewpoint::{Viewpoint, best_viewpoint};
 use super::{BuiltinError, SuggestedCamera, ground_layer, line_layer};
 use crate::route::{RouteCost, RouteError, Window, route_in};
@@ -167,7 +167,7 @@ fn forces(seed: u64, n: usize, lift_m: f64, k: f64) -> Forces {
 
 /// Valley mouths: one stretch on each side, at seeded positions.
 fn outlets(seed: u64, n: usize) -> Vec<bool> {
-    let mut random = Random::new(seed ^ 15);
+    let mut random = seeded(seed ^ 15);
     let mut outlet = vec![false; n * n];
     for side in 0..4 {
         let mouths = if side % 2 == 0 { 2 } else { 1 };

@@ -1,6 +1,6 @@
 //! Routes found on terrain: paths of least cost that keep to the valleys.
 
-use crate::noise::{Noise, Random};
+use crate::noise::{Noise, Random, seeded};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, NodeState};
 use std::cmp::Reverse;
@@ -288,7 +288,7 @@ const WINDOW_M: f64 = 24_000.0;
 /// Source: ours.
 pub fn valley_route(terrain: &Heightfield, seed: u64) -> Result<Vec<DVec2>, RouteError> {
     let cost = RouteCost { wander: 1.5, seed, ..RouteCost::default() };
-    let mut random = Random::new(seed ^ 0x7661_6c6c);
+    let mut random = seeded(seed ^ 0x7661_6c6c);
     let mut windows: Vec<(f64, Window)> = (0..48).map(|_| seeded_window(terrain, &mut random)).collect();
     windows.sort_by(|a, b| b.0.total_cmp(&a.0));
     for (_, window) in windows.into_iter().take(4) {

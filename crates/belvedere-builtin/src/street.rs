@@ -1,6 +1,6 @@
 //! A town of towers on a street grid.
 
-use super::noise::Random;
+use super::noise::{Random, seeded};
 use super::viewpoint::{Viewpoint, best_viewpoint};
 use super::{BuiltinError, SuggestedCamera, ground_layer, line_layer};
 use belvedere_core::{DVec2, DVec3};
@@ -46,7 +46,7 @@ fn street_middles(edges: &[[f64; 2]]) -> Vec<f64> {
 ///
 /// Source: ours.
 pub fn street(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
-    let mut random = Random::new(seed ^ 0x7374_7265_6574);
+    let mut random = seeded(seed ^ 0x7374_7265_6574);
     let (xs, ys) = (block_edges(&mut random), block_edges(&mut random));
     let (nodes, spacing) = (145, 25.0);
     let corner = DVec2::new(-0.5, 0.5) * spacing * (nodes - 1) as f64;

@@ -2,6 +2,7 @@
 
 use crate::samples::Sample;
 use belvedere_core::DVec3;
+use belvedere_core::random::Random;
 use belvedere_scene::{BoxLayer, BoxShape, LayerKind, MeshLayer, MoleculeLayer};
 
 /// Samples of a surface, at least and at most.
@@ -99,47 +100,29 @@ pub(crate) fn spread(triangles: &[[DVec3; 3]], count: usize, off: f64) -> Vec<Sa
         return Vec::new();
     }
     let each = total / count as f64;
-    let mut random = Random(SEED);
+    let mut random = Random::new(SEED);
     let mut out = Vec::with_capacity(count);
-    let (mut before, mut next) = (0.0, random.share() * each);
+    let (mut before, mut next) = (0.0, random.unit() * each);
     for (number, t) in triangles.iter().enumerate() {
         let normal = cross(t);
         let after = before + 0.5 * normal.length();
         while next < after && out.len() < count {
-            let [u, v] = random.inside();
+            let [u, v] = inside_triangle(&mut random);
             let p = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
             let normal = normal.normalize_or(DVec3::Z);
             let triangle = Some(number as u32);
             out.push(Sample { p_world: p + off * normal, lift: 0.0, amount: each, surface: Some(normal), triangle });
-            next = (out.len() as f64 + random.share()) * each;
+            next = (out.len() as f64 + random.unit()) * each;
         }
         before = after;
     }
     out
 }
 
-/// Numbers that look random (splitmix64, Steele, Lea, Flood 2014).
-pub(crate) struct Random(u64);
-
-impl Random {
-    pub(crate) fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// In [0, 1).
-    pub(crate) fn share(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Weights of two corners of a triangle, evenly distributed over it.
-    fn inside(&mut self) -> [f64; 2] {
-        let [u, v] = [self.share(), self.share()];
-        if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] }
-    }
+/// Weights of two corners of a triangle, evenly distributed over it.
+fn inside_triangle(random: &mut Random) -> [f64; 2] {
+    let [u, v] = [random.unit(), random.unit()];
+    if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] }
 }
 
 #[cfg(test)]

@@ -15,12 +15,13 @@ pub mod conic;
 pub mod grid;
 pub mod map;
 pub mod presets;
+pub mod random;
 pub mod sections;
 
 pub use bounds::Aabb;
 pub use camera::{
-    EdgePoint, Edges, ImageBox, Navigation, Pinhole, PinholeError, Projected, Projection, RayPath, RayPoint, View,
-    ViewError,
+    EdgePoint, Edges, ImageBox, Navigation, Pinhole, PinholeBuilder, PinholeError, Projected, Projection, RayPath,
+    RayPoint, View, ViewError,
 };
 pub use glam::{DMat3, DQuat, DVec2, DVec3};
 pub use map::curved_rays::{CurvedRays, CurvedRaysError};

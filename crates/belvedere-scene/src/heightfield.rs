@@ -231,6 +231,22 @@ impl Heightfield {
         States { each: self.states.as_deref(), len: self.heights.len() }
     }
 
+    /// Median height of the nodes that have one, the mean of the middle two of an even number; 0 without any.
+    pub fn median_height(&self) -> f64 {
+        let with_data = |(h, s): (&f32, &NodeState)| (*s != NodeState::Void).then_some(*h);
+        let mut heights: Vec<f32> = self.heights.iter().zip(self.states().iter()).filter_map(with_data).collect();
+        let middle = heights.len() / 2;
+        if heights.is_empty() {
+            return 0.0;
+        }
+        let (below, upper, _) = heights.select_nth_unstable_by(middle, f32::total_cmp);
+        let upper = f64::from(*upper);
+        match below.iter().copied().reduce(f32::max).filter(|_| heights.len().is_multiple_of(2)) {
+            Some(lower) => 0.5 * (f64::from(lower) + upper),
+            None => upper,
+        }
+    }
+
     fn is_void(&self, i: usize) -> bool {
         self.states.as_ref().is_some_and(|states| states[i] == NodeState::Void)
     }

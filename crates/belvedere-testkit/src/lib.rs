@@ -1,11 +1,10 @@
 //! Law suites, data helpers and synthetic scenes for the tests of the workspace.
 
 pub mod laws;
-mod random;
 pub mod rays;
 pub mod synthetic;
 
-pub use random::Random;
+pub use belvedere_core::random::Random;
 
 use std::path::{Path, PathBuf};
 

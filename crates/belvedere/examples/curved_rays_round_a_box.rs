@@ -1,17 +1,16 @@
 //! A camera whose rays bend over a building, so that it sees the ground behind.
 
 use belvedere::core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
-use belvedere::core::{CurvedRays, DVec2, DVec3, Pinhole, Projection, Stage, View};
-use belvedere::scene::{BoxLayer, BoxShape, Color, Heightfield, LayerKind, Progress, Scene};
-use belvedere::verbs::pick::pick;
+use belvedere::core::{CurvedRays, DVec2, DVec3, Pinhole, Stage, View};
+use belvedere::scene::{BoxLayer, BoxShape, Color, Heightfield, LayerKind, Scene};
 use belvedere::{BelvedereError, PictureOptions, Session};
 use std::path::Path;
 
 /// What a view shows where it has the image of a point: the layer, if any.
 fn layer_at(session: &Session, point: DVec3) -> Result<Option<String>, BelvedereError> {
     let Ok(image) = session.view().project(point) else { return Ok(None) };
-    let seen = pick(session, &[image.pixel.to_array()], &Progress::silent())?;
-    Ok(seen.pixels.into_iter().flatten().next().map(|seen| seen.layer))
+    let seen = session.pick(&[image.pixel.to_array()])?;
+    Ok(seen.into_iter().flatten().next().map(|seen| seen.layer))
 }
 
 /// The layer that a straight and a bent view show in the direction of a point behind the building; draws the bent one.
@@ -27,8 +26,8 @@ pub fn run(folder: &Path) -> Result<[Option<String>; 2], Box<dyn std::error::Err
     let scene = Scene::default().with_terrain("ground", ground).with_layer("building", building);
 
     let eye = DVec3::new(0.0, 0.0, 30.0);
-    let lens = Projection::Perspective { fov_y: 70f64.to_radians() };
-    let camera = Pinhole::look_at(eye, DVec3::new(0.0, 70.0, 60.0), DVec3::Z, lens, [320, 240], 1.0, None)?;
+    let target = DVec3::new(0.0, 70.0, 60.0);
+    let camera = Pinhole::looking(eye, target).fov_y_deg(70.0).image([320, 240]).near(1.0).build()?;
     // Between the planes y = 60 and y = 80 the rays turn downwards; behind them they run as if they came from 100 m higher up.
     let turn = TurnSpec {
         viewpoint: eye + DVec3::new(0.0, 0.0, 100.0),

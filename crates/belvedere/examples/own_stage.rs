@@ -3,9 +3,8 @@
 //! [`SpaceMap`] is all that has to be written; [`StageMap`] answers what drawing asks beyond it, and takes better answers where a map has them.
 
 use belvedere::core::map::{Miss, StageMap};
-use belvedere::core::{DMat3, DVec2, DVec3, Pinhole, Projection, SpaceMap, Stage, View};
-use belvedere::scene::{BoxLayer, BoxShape, Color, Heightfield, LayerKind, Progress, Scene};
-use belvedere::verbs::pick::pick;
+use belvedere::core::{DMat3, DVec2, DVec3, Pinhole, SpaceMap, Stage, View};
+use belvedere::scene::{BoxLayer, BoxShape, Color, Heightfield, LayerKind, Scene};
 use belvedere::{BelvedereError, PictureOptions, Session};
 use std::path::Path;
 
@@ -44,8 +43,8 @@ impl StageMap for Ramp {}
 /// The layer that a view shows where it has the image of a point, if any.
 fn layer_at(session: &Session, point: DVec3) -> Result<Option<String>, BelvedereError> {
     let Ok(image) = session.view().project(point) else { return Ok(None) };
-    let seen = pick(session, &[image.pixel.to_array()], &Progress::silent())?;
-    Ok(seen.pixels.into_iter().flatten().next().map(|seen| seen.layer))
+    let seen = session.pick(&[image.pixel.to_array()])?;
+    Ok(seen.into_iter().flatten().next().map(|seen| seen.layer))
 }
 
 /// The layer that a straight view and one with the ramp show in the direction of a point behind a building; draws the latter.
@@ -61,9 +60,8 @@ pub fn run(folder: &Path) -> Result<[Option<String>; 2], Box<dyn std::error::Err
         .with_terrain("ground", ground)
         .with_layer("building", LayerKind::Boxes(BoxLayer::new(vec![building])));
 
-    let lens = Projection::Perspective { fov_y: 70f64.to_radians() };
     let (eye, target) = (DVec3::new(0.0, 0.0, 30.0), DVec3::new(0.0, 100.0, 40.0));
-    let camera = Pinhole::look_at(eye, target, DVec3::Z, lens, [320, 240], 1.0, None)?;
+    let camera = Pinhole::looking(eye, target).fov_y_deg(70.0).image([320, 240]).near(1.0).build()?;
     let straight = Session::from_parts(scene, View::straight(camera.clone()));
     let bent = straight.clone().with_view(View::new(camera, vec![Stage::own(Ramp { rise: 400.0, reach: 400.0 })])?);
     bent.render(&PictureOptions::default())?.write(&folder.join("own_stage.png"), true)?;

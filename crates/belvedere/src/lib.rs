@@ -3,7 +3,7 @@
 //! Heights and lines made in memory, a view, a picture:
 //!
 //! ```
-//! use belvedere::core::{DVec2, DVec3, Pinhole, Projection, View};
+//! use belvedere::core::{DVec2, DVec3, Pinhole, View};
 //! use belvedere::scene::{Heightfield, Scene};
 //! use belvedere::{PictureOptions, Session};
 //!
@@ -12,8 +12,7 @@
 //! let path = [DVec2::new(200.0, 300.0), DVec2::new(2700.0, 2500.0)];
 //! let scene = Scene::default().with_terrain("ground", ground).with_line("path", &path);
 //! let (eye, target) = (DVec3::new(1500.0, -1500.0, 900.0), DVec3::new(1500.0, 1200.0, 0.0));
-//! let lens = Projection::Perspective { fov_y: 0.8 };
-//! let camera = Pinhole::look_at(eye, target, DVec3::Z, lens, [320, 180], 1.0, None)?;
+//! let camera = Pinhole::looking(eye, target).image([320, 180]).build()?;
 //! let session = Session::from_parts(scene, View::straight(camera));
 //! let picture = session.render(&PictureOptions::default())?;
 //! # let folder = tempfile::tempdir()?;

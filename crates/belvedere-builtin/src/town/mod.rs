@@ -7,7 +7,7 @@ mod river;
 mod solids;
 
 use super::BuiltinError;
-use super::noise::Random;
+use super::noise::seeded;
 use belvedere_core::DVec2;
 use belvedere_scene::{City, CityArea, LandCover, Polygon};
 use grid::{Cell, Grid};
@@ -29,7 +29,7 @@ pub fn town(seed: u64, size_m: f64) -> Result<City, BuiltinError> {
     if !(TOWN_SIZES_M[0]..=TOWN_SIZES_M[1]).contains(&size_m) {
         return Err(BuiltinError::TownSize { size_m });
     }
-    let mut random = Random::new(seed ^ 0x746f_776e);
+    let mut random = seeded(seed ^ 0x746f_776e);
     let grid = Grid::new(seed, size_m, &mut random);
     let mut city = City { ways: grid.ways(), ..City::default() };
     river::build(&grid, &mut random, &mut city);

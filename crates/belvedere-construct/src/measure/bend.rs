@@ -74,13 +74,6 @@ pub(crate) fn nodes(hf: &Heightfield, count: usize) -> Vec<DVec3> {
     rows.flat_map(|r| (0..hf.cols()).step_by(stride).filter_map(move |c| hf.node(c, r))).collect()
 }
 
-/// Median height of the terrain: the reference plane of the presets.
-pub(crate) fn median_height(hf: &Heightfield) -> f64 {
-    let mut heights: Vec<f64> = nodes(hf, 40_000).into_iter().map(|p| p.z).collect();
-    heights.sort_by(f64::total_cmp);
-    heights.get(heights.len() / 2).copied().unwrap_or(0.0)
-}
-
 pub(super) fn measure_bend(
     obstacles: &Obstacles<'_>,
     scene: &Scene,
@@ -88,7 +81,7 @@ pub(super) fn measure_bend(
     straight: &View,
     features: &[SampledFeature],
 ) -> BendMeasure {
-    let plane = obstacles.grounds().first().map(|(_, g)| median_height(g.heightfield()));
+    let plane = obstacles.grounds().first().map(|(_, g)| g.heightfield().median_height());
     let mut out = Sums::default();
     for p in ground_points(scene, features) {
         let image = straight.project(p).ok().filter(|i| in_frame(straight, i.pixel, i.depth));

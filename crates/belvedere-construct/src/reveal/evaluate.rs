@@ -1,6 +1,6 @@
 //! How good a picture would be: what it shows of the features, and whether it fills the image as a straight one does.
 
-use crate::measure::bend::{facing, median_height, nodes};
+use crate::measure::bend::{facing, nodes};
 use crate::samples::{Sample, SampledFeature};
 use belvedere_core::map::spline::ReferencePlane;
 use belvedere_core::{DVec2, DVec3, View};
@@ -50,7 +50,7 @@ impl<'a> Evaluator<'a> {
         Self {
             obstacles: Obstacles::new(scene),
             heightfield,
-            plane: ReferencePlane::level(median_height(heightfield)),
+            plane: ReferencePlane::level(heightfield.median_height()),
             samples: thin(features, count),
             ground: nodes(heightfield, 2_000),
             cell: heightfield.spacing().max_element(),

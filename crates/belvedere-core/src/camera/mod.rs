@@ -1,5 +1,6 @@
 //! Cameras: the pinhole, the view (pinhole behind a chain of stages) and the rays of its pixels.
 
+mod builder;
 mod edges;
 mod navigate;
 mod pinhole;
@@ -7,6 +8,7 @@ mod ray_path;
 mod rigid;
 mod view;
 
+pub use builder::PinholeBuilder;
 pub use edges::{EdgePoint, Edges};
 pub use navigate::Navigation;
 pub use pinhole::{Pinhole, PinholeError, Projection};

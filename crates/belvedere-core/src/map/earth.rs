@@ -1,6 +1,6 @@
 //! Curvature of the earth and refraction as a displacement.
 
-use super::{Miss, SpaceMap};
+use super::{Miss, SpaceMap, finite};
 use crate::Aabb;
 use glam::{DMat3, DVec3};
 
@@ -45,10 +45,6 @@ impl EarthCurvature {
         out.max.z -= self.drop_at(nearest);
         Some(out)
     }
-}
-
-fn finite(p: DVec3) -> Result<DVec3, Miss> {
-    if p.is_finite() { Ok(p) } else { Err(Miss::OutsideDomain) }
 }
 
 impl SpaceMap for EarthCurvature {

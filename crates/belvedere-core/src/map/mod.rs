@@ -47,3 +47,8 @@ pub trait SpaceMap {
     /// Derivative of `apply` at `p`, dimensionless; column `i` is the derivative along axis `i`.
     fn jacobian(&self, p: DVec3) -> Result<DMat3, Miss>;
 }
+
+/// A point with finite coordinates; others are outside every domain.
+fn finite(p: DVec3) -> Result<DVec3, Miss> {
+    if p.is_finite() { Ok(p) } else { Err(Miss::OutsideDomain) }
+}

@@ -1,7 +1,7 @@
 //! Motions of rigid bodies: how a bend carries what must keep its shape.
 
 use super::spline::SplineBend;
-use super::{Miss, SpaceMap};
+use super::{Miss, SpaceMap, finite};
 use glam::{DMat3, DVec3};
 
 /// A rotation and a translation: `X' = to + rotation (X - from)`.
@@ -47,10 +47,6 @@ impl RigidMotion {
     pub fn is_identity(&self) -> bool {
         self.from == self.to && self.rotation == DMat3::IDENTITY
     }
-}
-
-fn finite(p: DVec3) -> Result<DVec3, Miss> {
-    if p.is_finite() { Ok(p) } else { Err(Miss::OutsideDomain) }
 }
 
 impl SpaceMap for RigidMotion {

@@ -1,6 +1,6 @@
 //! Terrain disocclusion as a displacement: the ground gives way vertically.
 
-use super::{Miss, SpaceMap};
+use super::{Miss, SpaceMap, finite};
 use crate::Aabb;
 use crate::grid::Grid;
 use glam::{DMat3, DVec3};
@@ -125,10 +125,6 @@ impl Crossings {
     fn advance(&mut self) {
         self.line += self.step.signum();
     }
-}
-
-fn finite(p: DVec3) -> Result<DVec3, Miss> {
-    if p.is_finite() { Ok(p) } else { Err(Miss::OutsideDomain) }
 }
 
 impl SpaceMap for TerrainDisocclusion {

@@ -190,7 +190,7 @@ fn random_view(random: &mut Random, kind: usize, image: [u32; 2]) -> Option<View
     let around = DVec2::from_angle(random.range(0.0, TAU)) * random.range(350.0, 900.0);
     let eye = around.extend(random.range(180.0, 700.0));
     let at = DVec3::new(random.range(-150.0, 150.0), random.range(-150.0, 150.0), random.range(-40.0, 60.0));
-    let lens = if kind == 0 && random.next() < 0.3 {
+    let lens = if kind == 0 && random.unit() < 0.3 {
         Projection::Orthographic { height: random.range(300.0, 900.0) }
     } else {
         Projection::Perspective { fov_y: random.range(25.0, 65.0).to_radians() }
@@ -202,7 +202,7 @@ fn random_view(random: &mut Random, kind: usize, image: [u32; 2]) -> Option<View
         0 => vec![],
         1 => vec![earth],
         2 => vec![ground],
-        3 => return Some(spline(ph, if random.next() < 0.5 { "progressive" } else { "degressive" })),
+        3 => return Some(spline(ph, if random.unit() < 0.5 { "progressive" } else { "degressive" })),
         4 => {
             let bent = spline(ph, "degressive");
             return View::new(bent.pinhole().clone(), [&[earth, ground], bent.stages()].concat()).ok();
@@ -249,7 +249,7 @@ fn random_turns(random: &mut Random, ph: &Pinhole, model: Model, turns: usize) -
                 pencil: Pencil::Parallel { normal: -forward },
                 // Around 1.05 a conic arc is a parabola.
                 m: match model {
-                    Model::Modified if random.next() < 0.7 => Sharpness::Value(random.range(0.6, 1.5)),
+                    Model::Modified if random.unit() < 0.7 => Sharpness::Value(random.range(0.6, 1.5)),
                     _ => Sharpness::Bend,
                 },
             }

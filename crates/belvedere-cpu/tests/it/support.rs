@@ -1,5 +1,6 @@
 //! Scenes, cameras and picture files for the tests.
 
+pub(crate) use belvedere_core::random::Random;
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_scene::{
@@ -7,28 +8,6 @@ use belvedere_scene::{
     Relief, RenderJob, RenderOptions, Renderer, Scene, TerrainLayer,
 };
 use std::f64::consts::TAU;
-
-/// Deterministic numbers in [0, 1).
-pub(crate) struct Random(u64);
-
-impl Random {
-    pub(crate) fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    pub(crate) fn next(&mut self) -> f64 {
-        // splitmix64
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) as f64 / 2f64.powi(64)
-    }
-
-    pub(crate) fn range(&mut self, lo: f64, hi: f64) -> f64 {
-        lo + (hi - lo) * self.next()
-    }
-}
 
 pub(crate) fn terrain(heightfield: Heightfield) -> TerrainLayer {
     TerrainLayer {

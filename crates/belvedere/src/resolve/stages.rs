@@ -204,28 +204,11 @@ fn plane_point(context: &StageContext<'_>, at: Table<'_>) -> Result<DVec3, Belve
     let look_at = context.camera.look_at;
     if let Some(terrain) = context.ground.terrain {
         let over = look_at.unwrap_or(context.camera.pinhole.eye);
-        return Ok(over.truncate().extend(median_height(terrain)));
+        return Ok(over.truncate().extend(terrain.median_height()));
     }
     look_at.ok_or_else(|| {
         at.error(&["plane"], "nothing says where the reference plane lies: there is no terrain and no look_at; give plane = { height_m = ... }")
     })
-}
-
-/// Median height of the nodes that have one.
-fn median_height(terrain: &Heightfield) -> f64 {
-    let with_data =
-        |(h, s): (&f32, &belvedere_scene::NodeState)| (*s != belvedere_scene::NodeState::Void).then_some(*h);
-    let mut heights: Vec<f32> = terrain.heights().iter().zip(terrain.states().iter()).filter_map(with_data).collect();
-    let middle = heights.len() / 2;
-    if heights.is_empty() {
-        return 0.0;
-    }
-    let (below, upper, _) = heights.select_nth_unstable_by(middle, f32::total_cmp);
-    let upper = f64::from(*upper);
-    match below.iter().copied().reduce(f32::max).filter(|_| heights.len().is_multiple_of(2)) {
-        Some(lower) => 0.5 * (f64::from(lower) + upper),
-        None => upper,
-    }
 }
 
 /// The document that a stage names.

@@ -51,3 +51,13 @@ pub fn measure(
         scene_warnings: session.warnings(),
     })
 }
+
+impl Session {
+    /// [`measure`] by the session's renderer, without progress.
+    ///
+    /// # Errors
+    /// Those of [`measure`].
+    pub fn measure(&self, options: &MeasureOptions) -> Result<MeasureReport, BelvedereError> {
+        measure(self, options, RendererChoice::default(), &Progress::silent())
+    }
+}

@@ -60,6 +60,16 @@ pub fn pick(session: &Session, pixels: &[[f64; 2]], progress: &Progress) -> Resu
     Ok(PickReport { pixels: pixels.par_iter().map(one).collect::<Result<_, _>>()? })
 }
 
+impl Session {
+    /// [`pick`] without progress.
+    ///
+    /// # Errors
+    /// Those of [`pick`].
+    pub fn pick(&self, pixels: &[[f64; 2]]) -> Result<Vec<Option<Picked>>, BelvedereError> {
+        Ok(pick(self, pixels, &Progress::silent())?.pixels)
+    }
+}
+
 fn named(name: &str) -> Option<String> {
     (!name.is_empty()).then(|| name.to_owned())
 }

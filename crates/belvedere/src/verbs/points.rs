@@ -1,7 +1,7 @@
 //! Points to pixels and back: `project`, `rays`, `displace`.
 
-use crate::BelvedereError;
 use crate::scene_file::{Node, Value, json_points};
+use crate::{BelvedereError, Session};
 use belvedere_core::{DVec2, DVec3, Miss, View};
 use serde::Serialize;
 use std::io::Read;
@@ -97,6 +97,13 @@ pub fn project(view: &View, points: &[[f64; 3]]) -> ProjectReport {
         }
     };
     ProjectReport { points: points.iter().map(one).collect() }
+}
+
+impl Session {
+    /// Pixel and depth of each point, by the session's view.
+    pub fn project(&self, points: &[[f64; 3]]) -> Vec<ProjectedPoint> {
+        project(self.view(), points).points
+    }
 }
 
 /// Where each point goes, before the pinhole.

@@ -66,13 +66,13 @@ impl Envelope {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface_samples::Random;
+    use belvedere_core::random::Random;
 
     #[test]
     fn distances_are_those_of_trying_every_marked_cell() {
         let mut random = Random::new(3);
         for (size, share) in [([7, 5, 9], 0.05), ([1, 12, 4], 0.2), ([6, 6, 6], 0.9), ([5, 4, 3], 0.0)] {
-            let marked: Vec<bool> = (0..size[0] * size[1] * size[2]).map(|_| random.share() < share).collect();
+            let marked: Vec<bool> = (0..size[0] * size[1] * size[2]).map(|_| random.unit() < share).collect();
             let at = |i: usize| [i % size[0], i / size[0] % size[1], i / size[0] / size[1]].map(|v| v as f64);
             for (i, found) in distances(&marked, size).into_iter().enumerate() {
                 let squares = (0..marked.len()).filter(|k| marked[*k]).map(|k| {

@@ -1,6 +1,7 @@
 //! Points all over the surfaces of a part of a scene.
 
-use crate::surface_samples::{Random, box_triangles, spread};
+use crate::surface_samples::{box_triangles, spread};
+use belvedere_core::random::Random;
 use belvedere_core::{Aabb, DVec3};
 use belvedere_scene::{LayerKind, Scene};
 
@@ -86,7 +87,7 @@ fn ground_points(scene: &Scene, region: &Aabb, count: usize, off: f64) -> Vec<Su
     let mut random = Random::new(0x6772_6f75_6e64);
     let mut points = Vec::with_capacity(cols * rows);
     for i in 0..cols * rows {
-        let [u, v] = [random.share(), random.share()];
+        let [u, v] = [random.unit(), random.unit()];
         let square = glam::DVec2::new((i % cols) as f64 + u, (i / cols) as f64 + v);
         let xy = low + square * extent / glam::DVec2::new(cols as f64, rows as f64);
         let e = 0.25 * ground.spacing().min_element();

@@ -228,7 +228,7 @@ fn meets_cube([a, b, c]: [DVec3; 3], half: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface_samples::Random;
+    use belvedere_core::random::Random;
     use belvedere_scene::{BoxLayer, Color, MeshColors, MeshLayer};
 
     fn region() -> Aabb {
@@ -238,7 +238,7 @@ mod tests {
     #[test]
     fn every_point_of_a_surface_lies_in_a_solid_cell_and_clearance_is_kept_by_all_of_them() {
         let mut random = Random::new(5);
-        let mut at = |r: f64| DVec3::new(random.share() - 0.5, random.share() - 0.5, random.share()) * r;
+        let mut at = |r: f64| DVec3::new(random.unit() - 0.5, random.unit() - 0.5, random.unit()) * r;
         let corners: Vec<DVec3> = (0..60).map(|i| if i % 3 == 0 { at(80.0) } else { DVec3::ZERO }).collect();
         let corners: Vec<DVec3> = (0..60).map(|i| corners[i / 3 * 3] + at(12.0)).collect();
         let triangles = (0..20).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
@@ -268,7 +268,7 @@ mod tests {
         assert!(voxels.len() <= MOST_CELLS as usize * 5 / 4 && voxels.size().into_iter().max() >= Some(64));
         let mut points = Vec::new();
         for _ in 0..3000 {
-            let [u, v, w] = [random.share(), random.share(), random.share()];
+            let [u, v, w] = [random.unit(), random.unit(), random.unit()];
             let [a, b, c] = mesh.corners((w * 20.0) as usize);
             let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
             points.push(a + u * (b - a) + v * (c - a));

@@ -6,7 +6,7 @@ mod base;
 pub use base::{BaseError, BaseSurface};
 
 use super::spline::ReferencePlane;
-use super::{Miss, SpaceMap};
+use super::{Miss, SpaceMap, finite};
 use crate::{Aabb, Pinhole};
 use glam::{DMat2, DMat3, DVec2, DVec3};
 use std::sync::Arc;
@@ -268,10 +268,6 @@ struct Most {
     drop: f64,
     drop_once: f64,
     drop_twice: f64,
-}
-
-fn finite(p: DVec3) -> Result<DVec3, Miss> {
-    if p.is_finite() { Ok(p) } else { Err(Miss::OutsideDomain) }
 }
 
 impl SpaceMap for Relief {

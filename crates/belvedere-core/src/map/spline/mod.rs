@@ -14,7 +14,7 @@ pub use curve::{CurveFrame, DeformationCurve};
 pub use plane::{ReferencePlane, default_pivot, viewing_angle};
 pub use resolve::{ResolvedPreset, SplineError};
 
-use super::{Miss, SpaceMap};
+use super::{Miss, SpaceMap, finite};
 use crate::sections::StylingSections;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
@@ -189,10 +189,6 @@ impl SplineBend {
     fn scene_from_curve(&self, a: f64, q: DVec2) -> DVec3 {
         self.origin + a * self.right + self.scale * (q.x * self.out_u + q.y * self.out_v)
     }
-}
-
-fn finite(p: DVec3) -> Result<DVec3, Miss> {
-    if p.is_finite() { Ok(p) } else { Err(Miss::OutsideDomain) }
 }
 
 impl SpaceMap for SplineBend {

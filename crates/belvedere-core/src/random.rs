@@ -1,8 +1,8 @@
-//! Seeded random numbers for tests: the same seed gives the same numbers on every machine.
+//! Seeded random numbers: the same seed gives the same numbers on every machine.
 
-use belvedere_core::{Aabb, DMat3, DVec3};
+use crate::{Aabb, DMat3, DVec3};
 
-/// SplitMix64 (Steele, Lea, Flood 2014): small, seedable, good enough to scatter test points.
+/// SplitMix64 (Steele, Lea, Flood 2014): small, seedable, good enough to scatter points.
 #[derive(Debug, Clone)]
 pub struct Random(u64);
 
@@ -15,10 +15,7 @@ impl Random {
     /// Next 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        mix(self.0)
     }
 
     /// Uniform number in `[0, 1)`.
@@ -31,7 +28,7 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    /// Uniform integer in `0..n` (`n` > 0; the bias is below 1e-9 for the sizes of tests).
+    /// Uniform integer in `0..n` (`n` > 0; the bias is below 1e-9 for n below a million).
     pub fn below(&mut self, n: usize) -> usize {
         (self.unit() * n as f64) as usize
     }
@@ -55,6 +52,13 @@ impl Random {
         let axis = self.direction();
         DMat3::from_axis_angle(axis, self.range(-3.0, 3.0))
     }
+}
+
+/// The finalizer of SplitMix64: bits that look random, the same for the same input.
+pub fn mix(mut x: u64) -> u64 {
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
 }
 
 #[cfg(test)]
