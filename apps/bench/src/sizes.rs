@@ -29,7 +29,7 @@ pub fn sized(name: &str) -> Result<Scene> {
         "molecule" => mesh_of(balls(12_900)),
         "canyon" => ground(1042),
         "city" => mesh_of(houses(862_500, true)),
-        _ => bail!("{name} is none of {}", NAMES.join(", ")),
+        _ => bail!("\"{name}\" is unknown; possible: {}", NAMES.join(", ")),
     }
 }
 

@@ -29,32 +29,32 @@ pub(crate) struct Cli {
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Common {
     /// Print one machine-readable result on stdout
-    #[arg(long, global = true)]
+    #[arg(long, global = true, help_heading = "Every command")]
     pub(crate) json: bool,
-    /// No warnings, no progress
-    #[arg(short, long, global = true)]
+    /// Print no warnings and no progress
+    #[arg(short, long, global = true, help_heading = "Every command")]
     pub(crate) quiet: bool,
     /// Replace existing outputs
-    #[arg(long, global = true)]
+    #[arg(long, global = true, help_heading = "Every command")]
     pub(crate) overwrite: bool,
     /// Exit with 1 if a stated goal is missed
-    #[arg(long, global = true)]
+    #[arg(long, global = true, help_heading = "Every command")]
     pub(crate) strict: bool,
     /// Worker threads; 0 = all cores
-    #[arg(long, global = true, default_value_t = 0, value_name = "N", allow_negative_numbers = true, value_parser = parse_threads)]
+    #[arg(long, global = true, help_heading = "Every command", default_value_t = 0, value_name = "N", allow_negative_numbers = true, value_parser = parse_threads)]
     pub(crate) threads: usize,
-    /// Memory for one picture, and for the samples of one file, such as 2GiB or 800MiB
-    #[arg(long, global = true, value_name = "SIZE", value_parser = parse_bytes)]
+    /// Limit of memory for one picture and for the samples of one file, such as 2GiB or 800MiB
+    #[arg(long, global = true, help_heading = "Every command", value_name = "SIZE", value_parser = parse_bytes)]
     pub(crate) max_mem: Option<u64>,
-    /// Time for the whole command, in animate and view for solving the ground of each picture; when it is up the best
-    /// so far is taken, and said so
-    #[arg(long, global = true, value_name = "SECONDS", value_parser = parse_seconds)]
+    /// Limit of time for the whole command (animate and view: for solving the ground of each picture); when it is reached the best
+    /// result so far is taken, and a warning says so
+    #[arg(long, global = true, help_heading = "Every command", value_name = "SECONDS", value_parser = parse_seconds)]
     pub(crate) time_limit: Option<f64>,
-    /// Seed of whatever is generated, instead of the scene's
-    #[arg(long, global = true, value_name = "N")]
+    /// Seed of generated layers, instead of the scene's
+    #[arg(long, global = true, help_heading = "Every command", value_name = "N")]
     pub(crate) seed: Option<u64>,
-    /// Folder outside the scene's own from which its files may come; may be given several times
-    #[arg(long, global = true, value_name = "DIR")]
+    /// Folder, beside the scene's own, from which files may be read; may be given several times
+    #[arg(long, global = true, help_heading = "Every command", value_name = "DIR")]
     pub(crate) allow_root: Vec<PathBuf>,
 }
 
@@ -68,53 +68,53 @@ impl Verb {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
-    /// The built-in scenes, straight and bent side by side, with an index.html; needs no files
+    /// Draw the built-in scenes, straight and bent side by side, with an index.html; needs no files
     Demo(DemoArgs),
-    /// Terrain and routes in, a picture in which the routes are visible out
+    /// Draw terrain and routes so that the routes are visible; or, with --see, a part of a model
     Reveal(RevealArgs),
-    /// Elevation model and features in, an elevation model in which the features can be seen from an eye out
+    /// Write an elevation model on which the features are visible from an eye
     Disocclude(DisoccludeArgs),
-    /// Buildings and streets in, blocks between streets out: two levels of abstraction, a map, plan drawings
+    /// Merge buildings into blocks between streets: two levels of abstraction, a map, plan drawings
     Generalise(GeneraliseArgs),
-    /// Presets of spline bends: listed, made, changed, checked, plotted
+    /// List, make, change, check and plot presets of spline bends
     Preset(PresetArgs),
-    /// One picture and its record
+    /// Draw a scene file: one picture and its record
     Render(RenderArgs),
-    /// A film or numbered frames: along a route, through viewing angles, or once around
+    /// Draw a film or numbered frames: along a route, through viewing angles, or once around
     Animate(AnimateArgs),
-    /// Points to pixels: [[x,y,z],...] in scene coordinates
+    /// Give the pixel and depth of points: [[x,y,z],...] in scene coordinates
     Project(ProjectArgs),
-    /// Pixels to sampled (curved) rays: [[x,y],...]
+    /// Sample the curved rays of pixels: [[x,y],...]
     Rays(RaysArgs),
-    /// Points after all stages, before the pinhole
+    /// Give points as the stages displace them, before the pinhole
     Displace(ProjectArgs),
-    /// What is seen at pixels [[x,y],...]: world point, depth, ray segment, layer, feature; null for sky
+    /// Tell what pixels [[x,y],...] show: world point, depth, ray segment, layer, feature; null for sky
     #[command(after_help = PICK_HELP)]
     Pick(PickArgs),
-    /// Visible share of what must be seen, straight and bent, by two methods
+    /// Measure the visible share of required features, straight and bent, by two methods
     Measure(MeasureArgs),
     /// Validate a scene
     Check(SceneArgs),
     /// Describe data: size, system, range, voids, features
     Info(InfoArgs),
-    /// The scene with every default and rule resolved
+    /// Print a scene with every default filled in and every rule replaced by its value
     Show(ShowArgs),
-    /// JSON Schema of scene files
+    /// Print the JSON Schema of scene files
     Schema(SchemaArgs),
-    /// What bends, anti-aliasing and level of detail cost on this machine
+    /// Measure what bends, anti-aliasing and level of detail cost on this machine
     Bench(BenchArgs),
-    /// The figures and tables of the papers on open data, with an index.html; needs no files
+    /// Draw the figures and tables of the papers on open data, with an index.html; needs no files
     Figures(FiguresArgs),
-    /// The application: look, drag, tilt, author; a scene, data, or nothing: the built-in scenes
+    /// Open the application with a scene, data or the built-in scenes
     View(ViewArgs),
-    /// The application as a web page: a folder with a scene (or data, or the built-in scenes) that any web server can host
+    /// Write the application with a scene, data or the built-in scenes as a web page: a folder for any web server
     Pack(PackArgs),
 }
 
 /// The application.
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {
-    /// A scene file; or models; or an elevation model, alone or with routes, areas or points
+    /// A scene file, models, or an elevation model, alone or with routes, areas or points
     pub(crate) files: Vec<PathBuf>,
 }
 
@@ -155,8 +155,9 @@ pub(crate) struct FigureKinds(pub(crate) Vec<FigureKind>);
 
 fn parse_figures(text: &str) -> Result<FigureKinds, String> {
     let kind = |name: &str| {
-        FigureKind::from_str(name.trim(), false)
-            .map_err(|_| format!("\"{name}\" is none; possible: terrain, curved, spline, compare, algorithms, guide"))
+        FigureKind::from_str(name.trim(), false).map_err(|_| {
+            format!("\"{name}\" is unknown; possible: terrain, curved, spline, compare, algorithms, guide")
+        })
     };
     Ok(FigureKinds(text.split(',').map(kind).collect::<Result<_, _>>()?))
 }
@@ -206,24 +207,24 @@ pub(crate) struct RevealArgs {
     /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages where they are built in, or builtin:massif?seed=7; with --see more models
     #[arg(required_unless_present = "see")]
     pub(crate) features: Vec<String>,
-    /// What of a model must be seen: a file (by its name without ending) or layer, a named part of a mesh, atoms such as "chain B",
+    /// Part of a model that must be seen: a file (by its name without ending) or layer, a named part of a mesh, atoms such as "chain B",
     /// or a point x,y,z in scene coordinates; rays bend around what hides it
     #[arg(long, value_name = "WHAT", allow_hyphen_values = true)]
     pub(crate) see: Option<String>,
-    /// What shows it where no bend does: transparency, cutaway or explosion of all that hides it, or LAYER:KIND for one layer;
-    /// several separated by commas
+    /// Means that show it where no bend does: transparency, cutaway or explosion of everything that hides it, or LAYER:KIND for one
+    /// layer; several separated by commas
     #[arg(long, value_delimiter = ',', value_name = "LIST", requires = "see", value_parser = parse_fallback)]
     pub(crate) fallback: Vec<String>,
     /// Colours and opacities of volumes with --see: auto, solid, engine, ct-bone, ct-soft, vessels, grey, or a file
     #[arg(long, value_name = "NAME|FILE", requires = "see")]
     pub(crate) transfer: Option<String>,
-    /// Output; the record goes to OUT.png.json, straight beside bent to OUT.pair.png
+    /// Picture to write; its record goes to OUT.png.json, the straight beside the bent picture to OUT.pair.png
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
-    /// Eye: scene x,y (or lon,lat degrees) and height in metres; chosen if left out
+    /// Eye: scene x,y (or lon,lat in degrees) and height in metres; chosen automatically if left out
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_eye)]
     pub(crate) eye: Option<[f64; 3]>,
-    /// Point to look at; on the ground without Z
+    /// Point to look at; without Z it lies on the ground
     #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, value_delimiter = ',')]
     pub(crate) look: Option<Vec<f64>>,
     /// Full vertical field of view, degrees
@@ -232,7 +233,7 @@ pub(crate) struct RevealArgs {
     /// Size of the picture, such as 1920x1080
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,
-    /// Let the ground fall away with the distance
+    /// Lower the ground with the distance, as on a sphere, with refraction
     #[arg(long)]
     pub(crate) curved_earth: bool,
     /// Leave holes of the terrain open instead of filling them
@@ -242,17 +243,17 @@ pub(crate) struct RevealArgs {
     /// (GDAL colour-relief text, GMT .cpt)
     #[arg(long, value_name = "NAME|FILE", default_value = "auto")]
     pub(crate) palette: String,
-    /// Leave the sea ground as any other
+    /// Draw the sea as ordinary ground
     #[arg(long)]
     pub(crate) no_sea: bool,
-    /// What areas are drawn as, instead of what their properties and names say
+    /// Style of areas, instead of the one that their properties and names give
     #[arg(long, value_enum, value_name = "STYLE")]
     pub(crate) area_style: Option<AreaStyleKind>,
-    /// What bends the picture; a spline, or curved rays with --see, if left out
+    /// Technique that bends the picture; by default a spline, with --see curved rays
     #[arg(long, value_enum)]
     pub(crate) technique: Option<TechniqueKind>,
-    /// Let the ground sink deeper and become steeper than ground that looks like ground: more than a fifth of the relief below the lowest,
-    /// more than twice as steep as all but a thousandth of the terrain
+    /// Lift the limits of plausible ground: no lower than a fifth of the relief below the lowest point, no steeper than twice the 99.9th
+    /// percentile of the terrain's slopes
     #[arg(long)]
     pub(crate) no_limits: bool,
     /// Coordinate system of the scene: auto, EPSG:n or local
@@ -260,13 +261,13 @@ pub(crate) struct RevealArgs {
     pub(crate) crs: Option<String>,
     #[command(flatten)]
     pub(crate) ground: GroundArgs,
-    /// Straight picture
+    /// Write the straight picture to this file
     #[arg(long, value_name = "OUT.png")]
     pub(crate) before: Option<PathBuf>,
-    /// Figures
+    /// Write the figures to this file
     #[arg(long, value_name = "OUT.json")]
     pub(crate) report: Option<PathBuf>,
-    /// Scene file that shows the same
+    /// Write a scene file that draws the same picture
     #[arg(long, value_name = "OUT.toml")]
     pub(crate) scene: Option<PathBuf>,
 }
@@ -282,17 +283,17 @@ pub(crate) struct DisoccludeArgs {
     /// Eye: x,y in the system of the elevation model (degrees if geographic), z in metres over its datum
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_eye)]
     pub(crate) eye: [f64; 3],
-    /// Place looked at: x,y in the system of the elevation model
+    /// Point to look at: x,y in the system of the elevation model
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = parse_place)]
     pub(crate) look: [f64; 2],
     /// Full horizontal field of view, degrees
     #[arg(long, value_name = "DEG", default_value_t = 70.0, allow_negative_numbers = true)]
     pub(crate) fov: f64,
-    /// Passes of the solver; qp guarantees, paper is as published
+    /// Passes of the solver: paper as published; qp guarantees visibility by a quadratic program; paper+qp both
     #[arg(long, value_name = "MODE", value_parser = ["paper", "paper+qp", "qp"])]
     pub(crate) mode: Option<String>,
-    /// Let the ground sink deeper and become steeper than ground that looks like ground: more than a fifth of the relief below the lowest,
-    /// more than twice as steep as all but a thousandth of the terrain
+    /// Lift the limits of plausible ground: no lower than a fifth of the relief below the lowest point, no steeper than twice the 99.9th
+    /// percentile of the terrain's slopes
     #[arg(long)]
     pub(crate) no_limits: bool,
     /// Any other key of a terrain_disocclusion stage, such as w=0.6; may be given several times
@@ -301,28 +302,28 @@ pub(crate) struct DisoccludeArgs {
     /// Displaced elevation model: GeoTIFF, 32-bit floats in metres, on the grid and in the system of the input
     #[arg(short, long, value_name = "OUT.tif")]
     pub(crate) out: PathBuf,
-    /// Grid of the written heights: that of the input, or the one in metres that is solved on, where the promise holds to the node
+    /// Grid of the written heights: the input's, or the scene's in metres, on which the ground is solved and the guarantee holds exactly
     #[arg(long, value_name = "GRID", value_parser = ["input", "scene"], default_value = "input")]
     pub(crate) grid: String,
-    /// Figures, parameters, and what cannot be shown and why
+    /// Write figures, parameters, and the parts that stay hidden with their reasons to this file
     #[arg(long, value_name = "OUT.json")]
     pub(crate) report: Option<PathBuf>,
-    /// Displacement, on the same grid
+    /// Write the displacement, on the same grid, to this file
     #[arg(long, value_name = "D.tif")]
     pub(crate) displacement: Option<PathBuf>,
-    /// Features on the displaced ground, their true positions as properties
+    /// Write the features on the displaced ground, their true positions as properties, to this file
     #[arg(long, value_name = "OUT.geojson")]
     pub(crate) features_out: Option<PathBuf>,
-    /// The ground before and after from the eye, side by side; its record lies beside it
+    /// Draw the ground before and after from the eye, side by side, with its record
     #[arg(long, value_name = "OUT.png")]
     pub(crate) picture: Option<PathBuf>,
-    /// Fill holes of the elevation model in place of leaving them open, in the written heights, too
+    /// Fill holes of the elevation model, also in the written heights, instead of leaving them open
     #[arg(long)]
     pub(crate) fill_voids: bool,
-    /// What areas of the picture are drawn as, instead of what their properties and names say
+    /// Style of areas in the picture, instead of the one that their properties and names give
     #[arg(long, value_enum, value_name = "STYLE")]
     pub(crate) area_style: Option<AreaStyleKind>,
-    /// Let the ground fall away with the distance
+    /// Lower the ground with the distance, as on a sphere, with refraction
     #[arg(long)]
     pub(crate) curved_earth: bool,
     /// Coordinate system to solve in: auto, EPSG:n or local
@@ -370,37 +371,37 @@ pub(crate) struct RenderArgs {
     /// Format of the buffers: one NPY each (OUT.NAME.npy), or one OpenEXR (OUT.exr)
     #[arg(long, value_enum, default_value = "npy")]
     pub(crate) aux_format: AuxFormatKind,
-    /// Lines of the coordinate system on the ground, so that one sees what the bend moved; round spacing unless given
+    /// Draw lines of the coordinate system on the ground, every M metres; by default at a round spacing
     #[arg(long, value_name = "M", num_args = 0..=1, require_equals = true, value_parser = parse_spacing)]
     pub(crate) grid: Option<Option<f64>>,
-    /// Colours for how far the bend moves what is seen
+    /// Colour the picture by how far the bend moves what it shows
     #[arg(long, conflicts_with = "straight")]
     pub(crate) heatmap: bool,
-    /// The straight picture's ridges and routes, faintly over the bent one
+    /// Draw the ridges and routes of the straight picture faintly over the bent one
     #[arg(long, conflicts_with = "straight")]
     pub(crate) ghost: bool,
-    /// What the bend did: shift = colours for how far it moves what is seen within the picture, stages = a colour for each stage and
-    /// turn where it moves most, revealed = the outline of what the straight picture hides, ghost-box = a box where what must be seen
-    /// would be, and a leader to it; without a list shift, revealed and ghost-box
+    /// Show what the bend did: shift = colours by how far points move in the picture, stages = a colour for each stage and turn where it
+    /// moves most, revealed = the outline of what the straight picture hides, ghost-box = a box where a required feature would be in
+    /// the straight picture, and a leader to it; without a list shift, revealed and ghost-box
     #[arg(long, value_delimiter = ',', value_name = "LIST", num_args = 0..=1, require_equals = true, default_missing_value = "shift,revealed,ghost-box", conflicts_with = "straight", value_parser = parse_highlight)]
     pub(crate) highlight: Vec<HighlightMark>,
-    /// Without the mark in the corner that says that the view is bent, and by how much
+    /// Leave out the mark in the corner that says that the view is bent, and by how much
     #[arg(long)]
     pub(crate) no_mark: bool,
-    /// Picture of the camera itself from above: rays, planes, viewpoints, curve
+    /// Draw the camera itself from above: rays, planes, viewpoints, curve
     #[arg(long, conflicts_with_all = CAMERA_CONFLICTS)]
     pub(crate) overhead: bool,
-    /// The same from an eye of its own: eye and point to look at, or auto
+    /// Draw the camera itself from another eye: eye and point to look at, or auto
     #[arg(long, value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true, conflicts_with_all = CAMERA_CONFLICTS, conflicts_with = "overhead", value_parser = parse_outside)]
     pub(crate) outside: Option<Outside>,
     /// Tint of the terrain by height instead of the scene's: auto, alpine, desert, glacial, clear, plain, or a file of
     /// colours by height (GDAL colour-relief text, GMT .cpt)
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) palette: Option<String>,
-    /// Leave the sea ground as any other
+    /// Draw the sea as ordinary ground
     #[arg(long)]
     pub(crate) no_sea: bool,
-    /// What the areas of all layers are drawn as, instead of what the scene says; auto = what properties and names say
+    /// Style of the areas of all layers, instead of the scene's; auto = the one that properties and names give
     #[arg(long, value_enum, value_name = "STYLE")]
     pub(crate) area_style: Option<AreaStyleKind>,
 }
@@ -428,7 +429,7 @@ pub(crate) struct AnimateArgs {
     /// Film, made by the ffmpeg program, with its frames in the folder OUT.frames; or a folder for the frames alone
     #[arg(short, long, value_name = "OUT.mp4|DIR")]
     pub(crate) out: PathBuf,
-    /// Number of frames; by default the scene's, else 250 or as many as the way needs
+    /// Number of frames; by default the scene's, else 250 or as many as the path needs
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) frames: Option<u32>,
     /// Frames per second; by default the scene's, else 25
@@ -440,13 +441,13 @@ pub(crate) struct AnimateArgs {
     /// Ground speed along the route, metres per second of film; by default the whole route in all frames
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub(crate) speed: Option<f64>,
-    /// Move through the viewing angles of the spline's presets: phi, or phi=FIRST:LAST[:STEP] in degrees
+    /// Tilt through the viewing angles of the spline's presets: phi, or phi=FIRST:LAST[:STEP] in degrees
     #[arg(long, value_name = "phi[=A:B]", group = "way", value_parser = parse_sweep)]
     pub(crate) sweep: Option<[f64; 3]>,
-    /// Turn once around what is looked at, or as the scene says
+    /// Turn once around the point looked at, or as the scene says
     #[arg(long, group = "way")]
     pub(crate) turntable: bool,
-    /// Go on with the frames that are there
+    /// Keep the frames that exist and draw the rest
     #[arg(long)]
     pub(crate) resume: bool,
     #[command(flatten)]

@@ -13,13 +13,13 @@ pub(crate) struct GeneraliseArgs {
     /// Buildings with their heights or storeys: CityJSON, CityGML, OSM PBF, or footprints as GeoJSON, shapefile or
     /// GeoPackage (FILE.gpkg?table=NAME, where they are built in)
     pub(crate) city: PathBuf,
-    /// Streets, railways, rivers and land cover, where the city holds none: GeoJSON, shapefiles, OSM PBF,
+    /// Streets, railways, rivers and land cover, if the city file has none: GeoJSON, shapefiles, OSM PBF,
     /// GeoPackages
     pub(crate) roads: Vec<PathBuf>,
-    /// Folder of the levels, the map, the plan drawings and the report
+    /// Folder for the levels, the map, the plan drawings and the report
     #[arg(short, long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// Distance from buildings within which ground is settled, metres
+    /// Distance from buildings up to which ground counts as built-up, metres
     #[arg(long, value_name = "METRES", default_value_t = GeneraliseSettings::default().margin_m)]
     pub(crate) margin: f64,
 }

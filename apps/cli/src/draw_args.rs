@@ -8,11 +8,11 @@ use clap::{Args, ValueEnum};
 /// How representations of styling sections are put together.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(crate) enum CompositingKind {
-    /// Mixed where they are one surface in different colours, elsewhere as by thresholds; as layers where no two are one surface
+    /// Mix colours where representations share a surface, use thresholds elsewhere; as layers where none share a surface
     Single,
-    /// Each sample shows one of them, by its threshold: one drawing
+    /// Show one representation per sample, by its threshold, in one drawing
     Dither,
-    /// Each is drawn alone and the pictures are mixed, as published
+    /// Draw each alone and mix the pictures, as published
     Layers,
 }
 
@@ -25,25 +25,25 @@ pub(crate) struct DrawArgs {
     /// Renderer
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) renderer: RendererKind,
-    /// Without the bends
+    /// Draw without the bends
     #[arg(long)]
     pub(crate) straight: bool,
-    /// Straight beside bent
+    /// Draw the straight picture beside the bent one
     #[arg(long, conflicts_with = "straight")]
     pub(crate) compare: bool,
     /// Coverage samples per pixel: 1, 4 or 16
     #[arg(long, default_value_t = 4, value_name = "N")]
     pub(crate) samples: u32,
-    /// Thresholds per pixel where styling sections pass into each other; 1 is a dither
+    /// Thresholds per pixel in transitions between styling sections; 1 is a dither
     #[arg(long, default_value_t = THRESHOLDS, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub(crate) thresholds: u32,
-    /// How representations of styling sections are put together
+    /// How representations of styling sections are composited
     #[arg(long, value_enum, default_value = "single")]
     pub(crate) compositing: CompositingKind,
-    /// Dark edges and shade behind what stands out, whatever the scene says
+    /// Draw dark edges and depth unsharp masking, whatever the scene says
     #[arg(long)]
     pub(crate) stylise: bool,
-    /// Largest error of terrain drawn in less detail far away, pixels; 0 draws every cell
+    /// Largest error of the terrain's level of detail, pixels; 0 draws every grid cell
     #[arg(long, default_value_t = 0.5, value_name = "PX", allow_hyphen_values = true, value_parser = parse_lod)]
     pub(crate) lod: f64,
 }

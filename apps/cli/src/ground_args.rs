@@ -6,13 +6,13 @@ use clap::{Args, ValueEnum};
 /// What the files of terrain do not say.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct GroundArgs {
-    /// Coordinate system of the terrain's file, instead of what it says
+    /// Coordinate system of the terrain's file, instead of the stated one
     #[arg(long, value_name = "EPSG:n")]
     pub(crate) source_crs: Option<String>,
-    /// Stored value of the terrain that means "no data", instead of what its file says
+    /// Stored value of the terrain that means "no data", instead of the stated one
     #[arg(long, value_name = "VALUE", allow_negative_numbers = true)]
     pub(crate) nodata: Option<f64>,
-    /// Unit of the terrain's heights, instead of what its file says
+    /// Unit of the terrain's heights, instead of the stated one
     #[arg(long, value_enum, value_name = "UNIT")]
     pub(crate) vertical_unit: Option<UnitKind>,
 }

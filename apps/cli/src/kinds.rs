@@ -7,7 +7,7 @@ use clap::ValueEnum;
 /// What bends a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum TechniqueKind {
-    /// What shows most of the techniques that are tried, 120 s of solving each (or --time-limit): a spline; both; terrain disocclusion
+    /// The technique that shows most; tries a spline, both, and terrain disocclusion, 120 s of solving each (or --time-limit)
     Auto,
     /// A spline over the mean ground
     Spline,
@@ -15,7 +15,7 @@ pub(crate) enum TechniqueKind {
     Terrain,
     /// Spline and terrain
     Both,
-    /// Rays that bend once, around what hides most; what bends models with --see
+    /// Rays that bend once, around what hides most; the technique for models (--see)
     #[value(name = "curved_rays")]
     CurvedRays,
 }
@@ -35,9 +35,9 @@ impl From<TechniqueKind> for Technique {
 /// What areas are drawn as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum AreaStyleKind {
-    /// What properties and names say, else outline
+    /// The style that properties and names give, else outline
     Auto,
-    /// A line, and a light fill that everything shows through
+    /// A line and a light, transparent fill
     Outline,
     /// A grey fill
     Plain,
@@ -47,7 +47,7 @@ pub(crate) enum AreaStyleKind {
     Forest,
     /// Ice
     Glacier,
-    /// A line, and a light green fill that everything shows through
+    /// A line and a light green, transparent fill
     Park,
 }
 
@@ -68,10 +68,10 @@ impl From<AreaStyleKind> for SurfaceDoc {
 /// Renderers of this version.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum RendererKind {
-    /// The best there is: today the cpu
+    /// The fastest that is available: today cpu
     Auto,
-    /// On the processor, without a GPU
+    /// The rasteriser on the processor; needs no GPU
     Cpu,
-    /// Every sample along its own curved ray: slower, no subdivision error, the reference for the others
+    /// The tracer along the curved ray of every sample: slow, without subdivision error, the reference
     Exact,
 }

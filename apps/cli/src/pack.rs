@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// A scene, data or nothing, and where the page goes.
 #[derive(Debug, Args)]
 pub(crate) struct PackArgs {
-    /// A scene file; or models; or an elevation model, alone or with routes, areas or points
+    /// A scene file, models, or an elevation model, alone or with routes, areas or points
     pub(crate) files: Vec<PathBuf>,
     /// Folder to make
     #[arg(short, long, value_name = "DIR")]

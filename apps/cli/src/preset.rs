@@ -22,9 +22,9 @@ pub(crate) struct PresetArgs {
 /// One kind of work on presets.
 #[derive(Debug, Subcommand)]
 pub(crate) enum PresetWork {
-    /// The built-in documents: names, effects, angles
+    /// List the built-in documents: names, effects, angles
     List,
-    /// A document as TOML or JSON
+    /// Print a document as TOML or JSON
     Show {
         /// Built-in name or file
         preset: String,
@@ -32,7 +32,7 @@ pub(crate) enum PresetWork {
         #[arg(short, long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
-    /// A document of one's own from a built-in one
+    /// Make a document of your own from a built-in one
     New {
         /// File to write, .toml or .json
         #[arg(short, long, value_name = "FILE")]
@@ -41,7 +41,7 @@ pub(crate) enum PresetWork {
         #[arg(long, default_value = "demo", value_name = "PRESET")]
         from: String,
     },
-    /// Changes a document: PRESET.KEY[.N]=VALUE, all or nothing
+    /// Change a document: PRESET.KEY[.N]=VALUE, all or nothing
     #[command(after_help = SET_HELP)]
     Set {
         /// File of the document
@@ -49,26 +49,26 @@ pub(crate) enum PresetWork {
         /// Operations, in this order
         #[arg(value_name = "OPERATION")]
         operations: Vec<PresetOperation>,
-        /// Makes a preset one for the viewing angle of a scene's camera
+        /// Fit a preset to the viewing angle of a scene's camera
         #[arg(long, value_name = "PRESET=SCENE")]
         capture: Vec<String>,
         /// File to write instead
         #[arg(short, long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
-    /// A verdict: valid, usable at which viewing angles, or not; facing, sections
+    /// Check a document: valid or not, the viewing angles at which it is usable, facing, sections
     Check {
         /// Built-in name or file
         preset: String,
     },
-    /// A drawing of the curves with eye, wedge of view and tag points
+    /// Draw the curves with eye, wedge of view and tag points
     Plot {
         /// Built-in name or file
         preset: String,
         /// PNG
         #[arg(short, long, value_name = "OUT.png")]
         out: PathBuf,
-        /// What lies between the presets at this viewing angle, degrees
+        /// Draw the preset that is interpolated for this viewing angle, degrees
         #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
         phi: Option<f64>,
     },

@@ -28,7 +28,7 @@ const FRAMES: usize = 3;
 const POINTS: u32 = 8;
 const SHORTEST_PX: f64 = 6.0;
 
-/// What one means comes to.
+/// Figures of one means.
 #[derive(Debug, Clone, Serialize)]
 struct Row {
     means: String,

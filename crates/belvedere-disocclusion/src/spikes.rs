@@ -1,7 +1,7 @@
 //! Spikes: single samples of an elevation model that stand far above or below all their neighbours.
 //!
 //! Ground that makes way for a spike is dug into a funnel around a fault of the data. So the solver takes a spike for as high as the
-//! median of its neighbours, and says so. A summit is none: towers have sides, and what stands alone on coarse grids is no farther above
+//! median of its neighbours, and says so. A summit is no spike: towers have sides, and what stands alone on coarse grids is no farther above
 //! its neighbours than ground of the same model is steep elsewhere, or than its neighbours differ.
 
 use belvedere_scene::{Heightfield, NodeState};

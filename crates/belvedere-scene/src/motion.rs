@@ -39,7 +39,7 @@ pub enum MotionError {
     /// There are none.
     #[error("a motion needs at least one row of t, x, y, z, yaw_deg")]
     Empty,
-    /// A number that is none.
+    /// A number that is not finite.
     #[error("row {row} of a motion holds a number that is not finite; repair it")]
     NotFinite {
         /// From 1.

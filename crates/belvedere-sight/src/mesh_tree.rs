@@ -217,7 +217,7 @@ struct Slabs {
 }
 
 impl Slabs {
-    /// Extents below this are none.
+    /// Extents below this count as 0.
     const LEAST: f64 = 1e-300;
 
     fn new(a: DVec3, b: DVec3, lift: [f64; 2]) -> Self {

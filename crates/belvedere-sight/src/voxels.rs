@@ -13,7 +13,7 @@ const PARTS: usize = 16;
 /// Chords are halved at most this often, and where the ray has no point.
 const MAX_HALVINGS: u32 = 14;
 const MAX_HALVINGS_OF_NOTHING: u32 = 6;
-/// Less light than this is none.
+/// Less light than this counts as 0.
 const DARK: f64 = 1e-3;
 /// What lies so near to a point, in voxel edges, is the point itself and does not hide it.
 const OWN: f64 = 1.0;

@@ -153,7 +153,7 @@ pub enum BelvedereError {
         /// What the writer said.
         reason: String,
     },
-    /// A camera that is none.
+    /// An invalid camera.
     #[error(transparent)]
     Camera(#[from] belvedere_core::PinholeError),
     /// Stages that do not go together.

@@ -34,7 +34,7 @@ pub struct OpenOptions {
     pub sea: Option<bool>,
     /// What the areas of all layers are drawn as, whatever scene and files say; `Some(Auto)` = what the files say.
     pub area_style: Option<SurfaceDoc>,
-    /// Leaves stages that a solver would have to make out of the view: for those who want the document alone.
+    /// Leaves stages that a solver would have to make out of the view: for callers that need the document alone.
     pub unsolved: bool,
     /// Memory that the samples of one file may take, bytes; `None` = what [`Limits::default`] says.
     pub max_bytes: Option<u64>,

@@ -90,7 +90,7 @@ impl Resolved {
         }
     }
 
-    /// What a document makes of what was loaded. Without `solving` an intent of terrain disocclusion is left out.
+    /// A document resolved over the loaded data. Without `solving` an intent of terrain disocclusion is left out.
     fn of(
         source: SourceDocument,
         roots: Roots,
@@ -215,17 +215,17 @@ impl Session {
         &self.resolved.light
     }
 
-    /// What the strip along a route came to; `None` if the scene has none.
+    /// Report of the strip along a route; `None` if the scene has no strip.
     pub fn strip_report(&self) -> Option<&StripReport> {
         self.resolved.strip.as_ref()
     }
 
-    /// What the solver of terrain disocclusion came to; `None` if none ran.
+    /// Report of the solver of terrain disocclusion; `None` if it did not run.
     pub fn terrain_report(&self) -> Option<&TerrainReport> {
         self.resolved.terrain.as_ref()
     }
 
-    /// What the constructor of curved rays came to; `None` if the scene has none.
+    /// Report of the constructor of curved rays; `None` if the scene has no constructor.
     pub fn constructor_report(&self) -> Option<&ConstructorReport> {
         self.resolved.constructor.as_ref()
     }
@@ -316,7 +316,7 @@ impl Session {
     /// Depth at which rays end: `far` if given, else the camera's, else the largest depth of the scene.
     ///
     /// # Errors
-    /// [`BelvedereError::NoRayEnd`] if there is none of them.
+    /// [`BelvedereError::NoRayEnd`] if all three are missing.
     pub fn ray_end(&self, far: Option<f64>) -> Result<f64, BelvedereError> {
         let view = &self.resolved.view;
         if let Some(far) = far.or(view.pinhole().far) {

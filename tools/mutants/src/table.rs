@@ -1,4 +1,4 @@
-//! What the run came to, as text.
+//! The results of the run, as text.
 
 use crate::Plan;
 use crate::find::Fault;

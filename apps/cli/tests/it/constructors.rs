@@ -207,7 +207,7 @@ fn reveal_looks_round_what_hides_a_layer_atoms_or_a_point() {
         let line = place.fails(&["reveal", "s.toml", "--see", see, "-o", "x.png"]);
         assert!(words.iter().all(|w| line.contains(w)), "{line}");
     }
-    // Ground is none, and a name that is nearly one is told.
+    // Ground cannot be a target; the nearest name is suggested.
     for (source, word) in [("builtin:canyon", "no model that can be looked into"), ("builtin:canyom", "\"canyon\"")] {
         let line = place.fails(&["reveal", source, "--see", "1,2,3", "-o", "x.png"]);
         assert!(line.contains(word), "{line}");

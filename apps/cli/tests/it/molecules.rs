@@ -75,9 +75,9 @@ fn mistakes_are_told_in_one_line() {
         (format!("{HEAD}{DNA}select = 'chian A'\n"), "\"chian\" is no word of selections"),
         (
             format!("{HEAD}{DNA}select = 'chain Z'\n"),
-            "is none of the 322 atoms; chains are A, B, residues are numbered 1 to 16",
+            "matches none of the 322 atoms; chains are A, B, residues are numbered 1 to 16",
         ),
-        (format!("{HEAD}{DNA}style.selection = 'water'\n"), "is none of the"),
+        (format!("{HEAD}{DNA}style.selection = 'water'\n"), "matches none of the"),
         (format!("{HEAD}{DNA}select = 'chain A'\nstyle.selection = 'chain B'\n"), "is drawn by style.selection"),
         (format!("{HEAD}{DNA}style.color = 'blue'\n"), "or one of element, chain and residue"),
         (format!("{HEAD}{}", DNA.replace("pairs=8", "pairs=1")), "DNA of 1 base pairs is not possible"),

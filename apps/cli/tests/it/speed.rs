@@ -26,7 +26,7 @@ fn bench_reports_as_a_table_and_as_json() {
     let report = place.json(&[&args[..], &["--json"]].concat());
     assert_eq!(report["frames"].as_array().map(Vec::len), Some(12));
     assert!(report["projection"][1]["mpts_per_core_s"].as_f64().is_some_and(|v| v > 0.0));
-    // The paper's way to solve the smooth pass, without and with elevation rows, comes to what ours comes to.
+    // The paper's way to solve the smooth pass, without and with elevation rows, gives the same ground as ours.
     assert!(table.contains("by sparse Cholesky factor"), "{table}");
     for cost in report["smooth"].as_array().expect("a list") {
         let of = |key: &str| cost["sparse"][key].as_f64().expect("a number");

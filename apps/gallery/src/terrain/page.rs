@@ -8,7 +8,7 @@ use belvedere::disocclusion::{SolverMode, TerrainReport};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// What one area comes to.
+/// Figures of one area.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct AreaRecord {
     pub(crate) name: String,

@@ -56,7 +56,7 @@ pub struct CentrelineReport {
 ///
 /// # Errors
 /// [`ConstructError::PointOutside`] where no voxel near a point is in the range, [`ConstructError::NotConnected`],
-/// [`ConstructError::TooManyVoxels`], [`ConstructError::Parameter`] for a range that is none.
+/// [`ConstructError::TooManyVoxels`], [`ConstructError::Parameter`] for an empty range.
 pub fn centreline(volume: &Volume, from: DVec3, to: DVec3, values: [f64; 2]) -> Result<Centreline, ConstructError> {
     let [lo, hi] = values;
     if !(lo.is_finite() && hi.is_finite() && lo <= hi) {

@@ -73,7 +73,7 @@ pub struct Previewed {
     pub report: PreviewReport,
 }
 
-/// What a preview came to.
+/// Report of a preview.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PreviewReport {
     /// Position on the path, scene units.

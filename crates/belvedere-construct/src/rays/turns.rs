@@ -3,7 +3,7 @@
 use belvedere_core::map::curved_rays::{Pencil, Sharpness, TurnSpec};
 use belvedere_core::{DVec2, DVec3, Pinhole};
 
-/// Turns of less than this are none, radians.
+/// Turns of less than this count as straight, radians.
 pub(super) const STRAIGHT: f64 = 0.035;
 /// Turns beyond this are made in two, radians.
 pub(super) const HAIRPIN: f64 = 1.6;

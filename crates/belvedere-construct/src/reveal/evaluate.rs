@@ -8,7 +8,7 @@ use belvedere_scene::{Heightfield, Scene};
 use belvedere_sight::{Obstacles, SightOptions};
 use serde::Serialize;
 
-/// What one candidate picture comes to.
+/// Figures of one candidate picture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Evaluation {
     /// Share of the features' amount inside the image, 0..=1.

@@ -385,7 +385,7 @@ fn darker(c: Color) -> Color {
     Color::rgb(r, g, b)
 }
 
-/// A width that cannot be drawn is none.
+/// A width that cannot be drawn counts as 0.
 fn width_or_none(width_px: f64) -> f64 {
     if width_px.is_finite() { width_px.clamp(0.0, 1000.0) } else { 0.0 }
 }

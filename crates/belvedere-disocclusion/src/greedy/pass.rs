@@ -63,7 +63,7 @@ impl PartialOrd for Entry {
     }
 }
 
-/// What the pass came to.
+/// Result of the pass.
 pub(super) struct Outcome {
     pub(super) transforms: Vec<CellTransform>,
     /// Indices of points, ascending.

@@ -243,7 +243,7 @@ fn drop_at(earth: &EarthCurvature, p: DVec2) -> f64 {
     earth.apply(p.extend(0.0)).map_or(0.0, |q| -q.z)
 }
 
-/// What the passes came to.
+/// Result of the passes.
 struct Outcome {
     /// Displacement at the nodes of the solver's grid.
     coarse: Vec<f64>,

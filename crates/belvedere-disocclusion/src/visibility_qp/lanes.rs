@@ -125,7 +125,7 @@ impl<S: Simd> Register<S> {
         self.edges::<1>(surface, within, &mut most);
         self.edges::<2>(surface, within, &mut most);
         for axis in 0..2 {
-            // Lines of the solver's grid, where they are none of the ground's.
+            // Lines of the solver's grid, where they are not lines of the ground's grid.
             let step = surface.lattice.step[axis];
             if step.fract() != 0.0 {
                 let [mut k, last] = self.range(axis, step, within);

@@ -121,7 +121,7 @@ impl<'l> Collector<'l> {
     fn chosen(&self, mut shown: Shown) -> Option<Vec<CityFace>> {
         let of_wanted = |wanted: &str| shown.faces.keys().find(|lod| lod.1 == wanted).cloned();
         let wanted = self.wanted.and_then(of_wanted).and_then(|lod| shown.faces.remove(&lod));
-        // Levels of points, lines and other things that make no surface are none.
+        // Levels of points, lines and other things without a surface do not count.
         let shows = |faces: &Vec<CityFace>| faces.iter().any(|f| f.rings.first().is_some_and(|r| r.len() >= 3));
         let mut levels: Vec<Vec<CityFace>> =
             wanted.into_iter().chain(shown.faces.into_values().rev()).filter(|faces| !faces.is_empty()).collect();
@@ -129,11 +129,11 @@ impl<'l> Collector<'l> {
         (!levels.is_empty()).then(|| levels.swap_remove(best))
     }
 
-    /// Drops rings that are none.
+    /// Drops rings with less than three corners.
     fn clean(&mut self, faces: &mut Vec<CityFace>) {
         let repairs = &mut self.repairs;
         faces.retain_mut(|face| {
-            // Holes of a face without an outline are none.
+            // Holes of a face without an outline do not count.
             let mut has_outline = None;
             let mut places =
                 face.picture.as_mut().map(|p| std::mem::take(&mut p.rings)).unwrap_or_default().into_iter();

@@ -14,7 +14,7 @@ use std::path::Path;
 
 type Tags = BTreeMap<String, String>;
 
-/// Values of tags that are none of what their keys say, or that nobody sees.
+/// Values of tags that deny what their keys say, or that name things nobody sees.
 const NOT_WAYS: [(&str, &[&str]); 3] = [
     ("highway", &["proposed", "construction", "platform", "rest_area", "services", "abandoned", "razed", "raceway"]),
     (
@@ -63,7 +63,7 @@ pub(super) fn is_pbf(head: &[u8]) -> bool {
 }
 
 pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<CityFile>, IoError> {
-    // The reader gives up by a panic where the kind of a member is none.
+    // The reader panics on an unknown kind of a member.
     let read = std::panic::catch_unwind(|| Map::read(bytes));
     let read = read.unwrap_or_else(|_| Err("its blocks contradict themselves".into()));
     let map =
@@ -233,7 +233,7 @@ fn is_part(tags: &Tags) -> bool {
     tags.get("building:part").is_some_and(|b| b != "no") && tags.get("building").is_none_or(|b| b == "no")
 }
 
-/// Whether it is a street or railway under the ground; passages through buildings are none.
+/// Whether it is a street or railway under the ground; passages through buildings do not count.
 fn is_tunnel(tags: &Tags) -> bool {
     let dug =
         tags.get("tunnel").is_some_and(|t| t == "yes") || tags.get("location").is_some_and(|l| l == "underground");

@@ -9,7 +9,7 @@ use belvedere_scene::{City, Polygon};
 const WEB_MERCATOR: u32 = 3857;
 
 impl CityFile {
-    /// A system in metres for it: its own if that is one for scenes (Web Mercator is none: away from the equator its metres are too
+    /// A system in metres for it: its own if that is one for scenes (Web Mercator does not count: away from the equator its metres are too
     /// long, and houses would be too wide for their heights), else the UTM zone of its first place. `None` if the file names
     /// no system; `stated` stands in for what it names.
     ///

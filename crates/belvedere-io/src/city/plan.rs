@@ -57,7 +57,7 @@ pub(super) fn normal(ring: &[DVec3]) -> DVec3 {
 }
 
 /// The polygon of rings, outer first: repeated vertices dropped, outer ring counter-clockwise, holes clockwise. `None` if the outer
-/// ring is none.
+/// ring is no polygon.
 pub(super) fn polygon(rings: impl IntoIterator<Item = Vec<DVec2>>, repairs: &mut Repairs) -> Option<Polygon> {
     let mut cleaned = rings.into_iter().map(|ring| clean(ring, repairs)).collect::<Vec<_>>().into_iter();
     let mut outer = cleaned.next()??;
@@ -88,7 +88,7 @@ fn is_hole(outer: &[DVec2], hole: &[DVec2]) -> bool {
     doubled_area(hole).abs() < doubled_area(outer).abs() && hole.iter().any(|p| contains(outer, *p))
 }
 
-/// A position of a solid, or why it is none.
+/// A position of a solid, or why it is invalid.
 pub(super) fn position(p: DVec3) -> Result<DVec3, String> {
     if p.abs().max_element() <= FARTHEST {
         return Ok(p);

@@ -16,7 +16,7 @@ const MOST_SHARE: f64 = 0.45;
 /// Facets around a dome, and rings up.
 const AROUND: usize = 12;
 const RINGS: usize = 4;
-/// Pieces smaller than this are none, square metres.
+/// Pieces smaller than this are dropped, square metres.
 const LEAST_M2: f64 = 1e-4;
 
 /// Heights of a solid over its ground, metres: underside, eaves, top.

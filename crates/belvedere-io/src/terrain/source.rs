@@ -204,7 +204,7 @@ fn read_raster(
         "hgt" => hgt::read(path, &request.limits)?,
         "asc" | "grd" | "txt" => esri_ascii::read(path, &request.limits)?,
         _ => {
-            let reason = "it is none of the known elevation formats: GeoTIFF, SRTM .hgt, ESRI ASCII .asc (all also in .zip and .gz)";
+            let reason = "it has no known elevation format; known are: GeoTIFF, SRTM .hgt, ESRI ASCII .asc (all also in .zip and .gz)";
             return Err(IoError::format(path, reason));
         }
     };

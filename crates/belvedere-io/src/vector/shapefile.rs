@@ -186,7 +186,7 @@ fn in_order(bytes: &[u8], end: usize, odd: &mut usize) -> Result<Vec<Option<Geom
     Ok(shapes)
 }
 
-/// Records where the index says; `None` if one of them is none.
+/// Records where the index says; `None` if one of them is invalid.
 fn by_index(bytes: &[u8], index: &[usize], odd: &mut usize) -> Option<Vec<Option<Geometry>>> {
     index.iter().map(|&at| read_shape(content_at(bytes, at)?, odd).ok()).collect()
 }

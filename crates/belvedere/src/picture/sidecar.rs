@@ -129,13 +129,13 @@ pub struct Sidecar {
     /// What areas were drawn as, and why.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub areas: Vec<AreaRecord>,
-    /// What the solver of terrain disocclusion came to; `None` if none ran.
+    /// Report of the solver of terrain disocclusion; `None` if it did not run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub disocclusion: Option<TerrainReport>,
-    /// What the strip along a route came to; `None` if the scene has none.
+    /// Report of the strip along a route; `None` if the scene has no strip.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strip: Option<StripReport>,
-    /// What the constructor of curved rays came to; `None` if the scene has none.
+    /// Report of the constructor of curved rays; `None` if the scene has no constructor.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub constructor: Option<ConstructorReport>,
     /// The point that the picture was made to show.

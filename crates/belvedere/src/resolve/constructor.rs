@@ -48,7 +48,7 @@ impl Memory {
     }
 }
 
-/// What a constructor of curved rays came to.
+/// Report of a constructor of curved rays.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum ConstructorReport {
@@ -75,7 +75,7 @@ pub(super) fn remark(report: Option<&ConstructorReport>) -> Option<String> {
     })
 }
 
-/// What a path preview came to, and the path that was traced for it.
+/// Report of a path preview, and the path that was traced for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathReport {
     /// The preview.

@@ -82,7 +82,7 @@ pub(crate) fn sun_position_deg(days: f64, lon_deg: f64, lat_deg: f64) -> [f64; 2
     [east.atan2(north).to_degrees().rem_euclid(360.0), altitude.to_degrees()]
 }
 
-/// Days since 2000-01-01T12:00Z of an RFC 3339 time; `None` if it is none.
+/// Days since 2000-01-01T12:00Z of an RFC 3339 time; `None` if it is malformed.
 fn days_since_j2000(time: &str) -> Option<f64> {
     let (date, rest) = time.trim().split_once(['T', 't', ' '])?;
     let (clock, offset_minutes) = split_offset(rest)?;

@@ -98,7 +98,11 @@ fn require_any(selection: &Selection, molecule: &Molecule) -> Result<(), String>
     if selection.mask(molecule).contains(&true) {
         return Ok(());
     }
-    Err(format!("selection \"{selection}\" is none of the {} atoms; {}", molecule.atoms().len(), there_is(molecule)))
+    Err(format!(
+        "selection \"{selection}\" matches none of the {} atoms; {}",
+        molecule.atoms().len(),
+        there_is(molecule)
+    ))
 }
 
 fn require_drawn(wanted: &Selection, drawn: &Selection, molecule: &Molecule) -> Result<(), String> {

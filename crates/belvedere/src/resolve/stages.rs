@@ -24,7 +24,7 @@ pub(crate) fn plane_normal(document: &Document) -> Option<DVec3> {
     })
 }
 
-/// What the stages came to.
+/// The resolved stages and their reports.
 pub(super) struct ResolvedStages {
     /// In order of application.
     pub(super) stages: Vec<Stage>,
@@ -32,9 +32,9 @@ pub(super) struct ResolvedStages {
     pub(super) pinhole: Pinhole,
     /// The documents with every rule replaced by its value.
     pub(super) documents: Vec<StageDoc>,
-    /// What the terrain solver came to, if it ran.
+    /// Report of the terrain solver, if it ran.
     pub(super) terrain: Option<TerrainReport>,
-    /// What the strip came to, if there is one.
+    /// Report of the strip, if there is one.
     pub(super) strip: Option<StripReport>,
 }
 

@@ -12,7 +12,7 @@ use serde::Serialize;
 /// The usual half width as a share of the route's length in plan.
 const WIDTH: f64 = 0.1;
 
-/// What a strip came to.
+/// Report of a strip.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StripReport {
     /// Length of the smoothed route, scene units.
@@ -29,7 +29,7 @@ pub struct StripReport {
     pub smoothed_off_at: [f64; 2],
 }
 
-/// The stage, its document, and what it came to.
+/// The stage, its document and its report.
 pub(super) fn resolve(
     context: &StageContext<'_>,
     doc: &StripStageDoc,

@@ -19,11 +19,11 @@ pub(crate) struct ResolvedView {
     pub(crate) document: Document,
     pub(crate) view: View,
     pub(crate) light: Light,
-    /// What the terrain solver came to, if it ran.
+    /// Report of the terrain solver, if it ran.
     pub(crate) terrain: Option<TerrainReport>,
-    /// What the strip came to, if there is one.
+    /// Report of the strip, if there is one.
     pub(crate) strip: Option<StripReport>,
-    /// What the constructor of curved rays came to, if there is one.
+    /// Report of the constructor of curved rays, if there is one.
     pub(crate) constructor: Option<ConstructorReport>,
     pub(crate) inputs: Vec<InputFile>,
     pub(crate) warnings: Vec<String>,

@@ -18,7 +18,7 @@ pub struct MeasureReport {
     pub stages: Vec<&'static str>,
     /// Who drew the depth buffers.
     pub renderer: &'static str,
-    /// What the solver of terrain disocclusion came to; `None` if none ran.
+    /// Report of the solver of terrain disocclusion; `None` if it did not run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub terrain: Option<TerrainReport>,
     /// The figures.

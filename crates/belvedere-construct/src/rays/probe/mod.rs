@@ -126,7 +126,7 @@ pub struct Found {
     pub tried: usize,
 }
 
-/// What a probe came to. Shares are of the surface within reach.
+/// Report of a probe. Shares are of the surface within reach.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ProbeReport {
     /// Turns of the rays that were found.

@@ -25,7 +25,7 @@ pub(crate) struct EdgeEnd {
 }
 
 impl Turn {
-    /// `None` for numbers that are none.
+    /// `None` for numbers that are not finite.
     pub(crate) fn edge_end(&self, p: DVec3) -> Option<EdgeEnd> {
         let cell = self.cell(p).ok()?;
         Some(EdgeEnd { p, a: self.a.at(p), b: self.b.at(p), cell, phi: self.phi(p, cell).ok()? })

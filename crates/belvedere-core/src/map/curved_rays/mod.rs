@@ -107,7 +107,7 @@ impl CurvedRays {
         build::build(root, model, turns, &check::corner_pixels(root), true)
     }
 
-    /// The same for those who try many: `None` where [`CurvedRays::new`] says what is wrong and what would be right, which takes a
+    /// The same for searches that try many: `None` where [`CurvedRays::new`] says what is wrong and what would be right, which takes a
     /// hundred times as long.
     pub fn if_valid(root: &Pinhole, model: Model, turns: &[TurnSpec]) -> Option<Self> {
         build::build(root, model, turns, &check::corner_pixels(root), false).ok()
@@ -164,7 +164,7 @@ impl CurvedRays {
     /// Inside the image the ray that reaches the point decides, so that every point of a ray has its pixel among the images.
     ///
     /// # Errors
-    /// [`Miss::BehindEye`] where a later part looks backwards; [`Miss::OutsideDomain`] for numbers that are none.
+    /// [`Miss::BehindEye`] where a later part looks backwards; [`Miss::OutsideDomain`] for numbers that are not finite.
     /// Points behind the eye before the first turn stay where they are.
     pub fn displace(&self, p: DVec3) -> Result<Displaced, Miss> {
         self.finish(p, self.locate(p)?)

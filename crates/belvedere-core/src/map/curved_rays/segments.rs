@@ -59,7 +59,7 @@ impl CurvedRays {
     /// Displacement by a segment alone, wherever the point is; a transition is continued by its record ([`CurvedRays::displace_in`]).
     ///
     /// # Errors
-    /// [`Miss::OutsideDomain`] if there is no such segment, or for numbers that are none.
+    /// [`Miss::OutsideDomain`] if there is no such segment, or for numbers that are not finite.
     pub fn displace_along(&self, number: u32, p: DVec3) -> Result<Displaced, Miss> {
         let Some(map) = self.straight_map(number) else { return self.displace_in(number as usize / 2, p) };
         let point = if number == 0 { p } else { self.root.eye + map.linear * (p - map.viewpoint) };

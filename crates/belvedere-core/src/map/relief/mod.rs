@@ -33,7 +33,7 @@ impl ReliefShape {
     }
 }
 
-/// A shape of relief that is none.
+/// An invalid shape of relief.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReliefError {

@@ -87,7 +87,7 @@ impl SplineBend {
         &self.sections
     }
 
-    /// What the preset document came to for this camera.
+    /// The preset document, resolved for this camera.
     pub fn resolved(&self) -> &ResolvedPreset {
         &self.resolved
     }

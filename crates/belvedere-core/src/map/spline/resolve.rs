@@ -42,7 +42,7 @@ pub enum SplineError {
     },
 }
 
-/// What a preset document came to for one camera: for reports and tests.
+/// A preset document resolved for one camera: for reports and tests.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct ResolvedPreset {
     /// Viewing angle, degrees.

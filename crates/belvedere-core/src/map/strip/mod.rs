@@ -17,7 +17,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StripError {
-    /// A coordinate that is none.
+    /// A coordinate that is not finite.
     #[error("point {index} of the route is at {value}; every coordinate must be a number between -1e9 and 1e9")]
     NotFinite {
         /// Number of the point, from 0.

@@ -45,7 +45,7 @@ impl Value<'_> {
 
     fn one<T: FromStr>(&self) -> Result<T, String> {
         let text = self.text()?;
-        text.parse().map_err(|_| format!("{text:?} is no value for it"))
+        text.parse().map_err(|_| format!("{text:?} is not a value of this option; give a number"))
     }
 
     fn numbers(&self) -> Result<Vec<f64>, String> {

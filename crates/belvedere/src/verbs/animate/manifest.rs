@@ -65,10 +65,10 @@ pub struct FrameRecord {
     pub view: ViewRecord,
     /// How far things were moved; `None` for a straight picture.
     pub displacement: Option<DisplacementReport>,
-    /// What the terrain solver came to, if it ran.
+    /// Report of the terrain solver, if it ran.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub terrain: Option<FrameTerrain>,
-    /// What the constructor of curved rays came to, if there is one.
+    /// Report of the constructor of curved rays, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub constructor: Option<ConstructorReport>,
 }
