@@ -183,7 +183,7 @@ pub(crate) fn draw_camera(
     picture: CameraPicture,
     progress: &Progress,
 ) -> Result<Drawn, BelvedereError> {
-    let figure = camera::figure(session, picture)?;
+    let figure = camera::figure((session.scene(), session.view()), session.ray_end(None)?, picture)?;
     let options = RenderOptions { overlay: figure.overlay.clone(), ..request.quality.clone() };
     let (scene, view, light) = (session.scene(), &figure.view, session.light());
     let job = RenderJob { scene, view, light, options: &options, progress };

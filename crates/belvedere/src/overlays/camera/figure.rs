@@ -2,22 +2,26 @@
 
 use super::subject::{CameraFigure, CameraPicture, DARK, Subject};
 use super::{position, rays, spline, turns};
-use crate::{BelvedereError, Session};
-use belvedere_core::Stage;
+use crate::BelvedereError;
+use belvedere_core::{Stage, View};
 use belvedere_cpu::Tracer;
-use belvedere_scene::Overlay;
+use belvedere_scene::{Overlay, Scene};
 
-/// Draws the camera of a session.
+/// Draws the camera of a view of a scene.
+///
+/// * `reach`: depth at which rays end, scene units.
 ///
 /// # Errors
-/// [`BelvedereError::NoRayEnd`], [`BelvedereError::Camera`] if eye and target of the figure are no camera.
-pub(crate) fn figure(session: &Session, picture: CameraPicture) -> Result<CameraFigure, BelvedereError> {
-    let view = session.view();
-    let reach = session.ray_end(None)?;
-    let tracer = Tracer::new(session.scene(), view);
+/// [`BelvedereError::Camera`] if eye and target of the figure are no camera.
+pub(crate) fn figure(
+    (scene, view): (&Scene, &View),
+    reach: f64,
+    picture: CameraPicture,
+) -> Result<CameraFigure, BelvedereError> {
+    let tracer = Tracer::new(scene, view);
     let hits = rays::hits(view, &tracer);
     let far = if hits.is_empty() { reach } else { hits.iter().fold(0.0f64, |m, h| m.max(h.depth)).min(reach) * 1.02 };
-    let bounds = session.scene().bounds();
+    let bounds = scene.bounds();
     let extent = if bounds.is_empty() { far } else { (bounds.max - bounds.min).truncate().max_element() };
     let subject = Subject { view, tracer, far, extent };
     let mut overlay = Overlay::default();
@@ -37,6 +41,6 @@ pub(crate) fn figure(session: &Session, picture: CameraPicture) -> Result<Camera
             _ => {}
         }
     }
-    let view = position::view(session, picture, &overlay)?;
+    let view = position::view((scene, view), picture, &overlay)?;
     Ok(CameraFigure { view, overlay, legend })
 }

@@ -1,23 +1,27 @@
 //! From where a picture of the camera is taken.
 
 use super::subject::CameraPicture;
-use crate::{BelvedereError, Session};
+use crate::BelvedereError;
 use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, PinholeError, Projection, View};
-use belvedere_scene::Overlay;
+use belvedere_scene::{Overlay, Scene};
 
 /// Margin around what is shown from above, as a share.
 const MARGIN: f64 = 1.12;
 /// Vertical field of view from outside, radians.
 const FOV_Y: f64 = 0.7;
 
-pub(super) fn view(session: &Session, picture: CameraPicture, overlay: &Overlay) -> Result<View, BelvedereError> {
-    let subject = session.view().pinhole();
+pub(super) fn view(
+    (scene, view): (&Scene, &View),
+    picture: CameraPicture,
+    overlay: &Overlay,
+) -> Result<View, BelvedereError> {
+    let subject = view.pinhole();
     // What is drawn in full: hulls and continuations may leave the picture.
     let lines = overlay.over.iter().filter(|l| l.color.a == 255).flat_map(|l| l.points.iter().copied());
     let points: Vec<DVec3> = lines.chain(overlay.points.iter().map(|p| p.position)).collect();
     let shown = Aabb::of(points.iter().copied());
     let pinhole = match picture {
-        CameraPicture::Overhead => overhead(&shown, top(session, &shown), subject.image),
+        CameraPicture::Overhead => overhead(&shown, top(scene, &shown), subject.image),
         CameraPicture::Outside(Some(eye_and_target)) => outside(eye_and_target.map(DVec3::from_array), subject.image),
         CameraPicture::Outside(None) => outside(beside(&shown, &points, subject), subject.image),
     };
@@ -25,8 +29,8 @@ pub(super) fn view(session: &Session, picture: CameraPicture, overlay: &Overlay)
 }
 
 /// Height over which nothing is, of the scene and of what is drawn over it.
-fn top(session: &Session, shown: &Aabb) -> f64 {
-    let bounds = session.scene().bounds();
+fn top(scene: &Scene, shown: &Aabb) -> f64 {
+    let bounds = scene.bounds();
     if bounds.is_empty() { shown.max.z } else { shown.max.z.max(bounds.max.z) }
 }
 
@@ -74,7 +78,7 @@ fn beside(shown: &Aabb, points: &[DVec3], subject: &Pinhole) -> [DVec3; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere_scene::{BoxLayer, BoxShape, Color, Layer, LayerKind, OverlayPoint, Scene, Symbol};
+    use belvedere_scene::{BoxLayer, BoxShape, Color, Layer, LayerKind, OverlayPoint, Symbol};
 
     #[test]
     fn from_above_no_tower_is_cut_off_however_tall() {
@@ -89,7 +93,7 @@ mod tests {
         let lens = Projection::Perspective { fov_y: FOV_Y };
         let camera =
             Pinhole::look_at(DVec3::Z, DVec3::new(0.0, 1.0, 1.0), DVec3::Z, lens, [64, 64], 0.1, None).unwrap();
-        let session = Session::from_parts(Scene { layers, ..Scene::default() }, View::straight(camera));
+        let (scene, camera) = (Scene { layers, ..Scene::default() }, View::straight(camera));
         let mark = |x: f64| OverlayPoint {
             position: DVec3::new(x, 0.5 * x, 1.0),
             symbol: Symbol::Dot,
@@ -99,7 +103,7 @@ mod tests {
             label: String::new(),
         };
         let overlay = Overlay { points: vec![mark(0.0), mark(60.0)], ..Overlay::default() };
-        let above = view(&session, CameraPicture::Overhead, &overlay).unwrap();
+        let above = view((&scene, &camera), CameraPicture::Overhead, &overlay).unwrap();
         let depth = above.project(DVec3::new(40.0, 0.0, 300.0)).unwrap().depth;
         assert!(depth > above.pinhole().near, "{depth}");
     }
