@@ -10,6 +10,7 @@
 use super::super::metrics::Judge;
 use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult, QpSolver};
 use super::super::{Field, Hierarchy};
+use super::lakes::Lakes;
 use super::{at_every_node, fallback, on_grid};
 use crate::DisocclusionError;
 use belvedere_core::DVec2;
@@ -33,6 +34,7 @@ pub(super) struct Agreement<'a> {
     pub(super) grid: &'a Hierarchy,
     /// Change of detail at every node.
     pub(super) detail: Option<&'a [f64]>,
+    pub(super) lakes: &'a Lakes,
     /// Points by which the result is judged.
     pub(super) check: &'a [Candidate],
     pub(super) options: QpOptions,
@@ -112,12 +114,9 @@ impl Agreement<'_> {
     /// Points that a solution leaves hidden though it does not name them.
     fn hidden(&self, problem: &QpProblem<'_>, result: &QpResult) -> Result<Vec<Found>, DisocclusionError> {
         self.progress.tick("what the displaced ground hides", 0.9)?;
-        let delta = match self.detail {
-            Some(detail) => {
-                let smooth = self.grid.prolong(&result.u);
-                at_every_node(self.field, &smooth.iter().zip(detail).map(|(a, b)| a + b).collect::<Vec<_>>())?
-            }
-            None => on_grid(self.field, self.grid, &result.u)?,
+        let delta = match (self.detail, self.lakes.is_empty()) {
+            (None, true) => on_grid(self.field, self.grid, &result.u)?,
+            (detail, _) => at_every_node(self.field, &self.lakes.whole(self.grid, &result.u, detail))?,
         };
         let named: BTreeSet<u32> = result.unresolved.iter().map(|u| u.id & !BILINEAR).collect();
         let judged = self.check.iter().chain(problem.candidates).filter(|c| !named.contains(&c.id));

@@ -20,6 +20,7 @@ mod rows_in_play;
 mod single_line;
 mod solver;
 mod surface;
+mod ties;
 mod view_rays;
 mod walk;
 
@@ -29,4 +30,5 @@ pub use problem::{
 };
 pub(crate) use remembered::RememberedLines;
 pub use solver::QpSolver;
+pub(crate) use ties::TiedNodes;
 pub use view_rays::ViewSight;
