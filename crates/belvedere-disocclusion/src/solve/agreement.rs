@@ -5,7 +5,7 @@
 //! ground hides it that is not its own: at first it looks at that of files. So both grounds are judged, and hidden places become
 //! candidates over the ground that hides them. Where detail moves too, both are drawn as one displacement that is bilinear between the
 //! nodes of the terrain, on cells of hundreds of metres other ground by many metres. Where such ground rises over the line of sight of a
-//! candidate, the program is told that it stands so much higher there.
+//! candidate, the program is told that it stands so much higher there; so, too, where a lake is level that is not to the program's grid.
 
 use super::super::metrics::Judge;
 use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult, QpSolver};
@@ -50,7 +50,8 @@ struct Found {
 }
 
 impl Agreement<'_> {
-    /// Solves until nothing is hidden that the program holds for seen, or nothing more is gained. Answers the best result.
+    /// Solves until nothing is hidden that the program holds for seen, or nothing more is gained. Answers the best result and, of ground
+    /// with lakes, how many points it hides.
     ///
     /// * `qp`: knows `ground`, the undisplaced one with its change of detail; `result`: its solution.
     pub(super) fn reach(
@@ -59,17 +60,17 @@ impl Agreement<'_> {
         ground: &[f64],
         problem: &QpProblem<'_>,
         result: QpResult,
-    ) -> Result<QpResult, DisocclusionError> {
+    ) -> Result<(QpResult, usize), DisocclusionError> {
         // At a price the program leaves places covered.
         if self.options.slack_price.is_some() {
-            return Ok(result);
+            return Ok((result, 0));
         }
         let mut told = ground.to_vec();
         let mut asked = problem.candidates.to_vec();
         let mut known: BTreeSet<u32> = asked.iter().map(|c| c.id).collect();
         // Where time is up the report says what is hidden.
         if self.progress.should_end() {
-            return Ok(QpResult { stopped: true, ..result });
+            return Ok((QpResult { stopped: true, ..result }, 0));
         }
         let mut found = self.hidden(problem, &result)?;
         let (mut best, mut fewest) = (result, found.len());
@@ -108,7 +109,7 @@ impl Agreement<'_> {
             }
         }
         best.stopped |= self.progress.is_late() && fewest > 0;
-        Ok(best)
+        Ok((best, if self.lakes.is_empty() { 0 } else { fewest }))
     }
 
     /// Points that a solution leaves hidden though it does not name them.

@@ -1,9 +1,8 @@
 //! Lakes and reservoirs: each moves as a whole or not at all.
 //!
 //! A lake is an area of water that the elevation model shows level. The program ties the nodes of its own grid that lie on one
-//! ([`TiedNodes`]); every node of the terrain on it then gets the same displacement. Nodes of the bank stay free.
+//! together; every node of the terrain on it then gets the same displacement. Nodes of the bank stay free.
 
-use super::super::visibility_qp::TiedNodes;
 use super::super::{Field, Hierarchy};
 use crate::points::ring_crossings;
 use belvedere_core::DVec2;
@@ -16,6 +15,8 @@ use std::collections::{BTreeMap, BTreeSet};
 const LEVEL_M: f64 = 30.0;
 /// Nodes of the solver's grid that are tied at most: of larger waters every second one, and so on.
 const MOST_TIED: usize = 800;
+/// Fewer nodes of the solver's grid do not stand for a lake.
+const FEWEST_TIED: usize = 4;
 
 /// A lake and how it moved.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -117,18 +118,32 @@ impl Lakes {
     }
 
     /// The nodes of a solver's grid on each lake.
-    ///
-    /// * `held`: the lakes do not move at all.
-    pub(super) fn tied(&self, grid: &Hierarchy, held: bool) -> Vec<TiedNodes> {
-        let places: Vec<Vec<[usize; 2]>> = self.lakes.iter().map(|lake| self.on_grid(lake, grid)).collect();
-        let all = |every: usize| -> Vec<TiedNodes> {
+    pub(super) fn tied(&self, grid: &Hierarchy) -> Vec<Vec<u32>> {
+        let places: Vec<Vec<[usize; 2]>> = self.lakes.iter().map(|lake| self.under(lake, grid)).collect();
+        let all = |every: usize| -> Vec<Vec<u32>> {
             let kept = |[col, row]: &&[usize; 2]| col % every == 0 && row % every == 0;
             let node = |[col, row]: &[usize; 2]| (row * grid.cols() + col) as u32;
-            let of = |p: &Vec<[usize; 2]>| TiedNodes { nodes: p.iter().filter(kept).map(node).collect(), held };
+            let of = |p: &Vec<[usize; 2]>| p.iter().filter(kept).map(node).collect();
             places.iter().map(of).collect()
         };
-        let few = |sets: &Vec<TiedNodes>| sets.iter().map(|s| s.nodes.len()).sum::<usize>() <= MOST_TIED;
+        let few = |sets: &Vec<Vec<u32>>| sets.iter().map(Vec::len).sum::<usize>() <= MOST_TIED;
         (1..).map(all).find(few).unwrap_or_default()
+    }
+
+    /// Columns and rows of the nodes of a solver's grid that move with a lake: those on it; of a lake with fewer than [`FEWEST_TIED`] those
+    /// of all cells that it touches, which finer grids tell apart where it takes that.
+    fn under(&self, lake: &Lake, grid: &Hierarchy) -> Vec<[usize; 2]> {
+        let own = self.on_grid(lake, grid);
+        if own.len() >= FEWEST_TIED {
+            return own;
+        }
+        let step = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
+        let corners = |n: &u32| {
+            let [x, y] = [*n as usize % self.cols, *n as usize / self.cols];
+            [x / step[0], x.div_ceil(step[0])].map(|col| [y / step[1], y.div_ceil(step[1])].map(|row| [col, row]))
+        };
+        let all: BTreeSet<[usize; 2]> = lake.nodes.iter().flat_map(corners).flatten().collect();
+        all.into_iter().collect()
     }
 
     /// Columns and rows of the nodes of a solver's grid that are nodes of the terrain on a lake.
@@ -139,17 +154,17 @@ impl Lakes {
         on.map(|[x, y]| [x / across, y / down]).collect()
     }
 
-    /// Makes a displacement of the terrain's nodes level on each lake: as the solver's own nodes on it, or the mean.
+    /// Makes a displacement of the terrain's nodes level on each lake: as the tied nodes of the solver's grid that lie on it, or the mean.
     fn level(&self, grid: &Hierarchy, u: &mut [f64]) {
         let step = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
         for lake in &self.lakes {
             let own = self.on_grid(lake, grid);
-            let mean = if own.is_empty() {
+            let moved = if own.is_empty() {
                 lake.nodes.iter().map(|n| u[*n as usize]).sum::<f64>() / lake.nodes.len() as f64
             } else {
                 own.iter().map(|[x, y]| u[y * step[1] * self.cols + x * step[0]]).sum::<f64>() / own.len() as f64
             };
-            lake.nodes.iter().for_each(|n| u[*n as usize] = mean);
+            lake.nodes.iter().for_each(|n| u[*n as usize] = moved);
         }
     }
 

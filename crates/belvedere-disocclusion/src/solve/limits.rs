@@ -83,6 +83,14 @@ impl LimitedTerrain {
         })
     }
 
+    /// How far a displacement lies below the lowest height at most, or less.
+    pub(super) fn beyond(&self, grid: &Hierarchy, u: &[f64]) -> f64 {
+        let cols = grid.cols().max(2) - 1;
+        let node = |i: usize| (i / cols).min(grid.rows() - 1) * grid.cols() + i % cols;
+        let over = |(i, block): (usize, &[f64; 2])| self.limits.floor.min(block[0]) - block[0] - u[node(i)];
+        self.blocks.iter().enumerate().map(over).fold(0.0, f64::max)
+    }
+
     /// Makes a displacement of the nodes keep the limits; `None` if it does already.
     pub(super) fn keep(&self, field: &Field, lakes: &Lakes, u: &mut [f64]) -> Option<LimitsReport> {
         self.limits.keep(field, lakes, u)

@@ -1,7 +1,7 @@
 //! What is prepared once per terrain and what is remembered between frames.
 
 use super::super::settings::MOST_W;
-use super::super::visibility_qp::{Candidate, QpOptions, QpSolver, TiedNodes};
+use super::super::visibility_qp::{Candidate, QpOptions, QpSolver};
 use super::super::{
     BlockMaxima, Cells, Field, Hierarchy, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings, Unusable,
     candidate_points, grid_weight, judged_points, reference_points, stated_spacing, temporal_weight,
@@ -195,7 +195,7 @@ impl Prepared {
             None => None,
         };
         let made = |weights| {
-            program(&level, &grid, weights, options(settings, false), &lakes.tied(&grid, false))
+            program(&level, &grid, weights, options(settings, false), &lakes.tied(&grid))
                 .map(|solver| Program { solver, foreign: false })
         };
         let still = with_qp.then(|| made(Weights { g: 0.0, ..weights })).transpose()?;
@@ -262,7 +262,7 @@ pub(super) fn program(
     grid: &Hierarchy,
     weights: Weights,
     options: QpOptions,
-    tied: &[TiedNodes],
+    tied: &[Vec<u32>],
 ) -> Result<QpSolver, DisocclusionError> {
     let Weights { w, g } = weights.on(grid);
     let smoother = Smoother::new(grid.cols(), grid.rows(), w, g)?;

@@ -17,6 +17,9 @@ use std::borrow::Cow;
 /// Share of the time that the quadratic program has; the rest is for what is taken where it is not done by then.
 const PROGRAM_TIME: f64 = 0.6;
 
+/// Ground that sinks below the limits by more than this share of the relief is not refined.
+const FAR_BEYOND: f64 = 0.2;
+
 /// What finer grids are tried on.
 struct Finer<'a> {
     /// The solver's grid.
@@ -223,7 +226,11 @@ impl Passes<'_> {
             problem = QpProblem { candidates: asked, ..problem };
             result = qp.solve_with(&problem, self.progress)?;
         }
-        if self.stuck(&result) {
+        // Where a lake sinks with all its banks the limits fill up most of it again: that is not worth another solution.
+        let in_vain = prepared.limited.as_ref().is_some_and(|limited| {
+            !prepared.lakes.is_empty() && limited.beyond(&prepared.grid, &result.u) > FAR_BEYOND * self.field.relief()
+        });
+        if self.stuck(&result) && !in_vain {
             let mut cut = fallback::cut_detail(self.field, &ground, &prepared.grid, &result.active);
             prepared.lakes.clear(&mut cut);
             let lower: Vec<f64> = ground.iter().zip(&cut).map(|(h, c)| h + c).collect();
@@ -240,7 +247,7 @@ impl Passes<'_> {
             }
         }
         let mut from_guard = false;
-        if self.stuck(&result) {
+        if self.stuck(&result) && !in_vain {
             qp.set_options(memory::options(self.settings, true));
             let next = qp.solve_with(&problem, self.progress)?;
             from_guard = fallback::stuck(&next) < fallback::stuck(&result);
@@ -249,21 +256,22 @@ impl Passes<'_> {
                 done.fallbacks.push(Fallback::Guard);
             }
         }
+        let mut hidden = 0;
         let options = memory::options(self.settings, from_guard);
-        if fallback::stuck(&result) == 0 && (self.frame.is_none() || detail.is_some()) {
+        if fallback::stuck(&result) == 0 && !in_vain && (self.frame.is_none() || detail.is_some()) {
             let (field, grid, detail) = (self.field, &prepared.grid, detail.as_deref());
             let (lakes, progress) = (&*prepared.lakes, self.progress);
             let agreement = Agreement { field, grid, detail, lakes, check: &check, options, progress };
-            result = agreement.reach(qp, &ground, &problem, result)?;
+            (result, hidden) = agreement.reach(qp, &ground, &problem, result)?;
             foreign = true;
         }
         program.foreign = foreign;
         done.coarse.clone_from(&result.u);
-        if self.stuck(&result) {
+        if self.unfinished(&result, hidden) && !in_vain {
             let (coarse, detail) = (&prepared.grid, detail.as_deref());
             let lakes = &*prepared.lakes;
             let grids = Finer { coarse, ground: &ground, detail, weights, lakes, options, check: &check };
-            result = self.on_finer_grids(&grids, &problem, result, done)?;
+            result = self.on_finer_grids(&grids, &problem, (result, hidden), done)?;
         }
         done.qp = Some(QpReport::of(&result, in_view.candidates.len()));
         done.stopped = result.stopped || (fallback::stuck(&result) > 0 && self.progress.is_late());
@@ -278,34 +286,40 @@ impl Passes<'_> {
         fallback::stuck(result) > 0 && !self.progress.should_end()
     }
 
+    /// The same, where lakes hide something that the program does not know of: to its grid small ones are not level.
+    fn unfinished(&self, result: &QpResult, hidden: usize) -> bool {
+        fallback::stuck(result) + hidden > 0 && !self.progress.should_end()
+    }
+
     /// Solves again on finer and finer grids until nothing is missed any more; answers the best result.
     fn on_finer_grids(
         &self,
         grids: &Finer<'_>,
         problem: &QpProblem<'_>,
-        mut best: QpResult,
+        (mut best, mut hidden): (QpResult, usize),
         done: &mut Outcome,
     ) -> Result<QpResult, DisocclusionError> {
         let Finer { coarse, ground, detail, weights, lakes, options, check } = *grids;
         for grid in fallback::finer(coarse, self.field) {
-            if !self.stuck(&best) {
+            if !self.unfinished(&best, hidden) {
                 break;
             }
             self.progress.tick("quadratic program on a finer grid", 0.7)?;
             let nodes = grid.cols().max(grid.rows());
             let target = problem.target.map(|t| fallback::resampled(coarse, t, &grid));
-            let mut finer = memory::program(self.field, &grid, weights, options, &lakes.tied(&grid, false))?;
+            let mut finer = memory::program(self.field, &grid, weights, options, &lakes.tied(&grid))?;
             finer.set_heights(ground)?;
             let problem = QpProblem { target: target.as_deref(), ..*problem };
             let mut next = finer.solve_with(&problem, self.progress)?;
+            let mut left = 0;
             if fallback::stuck(&next) == 0 {
                 let (field, progress) = (self.field, self.progress);
-                next = Agreement { field, grid: &grid, detail, lakes, check, options, progress }
+                (next, left) = Agreement { field, grid: &grid, detail, lakes, check, options, progress }
                     .reach(&mut finer, ground, &problem, next)?;
             }
-            if fallback::stuck(&next) < fallback::stuck(&best) {
+            if (fallback::stuck(&next), left) < (fallback::stuck(&best), hidden) {
                 done.fine = Some((grid, next.u.clone()));
-                best = next;
+                (best, hidden) = (next, left);
                 done.fallbacks.push(Fallback::FinerGrid { nodes });
             }
         }

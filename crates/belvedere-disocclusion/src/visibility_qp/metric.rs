@@ -1,6 +1,6 @@
 //! The norm in which displacements are measured.
 
-use super::ties::{TiedNodes, Ties};
+use super::ties::Ties;
 use crate::smooth::{Between, Green, Smoother};
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ impl Metric {
     }
 
     /// Ties sets of nodes together.
-    pub(super) fn tie(&mut self, sets: &[TiedNodes]) {
+    pub(super) fn tie(&mut self, sets: &[Vec<u32>]) {
         self.ties = Ties::new(sets, &self.smoother, &self.green).map(Arc::new);
     }
 

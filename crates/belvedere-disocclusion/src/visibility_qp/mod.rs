@@ -30,5 +30,4 @@ pub use problem::{
 };
 pub(crate) use remembered::RememberedLines;
 pub use solver::QpSolver;
-pub(crate) use ties::TiedNodes;
 pub use view_rays::ViewSight;

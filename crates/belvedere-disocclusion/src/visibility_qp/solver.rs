@@ -9,7 +9,6 @@ use super::row::Constraint;
 use super::row::Row;
 use super::rows_in_play::{Accuracy, IDLE, NewRow, RememberedRow, RowKey, RowsInPlay};
 use super::surface::{Lattice, Surface};
-use super::ties::TiedNodes;
 use super::walk::{Clearance, Touch};
 use crate::Field;
 use crate::smooth::{Between, Hierarchy, Smoother};
@@ -71,8 +70,8 @@ impl QpSolver {
         Self { metric: Metric::new(smoother), surface, options, kept: Vec::new() }
     }
 
-    /// From now on these nodes move together.
-    pub fn tie(&mut self, sets: &[TiedNodes]) {
+    /// From now on the nodes of each of these sets have one displacement. No node is in two of them.
+    pub fn tie(&mut self, sets: &[Vec<u32>]) {
         self.metric.tie(sets);
     }
 

@@ -9,40 +9,29 @@ use crate::smooth::{Between, Green, Smoother};
 /// A pivot below this share of its diagonal counts as dependent.
 const DEPENDENT: f64 = 1e-12;
 
-/// Sets of nodes that share one value each, or keep that of zero.
+/// Sets of nodes that share one value each.
 #[derive(Debug, Clone)]
 pub(super) struct Ties {
-    sets: Vec<TiedNodes>,
+    /// At least two nodes each.
+    sets: Vec<Vec<u32>>,
     /// Of `C H^-1 C^T`.
     factor: Cholesky,
     lattice: [usize; 2],
 }
 
-/// Nodes of the solver's grid that move together.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TiedNodes {
-    /// Nodes, each in one set alone.
-    pub nodes: Vec<u32>,
-    /// Whether they do not move at all.
-    pub held: bool,
-}
-
-impl TiedNodes {
-    /// The equations: a node and the one that it is equal to.
-    fn rows(&self) -> impl Iterator<Item = (u32, Option<u32>)> + '_ {
-        let first = self.nodes.first().copied().filter(|_| !self.held);
-        self.nodes.iter().skip(usize::from(!self.held)).map(move |n| (*n, first))
-    }
+/// The equations: a node, and the first of its set to which it is equal.
+fn equations(sets: &[Vec<u32>]) -> impl Iterator<Item = (u32, u32)> + '_ {
+    sets.iter().flat_map(|set| set.iter().skip(1).map(|n| (*n, set[0])))
 }
 
 impl Ties {
     /// `None` where nothing is tied.
-    pub(super) fn new(sets: &[TiedNodes], smoother: &Smoother, green: &Green) -> Option<Self> {
-        let sets: Vec<TiedNodes> = sets.iter().filter(|s| s.rows().next().is_some()).cloned().collect();
-        let rows: Vec<(u32, Option<u32>)> = sets.iter().flat_map(TiedNodes::rows).collect();
-        let product = |a: (u32, Option<u32>), b: (u32, Option<u32>)| {
-            let to = |n: u32| green.entry(n, b.0) - b.1.map_or(0.0, |r| green.entry(n, r));
-            to(a.0) - a.1.map_or(0.0, to)
+    pub(super) fn new(sets: &[Vec<u32>], smoother: &Smoother, green: &Green) -> Option<Self> {
+        let sets: Vec<Vec<u32>> = sets.iter().filter(|set| set.len() > 1).cloned().collect();
+        let rows: Vec<(u32, u32)> = equations(&sets).collect();
+        let product = |a: (u32, u32), b: (u32, u32)| {
+            let to = |n: u32| green.entry(n, b.0) - green.entry(n, b.1);
+            to(a.0) - to(a.1)
         };
         let mut factor = Cholesky::default();
         for (i, row) in rows.iter().enumerate() {
@@ -55,8 +44,8 @@ impl Ties {
     fn apart(&self, value: impl Fn(u32) -> f64) -> Vec<f64> {
         let mut out = Vec::with_capacity(self.factor.size());
         for set in &self.sets {
-            let first = if set.held { 0.0 } else { value(set.nodes[0]) };
-            out.extend(set.rows().map(|(node, _)| value(node) - first));
+            let first = value(set[0]);
+            out.extend(set[1..].iter().map(|node| value(*node) - first));
         }
         out
     }
@@ -68,19 +57,16 @@ impl Ties {
         let mut m = self.apart(|node| u[node as usize]);
         self.factor.solve(&mut m);
         let mut change = vec![0.0; u.len()];
-        let rows = self.sets.iter().flat_map(TiedNodes::rows);
-        for ((node, first), m) in rows.zip(m) {
+        for ((node, first), m) in equations(&self.sets).zip(m) {
             change[node as usize] += m;
-            if let Some(first) = first {
-                change[first as usize] -= m;
-            }
+            change[first as usize] -= m;
         }
         solve(&mut change);
         u.iter_mut().zip(change).for_each(|(u, c)| *u -= c);
         // What rounding leaves.
-        for TiedNodes { nodes, held } in &self.sets {
-            let mean = nodes.iter().map(|n| u[*n as usize]).sum::<f64>() / nodes.len() as f64;
-            nodes.iter().for_each(|n| u[*n as usize] = if *held { 0.0 } else { mean });
+        for set in &self.sets {
+            let mean = set.iter().map(|n| u[*n as usize]).sum::<f64>() / set.len() as f64;
+            set.iter().for_each(|n| u[*n as usize] = mean);
         }
     }
 
@@ -108,10 +94,10 @@ mod tests {
     use super::super::row::Row;
     use super::*;
 
-    fn sets() -> [TiedNodes; 2] {
+    fn sets() -> [Vec<u32>; 2] {
         let lake = (6..12).flat_map(|y| (4..9).map(move |x| y * 21 + x)).collect();
         let pond = vec![15 * 21 + 12, 15 * 21 + 13, 16 * 21 + 12];
-        [TiedNodes { nodes: lake, held: false }, TiedNodes { nodes: pond, held: true }]
+        [lake, pond]
     }
 
     #[test]
@@ -122,9 +108,10 @@ mod tests {
             let mut u = vec![0.0; 21 * 19];
             u[k as usize] = 1.0;
             metric.solve(&mut u);
-            let lake: Vec<f64> = sets()[0].nodes.iter().map(|n| u[*n as usize]).collect();
-            assert!(lake.iter().all(|v| *v == lake[0]), "{lake:?}");
-            assert!(sets()[1].nodes.iter().all(|n| u[*n as usize] == 0.0));
+            for set in sets() {
+                let values: Vec<f64> = set.iter().map(|n| u[*n as usize]).collect();
+                assert!(values.iter().all(|v| *v == values[0]), "{values:?}");
+            }
             let row = |n: u32| Row::ceiling(n, Between::node(n, 21, 19), 0.0);
             let shared = |n: u32| metric.shared(&row(n).points).unwrap();
             for other in [0u32, 6 * 21 + 4, 100, 9 * 21 + 13, 300] {
@@ -153,7 +140,7 @@ mod tests {
             let mut other = level.clone();
             let step = 0.01 * f64::from(k % 5 - 2) + 0.003;
             match k % 2 {
-                0 => sets()[0].nodes.iter().for_each(|n| other[*n as usize] += step),
+                0 => sets()[0].iter().for_each(|n| other[*n as usize] += step),
                 _ => other[(k as usize * 61) % 80] += step,
             }
             assert!(apart(&other) > least, "{k}: {} and {least}", apart(&other));
