@@ -65,6 +65,11 @@ impl Agreement<'_> {
         if self.options.slack_price.is_some() {
             return Ok((result, 0));
         }
+        // A lake that sinks by more than the relief is filled up again by the limits; no more solutions then.
+        let in_vain = |u: &[f64]| !self.lakes.is_empty() && u.iter().any(|u| *u < -self.field.relief());
+        if in_vain(&result.u) {
+            return Ok((result, 0));
+        }
         let mut told = ground.to_vec();
         let mut asked = problem.candidates.to_vec();
         let mut known: BTreeSet<u32> = asked.iter().map(|c| c.id).collect();
@@ -92,7 +97,7 @@ impl Agreement<'_> {
                 qp.set_heights(&told)?;
             }
             let next = qp.solve_with(&QpProblem { candidates: &asked, ..*problem }, self.progress)?;
-            if next.stopped || fallback::stuck(&next) > fallback::stuck(&best) {
+            if next.stopped || in_vain(&next.u) || fallback::stuck(&next) > fallback::stuck(&best) {
                 break;
             }
             if self.progress.should_end() {
