@@ -45,7 +45,8 @@ pub mod report {
     pub use crate::metrics::{FrameChange, TerrainMetrics};
     pub use crate::points::PointKind;
     pub use crate::solve::{
-        Covered, Fallback, FeatureCost, LimitsReport, QpReport, Taken, TerrainTimes, UnresolvedReason, UnresolvedRun,
+        Covered, Fallback, FeatureCost, LakeReport, LimitsReport, QpReport, Taken, TerrainTimes, UnresolvedReason,
+        UnresolvedRun,
     };
 }
 

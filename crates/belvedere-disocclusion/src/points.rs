@@ -320,7 +320,7 @@ impl PointCollector<'_> {
 }
 
 /// Where a closed ring crosses a line of constant y.
-fn ring_crossings(ring: &[DVec2], y: f64) -> impl Iterator<Item = f64> + '_ {
+pub(crate) fn ring_crossings(ring: &[DVec2], y: f64) -> impl Iterator<Item = f64> + '_ {
     let sides = (0..ring.len()).map(move |i| (ring[i], ring[(i + 1) % ring.len()]));
     sides.filter(move |(a, b)| (a.y > y) != (b.y > y)).map(move |(a, b)| a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x))
 }

@@ -5,11 +5,12 @@
 //! ground hides it that is not its own: at first it looks at that of files. So both grounds are judged, and hidden places become
 //! candidates over the ground that hides them. Where detail moves too, both are drawn as one displacement that is bilinear between the
 //! nodes of the terrain, on cells of hundreds of metres other ground by many metres. Where such ground rises over the line of sight of a
-//! candidate, the program is told that it stands so much higher there.
+//! candidate, the program is told that it stands so much higher there; so, too, where a lake is level that is not to the program's grid.
 
 use super::super::metrics::Judge;
 use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult, QpSolver};
 use super::super::{Field, Hierarchy};
+use super::lakes::Lakes;
 use super::{at_every_node, fallback, on_grid};
 use crate::DisocclusionError;
 use belvedere_core::DVec2;
@@ -33,6 +34,7 @@ pub(super) struct Agreement<'a> {
     pub(super) grid: &'a Hierarchy,
     /// Change of detail at every node.
     pub(super) detail: Option<&'a [f64]>,
+    pub(super) lakes: &'a Lakes,
     /// Points by which the result is judged.
     pub(super) check: &'a [Candidate],
     pub(super) options: QpOptions,
@@ -48,7 +50,8 @@ struct Found {
 }
 
 impl Agreement<'_> {
-    /// Solves until nothing is hidden that the program holds for seen, or nothing more is gained. Answers the best result.
+    /// Solves until nothing is hidden that the program holds for seen, or nothing more is gained. Answers the best result and, of ground
+    /// with lakes, how many points it hides.
     ///
     /// * `qp`: knows `ground`, the undisplaced one with its change of detail; `result`: its solution.
     pub(super) fn reach(
@@ -57,17 +60,22 @@ impl Agreement<'_> {
         ground: &[f64],
         problem: &QpProblem<'_>,
         result: QpResult,
-    ) -> Result<QpResult, DisocclusionError> {
+    ) -> Result<(QpResult, usize), DisocclusionError> {
         // At a price the program leaves places covered.
         if self.options.slack_price.is_some() {
-            return Ok(result);
+            return Ok((result, 0));
+        }
+        // A lake that sinks by more than the relief is filled up again by the limits; no more solutions then.
+        let in_vain = |u: &[f64]| !self.lakes.is_empty() && u.iter().any(|u| *u < -self.field.relief());
+        if in_vain(&result.u) {
+            return Ok((result, 0));
         }
         let mut told = ground.to_vec();
         let mut asked = problem.candidates.to_vec();
         let mut known: BTreeSet<u32> = asked.iter().map(|c| c.id).collect();
         // Where time is up the report says what is hidden.
         if self.progress.should_end() {
-            return Ok(QpResult { stopped: true, ..result });
+            return Ok((QpResult { stopped: true, ..result }, 0));
         }
         let mut found = self.hidden(problem, &result)?;
         let (mut best, mut fewest) = (result, found.len());
@@ -89,7 +97,7 @@ impl Agreement<'_> {
                 qp.set_heights(&told)?;
             }
             let next = qp.solve_with(&QpProblem { candidates: &asked, ..*problem }, self.progress)?;
-            if next.stopped || fallback::stuck(&next) > fallback::stuck(&best) {
+            if next.stopped || in_vain(&next.u) || fallback::stuck(&next) > fallback::stuck(&best) {
                 break;
             }
             if self.progress.should_end() {
@@ -106,18 +114,15 @@ impl Agreement<'_> {
             }
         }
         best.stopped |= self.progress.is_late() && fewest > 0;
-        Ok(best)
+        Ok((best, if self.lakes.is_empty() { 0 } else { fewest }))
     }
 
     /// Points that a solution leaves hidden though it does not name them.
     fn hidden(&self, problem: &QpProblem<'_>, result: &QpResult) -> Result<Vec<Found>, DisocclusionError> {
         self.progress.tick("what the displaced ground hides", 0.9)?;
-        let delta = match self.detail {
-            Some(detail) => {
-                let smooth = self.grid.prolong(&result.u);
-                at_every_node(self.field, &smooth.iter().zip(detail).map(|(a, b)| a + b).collect::<Vec<_>>())?
-            }
-            None => on_grid(self.field, self.grid, &result.u)?,
+        let delta = match (self.detail, self.lakes.is_empty()) {
+            (None, true) => on_grid(self.field, self.grid, &result.u)?,
+            (detail, _) => at_every_node(self.field, &self.lakes.whole(self.grid, &result.u, detail))?,
         };
         let named: BTreeSet<u32> = result.unresolved.iter().map(|u| u.id & !BILINEAR).collect();
         let judged = self.check.iter().chain(problem.candidates).filter(|c| !named.contains(&c.id));

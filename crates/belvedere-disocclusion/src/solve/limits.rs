@@ -5,10 +5,11 @@
 //! was seen is hidden: lines of sight run above the floor. Where steep sides are filled up, something may be hidden; the judge sees that.
 
 use super::super::{Field, Hierarchy};
+use super::lakes::Lakes;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeMap, BinaryHeap};
 
 /// The ground may lie below the lowest of the terrain by this share of the relief.
 const DEEPER: f64 = 0.2;
@@ -82,9 +83,17 @@ impl LimitedTerrain {
         })
     }
 
+    /// How far a displacement lies below the lowest height at most, or less.
+    pub(super) fn beyond(&self, grid: &Hierarchy, u: &[f64]) -> f64 {
+        let cols = grid.cols().max(2) - 1;
+        let node = |i: usize| (i / cols).min(grid.rows() - 1) * grid.cols() + i % cols;
+        let over = |(i, block): (usize, &[f64; 2])| self.limits.floor.min(block[0]) - block[0] - u[node(i)];
+        self.blocks.iter().enumerate().map(over).fold(0.0, f64::max)
+    }
+
     /// Makes a displacement of the nodes keep the limits; `None` if it does already.
-    pub(super) fn keep(&self, field: &Field, u: &mut [f64]) -> Option<LimitsReport> {
-        self.limits.keep(field, u)
+    pub(super) fn keep(&self, field: &Field, lakes: &Lakes, u: &mut [f64]) -> Option<LimitsReport> {
+        self.limits.keep(field, lakes, u)
     }
 }
 
@@ -101,11 +110,17 @@ impl Limits {
         Self { floor: field.datum() - DEEPER * field.relief(), slope: DIRECTIONS * STEEPER * steep }
     }
 
-    /// The least ground over the displaced one that keeps the limits.
-    fn keep(&self, field: &Field, u: &mut [f64]) -> Option<LimitsReport> {
+    /// The least ground over the displaced one that keeps the limits, and with it lakes level.
+    fn keep(&self, field: &Field, lakes: &Lakes, u: &mut [f64]) -> Option<LimitsReport> {
         let h = field.heights();
         let solid = |i: usize| !field.void()[i];
         let mut ground: Vec<f64> = h.iter().zip(u.iter()).map(|(h, u)| (h + u).max(self.floor.min(*h))).collect();
+        let lake_of: BTreeMap<u32, &[u32]> =
+            lakes.nodes().flat_map(|lake| lake.iter().map(move |n| (*n, lake))).collect();
+        for lake in lakes.nodes() {
+            let highest = lake.iter().map(|n| ground[*n as usize] - h[*n as usize]).fold(f64::MIN, f64::max);
+            lake.iter().for_each(|n| ground[*n as usize] = h[*n as usize] + highest);
+        }
         let allowed = |i: usize, j: usize, d: f64| (self.slope * d).max((h[i] - h[j]).abs());
         let short = |ground: &[f64], i: usize| {
             ways(field, i).any(|(j, d)| solid(j) && ground[j] < ground[i] - allowed(i, j, d) - KEPT)
@@ -118,9 +133,18 @@ impl Limits {
             }
             for (j, d) in ways(field, i).filter(|(j, _)| solid(*j)) {
                 let least = height - allowed(i, j, d);
-                if ground[j] < least {
-                    ground[j] = least;
-                    open.push(Node(least, j));
+                if ground[j] >= least {
+                    continue;
+                }
+                ground[j] = least;
+                open.push(Node(least, j));
+                for &k in lake_of.get(&(j as u32)).into_iter().copied().flatten() {
+                    let k = k as usize;
+                    let with = h[k] + (least - h[j]);
+                    if k != j && ground[k] < with {
+                        ground[k] = with;
+                        open.push(Node(with, k));
+                    }
                 }
             }
         }
@@ -132,6 +156,10 @@ impl Limits {
                 (held, most) = (held + 1, most.max(raised));
                 u[i] = ground[i] - h[i];
             }
+        }
+        for lake in lakes.nodes() {
+            let highest = lake.iter().map(|n| u[*n as usize]).fold(f64::MIN, f64::max);
+            lake.iter().for_each(|n| u[*n as usize] = highest);
         }
         (held > 0).then(|| LimitsReport {
             floor_m: self.floor,
@@ -246,7 +274,7 @@ mod tests {
         let limits = Limits::of(&field);
         let dug: Vec<f64> = (0..field.heights().len()).map(|i| -(((i * 31) % 97) as f64) * 3.0).collect();
         let mut u = dug.clone();
-        let told = limits.keep(&field, &mut u).expect("deep pits");
+        let told = limits.keep(&field, &Lakes::default(), &mut u).expect("deep pits");
         assert!(told.held_share > 0.1 && told.held_most_m > 10.0, "{told:?}");
         let h = field.heights();
         for i in 0..h.len() {
@@ -263,7 +291,7 @@ mod tests {
         }
         let again = u.clone();
         assert!(
-            limits.keep(&field, &mut u).is_none_or(|r| r.held_most_m < 1e-4)
+            limits.keep(&field, &Lakes::default(), &mut u).is_none_or(|r| r.held_most_m < 1e-4)
                 && u.iter().zip(&again).all(|(a, b)| (a - b).abs() < 1e-4)
         );
     }
@@ -278,7 +306,7 @@ mod tests {
             let depth = 0.4 * f64::from(k);
             let u: Vec<f64> = (0..grid.nodes()).map(|i| -depth * (((i * 37) % 11) as f64) / 11.0).collect();
             let mut fine = grid.prolong(&u);
-            let report = limited.keep(&field, &mut fine);
+            let report = limited.keep(&field, &Lakes::default(), &mut fine);
             if limited.surely_kept(&grid, &u) {
                 sure += 1;
                 assert!(report.is_none(), "depth {depth}");

@@ -7,6 +7,7 @@ use super::super::{
     candidate_points, grid_weight, judged_points, reference_points, stated_spacing, temporal_weight,
 };
 use super::agreement::BILINEAR;
+use super::lakes::{self, Lakes, Water};
 use super::limits::LimitedTerrain;
 use crate::DisocclusionError;
 use crate::points::{RequiredFeature, required_features};
@@ -42,6 +43,8 @@ pub(super) struct Prepared {
     pub(super) despiked: Arc<Heightfield>,
     pub(super) spikes: Vec<Spike>,
     features: Vec<RequiredFeature>,
+    waters: Vec<Water>,
+    pub(super) lakes: Arc<Lakes>,
     weights: Weights,
     pub(super) level: Arc<Field>,
     pub(super) grid: Hierarchy,
@@ -114,17 +117,19 @@ impl TerrainMemory {
         weights: Weights,
     ) -> Result<Prepared, DisocclusionError> {
         let features = required_features(scene);
+        let waters = lakes::waters(scene);
         let fits = |p: &Prepared| {
             p.settings == *settings
                 && p.weights == weights
                 && p.features == features
+                && p.waters == waters
                 && (Arc::ptr_eq(&p.ground, heightfield) || p.ground == *heightfield)
         };
         match self.prepared.take().filter(fits) {
             Some(prepared) => Ok(prepared),
             None => {
                 self.last = None;
-                Prepared::new(scene, features, heightfield, settings, weights)
+                Prepared::new(scene, (features, waters), heightfield, settings, weights)
             }
         }
     }
@@ -158,7 +163,7 @@ impl TerrainMemory {
 impl Prepared {
     fn new(
         scene: &Scene,
-        features: Vec<RequiredFeature>,
+        (features, waters): (Vec<RequiredFeature>, Vec<Water>),
         heightfield: &Arc<Heightfield>,
         settings: &TerrainSettings,
         weights: Weights,
@@ -171,6 +176,7 @@ impl Prepared {
         let with_qp = settings.mode != SolverMode::Paper;
         let dense = if with_qp { candidate_points(scene, &level, settings) } else { Vec::new() };
         let check = judged_points(scene, &level, settings, CHECK_CELLS);
+        let lakes = Lakes::new(&waters, &level);
         let limited = (with_qp && settings.limits).then(|| Arc::new(LimitedTerrain::new(&level, &grid)));
         let cells = (settings.mode != SolverMode::Qp).then(|| {
             let keep = settings.cells.unwrap_or_else(|| Cells::default_count(&level));
@@ -189,7 +195,8 @@ impl Prepared {
             None => None,
         };
         let made = |weights| {
-            program(&level, &grid, weights, options(settings, false)).map(|solver| Program { solver, foreign: false })
+            program(&level, &grid, weights, options(settings, false), &lakes.tied(&grid))
+                .map(|solver| Program { solver, foreign: false })
         };
         let still = with_qp.then(|| made(Weights { g: 0.0, ..weights })).transpose()?;
         let moving = (with_qp && weights.g > 0.0).then(|| made(weights)).transpose()?;
@@ -199,6 +206,8 @@ impl Prepared {
             despiked,
             spikes,
             features,
+            waters,
+            lakes: Arc::new(lakes),
             weights,
             level: Arc::new(level),
             grid,
@@ -247,16 +256,19 @@ pub(super) fn options(settings: &TerrainSettings, from_guard: bool) -> QpOptions
     QpOptions { guard, ..QpOptions::of(settings) }
 }
 
-/// The quadratic program on a solver's grid.
+/// The quadratic program on a solver's grid, some of whose nodes are tied.
 pub(super) fn program(
     field: &Field,
     grid: &Hierarchy,
     weights: Weights,
     options: QpOptions,
+    tied: &[Vec<u32>],
 ) -> Result<QpSolver, DisocclusionError> {
     let Weights { w, g } = weights.on(grid);
     let smoother = Smoother::new(grid.cols(), grid.rows(), w, g)?;
-    Ok(QpSolver::new(field, grid, smoother, options))
+    let mut qp = QpSolver::new(field, grid, smoother, options);
+    qp.tie(tied);
+    Ok(qp)
 }
 
 /// Which points count when only features up to `ahead_m` along their path from the eye do: the plan distance to the feature's

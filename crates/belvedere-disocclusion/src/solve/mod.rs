@@ -5,6 +5,7 @@ mod agreement;
 mod entering;
 mod fallback;
 mod in_picture;
+mod lakes;
 mod limits;
 mod live;
 mod memory;
@@ -14,6 +15,7 @@ mod points_in_view;
 mod report;
 
 pub use fallback::Fallback;
+pub use lakes::LakeReport;
 pub use limits::LimitsReport;
 pub use live::{LiveFrame, LiveTerrain};
 pub use memory::TerrainMemory;

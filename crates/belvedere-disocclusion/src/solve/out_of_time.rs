@@ -48,6 +48,8 @@ const ENOUGH: f64 = 0.9;
 pub(super) struct Ground {
     taken: Taken,
     coarse: Vec<f64>,
+    /// Change of detail at every node.
+    detail: Option<Vec<f64>>,
     full: Option<Vec<f64>>,
     limited: Option<LimitsReport>,
     qp: Option<QpReport>,
@@ -57,19 +59,37 @@ pub(super) struct Ground {
 
 impl Ground {
     fn plain(taken: Taken, coarse: Vec<f64>) -> Self {
-        Self { taken, coarse, full: None, limited: None, qp: None, unresolved: Vec::new(), rows: Vec::new() }
+        Self {
+            taken,
+            coarse,
+            detail: None,
+            full: None,
+            limited: None,
+            qp: None,
+            unresolved: Vec::new(),
+            rows: Vec::new(),
+        }
     }
 
     /// The greedy and the smooth pass, with the change of detail at every node.
-    pub(super) fn single_pass(grid: &Hierarchy, coarse: &[f64], detail: Option<&[f64]>) -> Self {
-        let whole = |detail: &[f64]| grid.prolong(coarse).iter().zip(detail).map(|(u, d)| u + d).collect();
-        Self { full: detail.map(whole), ..Self::plain(Taken::SinglePass, coarse.to_vec()) }
+    pub(super) fn single_pass(coarse: &[f64], detail: Option<Vec<f64>>) -> Self {
+        Self { detail, ..Self::plain(Taken::SinglePass, coarse.to_vec()) }
     }
 
-    fn solved(every: usize, result: QpResult, candidates: usize) -> Self {
+    /// A solution of the quadratic program.
+    pub(super) fn solved(taken: Taken, result: QpResult, candidates: usize) -> Self {
         let qp = Some(QpReport::of(&result, candidates));
         let QpResult { u, unresolved, active, .. } = result;
-        Self { qp, unresolved, rows: active, ..Self::plain(Taken::Sample { every }, u) }
+        Self { qp, unresolved, rows: active, ..Self::plain(taken, u) }
+    }
+
+    /// Takes the place of what was done.
+    pub(super) fn put(self, done: &mut Outcome) {
+        let Self { coarse, full, limited, qp, unresolved, rows, .. } = self;
+        (done.coarse, done.full, done.fine) = (coarse, full, None);
+        (done.limited, done.qp_unresolved, done.rows) = (limited, unresolved, rows);
+        done.qp = qp.or(done.qp);
+        done.fallbacks.clear();
     }
 }
 
@@ -88,7 +108,7 @@ impl Passes<'_> {
             let few: Vec<Candidate> = problem.candidates.iter().step_by(every).copied().collect();
             let result = qp.solve_with(&QpProblem { candidates: &few, ..*problem }, &progress)?;
             let done = !result.stopped;
-            out.push(Ground::solved(every, result, few.len()));
+            out.push(Ground::solved(Taken::Sample { every }, result, few.len()));
             if !done {
                 break;
             }
@@ -140,33 +160,34 @@ impl Passes<'_> {
             done.taken = Some(Taken::Unfinished);
             return Ok(());
         }
-        let Ground { taken, coarse, full, limited, qp, unresolved, rows } = best.1;
-        (done.taken, done.coarse, done.full, done.fine) = (Some(taken), coarse, full, None);
-        (done.limited, done.qp_unresolved, done.rows) = (limited, unresolved, rows);
-        done.qp = qp.or(done.qp);
-        done.fallbacks.clear();
+        done.taken = Some(best.1.taken);
+        best.1.put(done);
         Ok(())
     }
 
     /// Makes a ground plausible and judges it.
-    fn share_limited(
+    pub(super) fn share_limited(
         &self,
         prepared: &Prepared,
         in_view: &PointsInView<'_>,
         points: &[ReferencePoint],
         ground: &mut Ground,
     ) -> Result<f64, DisocclusionError> {
+        let (grid, lakes) = (&prepared.grid, &*prepared.lakes);
+        let mut full = (ground.detail.is_some() || !lakes.is_empty())
+            .then(|| lakes.whole(grid, &ground.coarse, ground.detail.as_deref()));
         if let Some(limited) = &prepared.limited
-            && (ground.full.is_some() || !limited.surely_kept(&prepared.grid, &ground.coarse))
+            && (full.is_some() || !limited.surely_kept(grid, &ground.coarse))
         {
-            let mut u = ground.full.take().unwrap_or_else(|| prepared.grid.prolong(&ground.coarse));
-            ground.limited = limited.keep(&prepared.level, &mut u);
-            ground.full = Some(u);
+            let mut u = full.take().unwrap_or_else(|| grid.prolong(&ground.coarse));
+            ground.limited = limited.keep(&prepared.level, lakes, &mut u);
+            full = Some(u);
         }
+        ground.full = full;
         self.share_of(prepared, in_view, points, (&ground.coarse, ground.full.as_deref()), None)
     }
 
-    fn share_of(
+    pub(super) fn share_of(
         &self,
         prepared: &Prepared,
         in_view: &PointsInView<'_>,

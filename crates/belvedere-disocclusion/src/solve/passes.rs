@@ -4,6 +4,7 @@ use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult};
 use super::super::{BlockMaxima, Field, Hierarchy, Naive, ReferencePoint, Smoother, SolverMode, TerrainSettings};
 use super::agreement::Agreement;
 use super::fallback::{self, Fallback};
+use super::lakes::Lakes;
 use super::memory::{self, Prepared, Weights};
 use super::out_of_time::Ground;
 use super::{Outcome, PointsInView, QpReport, TerrainTimes, scales, since};
@@ -16,6 +17,9 @@ use std::borrow::Cow;
 /// Share of the time that the quadratic program has; the rest is for what is taken where it is not done by then.
 const PROGRAM_TIME: f64 = 0.6;
 
+/// Ground that sinks below the limits by more than this share of the relief is not refined.
+const FAR_BEYOND: f64 = 0.2;
+
 /// What finer grids are tried on.
 struct Finer<'a> {
     /// The solver's grid.
@@ -24,6 +28,7 @@ struct Finer<'a> {
     ground: &'a [f64],
     detail: Option<&'a [f64]>,
     weights: Weights,
+    lakes: &'a Lakes,
     options: QpOptions,
     /// Points by which the result is judged.
     check: &'a [Candidate],
@@ -71,7 +76,7 @@ impl Passes<'_> {
         }
         if prepared.still.is_some() {
             if prepared.cells.is_some() && self.progress.is_limited() {
-                samples.push(Ground::single_pass(&prepared.grid, &done.coarse, detail.as_deref()));
+                samples.push(Ground::single_pass(&done.coarse, detail.clone()));
             }
             let in_time = Passes { progress: &self.progress.part(PROGRAM_TIME), ..*self };
             in_time.guarantee(prepared, in_view, &mut detail, &mut done, times)?;
@@ -79,20 +84,11 @@ impl Passes<'_> {
                 samples.extend(self.samples_of(prepared, in_view, detail.as_deref())?);
             }
         }
-        let fine = done.fine.take();
-        done.full = match (fine, detail) {
-            (fine, Some(detail)) => {
-                let smooth = match fine {
-                    Some((grid, u)) => grid.prolong(&u),
-                    None => prepared.grid.prolong(&done.coarse),
-                };
-                Some(smooth.iter().zip(detail).map(|(a, b)| a + b).collect())
-            }
-            (fine, None) => {
-                done.fine = fine;
-                None
-            }
-        };
+        if detail.is_some() || !prepared.lakes.is_empty() {
+            let (grid, u) = done.fine.as_ref().map_or((&prepared.grid, &done.coarse), |(grid, u)| (grid, u));
+            done.full = Some(prepared.lakes.whole(grid, u, detail.as_deref()));
+            done.fine = None;
+        }
         self.limit(prepared, &mut done);
         if done.stopped {
             self.take_best(prepared, in_view, &mut done, samples)?;
@@ -129,7 +125,7 @@ impl Passes<'_> {
             (None, Some((grid, u))) => grid.prolong(u),
             (None, None) => prepared.grid.prolong(&done.coarse),
         };
-        done.limited = limited.keep(&prepared.level, &mut u);
+        done.limited = limited.keep(&prepared.level, &prepared.lakes, &mut u);
         if done.limited.is_some() {
             done.full = Some(u);
         }
@@ -168,7 +164,9 @@ impl Passes<'_> {
             let whole = pass.scaled(&u, field.heights(), &naive.scale(field, cells));
             let smooth = pass.plain(&u);
             let parts = whole.iter().zip(smooth).zip(field.void());
-            parts.map(|((w, s), void)| if *void { 0.0 } else { w - s }).collect()
+            let mut detail: Vec<f64> = parts.map(|((w, s), void)| if *void { 0.0 } else { w - s }).collect();
+            prepared.lakes.clear(&mut detail);
+            detail
         });
         done.coarse = u;
         times.smooth_ms = since(began);
@@ -228,8 +226,13 @@ impl Passes<'_> {
             problem = QpProblem { candidates: asked, ..problem };
             result = qp.solve_with(&problem, self.progress)?;
         }
-        if self.stuck(&result) {
-            let cut = fallback::cut_detail(self.field, &ground, &prepared.grid, &result.active);
+        // Where a lake sinks with all its banks the limits fill up most of it again: that is not worth another solution.
+        let in_vain = prepared.limited.as_ref().is_some_and(|limited| {
+            !prepared.lakes.is_empty() && limited.beyond(&prepared.grid, &result.u) > FAR_BEYOND * self.field.relief()
+        });
+        if self.stuck(&result) && !in_vain {
+            let mut cut = fallback::cut_detail(self.field, &ground, &prepared.grid, &result.active);
+            prepared.lakes.clear(&mut cut);
             let lower: Vec<f64> = ground.iter().zip(&cut).map(|(h, c)| h + c).collect();
             qp.set_heights(&lower)?;
             foreign = true;
@@ -244,7 +247,7 @@ impl Passes<'_> {
             }
         }
         let mut from_guard = false;
-        if self.stuck(&result) {
+        if self.stuck(&result) && !in_vain {
             qp.set_options(memory::options(self.settings, true));
             let next = qp.solve_with(&problem, self.progress)?;
             from_guard = fallback::stuck(&next) < fallback::stuck(&result);
@@ -253,19 +256,22 @@ impl Passes<'_> {
                 done.fallbacks.push(Fallback::Guard);
             }
         }
+        let mut hidden = 0;
         let options = memory::options(self.settings, from_guard);
-        if fallback::stuck(&result) == 0 && (self.frame.is_none() || detail.is_some()) {
+        if fallback::stuck(&result) == 0 && !in_vain && (self.frame.is_none() || detail.is_some()) {
             let (field, grid, detail) = (self.field, &prepared.grid, detail.as_deref());
-            let agreement = Agreement { field, grid, detail, check: &check, options, progress: self.progress };
-            result = agreement.reach(qp, &ground, &problem, result)?;
+            let (lakes, progress) = (&*prepared.lakes, self.progress);
+            let agreement = Agreement { field, grid, detail, lakes, check: &check, options, progress };
+            (result, hidden) = agreement.reach(qp, &ground, &problem, result)?;
             foreign = true;
         }
         program.foreign = foreign;
         done.coarse.clone_from(&result.u);
-        if self.stuck(&result) {
+        if self.unfinished(&result, hidden) && !in_vain {
             let (coarse, detail) = (&prepared.grid, detail.as_deref());
-            let grids = Finer { coarse, ground: &ground, detail, weights, options, check: &check };
-            result = self.on_finer_grids(&grids, &problem, result, done)?;
+            let lakes = &*prepared.lakes;
+            let grids = Finer { coarse, ground: &ground, detail, weights, lakes, options, check: &check };
+            result = self.on_finer_grids(&grids, &problem, (result, hidden), done)?;
         }
         done.qp = Some(QpReport::of(&result, in_view.candidates.len()));
         done.stopped = result.stopped || (fallback::stuck(&result) > 0 && self.progress.is_late());
@@ -280,34 +286,40 @@ impl Passes<'_> {
         fallback::stuck(result) > 0 && !self.progress.should_end()
     }
 
+    /// The same, where lakes hide something that the program does not know of: to its grid small ones are not level.
+    fn unfinished(&self, result: &QpResult, hidden: usize) -> bool {
+        fallback::stuck(result) + hidden > 0 && !self.progress.should_end()
+    }
+
     /// Solves again on finer and finer grids until nothing is missed any more; answers the best result.
     fn on_finer_grids(
         &self,
         grids: &Finer<'_>,
         problem: &QpProblem<'_>,
-        mut best: QpResult,
+        (mut best, mut hidden): (QpResult, usize),
         done: &mut Outcome,
     ) -> Result<QpResult, DisocclusionError> {
-        let Finer { coarse, ground, detail, weights, options, check } = *grids;
+        let Finer { coarse, ground, detail, weights, lakes, options, check } = *grids;
         for grid in fallback::finer(coarse, self.field) {
-            if !self.stuck(&best) {
+            if !self.unfinished(&best, hidden) {
                 break;
             }
             self.progress.tick("quadratic program on a finer grid", 0.7)?;
             let nodes = grid.cols().max(grid.rows());
             let target = problem.target.map(|t| fallback::resampled(coarse, t, &grid));
-            let mut finer = memory::program(self.field, &grid, weights, options)?;
+            let mut finer = memory::program(self.field, &grid, weights, options, &lakes.tied(&grid))?;
             finer.set_heights(ground)?;
             let problem = QpProblem { target: target.as_deref(), ..*problem };
             let mut next = finer.solve_with(&problem, self.progress)?;
+            let mut left = 0;
             if fallback::stuck(&next) == 0 {
                 let (field, progress) = (self.field, self.progress);
-                next = Agreement { field, grid: &grid, detail, check, options, progress }
+                (next, left) = Agreement { field, grid: &grid, detail, lakes, check, options, progress }
                     .reach(&mut finer, ground, &problem, next)?;
             }
-            if fallback::stuck(&next) < fallback::stuck(&best) {
+            if (fallback::stuck(&next), left) < (fallback::stuck(&best), hidden) {
                 done.fine = Some((grid, next.u.clone()));
-                best = next;
+                (best, hidden) = (next, left);
                 done.fallbacks.push(Fallback::FinerGrid { nodes });
             }
         }

@@ -7,7 +7,7 @@ use super::super::{
     Unusable, UnusableReason, stated_spacing,
 };
 use super::memory::{CHECK_CELLS, Prepared};
-use super::{Fallback, LimitsReport, Outcome, PointsInView, Taken, since};
+use super::{Fallback, LakeReport, LimitsReport, Outcome, PointsInView, Taken, since};
 use crate::DisocclusionError;
 use crate::spikes::Spike;
 use belvedere_core::DVec2;
@@ -60,6 +60,9 @@ pub struct TerrainReport {
     /// Spikes of the elevation model, the farthest out first: for solving they were taken to be as high as their neighbours.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub spikes: Vec<Spike>,
+    /// Lakes and how they moved: each as a whole.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub lakes: Vec<LakeReport>,
     /// Whether every candidate in view is guaranteed to be seen in this picture, and the judge agrees: of the length in view at
     /// least 0.9999 is seen ([`TerrainMetrics::visible_dense`]); `hidden` names the rest. Where nothing is asked for nothing is
     /// guaranteed.
@@ -302,6 +305,10 @@ pub(super) fn report(
         fallbacks: done.fallbacks.clone(),
         limited: done.limited,
         spikes: prepared.spikes.clone(),
+        lakes: prepared.lakes.report(|i| {
+            let node = DVec2::new((i % field.cols()) as f64, (i / field.cols()) as f64);
+            c.delta.sample(field.scene_from_grid(node)).unwrap_or(0.0)
+        }),
         guaranteed: guards
             && !in_view.candidates.is_empty()
             && qp_met

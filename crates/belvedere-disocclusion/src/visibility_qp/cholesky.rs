@@ -81,13 +81,19 @@ impl Cholesky {
         self.size += 1;
     }
 
-    /// Solves `L L^T x = b` in place.
+    /// Solves `L x = b` in place.
     #[inline(always)]
-    pub(super) fn solve(&self, b: &mut [f64]) {
+    pub(super) fn forward(&self, b: &mut [f64]) {
         for i in 0..self.size {
             let row = &self.packed[start(i)..start(i + 1)];
             b[i] = (b[i] - dot(&row[..i], &b[..i])) / row[i];
         }
+    }
+
+    /// Solves `L L^T x = b` in place.
+    #[inline(always)]
+    pub(super) fn solve(&self, b: &mut [f64]) {
+        self.forward(b);
         for i in (0..self.size).rev() {
             let row = &self.packed[start(i)..start(i + 1)];
             let x = b[i] / row[i];

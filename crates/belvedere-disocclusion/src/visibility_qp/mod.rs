@@ -20,6 +20,7 @@ mod rows_in_play;
 mod single_line;
 mod solver;
 mod surface;
+mod ties;
 mod view_rays;
 mod walk;
 

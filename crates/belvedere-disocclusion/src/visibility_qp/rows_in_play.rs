@@ -5,6 +5,7 @@ use super::matrix_free::MatrixFree;
 use super::metric::Metric;
 use super::problem::{Certificate, SolvedRow};
 use super::row::{Constraint, Row};
+use super::ties;
 use belvedere_core::DVec2;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -68,6 +69,8 @@ pub(super) struct RowsInPlay {
     allowed: Vec<f64>,
     multipliers: Multipliers,
     idle: Vec<u32>,
+    /// What ties take of the products of rows; empty without ties and without a matrix.
+    shared: Vec<Vec<f64>>,
 }
 
 /// How well rows are to be met.
@@ -90,7 +93,10 @@ impl RowsInPlay {
         self.allowed.extend(new.iter().map(|n| n.allowed));
         self.idle.extend(new.iter().map(|n| n.idle));
         match &mut self.multipliers {
-            Multipliers::ActiveSet(dual) => extend(dual, &self.rows, known, &new, metric),
+            Multipliers::ActiveSet(dual) => {
+                self.shared.par_extend(new.par_iter().filter_map(|n| metric.shared(&n.row.points)));
+                extend(dual, (&self.rows, &self.shared), known, &new, metric);
+            }
             Multipliers::MatrixFree(free) => {
                 for NewRow { row, excess, soft, allowed, multiplier, .. } in new {
                     free.push(&row, row.product(&row, metric), allowed, [soft, excess, multiplier]);
@@ -117,6 +123,7 @@ impl RowsInPlay {
             free.push(row, row.product(row, metric), self.allowed[i], [soft, excess, dual.multiplier(i)]);
         }
         self.multipliers = Multipliers::MatrixFree(Box::new(free));
+        self.shared.clear();
     }
 
     /// Whether there are too many rows for a matrix over all of them.
@@ -249,10 +256,15 @@ impl RowsInPlay {
 }
 
 /// Adds the rows from `known` on to the dual with their products with all rows before them.
-fn extend(dual: &mut Dual, rows: &[Row], known: usize, new: &[NewRow], metric: &Metric) {
+///
+/// * `shared`: what ties take of the products; empty without ties.
+fn extend(dual: &mut Dual, (rows, shared): (&[Row], &[Vec<f64>]), known: usize, new: &[NewRow], metric: &Metric) {
     let products = |k: usize| {
         let mut out = Vec::with_capacity(known + k + 1);
         Arch::new().dispatch(Products { row: &rows[known + k], rows: &rows[..=known + k], metric, out: &mut out });
+        if let Some(own) = shared.get(known + k) {
+            out.iter_mut().zip(shared).for_each(|(out, other)| *out -= ties::product(own, other));
+        }
         out
     };
     let products: Vec<Vec<f64>> = (0..new.len()).into_par_iter().with_min_len(4).map(products).collect();

@@ -70,6 +70,11 @@ impl QpSolver {
         Self { metric: Metric::new(smoother), surface, options, kept: Vec::new() }
     }
 
+    /// From now on the nodes of each of these sets have one displacement. No node is in two of them.
+    pub fn tie(&mut self, sets: &[Vec<u32>]) {
+        self.metric.tie(sets);
+    }
+
     /// Other ground on the same grid (in mode `paper+qp` detail may be scaled).
     ///
     /// # Errors
@@ -154,10 +159,9 @@ impl QpSolver {
     /// Solves with these lines of sight.
     fn pass(&mut self, problem: &QpProblem, lines: &[CandidateLine], progress: &Progress) -> QpResult {
         let o = self.options;
-        let nodes = self.surface.u.len();
         let mut frame = Frame {
             problem: *problem,
-            target: problem.target.map_or_else(|| vec![0.0; nodes], <[f64]>::to_vec),
+            target: self.target(problem),
             seen: lines.to_vec(),
             bundles: Vec::new(),
             pool: RowsInPlay::default(),
@@ -205,6 +209,14 @@ impl QpSolver {
         self.report(&frame, &missed, depth, &mut out);
         self.kept = frame.pool.kept(|i| problem.candidates[i].id);
         out
+    }
+
+    /// The target, with tied nodes moving together.
+    fn target(&mut self, problem: &QpProblem) -> Vec<f64> {
+        let Some(target) = problem.target else { return vec![0.0; self.surface.u.len()] };
+        let mut target = target.to_vec();
+        self.metric.level(&mut target);
+        target
     }
 
     /// How far the ground may sink.

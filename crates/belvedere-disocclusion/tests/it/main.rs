@@ -4,6 +4,7 @@ mod coarse;
 
 mod entering;
 mod fallbacks;
+mod lakes;
 mod live;
 mod memory;
 mod qp;

@@ -1,6 +1,7 @@
 //! `disocclude`: an elevation model in, one in which features can be seen from an eye out.
 
 use super::in_time;
+use super::level_lakes::LevelLakes;
 use crate::data::DataFiles;
 use crate::output::{self, pretty};
 use crate::picture::{self, PictureOptions};
@@ -171,7 +172,8 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
     let solving = options.progress.before(WRITING);
     let solved = solver.solve(&data.scene, &view, &mut TerrainMemory::default(), &solving)?;
     data.warnings.extend(intent::remarks(&solved, &data.scene));
-    let delta = |p: DVec2| solved.stage.delta_at(p.extend(0.0));
+    let lakes = LevelLakes::new(&solved.stage, &solved.report, &data.scene);
+    let delta = |p: DVec2| lakes.at(p);
     let (rasters, visible_written) = match (request.grid, data.scene.terrain()) {
         (WrittenGrid::Scene, Some(terrain)) => (moved_terrain(terrain, data.scene.crs, delta), None),
         _ => {

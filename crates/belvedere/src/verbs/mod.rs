@@ -6,6 +6,7 @@ pub mod disocclude;
 pub mod generalise;
 mod in_time;
 pub mod info;
+mod level_lakes;
 pub mod measure;
 mod molecule_info;
 pub mod pack;

@@ -1,0 +1,235 @@
+//! Lakes and reservoirs: each moves as a whole or not at all.
+//!
+//! A lake is an area of water that the elevation model shows level. The program ties the nodes of its own grid that lie on one
+//! together; every node of the terrain on it then gets the same displacement. Nodes of the bank stay free.
+
+use super::super::{Field, Hierarchy};
+use crate::points::ring_crossings;
+use belvedere_core::DVec2;
+use belvedere_scene::{AreaSurface, LayerKind, Scene};
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Water is level where four fifths of its heights lie as near together, metres: models of 90 m give that for small lakes between steep
+/// banks. Rivers drawn as areas fall by more, or they stay within it.
+const LEVEL_M: f64 = 30.0;
+/// Nodes of the solver's grid that are tied at most: of larger waters every second one, and so on.
+const MOST_TIED: usize = 800;
+/// Fewer nodes of the solver's grid do not stand for a lake.
+const FEWEST_TIED: usize = 4;
+
+/// A lake and how it moved.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LakeReport {
+    /// Index of the layer in the scene.
+    pub layer: usize,
+    /// Index of the feature in its layer.
+    pub feature: usize,
+    /// Its name; empty if it has none.
+    pub name: String,
+    /// Middle height of the elevation model on it.
+    pub height_m: f64,
+    /// By how much it moved.
+    pub moved_m: f64,
+    /// Largest difference of that between two nodes on it; 0 but for rounding.
+    pub range_m: f64,
+    /// Nodes of the terrain on it.
+    pub nodes: usize,
+}
+
+/// Nodes of the terrain on one lake.
+#[derive(Debug, Clone)]
+struct Lake {
+    layer: usize,
+    feature: usize,
+    name: String,
+    height: f64,
+    nodes: Vec<u32>,
+}
+
+/// The lakes of a scene on its terrain.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Lakes {
+    lakes: Vec<Lake>,
+    cols: usize,
+}
+
+/// Areas of water.
+pub(super) fn waters(scene: &Scene) -> Vec<Water> {
+    let mut out = Vec::new();
+    for (layer, content) in scene.layers.iter().enumerate() {
+        if let LayerKind::Area(areas) = &content.kind
+            && areas.surface == AreaSurface::Water
+        {
+            out.extend(areas.features.iter().enumerate().map(|(feature, area)| Water {
+                layer,
+                feature,
+                name: area.name.clone(),
+                rings: area.rings.clone(),
+            }));
+        }
+    }
+    out
+}
+
+/// An area of water.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Water {
+    layer: usize,
+    feature: usize,
+    name: String,
+    /// Scene x, y.
+    rings: Vec<Vec<DVec2>>,
+}
+
+impl Lakes {
+    pub(super) fn new(waters: &[Water], field: &Field) -> Self {
+        let mut lakes = Vec::<Lake>::new();
+        // Where areas overlap they are one lake: files of several layers hold the same one twice.
+        let mut owner = BTreeMap::<u32, usize>::new();
+        for water in waters {
+            let rings: Vec<Vec<DVec2>> =
+                water.rings.iter().map(|r| r.iter().map(|p| field.grid_from_scene(*p)).collect()).collect();
+            let nodes = nodes_inside(&rings, field);
+            let Some(height) = level_of(&nodes, field) else { continue };
+            let Water { layer, feature, ref name, .. } = *water;
+            let new = Lake { layer, feature, name: name.clone(), height, nodes };
+            let others: BTreeSet<usize> = new.nodes.iter().filter_map(|n| owner.get(n).copied()).collect();
+            let at = others.first().copied().unwrap_or(lakes.len());
+            if at == lakes.len() {
+                lakes.push(Lake { nodes: Vec::new(), ..new.clone() });
+            }
+            let joined: Vec<u32> = others.iter().flat_map(|k| std::mem::take(&mut lakes[*k].nodes)).collect();
+            let all: BTreeSet<u32> = joined.into_iter().chain(new.nodes).collect();
+            owner.extend(all.iter().map(|n| (*n, at)));
+            lakes[at].nodes = all.into_iter().collect();
+        }
+        lakes.retain(|lake| !lake.nodes.is_empty());
+        Self { lakes, cols: field.cols() }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.lakes.is_empty()
+    }
+
+    /// Nodes of each lake.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = &[u32]> {
+        self.lakes.iter().map(|lake| lake.nodes.as_slice())
+    }
+
+    /// The nodes of a solver's grid on each lake.
+    pub(super) fn tied(&self, grid: &Hierarchy) -> Vec<Vec<u32>> {
+        let places: Vec<Vec<[usize; 2]>> = self.lakes.iter().map(|lake| self.under(lake, grid)).collect();
+        let all = |every: usize| -> Vec<Vec<u32>> {
+            let kept = |[col, row]: &&[usize; 2]| col % every == 0 && row % every == 0;
+            let node = |[col, row]: &[usize; 2]| (row * grid.cols() + col) as u32;
+            let of = |p: &Vec<[usize; 2]>| p.iter().filter(kept).map(node).collect();
+            places.iter().map(of).collect()
+        };
+        let few = |sets: &Vec<Vec<u32>>| sets.iter().map(Vec::len).sum::<usize>() <= MOST_TIED;
+        (1..).map(all).find(few).unwrap_or_default()
+    }
+
+    /// Columns and rows of the nodes of a solver's grid that move with a lake: those on it; of a lake with fewer than [`FEWEST_TIED`] those
+    /// of all cells that it touches, which finer grids tell apart where it takes that.
+    fn under(&self, lake: &Lake, grid: &Hierarchy) -> Vec<[usize; 2]> {
+        let own = self.on_grid(lake, grid);
+        if own.len() >= FEWEST_TIED {
+            return own;
+        }
+        let step = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
+        let corners = |n: &u32| {
+            let [x, y] = [*n as usize % self.cols, *n as usize / self.cols];
+            [x / step[0], x.div_ceil(step[0])].map(|col| [y / step[1], y.div_ceil(step[1])].map(|row| [col, row]))
+        };
+        let all: BTreeSet<[usize; 2]> = lake.nodes.iter().flat_map(corners).flatten().collect();
+        all.into_iter().collect()
+    }
+
+    /// Columns and rows of the nodes of a solver's grid that are nodes of the terrain on a lake.
+    fn on_grid(&self, lake: &Lake, grid: &Hierarchy) -> Vec<[usize; 2]> {
+        let [across, down] = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
+        let place = |n: &u32| [*n as usize % self.cols, *n as usize / self.cols];
+        let on = lake.nodes.iter().map(place).filter(|[x, y]| x % across == 0 && y % down == 0);
+        on.map(|[x, y]| [x / across, y / down]).collect()
+    }
+
+    /// Makes a displacement of the terrain's nodes level on each lake: as the tied nodes of the solver's grid that lie on it, or the mean.
+    fn level(&self, grid: &Hierarchy, u: &mut [f64]) {
+        let step = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
+        for lake in &self.lakes {
+            let own = self.on_grid(lake, grid);
+            let moved = if own.is_empty() {
+                lake.nodes.iter().map(|n| u[*n as usize]).sum::<f64>() / lake.nodes.len() as f64
+            } else {
+                own.iter().map(|[x, y]| u[y * step[1] * self.cols + x * step[0]]).sum::<f64>() / own.len() as f64
+            };
+            lake.nodes.iter().for_each(|n| u[*n as usize] = moved);
+        }
+    }
+
+    /// The displacement of every node of the terrain: that of a solver's grid and the change of detail, level on lakes.
+    pub(super) fn whole(&self, grid: &Hierarchy, u: &[f64], detail: Option<&[f64]>) -> Vec<f64> {
+        let mut whole = grid.prolong(u);
+        if let Some(detail) = detail {
+            whole.iter_mut().zip(detail).for_each(|(u, d)| *u += d);
+        }
+        self.level(grid, &mut whole);
+        whole
+    }
+
+    /// Zero on every lake: detail of the ground does not change there.
+    pub(super) fn clear(&self, detail: &mut [f64]) {
+        self.nodes().flatten().for_each(|n| detail[*n as usize] = 0.0);
+    }
+
+    /// How the lakes moved.
+    ///
+    /// * `moved`: displacement of a node of the terrain.
+    pub(super) fn report(&self, moved: impl Fn(usize) -> f64) -> Vec<LakeReport> {
+        let of = |lake: &Lake| {
+            let values = || lake.nodes.iter().map(|n| moved(*n as usize));
+            let [low, high] = values().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
+            LakeReport {
+                layer: lake.layer,
+                feature: lake.feature,
+                name: lake.name.clone(),
+                height_m: lake.height,
+                moved_m: 0.5 * (low + high),
+                range_m: high - low,
+                nodes: lake.nodes.len(),
+            }
+        };
+        self.lakes.iter().map(of).collect()
+    }
+}
+
+/// Nodes of the terrain inside rings of grid coordinates, by the even-odd rule; none in holes of the data.
+fn nodes_inside(rings: &[Vec<DVec2>], field: &Field) -> Vec<u32> {
+    let (cols, rows) = (field.cols(), field.rows());
+    let corners = || rings.iter().flatten().filter(|p| p.is_finite());
+    let [low, high] = corners().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| [a.min(p.y), b.max(p.y)]);
+    let mut out = Vec::new();
+    let mut crossings = Vec::new();
+    for row in low.ceil().max(0.0) as usize..rows.min((high.floor() + 1.0).max(0.0) as usize) {
+        crossings.clear();
+        crossings.extend(rings.iter().flat_map(|ring| ring_crossings(ring, row as f64)));
+        crossings.sort_by(f64::total_cmp);
+        for pair in crossings.chunks_exact(2) {
+            let from = pair[0].ceil().max(0.0) as usize;
+            let to = ((pair[1].floor() + 1.0).max(0.0) as usize).min(cols);
+            out.extend((from..to).map(|col| row * cols + col).filter(|i| !field.void()[*i]).map(|i| i as u32));
+        }
+    }
+    out.sort_unstable();
+    out.dedup();
+    out
+}
+
+/// Middle height of nodes, if they are level.
+fn level_of(nodes: &[u32], field: &Field) -> Option<f64> {
+    let mut heights: Vec<f64> = nodes.iter().map(|n| field.heights()[*n as usize]).collect();
+    heights.sort_by(f64::total_cmp);
+    let last = heights.len().checked_sub(1)?;
+    (heights[last * 9 / 10] - heights[last / 10] <= LEVEL_M).then(|| heights[last / 2])
+}

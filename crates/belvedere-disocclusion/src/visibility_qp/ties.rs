@@ -1,0 +1,149 @@
+//! Nodes that move together: the surface of a lake stays level.
+//!
+//! With equalities `C u = 0` the program is that of the metric on the space of level displacements, whose inverse is
+//! `H^-1 - H^-1 C^T (C H^-1 C^T)^-1 C H^-1`. So no row is added and no tolerance: every displacement of the program is level.
+
+use super::cholesky::{Cholesky, dot};
+use crate::smooth::{Between, Green, Smoother};
+
+/// A pivot below this share of its diagonal counts as dependent.
+const DEPENDENT: f64 = 1e-12;
+
+/// Sets of nodes that share one value each.
+#[derive(Debug, Clone)]
+pub(super) struct Ties {
+    /// At least two nodes each.
+    sets: Vec<Vec<u32>>,
+    /// Of `C H^-1 C^T`.
+    factor: Cholesky,
+    lattice: [usize; 2],
+}
+
+/// The equations: a node, and the first of its set to which it is equal.
+fn equations(sets: &[Vec<u32>]) -> impl Iterator<Item = (u32, u32)> + '_ {
+    sets.iter().flat_map(|set| set.iter().skip(1).map(|n| (*n, set[0])))
+}
+
+impl Ties {
+    /// `None` where nothing is tied.
+    pub(super) fn new(sets: &[Vec<u32>], smoother: &Smoother, green: &Green) -> Option<Self> {
+        let sets: Vec<Vec<u32>> = sets.iter().filter(|set| set.len() > 1).cloned().collect();
+        let rows: Vec<(u32, u32)> = equations(&sets).collect();
+        let product = |a: (u32, u32), b: (u32, u32)| {
+            let to = |n: u32| green.entry(n, b.0) - green.entry(n, b.1);
+            to(a.0) - to(a.1)
+        };
+        let mut factor = Cholesky::default();
+        for (i, row) in rows.iter().enumerate() {
+            factor.push(rows[..i].iter().map(|other| product(*row, *other)), product(*row, *row), DEPENDENT);
+        }
+        (!rows.is_empty()).then(|| Self { sets, factor, lattice: [smoother.cols(), smoother.rows()] })
+    }
+
+    /// `C v`.
+    fn apart(&self, value: impl Fn(u32) -> f64) -> Vec<f64> {
+        let mut out = Vec::with_capacity(self.factor.size());
+        for set in &self.sets {
+            let first = value(set[0]);
+            out.extend(set[1..].iter().map(|node| value(*node) - first));
+        }
+        out
+    }
+
+    /// The level displacement next to `u` in the norm of the metric, in place.
+    ///
+    /// * `solve`: `H^-1` in place.
+    pub(super) fn level(&self, u: &mut [f64], solve: impl FnOnce(&mut [f64])) {
+        let mut m = self.apart(|node| u[node as usize]);
+        self.factor.solve(&mut m);
+        let mut change = vec![0.0; u.len()];
+        for ((node, first), m) in equations(&self.sets).zip(m) {
+            change[node as usize] += m;
+            change[first as usize] -= m;
+        }
+        solve(&mut change);
+        u.iter_mut().zip(change).for_each(|(u, c)| *u -= c);
+        // What rounding leaves.
+        for set in &self.sets {
+            let mean = set.iter().map(|n| u[*n as usize]).sum::<f64>() / set.len() as f64;
+            set.iter().for_each(|n| u[*n as usize] = mean);
+        }
+    }
+
+    /// What the equalities share with a row: the product of two rows is less by the product of what they share.
+    pub(super) fn shared(&self, points: &[(f64, Between); 4], green: &Green) -> Vec<f64> {
+        let [cols, rows] = self.lattice;
+        let value = |node: u32| -> f64 {
+            let node = Between::node(node, cols, rows);
+            points.iter().filter(|p| p.0 != 0.0).map(|(f, at)| f * green.between(*at, node)).sum()
+        };
+        let mut out = self.apart(value);
+        self.factor.forward(&mut out);
+        out
+    }
+}
+
+/// Product of what two rows share.
+pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
+    dot(a, b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::metric::Metric;
+    use super::super::row::Row;
+    use super::*;
+
+    fn sets() -> [Vec<u32>; 2] {
+        let lake = (6..12).flat_map(|y| (4..9).map(move |x| y * 21 + x)).collect();
+        let pond = vec![15 * 21 + 12, 15 * 21 + 13, 16 * 21 + 12];
+        [lake, pond]
+    }
+
+    #[test]
+    fn the_inverse_is_level_and_its_entries_are_those_of_rows() {
+        let mut metric = Metric::new(Smoother::new(21, 19, 0.4, 0.0).unwrap());
+        metric.tie(&sets());
+        for k in [0u32, 7 * 21 + 5, 15 * 21 + 12, 9 * 21 + 14, 200] {
+            let mut u = vec![0.0; 21 * 19];
+            u[k as usize] = 1.0;
+            metric.solve(&mut u);
+            for set in sets() {
+                let values: Vec<f64> = set.iter().map(|n| u[*n as usize]).collect();
+                assert!(values.iter().all(|v| *v == values[0]), "{values:?}");
+            }
+            let row = |n: u32| Row::ceiling(n, Between::node(n, 21, 19), 0.0);
+            let shared = |n: u32| metric.shared(&row(n).points).unwrap();
+            for other in [0u32, 6 * 21 + 4, 100, 9 * 21 + 13, 300] {
+                let entry = row(k).product(&row(other), &metric) - product(&shared(k), &shared(other));
+                assert!((entry - u[other as usize]).abs() < 1e-10, "{k} {other}: {entry} and {}", u[other as usize]);
+            }
+        }
+    }
+
+    #[test]
+    fn the_level_displacement_next_to_one_is_the_nearest() {
+        let (nodes, w) = (21 * 19, 0.4);
+        let mut metric = Metric::new(Smoother::new(21, 19, w, 0.0).unwrap());
+        metric.tie(&sets());
+        let from: Vec<f64> = (0..nodes).map(|i| ((i * 7919) % 31) as f64 - 15.0).collect();
+        let mut level = from.clone();
+        metric.level(&mut level);
+        let norm = |u: &[f64]| {
+            let mut bent = vec![0.0; u.len()];
+            crate::smooth::laplacian(21, u, &mut bent);
+            bent.iter().map(|v| v * v).sum::<f64>() + w * w * u.iter().map(|v| v * v).sum::<f64>()
+        };
+        let apart = |u: &[f64]| norm(&u.iter().zip(&from).map(|(a, b)| a - b).collect::<Vec<_>>());
+        let least = apart(&level);
+        for k in 0..20 {
+            let mut other = level.clone();
+            let step = 0.01 * f64::from(k % 5 - 2) + 0.003;
+            match k % 2 {
+                0 => sets()[0].iter().for_each(|n| other[*n as usize] += step),
+                _ => other[(k as usize * 61) % 80] += step,
+            }
+            assert!(apart(&other) > least, "{k}: {} and {least}", apart(&other));
+        }
+    }
+}
