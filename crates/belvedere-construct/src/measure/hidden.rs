@@ -1,8 +1,8 @@
 //! What a view hides of the features that must be seen, part by part.
 
 use super::image::{self, SampleImage, Sight};
-use super::{MeasureOptions, sight_options};
-use crate::samples::{Amount, SampledFeature, default_spacing, sample_features};
+use super::{MeasureOptions, samples, sight_options};
+use crate::samples::{Amount, SampledFeature};
 use belvedere_core::View;
 use belvedere_scene::{Progress, Scene};
 use serde::Serialize;
@@ -57,7 +57,7 @@ pub fn hidden(
     progress: &Progress,
 ) -> Result<Vec<HiddenRun>, belvedere_scene::Cancelled> {
     progress.tick("what stays hidden", 0.0)?;
-    let features = sample_features(scene, options.spacing_m.unwrap_or_else(|| default_spacing(scene)).max(1e-6));
+    let features = samples(scene, options);
     let images = image::all(&Sight::new(scene, view), view, &features, &sight_options(scene, options));
     Ok(features.iter().zip(&images).flat_map(|(feature, images)| runs(feature, images)).collect())
 }

@@ -6,6 +6,7 @@ mod entering;
 mod fallbacks;
 mod live;
 mod memory;
+mod one_judge;
 mod qp;
 mod smooth;
 mod smoothing;

@@ -31,6 +31,8 @@ const KEPT_SHARE: f64 = 0.9999;
 const ADJUSTING: f64 = 0.4;
 /// Judging and writing the ground takes about so many times as long as reading it.
 const WRITING: f64 = 1.5;
+/// So many pictures above one another hold nearly all that lies above and below one.
+const TALLER: u32 = 8;
 /// Share of the length in view that is wanted visible.
 const VISIBLE_LENGTH: f64 = 0.995;
 
@@ -157,7 +159,7 @@ impl DisoccludeFiles {
 pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Disoccluded, BelvedereError> {
     intent::check(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
     let settings = intent::settings(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
-    let solver = TerrainSolver::new(settings)?;
+    let solver = TerrainSolver::new(settings)?.in_plan();
     let mut data = DataFiles { keep_voids: !request.fill_voids, ..request.data.clone() }.load(true, options)?;
     let dem = &request.data.dem;
     let original = data.original.take().ok_or_else(|| IoError::format(dem, "is no file; give an elevation model"))?;
@@ -229,10 +231,20 @@ fn written_share(
             terrain.heightfield = Arc::new(read.heightfield.clone());
         }
     }
-    let (measures, _) = in_time::measured(&scene, straight, &options.progress)?;
+    let (measures, _) = in_time::measured(&scene, &taller(straight)?, &options.progress)?;
     let kinds = [measures.lines.as_ref(), measures.areas.as_ref(), measures.points.as_ref()];
     let shares = kinds.into_iter().flatten().filter_map(|kind| kind.straight.sight.share);
     Ok(shares.min_by(f64::total_cmp))
+}
+
+/// The view with what lies above and below its picture, which the solver counts as well.
+fn taller(view: &View) -> Result<View, BelvedereError> {
+    let pinhole = view.pinhole();
+    let Projection::Perspective { fov_y } = pinhole.projection else { return Ok(view.clone()) };
+    let [width, height] = pinhole.image;
+    let projection = Projection::Perspective { fov_y: 2.0 * (f64::from(TALLER) * (0.5 * fov_y).tan()).atan() };
+    let taller = Pinhole { image: [width, TALLER * height], projection, ..pinhole.clone() };
+    Ok(View::new(taller, view.stages().to_vec())?)
 }
 
 /// That resampling hides again what was solved for.
