@@ -35,7 +35,7 @@ pub struct HiddenRun {
     pub from_m: Option<f64>,
     /// Length along a line at the end.
     pub to_m: Option<f64>,
-    /// Scene x, y of the first sample.
+    /// Scene x, y of the sample that is covered most; of the first where the picture folds.
     pub at: [f64; 2],
     /// Samples.
     pub points: usize,
@@ -82,7 +82,9 @@ fn runs(feature: &SampledFeature, images: &[SampleImage]) -> Vec<HiddenRun> {
                 if let (HiddenReason::Covered { over_m: most }, HiddenReason::Covered { over_m }) =
                     (&mut run.reason, here)
                 {
-                    *most = most.max(over_m);
+                    if over_m > *most {
+                        (*most, run.at) = (over_m, sample.p_world.truncate().to_array());
+                    }
                 }
             }
             None => out.push(HiddenRun {

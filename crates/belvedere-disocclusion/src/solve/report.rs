@@ -64,7 +64,7 @@ pub struct TerrainReport {
     /// Spikes of the elevation model, the farthest out first: for solving they were taken to be as high as their neighbours.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub spikes: Vec<Spike>,
-    /// Whether every candidate in view is guaranteed to be seen in this picture, and the judge agrees: of the length in view at
+    /// Whether every candidate in view is guaranteed to be seen in this picture, and the judge agrees: of what is in view at
     /// least 0.9999 is seen ([`TerrainMetrics::visible_dense`]); `hidden` names the rest. Where nothing is asked for nothing is
     /// guaranteed.
     pub guaranteed: bool,
@@ -75,7 +75,7 @@ pub struct TerrainReport {
     pub taken: Option<Taken>,
     /// What cannot be seen, and why.
     pub unresolved: Vec<UnresolvedRun>,
-    /// What else the judge finds hidden of the length in view, and why: places between two that were looked after.
+    /// What else the judge finds hidden of what is in view, and why: places between two that were looked after.
     pub hidden: Vec<UnresolvedRun>,
     /// Places that stay covered at the slack price.
     #[serde(skip_serializing_if = "Vec::is_empty")]

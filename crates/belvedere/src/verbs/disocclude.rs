@@ -33,7 +33,7 @@ const ADJUSTING: f64 = 0.4;
 const WRITING: f64 = 1.5;
 /// So many pictures above one another hold nearly all that lies above and below one.
 const TALLER: u32 = 8;
-/// Share of the length in view that is wanted visible.
+/// Share of what is in view that is wanted visible.
 const VISIBLE_LENGTH: f64 = 0.995;
 
 /// What to show, and from where.
@@ -356,7 +356,7 @@ impl Disoccluded {
         let length = self.visible();
         if length < VISIBLE_LENGTH {
             out.push(format!(
-                "{:.2} % of the length in view is visible, {:.1} % were wanted",
+                "{:.2} % of what is in view is visible, {:.1} % were wanted",
                 100.0 * length,
                 100.0 * VISIBLE_LENGTH
             ));
