@@ -19,4 +19,4 @@ pub use flight::{Flight, FlightError, FlightOptions};
 pub use large_forms::large_forms;
 pub use measure::{MeasureOptions, Measures, measure};
 pub use reveal::{Goal, RevealMemory, RevealOptions, RevealReport, Revealed, reveal};
-pub use samples::{Amount, Sample, SampledFeature, default_spacing, sample_features};
+pub use samples::{Amount, Sample, SampledFeature, default_spacing, judged_samples, sample_features};

@@ -53,16 +53,54 @@ pub struct SampledFeature {
 
 /// Samples every feature of the layers that must be seen.
 ///
-/// * Lines: the middles of equal parts of each piece, every `spacing` at most.
-/// * Areas: their rims likewise, and a square lattice of 4 x `spacing` inside (even-odd rule); a rim sample stands for
-///   a band of half a lattice step.
+/// * Lines: the middles of equal parts of each piece, every `spacing` at most; their amounts are lengths in plan where there is terrain.
+/// * Areas: a square lattice of 4 x `spacing` inside (even-odd rule); where none of it lies inside their rims every `spacing`, of which a
+///   sample stands for a band of half a lattice step.
 /// * Points: themselves.
 /// * Meshes, molecules and boxes: points spread by area over their surface, one feature per layer.
 ///
 /// Lines, areas and points are set on the drawn surface of the first terrain where there is one, and lifted by the layer's `lift_m`.
 pub fn sample_features(scene: &Scene, spacing: f64) -> Vec<SampledFeature> {
     let terrain = scene.terrain();
-    scene.must_see().flat_map(|(index, layer)| sample_layer(terrain, index, layer, spacing)).collect()
+    scene.must_see().flat_map(|(index, layer)| sample_layer(terrain, index, layer, [spacing; 2], None)).collect()
+}
+
+/// Lattice points inside one area, at most about, where a view is searched for.
+const MOST_INSIDE: f64 = 4000.0;
+/// Points in the box of one area where its share is judged. They are scattered evenly (Roberts's sequence, by powers of the plastic number): shadows
+/// begin along straight lines, which a square lattice would meet with whole rows.
+const JUDGED: [f64; 2] = [5_000.0, 10_000.0];
+const PLASTIC: DVec2 = DVec2::new(0.754_877_666_246_692_8, 0.569_840_290_998_053_3);
+/// Samples of lines and rims are judged so many times as densely as views are searched for by, those inside areas so many times in either
+/// direction.
+const DENSER: [f64; 2] = [4.0, 8.0];
+
+/// On all lines together at least so many samples, about, unless they would lie so many times as dense as usual.
+const LEAST_ON_LINES: f64 = 3000.0;
+const FINEST: f64 = 200.0;
+
+/// The samples that shares are judged by: as [`sample_features`], but every eighth of a grid cell along lines, and inside areas some
+/// thousands. Where a feature begins to be hidden does then not change shares by as much as half a per cent.
+pub fn judged_samples(scene: &Scene) -> Vec<SampledFeature> {
+    let terrain = scene.terrain();
+    let usual = default_spacing(scene).max(1e-6);
+    // Shares of short lines are to be as fine as those of long ones.
+    let length = |f: &LineFeature| f.points.windows(2).map(|w| w[0].truncate().distance(w[1].truncate())).sum::<f64>();
+    let of_layer = |layer: &Layer| match &layer.kind {
+        LayerKind::Line(l) => l.features.iter().map(length).filter(|length| length.is_finite()).sum(),
+        _ => 0.0,
+    };
+    let lines: f64 = scene.must_see().map(|(_, layer)| of_layer(layer)).sum();
+    let on_lines = (usual / DENSER[0]).min((lines / LEAST_ON_LINES).max(usual / FINEST));
+    let sampled = |(index, layer): (usize, &Layer)| {
+        let spacing = match layer.kind {
+            LayerKind::Line(_) => [on_lines; 2],
+            LayerKind::Area(_) | LayerKind::Point(_) => DENSER.map(|denser| usual / denser),
+            _ => [usual; 2],
+        };
+        sample_layer(terrain, index, layer, spacing, Some(JUDGED))
+    };
+    scene.must_see().flat_map(sampled).collect()
 }
 
 /// Half the spacing of the terrain grid, or a two-thousandth of the scene's extent without terrain.
@@ -77,7 +115,14 @@ pub fn default_spacing(scene: &Scene) -> f64 {
     }
 }
 
-fn sample_layer(terrain: Option<&Heightfield>, index: usize, layer: &Layer, spacing: f64) -> Vec<SampledFeature> {
+/// * `spacing`: along lines, and a quarter of that inside areas; `scattered`: see [`area_samples`].
+fn sample_layer(
+    terrain: Option<&Heightfield>,
+    index: usize,
+    layer: &Layer,
+    [spacing, inside]: [f64; 2],
+    scattered: Option<[f64; 2]>,
+) -> Vec<SampledFeature> {
     let feature = |i: usize, name: &str, amount: Amount, samples: Vec<Sample>| SampledFeature {
         layer: index,
         feature: i,
@@ -90,7 +135,7 @@ fn sample_layer(terrain: Option<&Heightfield>, index: usize, layer: &Layer, spac
     match &layer.kind {
         LayerKind::Line(l) => {
             let sampled = |f: &LineFeature| {
-                along(&f.points, spacing, |p, amount| Sample {
+                along(&f.points, (spacing, terrain.is_some()), |p, amount| Sample {
                     p_world: set(p, l.lift_m),
                     lift: l.lift_m,
                     amount,
@@ -112,7 +157,7 @@ fn sample_layer(terrain: Option<&Heightfield>, index: usize, layer: &Layer, spac
                         triangle: None,
                     })
                 };
-                area_samples(f, spacing, &on_surface)
+                area_samples(f, (spacing, 4.0 * inside, scattered), &on_surface)
             };
             a.features.iter().enumerate().map(|(i, f)| feature(i, &f.name, Amount::Area, sampled(f))).collect()
         }
@@ -138,11 +183,12 @@ fn on_ground(terrain: Option<&Heightfield>, p: DVec3) -> DVec3 {
     }
 }
 
-fn along(points: &[DVec3], spacing: f64, make: impl Fn(DVec3, f64) -> Sample) -> Vec<Sample> {
+/// * `in_plan`: whether lengths are those of the plan.
+fn along(points: &[DVec3], (spacing, in_plan): (f64, bool), make: impl Fn(DVec3, f64) -> Sample) -> Vec<Sample> {
     let mut out = Vec::new();
     for pair in points.windows(2) {
         let (a, b) = (pair[0], pair[1]);
-        let length = (b - a).length();
+        let length = if in_plan { (b - a).truncate().length() } else { (b - a).length() };
         if !(length > 0.0 && length.is_finite()) {
             continue;
         }
@@ -153,14 +199,19 @@ fn along(points: &[DVec3], spacing: f64, make: impl Fn(DVec3, f64) -> Sample) ->
     out
 }
 
-fn area_samples(f: &AreaFeature, spacing: f64, on_surface: &dyn Fn(DVec2, f64) -> Option<Sample>) -> Vec<Sample> {
+/// * `spacing`: along rims; `step`: of the lattice inside; `scattered`: so many points in its box, within bounds, that are no square lattice.
+fn area_samples(
+    f: &AreaFeature,
+    (spacing, step, scattered): (f64, f64, Option<[f64; 2]>),
+    on_surface: &dyn Fn(DVec2, f64) -> Option<Sample>,
+) -> Vec<Sample> {
     let rim: Vec<DVec2> = f.rings.iter().flatten().copied().filter(|p| p.is_finite()).collect();
     let Some(&first) = rim.first() else { return Vec::new() };
     let (low, high) = rim.iter().fold((first, first), |(lo, hi), &p| (lo.min(p), hi.max(p)));
     let extent = high - low;
     // At most some thousand lattice points, at least a few across a small pond.
-    let step = (4.0 * spacing).min(0.25 * extent.max_element()).max((extent.x * extent.y / 4000.0).sqrt()).max(1e-6);
-    let mut out = Vec::new();
+    let step = step.min(0.25 * extent.max_element()).max((extent.x * extent.y / MOST_INSIDE).sqrt()).max(1e-6);
+    let (mut rims, mut out) = (Vec::new(), Vec::new());
     for ring in &f.rings {
         let closed: Vec<DVec3> = ring.iter().chain(ring.first()).map(|p| p.extend(0.0)).collect();
         let band = |p: DVec3, length: f64| Sample {
@@ -170,9 +221,18 @@ fn area_samples(f: &AreaFeature, spacing: f64, on_surface: &dyn Fn(DVec2, f64) -
             surface: None,
             triangle: None,
         };
-        out.extend(
-            along(&closed, spacing, band).into_iter().filter_map(|s| on_surface(s.p_world.truncate(), s.amount)),
+        rims.extend(
+            along(&closed, (spacing, true), band)
+                .into_iter()
+                .filter_map(|s| on_surface(s.p_world.truncate(), s.amount)),
         );
+    }
+    if let Some([least, most]) = scattered {
+        let count = (extent.element_product() / (step * step)).clamp(least, most).floor();
+        let each = extent.element_product() / count;
+        let places = (0..count as usize).map(|i| low + extent * (0.5 + i as f64 * PLASTIC).fract());
+        out.extend(places.filter(|p| inside(&f.rings, *p)).filter_map(|p| on_surface(p, each)));
+        return if out.is_empty() { rims } else { out };
     }
     let (cols, rows) = ((extent.x / step).ceil() as usize, (extent.y / step).ceil() as usize);
     for row in 0..rows {
@@ -183,7 +243,8 @@ fn area_samples(f: &AreaFeature, spacing: f64, on_surface: &dyn Fn(DVec2, f64) -
             }
         }
     }
-    out
+    // The band along a rim is a part of the area that the lattice counts already.
+    if out.is_empty() { rims } else { out }
 }
 
 fn inside(rings: &[Vec<DVec2>], p: DVec2) -> bool {
@@ -198,26 +259,31 @@ fn inside(rings: &[Vec<DVec2>], p: DVec2) -> bool {
 mod tests {
     use super::*;
 
+    fn samples(rings: Vec<Vec<DVec2>>) -> Vec<Sample> {
+        let flat = |xy: DVec2, amount: f64| {
+            Some(Sample { p_world: xy.extend(0.0), lift: 0.0, amount, surface: None, triangle: None })
+        };
+        area_samples(&AreaFeature { name: String::new(), rings }, (5.0, 20.0, None), &flat)
+    }
+
+    #[test]
+    fn amounts_inside_an_area_add_up_to_the_area() {
+        let square = [[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]].map(DVec2::from).to_vec();
+        let hole = square.iter().map(|p| 0.4 * *p + 20.0).collect();
+        let sum = |rings| samples(rings).iter().map(|s| s.amount).sum::<f64>();
+        assert!((sum(vec![square.clone()]) - 1e4).abs() < 1e-6);
+        assert!((sum(vec![square, hole]) - 8400.0).abs() < 1e-6);
+    }
+
     #[test]
     fn every_side_of_a_rim_is_sampled_alike_whether_the_ring_repeats_its_first_point_or_not() {
-        let open = [[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]].map(DVec2::from).to_vec();
-        let closed = open.iter().chain(open.first()).copied().collect();
-        for ring in [open, closed] {
-            let feature = AreaFeature { name: String::new(), rings: vec![ring] };
-            let flat = |xy: DVec2, amount: f64| {
-                Some(Sample { p_world: xy.extend(0.0), lift: 0.0, amount, surface: None, triangle: None })
-            };
-            let samples = area_samples(&feature, 5.0, &flat);
-            let side = |on: &dyn Fn(DVec3) -> bool| {
-                let on_side: Vec<f64> = samples.iter().filter(|s| on(s.p_world)).map(|s| s.amount).collect();
-                (on_side.len(), on_side.iter().sum::<f64>())
-            };
-            let sides =
-                [side(&|p| p.y == 0.0), side(&|p| p.x == 100.0), side(&|p| p.y == 100.0), side(&|p| p.x == 0.0)];
-            // Every 5 along 100, each for a band of half a lattice step of 4 x 5.
-            assert!(sides.iter().all(|(n, area)| *n == 20 && (area - 1000.0).abs() < 1e-9), "{sides:?}");
-            let inner: f64 = samples.iter().map(|s| s.amount).sum::<f64>() - 4000.0;
-            assert!((inner - 1e4).abs() < 1e-6, "{inner}");
-        }
+        // So thin that no point of the lattice lies inside.
+        let open = [[0.0, 0.0], [100.0, 0.0], [100.0, 1.0], [0.0, 1.0]].map(DVec2::from).to_vec();
+        let closed: Vec<DVec2> = open.iter().chain(open.first()).copied().collect();
+        let [a, b] = [open, closed].map(|ring| samples(vec![ring]));
+        assert_eq!(a, b);
+        let bottom: Vec<f64> = a.iter().filter(|s| s.p_world.y == 0.0).map(|s| s.amount).collect();
+        // Every 5 along 100, each for a band of half a lattice step of 4 x 5.
+        assert!(bottom.len() == 20 && bottom.iter().all(|amount| (amount - 50.0).abs() < 1e-9), "{bottom:?}");
     }
 }

@@ -32,7 +32,7 @@ use greedy::{BlockMaxima, GreedyCounters, Naive};
 use in_view::{LeftOut, Wedge, check_eye, in_view};
 use metrics::{Deformation, TerrainMetrics};
 use points::{
-    PointKind, ReferencePoint, Unusable, UnusableReason, candidate_points, counted, judged_points, reference_points,
+    KINDS, PointKind, ReferencePoint, Unusable, UnusableReason, candidate_points, judged_points, reference_points,
 };
 use settings::stated_spacing;
 use smooth::{Hierarchy, SmoothPass, Smoother, grid_weight, temporal_weight};

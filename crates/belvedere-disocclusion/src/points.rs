@@ -3,7 +3,6 @@
 use super::{Field, TerrainSettings};
 use belvedere_core::DVec2;
 use belvedere_scene::{AreaFeature, Layer, LayerKind, LineFeature, Scene};
-use std::collections::BTreeSet;
 
 /// Points along one line or rim, and inside one area, at most; a longer feature gets wider spacing.
 const MOST_POINTS: f64 = 50_000.0;
@@ -39,7 +38,13 @@ pub struct ReferencePoint {
     pub lift: f64,
     /// What it stands for.
     pub kind: PointKind,
+    /// Length of line, area, or number of point features that it stands for, scene units; all in plan.
+    pub amount: f64,
 }
+
+/// Where shares are judged, points on all lines together at least, about, unless they would lie nearer to one another than so many cells.
+const LEAST_ON_LINES: f64 = 4000.0;
+const FINEST: f64 = 0.002;
 
 /// Why nothing can be done for a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -92,8 +97,8 @@ pub(super) fn candidate_points(scene: &Scene, field: &Field, settings: &TerrainS
     collect_points(PointCollector::new(field, true), scene, settings, settings.candidates).0
 }
 
-/// Points by which a result is judged: as [`reference_points`] `spacing` apart, but inside areas on the edges of the ground's triangles.
-/// Ground hides of a flat triangle what lies beyond a straight edge, farthest at the rim of the triangle or of the area: where no edge is
+/// Points by which a result is judged: as [`reference_points`] `spacing` apart, but inside areas scattered evenly; and, for no
+/// length or area, on the edges of the ground's triangles inside areas and wherever lines and rims cross those. Over flat triangles a straight piece of them is hidden first at an end. Ground hides of a flat triangle what lies beyond a straight edge, farthest at the rim of the triangle or of the area: where no edge is
 /// hidden, nothing between them is.
 pub(super) fn judged_points(
     scene: &Scene,
@@ -105,11 +110,18 @@ pub(super) fn judged_points(
     collect_points(out, scene, settings, spacing).0
 }
 
-/// Which points count in the share of what is seen: of an area its inside alone, of which equal parts have equally many points.
-pub(super) fn counted(points: &[ReferencePoint]) -> Vec<bool> {
-    let inside = |p: &&ReferencePoint| p.kind == PointKind::Inside;
-    let areas: BTreeSet<_> = points.iter().filter(inside).map(|p| (p.layer, p.feature)).collect();
-    points.iter().map(|p| p.kind != PointKind::Rim || !areas.contains(&(p.layer, p.feature))).collect()
+/// What is made of features: lines, areas and points are never added up.
+pub(super) const KINDS: usize = 3;
+
+impl PointKind {
+    /// Index of the kind of feature.
+    pub(super) fn of_feature(self) -> usize {
+        match self {
+            Self::Line => 0,
+            Self::Rim | Self::Inside => 1,
+            Self::Landmark => 2,
+        }
+    }
 }
 
 /// A feature that must be seen, with all that its points depend on besides the ground and the parameters.
@@ -163,15 +175,26 @@ fn collect_points(
 ) -> (Vec<ReferencePoint>, Vec<Unusable>) {
     let field = out.field;
     let to_grid = |points: &Vec<DVec2>| points.iter().map(|p| field.grid_from_scene(*p)).collect::<Vec<_>>();
-    for required in &required_features(scene) {
+    let features = required_features(scene);
+    // Shares of short lines are to be as fine as those of long ones.
+    let length = |f: &RequiredFeature| match &f.shape {
+        Shape::Line(points) => to_grid(points).windows(2).map(|w| w[0].distance(w[1])).sum(),
+        Shape::Area(_) | Shape::Point(_) => 0.0,
+    };
+    let lines: f64 = if out.edges { features.iter().map(length).sum() } else { f64::INFINITY };
+    let along_lines = spacing.min((lines / LEAST_ON_LINES).max(FINEST));
+    for required in &features {
         (out.layer, out.feature) = (required.layer, required.feature);
         out.lift = settings.lift_m.unwrap_or(required.lift_m);
         match &required.shape {
             Shape::Line(points) => {
-                out.along(&to_grid(points), spacing, 0.0, PointKind::Line);
+                out.along(&to_grid(points), along_lines, 0.0, PointKind::Line);
             }
             Shape::Area(rings) => out.area(&rings.iter().map(to_grid).collect::<Vec<_>>(), spacing),
-            Shape::Point(p) => out.put(field.grid_from_scene(*p), 0.0, PointKind::Landmark),
+            Shape::Point(p) => {
+                out.amount = 1.0;
+                out.put(field.grid_from_scene(*p), 0.0, PointKind::Landmark);
+            }
         }
     }
     (out.usable, out.unusable)
@@ -187,20 +210,24 @@ struct PointCollector<'a> {
     layer: usize,
     feature: usize,
     lift: f64,
+    /// See [`ReferencePoint::amount`].
+    amount: f64,
     usable: Vec<ReferencePoint>,
     unusable: Vec<Unusable>,
 }
 
 impl<'a> PointCollector<'a> {
     fn new(field: &'a Field, bends: bool) -> Self {
-        Self { field, bends, edges: false, layer: 0, feature: 0, lift: 0.0, usable: Vec::new(), unusable: Vec::new() }
+        let (usable, unusable) = (Vec::new(), Vec::new());
+        Self { field, bends, edges: false, layer: 0, feature: 0, lift: 0.0, amount: 1.0, usable, unusable }
     }
 
     fn put(&mut self, grid: DVec2, along_m: f64, kind: PointKind) {
         let (layer, feature) = (self.layer, self.feature);
         match self.field.surface_at(grid) {
             Some(ground) => {
-                self.usable.push(ReferencePoint { layer, feature, along_m, grid, ground, lift: self.lift, kind });
+                let (lift, amount) = (self.lift, self.amount);
+                self.usable.push(ReferencePoint { layer, feature, along_m, grid, ground, lift, kind, amount });
             }
             None => {
                 let reason =
@@ -217,6 +244,11 @@ impl<'a> PointCollector<'a> {
         let parts = (cells / spacing).ceil().clamp(0.0, MOST_POINTS) as usize;
         let closed = path.len() > 2 && path.last() == Some(&first);
         let spacing_m = self.field.spacing();
+        let first_of_path = self.usable.len();
+        if kind == PointKind::Line {
+            let length_m: f64 = path.windows(2).map(|w| ((w[1] - w[0]) * spacing_m).length()).sum();
+            self.amount = length_m / (parts.max(1) + usize::from(!closed)) as f64;
+        }
         self.put(first, start_m, kind);
         let (mut placed, mut before, mut before_m) = (1, 0.0, start_m);
         for pair in path.windows(2) {
@@ -239,10 +271,47 @@ impl<'a> PointCollector<'a> {
         if !closed && parts > 0 {
             self.put(path[path.len() - 1], before_m, kind);
         }
+        if self.edges {
+            self.on_bends(path, start_m, kind);
+            self.usable[first_of_path..].sort_by(|a, b| a.along_m.total_cmp(&b.along_m));
+        }
         before_m
     }
 
+    /// Points wherever a path crosses the mesh, which stand for no length.
+    fn on_bends(&mut self, path: &[DVec2], start_m: f64, kind: PointKind) {
+        let amount = std::mem::replace(&mut self.amount, 0.0);
+        let (spacing_m, mut before_m) = (self.field.spacing(), start_m);
+        for pair in path.windows(2) {
+            let step = pair[1] - pair[0];
+            let length_m = (step * spacing_m).length();
+            let shares = mesh_crossings(pair[0], step);
+            // A path far beyond the terrain crosses no mesh there.
+            let shares = shares.filter(|share| self.field.contains(pair[0] + *share * step)).collect::<Vec<_>>();
+            for share in shares {
+                self.put(pair[0] + share * step, before_m + share * length_m, kind);
+            }
+            self.put(pair[1], before_m + length_m, kind);
+            before_m += length_m;
+        }
+        self.amount = amount;
+    }
+
+    /// Equal parts of an area have equally many points inside; its rims stand for it where none lies inside.
     fn area(&mut self, rings: &[Vec<DVec2>], spacing: f64) {
+        let first = self.usable.len();
+        self.amount = 0.0;
+        self.on_rims(rings, spacing);
+        let rims = self.usable.len();
+        self.inside(rings, spacing);
+        if self.usable.len() == rims {
+            let enclosed = self.field.spacing().element_product() * rings.iter().map(|r| enclosed(r)).sum::<f64>();
+            let each = enclosed / (rims - first).max(1) as f64;
+            self.usable[first..].iter_mut().for_each(|p| p.amount = each);
+        }
+    }
+
+    fn on_rims(&mut self, rings: &[Vec<DVec2>], spacing: f64) {
         let mut start_m = 0.0;
         for ring in rings {
             let mut closed = ring.clone();
@@ -251,19 +320,24 @@ impl<'a> PointCollector<'a> {
             }
             start_m = self.along(&closed, spacing, start_m, PointKind::Rim);
         }
+    }
+
+    fn inside(&mut self, rings: &[Vec<DVec2>], spacing: f64) {
         let corners = rings.iter().flatten();
         let [low, high] = corners.fold([DVec2::MAX, DVec2::MIN], |[lo, hi], &p| [lo.min(p), hi.max(p)]);
         let extent = high - low;
         if !(extent.x > 0.0 && extent.y > 0.0) {
             return;
         }
-        if self.edges {
-            return self.on_edges(rings, [low, high]);
-        }
-        // Neither finer than the data nor beside it.
         let last = DVec2::new((self.field.cols() - 1) as f64, (self.field.rows() - 1) as f64);
+        if self.edges {
+            self.amount = 0.0;
+            self.on_edges(rings, [low, high]);
+            return self.scattered(rings, [low, extent]);
+        }
         let step = (4.0 * spacing).max((extent.x * extent.y / MOST_POINTS).sqrt());
         let count = (extent / step).ceil();
+        self.amount = step * step * self.field.spacing().element_product();
         let origin = low + 0.5 * (extent - (count - 1.0) * step);
         let (from, to) = (((-origin) / step).ceil().max(DVec2::ZERO), ((last - origin) / step).floor() + 1.0);
         let to = to.min(count);
@@ -278,11 +352,29 @@ impl<'a> PointCollector<'a> {
     }
 }
 
+/// Where shares are judged, points inside the box of an area: so many to a grid cell, within bounds.
+const INSIDE_A_CELL: f64 = 16.0;
+const INSIDE: [f64; 2] = [6_000.0, 12_000.0];
+/// Share of the golden section.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Points on the edges of triangles inside one area, at most about.
 const MOST_ON_EDGES: f64 = 800_000.0;
 
 impl PointCollector<'_> {
-    /// Points on the edges of the ground's triangles in a box that lie inside the rings: each cell has those of its node, and of its
+    /// Points inside the rings that stand for equal areas, in rows of one point each (a Fibonacci lattice): shadows begin along straight lines,
+    /// which a square lattice would meet with whole rows.
+    fn scattered(&mut self, rings: &[Vec<DVec2>], [low, extent]: [DVec2; 2]) {
+        let count = (INSIDE_A_CELL * extent.element_product()).clamp(INSIDE[0], INSIDE[1]).floor();
+        self.amount = extent.element_product() * self.field.spacing().element_product() / count;
+        for i in 0..count as usize {
+            let p = low + extent * DVec2::new((i as f64 * GOLDEN).fract(), (i as f64 + 0.5) / count);
+            if inside(rings, p) {
+                self.put(p, 0.0, PointKind::Inside);
+            }
+        }
+    }
+
+    /// Points that stand for no area, on the edges of the ground's triangles in a box that lie inside the rings: each cell has those of its node, and of its
     /// upper, left and diagonal edge.
     fn on_edges(&mut self, rings: &[Vec<DVec2>], [low, high]: [DVec2; 2]) {
         let last = DVec2::new((self.field.cols() - 1) as f64, (self.field.rows() - 1) as f64);
@@ -319,10 +411,27 @@ impl PointCollector<'_> {
     }
 }
 
+/// What a closed ring encloses, in cells.
+fn enclosed(ring: &[DVec2]) -> f64 {
+    let Some(&origin) = ring.first() else { return 0.0 };
+    let sides = (0..ring.len()).map(|i| (ring[i] - origin, ring[(i + 1) % ring.len()] - origin));
+    0.5 * sides.map(|(a, b)| a.perp_dot(b)).sum::<f64>().abs()
+}
+
 /// Where a closed ring crosses a line of constant y.
 pub(crate) fn ring_crossings(ring: &[DVec2], y: f64) -> impl Iterator<Item = f64> + '_ {
     let sides = (0..ring.len()).map(move |i| (ring[i], ring[(i + 1) % ring.len()]));
     sides.filter(move |(a, b)| (a.y > y) != (b.y > y)).map(move |(a, b)| a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x))
+}
+
+/// The shares of a straight way at which it crosses the mesh, at most [`MOST_POINTS`] of each family of its lines.
+fn mesh_crossings(from: DVec2, step: DVec2) -> impl Iterator<Item = f64> {
+    let lines = [(from.x, step.x), (from.y, step.y), (from.x - from.y, step.x - step.y)];
+    lines.into_iter().flat_map(|(from, step)| {
+        let (low, high) = (from.min(from + step).floor() + 1.0, from.max(from + step).ceil());
+        let count = (high - low).clamp(0.0, MOST_POINTS) as usize;
+        (0..count).map(move |i| (low + i as f64 - from) / step)
+    })
 }
 
 /// The share of a straight way, `share` or less than `reach` away from it, at which the way ends or crosses the mesh.

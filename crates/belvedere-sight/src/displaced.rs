@@ -5,8 +5,9 @@ use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
 use belvedere_scene::CellTriangle;
 
-/// Steps along a line over one triangle are at most this long, cells; the surface is bent only by the displacement.
-const STEP: f64 = 0.25;
+/// Steps along a line over one triangle are at most this long, cells; the surface is bent only by the displacement, whose own grid may cross
+/// the triangle.
+const STEP: f64 = 0.5;
 
 /// Ground with a vertical displacement: two triangles per cell, whose nodes are displaced, as it is rasterised and written; or plus the
 /// bilinear displacement, as it is traced.
@@ -182,14 +183,29 @@ impl<'a> DisplacedGround<'a> {
             // What is flat is highest over the line at an end.
             let steps = if self.faceted { 1.0 } else { (to - from) * line.dir.length() / STEP };
             let count = steps.ceil().max(1.0) as usize;
-            for k in 0..=count {
-                let t = from + (to - from) * k as f64 / count as f64;
+            let mut over_at = |t: f64| {
                 let at = line.at(t);
                 let moved = if self.faceted { 0.0 } else { self.displacement(at) };
                 let over = heights[0] + slope.dot(at - corner) + moved - (z + t * dz);
                 if over > worst.over {
                     *worst = Excess { over, at };
                 }
+                over
+            };
+            let mut before = over_at(from);
+            for k in 0..count {
+                let [a, b] = [k, k + 1].map(|k| from + (to - from) * k as f64 / count as f64);
+                let after = over_at(b);
+                if !self.faceted {
+                    // A bilinear displacement is a parabola along a line.
+                    let middle = over_at(0.5 * (a + b));
+                    let (bend, rise) = (before + after - 2.0 * middle, after - before);
+                    let top = 0.5 - 0.25 * rise / bend;
+                    if bend < 0.0 && top > 0.0 && top < 1.0 {
+                        over_at(a + top * (b - a));
+                    }
+                }
+                before = after;
             }
         }
     }

@@ -6,7 +6,7 @@ use crate::ConstructError;
 use crate::samples::{Sample, SampledFeature};
 use belvedere_core::{CurvedRays, DVec2, DVec3, Pinhole, SplitRays, Stage, View};
 use belvedere_scene::{
-    Aux, Frame, Heightfield, Layer, LayerKind, Light, Progress, RenderJob, RenderOptions, Renderer, Scene,
+    Aux, CellTriangle, Frame, Heightfield, Layer, LayerKind, Light, Progress, RenderJob, RenderOptions, Renderer, Scene,
 };
 
 pub(super) struct Job<'a> {
@@ -87,7 +87,7 @@ impl Job<'_> {
         let pinpoint = Pinpoint::new(self.scene, (view, original), features, images, &frame);
         let bodies = BodyViews::new(self.scene, view);
         let finer = width as f64 / f64::from(original);
-        let mut pinpointed = pinpoint.depths.chunks_exact(PLACES);
+        let mut pinpointed = 0..;
         for (feature, row) in features.iter().zip(images) {
             for (sample, j) in feature.samples.iter().zip(row.iter_mut()).filter(|(_, j)| j.in_frame) {
                 let finer = SampleImage { pixel: finer * j.pixel, ..*j };
@@ -100,7 +100,7 @@ impl Job<'_> {
                     }
                     None => {
                         let coarse = in_buffer(view, terrain, sample, &finer, &frame);
-                        let exact = pinpointed.next().and_then(|depths| pinpoint.seen(depths, &finer, &frame));
+                        let exact = pinpointed.next().and_then(|index| pinpoint.seen(index, &finer, &frame));
                         DepthTest { seen: exact.unwrap_or(coarse.seen), ..coarse }
                     }
                 });
@@ -124,6 +124,9 @@ const TOUCH: f64 = 1e-7;
 /// Depths of the terrain at the places of all samples in the frame that stand for no surface in space.
 struct Pinpoint {
     depths: Vec<f64>,
+    /// The same over flat triangles between displaced nodes, where ground is displaced upwards alone; the sample's own place is that over
+    /// them, and its own depth there comes after it.
+    flat: Option<(Vec<f64>, Vec<f64>)>,
     /// Whether the picture shows the terrain where it is.
     trusted: bool,
     /// Whether a layer, by its index, can hide the terrain.
@@ -144,7 +147,7 @@ impl Pinpoint {
         };
         let solid = scene.layers.iter().map(is_solid).collect();
         if scene.terrain().is_none() {
-            return Self { depths: Vec::new(), trusted: false, solid };
+            return Self { depths: Vec::new(), flat: None, trusted: false, solid };
         }
         let finer = f64::from(view.pinhole().image[0]) / f64::from(original);
         let mut places = Vec::new();
@@ -156,20 +159,38 @@ impl Pinpoint {
                 places.extend(around(at));
             }
         }
-        let depths = pinpoint::depths(scene, view, &places);
+        let depths = pinpoint::depths(scene, view, &places, false);
         let centres = || {
             places.chunks_exact(PLACES).zip(depths.chunks_exact(PLACES)).flat_map(|(p, d)| p[1..].iter().zip(&d[1..]))
         };
         let all = centres().filter(|(p, _)| pixel(**p, frame).is_some()).count();
         let same = centres().filter(|(p, d)| pixel(**p, frame).is_some_and(|k| is_same(frame, k, **d))).count();
-        Self { trusted: same as f64 >= TRUSTED * all as f64, depths, solid }
+        let trusted = same as f64 >= TRUSTED * all as f64;
+        let upright = view.is_bent() && view.stages().iter().all(|s| s.is_upright());
+        let flat = upright.then(|| {
+            let mut own = Vec::new();
+            for (feature, row) in features.iter().zip(images) {
+                let framed = feature.samples.iter().zip(row).filter(|(s, j)| j.in_frame && s.surface.is_none());
+                own.extend(framed.map(|(s, j)| flat_image(scene, view, s).unwrap_or((finer * j.pixel, j.depth))));
+            }
+            for (place, (pixel, _)) in places.chunks_exact_mut(PLACES).zip(&own) {
+                place[0] = *pixel;
+            }
+            (pinpoint::depths(scene, view, &places, true), own.into_iter().map(|(_, depth)| depth).collect())
+        });
+        Self { trusted, depths, flat, solid }
     }
 
     /// Whether the terrain leaves a sample free, between the pixels too; `None` where the picture shows something else than the terrain.
-    fn seen(&self, depths: &[f64], j: &SampleImage, frame: &Frame) -> Option<bool> {
-        let [nearest, farthest] = depths.iter().fold([f64::INFINITY, 0.0], |[lo, hi], d| [d.min(lo), d.max(hi)]);
+    /// * `index`: of the sample among those that stand for no surface.
+    fn seen(&self, index: usize, j: &SampleImage, frame: &Frame) -> Option<bool> {
+        let at = index * PLACES..(index + 1) * PLACES;
+        let depths = self.depths.get(at.clone())?;
+        let (flat, own) = self.flat.as_ref().map_or((depths, j.depth), |(flat, own)| (&flat[at], own[index]));
+        let [nearest, farthest] =
+            depths.iter().chain(flat).fold([f64::INFINITY, 0.0], |[lo, hi], d| [d.min(lo), d.max(hi)]);
         let mut explained = 0;
-        for (centre, &depth) in around(j.pixel).into_iter().zip(&depths[1..]) {
+        for (centre, (&depth, &flat)) in around(j.pixel).into_iter().zip(depths[1..].iter().zip(&flat[1..])) {
             let Some(k) = pixel(centre, frame) else {
                 explained += 1;
                 continue;
@@ -177,11 +198,30 @@ impl Pinpoint {
             let drawn = f64::from(frame.depth[k]);
             let covered = (frame.id[k] as usize).checked_sub(1).is_some_and(|layer| self.solid[layer]);
             let near = drawn >= (1.0 - BESIDE) * nearest && drawn <= (1.0 + BESIDE) * farthest;
-            explained += usize::from(!covered && (is_same(frame, k, depth) || (self.trusted && near)));
+            explained += usize::from(
+                !covered && (is_same(frame, k, depth) || is_same(frame, k, flat) || (self.trusted && near)),
+            );
         }
         // One pixel may show another ridge.
-        (explained >= 3).then(|| depths[0] >= j.depth * (1.0 - TOUCH))
+        (explained >= 3).then(|| depths[0] >= j.depth * (1.0 - TOUCH) && flat[0] >= own * (1.0 - TOUCH))
     }
+}
+
+/// Pixel and depth of a sample on the flat triangle between displaced nodes; `None` beside the terrain.
+fn flat_image(scene: &Scene, view: &View, sample: &Sample) -> Option<(DVec2, f64)> {
+    let hf = scene.terrain()?;
+    let g = hf.grid_from_scene(sample.p_world.truncate());
+    let corner = g.floor().min(DVec2::new(hf.cols() as f64 - 2.0, hf.rows() as f64 - 2.0));
+    if corner.min_element() < 0.0 {
+        return None;
+    }
+    let [col, row] = [corner.x as usize, corner.y as usize];
+    let mut heights = [0.0; 4];
+    for (k, (x, y)) in [(0, 0), (1, 0), (0, 1), (1, 1)].into_iter().enumerate() {
+        heights[k] = view.displace(hf.node(col + x, row + y).filter(|p| p.is_finite())?).ok()?.point.z;
+    }
+    let ground = CellTriangle::at(g - corner).height(heights, g - corner);
+    view.pinhole().project(sample.p_world.truncate().extend(ground + sample.lift)).ok()
 }
 
 /// The four pixel centres around a place.

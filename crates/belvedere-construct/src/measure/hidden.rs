@@ -1,8 +1,8 @@
 //! What a view hides of the features that must be seen, part by part.
 
 use super::image::{self, SampleImage, Sight};
-use super::{MeasureOptions, sight_options};
-use crate::samples::{Amount, SampledFeature, default_spacing, sample_features};
+use super::{MeasureOptions, samples, sight_options};
+use crate::samples::{Amount, SampledFeature};
 use belvedere_core::View;
 use belvedere_scene::{Progress, Scene};
 use serde::Serialize;
@@ -35,7 +35,7 @@ pub struct HiddenRun {
     pub from_m: Option<f64>,
     /// Length along a line at the end.
     pub to_m: Option<f64>,
-    /// Scene x, y of the first sample.
+    /// Scene x, y of the sample that is covered most; of the first where the picture folds.
     pub at: [f64; 2],
     /// Samples.
     pub points: usize,
@@ -57,7 +57,7 @@ pub fn hidden(
     progress: &Progress,
 ) -> Result<Vec<HiddenRun>, belvedere_scene::Cancelled> {
     progress.tick("what stays hidden", 0.0)?;
-    let features = sample_features(scene, options.spacing_m.unwrap_or_else(|| default_spacing(scene)).max(1e-6));
+    let features = samples(scene, options);
     let images = image::all(&Sight::new(scene, view), view, &features, &sight_options(scene, options));
     Ok(features.iter().zip(&images).flat_map(|(feature, images)| runs(feature, images)).collect())
 }
@@ -82,7 +82,9 @@ fn runs(feature: &SampledFeature, images: &[SampleImage]) -> Vec<HiddenRun> {
                 if let (HiddenReason::Covered { over_m: most }, HiddenReason::Covered { over_m }) =
                     (&mut run.reason, here)
                 {
-                    *most = most.max(over_m);
+                    if over_m > *most {
+                        (*most, run.at) = (over_m, sample.p_world.truncate().to_array());
+                    }
                 }
             }
             None => out.push(HiddenRun {

@@ -15,7 +15,7 @@ pub use hidden::{HiddenReason, HiddenRun, hidden};
 pub use report::{Clearance, FeatureMeasure, Measures, MethodShare, Visibility};
 
 use crate::ConstructError;
-use crate::samples::{SampledFeature, default_spacing, sample_features};
+use crate::samples::{SampledFeature, judged_samples, sample_features};
 use belvedere_core::View;
 use belvedere_scene::{Light, Progress, Renderer, Scene};
 use belvedere_sight::{Obstacles, SightOptions};
@@ -24,7 +24,8 @@ use image::Sight;
 /// How to measure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasureOptions {
-    /// Largest distance between samples of a line, scene units; `None` = half the grid spacing of the terrain.
+    /// Largest distance between samples of a line, scene units; `None` = an eighth of the grid spacing of the terrain, see
+    /// [`crate::judged_samples`].
     pub spacing_m: Option<f64>,
     /// Samples whose sight line passes nearer than this to the edge of what hides them are left out of the comparison
     /// of the two methods, scene units.
@@ -63,7 +64,7 @@ pub fn measure(
     if scene.must_see().next().is_none() {
         return Err(ConstructError::NothingToSee { layers: scene.layers.len() });
     }
-    let features = sample_features(scene, options.spacing_m.unwrap_or_else(|| default_spacing(scene)).max(1e-6));
+    let features = samples(scene, options);
     let options_of_sight = sight_options(scene, options);
     let straight_view = view.straightened();
     let sight = Sight::new(scene, &straight_view);
@@ -90,6 +91,14 @@ pub fn measure(
     let bend = bend::measure_bend(&sight.obstacles, scene, view, &straight_view, &features);
     let warnings = warnings(&sight.obstacles, view, &features);
     Ok(report::summarise(&features, &straight, &bent, options.near_miss_m, bend, warnings))
+}
+
+/// What shares are judged by.
+pub(crate) fn samples(scene: &Scene, options: &MeasureOptions) -> Vec<SampledFeature> {
+    match options.spacing_m {
+        Some(spacing) => sample_features(scene, spacing.max(1e-6)),
+        None => judged_samples(scene),
+    }
 }
 
 pub(crate) fn sight_options(scene: &Scene, options: &MeasureOptions) -> SightOptions {

@@ -71,18 +71,21 @@ impl<'a> Bins<'a> {
 }
 
 /// Depth of the nearest terrain at each place (pixels) of the picture of `view`; infinite where there is none.
-pub(super) fn depths(scene: &Scene, view: &View, places: &[DVec2]) -> Vec<f64> {
+///
+/// * `flat`: triangles stay flat between their corners, as rasterisers may draw ground that is displaced upwards, however it is displaced between
+///   them.
+pub(super) fn depths(scene: &Scene, view: &View, places: &[DVec2], flat: bool) -> Vec<f64> {
     let found: Vec<AtomicU64> = places.iter().map(|_| AtomicU64::new(f64::INFINITY.to_bits())).collect();
     let bins = Bins::new(places, view.pinhole().image);
     for layer in &scene.layers {
         if let LayerKind::Terrain(terrain) = &layer.kind {
-            over_terrain(&terrain.heightfield, view, &bins, &found);
+            over_terrain(&terrain.heightfield, view, &bins, (&found, flat));
         }
     }
     found.into_iter().map(|bits| f64::from_bits(bits.into_inner())).collect()
 }
 
-fn over_terrain(hf: &Heightfield, view: &View, bins: &Bins<'_>, found: &[AtomicU64]) {
+fn over_terrain(hf: &Heightfield, view: &View, bins: &Bins<'_>, (found, flat): (&[AtomicU64], bool)) {
     let cols = hf.cols();
     let parallel = view.pinhole().is_orthographic();
     let vertex = |p: DVec3| -> Vertex {
@@ -96,7 +99,7 @@ fn over_terrain(hf: &Heightfield, view: &View, bins: &Bins<'_>, found: &[AtomicU
         };
         (0..cols).map(node).collect()
     };
-    let draw = Draw { bins, found, vertex: &vertex, parallel, bent: view.is_bent() };
+    let draw = Draw { bins, found, vertex: &vertex, parallel, bent: view.is_bent() && !flat };
     let strip = |first: usize| {
         let last = (first + STRIP).min(hf.rows() - 1);
         let mut upper = row(first);

@@ -102,7 +102,16 @@ pub(crate) fn points(field: &Field, route: &[DVec2], wedge: &Wedge, count: usize
         let t = i as f64 / of as f64 * (route.len() - 2) as f64;
         let grid = route[t as usize].lerp(route[t as usize + 1], t.fract());
         let ground = field.surface_at(grid).expect("on the ground");
-        ReferencePoint { layer: 0, feature: 0, along_m: 0.0, grid, ground, lift: 1.0, kind: PointKind::Line }
+        ReferencePoint {
+            layer: 0,
+            feature: 0,
+            along_m: 0.0,
+            grid,
+            ground,
+            lift: 1.0,
+            kind: PointKind::Line,
+            amount: 1.0,
+        }
     };
     let all: Vec<ReferencePoint> = (0..10_000).map(|i| at(i, 10_000)).collect();
     let seen = in_view(field, &all, wedge, 1.5).0;

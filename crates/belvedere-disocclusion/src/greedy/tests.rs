@@ -32,7 +32,16 @@ fn mountains(cols: usize, rows: usize, spacing: DVec2, seed: u64, void: f64) -> 
 fn point(field: &Field, x: f64, y: f64) -> Option<ReferencePoint> {
     let grid = DVec2::new(x, y);
     let ground = field.surface_at(grid)?;
-    Some(ReferencePoint { layer: 0, feature: 0, along_m: 0.0, grid, ground, lift: 1.0, kind: PointKind::Line })
+    Some(ReferencePoint {
+        layer: 0,
+        feature: 0,
+        along_m: 0.0,
+        grid,
+        ground,
+        lift: 1.0,
+        kind: PointKind::Line,
+        amount: 1.0,
+    })
 }
 
 /// A winding route over the whole field.
@@ -190,6 +199,7 @@ fn hits(field: &Field, cells: &Cells, [from, eye]: [DVec2; 2], [foot, top]: [f64
         ground: field.datum(),
         lift: foot,
         kind: PointKind::Line,
+        amount: 1.0,
     };
     let blocks = BlockMaxima::new(field);
     let transforms = vec![CellTransform::default(); cells.len()];

@@ -1,7 +1,7 @@
 //! What the displaced ground hides, by lines of sight over it: as it is rasterised and written, and as it is traced.
 
 use super::super::visibility_qp::LinesOfSight;
-use super::super::{Field, ReferencePoint, counted};
+use super::super::{Field, KINDS, ReferencePoint};
 use belvedere_core::DVec2;
 use belvedere_core::grid::{Grid, GridError};
 use belvedere_sight::{DisplacedGround, SightVertex};
@@ -56,13 +56,16 @@ impl Verdict {
     }
 }
 
-/// Share of what the points stand for that is seen, 0..=1; 1 if there are none. See [`counted`].
+/// Share of what the points stand for that is seen, 0..=1; 1 if there are none. Lines by length, areas by area in plan, point features by
+/// number: of these the least.
 pub(crate) fn share_seen(points: &[ReferencePoint], verdicts: &[Verdict]) -> f64 {
-    let counted = counted(points);
-    let of = |which: &dyn Fn(&Verdict) -> bool| verdicts.iter().zip(&counted).filter(|(v, c)| **c && which(v)).count();
-    let on_ground = of(&|v| *v != Verdict::NoGround);
-    let hidden = of(&|v| v.hides().is_some());
-    1.0 - hidden as f64 / on_ground.max(1) as f64
+    let mut sums = [[0.0; 2]; KINDS];
+    for (point, verdict) in points.iter().zip(verdicts).filter(|(_, v)| **v != Verdict::NoGround) {
+        let [all, hidden] = &mut sums[point.kind.of_feature()];
+        *all += point.amount;
+        *hidden += if verdict.hides().is_some() { point.amount } else { 0.0 };
+    }
+    sums.into_iter().filter(|[all, _]| *all > 0.0).map(|[all, hidden]| 1.0 - hidden / all).fold(1.0, f64::min)
 }
 
 /// Judges points over one or more grounds: what one of them hides is hidden. No ground is too near to hide a point.

@@ -38,7 +38,8 @@ pub struct Deformation<'a> {
 pub struct TerrainMetrics {
     /// Share of the reference points that are seen, 0..=1; 1 without points in view.
     pub visible: f64,
-    /// Share of the dense points that are seen, over the ground as it is drawn and as it is written, 0..=1; 1 without points in view.
+    /// Share of what the dense points stand for that is seen, over the ground as it is drawn and as it is written, 0..=1; 1 without points
+    /// in view. Lines count by length, areas by area in plan, point features by number; of these the least.
     pub visible_dense: f64,
     /// Share of the dense points that nothing hides but ground nearer to them than the guard, 0..=1.
     pub hidden_in_guard: f64,

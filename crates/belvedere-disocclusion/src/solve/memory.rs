@@ -223,9 +223,11 @@ impl Prepared {
         })
     }
 
-    /// Points every tenth of a cell that the picture shows.
-    pub(super) fn dense_in_view(&self, in_view: &super::PointsInView<'_>) -> Vec<ReferencePoint> {
-        in_view.indices(&self.check).0.into_iter().map(|i| self.check[i]).collect()
+    /// Points every tenth of a cell that the picture may show, those too near to the eye to be asked for included unless `far` alone count.
+    pub(super) fn dense_in_view(&self, in_view: &super::PointsInView<'_>, far: bool) -> Vec<ReferencePoint> {
+        let (inside, near) = in_view.indices(&self.check);
+        let near = near.into_iter().filter(|_| !far);
+        inside.into_iter().chain(near).map(|i| self.check[i]).collect()
     }
 
     /// The same as candidates, whose ids follow those of all others.

@@ -13,6 +13,8 @@ mod out_of_time;
 mod passes;
 mod points_in_view;
 mod report;
+mod runs;
+mod shown;
 
 pub use fallback::Fallback;
 pub use lakes::LakeReport;
@@ -43,6 +45,7 @@ const SOLVING: f64 = 0.85;
 pub struct TerrainSolver {
     settings: TerrainSettings,
     time_step_s: Option<f64>,
+    in_plan: bool,
 }
 
 /// A solved stage.
@@ -61,12 +64,18 @@ impl TerrainSolver {
     /// [`DisocclusionError::Setting`] if a parameter is out of range.
     pub fn new(settings: TerrainSettings) -> Result<Self, DisocclusionError> {
         memory::check(&settings)?;
-        Ok(Self { settings, time_step_s: None })
+        Ok(Self { settings, time_step_s: None, in_plan: false })
     }
 
     /// A solver for the frames of a film, `seconds` apart.
     pub fn with_time_step(self, seconds: f64) -> Self {
         Self { time_step_s: Some(seconds).filter(|s| *s > 0.0 && s.is_finite()), ..self }
+    }
+
+    /// A solver whose reports count what lies above and below the picture as well, between its left and its right border: for ground that
+    /// is written to files and looked at from the same eye by others.
+    pub fn in_plan(self) -> Self {
+        Self { in_plan: true, ..self }
     }
 
     fn frame(&self) -> Option<[f64; 2]> {
@@ -106,6 +115,8 @@ impl TerrainSolver {
             field,
             prepared: &prepared,
             in_view: &PointsInView::new(field, &prepared, base, &self.settings, false),
+            base,
+            in_plan: self.in_plan,
             delta: &delta,
             traced: self.frame().is_none(),
             previous: previous.as_ref(),

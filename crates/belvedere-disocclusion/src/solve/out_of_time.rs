@@ -126,7 +126,7 @@ impl Passes<'_> {
         done: &mut Outcome,
         samples: Vec<Ground>,
     ) -> Result<(), DisocclusionError> {
-        let (points, _) = report::sampled(prepared.dense_in_view(in_view), true);
+        let (points, _) = report::sampled(prepared.dense_in_view(in_view, true), true);
         let unfinished = self.share_of(
             prepared,
             in_view,

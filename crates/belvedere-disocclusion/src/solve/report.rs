@@ -7,11 +7,13 @@ use super::super::{
     Unusable, UnusableReason, stated_spacing,
 };
 use super::memory::{CHECK_CELLS, Prepared};
+use super::runs::Runs;
+use super::shown::Shown;
 use super::{Fallback, LakeReport, LimitsReport, Outcome, PointsInView, Taken, since};
 use crate::DisocclusionError;
 use crate::spikes::Spike;
-use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
+use belvedere_core::{DVec2, View};
 use belvedere_scene::{Instant, Progress};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -37,7 +39,9 @@ pub struct TerrainReport {
     pub points: usize,
     /// Places that were asked for: reference points and candidates in view. 0 = nothing was, the ground stays as it is.
     pub asked: usize,
-    /// What is seen and how far the ground moved, by a judge that knows nothing of the solver; dense points lie every fifth of a cell.
+    /// What is seen and how far the ground moved, by a judge that knows nothing of the solver; dense points lie every tenth of a cell along
+    /// lines and rims and on the edges of the ground's triangles inside areas, and those count that lie in the picture (but see
+    /// [`super::TerrainSolver::in_plan`]).
     #[serde(flatten)]
     pub metrics: TerrainMetrics,
     /// Of so many dense points one was judged: 1, but more in the frames of films and where time was up, whose judgement is not to take
@@ -63,7 +67,7 @@ pub struct TerrainReport {
     /// Lakes and how they moved: each as a whole.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lakes: Vec<LakeReport>,
-    /// Whether every candidate in view is guaranteed to be seen in this picture, and the judge agrees: of the length in view at
+    /// Whether every candidate in view is guaranteed to be seen in this picture, and the judge agrees: of what is in view at
     /// least 0.9999 is seen ([`TerrainMetrics::visible_dense`]); `hidden` names the rest. Where nothing is asked for nothing is
     /// guaranteed.
     pub guaranteed: bool,
@@ -74,7 +78,7 @@ pub struct TerrainReport {
     pub taken: Option<Taken>,
     /// What cannot be seen, and why.
     pub unresolved: Vec<UnresolvedRun>,
-    /// What else the judge finds hidden of the length in view, and why: places between two that were looked after.
+    /// What else the judge finds hidden of what is in view, and why: places between two that were looked after.
     pub hidden: Vec<UnresolvedRun>,
     /// Places that stay covered at the slack price.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -229,6 +233,10 @@ pub(super) struct Context<'a> {
     pub(super) field: &'a Field,
     pub(super) prepared: &'a Prepared,
     pub(super) in_view: &'a PointsInView<'a>,
+    /// The picture, without the solution.
+    pub(super) base: &'a View,
+    /// See [`super::TerrainSolver::in_plan`].
+    pub(super) in_plan: bool,
     /// The solution.
     pub(super) delta: &'a Grid,
     /// See [`Deformation::traced`].
@@ -241,8 +249,13 @@ pub(super) struct Context<'a> {
 
 /// Dense points to judge, all or about [`MOST_SAMPLED`]; of how many each is one.
 pub(super) fn sampled(all: Vec<ReferencePoint>, few: bool) -> (Vec<ReferencePoint>, usize) {
-    let every = if few { all.len().div_ceil(MOST_SAMPLED).max(1) } else { 1 };
-    (if every == 1 { all } else { all.into_iter().step_by(every).collect() }, every)
+    if !few || all.len() <= MOST_SAMPLED {
+        return (all, 1);
+    }
+    // Those that stand for something alone.
+    let counted: Vec<ReferencePoint> = all.iter().filter(|p| p.amount > 0.0).copied().collect();
+    let every = counted.len().div_ceil(MOST_SAMPLED).max(1);
+    (counted.into_iter().step_by(every).collect(), all.len().div_ceil(MOST_SAMPLED))
 }
 
 /// Whether to judge all of so many dense points would take more than half of the time that is left, by what a sample takes.
@@ -263,12 +276,16 @@ pub(super) fn report(
     began: Instant,
 ) -> Result<TerrainReport, DisocclusionError> {
     let (field, prepared, in_view, guard) = (c.field, c.prepared, c.in_view, c.settings.guard);
-    let points: Vec<ReferencePoint> = in_view.points.iter().map(|&i| prepared.points[i]).collect();
-    let all = prepared.dense_in_view(in_view);
+    let shown = Shown::after(c.base, c.delta, c.in_plan)?;
+    let asked: Vec<usize> =
+        in_view.points.iter().copied().filter(|&i| shown.holds(field, &prepared.points[i])).collect();
+    let points: Vec<ReferencePoint> = asked.iter().map(|&i| prepared.points[i]).collect();
+    let all = prepared.dense_in_view(in_view, c.in_plan);
     let still = still(field)?;
     let undisplaced = Judge::faceted(field, &still, &*in_view.sight);
     let few = !c.traced || done.stopped || too_many(c.progress, &undisplaced, &all, guard);
-    let (dense, every) = sampled(all, few);
+    let (may_show, every) = sampled(all, few);
+    let dense = shown.of(field, &may_show);
     let of = Deformation {
         field,
         delta: c.delta,
@@ -283,9 +300,14 @@ pub(super) fn report(
     let judgement = judged(&of);
     let metrics = judgement.metrics;
     let undisplaced = undisplaced.prepared(dense.len());
-    let before = |points: &[ReferencePoint]| share_seen(points, &undisplaced.judge(points, guard));
-    let (unresolved, hidden) = (unresolved(c, done, &judgement), hidden(c, done, &judgement, (&dense, every)));
-    let (guards, qp_met) = (c.settings.mode != SolverMode::Paper, done.qp_unresolved.is_empty());
+    let shown_before = Shown::before(c.base, c.in_plan)?;
+    let before = |points: &[ReferencePoint]| {
+        let points = shown_before.of(field, points);
+        share_seen(&points, &undisplaced.judge(&points, guard))
+    };
+    let named = unresolved(c, done, &shown, (&asked, &judgement));
+    let hidden = hidden(c, done, &judgement, (&dense, every));
+    let guards = c.settings.mode != SolverMode::Paper;
     let stated_m = stated_spacing(field.cols(), field.rows(), field.spacing());
     let w = c.settings.smoothness(stated_m);
     let mut out = TerrainReport {
@@ -297,8 +319,8 @@ pub(super) fn report(
         asked: in_view.candidates.len(),
         metrics,
         judged_every: every,
-        visible_before: before(&points),
-        visible_dense_before: before(&dense),
+        visible_before: before(&in_view.points.iter().map(|&i| prepared.points[i]).collect::<Vec<_>>()),
+        visible_dense_before: before(&may_show),
         greedy: done.greedy,
         qp: done.qp,
         costliest: costliest(prepared, &done.rows),
@@ -311,14 +333,15 @@ pub(super) fn report(
         }),
         guaranteed: guards
             && !in_view.candidates.is_empty()
-            && qp_met
+            && named.program_met
             && !done.stopped
             && metrics.visible_dense >= AGREES
+            && judgement.dense.len() as f64 <= (1.0 - AGREES) * dense.len() as f64
             && (every == 1 || judgement.points.is_empty() && judgement.dense.is_empty())
             && (done.limited.is_none() || hidden.is_empty()),
         out_of_time: done.stopped,
         taken: done.taken,
-        unresolved,
+        unresolved: named.runs,
         hidden,
         covered: covered(c, &judgement, &dense),
         times,
@@ -386,24 +409,30 @@ fn hidden(
     runs.out
 }
 
-fn unresolved(c: &Context<'_>, done: &Outcome, judgement: &Judged) -> Vec<UnresolvedRun> {
+/// What cannot be seen, and whether that is nothing of what the program looks after.
+struct Named {
+    runs: Vec<UnresolvedRun>,
+    program_met: bool,
+}
+
+/// * `asked`: indices of the reference points that were judged.
+fn unresolved(c: &Context<'_>, done: &Outcome, shown: &Shown, (asked, judgement): (&[usize], &Judged)) -> Named {
     let mut runs = Runs::new(c.field, c.settings.spacing);
-    let asked = |u: &&Unusable| c.in_view.wedge.contains(c.field.scene_from_grid(u.grid));
-    for u in c.prepared.unusable.iter().filter(asked) {
+    let in_view = |u: &&Unusable| c.in_view.wedge.contains(c.field.scene_from_grid(u.grid));
+    for u in c.prepared.unusable.iter().filter(in_view) {
         let reason = match u.reason {
             UnusableReason::OutsideDem => UnresolvedReason::OutsideDem,
             UnusableReason::NoData => UnresolvedReason::NoData,
         };
         runs.add((u.layer, u.feature, u.kind, u.along_m, u.grid), reason);
     }
-    for &i in &c.in_view.too_near {
-        runs.put(&c.prepared.points[i], UnresolvedReason::NearerThanGuard);
-    }
+    let mut said = Vec::new();
+    let of = |i: &usize| c.prepared.points[*i];
+    said.extend(c.in_view.too_near.iter().map(|i| (of(i), UnresolvedReason::NearerThanGuard)));
     if c.settings.mode == SolverMode::Paper {
-        for &i in &done.greedy_unresolved {
-            runs.put(&c.prepared.points[i], UnresolvedReason::Greedy);
-        }
+        said.extend(done.greedy_unresolved.iter().map(|i| (of(i), UnresolvedReason::Greedy)));
     }
+    let by_program = said.len();
     let dense = c.prepared.dense.len();
     let mut named: BTreeSet<usize> = done.greedy_unresolved.iter().copied().collect();
     for Unresolved { id, reason } in &done.qp_unresolved {
@@ -415,13 +444,22 @@ fn unresolved(c: &Context<'_>, done: &Outcome, judgement: &Judged) -> Vec<Unreso
             }
             Reason::NotSettled { lacks } => UnresolvedReason::NotSettled { lacks_m: *lacks },
         };
-        if let Some(point) = c.prepared.candidate(*id) {
-            runs.put(point, reason);
-        }
+        said.extend(c.prepared.candidate(*id).map(|point| (*point, reason)));
         named.extend((*id as usize).checked_sub(dense));
     }
+    // A solver may give up what is seen all the same, or lies beside the picture.
+    let points: Vec<ReferencePoint> = said.iter().map(|(point, _)| *point).collect();
+    let judge = if c.traced { Judge::of_both } else { Judge::faceted };
+    let verdicts = judge(c.field, c.delta, &*c.in_view.sight).prepared(points.len()).judge(&points, c.settings.guard);
+    let mut program_met = true;
+    for (k, ((point, reason), verdict)) in said.into_iter().zip(verdicts).enumerate() {
+        if verdict.hides().is_some() && shown.holds(c.field, &point) {
+            runs.put(&point, reason);
+            program_met &= k < by_program;
+        }
+    }
     for &(k, hides) in &judgement.points {
-        let (i, over_m) = (c.in_view.points[k], hides.over());
+        let (i, over_m) = (asked[k], hides.over());
         if c.settings.slack_price.is_none() && !named.contains(&i) {
             let reason = match c.settings.mode {
                 _ if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,
@@ -432,75 +470,5 @@ fn unresolved(c: &Context<'_>, done: &Outcome, judgement: &Judged) -> Vec<Unreso
             runs.put(&c.prepared.points[i], reason);
         }
     }
-    runs.out
-}
-
-struct Runs<'a> {
-    field: &'a Field,
-    /// Points of a line or rim farther apart along it have others between them, which are seen.
-    gap_m: f64,
-    out: Vec<UnresolvedRun>,
-    /// Runs inside areas by the blocks of the ground in which they lie, of so many cells.
-    blocks: BTreeMap<(usize, usize, i64, i64), usize>,
-}
-
-/// Cells per side of the blocks by which hidden places inside areas are gathered.
-const BLOCK: f64 = 4.0;
-
-impl<'a> Runs<'a> {
-    /// * `spacing`: of the points, cells.
-    fn new(field: &'a Field, spacing: f64) -> Self {
-        Self { field, gap_m: 1.5 * spacing * field.spacing().max_element(), out: Vec::new(), blocks: BTreeMap::new() }
-    }
-
-    fn put(&mut self, p: &ReferencePoint, reason: UnresolvedReason) {
-        self.add((p.layer, p.feature, p.kind, p.along_m, p.grid), reason);
-    }
-
-    fn add(
-        &mut self,
-        (layer, feature, kind, along, grid): (usize, usize, PointKind, f64, DVec2),
-        reason: UnresolvedReason,
-    ) {
-        let (x, y) = ((grid.x / BLOCK).floor() as i64, (grid.y / BLOCK).floor() as i64);
-        if kind == PointKind::Inside {
-            // Places inside an area are gathered by where they lie.
-            let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (layer, feature, x + dx, y + dy)));
-            let mut known = around.filter_map(|block| self.blocks.get(&block).copied());
-            let same = |k: &usize| std::mem::discriminant(&self.out[*k].reason) == std::mem::discriminant(&reason);
-            if let Some(k) = known.find(same) {
-                let run = &mut self.out[k];
-                (run.points, run.reason) = (run.points + 1, worse(run.reason, reason));
-                self.blocks.insert((layer, feature, x, y), k);
-                return;
-            }
-            self.blocks.insert((layer, feature, x, y), self.out.len());
-        }
-        let same = |r: &UnresolvedRun| {
-            kind != PointKind::Inside
-                && (r.layer, r.feature, r.kind) == (layer, feature, kind)
-                && (along - r.to_m).abs() <= self.gap_m
-                && std::mem::discriminant(&r.reason) == std::mem::discriminant(&reason)
-        };
-        if let Some(run) = self.out.last_mut().filter(|r| same(r)) {
-            (run.to_m, run.points) = (along, run.points + 1);
-            run.reason = worse(run.reason, reason);
-            return;
-        }
-        let at = self.field.scene_from_grid(grid).to_array();
-        self.out.push(UnresolvedRun { layer, feature, kind, from_m: along, to_m: along, at, points: 1, reason });
-    }
-}
-
-/// Of two reasons of one kind the first, with the larger rise of ground over a line of sight.
-fn worse(first: UnresolvedReason, next: UnresolvedReason) -> UnresolvedReason {
-    use UnresolvedReason::{Between, InsideGuard, Judged, Limits, Smoothed};
-    match (first, next) {
-        (Smoothed { over_m: a }, Smoothed { over_m: b }) => Smoothed { over_m: a.max(b) },
-        (Judged { over_m: a }, Judged { over_m: b }) => Judged { over_m: a.max(b) },
-        (Limits { over_m: a }, Limits { over_m: b }) => Limits { over_m: a.max(b) },
-        (Between { over_m: a }, Between { over_m: b }) => Between { over_m: a.max(b) },
-        (InsideGuard { over_m: a }, InsideGuard { over_m: b }) => InsideGuard { over_m: a.max(b) },
-        _ => first,
-    }
+    Named { runs: runs.out, program_met }
 }

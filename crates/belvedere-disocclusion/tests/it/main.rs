@@ -7,6 +7,7 @@ mod fallbacks;
 mod lakes;
 mod live;
 mod memory;
+mod one_judge;
 mod qp;
 mod smooth;
 mod smoothing;

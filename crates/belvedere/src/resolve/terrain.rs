@@ -173,7 +173,7 @@ pub(super) fn adjust(
     Ok(())
 }
 
-/// Share of the length in view from which on it is said that it stays hidden.
+/// Share of what is in view from which on it is said that it stays hidden.
 const WORTH_SAYING: f64 = 0.005;
 /// Ground below the lowest by more than this share of the relief looks like no ground, nor do slopes by so many degrees beyond the
 /// terrain's own.
@@ -215,7 +215,7 @@ pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<String> {
     let hidden = 1.0 - report.metrics.visible_dense;
     if hidden > WORTH_SAYING && report.parameters.mode != SolverMode::Paper {
         out.push(format!(
-            "terrain_disocclusion: {:.1} % of the length in view stays hidden, by {:.1} m of ground at most; the report names the parts \
+            "terrain_disocclusion: {:.1} % of what is in view stays hidden, by {:.1} m of ground at most; the report names the parts \
              under {}",
             100.0 * hidden,
             report.metrics.hidden_worst_m,

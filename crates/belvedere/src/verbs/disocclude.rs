@@ -32,7 +32,9 @@ const KEPT_SHARE: f64 = 0.9999;
 const ADJUSTING: f64 = 0.4;
 /// Judging and writing the ground takes about so many times as long as reading it.
 const WRITING: f64 = 1.5;
-/// Share of the length in view that is wanted visible.
+/// So many pictures above one another hold nearly all that lies above and below one.
+const TALLER: u32 = 8;
+/// Share of what is in view that is wanted visible.
 const VISIBLE_LENGTH: f64 = 0.995;
 
 /// What to show, and from where.
@@ -158,7 +160,7 @@ impl DisoccludeFiles {
 pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Disoccluded, BelvedereError> {
     intent::check(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
     let settings = intent::settings(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
-    let solver = TerrainSolver::new(settings)?;
+    let solver = TerrainSolver::new(settings)?.in_plan();
     let mut data = DataFiles { keep_voids: !request.fill_voids, ..request.data.clone() }.load(true, options)?;
     let dem = &request.data.dem;
     let original = data.original.take().ok_or_else(|| IoError::format(dem, "is no file; give an elevation model"))?;
@@ -232,10 +234,20 @@ fn written_share(
             terrain.heightfield = Arc::new(read.heightfield.clone());
         }
     }
-    let (measures, _) = in_time::measured(&scene, straight, &options.progress)?;
+    let (measures, _) = in_time::measured(&scene, &taller(straight)?, &options.progress)?;
     let kinds = [measures.lines.as_ref(), measures.areas.as_ref(), measures.points.as_ref()];
     let shares = kinds.into_iter().flatten().filter_map(|kind| kind.straight.sight.share);
     Ok(shares.min_by(f64::total_cmp))
+}
+
+/// The view with what lies above and below its picture, which the solver counts as well.
+fn taller(view: &View) -> Result<View, BelvedereError> {
+    let pinhole = view.pinhole();
+    let Projection::Perspective { fov_y } = pinhole.projection else { return Ok(view.clone()) };
+    let [width, height] = pinhole.image;
+    let projection = Projection::Perspective { fov_y: 2.0 * (f64::from(TALLER) * (0.5 * fov_y).tan()).atan() };
+    let taller = Pinhole { image: [width, TALLER * height], projection, ..pinhole.clone() };
+    Ok(View::new(taller, view.stages().to_vec())?)
 }
 
 /// That resampling hides again what was solved for.
@@ -347,7 +359,7 @@ impl Disoccluded {
         let length = self.visible();
         if length < VISIBLE_LENGTH {
             out.push(format!(
-                "{:.2} % of the length in view is visible, {:.1} % were wanted",
+                "{:.2} % of what is in view is visible, {:.1} % were wanted",
                 100.0 * length,
                 100.0 * VISIBLE_LENGTH
             ));

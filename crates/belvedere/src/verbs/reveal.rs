@@ -302,13 +302,8 @@ fn final_shares(
     progress: &Progress,
 ) -> Result<(FinalShares, u32), BelvedereError> {
     let (measures, every) = in_time::measured(session.scene(), session.view(), progress)?;
-    let all =
-        measures.lines.as_ref().or(measures.areas.as_ref()).or(measures.points.as_ref()).or(measures.surfaces.as_ref());
-    let shares = FinalShares {
-        technique,
-        visible_straight: all.and_then(|m| m.straight.sight.share),
-        visible_bent: all.and_then(|m| m.bent.sight.share),
-    };
+    let [visible_straight, visible_bent] = super::measure::shares(&measures, session.terrain_report());
+    let shares = FinalShares { technique, visible_straight, visible_bent };
     Ok((shares, every))
 }
 
