@@ -128,7 +128,7 @@ fn lakes_are_level_where_the_limits_fill_up_and_where_time_is_up() {
     let eye = from.eye - DVec3::Z * 235.0;
     let pinhole = Pinhole::look_at(eye, eye + DVec3::Y, DVec3::Z, from.projection, [640, 360], 1.0, None).unwrap();
     case.view = View::straight(pinhole);
-    let solved = solve(TerrainSettings { candidates: 1.0, ..TerrainSettings::default() }, &case);
+    let solved = solve(TerrainSettings::default(), &case);
     assert!(solved.report.limited.is_some(), "limits held nothing");
     assert!(case.range(&solved).0 < LEVEL, "{:?}", solved.report.lakes);
     let solver = TerrainSolver::new(TerrainSettings::default()).unwrap();
