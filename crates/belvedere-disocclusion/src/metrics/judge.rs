@@ -59,13 +59,22 @@ impl Verdict {
 /// Share of what the points stand for that is seen, 0..=1; 1 if there are none. Lines by length, areas by area in plan, point features by
 /// number: of these the least.
 pub(crate) fn share_seen(points: &[ReferencePoint], verdicts: &[Verdict]) -> f64 {
-    let mut sums = [[0.0; 2]; KINDS];
+    shares(points, verdicts)[0]
+}
+
+/// See [`share_seen`]; also the share of the same kind that only ground inside the guard hides.
+pub(super) fn shares(points: &[ReferencePoint], verdicts: &[Verdict]) -> [f64; 2] {
+    let mut sums = [[0.0; 3]; KINDS];
     for (point, verdict) in points.iter().zip(verdicts).filter(|(_, v)| **v != Verdict::NoGround) {
-        let [all, hidden] = &mut sums[point.kind.of_feature()];
+        let [all, hidden, in_guard] = &mut sums[point.kind.of_feature()];
         *all += point.amount;
         *hidden += if verdict.hides().is_some() { point.amount } else { 0.0 };
+        *in_guard += if matches!(verdict, Verdict::Hidden(Hides::InGuard(_))) { point.amount } else { 0.0 };
     }
-    sums.into_iter().filter(|[all, _]| *all > 0.0).map(|[all, hidden]| 1.0 - hidden / all).fold(1.0, f64::min)
+    let kinds = sums.into_iter().filter(|[all, ..]| *all > 0.0);
+    kinds
+        .map(|[all, hidden, in_guard]| [1.0 - hidden / all, in_guard / all])
+        .fold([1.0, 0.0], |least, kind| if kind[0] < least[0] { kind } else { least })
 }
 
 /// Judges points over one or more grounds: what one of them hides is hidden. No ground is too near to hide a point.

@@ -5,6 +5,8 @@ mod judge;
 
 pub(super) use judge::{Hides, Judge, Verdict, share_seen, still};
 
+use judge::shares;
+
 use super::visibility_qp::LinesOfSight;
 use super::{Cells, Field, ReferencePoint};
 use belvedere_core::grid::Grid;
@@ -41,7 +43,7 @@ pub struct TerrainMetrics {
     /// Share of what the dense points stand for that is seen, over the ground as it is drawn and as it is written, 0..=1; 1 without points
     /// in view. Lines count by length, areas by area in plan, point features by number; of these the least.
     pub visible_dense: f64,
-    /// Share of the dense points that nothing hides but ground nearer to them than the guard, 0..=1.
+    /// Share of the same kind of features that nothing hides but ground nearer to it than the guard, 0..=1.
     pub hidden_in_guard: f64,
     /// How far the ground rises over the line of sight that it hides most; 0 if nothing is hidden.
     pub hidden_worst_m: f64,
@@ -107,8 +109,7 @@ pub(super) fn judged(of: &Deformation<'_>) -> Judged {
 }
 
 fn figures(of: &Deformation<'_>, u: &[f64], points: &[Verdict], dense: &[Verdict]) -> TerrainMetrics {
-    let on_ground = dense.iter().filter(|v| **v != Verdict::NoGround).count().max(1) as f64;
-    let in_guard = dense.iter().filter(|v| matches!(v, Verdict::Hidden(Hides::InGuard(_)))).count() as f64;
+    let [visible_dense, hidden_in_guard] = shares(of.dense, dense);
     let over = points.iter().chain(dense).filter_map(|v| v.hides()).map(Hides::over);
     let steps = change::steps(of.field, of.cells, u);
     let normals = change::normals(of.field, u);
@@ -122,8 +123,8 @@ fn figures(of: &Deformation<'_>, u: &[f64], points: &[Verdict], dense: &[Verdict
     });
     TerrainMetrics {
         visible: share_seen(of.points, points),
-        visible_dense: share_seen(of.dense, dense),
-        hidden_in_guard: in_guard / on_ground,
+        visible_dense,
+        hidden_in_guard,
         hidden_worst_m: over.filter(|over| over.is_finite()).fold(0.0, f64::max),
         rms_m: size.rms,
         max_m: size.max,
