@@ -12,6 +12,7 @@ mod sidestep;
 mod target;
 mod tracking;
 mod turns;
+mod way;
 
 pub use around::{AroundOptions, BendFound, BendReport, bend_around};
 pub use film::{FilmPlanner, PlannedBend};

@@ -1,7 +1,7 @@
 //! What is to be seen, and how much of it a view shows.
 
 use belvedere_core::{Aabb, DVec2, DVec3, View};
-use belvedere_scene::{LayerKind, Scene};
+use belvedere_scene::{LayerKind, Scene, Unit};
 use belvedere_sight::{Obstacles, SightOptions, Voxels};
 
 /// Points per edge of the box of a target.
@@ -142,6 +142,9 @@ pub struct Shown {
 /// How much views show of a target, by lines of sight along their rays past everything else in the scene. Volumes hide a point where
 /// they absorb more than half of its light.
 pub struct TargetSight<'a> {
+    scene: &'a Scene,
+    /// Lowest height of the scene, where it has ground.
+    lowest: Option<f64>,
     target: &'a Target,
     obstacles: Obstacles<'a>,
     voxels: Voxels<'a>,
@@ -162,7 +165,15 @@ impl<'a> TargetSight<'a> {
             Some((layer, parts)) => Obstacles::without_parts(scene, *layer, parts),
             None => Obstacles::without(scene, &target.own_layers),
         };
-        Self { target, obstacles, voxels, sight }
+        // Molecules and volumes have no ground.
+        let lowest = (scene.unit == Unit::Metre && !bounds.is_empty()).then_some(bounds.min.z);
+        Self { scene, lowest, target, obstacles, voxels, sight }
+    }
+
+    /// Height of a place above the terrain, or beside it above the lowest of the scene, metres; infinite in scenes without ground.
+    pub(super) fn height_above_ground(&self, place: DVec3) -> f64 {
+        let ground = self.scene.terrain().and_then(|t| t.surface_at(place.truncate())).or(self.lowest);
+        ground.map_or(f64::INFINITY, |ground| place.z - ground)
     }
 
     /// Share of the target's points that are in the picture and seen, 0..=1.

@@ -200,9 +200,14 @@ fn film_past_towers(seed: u64, towers: usize) -> (usize, [usize; 2], usize) {
         .collect();
     let at = |k: usize| block(DVec3::new(-26.0 + 0.4 * k as f64, 96.0, 0.0), DVec3::new(2.0, 2.0, 3.0));
     let scenes: Vec<Scene> = (0..130).map(|k| scene(towers.clone(), at(k))).collect();
-    let mut planner = FilmPlanner::new(options, DT, true).unwrap();
-    for scene in &scenes {
-        planner.add(scene, &base, &Target::layer(scene, TARGET).unwrap());
+    let mut planner = FilmPlanner::new(options, DT).unwrap();
+    loop {
+        for scene in &scenes {
+            planner.add(scene, &base, &Target::layer(scene, TARGET).unwrap());
+        }
+        if !planner.wants_more() {
+            break;
+        }
     }
     let bends = planner.finish();
     let (mut solvable, mut at_once, mut kept, mut hidden_for) = (0, 0, 0, 0);
