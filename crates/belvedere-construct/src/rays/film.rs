@@ -158,7 +158,11 @@ impl Known {
     fn sideways(&self, x: f64) -> Seen {
         let at = (x + 1.0) * (self.sideways.len() - 1) as f64 / 2.0;
         // Rounding must not take a neighbour in.
-        [(at - 1e-6).ceil(), (at + 1e-6).floor()].into_iter().map(|k| self.sideways[k as usize]).reduce(both).unwrap_or_default()
+        [(at - 1e-6).ceil(), (at + 1e-6).floor()]
+            .into_iter()
+            .map(|k| self.sideways[k as usize])
+            .reduce(both)
+            .unwrap_or_default()
     }
 
     /// A node of the wide search, if it has one there.

@@ -9,6 +9,7 @@ mod path;
 mod preview;
 mod probe;
 mod sidestep;
+mod surface_points;
 mod target;
 mod tracking;
 mod turns;
