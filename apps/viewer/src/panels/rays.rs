@@ -14,6 +14,9 @@ const PLAY: f64 = 0.25;
 /// Share of the previewed length that is still ahead where it ends: at the end of a path there is nothing to show.
 const AHEAD: f64 = 0.25;
 
+/// A target of which the picture shows so much is in sight.
+const WHOLE: f64 = 0.99;
+
 /// What the panel remembers.
 #[derive(Debug, Default)]
 pub(crate) struct RaysPanel {
@@ -30,7 +33,9 @@ impl RaysPanel {
                 self.preview(ui, model, &constructor);
             }
             Some(constructor) if constructor.kind == ConstructorKind::TargetTracking => {
-                ui.label(format!("In sight: {}", constructor.target.as_deref().unwrap_or("nothing chosen")));
+                let target = constructor.target.as_deref().unwrap_or("nothing chosen");
+                let judged = model.judged.as_ref().filter(|_| model.is_judged());
+                ui.label(in_sight(target, judged.and_then(|judged| judged.target_seen)));
             }
             _ => {}
         }
@@ -92,6 +97,17 @@ impl RaysPanel {
         doc.position_m = Some(next.min(end.max(doc.position_m.unwrap_or(0.0))));
         model.edit_on(|document| document.constructor = Some(doc));
         ctx.request_repaint();
+    }
+}
+
+/// What the window says of a target.
+///
+/// * `seen`: share of it that the picture shows, as measured.
+fn in_sight(target: &str, seen: Option<f64>) -> String {
+    match seen {
+        Some(share) if share >= WHOLE => format!("In sight: {target}"),
+        Some(share) => format!("{target}: {:.1} % of it is in sight", 100.0 * share),
+        None => format!("To be kept in sight: {target}"),
     }
 }
 
@@ -292,5 +308,17 @@ fn planes(ui: &mut Ui, model: &mut Model, (n, before): (usize, Option<DVec3>), t
         && let Some(value) = number(ui, model, &format!("sharpness {n}"), value, 0.02, "0.2 to 20; larger is sharper")
     {
         next.m = Sharpness::Value(value.clamp(0.2, 20.0));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_sight;
+
+    #[test]
+    fn only_what_is_measured_is_said_to_be_in_sight() {
+        assert_eq!(in_sight("church", Some(1.0)), "In sight: church");
+        assert_eq!(in_sight("church", Some(0.124)), "church: 12.4 % of it is in sight");
+        assert_eq!(in_sight("church", None), "To be kept in sight: church");
     }
 }

@@ -114,7 +114,7 @@ fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
 
 /// Before and after, and what stays hidden.
 fn shares(ui: &mut Ui, model: &mut Model) {
-    let Some(judged) = &model.judged else {
+    let Some(judged) = model.judged.as_ref().filter(|judged| !judged.measures.features.is_empty()) else {
         ui.label("Visible shares appear when something must be seen and the view rests.");
         return;
     };

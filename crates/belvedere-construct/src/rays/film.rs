@@ -1,23 +1,25 @@
 //! Target tracking of a film: the way of the second viewpoint through all frames, planned before the first is drawn.
 //!
 //! Ours: the paper tracks live, where the motion to come is unknown. A film knows it. In every frame the share of the target that is
-//! seen is found on a grid of f along four directions across the view; the way that hides the target in the fewest frames, and of
-//! those the one that moves and bends least, is a shortest path over frame, direction and f (Bellman 1957). Directions change at f = 0.
+//! seen is found for places of the second viewpoint to the left and right; where no way among those shows the whole target throughout,
+//! or it turns round more than once, for places up, down and aslant as well, first few, then more. The way that hides the target in
+//! the fewest frames, and of those the one that turns, moves and bends least, is a shortest path over frames and places.
 
 use super::tracking::{Search, WHOLE};
+use super::way::Disc;
 use super::{Target, TargetSight, TrackingMemory, TrackingOptions};
 use crate::ConstructError;
 use belvedere_core::View;
 use belvedere_scene::Scene;
 use rayon::prelude::*;
 
-/// Directions of f > 0 across the view, degrees from the right of the picture upwards; the first is that of the paper.
-pub(super) const DIRECTIONS_DEG: [f64; 4] = [0.0, 90.0, 45.0, 135.0];
-/// States of f on either side of 0, at most: they bound the memory of a plan.
+/// Steps of f on either side of 0, at most.
 const MOST: usize = 250;
+/// Places per unit of the offset, first and second search up, down and aslant.
+const WIDE: [usize; 2] = [4, 8];
 /// A frame that does not show the whole target costs more than any motion.
 const HIDDEN: f64 = 1e6;
-/// Cost of bending to f = 1 for a second, and of doing so in another direction than sideways; moving f by 1 costs 1.
+/// Cost of bending to f = 1 for a second, and of doing so upwards or downwards; moving f by 1 costs 1.
 const BENT: f64 = 0.3;
 const ASIDE: f64 = 0.1;
 /// Cost of a second in which the target is seen but has no margin.
@@ -32,132 +34,193 @@ pub struct PlannedBend {
     pub direction_deg: f64,
 }
 
-/// Plans the bends of a film. Same frames, same plan.
+/// Share of the target that is seen, and whether it has its margin.
+type Seen = (f32, bool);
+
+/// What is known of a frame.
+#[derive(Debug, Clone, Default)]
+struct Known {
+    /// From f = -1 to 1 sideways.
+    sideways: Vec<Seen>,
+    /// On the square around the disc, rows from below; empty before the wide search.
+    wide: Vec<Seen>,
+    side: usize,
+}
+
+/// Plans the bends of a film in one to three passes over its frames: [`Self::add`] every frame, then ask [`Self::wants_more`].
+/// Same frames, same plan.
 #[derive(Debug)]
 pub struct FilmPlanner {
     options: TrackingOptions,
     time_step_s: f64,
-    directions: &'static [f64],
-    /// Grid intervals from f = 0 to 1, states per interval, and states that f may move per frame.
-    grid: usize,
-    fine: usize,
-    reach: usize,
     memory: TrackingMemory,
-    /// Least cost of arriving at a state, direction by direction.
-    cost: Vec<f64>,
-    /// Where the cheapest way to each state comes from, frame by frame.
-    parents: Vec<Vec<u16>>,
+    frames: Vec<Known>,
+    /// The pass, from 0, and the next frame of it.
+    pass: usize,
+    next: usize,
+    bends: Vec<PlannedBend>,
 }
 
 impl FilmPlanner {
-    /// * `time_step_s`: seconds between frames, > 0; `sideways`: whether the viewpoint only goes left and right.
+    /// * `time_step_s`: seconds between frames, > 0.
     ///
     /// # Errors
     /// [`ConstructError::Parameter`].
-    pub fn new(options: TrackingOptions, time_step_s: f64, sideways: bool) -> Result<Self, ConstructError> {
+    pub fn new(options: TrackingOptions, time_step_s: f64) -> Result<Self, ConstructError> {
         options.check()?;
-        let grid = ((1.0 / options.f_step).ceil() as usize).clamp(1, MOST);
-        let most = options.cap_per_s * time_step_s;
-        // As fine as lets whole states make use of the speed.
-        let used = |fine: &usize| {
-            let states = most * (grid * fine) as f64 * (1.0 + 1e-9);
-            states.floor() / states
-        };
-        let mut fine = 1;
-        for next in 2..=MOST / grid {
-            if used(&fine) < 0.95 && used(&next) > used(&fine) + 1e-6 {
-                fine = next;
-            }
-        }
-        let states = grid * fine;
-        let reach = ((most * states as f64 * (1.0 + 1e-9)).floor() as usize).min(2 * states);
-        let directions = &DIRECTIONS_DEG[..if sideways { 1 } else { DIRECTIONS_DEG.len() }];
-        let (memory, cost, parents) = (TrackingMemory::default(), Vec::new(), Vec::new());
-        Ok(Self { options, time_step_s, directions, grid, fine, reach, memory, cost, parents })
+        let memory = TrackingMemory::default();
+        Ok(Self { options, time_step_s, memory, frames: Vec::new(), pass: 0, next: 0, bends: Vec::new() })
     }
 
-    /// States of f.
-    fn width(&self) -> usize {
-        2 * self.grid * self.fine + 1
-    }
-
-    /// The next frame; the arguments are those of [`super::track_target`].
+    /// The next frame of the pass; the arguments are those of [`super::track_target`].
     pub fn add(&mut self, scene: &Scene, base: &View, target: &Target) {
-        let state = self.costs_of(scene, base, target);
-        let (width, zero) = (self.width(), self.grid * self.fine);
-        let mut parents: Vec<u16> = (0..state.len() as u16).collect();
-        let mut cost = state.clone();
-        if !self.cost.is_empty() {
-            let step = 1.0 / zero as f64;
-            for (s, own) in state.iter().enumerate() {
-                let (row, i) = (s / width * width, s % width);
-                let from = (i.saturating_sub(self.reach)..=(i + self.reach).min(width - 1)).map(|j| {
-                    let way = step * i.abs_diff(j) as f64;
-                    // Of two ways of the same length the slower one.
-                    (self.cost[row + j] + way * (1.0 + 0.2 * i.abs_diff(j) as f64 / self.reach.max(1) as f64), row + j)
-                });
-                let best = from.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((self.cost[s], s));
-                (cost[s], parents[s]) = (best.0 + own, best.1 as u16);
-            }
-        }
-        // Straight rays have no direction.
-        let zeros = (0..self.directions.len()).map(|d| d * width + zero);
-        if let Some(best) = zeros.clone().min_by(|a, b| cost[*a].total_cmp(&cost[*b])) {
-            for z in zeros {
-                (cost[z], parents[z]) = (cost[best], parents[best]);
-            }
-        }
-        self.cost = cost;
-        self.parents.push(parents);
-    }
-
-    /// What each state costs in a frame.
-    fn costs_of(&mut self, scene: &Scene, base: &View, target: &Target) -> Vec<f64> {
         let sight = TargetSight::new(scene, target);
         let search = Search::new(base, target, &self.options, &sight, &self.memory);
-        let points = 2 * self.grid + 1;
-        let at = |k: usize| (k as f64 - self.grid as f64) / self.grid as f64;
-        let seen = |k: usize| {
-            let (direction, f) = (self.directions[k / points], at(k % points));
-            let share = search.seen((f, direction), 0.0);
-            let is_clear = share >= WHOLE && search.seen((f, direction), self.options.grow_px) >= WHOLE;
-            (share, is_clear)
+        let grow = self.options.grow_px;
+        let seen = |[x, y]: [f64; 2]| -> Seen {
+            // The square has corners beyond the rim.
+            let f = x.hypot(y).min(1.0);
+            let at = if y == 0.0 { (x, 0.0) } else { (f, y.atan2(x).to_degrees()) };
+            let share = search.seen(at, 0.0);
+            (share as f32, share >= WHOLE && (grow == 0.0 || search.seen(at, grow) >= WHOLE))
         };
-        let shares: Vec<(f64, bool)> = (0..points * self.directions.len()).into_par_iter().map(seen).collect();
+        if self.pass == 0 {
+            let grid = ((1.0 / self.options.f_step).ceil() as usize).clamp(1, MOST);
+            let at = |k: usize| [k as f64 / grid as f64 - 1.0, 0.0];
+            let sideways = (0..=2 * grid).into_par_iter().map(|k| seen(at(k))).collect();
+            self.frames.push(Known { sideways, ..Known::default() });
+        } else if let Some(known) = self.frames.get(self.next) {
+            let side = WIDE[self.pass - 1];
+            let width = 2 * side + 1;
+            let node = |k: usize| -> Seen {
+                let [x, y] = [k % width, k / width].map(|i| i as f64 / side as f64 - 1.0);
+                // Nodes that no cell of the disc has at its corners.
+                if x.hypot(y) > 1.0 + std::f64::consts::SQRT_2 / side as f64 {
+                    return (0.0, false);
+                }
+                match y == 0.0 {
+                    true => known.sideways(x),
+                    false => known.node([x, y]).unwrap_or_else(|| seen([x, y])),
+                }
+            };
+            let wide = (0..width * width).into_par_iter().map(node).collect();
+            let sideways = known.sideways.clone();
+            self.frames[self.next] = Known { sideways, wide, side };
+        }
         let right = search.right();
-        let cost = |s: usize| {
-            let (d, i) = (s / self.width(), s % self.width());
-            let near = [i / self.fine, i.div_ceil(self.fine)].map(|k| shares[d * points + k]);
-            let share = near[0].0.min(near[1].0);
-            let f = i as f64 / (self.grid * self.fine) as f64 - 1.0;
-            let aside = if d == 0 { 0.0 } else { ASIDE };
-            let hidden = if share >= WHOLE { 0.0 } else { HIDDEN * (1.5 - 0.5 * share) };
-            let tight = if near[0].1 && near[1].1 { 0.0 } else { TIGHT };
-            hidden + self.time_step_s * (tight + (BENT + aside) * f.abs())
-        };
-        let costs = (0..self.width() * self.directions.len()).map(cost).collect();
         self.memory.keep_side(right);
-        costs
+        self.next += 1;
     }
 
-    /// Whether the way hides some of the target in some frame.
-    pub fn hides(&self) -> bool {
-        self.cost.iter().copied().fold(f64::INFINITY, f64::min) >= HIDDEN
+    /// Plans by what is known. Whether another pass over all frames, with more places to look from, may find a better way.
+    pub fn wants_more(&mut self) -> bool {
+        let disc = Disc::new(self.options.cap_per_s * self.time_step_s, self.pass == 0);
+        let knots = self.frames.len().div_ceil(disc.stride);
+        let cost = |knot: usize| {
+            let mut sum = vec![0.0; disc.places.len()];
+            for known in self.frames.iter().skip(knot * disc.stride).take(disc.stride) {
+                for (sum, place) in sum.iter_mut().zip(&disc.places) {
+                    *sum += self.cost(known, place.map(|i| f64::from(i) * disc.cell));
+                }
+            }
+            sum
+        };
+        let (least, way) = disc.cheapest(knots, cost);
+        let place = |knot: usize| way.get(knot).map(|&n| disc.places[n].map(|i| f64::from(i) * disc.cell));
+        let offsets = (0..self.frames.len()).map(|k| {
+            let from = place(k / disc.stride).unwrap_or_default();
+            let to = place(k / disc.stride + 1).unwrap_or(from);
+            let share = (k % disc.stride) as f64 / disc.stride as f64;
+            [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]))
+        });
+        self.bends = bends(offsets);
+        (self.pass, self.next) = (self.pass + 1, 0);
+        let better = least >= HIDDEN || (self.pass == 1 && turnings(&self.bends) > 1);
+        better && self.pass <= WIDE.len()
+    }
+
+    /// What a place costs in a frame.
+    fn cost(&self, known: &Known, [x, y]: [f64; 2]) -> f64 {
+        let (share, is_clear) = known.at([x, y]);
+        let share = f64::from(share);
+        let hidden = if share >= WHOLE { 0.0 } else { HIDDEN * (1.5 - 0.5 * share) };
+        let tight = if is_clear { 0.0 } else { TIGHT };
+        hidden + self.time_step_s * (tight + BENT * x.hypot(y) + ASIDE * y.abs())
     }
 
     /// The bend of every frame.
     pub fn finish(self) -> Vec<PlannedBend> {
-        let (width, zero) = (self.width(), self.grid * self.fine);
-        let Some(mut s) = (0..self.cost.len()).min_by(|a, b| self.cost[*a].total_cmp(&self.cost[*b])) else {
-            return Vec::new();
-        };
-        let mut out = Vec::with_capacity(self.parents.len());
-        for parents in self.parents.iter().rev() {
-            let f = (s % width) as f64 / zero as f64 - 1.0;
-            out.push(PlannedBend { f, direction_deg: self.directions[s / width] });
-            s = usize::from(parents[s]);
-        }
-        out.reverse();
-        out
+        self.bends
     }
+}
+
+impl Known {
+    fn sideways(&self, x: f64) -> Seen {
+        let at = (x + 1.0) * (self.sideways.len() - 1) as f64 / 2.0;
+        // Rounding must not take a neighbour in.
+        [(at - 1e-6).ceil(), (at + 1e-6).floor()]
+            .into_iter()
+            .map(|k| self.sideways[k as usize])
+            .reduce(both)
+            .unwrap_or_default()
+    }
+
+    /// A node of the wide search, if it has one there.
+    fn node(&self, place: [f64; 2]) -> Option<Seen> {
+        let [x, y] = place.map(|v| (v + 1.0) * self.side as f64);
+        let is_node = !self.wide.is_empty() && x.fract() == 0.0 && y.fract() == 0.0;
+        is_node.then(|| self.wide[y as usize * (2 * self.side + 1) + x as usize])
+    }
+
+    /// What is seen from a place: as much as from all of the places around it that are known.
+    fn at(&self, [x, y]: [f64; 2]) -> Seen {
+        if y == 0.0 {
+            return self.sideways(x);
+        }
+        if self.wide.is_empty() {
+            return (0.0, false);
+        }
+        let width = 2 * self.side + 1;
+        let ends = |v: f64| {
+            let at = (v + 1.0) * self.side as f64;
+            [(at + 1e-6).floor() as usize, ((at - 1e-6).ceil() as usize).min(width - 1)]
+        };
+        let (columns, rows) = (ends(x), ends(y));
+        let corners = rows.into_iter().flat_map(|r| columns.map(|c| self.wide[r * width + c]));
+        corners.reduce(both).unwrap_or_default()
+    }
+}
+
+fn both(a: Seen, b: Seen) -> Seen {
+    (a.0.min(b.0), a.1 && b.1)
+}
+
+/// Offsets, shares of `a` to the right and upwards, as f and a direction that does not jump.
+fn bends(offsets: impl Iterator<Item = [f64; 2]>) -> Vec<PlannedBend> {
+    let mut before = PlannedBend::default();
+    let mut out = Vec::new();
+    for [x, y] in offsets {
+        let length = x.hypot(y);
+        if length < 1e-12 {
+            before.f = 0.0;
+        } else if y == 0.0 && before.direction_deg == 0.0 {
+            before.f = x;
+        } else {
+            let sign = if before.f < 0.0 { -1.0 } else { 1.0 };
+            let toward = |sign: f64| (sign * y).atan2(sign * x).to_degrees();
+            let turn = |sign: f64| (toward(sign) - before.direction_deg + 540.0).rem_euclid(360.0) - 180.0;
+            // Straight through the middle f changes its sign, not its direction.
+            let sign = if turn(sign).abs() > 179.0 { -sign } else { sign };
+            before = PlannedBend { f: sign * length, direction_deg: toward(sign) };
+        }
+        out.push(before);
+    }
+    out
+}
+
+/// How often f turns round.
+fn turnings(bends: &[PlannedBend]) -> usize {
+    let steps = bends.windows(2).map(|pair| pair[1].f - pair[0].f).filter(|step| step.abs() > 1e-9);
+    let signs: Vec<bool> = steps.map(|step| step > 0.0).collect();
+    signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
 }

@@ -9,9 +9,11 @@ mod path;
 mod preview;
 mod probe;
 mod sidestep;
+mod surface_points;
 mod target;
 mod tracking;
 mod turns;
+mod way;
 
 pub use around::{AroundOptions, BendFound, BendReport, bend_around};
 pub use film::{FilmPlanner, PlannedBend};

@@ -1,11 +1,9 @@
 //! What is to be seen, and how much of it a view shows.
 
+use super::surface_points;
 use belvedere_core::{Aabb, DVec2, DVec3, View};
-use belvedere_scene::{LayerKind, Scene};
+use belvedere_scene::{LayerKind, Scene, Unit};
 use belvedere_sight::{Obstacles, SightOptions, Voxels};
-
-/// Points per edge of the box of a target.
-const LATTICE: usize = 3;
 
 /// Something to be seen.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,8 +27,8 @@ const MOST_BALLS: usize = 64;
 const SEEN: f64 = 0.5;
 
 impl Target {
-    /// A whole layer, by its index, as the paper's box: points all over its surface; of a molecule with a selection of what must be
-    /// seen, the atoms of that. `None` if the layer has no extent in space of its own (terrain, areas) or holds nothing.
+    /// A whole layer, by its index: points all over its surface; of a molecule or mesh with a selection of what must be seen, the atoms
+    /// or parts of that. `None` if the layer has no extent in space of its own (terrain, areas) or holds nothing.
     pub fn layer(scene: &Scene, index: usize) -> Option<Self> {
         let layer = scene.layers.get(index)?;
         let bounds = layer.bounds();
@@ -51,26 +49,40 @@ impl Target {
                 let points = layer.visible_voxels(MOST_BALLS);
                 (!points.is_empty()).then(|| Self { own_layers: vec![index], ..Self::points(points) })
             }
+            LayerKind::Mesh(m) => match &m.wanted {
+                Some(parts) => Self::parts(scene, index, parts),
+                None => {
+                    let points = surface_points::on_triangles((0..m.mesh.triangles().len()).map(|t| m.mesh.corners(t)));
+                    Some(Self { own_layers: vec![index], points, ..Self::around(bounds) })
+                }
+            },
+            LayerKind::Boxes(b) => {
+                let points = surface_points::on_boxes(&b.boxes);
+                Some(Self { own_layers: vec![index], points, ..Self::around(bounds) })
+            }
             _ => Some(Self { own_layers: vec![index], ..Self::around(bounds) }),
         }
     }
 
-    /// Named parts of a mesh, or boxes of a layer, by their numbers, as the paper's box. `None` if there are none.
+    /// Named parts of a mesh, or boxes of a layer, by their numbers: points all over their surface. `None` if there are none.
     pub fn parts(scene: &Scene, index: usize, parts: &[u32]) -> Option<Self> {
         let mut parts = parts.to_vec();
         parts.sort_unstable();
-        let bounds = match &scene.layers.get(index)?.kind {
+        let (bounds, points) = match &scene.layers.get(index)?.kind {
             LayerKind::Mesh(layer) => {
                 let mesh = &layer.mesh;
                 let is_own = |&t: &usize| mesh.part(t).is_some_and(|part| parts.binary_search(&part).is_ok());
-                Aabb::of((0..mesh.triangles().len()).filter(is_own).flat_map(|t| mesh.corners(t)))
+                let own: Vec<usize> = (0..mesh.triangles().len()).filter(is_own).collect();
+                let corners = own.iter().map(|&t| mesh.corners(t));
+                (Aabb::of(corners.clone().flatten()), surface_points::on_triangles(corners))
             }
             LayerKind::Boxes(layer) => {
-                Aabb::of(parts.iter().filter_map(|&k| layer.boxes.get(k as usize)).flat_map(|shape| shape.corners()))
+                let own: Vec<_> = parts.iter().filter_map(|&k| layer.boxes.get(k as usize)).copied().collect();
+                (Aabb::of(own.iter().flat_map(|shape| shape.corners())), surface_points::on_boxes(&own))
             }
             _ => return None,
         };
-        (!bounds.is_empty()).then(|| Self { own_parts: Some((index, parts)), ..Self::around(bounds) })
+        (!bounds.is_empty()).then(|| Self { own_parts: Some((index, parts)), points, ..Self::around(bounds) })
     }
 
     /// Atoms of a molecule, by their numbers, as balls; those that are not drawn are left out. `None` if none is drawn.
@@ -92,15 +104,7 @@ impl Target {
 
     /// What lies in a box.
     pub fn around(bounds: Aabb) -> Self {
-        // A little inside: the box may stand on something.
-        let share = |i: usize| 0.02 + 0.96 * i as f64 / (LATTICE - 1) as f64;
-        let inner = |i: usize| i > 0 && i < LATTICE - 1;
-        let mut points = Vec::new();
-        for (x, y, z) in (0..LATTICE.pow(3)).map(|i| (i % LATTICE, i / LATTICE % LATTICE, i / LATTICE / LATTICE)) {
-            if !(inner(x) && inner(y) && inner(z)) {
-                points.push(bounds.min + (bounds.max - bounds.min) * DVec3::new(share(x), share(y), share(z)));
-            }
-        }
+        let points = surface_points::on_bounds(bounds);
         Self { points, bounds, own_layers: Vec::new(), own_parts: None, radius: 0.0 }
     }
 
@@ -142,6 +146,9 @@ pub struct Shown {
 /// How much views show of a target, by lines of sight along their rays past everything else in the scene. Volumes hide a point where
 /// they absorb more than half of its light.
 pub struct TargetSight<'a> {
+    scene: &'a Scene,
+    /// Lowest height of the scene, where it has ground.
+    lowest: Option<f64>,
     target: &'a Target,
     obstacles: Obstacles<'a>,
     voxels: Voxels<'a>,
@@ -162,7 +169,15 @@ impl<'a> TargetSight<'a> {
             Some((layer, parts)) => Obstacles::without_parts(scene, *layer, parts),
             None => Obstacles::without(scene, &target.own_layers),
         };
-        Self { target, obstacles, voxels, sight }
+        // Molecules and volumes have no ground.
+        let lowest = (scene.unit == Unit::Metre && !bounds.is_empty()).then_some(bounds.min.z);
+        Self { scene, lowest, target, obstacles, voxels, sight }
+    }
+
+    /// Height of a place above the terrain, or beside it above the lowest of the scene, metres; infinite in scenes without ground.
+    pub(super) fn height_above_ground(&self, place: DVec3) -> f64 {
+        let ground = self.scene.terrain().and_then(|t| t.surface_at(place.truncate())).or(self.lowest);
+        ground.map_or(f64::INFINITY, |ground| place.z - ground)
     }
 
     /// Share of the target's points that are in the picture and seen, 0..=1.

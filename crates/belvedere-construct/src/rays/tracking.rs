@@ -4,17 +4,20 @@
 //! speed. The paper compares boxes in the image; here lines of sight to points of the target's box decide, for boxes of walls and
 //! ground hide everything. Planes, steps and speeds are not given by the paper: ours.
 
-use super::film::DIRECTIONS_DEG;
 use super::{PlannedBend, Sidestep, Target, TargetSight};
 use crate::ConstructError;
 use belvedere_core::{DVec3, View};
 use belvedere_scene::Scene;
 use serde::{Deserialize, Serialize};
 
+/// Directions of f > 0 across the view that a search tries, degrees from the right of the picture upwards; the first is that of the paper.
+const DIRECTIONS_DEG: [f64; 4] = [0.0, 90.0, 45.0, 135.0];
 /// Shares from here on count as the whole target.
 pub(super) const WHOLE: f64 = 0.999;
 /// A target must have been clear, with twice the margin, for so long before the rays straighten again, seconds.
 const CLEAR_FOR_S: f64 = 0.25;
+/// The second viewpoint keeps so far above the ground, metres, unless the eye itself is lower.
+const LEAST_HEIGHT_M: f64 = 2.0;
 /// Where the whole target cannot be shown, so much more of it is worth bending for.
 const WORTH: f64 = 0.05;
 
@@ -212,17 +215,30 @@ impl<'a> Search<'a> {
     }
 
     fn view_in(&self, f: f64, direction_deg: f64) -> Result<View, ConstructError> {
-        let (sin, cos) = direction_deg.to_radians().sin_cos();
-        let across = if direction_deg == 0.0 { self.right } else { cos * self.right - sin * self.base.pinhole().down };
         match self.planes {
-            Some(planes) if f != 0.0 => Sidestep { offset: f * self.reach * across, planes }.view(self.base),
+            Some(planes) if f != 0.0 => Sidestep { offset: self.offset(f, direction_deg), planes }.view(self.base),
             _ => Ok(self.base.clone()),
         }
     }
 
+    /// From the eye to the second viewpoint.
+    fn offset(&self, f: f64, direction_deg: f64) -> DVec3 {
+        let (sin, cos) = direction_deg.to_radians().sin_cos();
+        let across = if direction_deg == 0.0 { self.right } else { cos * self.right - sin * self.base.pinhole().down };
+        f * self.reach * across
+    }
+
+    /// Whether the second viewpoint stands above the ground; one that goes level may stay as low as the eye.
+    fn stands(&self, f: f64, direction_deg: f64) -> bool {
+        let eye = self.base.pinhole().eye;
+        let viewpoint = eye + self.offset(f, direction_deg);
+        self.sight.height_above_ground(viewpoint) >= LEAST_HEIGHT_M.min(self.sight.height_above_ground(eye))
+    }
+
     /// Share of the target that is seen with f in a direction, degrees; nothing through a camera that is not possible.
     pub(super) fn seen(&self, (f, direction_deg): (f64, f64), grow_px: f64) -> f64 {
-        self.view_in(f, direction_deg).map_or(0.0, |view| self.sight.share(&view, grow_px))
+        let view = self.view_in(f, direction_deg).ok().filter(|_| f == 0.0 || self.stands(f, direction_deg));
+        view.map_or(0.0, |view| self.sight.share(&view, grow_px))
     }
 
     /// `goal`, or where going sideways does not show the whole target, where going up or aslant shows more.

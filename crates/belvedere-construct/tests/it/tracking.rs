@@ -6,7 +6,8 @@ use belvedere_construct::rays::{
 use belvedere_core::{DVec3, Pinhole, Projection, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_scene::{
-    BoxLayer, BoxShape, Color, Layer, LayerKind, Light, Progress, RenderJob, RenderOptions, Renderer, Scene,
+    BoxLayer, BoxShape, Color, Layer, LayerKind, Light, Mesh, MeshColors, MeshLayer, Progress, RenderJob,
+    RenderOptions, Renderer, Scene,
 };
 use belvedere_testkit::Random;
 
@@ -200,9 +201,14 @@ fn film_past_towers(seed: u64, towers: usize) -> (usize, [usize; 2], usize) {
         .collect();
     let at = |k: usize| block(DVec3::new(-26.0 + 0.4 * k as f64, 96.0, 0.0), DVec3::new(2.0, 2.0, 3.0));
     let scenes: Vec<Scene> = (0..130).map(|k| scene(towers.clone(), at(k))).collect();
-    let mut planner = FilmPlanner::new(options, DT, true).unwrap();
-    for scene in &scenes {
-        planner.add(scene, &base, &Target::layer(scene, TARGET).unwrap());
+    let mut planner = FilmPlanner::new(options, DT).unwrap();
+    loop {
+        for scene in &scenes {
+            planner.add(scene, &base, &Target::layer(scene, TARGET).unwrap());
+        }
+        if !planner.wants_more() {
+            break;
+        }
     }
     let bends = planner.finish();
     let (mut solvable, mut at_once, mut kept, mut hidden_for) = (0, 0, 0, 0);
@@ -227,9 +233,13 @@ fn film_past_towers(seed: u64, towers: usize) -> (usize, [usize; 2], usize) {
         let planes = [0.5 * depth, 0.625 * depth, 0.75 * depth];
         let shows =
             |f: f64| whole(&Sidestep { offset: f * 0.5 * depth * base.pinhole().right, planes }.view(&base).unwrap());
-        if (-10..=10).map(|i| 0.1 * f64::from(i)).any(shows) {
+        // Level with the eye or higher, the viewpoint stays above the ground.
+        let up = bend.f * 0.5 * depth * bend.direction_deg.to_radians().sin();
+        assert!(base.pinhole().eye.z + up >= 2.0, "frame {k}: the viewpoint is moved up by {up}");
+        let shown = whole(&tracked.view);
+        assert!(k > 0 || shown, "the film does not begin where the target is seen");
+        if shown || (-10..=10).map(|i| 0.1 * f64::from(i)).any(shows) {
             solvable += 1;
-            let shown = whole(&tracked.view);
             hidden_for = if shown { 0 } else { hidden_for + 1 };
             at_once += usize::from(shown);
             kept += usize::from(hidden_for <= swing);
@@ -241,12 +251,32 @@ fn film_past_towers(seed: u64, towers: usize) -> (usize, [usize; 2], usize) {
 #[test]
 fn a_planned_film_shows_the_whole_target_past_nine_towers_and_does_not_hunt() {
     let (mut solvable, mut at_once, mut kept) = (0, 0, 0);
-    for seed in 20..23 {
+    for seed in 20..22 {
         let (of, seen, turns) = film_past_towers(seed, 9);
-        assert!(turns <= 18, "seed {seed}: f turns round {turns} times");
+        assert!(turns <= 4, "seed {seed}: f turns round {turns} times");
         (solvable, at_once, kept) = (solvable + of, at_once + seen[0], kept + seen[1]);
     }
-    assert!(solvable > 300, "{solvable} frames can be solved");
+    assert!(solvable > 200, "{solvable} frames can be solved");
     assert!(kept as f64 >= 0.99 * solvable as f64, "{kept} of {solvable}");
     assert!(at_once as f64 >= 0.9 * solvable as f64, "{at_once} of {solvable}, swings counted as hidden");
+}
+
+#[test]
+fn a_selection_of_parts_changes_the_target_and_the_rest_of_the_mesh_hides_it() {
+    let triangle = |y: f64| [[-2.0, y, 1.0], [2.0, y, 1.0], [0.0, y, 5.0]].map(DVec3::from_array);
+    let positions: Vec<DVec3> = [60.0, 95.0].into_iter().flat_map(triangle).collect();
+    let mesh = Mesh::in_parts(&positions, vec![[0, 1, 2], [3, 4, 5]], MeshColors::Layer, vec![0, 1]).unwrap();
+    let layer = |wanted| LayerKind::Mesh(MeshLayer { wanted, ..MeshLayer::new(mesh.clone(), Color::rgb(200, 60, 60)) });
+    let scene = |wanted| Scene::default().with_layer("houses", layer(wanted));
+    let (all, one) = (scene(None), scene(Some(vec![1])));
+    let [whole, selected] = [&all, &one].map(|scene| Target::layer(scene, 0).unwrap());
+    assert!(whole.center().y < 80.0 && selected.center().y == 95.0, "{} {}", whole.center(), selected.center());
+    assert_eq!(selected.own_parts, Some((0, vec![1])));
+    let tracked = |scene: &Scene, target: &Target| {
+        let (options, mut memory) = (TrackingOptions::default(), TrackingMemory::default());
+        track_target(scene, &camera(), target, &options, None, &mut memory).unwrap().report
+    };
+    assert_eq!(tracked(&all, &whole).f, 0.0);
+    let report = tracked(&one, &selected);
+    assert!(report.f != 0.0 && report.visible_straight < 0.999 && report.visible >= 0.999, "{report:?}");
 }

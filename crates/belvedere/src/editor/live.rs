@@ -93,6 +93,9 @@ pub struct Judged {
     pub measures: Measures,
     /// What stays hidden, part by part.
     pub hidden: Vec<HiddenRun>,
+    /// Share of the tracked target that the bent picture at rest shows, by its pixels, 0..=1; `None` while something moves, or if
+    /// nothing is tracked.
+    pub target_seen: Option<f64>,
 }
 
 /// Longest that judging may take between any two moving pictures.
@@ -198,14 +201,15 @@ impl LiveSession {
 
     fn judged(&self, order: &Order, progress: &Progress) -> Result<Option<Judged>, BelvedereError> {
         let Some(session) = &self.shown else { return Ok(None) };
-        if !session.scene().layers.iter().any(|layer| layer.must_see) {
+        let (scene, view) = (session.scene(), session.view());
+        let target_seen = if order.pace == Pace::Resting { target_seen(session, progress)? } else { None };
+        if target_seen.is_none() && !scene.layers.iter().any(|layer| layer.must_see) {
             return Ok(None);
         }
         let options = MeasureOptions::default();
-        let (scene, view) = (session.scene(), session.view());
         let measures = belvedere_construct::measure(scene, view, None, &options, progress)?;
         let hidden = belvedere_construct::measure::hidden(scene, view, &options, progress)?;
-        Ok(Some(Judged { document: order.document.clone(), pace: order.pace, measures, hidden }))
+        Ok(Some(Judged { document: order.document.clone(), pace: order.pace, measures, hidden, target_seen }))
     }
 
     /// Everything is solved.
@@ -387,6 +391,21 @@ fn quick(
         Some(plan) => plan.draw(view, &draw),
         None => draw(scene, view),
     }
+}
+
+/// Share of the tracked target that the session's view shows.
+fn target_seen(session: &Session, progress: &Progress) -> Result<Option<f64>, BelvedereError> {
+    if !session.tracks() {
+        return Ok(None);
+    }
+    let view = session.view();
+    let frame = quick(session, session.scene(), view, 1.0, progress)?;
+    let options = RenderOptions { samples: 1, ..RenderOptions::default() };
+    let draw = |scene: &Scene, view: &View| {
+        let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
+        Ok::<_, BelvedereError>(session.renderer.render(&job)?)
+    };
+    fallback::in_sight::of_session(session, (view, &frame), &draw)
 }
 
 /// The camera from above, with its rays, planes and legend.

@@ -5,6 +5,7 @@
 //! eye has no walls that could be seen, so a cutaway is the picture without what hides the target, within the cone.
 
 mod explode;
+pub(crate) mod in_sight;
 mod occluders;
 mod region;
 #[cfg(test)]
@@ -329,24 +330,15 @@ impl FallbackPlan {
     ) -> Result<FallbackRecord, BelvedereError> {
         let Some(alone) = occluders::target_alone(&self.scene, &self.target) else { return Ok(self.record.clone()) };
         let alone = draw(&alone, view)?;
-        let own: Vec<usize> = (0..alone.id.len()).filter(|&i| self.is_target(alone.id[i])).collect();
-        let share = |frame: &Frame| {
-            let is_seen = |i: &&usize| {
-                let (here, there) = (f64::from(frame.depth[**i]), f64::from(alone.depth[**i]));
-                let same_depth = self.target.own_parts.is_none() || (here - there).abs() <= SAME_DEPTH * there;
-                self.is_target(frame.id[**i]) && same_depth
-            };
-            own.iter().filter(is_seen).count() as f64 / own.len().max(1) as f64
-        };
-        let visible_before = share(&draw(before, view)?);
-        let (visible, pixels_alone) = (share(frame), Some(own.len()));
+        let (_, visible_before) = in_sight::share(&self.target, &draw(before, view)?, &alone);
+        let (pixels, visible) = in_sight::share(&self.target, frame, &alone);
+        let pixels_alone = Some(pixels);
         Ok(FallbackRecord { visible_before, visible, pixels_alone, ..self.record.clone() })
     }
 
     /// Whether an id of a picture is that of the target's layer.
     fn is_target(&self, id: u32) -> bool {
-        let is = |layer: usize| id as usize == layer + 1;
-        self.target.own_layers.iter().any(|&layer| is(layer)) || self.target.own_parts.as_ref().is_some_and(|p| is(p.0))
+        in_sight::is_target(&self.target, id)
     }
 
     /// Pixel by pixel whether a cutaway cuts there: around what atoms fill in the picture, else around the target's box or points.

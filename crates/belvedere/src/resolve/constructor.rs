@@ -198,7 +198,7 @@ pub(crate) fn plan_frame(
     scene: &Scene,
     base: &View,
     time_step_s: f64,
-    (sideways, planner): (bool, &mut Option<FilmPlanner>),
+    planner: &mut Option<FilmPlanner>,
 ) -> Result<(), BelvedereError> {
     let Some(doc) = stated(source).filter(|doc| doc.kind == ConstructorKind::TargetTracking) else { return Ok(()) };
     if refusal("the constructor", scene, base).is_some() {
@@ -206,7 +206,7 @@ pub(crate) fn plan_frame(
     }
     let (options, target) = tracking(source, doc, scene, base)?;
     if planner.is_none() {
-        *planner = Some(FilmPlanner::new(options, time_step_s, sideways).map_err(|e| fail(source, e))?);
+        *planner = Some(FilmPlanner::new(options, time_step_s).map_err(|e| fail(source, e))?);
     }
     if let Some(planner) = planner {
         planner.add(scene, base, &target);

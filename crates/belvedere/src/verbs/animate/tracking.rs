@@ -17,29 +17,27 @@ pub(super) fn plan(
         return Ok(Vec::new());
     }
     let mut planner = None;
-    for sideways in [true, false] {
-        planner = pass(session, path, sideways, progress)?;
-        if !planner.as_ref().is_some_and(FilmPlanner::hides) {
-            break;
+    loop {
+        pass(session, path, &mut planner, progress)?;
+        if !planner.as_mut().is_some_and(FilmPlanner::wants_more) {
+            return Ok(planner.map_or_else(Vec::new, FilmPlanner::finish));
         }
     }
-    Ok(planner.map_or_else(Vec::new, FilmPlanner::finish))
 }
 
 fn pass(
     session: &Session,
     path: &CameraPath,
-    sideways: bool,
+    planner: &mut Option<FilmPlanner>,
     progress: &Progress,
-) -> Result<Option<FilmPlanner>, BelvedereError> {
-    let mut planner = None;
+) -> Result<(), BelvedereError> {
     for frame in 0..path.len() {
         progress.tick("planning how the target stays in sight", frame as f64 / path.len() as f64)?;
         let framed = path.session(session, frame, None)?;
         if let Some(description) = &framed.resolved.description {
             let (scene, base) = (framed.scene(), framed.view());
-            constructor::plan_frame(&description.source, scene, base, 1.0 / path.fps, (sideways, &mut planner))?;
+            constructor::plan_frame(&description.source, scene, base, 1.0 / path.fps, planner)?;
         }
     }
-    Ok(planner)
+    Ok(())
 }

@@ -1,0 +1,48 @@
+//! How much of a target a picture shows, pixel by pixel.
+
+use super::{SAME_DEPTH, occluders};
+use crate::resolve::constructor;
+use crate::verbs::reveal_target;
+use crate::{BelvedereError, Session};
+use belvedere_construct::rays::Target;
+use belvedere_core::View;
+use belvedere_scene::{Frame, Scene};
+
+/// Whether an id of a picture is that of the target's layer.
+pub(super) fn is_target(target: &Target, id: u32) -> bool {
+    let is = |layer: usize| id as usize == layer + 1;
+    target.own_layers.iter().any(|&layer| is(layer)) || target.own_parts.as_ref().is_some_and(|p| is(p.0))
+}
+
+/// Pixels of a target in the picture of it alone, and the share of them that a picture shows, 0..=1: by ids, and by depths where other
+/// things of its layer may hide it.
+pub(super) fn share(target: &Target, frame: &Frame, alone: &Frame) -> (usize, f64) {
+    let own = (0..alone.id.len()).filter(|&i| is_target(target, alone.id[i]));
+    let is_seen = |i: usize| {
+        let (here, there) = (f64::from(frame.depth[i]), f64::from(alone.depth[i]));
+        let same_depth = target.own_parts.is_none() || (here - there).abs() <= SAME_DEPTH * there;
+        is_target(target, frame.id[i]) && same_depth
+    };
+    let (all, seen) = own.fold((0usize, 0usize), |(all, seen), i| (all + 1, seen + usize::from(is_seen(i))));
+    (all, seen as f64 / all.max(1) as f64)
+}
+
+/// Share of the target that a session keeps in sight that a picture of it shows, 0..=1; `None` if it tracks none, or one without
+/// pixels of its own, such as a point.
+///
+/// * `frame`: the picture through `view`.
+///
+/// # Errors
+/// Those of `draw`, [`BelvedereError::Target`].
+pub(crate) fn of_session(
+    session: &Session,
+    (view, frame): (&View, &Frame),
+    draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
+) -> Result<Option<f64>, BelvedereError> {
+    let Some(source) = session.description.as_ref().map(|d| &d.source) else { return Ok(None) };
+    let doc = source.document.constructor.as_ref().filter(|_| constructor::tracks_target(source));
+    let Some(name) = doc.and_then(|doc| doc.target.as_deref()) else { return Ok(None) };
+    let target = reveal_target::target(session.scene(), name)?;
+    let Some(alone) = occluders::target_alone(session.scene(), &target) else { return Ok(None) };
+    Ok(Some(share(&target, frame, &draw(&alone, view)?).1))
+}
