@@ -1,7 +1,7 @@
 //! Points that stand for the features of interest when visibility is judged.
 
 use crate::surface_samples::surface;
-use belvedere_core::{DVec2, DVec3};
+use belvedere_core::{DVec2, DVec3, polygon};
 use belvedere_scene::{AreaFeature, Heightfield, Layer, LayerKind, LineFeature, Scene};
 use serde::Serialize;
 
@@ -231,28 +231,20 @@ fn area_samples(
         let count = (extent.element_product() / (step * step)).clamp(least, most).floor();
         let each = extent.element_product() / count;
         let places = (0..count as usize).map(|i| low + extent * (0.5 + i as f64 * PLASTIC).fract());
-        out.extend(places.filter(|p| inside(&f.rings, *p)).filter_map(|p| on_surface(p, each)));
+        out.extend(places.filter(|p| polygon::is_inside(&f.rings, *p)).filter_map(|p| on_surface(p, each)));
         return if out.is_empty() { rims } else { out };
     }
     let (cols, rows) = ((extent.x / step).ceil() as usize, (extent.y / step).ceil() as usize);
     for row in 0..rows {
         for col in 0..cols {
             let p = low + step * DVec2::new(col as f64 + 0.5, row as f64 + 0.5);
-            if inside(&f.rings, p) {
+            if polygon::is_inside(&f.rings, p) {
                 out.extend(on_surface(p, step * step));
             }
         }
     }
     // The band along a rim is a part of the area that the lattice counts already.
     if out.is_empty() { rims } else { out }
-}
-
-fn inside(rings: &[Vec<DVec2>], p: DVec2) -> bool {
-    let crosses =
-        |a: DVec2, b: DVec2| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
-    let count: usize =
-        rings.iter().map(|r| (0..r.len()).filter(|&i| crosses(r[i], r[(i + 1) % r.len()])).count()).sum();
-    count % 2 == 1
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ pub mod camera;
 pub mod conic;
 pub mod grid;
 pub mod map;
+pub mod polygon;
 pub mod presets;
 pub mod random;
 pub mod sections;

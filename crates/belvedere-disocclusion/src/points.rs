@@ -2,6 +2,7 @@
 
 use super::{Field, TerrainSettings};
 use belvedere_core::DVec2;
+use belvedere_core::polygon::{crossings, doubled_area, is_inside};
 use belvedere_scene::{AreaFeature, Layer, LayerKind, LineFeature, Scene};
 
 /// Points along one line or rim, and inside one area, at most; a longer feature gets wider spacing.
@@ -305,7 +306,7 @@ impl<'a> PointCollector<'a> {
         let rims = self.usable.len();
         self.inside(rings, spacing);
         if self.usable.len() == rims {
-            let enclosed = self.field.spacing().element_product() * rings.iter().map(|r| enclosed(r)).sum::<f64>();
+            let enclosed = self.field.spacing().element_product() * rings.iter().map(|r| 0.5 * doubled_area(r).abs()).sum::<f64>();
             let each = enclosed / (rims - first).max(1) as f64;
             self.usable[first..].iter_mut().for_each(|p| p.amount = each);
         }
@@ -344,7 +345,7 @@ impl<'a> PointCollector<'a> {
         for row in from.y as usize..to.y.max(0.0) as usize {
             for col in from.x as usize..to.x.max(0.0) as usize {
                 let p = origin + step * DVec2::new(col as f64, row as f64);
-                if inside(rings, p) {
+                if is_inside(rings, p) {
                     self.put(p, 0.0, PointKind::Inside);
                 }
             }
@@ -368,7 +369,7 @@ impl PointCollector<'_> {
         self.amount = extent.element_product() * self.field.spacing().element_product() / count;
         for i in 0..count as usize {
             let p = low + extent * DVec2::new((i as f64 * GOLDEN).fract(), (i as f64 + 0.5) / count);
-            if inside(rings, p) {
+            if is_inside(rings, p) {
                 self.put(p, 0.0, PointKind::Inside);
             }
         }
@@ -384,14 +385,14 @@ impl PointCollector<'_> {
         let points = |parts: usize| (3 * parts - 2) as f64 * cells;
         let parts = [5, 2].into_iter().find(|&parts| points(parts) <= MOST_ON_EDGES).unwrap_or(1);
         let every = (points(parts) / MOST_ON_EDGES).sqrt().ceil().max(1.0);
-        let mut crossings = Vec::new();
+        let mut crossed = Vec::new();
         let mut row = low.y;
         while row <= high.y {
             for part in 0..parts {
                 let down = part as f64 / parts as f64;
                 let y = row + down;
                 crossings.clear();
-                crossings.extend(rings.iter().flat_map(|ring| ring_crossings(ring, y)));
+                crossed.extend(rings.iter().flat_map(|ring| crossings(ring, y)));
                 crossings.sort_by(f64::total_cmp);
                 let across: &[usize] = if part == 0 { &[0, 1, 2, 3, 4][..parts] } else { &[0, part] };
                 for pair in crossings.chunks_exact(2) {
@@ -411,19 +412,6 @@ impl PointCollector<'_> {
     }
 }
 
-/// What a closed ring encloses, in cells.
-fn enclosed(ring: &[DVec2]) -> f64 {
-    let Some(&origin) = ring.first() else { return 0.0 };
-    let sides = (0..ring.len()).map(|i| (ring[i] - origin, ring[(i + 1) % ring.len()] - origin));
-    0.5 * sides.map(|(a, b)| a.perp_dot(b)).sum::<f64>().abs()
-}
-
-/// Where a closed ring crosses a line of constant y.
-pub(crate) fn ring_crossings(ring: &[DVec2], y: f64) -> impl Iterator<Item = f64> + '_ {
-    let sides = (0..ring.len()).map(move |i| (ring[i], ring[(i + 1) % ring.len()]));
-    sides.filter(move |(a, b)| (a.y > y) != (b.y > y)).map(move |(a, b)| a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x))
-}
-
 /// The shares of a straight way at which it crosses the mesh, at most [`MOST_POINTS`] of each family of its lines.
 fn mesh_crossings(from: DVec2, step: DVec2) -> impl Iterator<Item = f64> {
     let lines = [(from.x, step.x), (from.y, step.y), (from.x - from.y, step.x - step.y)];
@@ -441,14 +429,6 @@ fn nearest_bend(from: DVec2, step: DVec2, share: f64, reach: f64) -> f64 {
     let crossings = lines.into_iter().map(|(from, step, at)| (at.round() - from) / step);
     let bends = crossings.chain([0.0, 1.0]).filter(|b| (0.0..=1.0).contains(b) && (b - share).abs() < reach);
     bends.min_by(|a, b| (a - share).abs().total_cmp(&(b - share).abs())).unwrap_or(share)
-}
-
-/// Even-odd rule.
-fn inside(rings: &[Vec<DVec2>], p: DVec2) -> bool {
-    let crosses =
-        |a: DVec2, b: DVec2| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
-    let count = |r: &Vec<DVec2>| (0..r.len()).filter(|&i| crosses(r[i], r[(i + 1) % r.len()])).count();
-    rings.iter().map(count).sum::<usize>() % 2 == 1
 }
 
 #[cfg(test)]

@@ -4,8 +4,7 @@
 //! together; every node of the terrain on it then gets the same displacement. Nodes of the bank stay free.
 
 use super::super::{Field, Hierarchy};
-use crate::points::ring_crossings;
-use belvedere_core::DVec2;
+use belvedere_core::{DVec2, polygon};
 use belvedere_scene::{AreaSurface, LayerKind, Scene};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -213,7 +212,7 @@ fn nodes_inside(rings: &[Vec<DVec2>], field: &Field) -> Vec<u32> {
     let mut crossings = Vec::new();
     for row in low.ceil().max(0.0) as usize..rows.min((high.floor() + 1.0).max(0.0) as usize) {
         crossings.clear();
-        crossings.extend(rings.iter().flat_map(|ring| ring_crossings(ring, row as f64)));
+        crossings.extend(rings.iter().flat_map(|ring| polygon::crossings(ring, row as f64)));
         crossings.sort_by(f64::total_cmp);
         for pair in crossings.chunks_exact(2) {
             let from = pair[0].ceil().max(0.0) as usize;

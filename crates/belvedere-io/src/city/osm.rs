@@ -6,6 +6,7 @@ use super::parts::{self, Tagged};
 use super::plan::{self, Repairs};
 use super::{CityFile, IoError, Loaded};
 use crate::crs::CoordinateSystem;
+use belvedere_core::polygon::{doubled_area, is_inside};
 use belvedere_scene::{City, CityArea, Polygon, Way, WayClass};
 use glam::DVec2;
 use osmpbf::{Element, ElementReader, RelMemberType};
@@ -202,7 +203,7 @@ impl Map {
         let mut rings: Vec<(f64, Vec<DVec2>)> = closed_rings(&lines)
             .iter()
             .filter_map(|nodes| self.places(nodes))
-            .map(|ring| (plan::doubled_area(&ring).abs(), ring))
+            .map(|ring| (doubled_area(&ring).abs(), ring))
             .collect();
         rings.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut groups: Vec<Option<Vec<Vec<DVec2>>>> = Vec::new();
@@ -301,7 +302,7 @@ fn closed_rings(lines: &[&[i64]]) -> Vec<Vec<i64>> {
 fn contains(outer: &[DVec2], ring: &[DVec2]) -> bool {
     // A vertex that both share tells nothing.
     let Some(p) = ring.iter().find(|p| !outer.contains(p)) else { return false };
-    plan::contains(outer, *p)
+    is_inside([outer], *p)
 }
 
 #[cfg(test)]
@@ -328,7 +329,7 @@ mod tests {
         }
         let polygons = map.polygons(&[2, 0, 1], &mut Repairs::default());
         assert_eq!(polygons.iter().map(|p| p.holes.len()).collect::<Vec<_>>(), [1, 0]);
-        assert_eq!(plan::doubled_area(&polygons[0].outer), 512.0);
-        assert_eq!(plan::doubled_area(&polygons[0].holes[0]), -128.0);
+        assert_eq!(doubled_area(&polygons[0].outer), 512.0);
+        assert_eq!(doubled_area(&polygons[0].holes[0]), -128.0);
     }
 }

@@ -4,6 +4,7 @@
 use super::attributes::{self, Attributes, length_m};
 use super::plan::{self, Repairs};
 use super::roofs::{Heights, Roof, solid};
+use belvedere_core::polygon::is_inside;
 use belvedere_scene::{Building, Polygon};
 use glam::DVec2;
 
@@ -128,7 +129,7 @@ fn extent(polygons: &[Polygon]) -> [DVec2; 2] {
 
 fn holds(polygons: &[Polygon], p: DVec2) -> bool {
     let within = |polygon: &Polygon| {
-        plan::contains(&polygon.outer, p) && !polygon.holes.iter().any(|hole| plan::contains(hole, p))
+        is_inside([&polygon.outer], p) && !polygon.holes.iter().any(|hole| is_inside([hole], p))
     };
     polygons.iter().any(within)
 }

@@ -1,5 +1,6 @@
 //! Rings in plan, and the plan of solids.
 
+use belvedere_core::polygon::{doubled_area, is_inside};
 use belvedere_scene::{CityFace, HeightSource, Polygon, Surface};
 use glam::{DVec2, DVec3};
 
@@ -44,12 +45,6 @@ impl Repairs {
     }
 }
 
-/// Twice the signed area, positive counter-clockwise.
-pub(super) fn doubled_area(ring: &[DVec2]) -> f64 {
-    let origin = ring.first().copied().unwrap_or_default();
-    (0..ring.len()).map(|k| (ring[k] - origin).perp_dot(ring[(k + 1) % ring.len()] - origin)).sum()
-}
-
 /// Area vector of a ring in space, twice as long as the area.
 pub(super) fn normal(ring: &[DVec3]) -> DVec3 {
     let origin = ring.first().copied().unwrap_or_default();
@@ -85,7 +80,7 @@ pub(super) fn polygon(rings: impl IntoIterator<Item = Vec<DVec2>>, repairs: &mut
 
 /// Whether a ring can be a hole of another: smaller, and with a vertex in it.
 fn is_hole(outer: &[DVec2], hole: &[DVec2]) -> bool {
-    doubled_area(hole).abs() < doubled_area(outer).abs() && hole.iter().any(|p| contains(outer, *p))
+    doubled_area(hole).abs() < doubled_area(outer).abs() && hole.iter().any(|p| is_inside([outer], *p))
 }
 
 /// A position of a solid, or why it is invalid.
@@ -105,15 +100,6 @@ fn clean(mut ring: Vec<DVec2>, repairs: &mut Repairs) -> Option<Vec<DVec2>> {
     repairs.short_rings += usize::from(short);
     repairs.flat_rings += usize::from(!short && flat);
     (!short && !flat).then_some(ring)
-}
-
-/// Whether a point lies inside a ring (even-odd rule).
-pub(super) fn contains(ring: &[DVec2], p: DVec2) -> bool {
-    (0..ring.len()).fold(false, |within, k| {
-        let (a, b) = (ring[k], ring[(k + 1) % ring.len()]);
-        let crosses = (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y);
-        within != crosses
-    })
 }
 
 /// Whether two edges of a ring cross; told for rings of up to 2000 vertices.

@@ -1,7 +1,8 @@
 //! The surface of a city as triangles: roofs, walls, land cover and the ground that all stands on.
 
-use super::plan::{contains, normal};
+use super::plan::normal;
 use crate::MeshFile;
+use belvedere_core::polygon::is_inside;
 use belvedere_scene::{
     Building, City, CityFace, Color, LandCover, MeshColors, Polygon, StructureKind, Surface, Texturing,
 };
@@ -145,7 +146,7 @@ fn places_under(polygon: &Polygon) -> impl Iterator<Item = DVec2> + '_ {
     let parts = ((high - low) / WIDE_M).floor().clamp(DVec2::ZERO, DVec2::splat(MOST_PARTS)).as_uvec2();
     let step = (high - low) / (parts + 1).as_dvec2();
     let grid = (1..=parts.x).flat_map(move |x| (1..=parts.y).map(move |y| low + step * glam::uvec2(x, y).as_dvec2()));
-    (0..polygon.outer.len()).flat_map(along).chain(grid.filter(|p| contains(&polygon.outer, *p)))
+    (0..polygon.outer.len()).flat_map(along).chain(grid.filter(|p| is_inside([&polygon.outer], *p)))
 }
 
 struct Builder {
@@ -239,7 +240,8 @@ impl Builder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere_scene::{HeightSource, LandCover};
+    use belvedere_core::polygon::is_inside;
+use belvedere_scene::{HeightSource, LandCover};
 
     fn square(from: f64, to: f64) -> Vec<DVec2> {
         vec![DVec2::new(from, from), DVec2::new(to, from), DVec2::new(to, to), DVec2::new(from, to)]

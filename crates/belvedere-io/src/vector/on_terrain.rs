@@ -1,6 +1,6 @@
 //! From vectors in their own coordinate system to features of a scene: projected, clipped to the terrain, draped on it.
 
-use super::rings::doubled_area;
+use belvedere_core::polygon::doubled_area;
 use super::{Geometry, VectorFeature, Vectors, Vertex};
 use crate::crs::{CoordinateSystem, CrsError, Transform};
 use crate::{IoError, Loaded};

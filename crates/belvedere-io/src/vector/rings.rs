@@ -1,27 +1,10 @@
 //! Rings that come without saying which is a hole of which.
 
+use belvedere_core::polygon::{doubled_area, is_inside};
 use glam::DVec2;
 
 /// Most rings of one shape that are compared with each other; more are taken as separate areas.
 const MAX_NESTED: usize = 20_000;
-
-/// Twice the signed area of a ring; positive counter-clockwise.
-pub(super) fn doubled_area(ring: &[DVec2]) -> f64 {
-    let origin = ring.first().copied().unwrap_or_default();
-    (0..ring.len()).map(|k| (ring[k] - origin).perp_dot(ring[(k + 1) % ring.len()] - origin)).sum()
-}
-
-/// Whether a point lies inside a ring (even-odd rule).
-pub(super) fn contains(ring: &[DVec2], p: DVec2) -> bool {
-    (0..ring.len())
-        .filter(|&k| {
-            let (a, b) = (ring[k], ring[(k + 1) % ring.len()]);
-            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)
-        })
-        .count()
-        % 2
-        == 1
-}
 
 /// Sorts rings into polygons by which lies inside which, whatever their orientation: rings at even depth are outer rings, each
 /// ring at odd depth is a hole of the smallest ring around it. Returns indices, outer ring first.
@@ -43,7 +26,7 @@ pub(super) fn nest(rings: &[Vec<DVec2>]) -> Vec<Vec<usize>> {
                 return false;
             }
             let step = rings[i].len().div_ceil(9).max(1);
-            let votes = rings[i].iter().step_by(step).map(|&p| if contains(&rings[k], p) { 1i32 } else { -1 });
+            let votes = rings[i].iter().step_by(step).map(|&p| if is_inside([&rings[k]], p) { 1i32 } else { -1 });
             votes.sum::<i32>() > 0
         })
     };

@@ -1,7 +1,7 @@
 //! `pick`: what is seen at a pixel.
 
 use crate::{BelvedereError, Session};
-use belvedere_core::{DVec2, DVec3, View};
+use belvedere_core::{DVec2, DVec3, View, polygon};
 use belvedere_cpu::{RayHit, Tracer, VolumeTracer};
 use belvedere_scene::{AreaLayer, Layer, LayerKind, LineLayer, PointLayer, Progress, Scene};
 use rayon::prelude::*;
@@ -86,7 +86,7 @@ fn surface(scene: &Scene, seen: &RayHit) -> Option<Picked> {
     }
     if let LayerKind::Terrain(_) = layer.kind {
         for (other, area) in scene.layers.iter().filter_map(area_of) {
-            let hit = area.features.iter().find(|f| contains(&f.rings, seen.point.truncate()));
+            let hit = area.features.iter().find(|f| polygon::is_inside(&f.rings, seen.point.truncate()));
             if let Some(hit) = hit {
                 (id, feature) = (&other.id, named(&hit.name));
             }
@@ -100,15 +100,6 @@ fn area_of(layer: &Layer) -> Option<(&Layer, &AreaLayer)> {
         LayerKind::Area(a) => Some((layer, a)),
         _ => None,
     }
-}
-
-/// Whether a point lies inside an odd number of rings.
-fn contains(rings: &[Vec<DVec2>], p: DVec2) -> bool {
-    let crossed = |ring: &Vec<DVec2>| {
-        let edges = ring.iter().zip(ring.iter().cycle().skip(1));
-        edges.filter(|(a, b)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)).count()
-    };
-    rings.iter().map(crossed).sum::<usize>() % 2 == 1
 }
 
 /// Images of lines and points, in the order of the layers.
