@@ -2,7 +2,7 @@
 
 use super::{Field, TerrainSettings};
 use belvedere_core::DVec2;
-use belvedere_core::polygon::{crossings, doubled_area, is_inside};
+use belvedere_core::polygon::{self, doubled_area, is_inside};
 use belvedere_scene::{AreaFeature, Layer, LayerKind, LineFeature, Scene};
 
 /// Points along one line or rim, and inside one area, at most; a longer feature gets wider spacing.
@@ -306,7 +306,8 @@ impl<'a> PointCollector<'a> {
         let rims = self.usable.len();
         self.inside(rings, spacing);
         if self.usable.len() == rims {
-            let enclosed = self.field.spacing().element_product() * rings.iter().map(|r| 0.5 * doubled_area(r).abs()).sum::<f64>();
+            let enclosed =
+                self.field.spacing().element_product() * rings.iter().map(|r| 0.5 * doubled_area(r).abs()).sum::<f64>();
             let each = enclosed / (rims - first).max(1) as f64;
             self.usable[first..].iter_mut().for_each(|p| p.amount = each);
         }
@@ -385,14 +386,14 @@ impl PointCollector<'_> {
         let points = |parts: usize| (3 * parts - 2) as f64 * cells;
         let parts = [5, 2].into_iter().find(|&parts| points(parts) <= MOST_ON_EDGES).unwrap_or(1);
         let every = (points(parts) / MOST_ON_EDGES).sqrt().ceil().max(1.0);
-        let mut crossed = Vec::new();
+        let mut crossings = Vec::new();
         let mut row = low.y;
         while row <= high.y {
             for part in 0..parts {
                 let down = part as f64 / parts as f64;
                 let y = row + down;
                 crossings.clear();
-                crossed.extend(rings.iter().flat_map(|ring| crossings(ring, y)));
+                crossings.extend(rings.iter().flat_map(|ring| polygon::crossings(ring, y)));
                 crossings.sort_by(f64::total_cmp);
                 let across: &[usize] = if part == 0 { &[0, 1, 2, 3, 4][..parts] } else { &[0, part] };
                 for pair in crossings.chunks_exact(2) {

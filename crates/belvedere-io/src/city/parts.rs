@@ -2,7 +2,7 @@
 //! Source: OpenStreetMap Wiki, "Simple 3D Buildings".
 
 use super::attributes::{self, Attributes, length_m};
-use super::plan::{self, Repairs};
+use super::plan::Repairs;
 use super::roofs::{Heights, Roof, solid};
 use belvedere_core::polygon::is_inside;
 use belvedere_scene::{Building, Polygon};
@@ -128,9 +128,8 @@ fn extent(polygons: &[Polygon]) -> [DVec2; 2] {
 }
 
 fn holds(polygons: &[Polygon], p: DVec2) -> bool {
-    let within = |polygon: &Polygon| {
-        is_inside([&polygon.outer], p) && !polygon.holes.iter().any(|hole| is_inside([hole], p))
-    };
+    let within =
+        |polygon: &Polygon| is_inside([&polygon.outer], p) && !polygon.holes.iter().any(|hole| is_inside([hole], p));
     polygons.iter().any(within)
 }
 

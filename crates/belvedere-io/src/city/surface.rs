@@ -241,7 +241,7 @@ impl Builder {
 mod tests {
     use super::*;
     use belvedere_core::polygon::is_inside;
-use belvedere_scene::{HeightSource, LandCover};
+    use belvedere_scene::{HeightSource, LandCover};
 
     fn square(from: f64, to: f64) -> Vec<DVec2> {
         vec![DVec2::new(from, from), DVec2::new(to, from), DVec2::new(to, to), DVec2::new(from, to)]

@@ -1,9 +1,9 @@
 //! From vectors in their own coordinate system to features of a scene: projected, clipped to the terrain, draped on it.
 
-use belvedere_core::polygon::doubled_area;
 use super::{Geometry, VectorFeature, Vectors, Vertex};
 use crate::crs::{CoordinateSystem, CrsError, Transform};
 use crate::{IoError, Loaded};
+use belvedere_core::polygon::doubled_area;
 use belvedere_scene::{AreaFeature, Crs, Heightfield, LineFeature, PointFeature, drape_polyline};
 use glam::{DVec2, DVec3};
 

@@ -39,7 +39,7 @@ pub(crate) fn of_session(
     (view, frame): (&View, &Frame),
     draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
 ) -> Result<Option<f64>, BelvedereError> {
-    let Some(source) = session.description.as_ref().map(|d| &d.source) else { return Ok(None) };
+    let Some(source) = session.resolved.description.as_ref().map(|d| &d.source) else { return Ok(None) };
     let doc = source.document.constructor.as_ref().filter(|_| constructor::tracks_target(source));
     let Some(name) = doc.and_then(|doc| doc.target.as_deref()) else { return Ok(None) };
     let target = reveal_target::target(session.scene(), name)?;
