@@ -4,13 +4,16 @@
 //! path turns; a turn that comes into the preview grows from nothing, and the camera swings into the next leg while it
 //! passes one, so that nothing jumps. On terrain the turns stand upright and the camera looks down on the path.
 
+use super::approach::approach;
 use super::path::{Control, Path};
+use super::room::{Room, Surroundings};
 use super::turns::{Corner, STRAIGHT, TRANSITION, TurnShape, largest, smoothstep, turns};
 use super::{Target, TargetSight};
 use crate::ConstructError;
 use belvedere_core::map::curved_rays::{Model, Sharpness};
 use belvedere_core::{CurvedRays, DVec3, Pinhole, Projection, Stage, View};
 use belvedere_scene::Scene;
+use belvedere_sight::Obstacles;
 use serde::{Deserialize, Serialize};
 
 /// The camera swings into the next leg over at most these shares of the leg before it and of the preview: over more would be
@@ -18,14 +21,26 @@ use serde::{Deserialize, Serialize};
 const SWING: [f64; 2] = [0.5, 0.06];
 /// Where the position stands over terrain, shares of the picture's height from its lower edge.
 const FOOT: f64 = 0.06;
-/// Nearest drawn depth, shares of that of the position: least, and most where turns fit behind it.
-const NEAR: [f64; 2] = [0.85, 0.98];
+/// How far before the position rays become those of the far eye, widths of the picture: at least, and at most.
+const BEFORE: [f64; 2] = [0.08, 0.6];
+/// Length of transitions where there is no place for longer ones, shares of the usual.
+const SHORTEST: f64 = 1e-3;
+/// Distance of the near eye from the plane behind which rays are those of the far one, widths of the picture: at least, and at most;
+/// least room for it.
+const BACK: [f64; 2] = [0.05, 0.7];
+const LEAST_ROOM: f64 = 0.05;
+/// The corridor is so wide at least, widths of the picture, measured so high over the path, widths of the picture.
+const CORRIDOR: f64 = 0.5;
+const EYE: f64 = 0.25;
+/// Distance of positions at which room is looked for, widths of the picture; of so many at most.
+const ROOM_SPACING: f64 = 0.02;
+const MOST_ROOMS: f64 = 1000.0;
 /// Tolerances of the simplified path that are tried, shares of the picture's width.
 const TOLERANCES: [f64; 4] = [0.02, 0.04, 0.08, 0.16];
 /// Positions at which a tolerance is tried.
 const TRIALS: usize = 24;
 /// Widths that are tried, shares of the usual one; at how many positions and by how many samples of the path they are judged.
-const NARROWER: [f64; 4] = [1.0, 0.7, 0.5, 0.35];
+const NARROWER: [f64; 3] = [1.0, 0.7, 0.5];
 const POSITIONS: u32 = 5;
 const SAMPLES: f64 = 60.0;
 /// Samples stand so high over the path, shares of the eye's height: rivers are drawn in valleys that a coarse model has filled.
@@ -62,6 +77,7 @@ pub struct PathPreview {
     lens: Lens,
     level: bool,
     tolerance: f64,
+    room: Option<Room>,
 }
 
 /// The camera at a position.
@@ -120,9 +136,9 @@ impl PathPreview {
                 must: "be more than nothing; give a path of two points",
             });
         }
-        let mut preview = Self { path, controls: Vec::new(), preview_m, lens, level, tolerance: 0.0 };
+        let mut preview = Self { path, controls: Vec::new(), preview_m, lens, level, tolerance: 0.0, room: None };
         preview.choose_tolerance(image)?;
-        Ok(preview)
+        preview.with_room(None, image)
     }
 
     /// Prepares a preview whose camera is chosen: of some widths and tolerances that with which most of the path ahead is seen in
@@ -138,13 +154,15 @@ impl PathPreview {
         level: bool,
         image: [u32; 2],
     ) -> Result<Self, ConstructError> {
-        let first = Self::new(points, preview_m, usual, level, image)?;
+        let wide = Self::new(points, preview_m, usual, level, image)?;
+        let usual = wide.fitting(&Obstacles::new(scene));
+        let first = Self::new(points, preview_m, usual, level, image)?.standing_in(scene, image)?;
         let mut best = (first.seen_ahead(scene, image)?, first.clone());
         for narrower in NARROWER {
             for share in TOLERANCES {
                 let (width_m, rise_m) = (narrower * usual.width_m, narrower * usual.rise_m);
                 let lens = Lens { width_m, rise_m, ..usual };
-                let next = Self { lens, ..first.clone() }.with_tolerance(share * width_m);
+                let next = Self { lens, ..first.clone() }.with_tolerance(share * width_m).standing_in(scene, image)?;
                 let seen = next.seen_ahead(scene, image)?;
                 // A wide picture shows where the path runs.
                 if seen > best.0 + WORTH {
@@ -229,19 +247,29 @@ impl PathPreview {
         let root = self.root(&legs, position, image, far)?;
         let mut count = legs.turns.len();
         let mut found = None;
-        while count > 0 && found.is_none() {
-            let rays = |near: f64, factor: f64| {
-                let root = Pinhole { near: near * root.near, ..root.clone() };
-                let shape = TurnShape { behind: self.lens.behind_m, length: factor, m: Sharpness::Bend };
-                let specs = turns(&root, legs.here, &legs.turns[..count], &shape)?;
-                CurvedRays::new(&root, Model::Modified, &specs).ok()
+        while found.is_none() {
+            // Length of all transitions, and of the first one beside that.
+            let rays = |near: f64, length: f64, first_length: f64| {
+                let far = Pinhole { near: near * root.near, ..root.clone() };
+                let shape = TurnShape { behind: self.lens.behind_m, length, m: Sharpness::Bend };
+                let mut corners = legs.turns[..count].to_vec();
+                if let Some(corner) = corners.first_mut() {
+                    corner.half_length *= first_length;
+                }
+                let (root, first) = approach(&far, self.back(position, root.near - far.near)).ok()?;
+                let ahead = turns(&far, legs.here, &corners, &shape)?;
+                CurvedRays::new(&root, Model::Modified, &[vec![first], ahead].concat()).ok()
             };
-            // Rather less in front than shorter transitions.
-            let behind = |factor: f64| largest(NEAR, |near| rays(near, factor));
-            found = behind(1.0).or_else(|| {
-                let factor = largest([1e-3, 1.0], |factor| rays(NEAR[0], factor).map(|_| factor))?;
-                behind(factor)
+            // Rather planes farther before the position than short transitions; but not where the eye has no room.
+            let [most, roomy, least] = self.before(position).map(|before| 1.0 - before / root.near);
+            found = largest([SHORTEST, 1.0], |all| rays(most, all, SHORTEST).map(|_| all)).and_then(|all| {
+                largest([roomy, least], |near| rays(near, all, 1.0))
+                    .or_else(|| largest([SHORTEST, 1.0], |first| rays(roomy, all, first)))
+                    .or_else(|| largest([most, roomy], |near| rays(near, all, SHORTEST)))
             });
+            if count == 0 {
+                break;
+            }
             count -= usize::from(found.is_none());
         }
         let wanted_m = self.wanted(position);
@@ -282,6 +310,73 @@ impl PathPreview {
             turns.push(Corner { s, at: lift(at), before, after, edges, half_length, entered });
         }
         Legs { here, direction: direction(next), turns }
+    }
+
+    /// The widest lens, up to that of this preview, whose picture is not much wider than the corridor that the path follows.
+    fn fitting(&self, obstacles: &Obstacles<'_>) -> Lens {
+        const NARROWER: f64 = 0.8;
+        const TRIED: i32 = 16;
+        let lens = |k: i32| {
+            let share = NARROWER.powi(k);
+            Lens { width_m: share * self.lens.width_m, rise_m: share * self.lens.rise_m, ..self.lens }
+        };
+        let is_wide = |lens: &Lens| {
+            let around = Surroundings { obstacles: Some(obstacles), path: &self.path, width: lens.width_m };
+            let place = |k: usize| {
+                let s = self.path.length() * (k as f64 + 0.5) / TRIALS as f64;
+                let way = self.path.at(s + 0.1 * lens.width_m) - self.path.at(s - 0.1 * lens.width_m);
+                (self.path.at(s) + EYE * lens.width_m * DVec3::Z, way.cross(DVec3::Z).normalize_or(DVec3::X))
+            };
+            lens.width_m * CORRIDOR > around.corridor(&(0..TRIALS).map(place).collect::<Vec<_>>())
+        };
+        let is_empty = obstacles.grounds().is_empty() && obstacles.solid_bounds().is_empty();
+        let fits = (0..TRIED).map(lens).find(|lens| !is_wide(lens));
+        fits.filter(|_| self.level && !is_empty).unwrap_or(self.lens)
+    }
+
+    /// The same with the eye clear of ground and walls.
+    ///
+    /// # Errors
+    /// As [`PathPreview::at`].
+    pub fn standing_in(self, scene: &Scene, image: [u32; 2]) -> Result<Self, ConstructError> {
+        self.with_room(Some(&Obstacles::new(scene)), image)
+    }
+
+    fn with_room(mut self, obstacles: Option<&Obstacles<'_>>, image: [u32; 2]) -> Result<Self, ConstructError> {
+        let width = self.lens.width_m;
+        let count = (self.path.length() / (ROOM_SPACING * width)).ceil().clamp(1.0, MOST_ROOMS);
+        let spacing = self.path.length() / count;
+        let camera = |k: usize| {
+            let position = spacing * k as f64;
+            self.root(&self.legs(position), position, image, None)
+        };
+        let cameras = (0..=count as usize).map(camera).collect::<Result<Vec<_>, _>>()?;
+        let obstacles = obstacles.filter(|o| !(o.grounds().is_empty() && o.solid_bounds().is_empty()));
+        let around = Surroundings { obstacles, path: &self.path, width };
+        self.room = Some(Room::new(&cameras, spacing, &around, width.min(0.5 * self.lens.behind_m)));
+        Ok(self)
+    }
+
+    /// How far before the position rays become those of the far eye: at most, at most where the eye is to have room, and at least.
+    fn before(&self, position: f64) -> [f64; 3] {
+        let width = self.lens.width_m.min(self.lens.behind_m);
+        let room = self.room(position);
+        let [least, most] = BEFORE.map(|share| share * width);
+        let roomy = most.min(0.75 * room);
+        [most, roomy, least.min(0.2 * room).min(0.5 * roomy)]
+    }
+
+    /// Distance of the near eye from the plane behind which rays are those of the far one, `before` before the position.
+    fn back(&self, position: f64, before: f64) -> f64 {
+        let (room, width) = (self.room(position), self.lens.width_m);
+        (room - before).clamp((0.2 * room).max(BACK[0] * width), BACK[1] * width)
+    }
+
+    /// How far behind a position the near eye may stand.
+    fn room(&self, position: f64) -> f64 {
+        let most = self.lens.width_m.min(0.5 * self.lens.behind_m);
+        let room = self.room.as_ref().map_or(most, |room| room.at(position));
+        room.clamp(LEAST_ROOM * most, most)
     }
 
     /// Height of the eye over terrain: that of the path around it, evenly, and the rise.
