@@ -59,7 +59,8 @@ impl Surroundings<'_> {
             .iter()
             .map(|(at, right)| {
                 let side = |sign: f64| {
-                    let is_free = |k: &u32| self.is_free(*at, *at + sign * f64::from(*k) * step * *right);
+                    let to = |k: u32| *at + sign * f64::from(k) * step * *right;
+                    let is_free = |k: &u32| self.is_free(to(*k - 1), to(*k));
                     step * f64::from((1..=STEPS).take_while(is_free).last().unwrap_or(0))
                 };
                 side(-1.0) + side(1.0)
@@ -72,8 +73,9 @@ impl Surroundings<'_> {
     /// How far one can go back from the near plane of a camera towards its eye.
     fn free_behind(&self, far: &Pinhole, most: f64) -> f64 {
         let at = |back: f64| far.eye + (far.near - back) * far.forward;
-        let steps = (1..=STEPS).map(|k| most * f64::from(k) / f64::from(STEPS));
-        steps.take_while(|back| self.is_free(at(0.0), at(*back))).last().unwrap_or(0.0)
+        let step = most / f64::from(STEPS);
+        let is_free = |k: &u32| self.is_free(at(step * f64::from(*k - 1)), at(step * f64::from(*k)));
+        step * f64::from((1..=STEPS).take_while(is_free).last().unwrap_or(0))
     }
 
     fn is_free(&self, from: DVec3, to: DVec3) -> bool {
