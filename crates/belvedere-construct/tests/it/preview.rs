@@ -149,7 +149,7 @@ fn lengths_out_of_range_and_paths_without_length_are_refused() {
     fails(&path, 500.0, Lens { rise_m: -1.0, ..lens }, "rise_m");
     fails(&[DVec3::ONE; 5], 500.0, lens, "length of the path");
     fails(&[], 500.0, lens, "length of the path");
-    // A straight path is previewed by a straight camera.
+    // A straight path has no turns, and lies in the middle of the picture.
     let straight = PathPreview::new(&[DVec3::ZERO, DVec3::Y * 900.0], 500.0, lens, true, IMAGE).unwrap();
     let seen = straight.at(100.0, IMAGE, None).unwrap();
     assert!(seen.report.turns == 0 && seen.report.reach_m == 500.0);
