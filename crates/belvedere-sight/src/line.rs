@@ -37,14 +37,14 @@ impl GridLine {
     }
 
     /// The block (column, row) at parameter `t`, of `size` blocks of `side` cells each, and the parameter at which the line
-    /// leaves it. The outermost blocks reach on beside the grid.
+    /// leaves it, which is greater than `t`. The outermost blocks reach on beside the grid.
     #[inline]
     pub fn block(&self, side: f64, size: [usize; 2], t: f64) -> ([usize; 2], f64) {
         let at = self.at(t) / side;
         let index = |x: f64, n: usize| (x.max(0.0) as usize).min(n - 1);
-        let block = [index(at.x, size[0]), index(at.y, size[1])];
-        let exit = |axis: usize| {
-            let (p, d, i) = (self.start[axis], self.dir[axis], block[axis]);
+        let mut block = [index(at.x, size[0]), index(at.y, size[1])];
+        let exit = |axis: usize, i: usize| {
+            let (p, d) = (self.start[axis], self.dir[axis]);
             if d > 0.0 && i + 1 < size[axis] {
                 ((i + 1) as f64 * side - p) / d
             } else if d < 0.0 && i > 0 {
@@ -53,7 +53,15 @@ impl GridLine {
                 f64::INFINITY
             }
         };
-        (block, exit(0).min(exit(1)))
+        let mut exits = [exit(0, block[0]), exit(1, block[1])];
+        for axis in [0, 1] {
+            // On the border, and along it so nearly that rounding keeps it there: it is in the block that it goes to.
+            if exits[axis] <= t {
+                block[axis] = if self.dir[axis] > 0.0 { block[axis] + 1 } else { block[axis] - 1 };
+                exits[axis] = exit(axis, block[axis]);
+            }
+        }
+        (block, exits[0].min(exits[1]))
     }
 
     /// Cuts a part of the line over one cell where it crosses the cell's diagonal: the triangle under each half, which may
@@ -176,4 +184,25 @@ impl Edge {
 pub fn floor(x: f64) -> f64 {
     let whole = x as i64 as f64;
     if whole > x { whole - 1.0 } else { whole }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_hardly_leave_a_border_walk_from_block_to_block() {
+        for drift in [-1e-15, 1e-15, -1e-300, 0.0] {
+            for dir in [DVec2::new(drift, 5.0), DVec2::new(5.0, drift), DVec2::new(drift, -5.0)] {
+                let line = GridLine { start: DVec2::splat(7.0), dir };
+                let (mut t, mut steps) = (0.0, 0);
+                while t <= 1.0 {
+                    let (block, exit) = line.block(1.0, [16, 16], t + 1e-10);
+                    assert!(exit > t && block.into_iter().all(|i| (1..=12).contains(&i)), "{line:?}: {block:?} at {t}");
+                    (t, steps) = (exit, steps + 1);
+                }
+                assert!(steps <= 7, "{line:?}: {steps} blocks");
+            }
+        }
+    }
 }

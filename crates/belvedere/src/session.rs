@@ -339,7 +339,7 @@ impl Session {
     /// [`BelvedereError::UnderGround`].
     pub fn check_drawable(&self) -> Result<(), BelvedereError> {
         if matches!(self.resolved.constructor, Some(ConstructorReport::PathPreview(_))) {
-            // Its eye lies far behind the path, and nothing is drawn before that.
+            // Its eye is put where there is room, as far as there is.
             return Ok(());
         }
         let eye = self.resolved.view.pinhole().eye;

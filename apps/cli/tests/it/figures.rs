@@ -114,6 +114,10 @@ fn figures_of_curved_rays_show_what_was_hidden() {
         let seen = seen(name);
         assert!(seen.windows(2).all(|w| w[0] < w[1]) && seen[seen.len() - 1] > times * seen[0], "{name}: {seen:?}");
     }
+    // Nothing before the position is cut away.
+    for name in ["preview", "turns"] {
+        assert!(fact(name, "sky in the lower half") < 0.05, "{name}: {}", fact(name, "sky in the lower half"));
+    }
     assert!(place.fails(&["figures", "curved", "-o", "rays"]).contains("curved_street.png"));
 }
 

@@ -4,9 +4,9 @@ use crate::easel::{Easel, above, turns as specs, with_lines};
 use crate::figure_set::{Facts, Figure};
 use anyhow::{Context, Result};
 use belvedere::construct::{self, MeasureOptions};
-use belvedere::core::map::curved_rays::TurnSpec;
+use belvedere::core::map::curved_rays::{Pencil, TurnSpec};
 use belvedere::core::{DVec2, DVec3};
-use belvedere::scene::{Color, LayerKind, Progress};
+use belvedere::scene::{Color, Frame, LayerKind, Progress};
 use belvedere::{CameraPicture, Session};
 
 const SCENE: &str = include_str!("../../../../scenes/canyon_preview.toml");
@@ -36,11 +36,23 @@ const AFTER: Color = Color::rgb(200, 60, 130);
 
 /// What is said of a preview, and metres of the river that it shows.
 fn note(session: &Session) -> Result<(String, f64)> {
-    let turns = session.view().curved_rays().context("the preview bends no rays")?.turn_count();
+    let turns = bends(session)?.len();
     let options = MeasureOptions::default();
     let measures = construct::measure(session.scene(), session.view(), None, &options, &Progress::silent())?;
     let seen = measures.lines.context("the scene has no river")?.bent.sight.visible;
     Ok((format!("{turns} turns; {seen:.0} m of the river in sight"), seen))
+}
+
+/// The turns of a preview but the one that widens its rays, which bends none aside.
+fn bends(session: &Session) -> Result<Vec<TurnSpec>> {
+    let all = specs(session)?;
+    Ok(all.into_iter().filter(|turn| matches!(turn.pencil, Pencil::Line { .. })).collect())
+}
+
+/// Share of the lower half of a picture in which there is nothing.
+fn sky(frame: &Frame) -> f64 {
+    let lower = &frame.id[frame.id.len() / 2..];
+    lower.iter().filter(|id| **id == 0).count() as f64 / lower.len().max(1) as f64
 }
 
 /// Further and further round the bends.
@@ -52,7 +64,9 @@ pub(super) fn preview(easel: &Easel<'_>) -> Result<Figure> {
         panels.push(easel.panel(&session, &format!("{length:.0} m ahead"), note)?);
         seen.push(metres);
     }
-    Ok(Figure { panels, columns: 2, seen, ..Figure::default() })
+    let most = panels.iter().map(|panel| sky(&panel.frame)).fold(0.0, f64::max);
+    let facts = Facts::from([("sky in the lower half", most)]);
+    Ok(Figure { panels, columns: 2, seen, facts, ..Figure::default() })
 }
 
 /// Picture and rays of one camera.
@@ -67,7 +81,8 @@ pub(super) fn turns(easel: &Easel<'_>) -> Result<Figure> {
             "rays, planes and viewpoints".into(),
         )?,
     ];
-    Ok(Figure { panels, columns: 2, ..Figure::default() })
+    let facts = Facts::from([("sky in the lower half", sky(&panels[0].frame))]);
+    Ok(Figure { panels, columns: 2, facts, ..Figure::default() })
 }
 
 /// From position to position towards a turn of the river: its planes draw together until it is passed.
@@ -77,17 +92,17 @@ pub(super) fn collapse(easel: &Easel<'_>) -> Result<Figure> {
         anyhow::ensure!(text.contains(POSITION), "the canyon's scene does not say {POSITION}");
         easel.open(&text.replace(POSITION, &format!("position_m = {position:.1}")), [480, 360])
     };
-    let first = *specs(&at(START)?)?.first().context("the river turns ahead")?;
+    let first = *bends(&at(START)?)?.first().context("the river turns ahead")?;
     let way = along_river(&at(START)?, first.t1)? - START;
     anyhow::ensure!(way > 0.0, "the first turn lies {way} m ahead");
     let (mut panels, mut seen) = (Vec::new(), Vec::new());
     for share in WAYS {
         let session = at(START + share * way)?;
         let same = |t: &&TurnSpec| t.t1.truncate().distance(first.t1.truncate()) < SAME;
-        let width = specs(&session)?.iter().find(same).map_or(0.0, |t| t.t0.distance(t.t2));
+        let width = bends(&session)?.iter().find(same).map_or(0.0, |t| t.t0.distance(t.t2));
         let title = format!("{:.0} m before the turn", (1.0 - share) * way);
         let note = format!("its planes t0 and t2 are {width:.0} m apart");
-        let index = specs(&session)?.iter().position(|t| same(&t));
+        let index = specs(&session)?.iter().position(|t| matches!(t.pencil, Pencil::Line { .. }) && same(&t));
         let marked = with_lines(&session, marks(&session, index));
         panels.push(easel.panel(&above(&marked, first.t1, AROUND)?, &title, note)?);
         seen.push(width);

@@ -3,11 +3,13 @@
 //! Source: Cui, Rosen, Popescu, Hoffmann 2010, section 5 (interactive construction, target tracking, path preview). Lines of sight
 //! in place of boxes in the image, bends in any direction, and the search for the smallest bend that shows a target are ours.
 
+mod approach;
 mod around;
 mod film;
 mod path;
 mod preview;
 mod probe;
+mod room;
 mod sidestep;
 mod surface_points;
 mod target;

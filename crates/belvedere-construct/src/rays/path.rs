@@ -47,6 +47,13 @@ impl Path {
         self.points[i - 1].lerp(self.points[i], ((s - s0) / (s1 - s0)).clamp(0.0, 1.0))
     }
 
+    /// Distance of a point from the path in plan.
+    pub(super) fn distance_in_plan(&self, p: DVec3) -> f64 {
+        let level = |p: DVec3| p.truncate().extend(0.0);
+        let p = level(p);
+        self.points.windows(2).map(|w| off_segment(p, level(w[0]), level(w[1]))).fold(f64::INFINITY, f64::min)
+    }
+
     /// The points that are left when none of the others lies farther than `tolerance` from the line through them, with their arc
     /// lengths; both ends are among them (Douglas, Peucker 1973).
     ///

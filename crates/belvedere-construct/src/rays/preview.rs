@@ -4,13 +4,15 @@
 //! path turns; a turn that comes into the preview grows from nothing, and the camera swings into the next leg while it
 //! passes one, so that nothing jumps. On terrain the turns stand upright and the camera looks down on the path.
 
+mod fit;
+
+use super::approach::approach;
 use super::path::{Control, Path};
+use super::room::Room;
 use super::turns::{Corner, STRAIGHT, TRANSITION, TurnShape, largest, smoothstep, turns};
-use super::{Target, TargetSight};
 use crate::ConstructError;
 use belvedere_core::map::curved_rays::{Model, Sharpness};
 use belvedere_core::{CurvedRays, DVec3, Pinhole, Projection, Stage, View};
-use belvedere_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// The camera swings into the next leg over at most these shares of the leg before it and of the preview: over more would be
@@ -18,20 +20,18 @@ use serde::{Deserialize, Serialize};
 const SWING: [f64; 2] = [0.5, 0.06];
 /// Where the position stands over terrain, shares of the picture's height from its lower edge.
 const FOOT: f64 = 0.06;
-/// Nearest drawn depth, shares of that of the position: least, and most where turns fit behind it.
-const NEAR: [f64; 2] = [0.85, 0.98];
+/// How far before the position rays become those of the far eye, widths of the picture: at least, and at most.
+const BEFORE: [f64; 2] = [0.08, 0.6];
+/// Length of transitions where there is no place for longer ones, shares of the usual.
+const SHORTEST: f64 = 1e-3;
+/// Distance of the near eye from the plane behind which rays are those of the far one, widths of the picture: at least, and at most;
+/// least room for it.
+const BACK: [f64; 2] = [0.05, 0.7];
+const LEAST_ROOM: f64 = 0.05;
 /// Tolerances of the simplified path that are tried, shares of the picture's width.
 const TOLERANCES: [f64; 4] = [0.02, 0.04, 0.08, 0.16];
 /// Positions at which a tolerance is tried.
 const TRIALS: usize = 24;
-/// Widths that are tried, shares of the usual one; at how many positions and by how many samples of the path they are judged.
-const NARROWER: [f64; 4] = [1.0, 0.7, 0.5, 0.35];
-const POSITIONS: u32 = 5;
-const SAMPLES: f64 = 60.0;
-/// Samples stand so high over the path, shares of the eye's height: rivers are drawn in valleys that a coarse model has filled.
-const LIFT: f64 = 0.01;
-/// A narrower picture must show so much more.
-const WORTH: f64 = 0.03;
 
 /// The camera of a preview; lengths in scene units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,6 +62,7 @@ pub struct PathPreview {
     lens: Lens,
     level: bool,
     tolerance: f64,
+    room: Option<Room>,
 }
 
 /// The camera at a position.
@@ -120,53 +121,9 @@ impl PathPreview {
                 must: "be more than nothing; give a path of two points",
             });
         }
-        let mut preview = Self { path, controls: Vec::new(), preview_m, lens, level, tolerance: 0.0 };
+        let mut preview = Self { path, controls: Vec::new(), preview_m, lens, level, tolerance: 0.0, room: None };
         preview.choose_tolerance(image)?;
-        Ok(preview)
-    }
-
-    /// Prepares a preview whose camera is chosen: of some widths and tolerances that with which most of the path ahead is seen in
-    /// `scene`, from positions all along it. `usual` is the widest.
-    ///
-    /// # Errors
-    /// As [`PathPreview::new`].
-    pub fn fitted(
-        scene: &Scene,
-        points: &[DVec3],
-        preview_m: f64,
-        usual: Lens,
-        level: bool,
-        image: [u32; 2],
-    ) -> Result<Self, ConstructError> {
-        let first = Self::new(points, preview_m, usual, level, image)?;
-        let mut best = (first.seen_ahead(scene, image)?, first.clone());
-        for narrower in NARROWER {
-            for share in TOLERANCES {
-                let (width_m, rise_m) = (narrower * usual.width_m, narrower * usual.rise_m);
-                let lens = Lens { width_m, rise_m, ..usual };
-                let next = Self { lens, ..first.clone() }.with_tolerance(share * width_m);
-                let seen = next.seen_ahead(scene, image)?;
-                // A wide picture shows where the path runs.
-                if seen > best.0 + WORTH {
-                    best = (seen, next);
-                }
-            }
-        }
-        Ok(best.1)
-    }
-
-    /// Share of the path ahead that is seen, on the average over positions along it.
-    fn seen_ahead(&self, scene: &Scene, image: [u32; 2]) -> Result<f64, ConstructError> {
-        let mut sum = 0.0;
-        for k in 0..POSITIONS {
-            let position = self.length() * (f64::from(k) + 0.3) / f64::from(POSITIONS);
-            let wanted = self.wanted(position);
-            let lift = if self.level { LIFT * self.lens.rise_m * DVec3::Z } else { DVec3::ZERO };
-            let ahead = self.samples(position, wanted, wanted / SAMPLES);
-            let target = Target::points(ahead.into_iter().map(|p| p + lift));
-            sum += TargetSight::new(scene, &target).share(&self.at(position, image, None)?.view, 0.0);
-        }
-        Ok(sum / f64::from(POSITIONS))
+        preview.with_room(None, image)
     }
 
     fn with_tolerance(mut self, tolerance: f64) -> Self {
@@ -229,19 +186,29 @@ impl PathPreview {
         let root = self.root(&legs, position, image, far)?;
         let mut count = legs.turns.len();
         let mut found = None;
-        while count > 0 && found.is_none() {
-            let rays = |near: f64, factor: f64| {
-                let root = Pinhole { near: near * root.near, ..root.clone() };
-                let shape = TurnShape { behind: self.lens.behind_m, length: factor, m: Sharpness::Bend };
-                let specs = turns(&root, legs.here, &legs.turns[..count], &shape)?;
-                CurvedRays::new(&root, Model::Modified, &specs).ok()
+        while found.is_none() {
+            // Length of all transitions, and of the first one beside that.
+            let rays = |near: f64, length: f64, first_length: f64| {
+                let far = Pinhole { near: near * root.near, ..root.clone() };
+                let shape = TurnShape { behind: self.lens.behind_m, length, m: Sharpness::Bend };
+                let mut corners = legs.turns[..count].to_vec();
+                if let Some(corner) = corners.first_mut() {
+                    corner.half_length *= first_length;
+                }
+                let (root, first) = approach(&far, self.back(position, root.near - far.near)).ok()?;
+                let ahead = turns(&far, legs.here, &corners, &shape)?;
+                CurvedRays::new(&root, Model::Modified, &[vec![first], ahead].concat()).ok()
             };
-            // Rather less in front than shorter transitions.
-            let behind = |factor: f64| largest(NEAR, |near| rays(near, factor));
-            found = behind(1.0).or_else(|| {
-                let factor = largest([1e-3, 1.0], |factor| rays(NEAR[0], factor).map(|_| factor))?;
-                behind(factor)
+            // Rather planes farther before the position than short transitions; but not where the eye has no room.
+            let [most, roomy, least] = self.before(position).map(|before| 1.0 - before / root.near);
+            found = largest([SHORTEST, 1.0], |all| rays(most, all, SHORTEST).map(|_| all)).and_then(|all| {
+                largest([roomy, least], |near| rays(near, all, 1.0))
+                    .or_else(|| largest([SHORTEST, 1.0], |first| rays(roomy, all, first)))
+                    .or_else(|| largest([most, roomy], |near| rays(near, all, SHORTEST)))
             });
+            if count == 0 {
+                break;
+            }
             count -= usize::from(found.is_none());
         }
         let wanted_m = self.wanted(position);
@@ -282,6 +249,28 @@ impl PathPreview {
             turns.push(Corner { s, at: lift(at), before, after, edges, half_length, entered });
         }
         Legs { here, direction: direction(next), turns }
+    }
+
+    /// How far before the position rays become those of the far eye: at most, at most where the eye is to have room, and at least.
+    fn before(&self, position: f64) -> [f64; 3] {
+        let width = self.lens.width_m.min(self.lens.behind_m);
+        let room = self.room(position);
+        let [least, most] = BEFORE.map(|share| share * width);
+        let roomy = most.min(0.75 * room);
+        [most, roomy, least.min(0.2 * room).min(0.5 * roomy)]
+    }
+
+    /// Distance of the near eye from the plane behind which rays are those of the far one, `before` before the position.
+    fn back(&self, position: f64, before: f64) -> f64 {
+        let (room, width) = (self.room(position), self.lens.width_m);
+        (room - before).clamp((0.2 * room).max(BACK[0] * width), BACK[1] * width)
+    }
+
+    /// How far behind a position the near eye may stand.
+    fn room(&self, position: f64) -> f64 {
+        let most = self.lens.width_m.min(0.5 * self.lens.behind_m);
+        let room = self.room.as_ref().map_or(most, |room| room.at(position));
+        room.clamp(LEAST_ROOM * most, most)
     }
 
     /// Height of the eye over terrain: that of the path around it, evenly, and the rise.

@@ -8,6 +8,7 @@ mod generalise_coverage;
 mod generalise_towns;
 mod measure;
 mod preview;
+mod preview_foreground;
 mod probe;
 mod reveal;
 mod rigid;

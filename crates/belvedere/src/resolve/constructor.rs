@@ -16,7 +16,7 @@ use belvedere_construct::rays::{
 use belvedere_core::{EarthCurvature, Stage, View};
 use belvedere_disocclusion::TerrainMemory;
 use belvedere_io::InputFile;
-use belvedere_scene::Scene;
+use belvedere_scene::{LayerKind, Scene};
 use serde::{Deserialize, Serialize};
 
 /// How long a film of a probe shows it when it has all its turns, seconds.
@@ -284,7 +284,8 @@ fn prepared<'m>(
         let centreline = traced.map(|t| t.report);
         let length: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
         let preview_m = doc.preview_m.unwrap_or(0.25 * length);
-        let level = scene.terrain().is_some();
+        let stands = |kind: &LayerKind| matches!(kind, LayerKind::Terrain(_) | LayerKind::Boxes(_));
+        let level = centreline.is_none() && scene.layers.iter().any(|layer| stands(&layer.kind));
         let mut usual = Lens::for_preview(preview_m, level);
         if let Some(report) = centreline {
             usual.width_m = usual.width_m.min(CLEARANCES * report.median_clearance);
@@ -296,7 +297,8 @@ fn prepared<'m>(
                     width_m: lens.width_m.unwrap_or(usual.width_m),
                     rise_m: lens.rise_m.unwrap_or(usual.rise_m),
                 };
-                PathPreview::new(&points, preview_m, lens, level, image)
+                let preview = PathPreview::new(&points, preview_m, lens, level, image);
+                preview.and_then(|preview| preview.standing_in(scene, image))
             }
             None => PathPreview::fitted(scene, &points, preview_m, usual, level, image),
         };

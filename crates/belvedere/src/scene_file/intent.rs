@@ -113,13 +113,13 @@ pub struct CentrelineDoc {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LensDoc {
-    /// Distance of the eye behind the position, and of every viewpoint behind its turn, > 0; the length of the preview by default.
+    /// Distance behind the position as from which what lies ahead is seen, and of viewpoints behind turns, > 0; the length of the preview by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub behind_m: Option<f64>,
     /// Width of the picture at the position, > 0; a quarter of the length of the preview by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width_m: Option<f64>,
-    /// Height of the eye over the path, >= 0; a tenth of the length of the preview by default over terrain, else 0.
+    /// Height over the path as from which it is seen, >= 0; a tenth of the length of the preview by default over terrain and between boxes, else 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rise_m: Option<f64>,
 }

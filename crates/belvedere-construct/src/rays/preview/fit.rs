@@ -1,0 +1,121 @@
+//! The lens of a preview by what is around its path, and room for its eye.
+
+use super::{Lens, PathPreview, TOLERANCES, TRIALS};
+use crate::ConstructError;
+use crate::rays::room::{Room, Surroundings};
+use crate::rays::{Target, TargetSight};
+use belvedere_core::DVec3;
+use belvedere_scene::Scene;
+use belvedere_sight::Obstacles;
+
+/// Widths that are tried, shares of the usual one; at how many positions and by how many samples of the path they are judged.
+const NARROWER: [f64; 3] = [1.0, 0.7, 0.5];
+const POSITIONS: u32 = 5;
+const SAMPLES: f64 = 60.0;
+/// Samples stand so high over the path, shares of the eye's height: rivers are drawn in valleys that a coarse model has filled.
+const LIFT: f64 = 0.01;
+/// A narrower picture must show so much more.
+const WORTH: f64 = 0.03;
+/// The corridor is so wide at least, widths of the picture, measured so high over the path, widths of the picture.
+const CORRIDOR: f64 = 0.5;
+const EYE: f64 = 0.25;
+/// Distance of positions at which room is looked for, widths of the picture; of so many at most.
+const ROOM_SPACING: f64 = 0.05;
+const MOST_ROOMS: f64 = 200.0;
+
+impl PathPreview {
+    /// Prepares a preview whose camera is chosen: of some widths and tolerances that with which most of the path ahead is seen in
+    /// `scene`, from positions all along it. `usual` is the widest.
+    ///
+    /// # Errors
+    /// As [`PathPreview::new`].
+    pub fn fitted(
+        scene: &Scene,
+        points: &[DVec3],
+        preview_m: f64,
+        usual: Lens,
+        level: bool,
+        image: [u32; 2],
+    ) -> Result<Self, ConstructError> {
+        let wide = Self::new(points, preview_m, usual, level, image)?;
+        let usual = wide.fitting(&Obstacles::new(scene));
+        let first = Self::new(points, preview_m, usual, level, image)?.standing_in(scene, image)?;
+        let mut best = (first.seen_ahead(scene, image)?, first.clone());
+        for narrower in NARROWER {
+            for share in TOLERANCES {
+                let (width_m, rise_m) = (narrower * usual.width_m, narrower * usual.rise_m);
+                let lens = Lens { width_m, rise_m, ..usual };
+                let next = Self { lens, ..first.clone() }.with_tolerance(share * width_m).standing_in(scene, image)?;
+                let seen = next.seen_ahead(scene, image)?;
+                // A wide picture shows where the path runs.
+                if seen > best.0 + WORTH {
+                    best = (seen, next);
+                }
+            }
+        }
+        Ok(best.1)
+    }
+
+    /// Share of the path ahead that is seen, on the average over positions along it.
+    fn seen_ahead(&self, scene: &Scene, image: [u32; 2]) -> Result<f64, ConstructError> {
+        let mut sum = 0.0;
+        for k in 0..POSITIONS {
+            let position = self.length() * (f64::from(k) + 0.3) / f64::from(POSITIONS);
+            let wanted = self.wanted(position);
+            let lift = if self.level { LIFT * self.lens.rise_m * DVec3::Z } else { DVec3::ZERO };
+            let ahead = self.samples(position, wanted, wanted / SAMPLES);
+            let target = Target::points(ahead.into_iter().map(|p| p + lift));
+            sum += TargetSight::new(scene, &target).share(&self.at(position, image, None)?.view, 0.0);
+        }
+        Ok(sum / f64::from(POSITIONS))
+    }
+
+    /// The widest lens, up to that of this preview, whose picture is not much wider than the corridor that the path follows.
+    fn fitting(&self, obstacles: &Obstacles<'_>) -> Lens {
+        const NARROWER: f64 = 0.8;
+        const TRIED: i32 = 16;
+        let lens = |k: i32| {
+            let share = NARROWER.powi(k);
+            Lens { width_m: share * self.lens.width_m, rise_m: share * self.lens.rise_m, ..self.lens }
+        };
+        let is_wide = |lens: &Lens| {
+            let around = Surroundings { obstacles: Some(obstacles), path: &self.path, width: lens.width_m };
+            let place = |k: usize| {
+                let s = self.path.length() * (k as f64 + 0.5) / TRIALS as f64;
+                let way = self.path.at(s + 0.1 * lens.width_m) - self.path.at(s - 0.1 * lens.width_m);
+                (self.path.at(s) + EYE * lens.width_m * DVec3::Z, way.cross(DVec3::Z).normalize_or(DVec3::X))
+            };
+            lens.width_m * CORRIDOR > around.corridor(&(0..TRIALS).map(place).collect::<Vec<_>>())
+        };
+        let is_empty = obstacles.grounds().is_empty() && obstacles.solid_bounds().is_empty();
+        let fits = (0..TRIED).map(lens).find(|lens| !is_wide(lens));
+        fits.filter(|_| self.level && !is_empty).unwrap_or(self.lens)
+    }
+
+    /// The same with the eye clear of ground and walls.
+    ///
+    /// # Errors
+    /// As [`PathPreview::at`].
+    pub fn standing_in(self, scene: &Scene, image: [u32; 2]) -> Result<Self, ConstructError> {
+        self.with_room(Some(&Obstacles::new(scene)), image)
+    }
+
+    pub(super) fn with_room(
+        mut self,
+        obstacles: Option<&Obstacles<'_>>,
+        image: [u32; 2],
+    ) -> Result<Self, ConstructError> {
+        let width = self.lens.width_m;
+        let count = (self.path.length() / (ROOM_SPACING * width)).ceil().clamp(1.0, MOST_ROOMS);
+        let spacing = self.path.length() / count;
+        let camera = |k: usize| {
+            let position = spacing * k as f64;
+            self.root(&self.legs(position), position, image, None)
+        };
+        let cameras = (0..=count as usize).map(camera).collect::<Result<Vec<_>, _>>()?;
+        let obstacles = obstacles.filter(|o| !(o.grounds().is_empty() && o.solid_bounds().is_empty()));
+        let around = Surroundings { obstacles, path: &self.path, width };
+        self.room = Some(Room::new(&cameras, spacing, &around, width.min(0.5 * self.lens.behind_m)));
+        Ok(self)
+    }
+}
