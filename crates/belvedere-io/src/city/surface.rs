@@ -240,7 +240,6 @@ impl Builder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere_core::polygon::is_inside;
     use belvedere_scene::{HeightSource, LandCover};
 
     fn square(from: f64, to: f64) -> Vec<DVec2> {
