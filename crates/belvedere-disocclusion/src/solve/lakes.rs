@@ -44,6 +44,8 @@ struct Lake {
     name: String,
     height: f64,
     nodes: Vec<u32>,
+    /// Nodes beside those: with them the cells that the shore crosses keep their shape, and water does not run up or down a bank.
+    shore: Vec<u32>,
 }
 
 /// The lakes of a scene on its terrain.
@@ -92,7 +94,7 @@ impl Lakes {
             let nodes = nodes_inside(&rings, field);
             let Some(height) = level_of(&nodes, field) else { continue };
             let Water { layer, feature, ref name, .. } = *water;
-            let new = Lake { layer, feature, name: name.clone(), height, nodes };
+            let new = Lake { layer, feature, name: name.clone(), height, nodes, shore: Vec::new() };
             let others: BTreeSet<usize> = new.nodes.iter().filter_map(|n| owner.get(n).copied()).collect();
             let at = others.first().copied().unwrap_or(lakes.len());
             if at == lakes.len() {
@@ -104,6 +106,9 @@ impl Lakes {
             lakes[at].nodes = all.into_iter().collect();
         }
         lakes.retain(|lake| !lake.nodes.is_empty());
+        for lake in &mut lakes {
+            lake.shore = beside(&lake.nodes, field, |n| owner.contains_key(&n));
+        }
         Self { lakes, cols: field.cols() }
     }
 
@@ -153,7 +158,7 @@ impl Lakes {
         on.map(|[x, y]| [x / across, y / down]).collect()
     }
 
-    /// Makes a displacement of the terrain's nodes level on each lake: as the tied nodes of the solver's grid that lie on it, or the mean.
+    /// Makes a displacement of the terrain's nodes level on each lake and its shore: as the tied nodes of the solver's grid that lie on it, or the mean.
     fn level(&self, grid: &Hierarchy, u: &mut [f64]) {
         let step = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
         for lake in &self.lakes {
@@ -163,7 +168,7 @@ impl Lakes {
             } else {
                 own.iter().map(|[x, y]| u[y * step[1] * self.cols + x * step[0]]).sum::<f64>() / own.len() as f64
             };
-            lake.nodes.iter().for_each(|n| u[*n as usize] = moved);
+            lake.nodes.iter().chain(&lake.shore).for_each(|n| u[*n as usize] = moved);
         }
     }
 
@@ -179,7 +184,8 @@ impl Lakes {
 
     /// Zero on every lake: detail of the ground does not change there.
     pub(super) fn clear(&self, detail: &mut [f64]) {
-        self.nodes().flatten().for_each(|n| detail[*n as usize] = 0.0);
+        let all = self.lakes.iter().flat_map(|lake| lake.nodes.iter().chain(&lake.shore));
+        all.for_each(|n| detail[*n as usize] = 0.0);
     }
 
     /// How the lakes moved.
@@ -223,6 +229,19 @@ fn nodes_inside(rings: &[Vec<DVec2>], field: &Field) -> Vec<u32> {
     out.sort_unstable();
     out.dedup();
     out
+}
+
+/// The neighbours of nodes, those of the ground's cells around them, that have data and are not on a lake themselves.
+fn beside(nodes: &[u32], field: &Field, on_lake: impl Fn(u32) -> bool) -> Vec<u32> {
+    let (cols, rows) = (field.cols(), field.rows());
+    let around = |n: &u32| {
+        let [x, y] = [*n as usize % cols, *n as usize / cols];
+        let square =
+            move |row: usize| (x.saturating_sub(1)..(x + 2).min(cols)).map(move |col| (row * cols + col) as u32);
+        (y.saturating_sub(1)..(y + 2).min(rows)).flat_map(square)
+    };
+    let all: BTreeSet<u32> = nodes.iter().flat_map(around).collect();
+    all.into_iter().filter(|n| !on_lake(*n) && !field.void()[*n as usize]).collect()
 }
 
 /// Middle height of nodes, if they are level.

@@ -1,6 +1,6 @@
 //! Lakes on grids that are written: level there, too, where those are other grids than the one that was solved on.
 
-use belvedere_core::{DVec2, TerrainDisocclusion};
+use belvedere_core::{DVec2, TerrainDisocclusion, polygon};
 use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::{LayerKind, Scene};
 
@@ -33,15 +33,8 @@ impl<'a> LevelLakes<'a> {
 
     /// The displacement at scene x, y.
     pub(super) fn at(&self, p: DVec2) -> f64 {
-        let lake = self.lakes.iter().find(|l| p.cmpge(l.low).all() && p.cmple(l.high).all() && inside(l.rings, p));
+        let lake =
+            self.lakes.iter().find(|l| p.cmpge(l.low).all() && p.cmple(l.high).all() && polygon::is_inside(l.rings, p));
         lake.map_or_else(|| self.stage.delta_at(p.extend(0.0)), |lake| lake.moved)
     }
-}
-
-/// Even-odd rule.
-fn inside(rings: &[Vec<DVec2>], p: DVec2) -> bool {
-    let crosses =
-        |a: DVec2, b: DVec2| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
-    let count = |r: &Vec<DVec2>| (0..r.len()).filter(|&i| crosses(r[i], r[(i + 1) % r.len()])).count();
-    rings.iter().map(count).sum::<usize>() % 2 == 1
 }
