@@ -44,8 +44,9 @@ struct Lake {
     name: String,
     height: f64,
     nodes: Vec<u32>,
-    /// Nodes beside those: with them the cells that the shore crosses keep their shape, and water does not run up or down a bank.
-    shore: Vec<u32>,
+    /// Nodes beside those, and how far they rise over the water, at least 0: the ground there moves with the
+    /// water, or sinks to its level, so that water does not run up or down a bank.
+    shore: Vec<(u32, f64)>,
 }
 
 /// The lakes of a scene on its terrain.
@@ -107,7 +108,8 @@ impl Lakes {
         }
         lakes.retain(|lake| !lake.nodes.is_empty());
         for lake in &mut lakes {
-            lake.shore = beside(&lake.nodes, field, |n| owner.contains_key(&n));
+            let rise = |n: u32| (n, (field.heights()[n as usize] - lake.height).max(0.0));
+            lake.shore = beside(&lake.nodes, field, |n| owner.contains_key(&n)).map(rise).collect();
         }
         Self { lakes, cols: field.cols() }
     }
@@ -158,7 +160,7 @@ impl Lakes {
         on.map(|[x, y]| [x / across, y / down]).collect()
     }
 
-    /// Makes a displacement of the terrain's nodes level on each lake and its shore: as the tied nodes of the solver's grid that lie on it, or the mean.
+    /// Makes a displacement of the terrain's nodes level on each lake, and its shore between its own height over the water and none: as the tied nodes of the solver's grid that lie on it, or the mean.
     fn level(&self, grid: &Hierarchy, u: &mut [f64]) {
         let step = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
         for lake in &self.lakes {
@@ -168,7 +170,10 @@ impl Lakes {
             } else {
                 own.iter().map(|[x, y]| u[y * step[1] * self.cols + x * step[0]]).sum::<f64>() / own.len() as f64
             };
-            lake.nodes.iter().chain(&lake.shore).for_each(|n| u[*n as usize] = moved);
+            lake.nodes.iter().for_each(|n| u[*n as usize] = moved);
+            for &(node, rise) in &lake.shore {
+                u[node as usize] = u[node as usize].clamp(moved - rise, moved);
+            }
         }
     }
 
@@ -184,8 +189,7 @@ impl Lakes {
 
     /// Zero on every lake: detail of the ground does not change there.
     pub(super) fn clear(&self, detail: &mut [f64]) {
-        let all = self.lakes.iter().flat_map(|lake| lake.nodes.iter().chain(&lake.shore));
-        all.for_each(|n| detail[*n as usize] = 0.0);
+        self.nodes().flatten().for_each(|n| detail[*n as usize] = 0.0);
     }
 
     /// How the lakes moved.
@@ -232,7 +236,7 @@ fn nodes_inside(rings: &[Vec<DVec2>], field: &Field) -> Vec<u32> {
 }
 
 /// The neighbours of nodes, those of the ground's cells around them, that have data and are not on a lake themselves.
-fn beside(nodes: &[u32], field: &Field, on_lake: impl Fn(u32) -> bool) -> Vec<u32> {
+fn beside(nodes: &[u32], field: &Field, on_lake: impl Fn(u32) -> bool) -> impl Iterator<Item = u32> {
     let (cols, rows) = (field.cols(), field.rows());
     let around = |n: &u32| {
         let [x, y] = [*n as usize % cols, *n as usize / cols];
@@ -241,7 +245,7 @@ fn beside(nodes: &[u32], field: &Field, on_lake: impl Fn(u32) -> bool) -> Vec<u3
         (y.saturating_sub(1)..(y + 2).min(rows)).flat_map(square)
     };
     let all: BTreeSet<u32> = nodes.iter().flat_map(around).collect();
-    all.into_iter().filter(|n| !on_lake(*n) && !field.void()[*n as usize]).collect()
+    all.into_iter().filter(move |n| !on_lake(*n) && !field.void()[*n as usize])
 }
 
 /// Middle height of nodes, if they are level.
