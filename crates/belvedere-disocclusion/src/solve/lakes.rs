@@ -44,9 +44,8 @@ struct Lake {
     name: String,
     height: f64,
     nodes: Vec<u32>,
-    /// Nodes beside those, and how far they rise over the water, at least 0: the ground there moves with the
-    /// water, or sinks to its level, so that water does not run up or down a bank.
-    shore: Vec<(u32, f64)>,
+    /// Nodes beside those: they sink with the water at least, so that it does not run up a bank that stayed.
+    shore: Vec<u32>,
 }
 
 /// The lakes of a scene on its terrain.
@@ -108,8 +107,7 @@ impl Lakes {
         }
         lakes.retain(|lake| !lake.nodes.is_empty());
         for lake in &mut lakes {
-            let rise = |n: u32| (n, (field.heights()[n as usize] - lake.height).max(0.0));
-            lake.shore = beside(&lake.nodes, field, |n| owner.contains_key(&n)).map(rise).collect();
+            lake.shore = beside(&lake.nodes, field, |n| owner.contains_key(&n));
         }
         Self { lakes, cols: field.cols() }
     }
@@ -160,7 +158,8 @@ impl Lakes {
         on.map(|[x, y]| [x / across, y / down]).collect()
     }
 
-    /// Makes a displacement of the terrain's nodes level on each lake, and its shore between its own height over the water and none: as the tied nodes of the solver's grid that lie on it, or the mean.
+    /// Makes a displacement of the terrain's nodes level on each lake: as the tied nodes of the solver's grid that lie on it, or the mean. The
+    /// shore sinks with the water at least.
     fn level(&self, grid: &Hierarchy, u: &mut [f64]) {
         let step = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
         for lake in &self.lakes {
@@ -171,9 +170,7 @@ impl Lakes {
                 own.iter().map(|[x, y]| u[y * step[1] * self.cols + x * step[0]]).sum::<f64>() / own.len() as f64
             };
             lake.nodes.iter().for_each(|n| u[*n as usize] = moved);
-            for &(node, rise) in &lake.shore {
-                u[node as usize] = u[node as usize].clamp(moved - rise, moved);
-            }
+            lake.shore.iter().for_each(|n| u[*n as usize] = u[*n as usize].min(moved));
         }
     }
 
@@ -236,7 +233,7 @@ fn nodes_inside(rings: &[Vec<DVec2>], field: &Field) -> Vec<u32> {
 }
 
 /// The neighbours of nodes, those of the ground's cells around them, that have data and are not on a lake themselves.
-fn beside(nodes: &[u32], field: &Field, on_lake: impl Fn(u32) -> bool) -> impl Iterator<Item = u32> {
+fn beside(nodes: &[u32], field: &Field, on_lake: impl Fn(u32) -> bool) -> Vec<u32> {
     let (cols, rows) = (field.cols(), field.rows());
     let around = |n: &u32| {
         let [x, y] = [*n as usize % cols, *n as usize / cols];
@@ -245,7 +242,7 @@ fn beside(nodes: &[u32], field: &Field, on_lake: impl Fn(u32) -> bool) -> impl I
         (y.saturating_sub(1)..(y + 2).min(rows)).flat_map(square)
     };
     let all: BTreeSet<u32> = nodes.iter().flat_map(around).collect();
-    all.into_iter().filter(move |n| !on_lake(*n) && !field.void()[*n as usize])
+    all.into_iter().filter(|n| !on_lake(*n) && !field.void()[*n as usize]).collect()
 }
 
 /// Middle height of nodes, if they are level.
