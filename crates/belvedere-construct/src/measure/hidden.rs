@@ -81,10 +81,9 @@ fn runs(feature: &SampledFeature, images: &[SampleImage]) -> Vec<HiddenRun> {
                 run.amount += sample.amount;
                 if let (HiddenReason::Covered { over_m: most }, HiddenReason::Covered { over_m }) =
                     (&mut run.reason, here)
+                    && over_m > *most
                 {
-                    if over_m > *most {
-                        (*most, run.at) = (over_m, sample.p_world.truncate().to_array());
-                    }
+                    (*most, run.at) = (over_m, sample.p_world.truncate().to_array());
                 }
             }
             None => out.push(HiddenRun {

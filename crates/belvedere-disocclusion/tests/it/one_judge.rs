@@ -47,7 +47,7 @@ fn case(seed: u64) -> Case {
         |random: &mut Random, low: f64, high: f64| DVec2::new(random.range(low, high), random.range(low, high)) * size;
     // Every third from corner to corner.
     let mut way: Vec<DVec2> = (0..6).map(|_| place(&mut random, 0.05, 0.95)).collect();
-    if seed % 3 == 0 {
+    if seed.is_multiple_of(3) {
         way = vec![DVec2::splat(0.03 * size), place(&mut random, 0.3, 0.7), DVec2::splat(0.97 * size)];
     }
     let low = place(&mut random, 0.3, 0.6);

@@ -29,7 +29,7 @@ fn data(folder: &Path) -> DataFiles {
     std::fs::write(&route, line).unwrap();
     let text = |path: &Path| path.display().to_string();
     DataFiles {
-        dem: text(&dem).into(),
+        dem: text(&dem),
         features: vec![text(&route)],
         source_crs: Some("EPSG:32632".into()),
         ..DataFiles::default()
