@@ -12,6 +12,8 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Water is level where four fifths of its heights lie as near together, metres: models of 90 m give that for small lakes between steep
 /// banks. Rivers drawn as areas fall by more, or they stay within it.
 const LEVEL_M: f64 = 30.0;
+/// Nodes inside a shore that rise farther over the water than this are bank, metres: models round to it.
+const BANK_M: f64 = 1.0;
 /// Nodes of the solver's grid that are tied at most: of larger waters every second one, and so on.
 const MOST_TIED: usize = 800;
 /// Fewer nodes of the solver's grid do not stand for a lake.
@@ -44,7 +46,9 @@ struct Lake {
     name: String,
     height: f64,
     nodes: Vec<u32>,
-    /// Nodes beside those: they sink with the water at least, so that it does not run up a bank that stayed.
+    /// Nodes of the bank inside the shore, and how far they rise over the water: they sink with it at least, and to its level at most.
+    bank: Vec<(u32, f64)>,
+    /// Nodes beside: they sink with the water at least, so that it does not run up a bank that stayed.
     shore: Vec<u32>,
 }
 
@@ -94,7 +98,7 @@ impl Lakes {
             let nodes = nodes_inside(&rings, field);
             let Some(height) = level_of(&nodes, field) else { continue };
             let Water { layer, feature, ref name, .. } = *water;
-            let new = Lake { layer, feature, name: name.clone(), height, nodes, shore: Vec::new() };
+            let new = Lake { layer, feature, name: name.clone(), height, nodes, bank: Vec::new(), shore: Vec::new() };
             let others: BTreeSet<usize> = new.nodes.iter().filter_map(|n| owner.get(n).copied()).collect();
             let at = others.first().copied().unwrap_or(lakes.len());
             if at == lakes.len() {
@@ -108,6 +112,10 @@ impl Lakes {
         lakes.retain(|lake| !lake.nodes.is_empty());
         for lake in &mut lakes {
             lake.shore = beside(&lake.nodes, field, |n| owner.contains_key(&n));
+            let rise = |n: u32| (n, field.heights()[n as usize] - lake.height);
+            let (bank, water) = lake.nodes.iter().map(|n| rise(*n)).partition::<Vec<_>, _>(|(_, rise)| *rise > BANK_M);
+            lake.bank = bank;
+            lake.nodes = water.into_iter().map(|(n, _)| n).collect();
         }
         Self { lakes, cols: field.cols() }
     }
@@ -121,9 +129,10 @@ impl Lakes {
         self.lakes.iter().map(|lake| lake.nodes.as_slice())
     }
 
-    /// The nodes of a solver's grid on each lake.
+    /// The nodes of a solver's grid on each lake; none where they are too few to stand for it.
     pub(super) fn tied(&self, grid: &Hierarchy) -> Vec<Vec<u32>> {
-        let places: Vec<Vec<[usize; 2]>> = self.lakes.iter().map(|lake| self.under(lake, grid)).collect();
+        let tied = |own: Vec<[usize; 2]>| if own.len() < FEWEST_TIED { Vec::new() } else { own };
+        let places: Vec<Vec<[usize; 2]>> = self.lakes.iter().map(|lake| self.on_grid(lake, grid)).map(tied).collect();
         let all = |every: usize| -> Vec<Vec<u32>> {
             let kept = |[col, row]: &&[usize; 2]| col % every == 0 && row % every == 0;
             let node = |[col, row]: &[usize; 2]| (row * grid.cols() + col) as u32;
@@ -134,22 +143,6 @@ impl Lakes {
         (1..).map(all).find(few).unwrap_or_default()
     }
 
-    /// Columns and rows of the nodes of a solver's grid that move with a lake: those on it; of a lake with fewer than [`FEWEST_TIED`] those
-    /// of all cells that it touches, which finer grids tell apart where it takes that.
-    fn under(&self, lake: &Lake, grid: &Hierarchy) -> Vec<[usize; 2]> {
-        let own = self.on_grid(lake, grid);
-        if own.len() >= FEWEST_TIED {
-            return own;
-        }
-        let step = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
-        let corners = |n: &u32| {
-            let [x, y] = [*n as usize % self.cols, *n as usize / self.cols];
-            [x / step[0], x.div_ceil(step[0])].map(|col| [y / step[1], y.div_ceil(step[1])].map(|row| [col, row]))
-        };
-        let all: BTreeSet<[usize; 2]> = lake.nodes.iter().flat_map(corners).flatten().collect();
-        all.into_iter().collect()
-    }
-
     /// Columns and rows of the nodes of a solver's grid that are nodes of the terrain on a lake.
     fn on_grid(&self, lake: &Lake, grid: &Hierarchy) -> Vec<[usize; 2]> {
         let [across, down] = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
@@ -158,19 +151,22 @@ impl Lakes {
         on.map(|[x, y]| [x / across, y / down]).collect()
     }
 
-    /// Makes a displacement of the terrain's nodes level on each lake: as the tied nodes of the solver's grid that lie on it, or the mean. The
-    /// shore sinks with the water at least.
+    /// Makes a displacement of the terrain's nodes level on each lake: as the tied nodes of the solver's grid that lie on it. Where none are
+    /// tied, as the node that sinks least, for what rises does not become hidden. The shore sinks with the water at least.
     fn level(&self, grid: &Hierarchy, u: &mut [f64]) {
         let step = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
         for lake in &self.lakes {
             let own = self.on_grid(lake, grid);
-            let moved = if own.is_empty() {
-                lake.nodes.iter().map(|n| u[*n as usize]).sum::<f64>() / lake.nodes.len() as f64
+            let moved = if own.len() < FEWEST_TIED {
+                lake.nodes.iter().map(|n| u[*n as usize]).fold(f64::NEG_INFINITY, f64::max)
             } else {
                 own.iter().map(|[x, y]| u[y * step[1] * self.cols + x * step[0]]).sum::<f64>() / own.len() as f64
             };
             lake.nodes.iter().for_each(|n| u[*n as usize] = moved);
             lake.shore.iter().for_each(|n| u[*n as usize] = u[*n as usize].min(moved));
+            for &(n, rise) in &lake.bank {
+                u[n as usize] = u[n as usize].clamp(moved - rise, moved);
+            }
         }
     }
 
