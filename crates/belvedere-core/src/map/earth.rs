@@ -30,12 +30,12 @@ impl EarthCurvature {
         self.factor() * (p - self.eye).truncate().length_squared()
     }
 
-    /// See [`crate::Stage::edge_bound`]; exact for a parabola.
+    /// See [`crate::map::StageMap::edge_bound`]; exact for a parabola.
     pub fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
         0.25 * self.factor() * (p1 - p0).truncate().length_squared()
     }
 
-    /// See [`crate::Stage::displaced_bounds`].
+    /// See [`crate::map::StageMap::displaced_bounds`].
     pub fn displaced_bounds(&self, bounds: &Aabb) -> Option<Aabb> {
         let corners = bounds.corners();
         let far = corners.iter().map(|&c| self.drop_at(c)).fold(0.0, f64::max);

@@ -46,7 +46,7 @@ impl TerrainDisocclusion {
         self.delta.sample(p.truncate()).unwrap_or(0.0)
     }
 
-    /// Vertical distance between the displaced edge and its chord, see [`crate::Stage::edge_bound`]; tight to within a factor of 2.
+    /// Vertical distance between the displaced edge and its chord, see [`crate::map::StageMap::edge_bound`]; tight to within a factor of 2.
     pub fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
         if !(p0.is_finite() && p1.is_finite()) {
             return f64::INFINITY;
@@ -77,7 +77,7 @@ impl TerrainDisocclusion {
         worst
     }
 
-    /// See [`crate::Stage::displaced_bounds`].
+    /// See [`crate::map::StageMap::displaced_bounds`].
     pub fn displaced_bounds(&self, bounds: &Aabb) -> Option<Aabb> {
         if bounds.is_empty() || bounds.min.is_nan() || bounds.max.is_nan() {
             return None;

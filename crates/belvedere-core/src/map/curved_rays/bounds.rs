@@ -115,7 +115,7 @@ impl Turn {
 }
 
 impl CurvedRays {
-    /// See [`crate::Stage::edge_bound`]. Infinite if the edge leaves the domain, or joins cells between which phi alone does not tell the way.
+    /// See [`crate::map::StageMap::edge_bound`]. Infinite if the edge leaves the domain, or joins cells between which phi alone does not tell the way.
     pub fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
         let mut bound = 0.0;
         let known = self.edge_shifts(p0, p1, |shift| bound += shift.length());
@@ -164,7 +164,7 @@ impl CurvedRays {
         })
     }
 
-    /// See [`crate::Stage::displaced_bounds`].
+    /// See [`crate::map::StageMap::displaced_bounds`].
     pub fn displaced_bounds(&self, bounds: &Aabb) -> Option<Aabb> {
         if self.turns().is_empty() {
             return Some(*bounds);

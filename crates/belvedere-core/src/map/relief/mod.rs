@@ -209,7 +209,7 @@ impl Relief {
         }
     }
 
-    /// See [`crate::Stage::edge_bound`]: an eighth of bounds on the second derivatives along the edge.
+    /// See [`crate::map::StageMap::edge_bound`]: an eighth of bounds on the second derivatives along the edge.
     pub fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
         if !(p0.is_finite() && p1.is_finite()) {
             return f64::INFINITY;
@@ -231,7 +231,7 @@ impl Relief {
         0.125 * (heights + horizon).hypot(self.shape.oblique * heights)
     }
 
-    /// See [`crate::Stage::displaced_bounds`].
+    /// See [`crate::map::StageMap::displaced_bounds`].
     pub fn displaced_bounds(&self, bounds: &Aabb) -> Option<Aabb> {
         if bounds.is_empty() || !bounds.min.is_finite() || !bounds.max.is_finite() {
             return None;

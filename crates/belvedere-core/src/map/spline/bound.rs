@@ -8,7 +8,7 @@ use glam::DVec3;
 const PIECES: u32 = 8;
 
 impl SplineBend {
-    /// See [`crate::Stage::edge_bound`].
+    /// See [`crate::map::StageMap::edge_bound`].
     ///
     /// A quarter of the total variation of the image's derivative; of its changes of length only the part across the chord counts.
     /// Source: ours.
@@ -40,7 +40,7 @@ impl SplineBend {
         0.25 * ((dd + h * (1.0 + bend)) * turning + h * (d_max * variation + kap * dd) / self.scale * sine)
     }
 
-    /// See [`crate::Stage::displaced_bounds`].
+    /// See [`crate::map::StageMap::displaced_bounds`].
     ///
     /// Straight parts are exact, bent parts are covered by discs: along the curve the map stretches by `1 - kap d / K` at most.
     pub fn displaced_bounds(&self, bounds: &Aabb) -> Option<Aabb> {

@@ -22,7 +22,7 @@ struct Most {
 }
 
 impl Strip {
-    /// See [`crate::Stage::edge_bound`]: an eighth of a bound on the second derivative along the edge; infinite unless the edge stays in
+    /// See [`crate::map::StageMap::edge_bound`]: an eighth of a bound on the second derivative along the edge; infinite unless the edge stays in
     /// the domain for certain.
     ///
     /// With `k` the route's curvature, `c k` that of the new one, `s = 1 - c`, `D = 1 - k a` and an edge that goes `u` along the curve and
@@ -78,7 +78,7 @@ impl Strip {
         self.share * along.hypot(across) / (stretch * stretch)
     }
 
-    /// See [`crate::Stage::displaced_bounds`]; `None` unless all of the box lies in the domain.
+    /// See [`crate::map::StageMap::displaced_bounds`]; `None` unless all of the box lies in the domain.
     pub fn displaced_bounds(&self, bounds: &Aabb) -> Option<Aabb> {
         if bounds.is_empty() || !bounds.min.is_finite() || !bounds.max.is_finite() {
             return None;
