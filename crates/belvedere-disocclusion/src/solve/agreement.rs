@@ -19,6 +19,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Judgements at most.
 const ROUNDS: usize = 8;
+/// And over ground with lakes.
+const ROUNDS_WITH_LAKES: usize = 2;
 /// In the ids of candidates over ground with the bilinear displacement.
 pub(super) const BILINEAR: u32 = 1 << 31;
 /// Room left over what was found, metres: the places that hide nothing yet are not to come up in the next round.
@@ -79,7 +81,9 @@ impl Agreement<'_> {
         }
         let mut found = self.hidden(problem, &result)?;
         let (mut best, mut fewest) = (result, found.len());
-        for _ in 1..ROUNDS {
+        // What a small lake hides that is levelled after solving, the program cannot mend.
+        let most = if self.lakes.is_empty() { ROUNDS } else { ROUNDS_WITH_LAKES };
+        for _ in 1..most {
             if found.is_empty() || self.progress.should_end() {
                 break;
             }
