@@ -45,8 +45,8 @@ pub mod report {
     pub use crate::metrics::{FrameChange, TerrainMetrics};
     pub use crate::points::PointKind;
     pub use crate::solve::{
-        Covered, Fallback, FeatureCost, LakeReport, LimitsReport, QpReport, Taken, TerrainTimes, UnresolvedReason,
-        UnresolvedRun,
+        BANK_M, Covered, Fallback, FeatureCost, LakeReport, LimitsReport, QpReport, Taken, TerrainTimes,
+        UnresolvedReason, UnresolvedRun,
     };
 }
 

@@ -12,8 +12,8 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Water is level where four fifths of its heights lie as near together, metres: models of 90 m give that for small lakes between steep
 /// banks. Rivers drawn as areas fall by more, or they stay within it.
 const LEVEL_M: f64 = 30.0;
-/// Nodes inside a shore that rise farther over the water than this are bank, metres: models round to it.
-const BANK_M: f64 = 1.0;
+/// What rises farther over the water than this inside a shore is bank, metres: models round to it.
+pub const BANK_M: f64 = 1.0;
 /// Nodes of the solver's grid that are tied at most: of larger waters every second one, and so on.
 const MOST_TIED: usize = 800;
 /// Fewer nodes of the solver's grid do not stand for a lake.
@@ -165,7 +165,7 @@ impl Lakes {
             lake.nodes.iter().for_each(|n| u[*n as usize] = moved);
             lake.shore.iter().for_each(|n| u[*n as usize] = u[*n as usize].min(moved));
             for &(n, rise) in &lake.bank {
-                u[n as usize] = u[n as usize].clamp(moved - rise, moved);
+                u[n as usize] = u[n as usize].max(moved - rise).min(moved);
             }
         }
     }

@@ -17,7 +17,7 @@ mod runs;
 mod shown;
 
 pub use fallback::Fallback;
-pub use lakes::LakeReport;
+pub use lakes::{BANK_M, LakeReport};
 pub use limits::LimitsReport;
 pub use live::{LiveFrame, LiveTerrain};
 pub use memory::TerrainMemory;

@@ -2,19 +2,22 @@
 
 use belvedere_core::{DVec2, TerrainDisocclusion, polygon};
 use belvedere_disocclusion::TerrainReport;
-use belvedere_scene::{LayerKind, Scene};
+use belvedere_disocclusion::report::BANK_M;
+use belvedere_scene::{Heightfield, LayerKind, Scene};
 
-/// One lake: the box around it, its rings, and by how much it moved.
+/// One lake: the box around it, its rings, the height up to which there is water, and by how much it moved.
 struct Lake<'a> {
     low: DVec2,
     high: DVec2,
     rings: &'a [Vec<DVec2>],
+    water_m: f64,
     moved: f64,
 }
 
-/// A displacement that is the same everywhere inside the shore of a lake.
+/// A displacement that is the same for all water of a lake; its bank moves as it was solved.
 pub(super) struct LevelLakes<'a> {
     stage: &'a TerrainDisocclusion,
+    terrain: Option<&'a Heightfield>,
     lakes: Vec<Lake<'a>>,
 }
 
@@ -26,15 +29,16 @@ impl<'a> LevelLakes<'a> {
             let rings = &areas.features.get(of.feature)?.rings[..];
             let corners = rings.iter().flatten().filter(|p| p.is_finite());
             let [low, high] = corners.fold([DVec2::MAX, DVec2::MIN], |[a, b], p| [a.min(*p), b.max(*p)]);
-            Some(Lake { low, high, rings, moved: of.moved_m })
+            Some(Lake { low, high, rings, water_m: of.height_m + BANK_M, moved: of.moved_m })
         };
-        Self { stage, lakes: report.lakes.iter().filter_map(lake).collect() }
+        Self { stage, terrain: scene.terrain(), lakes: report.lakes.iter().filter_map(lake).collect() }
     }
 
     /// The displacement at scene x, y.
     pub(super) fn at(&self, p: DVec2) -> f64 {
-        let lake =
-            self.lakes.iter().find(|l| p.cmpge(l.low).all() && p.cmple(l.high).all() && polygon::is_inside(l.rings, p));
+        let is_water = |l: &Lake<'_>| self.terrain.and_then(|t| t.surface_at(p)).is_none_or(|z| z <= l.water_m);
+        let holds = |l: &Lake<'_>| p.cmpge(l.low).all() && p.cmple(l.high).all() && polygon::is_inside(l.rings, p);
+        let lake = self.lakes.iter().find(|l| holds(l) && is_water(l));
         lake.map_or_else(|| self.stage.delta_at(p.extend(0.0)), |lake| lake.moved)
     }
 }

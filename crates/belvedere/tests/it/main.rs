@@ -5,3 +5,4 @@ mod names;
 mod sessions;
 mod sweeps;
 mod warnings;
+mod written_lakes;
