@@ -11,6 +11,7 @@ mod large_forms;
 pub mod measure;
 pub mod rays;
 pub mod reveal;
+mod sample;
 mod samples;
 mod surface_samples;
 
@@ -19,4 +20,5 @@ pub use flight::{Flight, FlightError, FlightOptions};
 pub use large_forms::large_forms;
 pub use measure::{MeasureOptions, Measures, measure};
 pub use reveal::{Goal, RevealMemory, RevealOptions, RevealReport, Revealed, reveal};
-pub use samples::{Amount, Sample, SampledFeature, default_spacing, judged_samples, sample_features};
+pub use sample::{Amount, Sample, SampledFeature};
+pub use samples::{default_spacing, judged_samples, sample_features};

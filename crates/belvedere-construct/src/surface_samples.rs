@@ -1,6 +1,6 @@
 //! Points spread evenly over surfaces: meshes, molecules, boxes.
 
-use crate::samples::Sample;
+use crate::sample::Sample;
 use belvedere_core::DVec3;
 use belvedere_core::random::Random;
 use belvedere_scene::{BoxLayer, BoxShape, LayerKind, MeshLayer, MoleculeLayer};

@@ -12,18 +12,18 @@ pub mod bounds;
 pub mod bspline;
 pub mod camera;
 pub mod conic;
+pub mod deformation;
 pub mod grid;
 pub mod map;
+mod miss;
 pub mod polygon;
 pub mod presets;
 pub mod random;
 pub mod sections;
+pub mod view;
 
 pub use bounds::Aabb;
-pub use camera::{
-    EdgePoint, Edges, ImageBox, Navigation, Pinhole, PinholeBuilder, PinholeError, Projected, Projection, RayPath,
-    RayPoint, View, ViewError,
-};
+pub use camera::{ImageBox, Navigation, Pinhole, PinholeBuilder, PinholeError, Projection};
 pub use glam::{DMat3, DQuat, DVec2, DVec3};
 pub use map::curved_rays::{CurvedRays, CurvedRaysError};
 pub use map::earth::EarthCurvature;
@@ -32,4 +32,6 @@ pub use map::spline::SplineBend;
 pub use map::split_rays::SplitRays;
 pub use map::strip::Strip;
 pub use map::terrain::TerrainDisocclusion;
-pub use map::{Displaced, Miss, SpaceMap, Stage};
+pub use map::{Displaced, SpaceMap, Stage};
+pub use miss::Miss;
+pub use view::{EdgePoint, Edges, Projected, RayPath, RayPoint, View, ViewError};

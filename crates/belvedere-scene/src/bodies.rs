@@ -1,19 +1,7 @@
 //! Rigid bodies: parts of a layer that bends carry as a whole, so that walls stay straight.
 
-use crate::{LayerKind, Mesh};
+use crate::{LayerKind, Mesh, RigidParts};
 use belvedere_core::{DVec2, DVec3};
-
-/// Which parts of a mesh are rigid bodies.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub enum RigidParts {
-    /// None: every point is displaced by itself.
-    #[default]
-    None,
-    /// Every part ([`Mesh::part`]); a mesh without parts as a whole.
-    All,
-    /// These parts, by their numbers.
-    Only(Vec<u32>),
-}
 
 /// The rigid bodies of a layer. Triangles are counted as in [`Mesh::triangles`], those of boxes twelve to a box.
 #[derive(Debug, Clone, PartialEq)]

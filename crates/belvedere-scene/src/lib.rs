@@ -5,44 +5,52 @@ pub mod bodies;
 pub mod cell;
 mod chain;
 pub mod city;
+pub mod color;
 pub mod drape;
 pub mod frame;
 pub mod heightfield;
 pub mod layer;
 pub mod light;
+pub mod mark;
 pub mod mesh;
 pub mod molecule;
 pub mod motion;
 pub mod overlay;
+pub mod placement;
 pub mod progress;
 pub mod ramp;
 pub mod representation;
+pub mod rigid_parts;
 pub mod scene;
 pub mod sea;
 pub mod texture;
 pub mod volume;
 
-pub use bodies::{Bodies, RigidParts};
+pub use bodies::Bodies;
 pub use cell::CellTriangle;
 pub use city::{
     Building, City, CityArea, CityFace, FacePicture, HeightSource, LandCover, Polygon, Structure, StructureKind,
     Surface, Way, WayClass,
 };
+pub use color::Color;
 pub use drape::{Draped, drape_polyline};
 pub use frame::{Aux, Compositing, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer, Stylisation};
 pub use heightfield::{Heightfield, HeightfieldError, NodeState, States};
 pub use layer::{
-    AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Color, Drape, Hidden, Layer, LayerKind, LineFeature,
-    LineLayer, Palette, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
+    AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Drape, Layer, LayerKind, LineFeature, LineLayer, Palette,
+    PointFeature, PointLayer, Relief, Shading, TerrainLayer,
 };
 pub use light::Light;
+pub use mark::{DistanceMarkers, Hidden, PointStyle, Symbol};
 pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer, triangle_lattice};
 pub use molecule::{Molecule, MoleculeLayer, MoleculeStyle};
-pub use motion::{Motion, MotionError, Placement};
-pub use overlay::{DistanceMarkers, Overlay, OverlayFace, OverlayLine, OverlayPoint, PointStyle, Symbol};
+pub use motion::{Motion, MotionError};
+pub use overlay::{Overlay, OverlayFace, OverlayLine, OverlayPoint};
+pub use placement::Placement;
 pub use progress::{Cancelled, Progress};
 pub use ramp::{Ramp, RampHeight, RampStop};
 pub use representation::Representation;
+pub use rigid_parts::RigidParts;
 pub use scene::{Crs, Scene, Unit};
 pub use sea::Sea;
 pub use texture::{Texture, Texturing, Wrap};

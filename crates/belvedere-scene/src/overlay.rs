@@ -1,54 +1,7 @@
-//! Marks of a picture beyond the features themselves: symbols, names, distances, grids, figures of the camera.
+//! Marks that belong to no layer: grids, figures of the camera, labelled points.
 
-use crate::{Color, Hidden};
+use crate::{Color, Hidden, Symbol};
 use belvedere_core::DVec3;
-use serde::{Deserialize, Serialize};
-
-/// Shape of a point marker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum Symbol {
-    /// A disc.
-    #[default]
-    Dot,
-    /// A triangle with its tip up: a summit.
-    #[serde(alias = "peak")]
-    Triangle,
-    /// An upright square.
-    Square,
-    /// A drop whose tip stands on the point.
-    Pin,
-    /// A diagonal cross.
-    Cross,
-}
-
-/// How the points of a layer look beside their colour and size.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PointStyle {
-    /// Shape.
-    pub symbol: Symbol,
-    /// Colour of the rim; `None` = no rim.
-    pub casing: Option<Color>,
-    /// Height of the letters of names, pixels; `None` = no names. Names that would overlap earlier ones are left out.
-    pub label_px: Option<f64>,
-}
-
-impl Default for PointStyle {
-    fn default() -> Self {
-        Self { symbol: Symbol::Dot, casing: Some(Color::rgb(255, 255, 255)), label_px: None }
-    }
-}
-
-/// Distance between marks along a line.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum DistanceMarkers {
-    /// A round distance that gives about ten marks on the longest line of the layer.
-    #[default]
-    Auto,
-    /// So many scene units along the ground, > 0.
-    Every(f64),
-}
 
 /// A line that belongs to no layer.
 #[derive(Debug, Clone, PartialEq)]

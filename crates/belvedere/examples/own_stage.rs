@@ -2,8 +2,8 @@
 //!
 //! [`SpaceMap`] is all that has to be written; [`StageMap`] answers what drawing asks beyond it, and takes better answers where a map has them.
 
-use belvedere::core::map::{Miss, StageMap};
-use belvedere::core::{DMat3, DVec2, DVec3, Pinhole, SpaceMap, Stage, View};
+use belvedere::core::map::StageMap;
+use belvedere::core::{DMat3, DVec2, DVec3, Miss, Pinhole, SpaceMap, Stage, View};
 use belvedere::scene::{BoxLayer, BoxShape, Color, Heightfield, LayerKind, Scene};
 use belvedere::{BelvedereError, PictureOptions, Session};
 use std::path::Path;

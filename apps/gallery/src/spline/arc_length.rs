@@ -7,7 +7,7 @@ use crate::sheet::Panel;
 use anyhow::Result;
 use belvedere::core::DVec2;
 use belvedere::core::bspline::BSpline;
-use belvedere::core::map::spline::DeformationCurve;
+use belvedere::core::deformation::DeformationCurve;
 use belvedere::core::presets::PresetDocument;
 use belvedere::scene::Frame;
 

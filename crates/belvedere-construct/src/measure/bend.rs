@@ -1,7 +1,7 @@
 //! What the bends do to the picture as a whole: how far they carry the ground, how they stretch it, whether it folds.
 
 use super::image::SampleImage;
-use crate::samples::SampledFeature;
+use crate::sample::SampledFeature;
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Heightfield, Scene};
 use belvedere_sight::Obstacles;

@@ -3,7 +3,7 @@
 use super::image::{BodyViews, DepthTest, SampleImage};
 use super::{pinpoint, surface};
 use crate::ConstructError;
-use crate::samples::{Sample, SampledFeature};
+use crate::sample::{Sample, SampledFeature};
 use belvedere_core::{CurvedRays, DVec2, DVec3, Pinhole, SplitRays, Stage, View};
 use belvedere_scene::{
     Aux, CellTriangle, Frame, Heightfield, Layer, LayerKind, Light, Progress, RenderJob, RenderOptions, Renderer, Scene,

@@ -1,7 +1,7 @@
 //! Lines of sight over displaced ground where rays run straight behind it: by the judge of terrain disocclusion itself, triangle by
 //! triangle. Chords of a bent ray may step over a narrow ridge.
 
-use crate::samples::Sample;
+use crate::sample::Sample;
 use belvedere_core::grid::Grid;
 use belvedere_core::{DVec2, SpaceMap, Stage, View};
 use belvedere_scene::{LayerKind, Scene};

@@ -2,7 +2,7 @@
 
 use super::image::{self, SampleImage, Sight};
 use super::{MeasureOptions, samples, sight_options};
-use crate::samples::{Amount, SampledFeature};
+use crate::sample::{Amount, SampledFeature};
 use belvedere_core::View;
 use belvedere_scene::{Progress, Scene};
 use serde::Serialize;
@@ -107,7 +107,7 @@ fn runs(feature: &SampledFeature, images: &[SampleImage]) -> Vec<HiddenRun> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::Sample;
+    use crate::sample::Sample;
     use belvedere_core::DVec3;
 
     fn feature(amount: Amount, n: usize) -> SampledFeature {

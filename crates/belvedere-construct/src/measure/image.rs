@@ -1,7 +1,7 @@
 //! Where a view shows the samples of features, and whether by line of sight.
 
 use super::displaced::DisplacedSight;
-use crate::samples::{Sample, SampledFeature};
+use crate::sample::{Sample, SampledFeature};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::Scene;
 use belvedere_sight::{Carried, DisplacedGround, Obstacles, SightOptions};

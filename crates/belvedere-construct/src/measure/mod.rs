@@ -15,7 +15,8 @@ pub use hidden::{HiddenReason, HiddenRun, hidden};
 pub use report::{Clearance, FeatureMeasure, Measures, MethodShare, Visibility};
 
 use crate::ConstructError;
-use crate::samples::{SampledFeature, judged_samples, sample_features};
+use crate::sample::SampledFeature;
+use crate::samples::{judged_samples, sample_features};
 use belvedere_core::View;
 use belvedere_scene::{Light, Progress, Renderer, Scene};
 use belvedere_sight::{Obstacles, SightOptions};

@@ -2,7 +2,7 @@
 
 use super::bend::{BendMeasure, displacement};
 use super::image::SampleImage;
-use crate::samples::{Amount, SampledFeature};
+use crate::sample::{Amount, SampledFeature};
 use serde::Serialize;
 
 /// Everything [`super::measure`] found.

@@ -1,7 +1,7 @@
 //! How good a picture would be: what it shows of the features, and whether it fills the image as a straight one does.
 
 use crate::measure::bend::{facing, nodes};
-use crate::samples::{Sample, SampledFeature};
+use crate::sample::{Sample, SampledFeature};
 use belvedere_core::map::spline::ReferencePlane;
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Heightfield, Scene};

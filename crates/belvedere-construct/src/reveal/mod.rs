@@ -15,7 +15,8 @@ pub use options::RevealOptions;
 pub use shape::BendShape;
 
 use crate::ConstructError;
-use crate::samples::{SampledFeature, default_spacing, sample_features};
+use crate::sample::SampledFeature;
+use crate::samples::{default_spacing, sample_features};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{DVec3, EarthCurvature, Stage, View};
 use belvedere_scene::{Progress, Scene};

@@ -1,5 +1,6 @@
 //! The planar pinhole camera, perspective or orthographic.
 
+use super::ImageBox;
 use crate::{Aabb, Miss};
 use glam::{DVec2, DVec3};
 
@@ -228,8 +229,8 @@ impl Pinhole {
     }
 
     /// Conservative image of a box: pixel and depth range, or `None` if part of it is not in front of the near plane.
-    pub fn image_box(&self, bounds: &Aabb) -> Option<super::ImageBox> {
-        let mut out = super::ImageBox::EMPTY;
+    pub fn image_box(&self, bounds: &Aabb) -> Option<ImageBox> {
+        let mut out = ImageBox::EMPTY;
         for corner in bounds.corners() {
             let (pixel, depth) = self.project(corner).ok()?;
             if depth < self.near {

@@ -1,5 +1,6 @@
 //! Displacements of space: the stages of a view.
 
+mod answers;
 pub mod curved_rays;
 pub mod earth;
 pub mod relief;
@@ -7,23 +8,13 @@ pub mod rigid;
 pub mod spline;
 pub mod split_rays;
 mod stage;
-mod stage_map;
 pub mod strip;
 pub mod terrain;
 
-pub use stage::{OwnMap, Stage};
-pub use stage_map::StageMap;
+pub use stage::{OwnMap, Stage, StageMap};
 
+use crate::Miss;
 use glam::{DMat3, DVec3};
-
-/// Why a point has no image. An answer, not an error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Miss {
-    /// The (displaced) point does not lie in front of the eye.
-    BehindEye,
-    /// The point lies where the map is not defined.
-    OutsideDomain,
-}
 
 /// A point after a displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! Curves told by the angles under which the ground is seen along them.
 
 use crate::bspline::{BSpline, BSplineError};
-use crate::map::spline::DeformationCurve;
+use crate::deformation::DeformationCurve;
 use glam::DVec2;
 
 /// Largest turn of one piece, radians: arcs are met to 1e-7 of their length.

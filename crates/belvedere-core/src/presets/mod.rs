@@ -6,13 +6,14 @@ mod builtin;
 pub mod edit;
 mod error;
 mod interpolate;
+mod names;
 
-pub use builtin::{BUILTIN_NAMES, BUILTINS, Builtin};
 pub use error::PresetError;
 pub use interpolate::{InterpolatedPreset, Selection};
+pub use names::{BUILTIN_NAMES, BUILTINS, Builtin};
 
 use crate::bspline::{BSpline, BSplineError};
-use crate::map::spline::DeformationCurve;
+use crate::deformation::DeformationCurve;
 use crate::sections::{MOST_REPRESENTATIONS, TagPoint};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};

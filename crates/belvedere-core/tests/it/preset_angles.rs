@@ -1,7 +1,7 @@
 //! Curves that are told by angles.
 
 use belvedere_core::DVec2;
-use belvedere_core::map::spline::DeformationCurve;
+use belvedere_core::deformation::DeformationCurve;
 use belvedere_core::presets::edit::{EditError, PresetOperation};
 use belvedere_core::presets::{Preset, PresetDocument, PresetError};
 

@@ -87,7 +87,7 @@ fn operations_do_what_they_say() {
 #[test]
 fn a_tag_is_dragged_to_the_nearest_place_of_the_curve() {
     let curve = |d: &PresetDocument| {
-        belvedere_core::map::spline::DeformationCurve::new(&d.presets[0].spline().unwrap()).unwrap()
+        belvedere_core::deformation::DeformationCurve::new(&d.presets[0].spline().unwrap()).unwrap()
     };
     let c = curve(&demo());
     for u in [0.2, 0.4, 0.55] {
@@ -107,7 +107,7 @@ fn corners_are_made_softened_and_taken_back() {
     // The spread of the design: curvature falls to about a fifth.
     let hybrid = PresetDocument::builtin("flat-steep-flat").unwrap();
     let sharpest = |d: &PresetDocument| {
-        let curve = belvedere_core::map::spline::DeformationCurve::new(&d.presets[0].spline().unwrap()).unwrap();
+        let curve = belvedere_core::deformation::DeformationCurve::new(&d.presets[0].spline().unwrap()).unwrap();
         curve.curvature_range().map(f64::abs).into_iter().fold(0.0, f64::max)
     };
     let [before, soft] = [sharpest(&hybrid), sharpest(&after(&hybrid, &["1.soften=1"]))];
@@ -118,7 +118,7 @@ fn corners_are_made_softened_and_taken_back() {
 #[test]
 fn mirrored_twice_is_as_before_and_once_turns_progressive_into_degressive() {
     let slopes = |d: &PresetDocument| {
-        let curve = belvedere_core::map::spline::DeformationCurve::new(&d.presets[0].spline().unwrap()).unwrap();
+        let curve = belvedere_core::deformation::DeformationCurve::new(&d.presets[0].spline().unwrap()).unwrap();
         [0.0, curve.length()].map(|l| curve.at(l).1.to_angle().to_degrees())
     };
     let old = PresetDocument::builtin("progressive").unwrap();

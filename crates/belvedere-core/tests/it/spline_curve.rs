@@ -2,7 +2,7 @@
 
 use belvedere_core::DVec2;
 use belvedere_core::bspline::{BSpline, BSplineError};
-use belvedere_core::map::spline::DeformationCurve;
+use belvedere_core::deformation::DeformationCurve;
 use belvedere_core::presets::PresetDocument;
 use belvedere_testkit::Random;
 

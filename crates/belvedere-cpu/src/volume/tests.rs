@@ -3,12 +3,12 @@
 use super::march::Marcher;
 use super::ray::{Rays, Segment};
 use super::{Gathered, reference};
+use belvedere_core::map::StageMap;
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
-use belvedere_core::map::{Miss, StageMap};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{
-    CurvedRays, DMat3, DVec2, DVec3, EarthCurvature, Pinhole, Projection, SpaceMap, SplineBend, Stage, View,
+    CurvedRays, DMat3, DVec2, DVec3, EarthCurvature, Miss, Pinhole, Projection, SpaceMap, SplineBend, Stage, View,
 };
 use belvedere_scene::{
     Color, Crs, Layer, LayerKind, Scene, TransferFunction, TransferPoint, Unit, Volume, VolumeLayer, VolumeModel,

@@ -4,9 +4,9 @@ use crate::exact::{Difference, difference, exactly, trace};
 use crate::support::{hills, layer, pinhole, render, scene, terrain};
 use crate::support_views::{spline, turns};
 use belvedere_core::grid::Grid;
+use belvedere_core::map::StageMap;
 use belvedere_core::map::curved_rays::Model;
-use belvedere_core::map::{Miss, StageMap};
-use belvedere_core::{DMat3, DVec2, DVec3, EarthCurvature, SpaceMap, Stage, TerrainDisocclusion, View};
+use belvedere_core::{DMat3, DVec2, DVec3, EarthCurvature, Miss, SpaceMap, Stage, TerrainDisocclusion, View};
 use belvedere_scene::{BoxLayer, BoxShape, Color, LayerKind, Scene};
 
 /// Moves ground aside and up along y: `x' = x + sway sin(y / reach)`, `z' = z + rise y^2 / (y^2 + 4 reach^2)`; nothing south of `border`.

@@ -1,7 +1,8 @@
 //! A bend that is not all there yet.
 
-use super::{DeformationCurve, SplineBend};
+use super::SplineBend;
 use crate::bspline::BSpline;
+use crate::deformation::DeformationCurve;
 use glam::DVec2;
 use std::sync::Arc;
 

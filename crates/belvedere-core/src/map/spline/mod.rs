@@ -1,20 +1,18 @@
 //! View-dependent multi-perspective deformation: space is carried onto a B-spline over the reference plane.
 
-mod arc_length;
 mod bound;
 mod check;
-mod curve;
 mod ease;
 mod plane;
 mod resolve;
 
-pub use arc_length::CurveTooShort;
 pub use check::{EDGE_ON, PresetWarning, check_presets};
-pub use curve::{CurveFrame, DeformationCurve};
 pub use plane::{ReferencePlane, default_pivot, viewing_angle};
 pub use resolve::{ResolvedPreset, SplineError};
 
-use super::{Miss, SpaceMap, finite};
+use super::{SpaceMap, finite};
+use crate::Miss;
+use crate::deformation::DeformationCurve;
 use crate::sections::StylingSections;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;

@@ -1,7 +1,8 @@
 //! From a preset document and a camera to a resolved [`SplineBend`].
 
 use super::plane::Heading;
-use super::{CurveTooShort, DeformationCurve, ReferencePlane, SplineBend};
+use super::{ReferencePlane, SplineBend};
+use crate::deformation::{CurveTooShort, DeformationCurve};
 use crate::presets::{BendFrame, DepthUnits, PresetDocument, PresetError};
 use crate::{Pinhole, Projection};
 use glam::{DVec2, DVec3};

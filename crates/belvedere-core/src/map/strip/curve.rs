@@ -1,6 +1,6 @@
 //! Curves in plan by their curvature, straight on at both ends.
 
-use super::tree::Discs;
+use super::tree::{Discs, Node};
 use glam::DVec2;
 
 /// A plane curve over its arc length `g` whose curvature is linear between evenly spaced nodes and 0 at both ends (clothoids joined with
@@ -18,13 +18,6 @@ pub struct PlanCurve {
     straight: bool,
     /// First and last arc length at which the strip around the curve is still single, scene units.
     reach: [f64; 2],
-}
-
-/// The curve at a node, counted from the origin.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Node {
-    pub(super) p: DVec2,
-    pub(super) tangent: DVec2,
 }
 
 /// A place of a [`PlanCurve`].

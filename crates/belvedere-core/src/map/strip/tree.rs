@@ -1,7 +1,13 @@
 //! Pieces of a curve in a tree of discs.
 
-use super::curve::Node;
 use glam::DVec2;
+
+/// The curve at a node, counted from the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Node {
+    pub(super) p: DVec2,
+    pub(super) tangent: DVec2,
+}
 
 /// A tree over pieces of equal length: the discs of a level lie around two of the level below.
 #[derive(Debug, Clone, PartialEq)]

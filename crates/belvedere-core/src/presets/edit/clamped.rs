@@ -2,7 +2,7 @@
 
 use super::sections::nearest_share;
 use super::{EditError, PresetChange, PresetOperation};
-use crate::map::spline::DeformationCurve;
+use crate::deformation::DeformationCurve;
 use crate::presets::{Preset, PresetDocument};
 use glam::DVec2;
 

@@ -1,7 +1,7 @@
 //! Operations on tags and sections.
 
 use super::{EditError, Edited};
-use crate::map::spline::DeformationCurve;
+use crate::deformation::DeformationCurve;
 use crate::presets::PresetError;
 use crate::sections::TagPoint;
 use glam::DVec2;

@@ -2,7 +2,8 @@
 
 use super::{Shape, seen_at};
 use belvedere_core::DVec2;
-use belvedere_core::map::spline::{DeformationCurve, SplineBend};
+use belvedere_core::deformation::DeformationCurve;
+use belvedere_core::map::spline::SplineBend;
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{Pinhole, Projection};
 use belvedere_cpu::canvas::Canvas;

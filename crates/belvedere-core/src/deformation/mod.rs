@@ -1,5 +1,9 @@
 //! A planar curve parametrised by arc length, with its curvature, turning and closest points.
 
+mod arc_length;
+
+pub use arc_length::CurveTooShort;
+
 use crate::bspline::CubicSpan;
 use glam::DVec2;
 
@@ -9,36 +13,36 @@ use glam::DVec2;
 /// the error in arc length is below 1e-14 of the curve's length. Curve units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeformationCurve {
-    pub(super) spans: Vec<CubicSpan>,
-    pub(super) cells: Vec<Cell>,
-    pub(super) starts: Vec<f64>,
-    pub(super) length: f64,
-    pub(super) scale: f64,
-    pub(super) far: (DVec2, DVec2),
-    pub(super) turning: f64,
-    pub(super) variation: f64,
-    pub(super) corners: Vec<f64>,
-    pub(super) corner_sense: [bool; 2],
+    spans: Vec<CubicSpan>,
+    cells: Vec<Cell>,
+    starts: Vec<f64>,
+    length: f64,
+    scale: f64,
+    far: (DVec2, DVec2),
+    turning: f64,
+    variation: f64,
+    corners: Vec<f64>,
+    corner_sense: [bool; 2],
 }
 
 /// Piece of the curve on which the curvature is monotone and of one sign.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Cell {
-    pub(super) l0: f64,
-    pub(super) l1: f64,
-    pub(super) span: usize,
-    pub(super) x_mid: f64,
-    pub(super) x_half: f64,
+struct Cell {
+    l0: f64,
+    l1: f64,
+    span: usize,
+    x_mid: f64,
+    x_half: f64,
     /// Span parameter as `x_mid + x_half * poly(y)`, `y` in -1..=1 over the cell's arc length.
-    pub(super) poly: [f64; 8],
-    pub(super) point: DVec2,
+    poly: [f64; 8],
+    point: DVec2,
     /// Tangents at the start and at the end.
-    pub(super) tangent: [DVec2; 2],
+    tangent: [DVec2; 2],
     /// Curvature at the start and at the end.
-    pub(super) kap: [f64; 2],
+    kap: [f64; 2],
     /// Turning and total variation of the curvature from `l = -inf` to the start of the cell.
-    pub(super) turning: f64,
-    pub(super) variation: f64,
+    turning: f64,
+    variation: f64,
 }
 
 /// Point, unit tangent and curvature of a [`DeformationCurve`].
@@ -253,12 +257,12 @@ impl Cell {
 }
 
 /// Angle between two unit vectors, 0..=pi, accurate near 0.
-pub(super) fn angle(a: DVec2, b: DVec2) -> f64 {
+fn angle(a: DVec2, b: DVec2) -> f64 {
     a.perp_dot(b).abs().atan2(a.dot(b))
 }
 
 /// Unit tangent at `x`; where the speed vanishes that of the side of `inward`.
-pub(super) fn tangent_in(span: &CubicSpan, x: f64, inward: f64, scale: f64) -> DVec2 {
+fn tangent_in(span: &CubicSpan, x: f64, inward: f64, scale: f64) -> DVec2 {
     let d = span.d1(x);
     let speed2 = d.length_squared();
     if speed2 > 1e-18 * scale * scale {
@@ -268,7 +272,7 @@ pub(super) fn tangent_in(span: &CubicSpan, x: f64, inward: f64, scale: f64) -> D
 }
 
 /// Curvature at `x`; where the speed vanishes that of the side of `inward`. At most 1e8 / scale.
-pub(super) fn curvature_in(span: &CubicSpan, x: f64, inward: f64, scale: f64) -> f64 {
+fn curvature_in(span: &CubicSpan, x: f64, inward: f64, scale: f64) -> f64 {
     let slow = SLOW * scale;
     let x = if span.d1(x).length_squared() > slow * slow { x } else { moving(span, x, inward, slow) };
     let d1 = span.d1(x);

@@ -1,6 +1,6 @@
 //! Construction of the arc-length parametrisation.
 
-use super::curve::{Cell, DeformationCurve, angle, curvature_in, tangent_in};
+use super::{Cell, DeformationCurve, angle, curvature_in, tangent_in};
 use crate::bspline::{BSpline, CubicSpan};
 use glam::DVec2;
 

@@ -1,20 +1,40 @@
-//! A view: a pinhole behind a chain of displacements.
+//! A view: a pinhole behind a chain of displacements, and the rays of its pixels.
 
-use super::{Pinhole, Projected, RayPath};
+mod edges;
+mod ray_path;
+mod rigid;
+
+pub use edges::{EdgePoint, Edges};
+pub use ray_path::{RayPath, RayPoint};
+
 use crate::map::split_rays::{Branch, SplitRays};
 use crate::{
-    Aabb, CurvedRays, Displaced, EarthCurvature, Miss, SpaceMap, SplineBend, Stage, Strip, TerrainDisocclusion,
+    Aabb, CurvedRays, Displaced, EarthCurvature, ImageBox, Miss, Pinhole, SpaceMap, SplineBend, Stage, Strip,
+    TerrainDisocclusion,
 };
 use glam::{DVec2, DVec3};
 use std::ops::RangeInclusive;
+
+/// Image of a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Projected {
+    /// Pixel coordinates: (0, 0) is the outer corner of the top-left pixel, x right, y down. May lie outside the image.
+    pub pixel: DVec2,
+    /// Forward distance of the displaced point along the optical axis, > 0, scene units.
+    pub depth: f64,
+    /// Segment of the ray that sees the point, see [`crate::Displaced::segment`].
+    pub segment: u32,
+    /// Whether a stage folded over at the point.
+    pub folded: bool,
+}
 
 /// A pinhole photograph of a displaced world: `pixel, depth = pinhole.project(D_n(...D_1(p)))`.
 ///
 /// Plain data; everything that draws, measures or picks works on this.
 #[derive(Debug, Clone, PartialEq)]
 pub struct View {
-    pub(super) pinhole: Pinhole,
-    pub(super) stages: Vec<Stage>,
+    pinhole: Pinhole,
+    stages: Vec<Stage>,
 }
 
 /// Stages that cannot be chained.
@@ -41,40 +61,6 @@ pub enum ViewError {
         /// Eye of the view's pinhole.
         here: DVec3,
     },
-}
-
-/// Conservative image of a box.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ImageBox {
-    /// Smallest pixel coordinates.
-    pub min: DVec2,
-    /// Largest pixel coordinates.
-    pub max: DVec2,
-    /// Smallest depth, scene units.
-    pub depth_min: f64,
-    /// Largest depth, scene units.
-    pub depth_max: f64,
-}
-
-impl ImageBox {
-    /// The box that contains nothing.
-    pub const EMPTY: Self =
-        Self { min: DVec2::INFINITY, max: DVec2::NEG_INFINITY, depth_min: f64::INFINITY, depth_max: 0.0 };
-
-    /// This box grown to contain `pixel` at `depth`.
-    pub fn including(self, pixel: DVec2, depth: f64) -> Self {
-        Self {
-            min: self.min.min(pixel),
-            max: self.max.max(pixel),
-            depth_min: self.depth_min.min(depth),
-            depth_max: self.depth_max.max(depth),
-        }
-    }
-
-    /// The smallest box around both.
-    pub fn union(self, other: Self) -> Self {
-        self.including(other.min, other.depth_min).including(other.max, other.depth_max)
-    }
 }
 
 impl View {
