@@ -1,7 +1,8 @@
 //! Georeferenced pictures draped over terrain: GeoTIFF, and PNG with a world file.
 
 use crate::crs::{CoordinateSystem, Transform};
-use crate::packed::{content, ends};
+use crate::formats::ends;
+use crate::packed::content;
 use crate::terrain::{Geometry, GridMap, Link, stated_system};
 use crate::{Affine, GeoTiff, InputFile, IoError, Limits, Loaded, Raster, SourceCrs, esri_ascii, fs, png};
 use belvedere_scene::{Crs, Drape, Heightfield, Progress};
@@ -124,7 +125,7 @@ enum Source {
 
 impl Source {
     fn open(path: &Path, request: &DrapeRequest, warnings: &mut Vec<String>) -> Result<Self, IoError> {
-        let path = &content(path, request.limits.max_bytes, &|p| ends(p, &["tif", "tiff", "png"]))?;
+        let path = &content(path, request.limits.max_bytes, &|p| ends(p, &[".tif", ".tiff", ".png"]))?;
         let mut magic = [0u8; 8];
         let mut file = fs::File::open(path).map_err(|e| IoError::os(path, e))?;
         let got = std::io::Read::read(&mut file, &mut magic).map_err(|e| IoError::os(path, e))?;

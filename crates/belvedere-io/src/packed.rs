@@ -1,13 +1,14 @@
 //! What is meant by the name of an archive: the one file in it that a loader reads.
 
+use crate::formats::{self, ends};
 use crate::fs::{names_in, unpacked_size};
-use crate::{IoError, Limits, mesh, molecule, terrain, vector, volume};
+use crate::{IoError, Limits};
 use std::path::{Path, PathBuf};
 
 /// Names that an error lists.
 const LISTED: usize = 6;
 /// Archives that are files of a format of their own.
-const FORMATS: [&str; 5] = [".raw.gz", ".nii.gz", ".kmz", ".3mf", ".usdz"];
+const WHOLE: [&str; 5] = [".raw.gz", ".nii.gz", ".kmz", ".3mf", ".usdz"];
 
 /// The file that is meant by `path`: the one file in it for which `reads` holds if it is a ZIP or gzip, else itself.
 ///
@@ -21,7 +22,7 @@ pub(crate) fn content(path: &Path, most: u64, reads: &dyn Fn(&Path) -> bool) -> 
     // Archives in archives, as deep as names lead into them.
     for _ in 0..3 {
         let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
-        if FORMATS.iter().any(|f| name.ends_with(f)) {
+        if WHOLE.iter().any(|f| name.ends_with(f)) {
             return Ok(path);
         }
         let Some(names) = names_in(&path).map_err(|e| IoError::os(&path, e))? else { return Ok(path) };
@@ -70,24 +71,13 @@ fn listed<'a>(names: impl ExactSizeIterator<Item = &'a String>) -> String {
     text
 }
 
-/// Whether a name ends in one of these.
-pub(crate) fn ends(path: &Path, endings: &[&str]) -> bool {
-    path.extension().is_some_and(|e| endings.iter().any(|end| e.eq_ignore_ascii_case(end)))
-}
-
 /// The file that is meant by a name, whatever reads it.
 ///
 /// # Errors
 /// As those of loaders for archives: no file that is read, or several.
 pub fn inside(path: &Path) -> Result<PathBuf, IoError> {
     content(path, Limits::default().max_bytes, &|p| {
-        let rasters = terrain::ENDINGS.iter().filter(|e| **e != "txt").any(|e| ends(p, &[e]));
-        let cities = ends(p, &["json", "jsonl", "gml", "pbf", "png"]);
-        rasters
-            || cities
-            || ends(p, vector::ENDINGS)
-            || ends(p, mesh::ENDINGS)
-            || molecule::is_molecule(p)
-            || volume::is_volume(p)
+        let is_read = formats::of_name(p).is_some_and(|format| format.reader.is_some()) && !ends(p, &[".txt"]);
+        is_read || ends(p, &[".json", ".jsonl", ".gml", ".png"])
     })
 }

@@ -120,9 +120,6 @@ pub struct LoadedTerrain {
 /// Widest extent east to west from the middle for which a UTM zone is chosen by itself, degrees of the equator.
 const UTM_MAX_HALF_WIDTH_DEG: f64 = 20.0;
 
-/// Endings of the files that [`load_terrain`] reads.
-pub const ENDINGS: &[&str] = &["tif", "tiff", "hgt", "zip", "gz", "asc", "grd", "txt"];
-
 /// Resampling errors above this are worth a warning; below it they are within what global elevation models promise, metres.
 const WARN_P99_M: f64 = 16.0;
 

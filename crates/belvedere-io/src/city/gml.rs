@@ -62,18 +62,6 @@ impl Node {
     }
 }
 
-/// Local name of the first element of a document that may be cut off.
-pub(super) fn root_name(text: &str) -> Option<String> {
-    let mut reader = Reader::from_str(text);
-    loop {
-        match reader.read_event().ok()? {
-            Event::Start(e) | Event::Empty(e) => return Some(e.local_name().as_ref().to_owned()),
-            Event::Eof => return None,
-            _ => {}
-        }
-    }
-}
-
 /// The root element of a document.
 pub(super) fn parse(text: &str) -> Result<Node, String> {
     let mut reader = Reader::from_str(text);

@@ -24,9 +24,11 @@ pub use roof::prism_on;
 pub use surface::{CityColors, CityGround, plate_extent, surface};
 
 use crate::crs::CoordinateSystem;
-use crate::packed::{content, ends};
-use crate::vector::{self, load_vectors, split_table};
-use crate::{InputFile, IoError, Limits, Loaded, fs};
+use crate::formats::Reader;
+use crate::packed::content;
+use crate::table::split_table;
+use crate::vector::load_vectors;
+use crate::{InputFile, IoError, Limits, Loaded, fs, recognise};
 use belvedere_scene::City;
 use std::path::{Path, PathBuf};
 
@@ -97,27 +99,20 @@ pub fn is_city(path: &Path) -> Result<bool, IoError> {
 
 /// The city or map that is meant by the name of an archive, or the file itself.
 fn meant(path: &Path, limits: &Limits) -> Result<PathBuf, IoError> {
-    let reads = |p: &Path| ends(p, vector::ENDINGS) || ends(p, &["json", "jsonl", "gml", "xml", "citygml", "pbf"]);
-    if split_table(path).1.is_some() { Ok(path.to_owned()) } else { content(path, limits.max_bytes, &reads) }
+    if split_table(path).1.is_some() {
+        Ok(path.to_owned())
+    } else {
+        content(path, limits.max_bytes, &|p| Reader::City.may_read(p))
+    }
 }
 
 fn model(path: &Path) -> Result<Option<Model>, IoError> {
-    use std::io::Read;
-    let mut head = Vec::new();
-    let (path, _) = split_table(path);
-    let file = fs::File::open(path).map_err(|e| IoError::os(path, e))?;
-    file.take(64 << 10).read_to_end(&mut head).map_err(|e| IoError::os(path, e))?;
-    if osm::is_pbf(&head) {
-        return Ok(Some(Model::OsmPbf));
-    }
-    let text = String::from_utf8_lossy(&head);
-    let text = text.trim_start_matches('\u{feff}').trim_start();
-    if text.starts_with('<') {
-        return Ok(gml::root_name(text).filter(|name| name == "CityModel").map(|_| Model::CityGml));
-    }
-    let dense: String = text.chars().filter(|c| !c.is_whitespace()).collect();
-    let words = ["\"type\":\"CityJSON\"", "\"type\":\"CityJSONFeature\"", "\"CityObjects\":{"];
-    Ok((text.starts_with('{') && words.iter().any(|k| dense.contains(k))).then_some(Model::CityJson))
+    let format = recognise::of_content(split_table(path).0)?.filter(|format| format.reader == Some(Reader::City));
+    Ok(format.map(|format| match format.name {
+        "OSM PBF" => Model::OsmPbf,
+        "CityGML" => Model::CityGml,
+        _ => Model::CityJson,
+    }))
 }
 
 impl CityFile {

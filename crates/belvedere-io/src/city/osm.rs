@@ -58,11 +58,6 @@ struct Lost {
     underground: usize,
 }
 
-/// Whether a file is OpenStreetMap's PBF: the kind of its first block is named in its first bytes.
-pub(super) fn is_pbf(head: &[u8]) -> bool {
-    head.get(6..).is_some_and(|rest| rest.starts_with(b"OSMHeader"))
-}
-
 pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<CityFile>, IoError> {
     // The reader panics on an unknown kind of a member.
     let read = std::panic::catch_unwind(|| Map::read(bytes));

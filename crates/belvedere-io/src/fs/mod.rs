@@ -10,9 +10,11 @@ use memory as plain;
 #[cfg(target_family = "wasm")]
 pub use memory::{remove_file, write};
 
+pub(crate) use beside::beside;
 pub use packed::{File, Metadata, canonicalize, metadata, read, read_to_string, symlink_metadata};
 pub(crate) use packed::{archive_of, names_in, unpacked_size};
 
+mod beside;
 #[cfg(any(test, target_family = "wasm"))]
 #[cfg_attr(not(target_family = "wasm"), allow(dead_code, unreachable_pub))]
 mod memory;

@@ -5,7 +5,9 @@
 
 use super::gltf_check;
 use super::gltf_pictures::Pictures;
-use super::{MeshFile, beside, color};
+use super::{MeshFile, color};
+use crate::base64;
+use crate::fs::beside;
 use crate::{InputFile, IoError, Limits, Loaded};
 use belvedere_scene::{Color, MeshColors, Texturing};
 use glam::{DMat4, DVec3, Vec2};
@@ -96,7 +98,7 @@ fn buffers(
             gltf::buffer::Source::Uri(uri) => match uri.strip_prefix("data:") {
                 Some(data) => {
                     let text = data.split_once(";base64,").map(|(_, text)| text);
-                    text.and_then(base64)
+                    text.and_then(base64::decode)
                         .ok_or_else(|| bad("it holds a buffer that is no base64; it is damaged".into()))?
                 }
                 None => {
@@ -110,29 +112,6 @@ fn buffers(
         out.push(bytes);
     }
     Ok((out, files))
-}
-
-/// Bytes of base64 text (RFC 4648).
-pub(super) fn base64(text: &str) -> Option<Vec<u8>> {
-    let mut out = Vec::with_capacity(text.len() / 4 * 3);
-    let (mut bits, mut held) = (0u32, 0);
-    for c in text.trim_end_matches('=').bytes() {
-        let value = match c {
-            b'A'..=b'Z' => c - b'A',
-            b'a'..=b'z' => c - b'a' + 26,
-            b'0'..=b'9' => c - b'0' + 52,
-            b'+' => 62,
-            b'/' => 63,
-            _ => return None,
-        };
-        bits = bits << 6 | u32::from(value);
-        held += 6;
-        if held >= 8 {
-            held -= 8;
-            out.push((bits >> held) as u8);
-        }
-    }
-    Some(out)
 }
 
 #[derive(Default)]

@@ -1,8 +1,8 @@
 //! Pictures of glTF files: within the file, in a data address, or below its folder.
 
-use super::gltf::base64;
 use super::gltf_check::decoded;
 use super::{neighbour, picture};
+use crate::base64;
 use crate::{InputFile, Limits};
 use belvedere_scene::{Texture, Wrap};
 use gltf::image::Source;
@@ -66,7 +66,7 @@ impl<'p> Pictures<'p> {
             }
             Source::Uri { uri, .. } => {
                 if let Some(data) = uri.strip_prefix("data:") {
-                    let bytes = data.split_once(";base64,").and_then(|(_, text)| base64(text));
+                    let bytes = data.split_once(";base64,").and_then(|(_, text)| base64::decode(text));
                     return Ok((decode(&bytes.ok_or("it is no base64; the file is damaged")?)?, None));
                 }
                 let path = self.path.unwrap_or(Path::new(""));

@@ -9,14 +9,13 @@ pub(crate) mod picture;
 mod ply;
 mod stl;
 
-use crate::packed::{content, ends};
+use crate::formats::Reader;
+use crate::fs::beside;
+use crate::packed::content;
 use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_scene::{Color, MeshColors, Texturing};
 use glam::DVec3;
-use std::path::{Path, PathBuf};
-
-/// Endings of the files that [`load_mesh`] reads.
-pub const ENDINGS: &[&str] = &["obj", "ply", "stl", "gltf", "glb"];
+use std::path::Path;
 
 /// What a file holds, in the file's own coordinates.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -39,7 +38,7 @@ pub struct MeshFile {
     pub texturing: Option<Texturing>,
 }
 
-type Reader = fn(&Path, &[u8], &Limits) -> Result<Loaded<MeshFile>, IoError>;
+type Read = fn(&Path, &[u8], &Limits) -> Result<Loaded<MeshFile>, IoError>;
 
 /// Reads a mesh. Faces of more corners become fans, lines and points are left out; the file's own axes are kept, but for glTF, whose y axis
 /// points up and becomes z.
@@ -47,9 +46,9 @@ type Reader = fn(&Path, &[u8], &Limits) -> Result<Loaded<MeshFile>, IoError>;
 /// # Errors
 /// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, too large for `limits`, or has no triangle.
 pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoError> {
-    let path = &content(path, limits.max_bytes, &|p| ends(p, ENDINGS))?;
+    let path = &content(path, limits.max_bytes, &|p| Reader::Mesh.reads(p))?;
     let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    let read: Reader = match ending.as_str() {
+    let read: Read = match ending.as_str() {
         "obj" => obj::read,
         "ply" => ply::read,
         "stl" => stl::read,
@@ -91,18 +90,6 @@ pub(crate) fn neighbour(path: &Path, name: &str, limits: &Limits) -> Result<(Vec
     let bytes = read_bytes(&file, limits).map_err(|e| e.to_string())?;
     let record = InputFile::of(&file, &bytes);
     Ok((bytes, record))
-}
-
-/// A file beside `path` that it names; refused if it is remote, absolute or leads out of the folder.
-pub(crate) fn beside(path: &Path, name: &str) -> Result<PathBuf, String> {
-    let relative = Path::new(name);
-    let stays =
-        relative.components().all(|c| matches!(c, std::path::Component::Normal(_) | std::path::Component::CurDir));
-    if name.is_empty() || name.contains(':') || name.contains('\\') || !stays {
-        let shown: String = name.chars().take(60).collect();
-        return Err(format!("it names {shown:?}, which is not a file below its own folder; put the file beside it"));
-    }
-    Ok(path.parent().unwrap_or(Path::new("")).join(relative))
 }
 
 /// Leaves out triangles with a vertex that is not finite, and sets such vertices to zero. Answers how many.

@@ -4,13 +4,11 @@ mod mmcif;
 mod pdb;
 mod sites;
 
+use crate::formats::Reader;
 use crate::packed::content;
 use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_scene::Molecule;
 use std::path::Path;
-
-/// Endings of the files that [`load_molecule`] reads; any of them may be followed by `.gz`.
-pub const ENDINGS: &[&str] = &["pdb", "ent", "cif", "mmcif"];
 
 /// What a file holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,20 +25,13 @@ pub struct MoleculeFile {
     pub named_bonds: usize,
 }
 
-/// Whether the name of a file says that it holds a molecule.
-pub fn is_molecule(path: &Path) -> bool {
-    let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let name = name.strip_suffix(".gz").unwrap_or(&name);
-    ENDINGS.iter().any(|e| name.strip_suffix(e).is_some_and(|stem| stem.ends_with('.')))
-}
-
 /// Reads a molecule. Of several models the first is taken; of alternate locations the one of highest occupancy, of equal ones the first.
 /// Bonds are those that the file names and those that distances tell, see [`belvedere_scene::molecule::BOND_TOLERANCE`].
 ///
 /// # Errors
 /// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, too large for `limits`, or has no atom.
 pub fn load_molecule(path: &Path, limits: &Limits) -> Result<Loaded<MoleculeFile>, IoError> {
-    let path = &content(path, limits.max_bytes, &is_molecule)?;
+    let path = &content(path, limits.max_bytes, &|p| Reader::Molecule.reads(p))?;
     let bad = |reason: String| IoError::format(path, reason);
     let too_large = |reason: String| bad(reason.replace("raster", "molecule"));
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();

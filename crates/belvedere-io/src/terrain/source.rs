@@ -2,8 +2,9 @@
 
 use super::{CrsChoice, TerrainRequest, sentinels};
 use crate::crs::CoordinateSystem;
+use crate::formats::{Reader, ends};
 use crate::fs::File;
-use crate::packed::{content, ends};
+use crate::packed::content;
 use crate::{
     Affine, GeoTiff, IoError, Limits, Loaded, Photometric, Raster, RasterInfo, Samples, SourceCrs, esri_ascii, hgt,
 };
@@ -117,7 +118,7 @@ pub(super) fn read_all(
 
 /// The raster that is meant by the name of an archive, or the file itself.
 pub(crate) fn meant(path: &Path, limits: &Limits) -> Result<PathBuf, IoError> {
-    content(path, limits.max_bytes, &|p| ends(p, super::ENDINGS) && !ends(p, &["txt"]))
+    content(path, limits.max_bytes, &|p| Reader::Terrain.reads(p) && !ends(p, &[".txt"]))
 }
 
 fn read_one(

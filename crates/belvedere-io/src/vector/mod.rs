@@ -9,33 +9,22 @@ mod on_terrain;
 mod phantom;
 mod rings;
 mod shapefile;
-mod table;
 mod text;
 
 pub use area_kind::{AreaKind, area_kind};
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
-pub use table::{join_table, split_table};
 
 use crate::crs::CoordinateSystem;
-use crate::packed::{content, ends};
+use crate::formats::Reader;
+use crate::packed::content;
 use crate::recognise::explain;
+use crate::table::split_table;
 use crate::{InputFile, IoError, Loaded, fs};
 use glam::DVec2;
 use phantom::Phantoms;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Endings of the files that [`load_vectors`] reads, beside `.json`, which may be anything.
-pub const ENDINGS: &[&str] = &[
-    "gpx",
-    "geojson",
-    "geojsonl",
-    "geojsons",
-    "ndjson",
-    "shp",
-    #[cfg(feature = "geopackage")]
-    "gpkg",
-];
 /// Largest file read, bytes.
 const MAX_BYTES: u64 = 1 << 30;
 /// Most characters kept of one property.
@@ -124,15 +113,14 @@ impl Vectors {
 
 /// Reads a GPX, GeoJSON, shapefile or (with the feature `geopackage`) GeoPackage; which of them is told by the content, not by the name.
 ///
-/// * `path`: of a GeoPackage with the table that is wanted behind it, see [`split_table`]; by default all of its tables are read.
+/// * `path`: of a GeoPackage with the table that is wanted behind it, see [`crate::split_table`]; by default all of its tables are read.
 ///
 /// # Errors
 /// [`IoError`]: unreadable, none of the formats, broken, without any vertex, or in an unknown coordinate system.
 pub fn load_vectors(path: &Path) -> Result<Loaded<Vectors>, IoError> {
-    let reads = |p: &Path| ends(p, ENDINGS) || ends(p, &["json", "jsonl"]);
     let path = match split_table(path) {
         (_, Some(_)) => path.to_owned(),
-        (file, None) => content(file, MAX_BYTES, &reads)?,
+        (file, None) => content(file, MAX_BYTES, &|p| Reader::Features.may_read(p))?,
     };
     let mut loaded = load_known(&path).map_err(explain)?;
     let mut found = Phantoms::default();

@@ -1,6 +1,5 @@
 //! Volumes of voxels: NRRD, VTK XML ImageData and raw samples.
 
-mod base64;
 mod nrrd;
 mod number;
 mod raw;
@@ -11,6 +10,7 @@ mod vti_stream;
 pub use number::{ByteOrder, Number};
 pub use raw::RawLayout;
 
+use crate::formats::Reader;
 use crate::packed::content;
 use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_scene::VoxelValues;
@@ -18,9 +18,6 @@ use flate2::read::MultiGzDecoder;
 use glam::{DMat3, DVec3};
 use std::io::Read;
 use std::path::Path;
-
-/// Endings of the names of files that [`load_volume`] reads.
-pub const ENDINGS: &[&str] = &[".vti", ".nrrd", ".nhdr", ".raw", ".raw.gz"];
 
 /// Most that deflate makes of a byte, and what small files may grow to besides: what is declared beyond cannot be there.
 const MOST_GROWTH: u64 = 1040;
@@ -56,12 +53,6 @@ pub struct VolumeRequest {
     pub limits: Limits,
 }
 
-/// Whether a file's name ends as those of volumes do.
-pub fn is_volume(path: &Path) -> bool {
-    let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
-    ENDINGS.iter().any(|ending| name.ends_with(ending))
-}
-
 /// Reads a volume.
 ///
 /// Samples of 8 and 16 bits stay what they are (signed bytes become 16 bits), all others become 32-bit floating point. Values that
@@ -71,7 +62,7 @@ pub fn is_volume(path: &Path) -> bool {
 /// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, larger than the limits allow, or of a kind that is not supported.
 /// What is allocated is bounded by the size of the file.
 pub fn load_volume(path: &Path, request: &VolumeRequest) -> Result<Loaded<VolumeFile>, IoError> {
-    let path = &content(path, request.limits.max_bytes, &is_volume)?;
+    let path = &content(path, request.limits.max_bytes, &|p| Reader::Volume.reads(p))?;
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
     let format = |reason: String| IoError::format(path, reason);
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();

@@ -1,7 +1,7 @@
 //! NRRD, header attached or apart. Source: Kindlmann, "Definition of NRRD File Format" (teem).
 
 use super::{ByteOrder, Number, Source, VolumeFile, gunzip, odd_values};
-use crate::mesh::beside;
+use crate::fs::beside;
 use crate::{InputFile, IoError, Loaded, fs};
 use glam::{DMat3, DVec3};
 use std::borrow::Cow;

@@ -1,10 +1,10 @@
 //! VTK XML ImageData (.vti). Source: "VTK File Formats", Kitware, section XML.
 
-use super::base64::Base64;
 use super::vti_header::{Array, Encoding, Header};
 use super::vti_stream::Stream;
 use super::{Source, VolumeFile, odd_values};
 use crate::Loaded;
+use crate::base64::Base64;
 use glam::{DMat3, DVec3};
 
 pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, String> {

@@ -1,7 +1,7 @@
 //! Blocks of VTK XML data: lengths, then bytes, compressed or not, as they are or in base64.
 
 use super::ByteOrder;
-use super::base64::Base64;
+use crate::base64::Base64;
 use flate2::{Decompress, FlushDecompress, Status};
 
 /// Where bytes come from.

@@ -7,12 +7,14 @@ mod near;
 mod openness;
 mod selection;
 mod sphere;
+mod style;
 mod surface;
 
 pub use bonds::BOND_TOLERANCE;
 pub use element::Element;
-pub use layer::{ModelTransform, MoleculeColor, MoleculeLayer, MoleculeStyle, Paint, Representation};
+pub use layer::MoleculeLayer;
 pub use selection::{Selection, SelectionError};
+pub use style::{ModelTransform, MoleculeColor, MoleculeStyle, Paint, Representation};
 
 use belvedere_core::{Aabb, DVec3};
 

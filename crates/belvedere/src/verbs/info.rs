@@ -11,9 +11,11 @@ use crate::BelvedereError;
 use crate::resolve::builtin;
 use crate::scene_file::VerticalUnit;
 use belvedere_core::DVec2;
+use belvedere_io::formats::{self, Reader};
 use belvedere_io::terrain::{TerrainRequest, load_original};
-use belvedere_io::vector::{self, Geometry, Vectors, join_table, load_vectors};
+use belvedere_io::vector::{Geometry, Vectors, load_vectors};
 use belvedere_io::{GeoTiff, Limits};
+use belvedere_io::{join_table, split_table};
 use belvedere_scene::Progress;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -259,8 +261,8 @@ pub fn describe_as(name: &str, request: &InfoRequest, progress: &Progress) -> Re
     if name.starts_with("builtin:") {
         return built_in(name);
     }
-    let meant = match vector::split_table(Path::new(name)) {
-        (whole, Some(_)) => join_table(whole.to_owned(), vector::split_table(Path::new(name)).1),
+    let meant = match split_table(Path::new(name)) {
+        (whole, Some(_)) => join_table(whole.to_owned(), split_table(Path::new(name)).1),
         (whole, None) => belvedere_io::inside(whole)?,
     };
     let (path, name) = (meant.as_path(), meant.display().to_string());
@@ -269,35 +271,30 @@ pub fn describe_as(name: &str, request: &InfoRequest, progress: &Progress) -> Re
         return CityInfo::of(path).map(FileInfo::City);
     }
     if let Some(known) = belvedere_io::recognise(path)? {
-        if known.is_broken(path) {
-            return Err(belvedere_io::IoError::format(path, known.broken()).into());
+        if known.is_broken {
+            return Err(belvedere_io::IoError::format(path, known.reason()).into());
         }
-        let note = format!("not read by this version; {}", known.meanwhile);
-        let (path, format, holds) = (name, known.format, known.holds);
-        return Ok(FileInfo::Unread(UnreadInfo { path, format, holds, note }));
+        let format = known.format;
+        let note = format!("not read by this version; {}", format.advice());
+        return Ok(FileInfo::Unread(UnreadInfo { path: name, format: format.name, holds: format.holds, note }));
     }
-    let plain = vector::split_table(path).0;
-    let ends = |list: &[&str]| plain.extension().is_some_and(|e| list.iter().any(|l| e.eq_ignore_ascii_case(l)));
-    if ends(vector::ENDINGS) || ends(&["json", "jsonl"]) {
-        return features(path);
+    let plain = split_table(path).0;
+    match [Reader::Features, Reader::Mesh, Reader::Molecule, Reader::Volume, Reader::Terrain]
+        .into_iter()
+        .find(|reader| reader.may_read(plain))
+    {
+        Some(Reader::Features) => return features(path),
+        Some(Reader::Mesh) => return mesh(path),
+        Some(Reader::Molecule) => return super::molecule_info::describe(path).map(FileInfo::Molecule),
+        Some(Reader::Volume) => return Ok(FileInfo::Volume(VolumeInfo::of(path)?)),
+        Some(Reader::Terrain) => {}
+        Some(Reader::City) | None => {
+            let reason = format!("it is of no kind that this version reads: {}", formats::read_ones());
+            return Err(belvedere_io::IoError::format(path, reason).into());
+        }
     }
-    if ends(belvedere_io::mesh::ENDINGS) {
-        return mesh(path);
-    }
-    if belvedere_io::molecule::is_molecule(path) {
-        return super::molecule_info::describe(path).map(FileInfo::Molecule);
-    }
-    if belvedere_io::is_volume(path) {
-        return Ok(FileInfo::Volume(VolumeInfo::of(path)?));
-    }
-    if !ends(belvedere_io::terrain::ENDINGS) {
-        return Err(belvedere_io::IoError::format(
-            path,
-            "it is of no kind that this version reads: terrain and pictures as GeoTIFF, SRTM .hgt or ESRI ASCII, features as GPX, GeoJSON, shapefile (.shp) or GeoPackage (.gpkg, where that is built in), meshes as OBJ, PLY, STL, glTF or GLB, molecules as PDB or mmCIF, volumes as .vti, NRRD or raw samples; all of them also in .zip and .gz",
-        )
-        .into());
-    }
-    if ends(&["tif", "tiff"]) {
+    let is_tiff = plain.extension().is_some_and(|e| ["tif", "tiff"].iter().any(|t| e.eq_ignore_ascii_case(t)));
+    if is_tiff {
         return geotiff(path, &name, &request, progress);
     }
     terrain(path, &request, progress)
@@ -408,7 +405,7 @@ fn features(path: &Path) -> Result<FileInfo, BelvedereError> {
         lines: count(|g| matches!(g, Geometry::Lines(_))),
         areas: count(|g| matches!(g, Geometry::Polygons(_))),
         points: count(|g| matches!(g, Geometry::Points(_))),
-        name_field: vector::name_field(all.iter().map(|p| p.name.as_str())).map(str::to_owned),
+        name_field: belvedere_io::vector::name_field(all.iter().map(|p| p.name.as_str())).map(str::to_owned),
         named: vectors.features.iter().filter(|f| !f.name.is_empty()).count(),
         properties: all,
         vertices: vectors.vertex_count(),

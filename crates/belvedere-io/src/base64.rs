@@ -1,7 +1,30 @@
-//! Base64 as VTK writes it: units one after the other, each padded by itself, white space anywhere.
+//! Base64 (RFC 4648): whole texts as of data URIs, and units one after the other as VTK writes them.
 
-/// Bytes decoded from text as they are asked for.
-pub(super) struct Base64<'a> {
+/// The bytes of a whole text, padded or not.
+pub(crate) fn decode(text: &str) -> Option<Vec<u8>> {
+    let mut out = Vec::with_capacity(text.len() / 4 * 3);
+    let (mut bits, mut held) = (0u32, 0);
+    for c in text.trim_end_matches('=').bytes() {
+        let value = match c {
+            b'A'..=b'Z' => c - b'A',
+            b'a'..=b'z' => c - b'a' + 26,
+            b'0'..=b'9' => c - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            _ => return None,
+        };
+        bits = bits << 6 | u32::from(value);
+        held += 6;
+        if held >= 8 {
+            held -= 8;
+            out.push((bits >> held) as u8);
+        }
+    }
+    Some(out)
+}
+
+/// Bytes decoded from text as they are asked for: units one after the other, each padded by itself, white space anywhere.
+pub(crate) struct Base64<'a> {
     text: &'a [u8],
     /// Decoded bytes not yet taken: at most 3.
     left: [u8; 3],
@@ -9,12 +32,12 @@ pub(super) struct Base64<'a> {
 }
 
 impl<'a> Base64<'a> {
-    pub(super) fn new(text: &'a [u8]) -> Self {
+    pub(crate) fn new(text: &'a [u8]) -> Self {
         Self { text, left: [0; 3], count: 0 }
     }
 
     /// Most bytes that may still come.
-    pub(super) fn at_most(&self) -> usize {
+    pub(crate) fn at_most(&self) -> usize {
         self.count + self.text.len() / 4 * 3 + 3
     }
 
@@ -30,7 +53,7 @@ impl<'a> Base64<'a> {
     }
 
     /// Exactly `n` bytes.
-    pub(super) fn take(&mut self, n: usize) -> Result<Vec<u8>, String> {
+    pub(crate) fn take(&mut self, n: usize) -> Result<Vec<u8>, String> {
         let short = |at: usize| format!("its base64 data ends after {at} of {n} bytes; it is cut off");
         if n > self.at_most() {
             return Err(short(self.at_most()));

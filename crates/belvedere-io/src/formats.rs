@@ -1,0 +1,381 @@
+//! The table of formats: what each is called, how it is told by content and by name, and who reads it.
+
+use quick_xml::{Reader as XmlReader, events::Event};
+use std::path::Path;
+
+use Mark::{At, Json, Record, Root, Word};
+use Reader::{City, Features, Mesh, Molecule, Terrain, Volume};
+
+/// Whoever reads a format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reader {
+    /// [`crate::load_terrain`].
+    Terrain,
+    /// [`crate::load_vectors`].
+    Features,
+    /// [`crate::load_city`].
+    City,
+    /// [`crate::load_mesh`].
+    Mesh,
+    /// [`crate::load_molecule`].
+    Molecule,
+    /// [`crate::load_volume`].
+    Volume,
+}
+
+/// A file format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Format {
+    /// Its name.
+    pub name: &'static str,
+    /// What such files hold.
+    pub holds: &'static str,
+    /// Endings of the names of its files, in lower case, with their dots.
+    pub endings: &'static [&'static str],
+    marks: &'static [Mark],
+    /// Who reads it; `None` = nobody yet.
+    pub reader: Option<Reader>,
+    /// What to do where nobody reads it.
+    pub meanwhile: &'static str,
+}
+
+/// What the content of a format begins with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Mark {
+    /// Bytes at an offset.
+    At(usize, &'static [u8]),
+    /// A word among the first of a text.
+    Word(&'static str),
+    /// The local name of the root of an XML document.
+    Root(&'static str),
+    /// A member of a JSON object, without white space.
+    Json(&'static str),
+    /// A line that begins with one of these records, longer than 53 characters.
+    Record(&'static [&'static str]),
+}
+
+/// First bytes that are looked at.
+pub(crate) const HEAD: u64 = 64 << 10;
+
+const ATOMS: &str = "atoms of a molecule";
+const VOXELS: &str = "a volume of voxels";
+const CITY: &str = "a city model";
+const FEATURES: &str = "map features";
+const TRIANGLES: &str = "triangles";
+const RASTER: &str = "a raster";
+const CLOUD: &str = "a cloud of points";
+const GRIDS: &str = "grids of science";
+const MESH_OR_GRID: &str = "a mesh or grid of science";
+const PACKED: &str = "packed files";
+const WATCH: &str = "the track of a watch";
+const UNPLACED: &str = "a picture that says not where it lies";
+
+const AS_PDB: &str = "turn it into PDB or mmCIF";
+const AS_NRRD: &str = "3D Slicer turns it into NRRD";
+const AS_GEOJSON: &str = "ogr2ogr or QGIS turn it into GeoJSON";
+const AS_GEOTIFF: &str = "gdal_translate turns it into GeoTIFF";
+const AS_DEM: &str = "grid its ground points into a GeoTIFF, as with pdal";
+const AS_GLTF: &str = "turn it into glTF or OBJ";
+const AS_PLY: &str = "ParaView turns it into PLY or OBJ";
+const AS_GPX: &str = "GPSBabel turns it into GPX";
+const PLACED: &str = "gdal_translate -a_srs -a_ullr makes it a GeoTIFF";
+const UNPACK: &str = "unpack it, or pack it as ZIP or gzip";
+
+#[cfg(feature = "geopackage")]
+const GEOPACKAGE: Option<Reader> = Some(Features);
+#[cfg(not(feature = "geopackage"))]
+const GEOPACKAGE: Option<Reader> = None;
+
+const fn read(
+    reader: Reader,
+    name: &'static str,
+    holds: &'static str,
+    endings: &'static [&'static str],
+    marks: &'static [Mark],
+) -> Format {
+    Format { name, holds, endings, marks, reader: Some(reader), meanwhile: "" }
+}
+
+const fn unread(
+    name: &'static str,
+    holds: &'static str,
+    endings: &'static [&'static str],
+    marks: &'static [Mark],
+    meanwhile: &'static str,
+) -> Format {
+    Format { name, holds, endings, marks, reader: None, meanwhile }
+}
+
+/// Every format that is known. Where several fit a content or a name, the first one is meant.
+pub const FORMATS: &[Format] = &[
+    // Told by their first bytes.
+    unread("LAS or LAZ", CLOUD, &[".las", ".laz"], &[At(0, b"LASF")], AS_DEM),
+    unread("E57", CLOUD, &[".e57"], &[At(0, b"ASTM-E57")], AS_DEM),
+    unread("FlatGeobuf", FEATURES, &[".fgb"], &[At(0, b"fgb\x03")], AS_GEOJSON),
+    unread("HDF5 or netCDF-4", GRIDS, &[".h5", ".hdf5", ".nc4"], &[At(0, b"\x89HDF\r\n\x1a\n")], AS_GEOTIFF),
+    unread("netCDF", GRIDS, &[".nc"], &[At(0, b"CDF\x01"), At(0, b"CDF\x02")], AS_GEOTIFF),
+    unread("GRIB", GRIDS, &[".grib", ".grib2", ".grb"], &[At(0, b"GRIB")], AS_GEOTIFF),
+    unread("IFC or STEP", "a model of construction", &[".ifc", ".step", ".stp"], &[At(0, b"ISO-10303-21")], AS_GLTF),
+    unread("FBX", TRIANGLES, &[".fbx"], &[At(0, b"Kaydara FBX Binary")], AS_GLTF),
+    unread("7-Zip", PACKED, &[".7z"], &[At(0, b"7z\xbc\xaf")], UNPACK),
+    unread("RAR", PACKED, &[".rar"], &[At(0, b"Rar!")], UNPACK),
+    unread(
+        "OSM XML",
+        "a map of OpenStreetMap",
+        &[".osm", ".osm.bz2"],
+        &[Root("osm")],
+        "osmium export turns it into GeoJSON",
+    ),
+    unread("bzip2", PACKED, &[".bz2"], &[At(0, b"BZh")], UNPACK),
+    unread("xz", PACKED, &[".xz"], &[At(0, b"\xfd7zXZ")], UNPACK),
+    unread("Zstandard", PACKED, &[".zst"], &[At(0, b"(\xb5/\xfd")], UNPACK),
+    unread("tar", PACKED, &[".tar", ".tgz", ".tar.gz"], &[At(257, b"ustar")], UNPACK),
+    unread("GeoParquet", FEATURES, &[".parquet", ".geoparquet"], &[At(0, b"PAR1")], AS_GEOJSON),
+    unread("PDF", "pages", &[".pdf"], &[At(0, b"%PDF")], "give the data behind it"),
+    unread("PNG", UNPLACED, &[".png"], &[At(0, b"\x89PNG\r\n")], PLACED),
+    unread("JPEG", UNPLACED, &[".jpg", ".jpeg"], &[At(0, b"\xff\xd8\xff")], PLACED),
+    unread("JPEG 2000", "a picture", &[".jp2"], &[At(0, b"\0\0\0\x0cjP  ")], AS_GEOTIFF),
+    unread("DICOM", VOXELS, &[".dcm"], &[At(128, b"DICM")], AS_NRRD),
+    Format {
+        name: "GeoPackage",
+        holds: "map features in a database",
+        endings: &[".gpkg"],
+        marks: &[At(68, b"GPKG"), At(68, b"GP10")],
+        reader: GEOPACKAGE,
+        meanwhile: "a program built with the cargo feature geopackage reads it, and ogr2ogr or QGIS turn it into GeoJSON",
+    },
+    unread("SQLite", "map features in a database", &[".sqlite"], &[At(0, b"SQLite format 3\0")], AS_GEOJSON),
+    read(City, "OSM PBF", "a map of OpenStreetMap", &[".pbf"], &[At(6, b"OSMHeader")]),
+    // Told by words of their text.
+    read(City, "CityJSONSeq", CITY, &[".city.jsonl"], &[Json("\"type\":\"CityJSONFeature\"")]),
+    read(City, "CityJSON", CITY, &[".city.json"], &[Json("\"type\":\"CityJSON\""), Json("\"CityObjects\":{")]),
+    read(City, "CityGML", CITY, &[".citygml"], &[Root("CityModel")]),
+    read(Molecule, "mmCIF", ATOMS, &[".cif", ".mmcif"], &[Word("_atom_site")]),
+    read(Molecule, "PDB", ATOMS, &[".pdb", ".ent"], &[Record(&["ATOM  ", "HETATM", "CRYST1"])]),
+    read(Volume, "VTK ImageData", VOXELS, &[".vti"], &[]),
+    unread("VTK XML", MESH_OR_GRID, &[".vtp", ".vtu", ".vtr", ".vts"], &[Root("VTKFile")], AS_PLY),
+    unread("legacy VTK", MESH_OR_GRID, &[".vtk"], &[Word("# vtk DataFile")], AS_PLY),
+    unread("MetaImage", VOXELS, &[".mha", ".mhd"], &[Word("ObjectType = Image")], AS_NRRD),
+    unread("KML", FEATURES, &[".kml"], &[Root("kml")], AS_GEOJSON),
+    unread("COLLADA", TRIANGLES, &[".dae"], &[Root("COLLADA")], AS_GLTF),
+    unread("GML", FEATURES, &[".gml"], &[Word("http://www.opengis.net/gml")], AS_GEOJSON),
+    unread("USD", TRIANGLES, &[".usd", ".usda", ".usdc", ".usdz"], &[Word("#usda")], AS_GLTF),
+    unread(
+        "DXF",
+        "a drawing",
+        &[".dxf"],
+        &[Word("SECTION\r\n  2\r\nHEADER"), Word("SECTION\n  2\nHEADER")],
+        AS_GEOJSON,
+    ),
+    // Told by their names.
+    read(Terrain, "GeoTIFF", "elevation or a picture", &[".tif", ".tiff"], &[]),
+    read(Terrain, "SRTM", "elevation", &[".hgt"], &[]),
+    read(Terrain, "ESRI ASCII", "elevation", &[".asc", ".grd", ".txt"], &[]),
+    read(Features, "GPX", FEATURES, &[".gpx"], &[]),
+    read(Features, "GeoJSON", FEATURES, &[".geojson", ".geojsonl", ".geojsons", ".ndjson"], &[]),
+    read(Features, "shapefile", FEATURES, &[".shp"], &[]),
+    read(Mesh, "OBJ", TRIANGLES, &[".obj"], &[]),
+    read(Mesh, "PLY", TRIANGLES, &[".ply"], &[]),
+    read(Mesh, "STL", TRIANGLES, &[".stl"], &[]),
+    read(Mesh, "glTF", TRIANGLES, &[".gltf", ".glb"], &[]),
+    read(Volume, "NRRD", VOXELS, &[".nrrd", ".nhdr"], &[]),
+    read(Volume, "raw samples", VOXELS, &[".raw", ".raw.gz"], &[]),
+    unread("NIfTI", VOXELS, &[".nii", ".nii.gz"], &[], AS_NRRD),
+    unread("OpenVDB", VOXELS, &[".vdb"], &[], "turn it into NRRD"),
+    unread("BinaryCIF", ATOMS, &[".bcif"], &[], AS_PDB),
+    unread("MMTF", ATOMS, &[".mmtf"], &[], AS_PDB),
+    unread("SDF", ATOMS, &[".sdf"], &[], AS_PDB),
+    unread("Mol2", ATOMS, &[".mol2"], &[], AS_PDB),
+    unread("GROMACS coordinates", ATOMS, &[".gro"], &[], AS_PDB),
+    unread("KMZ", FEATURES, &[".kmz"], &[], AS_GEOJSON),
+    unread("FIT", WATCH, &[".fit"], &[], AS_GPX),
+    unread("TCX", WATCH, &[".tcx"], &[], AS_GPX),
+    unread("DWG", "a drawing", &[".dwg"], &[], AS_GEOJSON),
+    unread("MapInfo", FEATURES, &[".tab", ".mif"], &[], AS_GEOJSON),
+    unread("3MF", TRIANGLES, &[".3mf"], &[], AS_GLTF),
+    unread("Blender", TRIANGLES, &[".blend"], &[], "export it as glTF"),
+    unread("ArcInfo export", "map features or a grid", &[".e00"], &[], AS_GEOJSON),
+    unread("XYZ", "lines of coordinates", &[".xyz"], &[], AS_DEM),
+    unread("USGS DEM", RASTER, &[".dem"], &[], AS_GEOTIFF),
+    unread("DTED", RASTER, &[".dt0", ".dt1", ".dt2"], &[], AS_GEOTIFF),
+    unread("ESRI BIL", RASTER, &[".bil"], &[], AS_GEOTIFF),
+    unread("ESRI float grid", RASTER, &[".flt"], &[], AS_GEOTIFF),
+    unread("ArcInfo grid", RASTER, &[".adf"], &[], AS_GEOTIFF),
+    unread("Erdas Imagine", RASTER, &[".img"], &[], AS_GEOTIFF),
+    unread("a table", "rows of text", &[".csv"], &[], "ogr2ogr or QGIS turn its coordinates into GeoJSON"),
+    unread("well-known text", FEATURES, &[".wkt"], &[], AS_GEOJSON),
+    unread("TopoJSON", FEATURES, &[".topojson"], &[], AS_GEOJSON),
+];
+
+impl Reader {
+    /// Whether it reads files of this name. The content of `.json`, `.jsonl`, `.gml` and `.xml` decides who reads them, see
+    /// [`Reader::may_read`].
+    pub fn reads(self, path: &Path) -> bool {
+        of_name(path).is_some_and(|format| format.reader == Some(self))
+    }
+
+    /// Whether it may read files of this name, whatever they hold: features and cities also come under names that tell nothing.
+    pub fn may_read(self, path: &Path) -> bool {
+        let open: &[&str] = match self {
+            Self::Features => &[".json", ".jsonl"],
+            Self::City => &[".json", ".jsonl", ".gml", ".xml"],
+            _ => &[],
+        };
+        self.reads(path) || (self == Self::City && Self::Features.reads(path)) || ends(path, open)
+    }
+}
+
+impl Format {
+    /// What to say of a file of this format that nobody reads under its name.
+    pub fn advice(&self) -> String {
+        match self.reader {
+            None => self.meanwhile.to_owned(),
+            Some(City) => "it is read by layers of kind city".to_owned(),
+            Some(_) => format!("it is read if its name ends in {}", self.endings[0]),
+        }
+    }
+}
+
+impl std::fmt::Display for Format {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} ({})", self.name, self.holds)
+    }
+}
+
+/// The formats that are read, by what they hold, in words.
+pub fn read_ones() -> String {
+    let kinds = [
+        (Terrain, "terrain"),
+        (Features, "features"),
+        (City, "cities"),
+        (Mesh, "meshes"),
+        (Molecule, "molecules"),
+        (Volume, "volumes"),
+    ];
+    let of = |(reader, what): (Reader, &str)| {
+        let formats: Vec<String> = FORMATS
+            .iter()
+            .filter(|format| format.reader == Some(reader))
+            .map(|format| format!("{} ({})", format.name, format.endings.join(", ")))
+            .collect();
+        format!("{what} as {}", formats.join(", "))
+    };
+    format!("{}; all of them also in .zip and .gz", kinds.map(of).join("; "))
+}
+
+/// Whether a file's name ends in one of these, given in lower case with their dots.
+pub(crate) fn ends(path: &Path, endings: &[&str]) -> bool {
+    let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
+    endings.iter().any(|ending| name.ends_with(ending))
+}
+
+/// The format of a file by its name: that with the longest ending.
+pub fn of_name(path: &Path) -> Option<&'static Format> {
+    let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let fit = |format: &&'static Format| format.endings.iter().filter(|e| name.ends_with(*e)).map(|e| e.len()).max();
+    FORMATS.iter().rev().filter(|f| fit(f).is_some()).max_by_key(fit)
+}
+
+/// The format of a file by its first bytes, at most 64 KiB of them.
+pub fn of_content(head: &[u8]) -> Option<&'static Format> {
+    // Text has no zeros; after the header VTK and others go on in binary.
+    let text = String::from_utf8_lossy(&head[..head.iter().position(|b| *b == 0).unwrap_or(head.len())]);
+    let text = text.trim_start_matches('\u{feff}').trim_start();
+    let object: Option<String> = text.starts_with('{').then(|| text.chars().filter(|c| !c.is_whitespace()).collect());
+    let root = text.starts_with('<').then(|| xml_root(text)).flatten();
+    let fits = |mark: &Mark| match mark {
+        At(offset, bytes) => head.get(*offset..).is_some_and(|rest| rest.starts_with(bytes)),
+        Json(member) => object.as_ref().is_some_and(|dense| dense.contains(member)),
+        Root(name) => root.as_deref() == Some(name),
+        Word(word) => object.is_none() && text.contains(word),
+        Record(records) => {
+            object.is_none() && text.lines().any(|line| line.len() > 53 && records.iter().any(|r| line.starts_with(r)))
+        }
+    };
+    FORMATS.iter().find(|format| format.marks.iter().any(fits))
+}
+
+/// Local name of the first element of an XML document that may be cut off.
+fn xml_root(text: &str) -> Option<String> {
+    let mut reader = XmlReader::from_str(text);
+    loop {
+        match reader.read_event().ok()? {
+            Event::Start(e) | Event::Empty(e) => return Some(e.local_name().as_ref().to_owned()),
+            Event::Eof => return None,
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contents_tell_formats_apart() {
+        let of = |head: &[u8]| of_content(head).map(|format| format.name);
+        let atom = b"REMARK x\nATOM      1  O5'  DC A   1      18.935  34.195  25.617  1.00 64.35           O\n";
+        let osm = b"\0\0\0\x0d\x0a\x09OSMHeader\x18";
+        let mut package = b"SQLite format 3\0".to_vec();
+        package.resize(68, 1);
+        package.extend(b"GPKG");
+        for (head, format) in [
+            (&b"<VTKFile type=\"PolyData\">"[..], "VTK XML"),
+            (b"{\"type\":\"CityJSON\",\"version\":\"2.0\"}", "CityJSON"),
+            (b"{\"type\":\"CityJSON\"}\n{\"type\":\"CityJSONFeature\"}", "CityJSONSeq"),
+            (b"<core:CityModel xmlns:gml=\"http://www.opengis.net/gml\">", "CityGML"),
+            (b"<wfs xmlns:gml=\"http://www.opengis.net/gml/3.2\">", "GML"),
+            (b"data_4ZKK\n#\nloop_\n_atom_site.group_PDB\n", "mmCIF"),
+            (atom, "PDB"),
+            (osm, "OSM PBF"),
+            (b"<osm version=\"0.6\">", "OSM XML"),
+        ] {
+            assert_eq!(of(head), Some(format), "{}", String::from_utf8_lossy(head));
+        }
+        assert_eq!(of(&package), Some("GeoPackage"));
+        for read in [
+            &b"<?xml version=\"1.0\"?><gpx version=\"1.1\"><trk/></gpx>"[..],
+            b"{\"type\":\"FeatureCollection\",\"name\":\"CityJSON\",\"about\":\"CityModel\",\"features\":[]}",
+            b"ncols 4\nnrows 4\n",
+            b"v 0 0 0\nf 1 2 3\n",
+            b"ply\nformat ascii 1.0\n",
+            b"glTF\x02\0\0\0",
+            b"II*\0",
+            b"",
+        ] {
+            assert_eq!(of(read), None, "{}", String::from_utf8_lossy(read));
+        }
+    }
+
+    #[test]
+    fn names_tell_formats_by_their_longest_ending() {
+        let of = |name: &str| of_name(Path::new(name)).map(|format| format.name);
+        for (name, format) in [
+            ("Alps.TIF", "GeoTIFF"),
+            ("a.tar.gz", "tar"),
+            ("a.raw.gz", "raw samples"),
+            ("a.city.json", "CityJSON"),
+            ("b.osm.bz2", "OSM XML"),
+            ("c.bz2", "bzip2"),
+            ("1abc.ent", "PDB"),
+        ] {
+            assert_eq!(of(name), Some(format), "{name}");
+        }
+        assert_eq!(of("a.json"), None);
+        assert!(City.may_read(Path::new("a.json")) && City.may_read(Path::new("a.shp")));
+        assert!(!Mesh.may_read(Path::new("a.json")) && Mesh.reads(Path::new("a.GLB")));
+    }
+
+    #[test]
+    fn no_ending_belongs_to_two_formats() {
+        let mut endings: Vec<_> = FORMATS.iter().flat_map(|format| format.endings).collect();
+        endings.sort();
+        let all = endings.len();
+        endings.dedup();
+        assert_eq!(endings.len(), all);
+        for format in FORMATS {
+            assert!(format.endings.iter().all(|e| e.starts_with('.') && e.to_lowercase() == **e), "{}", format.name);
+            assert_ne!(format.reader.is_none(), format.meanwhile.is_empty(), "{}", format.name);
+        }
+    }
+}

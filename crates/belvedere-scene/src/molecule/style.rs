@@ -1,0 +1,92 @@
+//! How molecules look and where they stand.
+
+use super::Selection;
+use crate::Color;
+use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// How atoms are shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Representation {
+    /// Small balls joined by rods.
+    #[default]
+    BallAndStick,
+    /// Balls of van der Waals radius, as close as atoms come without a bond.
+    SpaceFilling,
+}
+
+/// Where the colours of atoms come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum MoleculeColor {
+    /// The element, by the convention of Corey, Pauling and Koltun.
+    #[default]
+    Element,
+    /// The chain, in the order of the file.
+    Chain,
+    /// The name of the residue, in the order of first appearance.
+    Residue,
+    /// One for all.
+    One(Color),
+}
+
+/// A colour of its own for some atoms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Paint {
+    /// Which.
+    pub selection: Selection,
+    /// In which colour.
+    pub color: Color,
+}
+
+/// How a molecule is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MoleculeStyle {
+    /// Balls and rods, or balls alone.
+    pub representation: Representation,
+    /// Colours.
+    pub color: MoleculeColor,
+    /// Colours for some of them, later ones win.
+    pub paint: Vec<Paint>,
+    /// Atoms that are drawn at all.
+    pub selection: Selection,
+    /// Cuts along the edge of the icosahedron that a ball is made from, 1..=16; `None` = by the number of atoms.
+    pub detail: Option<u32>,
+}
+
+impl Default for MoleculeStyle {
+    fn default() -> Self {
+        Self {
+            representation: Representation::default(),
+            color: MoleculeColor::default(),
+            paint: Vec::new(),
+            selection: Selection::all(),
+            detail: None,
+        }
+    }
+}
+
+/// Where a molecule stands: scaled, turned, moved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModelTransform {
+    /// Scene units per angstrom, > 0.
+    pub scale: f64,
+    /// Rotation.
+    pub turn: DMat3,
+    /// Added last, scene units.
+    pub to: DVec3,
+}
+
+impl Default for ModelTransform {
+    fn default() -> Self {
+        Self { scale: 1.0, turn: DMat3::IDENTITY, to: DVec3::ZERO }
+    }
+}
+
+impl ModelTransform {
+    /// Scene position of a point given in angstrom.
+    pub fn apply(&self, p: DVec3) -> DVec3 {
+        self.turn * (self.scale * p) + self.to
+    }
+}
