@@ -1,13 +1,14 @@
 //! Arguments.
 
 use crate::city::GeneraliseArgs;
+use crate::common_args::Common;
 use crate::draw_args::DrawArgs;
 use crate::ground_args::{GroundArgs, InfoArgs};
 use crate::kinds::{AreaStyleKind, RendererKind, TechniqueKind};
 use crate::pack::PackArgs;
 use crate::parse::{
-    parse_bytes, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_place, parse_seconds, parse_size,
-    parse_spacing, parse_sweep, parse_threads,
+    Outside, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_place, parse_size, parse_spacing,
+    parse_sweep,
 };
 use crate::preset::PresetArgs;
 use belvedere::RendererChoice;
@@ -23,39 +24,6 @@ pub(crate) struct Cli {
     pub(crate) common: Common,
     #[command(subcommand)]
     pub(crate) verb: Verb,
-}
-
-/// Options of every verb.
-#[derive(Debug, Clone, Args)]
-pub(crate) struct Common {
-    /// Print one machine-readable result on stdout
-    #[arg(long, global = true, help_heading = "Every command")]
-    pub(crate) json: bool,
-    /// Print no warnings and no progress
-    #[arg(short, long, global = true, help_heading = "Every command")]
-    pub(crate) quiet: bool,
-    /// Replace existing outputs
-    #[arg(long, global = true, help_heading = "Every command")]
-    pub(crate) overwrite: bool,
-    /// Exit with 1 if a stated goal is missed
-    #[arg(long, global = true, help_heading = "Every command")]
-    pub(crate) strict: bool,
-    /// Worker threads; 0 = all cores
-    #[arg(long, global = true, help_heading = "Every command", default_value_t = 0, value_name = "N", allow_negative_numbers = true, value_parser = parse_threads)]
-    pub(crate) threads: usize,
-    /// Limit of memory for one picture and for the samples of one file, such as 2GiB or 800MiB
-    #[arg(long, global = true, help_heading = "Every command", value_name = "SIZE", value_parser = parse_bytes)]
-    pub(crate) max_mem: Option<u64>,
-    /// Limit of time for the whole command (animate and view: for solving the ground of each picture); when it is reached the best
-    /// result so far is taken, and a warning says so
-    #[arg(long, global = true, help_heading = "Every command", value_name = "SECONDS", value_parser = parse_seconds)]
-    pub(crate) time_limit: Option<f64>,
-    /// Seed of generated layers, instead of the scene's
-    #[arg(long, global = true, help_heading = "Every command", value_name = "N")]
-    pub(crate) seed: Option<u64>,
-    /// Folder, beside the scene's own, from which files may be read; may be given several times
-    #[arg(long, global = true, help_heading = "Every command", value_name = "DIR")]
-    pub(crate) allow_root: Vec<PathBuf>,
 }
 
 impl Verb {
@@ -408,9 +376,6 @@ pub(crate) struct RenderArgs {
 
 /// What makes no sense for pictures of the camera.
 const CAMERA_CONFLICTS: [&str; 7] = ["straight", "compare", "aux", "grid", "heatmap", "ghost", "highlight"];
-
-/// Eye and target of a picture of the camera; `None` = chosen.
-pub(crate) type Outside = Option<[[f64; 3]; 2]>;
 
 /// Format of buffers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -1,7 +1,7 @@
 //! `generalise`: its arguments, and what it says.
 
+use crate::goal::Goal;
 use crate::report::{Context, done, print};
-use crate::verbs::Goal;
 use belvedere::output;
 use belvedere::verbs::generalise::{self, GeneraliseRequest, GeneraliseSettings};
 use clap::Args;

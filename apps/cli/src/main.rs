@@ -4,7 +4,9 @@
 
 mod args;
 mod city;
+mod common_args;
 mod draw_args;
+mod goal;
 mod ground_args;
 mod kinds;
 mod pack;

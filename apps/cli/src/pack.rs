@@ -1,7 +1,7 @@
 //! The verb that makes a web page.
 
+use crate::goal::Goal;
 use crate::report::{Context, done, print};
-use crate::verbs::Goal;
 use belvedere::verbs::pack::{PackRequest, pack};
 use clap::Args;
 use std::path::{Path, PathBuf};

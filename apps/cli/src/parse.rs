@@ -1,10 +1,12 @@
 //! Values of arguments.
 
-use crate::args::Outside;
 use belvedere::scene_file::HighlightMark;
 
 /// Most worker threads: far above what helps, far below what a system refuses to start.
 const MAX_THREADS: usize = 1024;
+
+/// Eye and target of a picture of the camera; `None` = chosen.
+pub(crate) type Outside = Option<[[f64; 3]; 2]>;
 
 /// A number of threads.
 pub(crate) fn parse_threads(text: &str) -> Result<usize, String> {

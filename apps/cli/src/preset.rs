@@ -1,7 +1,7 @@
 //! `preset`: its arguments, and what it says.
 
+use crate::goal::Goal;
 use crate::report::{Context, done, print};
-use crate::verbs::Goal;
 use belvedere::core::presets::PresetDocument;
 use belvedere::core::presets::edit::{PresetChange, PresetOperation};
 use belvedere::io::png;

@@ -1,6 +1,6 @@
 //! What the user sees: one line per failure, warnings, progress, results.
 
-use crate::args::Common;
+use crate::common_args::Common;
 use belvedere::scene::Progress;
 use belvedere::{BelvedereError, Needs, OpenOptions, Session};
 use std::io::{IsTerminal, Write};

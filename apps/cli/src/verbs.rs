@@ -5,6 +5,7 @@ use crate::args::{
     PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs, Verb,
 };
 use crate::draw_args::{CompositingKind, DrawArgs};
+use crate::goal::Goal;
 use crate::ground_args::InfoArgs;
 use crate::kinds::TechniqueKind;
 use crate::report::{Context, done, print};
@@ -20,22 +21,6 @@ use belvedere::verbs::{check, info, measure, pick, points};
 use belvedere::{CameraPicture, DataFiles, Needs, OpenOptions, Session, output, scene_file};
 use belvedere_bench::BenchRequest;
 use std::path::{Path, PathBuf};
-
-/// Whether a verb reached its stated goal.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Goal {
-    /// It did, or has none.
-    Reached,
-    /// It did not; the reasons are in its report.
-    Missed,
-}
-
-impl Goal {
-    /// Whether a stated goal was missed.
-    pub(crate) fn is_missed(self) -> bool {
-        self != Self::Reached
-    }
-}
 
 /// Runs a verb.
 pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {

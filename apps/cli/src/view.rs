@@ -1,8 +1,8 @@
 //! The application: a program of its own, started here.
 
 use crate::args::ViewArgs;
+use crate::goal::Goal;
 use crate::report::Context;
-use crate::verbs::Goal;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::{Command, exit};
