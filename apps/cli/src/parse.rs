@@ -27,7 +27,7 @@ pub(crate) fn parse_lod(text: &str) -> Result<f64, String> {
 
 /// A way to show what no bend shows, as it was written.
 pub(crate) fn parse_fallback(text: &str) -> Result<String, String> {
-    text.parse::<belvedere::fallback::Fallback>().map(|_| text.to_owned())
+    text.parse::<belvedere::scene_file::Fallback>().map(|_| text.to_owned())
 }
 
 /// A way to show what the bend did.

@@ -1,7 +1,8 @@
 //! Where the camera of an animation is in every frame.
 
-use crate::resolve::constructor::{self, Memory};
-use crate::resolve::terrain::Solving;
+use crate::resolve::constructor;
+use crate::resolve::solving::Memory;
+use crate::resolve::solving::Solving;
 use crate::resolve::{stages, validate};
 use crate::scene_file::{
     self, AnimationDoc, CameraDoc, Document, PointDoc, PresetsDoc, RaysStageDoc, SplitDoc, StageDoc, SweepDoc, TurnDoc,

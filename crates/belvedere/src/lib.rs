@@ -39,11 +39,13 @@ mod open;
 mod options;
 pub mod output;
 mod overlays;
+pub mod pick;
 pub mod picture;
 pub mod record;
 mod resolve;
 pub mod scene_file;
 mod session;
+mod targets;
 pub mod verbs;
 
 pub use belvedere_builtin as builtin;

@@ -1,8 +1,9 @@
 //! From a scene file, or a document made in memory, to a session.
 
-use crate::resolve::constructor::{self, Memory};
+use crate::resolve::constructor;
 use crate::resolve::motion::Motions;
-use crate::resolve::terrain::Solving;
+use crate::resolve::solving::Memory;
+use crate::resolve::solving::Solving;
 use crate::resolve::{self, LayerRequest, representations, validate};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, Document, EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc};

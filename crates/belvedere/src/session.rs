@@ -2,9 +2,10 @@
 
 use crate::record::{AreaRecord, InputFile};
 use crate::resolve::StripReport;
-use crate::resolve::constructor::{self, ConstructorReport, Memory};
+use crate::resolve::constructor::{self, ConstructorReport};
 use crate::resolve::motion::Motions;
-use crate::resolve::terrain::{self, Solving};
+use crate::resolve::solving::{Memory, Solving};
+use crate::resolve::terrain;
 use crate::resolve::{validate, view};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{Document, OverlayDoc, SourceDocument, StageDoc};

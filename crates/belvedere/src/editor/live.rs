@@ -5,7 +5,7 @@ use super::{Place, THREADS};
 use crate::fallback;
 use crate::overlays::grid;
 use crate::picture::{self, DisplacementReport, PictureOptions};
-use crate::resolve::constructor::Memory;
+use crate::resolve::solving::Memory;
 use crate::scene_file::{ConstructorKind, Document, LayerDoc, SourceDocument, StageDoc};
 use crate::session::{Loaded, Resolved};
 use crate::{BelvedereError, CameraPicture, OpenOptions, Session};

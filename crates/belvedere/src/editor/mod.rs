@@ -4,7 +4,6 @@
 
 mod beside;
 mod camera;
-mod data;
 mod live;
 mod object;
 mod painter;
@@ -14,14 +13,14 @@ mod thin;
 
 pub use beside::{THREADS, beside};
 pub use camera::{above_ground, framed, navigation, set_camera};
-pub use data::{Opened, open_beside, open_files};
 pub use live::{Judged, LiveSession, Order, Pace, Shown, Sides};
 pub use object::object_at;
 pub use painter::{Answer, Painter};
 pub use place::{Place, Recovered, Recovery};
 pub use rays::{next_turn, sharpness_at, sharpness_knob, with_parallel_planes, with_pivot_line};
 
-use crate::scene_file::Document;
+use crate::scene_file::{Document, LayerDoc};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A document that is edited, and what it was before.
@@ -52,6 +51,12 @@ impl Editor {
     /// A document that was changed since it was saved, if it ever was.
     pub(crate) fn unsaved(document: Document, place: Place) -> Self {
         Self { saved: None, ..Self::new(document, place) }
+    }
+
+    /// Adds layers whose files lie in those folders; one step of undo.
+    pub fn add_layers(&mut self, layers: Vec<LayerDoc>, folders: Vec<PathBuf>) {
+        self.place.roots.allowed.extend(folders);
+        self.edit(|document| document.layer.extend(layers));
     }
 
     /// The document as it is.

@@ -1,7 +1,7 @@
 //! What somebody means who points at something.
 
 use crate::Session;
-use crate::verbs::pick::pick;
+use crate::pick::pick;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{BoxShape, LayerKind, Progress};
 

@@ -2,7 +2,7 @@
 
 use super::{SAME_DEPTH, occluders};
 use crate::resolve::constructor;
-use crate::verbs::reveal_target;
+use crate::targets;
 use crate::{BelvedereError, Session};
 use belvedere_construct::rays::Target;
 use belvedere_core::View;
@@ -42,7 +42,7 @@ pub(crate) fn of_session(
     let Some(source) = session.resolved.description.as_ref().map(|d| &d.source) else { return Ok(None) };
     let doc = source.document.constructor.as_ref().filter(|_| constructor::tracks_target(source));
     let Some(name) = doc.and_then(|doc| doc.target.as_deref()) else { return Ok(None) };
-    let target = reveal_target::target(session.scene(), name)?;
+    let target = targets::target(session.scene(), name)?;
     let Some(alone) = occluders::target_alone(session.scene(), &target) else { return Ok(None) };
     Ok(Some(share(&target, frame, &draw(&alone, view)?).1))
 }

@@ -13,8 +13,8 @@ mod tests;
 
 use crate::bodies::refusal;
 use crate::overlays::highlight::border;
-use crate::scene_file::ConstructorKind;
-use crate::verbs::reveal_target;
+use crate::scene_file::{ConstructorKind, Fallback, FallbackKind};
+use crate::targets;
 use crate::{BelvedereError, Session};
 use belvedere_construct::rays::{Target, TargetSight};
 use belvedere_core::{DVec2, DVec3, Pinhole, View};
@@ -33,47 +33,6 @@ const ENOUGH: f64 = 0.99;
 /// Depths of the same thing in two pictures differ by less than this share of them.
 const SAME_DEPTH: f64 = 2e-4;
 const EDGE: [Color; 2] = [Color::rgb(255, 255, 255), Color::rgb(60, 60, 60)];
-
-/// How something gives the view free.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FallbackKind {
-    /// Drawn so that what lies behind shows through.
-    Transparency,
-    /// Left out within the cone of rays to the target, with its edge drawn.
-    Cutaway,
-    /// Moved aside, part by part, just as far as needed, with leaders from where it was.
-    Explosion,
-}
-
-/// One rule: what happens to a layer.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fallback {
-    /// Id of the layer; `None` = every layer that hides the target and has no rule of its own.
-    pub layer: Option<String>,
-    /// What happens to what of it hides the target.
-    pub kind: FallbackKind,
-}
-
-impl std::str::FromStr for Fallback {
-    type Err = String;
-
-    /// Reads `KIND` or `LAYER:KIND`.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (layer, kind) = text.rsplit_once(':').map_or((None, text), |(layer, kind)| (Some(layer), kind));
-        let kind = match kind.trim() {
-            "transparency" => FallbackKind::Transparency,
-            "cutaway" => FallbackKind::Cutaway,
-            "explosion" => FallbackKind::Explosion,
-            other => {
-                return Err(format!(
-                    "\"{other}\" is no fallback; possible are transparency, cutaway, explosion, each alone or after the id of a layer, as towers:cutaway"
-                ));
-            }
-        };
-        Ok(Self { layer: layer.map(|l| l.trim().to_owned()), kind })
-    }
-}
 
 /// What was changed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -156,7 +115,7 @@ pub(crate) fn of_session(session: &Session, view: &View) -> Result<Option<Fallba
     let rules: Result<Vec<Fallback>, String> = doc.fallback.iter().map(|rule| rule.parse()).collect();
     let rules = rules.map_err(|reason| source.error(&["constructor", "fallback"], format!("constructor: {reason}")))?;
     let name = doc.target.as_deref().unwrap_or_default();
-    let target = reveal_target::target(session.scene(), name)
+    let target = targets::target(session.scene(), name)
         .map_err(|e| source.error(&["constructor", "target"], format!("constructor: {e}")))?;
     let plan = plan(session.scene(), view, (name, &target), &rules)?;
     let always = doc.kind == ConstructorKind::Manual;

@@ -3,8 +3,10 @@
 mod buffers;
 mod displacement;
 mod draw;
+mod mark_target;
 mod options;
 mod sidecar;
+mod target_place;
 mod volume_record;
 mod write;
 
@@ -12,5 +14,6 @@ pub use displacement::DisplacementReport;
 pub(crate) use draw::{draw, draw_camera, draw_view};
 pub use options::{AuxBuffer, AuxFormat, PictureOptions, RendererChoice, THRESHOLDS};
 pub use sidecar::{MoleculeRecord, OverlayRecord, Picture, Sidecar, TerrainRecord};
+pub use target_place::{TargetPlace, VoxelPlace};
 pub use volume_record::VolumeRecord;
 pub use write::{delta_path, outputs, side_by_side};

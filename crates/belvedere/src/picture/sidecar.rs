@@ -2,6 +2,7 @@
 
 use super::displacement::DisplacementReport;
 use super::options::{AuxBuffer, AuxFormat};
+use super::target_place::TargetPlace;
 use super::volume_record::VolumeRecord;
 use crate::bodies::RigidLayers;
 use crate::fallback::FallbackRecord;
@@ -10,7 +11,6 @@ use crate::record::{AreaRecord, InputFile, ViewRecord};
 use crate::resolve::StripReport;
 use crate::resolve::constructor::ConstructorReport;
 use crate::scene_file::{Document, Inset};
-use crate::verbs::target_place::TargetPlace;
 use belvedere_core::View;
 use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::{Crs, Frame, FrameStats, Heightfield, Layer, LayerKind, NodeState, Scene, Unit};

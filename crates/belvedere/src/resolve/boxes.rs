@@ -1,8 +1,8 @@
 //! Layers of boxes: inline, from JSON or CSV, or built in.
 
 use super::builtin;
+use super::color::color;
 use super::loader::Loader;
-use super::validate::color;
 use crate::BelvedereError;
 use crate::scene_file::{self, BoxDoc, BoxesDoc, DocError, Paths, TransformDoc};
 use belvedere_core::DVec3;

@@ -96,7 +96,7 @@ fn town(request: &Request) -> Result<(Scene, builtin::SuggestedCamera), String> 
     let size = request.size as f64;
     let city = builtin::town(request.seed, size).map_err(|e| e.to_string())?;
     let extent = belvedere_io::city::plate_extent(&city);
-    let layer = super::city::mesh(city, &CityColors::default(), None, extent)?;
+    let layer = super::city_mesh::mesh(city, &CityColors::default(), None, extent)?;
     let title = format!("Town {}: its church between roofs", request.seed);
     let layers = vec![Layer { id: "town".into(), must_see: false, kind: LayerKind::Mesh(layer) }];
     let camera = builtin::SuggestedCamera {

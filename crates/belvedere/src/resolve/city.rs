@@ -1,18 +1,19 @@
 //! City layers: files placed in the scene, on its terrain where there is one.
 
 use super::builtin;
+use super::city_mesh::mesh;
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
 use super::mesh::{wanted, with_ambient_occlusion};
 use crate::BelvedereError;
 use crate::city_blocks;
 use crate::scene_file::{CityDoc, LayerDoc, Paths};
-use belvedere_construct::generalise::{GeneraliseSettings, LandCoverMap, generalise, land_cover};
+use belvedere_construct::generalise::{GeneraliseSettings, generalise};
 use belvedere_core::DVec2;
-use belvedere_io::city::{CityColors, CityGround, plate_extent, reproject, surface};
+use belvedere_io::city::{CityColors, plate_extent, reproject};
 use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::{CityFile, load_city};
-use belvedere_scene::{City, Crs, HeightSource, LayerKind, Mesh, MeshLayer, RigidParts, Surface};
+use belvedere_scene::{City, Crs, HeightSource, LayerKind, RigidParts, Surface};
 
 /// Widest city, with its rim, metres.
 const WIDEST_M: f64 = 1.5e6;
@@ -195,30 +196,6 @@ fn without_height(city: &City) -> Vec<String> {
     height.map(|height| {
         format!("{assumed} of {all} buildings have no height and are drawn {height} m high; give them an attribute height or levels")
     }).into_iter().collect()
-}
-
-/// A city as triangles, its buildings as parts; without terrain on a plate of its land cover, as wide as `extent`.
-pub(super) fn mesh(
-    mut city: City,
-    colors: &CityColors,
-    terrain: Option<&dyn Fn(DVec2) -> Option<f64>>,
-    extent: Option<[DVec2; 2]>,
-) -> Result<MeshLayer, String> {
-    let file = match terrain {
-        Some(terrain) => surface(&city, colors, CityGround::Terrain(terrain)),
-        None => {
-            let cover = extent.map(|extent| land_cover(&city.areas, extent));
-            let LandCoverMap { areas, bare } = cover.unwrap_or_default();
-            city.areas = areas;
-            surface(&city, colors, CityGround::Plate(&bare))
-        }
-    };
-    if file.triangles.is_empty() {
-        return Err("it has no building or other surface to draw; ways alone are drawn by a line layer".into());
-    }
-    let mesh = Mesh::textured(&file.positions, file.triangles, file.colors, file.parts, file.texturing);
-    let mesh = mesh.map_err(|e| e.to_string())?;
-    Ok(MeshLayer { names: file.names, ..MeshLayer::new(mesh, colors.wall) })
 }
 
 /// Leaves buildings out that have neither a height of their own ground nor terrain under them, and says so.

@@ -1,52 +1,25 @@
 //! Constructors of curved rays: from `[constructor]` to a view with turns.
 
-use super::terrain::Solving;
+use super::solving::{Prepared, Solving};
 use super::{centreline, path};
 use crate::BelvedereError;
 use crate::bodies::refusal;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{ConstructorDoc, ConstructorKind, SourceDocument, StageDoc};
-use crate::verbs::reveal_target;
+use crate::targets;
 use belvedere_construct::ConstructError;
 use belvedere_construct::centreline::CentrelineReport;
 use belvedere_construct::rays::{
-    FilmPlanner, Lens, PathPreview, PreviewReport, ProbeMemory, ProbeOptions, ProbeReport, Target, TrackingMemory,
-    TrackingOptions, TrackingReport, auto_probe, track_target,
+    FilmPlanner, Lens, PathPreview, PreviewReport, ProbeOptions, ProbeReport, Target, TrackingOptions, TrackingReport,
+    auto_probe, track_target,
 };
 use belvedere_core::{EarthCurvature, Stage, View};
-use belvedere_disocclusion::TerrainMemory;
 use belvedere_io::InputFile;
 use belvedere_scene::{LayerKind, Scene};
 use serde::{Deserialize, Serialize};
 
 /// How long a film of a probe shows it when it has all its turns, seconds.
 const LOOKED_AT_S: f64 = 2.0;
-
-/// What constructors remember between the frames of a film.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Memory {
-    pub(crate) terrain: TerrainMemory,
-    pub(crate) tracking: TrackingMemory,
-    pub(crate) probe: ProbeMemory,
-    /// The preview of the frame before.
-    pub(crate) preview: Option<Prepared>,
-}
-
-impl Memory {
-    /// Nothing but the path of a preview, which depends on the scene and the document alone.
-    pub(crate) fn of_path(&self) -> Self {
-        Self { preview: self.preview.clone(), ..Self::default() }
-    }
-
-    /// The same for a picture of another size: the preview keeps the camera that was fitted to the size before.
-    pub(crate) fn of_path_sized(&self, image: [u32; 2]) -> Self {
-        let mut memory = self.of_path();
-        if let Some(prepared) = &mut memory.preview {
-            prepared.made_from.1 = image;
-        }
-        memory
-    }
-}
 
 /// Report of a constructor of curved rays.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -251,15 +224,6 @@ fn preview(
     Ok((view, PathReport { preview: seen.report, centreline: prepared.centreline }))
 }
 
-/// A preview of the path of a document, and what it was made from.
-#[derive(Debug, Clone)]
-pub(crate) struct Prepared {
-    made_from: (ConstructorDoc, [u32; 2]),
-    file: Option<InputFile>,
-    centreline: Option<CentrelineReport>,
-    preview: PathPreview,
-}
-
 /// Width of the picture at the position in a channel, clearances.
 const CLEARANCES: f64 = 6.0;
 
@@ -325,7 +289,7 @@ pub(crate) fn path_length(
 
 /// What is to be kept in view: a layer, a part or box of one, atoms, or a point.
 fn target(source: &SourceDocument, scene: &Scene, id: &str) -> Result<Target, BelvedereError> {
-    reveal_target::target(scene, id).map_err(|e| {
+    targets::target(scene, id).map_err(|e| {
         let hint = if scene.layers.iter().any(|l| l.id == id) { "; name something that stands on it" } else { "" };
         source.error(&["constructor", "target"], format!("constructor: target: {e}{hint}"))
     })

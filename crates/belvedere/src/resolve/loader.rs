@@ -1,7 +1,7 @@
 //! What reading layers has in common: files, built-in scenes, warnings, errors with their line.
 
 use super::builtin;
-use super::validate::{color, optional_color};
+use super::color::{color, optional_color};
 use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{LayerDoc, Origin, Paths};

@@ -1,9 +1,9 @@
 //! Molecule layers: files or built in, selected, coloured and placed.
 
 use super::builtin;
+use super::color::{Complaint, color, optional_color};
 use super::loader::Loader;
 use super::mesh::turn;
-use super::validate::{Complaint, color, optional_color};
 use crate::BelvedereError;
 use crate::scene_file::{MoleculeDoc, TransformDoc};
 use belvedere_core::DVec3;

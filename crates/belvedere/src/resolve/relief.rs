@@ -1,6 +1,7 @@
 //! Relief stages.
 
-use super::stages::{self, StageContext, plane};
+use super::context::{StageContext, plane};
+use super::spline::first_spline;
 use crate::BelvedereError;
 use crate::scene_file::{OneOrTwo, PlaneDoc, ReliefStageDoc, StageDoc, Table};
 use belvedere_construct::large_forms;
@@ -66,7 +67,7 @@ pub(super) fn resolve(
 
 /// Distances from the eye, in plan along the heading, between which the transition at a tag point of the spline stage lies.
 fn transition(context: &StageContext<'_>, plane: &ReferencePlane, number: usize) -> Result<[f64; 2], String> {
-    let Some(bend) = stages::first_spline(context).map_err(|e| e.to_string())? else {
+    let Some(bend) = first_spline(context).map_err(|e| e.to_string())? else {
         return Err("range_tag needs a stage spline_bend after the relief; add one, or give range_m".into());
     };
     let tags = bend.sections().tags();

@@ -1,6 +1,6 @@
 //! Representations of a scene, and the styling sections that name them.
 
-use super::stages;
+use super::spline;
 use crate::BelvedereError;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{SourceDocument, StageDoc, Table, suggestion};
@@ -28,7 +28,7 @@ pub(crate) fn of(source: &SourceDocument, roots: &Roots) -> Result<Vec<Represent
     for (i, stage) in source.document.stage.iter().enumerate() {
         let StageDoc::SplineBend(stage) = stage else { continue };
         let at = Table { origin: &source.origin, list: "stage", index: i };
-        let presets = stages::presets(roots, &stage.presets, &mut Vec::new(), at)?;
+        let presets = spline::presets(roots, &stage.presets, &mut Vec::new(), at)?;
         let named: Vec<&str> = presets.presets.iter().flat_map(|p| &p.sections).map(String::as_str).collect();
         for &id in named.iter().filter(|id| **id != UNNAMED) {
             if all.iter().any(|r| r.id == id) {

@@ -1,6 +1,6 @@
 //! Stages that unroll a strip along a route.
 
-use super::stages::{StageContext, plane};
+use super::context::{StageContext, plane};
 use crate::BelvedereError;
 use crate::scene_file::{self, StageDoc, StripStageDoc, Table};
 use belvedere_core::map::spline::default_pivot;

@@ -1,7 +1,7 @@
 //! Terrain disocclusion from an intent: parameters, solver, and the document with its defaults.
 
 use super::camera::ResolvedCamera;
-use super::constructor::Memory;
+use super::solving::Solving;
 use crate::BelvedereError;
 use crate::scene_file::{DetailDoc, PointDoc, SolverMode as ModeDoc, SourceDocument, StageDoc, Table, TerrainStageDoc};
 use belvedere_core::{DVec3, Pinhole, Stage, View};
@@ -10,15 +10,7 @@ use belvedere_disocclusion::report::{FeatureCost, Spike, Taken};
 use belvedere_disocclusion::{
     Detail, Solved, SolverMode, TerrainReport, TerrainSettings, TerrainSolver, ViewpointOptions,
 };
-use belvedere_scene::{Progress, Scene};
-
-/// What a solver needs beside the document.
-pub(crate) struct Solving<'a> {
-    pub(crate) memory: &'a mut Memory,
-    /// Seconds between frames of a film.
-    pub(crate) time_step_s: Option<f64>,
-    pub(crate) progress: &'a Progress,
-}
+use belvedere_scene::Scene;
 
 /// Ranges of the parameters of a document.
 pub(crate) fn check(doc: &TerrainStageDoc) -> Result<(), (&'static str, String)> {

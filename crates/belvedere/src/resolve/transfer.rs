@@ -1,7 +1,7 @@
 //! Transfer functions: by name, from a file of ours, or from a colour map that ParaView exported.
 
+use super::color::color;
 use super::loader::Loader;
-use super::validate::color;
 use crate::BelvedereError;
 use crate::scene_file::{self, DocError, Node, suggestion};
 use belvedere_io::InputFile;

@@ -1,8 +1,9 @@
 //! Checks of a document that need nothing but the document.
 
+use super::color::{Complaint, color, optional_color};
 use crate::BelvedereError;
-use crate::fallback::Fallback;
 use crate::overlays::highlight;
+use crate::scene_file::Fallback;
 use crate::scene_file::{
     AnimationDoc, AutoOrLength, ConstructorDoc, ConstructorKind, LayerDoc, SourceDocument, StageDoc, SwitchOrLength,
 };
@@ -87,8 +88,6 @@ fn terrain_intent(source: &SourceDocument) -> Result<(), BelvedereError> {
     Ok(())
 }
 
-pub(crate) type Complaint = (&'static str, String);
-
 fn layer_sources(layer: &LayerDoc) -> Result<(), Complaint> {
     match layer {
         LayerDoc::Line(l) if l.source.is_some() == l.route.is_some() => {
@@ -167,27 +166,6 @@ fn lift(value: f64) -> Result<(), Complaint> {
         return Ok(());
     }
     Err(("lift_m", format!("lift_m is {value}, it must lie in 0..=1000")))
-}
-
-/// Parses `#rrggbb` or `#rrggbbaa`.
-pub(super) fn color(key: &'static str, text: &str) -> Result<belvedere_scene::Color, Complaint> {
-    let digits = text.strip_prefix('#').filter(|d| d.is_ascii() && (d.len() == 6 || d.len() == 8));
-    let byte = |i: usize| digits.and_then(|d| d.get(2 * i..2 * i + 2)).and_then(|d| u8::from_str_radix(d, 16).ok());
-    let alpha = if digits.is_some_and(|d| d.len() == 6) { Some(255) } else { byte(3) };
-    match (byte(0), byte(1), byte(2), alpha) {
-        (Some(r), Some(g), Some(b), Some(a)) if digits.is_some_and(|d| d.bytes().all(|c| c.is_ascii_hexdigit())) => {
-            Ok(belvedere_scene::Color { r, g, b, a })
-        }
-        _ => Err((
-            key,
-            format!("{key} \"{}\" is no colour; write #rrggbb or #rrggbbaa", text.chars().take(40).collect::<String>()),
-        )),
-    }
-}
-
-/// As [`color`]; `none` is no colour.
-pub(super) fn optional_color(key: &'static str, text: &str) -> Result<Option<belvedere_scene::Color>, Complaint> {
-    if text.eq_ignore_ascii_case("none") { Ok(None) } else { color(key, text).map(Some) }
 }
 
 fn rank(stage: &StageDoc) -> u32 {

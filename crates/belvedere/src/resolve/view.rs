@@ -2,9 +2,9 @@
 
 use super::constructor::{self, ConstructorReport};
 use super::ground::{Ground, earth};
+use super::solving::Solving;
 use super::strip::StripReport;
-use super::terrain::Solving;
-use super::{camera, light, stages, terrain};
+use super::{camera, context, light, stages, terrain};
 use crate::BelvedereError;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{Document, SourceDocument};
@@ -45,7 +45,7 @@ pub(crate) fn resolve(
         terrain::adjust(source, scene, &mut camera, before, solving, &mut warnings)?;
     }
     let mut chain: Vec<_> = earth(shape, &ground, camera.pinhole.eye, &mut warnings).into_iter().collect();
-    let context = stages::StageContext { source, roots, scene, ground: &ground, camera: &camera, earth: &chain };
+    let context = context::StageContext { source, roots, scene, ground: &ground, camera: &camera, earth: &chain };
     let resolved = stages::resolve(&context, solving.as_deref_mut(), &mut inputs, &mut warnings)?;
     chain.extend(resolved.stages);
     let view = View::new(resolved.pinhole, chain).map_err(|e| source.error(&["stage"], e))?;

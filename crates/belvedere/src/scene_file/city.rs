@@ -1,7 +1,6 @@
 //! Layers of cities in the scene document.
 
-use super::layers::is_false;
-use super::paths::Paths;
+use super::common::{Paths, is_false};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

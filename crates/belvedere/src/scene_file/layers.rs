@@ -1,11 +1,11 @@
 //! Layers of the scene document.
 
 use super::city::CityDoc;
-use super::mesh::{MeshDoc, TransformDoc};
+use super::common::{Paths, TransformDoc, is_false};
+use super::mesh::MeshDoc;
 use super::molecule::MoleculeDoc;
 use super::overlay::AutoOrLength;
 use super::palette::PaletteDoc;
-use super::paths::Paths;
 use super::volume::VolumeDoc;
 use belvedere_scene::{Hidden, Relief, Shading, Symbol};
 use schemars::JsonSchema;
@@ -35,11 +35,6 @@ pub enum LayerDoc {
     Molecule(MoleculeDoc),
     /// Voxels.
     Volume(VolumeDoc),
-}
-
-/// Whether a switch is off, as it is by default.
-pub(super) fn is_false(value: &bool) -> bool {
-    !value
 }
 
 /// Names of the kinds of layers.

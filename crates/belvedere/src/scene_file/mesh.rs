@@ -1,27 +1,8 @@
 //! Layers of triangles in the scene document.
 
-use super::layers::is_false;
-use super::paths::Paths;
+use super::common::{Paths, TransformDoc, is_false};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-/// Placement of a model: scaled, then rotated about z (and x, y), then moved.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct TransformDoc {
-    /// Added last, scene units.
-    pub translate: [f64; 3],
-    /// Rotations about x, y and z, degrees; boxes take z only.
-    pub rotate_deg: [f64; 3],
-    /// Scale, > 0.
-    pub scale: f64,
-}
-
-impl Default for TransformDoc {
-    fn default() -> Self {
-        Self { translate: [0.0; 3], rotate_deg: [0.0; 3], scale: 1.0 }
-    }
-}
 
 /// Triangles from a file: OBJ, PLY, STL, glTF or GLB.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

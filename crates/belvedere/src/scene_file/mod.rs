@@ -1,9 +1,11 @@
 //! Scene files: TOML or JSON to a [`Document`], with mistakes named by file, line and nearest valid key.
 
 mod city;
+mod common;
 mod de;
 mod doc_error;
 mod document;
+mod fallback;
 mod intent;
 mod json;
 mod layers;
@@ -21,22 +23,23 @@ mod toml_tree;
 mod volume;
 
 pub use city::{CityDoc, CityStyleDoc};
+pub use common::{Paths, PlaneDoc, TransformDoc};
 pub(crate) use doc_error::{DocError, suggestion};
 pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDoc, ProjectionDoc};
+pub use fallback::{Fallback, FallbackKind};
 pub use intent::{AnimationDoc, CentrelineDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
 pub use layers::{
     AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc, PointLayerDoc,
     PointStyleDoc, PositionDoc, RouteDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, VerticalUnit,
 };
-pub use mesh::{MeshDoc, MeshStyleDoc, TransformDoc};
+pub use mesh::{MeshDoc, MeshStyleDoc};
 pub use molecule::{MoleculeDoc, MoleculeStyleDoc, PaintDoc};
 pub(crate) use node::{Node, Value};
 pub use overlay::{AutoOrLength, AutoWord, HighlightMark, Inset, OverlayDoc, SwitchOrLength};
 pub use palette::{PaletteDoc, PaletteName};
-pub use paths::Paths;
 pub use relief::{OneOrTwo, ReliefStageDoc};
 pub use stages::{
-    AxisDoc, DetailDoc, MergeDoc, PlaneDoc, PresetsDoc, RaysStageDoc, SolverMode, SplineStageDoc, SplitDoc, StageDoc,
+    AxisDoc, DetailDoc, MergeDoc, PresetsDoc, RaysStageDoc, SolverMode, SplineStageDoc, SplitDoc, StageDoc,
     TerrainStageDoc, TurnDoc, WayDoc,
 };
 pub use strip::StripStageDoc;

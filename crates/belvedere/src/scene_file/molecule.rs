@@ -1,6 +1,6 @@
 //! Layers of atoms in the scene document.
 
-use super::mesh::TransformDoc;
+use super::common::TransformDoc;
 use belvedere_scene::molecule::Representation;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

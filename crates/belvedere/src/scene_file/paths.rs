@@ -3,61 +3,7 @@
 use super::{Document, LayerDoc, PaletteDoc, PresetsDoc, StageDoc, names_a_preset_file};
 use crate::BelvedereError;
 use belvedere_io::{fs, join_table, split_table};
-use schemars::JsonSchema;
-use serde::de::value::SeqAccessDeserializer;
-use serde::de::{Deserializer, SeqAccess, Visitor};
-use serde::{Deserialize, Serialize};
 use std::path::{Component, Path, PathBuf};
-
-/// One path or several.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Paths {
-    /// One.
-    One(String),
-    /// Several, read as one source.
-    Many(Vec<String>),
-}
-
-impl Paths {
-    /// All of them.
-    pub fn as_slice(&self) -> &[String] {
-        match self {
-            Self::One(p) => std::slice::from_ref(p),
-            Self::Many(p) => p,
-        }
-    }
-
-    /// Calls `change` with each of them.
-    pub fn each(&mut self, change: &mut dyn FnMut(&mut String)) {
-        match self {
-            Self::One(name) => change(name),
-            Self::Many(names) => names.iter_mut().for_each(change),
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Paths {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct PathsVisitor;
-        impl<'de> Visitor<'de> for PathsVisitor {
-            type Value = Paths;
-
-            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("a path or a list of paths")
-            }
-
-            fn visit_str<E: serde::de::Error>(self, path: &str) -> Result<Paths, E> {
-                Ok(Paths::One(path.to_owned()))
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Paths, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(Paths::Many)
-            }
-        }
-        deserializer.deserialize_any(PathsVisitor)
-    }
-}
 
 impl Document {
     /// Calls `change` with every name of a file in the document; built-in scenes are no files.

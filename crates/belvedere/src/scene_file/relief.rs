@@ -1,6 +1,6 @@
 //! Stage `relief` of the scene document.
 
-use super::stages::PlaneDoc;
+use super::common::PlaneDoc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,5 +1,6 @@
 //! Stages of the scene document.
 
+use super::common::PlaneDoc;
 use super::relief::ReliefStageDoc;
 use super::strip::StripStageDoc;
 use belvedere_core::map::curved_rays::{Model, Sharpness};
@@ -162,22 +163,6 @@ pub struct SplineStageDoc {
     /// Reference plane.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plane: Option<PlaneDoc>,
-}
-
-/// The reference plane: points `p` with `p . unit(normal) = height_m`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PlaneDoc {
-    /// Normal; `[0, 0, 1]` by default.
-    #[serde(default = "z_up")]
-    pub normal: [f64; 3],
-    /// Height along the normal; by default the median height of the undeformed terrain, or that of `look_at`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub height_m: Option<f64>,
-}
-
-fn z_up() -> [f64; 3] {
-    [0.0, 0.0, 1.0]
 }
 
 /// A built-in name, a path, or a document.

@@ -1,6 +1,6 @@
 //! Layers of voxels in the scene document.
 
-use super::mesh::TransformDoc;
+use super::common::TransformDoc;
 use belvedere_scene::VolumeModel;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,7 @@
 //! A scene, its files and the application as a folder that any web server can host.
 
-use crate::editor::{Editor, Place, open_files};
+use super::open_files::open_files;
+use crate::editor::{Editor, Place};
 use crate::{BelvedereError, output};
 use belvedere_io::{InputFile, IoError, atomic, fs, split_table};
 use belvedere_scene::Progress;

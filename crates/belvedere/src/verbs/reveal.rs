@@ -4,10 +4,10 @@ use super::in_time;
 use crate::data::DataFiles;
 use crate::output::{self, document_toml, pretty};
 use crate::picture::{DisplacementReport, Picture, PictureOptions, TerrainRecord};
-use crate::resolve::constructor::Memory;
 use crate::resolve::ground::{Ground, earth_radius};
 use crate::resolve::rays::sidestep_stage;
-use crate::resolve::terrain::Solving;
+use crate::resolve::solving::Memory;
+use crate::resolve::solving::Solving;
 use crate::scene_file::{
     CameraDoc, Document, EarthDoc, PlaneDoc, PresetsDoc, SplineStageDoc, StageDoc, TerrainStageDoc,
 };

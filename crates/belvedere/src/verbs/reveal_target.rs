@@ -1,20 +1,20 @@
 //! `reveal --see`: models in, a picture in which one thing of them is visible out, by rays that bend around what hides it.
 
-use super::target_place::{self, TargetPlace};
+use super::model_layers::{layer, set_transfer, unit_of};
 use crate::output::{self, document_toml, pretty};
-use crate::picture::{Picture, PictureOptions};
+use crate::picture::{Picture, PictureOptions, TargetPlace};
 use crate::resolve::rays::sidestep_stage;
 use crate::scene_file::{
-    CameraDoc, CityDoc, ConstructorDoc, ConstructorKind, Document, LayerDoc, MeshDoc, MoleculeDoc, PointDoc,
-    SourceDocument, StageDoc, VolumeDoc,
+    CameraDoc, ConstructorDoc, ConstructorKind, Document, LayerDoc, PointDoc, SourceDocument, StageDoc,
 };
+use crate::targets::{self, target};
 use crate::verbs::reveal::{RevealFiles, Viewpoint};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::rays::{AroundOptions, BendReport, Sidestep, Target, bend_around};
 use belvedere_core::{Aabb, DVec3, Pinhole, Projection, View};
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::molecule::Selection;
-use belvedere_scene::{LayerKind, MeshLayer, Scene, Unit};
+use belvedere_scene::{Layer, LayerKind, Scene, Unit};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -76,7 +76,7 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
     }
     let session = open(request, options)?;
     let target = target(session.scene(), &request.see)?;
-    let place = target_place::point(&request.see).map(|p| TargetPlace::of(session.scene(), p));
+    let place = targets::point(&request.see).map(|p| TargetPlace::of(session.scene(), p));
     let views = views(&session, request, fov_y_deg)?;
     let around = AroundOptions::default();
     let mut best: Option<(View, Option<Sidestep>, BendReport)> = None;
@@ -110,9 +110,8 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
     };
     let mut picture = session.render(&pair)?;
     if let Some(place) = &place {
-        place.mark(&mut picture, &report);
+        picture.mark_target(place, &report);
     }
-    picture.sidecar.target.clone_from(&place);
     Ok(TargetAnswer { session, picture, report, see: request.see.clone(), place })
 }
 
@@ -141,7 +140,7 @@ fn open(request: &TargetRequest, options: &OpenOptions) -> Result<Session, Belve
         layers.push(layer(&path, &layers)?);
     }
     if let Some(transfer) = &request.transfer {
-        target_place::set_transfer(&mut layers, transfer, &mut options)?;
+        set_transfer(&mut layers, transfer, &mut options)?;
     }
     for layer in &mut layers {
         if let LayerDoc::Molecule(molecule) = layer
@@ -155,102 +154,6 @@ fn open(request: &TargetRequest, options: &OpenOptions) -> Result<Session, Belve
     let title = format!("{} revealed", request.see);
     let document = Document { title, crs: "local".into(), unit, layer: layers, ..Document::seen_by(camera) };
     Session::from_document(SourceDocument::new(document), &options)
-}
-
-/// The unit in which files of a kind are measured.
-pub(crate) fn unit_of(layers: &[LayerDoc]) -> Unit {
-    match layers.first() {
-        Some(LayerDoc::Molecule(_)) => Unit::Angstrom,
-        Some(LayerDoc::Volume(_)) => Unit::Voxel,
-        _ => Unit::Metre,
-    }
-}
-
-/// The layer of a file, by the ending of its name.
-pub(crate) fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
-    let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
-    let file = path.file_name().and_then(|n| n.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let file = file.strip_suffix(".gz").unwrap_or(&file);
-    let (builtin, file) = file.strip_prefix("builtin:").map_or((false, file), |name| (true, name));
-    let stem = file.split(['.', '?']).next().unwrap_or(file);
-    let taken = |id: &str| others.iter().any(|l| l.id() == id);
-    let id = (1..).map(|k| if k == 1 { stem.to_owned() } else { format!("{stem}-{k}") }).find(|id| !taken(id));
-    let id = id.unwrap_or_default();
-    match file.rsplit('.').next().unwrap_or_default() {
-        _ if builtin && stem == "dna" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
-        _ if builtin && (stem == "engine" || stem == "tube") => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
-        _ if file.ends_with(".city.json") || (builtin && stem == "town") => Ok(LayerDoc::City(CityDoc::of(id, name))),
-        // Unknown names go on to where the nearest one is told.
-        _ if builtin && !matches!(stem, "massif" | "canyon" | "street") => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
-        "pdb" | "ent" | "cif" | "mmcif" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
-        "obj" | "ply" | "stl" | "gltf" | "glb" => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
-        "jsonl" | "gml" | "pbf" => Ok(LayerDoc::City(CityDoc::of(id, name))),
-        "vti" | "nrrd" | "nhdr" | "raw" => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
-        _ => Err(BelvedereError::Target(format!(
-            "{name} is no model that can be looked into; give meshes (OBJ, PLY, STL, glTF), cities (CityJSON, CityGML, OSM PBF), molecules (PDB, mmCIF), volumes (VTI, NRRD, raw) or a scene file; for an elevation model give its features instead of --see"
-        ))),
-    }
-}
-
-/// What must be seen.
-pub(crate) fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError> {
-    if let Some(point) = target_place::point(see) {
-        return Ok(Target::points([point]));
-    }
-    if let Some(index) = scene.layers.iter().position(|l| l.id == see) {
-        return Target::layer(scene, index).ok_or_else(|| {
-            BelvedereError::Target(format!(
-                "layer \"{see}\" cannot be looked for: it is ground, an area, or holds nothing"
-            ))
-        });
-    }
-    if let Some(target) = part(scene, see) {
-        return Ok(target);
-    }
-    let molecules = scene.layers.iter().enumerate().filter_map(|(index, l)| match &l.kind {
-        LayerKind::Molecule(m) => Some((index, m)),
-        _ => None,
-    });
-    let mut complaint = None;
-    for (index, layer) in molecules {
-        match Selection::parse(see) {
-            Ok(selection) => {
-                let mask = selection.mask(&layer.molecule);
-                let atoms: Vec<usize> = (0..mask.len()).filter(|i| mask[*i]).collect();
-                if let Some(target) = Target::atoms(scene, index, &atoms) {
-                    return Ok(target);
-                }
-                let what = if atoms.is_empty() { "no atom is meant by" } else { "no atom is drawn of those meant by" };
-                complaint = Some(format!("{what} \"{see}\""));
-            }
-            Err(e) => complaint = Some(e.to_string()),
-        }
-    }
-    let ids = scene.layers.iter().map(|l| l.id.as_str());
-    let ids: Vec<&str> = ids.chain(meshes(scene).flat_map(|(_, m)| &m.names).map(String::as_str)).collect();
-    let complaint = complaint.map_or_else(String::new, |c| format!(", and as atoms: {c}"));
-    Err(BelvedereError::Target(format!(
-        "\"{see}\" is no layer of the scene and no part of a mesh{complaint}; {} or give a point x,y,z",
-        crate::scene_file::suggestion(see, &ids)
-    )))
-}
-
-/// The parts of a mesh that have a name, of the first mesh that has some; or `LAYER/NUMBER`, a box of a layer, the first being 1.
-pub(crate) fn part(scene: &Scene, name: &str) -> Option<Target> {
-    if let Some((layer, number)) = name.rsplit_once('/')
-        && let (Some(index), Ok(number)) = (scene.layers.iter().position(|l| l.id == layer), number.parse::<u32>())
-        && let LayerKind::Boxes(_) = scene.layers[index].kind
-    {
-        return Target::parts(scene, index, &[number.checked_sub(1)?]);
-    }
-    meshes(scene).find_map(|(index, mesh)| Target::parts(scene, index, &mesh.parts_named(name)))
-}
-
-fn meshes(scene: &Scene) -> impl Iterator<Item = (usize, &MeshLayer)> {
-    scene.layers.iter().enumerate().filter_map(|(index, layer)| match &layer.kind {
-        LayerKind::Mesh(mesh) => Some((index, mesh)),
-        _ => None,
-    })
 }
 
 /// The views to try: the one that is given, the scene file's, or some from all around.
@@ -270,7 +173,17 @@ fn views(session: &Session, request: &TargetRequest, fov_y_deg: f64) -> Result<V
     if is_scene_file {
         return Ok(vec![session.view().straightened()]);
     }
-    around(&target_place::visible_bounds(scene), image, lens, PITCH[usize::from(scene.unit != Unit::Metre)])
+    around(&visible_bounds(scene), image, lens, PITCH[usize::from(scene.unit != Unit::Metre)])
+}
+
+/// Box around what is visible of a scene.
+fn visible_bounds(scene: &Scene) -> Aabb {
+    let of = |l: &Layer| match &l.kind {
+        LayerKind::Volume(v) => v.visible_bounds(),
+        _ => l.bounds(),
+    };
+    let visible = scene.layers.iter().map(of).filter(|b| !b.is_empty()).reduce(|a, b| a.union(b));
+    visible.unwrap_or_else(|| scene.bounds())
 }
 
 /// Views that hold everything, from all around.

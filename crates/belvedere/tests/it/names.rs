@@ -47,7 +47,7 @@ struct Received {
     manifest: verbs::animate::Manifest,
     film: verbs::animate::Film,
     projected: verbs::points::ProjectedPoint,
-    picked: verbs::pick::Picked,
+    picked: belvedere::pick::Picked,
     info: verbs::info::FileInfo,
     io_error: io::IoError,
     view_error: core::ViewError,

@@ -1,12 +1,12 @@
 //! A scene from whatever files somebody drops.
 
-use super::{Editor, Place, framed, set_camera};
+use super::info::{self, FileInfo};
+use super::model_layers::{layer, unit_of};
+use super::reveal::{RevealRequest, reveal};
 use crate::data::features_of;
+use crate::editor::{Editor, Place, framed, set_camera};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, CameraDoc, Document, LayerDoc, Paths, SourceDocument, TerrainDoc, TerrainStyleDoc};
-use crate::verbs::info::{self, FileInfo};
-use crate::verbs::reveal::{RevealRequest, reveal};
-use crate::verbs::reveal_target::{layer, unit_of};
 use crate::{BelvedereError, DataFiles, OpenOptions, Session};
 use belvedere_core::DVec3;
 use belvedere_io::{fs, join_table, split_table};
@@ -106,14 +106,6 @@ pub fn open_beside(
     match new.is_empty() {
         true => open_files(paths, allowed, progress).map(|editor| Opened::Scene(Box::new(editor))),
         false => Ok(Opened::Layers(new, folders)),
-    }
-}
-
-impl Editor {
-    /// Adds layers whose files lie in those folders; one step of undo.
-    pub fn add_layers(&mut self, layers: Vec<LayerDoc>, folders: Vec<PathBuf>) {
-        self.place.roots.allowed.extend(folders);
-        self.edit(|document| document.layer.extend(layers));
     }
 }
 

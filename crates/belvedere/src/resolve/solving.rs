@@ -1,0 +1,51 @@
+//! What constructors and the solver of terrain remember.
+
+use crate::scene_file::ConstructorDoc;
+use belvedere_construct::centreline::CentrelineReport;
+use belvedere_construct::rays::{PathPreview, ProbeMemory, TrackingMemory};
+use belvedere_disocclusion::TerrainMemory;
+use belvedere_io::InputFile;
+use belvedere_scene::Progress;
+
+/// What constructors remember between the frames of a film.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Memory {
+    pub(crate) terrain: TerrainMemory,
+    pub(crate) tracking: TrackingMemory,
+    pub(crate) probe: ProbeMemory,
+    /// The preview of the frame before.
+    pub(crate) preview: Option<Prepared>,
+}
+
+impl Memory {
+    /// Nothing but the path of a preview, which depends on the scene and the document alone.
+    pub(crate) fn of_path(&self) -> Self {
+        Self { preview: self.preview.clone(), ..Self::default() }
+    }
+
+    /// The same for a picture of another size: the preview keeps the camera that was fitted to the size before.
+    pub(crate) fn of_path_sized(&self, image: [u32; 2]) -> Self {
+        let mut memory = self.of_path();
+        if let Some(prepared) = &mut memory.preview {
+            prepared.made_from.1 = image;
+        }
+        memory
+    }
+}
+
+/// A preview of the path of a document, and what it was made from.
+#[derive(Debug, Clone)]
+pub(crate) struct Prepared {
+    pub(super) made_from: (ConstructorDoc, [u32; 2]),
+    pub(super) file: Option<InputFile>,
+    pub(super) centreline: Option<CentrelineReport>,
+    pub(super) preview: PathPreview,
+}
+
+/// What a solver needs beside the document.
+pub(crate) struct Solving<'a> {
+    pub(crate) memory: &'a mut Memory,
+    /// Seconds between frames of a film.
+    pub(crate) time_step_s: Option<f64>,
+    pub(crate) progress: &'a Progress,
+}

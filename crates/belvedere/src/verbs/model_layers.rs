@@ -1,0 +1,67 @@
+//! Files of models as layers.
+
+use crate::scene_file::{CityDoc, LayerDoc, MeshDoc, MoleculeDoc, VolumeDoc};
+use crate::{BelvedereError, OpenOptions};
+use belvedere_scene::Unit;
+use std::path::Path;
+
+/// The unit in which files of a kind are measured.
+pub(super) fn unit_of(layers: &[LayerDoc]) -> Unit {
+    match layers.first() {
+        Some(LayerDoc::Molecule(_)) => Unit::Angstrom,
+        Some(LayerDoc::Volume(_)) => Unit::Voxel,
+        _ => Unit::Metre,
+    }
+}
+
+/// The layer of a file, by the ending of its name.
+pub(super) fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
+    let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
+    let file = path.file_name().and_then(|n| n.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let file = file.strip_suffix(".gz").unwrap_or(&file);
+    let (builtin, file) = file.strip_prefix("builtin:").map_or((false, file), |name| (true, name));
+    let stem = file.split(['.', '?']).next().unwrap_or(file);
+    let taken = |id: &str| others.iter().any(|l| l.id() == id);
+    let id = (1..).map(|k| if k == 1 { stem.to_owned() } else { format!("{stem}-{k}") }).find(|id| !taken(id));
+    let id = id.unwrap_or_default();
+    match file.rsplit('.').next().unwrap_or_default() {
+        _ if builtin && stem == "dna" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
+        _ if builtin && (stem == "engine" || stem == "tube") => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
+        _ if file.ends_with(".city.json") || (builtin && stem == "town") => Ok(LayerDoc::City(CityDoc::of(id, name))),
+        // Unknown names go on to where the nearest one is told.
+        _ if builtin && !matches!(stem, "massif" | "canyon" | "street") => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
+        "pdb" | "ent" | "cif" | "mmcif" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
+        "obj" | "ply" | "stl" | "gltf" | "glb" => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
+        "jsonl" | "gml" | "pbf" => Ok(LayerDoc::City(CityDoc::of(id, name))),
+        "vti" | "nrrd" | "nhdr" | "raw" => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
+        _ => Err(BelvedereError::Target(format!(
+            "{name} is no model that can be looked into; give meshes (OBJ, PLY, STL, glTF), cities (CityJSON, CityGML, OSM PBF), molecules (PDB, mmCIF), volumes (VTI, NRRD, raw) or a scene file; for an elevation model give its features instead of --see"
+        ))),
+    }
+}
+
+/// Sets the transfer function of all volumes; a file may lie where it likes.
+pub(super) fn set_transfer(
+    layers: &mut [LayerDoc],
+    transfer: &str,
+    options: &mut OpenOptions,
+) -> Result<(), BelvedereError> {
+    let is_file = [".toml", ".json"].iter().any(|e| transfer.to_ascii_lowercase().ends_with(e));
+    let mut name = transfer.to_owned();
+    if is_file {
+        let path =
+            belvedere_io::fs::canonicalize(transfer).map_err(|e| belvedere_io::IoError::os(Path::new(transfer), e))?;
+        options.allow_roots.extend(path.parent().map(Path::to_owned));
+        name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?.to_owned();
+    }
+    let mut volumes = layers.iter_mut().filter_map(|l| match l {
+        LayerDoc::Volume(v) => Some(v),
+        _ => None,
+    });
+    let Some(first) = volumes.next() else {
+        return Err(BelvedereError::Target("--transfer is for volumes, and none is given; leave it out".into()));
+    };
+    first.transfer.clone_from(&name);
+    volumes.for_each(|v| v.transfer.clone_from(&name));
+    Ok(())
+}
