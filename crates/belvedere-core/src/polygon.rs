@@ -25,3 +25,12 @@ pub fn doubled_area(ring: &[DVec2]) -> f64 {
     let origin = ring.first().copied().unwrap_or_default();
     (0..ring.len()).map(|k| (ring[k] - origin).perp_dot(ring[(k + 1) % ring.len()] - origin)).sum()
 }
+
+/// From `p` to the nearest point of the segment `a b`.
+#[inline]
+pub fn to_segment(p: DVec2, a: DVec2, b: DVec2) -> DVec2 {
+    let d = b - a;
+    let len2 = d.length_squared();
+    let t = if len2 > 0.0 { ((p - a).dot(d) / len2).clamp(0.0, 1.0) } else { 0.0 };
+    a + t * d - p
+}

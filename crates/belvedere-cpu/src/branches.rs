@@ -1,6 +1,6 @@
 //! Pictures of rays that part: every branch's own picture, put together along the seams.
 
-use crate::shade::color::{Rgb, encode, linear};
+use crate::color::{Rgb, encode, linear};
 use belvedere_core::DVec2;
 use belvedere_core::map::split_rays::Branch;
 use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob};

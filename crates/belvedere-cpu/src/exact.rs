@@ -4,15 +4,16 @@
 //! ([`crate::marks`]), and nothing that decides what is seen where: the reference that other renderers are judged by.
 
 use crate::branches;
-use crate::frame::{Buffers, checked, finish};
+use crate::buffers::Buffers;
+use crate::color::{Packed, Rgb};
+use crate::frame::{buffers, checked, finish};
 use crate::geometry::blocks::Blocks;
 use crate::geometry::pass::Pass;
-use crate::geometry::screen::{SUB, Screen};
 use crate::layers;
 use crate::marks::Marks;
 use crate::raster::band::{BAND, sample_offsets};
+use crate::screen::{SUB, Screen};
 use crate::sections::{Exposure, Sections};
-use crate::shade::color::{Packed, Rgb};
 use crate::shade::{LightCache, Shader};
 use crate::trace::beam::RowRays;
 use crate::trace::{Part, RayHit, Tracer};
@@ -72,7 +73,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     let (blocks, light) = (Blocks::default(), LightCache::default());
     let shader = Shader::new(job, &screen, &blocks, &light);
     job.progress.tick("prepare", 1.0)?;
-    let mut buffers = Buffers::new(job);
+    let mut buffers = buffers(job);
     let picture = Picture { job, screen: &screen, tracer: &tracer, shader: &shader, offsets };
     let seen = picture.trace()?;
     picture.color(&seen, &mut buffers)?;

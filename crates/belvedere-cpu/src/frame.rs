@@ -1,9 +1,10 @@
-//! What renderers have in common: checked options, the buffers of a frame, and what is drawn over the surfaces.
+//! What renderers have in common: checked options, and what is drawn over the surfaces.
 
-use crate::geometry::screen::Screen;
+use crate::buffers::Buffers;
+use crate::color::{self, Packed};
 use crate::marks::Marks;
 use crate::raster::band::BAND;
-use crate::shade::color::{self, Packed};
+use crate::screen::Screen;
 use crate::shade::ground_bytes;
 use crate::stylise::{self, Relief};
 use belvedere_scene::{Frame, LayerKind, RenderError, RenderJob};
@@ -29,42 +30,19 @@ pub(crate) fn checked(
     }
 }
 
-/// The pixels of a frame in the making.
-pub(crate) struct Buffers {
-    /// Whether lines, points or stylisation may be drawn over the surfaces.
-    pub(crate) open: bool,
-    /// Colours of the surfaces while they are open, else empty.
-    pub(crate) color: Vec<Packed>,
-    pub(crate) depth: Vec<f32>,
-    pub(crate) id: Vec<u32>,
-    pub(crate) world: Option<Vec<[f64; 3]>>,
-    /// The stored colours.
-    pub(crate) out: Vec<[u8; 3]>,
+/// Buffers of a picture; every pixel is sky.
+pub(crate) fn buffers(job: &RenderJob<'_>) -> Buffers {
+    let stylised = stylise::is_on(job);
+    let buffers = Buffers::reuse(job, true, Vec::new(), Frame::default());
+    // Where only centres are known, edges between faces are found by their places.
+    let n = buffers.out.len();
+    let world = (job.options.aux.world || stylised).then(|| vec![[f64::NAN; 3]; n]);
+    Buffers { world, ..buffers }
 }
 
-impl Buffers {
-    pub(crate) fn new(job: &RenderJob<'_>) -> Self {
-        let open = Self::reuse(job, Vec::new(), Frame::default());
-        let n = open.out.len();
-        // Where only centres are known, edges between faces are found by their places.
-        let world = (job.options.aux.world || stylise::is_on(job)).then(|| vec![[f64::NAN; 3]; n]);
-        Self { open: true, color: vec![Packed::default(); n], world, ..open }
-    }
-
-    /// Buffers of the size of the picture in the memory of older ones; every pixel is yet to be written.
-    pub(crate) fn reuse(job: &RenderJob<'_>, mut color: Vec<Packed>, old: Frame) -> Self {
-        let n = job.view.pinhole().image.map(|s| s as usize).iter().product();
-        let Frame { color: mut out, mut depth, mut id, .. } = old;
-        let open = Marks::are_in(job) || stylise::is_on(job);
-        if open {
-            color.resize(n, Packed::default());
-        }
-        out.resize(n, [0; 3]);
-        depth.resize(n, f32::INFINITY);
-        id.resize(n, 0);
-        let world = job.options.aux.world.then(|| vec![[f64::NAN; 3]; n]);
-        Self { open, color, depth, id, world, out }
-    }
+/// Buffers in the memory of older ones; every pixel is yet to be written.
+pub(crate) fn buffers_in(job: &RenderJob<'_>, color: Vec<Packed>, old: Frame) -> Buffers {
+    Buffers::reuse(job, Marks::are_in(job) || stylise::is_on(job), color, old)
 }
 
 /// Stylisation, lines and points over the surfaces, and the stored colours.

@@ -4,12 +4,13 @@
 //!
 //! Source: Pasewaldt et al. 2011, section 4.4; dividing by the sum of the weights, where layers see different places, is ours.
 
-use crate::frame::{Buffers, draw_marks};
+use crate::buffers::Buffers;
+use crate::color::{Packed, Rgb, encode, linear};
+use crate::frame::draw_marks;
 use crate::geometry::pass::Pass;
-use crate::geometry::screen::Screen;
 use crate::marks::Marks;
+use crate::screen::Screen;
 use crate::sections::Sections;
-use crate::shade::color::{Packed, Rgb, encode, linear};
 use crate::stylise;
 use belvedere_core::DVec3;
 use belvedere_core::sections::MOST_REPRESENTATIONS;

@@ -16,16 +16,21 @@
 //! Where rays part, every branch is drawn so and the pictures are put together along the seams (`branches`).
 
 mod branches;
+mod buffers;
 mod cache;
 pub mod canvas;
+mod color;
 mod exact;
 mod fast;
 mod frame;
 mod geometry;
 mod layers;
 mod marks;
+mod points;
 mod raster;
 mod rasteriser;
+mod resolve;
+mod screen;
 mod sections;
 mod shade;
 mod simd;

@@ -1,20 +1,21 @@
 //! The rasteriser.
 
 use crate::branches;
+use crate::buffers::Buffers;
 use crate::cache::{GroundCache, lock};
-use crate::frame::{Buffers, checked, finish};
+use crate::color::Packed;
+use crate::frame::{buffers_in, checked, finish};
 use crate::geometry::blocks::Blocks;
 use crate::geometry::lod::Tree;
 use crate::geometry::pass::{BodyPasses, Pass};
-use crate::geometry::screen::Screen;
 use crate::layers;
 use crate::marks::Marks;
 use crate::raster::band::{BAND, Band, sample_offsets};
-use crate::raster::pixel_center::PixelCenters;
-use crate::raster::relief::resolve_relief;
-use crate::raster::resolve::{Colors, Rows, resolve};
+use crate::resolve::relief::resolve_relief;
+use crate::resolve::{Colors, Rows, resolve};
+use crate::screen::Screen;
 use crate::sections::{Exposure, Sections};
-use crate::shade::color::Packed;
+use crate::shade::pixel_center::PixelCenters;
 use crate::shade::{LightCache, Shader};
 use crate::stylise::Relief;
 use crate::volume::{self, Way};
@@ -106,7 +107,7 @@ impl CpuRenderer {
         blocks.build(job, (&passes, bodies.as_ref()), &screen, sections.as_ref(), &self.detail);
         job.progress.tick("project", 1.0)?;
         let shader = Shader::new(job, &screen, blocks, &self.light);
-        let mut buffers = Buffers::reuse(job, std::mem::take(color), frame);
+        let mut buffers = buffers_in(job, std::mem::take(color), frame);
         let centers = job.options.aux.exact.then(|| PixelCenters::new(job.scene, &passes, bodies.as_ref(), &screen));
         let surfaces = Surfaces { job, screen: &screen, blocks, shader: &shader, centers: centers.as_ref() };
         let mut relief = Relief::room(job, sample_offsets(job.options.samples).len().max(2) - 1);

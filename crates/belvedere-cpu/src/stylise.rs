@@ -2,8 +2,8 @@
 //!
 //! Source: edges in reciprocal depth, which is affine on planes, are ours; depth unsharp masking after Luft, Colditz and Deussen 2006.
 
-use crate::frame::Buffers;
-use crate::shade::color::{Packed, smoothstep};
+use crate::buffers::Buffers;
+use crate::color::{Packed, smoothstep};
 use belvedere_scene::{LayerKind, RenderJob, Stylisation};
 use glam::DVec3;
 use rayon::prelude::*;

@@ -5,8 +5,8 @@ mod text;
 
 pub use text::{FONT_BYTES, TextSize, can_set, text_size};
 
-use crate::shade::color::{encode, linear};
-use belvedere_core::DVec2;
+use crate::color::{encode, linear};
+use belvedere_core::{DVec2, polygon::to_segment};
 use belvedere_scene::Color;
 
 /// A finished picture to draw on. Coordinates are pixels, (0, 0) the outer corner of the top-left one; what lies outside is left out.
@@ -79,7 +79,7 @@ impl<'a> Canvas<'a> {
         let (lo, hi) = points.iter().fold((first, first), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
         let half = 0.5 * width;
         self.shape(lo - half, hi + half, color, |p| {
-            let nearest = points.windows(2).map(|w| crate::shade::overlay::area::distance(p, w[0], w[1]));
+            let nearest = points.windows(2).map(|w| to_segment(p, w[0], w[1]).length());
             nearest.fold(p.distance(first), f64::min) - half
         });
     }

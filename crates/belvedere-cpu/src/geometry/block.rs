@@ -2,7 +2,7 @@
 
 use crate::cache::lock;
 use crate::geometry::grid::{Nodes, ScreenExtent};
-use crate::geometry::screen::{Screen, ScreenVertex};
+use crate::screen::{Screen, ScreenVertex};
 use crate::sections::{Sections, Shown};
 use belvedere_core::Aabb;
 use std::sync::Mutex;

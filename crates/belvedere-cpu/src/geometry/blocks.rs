@@ -5,12 +5,13 @@ use crate::geometry::block::{Block, BufferPool, Counts, DrawnTriangle, Geometry,
 use crate::geometry::box_blocks::box_chunks;
 use crate::geometry::grid::{CELL_TRIANGLES, cell_weights};
 use crate::geometry::locate::{Held, JoinedPasses, Locator};
-use crate::geometry::lod::{SIDE, Tree};
+use crate::geometry::lod::Tree;
 use crate::geometry::mesh_blocks::Drawn;
 use crate::geometry::pass::{BodyPasses, InView, Pass};
-use crate::geometry::screen::Screen;
 use crate::geometry::select::{DetailSelector, Selection};
 use crate::raster::band::Band;
+use crate::raster::cells::SIDE;
+use crate::screen::Screen;
 use crate::sections::{Exposure, LayerShow, Sections, Shown};
 use belvedere_core::Aabb;
 use belvedere_scene::{LayerKind, RenderJob};

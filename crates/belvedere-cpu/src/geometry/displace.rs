@@ -4,9 +4,9 @@
 //! order: two pieces of a surface that share a point place it alike to the last bit.
 
 use crate::fast::Fast;
-use crate::geometry::pass::Way;
-use crate::geometry::points::{Points, each};
 use crate::geometry::spline_table::SplineTable;
+use crate::geometry::way::Way;
+use crate::points::{Points, each};
 use belvedere_core::map::curved_rays::{StraightMap, Turn};
 use belvedere_core::{CurvedRays, DVec3, Stage, View};
 

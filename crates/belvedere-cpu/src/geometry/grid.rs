@@ -1,9 +1,9 @@
 //! Nodes of a block of ground on the image, and drawing the cells between them.
 
-use crate::geometry::lod::{NODES, SIDE};
-use crate::geometry::screen::{SUB, ScreenVertex};
 use crate::raster::band::Band;
 use crate::raster::cells::CellRow;
+use crate::raster::cells::{NODES, SIDE};
+use crate::screen::{SUB, ScreenVertex};
 use crate::simd::{self, Kernel};
 use belvedere_scene::CellTriangle;
 

@@ -1,7 +1,7 @@
 //! Which records of a curved-ray chain draw a box, and whether they may draw it at once.
 
 use crate::geometry::pass::{InView, Pass, displaced};
-use crate::geometry::screen::Screen;
+use crate::screen::Screen;
 use belvedere_core::{Aabb, View};
 use std::collections::HashMap;
 use std::ops::Range;

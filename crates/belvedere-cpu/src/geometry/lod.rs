@@ -1,15 +1,11 @@
 //! The ground as a tree of blocks: range of heights, and what drawing it in less detail costs.
 
+use crate::raster::cells::SIDE;
 use crate::simd::{self, Kernel};
 use belvedere_core::{Aabb, DVec3};
 use belvedere_scene::{Heightfield, NodeState};
 use belvedere_sight::Pyramid;
 use rayon::prelude::*;
-
-/// Drawn cells along a side of a block of ground, at every level.
-pub(crate) const SIDE: usize = 32;
-/// Nodes along a side of a block at most.
-pub(crate) const NODES: usize = SIDE + 1;
 
 /// A block at one level: cells of 2^level nodes' distance.
 #[derive(Debug, Clone, Copy)]

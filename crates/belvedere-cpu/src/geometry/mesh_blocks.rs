@@ -3,7 +3,7 @@
 use crate::geometry::block::{Block, Counts, Job, SoupTriangle, SoupVertex};
 use crate::geometry::pass::Pass;
 use crate::geometry::refine::Refiner;
-use crate::geometry::screen::ScreenVertex;
+use crate::screen::ScreenVertex;
 use crate::sections::Shown;
 use belvedere_core::{Aabb, DVec3, EdgePoint};
 use belvedere_scene::Mesh;

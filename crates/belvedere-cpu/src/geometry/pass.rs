@@ -2,23 +2,15 @@
 //! where records leave something out, or the only one there is.
 
 use crate::geometry::displace::Displacer;
-use crate::geometry::lod::{DecimatedHeights, NODES};
-use crate::geometry::points::Points;
+use crate::geometry::lod::DecimatedHeights;
 use crate::geometry::project::Projector;
-use crate::geometry::screen::{Row, Screen, ScreenVertex};
+use crate::geometry::way::Way;
+use crate::points::Points;
+use crate::raster::cells::NODES;
+use crate::screen::{Row, Screen, ScreenVertex};
 use belvedere_core::{Aabb, CurvedRays, DMat3, DVec2, DVec3, EdgePoint, Edges, Stage, View};
 use belvedere_scene::Heightfield;
 use belvedere_sight::Carried;
-
-/// By what curved rays displace.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Way {
-    /// A record ([`View::displace_in`]), or the first and the last one of several that displace as one map
-    /// ([`CurvedRays::is_continuous`]). Views without curved rays have one record.
-    Records([usize; 2]),
-    /// A segment of the rays, see [`View::displace_along`].
-    Segment(u32),
-}
 
 /// A view prepared for a frame.
 #[derive(Debug)]

@@ -7,8 +7,8 @@
 mod cameras;
 
 use crate::fast::Fast;
-use crate::geometry::pass::Way;
-use crate::geometry::screen::{Row, SUB};
+use crate::geometry::way::Way;
+use crate::screen::{Row, SUB};
 use crate::simd;
 use belvedere_core::map::curved_rays::{LinearForm, StraightMap, Turn};
 use belvedere_core::map::terrain::TerrainDisocclusion;

@@ -2,7 +2,8 @@
 
 use crate::geometry::locate::{Held, Locator};
 use crate::geometry::lod::{Tree, nodes};
-use crate::geometry::pass::{Way, edge_error_px};
+use crate::geometry::pass::edge_error_px;
+use crate::geometry::way::Way;
 use belvedere_core::{Aabb, View};
 use belvedere_scene::Heightfield;
 

@@ -1,6 +1,6 @@
 //! A spline bend as a table along the curve.
 
-use crate::geometry::points::{Points, each};
+use crate::points::{Points, each};
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::{DVec2, DVec3, SpaceMap};
 

@@ -2,11 +2,12 @@
 
 use crate::geometry::block::{Block, Counts, Geometry, Job, cover_of};
 use crate::geometry::grid::{CELL_TRIANGLES, Nodes, ScreenExtent, cell_weights, kept_node};
-use crate::geometry::lod::{self, DecimatedHeights, NODES, SIDE};
+use crate::geometry::lod::{self, DecimatedHeights};
 use crate::geometry::pass::Pass;
 use crate::geometry::refine::{Corner, Refiner};
-use crate::geometry::screen::{Row, SUB, ScreenVertex};
 use crate::geometry::select::SelectedBlock;
+use crate::raster::cells::{NODES, SIDE};
+use crate::screen::{Row, SUB, ScreenVertex};
 use belvedere_core::Aabb;
 use belvedere_scene::{Heightfield, NodeState};
 

@@ -2,6 +2,7 @@
 
 use crate::marks::ribbon::{Lane, Stroke};
 use crate::marks::visibility::Station;
+use belvedere_core::polygon;
 
 /// Share of a period that is ink, and its shortest length in widths of the line.
 const INK: f64 = 0.55;
@@ -22,8 +23,7 @@ pub(crate) fn trace(part: &[Station], half: f64, lane: Lane, out: &mut Vec<Strok
         let mut to = from + 1;
         while to + 1 < part.len() && to - from < 24 {
             let (a, b) = (part[from].pixel, part[to + 1].pixel);
-            let straight =
-                part[from + 1..=to].iter().all(|s| crate::shade::overlay::area::distance(s.pixel, a, b) < 0.06);
+            let straight = part[from + 1..=to].iter().all(|s| polygon::to_segment(s.pixel, a, b).length() < 0.06);
             if !straight {
                 break;
             }

@@ -1,8 +1,8 @@
 //! Translucent, flat, convex faces, in front of surfaces or faintly behind them.
 
+use crate::color::{Packed, Rgb, linear};
 use crate::geometry::pass::Pass;
-use crate::geometry::screen::Screen;
-use crate::shade::color::{Packed, Rgb, linear};
+use crate::screen::Screen;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::OverlayFace;
 
@@ -16,7 +16,7 @@ pub(crate) struct Face {
     edges: Vec<(DVec2, f64)>,
     lo: DVec2,
     hi: DVec2,
-    /// Nearness (as of [`crate::geometry::screen::ScreenVertex::q`]) at pixel `p` is `q.x p.x + q.y p.y + q.z`.
+    /// Nearness (as of [`crate::screen::ScreenVertex::q`]) at pixel `p` is `q.x p.x + q.y p.y + q.z`.
     q: DVec3,
     color: Rgb,
     alpha: f32,
@@ -80,7 +80,7 @@ impl Face {
 
 /// The part of a convex polygon in front of the near plane and inside the guard planes.
 fn clipped(mut corners: Vec<DVec3>, screen: &Screen) -> Vec<DVec3> {
-    for plane in 0..crate::geometry::screen::PLANES {
+    for plane in 0..crate::screen::PLANES {
         let mut out = Vec::with_capacity(corners.len() + 1);
         for (i, &a) in corners.iter().enumerate() {
             let b = corners[(i + 1) % corners.len()];

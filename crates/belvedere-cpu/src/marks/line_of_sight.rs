@@ -1,7 +1,7 @@
 //! Lines of sight to points of lines and point layers, through the exact tracer.
 
-use crate::geometry::screen::Screen;
 use crate::marks::path::LinePoint;
+use crate::screen::Screen;
 use crate::sections::{Exposure, Sections};
 use crate::trace::Tracer;
 use belvedere_core::{DVec2, DVec3, View};

@@ -13,11 +13,11 @@ mod symbol;
 mod visibility;
 
 use crate::canvas::Canvas;
+use crate::color::{Packed, linear};
 use crate::geometry::pass::{InView, Pass};
-use crate::geometry::screen::Screen;
 use crate::raster::band::BAND;
+use crate::screen::Screen;
 use crate::sections::Sections;
-use crate::shade::color::{Packed, linear};
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{
     AreaLayer, Color, Hidden, LayerKind, LineLayer, Overlay, OverlayLine, OverlayPoint, PointLayer, PointStyle,

@@ -1,7 +1,7 @@
 //! Lines from the ground to the image.
 
 use crate::geometry::pass::Pass;
-use crate::geometry::screen::Screen;
+use crate::screen::Screen;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, Scene};
 

@@ -1,7 +1,7 @@
 //! Anti-aliased ribbons and symbols: the union of strokes, never darker where they overlap.
 
+use crate::color::{Packed, Rgb};
 use crate::marks::symbol;
-use crate::shade::color::{Packed, Rgb};
 use belvedere_core::DVec2;
 use belvedere_scene::Symbol;
 use glam::Vec2;

@@ -1,9 +1,9 @@
 //! Which parts of a line the surfaces hide, steadily.
 
 use crate::geometry::pass::Pass;
-use crate::geometry::screen::Screen;
 use crate::marks::line_of_sight::LineOfSight;
 use crate::marks::path::{LinePoint, PathPoint};
+use crate::screen::Screen;
 use belvedere_core::DVec2;
 
 /// Hidden gaps shorter than this are closed, then visible specks shorter than this are dropped, pixels; up to twice that length

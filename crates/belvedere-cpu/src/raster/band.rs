@@ -1,6 +1,6 @@
 //! What the samples of a band of image rows see.
 
-use crate::geometry::screen::SUB;
+use crate::screen::SUB;
 use std::ops::Range;
 
 /// Rows of a band.

@@ -1,9 +1,13 @@
 //! Rows of small cells, judged many at a time.
 
-use crate::geometry::lod::{NODES, SIDE};
-use crate::geometry::screen::{SUB, ScreenVertex};
 use crate::raster::band::Band;
 use crate::raster::triangle::owns_edge;
+use crate::screen::{SUB, ScreenVertex};
+
+/// Drawn cells along a side of a block of ground, at every level.
+pub(crate) const SIDE: usize = 32;
+/// Nodes along a side of a block at most.
+pub(crate) const NODES: usize = SIDE + 1;
 
 /// Cells with bounding boxes below this go together: eight pixels, or so. Differences of their corners have products whose
 /// differences stay below 2^24, so single precision decides exactly.

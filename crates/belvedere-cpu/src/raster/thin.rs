@@ -1,8 +1,8 @@
 //! Triangles of which only some samples are shown.
 
-use crate::geometry::screen::{SUB, ScreenVertex};
 use crate::raster::band::Band;
 use crate::raster::triangle::Setup;
+use crate::screen::{SUB, ScreenVertex};
 
 /// Which samples of a pixel show what, by a value at their place.
 pub(crate) trait ThinShow {

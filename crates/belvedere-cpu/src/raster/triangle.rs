@@ -1,7 +1,7 @@
 //! Watertight rasterisation of triangles into a band of image rows.
 
-use crate::geometry::screen::{SUB, ScreenVertex};
 use crate::raster::band::{Band, SLACK};
+use crate::screen::{SUB, ScreenVertex};
 
 impl Band {
     /// Draws a triangle, either orientation.

@@ -1,7 +1,7 @@
 //! Colour of meshes: matt like the boxes, the same from both sides.
 
+use crate::color::{Rgb, linear, smoothstep};
 use crate::geometry::block::DrawnTriangle;
-use crate::shade::color::{Rgb, linear, smoothstep};
 use crate::shade::relief::ReliefLight;
 use belvedere_core::DVec3;
 use belvedere_scene::{Light, MeshLayer, Relief};

@@ -1,7 +1,7 @@
 //! Colours of layers that are one surface, mixed by the weights of their representations.
 
+use crate::color::Rgb;
 use crate::raster::band::SKY;
-use crate::shade::color::Rgb;
 use crate::shade::{Painted, Sample, Samples, Shader};
 use belvedere_core::DVec3;
 

@@ -1,7 +1,6 @@
 //! Colour of what a sample sees.
 
 mod cast;
-pub(crate) mod color;
 pub(crate) mod footprint;
 pub(crate) mod ground;
 mod mesh;
@@ -9,31 +8,33 @@ mod mix;
 mod molecule;
 pub(crate) mod overlay;
 mod paint;
+mod painted;
+pub(crate) mod pixel_center;
 pub(crate) mod relief;
 mod sky;
 mod traced;
 
+use crate::color::{Rgb, linear, smoothstep};
 use crate::geometry::block::{Block, DrawnTriangle};
 use crate::geometry::blocks::Blocks;
 use crate::geometry::grid::CELL_TRIANGLES;
 use crate::geometry::lod::DecimatedHeights;
-use crate::geometry::lod::SIDE;
-use crate::geometry::screen::{SUB, Screen};
 use crate::raster::band::SKY;
-use crate::raster::pixel_center::PixelCenters;
+use crate::raster::cells::SIDE;
+use crate::screen::{SUB, Screen};
 use crate::sections::Sections;
+use crate::shade::pixel_center::PixelCenters;
 use crate::simd::nearest;
 use crate::stylise::Face;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{AreaSurface, BoxLayer, BoxShape, Heightfield, LayerKind, Relief, RenderJob};
 use cast::Casters;
-use color::{Rgb, linear, smoothstep};
 use glam::Vec3A;
 pub(crate) use ground::terrain::LightCache;
 use ground::terrain::TerrainShade;
 use ground::{surface, tiles};
 use overlay::area::AreaMap;
-pub(crate) use paint::{Painted, Samples};
+pub(crate) use painted::{Painted, Samples};
 use relief::ReliefLight;
 use sky::Sky;
 

@@ -1,6 +1,6 @@
 //! Relief light on terrain.
 
-use crate::shade::color::{Rgb, linear};
+use crate::color::{Rgb, linear};
 use crate::simd::nearest;
 use belvedere_scene::{Light, Relief};
 use glam::Vec3A;

@@ -1,6 +1,6 @@
 //! Colour of what a traced ray meets.
 
-use crate::shade::color::Rgb;
+use crate::color::Rgb;
 use crate::shade::ground::terrain::TerrainShade;
 use crate::shade::{LayerShade, Shaded, Shader};
 use crate::trace::{Part, RayHit};

@@ -1,6 +1,6 @@
 //! First hits of curved rays.
 
-use crate::geometry::screen::Screen;
+use crate::screen::Screen;
 use crate::sections::{Exposure, Sections, Shown};
 use crate::trace::curve::{Curve, Span, Split};
 use crate::trace::root::root;

@@ -1,7 +1,7 @@
 //! Cameras in single precision, for many nodes of a row at a time.
 
 use crate::geometry::project::{Part, Projector};
-use crate::geometry::screen::{Row, SUB};
+use crate::screen::{Row, SUB};
 use crate::simd::{Kernel, nearest};
 use belvedere_core::DVec3;
 

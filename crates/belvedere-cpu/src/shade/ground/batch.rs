@@ -3,8 +3,8 @@
 
 use crate::geometry::block::Block;
 use crate::geometry::grid::Nodes;
-use crate::geometry::lod::SIDE;
-use crate::geometry::screen::SUB;
+use crate::raster::cells::SIDE;
+use crate::screen::SUB;
 use crate::shade::footprint::Footprint;
 use crate::shade::ground::lit::Colors;
 use crate::shade::ground::sample::GroundSample;
@@ -357,8 +357,8 @@ mod tests {
     use crate::cache::GroundCache;
     use crate::geometry::blocks::Blocks;
     use crate::geometry::pass::Pass;
-    use crate::geometry::screen::Screen;
     use crate::raster::band::{Band, SKY, sample_offsets};
+    use crate::screen::Screen;
     use crate::shade::LightCache;
     use belvedere_core::{DVec3, Pinhole, Projection, View};
     use belvedere_scene::{

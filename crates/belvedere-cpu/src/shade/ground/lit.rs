@@ -4,7 +4,7 @@
 //! ground are kept: its lit colour, which most pixels take as it is, and colour and light apart, where something lies over
 //! the ground. A node takes eight bytes in each, and a pixel a weighted sum of four nodes in 16-bit integers.
 
-use crate::shade::color::Rgb;
+use crate::color::Rgb;
 use crate::shade::ground::patch::{LightingInputs, Patch};
 use crate::shade::ground::tiles::{self, FourNodes, Node, Tile, Tiles};
 use crate::shade::ground::upsample::CoarseColors;

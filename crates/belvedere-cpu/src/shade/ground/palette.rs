@@ -1,7 +1,7 @@
 //! Hypsometric tints. The built-in ramps are ours: muted, lighter the higher for every kind of colour vision, so that they
 //! also read without colour.
 
-use crate::shade::color::{Rgb, linear};
+use crate::color::{Rgb, linear};
 use crate::simd::nearest;
 use belvedere_scene::{Palette, Ramp};
 

@@ -2,8 +2,8 @@
 
 use crate::geometry::block::{Block, DrawnTriangle};
 use crate::geometry::grid::CELL_TRIANGLES;
-use crate::geometry::lod::SIDE;
-use crate::geometry::screen::{SUB, Screen};
+use crate::raster::cells::SIDE;
+use crate::screen::{SUB, Screen};
 use crate::shade::SurfacePoint;
 use belvedere_core::DVec2;
 

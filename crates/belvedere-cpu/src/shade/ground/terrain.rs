@@ -1,8 +1,8 @@
 //! Terrain: its light, and what is laid over it.
 
 use crate::cache::GroundCache;
+use crate::color::{Rgb, linear, smoothstep};
 use crate::sections::Sections;
-use crate::shade::color::{Rgb, linear, smoothstep};
 use crate::shade::footprint::{Footprint, LONGEST};
 use crate::shade::ground::displaced::{self, DisplacedLight};
 use crate::shade::ground::lit::{Lit, LitGround, LitKey};

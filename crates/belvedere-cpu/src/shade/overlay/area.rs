@@ -1,7 +1,7 @@
 //! Polygons on the ground: inside or not, and how far from the border.
 
-use crate::shade::color::{Rgb, linear};
-use belvedere_core::DVec2;
+use crate::color::{Rgb, linear};
+use belvedere_core::{DVec2, polygon};
 use belvedere_scene::{AreaLayer, AreaSurface};
 
 /// An area layer ready for look-up per pixel.
@@ -140,7 +140,7 @@ impl AreaMap {
             return far(if features.is_empty() { f64::NEG_INFINITY } else { f64::INFINITY });
         }
         let centre = self.min + DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * self.cell;
-        let ways = edges.iter().map(|e| way_to(p, e.a, e.b));
+        let ways = edges.iter().map(|e| polygon::to_segment(p, e.a, e.b));
         let nearest = ways.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared())).unwrap_or(DVec2::INFINITY);
         let parity = |feature: u32| {
             let crossed = edges.iter().filter(|e| e.feature == feature && crosses(centre, p, e.a, e.b)).count();
@@ -165,19 +165,6 @@ fn all_edges(area: &AreaLayer) -> Vec<Edge> {
         }
     }
     edges
-}
-
-/// Distance from `p` to the segment `a b`.
-pub(crate) fn distance(p: DVec2, a: DVec2, b: DVec2) -> f64 {
-    way_to(p, a, b).length()
-}
-
-/// From `p` to the nearest point of the segment `a b`.
-fn way_to(p: DVec2, a: DVec2, b: DVec2) -> DVec2 {
-    let d = b - a;
-    let len2 = d.length_squared();
-    let t = if len2 > 0.0 { ((p - a).dot(d) / len2).clamp(0.0, 1.0) } else { 0.0 };
-    a + t * d - p
 }
 
 /// Whether the segments `p q` and `a b` cross; an end exactly on the other's line counts for one side.

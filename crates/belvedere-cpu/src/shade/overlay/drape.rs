@@ -1,6 +1,6 @@
 //! Georeferenced pictures on terrain, filtered.
 
-use crate::shade::color::{Rgb, encode, linear};
+use crate::color::{Rgb, encode, linear};
 use crate::shade::footprint::Footprint;
 use belvedere_core::DVec2;
 use belvedere_scene::Drape;

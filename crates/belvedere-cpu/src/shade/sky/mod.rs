@@ -2,8 +2,8 @@
 
 mod row;
 
-use crate::geometry::screen::SUB;
-use crate::shade::color::{PIXELS, Rgb, linear, smoothstep};
+use crate::color::{PIXELS, Rgb, linear, smoothstep};
+use crate::screen::SUB;
 use crate::simd::nearest;
 use belvedere_core::{Aabb, DVec3, Pinhole};
 use belvedere_scene::{Scene, Unit};

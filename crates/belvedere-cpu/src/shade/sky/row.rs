@@ -1,8 +1,8 @@
 //! Rows of sky straight into the picture.
 
-use crate::geometry::screen::SUB;
-use crate::shade::color::{Encoder, PIXELS};
-use crate::shade::paint::interleave;
+use crate::color::{Encoder, PIXELS};
+use crate::screen::SUB;
+use crate::shade::painted::interleave;
 use crate::shade::sky::{LANES, Sky, thresholds};
 use crate::simd::{self, Kernel};
 
@@ -66,7 +66,7 @@ impl Kernel for Store<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shade::color::{self, encoding};
+    use crate::color::{self, encoding};
     use belvedere_core::{Aabb, DVec3, Pinhole, Projection};
 
     #[test]

@@ -1,6 +1,6 @@
 //! The pinhole prepared for a frame: view space, fixed-point pixels, clipping planes.
 
-use crate::geometry::points::Points;
+use crate::points::Points;
 use belvedere_core::{DVec2, DVec3, Pinhole};
 
 /// Fixed-point steps per pixel.

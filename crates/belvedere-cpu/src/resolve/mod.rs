@@ -1,9 +1,11 @@
 //! From samples to pixels.
 
-use crate::geometry::screen::{SUB, Screen};
+pub(crate) mod relief;
+
+use crate::color::Packed;
 use crate::raster::band::{Band, Part, SKY};
-use crate::raster::pixel_center::PixelCenters;
-use crate::shade::color::Packed;
+use crate::screen::{SUB, Screen};
+use crate::shade::pixel_center::PixelCenters;
 use crate::shade::{Painted, Sample, Samples, Shader};
 use crate::simd::{self, Kernel};
 use std::ops::Range;

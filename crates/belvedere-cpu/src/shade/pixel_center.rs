@@ -6,7 +6,7 @@
 
 use crate::geometry::block::DrawnTriangle;
 use crate::geometry::pass::{BodyPasses, Pass};
-use crate::geometry::screen::Screen;
+use crate::screen::Screen;
 use belvedere_core::{DVec2, DVec3, RigidMotion};
 use belvedere_scene::{BoxShape, Heightfield, LayerKind, Scene};
 use glam::DMat3;

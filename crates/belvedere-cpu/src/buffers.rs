@@ -1,0 +1,33 @@
+//! The pixels of a frame in the making.
+
+use crate::color::Packed;
+use belvedere_scene::{Frame, RenderJob};
+
+/// The pixels of a frame in the making.
+pub(crate) struct Buffers {
+    /// Whether lines, points or stylisation may be drawn over the surfaces.
+    pub(crate) open: bool,
+    /// Colours of the surfaces while they are open, else empty.
+    pub(crate) color: Vec<Packed>,
+    pub(crate) depth: Vec<f32>,
+    pub(crate) id: Vec<u32>,
+    pub(crate) world: Option<Vec<[f64; 3]>>,
+    /// The stored colours.
+    pub(crate) out: Vec<[u8; 3]>,
+}
+
+impl Buffers {
+    /// Buffers of the size of the picture in the memory of older ones; every pixel is yet to be written.
+    pub(crate) fn reuse(job: &RenderJob<'_>, open: bool, mut color: Vec<Packed>, old: Frame) -> Self {
+        let n = job.view.pinhole().image.map(|s| s as usize).iter().product();
+        let Frame { color: mut out, mut depth, mut id, .. } = old;
+        if open {
+            color.resize(n, Packed::default());
+        }
+        out.resize(n, [0; 3]);
+        depth.resize(n, f32::INFINITY);
+        id.resize(n, 0);
+        let world = job.options.aux.world.then(|| vec![[f64::NAN; 3]; n]);
+        Self { open, color, depth, id, world, out }
+    }
+}

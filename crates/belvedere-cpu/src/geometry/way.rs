@@ -1,0 +1,11 @@
+//! By what curved rays displace.
+
+/// By what curved rays displace.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// A record ([`View::displace_in`]), or the first and the last one of several that displace as one map
+    /// ([`CurvedRays::is_continuous`]). Views without curved rays have one record.
+    Records([usize; 2]),
+    /// A segment of the rays, see [`View::displace_along`].
+    Segment(u32),
+}
