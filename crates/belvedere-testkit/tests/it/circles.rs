@@ -1,0 +1,199 @@
+//! Modules of a crate import each other in one direction: no circles, on any floor of the tree of modules.
+//!
+//! An edge leads from the module of a file to the module that a path beginning with `crate`, `super`, `self` or a child leads to, through
+//! re-exports. Between two modules it counts on the floor where their ways from the root part, so that a child may use its parent and
+//! the other way round.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+use syn::visit::{self, Visit};
+
+type Module = Vec<String>;
+
+/// What a file says: paths that it uses, and names that it gives on.
+#[derive(Default)]
+struct Said {
+    paths: Vec<Vec<String>>,
+    names: BTreeMap<String, Vec<String>>,
+}
+
+impl Said {
+    fn tree(&mut self, tree: &syn::UseTree, before: &[String], gives_on: bool) {
+        let with = |name: &syn::Ident| [before, &[name.to_string()]].concat();
+        let (path, name) = match tree {
+            syn::UseTree::Path(path) => return self.tree(&path.tree, &with(&path.ident), gives_on),
+            syn::UseTree::Group(group) => return group.items.iter().for_each(|tree| self.tree(tree, before, gives_on)),
+            syn::UseTree::Glob(_) => (before.to_vec(), None),
+            syn::UseTree::Name(name) if name.ident == "self" => (before.to_vec(), before.last().cloned()),
+            syn::UseTree::Name(name) => (with(&name.ident), Some(name.ident.to_string())),
+            syn::UseTree::Rename(name) if name.ident == "self" => (before.to_vec(), Some(name.rename.to_string())),
+            syn::UseTree::Rename(name) => (with(&name.ident), Some(name.rename.to_string())),
+        };
+        if let Some(name) = name.filter(|_| gives_on) {
+            self.names.insert(name, path.clone());
+        }
+        self.paths.push(path);
+    }
+}
+
+impl<'a> Visit<'a> for Said {
+    fn visit_item_mod(&mut self, module: &'a syn::ItemMod) {
+        // Tests may use whatever they like.
+        if !module.attrs.iter().any(|a| a.path().is_ident("cfg")) {
+            visit::visit_item_mod(self, module);
+        }
+    }
+
+    fn visit_item_use(&mut self, item: &'a syn::ItemUse) {
+        self.tree(&item.tree, &[], !matches!(item.vis, syn::Visibility::Inherited));
+    }
+
+    fn visit_path(&mut self, path: &'a syn::Path) {
+        if path.segments.len() > 1 {
+            self.paths.push(path.segments.iter().map(|s| s.ident.to_string()).collect());
+        }
+        visit::visit_path(self, path);
+    }
+}
+
+/// The modules of a crate by their ways from its root.
+struct Tree {
+    said: BTreeMap<Module, Said>,
+    known: BTreeSet<Module>,
+}
+
+impl Tree {
+    fn of(files: &[(Module, String)]) -> Self {
+        let said: BTreeMap<Module, Said> = files
+            .iter()
+            .map(|(module, text)| {
+                let mut said = Said::default();
+                said.visit_file(&syn::parse_file(text).expect("source"));
+                (module.clone(), said)
+            })
+            .collect();
+        let known = said.keys().flat_map(|m| (0..=m.len()).map(|n| m[..n].to_vec())).collect();
+        Self { said, known }
+    }
+
+    /// A path from the root of the crate; `None` for those of other crates, and for names of the file itself.
+    fn absolute(&self, module: &Module, path: &[String]) -> Option<Vec<String>> {
+        let supers = path.iter().take_while(|name| *name == "super").count();
+        match path.first()?.as_str() {
+            "crate" => Some(path[1..].to_vec()),
+            "self" => Some([module, &path[1..]].concat()),
+            "super" => Some([&module[..module.len().saturating_sub(supers)], &path[supers..]].concat()),
+            child => {
+                self.known.contains(&[module.as_slice(), &[child.to_owned()]].concat()).then(|| [module, path].concat())
+            }
+        }
+    }
+
+    /// The module that a path leads to.
+    fn module_of(&self, path: &[String], depth: usize) -> Module {
+        let mut at = Module::new();
+        for (i, name) in path.iter().enumerate() {
+            let child = [at.as_slice(), std::slice::from_ref(name)].concat();
+            if self.known.contains(&child) {
+                at = child;
+                continue;
+            }
+            let given_on = self.said.get(&at).and_then(|said| said.names.get(name)).filter(|_| depth < 8);
+            let Some(target) = given_on.and_then(|path| self.absolute(&at, path)).filter(|target| *target != child)
+            else {
+                return at;
+            };
+            return self.module_of(&[target.as_slice(), &path[i + 1..]].concat(), depth + 1);
+        }
+        at
+    }
+
+    /// For each floor who imports whom, with a path that says so.
+    fn floors(&self) -> BTreeMap<Module, BTreeMap<String, BTreeMap<String, String>>> {
+        let mut floors: BTreeMap<_, BTreeMap<_, BTreeMap<_, _>>> = BTreeMap::new();
+        for (module, said) in &self.said {
+            for path in said.paths.iter().filter_map(|path| self.absolute(module, path)) {
+                let target = self.module_of(&path, 0);
+                let common = module.iter().zip(&target).take_while(|(a, b)| a == b).count();
+                if let (Some(from), Some(to)) = (module.get(common), target.get(common)) {
+                    let floor = floors.entry(module[..common].to_vec()).or_default();
+                    let why = format!("{} uses {}", module.join("::"), path.join("::"));
+                    floor.entry(from.clone()).or_default().insert(to.clone(), why);
+                }
+            }
+        }
+        floors
+    }
+
+    /// Edges that lie on circles, one sentence each.
+    fn circles(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        for edges in self.floors().values() {
+            let reached = |from: &str| {
+                let (mut seen, mut open) = (BTreeSet::new(), vec![from.to_owned()]);
+                while let Some(at) = open.pop() {
+                    for to in edges.get(&at).into_iter().flat_map(BTreeMap::keys) {
+                        if seen.insert(to.clone()) {
+                            open.push(to.clone());
+                        }
+                    }
+                }
+                seen
+            };
+            for (from, targets) in edges {
+                found.extend(targets.iter().filter(|(to, _)| reached(to).contains(from)).map(|(_, why)| why.clone()));
+            }
+        }
+        found
+    }
+}
+
+fn files_of(folder: &Path, module: &Module, out: &mut Vec<(Module, String)>) {
+    for entry in fs::read_dir(folder).expect("folder").map(|e| e.expect("entry").path()) {
+        let stem = entry.file_stem().expect("name").to_string_lossy().into_owned();
+        let child = [module.as_slice(), std::slice::from_ref(&stem)].concat();
+        if entry.is_dir() {
+            files_of(&entry, &child, out);
+        } else if entry.extension().is_some_and(|e| e == "rs") && stem != "tests" {
+            let is_folder_itself = stem == "mod" || (module.is_empty() && (stem == "lib" || stem == "main"));
+            let text = fs::read_to_string(&entry).expect("source");
+            out.push((if is_folder_itself { module.clone() } else { child }, text));
+        }
+    }
+}
+
+#[test]
+fn modules_import_each_other_in_one_direction() {
+    let mut found = Vec::new();
+    for group in ["crates", "apps", "tools"] {
+        for entry in fs::read_dir(belvedere_testkit::workspace_root().join(group)).expect("folder") {
+            let source = entry.expect("entry").path().join("src");
+            if source.is_dir() {
+                let mut files = Vec::new();
+                files_of(&source, &Module::new(), &mut files);
+                found.extend(Tree::of(&files).circles().into_iter().map(|c| format!("{}: {c}", source.display())));
+            }
+        }
+    }
+    assert_eq!(found, Vec::<String>::new());
+}
+
+#[test]
+fn a_circle_is_found_through_a_name_that_is_given_on() {
+    let tree = |files: &[(&str, &str)]| {
+        let module = |way: &str| way.split("::").filter(|name| !name.is_empty()).map(str::to_owned).collect();
+        Tree::of(&files.iter().map(|(way, text)| (module(way), (*text).to_owned())).collect::<Vec<_>>())
+    };
+    let root = ("", "mod a; mod b; pub use a::{Thing as Other};");
+    let down = ("a", "use crate::b::Part; pub struct Thing(Part);");
+    assert_eq!(tree(&[root, down, ("b", "pub struct Part;")]).circles(), Vec::<String>::new());
+    let circle = tree(&[root, down, ("b", "pub struct Part; fn f() -> crate::Other { crate::Other(Part) }")]).circles();
+    assert_eq!(circle, ["a uses b::Part", "b uses Other"]);
+    let inside =
+        [("", "mod m;"), ("m", "mod x; mod y;"), ("m::x", "use super::y::Y;"), ("m::y", "fn f(x: super::x::X) {}")];
+    assert_eq!(tree(&inside).circles().len(), 2);
+    let of_a_parent =
+        [("", "mod m;"), ("m", "mod x; use x::X; pub struct M;"), ("m::x", "use super::M; pub struct X;")];
+    assert_eq!(tree(&of_a_parent).circles(), Vec::<String>::new());
+}
