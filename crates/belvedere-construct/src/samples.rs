@@ -21,9 +21,12 @@ pub fn sample_features(scene: &Scene, spacing: f64) -> Vec<SampledFeature> {
 
 /// Lattice points inside one area, at most about, where a view is searched for.
 const MOST_INSIDE: f64 = 4000.0;
-/// Points in the box of one area where its share is judged. They are scattered evenly (Roberts's sequence, by powers of the plastic number): shadows
-/// begin along straight lines, which a square lattice would meet with whole rows.
-const JUDGED: [f64; 2] = [5_000.0, 10_000.0];
+/// Points in the boxes of all areas together where their share is judged, within bounds, and in that of one. They are scattered evenly (Roberts's
+/// sequence, by powers of the plastic number): shadows begin along straight lines, which a square lattice would meet with whole rows. A third as many
+/// give shares half a per cent off where shadows of bumps are as fine as the grid.
+const JUDGED_ALL: [f64; 2] = [16_000.0, 60_000.0];
+const MOST_JUDGED: f64 = 16_000.0;
+const FEWEST_JUDGED: f64 = 100.0;
 const PLASTIC: DVec2 = DVec2::new(0.754_877_666_246_692_8, 0.569_840_290_998_053_3);
 /// Samples of lines and rims are judged so many times as densely as views are searched for by, those inside areas so many times in either
 /// direction.
@@ -46,13 +49,19 @@ pub fn judged_samples(scene: &Scene) -> Vec<SampledFeature> {
     };
     let lines: f64 = scene.must_see().map(|(_, layer)| of_layer(layer)).sum();
     let on_lines = (usual / DENSER[0]).min((lines / LEAST_ON_LINES).max(usual / FINEST));
+    let areas_of = |layer: &Layer| match &layer.kind {
+        LayerKind::Area(a) => a.features.len(),
+        _ => 0,
+    };
+    let areas = scene.must_see().map(|(_, layer)| areas_of(layer)).sum::<usize>().max(1) as f64;
+    let judged = JUDGED_ALL.map(|all| (all / areas).clamp(FEWEST_JUDGED, MOST_JUDGED));
     let sampled = |(index, layer): (usize, &Layer)| {
         let spacing = match layer.kind {
             LayerKind::Line(_) => [on_lines; 2],
             LayerKind::Area(_) | LayerKind::Point(_) => DENSER.map(|denser| usual / denser),
             _ => [usual; 2],
         };
-        sample_layer(terrain, index, layer, spacing, Some(JUDGED))
+        sample_layer(terrain, index, layer, spacing, Some(judged))
     };
     scene.must_see().flat_map(sampled).collect()
 }

@@ -360,8 +360,8 @@ impl<'a> PointCollector<'a> {
 /// Where shares are judged, points inside the boxes of areas: 16 to a grid cell, within bounds for all areas together, for one of them, and for
 /// the smallest.
 const INSIDE_A_CELL: f64 = 16.0;
-const INSIDE_ALL: [f64; 2] = [6_000.0, 60_000.0];
-const MOST_INSIDE: f64 = 12_000.0;
+const INSIDE_ALL: [f64; 2] = [16_000.0, 60_000.0];
+const MOST_INSIDE: f64 = 16_000.0;
 const FEWEST_INSIDE: f64 = 100.0;
 /// Share of the golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
