@@ -24,6 +24,14 @@ pub enum DisocclusionError {
         /// Layers of the scene.
         layers: usize,
     },
+    /// Rivers that are no lines of the scene.
+    #[error("rivers: \"{id}\" is no line layer of the scene; line layers are: {}", if lines.is_empty() { "none".into() } else { lines.join(", ") })]
+    River {
+        /// Id that was given.
+        id: String,
+        /// Ids of the line layers.
+        lines: Vec<String>,
+    },
     /// A parameter out of range.
     #[error("{key} is {value}, it must lie in: {range}")]
     Setting {

@@ -14,6 +14,7 @@ mod greedy;
 mod in_view;
 mod metrics;
 mod points;
+pub mod rivers;
 mod settings;
 mod smooth;
 mod solve;
@@ -40,6 +41,7 @@ use viewpoint::{ViewpointEnergy, adjust_viewpoint, height_slope};
 
 /// What a [`TerrainReport`] is made of.
 pub mod report {
+    pub use super::rivers::RiverReport;
     pub use super::spikes::Spike;
     pub use crate::greedy::GreedyCounters;
     pub use crate::metrics::{FrameChange, TerrainMetrics};

@@ -421,7 +421,7 @@ impl PointCollector<'_> {
 }
 
 /// The shares of a straight way at which it crosses the mesh, at most [`MOST_POINTS`] of each family of its lines.
-fn mesh_crossings(from: DVec2, step: DVec2) -> impl Iterator<Item = f64> {
+pub(super) fn mesh_crossings(from: DVec2, step: DVec2) -> impl Iterator<Item = f64> {
     let lines = [(from.x, step.x), (from.y, step.y), (from.x - from.y, step.x - step.y)];
     lines.into_iter().flat_map(|(from, step)| {
         let (low, high) = (from.min(from + step).floor() + 1.0, from.max(from + step).ceil());

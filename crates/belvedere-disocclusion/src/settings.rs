@@ -79,6 +79,9 @@ pub struct TerrainSettings {
     pub limits: bool,
     /// Whether spikes of the data are ground, to be dug round like other ground.
     pub spikes: bool,
+    /// Ids of line layers along which the displaced ground rises downstream by no more than the elevation model does.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rivers: Vec<String>,
     /// Price of a metre of occlusion squared, > 0: what costs more to clear stays covered; `None` = everything is cleared.
     pub slack_price: Option<f64>,
 }
@@ -105,6 +108,7 @@ impl Default for TerrainSettings {
             ahead_m: None,
             limits: true,
             spikes: false,
+            rivers: Vec::new(),
             slack_price: None,
         }
     }

@@ -10,7 +10,7 @@
 use super::super::metrics::Judge;
 use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult, QpSolver};
 use super::super::{Field, Hierarchy};
-use super::lakes::Lakes;
+use super::waters::Waters;
 use super::{at_every_node, fallback, on_grid};
 use crate::DisocclusionError;
 use belvedere_core::DVec2;
@@ -36,7 +36,7 @@ pub(super) struct Agreement<'a> {
     pub(super) grid: &'a Hierarchy,
     /// Change of detail at every node.
     pub(super) detail: Option<&'a [f64]>,
-    pub(super) lakes: &'a Lakes,
+    pub(super) waters: &'a Waters,
     /// Points by which the result is judged.
     pub(super) check: &'a [Candidate],
     pub(super) options: QpOptions,
@@ -68,7 +68,7 @@ impl Agreement<'_> {
             return Ok((result, 0));
         }
         // A lake that sinks by more than the relief is filled up again by the limits; no more solutions then.
-        let in_vain = |u: &[f64]| !self.lakes.is_empty() && u.iter().any(|u| *u < -self.field.relief());
+        let in_vain = |u: &[f64]| !self.waters.lakes.is_empty() && u.iter().any(|u| *u < -self.field.relief());
         if in_vain(&result.u) {
             return Ok((result, 0));
         }
@@ -82,7 +82,7 @@ impl Agreement<'_> {
         let mut found = self.hidden(problem, &result)?;
         let (mut best, mut fewest) = (result, found.len());
         // What a small lake hides that is levelled after solving, the program cannot mend.
-        let most = if self.lakes.is_empty() { ROUNDS } else { ROUNDS_WITH_LAKES };
+        let most = if self.waters.lakes.is_empty() { ROUNDS } else { ROUNDS_WITH_LAKES };
         for _ in 1..most {
             if found.is_empty() || self.progress.should_end() {
                 break;
@@ -118,15 +118,15 @@ impl Agreement<'_> {
             }
         }
         best.stopped |= self.progress.is_late() && fewest > 0;
-        Ok((best, if self.lakes.is_empty() { 0 } else { fewest }))
+        Ok((best, if self.waters.lakes.is_empty() { 0 } else { fewest }))
     }
 
     /// Points that a solution leaves hidden though it does not name them.
     fn hidden(&self, problem: &QpProblem<'_>, result: &QpResult) -> Result<Vec<Found>, DisocclusionError> {
         self.progress.tick("what the displaced ground hides", 0.9)?;
-        let delta = match (self.detail, self.lakes.is_empty()) {
+        let delta = match (self.detail, self.waters.is_empty()) {
             (None, true) => on_grid(self.field, self.grid, &result.u)?,
-            (detail, _) => at_every_node(self.field, &self.lakes.whole(self.grid, &result.u, detail))?,
+            (detail, _) => at_every_node(self.field, &self.waters.whole(self.grid, &result.u, detail))?,
         };
         let named: BTreeSet<u32> = result.unresolved.iter().map(|u| u.id & !BILINEAR).collect();
         let judged = self.check.iter().chain(problem.candidates).filter(|c| !named.contains(&c.id));

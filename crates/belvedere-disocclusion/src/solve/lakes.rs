@@ -153,7 +153,7 @@ impl Lakes {
 
     /// Makes a displacement of the terrain's nodes level on each lake: as the tied nodes of the solver's grid that lie on it. Where none are
     /// tied, as the node that sinks least, for what rises does not become hidden. The shore sinks with the water at least.
-    fn level(&self, grid: &Hierarchy, u: &mut [f64]) {
+    pub(super) fn level(&self, grid: &Hierarchy, u: &mut [f64]) {
         let step = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
         for lake in &self.lakes {
             let own = self.on_grid(lake, grid);
@@ -170,14 +170,18 @@ impl Lakes {
         }
     }
 
-    /// The displacement of every node of the terrain: that of a solver's grid and the change of detail, level on lakes.
-    pub(super) fn whole(&self, grid: &Hierarchy, u: &[f64], detail: Option<&[f64]>) -> Vec<f64> {
-        let mut whole = grid.prolong(u);
-        if let Some(detail) = detail {
-            whole.iter_mut().zip(detail).for_each(|(u, d)| *u += d);
+    /// Where a node of a lake was lowered, lowers the whole lake as far, with its shore; answers whether any was.
+    pub(super) fn sink(&self, u: &mut [f64]) -> bool {
+        let mut sank = false;
+        for lake in &self.lakes {
+            let [low, high] = lake.nodes.iter().map(|n| u[*n as usize]).fold([f64::MAX, f64::MIN], |[a, b], v| [a.min(v), b.max(v)]);
+            if low < high {
+                sank = true;
+                let beside = lake.shore.iter().chain(lake.bank.iter().map(|(n, _)| n));
+                lake.nodes.iter().chain(beside).for_each(|n| u[*n as usize] = u[*n as usize].min(low));
+            }
         }
-        self.level(grid, &mut whole);
-        whole
+        sank
     }
 
     /// Zero on every lake: detail of the ground does not change there.

@@ -5,7 +5,7 @@
 //! was seen is hidden: lines of sight run above the floor. Where steep sides are filled up, something may be hidden; the judge sees that.
 
 use super::super::{Field, Hierarchy};
-use super::lakes::Lakes;
+use super::waters::Waters;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::cmp::Ordering;
@@ -18,6 +18,8 @@ const STEEPER: f64 = 2.0;
 const STEEP_SHARE: f64 = 0.999;
 /// Ways along rows, columns and diagonals that are at most this share as steep bound the slope in all directions between.
 const DIRECTIONS: f64 = 0.923_879_532_511_286_7;
+/// Rounds in which ground is filled up for rivers at most.
+const RIVER_ROUNDS: usize = 200;
 /// Ground within this of a limit keeps it, metres.
 const KEPT: f64 = 1e-6;
 
@@ -92,8 +94,8 @@ impl LimitedTerrain {
     }
 
     /// Makes a displacement of the nodes keep the limits; `None` if it does already.
-    pub(super) fn keep(&self, field: &Field, lakes: &Lakes, u: &mut [f64]) -> Option<LimitsReport> {
-        self.limits.keep(field, lakes, u)
+    pub(super) fn keep(&self, field: &Field, waters: &Waters, u: &mut [f64]) -> Option<LimitsReport> {
+        self.limits.keep(field, waters, u)
     }
 }
 
@@ -110,9 +112,10 @@ impl Limits {
         Self { floor: field.datum() - DEEPER * field.relief(), slope: DIRECTIONS * STEEPER * steep }
     }
 
-    /// The least ground over the displaced one that keeps the limits, and with it lakes level.
-    fn keep(&self, field: &Field, lakes: &Lakes, u: &mut [f64]) -> Option<LimitsReport> {
-        let h = field.heights();
+    /// Ground over the displaced one that keeps the limits, and with it lakes level and rivers from running uphill; without rivers it is the
+    /// least.
+    fn keep(&self, field: &Field, waters: &Waters, u: &mut [f64]) -> Option<LimitsReport> {
+        let (h, lakes) = (field.heights(), &waters.lakes);
         let solid = |i: usize| !field.void()[i];
         let mut ground: Vec<f64> = h.iter().zip(u.iter()).map(|(h, u)| (h + u).max(self.floor.min(*h))).collect();
         let lake_of: BTreeMap<u32, &[u32]> =
@@ -127,26 +130,40 @@ impl Limits {
         };
         let mut open: BinaryHeap<Node> =
             (0..h.len()).filter(|&i| solid(i) && short(&ground, i)).map(|i| Node(ground[i], i)).collect();
-        while let Some(Node(height, i)) = open.pop() {
-            if height < ground[i] {
-                continue;
+        let lift = |ground: &mut [f64], open: &mut BinaryHeap<Node>, j: usize, least: f64| {
+            ground[j] = least;
+            open.push(Node(least, j));
+            for &k in lake_of.get(&(j as u32)).into_iter().copied().flatten() {
+                let k = k as usize;
+                let with = h[k] + (least - h[j]);
+                if k != j && ground[k] < with {
+                    ground[k] = with;
+                    open.push(Node(with, k));
+                }
             }
-            for (j, d) in ways(field, i).filter(|(j, _)| solid(*j)) {
-                let least = height - allowed(i, j, d);
-                if ground[j] >= least {
+        };
+        for _ in 0..RIVER_ROUNDS {
+            while let Some(Node(height, i)) = open.pop() {
+                if height < ground[i] {
                     continue;
                 }
-                ground[j] = least;
-                open.push(Node(least, j));
-                for &k in lake_of.get(&(j as u32)).into_iter().copied().flatten() {
-                    let k = k as usize;
-                    let with = h[k] + (least - h[j]);
-                    if k != j && ground[k] < with {
-                        ground[k] = with;
-                        open.push(Node(with, k));
+                for (j, d) in ways(field, i).filter(|(j, _)| solid(*j)) {
+                    let least = height - allowed(i, j, d);
+                    if ground[j] < least {
+                        lift(&mut ground, &mut open, j, least);
                     }
                 }
             }
+            if waters.rivers.is_empty() {
+                break;
+            }
+            let mut moved: Vec<f64> = ground.iter().zip(h).map(|(z, h)| z - h).collect();
+            let mut raised = Vec::new();
+            waters.rivers.raise(&mut moved, &mut raised);
+            if raised.is_empty() {
+                break;
+            }
+            raised.into_iter().for_each(|n| lift(&mut ground, &mut open, n, h[n] + moved[n]));
         }
         let (mut held, mut most, mut nodes) = (0usize, 0.0f64, 0usize);
         for i in (0..h.len()).filter(|&i| solid(i)) {
@@ -274,7 +291,7 @@ mod tests {
         let limits = Limits::of(&field);
         let dug: Vec<f64> = (0..field.heights().len()).map(|i| -(((i * 31) % 97) as f64) * 3.0).collect();
         let mut u = dug.clone();
-        let told = limits.keep(&field, &Lakes::default(), &mut u).expect("deep pits");
+        let told = limits.keep(&field, &Waters::default(), &mut u).expect("deep pits");
         assert!(told.held_share > 0.1 && told.held_most_m > 10.0, "{told:?}");
         let h = field.heights();
         for i in 0..h.len() {
@@ -291,7 +308,7 @@ mod tests {
         }
         let again = u.clone();
         assert!(
-            limits.keep(&field, &Lakes::default(), &mut u).is_none_or(|r| r.held_most_m < 1e-4)
+            limits.keep(&field, &Waters::default(), &mut u).is_none_or(|r| r.held_most_m < 1e-4)
                 && u.iter().zip(&again).all(|(a, b)| (a - b).abs() < 1e-4)
         );
     }
@@ -306,7 +323,7 @@ mod tests {
             let depth = 0.4 * f64::from(k);
             let u: Vec<f64> = (0..grid.nodes()).map(|i| -depth * (((i * 37) % 11) as f64) / 11.0).collect();
             let mut fine = grid.prolong(&u);
-            let report = limited.keep(&field, &Lakes::default(), &mut fine);
+            let report = limited.keep(&field, &Waters::default(), &mut fine);
             if limited.surely_kept(&grid, &u) {
                 sure += 1;
                 assert!(report.is_none(), "depth {depth}");

@@ -7,10 +7,12 @@ use super::super::{
     candidate_points, grid_weight, judged_points, reference_points, stated_spacing, temporal_weight,
 };
 use super::agreement::BILINEAR;
-use super::lakes::{self, Lakes, Water};
+use super::lakes::{self, Water};
 use super::limits::LimitedTerrain;
+use super::waters::Waters;
 use crate::DisocclusionError;
 use crate::points::{RequiredFeature, required_features};
+use crate::rivers::RiverLine;
 use crate::spikes::{Spike, without_spikes};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Heightfield, Scene};
@@ -43,8 +45,9 @@ pub(super) struct Prepared {
     pub(super) despiked: Arc<Heightfield>,
     pub(super) spikes: Vec<Spike>,
     features: Vec<RequiredFeature>,
-    waters: Vec<Water>,
-    pub(super) lakes: Arc<Lakes>,
+    areas_of_water: Vec<Water>,
+    river_lines: Vec<RiverLine>,
+    pub(super) waters: Arc<Waters>,
     weights: Weights,
     pub(super) level: Arc<Field>,
     pub(super) grid: Hierarchy,
@@ -60,7 +63,7 @@ pub(super) struct Prepared {
     pub(super) cells: Option<Arc<(Cells, BlockMaxima)>>,
     /// Of modes with a greedy pass.
     pub(super) smooth: Option<SmoothPass>,
-    /// Of modes with a quadratic program: the one of frames without a frame before.
+    /// Of modes with a quadratic program, and for rivers: the one of frames without a frame before.
     pub(super) still: Option<Program>,
     /// And the one that keeps near the frame before, in films.
     pub(super) moving: Option<Program>,
@@ -117,19 +120,20 @@ impl TerrainMemory {
         weights: Weights,
     ) -> Result<Prepared, DisocclusionError> {
         let features = required_features(scene);
-        let waters = lakes::waters(scene);
+        let (areas_of_water, river_lines) = (lakes::waters(scene), RiverLine::of(scene, &settings.rivers)?);
         let fits = |p: &Prepared| {
             p.settings == *settings
                 && p.weights == weights
                 && p.features == features
-                && p.waters == waters
+                && p.areas_of_water == areas_of_water
+                && p.river_lines == river_lines
                 && (Arc::ptr_eq(&p.ground, heightfield) || p.ground == *heightfield)
         };
         match self.prepared.take().filter(fits) {
             Some(prepared) => Ok(prepared),
             None => {
                 self.last = None;
-                Prepared::new(scene, (features, waters), heightfield, settings, weights)
+                Prepared::new(scene, (features, areas_of_water, river_lines), heightfield, settings, weights)
             }
         }
     }
@@ -163,7 +167,7 @@ impl TerrainMemory {
 impl Prepared {
     fn new(
         scene: &Scene,
-        (features, waters): (Vec<RequiredFeature>, Vec<Water>),
+        (features, areas_of_water, river_lines): (Vec<RequiredFeature>, Vec<Water>, Vec<RiverLine>),
         heightfield: &Arc<Heightfield>,
         settings: &TerrainSettings,
         weights: Weights,
@@ -176,7 +180,7 @@ impl Prepared {
         let with_qp = settings.mode != SolverMode::Paper;
         let dense = if with_qp { candidate_points(scene, &level, settings) } else { Vec::new() };
         let check = judged_points(scene, &level, settings, CHECK_CELLS);
-        let lakes = Lakes::new(&waters, &level);
+        let waters = Waters::new(&areas_of_water, &river_lines, heightfield, &level);
         let limited = (with_qp && settings.limits).then(|| Arc::new(LimitedTerrain::new(&level, &grid)));
         let cells = (settings.mode != SolverMode::Qp).then(|| {
             let keep = settings.cells.unwrap_or_else(|| Cells::default_count(&level));
@@ -195,10 +199,11 @@ impl Prepared {
             None => None,
         };
         let made = |weights| {
-            program(&level, &grid, weights, options(settings, false), &lakes.tied(&grid))
+            program(&level, &grid, weights, options(settings, false), &waters)
                 .map(|solver| Program { solver, foreign: false })
         };
-        let still = with_qp.then(|| made(Weights { g: 0.0, ..weights })).transpose()?;
+        let with_program = with_qp || !waters.rivers.is_empty();
+        let still = with_program.then(|| made(Weights { g: 0.0, ..weights })).transpose()?;
         let moving = (with_qp && weights.g > 0.0).then(|| made(weights)).transpose()?;
         Ok(Self {
             settings: settings.clone(),
@@ -206,8 +211,9 @@ impl Prepared {
             despiked,
             spikes,
             features,
-            waters,
-            lakes: Arc::new(lakes),
+            areas_of_water,
+            river_lines,
+            waters: Arc::new(waters),
             weights,
             level: Arc::new(level),
             grid,
@@ -258,18 +264,19 @@ pub(super) fn options(settings: &TerrainSettings, from_guard: bool) -> QpOptions
     QpOptions { guard, ..QpOptions::of(settings) }
 }
 
-/// The quadratic program on a solver's grid, some of whose nodes are tied.
+/// The quadratic program on a solver's grid, over which lakes stay level and rivers do not run uphill.
 pub(super) fn program(
     field: &Field,
     grid: &Hierarchy,
     weights: Weights,
     options: QpOptions,
-    tied: &[Vec<u32>],
+    waters: &Waters,
 ) -> Result<QpSolver, DisocclusionError> {
     let Weights { w, g } = weights.on(grid);
     let smoother = Smoother::new(grid.cols(), grid.rows(), w, g)?;
     let mut qp = QpSolver::new(field, grid, smoother, options);
-    qp.tie(tied);
+    qp.tie(&waters.lakes.tied(grid));
+    qp.keep_downhill(&waters.rivers);
     Ok(qp)
 }
 

@@ -15,6 +15,7 @@ mod points_in_view;
 mod report;
 mod runs;
 mod shown;
+mod waters;
 
 pub use fallback::Fallback;
 pub use lakes::{BANK_M, LakeReport};

@@ -173,14 +173,14 @@ impl Passes<'_> {
         points: &[ReferencePoint],
         ground: &mut Ground,
     ) -> Result<f64, DisocclusionError> {
-        let (grid, lakes) = (&prepared.grid, &*prepared.lakes);
-        let mut full = (ground.detail.is_some() || !lakes.is_empty())
-            .then(|| lakes.whole(grid, &ground.coarse, ground.detail.as_deref()));
+        let (grid, waters) = (&prepared.grid, &*prepared.waters);
+        let mut full = (ground.detail.is_some() || !waters.is_empty())
+            .then(|| waters.whole(grid, &ground.coarse, ground.detail.as_deref()));
         if let Some(limited) = &prepared.limited
             && (full.is_some() || !limited.surely_kept(grid, &ground.coarse))
         {
             let mut u = full.take().unwrap_or_else(|| grid.prolong(&ground.coarse));
-            ground.limited = limited.keep(&prepared.level, lakes, &mut u);
+            ground.limited = limited.keep(&prepared.level, waters, &mut u);
             full = Some(u);
         }
         ground.full = full;

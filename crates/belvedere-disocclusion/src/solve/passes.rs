@@ -4,7 +4,7 @@ use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult};
 use super::super::{BlockMaxima, Field, Hierarchy, Naive, ReferencePoint, Smoother, SolverMode, TerrainSettings};
 use super::agreement::Agreement;
 use super::fallback::{self, Fallback};
-use super::lakes::Lakes;
+use super::waters::Waters;
 use super::memory::{self, Prepared, Weights};
 use super::out_of_time::Ground;
 use super::{Outcome, PointsInView, QpReport, TerrainTimes, scales, since};
@@ -28,7 +28,7 @@ struct Finer<'a> {
     ground: &'a [f64],
     detail: Option<&'a [f64]>,
     weights: Weights,
-    lakes: &'a Lakes,
+    waters: &'a Waters,
     options: QpOptions,
     /// Points by which the result is judged.
     check: &'a [Candidate],
@@ -74,7 +74,9 @@ impl Passes<'_> {
         if prepared.cells.is_some() {
             detail = self.paper(prepared, in_view, &mut done, times)?;
         }
-        if prepared.still.is_some() {
+        if self.settings.mode == SolverMode::Paper {
+            self.downhill(prepared, in_view, &mut done)?;
+        } else {
             if prepared.cells.is_some() && self.progress.is_limited() {
                 samples.push(Ground::single_pass(&done.coarse, detail.clone()));
             }
@@ -84,9 +86,9 @@ impl Passes<'_> {
                 samples.extend(self.samples_of(prepared, in_view, detail.as_deref())?);
             }
         }
-        if detail.is_some() || !prepared.lakes.is_empty() {
+        if detail.is_some() || !prepared.waters.is_empty() {
             let (grid, u) = done.fine.as_ref().map_or((&prepared.grid, &done.coarse), |(grid, u)| (grid, u));
-            done.full = Some(prepared.lakes.whole(grid, u, detail.as_deref()));
+            done.full = Some(prepared.waters.whole(grid, u, detail.as_deref()));
             done.fine = None;
         }
         self.limit(prepared, &mut done);
@@ -125,7 +127,7 @@ impl Passes<'_> {
             (None, Some((grid, u))) => grid.prolong(u),
             (None, None) => prepared.grid.prolong(&done.coarse),
         };
-        done.limited = limited.keep(&prepared.level, &prepared.lakes, &mut u);
+        done.limited = limited.keep(&prepared.level, &prepared.waters, &mut u);
         if done.limited.is_some() {
             done.full = Some(u);
         }
@@ -165,12 +167,29 @@ impl Passes<'_> {
             let smooth = pass.plain(&u);
             let parts = whole.iter().zip(smooth).zip(field.void());
             let mut detail: Vec<f64> = parts.map(|((w, s), void)| if *void { 0.0 } else { w - s }).collect();
-            prepared.lakes.clear(&mut detail);
+            prepared.waters.clear(&mut detail, field);
             detail
         });
         done.coarse = u;
         times.smooth_ms = since(began);
         Ok(detail)
+    }
+
+    /// The displacement next to that of the smooth pass under which no river runs uphill.
+    fn downhill(
+        &self,
+        prepared: &mut Prepared,
+        in_view: &PointsInView<'_>,
+        done: &mut Outcome,
+    ) -> Result<(), DisocclusionError> {
+        let Some(program) = prepared.still.as_mut().filter(|_| !prepared.waters.rivers.is_empty()) else {
+            return Ok(());
+        };
+        let free = vec![f64::INFINITY; done.coarse.len()];
+        let (sight, target) = (&*in_view.sight, Some(&done.coarse[..]));
+        let problem = QpProblem { candidates: &[], sight, target, ceilings: Some(&free) };
+        done.coarse = program.solver.solve_with(&problem, self.progress)?.u;
+        Ok(())
     }
 
     /// What the quadratic program stays near to; `None` = no displacement.
@@ -228,11 +247,11 @@ impl Passes<'_> {
         }
         // Where a lake sinks with all its banks the limits fill up most of it again: that is not worth another solution.
         let in_vain = prepared.limited.as_ref().is_some_and(|limited| {
-            !prepared.lakes.is_empty() && limited.beyond(&prepared.grid, &result.u) > FAR_BEYOND * self.field.relief()
+            !prepared.waters.lakes.is_empty() && limited.beyond(&prepared.grid, &result.u) > FAR_BEYOND * self.field.relief()
         });
         if self.stuck(&result) && !in_vain {
             let mut cut = fallback::cut_detail(self.field, &ground, &prepared.grid, &result.active);
-            prepared.lakes.clear(&mut cut);
+            prepared.waters.clear(&mut cut, self.field);
             let lower: Vec<f64> = ground.iter().zip(&cut).map(|(h, c)| h + c).collect();
             qp.set_heights(&lower)?;
             foreign = true;
@@ -260,8 +279,8 @@ impl Passes<'_> {
         let options = memory::options(self.settings, from_guard);
         if fallback::stuck(&result) == 0 && !in_vain && (self.frame.is_none() || detail.is_some()) {
             let (field, grid, detail) = (self.field, &prepared.grid, detail.as_deref());
-            let (lakes, progress) = (&*prepared.lakes, self.progress);
-            let agreement = Agreement { field, grid, detail, lakes, check: &check, options, progress };
+            let (waters, progress) = (&*prepared.waters, self.progress);
+            let agreement = Agreement { field, grid, detail, waters, check: &check, options, progress };
             (result, hidden) = agreement.reach(qp, &ground, &problem, result)?;
             foreign = true;
         }
@@ -269,8 +288,8 @@ impl Passes<'_> {
         done.coarse.clone_from(&result.u);
         if self.unfinished(&result, hidden) && !in_vain {
             let (coarse, detail) = (&prepared.grid, detail.as_deref());
-            let lakes = &*prepared.lakes;
-            let grids = Finer { coarse, ground: &ground, detail, weights, lakes, options, check: &check };
+            let waters = &*prepared.waters;
+            let grids = Finer { coarse, ground: &ground, detail, weights, waters, options, check: &check };
             result = self.on_finer_grids(&grids, &problem, (result, hidden), done)?;
         }
         done.qp = Some(QpReport::of(&result, in_view.candidates.len()));
@@ -299,7 +318,7 @@ impl Passes<'_> {
         (mut best, mut hidden): (QpResult, usize),
         done: &mut Outcome,
     ) -> Result<QpResult, DisocclusionError> {
-        let Finer { coarse, ground, detail, weights, lakes, options, check } = *grids;
+        let Finer { coarse, ground, detail, weights, waters, options, check } = *grids;
         for grid in fallback::finer(coarse, self.field) {
             if !self.unfinished(&best, hidden) {
                 break;
@@ -307,14 +326,14 @@ impl Passes<'_> {
             self.progress.tick("quadratic program on a finer grid", 0.7)?;
             let nodes = grid.cols().max(grid.rows());
             let target = problem.target.map(|t| fallback::resampled(coarse, t, &grid));
-            let mut finer = memory::program(self.field, &grid, weights, options, &lakes.tied(&grid))?;
+            let mut finer = memory::program(self.field, &grid, weights, options, waters)?;
             finer.set_heights(ground)?;
             let problem = QpProblem { target: target.as_deref(), ..*problem };
             let mut next = finer.solve_with(&problem, self.progress)?;
             let mut left = 0;
             if fallback::stuck(&next) == 0 {
                 let (field, progress) = (self.field, self.progress);
-                (next, left) = Agreement { field, grid: &grid, detail, lakes, check, options, progress }
+                (next, left) = Agreement { field, grid: &grid, detail, waters, check, options, progress }
                     .reach(&mut finer, ground, &problem, next)?;
             }
             if (fallback::stuck(&next), left) < (fallback::stuck(&best), hidden) {

@@ -11,6 +11,7 @@ use super::runs::Runs;
 use super::shown::Shown;
 use super::{Fallback, LakeReport, LimitsReport, Outcome, PointsInView, Taken, since};
 use crate::DisocclusionError;
+use crate::rivers::{RIVER_TOLERANCE_M, RiverReport};
 use crate::spikes::Spike;
 use belvedere_core::grid::Grid;
 use belvedere_core::{DVec2, View};
@@ -67,6 +68,9 @@ pub struct TerrainReport {
     /// Lakes and how they moved: each as a whole.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lakes: Vec<LakeReport>,
+    /// The rivers that were asked not to run uphill, and how they run.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rivers: Vec<RiverReport>,
     /// Whether every candidate in view is guaranteed to be seen in this picture, and the judge agrees: of what is in view at
     /// least 0.9999 is seen ([`TerrainMetrics::visible_dense`]); `hidden` names the rest. Where nothing is asked for nothing is
     /// guaranteed.
@@ -310,6 +314,15 @@ pub(super) fn report(
     let guards = c.settings.mode != SolverMode::Paper;
     let stated_m = stated_spacing(field.cols(), field.rows(), field.spacing());
     let w = c.settings.smoothness(stated_m);
+    let moved = |i: usize| {
+        let node = DVec2::new((i % field.cols()) as f64, (i / field.cols()) as f64);
+        c.delta.sample(field.scene_from_grid(node)).unwrap_or(0.0)
+    };
+    let rivers = match &prepared.waters.rivers {
+        rivers if rivers.is_empty() => Vec::new(),
+        rivers => rivers.report(&(0..field.heights().len()).map(moved).collect::<Vec<_>>()),
+    };
+    let downhill = rivers.iter().all(|river| river.excess_m <= RIVER_TOLERANCE_M);
     let mut out = TerrainReport {
         parameters: TerrainSettings { w: Some(w), detail: Some(c.settings.detail()), ..c.settings.clone() },
         w,
@@ -327,16 +340,15 @@ pub(super) fn report(
         fallbacks: done.fallbacks.clone(),
         limited: done.limited,
         spikes: prepared.spikes.clone(),
-        lakes: prepared.lakes.report(|i| {
-            let node = DVec2::new((i % field.cols()) as f64, (i / field.cols()) as f64);
-            c.delta.sample(field.scene_from_grid(node)).unwrap_or(0.0)
-        }),
+        lakes: prepared.waters.lakes.report(moved),
+        rivers,
         guaranteed: guards
             && !in_view.candidates.is_empty()
             && named.program_met
             && !done.stopped
             && metrics.visible_dense >= AGREES
             && judgement.dense.len() as f64 <= (1.0 - AGREES) * dense.len() as f64
+            && downhill
             && (every == 1 || judgement.points.is_empty() && judgement.dense.is_empty())
             && (done.limited.is_none() || hidden.is_empty()),
         out_of_time: done.stopped,

@@ -21,6 +21,7 @@ mod single_line;
 mod solver;
 mod surface;
 mod ties;
+mod uphill;
 mod view_rays;
 mod walk;
 

@@ -117,7 +117,7 @@ pub struct QpProblem<'a> {
 /// A row of the solution: `sum weights u[nodes] <= bound`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolvedRow {
-    /// Candidate whose line of sight it keeps clear; `None` = a node below its ceiling.
+    /// Candidate whose line of sight it keeps clear; `None` = a node below its ceiling, or a river that does not rise.
     pub candidate: Option<u32>,
     /// Where the ground comes near the line, grid coordinates.
     pub at: DVec2,

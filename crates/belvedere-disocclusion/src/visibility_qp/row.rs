@@ -1,6 +1,7 @@
 //! Rows of the program: `a u <= bound`.
 
 use super::metric::Metric;
+use super::uphill::Stretch;
 use crate::smooth::Between;
 use belvedere_core::DVec2;
 
@@ -9,11 +10,13 @@ use belvedere_core::DVec2;
 pub(super) enum Constraint {
     /// A node does not rise above its ceiling.
     Ceiling(u32),
+    /// A river does not rise along a stretch.
+    River(Stretch),
     /// The ground at `at` (grid) stays below the line of sight of a candidate; `tau` = share of the way to the eye.
     Sight { candidate: usize, at: DVec2, tau: f64 },
 }
 
-/// At most eight nodes: four around the ground sample, four around the point that must be seen.
+/// At most eight nodes: four around the ground sample, four around the point that must be seen; or around two places of a river.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Row {
     pub(super) nodes: [u32; 8],
@@ -40,8 +43,9 @@ impl Row {
         }
     }
 
-    pub(super) fn is_ceiling(&self) -> bool {
-        matches!(self.constraint, Constraint::Ceiling(_))
+    /// Whether it must be met at any price: no displacement meets those that may not be missed.
+    pub(super) fn is_firm(&self) -> bool {
+        matches!(self.constraint, Constraint::Ceiling(_) | Constraint::River(_))
     }
 
     pub(super) fn entries(&self) -> impl Iterator<Item = (u32, f64)> {

@@ -6,6 +6,7 @@ use super::metric::Metric;
 use super::problem::{Certificate, SolvedRow};
 use super::row::{Constraint, Row};
 use super::ties;
+use super::uphill::Stretch;
 use belvedere_core::DVec2;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -24,6 +25,7 @@ pub(super) struct RememberedRow {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum RowKey {
     Ceiling(u32),
+    River(Stretch),
     Sight { id: u32, at: DVec2 },
 }
 
@@ -109,9 +111,18 @@ impl RowsInPlay {
     pub(super) fn ceilings(&self) -> BTreeSet<u32> {
         let node = |row: &Row| match row.constraint {
             Constraint::Ceiling(node) => Some(node),
-            Constraint::Sight { .. } => None,
+            Constraint::River(_) | Constraint::Sight { .. } => None,
         };
         self.rows.iter().filter_map(node).collect()
+    }
+
+    /// Stretches of rivers that have a row.
+    pub(super) fn stretches(&self) -> BTreeSet<Stretch> {
+        let stretch = |row: &Row| match row.constraint {
+            Constraint::River(stretch) => Some(stretch),
+            Constraint::Ceiling(_) | Constraint::Sight { .. } => None,
+        };
+        self.rows.iter().filter_map(stretch).collect()
     }
 
     /// Goes on without a matrix.
@@ -201,6 +212,7 @@ impl RowsInPlay {
             if idle < IDLE {
                 let key = match row.constraint {
                     Constraint::Ceiling(node) => RowKey::Ceiling(node),
+                    Constraint::River(stretch) => RowKey::River(stretch),
                     Constraint::Sight { candidate, at, .. } => RowKey::Sight { id: id(candidate), at },
                 };
                 out.push(RememberedRow { key, multiplier, idle });
@@ -217,7 +229,7 @@ impl RowsInPlay {
         held.map(|i| {
             let Row { nodes, weights, bound, constraint, .. } = self.rows[i];
             let (candidate, at, tau) = match constraint {
-                Constraint::Ceiling(_) => (None, DVec2::ZERO, 0.0),
+                Constraint::Ceiling(_) | Constraint::River(_) => (None, DVec2::ZERO, 0.0),
                 Constraint::Sight { candidate, at, tau } => (Some(id(candidate)), at, tau),
             };
             let (multiplier, slack) = (self.multiplier(i), self.slack(i));

@@ -9,8 +9,10 @@ use super::row::Constraint;
 use super::row::Row;
 use super::rows_in_play::{Accuracy, IDLE, NewRow, RememberedRow, RowKey, RowsInPlay};
 use super::surface::{Lattice, Surface};
+use super::uphill::{self, Uphill};
 use super::walk::{Clearance, Touch};
 use crate::Field;
+use crate::rivers::Rivers;
 use crate::smooth::{Between, Hierarchy, Smoother};
 use belvedere_core::DVec2;
 use belvedere_scene::Instant;
@@ -43,6 +45,7 @@ const KNOWN: f64 = 0.5;
 pub struct QpSolver {
     metric: Metric,
     surface: Surface,
+    uphill: Uphill,
     options: QpOptions,
     kept: Vec<RememberedRow>,
 }
@@ -67,12 +70,18 @@ impl QpSolver {
     pub fn new(field: &Field, hierarchy: &Hierarchy, smoother: Smoother, options: QpOptions) -> Self {
         let lattice = Lattice { cols: hierarchy.cols(), rows: hierarchy.rows(), step: hierarchy.step() };
         let surface = Surface::new(field.heights(), field.cols(), field.rows(), lattice);
-        Self { metric: Metric::new(smoother), surface, options, kept: Vec::new() }
+        Self { metric: Metric::new(smoother), surface, uphill: Uphill::default(), options, kept: Vec::new() }
     }
 
     /// From now on the nodes of each of these sets have one displacement. No node is in two of them.
     pub fn tie(&mut self, sets: &[Vec<u32>]) {
         self.metric.tie(sets);
+    }
+
+    /// From now on these rivers of the field do not run uphill.
+    pub(crate) fn keep_downhill(&mut self, rivers: &Rivers) {
+        self.uphill = Uphill::new(rivers, &self.surface.lattice);
+        self.kept.retain(|row| !matches!(row.key, RowKey::River(_)));
     }
 
     /// Other ground on the same grid (in mode `paper+qp` detail may be scaled).
@@ -238,6 +247,7 @@ impl QpSolver {
         for kept in &self.kept {
             let row = match kept.key {
                 RowKey::Ceiling(node) => Some(self.ceiling_row(frame, node)),
+                RowKey::River(stretch) => Some(self.uphill.row(stretch, &self.surface.lattice)),
                 RowKey::Sight { id, at } => {
                     by_id.get(&id).and_then(|&k| frame.seen[k].follow(&self.surface, at, &frame.clearance))
                 }
@@ -259,9 +269,10 @@ impl QpSolver {
 
     fn new_row(&self, frame: &Frame, row: Row, (multiplier, idle): (f64, u32)) -> NewRow {
         let excess = row.at(&frame.target) - row.bound;
-        let soft = if row.is_ceiling() { 0.0 } else { frame.soft };
+        let soft = if row.is_firm() { 0.0 } else { frame.soft };
         let allowed = match row.constraint {
             Constraint::Ceiling(_) => self.options.ceiling_tolerance,
+            Constraint::River(_) => uphill::ALLOWED,
             Constraint::Sight { tau, .. } => frame.clearance.tolerance * frame.clearance.share(tau),
         };
         // The walks find what is missed by more than is allowed.
@@ -281,7 +292,7 @@ impl QpSolver {
         self.push(frame, rows);
     }
 
-    /// Solves with the rows in play and adds ceilings until no node rises above its own; without a matrix it adds them once, for
+    /// Solves with the rows in play and adds ceilings until no node rises above its own, and likewise rows of rivers; without a matrix it adds them once, for
     /// the next round. Answers whether rows and ceilings are met as they must be in the end.
     fn settle(&mut self, frame: &mut Frame, enough: f64) -> bool {
         let mut u = vec![0.0; frame.target.len()];
@@ -292,13 +303,18 @@ impl QpSolver {
             let met = frame.pool.solve(&mut self.metric, accuracy, &|| !progress.should_end());
             frame.pool.displacement(&mut self.metric, &frame.target, &mut u);
             let risen = self.risen(frame, &u);
-            if risen.is_empty() {
+            let rising = self.uphill.rising(&u);
+            if risen.is_empty() && rising.is_empty() {
                 settled = met && (enough == 0.0 || !frame.pool.is_matrix_free());
                 break;
             }
             let known = frame.pool.ceilings();
             let new = risen.into_iter().filter(|node| !known.contains(node));
-            let rows: Vec<Row> = new.map(|node| self.ceiling_row(frame, node)).collect();
+            let ceilings = new.map(|node| self.ceiling_row(frame, node));
+            let known = frame.pool.stretches();
+            let rising = rising.into_iter().filter(|stretch| !known.contains(stretch));
+            let rivers = rising.map(|stretch| self.uphill.row(stretch, &self.surface.lattice));
+            let rows: Vec<Row> = ceilings.chain(rivers).collect();
             self.push(frame, rows);
             if frame.pool.is_matrix_free() || progress.should_end() {
                 break;

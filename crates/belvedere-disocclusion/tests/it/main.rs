@@ -9,6 +9,7 @@ mod live;
 mod memory;
 mod one_judge;
 mod qp;
+mod rivers;
 mod smooth;
 mod smoothing;
 mod time_limit;

@@ -1,0 +1,301 @@
+//! Rivers that do not run uphill: the displaced ground along a line rises downstream by no more than the elevation model does there.
+//!
+//! Places along a river, downstream, have heights h. Its *bed* is their running minimum, so that h - bed is how far the elevation model
+//! rises over the lowest place upstream: its noise there. Where bed + u does not rise downstream, the displaced ground h + u lies over the
+//! lowest displaced place upstream by at most that noise, at every place: linear in the displacement u, and true without displacement.
+
+use crate::DisocclusionError;
+use crate::points::mesh_crossings;
+use belvedere_core::DVec2;
+use belvedere_scene::{CellTriangle, LayerKind, Scene};
+use serde::Serialize;
+
+/// A displaced river may rise by so much more than the elevation model does, metres.
+pub const RIVER_TOLERANCE_M: f64 = 0.05;
+/// What rises by no more is left as it is where displacements of nodes are changed, metres.
+const SAME: f64 = 1e-4;
+/// Rounds in which nodes are lowered at most.
+const PASSES: usize = 1000;
+/// Weights below this are rounding.
+const NONE: f64 = 1e-9;
+/// Share of a river whose heights stand for one of its ends.
+const END_SHARE: f64 = 0.1;
+
+/// The line of a river.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RiverLine {
+    /// Index of the layer in the scene.
+    pub layer: usize,
+    /// Index of the feature in its layer.
+    pub feature: usize,
+    /// Its name; empty if it has none.
+    pub name: String,
+    /// Places along it, scene x, y or grid coordinates, in either direction.
+    pub points: Vec<DVec2>,
+}
+
+impl RiverLine {
+    /// The lines of the layers `ids`.
+    ///
+    /// # Errors
+    /// [`DisocclusionError::River`] if one of them is no line layer of the scene.
+    pub fn of(scene: &Scene, ids: &[String]) -> Result<Vec<Self>, DisocclusionError> {
+        let mut out = Vec::new();
+        for id in ids {
+            let known = || scene.layers.iter().filter(|l| matches!(l.kind, LayerKind::Line(_))).map(|l| l.id.clone());
+            let wrong = || DisocclusionError::River { id: id.clone(), lines: known().collect() };
+            let (layer, found) = scene.layers.iter().enumerate().find(|(_, l)| l.id == *id).ok_or_else(wrong)?;
+            let LayerKind::Line(lines) = &found.kind else { return Err(wrong()) };
+            out.extend(lines.features.iter().enumerate().map(|(feature, line)| Self {
+                layer,
+                feature,
+                name: line.name.clone(),
+                points: line.points.iter().map(|p| p.truncate()).filter(|p| p.is_finite()).collect(),
+            }));
+        }
+        Ok(out)
+    }
+
+    /// The same with each point moved to other coordinates; points without any are left out.
+    pub fn mapped(&self, to: impl Fn(DVec2) -> Option<DVec2>) -> Self {
+        Self { points: self.points.iter().filter_map(|p| to(*p)).collect(), ..self.clone() }
+    }
+}
+
+/// A river on the displaced ground.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RiverReport {
+    /// Index of the layer in the scene.
+    pub layer: usize,
+    /// Index of the feature in its layer.
+    pub feature: usize,
+    /// Its name; empty if it has none.
+    pub name: String,
+    /// Farthest that a place lies over a place upstream of it on the elevation model: its noise.
+    pub rise_before_m: f64,
+    /// The same on the displaced ground.
+    pub rise_after_m: f64,
+    /// By how much a place rises over those upstream more than on the elevation model, at most; 0 but for rounding.
+    pub excess_m: f64,
+}
+
+/// Both grounds that a displacement makes: flat facets, as files hold it, and the bilinear one.
+pub(crate) const GROUNDS: [bool; 2] = [true, false];
+
+/// A place on a river.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Place {
+    /// Grid coordinates.
+    pub(crate) grid: DVec2,
+    /// Height of the undisplaced ground.
+    height: f64,
+    /// Lowest height from the spring to here.
+    pub(crate) bed: f64,
+    nodes: [u32; 4],
+    /// Of the nodes, for [`GROUNDS`].
+    weights: [[f64; 4]; 2],
+}
+
+impl Place {
+    fn entries(&self, ground: usize) -> impl Iterator<Item = (usize, f64)> {
+        let all = self.nodes.iter().map(|n| *n as usize).zip(self.weights[ground]);
+        all.filter(|(_, w)| *w > NONE).collect::<Vec<_>>().into_iter()
+    }
+
+    fn moved(&self, u: &[f64], ground: usize) -> f64 {
+        (0..4).map(|k| self.weights[ground][k] * u[self.nodes[k] as usize]).sum()
+    }
+}
+
+/// A river on a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct River {
+    layer: usize,
+    feature: usize,
+    name: String,
+    /// Downstream: wherever it crosses the mesh, and halfway between.
+    pub(crate) places: Vec<Place>,
+}
+
+/// Rivers on a grid of heights, row-major.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Rivers {
+    rivers: Vec<River>,
+}
+
+impl Rivers {
+    /// * `lines`: in grid coordinates (column, row);
+    /// * `height`: of a node, metres; `None` where there is no data. Parts of rivers there are left out.
+    pub fn new(
+        lines: impl IntoIterator<Item = RiverLine>,
+        [cols, rows]: [usize; 2],
+        height: impl Fn(usize) -> Option<f64>,
+    ) -> Self {
+        let river = |line: RiverLine| {
+            let at = |g: DVec2| place(g, [cols, rows], &height);
+            let mut places: Vec<Place> = stations(&line.points, [cols, rows]).into_iter().filter_map(at).collect();
+            if runs_up(&places) {
+                places.reverse();
+            }
+            let mut bed = f64::INFINITY;
+            for place in &mut places {
+                bed = bed.min(place.height);
+                place.bed = bed;
+            }
+            let RiverLine { layer, feature, name, .. } = line;
+            River { layer, feature, name, places }
+        };
+        let rivers = if cols < 2 || rows < 2 { Vec::new() } else { lines.into_iter().map(river).collect::<Vec<_>>() };
+        Self { rivers: rivers.into_iter().filter(|river| river.places.len() > 1).collect() }
+    }
+
+    /// Whether none lies on the grid.
+    pub fn is_empty(&self) -> bool {
+        self.rivers.is_empty()
+    }
+
+    pub(crate) fn all(&self) -> &[River] {
+        &self.rivers
+    }
+
+    /// Nodes of the grid beside the rivers.
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = u32> + '_ {
+        self.rivers.iter().flat_map(|river| &river.places).flat_map(|place| place.nodes)
+    }
+
+    /// Lowers nodes of a displacement until no river rises downstream by more than on the undisplaced ground; what does not already keeps
+    /// its displacement. Answers whether that was reached.
+    ///
+    /// * `together`: lowers what moves together with lowered nodes, and answers whether it changed any.
+    pub fn settle(&self, u: &mut [f64], mut together: impl FnMut(&mut [f64]) -> bool) -> bool {
+        for _ in 0..PASSES {
+            let mut sank = false;
+            for river in &self.rivers {
+                for ground in 0..GROUNDS.len() {
+                    sank |= river.sink(u, ground);
+                }
+            }
+            let followed = together(u);
+            if !sank && !followed {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Raises nodes of a displacement so that no river rises downstream, once along each; appends those that it raised.
+    pub(crate) fn raise(&self, u: &mut [f64], raised: &mut Vec<usize>) {
+        for river in &self.rivers {
+            (0..GROUNDS.len()).for_each(|ground| river.raise(u, ground, raised));
+        }
+    }
+
+    /// How the rivers run.
+    ///
+    /// * `u`: displacement of every node.
+    pub fn report(&self, u: &[f64]) -> Vec<RiverReport> {
+        self.rivers.iter().map(|river| river.report(u)).collect()
+    }
+}
+
+impl River {
+    fn sink(&self, u: &mut [f64], ground: usize) -> bool {
+        let (mut lowest, mut sank) = (f64::INFINITY, false);
+        for place in &self.places {
+            let most = lowest - place.bed;
+            if place.moved(u, ground) > most + SAME {
+                place.entries(ground).for_each(|(n, _)| u[n] = u[n].min(most));
+                sank = true;
+            }
+            lowest = lowest.min(place.bed + place.moved(u, ground));
+        }
+        sank
+    }
+
+    fn raise(&self, u: &mut [f64], ground: usize, raised: &mut Vec<usize>) {
+        let mut highest = f64::NEG_INFINITY;
+        for place in self.places.iter().rev() {
+            let least = highest - place.bed;
+            if place.moved(u, ground) < least - SAME {
+                for (n, _) in place.entries(ground).filter(|(n, _)| u[*n] < least).collect::<Vec<_>>() {
+                    u[n] = least;
+                    raised.push(n);
+                }
+            }
+            highest = highest.max(place.bed + place.moved(u, ground));
+        }
+    }
+
+    fn report(&self, u: &[f64]) -> RiverReport {
+        let [mut before, mut after, mut excess] = [0.0f64; 3];
+        for ground in 0..GROUNDS.len() {
+            let mut lowest = f64::INFINITY;
+            for place in &self.places {
+                let height = place.height + place.moved(u, ground);
+                lowest = lowest.min(height);
+                let [rise, noise] = [height - lowest, place.height - place.bed];
+                before = before.max(noise);
+                after = after.max(rise);
+                excess = excess.max(rise - noise);
+            }
+        }
+        RiverReport {
+            layer: self.layer,
+            feature: self.feature,
+            name: self.name.clone(),
+            rise_before_m: before,
+            rise_after_m: after,
+            excess_m: excess,
+        }
+    }
+}
+
+/// Where a line begins, ends, turns and crosses the mesh, and halfway between, grid coordinates.
+fn stations(points: &[DVec2], [cols, rows]: [usize; 2]) -> Vec<DVec2> {
+    let last = DVec2::new((cols - 1) as f64, (rows - 1) as f64);
+    let mut out: Vec<DVec2> = points.first().copied().into_iter().collect();
+    for pair in points.windows(2) {
+        let step = pair[1] - pair[0];
+        // Far beyond the grid there is no mesh to cross.
+        let near = |p: DVec2| p.cmpge(-DVec2::ONE).all() && p.cmple(last + 1.0).all();
+        let crossings = mesh_crossings(pair[0], step).filter(|share| near(pair[0] + *share * step));
+        let mut shares: Vec<f64> = crossings.chain([1.0]).collect();
+        shares.sort_by(f64::total_cmp);
+        let mut from = 0.0;
+        for share in shares {
+            out.extend([0.5 * (from + share), share].map(|share| pair[0] + share * step));
+            from = share;
+        }
+    }
+    out
+}
+
+/// A place on a grid; `None` beside it and where there is no data. Its bed is not known yet.
+fn place(g: DVec2, [cols, rows]: [usize; 2], height: impl Fn(usize) -> Option<f64>) -> Option<Place> {
+    let last = DVec2::new((cols - 1) as f64, (rows - 1) as f64);
+    if !(g.cmpge(DVec2::ZERO).all() && g.cmple(last).all()) {
+        return None;
+    }
+    let (col, row) = ((g.x as usize).min(cols - 2), (g.y as usize).min(rows - 2));
+    let nw = row * cols + col;
+    let nodes = [nw, nw + 1, nw + cols, nw + cols + 1];
+    let inside = g - DVec2::new(col as f64, row as f64);
+    let height = CellTriangle::surface(nodes.map(height), inside)?;
+    let DVec2 { x, y } = inside;
+    // How far facets lie over the bilinear ground, per unit of its factor of xy.
+    let facet = inside.min_element() - x * y;
+    let [flat, bilinear] = [facet, 0.0]
+        .map(|f| [(1.0 - x) * (1.0 - y) + f, x * (1.0 - y) - f, (1.0 - x) * y - f, x * y + f]);
+    Some(Place { grid: g, height, bed: height, nodes: nodes.map(|n| n as u32), weights: [flat, bilinear] })
+}
+
+/// Whether the last part of a river lies over its first.
+fn runs_up(places: &[Place]) -> bool {
+    let end = ((places.len() as f64 * END_SHARE) as usize).max(1);
+    let middle = |part: &[Place]| {
+        let mut heights: Vec<f64> = part.iter().map(|p| p.height).collect();
+        heights.sort_by(f64::total_cmp);
+        heights.get(heights.len() / 2).copied().unwrap_or(0.0)
+    };
+    !places.is_empty() && middle(&places[places.len() - end..]) > middle(&places[..end])
+}
