@@ -6,19 +6,22 @@
 //! the fewest frames, and of those the one that turns, moves and bends least, is a shortest path over frames and places.
 
 use super::tracking::{Search, WHOLE};
-use super::way::Disc;
+use super::way::{Disc, PER_RING, on_ring};
 use super::{Target, TargetSight, TrackingMemory, TrackingOptions};
 use crate::ConstructError;
 use belvedere_core::View;
 use belvedere_scene::Scene;
 use rayon::prelude::*;
+use std::f64::consts::TAU;
 
 /// Steps of f on either side of 0, at most.
 const MOST: usize = 250;
-/// Places per unit of the offset, first and second search up, down and aslant.
+/// Rings of places, first and second search up, down and aslant.
 const WIDE: [usize; 2] = [4, 8];
 /// A frame that does not show the whole target costs more than any motion.
 const HIDDEN: f64 = 1e6;
+/// Cost of a second in which nothing of the target is seen, beyond that it is not whole.
+const LESS: f64 = 40.0;
 /// Cost of bending to f = 1 for a second, and of doing so upwards or downwards; moving f by 1 costs 1.
 const BENT: f64 = 0.3;
 const ASIDE: f64 = 0.1;
@@ -42,7 +45,7 @@ type Seen = (f32, bool);
 struct Known {
     /// From f = -1 to 1 sideways.
     sideways: Vec<Seen>,
-    /// On the square around the disc, rows from below; empty before the wide search.
+    /// On `side` rings, from the first to the rim; empty before the wide search.
     wide: Vec<Seen>,
     side: usize,
 }
@@ -78,9 +81,7 @@ impl FilmPlanner {
         let search = Search::new(base, target, &self.options, &sight, &self.memory);
         let grow = self.options.grow_px;
         let seen = |[x, y]: [f64; 2]| -> Seen {
-            // The square has corners beyond the rim.
-            let f = x.hypot(y).min(1.0);
-            let at = if y == 0.0 { (x, 0.0) } else { (f, y.atan2(x).to_degrees()) };
+            let at = if y == 0.0 { (x, 0.0) } else { (x.hypot(y), y.atan2(x).to_degrees()) };
             let share = search.seen(at, 0.0);
             (share as f32, share >= WHOLE && (grow == 0.0 || search.seen(at, grow) >= WHOLE))
         };
@@ -91,19 +92,9 @@ impl FilmPlanner {
             self.frames.push(Known { sideways, ..Known::default() });
         } else if let Some(known) = self.frames.get(self.next) {
             let side = WIDE[self.pass - 1];
-            let width = 2 * side + 1;
-            let node = |k: usize| -> Seen {
-                let [x, y] = [k % width, k / width].map(|i| i as f64 / side as f64 - 1.0);
-                // Nodes that no cell of the disc has at its corners.
-                if x.hypot(y) > 1.0 + std::f64::consts::SQRT_2 / side as f64 {
-                    return (0.0, false);
-                }
-                match y == 0.0 {
-                    true => known.sideways(x),
-                    false => known.node([x, y]).unwrap_or_else(|| seen([x, y])),
-                }
-            };
-            let wide = (0..width * width).into_par_iter().map(node).collect();
+            let nodes: Vec<[f64; 2]> = (1..=side).flat_map(|ring| on_ring(ring, side)).collect();
+            let node = |&at: &[f64; 2]| known.exactly(at).unwrap_or_else(|| seen(at));
+            let wide = nodes.par_iter().map(node).collect();
             let sideways = known.sideways.clone();
             self.frames[self.next] = Known { sideways, wide, side };
         }
@@ -120,20 +111,21 @@ impl FilmPlanner {
             let mut sum = vec![0.0; disc.places.len()];
             for known in self.frames.iter().skip(knot * disc.stride).take(disc.stride) {
                 for (sum, place) in sum.iter_mut().zip(&disc.places) {
-                    *sum += self.cost(known, place.map(|i| f64::from(i) * disc.cell));
+                    *sum += self.cost(known, *place);
                 }
             }
             sum
         };
         let (least, way) = disc.cheapest(knots, cost);
-        let place = |knot: usize| way.get(knot).map(|&n| disc.places[n].map(|i| f64::from(i) * disc.cell));
+        let place = |knot: usize| way.get(knot).map(|&n| disc.places[n]);
         let offsets = (0..self.frames.len()).map(|k| {
             let from = place(k / disc.stride).unwrap_or_default();
             let to = place(k / disc.stride + 1).unwrap_or(from);
-            let share = (k % disc.stride) as f64 / disc.stride as f64;
-            [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]))
+            between(from, to, (k % disc.stride) as f64 / disc.stride as f64)
         });
         self.bends = bends(offsets);
+        // The next pass begins at the first frame, whose right may be the left of the last.
+        self.memory = TrackingMemory::default();
         (self.pass, self.next) = (self.pass + 1, 0);
         let better = least >= HIDDEN || (self.pass == 1 && turnings(&self.bends) > 1);
         better && self.pass <= WIDE.len()
@@ -143,9 +135,11 @@ impl FilmPlanner {
     fn cost(&self, known: &Known, [x, y]: [f64; 2]) -> f64 {
         let (share, is_clear) = known.at([x, y]);
         let share = f64::from(share);
-        let hidden = if share >= WHOLE { 0.0 } else { HIDDEN * (1.5 - 0.5 * share) };
+        let is_whole = share >= WHOLE;
+        let hidden = if is_whole { 0.0 } else { HIDDEN };
         let tight = if is_clear { 0.0 } else { TIGHT };
-        hidden + self.time_step_s * (tight + BENT * x.hypot(y) + ASIDE * y.abs())
+        let less = if is_whole { 0.0 } else { LESS * (1.0 - share) };
+        hidden + self.time_step_s * (less + tight + BENT * x.hypot(y) + ASIDE * y.abs())
     }
 
     /// The bend of every frame.
@@ -165,34 +159,56 @@ impl Known {
             .unwrap_or_default()
     }
 
-    /// A node of the wide search, if it has one there.
-    fn node(&self, place: [f64; 2]) -> Option<Seen> {
-        let [x, y] = place.map(|v| (v + 1.0) * self.side as f64);
-        let is_node = !self.wide.is_empty() && x.fract() == 0.0 && y.fract() == 0.0;
-        is_node.then(|| self.wide[y as usize * (2 * self.side + 1) + x as usize])
+    /// What is seen from places around one that are known, and whether it is known itself: at most two on two rings each.
+    fn around(&self, [x, y]: [f64; 2]) -> (impl Iterator<Item = Seen>, bool) {
+        let [ring, turn] = [x.hypot(y) * self.side as f64, y.atan2(x) / TAU + 1.0];
+        let ends = |at: f64| [(at + 1e-6).floor() as usize, (at - 1e-6).ceil() as usize];
+        let rings = ends(ring);
+        let mut is_exact = rings[0] == rings[1];
+        let corners = rings.map(|ring| {
+            let angles = ends(turn * (PER_RING * ring) as f64);
+            is_exact &= angles[0] == angles[1];
+            angles.map(|k| match ring {
+                0 => self.sideways(0.0),
+                _ => self.wide[PER_RING * (ring * (ring - 1) / 2) + k % (PER_RING * ring)],
+            })
+        });
+        (corners.into_iter().flatten(), is_exact)
+    }
+
+    /// A place that is known, not only its surroundings.
+    fn exactly(&self, place: [f64; 2]) -> Option<Seen> {
+        if place[1] == 0.0 {
+            return Some(self.sideways(place[0]));
+        }
+        let (mut around, is_exact) = (!self.wide.is_empty()).then(|| self.around(place))?;
+        around.next().filter(|_| is_exact)
     }
 
     /// What is seen from a place: as much as from all of the places around it that are known.
-    fn at(&self, [x, y]: [f64; 2]) -> Seen {
-        if y == 0.0 {
-            return self.sideways(x);
+    fn at(&self, place: [f64; 2]) -> Seen {
+        match place[1] == 0.0 {
+            true => self.sideways(place[0]),
+            false if self.wide.is_empty() => (0.0, false),
+            false => self.around(place).0.reduce(both).unwrap_or_default(),
         }
-        if self.wide.is_empty() {
-            return (0.0, false);
-        }
-        let width = 2 * self.side + 1;
-        let ends = |v: f64| {
-            let at = (v + 1.0) * self.side as f64;
-            [(at + 1e-6).floor() as usize, ((at - 1e-6).ceil() as usize).min(width - 1)]
-        };
-        let (columns, rows) = (ends(x), ends(y));
-        let corners = rows.into_iter().flat_map(|r| columns.map(|c| self.wide[r * width + c]));
-        corners.reduce(both).unwrap_or_default()
     }
 }
 
 fn both(a: Seen, b: Seen) -> Seen {
     (a.0.min(b.0), a.1 && b.1)
+}
+
+/// A place on the way from one to another: its distance from the middle changes evenly.
+fn between(from: [f64; 2], to: [f64; 2], share: f64) -> [f64; 2] {
+    let [x, y] = [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
+    let across = from[0] * to[0] + from[1] * to[1] <= 0.0;
+    let (a, b, now) = (from[0].hypot(from[1]), to[0].hypot(to[1]), x.hypot(y));
+    if across || now < 1e-12 {
+        return [x, y];
+    }
+    let scale = (a + share * (b - a)) / now;
+    [x, y].map(|v| if scale == 1.0 { v } else { v * scale })
 }
 
 /// Offsets, shares of `a` to the right and upwards, as f and a direction that does not jump.
@@ -209,8 +225,9 @@ fn bends(offsets: impl Iterator<Item = [f64; 2]>) -> Vec<PlannedBend> {
             let sign = if before.f < 0.0 { -1.0 } else { 1.0 };
             let toward = |sign: f64| (sign * y).atan2(sign * x).to_degrees();
             let turn = |sign: f64| (toward(sign) - before.direction_deg + 540.0).rem_euclid(360.0) - 180.0;
-            // Straight through the middle f changes its sign, not its direction.
-            let sign = if turn(sign).abs() > 179.0 { -sign } else { sign };
+            // Straight through the middle f changes its sign, not its direction; from the middle as soon as it goes on to the other side.
+            let most = if before.f == 0.0 { 90.0 + 1e-9 } else { 179.0 };
+            let sign = if turn(sign).abs() > most { -sign } else { sign };
             before = PlannedBend { f: sign * length, direction_deg: toward(sign) };
         }
         out.push(before);

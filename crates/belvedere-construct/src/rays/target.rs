@@ -17,8 +17,8 @@ pub struct Target {
     /// Parts of a mesh, atoms of a molecule, or boxes of a layer, that are the target themselves: the index of the layer, and their
     /// numbers, rising.
     pub own_parts: Option<(usize, Vec<u32>)>,
-    /// The points are the middles of balls of this radius, scene units, and seen if the ball is; 0 for points of their own.
-    pub radius: f64,
+    /// The points are the middles of balls of these radii, scene units, and seen if the front of the ball is; empty for points of their own.
+    pub radii: Vec<f64>,
 }
 
 /// Balls that are looked at, at most.
@@ -96,8 +96,7 @@ impl Target {
         let mut own: Vec<usize> = atoms.iter().copied().filter(|&i| drawn.get(i) == Some(&true)).collect();
         own.sort_unstable();
         own.dedup();
-        let radius = |i: usize| layer.molecule.atoms()[i].element.van_der_waals_radius();
-        let balls = Self::balls(own.iter().map(|&i| (layer.center(i), radius(i))));
+        let balls = Self::balls(own.iter().map(|&i| (layer.center(i), layer.radius(i))));
         let numbers = own.iter().map(|&i| i as u32).collect();
         (!own.is_empty()).then_some(Self { own_parts: Some((index, numbers)), ..balls })
     }
@@ -105,22 +104,22 @@ impl Target {
     /// What lies in a box.
     pub fn around(bounds: Aabb) -> Self {
         let points = surface_points::on_bounds(bounds);
-        Self { points, bounds, own_layers: Vec::new(), own_parts: None, radius: 0.0 }
+        Self { points, bounds, own_layers: Vec::new(), own_parts: None, radii: Vec::new() }
     }
 
     /// Balls, such as atoms: middle and radius, scene units. Of many some are looked at, evenly chosen.
     pub fn balls(balls: impl IntoIterator<Item = (DVec3, f64)>) -> Self {
-        let all: Vec<(DVec3, f64)> = balls.into_iter().collect();
-        let radius = all.iter().map(|(_, r)| *r).fold(0.0, f64::max);
+        let all: Vec<(DVec3, f64)> = balls.into_iter().filter(|(p, _)| p.is_finite()).collect();
         let every = all.len().div_ceil(MOST_BALLS).max(1);
-        Self { radius, ..Self::points(all.iter().step_by(every).map(|(p, _)| *p)) }
+        let (points, radii): (Vec<_>, Vec<_>) = all.into_iter().step_by(every).unzip();
+        Self { radii, ..Self::points(points) }
     }
 
     /// Points, e.g. on a surface or along a line.
     pub fn points(points: impl IntoIterator<Item = DVec3>) -> Self {
         let points: Vec<DVec3> = points.into_iter().filter(|p| p.is_finite()).collect();
         let bounds = Aabb::of(points.iter().copied());
-        Self { points, bounds, own_layers: Vec::new(), own_parts: None, radius: 0.0 }
+        Self { points, bounds, own_layers: Vec::new(), own_parts: None, radii: Vec::new() }
     }
 
     /// Its middle.
@@ -130,7 +129,7 @@ impl Target {
 
     /// Half its largest extent.
     pub fn extent(&self) -> f64 {
-        0.5 * (self.bounds.max - self.bounds.min).length() + self.radius
+        0.5 * (self.bounds.max - self.bounds.min).length() + self.radii.iter().fold(0.0, |a: f64, b| a.max(*b))
     }
 }
 
@@ -191,8 +190,9 @@ impl<'a> TargetSight<'a> {
     pub fn shown(&self, view: &View, grow_px: f64) -> Shown {
         let points = &self.target.points;
         let (mut seen, mut sum) = (0, 0.0);
-        for p in points {
-            let light = self.light(view, *p, grow_px);
+        for (k, p) in points.iter().enumerate() {
+            let radius = self.target.radii.get(k).copied().unwrap_or(0.0);
+            let light = self.light(view, (*p, radius), grow_px);
             seen += usize::from(light >= SEEN);
             sum += light;
         }
@@ -201,7 +201,7 @@ impl<'a> TargetSight<'a> {
     }
 
     /// Light that comes from a point.
-    fn light(&self, view: &View, p: DVec3, grow_px: f64) -> f64 {
+    fn light(&self, view: &View, (p, radius): (DVec3, f64), grow_px: f64) -> f64 {
         let p = self.grown(view, p, grow_px);
         let Ok(image) = view.project(p) else { return 0.0 };
         let pinhole = view.pinhole();
@@ -209,7 +209,7 @@ impl<'a> TargetSight<'a> {
         if !in_range || image.folded || !pinhole.contains(image.pixel) {
             return 0.0;
         }
-        let (p, depth) = self.front(view, p, image.pixel, image.depth);
+        let (p, depth) = self.front(view, (p, radius), (image.pixel, image.depth));
         if self.obstacles.clearance(view, (p, 0.0), (image.pixel, depth), &self.sight) < 0.0 {
             return 0.0;
         }
@@ -217,13 +217,13 @@ impl<'a> TargetSight<'a> {
     }
 
     /// Where the ray to the middle of a ball meets the ball, and its depth there.
-    fn front(&self, view: &View, p: DVec3, pixel: DVec2, depth: f64) -> (DVec3, f64) {
+    fn front(&self, view: &View, (p, radius): (DVec3, f64), (pixel, depth): (DVec2, f64)) -> (DVec3, f64) {
         let step = 1e-4 * depth;
         let ray = view.ray(pixel);
         let at = |w: f64| ray.at(w).map(|r| r.point);
         match at(depth - step) {
-            Ok(before) if self.target.radius > 0.0 => {
-                let depth = (depth - step * 1.01 * self.target.radius / before.distance(p)).max(view.pinhole().near);
+            Ok(before) if radius > 0.0 => {
+                let depth = (depth - step * 1.01 * radius / before.distance(p)).max(view.pinhole().near);
                 at(depth).map_or((p, depth), |front| (front, depth))
             }
             _ => (p, depth),

@@ -1,34 +1,56 @@
 //! The cheapest way of a second viewpoint through the frames of a film: a shortest path (Bellman 1957) over frames and places on a disc.
 //!
-//! Ours. A place is a cell of a square grid on the disc of radius 1 across the view. The last sense of motion along either axis is
-//! part of the state, so that turning round has a price.
+//! Ours. Places lie on rings around the middle of the disc of radius 1 across the view, so that f can rest while its direction turns. The
+//! last senses of motion, outwards or inwards and round, are part of the state, so that turning round has a price.
 
 use rayon::prelude::*;
 
-/// Cells from the middle of the disc to its rim, at most: all states fit 16 bits.
+/// Rings around the middle, at most: all states fit 16 bits.
 const MOST: usize = 40;
-/// Width of a cell that is fine enough.
+/// Places on the first ring; every ring has so many more: the axes and diagonals are among them.
+pub(super) const PER_RING: usize = 8;
+/// Distance of rings that is fine enough.
 const CELL: f64 = 0.05;
 /// Cost of turning round; moving by 1 costs 1.
 const TURN: f64 = 1.0;
-/// Senses of the last motion: bit 0 to the right, bit 1 upwards.
+/// Senses of the last motion: bit 0 outwards, bit 1 counterclockwise; in the middle the number of the axis that it was reached along.
 const SENSES: usize = 4;
+const AXES: [[f64; 2]; SENSES] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
 
 /// Places of the second viewpoint, and how far it may go from one to another.
 #[derive(Debug, Clone)]
 pub(super) struct Disc {
-    /// Width of a cell.
-    pub(super) cell: f64,
-    /// Column and row, from the middle.
-    pub(super) places: Vec<[i32; 2]>,
+    /// To the right and upwards, shares of `a`.
+    pub(super) places: Vec<[f64; 2]>,
     /// Frames from one move to the next.
     pub(super) stride: usize,
-    rim: i32,
-    moves: Vec<[i32; 2]>,
+    /// For every place the moves that end there.
+    moves: Vec<Vec<Move>>,
+}
+
+/// A move to a place.
+#[derive(Debug, Clone, Copy)]
+struct Move {
+    from: usize,
+    cost: f64,
+    kind: Kind,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    Stay,
+    /// Along or beside the rings: signs of the motion outwards and round.
+    Aside([i8; 2]),
+    /// Straight over the middle to the other side.
+    Across,
+    /// To the middle, along this axis.
+    In(usize),
+    /// From the middle; for every axis whether it is back where that came from.
+    Out([bool; SENSES]),
 }
 
 impl Disc {
-    /// * `per_frame`: the most that a place may move in a frame, > 0; `sideways`: whether only the middle row is used.
+    /// * `per_frame`: the most that a place may move in a frame, > 0; `sideways`: whether only the line to the left and right is used.
     pub(super) fn new(per_frame: f64, sideways: bool) -> Self {
         // Slow viewpoints move every few frames by a cell that is not too fine.
         let stride = (CELL / per_frame * (1.0 - 1e-9)).ceil().clamp(1.0, 1e6) as usize;
@@ -38,50 +60,45 @@ impl Disc {
             _ if most < 8.0 * CELL => most / (most / CELL).ceil(),
             _ => 2.0 * CELL,
         };
-        let rim = ((1.0 / cell * (1.0 + 1e-9)) as usize).min(MOST) as i32;
-        let reach = (most / cell * (1.0 + 1e-9)).min(2.0 * f64::from(rim)) as i32;
-        let within = |r: i32| {
-            let rows = if sideways { 0..=0 } else { -r..=r };
-            rows.flat_map(move |y| (-r..=r).map(move |x| [x, y])).filter(move |[x, y]| x * x + y * y <= r * r)
+        let rings = ((1.0 / cell * (1.0 + 1e-9)) as usize).min(MOST);
+        let places: Vec<(usize, [f64; 2])> = std::iter::once((0, [0.0; 2]))
+            .chain((1..=rings).flat_map(|ring| {
+                let share = cell * rings as f64;
+                on_ring(ring, rings).map(move |place| (ring, place.map(|v| v * share)))
+            }))
+            .filter(|(_, place)| !sideways || place[1] == 0.0)
+            .collect();
+        let moves = |to: &(usize, [f64; 2])| {
+            let reach = most * (1.0 + 1e-9);
+            let near = places.iter().enumerate().filter(|(_, from)| distance(from.1, to.1) <= reach);
+            near.map(|(number, from)| Move::new((number, *from), *to, cell)).collect()
         };
-        Self { cell, places: within(rim).collect(), stride, rim, moves: within(reach).collect() }
-    }
-
-    /// Number of a place on the square around the disc.
-    fn slot(&self, [x, y]: [i32; 2]) -> Option<usize> {
-        let width = 2 * self.rim + 1;
-        (x.abs() <= self.rim && y.abs() <= self.rim).then(|| ((y + self.rim) * width + x + self.rim) as usize)
+        let moves = places.par_iter().map(moves).collect();
+        Self { places: places.into_iter().map(|(_, place)| place).collect(), stride, moves }
     }
 
     /// The cheapest way: its cost, and the place of every knot by its number.
     ///
     /// * `cost`: what each place costs at a knot.
     pub(super) fn cheapest(&self, knots: usize, cost: impl Fn(usize) -> Vec<f64>) -> (f64, Vec<usize>) {
-        let mut numbers = vec![None; ((2 * self.rim + 1) * (2 * self.rim + 1)) as usize];
-        for (number, place) in self.places.iter().enumerate() {
-            if let Some(slot) = self.slot(*place) {
-                numbers[slot] = Some(number);
-            }
-        }
-        let mut total: Vec<[f64; SENSES]> = vec![[0.0; SENSES]; self.places.len()];
+        let mut total: Vec<[f64; SENSES]> = Vec::new();
         let mut parents: Vec<Vec<[u16; SENSES]>> = Vec::new();
         for knot in 0..knots {
             let own = cost(knot);
             let step = |number: usize| {
+                if knot == 0 {
+                    return ([own[number]; SENSES], [0u16; SENSES]);
+                }
                 let mut best = ([f64::INFINITY; SENSES], [0u16; SENSES]);
-                for by in if knot == 0 { &[[0, 0]][..] } else { &self.moves } {
-                    let [x, y] = self.places[number];
-                    let from = self.slot([x - by[0], y - by[1]]).and_then(|slot| numbers[slot]);
-                    let Some(from) = from else { continue };
-                    let length = f64::from(by[0] * by[0] + by[1] * by[1]).sqrt();
-                    // Of two ways of the same length the slower one.
-                    let way = self.cell * length * (1.0 + 0.02 * length);
-                    for (sense, before) in total[from].iter().enumerate() {
-                        let (now, turns) = sense_after(sense, *by);
-                        let sum = before + way + TURN * f64::from(turns);
-                        if sum < best.0[now] {
-                            best.0[now] = sum;
-                            best.1[now] = (from * SENSES + sense) as u16;
+                for by in &self.moves[number] {
+                    for (sense, before) in total[by.from].iter().enumerate() {
+                        let (now, turns) = by.kind.sense_after(sense);
+                        let sum = before + by.cost + TURN * f64::from(turns);
+                        for now in now {
+                            if sum < best.0[now] {
+                                best.0[now] = sum;
+                                best.1[now] = (by.from * SENSES + sense) as u16;
+                            }
                         }
                     }
                 }
@@ -91,7 +108,7 @@ impl Disc {
             total = next.iter().map(|(sums, _)| *sums).collect();
             parents.push(next.into_iter().map(|(_, from)| from).collect());
         }
-        let states = (0..self.places.len() * SENSES).map(|s| (total[s / SENSES][s % SENSES], s));
+        let states = (0..total.len() * SENSES).map(|s| (total[s / SENSES][s % SENSES], s));
         let Some((least, mut state)) = states.min_by(|a, b| a.0.total_cmp(&b.0)) else { return (0.0, Vec::new()) };
         let mut way = Vec::with_capacity(knots);
         for parents in parents.iter().rev() {
@@ -103,17 +120,75 @@ impl Disc {
     }
 }
 
-/// The sense after a move, and how many axes turn round by it.
-fn sense_after(before: usize, by: [i32; 2]) -> (usize, u32) {
-    let mut now = before;
-    for (axis, d) in by.into_iter().enumerate() {
-        match d.signum() {
-            1 => now |= 1 << axis,
-            -1 => now &= !(1 << axis),
-            _ => {}
+impl Move {
+    fn new((number, from): (usize, (usize, [f64; 2])), to: (usize, [f64; 2]), cell: f64) -> Self {
+        let length = distance(from.1, to.1);
+        // Of two ways of the same length the slower one.
+        let cost = length * (1.0 + 0.02 * length / cell);
+        let round = from.1[0] * to.1[1] - from.1[1] * to.1[0];
+        let along = dot(from.1, to.1);
+        let is_straight = round.abs() <= 1e-9;
+        let kind = match (from.0, to.0) {
+            (0, 0) => Kind::Stay,
+            (0, _) => Kind::Out(AXES.map(|axis| dot(axis, to.1) > -1e-9)),
+            (_, 0) => Kind::In(
+                (0..SENSES).max_by(|a, b| dot(AXES[*a], from.1).total_cmp(&dot(AXES[*b], from.1))).unwrap_or(0),
+            ),
+            _ if is_straight && along < 0.0 => Kind::Across,
+            (a, b) => Kind::Aside([sign(b as f64 - a as f64), if is_straight { 0 } else { sign(round) }]),
+        };
+        Self { from: number, cost, kind }
+    }
+}
+
+impl Kind {
+    /// The senses after a move, either of them, and how many turn round by it.
+    fn sense_after(self, before: usize) -> ([usize; 2], u32) {
+        match self {
+            Kind::Stay => ([before; 2], 0),
+            Kind::Out(back) => ([1, 3], u32::from(back[before])),
+            Kind::In(axis) => ([axis; 2], before as u32 & 1),
+            Kind::Across => ([before | 1; 2], before as u32 & 1),
+            Kind::Aside(signs) => {
+                let mut now = before;
+                for (bit, sign) in signs.into_iter().enumerate() {
+                    match sign {
+                        1 => now |= 1 << bit,
+                        -1 => now &= !(1 << bit),
+                        _ => {}
+                    }
+                }
+                ([now; 2], (before ^ now).count_ones())
+            }
         }
     }
-    (now, (before ^ now).count_ones())
+}
+
+/// Places on one of so many rings, from the right counterclockwise, shares of the radius of the last.
+pub(super) fn on_ring(ring: usize, rings: usize) -> impl Iterator<Item = [f64; 2]> {
+    let count = PER_RING * ring;
+    (0..count).map(move |k| direction(k, count).map(|v| v * (ring as f64 / rings as f64)))
+}
+
+/// Unit vector, exact along the axes; `count` is a multiple of 4.
+fn direction(k: usize, count: usize) -> [f64; 2] {
+    if 4 * k % count == 0 {
+        return AXES[4 * k / count];
+    }
+    let (sin, cos) = (std::f64::consts::TAU * k as f64 / count as f64).sin_cos();
+    [cos, sin]
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+fn sign(x: f64) -> i8 {
+    i8::from(x > 0.0) - i8::from(x < 0.0)
 }
 
 #[cfg(test)]
@@ -125,9 +200,11 @@ mod tests {
         for per_frame in [0.001, 0.013, 0.0249, 0.05, 0.0625, 0.099, 0.1, 0.24, 0.39, 0.41, 1.5, 9.0] {
             let disc = Disc::new(per_frame, false);
             assert!(disc.places.len() * SENSES <= usize::from(u16::MAX), "{per_frame}: {}", disc.places.len());
-            let longest = disc.moves.iter().map(|[x, y]| f64::from(x * x + y * y).sqrt()).fold(0.0, f64::max);
-            assert!(longest * disc.cell <= per_frame * disc.stride as f64 * (1.0 + 1e-6), "{per_frame}: {longest}");
-            let reach = f64::from(disc.rim) * disc.cell;
+            let all = disc.moves.iter().enumerate().flat_map(|(to, moves)| moves.iter().map(move |m| (m.from, to)));
+            let longest = all.map(|(a, b)| distance(disc.places[a], disc.places[b])).fold(0.0, f64::max);
+            let most = (per_frame * disc.stride as f64).min(2.0);
+            assert!(longest <= most * (1.0 + 1e-6) && longest > 0.7 * most, "{per_frame}: {longest}");
+            let reach = disc.places.iter().map(|p| p[0].hypot(p[1])).fold(0.0, f64::max);
             assert!(reach > 0.9 && reach <= 1.0 + 1e-9, "{per_frame}: {reach}");
         }
     }
@@ -135,7 +212,7 @@ mod tests {
     #[test]
     fn waits_aside_where_returning_would_mean_turning_round_again() {
         let disc = Disc::new(0.1, true);
-        let middle = disc.places.iter().position(|p| *p == [0, 0]).unwrap();
+        let middle = disc.places.iter().position(|p| *p == [0.0, 0.0]).unwrap();
         // The middle is closed at two times; between them being there would be free.
         let cost = |knot: usize| {
             let closed = [10, 30].contains(&knot);
@@ -143,5 +220,35 @@ mod tests {
         };
         let (least, way) = disc.cheapest(40, cost);
         assert!(least < 1e-9 && way.len() == 40 && way.iter().all(|n| n == &way[0] && *n != middle), "{least} {way:?}");
+    }
+
+    #[test]
+    fn goes_round_the_middle_on_a_ring() {
+        let disc = Disc::new(0.1, false);
+        // A hole that goes once round: only places in its direction and not too near the middle are open.
+        let open = |knot: usize, [x, y]: [f64; 2]| {
+            let (sin, cos) = (0.06 * knot as f64).sin_cos();
+            let (along, beside) = (x * cos + y * sin, y * cos - x * sin);
+            along > 0.4 && along < 0.8 && beside.abs() < 0.15
+        };
+        let cost = |knot: usize| disc.places.iter().map(|p| if open(knot, *p) { 0.0 } else { 1e6 }).collect();
+        let (least, way) = disc.cheapest(100, cost);
+        let radii: Vec<f64> = way.iter().map(|n| disc.places[*n][0].hypot(disc.places[*n][1])).collect();
+        assert!(least < 10.0 && radii.iter().all(|r| (r - radii[0]).abs() < 1e-9), "{least} {radii:?}");
+    }
+
+    #[test]
+    fn passing_the_middle_is_not_turning_round_and_coming_back_is() {
+        let [right, up, left] = [[0.1, 0.0], [0.0, 0.1], [-0.1, 0.0]];
+        let kind = |from: [f64; 2], to: [f64; 2]| {
+            let ring = |p: [f64; 2]| usize::from(p != [0.0; 2]);
+            Move::new((0, (ring(from), from)), (ring(to), to), 0.1).kind
+        };
+        for (to, turns) in [(left, 0), (right, 1), (up, 1)] {
+            let (at, first) = kind(right, [0.0; 2]).sense_after(0);
+            assert_eq!((first, kind([0.0; 2], to).sense_after(at[0]).1), (0, turns), "{to:?}");
+        }
+        assert_eq!(kind(right, left).sense_after(0), ([1; 2], 0));
+        assert_eq!(kind(right, left).sense_after(1), ([1; 2], 1));
     }
 }

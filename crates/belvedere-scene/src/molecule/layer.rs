@@ -18,6 +18,8 @@ pub struct MoleculeLayer {
     pub atoms: usize,
     /// Bonds that are drawn: those whose atoms both are, none where atoms fill space.
     pub bonds: usize,
+    /// Balls and rods, or balls alone.
+    pub representation: Representation,
     /// The atoms that `must_see` means; `None` = all that are drawn.
     pub wanted: Option<Selection>,
 }
@@ -47,7 +49,8 @@ impl MoleculeLayer {
         let look = Look { representation: style.representation, detail: style.detail };
         let made = surface::build(&molecule, &drawn, &colors, look, &placement)?;
         let surface = MeshLayer::new(made.mesh, Element::C.color());
-        Ok(Self { molecule, placement, surface, atoms: made.atoms, bonds: made.bonds, wanted: None })
+        let representation = style.representation;
+        Ok(Self { molecule, placement, surface, atoms: made.atoms, bonds: made.bonds, representation, wanted: None })
     }
 
     /// The same where `must_see` means some of the atoms only.
@@ -59,6 +62,11 @@ impl MoleculeLayer {
     pub fn name_of(&self, triangle: usize) -> Option<String> {
         let atom = self.surface.mesh.part(triangle)? as usize;
         (atom < self.molecule.atoms().len()).then(|| self.molecule.name_of(atom))
+    }
+
+    /// Radius of the ball that an atom is drawn as, scene units.
+    pub fn radius(&self, atom: usize) -> f64 {
+        self.placement.scale * surface::ball_radius(self.molecule.atoms()[atom].element, self.representation)
     }
 
     /// Centre of an atom, scene coordinates.

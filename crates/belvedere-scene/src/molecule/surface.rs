@@ -2,7 +2,7 @@
 
 use super::openness::{Around, Shades};
 use super::sphere::{Ball, rod};
-use super::{ModelTransform, Molecule, Representation};
+use super::{Element, ModelTransform, Molecule, Representation};
 use crate::{Color, Mesh, MeshColors, MeshError};
 use belvedere_core::DVec3;
 use rayon::prelude::*;
@@ -10,6 +10,12 @@ use rayon::prelude::*;
 /// Radius of a ball beside rods, as a share of the van der Waals radius, and of a rod, angstrom.
 const BALL: f64 = 0.27;
 const ROD: f64 = 0.16;
+
+/// Radius of the ball that an atom is drawn as, angstrom.
+pub(super) fn ball_radius(element: Element, representation: Representation) -> f64 {
+    let share = if representation == Representation::SpaceFilling { 1.0 } else { BALL };
+    share * element.van_der_waals_radius()
+}
 
 /// Share of the van der Waals radius by which an atom between rods takes light from its neighbours.
 const SHADE: f64 = 0.5;
@@ -73,7 +79,7 @@ pub(super) fn build(
             let i = atoms[n] as usize;
             let around = shades.around(n);
             let center = molecule.atoms()[i].position;
-            let mut piece = maker.ball(center, if filling { radius(i) } else { BALL * radius(i) }, &around);
+            let mut piece = maker.ball(center, ball_radius(molecule.atoms()[i].element, look.representation), &around);
             for &other in partners.of(n) {
                 maker.half_rod(&mut piece, center, molecule.atoms()[other as usize].position, &around);
             }
@@ -192,7 +198,7 @@ fn join(pieces: &[Piece], atoms: &[u32], colors: &[Color], placement: &ModelTran
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::{Atom, Element, MoleculeLayer, MoleculeStyle, Residue, Selection};
+    use crate::molecule::{Atom, MoleculeLayer, MoleculeStyle, Residue, Selection};
     use glam::DMat3;
 
     fn molecule() -> Molecule {
@@ -231,9 +237,12 @@ mod tests {
                 let atom = mesh.part(t).unwrap() as usize;
                 seen[atom] += 1;
                 let element = made.molecule.atoms()[atom].element;
-                let reach = if filling { 1.02 * element.van_der_waals_radius() } else { 0.8 };
+                let share = if filling { 1.0 } else { BALL };
+                assert!((made.radius(atom) - 3.0 * share * element.van_der_waals_radius()).abs() < 1e-12);
+                // Rods go half way to the next atom.
+                let reach = if filling { 1.02 * made.radius(atom) } else { 3.0 * 0.8 };
                 for corner in mesh.corners(t) {
-                    assert!(corner.distance(made.center(atom)) < 3.0 * reach, "{t}");
+                    assert!(corner.distance(made.center(atom)) < reach, "{t}");
                 }
                 assert_eq!(mesh.color_at(t, [0.2, 0.3, 0.5]), Some(element.color()));
                 assert!(mesh.normal_at(t, [0.4, 0.3, 0.3]).dot(mesh.face_normal(t)) > 0.8);
