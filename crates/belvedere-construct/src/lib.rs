@@ -4,6 +4,7 @@
 //! show more of them.
 
 pub mod centreline;
+mod distance;
 mod error;
 pub mod flight;
 pub mod generalise;

@@ -284,8 +284,8 @@ fn place(g: DVec2, [cols, rows]: [usize; 2], height: impl Fn(usize) -> Option<f6
     let DVec2 { x, y } = inside;
     // How far facets lie over the bilinear ground, per unit of its factor of xy.
     let facet = inside.min_element() - x * y;
-    let [flat, bilinear] = [facet, 0.0]
-        .map(|f| [(1.0 - x) * (1.0 - y) + f, x * (1.0 - y) - f, (1.0 - x) * y - f, x * y + f]);
+    let [flat, bilinear] =
+        [facet, 0.0].map(|f| [(1.0 - x) * (1.0 - y) + f, x * (1.0 - y) - f, (1.0 - x) * y - f, x * y + f]);
     Some(Place { grid: g, height, bed: height, nodes: nodes.map(|n| n as u32), weights: [flat, bilinear] })
 }
 

@@ -6,10 +6,10 @@
 //! 3. `way`: the way on which the lengths of steps over that clearance sum up to the least.
 //! 4. The way smoothed; points that would leave the voxels stay.
 
-mod distance;
 mod way;
 
 use crate::ConstructError;
+use crate::distance::{Around, squared};
 use belvedere_core::DVec3;
 use belvedere_scene::Volume;
 use serde::{Deserialize, Serialize};
@@ -72,7 +72,7 @@ pub fn centreline(volume: &Volume, from: DVec3, to: DVec3, values: [f64; 2]) -> 
     };
     let [x, y, z] = [volume.axes().x_axis, volume.axes().y_axis, volume.axes().z_axis].map(DVec3::length);
     let spacing = [x, y, z];
-    let mut clearance = distance::squared(&part.inside, part.dims, spacing);
+    let mut clearance = squared(&part.inside, part.dims, spacing, Around::Outside);
     clearance.iter_mut().for_each(|d| *d = d.sqrt());
     let cells = Cells { dims: part.dims, spacing, clearance: &clearance };
     let Some(way) = part.inside[b].then(|| cells.cheapest(a, b)).flatten() else {

@@ -101,8 +101,15 @@ fn explore() {
                 let r = &s.report;
                 println!(
                     "{spacing} {steep} seed {seed} rivers {rivers}: excess {:.3} visible {:.4}->{:.4} guaranteed {} limited {} rows {:?} rounds {:?} {:.2} s {:?}",
-                    valley.excess(&s), r.visible_dense_before, r.metrics.visible_dense, r.guaranteed, r.limited.is_some(),
-                    r.qp.map(|q| q.rows), r.qp.map(|q| q.rounds), began.elapsed().as_secs_f64(), r.rivers
+                    valley.excess(&s),
+                    r.visible_dense_before,
+                    r.metrics.visible_dense,
+                    r.guaranteed,
+                    r.limited.is_some(),
+                    r.qp.map(|q| q.rows),
+                    r.qp.map(|q| q.rounds),
+                    began.elapsed().as_secs_f64(),
+                    r.rivers
                 );
             }
         }

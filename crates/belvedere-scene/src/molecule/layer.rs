@@ -1,7 +1,7 @@
 //! A molecule as a layer: which atoms are drawn, how, and which must be seen.
 
 use super::surface::{self, Look};
-use super::{Element, ModelTransform, Molecule, MoleculeColor, MoleculeStyle, Selection};
+use super::{Element, ModelTransform, Molecule, MoleculeColor, MoleculeStyle, Representation, Selection};
 use crate::{Color, MeshError, MeshLayer};
 use glam::DVec3;
 

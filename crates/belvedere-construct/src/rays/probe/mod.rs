@@ -6,7 +6,6 @@
 //! it distorts and loses, is taken if it is better than no turn at all.
 
 mod chain;
-mod distance;
 mod goals;
 mod judge;
 mod polish;

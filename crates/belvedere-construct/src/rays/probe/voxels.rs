@@ -1,6 +1,6 @@
 //! Space in cells: where something stands, and how much room there is elsewhere.
 
-use super::distance::distances;
+use crate::distance::{Around, squared};
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{BoxShape, Heightfield, LayerKind, Mesh, Scene};
 
@@ -35,7 +35,9 @@ impl Voxels {
             }
         }
         // What is solid reaches half a cell from the middle of its cell, on the average.
-        let free = distances(&voxels.solid, size).into_iter().map(|d| ((f64::from(d) - 0.5) * cell).max(0.0) as f32);
+        let open: Vec<bool> = voxels.solid.iter().map(|solid| !solid).collect();
+        let free = squared(&open, size, [1.0; 3], Around::Nothing).into_iter();
+        let free = free.map(|d| ((f64::from(d.sqrt()) - 0.5) * cell).max(0.0) as f32);
         voxels.clearance = free.collect();
         voxels
     }
