@@ -223,7 +223,8 @@ fn bends(offsets: impl Iterator<Item = [f64; 2]>) -> Vec<PlannedBend> {
             before.f = x;
         } else {
             let sign = if before.f < 0.0 { -1.0 } else { 1.0 };
-            let toward = |sign: f64| (sign * y).atan2(sign * x).to_degrees();
+            // Adding 0 takes the sign of a zero away.
+            let toward = |sign: f64| (sign * y).atan2(sign * x).to_degrees() + 0.0;
             let turn = |sign: f64| (toward(sign) - before.direction_deg + 540.0).rem_euclid(360.0) - 180.0;
             // Straight through the middle f changes its sign, not its direction; from the middle as soon as it goes on to the other side.
             let most = if before.f == 0.0 { 90.0 + 1e-9 } else { 179.0 };

@@ -129,7 +129,12 @@ impl Target {
 
     /// Half its largest extent.
     pub fn extent(&self) -> f64 {
-        0.5 * (self.bounds.max - self.bounds.min).length() + self.radii.iter().fold(0.0, |a: f64, b| a.max(*b))
+        0.5 * (self.bounds.max - self.bounds.min).length() + self.radius()
+    }
+
+    /// Largest radius of its balls, scene units; 0 for points of their own.
+    pub fn radius(&self) -> f64 {
+        self.radii.iter().copied().fold(0.0, f64::max)
     }
 }
 

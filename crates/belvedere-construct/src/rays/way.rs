@@ -172,7 +172,7 @@ pub(super) fn on_ring(ring: usize, rings: usize) -> impl Iterator<Item = [f64; 2
 
 /// Unit vector, exact along the axes; `count` is a multiple of 4.
 fn direction(k: usize, count: usize) -> [f64; 2] {
-    if 4 * k % count == 0 {
+    if (4 * k).is_multiple_of(count) {
         return AXES[4 * k / count];
     }
     let (sin, cos) = (std::f64::consts::TAU * k as f64 / count as f64).sin_cos();

@@ -172,7 +172,8 @@ pub fn plan(
             FallbackKind::Transparency => transparent.push(part),
             FallbackKind::Cutaway => cut.push(part),
             FallbackKind::Explosion => {
-                let margin = margin_px + target.radius * view.pinhole().scale_px() / extent.map_or(1.0, |e| e.depth[0]);
+                let margin =
+                    margin_px + target.radius() * view.pinhole().scale_px() / extent.map_or(1.0, |e| e.depth[0]);
                 let way = extent.as_ref().and_then(|e| explode::way(view, scene.unit, &part, e, margin));
                 let Some(by) = way else {
                     change.stuck += 1;
@@ -307,7 +308,7 @@ impl FallbackPlan {
         draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
         size: [usize; 2],
     ) -> Result<Vec<bool>, BelvedereError> {
-        let alone = occluders::target_alone(&self.scene, &self.target).filter(|_| self.target.radius > 0.0);
+        let alone = occluders::target_alone(&self.scene, &self.target).filter(|_| self.target.radius() > 0.0);
         let Some(alone) = alone else { return Ok(region::mask(view, &self.target, self.margin_px, size)) };
         let image: Vec<bool> = draw(&alone, view)?.id.iter().map(|id| self.is_target(*id)).collect();
         Ok(region::around(&image, self.margin_px, size))

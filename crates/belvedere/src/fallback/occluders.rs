@@ -135,7 +135,7 @@ pub(super) fn find(scene: &Scene, view: &View, target: &Target, layers: &[usize]
     let hides = |part: &Part| {
         let apart = extent.as_ref().zip(Extent::of(view, &part.corners));
         // A ball is larger than its middle.
-        let margin = 2.0 + target.radius * view.pinhole().scale_px() / extent.map_or(1.0, |e| e.depth[0]);
+        let margin = 2.0 + target.radius() * view.pinhole().scale_px() / extent.map_or(1.0, |e| e.depth[0]);
         if apart.is_some_and(|(e, p)| !e.meets(&p, margin) || p.depth[0] > e.depth[1]) {
             return false;
         }

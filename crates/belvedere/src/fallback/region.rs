@@ -5,14 +5,14 @@ use belvedere_core::{DVec2, DVec3, View};
 
 /// Pixel by pixel whether it lies in the region.
 pub(super) fn mask(view: &View, target: &Target, margin_px: f64, [width, height]: [usize; 2]) -> Vec<bool> {
-    let solid = target.radius == 0.0 && (!target.own_layers.is_empty() || target.own_parts.is_some());
+    let solid = target.radius() == 0.0 && (!target.own_layers.is_empty() || target.own_parts.is_some());
     let image = |p: &DVec3| view.project(*p).ok().filter(|i| i.depth >= view.pinhole().near).map(|i| i.pixel);
     let shapes: Vec<(Vec<DVec2>, f64)> = if solid {
         vec![(hull(target.bounds.corners().iter().filter_map(image).collect()), margin_px)]
     } else {
         let of = |p: &DVec3| {
             let near = view.project(*p).ok().map_or(1.0, |i| i.depth).max(view.pinhole().near);
-            image(p).map(|at| (vec![at], margin_px + target.radius * view.pinhole().scale_px() / near))
+            image(p).map(|at| (vec![at], margin_px + target.radius() * view.pinhole().scale_px() / near))
         };
         target.points.iter().filter_map(of).collect()
     };
