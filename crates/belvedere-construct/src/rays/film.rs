@@ -7,7 +7,7 @@
 
 use super::tracking::{Search, WHOLE};
 use super::way::{Disc, PER_RING, on_ring};
-use super::{Target, TargetSight, TrackingMemory, TrackingOptions};
+use super::{PlannedBend, Target, TargetSight, TrackingMemory, TrackingOptions};
 use crate::ConstructError;
 use belvedere_core::View;
 use belvedere_scene::Scene;
@@ -27,15 +27,6 @@ const BENT: f64 = 0.3;
 const ASIDE: f64 = 0.1;
 /// Cost of a second in which the target is seen but has no margin.
 const TIGHT: f64 = 0.5;
-
-/// The second viewpoint of a frame.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct PlannedBend {
-    /// Where it is, -1..=1, times `a`.
-    pub f: f64,
-    /// Direction of f > 0 across the view, degrees from the right of the picture upwards.
-    pub direction_deg: f64,
-}
 
 /// Share of the target that is seen, and whether it has its margin.
 type Seen = (f32, bool);

@@ -18,9 +18,9 @@ mod turns;
 mod way;
 
 pub use around::{AroundOptions, BendFound, BendReport, bend_around};
-pub use film::{FilmPlanner, PlannedBend};
+pub use film::FilmPlanner;
 pub use preview::{Lens, PathPreview, PreviewReport, Previewed};
 pub use probe::{ProbeMemory, ProbeOptions, ProbeReport, Probed, auto_probe};
-pub use sidestep::Sidestep;
+pub use sidestep::{PlannedBend, Sidestep};
 pub use target::{Shown, Target, TargetSight};
 pub use tracking::{Tracked, TrackingMemory, TrackingOptions, TrackingReport, track_target};

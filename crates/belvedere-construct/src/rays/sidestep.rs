@@ -33,3 +33,12 @@ impl Sidestep {
         Ok(View::new(root.clone(), earlier.chain([Stage::CurvedRays(rays)]).collect())?)
     }
 }
+
+/// The second viewpoint of a frame.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PlannedBend {
+    /// Where it is, -1..=1, times `a`.
+    pub f: f64,
+    /// Direction of f > 0 across the view, degrees from the right of the picture upwards.
+    pub direction_deg: f64,
+}
