@@ -113,7 +113,7 @@ pub(crate) struct River {
     layer: usize,
     feature: usize,
     name: String,
-    /// Downstream: wherever it crosses the mesh, and halfway between.
+    /// Downstream: wherever it crosses the mesh, and between.
     pub(crate) places: Vec<Place>,
 }
 
@@ -250,7 +250,10 @@ impl River {
     }
 }
 
-/// Where a line begins, ends, turns and crosses the mesh, and halfway between, grid coordinates.
+/// Places on the way from one edge of the mesh to the next: between edges facets are flat, but the bilinear displacement bulges.
+const PARTS: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
+
+/// Where a line begins, ends, turns and crosses the mesh, and places between, grid coordinates.
 fn stations(points: &[DVec2], [cols, rows]: [usize; 2]) -> Vec<DVec2> {
     let last = DVec2::new((cols - 1) as f64, (rows - 1) as f64);
     let mut out: Vec<DVec2> = points.first().copied().into_iter().collect();
@@ -263,7 +266,7 @@ fn stations(points: &[DVec2], [cols, rows]: [usize; 2]) -> Vec<DVec2> {
         shares.sort_by(f64::total_cmp);
         let mut from = 0.0;
         for share in shares {
-            out.extend([0.5 * (from + share), share].map(|share| pair[0] + share * step));
+            out.extend(PARTS.map(|part| pair[0] + (from + part * (share - from)) * step));
             from = share;
         }
     }

@@ -7,6 +7,7 @@ pub mod generalise;
 mod in_time;
 pub mod info;
 mod level_lakes;
+mod written_rivers;
 pub mod measure;
 mod molecule_info;
 pub mod pack;
