@@ -47,7 +47,7 @@ impl Uphill {
             let (nodes, weights) = lattice.weights_over(p.grid, true);
             Station { grid: p.grid, bed: p.bed, nodes, weights }
         };
-        let course = |river: &River| Course::new(river.places.iter().map(station).collect(), lattice);
+        let course = |river: &River| Course::new(river.bends().map(station).collect(), lattice);
         Self { courses: rivers.all().iter().map(course).collect() }
     }
 

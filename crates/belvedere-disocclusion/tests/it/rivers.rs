@@ -10,7 +10,7 @@ use belvedere_scene::{
 use belvedere_testkit::synthetic::{line_layer, terrain_layer};
 use std::time::Duration;
 
-const NODES: usize = 49;
+const NODES: usize = 33;
 
 /// A winding valley between spurs, along which a stream runs south, and a trail on its sides.
 struct Valley {
@@ -42,7 +42,7 @@ impl Valley {
         let drape = |p: DVec2| p.extend(hf.surface_at(p).unwrap());
         let trail: Vec<DVec3> = stream[40..].iter().map(|p| drape(beside(p))).collect();
         let eye = DVec2::new(middle(0.02 * size), 0.02 * size);
-        let eye = eye.extend(hf.surface_at(eye).unwrap() + 0.09 * size);
+        let eye = eye.extend(hf.surface_at(eye).unwrap() + 0.06 * size);
         let toward = drape(stream[100]);
         let lens = Projection::Perspective { fov_y: 50f64.to_radians() };
         let view = View::straight(Pinhole::look_at(eye, toward, DVec3::Z, lens, [640, 480], 1.0, None).unwrap());
@@ -92,31 +92,51 @@ fn excess(hf: &Heightfield, upstream: &[DVec2], moved: impl Fn(DVec2) -> f64) ->
     most
 }
 
-/// Spacing of the nodes and fall of the sides: fine, coarse and steep ground.
-const GROUNDS: [(f64, f64); 3] = [(30.0, 0.6), (90.0, 0.5), (30.0, 1.5)];
+/// Solves for seeded valleys with and without the river, and checks what the former promises; answers in how many of them the stream runs
+/// uphill where nobody asks.
+fn uphill_of(seeds: &[u64], spacing: f64, steep: f64) -> usize {
+    let mut uphill = 0;
+    for &seed in seeds {
+        let valley = Valley::new(seed, spacing, steep);
+        let free = valley.solve(TerrainSettings::default(), false);
+        assert!(free.report.rivers.is_empty());
+        uphill += usize::from(valley.excess(&free) > 0.1);
+        let kept = valley.solve(TerrainSettings::default(), true);
+        let (excess, told) = (valley.excess(&kept), &kept.report.rivers);
+        assert!(excess < RIVER_TOLERANCE_M, "{excess} m: spacing {spacing}, seed {seed}");
+        assert!(told.len() == 1 && told[0].layer == 2 && told[0].name == "stream", "{told:?}");
+        assert!(told[0].excess_m < RIVER_TOLERANCE_M, "{told:?}");
+        assert!(told[0].rise_after_m <= told[0].rise_before_m + RIVER_TOLERANCE_M, "{told:?}");
+        let seen = kept.report.metrics.visible_dense;
+        assert!(seen > kept.report.visible_dense_before + 0.2, "seed {seed}: {seen}");
+        assert!(!kept.report.guaranteed || seen >= 0.9999, "seed {seed}: {seen}");
+    }
+    uphill
+}
 
 #[test]
-fn rivers_run_downhill_and_uphill_where_nobody_asks() {
-    let mut uphill = 0;
-    for (spacing, steep) in GROUNDS {
-        for seed in [2, 3, 4] {
-            let valley = Valley::new(seed, spacing, steep);
-            let free = valley.solve(TerrainSettings::default(), false);
-            assert!(free.report.rivers.is_empty());
-            uphill += usize::from(valley.excess(&free) > 0.1);
-            let kept = valley.solve(TerrainSettings::default(), true);
-            let (excess, told) = (valley.excess(&kept), &kept.report.rivers);
-            assert!(excess < RIVER_TOLERANCE_M, "{excess} m: spacing {spacing}, seed {seed}");
-            assert!(told.len() == 1 && told[0].layer == 2 && told[0].name == "stream", "{told:?}");
-            assert!(told[0].excess_m < RIVER_TOLERANCE_M, "{told:?}");
-            assert!(told[0].rise_after_m <= told[0].rise_before_m + RIVER_TOLERANCE_M, "{told:?}");
-            let [with, without] = [&kept, &free].map(|s| s.report.metrics.visible_dense);
-            assert!(with <= without + 1e-3 || !free.report.guaranteed, "rivers cost visibility: {with}, {without}");
-            assert!(with > kept.report.visible_dense_before + 0.2, "seed {seed}: {with}");
-            assert!(!kept.report.guaranteed || with >= 0.9999, "seed {seed}: {with}");
-        }
-    }
-    assert!(uphill >= 3, "only {uphill} of 9 streams run uphill where nobody asks");
+fn rivers_run_downhill_in_fine_valleys() {
+    assert!(uphill_of(&[2, 4, 6], 30.0, 0.6) >= 2, "streams do not run uphill where nobody asks");
+}
+
+#[test]
+fn rivers_run_downhill_in_coarse_valleys() {
+    assert!(uphill_of(&[4, 6], 90.0, 0.5) >= 1, "streams do not run uphill where nobody asks");
+}
+
+#[test]
+fn rivers_run_downhill_in_steep_valleys() {
+    assert_eq!(uphill_of(&[2], 30.0, 1.5), 1, "the stream does not run uphill where nobody asks");
+}
+
+#[test]
+fn what_a_river_costs_is_said() {
+    // Showing all of the way takes ground along which the stream would rise by some metres.
+    let valley = Valley::new(6, 90.0, 0.5);
+    let [free, kept] = [false, true].map(|rivers| valley.solve(TerrainSettings::default(), rivers).report);
+    assert!(free.guaranteed && free.metrics.visible_dense >= 0.9999);
+    assert!(!kept.guaranteed && kept.metrics.visible_dense < 0.9999, "{}", kept.metrics.visible_dense);
+    assert!(!kept.unresolved.is_empty() || !kept.hidden.is_empty(), "what stays hidden is named");
 }
 
 #[test]
@@ -220,7 +240,7 @@ fn a_stream_of_andorra_runs_downhill_behind_the_ground_that_makes_way() {
     let Some(path) = belvedere_testkit::data("andorra/N42E001.hgt") else { return };
     let bytes = std::fs::read(path).unwrap();
     let whole: Vec<f32> = bytes.chunks_exact(2).map(|b| f32::from(i16::from_be_bytes([b[0], b[1]]))).collect();
-    let (side, mut cases) = (121, 0);
+    let side = 81;
     for [col, row] in CROPS {
         let heights: Vec<f32> =
             (0..side * side).map(|i| whole[(row + i / side) * 1201 + col + i % side]).collect();
@@ -229,28 +249,26 @@ fn a_stream_of_andorra_runs_downhill_behind_the_ground_that_makes_way() {
         // Three seconds of arc at 42.5 degrees north.
         let spacing = DVec2::new(68.4, 92.6);
         let hf = Heightfield::new(DVec2::ZERO, spacing, side, side, heights, states).unwrap();
-        let springs = (0..144).map(|k| [5 + k % 12 * 10, 5 + k / 12 * 10]);
+        let springs = (0..64).map(|k| [5 + k % 8 * 10, 5 + k / 8 * 10]);
         let stream = springs.map(|spring| traced(&hf, spring)).max_by_key(Vec::len).unwrap();
         let downstream: Vec<DVec2> = stream.iter().map(|[x, y]| hf.node_xy(*x, *y)).collect();
         let (first, last) = (downstream[0], downstream[downstream.len() - 1]);
         let drape = |p: DVec2| p.extend(hf.surface_at(p).unwrap());
         // Far up the stream is to be seen from over its mouth, and it winds.
         let trail: Vec<DVec3> = downstream[..downstream.len() / 2].iter().map(|p| drape(*p)).collect();
-        let eye = drape(last) + DVec3::Z * 500.0;
+        let eye = drape(last) + DVec3::Z * 200.0;
         let lens = Projection::Perspective { fov_y: 60f64.to_radians() };
         let view = View::straight(Pinhole::look_at(eye, drape(first), DVec3::Z, lens, [640, 480], 1.0, None).unwrap());
         let river = Layer { must_see: false, ..line_layer("stream", downstream.iter().map(|p| drape(*p)).collect()) };
         let upstream: Vec<DVec2> = downstream.iter().rev().copied().collect();
         let scene = Scene { layers: vec![terrain_layer(hf.clone()), line_layer("trail", trail), river], ..Scene::default() };
         let valley = Valley { scene, stream: upstream, view };
-        let [free, kept] = [false, true].map(|rivers| valley.solve(TerrainSettings::default(), rivers));
+        let [free, kept] = [false, true].map(|rivers| valley.solve(TerrainSettings { solver_nodes: 41, ..TerrainSettings::default() }, rivers));
         let [uphill, excess] = [&free, &kept].map(|solved| valley.excess(solved));
-        println!("{col} {row}: {} nodes, {uphill} {excess} {:?} {} {} {} {:?}", stream.len(), kept.report.rivers, free.report.metrics.visible_dense, kept.report.metrics.visible_dense, kept.report.visible_dense_before, [free.report.times.qp_ms, kept.report.times.qp_ms]);
         assert!(excess < RIVER_TOLERANCE_M, "{col} {row}: {excess} m");
-        cases += usize::from(uphill > 1.0);
+        assert!(uphill > 1.0, "{col} {row}: no uphill where nobody asks, {uphill} m");
     }
-    assert!(cases > 0, "no stream runs uphill where nobody asks");
 }
 
 /// First column and row of parts of the elevation model.
-const CROPS: [[usize; 2]; 4] = [[560, 480], [640, 560], [700, 450], [500, 620]];
+const CROPS: [[usize; 2]; 2] = [[480, 520], [600, 640]];
