@@ -14,8 +14,9 @@ use serde::Serialize;
 pub const RIVER_TOLERANCE_M: f64 = 0.05;
 /// What rises by no more is left as it is where displacements of nodes are changed, metres.
 const SAME: f64 = 1e-4;
-/// Rounds in which nodes are lowered at most.
-const PASSES: usize = 1000;
+/// Passes along one river in which nodes change, and rounds of all rivers, at most.
+const PASSES: usize = 500;
+const ROUNDS: usize = 100;
 /// Weights below this are rounding.
 const NONE: f64 = 1e-9;
 /// Share of a river whose heights stand for one of its ends.
@@ -99,9 +100,9 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    fn entries(&self, ground: usize) -> impl Iterator<Item = (usize, f64)> {
-        let all = self.nodes.iter().map(|n| *n as usize).zip(self.weights[ground]);
-        all.filter(|(_, w)| *w > NONE).collect::<Vec<_>>().into_iter()
+    fn entries(&self, ground: usize) -> impl Iterator<Item = (usize, f64)> + use<> {
+        let Self { nodes, weights, .. } = *self;
+        (0..4).map(move |k| (nodes[k] as usize, weights[ground][k])).filter(|(_, w)| *w > NONE)
     }
 
     fn moved(&self, u: &[f64], ground: usize) -> f64 {
@@ -170,11 +171,14 @@ impl Rivers {
     ///
     /// * `together`: lowers what moves together with lowered nodes, and answers whether it changed any.
     pub fn settle(&self, u: &mut [f64], mut together: impl FnMut(&mut [f64]) -> bool) -> bool {
-        for _ in 0..PASSES {
+        for _ in 0..ROUNDS {
             let mut sank = false;
             for river in &self.rivers {
-                for ground in 0..GROUNDS.len() {
-                    sank |= river.sink(u, ground);
+                for _ in 0..PASSES {
+                    if !(0..GROUNDS.len()).fold(false, |any, ground| river.sink(u, ground) || any) {
+                        break;
+                    }
+                    sank = true;
                 }
             }
             let followed = together(u);
@@ -185,10 +189,16 @@ impl Rivers {
         false
     }
 
-    /// Raises nodes of a displacement so that no river rises downstream, once along each; appends those that it raised.
+    /// Raises nodes of a displacement so that no river by itself rises downstream; appends those that it raised.
     pub(crate) fn raise(&self, u: &mut [f64], raised: &mut Vec<usize>) {
         for river in &self.rivers {
-            (0..GROUNDS.len()).for_each(|ground| river.raise(u, ground, raised));
+            for _ in 0..PASSES {
+                let before = raised.len();
+                (0..GROUNDS.len()).for_each(|ground| river.raise(u, ground, raised));
+                if raised.len() == before {
+                    break;
+                }
+            }
         }
     }
 
@@ -229,9 +239,11 @@ impl River {
         for place in self.places_over(ground).rev() {
             let least = highest - place.bed;
             if place.moved(u, ground) < least - SAME {
-                for (n, _) in place.entries(ground).filter(|(n, _)| u[*n] < least).collect::<Vec<_>>() {
-                    u[n] = least;
-                    raised.push(n);
+                for (n, _) in place.entries(ground) {
+                    if u[n] < least {
+                        u[n] = least;
+                        raised.push(n);
+                    }
                 }
             }
             highest = highest.max(place.bed + place.moved(u, ground));
@@ -302,8 +314,8 @@ fn place(g: DVec2, bend: bool, [cols, rows]: [usize; 2], height: impl Fn(usize) 
     let DVec2 { x, y } = inside;
     // How far facets lie over the bilinear ground, per unit of its factor of xy.
     let facet = inside.min_element() - x * y;
-    let [flat, bilinear] = [facet, 0.0]
-        .map(|f| [(1.0 - x) * (1.0 - y) + f, x * (1.0 - y) - f, (1.0 - x) * y - f, x * y + f]);
+    let [flat, bilinear] =
+        [facet, 0.0].map(|f| [(1.0 - x) * (1.0 - y) + f, x * (1.0 - y) - f, (1.0 - x) * y - f, x * y + f]);
     Some(Place { grid: g, bend, height, bed: height, nodes: nodes.map(|n| n as u32), weights: [flat, bilinear] })
 }
 

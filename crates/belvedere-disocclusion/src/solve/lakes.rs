@@ -174,7 +174,8 @@ impl Lakes {
     pub(super) fn sink(&self, u: &mut [f64]) -> bool {
         let mut sank = false;
         for lake in &self.lakes {
-            let [low, high] = lake.nodes.iter().map(|n| u[*n as usize]).fold([f64::MAX, f64::MIN], |[a, b], v| [a.min(v), b.max(v)]);
+            let [low, high] =
+                lake.nodes.iter().map(|n| u[*n as usize]).fold([f64::MAX, f64::MIN], |[a, b], v| [a.min(v), b.max(v)]);
             if low < high {
                 sank = true;
                 let beside = lake.shore.iter().chain(lake.bank.iter().map(|(n, _)| n));

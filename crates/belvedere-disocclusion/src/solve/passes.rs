@@ -4,9 +4,9 @@ use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult};
 use super::super::{BlockMaxima, Field, Hierarchy, Naive, ReferencePoint, Smoother, SolverMode, TerrainSettings};
 use super::agreement::Agreement;
 use super::fallback::{self, Fallback};
-use super::waters::Waters;
 use super::memory::{self, Prepared, Weights};
 use super::out_of_time::Ground;
+use super::waters::Waters;
 use super::{Outcome, PointsInView, QpReport, TerrainTimes, scales, since};
 use crate::DisocclusionError;
 use belvedere_core::DVec3;
@@ -247,7 +247,8 @@ impl Passes<'_> {
         }
         // Where a lake sinks with all its banks the limits fill up most of it again: that is not worth another solution.
         let in_vain = prepared.limited.as_ref().is_some_and(|limited| {
-            !prepared.waters.lakes.is_empty() && limited.beyond(&prepared.grid, &result.u) > FAR_BEYOND * self.field.relief()
+            !prepared.waters.lakes.is_empty()
+                && limited.beyond(&prepared.grid, &result.u) > FAR_BEYOND * self.field.relief()
         });
         if self.stuck(&result) && !in_vain {
             let mut cut = fallback::cut_detail(self.field, &ground, &prepared.grid, &result.active);

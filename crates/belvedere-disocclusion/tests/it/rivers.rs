@@ -5,7 +5,8 @@ use belvedere_disocclusion::{
     DisocclusionError, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver, rivers::RIVER_TOLERANCE_M,
 };
 use belvedere_scene::{
-    AreaFeature, AreaLayer, AreaSurface, CellTriangle, Color, Heightfield, Hidden, Layer, LayerKind, NodeState, Progress, Scene,
+    AreaFeature, AreaLayer, AreaSurface, CellTriangle, Color, Heightfield, Hidden, Layer, LayerKind, NodeState,
+    Progress, Scene,
 };
 use belvedere_testkit::synthetic::{line_layer, terrain_layer};
 use std::time::Duration;
@@ -242,8 +243,7 @@ fn a_stream_of_andorra_runs_downhill_behind_the_ground_that_makes_way() {
     let whole: Vec<f32> = bytes.chunks_exact(2).map(|b| f32::from(i16::from_be_bytes([b[0], b[1]]))).collect();
     let side = 81;
     for [col, row] in CROPS {
-        let heights: Vec<f32> =
-            (0..side * side).map(|i| whole[(row + i / side) * 1201 + col + i % side]).collect();
+        let heights: Vec<f32> = (0..side * side).map(|i| whole[(row + i / side) * 1201 + col + i % side]).collect();
         assert!(heights.iter().all(|h| *h > 0.0), "{col} {row}: no data");
         let states = vec![NodeState::Measured; side * side];
         // Three seconds of arc at 42.5 degrees north.
@@ -261,9 +261,11 @@ fn a_stream_of_andorra_runs_downhill_behind_the_ground_that_makes_way() {
         let view = View::straight(Pinhole::look_at(eye, drape(first), DVec3::Z, lens, [640, 480], 1.0, None).unwrap());
         let river = Layer { must_see: false, ..line_layer("stream", downstream.iter().map(|p| drape(*p)).collect()) };
         let upstream: Vec<DVec2> = downstream.iter().rev().copied().collect();
-        let scene = Scene { layers: vec![terrain_layer(hf.clone()), line_layer("trail", trail), river], ..Scene::default() };
+        let scene =
+            Scene { layers: vec![terrain_layer(hf.clone()), line_layer("trail", trail), river], ..Scene::default() };
         let valley = Valley { scene, stream: upstream, view };
-        let [free, kept] = [false, true].map(|rivers| valley.solve(TerrainSettings { solver_nodes: 41, ..TerrainSettings::default() }, rivers));
+        let [free, kept] = [false, true]
+            .map(|rivers| valley.solve(TerrainSettings { solver_nodes: 41, ..TerrainSettings::default() }, rivers));
         let [uphill, excess] = [&free, &kept].map(|solved| valley.excess(solved));
         assert!(excess < RIVER_TOLERANCE_M, "{col} {row}: {excess} m");
         assert!(uphill > 1.0, "{col} {row}: no uphill where nobody asks, {uphill} m");

@@ -6,8 +6,8 @@ use crate::BelvedereError;
 use crate::scene_file::{DetailDoc, PointDoc, SolverMode as ModeDoc, SourceDocument, StageDoc, Table, TerrainStageDoc};
 use belvedere_core::{DVec3, Pinhole, Stage, View};
 use belvedere_disocclusion::DisocclusionError;
-use belvedere_disocclusion::rivers::RIVER_TOLERANCE_M;
 use belvedere_disocclusion::report::{FeatureCost, Spike, Taken};
+use belvedere_disocclusion::rivers::RIVER_TOLERANCE_M;
 use belvedere_disocclusion::{
     Detail, Solved, SolverMode, TerrainReport, TerrainSettings, TerrainSolver, ViewpointOptions,
 };
@@ -272,8 +272,12 @@ fn held(report: &TerrainReport) -> Option<String> {
 /// That rivers keep something hidden, and rivers that run uphill all the same.
 fn confined(report: &TerrainReport) -> Option<String> {
     let hidden = 1.0 - report.metrics.visible_dense;
-    if let Some(worst) = report.rivers.iter().map(|r| r.excess_m).max_by(f64::total_cmp).filter(|m| *m > RIVER_TOLERANCE_M) {
-        return Some(format!("terrain_disocclusion: a river runs uphill by {worst:.1} m more than on the elevation model; the report names it"));
+    if let Some(worst) =
+        report.rivers.iter().map(|r| r.excess_m).max_by(f64::total_cmp).filter(|m| *m > RIVER_TOLERANCE_M)
+    {
+        return Some(format!(
+            "terrain_disocclusion: a river runs uphill by {worst:.1} m more than on the elevation model; the report names it"
+        ));
     }
     (!report.rivers.is_empty() && hidden > 0.0 && !report.guaranteed).then(|| {
         format!(

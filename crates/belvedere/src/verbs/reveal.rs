@@ -176,7 +176,8 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
         return Err(BelvedereError::FieldOfView { deg: fov_y_deg });
     }
     if !request.data.rivers.is_empty() && matches!(request.technique, Technique::Spline | Technique::CurvedRays) {
-        let reason = "rivers are kept from running uphill where the ground moves; ask for technique terrain, both or auto";
+        let reason =
+            "rivers are kept from running uphill where the ground moves; ask for technique terrain, both or auto";
         return Err(BelvedereError::Setting(reason.into()));
     }
     let mut data = request.data.load(false, options)?;
