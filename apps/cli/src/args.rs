@@ -214,6 +214,9 @@ pub(crate) struct RevealArgs {
     /// Draw the sea as ordinary ground
     #[arg(long)]
     pub(crate) no_sea: bool,
+    /// Rivers that do not run uphill where the ground makes way: a file of lines, GPX, GeoJSON, shapefile; may be given several times
+    #[arg(long, value_name = "FILE", conflicts_with = "see")]
+    pub(crate) rivers: Vec<PathBuf>,
     /// Style of areas, instead of the one that their properties and names give
     #[arg(long, value_enum, value_name = "STYLE")]
     pub(crate) area_style: Option<AreaStyleKind>,
@@ -248,6 +251,9 @@ pub(crate) struct DisoccludeArgs {
     /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages where they are built in
     #[arg(required = true)]
     pub(crate) features: Vec<PathBuf>,
+    /// Rivers that do not run uphill on the displaced ground: a file of lines, GPX, GeoJSON, shapefile; may be given several times
+    #[arg(long, value_name = "FILE")]
+    pub(crate) rivers: Vec<PathBuf>,
     /// Eye: x,y in the system of the elevation model (degrees if geographic), z in metres over its datum
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_eye)]
     pub(crate) eye: [f64; 3],

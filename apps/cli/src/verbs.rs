@@ -158,7 +158,7 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
         picture: args.picture,
     };
     files.picture.as_deref().map_or(Ok(()), png_named)?;
-    let inputs: Vec<PathBuf> = args.features.iter().chain([&args.dem]).cloned().collect();
+    let inputs: Vec<PathBuf> = args.features.iter().chain(&args.rivers).chain([&args.dem]).cloned().collect();
     for path in files.all() {
         output::check(&path, &inputs, context.common.overwrite)?;
     }
@@ -169,6 +169,7 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
         data: DataFiles {
             dem: named(&args.dem),
             features: args.features.iter().map(|path| named(path)).collect(),
+            rivers: args.rivers.iter().map(|path| named(path)).collect(),
             crs: args.crs,
             area_style: args.area_style.map(Into::into),
             source_crs: args.ground.source_crs,
@@ -260,7 +261,8 @@ fn reveal_one(request: &TargetRequest, files: &RevealFiles, context: &Context) -
 
 fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> {
     let out = RevealFiles { out: args.out, before: args.before, report: args.report, scene: args.scene };
-    let inputs: Vec<PathBuf> = args.features.iter().chain([&args.dem]).map(PathBuf::from).collect();
+    let inputs = args.features.iter().chain([&args.dem]).map(PathBuf::from);
+    let inputs: Vec<PathBuf> = inputs.chain(args.rivers.iter().cloned()).collect();
     png_named(&out.out)?;
     out.before.as_deref().map_or(Ok(()), png_named)?;
     let technique = args.technique.unwrap_or(TechniqueKind::Spline);
@@ -302,6 +304,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         data: DataFiles {
             dem: args.dem,
             features: args.features,
+            rivers: args.rivers.iter().map(|path| named(path)).collect(),
             crs: args.crs,
             keep_voids: args.keep_voids,
             palette: PaletteDoc::of(&args.palette),

@@ -14,8 +14,9 @@ use serde::Serialize;
 pub const RIVER_TOLERANCE_M: f64 = 0.05;
 /// What rises by no more is left as it is where displacements of nodes are changed, metres.
 const SAME: f64 = 1e-4;
-/// Rounds in which nodes are lowered at most.
-const PASSES: usize = 1000;
+/// Passes along one river in which nodes change, and rounds of all rivers, at most.
+const PASSES: usize = 500;
+const ROUNDS: usize = 100;
 /// Weights below this are rounding.
 const NONE: f64 = 1e-9;
 /// Share of a river whose heights stand for one of its ends.
@@ -87,6 +88,8 @@ pub(crate) const GROUNDS: [bool; 2] = [true, false];
 pub(crate) struct Place {
     /// Grid coordinates.
     pub(crate) grid: DVec2,
+    /// Whether the ground along the river bends here: between bends facets are straight.
+    bend: bool,
     /// Height of the undisplaced ground.
     height: f64,
     /// Lowest height from the spring to here.
@@ -97,9 +100,9 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    fn entries(&self, ground: usize) -> impl Iterator<Item = (usize, f64)> {
-        let all = self.nodes.iter().map(|n| *n as usize).zip(self.weights[ground]);
-        all.filter(|(_, w)| *w > NONE).collect::<Vec<_>>().into_iter()
+    fn entries(&self, ground: usize) -> impl Iterator<Item = (usize, f64)> + use<> {
+        let Self { nodes, weights, .. } = *self;
+        (0..4).map(move |k| (nodes[k] as usize, weights[ground][k])).filter(|(_, w)| *w > NONE)
     }
 
     fn moved(&self, u: &[f64], ground: usize) -> f64 {
@@ -113,8 +116,8 @@ pub(crate) struct River {
     layer: usize,
     feature: usize,
     name: String,
-    /// Downstream: wherever it crosses the mesh, and halfway between.
-    pub(crate) places: Vec<Place>,
+    /// Downstream: wherever it crosses the mesh, and between.
+    places: Vec<Place>,
 }
 
 /// Rivers on a grid of heights, row-major.
@@ -132,7 +135,7 @@ impl Rivers {
         height: impl Fn(usize) -> Option<f64>,
     ) -> Self {
         let river = |line: RiverLine| {
-            let at = |g: DVec2| place(g, [cols, rows], &height);
+            let at = |(g, bend): (DVec2, bool)| place(g, bend, [cols, rows], &height);
             let mut places: Vec<Place> = stations(&line.points, [cols, rows]).into_iter().filter_map(at).collect();
             if runs_up(&places) {
                 places.reverse();
@@ -168,11 +171,14 @@ impl Rivers {
     ///
     /// * `together`: lowers what moves together with lowered nodes, and answers whether it changed any.
     pub fn settle(&self, u: &mut [f64], mut together: impl FnMut(&mut [f64]) -> bool) -> bool {
-        for _ in 0..PASSES {
+        for _ in 0..ROUNDS {
             let mut sank = false;
             for river in &self.rivers {
-                for ground in 0..GROUNDS.len() {
-                    sank |= river.sink(u, ground);
+                for _ in 0..PASSES {
+                    if !(0..GROUNDS.len()).fold(false, |any, ground| river.sink(u, ground) || any) {
+                        break;
+                    }
+                    sank = true;
                 }
             }
             let followed = together(u);
@@ -183,10 +189,16 @@ impl Rivers {
         false
     }
 
-    /// Raises nodes of a displacement so that no river rises downstream, once along each; appends those that it raised.
+    /// Raises nodes of a displacement so that no river by itself rises downstream; appends those that it raised.
     pub(crate) fn raise(&self, u: &mut [f64], raised: &mut Vec<usize>) {
         for river in &self.rivers {
-            (0..GROUNDS.len()).for_each(|ground| river.raise(u, ground, raised));
+            for _ in 0..PASSES {
+                let before = raised.len();
+                (0..GROUNDS.len()).for_each(|ground| river.raise(u, ground, raised));
+                if raised.len() == before {
+                    break;
+                }
+            }
         }
     }
 
@@ -199,9 +211,19 @@ impl Rivers {
 }
 
 impl River {
+    /// Places at which the river on one of [`GROUNDS`] may turn uphill.
+    fn places_over(&self, ground: usize) -> impl DoubleEndedIterator<Item = &Place> {
+        self.places.iter().filter(move |place| place.bend || !GROUNDS[ground])
+    }
+
+    /// Its bends, downstream.
+    pub(crate) fn bends(&self) -> impl Iterator<Item = &Place> {
+        self.places.iter().filter(|place| place.bend)
+    }
+
     fn sink(&self, u: &mut [f64], ground: usize) -> bool {
         let (mut lowest, mut sank) = (f64::INFINITY, false);
-        for place in &self.places {
+        for place in self.places_over(ground) {
             let most = lowest - place.bed;
             if place.moved(u, ground) > most + SAME {
                 place.entries(ground).for_each(|(n, _)| u[n] = u[n].min(most));
@@ -214,12 +236,14 @@ impl River {
 
     fn raise(&self, u: &mut [f64], ground: usize, raised: &mut Vec<usize>) {
         let mut highest = f64::NEG_INFINITY;
-        for place in self.places.iter().rev() {
+        for place in self.places_over(ground).rev() {
             let least = highest - place.bed;
             if place.moved(u, ground) < least - SAME {
-                for (n, _) in place.entries(ground).filter(|(n, _)| u[*n] < least).collect::<Vec<_>>() {
-                    u[n] = least;
-                    raised.push(n);
+                for (n, _) in place.entries(ground) {
+                    if u[n] < least {
+                        u[n] = least;
+                        raised.push(n);
+                    }
                 }
             }
             highest = highest.max(place.bed + place.moved(u, ground));
@@ -230,7 +254,7 @@ impl River {
         let [mut before, mut after, mut excess] = [0.0f64; 3];
         for ground in 0..GROUNDS.len() {
             let mut lowest = f64::INFINITY;
-            for place in &self.places {
+            for place in self.places_over(ground) {
                 let height = place.height + place.moved(u, ground);
                 lowest = lowest.min(height);
                 let [rise, noise] = [height - lowest, place.height - place.bed];
@@ -250,10 +274,13 @@ impl River {
     }
 }
 
-/// Where a line begins, ends, turns and crosses the mesh, and halfway between, grid coordinates.
-fn stations(points: &[DVec2], [cols, rows]: [usize; 2]) -> Vec<DVec2> {
+/// Places on the way from one edge of the mesh to the next: between edges facets are flat, but the bilinear displacement bulges.
+const PARTS: usize = 16;
+
+/// Where a line begins, ends, turns and crosses the mesh, and places between, grid coordinates; and whether each is one of the former.
+fn stations(points: &[DVec2], [cols, rows]: [usize; 2]) -> Vec<(DVec2, bool)> {
     let last = DVec2::new((cols - 1) as f64, (rows - 1) as f64);
-    let mut out: Vec<DVec2> = points.first().copied().into_iter().collect();
+    let mut out: Vec<(DVec2, bool)> = points.first().map(|p| (*p, true)).into_iter().collect();
     for pair in points.windows(2) {
         let step = pair[1] - pair[0];
         // Far beyond the grid there is no mesh to cross.
@@ -263,7 +290,10 @@ fn stations(points: &[DVec2], [cols, rows]: [usize; 2]) -> Vec<DVec2> {
         shares.sort_by(f64::total_cmp);
         let mut from = 0.0;
         for share in shares {
-            out.extend([0.5 * (from + share), share].map(|share| pair[0] + share * step));
+            for part in 1..=PARTS {
+                let share = from + part as f64 / PARTS as f64 * (share - from);
+                out.push((pair[0] + share * step, part == PARTS));
+            }
             from = share;
         }
     }
@@ -271,7 +301,7 @@ fn stations(points: &[DVec2], [cols, rows]: [usize; 2]) -> Vec<DVec2> {
 }
 
 /// A place on a grid; `None` beside it and where there is no data. Its bed is not known yet.
-fn place(g: DVec2, [cols, rows]: [usize; 2], height: impl Fn(usize) -> Option<f64>) -> Option<Place> {
+fn place(g: DVec2, bend: bool, [cols, rows]: [usize; 2], height: impl Fn(usize) -> Option<f64>) -> Option<Place> {
     let last = DVec2::new((cols - 1) as f64, (rows - 1) as f64);
     if !(g.cmpge(DVec2::ZERO).all() && g.cmple(last).all()) {
         return None;
@@ -286,7 +316,7 @@ fn place(g: DVec2, [cols, rows]: [usize; 2], height: impl Fn(usize) -> Option<f6
     let facet = inside.min_element() - x * y;
     let [flat, bilinear] =
         [facet, 0.0].map(|f| [(1.0 - x) * (1.0 - y) + f, x * (1.0 - y) - f, (1.0 - x) * y - f, x * y + f]);
-    Some(Place { grid: g, height, bed: height, nodes: nodes.map(|n| n as u32), weights: [flat, bilinear] })
+    Some(Place { grid: g, bend, height, bed: height, nodes: nodes.map(|n| n as u32), weights: [flat, bilinear] })
 }
 
 /// Whether the last part of a river lies over its first.

@@ -22,6 +22,9 @@ use std::sync::Arc;
 /// Largest hole that is filled, share of the ground: what would be made up in a larger one is no ground.
 pub const LARGEST_HOLE: f64 = 0.03;
 
+/// Colour of lines of rivers.
+const RIVER_COLOR: &str = "#2b7bba";
+
 /// Files of a terrain and of what must be seen on it.
 #[derive(Debug, Clone, Default)]
 pub struct DataFiles {
@@ -29,6 +32,8 @@ pub struct DataFiles {
     pub dem: String,
     /// Routes, areas or points: files, or `builtin:massif?seed=7`.
     pub features: Vec<String>,
+    /// Rivers that are not to run uphill where the ground moves: files with lines.
+    pub rivers: Vec<String>,
     /// Coordinate system of the scene; automatic if left out.
     pub crs: Option<String>,
     /// Leaves holes of the terrain open; else those of at most [`LARGEST_HOLE`] are filled.
@@ -53,6 +58,8 @@ pub(crate) struct Data {
     pub(crate) warnings: Vec<String>,
     /// Samples of the terrain's file as they are there, if they were to be kept.
     pub(crate) original: Option<OriginalTerrain>,
+    /// Ids of the layers of rivers.
+    pub(crate) rivers: Vec<String>,
     areas: Vec<AreaRecord>,
     inputs: Vec<InputFile>,
     layers: Vec<LayerDoc>,
@@ -94,6 +101,18 @@ impl DataFiles {
                 layers.push(feature_layer(id, Paths::One(source.clone()), kind));
             }
         }
+        let mut rivers = Vec::new();
+        for (i, name) in self.rivers.iter().enumerate() {
+            let source = locate(name, &mut roots)?;
+            let read = load_vectors(Path::new(&source))?;
+            if !kinds_of(&read.value).contains(&FeatureKind::Lines) {
+                return Err(belvedere_io::IoError::format(Path::new(name), "holds no lines; rivers are lines").into());
+            }
+            vectors.insert(PathBuf::from(&source), read);
+            let id = format!("rivers{}", i + 1);
+            layers.push(LayerDoc::Line(river_layer(id.clone(), Paths::One(source))));
+            rivers.push(id);
+        }
         let crs = self.crs.as_deref().unwrap_or("auto");
         let request =
             LayerRequest { vectors, keep_original, ..LayerRequest::new(&Origin::MEMORY, &layers, crs, &roots) };
@@ -102,7 +121,7 @@ impl DataFiles {
         let (inputs, warnings, areas, original) = (loaded.inputs, loaded.warnings, loaded.areas, loaded.original);
         let scene = Scene { title: "Revealed".into(), crs: loaded.crs, layers: loaded.layers, ..Scene::default() };
         resolve::fill_surfaces(&mut layers, &scene);
-        Ok(Data { scene: Arc::new(scene), warnings, original, areas, inputs, layers, roots })
+        Ok(Data { scene: Arc::new(scene), warnings, original, rivers, areas, inputs, layers, roots })
     }
 }
 
@@ -152,6 +171,12 @@ pub(crate) fn features_of(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, 
     let taken = |id: &str| others.iter().any(|layer| layer.id() == id);
     let id = (1..).map(|k| if k == 1 { stem.to_owned() } else { format!("{stem}-{k}") }).find(|id| !taken(id));
     Ok(feature_layer(id.unwrap_or_default(), Paths::One(name.to_owned()), kind))
+}
+
+/// Rivers are drawn, but nothing has to make way for them.
+fn river_layer(id: String, source: Paths) -> LineDoc {
+    let style = LineStyleDoc { color: RIVER_COLOR.into(), width_px: 2.0, ..LineStyleDoc::default() };
+    LineDoc { id, source: Some(source), route: None, must_see: false, style }
 }
 
 fn feature_layer(id: String, source: Paths, kind: FeatureKind) -> LayerDoc {

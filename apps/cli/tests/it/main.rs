@@ -22,6 +22,7 @@ mod pictures;
 mod presets;
 mod reveal;
 mod rigid;
+mod rivers;
 mod scenes;
 mod speed;
 mod strip;

@@ -1,18 +1,21 @@
 //! Rows that keep rivers from running uphill: `bed + u` at a place is no higher than at one upstream of it.
+//!
+//! Over flat facets; what the bilinear displacement does otherwise is mended with the nodes after solving.
 
 use super::row::{Constraint, Row};
 use super::surface::Lattice;
-use crate::rivers::{GROUNDS, Place, Rivers};
+use crate::rivers::{Place, River, Rivers};
 use belvedere_core::DVec2;
 
 /// What rises by no more brings no row, metres; the displacement of nodes is mended by that after solving.
-pub(super) const ALLOWED: f64 = 0.01;
+pub(super) const ALLOWED: f64 = 0.05;
+/// Nor what rises by less than this share of the largest rise: much of it goes with that.
+const WORTH: f64 = 0.1;
 
-/// Two places of a river, over one ground.
+/// Two places of a river.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Stretch {
     river: u32,
-    faceted: bool,
     upstream: u32,
     downstream: u32,
 }
@@ -34,86 +37,78 @@ struct Course {
 struct Station {
     grid: DVec2,
     bed: f64,
-    /// Nodes and weights over [`GROUNDS`].
-    over: [([u32; 4], [f64; 4]); 2],
+    nodes: [u32; 4],
+    weights: [f64; 4],
 }
 
 impl Uphill {
     pub(super) fn new(rivers: &Rivers, lattice: &Lattice) -> Self {
         let station = |p: &Place| {
-            let over = GROUNDS.map(|faceted| lattice.weights_over(p.grid, faceted));
-            Station { grid: p.grid, bed: p.bed, over }
+            let (nodes, weights) = lattice.weights_over(p.grid, true);
+            Station { grid: p.grid, bed: p.bed, nodes, weights }
         };
-        let course = |places: Vec<Station>| {
-            let (mut steps, mut way) = (vec![0], 0.0);
-            for k in 1..places.len() {
-                way += ((places[k].grid - places[k - 1].grid) / lattice.step).length();
-                if way >= 1.0 || k + 1 == places.len() {
-                    steps.push(k);
-                    way = 0.0;
-                }
-            }
-            Course { places, steps }
-        };
-        let of = |river: &crate::rivers::River| course(river.places.iter().map(station).collect());
-        Self { courses: rivers.all().iter().map(of).collect() }
+        let course = |river: &River| Course::new(river.bends().map(station).collect(), lattice);
+        Self { courses: rivers.all().iter().map(course).collect() }
     }
 
-    /// Stretches that `u` lets rise: of each rise the whole, and the steps in it.
+    /// Stretches along which `u` lets a river rise: of each rise the whole, and the steps in it.
     pub(super) fn rising(&self, u: &[f64]) -> Vec<Stretch> {
         let mut out = Vec::new();
         for (river, course) in self.courses.iter().enumerate() {
-            for (ground, faceted) in GROUNDS.into_iter().enumerate() {
-                let stretch = |upstream: usize, downstream: usize| Stretch {
-                    river: river as u32,
-                    faceted,
-                    upstream: upstream as u32,
-                    downstream: downstream as u32,
-                };
-                out.extend(course.rises(u, ground).into_iter().map(|[a, b]| stretch(a, b)));
-            }
+            let stretch = |[upstream, downstream]: [usize; 2]| Stretch {
+                river: river as u32,
+                upstream: upstream as u32,
+                downstream: downstream as u32,
+            };
+            out.extend(course.rises(u).into_iter().map(|(ends, rise)| (stretch(ends), rise)));
         }
-        out
+        let most = out.iter().map(|(_, rise)| *rise).fold(0.0, f64::max);
+        out.into_iter().filter(|(_, rise)| *rise >= WORTH * most).map(|(stretch, _)| stretch).collect()
     }
 
-    pub(super) fn row(&self, stretch: Stretch, lattice: &Lattice) -> Row {
-        let Stretch { river, faceted, upstream, downstream } = stretch;
+    pub(super) fn row(&self, Stretch { river, upstream, downstream }: Stretch, lattice: &Lattice) -> Row {
         let places = &self.courses[river as usize].places;
         let [from, to] = [upstream, downstream].map(|k| places[k as usize]);
-        let ground = GROUNDS.iter().position(|g| *g == faceted).unwrap_or(0);
         let (mut nodes, mut weights) = ([0; 8], [0.0; 8]);
         for k in 0..4 {
-            (nodes[k], weights[k]) = (to.over[ground].0[k], to.over[ground].1[k]);
-            (nodes[k + 4], weights[k + 4]) = (from.over[ground].0[k], -from.over[ground].1[k]);
+            (nodes[k], weights[k]) = (to.nodes[k], to.weights[k]);
+            (nodes[k + 4], weights[k + 4]) = (from.nodes[k], -from.weights[k]);
         }
-        let [a, b] = [to, from].map(|place| lattice.betweens(place.grid, faceted));
+        let [a, b] = [to, from].map(|place| lattice.betweens(place.grid, true));
         let points = [a[0], a[1], (-b[0].0, b[0].1), (-b[1].0, b[1].1)];
-        Row { nodes, weights, len: 8, bound: from.bed - to.bed, constraint: Constraint::River(stretch), points }
+        let constraint = Constraint::River(Stretch { river, upstream, downstream });
+        Row { nodes, weights, len: 8, bound: from.bed - to.bed, constraint, points }
     }
 }
 
 impl Course {
-    fn rises(&self, u: &[f64], ground: usize) -> Vec<[usize; 2]> {
-        let value = |k: usize| {
-            let Station { bed, over, .. } = &self.places[k];
-            bed + (0..4).map(|j| over[ground].1[j] * u[over[ground].0[j] as usize]).sum::<f64>()
-        };
-        let values: Vec<f64> = (0..self.places.len()).map(value).collect();
-        let steps = self.steps.windows(2).map(|w| [w[0], w[1]]);
-        let mut out: Vec<[usize; 2]> = steps.filter(|[a, b]| values[*b] - values[*a] > ALLOWED).collect();
+    fn new(places: Vec<Station>, lattice: &Lattice) -> Self {
+        let (mut steps, mut way) = (vec![0], 0.0);
+        for k in 1..places.len() {
+            way += ((places[k].grid - places[k - 1].grid) / lattice.step).length();
+            if way >= 1.0 || k + 1 == places.len() {
+                steps.push(k);
+                way = 0.0;
+            }
+        }
+        Self { places, steps }
+    }
+
+    /// Ends of stretches, and by how much they rise.
+    fn rises(&self, u: &[f64]) -> Vec<([usize; 2], f64)> {
+        let value = |s: &Station| s.bed + (0..4).map(|k| s.weights[k] * u[s.nodes[k] as usize]).sum::<f64>();
+        let values: Vec<f64> = self.places.iter().map(value).collect();
+        let mut ends: Vec<[usize; 2]> = self.steps.windows(2).map(|w| [w[0], w[1]]).collect();
         let (mut lowest, mut highest) = (0, 0);
         for k in 1..=values.len() {
             if k == values.len() || values[k] <= values[lowest] {
-                if values[highest] - values[lowest] > ALLOWED {
-                    out.push([lowest, highest]);
-                }
+                ends.push([lowest, highest]);
                 (lowest, highest) = (k, k);
             } else if values[k] > values[highest] {
                 highest = k;
             }
         }
-        out.sort_unstable();
-        out.dedup();
-        out
+        let rising = ends.into_iter().map(|[a, b]| ([a, b], values[b] - values[a]));
+        rising.filter(|(_, rise)| *rise > ALLOWED).collect()
     }
 }

@@ -4,11 +4,14 @@ use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::{
     DisocclusionError, Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver, rivers::RIVER_TOLERANCE_M,
 };
-use belvedere_scene::{CellTriangle, Heightfield, Layer, NodeState, Progress, Scene};
+use belvedere_scene::{
+    AreaFeature, AreaLayer, AreaSurface, CellTriangle, Color, Heightfield, Hidden, Layer, LayerKind, NodeState,
+    Progress, Scene,
+};
 use belvedere_testkit::synthetic::{line_layer, terrain_layer};
 use std::time::Duration;
 
-const NODES: usize = 65;
+const NODES: usize = 33;
 
 /// A winding valley between spurs, along which a stream runs south, and a trail on its sides.
 struct Valley {
@@ -25,9 +28,9 @@ impl Valley {
         let middle = |y: f64| size * (0.5 + 0.16 * (7.0 * y / size + phase).sin());
         let rough = |x: f64, y: f64| (x / (2.3 * spacing) + phase).sin() * (y / (1.9 * spacing) - phase).cos();
         let height = |x: f64, y: f64| {
-            let away = (x - middle(y)).abs();
+            let away = ((x - middle(y)).abs() - 2.0 * spacing).max(0.0);
             let side = steep * 0.25 * size * (1.0 - (-away / (0.25 * size)).exp());
-            (500.0 + 0.08 * y + side + 0.03 * steep * spacing * rough(x, y)) as f32
+            (500.0 + 0.02 * y + side + 0.03 * steep * spacing * rough(x, y)) as f32
         };
         let node = |i: usize| ((i % NODES) as f64 * spacing, (NODES - 1 - i / NODES) as f64 * spacing);
         let heights = (0..NODES * NODES).map(|i| node(i)).map(|(x, y)| height(x, y)).collect();
@@ -90,28 +93,184 @@ fn excess(hf: &Heightfield, upstream: &[DVec2], moved: impl Fn(DVec2) -> f64) ->
     most
 }
 
+/// Solves for seeded valleys with and without the river, and checks what the former promises; answers in how many of them the stream runs
+/// uphill where nobody asks.
+fn uphill_of(seeds: &[u64], spacing: f64, steep: f64) -> usize {
+    let mut uphill = 0;
+    for &seed in seeds {
+        let valley = Valley::new(seed, spacing, steep);
+        let free = valley.solve(TerrainSettings::default(), false);
+        assert!(free.report.rivers.is_empty());
+        uphill += usize::from(valley.excess(&free) > 0.1);
+        let kept = valley.solve(TerrainSettings::default(), true);
+        let (excess, told) = (valley.excess(&kept), &kept.report.rivers);
+        assert!(excess < RIVER_TOLERANCE_M, "{excess} m: spacing {spacing}, seed {seed}");
+        assert!(told.len() == 1 && told[0].layer == 2 && told[0].name == "stream", "{told:?}");
+        assert!(told[0].excess_m < RIVER_TOLERANCE_M, "{told:?}");
+        assert!(told[0].rise_after_m <= told[0].rise_before_m + RIVER_TOLERANCE_M, "{told:?}");
+        let seen = kept.report.metrics.visible_dense;
+        assert!(seen > kept.report.visible_dense_before + 0.2, "seed {seed}: {seen}");
+        assert!(!kept.report.guaranteed || seen >= 0.9999, "seed {seed}: {seen}");
+    }
+    uphill
+}
+
 #[test]
-fn explore() {
-    for (spacing, steep) in [(30.0, 0.6), (90.0, 0.5), (30.0, 1.5)] {
-        for seed in 1..=4 {
-            let valley = Valley::new(seed, spacing, steep);
-            for rivers in [false, true] {
-                let began = std::time::Instant::now();
-                let s = valley.solve(TerrainSettings::default(), rivers);
-                let r = &s.report;
-                println!(
-                    "{spacing} {steep} seed {seed} rivers {rivers}: excess {:.3} visible {:.4}->{:.4} guaranteed {} limited {} rows {:?} rounds {:?} {:.2} s {:?}",
-                    valley.excess(&s),
-                    r.visible_dense_before,
-                    r.metrics.visible_dense,
-                    r.guaranteed,
-                    r.limited.is_some(),
-                    r.qp.map(|q| q.rows),
-                    r.qp.map(|q| q.rounds),
-                    began.elapsed().as_secs_f64(),
-                    r.rivers
-                );
-            }
-        }
+fn rivers_run_downhill_in_fine_valleys() {
+    assert!(uphill_of(&[2, 4, 6], 30.0, 0.6) >= 2, "streams do not run uphill where nobody asks");
+}
+
+#[test]
+fn rivers_run_downhill_in_coarse_valleys() {
+    assert!(uphill_of(&[4, 6], 90.0, 0.5) >= 1, "streams do not run uphill where nobody asks");
+}
+
+#[test]
+fn rivers_run_downhill_in_steep_valleys() {
+    assert_eq!(uphill_of(&[2], 30.0, 1.5), 1, "the stream does not run uphill where nobody asks");
+}
+
+#[test]
+fn what_a_river_costs_is_said() {
+    // Showing all of the way takes ground along which the stream would rise by some metres.
+    let valley = Valley::new(6, 90.0, 0.5);
+    let [free, kept] = [false, true].map(|rivers| valley.solve(TerrainSettings::default(), rivers).report);
+    assert!(free.guaranteed && free.metrics.visible_dense >= 0.9999);
+    assert!(!kept.guaranteed && kept.metrics.visible_dense < 0.9999, "{}", kept.metrics.visible_dense);
+    assert!(!kept.unresolved.is_empty() || !kept.hidden.is_empty(), "what stays hidden is named");
+}
+
+#[test]
+fn rivers_run_downhill_in_every_mode_and_where_time_is_up() {
+    let valley = Valley::new(2, 90.0, 1.0);
+    for mode in [SolverMode::PaperQp, SolverMode::Paper] {
+        let settings = TerrainSettings { mode, ..TerrainSettings::default() };
+        let free = valley.excess(&valley.solve(settings.clone(), false));
+        let kept = valley.excess(&valley.solve(settings, true));
+        assert!(free > 0.5 && kept < RIVER_TOLERANCE_M, "{mode:?}: {kept} m, {free} m where nobody asks");
+    }
+    let settings = TerrainSettings { rivers: vec!["stream".into()], ..TerrainSettings::default() };
+    let solver = TerrainSolver::new(settings).unwrap();
+    let soon = Progress::silent().limited(Duration::from_millis(60));
+    let solved = solver.solve(&valley.scene, &valley.view, &mut TerrainMemory::default(), &soon).unwrap();
+    assert!(valley.excess(&solved) < RIVER_TOLERANCE_M, "{:?}", solved.report.taken);
+}
+
+#[test]
+fn rivers_run_downhill_in_every_frame_of_a_film() {
+    let valley = Valley::new(2, 90.0, 0.5);
+    let settings = TerrainSettings { rivers: vec!["stream".into()], ..TerrainSettings::default() };
+    let solver = TerrainSolver::new(settings).unwrap().with_time_step(0.04);
+    let mut memory = TerrainMemory::default();
+    for frame in 0..4 {
+        let from = valley.view.pinhole();
+        let eye = from.eye + DVec3::new(4.0, 12.0, 1.0) * f64::from(frame);
+        let pinhole = Pinhole::look_at(eye, eye + from.forward, DVec3::Z, from.projection, [640, 480], 1.0, None);
+        let view = View::straight(pinhole.unwrap());
+        let solved = solver.solve(&valley.scene, &view, &mut memory, &Progress::silent()).unwrap();
+        let excess = valley.excess(&solved);
+        assert!(excess < RIVER_TOLERANCE_M, "frame {frame}: {excess} m");
     }
 }
+
+#[test]
+fn a_lake_on_a_river_stays_level_and_the_river_runs_downhill() {
+    let mut valley = Valley::new(2, 90.0, 1.0);
+    let hf = valley.scene.terrain().unwrap();
+    let middle = valley.stream[75];
+    let node = |i: usize| hf.north_west() + DVec2::new((i % NODES) as f64, -((i / NODES) as f64)) * hf.spacing();
+    let on_lake = |i: &usize| node(*i).distance(middle) < 270.0;
+    let lake: Vec<usize> = (0..NODES * NODES).filter(on_lake).collect();
+    let mut heights = hf.heights().to_vec();
+    let low = lake.iter().map(|&i| heights[i]).fold(f32::INFINITY, f32::min);
+    lake.iter().for_each(|&i| heights[i] = low);
+    let states = vec![NodeState::Measured; heights.len()];
+    let flat = Heightfield::new(hf.north_west(), hf.spacing(), NODES, NODES, heights, states).unwrap();
+    let ring = |k: i32| middle + 275.0 * DVec2::from_angle(f64::from(k) * std::f64::consts::TAU / 40.0);
+    let kind = LayerKind::Area(AreaLayer {
+        features: vec![AreaFeature { name: "lake".into(), rings: vec![(0..40).map(ring).collect()] }],
+        fill: Color::rgb(0, 0, 200),
+        outline: None,
+        width_px: 1.0,
+        surface: AreaSurface::Water,
+        hidden: Hidden::Cut,
+        lift_m: 0.5,
+    });
+    valley.scene.layers[0] = terrain_layer(flat);
+    valley.scene.layers.push(Layer { id: "lakes".into(), must_see: false, kind });
+    for mode in [SolverMode::Qp, SolverMode::Paper] {
+        let solved = valley.solve(TerrainSettings { mode, ..TerrainSettings::default() }, true);
+        let excess = valley.excess(&solved);
+        assert!(excess < RIVER_TOLERANCE_M, "{mode:?}: {excess} m");
+        let lakes = &solved.report.lakes;
+        assert!(lakes.len() == 1 && lakes[0].range_m < 1e-6 && lakes[0].moved_m != 0.0, "{mode:?}: {lakes:?}");
+    }
+}
+
+#[test]
+fn rivers_that_are_no_lines_of_the_scene_are_refused_by_name() {
+    let valley = Valley::new(1, 30.0, 0.6);
+    for wrong in ["ground", "strem"] {
+        let settings = TerrainSettings { rivers: vec![wrong.into()], ..TerrainSettings::default() };
+        let solver = TerrainSolver::new(settings).unwrap();
+        let found = solver.solve(&valley.scene, &valley.view, &mut TerrainMemory::default(), &Progress::silent());
+        let Err(e) = found else { panic!("{wrong} is taken for a river") };
+        assert!(matches!(e, DisocclusionError::River { .. }), "{e}");
+        assert!(e.to_string().contains(wrong) && e.to_string().contains("trail, stream"), "{e}");
+    }
+}
+
+/// The way down by steepest descent from a node, over small pits.
+fn traced(hf: &Heightfield, from: [usize; 2]) -> Vec<[usize; 2]> {
+    let height = |[x, y]: [usize; 2]| hf.heights()[y * hf.cols() + x];
+    let mut path = vec![from];
+    while let Some(&at) = path.last() {
+        let around = (0..9).map(|k| [(at[0] + k % 3).wrapping_sub(1), (at[1] + k / 3).wrapping_sub(1)]);
+        let free = around.filter(|p| p[0] < hf.cols() && p[1] < hf.rows() && !path.contains(p));
+        let lowest = free.min_by(|a, b| height(*a).total_cmp(&height(*b)));
+        match lowest.filter(|p| height(*p) < height(at) + 3.0) {
+            Some(next) => path.push(next),
+            None => break,
+        }
+    }
+    path
+}
+
+#[test]
+fn a_stream_of_andorra_runs_downhill_behind_the_ground_that_makes_way() {
+    let Some(path) = belvedere_testkit::data("andorra/N42E001.hgt") else { return };
+    let bytes = std::fs::read(path).unwrap();
+    let whole: Vec<f32> = bytes.chunks_exact(2).map(|b| f32::from(i16::from_be_bytes([b[0], b[1]]))).collect();
+    let side = 81;
+    for [col, row] in CROPS {
+        let heights: Vec<f32> = (0..side * side).map(|i| whole[(row + i / side) * 1201 + col + i % side]).collect();
+        assert!(heights.iter().all(|h| *h > 0.0), "{col} {row}: no data");
+        let states = vec![NodeState::Measured; side * side];
+        // Three seconds of arc at 42.5 degrees north.
+        let spacing = DVec2::new(68.4, 92.6);
+        let hf = Heightfield::new(DVec2::ZERO, spacing, side, side, heights, states).unwrap();
+        let springs = (0..64).map(|k| [5 + k % 8 * 10, 5 + k / 8 * 10]);
+        let stream = springs.map(|spring| traced(&hf, spring)).max_by_key(Vec::len).unwrap();
+        let downstream: Vec<DVec2> = stream.iter().map(|[x, y]| hf.node_xy(*x, *y)).collect();
+        let (first, last) = (downstream[0], downstream[downstream.len() - 1]);
+        let drape = |p: DVec2| p.extend(hf.surface_at(p).unwrap());
+        // Far up the stream is to be seen from over its mouth, and it winds.
+        let trail: Vec<DVec3> = downstream[..downstream.len() / 2].iter().map(|p| drape(*p)).collect();
+        let eye = drape(last) + DVec3::Z * 200.0;
+        let lens = Projection::Perspective { fov_y: 60f64.to_radians() };
+        let view = View::straight(Pinhole::look_at(eye, drape(first), DVec3::Z, lens, [640, 480], 1.0, None).unwrap());
+        let river = Layer { must_see: false, ..line_layer("stream", downstream.iter().map(|p| drape(*p)).collect()) };
+        let upstream: Vec<DVec2> = downstream.iter().rev().copied().collect();
+        let scene =
+            Scene { layers: vec![terrain_layer(hf.clone()), line_layer("trail", trail), river], ..Scene::default() };
+        let valley = Valley { scene, stream: upstream, view };
+        let [free, kept] = [false, true]
+            .map(|rivers| valley.solve(TerrainSettings { solver_nodes: 41, ..TerrainSettings::default() }, rivers));
+        let [uphill, excess] = [&free, &kept].map(|solved| valley.excess(solved));
+        assert!(excess < RIVER_TOLERANCE_M, "{col} {row}: {excess} m");
+        assert!(uphill > 1.0, "{col} {row}: no uphill where nobody asks, {uphill} m");
+    }
+}
+
+/// First column and row of parts of the elevation model.
+const CROPS: [[usize; 2]; 2] = [[480, 520], [600, 640]];

@@ -180,6 +180,21 @@ impl OriginalTerrain {
         }
     }
 
+    /// From scene x, y to columns and rows of the file's samples, the first at 0; `None` where a system has no such transform.
+    pub fn index_from_scene(&self, scene: Crs) -> Option<impl Fn(DVec2) -> Option<DVec2> + '_> {
+        let index_from_model = self.source.model_from_index.inverse()?;
+        let transform = match (&self.source.system, scene) {
+            (Some(system), Crs::Epsg(_)) => {
+                Some(Transform::new(&CoordinateSystem::from_scene(scene).ok()?, system).ok()?)
+            }
+            _ => None,
+        };
+        Some(move |p: DVec2| {
+            let model = transform.as_ref().map_or(Some(p), |t| t.forward_one(p))?;
+            Some(DVec2::from(index_from_model.apply(model.x, model.y))).filter(|i| i.is_finite())
+        })
+    }
+
     /// Name of the file's own system for messages.
     pub fn system_name(&self) -> &str {
         self.source.system.as_ref().map_or("no coordinate system", CoordinateSystem::name)

@@ -7,6 +7,7 @@ use crate::scene_file::{DetailDoc, PointDoc, SolverMode as ModeDoc, SourceDocume
 use belvedere_core::{DVec3, Pinhole, Stage, View};
 use belvedere_disocclusion::DisocclusionError;
 use belvedere_disocclusion::report::{FeatureCost, Spike, Taken};
+use belvedere_disocclusion::rivers::RIVER_TOLERANCE_M;
 use belvedere_disocclusion::{
     Detail, Solved, SolverMode, TerrainReport, TerrainSettings, TerrainSolver, ViewpointOptions,
 };
@@ -61,6 +62,7 @@ pub(crate) fn settings(doc: &TerrainStageDoc) -> Result<TerrainSettings, (&'stat
         ahead_m: doc.ahead_m,
         limits: doc.limits.unwrap_or(usual.limits),
         spikes: doc.spikes.unwrap_or(usual.spikes),
+        rivers: doc.rivers.clone(),
         slack_price: doc.slack_price,
     })
 }
@@ -96,6 +98,7 @@ pub(crate) fn document(settings: &TerrainSettings, scene: &Scene) -> TerrainStag
         ahead_m: settings.ahead_m,
         limits: Some(settings.limits),
         spikes: Some(settings.spikes),
+        rivers: settings.rivers.clone(),
         slack_price: settings.slack_price,
         adjust_viewpoint: None,
     }
@@ -215,6 +218,7 @@ pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<String> {
         ));
     }
     out.extend(held(report));
+    out.extend(confined(report));
     out.extend(implausible(report, scene));
     out.extend(spiky(&report.spikes));
     if report.asked == 0 {
@@ -252,6 +256,25 @@ fn held(report: &TerrainReport) -> Option<String> {
              limits (--no-limits, limits = false)",
             limits.floor_m,
             limits.steepest_deg,
+            100.0 * hidden
+        )
+    })
+}
+
+/// That rivers keep something hidden, and rivers that run uphill all the same.
+fn confined(report: &TerrainReport) -> Option<String> {
+    let hidden = 1.0 - report.metrics.visible_dense;
+    if let Some(worst) =
+        report.rivers.iter().map(|r| r.excess_m).max_by(f64::total_cmp).filter(|m| *m > RIVER_TOLERANCE_M)
+    {
+        return Some(format!(
+            "terrain_disocclusion: a river runs uphill by {worst:.1} m more than on the elevation model; the report names it"
+        ));
+    }
+    (!report.rivers.is_empty() && hidden > 0.0 && !report.guaranteed).then(|| {
+        format!(
+            "terrain_disocclusion: {:.2} % of what is in view stays hidden where no river may run uphill; leave rivers out, or look from \
+             higher up or elsewhere",
             100.0 * hidden
         )
     })

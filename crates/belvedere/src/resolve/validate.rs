@@ -6,6 +6,7 @@ use crate::overlays::highlight;
 use crate::scene_file::Fallback;
 use crate::scene_file::{
     AnimationDoc, AutoOrLength, ConstructorDoc, ConstructorKind, LayerDoc, SourceDocument, StageDoc, SwitchOrLength,
+    suggestion,
 };
 use belvedere_scene::Unit;
 use std::collections::HashSet;
@@ -82,6 +83,12 @@ fn terrain_intent(source: &SourceDocument) -> Result<(), BelvedereError> {
                 &["kind"],
                 "terrain_disocclusion needs features that must be seen; set must_see = true for at least one layer",
             ));
+        }
+        let is_line = |id: &str| layers.iter().any(|l| matches!(l, LayerDoc::Line(line) if line.id == id));
+        if let Some(id) = doc.rivers.iter().find(|id| !is_line(id)) {
+            let lines: Vec<&str> = layers.iter().filter(|l| matches!(l, LayerDoc::Line(_))).map(LayerDoc::id).collect();
+            let hint = suggestion(id, &lines);
+            return Err(fail(&["rivers"], &format!("rivers: \"{id}\" is no line layer of the scene; {hint}")));
         }
         super::terrain::check(doc).map_err(|(key, reason)| fail(&[key], &reason))?;
     }

@@ -141,6 +141,9 @@ pub struct TerrainStageDoc {
     /// passed over.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spikes: Option<bool>,
+    /// Ids of line layers, rivers, along which the displaced ground rises downstream by no more than the elevation model does.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rivers: Vec<String>,
     /// Price of a metre of occlusion squared, > 0: what costs more to clear stays covered by ground that is drawn see-through;
     /// by default everything is cleared.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -2,6 +2,7 @@
 
 use super::in_time;
 use super::level_lakes::LevelLakes;
+use super::written_rivers::run_downhill;
 use crate::data::DataFiles;
 use crate::output::{self, pretty};
 use crate::picture::{self, PictureOptions};
@@ -11,6 +12,7 @@ use crate::resolve::terrain as intent;
 use crate::scene_file::{self, CameraDoc, EarthDoc, StageDoc, TerrainStageDoc};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, TerrainDisocclusion, View};
+use belvedere_disocclusion::report::RiverReport;
 use belvedere_disocclusion::{Solved, TerrainMemory, TerrainReport, TerrainSolver, ViewpointOptions};
 use belvedere_io::IoError;
 use belvedere_io::TerrainRequest;
@@ -121,6 +123,9 @@ struct Record {
     /// Share of what is in view that is seen on the heights as they are written, where those are resampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     visible_written: Option<f64>,
+    /// How rivers run on the heights as they are written, where those are resampled.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    rivers_written: Vec<RiverReport>,
     /// That of the report, if it holds for the heights as they are written.
     guaranteed: bool,
     layers: Vec<String>,
@@ -159,9 +164,10 @@ impl DisoccludeFiles {
 /// [`BelvedereError::Disocclusion`]; those of the loaders.
 pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Disoccluded, BelvedereError> {
     intent::check(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
-    let settings = intent::settings(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
-    let solver = TerrainSolver::new(settings)?.in_plan();
+    let mut settings = intent::settings(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
     let mut data = DataFiles { keep_voids: !request.fill_voids, ..request.data.clone() }.load(true, options)?;
+    settings.rivers.append(&mut data.rivers);
+    let solver = TerrainSolver::new(settings)?.in_plan();
     let dem = &request.data.dem;
     let original = data.original.take().ok_or_else(|| IoError::format(dem, "is no file; give an elevation model"))?;
     let radius = request.curved_earth.then(|| earth_radius(&data.scene, &mut data.warnings));
@@ -176,12 +182,17 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
     data.warnings.extend(intent::remarks(&solved, &data.scene));
     let lakes = LevelLakes::new(&solved.stage, &solved.report, &data.scene);
     let delta = |p: DVec2| lakes.at(p);
+    let mut rivers_written = Vec::new();
     let (rasters, visible_written) = match (request.grid, data.scene.terrain()) {
         (WrittenGrid::Scene, Some(terrain)) => (moved_terrain(terrain, data.scene.crs, delta), None),
         _ => {
             let surface = |p: DVec2| data.scene.terrain().filter(|_| request.fill_voids)?.surface_at(p);
-            let rasters = original.moved_and_filled(data.scene.crs, delta, surface)?;
+            let mut rasters = original.moved_and_filled(data.scene.crs, delta, surface)?;
             let resampled = data.scene.terrain().is_some_and(|terrain| !original.is_grid_of(terrain));
+            if resampled {
+                let ids = &solver.settings().rivers[..];
+                rivers_written = run_downhill(&mut rasters, &original, (&data.scene, ids), &lakes)?;
+            }
             let share =
                 if resampled { written_share(&data.scene, &view, &original, &rasters[0], options)? } else { None };
             (rasters, share)
@@ -206,6 +217,7 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
         earth: if request.curved_earth { "curved" } else { "flat" },
         grid: request.grid,
         visible_written,
+        rivers_written,
         guaranteed: solved.report.guaranteed && visible_written.is_none_or(|share| share >= KEPT_SHARE),
         layers: session.scene().layers.iter().map(|l| l.id.clone()).collect(),
         inputs: record::inputs(&session.inputs())?,

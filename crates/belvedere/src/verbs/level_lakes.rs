@@ -34,11 +34,19 @@ impl<'a> LevelLakes<'a> {
         Self { stage, terrain: scene.terrain(), lakes: report.lakes.iter().filter_map(lake).collect() }
     }
 
-    /// The displacement at scene x, y.
-    pub(super) fn at(&self, p: DVec2) -> f64 {
+    pub(super) fn is_empty(&self) -> bool {
+        self.lakes.is_empty()
+    }
+
+    /// Index of the lake whose water is at scene x, y.
+    pub(super) fn lake_at(&self, p: DVec2) -> Option<usize> {
         let is_water = |l: &Lake<'_>| self.terrain.and_then(|t| t.surface_at(p)).is_none_or(|z| z <= l.water_m);
         let holds = |l: &Lake<'_>| p.cmpge(l.low).all() && p.cmple(l.high).all() && polygon::is_inside(l.rings, p);
-        let lake = self.lakes.iter().find(|l| holds(l) && is_water(l));
-        lake.map_or_else(|| self.stage.delta_at(p.extend(0.0)), |lake| lake.moved)
+        self.lakes.iter().position(|l| holds(l) && is_water(l))
+    }
+
+    /// The displacement at scene x, y.
+    pub(super) fn at(&self, p: DVec2) -> f64 {
+        self.lake_at(p).map_or_else(|| self.stage.delta_at(p.extend(0.0)), |lake| self.lakes[lake].moved)
     }
 }

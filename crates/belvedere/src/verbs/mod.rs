@@ -16,3 +16,4 @@ pub mod points;
 pub mod preset;
 pub mod reveal;
 pub mod reveal_target;
+mod written_rivers;

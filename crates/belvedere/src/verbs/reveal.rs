@@ -175,7 +175,13 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
         return Err(BelvedereError::FieldOfView { deg: fov_y_deg });
     }
+    if !request.data.rivers.is_empty() && matches!(request.technique, Technique::Spline | Technique::CurvedRays) {
+        let reason =
+            "rivers are kept from running uphill where the ground moves; ask for technique terrain, both or auto";
+        return Err(BelvedereError::Setting(reason.into()));
+    }
     let mut data = request.data.load(false, options)?;
+    let rivers = std::mem::take(&mut data.rivers);
     let base = base_view(request, &data.scene)?;
     let search = RevealOptions {
         image: request.image.unwrap_or(IMAGE),
@@ -217,7 +223,7 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
             Technique::CurvedRays => around_what_hides(&spline, &found.straight, &options.progress)?,
             _ => disoccluded(
                 &spline,
-                (technique, request.no_limits),
+                (technique, request.no_limits, &rivers),
                 &if is_auto { progress.part(FIRST_TRY) } else { options.progress.clone() },
             )?,
         };
@@ -265,14 +271,15 @@ fn shortfall(visible: f64) -> String {
 /// The session with terrain disocclusion, beside the spline or in its place.
 fn disoccluded(
     session: &Session,
-    (technique, no_limits): (Technique, bool),
+    (technique, no_limits, rivers): (Technique, bool, &[String]),
     progress: &Progress,
 ) -> Result<Session, BelvedereError> {
     let Some(mut document) = session.resolved().cloned() else { return Ok(session.clone()) };
     if technique == Technique::Terrain {
         document.stage.clear();
     }
-    let stage = TerrainStageDoc { limits: no_limits.then_some(false), ..TerrainStageDoc::default() };
+    let limits = no_limits.then_some(false);
+    let stage = TerrainStageDoc { limits, rivers: rivers.to_vec(), ..TerrainStageDoc::default() };
     document.stage.insert(0, StageDoc::TerrainDisocclusion(stage));
     let mut memory = Memory::default();
     session.with_document(document, Some(&mut Solving { memory: &mut memory, time_step_s: None, progress }))

@@ -6,3 +6,4 @@ mod sessions;
 mod sweeps;
 mod warnings;
 mod written_lakes;
+mod written_rivers;
