@@ -71,7 +71,8 @@ impl Job<'_> {
         let enlarged = self.enlarged(view, images)?;
         let view = &enlarged;
         let aux = Aux { exact: true, ..Aux::default() };
-        let options = RenderOptions { samples: 1, lod_px: 0.0, tolerance_px: STRAIGHT_PX, aux, ..RenderOptions::default() };
+        let options =
+            RenderOptions { samples: 1, lod_px: 0.0, tolerance_px: STRAIGHT_PX, aux, ..RenderOptions::default() };
         let job = RenderJob { scene: self.scene, view, light: self.light, options: &options, progress: self.progress };
         let frame = self.renderer.render(&job)?;
         let expected = frame.width * frame.height;
