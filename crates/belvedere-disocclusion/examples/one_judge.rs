@@ -42,7 +42,11 @@ fn main() {
         let widest =
             found.shares.iter().map(|s| s.iter().fold(0.0, |w: f64, v| w.max((v - s[0]).abs()))).fold(0.0, f64::max);
         apart += usize::from(widest > AGREES);
-        let guaranteed = if found.report.guaranteed { "guaranteed" } else { "" };
+        let guaranteed = match (found.view.is_bent(), found.report.guaranteed) {
+            (false, _) => "unmoved",
+            (true, true) => "guaranteed",
+            (true, false) => "",
+        };
         println!("{seed} {:.4?} {:.4?} {widest:.4} {guaranteed}", found.shares[0], found.shares[1]);
     }
     println!("{apart} of {cases} cases differ by more than {AGREES}");
