@@ -3,7 +3,7 @@
 use crate::{BelvedereError, Session};
 use belvedere_core::{DVec2, DVec3, View, polygon};
 use belvedere_cpu::{RayHit, Tracer, VolumeTracer};
-use belvedere_scene::{AreaLayer, Layer, LayerKind, LineLayer, PointLayer, Progress, Scene};
+use belvedere_scene::{AreaLayer, Heightfield, Layer, LayerKind, LineLayer, PointLayer, Progress, Scene};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -108,18 +108,32 @@ struct Marks<'a> {
     layers: Vec<(&'a Layer, f64, Vec<Path<'a>>)>,
 }
 
+/// Vertices this near to the drawn ground lie on it, scene units.
+const ON_GROUND: f64 = 0.01;
+/// A line or point that is seen lies no deeper than the first surface by more than this share of the depth: on the ground rounding, elsewhere
+/// less than the lift of a line seen across its own ground.
+const NO_DEEPER: [f64; 2] = [1e-6, 5e-4];
+
 /// A feature: its name and the images of its vertices, lifted.
 struct Path<'a> {
     name: &'a str,
+    /// Height over the ground, if all vertices lie on that.
+    laid: Option<(&'a Heightfield, f64)>,
     vertices: Vec<(DVec3, Option<(DVec2, f64)>)>,
 }
 
 impl<'a> Marks<'a> {
     fn new(scene: &'a Scene, view: &'a View) -> Self {
+        let terrain = scene.terrain();
+        let is_on_ground = |p: &DVec3| {
+            let ground = terrain.and_then(|hf| hf.surface_at(p.truncate()));
+            ground.is_some_and(|ground| (ground - p.z).abs() <= ON_GROUND)
+        };
         let path = |name: &'a str, points: &[DVec3], lift: f64| {
+            let laid = terrain.filter(|_| points.iter().all(is_on_ground)).map(|hf| (hf, lift));
             let image = |p: DVec3| view.project(p).ok().map(|i| (i.pixel, i.depth));
             let vertices = points.iter().map(|p| *p + lift * DVec3::Z).map(|p| (p, image(p))).collect();
-            Path { name, vertices }
+            Path { name, laid, vertices }
         };
         let lines = |l: &'a LineLayer| l.features.iter().map(|f| path(&f.name, &f.points, l.lift_m)).collect();
         let points = |l: &'a PointLayer| l.features.iter().map(|f| path(&f.name, &[f.position], l.lift_m)).collect();
@@ -138,10 +152,11 @@ impl<'a> Marks<'a> {
             let mut near: Vec<_> = near.collect();
             near.sort_by(|a, b| a.1.1.total_cmp(&b.1.1));
             near.into_iter().find_map(|(path, (p, _))| {
+                let ground = path.laid.and_then(|(hf, lift)| Some(hf.surface_at(p.truncate())? + lift));
+                let (p, no_deeper) = ground.map_or((p, NO_DEEPER[1]), |z| (p.with_z(z), NO_DEEPER[0]));
                 let image = self.view.project(p).ok()?;
                 let first = tracer.first_hit(image.pixel);
-                // Half a thousandth of the depth is less than the lift of a line seen across its own ground.
-                if first.is_some_and(|seen| seen.depth < image.depth * (1.0 - 5e-4)) {
+                if first.is_some_and(|seen| seen.depth < image.depth * (1.0 - no_deeper)) {
                     return None;
                 }
                 Some(Picked {

@@ -59,15 +59,15 @@ impl DisplacedSight {
         [DisplacedGround::faceted(field, delta), DisplacedGround::new(field, delta)].map(DisplacedGround::prepared)
     }
 
-    /// How far one of the grounds rises over the line of sight of a sample, at most; 0 where none does, `None` beside the ground.
-    pub(super) fn over(&self, grounds: &[DisplacedGround<'_>; 2], sample: &Sample) -> Option<f64> {
+    /// How far each of the grounds rises over the line of sight of a sample; 0 where it does not, `None` beside the ground.
+    pub(super) fn over(&self, grounds: &[DisplacedGround<'_>; 2], sample: &Sample) -> Option<[f64; 2]> {
         let at = self.field.grid_from_scene(sample.p_world.truncate());
-        let mut worst = 0.0f64;
-        for ground in grounds {
+        let mut out = [0.0; 2];
+        for (over, ground) in out.iter_mut().zip(grounds) {
             let z = ground.height_at(at)? + sample.lift;
-            let over = ground.excess(&[(at, z), (self.eye, self.z)], 0.0).over;
-            worst = worst.max(if over > TOUCH { over } else { 0.0 });
+            let rise = ground.excess(&[(at, z), (self.eye, self.z)], 0.0).over;
+            *over = if rise > TOUCH { rise } else { 0.0 };
         }
-        Some(worst)
+        Some(out)
     }
 }

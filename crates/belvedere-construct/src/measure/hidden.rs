@@ -16,6 +16,12 @@ pub enum HiddenReason {
         /// How far at most that rises over the line of sight, scene units.
         over_m: f64,
     },
+    /// Only facets between displaced nodes stand before it, as ground is written and rasterised: the exact picture, and what is picked in it,
+    /// show it.
+    Facets {
+        /// How far at most those rise over the line of sight, scene units.
+        over_m: f64,
+    },
     /// The picture folds over there.
     Folded,
 }
@@ -35,13 +41,13 @@ pub struct HiddenRun {
     pub from_m: Option<f64>,
     /// Length along a line at the end.
     pub to_m: Option<f64>,
-    /// Scene x, y of the sample that is covered most; of the first where the picture folds.
+    /// Scene x, y of the sample that is covered most, by more than facets if one is; of the first where the picture folds.
     pub at: [f64; 2],
     /// Samples.
     pub points: usize,
     /// Length, area or count of what is hidden.
     pub amount: f64,
-    /// Why; of all samples the largest figure.
+    /// Why; of all samples of that reason the largest figure.
     #[serde(flatten)]
     pub reason: HiddenReason,
 }
@@ -73,17 +79,18 @@ fn runs(feature: &SampledFeature, images: &[SampleImage]) -> Vec<HiddenRun> {
             continue;
         }
         let over_m = -image.clearance.unwrap_or(0.0);
-        let here = if image.folded { HiddenReason::Folded } else { HiddenReason::Covered { over_m } };
+        let here = match image {
+            _ if image.folded => HiddenReason::Folded,
+            _ if image.by_facets => HiddenReason::Facets { over_m },
+            _ => HiddenReason::Covered { over_m },
+        };
         match out.last_mut().filter(|_| open || !is_line) {
             Some(run) => {
                 run.to_m = is_line.then_some(to);
                 run.points += 1;
                 run.amount += sample.amount;
-                if let (HiddenReason::Covered { over_m: most }, HiddenReason::Covered { over_m }) =
-                    (&mut run.reason, here)
-                    && over_m > *most
-                {
-                    (*most, run.at) = (over_m, sample.p_world.truncate().to_array());
+                if worse(run.reason, here) {
+                    (run.reason, run.at) = (here, sample.p_world.truncate().to_array());
                 }
             }
             None => out.push(HiddenRun {
@@ -102,6 +109,16 @@ fn runs(feature: &SampledFeature, images: &[SampleImage]) -> Vec<HiddenRun> {
         open = true;
     }
     out
+}
+
+/// Whether `next` says more of a part than `first`: ground before facets, and of those what rises farther.
+fn worse(first: HiddenReason, next: HiddenReason) -> bool {
+    use HiddenReason::{Covered, Facets};
+    match (first, next) {
+        (Covered { over_m: most }, Covered { over_m }) | (Facets { over_m: most }, Facets { over_m }) => over_m > most,
+        (Facets { .. }, Covered { .. }) => true,
+        _ => false,
+    }
 }
 
 #[cfg(test)]

@@ -21,6 +21,8 @@ pub(super) struct SampleImage {
     pub(super) edge_on: Option<bool>,
     /// By line of sight; `None` outside the frame.
     pub(super) clearance: Option<f64>,
+    /// Whether nothing hides it by line of sight but facets of displaced ground, which the exact picture does not have.
+    pub(super) by_facets: bool,
     /// By the depth buffer; `None` outside the frame or without a renderer.
     pub(super) in_buffer: Option<DepthTest>,
 }
@@ -34,6 +36,7 @@ impl SampleImage {
         displaced: None,
         edge_on: None,
         clearance: None,
+        by_facets: false,
         in_buffer: None,
     };
 
@@ -107,7 +110,8 @@ pub(super) fn all(
         if let (Some(displaced), Some(c)) =
             (&displaced, found.clearance.filter(|_| !found.folded && s.surface.is_none()))
         {
-            found.clearance = Some(over_displaced(sight, displaced, view, (s, &found, c), options));
+            let (clearance, by_facets) = over_displaced(sight, displaced, view, (s, &found, c), options);
+            (found.clearance, found.by_facets) = (Some(clearance), by_facets);
         }
         found
     };
@@ -115,23 +119,26 @@ pub(super) fn all(
     features.iter().map(of).collect()
 }
 
-/// The clearance of a sample on displaced ground, `c` by chords, with the judge's word on whether it is seen.
+/// The clearance of a sample on displaced ground, `c` by chords, with the judge's word on whether it is seen; and whether facets alone hide it.
 fn over_displaced(
     of: &Sight<'_>,
     (displaced, grounds): &Displaced<'_>,
     view: &View,
     (sample, image, c): (&Sample, &SampleImage, f64),
     options: &SightOptions,
-) -> f64 {
-    match displaced.over(grounds, sample) {
-        None => c,
-        Some(over) if over > 0.0 => c.min(-over),
-        Some(_) if c >= 0.0 => c,
-        // Chords saw something: other things than the ground may hide it.
-        Some(_) => of.beside.as_ref().map_or(c, |beside| {
-            beside.clearance(view, (sample.p_world, sample.lift), (image.pixel, image.depth), options)
-        }),
+) -> (f64, bool) {
+    let Some([facets, traced]) = displaced.over(grounds, sample) else { return (c, false) };
+    if traced > 0.0 {
+        return (c.min(-facets.max(traced)), false);
     }
+    // Where chords saw something, other things than the ground may hide it.
+    let others = match &of.beside {
+        Some(beside) if c < 0.0 => {
+            beside.clearance(view, (sample.p_world, sample.lift), (image.pixel, image.depth), options)
+        }
+        _ => c,
+    };
+    if facets > 0.0 { (others.min(-facets), others >= 0.0) } else { (others, false) }
 }
 
 fn image(of: &Sight<'_>, view: &View, (layer, sample): (usize, &Sample), sight: &SightOptions) -> SampleImage {
@@ -165,6 +172,7 @@ fn image(of: &Sight<'_>, view: &View, (layer, sample): (usize, &Sample), sight: 
         displaced,
         edge_on,
         clearance,
+        by_facets: false,
         in_buffer: None,
     }
 }

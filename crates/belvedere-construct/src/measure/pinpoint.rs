@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Side of the bins that places are sorted into, pixels.
 const BIN: f64 = 4.0;
 /// Where a displacement bends a triangle, it is quartered until its edges lie within this of their images, pixels; so often at most.
-const STRAIGHT_PX: f64 = 0.01;
-const BENDINGS: u32 = 5;
+const STRAIGHT_PX: f64 = 1e-3;
+const BENDINGS: u32 = 7;
 /// Triangles that reach behind the near plane are quartered so often, and left out where they reach behind it still.
 const QUARTERINGS: u32 = 6;
 

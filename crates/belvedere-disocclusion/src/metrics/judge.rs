@@ -26,13 +26,15 @@ pub(crate) enum Hides {
     Ground(f64),
     /// Only ground nearer to it than the guard.
     InGuard(f64),
+    /// Only the facets of the rasterised and written ground, not the ground that is traced, which is judged too.
+    Facets(f64),
 }
 
 impl Hides {
     /// How far the ground rises over the line of sight.
     pub(crate) fn over(self) -> f64 {
         match self {
-            Self::Ground(over) | Self::InGuard(over) => over,
+            Self::Ground(over) | Self::InGuard(over) | Self::Facets(over) => over,
         }
     }
 }
@@ -164,10 +166,10 @@ impl<'a> Judge<'a> {
     /// * `guard`: what only ground nearer than this hides, cells, is told apart.
     pub(crate) fn judge(&self, points: &[ReferencePoint], guard: f64) -> Vec<Verdict> {
         let of = |p: &ReferencePoint| {
-            let (mut near, mut far) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+            let (mut near, mut far, mut last) = (f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY);
             let on_ground = self.each(p.grid, p.lift, |_, ground, line| {
                 let over = ground.excess(line, 0.0).over;
-                near = near.max(over);
+                (near, last) = (near.max(over), over);
                 if over > TOUCH {
                     far = far.max(ground.excess(line, guard).over);
                 }
@@ -175,6 +177,8 @@ impl<'a> Judge<'a> {
             match on_ground {
                 None => Verdict::NoGround,
                 Some(()) if !(near > TOUCH) => Verdict::Seen,
+                // Facets are judged first.
+                Some(()) if !(last > TOUCH) => Verdict::Hidden(Hides::Facets(near)),
                 Some(()) if far > TOUCH => Verdict::Hidden(Hides::Ground(far)),
                 Some(()) => Verdict::Hidden(Hides::InGuard(near)),
             }

@@ -85,14 +85,14 @@ pub struct TerrainReport {
     pub unresolved: Vec<UnresolvedRun>,
     /// What else the judge finds hidden of what is in view, and why: places between two that were looked after.
     pub hidden: Vec<UnresolvedRun>,
-    /// Places that stay covered at the slack price.
+    /// Places that stay covered at the slack price; what facets alone cover is in `hidden`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub covered: Vec<Covered>,
     /// Times.
     pub times: TerrainTimes,
 }
 
-/// A place that stays covered because clearing it costs more than the slack price allows.
+/// A place that stays covered, in the exact picture too, because clearing it costs more than the slack price allows.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Covered {
     /// Scene x, y.
@@ -202,6 +202,11 @@ pub enum UnresolvedReason {
     /// Showing it takes ground deeper or steeper than the limits.
     Limits {
         /// How far the ground rises over its line of sight.
+        over_m: f64,
+    },
+    /// Only the facets of the ground as it is written and rasterised hide it: the exact picture, and what is picked in it, show it.
+    Facets {
+        /// How far the facets rise over its line of sight.
         over_m: f64,
     },
     /// Ground nearer to it than the guard hides it.
@@ -371,7 +376,8 @@ fn covered(c: &Context<'_>, judgement: &Judged, dense: &[ReferencePoint]) -> Vec
     let place = |&(i, hides): &(usize, Hides)| {
         let (p, over_m) = (&dense[i], hides.over());
         let at = c.field.scene_from_grid(p.grid).to_array();
-        over_m.is_finite().then_some(Covered { at, lift_m: p.lift, over_m })
+        let is_covered = over_m.is_finite() && !matches!(hides, Hides::Facets(_));
+        is_covered.then_some(Covered { at, lift_m: p.lift, over_m })
     };
     judgement.dense.iter().filter_map(place).collect()
 }
@@ -403,12 +409,11 @@ fn hidden(
     (dense, every): (&[ReferencePoint], usize),
 ) -> Vec<UnresolvedRun> {
     let mut runs = Runs::new(c.field, CHECK_CELLS * every as f64);
-    // At a price the report names what stays covered.
-    if c.settings.slack_price.is_some() {
-        return runs.out;
-    }
     for (i, hides) in &judgement.dense {
         let reason = match *hides {
+            Hides::Facets(over_m) => UnresolvedReason::Facets { over_m },
+            // At a price `covered` names it.
+            _ if c.settings.slack_price.is_some() => continue,
             Hides::Ground(over_m) | Hides::InGuard(over_m) if done.limited.is_some() && over_m.is_finite() => {
                 UnresolvedReason::Limits { over_m }
             }
@@ -475,6 +480,7 @@ fn unresolved(c: &Context<'_>, done: &Outcome, shown: &Shown, (asked, judgement)
         let (i, over_m) = (asked[k], hides.over());
         if c.settings.slack_price.is_none() && !named.contains(&i) {
             let reason = match c.settings.mode {
+                _ if matches!(hides, Hides::Facets(_)) => UnresolvedReason::Facets { over_m },
                 _ if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,
                 SolverMode::Paper => UnresolvedReason::Smoothed { over_m },
                 _ if done.limited.is_some() => UnresolvedReason::Limits { over_m },

@@ -68,7 +68,7 @@ fn scaled_detail_hides_nothing_that_the_program_holds_for_seen() {
 #[test]
 fn what_the_judge_finds_hidden_is_named() {
     let scene = scene();
-    let (mut between, mut inside, mut smoothed) = (0, 0, 0);
+    let (mut between, mut inside, mut smoothed, mut facets) = (0, 0, 0, 0);
     for mode in [SolverMode::Paper, SolverMode::PaperQp, SolverMode::Qp] {
         let settings =
             TerrainSettings { mode, solver_nodes: 33, cells: Some(12), limits: false, ..TerrainSettings::default() };
@@ -92,6 +92,7 @@ fn what_the_judge_finds_hidden_is_named() {
                     UnresolvedReason::Between { over_m } => between += usize::from(over_m > 0.0),
                     UnresolvedReason::InsideGuard { over_m } => inside += usize::from(over_m > 0.0),
                     UnresolvedReason::Smoothed { over_m } => smoothed += usize::from(over_m > 0.0),
+                    UnresolvedReason::Facets { over_m } => facets += usize::from(over_m > 0.0),
                     reason => panic!("{reason:?}"),
                 }
             }
@@ -104,5 +105,6 @@ fn what_the_judge_finds_hidden_is_named() {
             assert!(!report.hidden.is_empty() || m.visible_dense == 1.0, "{shares:?}");
         }
     }
-    assert!(between > 0 && inside > 0 && smoothed > 0, "{between} {inside} {smoothed}");
+    let all = [between, inside, smoothed, facets];
+    assert!(all.into_iter().all(|n| n > 0), "{all:?}");
 }

@@ -214,7 +214,7 @@ pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<String> {
              under {}",
             100.0 * hidden,
             report.metrics.hidden_worst_m,
-            if report.parameters.slack_price.is_some() { "`covered`" } else { "`unresolved` and `hidden`" }
+            if report.parameters.slack_price.is_some() { "`covered` and `hidden`" } else { "`unresolved` and `hidden`" }
         ));
     }
     out.extend(held(report));
