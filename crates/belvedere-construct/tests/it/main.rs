@@ -14,3 +14,4 @@ mod reveal;
 mod rigid;
 mod surfaces;
 mod tracking;
+mod wall;

@@ -4,5 +4,6 @@ mod examples;
 mod names;
 mod sessions;
 mod sweeps;
+mod walls;
 mod warnings;
 mod written_lakes;
