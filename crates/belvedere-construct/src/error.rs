@@ -123,6 +123,21 @@ pub enum ConstructError {
         /// Most that are possible.
         most: usize,
     },
+    /// A path has no point in the volume whose wall is to be found.
+    #[error("the path has no point inside the volume; lead it through the vessel, or name another transfer function")]
+    PathOutside,
+    /// What a path runs through does not differ from what lies around it.
+    #[error(
+        "no wall lies around the path: it runs through values of {lumen:.1} with a spread of {spread:.1}, and {share_percent:.0} % of the lines across it meet a clear edge, at least 25 % needed; lead it through the vessel, or name another transfer function"
+    )]
+    NoWall {
+        /// Median value along the path.
+        lumen: f64,
+        /// Spread of the values along the path.
+        spread: f64,
+        /// Percentage of lines that meet an edge.
+        share_percent: f64,
+    },
     /// A spline could not be resolved.
     #[error(transparent)]
     Spline(#[from] belvedere_core::map::spline::SplineError),

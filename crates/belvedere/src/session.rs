@@ -6,7 +6,7 @@ use crate::resolve::constructor::{self, ConstructorReport};
 use crate::resolve::motion::Motions;
 use crate::resolve::solving::{Memory, Solving};
 use crate::resolve::terrain;
-use crate::resolve::{validate, view};
+use crate::resolve::{validate, view, wall};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{Document, OverlayDoc, SourceDocument, StageDoc};
 use crate::{BelvedereError, OpenOptions};
@@ -74,6 +74,14 @@ impl std::fmt::Debug for Session {
     }
 }
 
+impl Loaded {
+    /// The same with volumes drawn as the constructor of a view wants them.
+    fn drawn_for(self, resolved: &Resolved) -> Self {
+        let drawn = wall::drawn(&self.scene, constructor::walls(resolved.constructor.as_ref()));
+        Self { scene: drawn.map_or(self.scene, Arc::new), ..self }
+    }
+}
+
 impl Resolved {
     /// A view under the default light (north-west, 45 degrees high), of no document.
     fn of_view(view: View) -> Self {
@@ -129,7 +137,7 @@ impl Session {
         solving: Option<&mut Solving<'_>>,
     ) -> Result<Self, BelvedereError> {
         let resolved = Resolved::of(source, roots, &loaded.scene, solving)?;
-        Ok(Self::together(loaded, resolved))
+        Ok(Self::together(loaded.drawn_for(&resolved), resolved))
     }
 
     /// What was loaded in a view that a verb has found and describes.
@@ -180,7 +188,8 @@ impl Session {
         };
         let resolved = Resolved::of(SourceDocument { origin, document }, roots, &self.loaded.scene, solving)?;
         let Resolved { overlay, stylisation, .. } = self.resolved.clone();
-        Ok(Self { resolved: Resolved { overlay, stylisation, ..resolved }, ..self.clone() })
+        let resolved = Resolved { overlay, stylisation, ..resolved };
+        Ok(Self { loaded: self.loaded.clone().drawn_for(&resolved), resolved, ..self.clone() })
     }
 
     /// The same scene by a document that was edited, opened as by `options`: as [`Session::from_document`] of that document, without
@@ -198,7 +207,8 @@ impl Session {
         let roots = Roots { allowed: options.allow_roots.clone(), ..Roots::default() };
         let mut solving = Solving { memory, time_step_s: None, progress: &options.progress };
         let solving = (!options.unsolved).then_some(&mut solving);
-        Ok(Self { resolved: Resolved::of(source, roots, &self.loaded.scene, solving)?, ..self.clone() })
+        let resolved = Resolved::of(source, roots, &self.loaded.scene, solving)?;
+        Ok(Self { loaded: self.loaded.clone().drawn_for(&resolved), resolved, ..self.clone() })
     }
 
     /// Layers, unit and coordinate system.

@@ -15,6 +15,7 @@ mod surface_points;
 mod target;
 mod tracking;
 mod turns;
+mod wall;
 mod way;
 
 pub use around::{AroundOptions, BendFound, BendReport, bend_around};
@@ -24,3 +25,4 @@ pub use probe::{ProbeMemory, ProbeOptions, ProbeReport, Probed, auto_probe};
 pub use sidestep::{PlannedBend, Sidestep};
 pub use target::{Shown, Target, TargetSight};
 pub use tracking::{Tracked, TrackingMemory, TrackingOptions, TrackingReport, track_target};
+pub use wall::{Wall, find_wall, share_inside};

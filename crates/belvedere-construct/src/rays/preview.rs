@@ -137,6 +137,11 @@ impl PathPreview {
         self.path.length()
     }
 
+    /// The camera, as it was given or chosen.
+    pub fn lens(&self) -> Lens {
+        self.lens
+    }
+
     /// Points of the path that a preview from `position_m` shows, as far as `reach_m`, `spacing` apart.
     pub fn samples(&self, position_m: f64, reach_m: f64, spacing: f64) -> Vec<DVec3> {
         let count = (reach_m / spacing).floor().clamp(0.0, 1e6) as usize;

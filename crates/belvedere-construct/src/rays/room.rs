@@ -2,6 +2,7 @@
 
 use super::path::Path;
 use belvedere_core::{DVec3, Pinhole};
+use belvedere_scene::{LayerKind, Scene, VolumeLayer};
 use belvedere_sight::Obstacles;
 
 /// How far an eye may stand behind each position of a path, scene units.
@@ -16,11 +17,18 @@ const STEPS: u32 = 24;
 const MARGIN: f64 = 0.04;
 /// Without obstacles: how far the eye may be from the path, over the point that it stands behind, share of the width of the picture.
 const ASIDE: f64 = 0.1;
+/// Voxels absorb less than this where there is room in a volume, share of the light per reference step; positions at which is looked
+/// whether a path runs through such, and how many must be, as a share.
+const CLEAR: f64 = 0.1;
+const LOOKED_AT: u32 = 64;
+const MOSTLY: f64 = 0.5;
 
 /// What an eye may not stand in.
 pub(super) struct Surroundings<'a> {
     /// Ground and walls, if there are any.
     pub(super) obstacles: Option<&'a Obstacles<'a>>,
+    /// Volumes through whose clear parts the path runs.
+    pub(super) vessels: &'a [&'a VolumeLayer],
     pub(super) path: &'a Path,
     /// Width of the picture at the position, scene units.
     pub(super) width: f64,
@@ -80,6 +88,9 @@ impl Surroundings<'_> {
 
     fn is_free(&self, from: DVec3, to: DVec3) -> bool {
         let margin = MARGIN * self.width;
+        if !self.vessels.iter().all(|layer| is_clear_around(layer, to, margin)) {
+            return false;
+        }
         match self.obstacles {
             Some(obstacles) => {
                 let is_over_ground = obstacles.grounds().is_empty() || obstacles.above_ground(to).is_some();
@@ -87,7 +98,31 @@ impl Surroundings<'_> {
                     && obstacles.min_gap(from, to, margin, margin) >= margin
                     && obstacles.boxes().near(from, to, margin, &mut |_, _| false)
             }
-            None => self.path.distance_in_plan(to) < ASIDE * self.width,
+            None => !self.vessels.is_empty() || self.path.distance_in_plan(to) < ASIDE * self.width,
         }
     }
+}
+
+/// The volumes of a scene through whose clear parts a path runs: vessels, bores.
+pub(super) fn vessels<'a>(scene: &'a Scene, path: &Path) -> Vec<&'a VolumeLayer> {
+    let at = |k: u32| path.at(path.length() * (f64::from(k) + 0.5) / f64::from(LOOKED_AT));
+    let runs_through = |layer: &&VolumeLayer| {
+        let clear = |k: &u32| opacity(layer, at(*k)).is_some_and(|opacity| opacity < CLEAR);
+        (0..LOOKED_AT).filter(clear).count() as f64 >= MOSTLY * f64::from(LOOKED_AT)
+    };
+    let volumes = scene.layers.iter().filter_map(|layer| match &layer.kind {
+        LayerKind::Volume(layer) => Some(layer),
+        _ => None,
+    });
+    volumes.filter(runs_through).collect()
+}
+
+/// What a volume absorbs at a place per reference step; `None` outside it.
+fn opacity(layer: &VolumeLayer, p: DVec3) -> Option<f64> {
+    layer.volume.at(layer.volume.lattice_from_scene(p)).map(|value| layer.transfer.opacity(value))
+}
+
+fn is_clear_around(layer: &VolumeLayer, p: DVec3, margin: f64) -> bool {
+    let is_clear = |p: DVec3| opacity(layer, p).is_none_or(|opacity| opacity < CLEAR);
+    is_clear(p) && DVec3::AXES.into_iter().all(|a| is_clear(p + margin * a) && is_clear(p - margin * a))
 }

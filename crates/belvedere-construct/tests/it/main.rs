@@ -15,3 +15,4 @@ mod rigid;
 mod surfaces;
 mod tracking;
 mod tracking_molecule;
+mod wall;

@@ -6,6 +6,12 @@ use crate::Color;
 /// Names that [`TransferFunction::named`] knows.
 pub const TRANSFER_NAMES: &[&str] = &["auto", "solid", "engine", "ct-bone", "ct-soft", "vessels", "grey"];
 
+/// Name of the function that draws the wall of a vessel alone, which a path preview fits to its path: [`TransferFunction::wall`].
+pub const WALL: &str = "wall";
+/// Its colour, and from the isovalue on the share of the step from lumen to wall over which it becomes opaque.
+const WALL_COLOR: Color = Color::rgb(222, 152, 130);
+const WALL_RAMP: f64 = 0.25;
+
 /// Share of the range of values, colour, opacity per voxel edge.
 type Stop = (f64, [u8; 3], f64);
 
@@ -91,6 +97,16 @@ impl TransferFunction {
         let is_hounsfield = lo < AIR_TO_BONE[0] && hi > AIR_TO_BONE[1];
         let range = if name.starts_with("ct-") && is_hounsfield { HOUNSFIELD } else { [lo, hi].map(f64::from) };
         Some(of_stops(name, stops, range))
+    }
+
+    /// The wall of a vessel alone, as it is seen from within: nothing of values on the side of the lumen, and all others opaque, so that
+    /// what lies behind the wall is hidden. The function has the name [`WALL`]. Ours.
+    ///
+    /// * `lumen`, `isovalue`, `wall`: values in the vessel, at its border and in the wall; ascending or descending, finite.
+    pub fn wall(lumen: f64, isovalue: f64, wall: f64) -> Self {
+        let point = |value, opacity| TransferPoint { value, color: WALL_COLOR, opacity };
+        let (clear, dense) = (point(isovalue, 0.0), point(isovalue + WALL_RAMP * (wall - lumen), 1.0));
+        Self::trusted(WALL, if wall > lumen { vec![clear, dense] } else { vec![dense, clear] })
     }
 
     /// A function that the histogram suggests: nothing of the background, what stands out from it as a solid. The background ends at
@@ -215,6 +231,16 @@ mod tests {
         // Muscle is clear, bone is not; metal changes nothing.
         assert!(of(1200).at(60.0)[3] == 0.0 && of(1200).at(500.0)[3] > 0.4);
         assert_eq!(of(1200), of(32000));
+    }
+
+    #[test]
+    fn a_wall_is_opaque_and_its_lumen_clear_on_either_side() {
+        for (lumen, wall) in [(-1000.0, 40.0), (300.0, 50.0)] {
+            let f = TransferFunction::wall(lumen, 0.5 * (lumen + wall), wall);
+            let at = |share: f64| f.at(lumen + share * (wall - lumen))[3];
+            assert_eq!([at(-9.0), at(0.0), at(0.5), at(0.76), at(1.0), at(9.0)], [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
+            assert!(at(0.55) > 0.1, "{f:?}");
+        }
     }
 
     #[test]

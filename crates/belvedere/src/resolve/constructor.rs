@@ -1,6 +1,7 @@
 //! Constructors of curved rays: from `[constructor]` to a view with turns.
 
 use super::solving::{Prepared, Solving};
+use super::wall::{self, WallReport};
 use super::{centreline, path};
 use crate::BelvedereError;
 use crate::bodies::refusal;
@@ -57,11 +58,27 @@ pub struct PathReport {
     /// The centreline that is followed, if it was traced.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub centreline: Option<CentrelineReport>,
+    /// Volumes that are drawn as the wall around the path alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub walls: Vec<WallReport>,
 }
 
 /// The constructor of a document, unless it is `manual`.
 pub(crate) fn stated(source: &SourceDocument) -> Option<&ConstructorDoc> {
     source.document.constructor.as_ref().filter(|doc| doc.kind != ConstructorKind::Manual)
+}
+
+/// Whether a document looks ahead along a path.
+pub(super) fn previews(source: &SourceDocument) -> bool {
+    stated(source).is_some_and(|doc| doc.kind == ConstructorKind::PathPreview)
+}
+
+/// Volumes that are drawn as walls in the view of a constructor.
+pub(crate) fn walls(report: Option<&ConstructorReport>) -> &[WallReport] {
+    match report {
+        Some(ConstructorReport::PathPreview(report)) => &report.walls,
+        _ => &[],
+    }
 }
 
 /// Whether the view of a frame depends on the frames before.
@@ -122,11 +139,14 @@ pub(super) fn construct(
     scene: &Scene,
     base: View,
     solving: &mut Solving<'_>,
-    inputs: &mut Vec<InputFile>,
+    (inputs, warnings): (&mut Vec<InputFile>, &mut Vec<String>),
 ) -> Result<(View, Option<ConstructorReport>), BelvedereError> {
     let Some(doc) = stated(source) else { return Ok((base, None)) };
     if doc.kind == ConstructorKind::PathPreview {
-        let (view, report) = preview(source, roots, scene, &base, &mut solving.memory.preview, inputs)?;
+        let prepared = prepared(source, roots, scene, base.pinhole().image, &mut solving.memory.preview)?;
+        inputs.extend(prepared.file.clone());
+        warnings.extend(prepared.warnings.iter().cloned());
+        let (view, report) = preview(source, &base, prepared)?;
         return Ok((view, Some(ConstructorReport::PathPreview(report))));
     }
     if let Some(reason) = refusal("the constructor", scene, &base) {
@@ -200,18 +220,9 @@ fn fail(source: &SourceDocument, e: ConstructError) -> BelvedereError {
 }
 
 /// The view of a path preview at the position that the document states.
-fn preview(
-    source: &SourceDocument,
-    roots: &Roots,
-    scene: &Scene,
-    base: &View,
-    memory: &mut Option<Prepared>,
-    inputs: &mut Vec<InputFile>,
-) -> Result<(View, PathReport), BelvedereError> {
+fn preview(source: &SourceDocument, base: &View, prepared: &Prepared) -> Result<(View, PathReport), BelvedereError> {
     let (pinhole, doc) = (base.pinhole(), stated(source));
     let position = doc.and_then(|d| d.position_m).unwrap_or(0.0);
-    let prepared = prepared(source, roots, scene, pinhole.image, memory)?;
-    inputs.extend(prepared.file.clone());
     let seen = prepared.preview.at(position, pinhole.image, pinhole.far).map_err(|e| fail(source, e))?;
     let root = seen.view.pinhole().clone();
     // The camera is another one; what hangs on the world stays.
@@ -221,7 +232,8 @@ fn preview(
     });
     let stages = earlier.chain(seen.view.stages().iter().cloned()).collect();
     let view = View::new(root, stages).map_err(|e| source.error(&["constructor", "kind"], e))?;
-    Ok((view, PathReport { preview: seen.report, centreline: prepared.centreline }))
+    let Prepared { centreline, walls, .. } = prepared;
+    Ok((view, PathReport { preview: seen.report, centreline: *centreline, walls: walls.clone() }))
 }
 
 /// Width of the picture at the position in a channel, clearances.
@@ -246,6 +258,9 @@ fn prepared<'m>(
             None => path::read(source, roots, scene, doc.path.as_deref().unwrap_or_default())?,
         };
         let centreline = traced.map(|t| t.report);
+        let (walls, warnings) = wall::around(source, scene, &points)?;
+        let with_walls = wall::drawn(scene, &walls);
+        let scene = with_walls.as_ref().unwrap_or(scene);
         let length: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
         let preview_m = doc.preview_m.unwrap_or(0.25 * length);
         let stands = |kind: &LayerKind| matches!(kind, LayerKind::Terrain(_) | LayerKind::Boxes(_));
@@ -267,7 +282,7 @@ fn prepared<'m>(
             None => PathPreview::fitted(scene, &points, preview_m, usual, level, image),
         };
         let preview = preview.map_err(|e| fail(source, e))?;
-        *memory = Some(Prepared { made_from, file, centreline, preview });
+        *memory = Some(Prepared { made_from, file, centreline, walls, warnings, preview });
     }
     memory.as_ref().ok_or_else(|| source.error(&["constructor"], "there is no path"))
 }
@@ -303,7 +318,7 @@ mod tests {
     fn previews_shorter_than_asked_are_said() {
         let report = |reach_m: f64| {
             let preview = PreviewReport { position_m: 10.0, reach_m, wanted_m: 200.0, turns: 1, tolerance_m: 1.0 };
-            ConstructorReport::PathPreview(PathReport { preview, centreline: None })
+            ConstructorReport::PathPreview(PathReport { preview, centreline: None, walls: Vec::new() })
         };
         let said = remark(Some(&report(120.0))).expect("a warning");
         assert!(said.contains("120.0 of the 200.0"), "{said}");

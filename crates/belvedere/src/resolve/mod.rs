@@ -34,6 +34,7 @@ pub(crate) mod validate;
 pub(crate) mod vectors;
 pub(crate) mod view;
 pub(crate) mod volume;
+pub(crate) mod wall;
 
 pub(crate) use areas::{fill_surfaces, restyle};
 pub(crate) use layers::{LayerRequest, load};

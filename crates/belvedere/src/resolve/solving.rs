@@ -1,5 +1,6 @@
 //! What constructors and the solver of terrain remember.
 
+use super::wall::WallReport;
 use crate::scene_file::ConstructorDoc;
 use belvedere_construct::centreline::CentrelineReport;
 use belvedere_construct::rays::{PathPreview, ProbeMemory, TrackingMemory};
@@ -39,6 +40,8 @@ pub(crate) struct Prepared {
     pub(super) made_from: (ConstructorDoc, [u32; 2]),
     pub(super) file: Option<InputFile>,
     pub(super) centreline: Option<CentrelineReport>,
+    pub(super) walls: Vec<WallReport>,
+    pub(super) warnings: Vec<String>,
     pub(super) preview: PathPreview,
 }
 

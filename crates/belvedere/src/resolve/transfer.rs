@@ -5,7 +5,7 @@ use super::loader::Loader;
 use crate::BelvedereError;
 use crate::scene_file::{self, DocError, Node, suggestion};
 use belvedere_io::InputFile;
-use belvedere_scene::volume::TRANSFER_NAMES;
+use belvedere_scene::volume::{TRANSFER_NAMES, WALL};
 use belvedere_scene::{Color, TransferFunction, TransferPoint, Volume};
 use serde::Deserialize;
 use std::path::Path;
@@ -52,9 +52,13 @@ pub(super) fn find(
     if let Some(found) = TransferFunction::named(name, volume) {
         return Ok(found);
     }
+    if name == WALL {
+        // Until the path is known.
+        return Ok(TransferFunction::auto(volume));
+    }
     let is_file = [".toml", ".json"].iter().any(|e| name.to_ascii_lowercase().ends_with(e));
     if !is_file {
-        let hint = suggestion(name, TRANSFER_NAMES);
+        let hint = suggestion(name, &[TRANSFER_NAMES, &[WALL]].concat());
         let reason = format!("transfer \"{name}\" is neither a name that exists nor a .toml or .json file; {hint}");
         return Err(loader.fail(index, "transfer", reason));
     }

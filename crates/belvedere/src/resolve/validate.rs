@@ -47,6 +47,7 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
             return Err(source.error(&["overlay", "highlight"], reason));
         }
     }
+    super::wall::check(source, super::constructor::previews(source))?;
     if let Some(doc) = &source.document.constructor {
         constructor(doc)
             .map_err(|(key, reason)| source.error(&["constructor", key], format!("constructor: {reason}")))?;

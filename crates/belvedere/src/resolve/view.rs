@@ -50,7 +50,7 @@ pub(crate) fn resolve(
     chain.extend(resolved.stages);
     let view = View::new(resolved.pinhole, chain).map_err(|e| source.error(&["stage"], e))?;
     let (view, constructor) = match solving {
-        Some(solving) => constructor::construct(source, roots, scene, view, solving, &mut inputs)?,
+        Some(solving) => constructor::construct(source, roots, scene, view, solving, (&mut inputs, &mut warnings))?,
         None => (view, None),
     };
     warnings.extend(constructor::remark(constructor.as_ref()));

@@ -4,6 +4,7 @@ mod examples;
 mod names;
 mod sessions;
 mod sweeps;
+mod walls;
 mod warnings;
 mod written_lakes;
 mod written_rivers;

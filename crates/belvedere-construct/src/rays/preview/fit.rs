@@ -2,7 +2,7 @@
 
 use super::{Lens, PathPreview, TOLERANCES, TRIALS};
 use crate::ConstructError;
-use crate::rays::room::{Room, Surroundings};
+use crate::rays::room::{Room, Surroundings, vessels};
 use crate::rays::{Target, TargetSight};
 use belvedere_core::DVec3;
 use belvedere_scene::Scene;
@@ -38,7 +38,7 @@ impl PathPreview {
         image: [u32; 2],
     ) -> Result<Self, ConstructError> {
         let wide = Self::new(points, preview_m, usual, level, image)?;
-        let usual = wide.fitting(&Obstacles::new(scene));
+        let usual = wide.fitting(scene);
         let first = Self::new(points, preview_m, usual, level, image)?.standing_in(scene, image)?;
         let mut best = (first.seen_ahead(scene, image)?, first.clone());
         for narrower in NARROWER {
@@ -71,25 +71,36 @@ impl PathPreview {
     }
 
     /// The widest lens, up to that of this preview, whose picture is not much wider than the corridor that the path follows.
-    fn fitting(&self, obstacles: &Obstacles<'_>) -> Lens {
+    fn fitting(&self, scene: &Scene) -> Lens {
         const NARROWER: f64 = 0.8;
         const TRIED: i32 = 16;
+        let (obstacles, vessels) = (Obstacles::new(scene), vessels(scene, &self.path));
+        let is_empty = obstacles.grounds().is_empty() && obstacles.solid_bounds().is_empty();
+        if vessels.is_empty() && (is_empty || !self.level) {
+            return self.lens;
+        }
         let lens = |k: i32| {
             let share = NARROWER.powi(k);
             Lens { width_m: share * self.lens.width_m, rise_m: share * self.lens.rise_m, ..self.lens }
         };
         let is_wide = |lens: &Lens| {
-            let around = Surroundings { obstacles: Some(obstacles), path: &self.path, width: lens.width_m };
+            let obstacles = (!is_empty).then_some(&obstacles);
+            let around = Surroundings { obstacles, vessels: &vessels, path: &self.path, width: lens.width_m };
             let place = |k: usize| {
                 let s = self.path.length() * (k as f64 + 0.5) / TRIALS as f64;
                 let way = self.path.at(s + 0.1 * lens.width_m) - self.path.at(s - 0.1 * lens.width_m);
-                (self.path.at(s) + EYE * lens.width_m * DVec3::Z, way.cross(DVec3::Z).normalize_or(DVec3::X))
+                let right = way.cross(DVec3::Z).normalize_or(DVec3::X);
+                match self.level {
+                    true => vec![(self.path.at(s) + EYE * lens.width_m * DVec3::Z, right)],
+                    // A vessel may be flat: its width is that of both directions.
+                    false => {
+                        [right, way.cross(right).normalize_or(DVec3::Z)].map(|side| (self.path.at(s), side)).to_vec()
+                    }
+                }
             };
-            lens.width_m * CORRIDOR > around.corridor(&(0..TRIALS).map(place).collect::<Vec<_>>())
+            lens.width_m * CORRIDOR > around.corridor(&(0..TRIALS).flat_map(place).collect::<Vec<_>>())
         };
-        let is_empty = obstacles.grounds().is_empty() && obstacles.solid_bounds().is_empty();
-        let fits = (0..TRIED).map(lens).find(|lens| !is_wide(lens));
-        fits.filter(|_| self.level && !is_empty).unwrap_or(self.lens)
+        (0..TRIED).map(lens).find(|lens| !is_wide(lens)).unwrap_or(self.lens)
     }
 
     /// The same with the eye clear of ground and walls.
@@ -97,14 +108,10 @@ impl PathPreview {
     /// # Errors
     /// As [`PathPreview::at`].
     pub fn standing_in(self, scene: &Scene, image: [u32; 2]) -> Result<Self, ConstructError> {
-        self.with_room(Some(&Obstacles::new(scene)), image)
+        self.with_room(Some(scene), image)
     }
 
-    pub(super) fn with_room(
-        mut self,
-        obstacles: Option<&Obstacles<'_>>,
-        image: [u32; 2],
-    ) -> Result<Self, ConstructError> {
+    pub(super) fn with_room(mut self, scene: Option<&Scene>, image: [u32; 2]) -> Result<Self, ConstructError> {
         let width = self.lens.width_m;
         let count = (self.path.length() / (ROOM_SPACING * width)).ceil().clamp(1.0, MOST_ROOMS);
         let spacing = self.path.length() / count;
@@ -113,8 +120,10 @@ impl PathPreview {
             self.root(&self.legs(position), position, image, None)
         };
         let cameras = (0..=count as usize).map(camera).collect::<Result<Vec<_>, _>>()?;
-        let obstacles = obstacles.filter(|o| !(o.grounds().is_empty() && o.solid_bounds().is_empty()));
-        let around = Surroundings { obstacles, path: &self.path, width };
+        let obstacles = scene.map(Obstacles::new);
+        let obstacles = obstacles.as_ref().filter(|o| !(o.grounds().is_empty() && o.solid_bounds().is_empty()));
+        let vessels = scene.map_or_else(Vec::new, |scene| vessels(scene, &self.path));
+        let around = Surroundings { obstacles, vessels: &vessels, path: &self.path, width };
         self.room = Some(Room::new(&cameras, spacing, &around, width.min(0.5 * self.lens.behind_m)));
         Ok(self)
     }
