@@ -4,6 +4,7 @@ use belvedere_core::grid::GridError;
 use belvedere_scene::Cancelled;
 
 pub use crate::in_view::EyeError;
+pub use crate::rivers::RiverError;
 pub use crate::smooth::SmoothError;
 pub use crate::visibility_qp::QpError;
 pub use belvedere_sight::FieldError;
@@ -25,13 +26,8 @@ pub enum DisocclusionError {
         layers: usize,
     },
     /// Rivers that are no lines of the scene.
-    #[error("rivers: \"{id}\" is no line layer of the scene; line layers are: {}", if lines.is_empty() { "none".into() } else { lines.join(", ") })]
-    River {
-        /// Id that was given.
-        id: String,
-        /// Ids of the line layers.
-        lines: Vec<String>,
-    },
+    #[error(transparent)]
+    River(#[from] RiverError),
     /// A parameter out of range.
     #[error("{key} is {value}, it must lie in: {range}")]
     Setting {

@@ -4,7 +4,6 @@
 //! rises over the lowest place upstream: its noise there. Where bed + u does not rise downstream, the displaced ground h + u lies over the
 //! lowest displaced place upstream by at most that noise, at every place: linear in the displacement u, and true without displacement.
 
-use crate::DisocclusionError;
 use crate::points::mesh_crossings;
 use belvedere_core::DVec2;
 use belvedere_scene::{CellTriangle, LayerKind, Scene};
@@ -21,6 +20,16 @@ const ROUNDS: usize = 100;
 const NONE: f64 = 1e-9;
 /// Share of a river whose heights stand for one of its ends.
 const END_SHARE: f64 = 0.1;
+
+/// A river that is no line layer of the scene.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("rivers: \"{id}\" is no line layer of the scene; line layers are: {}", if lines.is_empty() { "none".into() } else { lines.join(", ") })]
+pub struct RiverError {
+    /// Id that was given.
+    pub id: String,
+    /// Ids of the line layers.
+    pub lines: Vec<String>,
+}
 
 /// The line of a river.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,12 +48,12 @@ impl RiverLine {
     /// The lines of the layers `ids`.
     ///
     /// # Errors
-    /// [`DisocclusionError::River`] if one of them is no line layer of the scene.
-    pub fn of(scene: &Scene, ids: &[String]) -> Result<Vec<Self>, DisocclusionError> {
+    /// [`RiverError`] if one of them is no line layer of the scene.
+    pub fn of(scene: &Scene, ids: &[String]) -> Result<Vec<Self>, RiverError> {
         let mut out = Vec::new();
         for id in ids {
             let known = || scene.layers.iter().filter(|l| matches!(l.kind, LayerKind::Line(_))).map(|l| l.id.clone());
-            let wrong = || DisocclusionError::River { id: id.clone(), lines: known().collect() };
+            let wrong = || RiverError { id: id.clone(), lines: known().collect() };
             let (layer, found) = scene.layers.iter().enumerate().find(|(_, l)| l.id == *id).ok_or_else(wrong)?;
             let LayerKind::Line(lines) = &found.kind else { return Err(wrong()) };
             out.extend(lines.features.iter().enumerate().map(|(feature, line)| Self {

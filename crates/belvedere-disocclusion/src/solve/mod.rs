@@ -4,6 +4,7 @@ mod adjust;
 mod agreement;
 mod entering;
 mod fallback;
+mod ground;
 mod in_picture;
 mod lakes;
 mod limits;
@@ -13,6 +14,7 @@ mod out_of_time;
 mod passes;
 mod points_in_view;
 mod report;
+mod reporting;
 mod runs;
 mod shown;
 mod waters;
@@ -22,8 +24,7 @@ pub use lakes::{BANK_M, LakeReport};
 pub use limits::LimitsReport;
 pub use live::{LiveFrame, LiveTerrain};
 pub use memory::TerrainMemory;
-pub use out_of_time::Taken;
-pub use report::{Covered, FeatureCost, QpReport, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
+pub use report::{Covered, FeatureCost, QpReport, Taken, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
 
 use super::visibility_qp::{SolvedRow, Unresolved};
 use super::{Detail, Field, Hierarchy, SolverMode, TerrainSettings, check_eye};
@@ -111,7 +112,7 @@ impl TerrainSolver {
         let SolvedFrame { prepared, field, done, times } = frame_result;
         let field: &Field = &field;
         let previous = memory.before(&prepared).map(|u| on_grid(field, &prepared.grid, u)).transpose()?;
-        let context = report::Context {
+        let context = reporting::Context {
             settings: &self.settings,
             field,
             prepared: &prepared,
@@ -123,7 +124,7 @@ impl TerrainSolver {
             previous: previous.as_ref(),
             progress,
         };
-        let report = report::report(&context, &done, times, began)?;
+        let report = reporting::report(&context, &done, times, began)?;
         memory.keep(prepared, base, done.coarse);
         Ok(Solved { stage: TerrainDisocclusion::new(delta), report })
     }

@@ -5,33 +5,14 @@
 //! smooth pass is made, which takes about as long as one round. Each ground is made plausible and judged as the report judges it.
 
 use super::super::metrics::{Judge, share_seen, still};
-use super::super::visibility_qp::{Candidate, QpProblem, QpResult, QpSolver, SolvedRow, Unresolved};
+use super::super::visibility_qp::{Candidate, QpProblem, QpSolver};
 use super::super::{BlockMaxima, Cells, Hierarchy, Naive, ReferencePoint, SmoothPass, SolverMode, TerrainSettings};
+use super::ground::Ground;
 use super::memory::Prepared;
 use super::passes::Passes;
-use super::{LimitsReport, Outcome, PointsInView, QpReport, delta_of, report};
+use super::{Outcome, PointsInView, Taken, delta_of, reporting};
 use crate::DisocclusionError;
 use belvedere_core::DVec2;
-use serde::Serialize;
-
-/// The ground that was taken where time was up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(tag = "ground", rename_all = "snake_case")]
-pub enum Taken {
-    /// As it was: nothing else showed more.
-    Unmoved,
-    /// That of the frame before.
-    FrameBefore,
-    /// The quadratic program's for a sample of what was asked.
-    Sample {
-        /// Of so many points one was asked for.
-        every: usize,
-    },
-    /// The quadratic program's, unfinished.
-    Unfinished,
-    /// That of the greedy and the smooth pass.
-    SinglePass,
-}
 
 /// Of so many candidates one is asked for, one solution after the other.
 const SAMPLES: [usize; 3] = [32, 8, 3];
@@ -43,55 +24,6 @@ const FIRST_SAMPLE: f64 = 0.1;
 const WORTH: f64 = 0.001;
 /// Nothing else is tried for what is seen up to this share.
 const ENOUGH: f64 = 0.9;
-
-/// A ground that could be taken.
-pub(super) struct Ground {
-    taken: Taken,
-    coarse: Vec<f64>,
-    /// Change of detail at every node.
-    detail: Option<Vec<f64>>,
-    full: Option<Vec<f64>>,
-    limited: Option<LimitsReport>,
-    qp: Option<QpReport>,
-    unresolved: Vec<Unresolved>,
-    rows: Vec<SolvedRow>,
-}
-
-impl Ground {
-    fn plain(taken: Taken, coarse: Vec<f64>) -> Self {
-        Self {
-            taken,
-            coarse,
-            detail: None,
-            full: None,
-            limited: None,
-            qp: None,
-            unresolved: Vec::new(),
-            rows: Vec::new(),
-        }
-    }
-
-    /// The greedy and the smooth pass, with the change of detail at every node.
-    pub(super) fn single_pass(coarse: &[f64], detail: Option<Vec<f64>>) -> Self {
-        Self { detail, ..Self::plain(Taken::SinglePass, coarse.to_vec()) }
-    }
-
-    /// A solution of the quadratic program.
-    pub(super) fn solved(taken: Taken, result: QpResult, candidates: usize) -> Self {
-        let qp = Some(QpReport::of(&result, candidates));
-        let QpResult { u, unresolved, active, .. } = result;
-        Self { qp, unresolved, rows: active, ..Self::plain(taken, u) }
-    }
-
-    /// Takes the place of what was done.
-    pub(super) fn put(self, done: &mut Outcome) {
-        let Self { coarse, full, limited, qp, unresolved, rows, .. } = self;
-        (done.coarse, done.full, done.fine) = (coarse, full, None);
-        (done.limited, done.qp_unresolved, done.rows) = (limited, unresolved, rows);
-        done.qp = qp.or(done.qp);
-        done.fallbacks.clear();
-    }
-}
 
 impl Passes<'_> {
     /// Solutions for samples of what was asked, the coarsest first, as many as there is time for.
@@ -126,7 +58,7 @@ impl Passes<'_> {
         done: &mut Outcome,
         samples: Vec<Ground>,
     ) -> Result<(), DisocclusionError> {
-        let (points, _) = report::sampled(prepared.dense_in_view(in_view, true), true);
+        let (points, _) = reporting::sampled(prepared.dense_in_view(in_view, true), true);
         let unfinished = self.share_of(
             prepared,
             in_view,

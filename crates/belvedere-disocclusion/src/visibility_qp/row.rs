@@ -1,9 +1,16 @@
 //! Rows of the program: `a u <= bound`.
 
 use super::metric::Metric;
-use super::uphill::Stretch;
 use crate::smooth::Between;
 use belvedere_core::DVec2;
+
+/// Two places of a river.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Stretch {
+    pub(super) river: u32,
+    pub(super) upstream: u32,
+    pub(super) downstream: u32,
+}
 
 /// What a row asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]

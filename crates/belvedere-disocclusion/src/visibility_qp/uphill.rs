@@ -2,7 +2,7 @@
 //!
 //! Over flat facets; what the bilinear displacement does otherwise is mended with the nodes after solving.
 
-use super::row::{Constraint, Row};
+use super::row::{Constraint, Row, Stretch};
 use super::surface::Lattice;
 use crate::rivers::{Place, River, Rivers};
 use belvedere_core::DVec2;
@@ -11,14 +11,6 @@ use belvedere_core::DVec2;
 pub(super) const ALLOWED: f64 = 0.05;
 /// Nor what rises by less than this share of the largest rise: much of it goes with that.
 const WORTH: f64 = 0.1;
-
-/// Two places of a river.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Stretch {
-    river: u32,
-    upstream: u32,
-    downstream: u32,
-}
 
 /// Rivers on the solver's grid.
 #[derive(Debug, Clone, Default)]

@@ -1,0 +1,277 @@
+//! From an outcome to its report.
+
+use super::super::metrics::{Hides, Judge, Judged, judged, share_seen, still};
+use super::super::visibility_qp::{Reason, SolvedRow, Unresolved};
+use super::super::{
+    Deformation, Field, ReferencePoint, SolverMode, TerrainSettings, Unusable, UnusableReason, stated_spacing,
+};
+use super::memory::{CHECK_CELLS, Prepared};
+use super::report::{Covered, FeatureCost, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
+use super::runs::Runs;
+use super::shown::Shown;
+use super::{Outcome, PointsInView, since};
+use crate::DisocclusionError;
+use crate::rivers::RIVER_TOLERANCE_M;
+use belvedere_core::grid::Grid;
+use belvedere_core::{DVec2, View};
+use belvedere_scene::{Instant, Progress};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Share of what is in view that must be seen for a promise to be kept: a hair's breadth is left to rounding.
+const AGREES: f64 = 0.9999;
+/// Dense points that are judged at most, about, in frames of films and where time was up.
+const MOST_SAMPLED: usize = 1000;
+
+pub(super) struct Context<'a> {
+    pub(super) settings: &'a TerrainSettings,
+    pub(super) field: &'a Field,
+    pub(super) prepared: &'a Prepared,
+    pub(super) in_view: &'a PointsInView<'a>,
+    /// The picture, without the solution.
+    pub(super) base: &'a View,
+    /// See [`super::TerrainSolver::in_plan`].
+    pub(super) in_plan: bool,
+    /// The solution.
+    pub(super) delta: &'a Grid,
+    /// See [`Deformation::traced`].
+    pub(super) traced: bool,
+    /// That of the frame before.
+    pub(super) previous: Option<&'a Grid>,
+    /// Where time is short not every dense point is judged.
+    pub(super) progress: &'a Progress,
+}
+
+/// Dense points to judge, all or about [`MOST_SAMPLED`]; of how many each is one.
+pub(super) fn sampled(all: Vec<ReferencePoint>, few: bool) -> (Vec<ReferencePoint>, usize) {
+    if !few || all.len() <= MOST_SAMPLED {
+        return (all, 1);
+    }
+    // Those that stand for something alone.
+    let counted: Vec<ReferencePoint> = all.iter().filter(|p| p.amount > 0.0).copied().collect();
+    let every = counted.len().div_ceil(MOST_SAMPLED).max(1);
+    (counted.into_iter().step_by(every).collect(), all.len().div_ceil(MOST_SAMPLED))
+}
+
+/// Whether to judge all of so many dense points would take more than half of the time that is left, by what a sample takes.
+fn too_many(progress: &Progress, judge: &Judge<'_>, all: &[ReferencePoint], guard: f64) -> bool {
+    let Some(left) = progress.left() else { return false };
+    let every = all.len().div_ceil(MOST_SAMPLED / 4).max(1);
+    let few: Vec<ReferencePoint> = all.iter().step_by(every).copied().collect();
+    let began = Instant::now();
+    judge.judge(&few, guard);
+    // Before and after, there over two grounds.
+    began.elapsed().mul_f64(3.0 * every as f64) > left.mul_f64(0.5)
+}
+
+pub(super) fn report(
+    c: &Context<'_>,
+    done: &Outcome,
+    mut times: TerrainTimes,
+    began: Instant,
+) -> Result<TerrainReport, DisocclusionError> {
+    let (field, prepared, in_view, guard) = (c.field, c.prepared, c.in_view, c.settings.guard);
+    let shown = Shown::after(c.base, c.delta, c.in_plan)?;
+    let asked: Vec<usize> =
+        in_view.points.iter().copied().filter(|&i| shown.holds(field, &prepared.points[i])).collect();
+    let points: Vec<ReferencePoint> = asked.iter().map(|&i| prepared.points[i]).collect();
+    let all = prepared.dense_in_view(in_view, c.in_plan);
+    let still = still(field)?;
+    let undisplaced = Judge::faceted(field, &still, &*in_view.sight);
+    let few = !c.traced || done.stopped || too_many(c.progress, &undisplaced, &all, guard);
+    let (may_show, every) = sampled(all, few);
+    let dense = shown.of(field, &may_show);
+    let of = Deformation {
+        field,
+        delta: c.delta,
+        previous: c.previous,
+        cells: prepared.cells.as_ref().map(|parts| &parts.0),
+        points: &points,
+        dense: &dense,
+        sight: &*in_view.sight,
+        traced: c.traced,
+        guard,
+    };
+    let judgement = judged(&of);
+    let metrics = judgement.metrics;
+    let undisplaced = undisplaced.prepared(dense.len());
+    let shown_before = Shown::before(c.base, c.in_plan)?;
+    let before = |points: &[ReferencePoint]| {
+        let points = shown_before.of(field, points);
+        share_seen(&points, &undisplaced.judge(&points, guard))
+    };
+    let named = unresolved(c, done, &shown, (&asked, &judgement));
+    let hidden = hidden(c, done, &judgement, (&dense, every));
+    let guards = c.settings.mode != SolverMode::Paper;
+    let stated_m = stated_spacing(field.cols(), field.rows(), field.spacing());
+    let w = c.settings.smoothness(stated_m);
+    let moved = |i: usize| {
+        let node = DVec2::new((i % field.cols()) as f64, (i / field.cols()) as f64);
+        c.delta.sample(field.scene_from_grid(node)).unwrap_or(0.0)
+    };
+    let rivers = match &prepared.waters.rivers {
+        rivers if rivers.is_empty() => Vec::new(),
+        rivers => rivers.report(&(0..field.heights().len()).map(moved).collect::<Vec<_>>()),
+    };
+    let downhill = rivers.iter().all(|river| river.excess_m <= RIVER_TOLERANCE_M);
+    let mut out = TerrainReport {
+        parameters: TerrainSettings { w: Some(w), detail: Some(c.settings.detail()), ..c.settings.clone() },
+        w,
+        smoothing_length_m: c.settings.smoothing_length(stated_m),
+        solver_grid: [prepared.grid.cols(), prepared.grid.rows()],
+        points: points.len(),
+        asked: in_view.candidates.len(),
+        metrics,
+        judged_every: every,
+        visible_before: before(&in_view.points.iter().map(|&i| prepared.points[i]).collect::<Vec<_>>()),
+        visible_dense_before: before(&may_show),
+        greedy: done.greedy,
+        qp: done.qp,
+        costliest: costliest(prepared, &done.rows),
+        fallbacks: done.fallbacks.clone(),
+        limited: done.limited,
+        spikes: prepared.spikes.clone(),
+        lakes: prepared.waters.lakes.report(moved),
+        rivers,
+        guaranteed: guards
+            && !in_view.candidates.is_empty()
+            && named.program_met
+            && !done.stopped
+            && metrics.visible_dense >= AGREES
+            && judgement.dense.len() as f64 <= (1.0 - AGREES) * dense.len() as f64
+            && downhill
+            && (every == 1 || judgement.points.is_empty() && judgement.dense.is_empty())
+            && (done.limited.is_none() || hidden.is_empty()),
+        out_of_time: done.stopped,
+        taken: done.taken,
+        unresolved: named.runs,
+        hidden,
+        covered: covered(c, &judgement, &dense),
+        times,
+    };
+    times.report_ms = since(began);
+    out.times = times;
+    Ok(out)
+}
+
+fn covered(c: &Context<'_>, judgement: &Judged, dense: &[ReferencePoint]) -> Vec<Covered> {
+    if c.settings.slack_price.is_none() {
+        return Vec::new();
+    }
+    let place = |&(i, hides): &(usize, Hides)| {
+        let (p, over_m) = (&dense[i], hides.over());
+        let at = c.field.scene_from_grid(p.grid).to_array();
+        let is_covered = over_m.is_finite() && !matches!(hides, Hides::Facets(_));
+        is_covered.then_some(Covered { at, lift_m: p.lift, over_m })
+    };
+    judgement.dense.iter().filter_map(place).collect()
+}
+
+/// The energy is half the sum of multipliers times what their rows ask for.
+fn costliest(prepared: &Prepared, rows: &[SolvedRow]) -> Vec<FeatureCost> {
+    let mut of = BTreeMap::<(usize, usize), f64>::new();
+    let mut all = 0.0;
+    for row in rows {
+        let asked = row.multiplier * (-row.bound).max(0.0);
+        if let Some(point) = row.candidate.and_then(|id| prepared.candidate(id)) {
+            *of.entry((point.layer, point.feature)).or_default() += asked;
+            all += asked;
+        }
+    }
+    let mut out: Vec<FeatureCost> =
+        of.into_iter().map(|((layer, feature), asked)| FeatureCost { layer, feature, share: asked / all }).collect();
+    out.retain(|cost| cost.share > 0.0);
+    out.sort_by(|a, b| b.share.total_cmp(&a.share));
+    out.truncate(3);
+    out
+}
+
+/// Dense points that are hidden although no place that is named stands for them.
+fn hidden(
+    c: &Context<'_>,
+    done: &Outcome,
+    judgement: &Judged,
+    (dense, every): (&[ReferencePoint], usize),
+) -> Vec<UnresolvedRun> {
+    let mut runs = Runs::new(c.field, CHECK_CELLS * every as f64);
+    for (i, hides) in &judgement.dense {
+        let reason = match *hides {
+            Hides::Facets(over_m) => UnresolvedReason::Facets { over_m },
+            // At a price `covered` names it.
+            _ if c.settings.slack_price.is_some() => continue,
+            Hides::Ground(over_m) | Hides::InGuard(over_m) if done.limited.is_some() && over_m.is_finite() => {
+                UnresolvedReason::Limits { over_m }
+            }
+            Hides::InGuard(over_m) => UnresolvedReason::InsideGuard { over_m },
+            Hides::Ground(over_m) if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,
+            Hides::Ground(over_m) if c.settings.mode == SolverMode::Paper => UnresolvedReason::Smoothed { over_m },
+            Hides::Ground(over_m) => UnresolvedReason::Between { over_m },
+        };
+        runs.put(&dense[*i], reason);
+    }
+    runs.out
+}
+
+/// What cannot be seen, and whether that is nothing of what the program looks after.
+struct Named {
+    runs: Vec<UnresolvedRun>,
+    program_met: bool,
+}
+
+/// * `asked`: indices of the reference points that were judged.
+fn unresolved(c: &Context<'_>, done: &Outcome, shown: &Shown, (asked, judgement): (&[usize], &Judged)) -> Named {
+    let mut runs = Runs::new(c.field, c.settings.spacing);
+    let in_view = |u: &&Unusable| c.in_view.wedge.contains(c.field.scene_from_grid(u.grid));
+    for u in c.prepared.unusable.iter().filter(in_view) {
+        let reason = match u.reason {
+            UnusableReason::OutsideDem => UnresolvedReason::OutsideDem,
+            UnusableReason::NoData => UnresolvedReason::NoData,
+        };
+        runs.add((u.layer, u.feature, u.kind, u.along_m, u.grid), reason);
+    }
+    let mut said = Vec::new();
+    let of = |i: &usize| c.prepared.points[*i];
+    said.extend(c.in_view.too_near.iter().map(|i| (of(i), UnresolvedReason::NearerThanGuard)));
+    if c.settings.mode == SolverMode::Paper {
+        said.extend(done.greedy_unresolved.iter().map(|i| (of(i), UnresolvedReason::Greedy)));
+    }
+    let by_program = said.len();
+    let dense = c.prepared.dense.len();
+    let mut named: BTreeSet<usize> = done.greedy_unresolved.iter().copied().collect();
+    for Unresolved { id, reason } in &done.qp_unresolved {
+        let reason = match reason {
+            Reason::TooNear => UnresolvedReason::NearerThanGuard,
+            Reason::NoLine => UnresolvedReason::NoLineOfSight,
+            Reason::Infeasible(p) => {
+                UnresolvedReason::Infeasible { depth_m: p.depth, gap_m: p.gap, rows: p.rows.len() }
+            }
+            Reason::NotSettled { lacks } => UnresolvedReason::NotSettled { lacks_m: *lacks },
+        };
+        said.extend(c.prepared.candidate(*id).map(|point| (*point, reason)));
+        named.extend((*id as usize).checked_sub(dense));
+    }
+    // A solver may give up what is seen all the same, or lies beside the picture.
+    let points: Vec<ReferencePoint> = said.iter().map(|(point, _)| *point).collect();
+    let judge = if c.traced { Judge::of_both } else { Judge::faceted };
+    let verdicts = judge(c.field, c.delta, &*c.in_view.sight).prepared(points.len()).judge(&points, c.settings.guard);
+    let mut program_met = true;
+    for (k, ((point, reason), verdict)) in said.into_iter().zip(verdicts).enumerate() {
+        if verdict.hides().is_some() && shown.holds(c.field, &point) {
+            runs.put(&point, reason);
+            program_met &= k < by_program;
+        }
+    }
+    for &(k, hides) in &judgement.points {
+        let (i, over_m) = (asked[k], hides.over());
+        if c.settings.slack_price.is_none() && !named.contains(&i) {
+            let reason = match c.settings.mode {
+                _ if matches!(hides, Hides::Facets(_)) => UnresolvedReason::Facets { over_m },
+                _ if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,
+                SolverMode::Paper => UnresolvedReason::Smoothed { over_m },
+                _ if done.limited.is_some() => UnresolvedReason::Limits { over_m },
+                SolverMode::PaperQp | SolverMode::Qp => UnresolvedReason::Judged { over_m },
+            };
+            runs.put(&c.prepared.points[i], reason);
+        }
+    }
+    Named { runs: runs.out, program_met }
+}
