@@ -9,7 +9,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Side of the bins that places are sorted into, pixels.
 const BIN: f64 = 4.0;
 /// Where a displacement bends a triangle, it is quartered until its edges lie within this of their images, pixels; so often at most.
-const STRAIGHT_PX: f64 = 1e-3;
+const STRAIGHT_PX: f64 = 0.01;
+/// The same where ground is displaced upwards alone: a pixel far away is tens of metres of ground, which lines of sight pass by decimetres.
+const UPRIGHT_PX: f64 = 1e-3;
 const BENDINGS: u32 = 7;
 /// Triangles that reach behind the near plane are quartered so often, and left out where they reach behind it still.
 const QUARTERINGS: u32 = 6;
@@ -99,7 +101,8 @@ fn over_terrain(hf: &Heightfield, view: &View, bins: &Bins<'_>, (found, flat): (
         };
         (0..cols).map(node).collect()
     };
-    let draw = Draw { bins, found, vertex: &vertex, parallel, bent: view.is_bent() && !flat };
+    let straight_px = if view.stages().iter().all(|s| s.is_upright()) { UPRIGHT_PX } else { STRAIGHT_PX };
+    let draw = Draw { bins, found, vertex: &vertex, parallel, bent: view.is_bent() && !flat, straight_px };
     let strip = |first: usize| {
         let last = (first + STRIP).min(hf.rows() - 1);
         let mut upper = row(first);
@@ -127,6 +130,8 @@ struct Draw<'a> {
     parallel: bool,
     /// Whether the view bends what is straight.
     bent: bool,
+    /// What counts as straight, pixels.
+    straight_px: f64,
 }
 
 impl Draw<'_> {
@@ -162,7 +167,7 @@ impl Draw<'_> {
             let off = |v: Vertex, a: (DVec2, f64), b: (DVec2, f64)| {
                 v.is_none_or(|(p, _)| {
                     let along = (b.0 - a.0).normalize_or_zero();
-                    along == DVec2::ZERO || along.perp_dot(p - a.0).abs() > STRAIGHT_PX
+                    along == DVec2::ZERO || along.perp_dot(p - a.0).abs() > self.straight_px
                 })
             };
             if off(ab, a, b) || off(bc, b, c) || off(ca, c, a) {
