@@ -9,8 +9,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Side of the bins that places are sorted into, pixels.
 const BIN: f64 = 4.0;
 /// Where a displacement bends a triangle, it is quartered until its edges lie within this of their images, pixels; so often at most.
-const STRAIGHT_PX: f64 = 1e-3;
-const BENDINGS: u32 = 7;
+const STRAIGHT: (f64, u32) = (0.01, 5);
+/// The same where ground is displaced upwards alone: a pixel far away is tens of metres of ground, which lines of sight pass by decimetres.
+const UPRIGHT: (f64, u32) = (1e-3, 7);
 /// Triangles that reach behind the near plane are quartered so often, and left out where they reach behind it still.
 const QUARTERINGS: u32 = 6;
 
@@ -99,7 +100,9 @@ fn over_terrain(hf: &Heightfield, view: &View, bins: &Bins<'_>, (found, flat): (
         };
         (0..cols).map(node).collect()
     };
-    let draw = Draw { bins, found, vertex: &vertex, parallel, bent: view.is_bent() && !flat };
+    let is_upright = view.stages().iter().all(|s| s.is_upright());
+    let (straight_px, bendings) = if is_upright { UPRIGHT } else { STRAIGHT };
+    let draw = Draw { bins, found, vertex: &vertex, parallel, bent: view.is_bent() && !flat, straight_px, bendings };
     let strip = |first: usize| {
         let last = (first + STRIP).min(hf.rows() - 1);
         let mut upper = row(first);
@@ -127,6 +130,10 @@ struct Draw<'a> {
     parallel: bool,
     /// Whether the view bends what is straight.
     bent: bool,
+    /// What counts as straight, pixels.
+    straight_px: f64,
+    /// How often a triangle is quartered for that, at most.
+    bendings: u32,
 }
 
 impl Draw<'_> {
@@ -151,7 +158,7 @@ impl Draw<'_> {
             return;
         };
         let (low, high) = (a.0.min(b.0).min(c.0), a.0.max(b.0).max(c.0));
-        if self.bent && quarterings < BENDINGS {
+        if self.bent && quarterings < self.bendings {
             // What bends it leaves the box a little.
             let beside = 0.25 * (high - low);
             if !self.bins.holds(low - beside, high + beside) {
@@ -162,7 +169,7 @@ impl Draw<'_> {
             let off = |v: Vertex, a: (DVec2, f64), b: (DVec2, f64)| {
                 v.is_none_or(|(p, _)| {
                     let along = (b.0 - a.0).normalize_or_zero();
-                    along == DVec2::ZERO || along.perp_dot(p - a.0).abs() > STRAIGHT_PX
+                    along == DVec2::ZERO || along.perp_dot(p - a.0).abs() > self.straight_px
                 })
             };
             if off(ab, a, b) || off(bc, b, c) || off(ca, c, a) {
