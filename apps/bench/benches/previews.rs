@@ -67,7 +67,7 @@ const CASES: [(Case, u64); 8] = [
         1,
     ),
     (Case { name: "Swellendam", layers: SWELLENDAM, path: Way::Line("path"), preview_m: 300.0 }, 0),
-    (Case { name: "Andorra", layers: ANDORRA, path: Way::Line("path"), preview_m: 3000.0 }, 0),
+    (Case { name: "Andorra", layers: ANDORRA, path: Way::Line("path"), preview_m: 1000.0 }, 0),
     (
         Case {
             name: "aneurism",

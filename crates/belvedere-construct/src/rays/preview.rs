@@ -15,9 +15,11 @@ use belvedere_core::map::curved_rays::{Model, Sharpness};
 use belvedere_core::{CurvedRays, DVec3, Pinhole, Projection, Stage, View};
 use serde::{Deserialize, Serialize};
 
-/// The camera swings into the next leg over at most these shares of the leg before it and of the preview: over more would be
-/// gentler, but a camera that looks aside sees the wall of a canyon.
-const SWING: [f64; 2] = [0.5, 0.06];
+/// The camera swings into the next leg over at most these shares of the leg before it, of the preview and of the width of the picture:
+/// over more would be gentler, but a camera that looks aside sees the wall of a canyon.
+const SWING: [f64; 3] = [0.5, 0.06, 0.5];
+/// Between the position and the turn, the place about which it swings, as a share.
+const SWINGS_ABOUT: f64 = 0.5;
 /// Where the position stands over terrain, shares of the picture's height from its lower edge.
 const FOOT: f64 = 0.06;
 /// How far before the position rays become those of the far eye, widths of the picture: at least, and at most.
@@ -281,23 +283,39 @@ impl PathPreview {
     /// Height of the eye over terrain: that of the path around it, evenly, and the rise.
     fn eye_height(&self, position: f64) -> f64 {
         const SAMPLES: usize = 33;
+        const BEHIND: usize = 9;
         let at = |k: usize| position + self.preview_m * (-0.1 + 0.6 * k as f64 / (SAMPLES - 1) as f64);
-        (0..SAMPLES).map(|k| self.path.at(at(k)).z).sum::<f64>() / SAMPLES as f64 + self.lens.rise_m
+        let ahead = (0..SAMPLES).map(|k| self.path.at(at(k)).z).sum::<f64>() / SAMPLES as f64;
+        // Where the path goes down the eye stands over what lies behind the position.
+        let behind = |k: usize| self.path.at(position - self.lens.width_m * k as f64 / (BEHIND - 1) as f64).z;
+        let highest = (0..BEHIND).map(behind).fold(f64::NEG_INFINITY, f64::max);
+        ahead + soft_hinge(highest - ahead, self.lens.rise_m) + self.lens.rise_m
+    }
+
+    /// Length of the path over which the camera swings into the next leg, from the length of the leg before.
+    fn swing(&self, leg: f64) -> f64 {
+        (SWING[0] * leg).min(SWING[1] * self.preview_m).min(SWING[2] * self.lens.width_m)
     }
 
     /// The camera before any turn: behind the position, swinging into the next leg while it comes to a turn.
     fn root(&self, legs: &Legs, position: f64, image: [u32; 2], far: Option<f64>) -> Result<Pinhole, ConstructError> {
         let Lens { behind_m, width_m, rise_m } = self.lens;
         // Where rays begin: at the position, while the camera swings at the turn that it comes to.
-        let (direction, begin) = match legs.turns.first() {
+        // It swings about a place half way to the turn: about the turn itself the picture of what lies behind that would stay where it is,
+        // but the eye would come nearer to the walls.
+        let (direction, at, begin) = match legs.turns.first() {
             Some(turn) => {
-                let over = (SWING[0] * turn.edges[0]).min(SWING[1] * self.preview_m);
+                let over = self.swing(turn.edges[0]);
                 let share = soft_ramp(1.0 - (turn.s - position) / over);
-                (turned(turn.before, turn.after, share), legs.here.lerp(turn.at, share))
+                let direction = turned(turn.before, turn.after, share);
+                let about = legs.here.lerp(turn.at, SWINGS_ABOUT);
+                let at = about - SWINGS_ABOUT * legs.here.distance(turn.at) * direction;
+                let at = if share > 0.0 { at } else { legs.here };
+                (direction, at, at.lerp(turn.at, share))
             }
-            None => (legs.direction, legs.here),
+            None => (legs.direction, legs.here, legs.here),
         };
-        let eye = legs.here - behind_m * direction;
+        let eye = at - behind_m * direction;
         let [width, height] = image.map(f64::from);
         let fov_y = 2.0 * (0.5 * width_m / behind_m * height / width).atan();
         let pitch = if self.level { rise_m.atan2(behind_m) - (0.5 - FOOT) * fov_y } else { 0.0 };
@@ -328,6 +346,17 @@ fn turned(from: DVec3, to: DVec3, share: f64) -> DVec3 {
     let across = (to - from.dot(to) * from).normalize_or(to);
     let (sin, cos) = (share * angle).sin_cos();
     cos * from + sin * across
+}
+
+/// 0 up to 0, half of `round` less than `x` from `round` on; C1.
+fn soft_hinge(x: f64, round: f64) -> f64 {
+    if x <= 0.0 {
+        0.0
+    } else if x < round {
+        0.5 * x * x / round
+    } else {
+        x - 0.5 * round
+    }
 }
 
 /// 0 up to 0, 1 from 1 on, even between but for its ends; C1.

@@ -8,7 +8,7 @@ use belvedere_sight::Obstacles;
 /// How far an eye may stand behind each position of a path, scene units.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Room {
-    spacing: f64,
+    positions: Vec<f64>,
     behind: Vec<f64>,
 }
 
@@ -35,27 +35,33 @@ pub(super) struct Surroundings<'a> {
 }
 
 impl Room {
-    /// Room up to `most` behind positions that are `spacing` apart; from one to the next it changes by at most their distance.
+    /// Room up to `most` behind positions: no more than behind the ones before and after, so that between them there is as much; from
+    /// one to the next it changes by at most their distance.
     ///
-    /// * `cameras`: for every position the camera far behind it, whose near plane holds the position.
-    pub(super) fn new(cameras: &[Pinhole], spacing: f64, around: &Surroundings<'_>, most: f64) -> Self {
-        let mut behind: Vec<f64> = cameras.iter().map(|far| around.free_behind(far, most)).collect();
+    /// * `cameras`: by rising position the camera far behind it, whose near plane holds the position; at least one.
+    pub(super) fn new(cameras: &[(f64, Pinhole)], around: &Surroundings<'_>, most: f64) -> Self {
+        let positions: Vec<f64> = cameras.iter().map(|(s, _)| *s).collect();
+        let free: Vec<f64> = cameras.iter().map(|(_, far)| around.free_behind(far, most)).collect();
+        let beside = |i: usize| &free[i.saturating_sub(1)..(i + 2).min(free.len())];
+        let mut behind: Vec<f64> =
+            (0..free.len()).map(|i| beside(i).iter().copied().fold(f64::INFINITY, f64::min)).collect();
+        let apart = |i: usize| positions[i] - positions[i - 1];
         for i in 1..behind.len() {
-            behind[i] = behind[i].min(behind[i - 1] + spacing);
+            behind[i] = behind[i].min(behind[i - 1] + apart(i));
         }
         for i in (1..behind.len()).rev() {
-            behind[i - 1] = behind[i - 1].min(behind[i] + spacing);
+            behind[i - 1] = behind[i - 1].min(behind[i] + apart(i));
         }
-        Self { spacing, behind }
+        Self { positions, behind }
     }
 
     /// The room at a position, held at the ends.
     pub(super) fn at(&self, position: f64) -> f64 {
-        let last = self.behind.len() - 1;
-        let x = (position / self.spacing).clamp(0.0, last as f64);
-        let i = (x as usize).min(last.saturating_sub(1));
-        let next = self.behind[(i + 1).min(last)];
-        self.behind[i] + (x - i as f64) * (next - self.behind[i])
+        let next = self.positions.partition_point(|s| *s <= position).min(self.positions.len() - 1);
+        let before = next.saturating_sub(1);
+        let length = self.positions[next] - self.positions[before];
+        let share = if length > 0.0 { ((position - self.positions[before]) / length).clamp(0.0, 1.0) } else { 0.0 };
+        self.behind[before] + share * (self.behind[next] - self.behind[before])
     }
 }
 

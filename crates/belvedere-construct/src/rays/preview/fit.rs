@@ -19,9 +19,12 @@ const WORTH: f64 = 0.03;
 /// The corridor is so wide at least, widths of the picture, measured so high over the path, widths of the picture.
 const CORRIDOR: f64 = 0.5;
 const EYE: f64 = 0.25;
-/// Distance of positions at which room is looked for, widths of the picture; of so many at most.
+/// Distance of positions at which room is looked for, widths of the picture; of so many at most. Beside these while the camera swings,
+/// some for every turn, of so many in all.
 const ROOM_SPACING: f64 = 0.05;
 const MOST_ROOMS: f64 = 200.0;
+const SWING_ROOMS: [usize; 2] = [4, 24];
+const MOST_SWING_ROOMS: usize = 800;
 
 impl PathPreview {
     /// Prepares a preview whose camera is chosen: of some widths and tolerances that with which most of the path ahead is seen in
@@ -114,17 +117,22 @@ impl PathPreview {
     pub(super) fn with_room(mut self, scene: Option<&Scene>, image: [u32; 2]) -> Result<Self, ConstructError> {
         let width = self.lens.width_m;
         let count = (self.path.length() / (ROOM_SPACING * width)).ceil().clamp(1.0, MOST_ROOMS);
-        let spacing = self.path.length() / count;
-        let camera = |k: usize| {
-            let position = spacing * k as f64;
-            self.root(&self.legs(position), position, image, None)
-        };
-        let cameras = (0..=count as usize).map(camera).collect::<Result<Vec<_>, _>>()?;
+        let mut positions: Vec<f64> = (0..=count as usize).map(|k| self.path.length() * k as f64 / count).collect();
+        let per_turn = (MOST_SWING_ROOMS / self.controls.len()).clamp(SWING_ROOMS[0], SWING_ROOMS[1]);
+        for pair in self.controls.windows(2) {
+            let over = self.swing(pair[0].at.distance(pair[1].at));
+            // The direction is that of the next leg from the turn itself on.
+            positions.extend((0..=per_turn + 1).map(|k| pair[1].s + over * (k as f64 / per_turn as f64 - 1.0)));
+        }
+        positions.sort_by(f64::total_cmp);
+        let within = positions.into_iter().filter(|s| (0.0..=self.path.length()).contains(s));
+        let camera = |position: f64| Ok((position, self.root(&self.legs(position), position, image, None)?));
+        let cameras = within.map(camera).collect::<Result<Vec<_>, ConstructError>>()?;
         let obstacles = scene.map(Obstacles::new);
         let obstacles = obstacles.as_ref().filter(|o| !(o.grounds().is_empty() && o.solid_bounds().is_empty()));
         let vessels = scene.map_or_else(Vec::new, |scene| vessels(scene, &self.path));
         let around = Surroundings { obstacles, vessels: &vessels, path: &self.path, width };
-        self.room = Some(Room::new(&cameras, spacing, &around, width.min(0.5 * self.lens.behind_m)));
+        self.room = Some(Room::new(&cameras, &around, width.min(0.5 * self.lens.behind_m)));
         Ok(self)
     }
 }
