@@ -2,6 +2,7 @@
 
 use super::level_lakes::LevelLakes;
 use crate::BelvedereError;
+use belvedere_disocclusion::DisocclusionError;
 use belvedere_disocclusion::report::RiverReport;
 use belvedere_disocclusion::rivers::{RiverLine, Rivers};
 use belvedere_io::raster::{Raster, Samples};
@@ -19,7 +20,7 @@ pub(super) fn run_downhill(
     (scene, ids): (&Scene, &[String]),
     lakes: &LevelLakes<'_>,
 ) -> Result<Vec<RiverReport>, BelvedereError> {
-    let lines = RiverLine::of(scene, ids)?;
+    let lines = RiverLine::of(scene, ids).map_err(DisocclusionError::from)?;
     let (Some(index), false) = (original.index_from_scene(scene.crs), lines.is_empty()) else { return Ok(Vec::new()) };
     let nodes = [heights.info.width, heights.info.height];
     let known = |i: usize| heights.sample_f64(0, i % nodes[0], i / nodes[0]);
