@@ -184,7 +184,7 @@ impl Rivers {
             let mut sank = false;
             for river in &self.rivers {
                 for _ in 0..PASSES {
-                    if !(0..GROUNDS.len()).fold(false, |any, ground| river.sink(u, ground) || any) {
+                    if (0..GROUNDS.len()).filter(|ground| river.sink(u, *ground)).count() == 0 {
                         break;
                     }
                     sank = true;
