@@ -14,8 +14,8 @@ pub const RIVER_TOLERANCE_M: f64 = 0.05;
 /// What rises by no more is left as it is where displacements of nodes are changed, metres.
 const SAME: f64 = 1e-4;
 /// Passes along one river in which nodes change, and rounds of all rivers, at most.
-const PASSES: usize = 500;
-const ROUNDS: usize = 100;
+const PASSES: usize = 200;
+const ROUNDS: usize = 500;
 /// Weights below this are rounding.
 const NONE: f64 = 1e-9;
 /// Share of a river whose heights stand for one of its ends.
@@ -183,11 +183,8 @@ impl Rivers {
         for _ in 0..ROUNDS {
             let mut sank = false;
             for river in &self.rivers {
-                for _ in 0..PASSES {
-                    if (0..GROUNDS.len()).filter(|ground| river.sink(u, *ground)).count() == 0 {
-                        break;
-                    }
-                    sank = true;
+                for ground in 0..GROUNDS.len() {
+                    sank |= river.sink(u, ground);
                 }
             }
             let followed = together(u);
@@ -230,17 +227,27 @@ impl River {
         self.places.iter().filter(|place| place.bend)
     }
 
+    /// Lowers nodes on the way downstream; where that lowers places just upstream, too, goes on from there.
     fn sink(&self, u: &mut [f64], ground: usize) -> bool {
-        let (mut lowest, mut sank) = (f64::INFINITY, false);
-        for place in self.places_over(ground) {
-            let most = lowest - place.bed;
-            if place.moved(u, ground) > most + SAME {
+        let places: Vec<&Place> = self.places_over(ground).collect();
+        let mut lowest = vec![f64::INFINITY; places.len() + 1];
+        let (mut k, mut changes) = (0, 0);
+        while k < places.len() {
+            let place = places[k];
+            let most = lowest[k] - place.bed;
+            if place.moved(u, ground) > most + SAME && changes < PASSES * places.len() {
                 place.entries(ground).for_each(|(n, _)| u[n] = u[n].min(most));
-                sank = true;
+                changes += 1;
+                let shares = |other: &Place| other.nodes.iter().any(|n| place.nodes.contains(n));
+                while k > 0 && shares(places[k - 1]) {
+                    k -= 1;
+                }
+                continue;
             }
-            lowest = lowest.min(place.bed + place.moved(u, ground));
+            lowest[k + 1] = lowest[k].min(place.bed + place.moved(u, ground));
+            k += 1;
         }
-        sank
+        changes > 0
     }
 
     fn raise(&self, u: &mut [f64], ground: usize, raised: &mut Vec<usize>) {

@@ -55,7 +55,7 @@ pub struct TerrainReport {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rivers: Vec<RiverReport>,
     /// Whether every candidate in view is guaranteed to be seen in this picture, no river that was named runs uphill by more than
-    /// [`RIVER_TOLERANCE_M`], and the judge agrees: of what is in view at
+    /// [`crate::rivers::RIVER_TOLERANCE_M`], and the judge agrees: of what is in view at
     /// least 0.9999 is seen ([`TerrainMetrics::visible_dense`]); `hidden` names the rest. Where nothing is asked for nothing is
     /// guaranteed.
     pub guaranteed: bool,
