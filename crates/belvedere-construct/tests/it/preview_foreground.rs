@@ -104,6 +104,26 @@ fn nothing_is_cut_away_before_the_position() {
 }
 
 #[test]
+fn over_a_path_that_goes_down_the_eye_stands_above_the_ground() {
+    // A hillside that falls by one in two, with a ledge in the middle.
+    let fall = |y: f64| -0.5 * y + 40.0 * (y / 150.0).sin();
+    let heights = (0..41 * 201).map(|i| fall(2000.0 - 10.0 * f64::from(i / 41)) as f32).collect();
+    let ground = Heightfield::measured(DVec2::new(-200.0, 2000.0), DVec2::splat(10.0), 41, 201, heights).unwrap();
+    let path: Vec<DVec3> = (20..190).map(|k| f64::from(k) * 10.0).map(|y| DVec3::new(0.0, y, fall(y))).collect();
+    let scene = Scene::default().with_terrain("ground", ground.clone());
+    for length in [300.0, 1000.0] {
+        let usual = Lens::for_preview(length, true);
+        let preview = PathPreview::fitted(&scene, &path, length, usual, true, IMAGE).unwrap();
+        for k in 0..20 {
+            let at = preview.length() * f64::from(k) / 20.0;
+            let eye = preview.at(at, IMAGE, None).unwrap().view.pinhole().eye;
+            let over = ground.surface_at(eye.truncate()).map_or(1.0, |height| eye.z - height);
+            assert!(over > 0.0, "preview of {length} at {at}: the eye is {over} over the ground");
+        }
+    }
+}
+
+#[test]
 fn streets_are_previewed_from_between_their_walls() {
     let mut seen = Vec::new();
     for seed in 0..3 {
