@@ -22,7 +22,7 @@ fn place() -> Place {
     place.write("dem.asc", &dem);
     let line = |rows: std::ops::Range<u32>, aside: f64| {
         let at = |k: u32| [8.0 + 0.001 * (middle(f64::from(k)) + aside), 46.0 + 0.001 * (47.0 - f64::from(k))];
-        let places: Vec<String> = rows.map(|k| at(k)).map(|[x, y]| format!("[{x:.6},{y:.6}]")).collect();
+        let places: Vec<String> = rows.map(at).map(|[x, y]| format!("[{x:.6},{y:.6}]")).collect();
         format!("{{\"type\":\"LineString\",\"coordinates\":[{}]}}", places.join(","))
     };
     place.write("stream.geojson", &line(2..46, 0.0));

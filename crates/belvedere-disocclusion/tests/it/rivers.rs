@@ -33,7 +33,7 @@ impl Valley {
             (500.0 + 0.02 * y + side + 0.03 * steep * spacing * rough(x, y)) as f32
         };
         let node = |i: usize| ((i % NODES) as f64 * spacing, (NODES - 1 - i / NODES) as f64 * spacing);
-        let heights = (0..NODES * NODES).map(|i| node(i)).map(|(x, y)| height(x, y)).collect();
+        let heights = (0..NODES * NODES).map(node).map(|(x, y)| height(x, y)).collect();
         let states = vec![NodeState::Measured; NODES * NODES];
         let north_west = DVec2::new(0.0, size);
         let hf = Heightfield::new(north_west, DVec2::splat(spacing), NODES, NODES, heights, states).unwrap();
