@@ -135,11 +135,12 @@ fn measured(case: &Case, scene: &Scene, path: &[DVec3], positions: usize) -> Res
     let preview = PathPreview::fitted(scene, path, case.preview_m, usual, level, IMAGE)?;
     let (whole, step) = (preview.length(), case.preview_m / STEPS);
     let (mut fast, mut usual, mut seen, mut sky) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let mut slowest: Vec<(f64, f64)> = Vec::new();
+    let (mut slowest, mut wide): (Vec<(f64, f64)>, Vec<f64>) = (Vec::new(), Vec::new());
     for k in 0..positions {
         let at = (whole - case.preview_m).max(0.5 * whole) * k as f64 / positions as f64;
         let [now, next] = [at, at + step].map(|at| preview.at(at, IMAGE, None).map(|p| p.view));
         let (now, next) = (now?, next?);
+        wide.push(2.0 * (0.5 * f64::from(IMAGE[0]) / now.pinhole().scale_px()).atan().to_degrees());
         let frame = drawn(scene, &now)?;
         let moved = motions(&frame, &now, &next);
         fast.push(share_of(&moved, 0.99));
@@ -165,13 +166,17 @@ fn measured(case: &Case, scene: &Scene, path: &[DVec3], positions: usize) -> Res
     slowest.sort_by(|a, b| b.0.total_cmp(&a.0));
     let places: Vec<String> = slowest.iter().take(6).map(|(m, at)| format!("{m:.2} px at {at:.1}")).collect();
     eprintln!(
-        "{}: lens {:.1?}; fastest {}; median {:.2} px, of half the picture {:.2} px; least of the path seen {:.2}",
+        "{}: lens {:.1?}; fastest {}; median {:.2} px, of half the picture {:.2} px; least of the path seen {:.2}; \
+         the near eye looks {:.0} degrees wide, {:.0} at 90 % of the positions, {:.0} at most",
         case.name,
         preview.lens(),
         places.join(", "),
         share_of(&fast, 0.5),
         share_of(&usual, 0.5),
-        seen.iter().copied().fold(1.0, f64::min)
+        seen.iter().copied().fold(1.0, f64::min),
+        share_of(&wide, 0.5),
+        share_of(&wide, 0.9),
+        share_of(&wide, 1.0)
     );
     Ok(())
 }

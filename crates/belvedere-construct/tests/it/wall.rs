@@ -141,8 +141,14 @@ fn previews_of_vessels_show_the_wall_alone_from_inside() {
         let path = path(seed);
         let wall = find_wall(&volume, &path).unwrap();
         let scene = scene(volume, TransferFunction::wall(wall.lumen, wall.isovalue, wall.wall));
-        let usual = Lens::for_preview(25.0, false);
-        let preview = PathPreview::fitted(&scene, &path, 25.0, Lens { width_m: 25.0, ..usual }, false, IMAGE).unwrap();
+        let usual = Lens { width_m: 25.0, ..Lens::for_preview(25.0, false) };
+        let preview = match seed {
+            0 => PathPreview::fitted(&scene, &path, 25.0, usual, false, IMAGE),
+            // A lens of one's own; only the eye is fitted.
+            _ => PathPreview::new(&path, 25.0, Lens { width_m: 12.0, ..usual }, false, IMAGE)
+                .and_then(|preview| preview.standing_in(&scene, IMAGE)),
+        };
+        let preview = preview.unwrap();
         // The picture is about twice as wide as the vessel, and no more.
         let diameters = preview.lens().width_m / (2.0 * RADIUS * VOXEL);
         assert!((0.7..=2.1).contains(&diameters), "seed {seed}: {diameters} diameters wide");
