@@ -13,7 +13,7 @@ pub struct BSpline {
     knots: Vec<f64>,
 }
 
-/// Control points or knots that make no cubic B-spline.
+/// Control points or knots that are not valid for a cubic B-spline.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BSplineError {
@@ -31,7 +31,7 @@ pub enum BSplineError {
         /// Its index, from 0.
         index: usize,
     },
-    /// Number of knots.
+    /// The number of knots is not that of the control points + 4.
     #[error("{given} knots were given, {control} control points need {needed}")]
     KnotCount {
         /// Knots given.
@@ -174,7 +174,7 @@ impl BSpline {
     /// Index `k` of the non-empty knot interval with `knots[k] <= t < knots[k + 1]`; the last one at `t = 1`.
     fn span_of(&self, t: f64) -> usize {
         let k = self.knots.partition_point(|&k| k <= t).min(self.control.len());
-        // Only at t = 1 may the interval in hand be empty.
+        // Only at t = 1 may interval k - 1 be empty.
         (DEGREE..k).rev().find(|&i| self.knots[i] < self.knots[i + 1]).unwrap_or(DEGREE)
     }
 

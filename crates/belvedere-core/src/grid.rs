@@ -14,7 +14,7 @@ pub enum GridError {
         /// Rows.
         rows: usize,
     },
-    /// Number of values.
+    /// The number of values is not `cols * rows`.
     #[error("displacement grid of {cols} x {rows} nodes needs as many values, got {given}")]
     Length {
         /// Columns.
@@ -24,7 +24,7 @@ pub enum GridError {
         /// Values given.
         given: usize,
     },
-    /// Position or spacing.
+    /// The position is not finite, or a spacing is not finite and > 0.
     #[error(
         "displacement grid has its north-west node at ({x}, {y}) and spacing {dx} x {dy}; finite values and spacings greater than 0 are needed"
     )]

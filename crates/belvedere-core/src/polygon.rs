@@ -2,7 +2,7 @@
 
 use crate::DVec2;
 
-/// Where a ring crosses a line of constant y.
+/// x coordinates at which a ring crosses the line of constant `y`.
 pub fn crossings(ring: &[DVec2], y: f64) -> impl Iterator<Item = f64> + '_ {
     let sides = (0..ring.len()).map(move |i| (ring[i], ring[(i + 1) % ring.len()]));
     sides.filter(move |(a, b)| (a.y > y) != (b.y > y)).map(move |(a, b)| a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x))
@@ -26,7 +26,7 @@ pub fn doubled_area(ring: &[DVec2]) -> f64 {
     (0..ring.len()).map(|k| (ring[k] - origin).perp_dot(ring[(k + 1) % ring.len()] - origin)).sum()
 }
 
-/// From `p` to the nearest point of the segment `a b`.
+/// Vector from `p` to the nearest point of the segment `a b`.
 #[inline]
 pub fn to_segment(p: DVec2, a: DVec2, b: DVec2) -> DVec2 {
     let d = b - a;

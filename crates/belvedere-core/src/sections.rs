@@ -28,7 +28,7 @@ pub struct StylingSections {
     beta: f64,
     /// The distinct ids, in order of first appearance: all of `start` before those of `target`.
     representations: Vec<String>,
-    /// Numbers of the representations of each section, before and after the transition.
+    /// Per section the indices in `representations` of its start and its target.
     numbers: Vec<[usize; 2]>,
 }
 
@@ -113,7 +113,7 @@ impl StylingSections {
         ends[..count].iter().position(|end| threshold < *end).unwrap_or(last)
     }
 
-    /// Where the interval of each representation ends at `t`, rising to 1, see [`Self::shown`]; entries past the last one mean nothing.
+    /// End of each representation's interval at `t`, rising to 1, see [`Self::shown`]; entries past the last one have no meaning.
     pub fn interval_ends(&self, t: f64) -> [f64; MOST_REPRESENTATIONS] {
         let mut shares = [0.0; MOST_REPRESENTATIONS];
         let mut step = 1.0;
@@ -131,7 +131,7 @@ impl StylingSections {
         shares
     }
 
-    /// Where weights begin or cease to change, or may change their slope: the ends of the transitions and where they cross each other.
+    /// Values of `t`, ascending, at which the slope of a weight may change: the ends of the transitions, and where their ramps cross.
     pub fn knees(&self) -> Vec<f64> {
         let ramps = self.tags.iter().map(|tag| [tag.u - tag.delta, tag.u + tag.delta]);
         let mut knees: Vec<f64> = ramps.clone().flatten().collect();

@@ -1,9 +1,9 @@
-//! Pinholes by what is stated of them; the rest is usual.
+//! Builder of pinholes: parameters that are not set have defaults.
 
 use super::{Pinhole, PinholeError, Projection};
 use glam::DVec3;
 
-/// A pinhole in the making, see [`Pinhole::looking`].
+/// Builder of a pinhole, see [`Pinhole::looking`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PinholeBuilder {
     eye: DVec3,
@@ -16,8 +16,8 @@ pub struct PinholeBuilder {
 }
 
 impl Pinhole {
-    /// A camera at `eye` that looks at `target` (scene coordinates): upright, 45 degrees of vertical field of view, 1280 x 720 pixels, from a
-    /// thousandth of the distance on. Everything else is stated on the builder.
+    /// Builder of a camera at `eye` that looks at `target` (scene coordinates). Defaults: up is +Z, vertical field of view 45 degrees,
+    /// 1280 x 720 pixels, near depth a thousandth of the distance, no far depth.
     ///
     /// ```
     /// use belvedere_core::{DVec3, Pinhole};
@@ -63,19 +63,19 @@ impl PinholeBuilder {
         Self { image, ..self }
     }
 
-    /// Depth from which things are seen, scene units.
+    /// Nearest drawn depth, scene units.
     #[must_use]
     pub fn near(self, near: f64) -> Self {
         Self { near, ..self }
     }
 
-    /// Depth up to which things are seen, scene units.
+    /// Farthest drawn depth, scene units.
     #[must_use]
     pub fn far(self, far: f64) -> Self {
         Self { far: Some(far), ..self }
     }
 
-    /// The pinhole.
+    /// Builds the pinhole.
     ///
     /// # Errors
     /// Those of [`Pinhole::look_at`].

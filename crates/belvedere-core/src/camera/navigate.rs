@@ -1,18 +1,18 @@
-//! Moving a camera by hand: about a point, over a plane, towards a point.
+//! Navigation of a camera: orbit, look around, pan, zoom and frame.
 
 use super::{Pinhole, PinholeError, Projection};
 use crate::Aabb;
 use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::FRAC_PI_2;
 
-/// Nearest to straight up or down that a hand may tilt a view, radians.
+/// Least angle between the direction of view and the vertical, radians.
 const LEAST_TILT: f64 = 1e-3;
 
-/// Room around what is framed, as a factor of its distance or size.
+/// Margin around a framed box, as a factor of the eye's distance or of the picture's height.
 const ROOM: f64 = 1.06;
 
-/// A camera and the point that it looks at, in the hand of a user. Moves never roll the camera; an orthographic one is zoomed by the
-/// height of its picture.
+/// A camera and the point that it looks at. No operation rolls the camera; zooming an orthographic camera changes the height of its
+/// picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Navigation {
     /// The camera.
@@ -22,17 +22,17 @@ pub struct Navigation {
 }
 
 impl Navigation {
-    /// About the target by `yaw` (counter-clockwise seen from above) and up over it by `pitch`, radians; the eye stays between
+    /// Turns the eye about the target by `yaw` (counter-clockwise seen from above) and up over it by `pitch`, radians; the eye stays between
     /// straight above and straight below.
     ///
     /// # Errors
-    /// [`PinholeError`] only for a camera that was none before.
+    /// [`PinholeError`] only if the camera was invalid before.
     pub fn orbited(&self, yaw: f64, pitch: f64) -> Result<Self, PinholeError> {
         let away = self.pinhole.eye - self.target;
         self.placed(self.target + turned(away, yaw, pitch), self.target)
     }
 
-    /// The eye stays; it looks to the left by `yaw` and up by `pitch`, radians.
+    /// Turns the camera about its eye, to the left by `yaw` and up by `pitch`, radians.
     ///
     /// # Errors
     /// As [`Self::orbited`].
@@ -41,7 +41,7 @@ impl Navigation {
         self.placed(self.pinhole.eye, self.pinhole.eye + turned(ahead, yaw, pitch))
     }
 
-    /// Eye and target move together.
+    /// Moves eye and target by the same vector, scene units.
     ///
     /// # Errors
     /// As [`Self::orbited`].
@@ -49,21 +49,21 @@ impl Navigation {
         self.placed(self.pinhole.eye + by, self.target + by)
     }
 
-    /// The level plane through `held` is dragged so that what was under pixel `from` comes under pixel `to`, as a map is; near the
-    /// horizon the drag is as long as at a distance of ten times that of `held`.
+    /// Moves the camera so that the point of the level plane through `held` under pixel `from` comes under pixel `to`, as on a map. If
+    /// a pixel's ray meets the plane farther than ten times the distance of `held`, or not at all, the camera turns about its eye instead.
     ///
     /// # Errors
     /// As [`Self::orbited`].
     pub fn dragged(&self, held: DVec3, from: DVec2, to: DVec2) -> Result<Self, PinholeError> {
         let (Some(a), Some(b)) = (self.on_level(held, from), self.on_level(held, to)) else {
-            // Above the horizon a drag turns the head.
+            // Near and above the horizon a drag turns the camera.
             let angle = (to - from) / self.pinhole.scale_px().max(1e-9);
             return self.looked(angle.x, angle.y);
         };
         self.moved(a - b)
     }
 
-    /// Nearer to `about` by `factor` > 1, farther by less.
+    /// Divides the distance from the eye to `about` (the height of an orthographic picture) by `factor`, clamped to 0.05..=20.
     ///
     /// # Errors
     /// As [`Self::orbited`].
@@ -77,12 +77,12 @@ impl Navigation {
             return Ok(next);
         }
         let eye = self.pinhole.eye.lerp(about, share);
-        // The point on the axis comes as near as the zoomed one.
+        // The target comes nearer by the same factor.
         let ahead = (self.target - self.pinhole.eye).length() * (1.0 - share);
         self.placed(eye, eye + self.pinhole.forward * ahead.max(10.0 * self.pinhole.near))
     }
 
-    /// Looking the same way at the middle of a box, from where all of it is in the picture.
+    /// Moves the camera, without turning it, so that it looks at the middle of a box and shows all of it.
     ///
     /// # Errors
     /// [`PinholeError`] for a box that is empty or not finite.
@@ -110,7 +110,7 @@ impl Navigation {
         Ok(Self { pinhole, target })
     }
 
-    /// Where the ray of a pixel meets the level plane through a point, at most ten times as far away as that.
+    /// Point where the ray of a pixel meets the level plane through `held`, ahead and within ten times the distance of `held`.
     fn on_level(&self, held: DVec3, pixel: DVec2) -> Option<DVec3> {
         let (start, direction) = self.pinhole.line(pixel);
         let direction = direction.normalize();
@@ -120,7 +120,7 @@ impl Navigation {
     }
 }
 
-/// A direction turned about the vertical, and towards it.
+/// `direction` turned about the vertical by `yaw` and towards it by `pitch`, radians.
 fn turned(direction: DVec3, yaw: f64, pitch: f64) -> DVec3 {
     let level = direction.truncate().length();
     let height = direction.z.atan2(level);

@@ -42,7 +42,7 @@ pub struct Pinhole {
     pub far: Option<f64>,
 }
 
-/// A camera that cannot take a picture.
+/// Camera parameters that are not valid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PinholeError {
@@ -60,7 +60,7 @@ pub enum PinholeError {
         /// Distance in scene units.
         distance: f64,
     },
-    /// Looking along `up`.
+    /// The camera looks along `up`.
     #[error(
         "camera looks along its up direction (|forward x up| = {sine:e}, at least 1e-6 needed); tilt the view or give another up"
     )]
@@ -80,7 +80,7 @@ pub enum PinholeError {
         /// Offending value, scene units.
         height: f64,
     },
-    /// Image of no or too many pixels.
+    /// A side of the image is outside 1..=65535 pixels.
     #[error("camera image is {width} x {height} pixels, each side must be in 1..=65535")]
     ImageSize {
         /// Width in pixels.
@@ -88,7 +88,7 @@ pub enum PinholeError {
         /// Height in pixels.
         height: u32,
     },
-    /// Bad clipping range.
+    /// `near` and `far` do not satisfy 0 < near < far.
     #[error("camera near is {near} and far is {far}; 0 < near < far is needed")]
     Range {
         /// Near depth, scene units.
@@ -140,7 +140,7 @@ impl Pinhole {
             return Err(PinholeError::Range { near, far: far_or_inf });
         }
         let distance = (look_at - eye).length();
-        // Below this the direction drowns in the rounding of the coordinates themselves.
+        // At smaller distances the direction is lost in the rounding of the coordinates.
         let resolution = 4.0 * f64::EPSILON * eye.abs().max(look_at.abs()).max_element();
         if distance <= resolution {
             return Err(PinholeError::EyeIsTarget { distance });

@@ -8,7 +8,7 @@ use glam::DVec2;
 const TOLERANCE: f64 = 1e-14;
 /// Tangent jumps above this are corners, radians. One-sided tangents at zero speed are good to about 1e-4.
 const CORNER: f64 = 1e-3;
-/// Keeps hostile curves from halving without end; ordinary ones need 1 to 100.
+/// Most cells of a curve, which bounds the subdivision; typical curves need 1 to 100.
 const MAX_CELLS: usize = 4096;
 const LOBATTO: usize = 8;
 
@@ -24,7 +24,7 @@ const GAUSS: [(f64, f64); 8] = [
     (0.989_400_934_991_649_9, 0.027_152_459_411_754_096),
 ];
 
-/// A curve without extent, or one too large for its length to be a number.
+/// The curve's length is below 1e-9 curve units or not finite.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
     "the deformation curve is {length:e} curve units long, a finite length of at least 1e-9 is needed; move its control points"
@@ -87,7 +87,7 @@ fn split_points(span: &CubicSpan, scale: f64) -> Vec<f64> {
     at
 }
 
-/// Sign changes of `f` in (0, 1), unless it is nowhere above `noise`.
+/// Appends the sign changes of `f` in (0, 1) to `out`, by bisection; none if `|f|` never exceeds `noise`.
 fn roots(f: impl Fn(f64) -> f64, noise: f64, out: &mut Vec<f64>) {
     const SAMPLES: usize = 48;
     let values: Vec<f64> = (0..=SAMPLES).map(|i| f(i as f64 / SAMPLES as f64)).collect();
@@ -119,7 +119,7 @@ struct Builder {
 }
 
 impl Builder {
-    /// Cells over the parameters `x0..=x1` of `span`, halved until length and inverse are exact.
+    /// Cells over the parameters `x0..=x1` of `span`, halved until length and inverse are within the tolerance.
     fn cover(&mut self, span: &CubicSpan, index: usize, x0: f64, x1: f64, depth: u32) {
         let mid = 0.5 * (x0 + x1);
         let whole = gauss_length(span, x0, x1);
@@ -209,7 +209,7 @@ fn fit_inverse(span: &CubicSpan, x0: f64, x1: f64, length: f64) -> [f64; LOBATTO
     poly
 }
 
-/// Largest error in arc length of a fitted inverse, seen half way between its nodes.
+/// Largest error in arc length of a fitted inverse, measured halfway between its nodes.
 fn inverse_error(span: &CubicSpan, x0: f64, x1: f64, length: f64, poly: &[f64; LOBATTO]) -> f64 {
     (0..LOBATTO - 1)
         .map(|k| {
@@ -220,7 +220,7 @@ fn inverse_error(span: &CubicSpan, x0: f64, x1: f64, length: f64, poly: &[f64; L
         .fold(0.0, f64::max)
 }
 
-/// Prefix sums of turning and variation, and the ends.
+/// Fills in the prefix sums of turning and curvature variation, the corners and the far end.
 fn finish(spans: Vec<CubicSpan>, builder: Builder) -> DeformationCurve {
     let Builder { mut cells, end: length, scale, .. } = builder;
     let (mut turning, mut variation) = (0.0, 0.0);

@@ -132,13 +132,13 @@ impl DeformationCurve {
         [if down { f64::NEG_INFINITY } else { range[0] }, if up { f64::INFINITY } else { range[1] }]
     }
 
-    /// Arc lengths at which the tangent jumps (control points of threefold or more coincidence, or such knots).
+    /// Arc lengths at which the tangent jumps (at three or more coincident control points or knots).
     pub fn corners(&self) -> &[f64] {
         &self.corners
     }
 
     /// Arc length and signed distance of the closest foot of the perpendicular from `q`; extensions included.
-    /// `None` where there is none before the centre of curvature, e.g. opposite a corner.
+    /// `None` if no foot lies before the centre of curvature, e.g. opposite a corner.
     pub fn foot(&self, q: DVec2) -> Option<(f64, f64)> {
         let mut best: Option<(f64, f64)> = None;
         let mut offer = |l: f64, d: f64| {
@@ -261,7 +261,7 @@ fn angle(a: DVec2, b: DVec2) -> f64 {
     a.perp_dot(b).abs().atan2(a.dot(b))
 }
 
-/// Unit tangent at `x`; where the speed vanishes that of the side of `inward`.
+/// Unit tangent at `x`; where the speed vanishes, the one-sided tangent on the side of `inward`.
 fn tangent_in(span: &CubicSpan, x: f64, inward: f64, scale: f64) -> DVec2 {
     let d = span.d1(x);
     let speed2 = d.length_squared();
@@ -271,7 +271,7 @@ fn tangent_in(span: &CubicSpan, x: f64, inward: f64, scale: f64) -> DVec2 {
     span.d1(moving(span, x, inward, 1e-9 * scale)).normalize_or(DVec2::X)
 }
 
-/// Curvature at `x`; where the speed vanishes that of the side of `inward`. At most 1e8 / scale.
+/// Curvature at `x`; where the speed vanishes, the one-sided curvature on the side of `inward`. At most 1e8 / scale.
 fn curvature_in(span: &CubicSpan, x: f64, inward: f64, scale: f64) -> f64 {
     let slow = SLOW * scale;
     let x = if span.d1(x).length_squared() > slow * slow { x } else { moving(span, x, inward, slow) };
@@ -290,12 +290,12 @@ fn frame_in(span: &CubicSpan, x: f64, inward: f64, scale: f64) -> (DVec2, f64) {
     }
 }
 
-/// Speeds below this share of the scale are too slow to tell the curvature.
+/// At speeds below this share of the scale the curvature is inaccurate.
 const SLOW: f64 = 1e-7;
 
 fn curvature(d1: DVec2, speed: f64, d2: DVec2, scale: f64) -> f64 {
     let cross = d1.perp_dot(d2);
-    // Below this it is the rounding of the difference of two products.
+    // A smaller cross product is rounding error.
     if cross * cross <= 1e-30 * scale * scale * d2.length_squared() {
         return 0.0;
     }

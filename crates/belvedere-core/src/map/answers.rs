@@ -1,4 +1,4 @@
-//! What each stage of the papers, and of ours, answers to what drawing asks ([`StageMap`]).
+//! Implementations of [`StageMap`] for the built-in stages.
 
 use super::curved_rays::CurvedRays;
 use super::earth::EarthCurvature;
@@ -82,7 +82,7 @@ impl StageMap for Strip {
     fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
         self.edge_bound(p0, p1)
     }
-    // Both the ends and their bound need the same feet.
+    // One search for the feet serves both ends and their bound.
     fn edge(&self, p0: DVec3, p1: DVec3) -> Option<(DVec3, DVec3, f64)> {
         self.edge(p0, p1)
     }

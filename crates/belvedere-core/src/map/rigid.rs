@@ -1,4 +1,4 @@
-//! Motions of rigid bodies: how a bend carries what must keep its shape.
+//! Rigid motions, by which bends carry bodies that must keep their shape.
 
 use super::spline::SplineBend;
 use super::{Miss, SpaceMap, finite};
@@ -26,7 +26,7 @@ impl RigidMotion {
         Self { from, to, rotation }
     }
 
-    /// Where a point goes, scene coordinates.
+    /// Image of a point, scene coordinates.
     #[inline]
     pub fn carry(&self, p: DVec3) -> DVec3 {
         self.to + self.rotation * (p - self.from)
@@ -38,7 +38,7 @@ impl RigidMotion {
         self.from + self.rotation.transpose() * (p_carried - self.to)
     }
 
-    /// How directions are turned.
+    /// The rotation.
     pub fn rotation(&self) -> DMat3 {
         self.rotation
     }

@@ -1,4 +1,4 @@
-//! The stages of a view: what drawing, picking and measuring ask of one, the maps of scene files, and maps of one's own.
+//! The stages of a view: their trait for drawing, picking and measuring, the maps of scene files, and users' own maps.
 
 use super::{Displaced, Miss, SpaceMap, curved_rays, earth, relief, rigid, spline, split_rays, strip, terrain};
 use crate::Aabb;
@@ -7,8 +7,8 @@ use std::fmt::Debug;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// A map as a stage of a view. All that is answered by default is right for any map that is smooth at the scale of what is drawn, and slower
-/// or less thrifty than what a map knows of itself.
+/// A map as a stage of a view. The default methods are right for any map that is smooth at the scale of the drawn edges, but slower or less
+/// tight than methods made for the map.
 pub trait StageMap: SpaceMap + Debug + Send + Sync {
     /// Name of the stage, as scene files write it where they have it.
     fn name(&self) -> &'static str {
@@ -31,9 +31,9 @@ pub trait StageMap: SpaceMap + Debug + Send + Sync {
         Ok((self.invert(p_displaced)?, 0))
     }
 
-    /// This stage at a share of its strength, 0 < share <= 1; towards 0 it becomes the identity. What belongs to the world stays whole.
+    /// This stage at a share of its strength, 0 < share <= 1; towards 0 it becomes the identity. Stages of the world keep full strength.
     ///
-    /// `None` where there is no such stage, as with turns that only hold in full. By default `None`.
+    /// `None` if the stage is not valid at that share, as some turns. By default `None`.
     fn eased(&self, _share: f64) -> Option<Stage> {
         None
     }
@@ -41,7 +41,7 @@ pub trait StageMap: SpaceMap + Debug + Send + Sync {
     /// Bound on the distance, in scene units, between the image of the straight edge `p0 p1` and the straight edge between the images of its
     /// ends (the error a renderer makes by not subdividing it). Infinite where no bound is known.
     ///
-    /// By default an estimate: half as much again as the largest distance at the quarters, which is a bound for parabolas and cubics.
+    /// By default an estimate: 1.5 times the largest distance at the quarters of the edge, which is a bound for parabolas and cubics.
     fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
         let (Ok(a), Ok(b)) = (self.apply(p0), self.apply(p1)) else { return f64::INFINITY };
         let off = |t: f64| self.apply(p0.lerp(p1, t)).map_or(f64::INFINITY, |p| p.distance(a.lerp(b, t)));
@@ -64,7 +64,7 @@ pub trait StageMap: SpaceMap + Debug + Send + Sync {
         false
     }
 
-    /// Whether points without image may lie between points that have one, so that edges are looked at between their ends. By default
+    /// Whether points without image may lie between points that have one, so that renderers test edges between their ends. By default
     /// `true`.
     fn has_border(&self) -> bool {
         true
@@ -75,7 +75,7 @@ pub trait StageMap: SpaceMap + Debug + Send + Sync {
         false
     }
 
-    /// Whether the stage moves the ground, whose light follows. By default `false`: what bends the picture leaves the light as on the map.
+    /// Whether the stage moves the ground and its light with it. By default `false`: a bend leaves the light as on the undisplaced ground.
     fn moves_ground(&self) -> bool {
         false
     }
@@ -99,8 +99,8 @@ pub trait StageMap: SpaceMap + Debug + Send + Sync {
     }
 }
 
-/// The rotation nearest to a matrix of positive determinant: Higham's iteration, the mean of a matrix and its inverse transposed, again and
-/// again. `None` where the determinant is not positive.
+/// The rotation nearest to a matrix of positive determinant, by Higham's iteration `q <- (q + q^-T) / 2`. `None` where the determinant is
+/// not positive.
 ///
 /// Source: Higham, Computing the polar decomposition, 1986.
 fn nearest_rotation(m: DMat3) -> Option<DMat3> {
@@ -119,8 +119,8 @@ fn nearest_rotation(m: DMat3) -> Option<DMat3> {
     q.is_finite().then_some(q)
 }
 
-/// One displacement of a view. What drawing asks of it is [`StageMap`], to which it leads by [`Deref`]; the variants are named where scene
-/// files become stages and where a faster form is chosen.
+/// One displacement of a view. It dereferences ([`Deref`]) to [`StageMap`], which renderers use; only the conversion from scene files and
+/// the choice of faster forms name the variants.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Stage {
     /// The ground falls away with the distance as on a sphere (`earth = "curved"`).
@@ -135,7 +135,7 @@ pub enum Stage {
     SplineBend(spline::SplineBend),
     /// A body is carried as a whole, see [`crate::View::of_body`]: in place of all stages up to the spline bend.
     Body(rigid::RigidMotion),
-    /// A map of one's own; there may be several.
+    /// A user's own map; there may be several.
     Own(OwnMap),
     /// Rays bend around occluders (Cui et al. 2010).
     CurvedRays(curved_rays::CurvedRays),
@@ -143,7 +143,7 @@ pub enum Stage {
     SplitRays(split_rays::SplitRays),
 }
 
-/// A map of one's own as a stage; equal to itself and its clones alone.
+/// A user's own map as a stage; equal only to itself and its clones.
 #[derive(Debug, Clone)]
 pub struct OwnMap(Arc<dyn StageMap>);
 
@@ -154,13 +154,13 @@ impl PartialEq for OwnMap {
 }
 
 impl Stage {
-    /// A map of one's own as a stage.
+    /// A user's own map as a stage.
     ///
     /// ```
     /// use belvedere_core::map::StageMap;
     /// use belvedere_core::{DMat3, DVec3, Miss, Pinhole, Projection, SpaceMap, Stage, View};
     ///
-    /// /// Raises everything by as much.
+    /// /// Raises every point by the given height.
     /// #[derive(Debug)]
     /// struct Raised(f64);
     ///
@@ -187,7 +187,7 @@ impl Stage {
         Self::Own(OwnMap(Arc::new(map)))
     }
 
-    /// Place in the fixed order of application: earth, terrain, strip, relief, spline, own maps, curved rays.
+    /// Position in the fixed order of application: earth, terrain, strip, relief, spline, own maps, curved rays.
     pub fn rank(&self) -> u32 {
         match self {
             Self::EarthCurvature(_) => 0,

@@ -1,4 +1,4 @@
-//! Terrain disocclusion as a displacement: the ground gives way vertically.
+//! Terrain disocclusion as a displacement: the ground moves vertically.
 
 use super::{Miss, SpaceMap, finite};
 use crate::Aabb;
@@ -109,7 +109,7 @@ impl Crossings {
         Self { start, step, line, last: 0.0 }
     }
 
-    /// Skips what lies before the lines 0..=last; there are none after them.
+    /// Limits the crossings to the grid lines 0..=last.
     fn limit(&mut self, last: f64) {
         self.last = last;
         self.line = if self.step > 0.0 { self.line.max(0.0) } else { self.line.min(last) };

@@ -3,7 +3,7 @@
 use super::Preset;
 use crate::sections::TagPoint;
 
-/// Sections of both presets that belong together; `None` = without partner.
+/// Indices of matched sections of both presets; `None` = without partner.
 type Pair = (Option<usize>, Option<usize>);
 
 /// One preset's sections after matching.
@@ -12,9 +12,9 @@ pub(super) struct Aligned {
     pub(super) sections: Vec<String>,
 }
 
-/// Both presets' sections, split so that there are equally many and like stands beside like.
+/// Both presets' sections, split so that both lists have the same length and matched sections the same index.
 ///
-/// Lists of equal length are matched by index, as in Pasewaldt et al. 2011, section 5: like ids in other places blend where they stand.
+/// Lists of equal length are matched by index, as in Pasewaldt et al. 2011, section 5: equal ids at different indices are not matched.
 /// Of lists of different lengths the cheapest edit is taken: the same id 0, another id 1, a section without partner 0.5 + its length. Where a section has no
 /// partner the other preset's neighbouring section is split in two of the same id, with a border of no width, which changes no weight.
 pub(super) fn align(p: &Preset, q: &Preset) -> [Aligned; 2] {
@@ -33,7 +33,7 @@ pub(super) fn align(p: &Preset, q: &Preset) -> [Aligned; 2] {
     [split(p, &at_p, q, &at_q), split(q, &at_q, p, &at_p)]
 }
 
-/// Partners of lists of equal length.
+/// Pairs of equal index.
 fn by_index(count: usize) -> Vec<Pair> {
     (0..count).map(|i| (Some(i), Some(i))).collect()
 }
@@ -49,7 +49,7 @@ fn border(preset: &Preset, i: usize) -> TagPoint {
     preset.tags.get(i).copied().unwrap_or(TagPoint { u: 1.0, delta: 0.0 })
 }
 
-/// Partners by edit distance; every entry advances at least one side.
+/// Pairs by edit distance; every entry advances at least one side.
 fn pair(p: &Preset, q: &Preset) -> Vec<Pair> {
     let (m, n) = (p.sections.len(), q.sections.len());
     let alone = |preset: &Preset, i: usize| {
@@ -89,7 +89,7 @@ fn pair(p: &Preset, q: &Preset) -> Vec<Pair> {
     pairs
 }
 
-/// Sections `at` of `preset`; a section that occurs twice running is split where `other` has its border.
+/// Sections `at` of `preset`; a section that occurs twice in a row is split where `other` has its border.
 fn split(preset: &Preset, at: &[usize], other: &Preset, other_at: &[usize]) -> Aligned {
     let sections = at.iter().map(|&i| preset.sections[i].clone()).collect();
     let tags = (1..at.len())

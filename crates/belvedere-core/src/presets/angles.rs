@@ -1,10 +1,10 @@
-//! Curves told by the angles under which the ground is seen along them.
+//! Curves given by their slope angles at arc lengths.
 
 use crate::bspline::{BSpline, BSplineError};
 use crate::deformation::DeformationCurve;
 use glam::DVec2;
 
-/// Largest turn of one piece, radians: arcs are met to 1e-7 of their length.
+/// Largest turn of one piece, radians, which keeps the error of an arc below 1e-7 of its length.
 const MOST_TURN: f64 = 0.15;
 /// Most pieces of a curve.
 const MOST_PIECES: f64 = 200.0;
@@ -53,7 +53,7 @@ fn slope_at(angles: &[[f64; 2]], l: f64) -> f64 {
     (a + share * (b - a)).to_radians()
 }
 
-/// Angles between those of two curves: at every share of the length the angle is between theirs.
+/// Angles of two curves, interpolated at equal shares of their lengths: `sigma` 0 = `a`, 1 = `b`.
 pub(super) fn between(a: &[[f64; 2]], b: &[[f64; 2]], sigma: f64) -> Vec<[f64; 2]> {
     let length = |angles: &[[f64; 2]]| angles.last().map_or(1.0, |knot| knot[0]);
     let (of_a, of_b) = (length(a), length(b));
@@ -68,7 +68,7 @@ pub(super) fn between(a: &[[f64; 2]], b: &[[f64; 2]], sigma: f64) -> Vec<[f64; 2
     shares.into_iter().map(knot).collect()
 }
 
-/// The angles of a curve at `count` places, evenly along it.
+/// The angles of a curve at `count` evenly spaced arc lengths, degrees.
 pub(super) fn of_curve(spline: &BSpline, count: usize) -> Option<Vec<[f64; 2]>> {
     let curve = DeformationCurve::new(spline).ok()?;
     let last = count.max(2) - 1;
@@ -77,7 +77,7 @@ pub(super) fn of_curve(spline: &BSpline, count: usize) -> Option<Vec<[f64; 2]>> 
         let l = curve.length() * k as f64 / last as f64;
         let tangent = curve.at(l).1;
         let angle = tangent.to_angle().to_degrees();
-        // A curve that turns on and on does so beyond half a turn, too.
+        // Unwrapped, so that the angle may exceed half a turn.
         let angle = before.map_or(angle, |before| angle - 360.0 * ((angle - before) / 360.0).round());
         before = Some(angle);
         [l, angle]

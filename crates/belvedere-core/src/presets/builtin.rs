@@ -123,16 +123,16 @@ fn horizon() -> Preset {
     Preset { name: "horizon".into(), phi: 0.0, control, ..low }
 }
 
-/// A plane seen under 80 degrees whose control points lie where the way to it from the progressive curve is even.
+/// A plane seen under 80 degrees; its control points are placed so that the interpolation from the progressive curve is even.
 fn even_map() -> Preset {
     let along = DVec2::from_angle(80f64.to_radians());
     let control = [-0.34, 0.31, 0.43, 0.85].map(|l| (DVec2::X * 0.7 + l * along).to_array());
     preset("map", 80.0, [0.2, 1.4], &control)
 }
 
-/// Three presets and their way down to the horizon, with levels of abstraction `loa0` (detailed) to `loa2`.
+/// Three presets and one for level views, with levels of abstraction `loa0` (detailed) to `loa2`.
 ///
-/// They hold at their angles alone (tau 0): a picture that stands still over a range of angles turns the faster beside it. Angles and
+/// They hold at their angles alone (tau 0): a picture that does not change over a range of angles turns faster beside it. Angles and
 /// control points are such that the picture changes about as fast at every angle; a test over all angles keeps it so.
 fn demo() -> PresetDocument {
     let styled = |name: &str, preset: Preset, sections: [&str; 3], borders: [[f64; 2]; 2]| Preset {

@@ -1,8 +1,8 @@
-//! What can be wrong with a preset document.
+//! Errors of a preset document.
 
 use crate::bspline::BSplineError;
 
-/// A number without hundreds of digits.
+/// A number as text, in exponential form from 1e7 on.
 fn short(value: f64) -> String {
     if value.abs() < 1e7 { value.to_string() } else { format!("{value:e}") }
 }
@@ -57,10 +57,10 @@ pub enum PresetError {
     Curve {
         /// Preset.
         preset: String,
-        /// What is wrong.
+        /// Error of the curve.
         source: BSplineError,
     },
-    /// Angles and control points.
+    /// The preset has angles as well as control points or knots.
     #[error(
         "preset {preset}: it has angles and control points or knots; a curve is told by one of them, remove the other"
     )]
@@ -73,9 +73,9 @@ pub enum PresetError {
     AngleCount {
         /// Preset.
         preset: String,
-        /// How many.
+        /// Number of angles.
         count: usize,
-        /// Most.
+        /// Largest allowed number.
         limit: usize,
     },
     /// Arc lengths of angles that do not rise from 0.

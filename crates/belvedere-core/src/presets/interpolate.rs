@@ -1,4 +1,4 @@
-//! Which presets hold at a viewing angle, and what lies between them.
+//! Selection of the presets around a viewing angle, and interpolation between them.
 
 use super::align::align;
 use super::{Ease, Preset, PresetDocument, angles};

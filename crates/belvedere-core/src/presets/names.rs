@@ -11,14 +11,14 @@ pub const BUILTIN_NAMES: [&str; 8] = {
     names
 };
 
-/// A built-in document and what it is called.
+/// Names and effect of a built-in document.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct Builtin {
     /// Name.
     pub name: &'static str,
     /// Other names, by effect: authors do not agree on which of the two is progressive.
     pub aliases: &'static [&'static str],
-    /// What is seen, near to far.
+    /// Description of the picture, from near to far.
     pub effect: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! How far edges that are drawn straight are off, for renderers that ask for every vertex once.
+//! Errors of edges that are drawn straight, for renderers that evaluate every vertex once.
 
 use super::View;
 use crate::map::curved_rays::{EdgeEnd, Turn};
@@ -15,7 +15,7 @@ pub struct Edges<'a> {
     shift: (DVec2, f64),
 }
 
-/// What is known of an end of an edge.
+/// End of an edge with its phi, image and depth.
 #[derive(Debug, Clone, Copy)]
 pub struct EdgePoint {
     end: EdgeEnd,
@@ -25,7 +25,7 @@ pub struct EdgePoint {
 }
 
 impl View {
-    /// For edges drawn by a record; `None` if there is no such turn, or other stages bend edges too.
+    /// Error bounds for edges drawn by a record; `None` if there is no such turn, or if other stages bend edges too.
     pub fn edges(&self, record: usize) -> Option<Edges<'_>> {
         let [crate::Stage::CurvedRays(rays)] = self.stages() else { return None };
         let (turn, pinhole) = (rays.turns().get(record)?, self.pinhole());
@@ -36,7 +36,7 @@ impl View {
 }
 
 impl Edges<'_> {
-    /// `None` for a point without image.
+    /// End of an edge at `p`; `None` if it has no image.
     pub fn point(&self, p: DVec3) -> Option<EdgePoint> {
         let end = self.turn.edge_end(p)?;
         let v = self.turn.displaced_end(&end);
@@ -66,7 +66,7 @@ impl Edges<'_> {
         }
     }
 
-    /// Pixels by which images in the hull of some, pixels from the centre, and not nearer than `depth` move with `delta` of the shift.
+    /// Bound in pixels on the move by `delta` times the shift, of images in the hull of `offs` (pixels from the centre), `depth` or farther.
     fn moved_px(&self, delta: f64, offs: &[DVec2], depth: f64) -> f64 {
         let (across, along) = (delta * self.shift.0, delta * self.shift.1);
         if self.pinhole.is_orthographic() {

@@ -113,11 +113,11 @@ impl View {
         Self { pinhole: self.pinhole.clone(), stages }
     }
 
-    /// The same camera with its bends at a share of their strength: pictures on the way from the straight one to the bent one.
+    /// The same camera with its bends at a share of their strength: pictures between the straight and the bent one.
     ///
     /// * `share`: at or below 0 straight, at or above 1 as it is.
     ///
-    /// `None` where a stage has nothing between.
+    /// `None` if a stage is not valid at that share.
     pub fn eased(&self, share: f64) -> Option<Self> {
         if !(share > 0.0) {
             return Some(self.straightened());
@@ -221,7 +221,7 @@ impl View {
         })
     }
 
-    /// How often a renderer draws what spans the whole chain: once per turn of the curved rays, once without them.
+    /// How often a renderer draws an object that spans the whole chain: once per turn of the curved rays, once without them.
     /// Rays that part are drawn branch by branch ([`View::along`]); the records here are not theirs.
     pub fn records(&self) -> usize {
         self.curved_rays().map_or(1, CurvedRays::records)
@@ -241,7 +241,7 @@ impl View {
     }
 
     /// Signed distances to the planes that cut a record from its neighbours ([`CurvedRays::record_margins`]): a renderer
-    /// that draws once per record keeps what is positive for both. Negative infinity where earlier stages have no image.
+    /// that draws once per record keeps points where both are positive. Negative infinity where earlier stages have no image.
     pub fn record_margins(&self, record: usize, p_world: DVec3) -> [f64; 2] {
         match (self.displace_earlier(p_world), self.curved_rays()) {
             (Ok(d), Some(rays)) => rays.record_margins(record, d.point),
@@ -261,7 +261,7 @@ impl View {
     }
 
     /// Signed distances to the planes at the ends of a segment ([`CurvedRays::segment_planes`]), infinite where it has no end: rays reach
-    /// only places where both are not negative. Negative infinity where earlier stages have no image.
+    /// only points where both are not negative. Negative infinity where earlier stages have no image.
     pub fn segment_margins(&self, segment: u32, p_world: DVec3) -> [f64; 2] {
         let (Ok(d), Some(rays)) = (self.displace_earlier(p_world), self.curved_rays()) else {
             return [f64::NEG_INFINITY; 2];
@@ -307,12 +307,12 @@ impl View {
         self.edge_error(p0, p1, None)
     }
 
-    /// The same when curved rays displace by the record of one turn alone, see [`View::displace_in`].
+    /// The same bound when curved rays displace by the record of one turn alone, see [`View::displace_in`].
     pub fn edge_error_px_in(&self, record: usize, p0: DVec3, p1: DVec3) -> f64 {
         self.edge_error(p0, p1, Some(record))
     }
 
-    /// The same where records displace as one map ([`CurvedRays::is_continuous`]), each end by the record it belongs to.
+    /// The same bound where records displace as one map ([`CurvedRays::is_continuous`]), each end by the record it belongs to.
     pub fn edge_error_px_between(&self, records: RangeInclusive<usize>, p0: DVec3, p1: DVec3) -> f64 {
         let (Some((a, b, mut error)), Some(rays)) = (self.earlier_error(p0, p1), self.curved_rays()) else {
             return f64::INFINITY;
@@ -330,7 +330,7 @@ impl View {
         shifts.map_or(f64::INFINITY, |shifts| self.image_error([a1.point, b1.point], error, &shifts))
     }
 
-    /// The same by one segment alone, see [`View::displace_along`].
+    /// The same bound for one segment alone, see [`View::displace_along`].
     pub fn edge_error_px_along(&self, segment: u32, p0: DVec3, p1: DVec3) -> f64 {
         let Some(map) = self.curved_rays().and_then(|rays| rays.straight_map(segment)) else {
             return self.edge_error_px_in(segment as usize / 2, p0, p1);

@@ -80,7 +80,7 @@ impl<'a> RayPath<'a> {
     /// else by quadrature to about 1e-6 of itself.
     ///
     /// # Errors
-    /// [`Miss::BehindEye`] unless `depth` > 0; [`Miss::OutsideDomain`] where the ray has no world point on the way.
+    /// [`Miss::BehindEye`] unless `depth` > 0; [`Miss::OutsideDomain`] where the ray has no world point up to that depth.
     pub fn path_length(&self, depth: f64) -> Result<f64, Miss> {
         self.at(depth)?;
         let bent_before = self.view.stages().iter().any(|s| !s.bends_rays());

@@ -1,11 +1,11 @@
-//! Bodies that keep their shape: what a view does to a building that it carries as a whole.
+//! Rigid bodies in a view: buildings that the stages carry as a whole.
 
 use super::View;
 use crate::{Miss, RigidMotion, Stage};
 use glam::{DMat3, DVec3};
 
 impl View {
-    /// Whether a rigid body is carried otherwise than point by point: whether a stage comes before the curved rays.
+    /// Whether rigid bodies are carried as a whole: whether a stage comes before the curved rays.
     pub fn carries_bodies(&self) -> bool {
         !self.stages().iter().all(|stage| stage.bends_rays())
     }
@@ -27,13 +27,13 @@ impl View {
         if to.is_finite() { Ok(RigidMotion::new(foot, to, rotation)) } else { Err(Miss::OutsideDomain) }
     }
 
-    /// What is left to see of a body that [`View::body_motion`] has carried: the same pinhole behind the curved rays alone.
+    /// View of bodies that [`View::body_motion`] has carried: the same pinhole behind the curved rays alone.
     pub fn after_bodies(&self) -> Self {
         let stages = self.stages().iter().filter(|stage| stage.bends_rays()).cloned().collect();
         Self { pinhole: self.pinhole().clone(), stages }
     }
 
-    /// This view as a body sees it that moves by `motion`: its points have images here where the picture shows them.
+    /// View of a body that moves by `motion`: it projects the body's undisplaced points to their pixels in the picture.
     pub fn of_body(&self, motion: RigidMotion) -> Self {
         let after = self.stages().iter().filter(|stage| stage.bends_rays()).cloned();
         let stages = std::iter::once(Stage::Body(motion)).chain(after).collect();

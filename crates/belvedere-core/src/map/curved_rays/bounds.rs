@@ -1,7 +1,7 @@
-//! Bounds for renderers: how far a straight edge is off, and where a box can go.
+//! Bounds for renderers: the error of straight edges and the displaced hull of a box.
 //!
 //! phi, continued beyond the common line as `max(0, a - b)`, is convex: homogeneous of degree 1, convex in the wedge with the slopes of its
-//! neighbours at t0 and t2, and the largest of two linear functions everywhere else. So along an edge the truth is the straight edge
+//! neighbours at t0 and t2, and the largest of two linear functions everywhere else. So the exact image of an edge is the straight edge
 //! between the displaced ends minus `delta d_j`, with `delta = lerp(phi) - phi >= 0`.
 
 use super::phi::{Hinge, Phi};
@@ -10,11 +10,11 @@ use super::{CurvedRays, Hit, Turn};
 use crate::{Aabb, Miss};
 use glam::DVec3;
 
-/// Extra room for the original model, whose phi is convex only nearly (m varies from ray to ray): there the bounds are
-/// estimates from the ends, the middle and this factor, tried on many cameras, not proven.
+/// Safety factor for the original model, whose phi is only nearly convex (m varies from ray to ray): its bounds are
+/// estimates from the ends, the middle and this factor, tested on many cameras, not proven.
 const BEZIER_ROOM: f64 = 1.25;
 
-/// What the bound of an edge needs of one of its ends.
+/// End of an edge with its forms, cell and phi.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EdgeEnd {
     p: DVec3,
@@ -25,7 +25,7 @@ pub(crate) struct EdgeEnd {
 }
 
 impl Turn {
-    /// `None` for numbers that are not finite.
+    /// End of an edge at `p`; `None` if a value is not finite.
     pub(crate) fn edge_end(&self, p: DVec3) -> Option<EdgeEnd> {
         let cell = self.cell(p).ok()?;
         Some(EdgeEnd { p, a: self.a.at(p), b: self.b.at(p), cell, phi: self.phi(p, cell).ok()? })
@@ -63,7 +63,7 @@ impl Turn {
     /// Bound on [`Turn::edge_delta`] of every edge inside a box; `None` where unknown.
     ///
     /// With the gap g of the convex phi over its tangent at the centre: `D0 <= g(X1) + g(2 X0 - X1)`, for g is convex, not negative, and
-    /// adding a linear function changes no D. Both places lie in the box of three times the size, where g is largest at a corner; so
+    /// adding a linear function changes no D. Both points lie in the box of three times the size, where g is largest at a corner; so
     /// `delta <= (D0 + D1) / 4` is at most that.
     pub(crate) fn box_delta(&self, bounds: &Aabb) -> Option<f64> {
         let corners = bounds.corners();
@@ -115,7 +115,7 @@ impl Turn {
 }
 
 impl CurvedRays {
-    /// See [`crate::map::StageMap::edge_bound`]. Infinite if the edge leaves the domain, or joins cells between which phi alone does not tell the way.
+    /// See [`crate::map::StageMap::edge_bound`]. Infinite if an end has no image, or if no sum of phi holds along the edge.
     pub fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
         let mut bound = 0.0;
         let known = self.edge_shifts(p0, p1, |shift| bound += shift.length());
@@ -132,7 +132,7 @@ impl CurvedRays {
         if hit0.cell != Cell::Wedge && hit0.segment() == hit1.segment() {
             return true;
         }
-        // Beyond a common line a record may go on in another cell than the one that shows the point.
+        // Beyond a common line a record may continue in another cell than the one that shows the point.
         let drawn = |p: DVec3, hit: &Hit| self.turns()[hit.turn].cell(p) == Ok(hit.cell);
         if !(drawn(p0, &hit0) && drawn(p1, &hit1)) {
             return false;
@@ -203,8 +203,8 @@ impl CurvedRays {
         self.turns().get(record)?.hull(&bounds.corners(), bounds.center()).ok()
     }
 
-    /// Whether the record may displace a point of the box: its transition or the straight part after it, and before the
-    /// first turn also that.
+    /// Whether the record may displace a point of the box: a point of its transition or of the straight part after it; the
+    /// first record also a point before its turn.
     fn may_displace(&self, record: usize, corners: &[DVec3; 8]) -> bool {
         let turn = &self.turns()[record];
         if record > 0 && corners.iter().all(|&p| turn.cell(p) == Ok(Cell::Before)) {
@@ -212,7 +212,7 @@ impl CurvedRays {
         }
         let past = |turn: &Turn| corners.iter().all(|&p| matches!(turn.cell(p), Ok(Cell::After)));
         match self.turns().get(record + 1) {
-            // Wholly past this turn and into the next one.
+            // The whole box is past this turn and past t0 of the next one.
             Some(next) => !(past(turn) && corners.iter().all(|&p| next.a.at(p) > 0.0)),
             None => true,
         }

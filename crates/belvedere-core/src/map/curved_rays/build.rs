@@ -1,4 +1,4 @@
-//! From a specification to a chain.
+//! Builds a chain of turns from its specification.
 
 use super::check::{PreviousTurn, TurnContext, UnscaledTurn, corner_direction, crossing, numbers};
 use super::form::{Forms, LinearForm, StraightPart};
@@ -41,7 +41,7 @@ pub(super) fn build(
     Ok(CurvedRays { root: root.clone(), model, spec: spec.to_vec(), turns, separators, scale_px: root.scale_px() })
 }
 
-/// How the rays of a turn bend.
+/// Hinge of a turn by the ray model.
 fn hinge(model: Model, spec: &TurnSpec, forms: &Forms, context: &TurnContext<'_>) -> Result<Hinge, CurvedRaysError> {
     if forms.kink {
         return Ok(Hinge::Broken);
@@ -73,7 +73,7 @@ fn original_range(spec: &TurnSpec, forms: &Forms, context: &TurnContext<'_>) -> 
     }
 }
 
-/// The one sharpness of a turn of the modified model. Computed values are not clamped.
+/// Sharpness m of a turn of the modified model. Computed values are not clamped.
 fn sharpness(spec: &TurnSpec, forms: &Forms, context: &TurnContext<'_>) -> Result<f64, CurvedRaysError> {
     let root = context.root;
     let at_pixel = |pixel: DVec2| {

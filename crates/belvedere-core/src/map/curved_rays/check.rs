@@ -1,4 +1,4 @@
-//! Which turns are valid: one condition after the other, each with its own error.
+//! Validity conditions of a turn, checked in order, each with its own error.
 
 use super::form::{Forms, LinearForm, StraightPart};
 use super::phi::{ViewpointValues, arcs_cross};
@@ -13,7 +13,7 @@ const TOUCHING: f64 = 1e-8;
 /// Largest coordinate of a parameter; products of a few of them stay far from overflow.
 const LARGEST: f64 = 1e15;
 
-/// What a turn is checked against: the camera and the chain before it.
+/// Context of the check of a turn: the camera and the chain before it.
 #[derive(Debug, Clone)]
 pub(super) struct TurnContext<'a> {
     pub(super) root: &'a Pinhole,
@@ -26,7 +26,7 @@ pub(super) struct TurnContext<'a> {
     pub(super) part: StraightPart,
     /// The turn before.
     pub(super) previous: Option<PreviousTurn<'a>>,
-    /// Whether the nearest valid value is looked for where a condition does not hold, which costs a hundred times the check.
+    /// Whether the error of a violated condition names the nearest valid value; that search costs a hundred times the check.
     pub(super) advise: bool,
 }
 
@@ -71,7 +71,7 @@ impl Violation {
     }
 }
 
-/// Numbers that every later formula can take: finite, not astronomically large, directions not zero.
+/// Checks that all numbers are finite and not beyond 1e15, that directions are not zero and that m is in range.
 pub(super) fn numbers(spec: &TurnSpec, turn: usize) -> Result<(), CurvedRaysError> {
     let (pencil_names, u, v) = match spec.pencil {
         Pencil::Line { point, dir } => (["line.point", "line.dir"], point, dir),
@@ -121,7 +121,7 @@ fn normals(spec: &TurnSpec, turn: usize) -> Result<[DVec3; 3], CurvedRaysError> 
     }
 }
 
-/// Unscaled geometry of a turn: everything is finite, nothing is known to be on the right side yet.
+/// Unscaled geometry of a turn: all values are finite; the sides on which the viewpoints lie are not checked yet.
 pub(super) struct UnscaledTurn {
     /// Forms of t0 and t2 that are 1 at the bend point; t1's unit form, positive beyond.
     a: LinearForm,
@@ -149,7 +149,7 @@ impl UnscaledTurn {
         }
         let widths = [t0.at_origin.abs(), t2.at_origin.abs()];
         if widths.iter().all(|w| *w <= KINK * reach) {
-            // No wedge: broken rays. Either normal of t1 will do, the viewpoints tell which side is which.
+            // No wedge: broken rays. The viewpoint after the turn decides the sign of t1's normal.
             let side = -t1.at(spec.viewpoint).signum();
             return Ok(Self { a: t1.scaled(side), b: t1.scaled(-side), t1: t1.scaled(side), kink: true });
         }
@@ -222,7 +222,7 @@ impl UnscaledTurn {
         Forms { a, b, h, values, sigma, kink: false, baseline }
     }
 
-    /// Where the planes lie along the axis of the part before the turn.
+    /// Signed distances of t0, t1 and t2 along the axis of the part before the turn, scene units.
     fn depths(&self, spec: &TurnSpec, context: &TurnContext<'_>) -> [f64; 3] {
         let (eye, axis) = (context.part.viewpoint, axis(context));
         [(&self.a, spec.t0), (&self.t1, spec.t1), (&self.b, spec.t2)].map(|(form, point)| {
@@ -233,7 +233,7 @@ impl UnscaledTurn {
 }
 
 impl Forms {
-    /// A corner ray with `direction` per unit of depth meets t1 ahead, on the picture's side of the common line.
+    /// Checks that the ray of a corner meets t1 ahead, on the picture's side of the common line.
     fn meets_bend(&self, pixel: DVec2, spec: &TurnSpec, context: &TurnContext<'_>) -> Result<(), Violation> {
         let direction = corner_direction(pixel, context.root, &context.part);
         let slope = self.h.along(direction) / (self.h.gradient.length() * direction.length());
@@ -256,7 +256,7 @@ impl Forms {
         Err(Violation::LineInPicture { pixel, beyond })
     }
 
-    /// A corner ray reaches t2.
+    /// Checks that the ray of a corner reaches t2.
     fn reaches_end(&self, pixel: DVec2, context: &TurnContext<'_>) -> Result<(), Violation> {
         let sigma = self.sigma_on(corner_direction(pixel, context.root, &context.part));
         let limit = self.values.b1;
@@ -264,11 +264,11 @@ impl Forms {
     }
 }
 
-/// How finely the range of sigma is searched for rays that cross.
+/// Steps over the range of sigma in the search for rays that cross.
 const CROSSING_STEPS: usize = 64;
 
-/// Least and greatest sigma of the picture, and where rays of the original model cross, if they do: the corner on the side on which they
-/// do, and the sigma nearest to the middle of the picture.
+/// Least and greatest sigma of the corners; if rays of the original model cross, also the corner of greatest sigma and the least sampled
+/// sigma at which they cross.
 pub(super) fn crossing(forms: &Forms, context: &TurnContext<'_>) -> ([f64; 2], Option<(DVec2, f64)>) {
     let sigma = |px: DVec2| forms.sigma_on(corner_direction(px, context.root, &context.part));
     let corners = context.corners.iter().map(|&px| (px, sigma(px)));

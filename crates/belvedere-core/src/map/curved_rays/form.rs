@@ -74,7 +74,7 @@ impl Forms {
         self.values.a0 + self.bend_depth(direction) * self.a.along(direction)
     }
 
-    /// Depth of t0.
+    /// Depth of t0 along a ray of the part before the turn.
     pub(super) fn start(&self, direction: DVec3) -> f64 {
         -self.values.a0 / self.a.along(direction)
     }

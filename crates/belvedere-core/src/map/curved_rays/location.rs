@@ -1,7 +1,7 @@
-//! Which records of a chain displace what lies in a box, and whether they do so as one map.
+//! The records of a chain that displace points of a box, and whether they do so as one continuous map.
 //!
 //! On a separator, and wherever both its neighbours are straight, two consecutive records displace alike. A box in which each separator
-//! lies in such a gap, one behind the other, is displaced continuously by the record that every point belongs to: it can be drawn at once.
+//! lies in such a gap, one behind the other, is displaced continuously by the record that every point belongs to: it can be drawn in one pass.
 
 use super::form::LinearForm;
 use super::{CurvedRays, Turn};
@@ -30,14 +30,14 @@ impl CurvedRays {
         held && (first..last).all(|k| self.parts(k, k + 1 < last, bounds))
     }
 
-    /// Whether, in the box, turn `k` is over beyond its separator, and the next turn has not begun before it, nor, if asked, its separator
-    /// been passed.
+    /// Whether, in the box, turn `k` ends before its separator and the next turn begins beyond it; with `and_next` also whether the next
+    /// separator lies beyond it.
     fn parts(&self, k: usize, and_next: bool, bounds: &Aabb) -> bool {
         let (Some(cut), [turn, next]) = (self.separator(k), [&self.turns()[k], &self.turns()[k + 1]]) else {
             return false;
         };
         let before = |form: &LinearForm| greatest(form, cut, -1.0, bounds) <= 0.0;
-        // Not beyond the next common line, where its record goes on in another way.
+        // h > 0 would mean: beyond the next common line, where its record continues as after the turn.
         let not_begun = |next: &Turn| before(&next.a) && before(&next.h);
         let beyond = |form: &LinearForm, sign: f64| greatest(&form.scaled(sign), cut, 1.0, bounds) <= 0.0;
         not_begun(next)
@@ -46,7 +46,7 @@ impl CurvedRays {
             && beyond(&turn.a, -1.0)
     }
 
-    /// The record of a range that a point of a box belongs to whose records are continuous: the first whose separator it is not beyond.
+    /// The record of a range that a point belongs to, in a box where they are continuous: the first whose separator it is not beyond.
     pub fn record_of(&self, records: RangeInclusive<usize>, p: DVec3) -> usize {
         let (mut low, mut high) = records.into_inner();
         while low < high {
@@ -63,7 +63,7 @@ pub(super) fn values(form: &LinearForm, bounds: &Aabb) -> [f64; 2] {
     [middle - half, middle + half]
 }
 
-/// Greatest value of a form in the part of the box where `side * cut >= 0`; minus infinity if there is none.
+/// Greatest value of a form in the part of the box where `side * cut >= 0`; minus infinity if that part is empty.
 pub(super) fn greatest(form: &LinearForm, cut: &LinearForm, side: f64, bounds: &Aabb) -> f64 {
     let corners = bounds.corners();
     let (f, s) = (corners.map(|c| form.at(c)), corners.map(|c| side * cut.at(c)));

@@ -88,7 +88,7 @@ impl Hit {
     }
 }
 
-/// Number of the segment that a cell of a turn is.
+/// Segment number of a cell of a turn.
 fn segment(turn: usize, cell: Cell) -> u32 {
     let first = 2 * u32::try_from(turn).unwrap_or(u32::MAX / 4);
     match cell {
@@ -107,8 +107,8 @@ impl CurvedRays {
         build::build(root, model, turns, &check::corner_pixels(root), true)
     }
 
-    /// The same for searches that try many: `None` where [`CurvedRays::new`] says what is wrong and what would be right, which takes a
-    /// hundred times as long.
+    /// The same for searches that try many turns: `None` where [`CurvedRays::new`] returns an error, without the search for the nearest
+    /// valid value, which takes a hundred times as long.
     pub fn if_valid(root: &Pinhole, model: Model, turns: &[TurnSpec]) -> Option<Self> {
         build::build(root, model, turns, &check::corner_pixels(root), false).ok()
     }
@@ -123,7 +123,7 @@ impl CurvedRays {
         build::build(root, model, turns, corners, true)
     }
 
-    /// These rays at a share of their strength: viewpoints on their way from the eye. `None` if they cannot turn like that.
+    /// These rays at a share of their strength: viewpoints are interpolated from the eye. `None` if such turns are not valid.
     pub(crate) fn eased(&self, share: f64) -> Option<Self> {
         let turns: Vec<TurnSpec> = self.spec.iter().map(|turn| turn.eased(self.root.eye, share)).collect();
         Self::if_valid(&self.root, self.model, &turns)
@@ -154,7 +154,7 @@ impl CurvedRays {
         self.turns.len()
     }
 
-    /// Number of records: how often a renderer draws what spans the whole chain. At least 1.
+    /// Number of records, at least 1: how often a renderer draws an object that spans the whole chain.
     pub fn records(&self) -> usize {
         self.turns.len().max(1)
     }
@@ -189,9 +189,9 @@ impl CurvedRays {
         all
     }
 
-    /// Displacement by the record of turn `record` (0-based) alone, whatever the cell: for drawing once per record. One continuous map of
-    /// space; beyond the common line t1 parts what goes on as before the turn from what goes on as after it, and what the rays reach there
-    /// on the other part as well is left to [`CurvedRays::displace_along`].
+    /// Displacement by the record of turn `record` (from 0) alone, for drawing once per record. It is one continuous map of space: beyond
+    /// the common line, points before t1 are displaced as before the turn, points past t1 as after it. Points there that rays also reach on
+    /// the other part are left to [`CurvedRays::displace_along`].
     ///
     /// # Errors
     /// [`Miss::OutsideDomain`] if there is no such record.
@@ -203,7 +203,7 @@ impl CurvedRays {
     }
 
     /// Signed distances of `p`, scene units, to the two planes that cut record `record` from its neighbours;
-    /// drawing keeps what is positive for both (infinite at the ends of the chain).
+    /// a renderer keeps points where both are positive (infinite at the ends of the chain).
     /// On such a plane both records displace alike.
     pub fn record_margins(&self, record: usize, p: DVec3) -> [f64; 2] {
         let beyond = record.checked_sub(1).and_then(|k| self.separators.get(k)).map_or(f64::INFINITY, |y| y.at(p));
@@ -217,7 +217,7 @@ impl CurvedRays {
         self.separators.get(record)
     }
 
-    /// Segment of the ray that passes through a displaced point; 0 where there is none.
+    /// Segment of the ray that passes through a displaced point; 0 where no ray passes.
     pub fn segment_at(&self, p_displaced: DVec3) -> u32 {
         self.undisplace(p_displaced).map_or(0, |(_, segment)| segment)
     }
@@ -263,7 +263,7 @@ impl CurvedRays {
         first.map_or_else(|| self.walk(p), Ok)
     }
 
-    /// The paper's sequential test: on to the next turn while the point is past t2.
+    /// The paper's sequential test: the first turn whose t2 the point has not passed.
     fn walk(&self, p: DVec3) -> Result<Hit, Miss> {
         let Some(last) = self.turns.len().checked_sub(1) else {
             return Ok(Hit { turn: 0, cell: Cell::Before, v: p - self.root.eye });
@@ -277,10 +277,10 @@ impl CurvedRays {
         if root_part || hit.v.dot(self.root.forward) > 0.0 { Ok(hit) } else { Err(Miss::BehindEye) }
     }
 
-    /// Visits, in ray order, the cells in which rays through the image reach the point; `visit` says when to stop.
+    /// Visits, in ray order, the cells in which rays through the image reach the point, until `visit` returns `true`.
     ///
-    /// On a straight part one plane at either end decides, and that the image of the point by that part lies in the image: the forms of the
-    /// planes are affine along its rays, see [`Turn::is_before`] and [`Turn::is_after`].
+    /// On a straight part the test is one plane at either end, and whether the part maps the point into the image: the forms of the planes
+    /// are affine along its rays, see [`Turn::is_before`] and [`Turn::is_after`].
     fn cells_in_image(&self, p: DVec3, mut visit: impl FnMut(Hit) -> bool) {
         let mut held = |index: usize, cell: Cell| {
             let v = self.turns[index].displaced(p, cell).ok().filter(|&v| self.in_image(v));

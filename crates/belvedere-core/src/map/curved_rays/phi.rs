@@ -43,8 +43,8 @@ impl ViewpointValues {
 pub(super) enum Hinge {
     /// Conic arcs of constant sharpness m.
     Conic { m: f64 },
-    /// Quadratic Bezier arcs: m follows the ray. `sigma`: least and greatest one of the picture; rays beside it bend with the same m as
-    /// those, so that no two cross.
+    /// Quadratic Bezier arcs: m follows the ray. `sigma`: least and greatest sigma of the picture; rays outside that range
+    /// use the m of its nearer end, so that no two cross.
     Bezier { sigma: [f64; 2] },
     /// Broken rays.
     Broken,
@@ -162,8 +162,8 @@ pub(super) fn c2_parameter(pencil: &ViewpointValues, alpha: f64, b_far: f64) -> 
     })
 }
 
-/// Original model: m depends on sigma of the ray, which depends on phi. Of the rays that do not cross ([`arcs_cross`]) each meets the plane
-/// of a pencil parameter at a `c = a + b` of its own, which grows with sigma: so there is one root, and it is bracketed by the picture.
+/// Original model: m depends on sigma of the ray, which depends on phi. Rays that do not cross ([`arcs_cross`]) meet the plane of a pencil
+/// parameter at a `c = a + b` that grows with sigma: so there is one root, bracketed by the sigmas of the picture.
 fn bezier_phi(pencil: &ViewpointValues, [low, high]: [f64; 2], a: f64, b: f64) -> Option<Phi> {
     let c = a + b;
     let s = a / c;
@@ -189,12 +189,12 @@ fn bezier_phi(pencil: &ViewpointValues, [low, high]: [f64; 2], a: f64, b: f64) -
     Some(Phi { phi, phi_a: -r.by_a / r.by_phi, phi_b: -r.by_b / r.by_phi })
 }
 
-/// Zero between two places where a function is negative and positive: false position, with the Illinois rule against creeping.
+/// Zero between two arguments at which a function is negative and positive: false position with the Illinois rule.
 fn rising_root(ends: [f64; 2], values: [f64; 2], f: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     let ([mut low, mut high], [mut at_low, mut at_high]) = (ends, values);
     let mut last = 0.0;
     for step in 0..120 {
-        // Halving in between costs little where the function is steep at one end.
+        // Every fourth step halves the bracket, for functions that are steep at one end.
         let x = if step % 4 == 3 { 0.5 * (low + high) } else { low - at_low * ((high - low) / (at_high - at_low)) };
         if !(x > low && x < high) || high - low <= f64::EPSILON * high {
             break;

@@ -1,4 +1,4 @@
-//! The curved ray of a pixel as pieces: straight, bent, straight, bent ...
+//! The curved ray of a pixel as alternating straight and bent pieces.
 
 use super::phi::{Hinge, ViewpointValues, c2_parameter, c2_profile};
 use super::{CurvedRays, Turn};

@@ -1,4 +1,4 @@
-//! From a violated condition to an error with the nearest valid value.
+//! Errors of violated conditions, with the nearest valid value.
 
 use super::check::{PreviousTurn, TurnContext, UnscaledTurn, Violation, axis, corner_direction, crossing};
 use super::spec::{CurvedRaysError, Pencil, Remedy, TurnSpec};
@@ -30,7 +30,7 @@ pub(super) fn report(violation: Violation, spec: &TurnSpec, context: &TurnContex
     }
 }
 
-/// The error for rays of the original model that cross in the picture: t2 nearer to the bend, or another model.
+/// The error for rays of the original model that cross in the picture. Remedy: t2 nearer to the bend, or another model.
 pub(super) fn rays_cross(pixel: DVec2, sigma: f64, spec: &TurnSpec, context: &TurnContext<'_>) -> CurvedRaysError {
     let parted = |candidate: &TurnSpec| {
         let forms = UnscaledTurn::new(candidate, context.turn, &context.part).ok()?.check(candidate, context).ok()?;

@@ -1,10 +1,10 @@
-//! Segments of the rays one by one, for what drawing by records leaves out.
+//! Single segments of the rays, to draw the points that drawing by records leaves out.
 //!
-//! A record draws between its separators, and beyond the common line of its turn one of two ways only. Far to the side rays also reach
-//! places on the other side of a separator (rays that turn by a right angle and more), and places beyond the common line on the other way
-//! (wedges so wide that what lies before the turn is past t2 as well; rays that cross t0 again far behind the turn). A box with such
-//! places is drawn by the segments concerned too. Each is one map, continuous everywhere, on the part of space between two planes; what is
-//! drawn twice lies on itself.
+//! A record draws between its separators and, beyond the common line of its turn, continues only one of its two straight parts. Far to the
+//! side, rays also reach points on the other side of a separator (rays that turn by a right angle or more), and points beyond the common
+//! line on the other straight part (wedges so wide that points before the turn are past t2 as well; rays that cross t0 again far behind the
+//! turn). A box with such points is also drawn by the segments concerned. Each segment is one continuous map on the part of space between
+//! two planes; a point that is drawn twice has the same image both times.
 
 use super::form::LinearForm;
 use super::location::{greatest, values};
@@ -23,7 +23,7 @@ pub struct StraightMap {
     pub linear: DMat3,
 }
 
-/// What a number of a segment stands for.
+/// A segment with the turns beside it.
 enum Segment<'a> {
     /// Between the turn before and the turn after it.
     Straight(Option<&'a Turn>, Option<&'a Turn>),
@@ -37,7 +37,7 @@ impl CurvedRays {
         segment(self.turns.len(), Cell::Before) + 1
     }
 
-    /// `None` if there is no such segment.
+    /// The segment of a number; `None` if there is no such segment.
     fn segment(&self, number: u32) -> Option<Segment<'_>> {
         let k = number as usize / 2;
         if number % 2 == 1 {
@@ -47,7 +47,7 @@ impl CurvedRays {
         (k <= self.turns.len()).then(|| Segment::Straight(before, self.turns.get(k)))
     }
 
-    /// The map of a straight part; `None` for the number of a transition, or of no segment.
+    /// The map of a straight part; `None` if the number is that of a transition, or too large.
     pub fn straight_map(&self, number: u32) -> Option<StraightMap> {
         match self.segment(number)? {
             Segment::Straight(Some(turn), _) => Some(StraightMap { viewpoint: turn.viewpoint, linear: turn.after }),
@@ -81,7 +81,7 @@ impl CurvedRays {
 
     /// Whether a box may hold points of a segment that no record draws as such.
     ///
-    /// Sufficient to be complete, not necessary: the box as a whole is judged, and no look is taken at the image.
+    /// Conservative: `true` may be wrong, for the test takes the box as a whole and ignores the image; `false` is certain.
     pub fn leaves_out(&self, number: u32, bounds: &Aabb) -> bool {
         let k = number as usize / 2;
         let lower = |k: usize| k.checked_sub(1).and_then(|k| self.separator(k));

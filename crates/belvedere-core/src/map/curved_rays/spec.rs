@@ -1,4 +1,4 @@
-//! What a user says about a curved ray camera, and what can be wrong with it.
+//! Specification of a curved ray camera, and its errors.
 
 use glam::{DVec2, DVec3};
 use serde::de::{Deserializer, Error, Visitor};
@@ -109,7 +109,7 @@ pub struct TurnSpec {
 }
 
 impl TurnSpec {
-    /// This turn with its viewpoint on its way from the eye.
+    /// This turn with its viewpoint interpolated from the eye (`share` 0) to its own (1).
     pub(crate) fn eased(self, eye: DVec3, share: f64) -> Self {
         Self { viewpoint: eye.lerp(self.viewpoint, share), ..self }
     }
@@ -152,7 +152,7 @@ pub enum Remedy {
     BendInPicture,
     /// Choose another model of rays.
     OtherModel,
-    /// No single parameter heals it.
+    /// No change of a single parameter makes it valid.
     Rebuild,
 }
 
@@ -177,11 +177,11 @@ impl std::fmt::Display for Remedy {
     }
 }
 
-/// A curved ray camera that cannot be. Turns and viewpoints are counted from 1; viewpoint 0 is the eye.
+/// Errors of a curved ray camera. Turns and viewpoints are counted from 1; viewpoint 0 is the eye.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CurvedRaysError {
-    /// Curved rays start at an eye.
+    /// The root camera is orthographic, but curved rays start at an eye.
     #[error("curved rays need a perspective camera, the root camera is orthographic; set projection = \"perspective\"")]
     Orthographic,
     /// A parameter is NaN or infinite.
@@ -194,7 +194,7 @@ pub enum CurvedRaysError {
         /// The value.
         value: f64,
     },
-    /// A coordinate so large that geometry drowns in rounding.
+    /// A coordinate is so large that rounding spoils the geometry.
     #[error("turn {turn}: {name} has the coordinate {value:e}, beyond +-{limit:e}; give scene coordinates")]
     TooLarge {
         /// Turn, from 1.

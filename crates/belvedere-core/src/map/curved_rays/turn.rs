@@ -1,4 +1,4 @@
-//! One turn with everything derived from it.
+//! A turn with its derived forms and maps.
 
 use super::form::{Forms, LinearForm, StraightPart};
 use super::phi::{Hinge, Phi, ViewpointValues};
@@ -6,7 +6,7 @@ use super::spec::TurnSpec;
 use crate::Miss;
 use glam::{DMat3, DVec3};
 
-/// A turn, resolved: what renderers, rays and pictures of the camera itself need.
+/// A turn, resolved for renderers, rays and pictures of the camera itself.
 ///
 /// With `A_j(X) = eye + after (X - viewpoint)` the straight continuation of the part after turn j and `A_0` the identity,
 /// a point of the turn's cells is displaced to `A_{j-1}(X) + phi(a(X), b(X)) shift`.
@@ -113,7 +113,7 @@ impl Turn {
     }
 
     /// Cell by which the record of the turn displaces a point. In the opposite wedge, beyond the common line, a ray may reach a point
-    /// before the turn, after it, both times or never; there the record goes on continuously, with t1 as the border.
+    /// before the turn, after it, both times or never; there the record continues either straight part, with t1 as the border.
     pub(super) fn cell(&self, p: DVec3) -> Result<Cell, Miss> {
         let (a, b) = (self.a.at(p), self.b.at(p));
         if !(a.is_finite() && b.is_finite()) {
@@ -145,7 +145,7 @@ impl Turn {
         Ok(self.displaced_by(p, cell, phi))
     }
 
-    /// The same with phi as known.
+    /// The same with a known phi.
     pub(super) fn displaced_by(&self, p: DVec3, cell: Cell, phi: f64) -> DVec3 {
         match cell {
             Cell::Before => self.before * (p - self.viewpoint_before),

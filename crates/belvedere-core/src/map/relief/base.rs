@@ -1,11 +1,11 @@
-//! The large forms of the ground as a smooth surface.
+//! The large forms of the ground as a bicubic B-spline surface.
 
 use glam::DVec2;
 
 /// A bicubic B-spline surface over a regular grid of control heights; constant beyond its rim, twice differentiable everywhere.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BaseSurface {
-    /// Place of control height (0, 0); columns go east, rows north.
+    /// Scene position of control height (0, 0); columns go east, rows north.
     south_west: DVec2,
     spacing: f64,
     cols: usize,
@@ -14,10 +14,10 @@ pub struct BaseSurface {
     curvature: [f64; 3],
 }
 
-/// Control heights that are no grid.
+/// Control heights that do not form a grid of finite values.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum BaseError {
-    /// Too few, or not a whole number of rows.
+    /// Fewer than 2 x 2 heights, or not a whole number of rows.
     #[error("{count} heights are no grid of {cols} columns; at least 2 by 2 are needed")]
     Shape {
         /// Heights.
@@ -25,7 +25,7 @@ pub enum BaseError {
         /// Columns.
         cols: usize,
     },
-    /// A spacing or height that is no number.
+    /// A height or position is not finite, or the spacing is not > 0.
     #[error("the base surface needs finite heights and a spacing > 0, not {value}")]
     NotFinite {
         /// The value.
@@ -34,7 +34,7 @@ pub enum BaseError {
 }
 
 impl BaseSurface {
-    /// * `south_west`: place of the first height, scene coordinates.
+    /// * `south_west`: position of the first height, scene coordinates.
     /// * `spacing`: between heights, scene units, > 0.
     /// * `control`: heights, rows from south to north, scene units.
     ///
@@ -57,7 +57,7 @@ impl BaseSurface {
         Ok(base)
     }
 
-    /// Largest second differences of neighbours: the second derivatives are averages of them.
+    /// Largest second differences of neighbours, which bound the second derivatives: those are averages of them.
     fn differences(&self) -> [f64; 3] {
         let mut most = [0.0f64; 3];
         for r in 0..self.rows() as i64 {
@@ -75,13 +75,13 @@ impl BaseSurface {
         self.control.len() / self.cols
     }
 
-    /// Repeated beyond the rim.
+    /// Control height; beyond the rim that of the nearest node.
     fn control_at(&self, col: i64, row: i64) -> f64 {
         let [c, r] = [(col, self.cols), (row, self.rows())].map(|(i, n)| i.clamp(0, n as i64 - 1) as usize);
         self.control[r * self.cols + c]
     }
 
-    /// Cell and place in it; far outside, where nothing changes any more, the last one that matters.
+    /// Cell (column, row) and position in it, 0..1; clamped three cells outside the grid, where the surface is constant.
     fn place(&self, xy: DVec2) -> ([i64; 2], DVec2) {
         let last = DVec2::new(self.cols as f64 + 2.0, self.rows() as f64 + 2.0);
         let g = ((xy - self.south_west) / self.spacing).clamp(DVec2::splat(-3.0), last);
@@ -95,7 +95,7 @@ impl BaseSurface {
         (0..4).map(|j| v[j] * line(j)).sum()
     }
 
-    /// Height at a place, scene units. `xy` must be finite.
+    /// Height at `xy`, scene units. `xy` must be finite.
     pub fn height(&self, xy: DVec2) -> f64 {
         let (cell, t) = self.place(xy);
         self.blend(cell, weights(t.x), weights(t.y))
@@ -115,9 +115,9 @@ impl BaseSurface {
         xx * x * x + 2.0 * xy * x * y + yy * y * y
     }
 
-    /// Least and largest height over a rectangle, or farther apart.
+    /// Lower and upper bound of the height over a rectangle.
     pub(super) fn range(&self, min: DVec2, max: DVec2) -> [f64; 2] {
-        /// More control heights than these are not looked at one by one.
+        /// For more control heights than this the range of the whole grid is returned.
         const MOST: i64 = 4096;
         let (([c0, r0], _), ([c1, r1], _)) = (self.place(min), self.place(max));
         let fold = |[lo, hi]: [f64; 2], v: f64| [lo.min(v), hi.max(v)];
@@ -138,7 +138,7 @@ fn weights(t: f64) -> [f64; 4] {
     [s * s * s / 6.0, inner(t), inner(s), t * t * t / 6.0]
 }
 
-/// Their derivatives.
+/// Derivatives of the four weights.
 fn slopes(t: f64) -> [f64; 4] {
     let s = 1.0 - t;
     let inner = |t: f64| (-12.0 * t + 9.0 * t * t) / 6.0;

@@ -11,12 +11,12 @@ use crate::{Aabb, Pinhole};
 use glam::{DMat2, DMat3, DVec2, DVec3};
 use std::sync::Arc;
 
-/// How relief is changed; the default changes nothing.
+/// Parameters of a change of relief.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReliefShape {
     /// Factor of heights over the plane in the foreground and in the background, 0.01..=100.
     pub exaggeration: [f64; 2],
-    /// How far a height of 1 is moved away from the viewer in plan, 0..=5: plan oblique relief.
+    /// Shift in plan, away from the viewer, per unit of height, 0..=5: plan oblique relief.
     pub oblique: f64,
     /// Radius of the horizon in the background, scene units, > 0; infinite = straight.
     pub horizon_radius: f64,
@@ -27,7 +27,7 @@ pub struct ReliefShape {
 }
 
 impl ReliefShape {
-    /// No change, between two distances.
+    /// The shape that changes nothing, over a range of two distances, scene units.
     pub fn none(range: [f64; 2]) -> Self {
         Self { exaggeration: [1.0; 2], oblique: 0.0, horizon_radius: f64::INFINITY, levelling: 0.0, range }
     }
@@ -37,24 +37,24 @@ impl ReliefShape {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReliefError {
-    /// Out of range.
+    /// A parameter is out of range.
     #[error("{key} is {value}, it must be in {min}..={max}")]
     Range {
         /// The parameter.
         key: &'static str,
         /// Its value.
         value: f64,
-        /// Least.
+        /// Least allowed value.
         min: f64,
-        /// Most.
+        /// Largest allowed value.
         max: f64,
     },
-    /// Background before the foreground.
+    /// The background does not begin beyond the foreground.
     #[error("range is [{near}, {far}]; the background must begin farther away than the foreground ends")]
     Order {
         /// End of the foreground.
         near: f64,
-        /// Begin of the background.
+        /// Start of the background.
         far: f64,
     },
     /// Levelling without a surface to level by, or over a tilted plane.
@@ -92,11 +92,11 @@ pub struct Relief {
     normal: DVec3,
     shape: ReliefShape,
     base: Option<Arc<BaseSurface>>,
-    /// Height of the plane, from which the base counts.
+    /// Height of the plane, scene units, from which base heights are measured.
     plane: f64,
 }
 
-/// Values and derivatives of what depends on the distance.
+/// Exaggeration and curvature drop at a distance, with derivatives.
 #[derive(Debug, Clone, Copy)]
 struct At {
     /// Exaggeration and its derivative.
@@ -106,7 +106,7 @@ struct At {
 }
 
 impl Relief {
-    /// * `plane`: heights count from it; the heading is that of the camera in it.
+    /// * `plane`: heights are measured from it; the heading is the camera's direction in it.
     /// * `base`: the large forms, needed where `shape.levelling > 0`.
     ///
     /// # Errors
@@ -190,7 +190,7 @@ impl Relief {
         self.base.as_ref().map_or(0.0, |base| self.shape.levelling * (base.height(p.truncate()) - self.plane))
     }
 
-    /// Largest values over an interval of distances of: the factor, and how fast it and the drop change, once and twice.
+    /// Bounds over an interval of distances on the factor, the drop, and their first and second derivatives.
     fn most(&self, from: f64, to: f64) -> Most {
         let [near, far] = self.shape.range;
         let [front, back] = self.shape.exaggeration;
@@ -308,7 +308,8 @@ impl SpaceMap for Relief {
 }
 
 impl Relief {
-    /// The distance b of a displaced point before: `b + oblique (d' + t(b) a^2 / 2 R) = b'`, whose left side rises with b.
+    /// Distance b of a displaced point before the displacement: root of `b + oblique (d' + t(b) a^2 / 2 R) = b'`, whose left side rises
+    /// with b, by Newton's method in a bracket.
     fn distance_before(&self, q: DVec3) -> f64 {
         let k = self.shape.oblique;
         let side = k * q.x * q.x;

@@ -1,4 +1,4 @@
-//! Bounds on what the bend does to edges and boxes.
+//! Bounds of the bend: the error of straight edges, and displaced boxes.
 
 use super::SplineBend;
 use crate::Aabb;

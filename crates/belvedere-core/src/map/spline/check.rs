@@ -5,7 +5,7 @@ use crate::presets::PresetDocument;
 use crate::{Pinhole, Projection};
 use glam::DVec3;
 
-/// Something a preset document should better not do. `preset` is the name in quotes, or the position from 1.
+/// A warning about a valid preset document. `preset` is the name in quotes, or the position from 1.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PresetWarning {
@@ -73,7 +73,7 @@ pub enum PresetWarning {
     },
 }
 
-/// Sines that are 0 but for rounding: ground that is seen edge-on does not face away, such as level ground from an eye on it.
+/// Facing, a sine, that counts as 0: ground that is seen edge-on does not face away, such as level ground from an eye on it.
 pub const EDGE_ON: f64 = 1e-9;
 
 /// Warnings about a valid `document`, seen with its pivot in the image centre at `distance` scene units, over viewing angles from the first to
@@ -134,7 +134,7 @@ fn static_warnings(document: &PresetDocument) -> Vec<PresetWarning> {
     warnings
 }
 
-/// The document for a camera `distance` from the pivot at viewing angle `phi_deg`.
+/// The bend of a document for a camera `distance` from the pivot at viewing angle `phi_deg`.
 fn bend_at(document: &PresetDocument, phi_deg: f64, distance: f64) -> Option<SplineBend> {
     let (sin, cos) = phi_deg.to_radians().sin_cos();
     let eye = DVec3::new(0.0, -cos * distance, sin * distance);

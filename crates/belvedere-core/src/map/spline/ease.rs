@@ -1,4 +1,4 @@
-//! A bend that is not all there yet.
+//! A bend at a share of its strength.
 
 use super::SplineBend;
 use crate::bspline::BSpline;
@@ -7,11 +7,11 @@ use glam::DVec2;
 use std::sync::Arc;
 
 impl SplineBend {
-    /// This bend at a share of its strength: control points on their way from the straight line that changes nothing.
+    /// This bend at a share of its strength: control points are interpolated from the straight line that changes nothing.
     ///
     /// * `share`: 0 = identity, 1 = the bend itself.
     ///
-    /// `None` if the curve between vanishes.
+    /// `None` if the interpolated curve is too short.
     pub(crate) fn eased(&self, share: f64) -> Option<Self> {
         let along = DVec2::new(self.heading.dot(self.out_u), self.heading.dot(self.out_v));
         let control: Vec<DVec2> = self.resolved.control.iter().map(|&p| DVec2::from(p)).collect();

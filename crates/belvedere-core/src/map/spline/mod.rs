@@ -128,7 +128,7 @@ impl SplineBend {
         }
     }
 
-    /// Place of `p` on the curve as a share of its length: the argument of the section weights. Below 0 and above 1 on the extensions.
+    /// Arc length of `p` as a share of the curve's length: the argument of the section weights. Below 0 and above 1 on the extensions.
     pub fn section_parameter(&self, p: DVec3) -> f64 {
         self.coordinates(p).l / self.curve.length()
     }
@@ -145,7 +145,7 @@ impl SplineBend {
     }
 
     /// Heights over the reference plane between which nothing folds anywhere, scene units: `[h_min, h_max]`, `h_min < 0 < h_max`, infinite where
-    /// the curve never bends that way.
+    /// the curve has no curvature of that sign.
     pub fn fold_heights(&self) -> [f64; 2] {
         let [down, up] = self.curve.curvature_range();
         [
@@ -171,7 +171,7 @@ impl SplineBend {
         self.curve.at(self.coordinates(p).l).1.to_angle()
     }
 
-    /// Place of a bent point in the plane of [`SplineBend::curve`], curve units.
+    /// Position of a displaced point in the plane of [`SplineBend::curve`], curve units.
     pub fn curve_position(&self, p_displaced: DVec3) -> DVec2 {
         let v = p_displaced - self.origin;
         DVec2::new(v.dot(self.out_u), v.dot(self.out_v)) / self.scale - self.shift

@@ -1,4 +1,4 @@
-//! From a preset document and a camera to a resolved [`SplineBend`].
+//! Resolves a preset document for a camera, to a [`SplineBend`].
 
 use super::plane::Heading;
 use super::{ReferencePlane, SplineBend};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SplineError {
-    /// Bad document.
+    /// The document is not valid.
     #[error(transparent)]
     Preset(#[from] PresetError),
     /// Pivot not finite.
@@ -25,7 +25,7 @@ pub enum SplineError {
         /// z.
         z: f64,
     },
-    /// `units = "distance"` without a distance.
+    /// `units = "distance"`, but the pivot lies at the eye.
     #[error(
         "spline_bend pivot lies {distance:e} from the eye, too near to scale the curve by it; move the eye off the reference plane, give a pivot, or use units = \"absolute\""
     )]
@@ -186,7 +186,7 @@ fn seen_from(pinhole: &Pinhole, fov_y_deg: Option<f64>, depth: f64) -> Pinhole {
     }
 }
 
-/// How far the viewing angle exceeds the range of the last preset, degrees; 0 unless the document follows.
+/// Excess of the viewing angle over the range of the last preset, degrees; 0 unless the document follows.
 fn follow_angle(document: &PresetDocument, phi_deg: f64) -> f64 {
     if !document.follow || document.frame == BendFrame::Plane {
         return 0.0;

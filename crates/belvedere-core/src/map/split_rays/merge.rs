@@ -1,7 +1,7 @@
-//! Where the two ways of a seam become one again.
+//! Merge of the two sides of a seam: a last turn of each side towards one viewpoint.
 //!
-//! The rays of the seam's pixels form a plane on either side. Where the two planes cross, behind what the ways led round, both
-//! sides bend towards the common viewpoint: a ray then goes on alike whichever side it came by, so the picture is continuous
+//! The rays of the seam's pixels form a plane on either side. Where the two planes cross, behind the occluder, both sides
+//! bend towards the common viewpoint: from there on a ray of the seam is the same on both sides, so the picture is continuous
 //! over the seam, and smooth within each side.
 
 use super::{Fork, Merge, Seam, SplitRaysError, region::ImageRegion};
@@ -11,17 +11,17 @@ use glam::{DVec2, DVec3};
 
 /// Shares of the seam at which the sides are compared.
 const SHARES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-/// Rays of a pixel may meet so far apart, pixels.
+/// Largest distance, pixels, at which the two rays of a seam pixel count as meeting.
 const LIMIT_PX: f64 = 0.5;
-/// The viewpoint that is moved comes this much nearer to its bend, or farther, at most.
+/// Largest factor by which the moved viewpoint comes nearer to its bend, or farther.
 const FARTHEST: f64 = 64.0;
 
 /// The fork with the merge as a last turn of each side.
 ///
-/// So that a pixel's rays meet, the seam has to be of one length where it comes from the left and from the right: for that the
+/// The two rays of a pixel meet only if the seam is as long where it comes from the left as where it comes from the right: for that the
 /// last viewpoint of the right side (of the left if that has no turn) moves along the ray of the seam's middle, which stays as it is.
 ///
-/// * `turns`: before the fork. `region`: what the fork divides.
+/// * `turns`: all turns before the fork. `region`: the part of the image that the fork divides.
 pub(super) fn resolve(
     root: &Pinhole,
     model: Model,
@@ -57,7 +57,7 @@ pub(super) fn resolve(
     Ok(Fork { merge: None, ..fork })
 }
 
-/// The fork with one last viewpoint at another distance from where the middle of the seam bends.
+/// The fork with the last viewpoint of one side at `factor` times its distance from the bend of the seam's middle.
 fn moved(fork: &Fork, first: &Meeting, factor: f64) -> Fork {
     let mut fork = fork.clone();
     for side in [1, 0] {
@@ -91,9 +91,9 @@ fn even(unevenness: &dyn Fn(f64) -> Result<f64, SplitRaysError>, at_one: f64) ->
     1.0
 }
 
-/// The rays of a seam on both sides, where they cross the plane of the other side's.
+/// Where the seam's rays of each side cross the plane of the other side's rays.
 struct Meeting {
-    /// Per side, where the last turn of the middle of the seam would bend without an arc; `None` without turns.
+    /// Per side, where the ray of the seam's middle meets t1 of the last turn; `None` without turns.
     bends: [Option<DVec3>; 2],
     /// Length of the seam in the picture, pixels.
     length_px: f64,
@@ -131,7 +131,7 @@ impl Meeting {
         }
     }
 
-    /// By how much, as a share, the seam is longer where it meets from the left than from the right.
+    /// Logarithm of the seam's length where it comes from the left over its length from the right; 0 if even.
     fn unevenness(&self) -> f64 {
         let length = |met: &[DVec3]| met[0].distance(met[4]);
         (length(&self.met[0]) / length(&self.met[1])).ln()
@@ -159,7 +159,7 @@ impl Meeting {
     }
 }
 
-/// The straight end of a ray.
+/// The last straight part of a ray.
 #[derive(Debug, Clone, Copy)]
 struct Line {
     from: DVec3,
@@ -167,7 +167,7 @@ struct Line {
 }
 
 impl Line {
-    /// Where it crosses a plane, ahead.
+    /// Point where it crosses a plane ahead.
     fn meets(&self, point: DVec3, normal: DVec3) -> Option<DVec3> {
         let t = (point - self.from).dot(normal) / self.along.dot(normal);
         (t > 0.0 && t.is_finite()).then(|| self.from + t * self.along)

@@ -1,4 +1,4 @@
-//! Curved rays that part at a seam of the picture, each side its own way, and may meet again.
+//! Curved rays that part at a seam of the picture, each side with its own turns, and may merge again.
 //!
 //! Before the fork all rays share their turns. A fork gives each side of a straight seam turns of its own: the picture is one and
 //! smooth within each side, and along the seam as far as the rays run together. After the graph camera (Popescu et al. 2009,
@@ -27,12 +27,12 @@ pub struct SplitRays {
     branches: Vec<Branch>,
 }
 
-/// One way through all forks.
+/// One path through all forks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Branch {
     /// The part of the image that it draws.
     pub region: ImageRegion,
-    /// All turns from the eye on.
+    /// Curved rays with all turns of the path, from the eye on.
     pub rays: CurvedRays,
 }
 
@@ -51,7 +51,7 @@ impl SplitRays {
 
     /// Adds the branches of a node and returns its specification with every merge replaced by turns.
     ///
-    /// * `before`: turns before the node, and which way that is.
+    /// * `before`: turns before the node, and its path, like `left, right`.
     fn grow(
         &mut self,
         model: Model,
@@ -83,7 +83,7 @@ impl SplitRays {
         Ok(SplitSpec { turns: own, fork: Some(Box::new(Fork { sides, ..fork })) })
     }
 
-    /// Turns before a fork, with a number where the sharpness follows from the corners: both sides bend alike up to the fork.
+    /// Turns before a fork; a sharpness that follows from the corners becomes a number, so that both sides bend alike up to the fork.
     fn pinned(
         &self,
         model: Model,
@@ -102,7 +102,7 @@ impl SplitRays {
         Ok(turns.iter().zip(rays.turns()).map(pinned).collect())
     }
 
-    /// These rays at a share of their strength. `None` if they cannot turn like that.
+    /// These rays at a share of their strength. `None` if such turns are not valid.
     pub(crate) fn eased(&self, share: f64) -> Option<Self> {
         Self::new(self.root(), self.model(), &self.spec.eased(self.root().eye, share)).ok()
     }
@@ -134,7 +134,7 @@ impl SplitRays {
         here.unwrap_or(&self.branches[0])
     }
 
-    /// All images of `p`, branch by branch, and which branch; images beside the picture where it has none inside.
+    /// All images of `p` with the index of their branch; if none lies inside the picture, those outside it.
     pub fn displace_all(&self, p: DVec3) -> Vec<(usize, Displaced)> {
         let images = |of: &dyn Fn(&CurvedRays) -> Vec<Displaced>| {
             let mut all = Vec::new();
@@ -169,7 +169,7 @@ impl SplitRays {
         self.branch_of_edge(p0, p1).map_or(f64::INFINITY, |branch| branch.rays.edge_bound(p0, p1))
     }
 
-    /// The branch that shows both ends of an edge first.
+    /// The branch that is the first to show both ends of an edge; `None` if these differ.
     pub(crate) fn branch_of_edge(&self, p0: DVec3, p1: DVec3) -> Option<&Branch> {
         let [a, b] = [p0, p1].map(|p| self.displace_all(p).first().map(|(i, _)| *i));
         a.filter(|_| a == b).map(|i| &self.branches[i])

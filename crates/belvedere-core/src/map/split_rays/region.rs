@@ -9,7 +9,7 @@ use glam::{DVec2, dvec2};
 pub struct Seam {
     /// A point of the line.
     pub from: DVec2,
-    /// Another one.
+    /// Another point of the line.
     pub to: DVec2,
 }
 
@@ -41,7 +41,7 @@ impl Edge {
         (pixel - self.point).dot(self.right)
     }
 
-    /// Where the seam leaves the image, pixels; `None` if it does not cross it.
+    /// Points where the seam crosses the outline of a region, pixels; `None` if it does not.
     pub(super) fn ends(&self, image: &[DVec2]) -> Option<[DVec2; 2]> {
         let sides = image.iter().zip(image.iter().cycle().skip(1));
         let mut met = sides.filter_map(|(&a, &b)| {
@@ -104,8 +104,8 @@ impl ImageRegion {
         self.edges.iter().all(|(edge, side)| (edge.distance(pixel) < 0.0) == (*side == Side::Left))
     }
 
-    /// How much of a pixel around a position the part colours, 0..=1, when seams are blended over `width` pixels (> 0).
-    /// Over all parts these add up to 1.
+    /// Weight of the part in the colour of a pixel position, 0..=1, when seams are blended over `width` pixels (> 0).
+    /// The weights of all parts sum to 1.
     pub fn coverage(&self, pixel: DVec2, width: f64) -> f64 {
         let of_edge = |(edge, side): &(Edge, Side)| {
             let right = (0.5 + edge.distance(pixel) / width).clamp(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! What a user says about rays that part, and what can be wrong with it.
+//! Specification of rays that part at seams, and its errors.
 
 use super::Seam;
 use crate::map::curved_rays::{CurvedRaysError, TurnSpec};
@@ -7,14 +7,14 @@ use glam::DVec3;
 /// Turns in ray order, and a fork after them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SplitSpec {
-    /// Turns of all rays that come this way.
+    /// Turns that all rays of this node share.
     pub turns: Vec<TurnSpec>,
-    /// Where they part.
+    /// The fork after these turns; `None` if the rays do not part.
     pub fork: Option<Box<Fork>>,
 }
 
 impl SplitSpec {
-    /// These turns with their viewpoints on their way from the eye.
+    /// These turns with their viewpoints interpolated from the eye (`share` 0) to their own (1).
     pub(crate) fn eased(&self, eye: DVec3, share: f64) -> Self {
         let fork = |fork: &Fork| Fork {
             seam: fork.seam,
@@ -28,40 +28,40 @@ impl SplitSpec {
     }
 }
 
-/// Rays of the two sides of a seam go different ways.
+/// Rays of the two sides of a seam have different turns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fork {
     /// The seam.
     pub seam: Seam,
-    /// The ways of the left and of the right side.
+    /// Turns of the left and of the right side.
     pub sides: [SplitSpec; 2],
-    /// Where both sides go on as from one viewpoint; neither may have a fork of its own then.
+    /// Merge of both sides at one viewpoint; then neither may have a fork of its own.
     pub merge: Option<Merge>,
 }
 
-/// The ways of both sides of a seam become one again, where the rays along the seam meet. For that the last viewpoint of the
+/// Both sides of a seam turn to one viewpoint, where the rays along the seam meet. For that the last viewpoint of the
 /// right side (of the left if that has no turn) moves along the ray of the seam's middle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Merge {
-    /// The common viewpoint after it.
+    /// The common viewpoint after the merge, scene coordinates.
     pub viewpoint: DVec3,
     /// Distance over which the rays bend, before and after the plane where they meet, scene units, > 0.
     pub reach: f64,
 }
 
-/// Rays that cannot part, or not meet again, in this way.
+/// Errors of a specification of rays that part.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SplitRaysError {
     /// A turn of one side is not valid.
     #[error("{}{error}", if side.is_empty() { String::new() } else { format!("{side} of the seam, ") })]
     Turn {
-        /// Which way, like `left` or `right, left`; empty before any fork.
+        /// Path to the turn, like `left` or `right, left`; empty before any fork.
         side: String,
-        /// What is wrong with it; turns before the fork are counted.
+        /// Its error; turn numbers include the turns before the fork.
         error: CurvedRaysError,
     },
-    /// The seam's points are one, or not finite.
+    /// The seam's points coincide, or are not finite.
     #[error("the two points of the seam are {from}, {to}; give two points that are apart")]
     SeamPoints {
         /// First point, shares of the picture.
@@ -81,13 +81,13 @@ pub enum SplitRaysError {
         /// `left` or `right`.
         side: &'static str,
     },
-    /// The reach of a merge is no length.
+    /// The reach of a merge is not > 0, or not finite.
     #[error("the merge's reach is {reach}, it must be above 0")]
     Reach {
         /// The value.
         reach: f64,
     },
-    /// Rays along the seam do not come together.
+    /// The rays along the seam do not meet behind the fork.
     #[error(
         "the rays along the seam do not meet behind the fork (left and right are {apart_deg:.2} degrees apart and part further); give both sides a turn back towards each other before the merge"
     )]
@@ -95,7 +95,7 @@ pub enum SplitRaysError {
         /// Angle between the two planes of seam rays, degrees.
         apart_deg: f64,
     },
-    /// Rays of a pixel of the seam meet beside each other.
+    /// The two rays of a seam pixel miss each other by more than the limit.
     #[error(
         "rays along the seam miss each other by up to {off_px:.3} pixels where they meet, {limit:.3} at most; make the two sides mirror each other more closely"
     )]

@@ -6,10 +6,10 @@ use crate::Aabb;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
-/// Where 1 - curvature x distance may fall below this, nothing is said.
+/// No bound is given where 1 - curvature x distance may fall below this.
 const LEAST: f64 = 0.05;
 
-/// Largest values over part of the strip.
+/// Bounds over part of the strip.
 #[derive(Debug, Clone, Copy)]
 struct Most {
     curvature: f64,
@@ -53,7 +53,7 @@ impl Strip {
     /// Bounds over a straight edge between two points; `None` where it may leave the domain.
     fn along(&self, from: StripPoint, to: StripPoint, length: f64) -> Option<Most> {
         let a = from.a.abs().max(to.a.abs());
-        // No point of the edge is farther from the curve than its nearer end and half the way between the ends.
+        // No point of the edge is farther from the curve than its farther end plus half the edge's length.
         // Feet so near each other along the curve belong to one branch, see docs/algorithms/strip.md.
         let least = 1.0 - self.largest_curvature * (a + 0.5 * length);
         let branch = 2.0 * length * self.largest_curvature <= PI * least;

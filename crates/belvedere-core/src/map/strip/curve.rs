@@ -1,4 +1,4 @@
-//! Curves in plan by their curvature, straight on at both ends.
+//! Curves in plan of piecewise linear curvature (clothoids), with straight ends.
 
 use super::tree::{Discs, Node};
 use glam::DVec2;
@@ -7,7 +7,7 @@ use glam::DVec2;
 /// continuous curvature); beyond its ends it goes on straight. Positions, tangents and curvatures belong together to rounding.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanCurve {
-    /// Scene coordinates that the nodes count from.
+    /// Scene position to which the nodes are relative.
     origin: DVec2,
     /// Arc length between nodes, scene units.
     spacing: f64,
@@ -20,7 +20,7 @@ pub struct PlanCurve {
     reach: [f64; 2],
 }
 
-/// A place of a [`PlanCurve`].
+/// Position, tangent and curvature at a point of a [`PlanCurve`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanFrame {
     /// Position, scene coordinates.
@@ -56,7 +56,7 @@ const GAUSS: [[f64; 2]; 4] = [
 ];
 
 impl PlanCurve {
-    /// The curve with these curvatures at nodes `spacing` apart that passes a frame at arc length `g`.
+    /// The curve with these curvatures at nodes `spacing` apart that has the position and tangent `frame` at arc length `g`.
     ///
     /// `spacing` times the largest curvature must not exceed 0.06, so that quadrature is exact to rounding.
     pub(super) fn through(curvature: Vec<f64>, spacing: f64, g: f64, frame: (DVec2, DVec2)) -> Self {
@@ -146,7 +146,7 @@ impl PlanCurve {
         self.nodes.len() - 2
     }
 
-    /// Piece and place in it.
+    /// Piece and arc length within it.
     fn piece(&self, g: f64) -> (usize, f64) {
         let i = ((g / self.spacing).floor().max(0.0) as usize).min(self.last());
         (i, g - i as f64 * self.spacing)
@@ -158,7 +158,7 @@ impl PlanCurve {
         PlanFrame { p: self.origin + frame.p, ..frame }
     }
 
-    /// The frame counted from the origin.
+    /// The frame at arc length `g`, relative to the origin.
     pub(super) fn relative(&self, g: f64) -> PlanFrame {
         let length = self.length();
         if g <= 0.0 || g >= length {
@@ -207,7 +207,7 @@ impl PlanCurve {
         ]
     }
 
-    /// Where the curve passes `q` square to the way there: the piece at whose ends `q` lies ahead and behind.
+    /// Foot of the perpendicular from `q` between the ends, on a piece with `q` ahead of its start and behind its end.
     fn foot_between(&self, q: DVec2, width: f64) -> Option<StripPoint> {
         let ahead = |i: usize| (q - self.nodes[i].p).dot(self.nodes[i].tangent);
         self.discs.find(q, width, &ahead, &mut |i| {
@@ -215,7 +215,7 @@ impl PlanCurve {
         })
     }
 
-    /// Newton's iteration, kept between the ends of the piece. `ends`: how far `q` lies ahead of them, falling along the piece.
+    /// Foot on piece `i` by Newton's iteration in a bracket. `ends`: distances by which `q` lies ahead of the piece's ends.
     fn foot_on(&self, q: DVec2, i: usize, ends: [f64; 2]) -> StripPoint {
         let [mut low, mut high] = [0.0, self.spacing];
         let mut s = if ends[0] > ends[1] { self.spacing * ends[0] / (ends[0] - ends[1]) } else { 0.5 * high };
@@ -233,7 +233,7 @@ impl PlanCurve {
             let step = next - s;
             s = next;
             frame = self.on_piece(i, s);
-            // The next step would be smaller than rounding: they fall with the square.
+            // Quadratic convergence: the next step would be below rounding.
             if step.abs() <= 1e-7 * self.spacing {
                 break;
             }
@@ -241,7 +241,7 @@ impl PlanCurve {
         StripPoint { g: i as f64 * self.spacing + s, a: frame.tangent.perp_dot(q - frame.p) }
     }
 
-    /// Arc length, between the ends, of the place nearest to a point.
+    /// Arc length, between the ends, of the curve's point nearest to `p`.
     pub fn nearest(&self, p: DVec2) -> f64 {
         let q = p - self.origin;
         let near = self.discs.nearest(q).0;
@@ -265,7 +265,7 @@ impl PlanCurve {
         self.on_end(q).into_iter().flatten().any(|foot| foot.a.abs() <= width) || self.discs.come_within(q, width)
     }
 
-    /// A distance that `p` is at least away from the curve and its straight ends, less than the true one by no more than half that of nodes.
+    /// Lower bound on the distance of `p` from the curve and its straight ends, below the true one by at most half the node spacing.
     pub fn distance(&self, p: DVec2) -> f64 {
         let q = p - self.origin;
         if self.straight {
@@ -289,7 +289,7 @@ impl PlanCurve {
     }
 }
 
-/// What a piece does from its start.
+/// Displacement and turn along a piece from its start, whose tangent is (1, 0).
 struct Advance {
     way: DVec2,
     /// Cosine and sine of the angle that it turns by.

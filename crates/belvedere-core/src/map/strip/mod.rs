@@ -13,11 +13,11 @@ use super::{Miss, SpaceMap};
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 
-/// A strip that cannot be.
+/// Errors of a strip.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StripError {
-    /// A coordinate that is not finite.
+    /// A coordinate is not finite, or beyond 1e9.
     #[error("point {index} of the route is at {value}; every coordinate must be a number between -1e9 and 1e9")]
     NotFinite {
         /// Number of the point, from 0.
@@ -25,7 +25,7 @@ pub enum StripError {
         /// The point.
         value: DVec2,
     },
-    /// No way.
+    /// The route has no length.
     #[error("the route has {points} points and is {length} long; it needs at least 2 apart from each other")]
     TooShort {
         /// Points.
@@ -33,7 +33,7 @@ pub enum StripError {
         /// Length in plan.
         length: f64,
     },
-    /// A loop, or a way there and back.
+    /// The route is a loop, or leads there and back.
     #[error(
         "the route winds back to where it was: smoothed until a strip of half width {half_width} fits, {left:.2} are left of its {length:.2}; take a narrower strip, or a part of the route"
     )]
@@ -45,13 +45,13 @@ pub enum StripError {
         /// Half width that was asked for.
         half_width: f64,
     },
-    /// Bends too sharp for the width.
+    /// The smoothed route bends too sharply for the half width.
     #[error(
         "the smoothed route bends with a radius of {radius:.2} at ({:.2}, {:.2}), too sharp for a half width of {half_width}; the widest that works is {widest:.2}, or smooth more",
         at.x, at.y
     )]
     Radius {
-        /// Where, scene coordinates.
+        /// Position of the bend, scene coordinates.
         at: DVec2,
         /// Least radius of curvature.
         radius: f64,
@@ -60,13 +60,13 @@ pub enum StripError {
         /// Largest half width that this radius allows.
         widest: f64,
     },
-    /// A route beside itself.
+    /// The strip overlaps itself.
     #[error(
         "the strip overlaps itself at ({:.2}, {:.2}): two parts of the smoothed route are {distance:.2} apart, a half width of {half_width} needs more than twice that; the widest that works there is {widest:.2}, or smooth more",
         at.x, at.y
     )]
     Overlap {
-        /// Between both parts, scene coordinates.
+        /// Midpoint between both parts, scene coordinates.
         at: DVec2,
         /// Their distance.
         distance: f64,
@@ -75,14 +75,14 @@ pub enum StripError {
         /// Largest half width that this distance allows.
         widest: f64,
     },
-    /// More nodes than are made.
+    /// The curve needs more nodes than the limit.
     #[error(
         "a route of {length:.2} with nodes {fine:.2} apart needs more than {most} of them; take a wider strip or smooth more"
     )]
     TooFine {
         /// Length of the route.
         length: f64,
-        /// Distance of nodes that half width and smoothing ask for.
+        /// Node spacing that half width and smoothing need.
         fine: f64,
         /// Most nodes.
         most: f64,
@@ -109,7 +109,7 @@ fn in_range(key: &'static str, value: f64, min: f64, max: f64) -> Result<f64, St
 /// A strip of the ground along a route that is straightened, as in panoramas along a road.
 ///
 /// In plan a point has an arc length `g`, that of its foot on the smoothed route `X`, and a distance `a` to the left of it. It goes to the same
-/// place along and beside another curve: `Y(g) + a N(g)`, heights unchanged. `Y` is `X` with its curvature times `1 - share`, through the
+/// arc length and distance of another curve: `Y(g) + a N(g)`, heights unchanged. `Y` is `X` with its curvature times `1 - share`, through the
 /// anchor as `X` is: there nothing moves, and the road unrolls ahead and behind. Lengths along the route and distances from it stay
 /// as they are. The determinant of the Jacobian is `(1 - kap_Y a) / (1 - kap_X a) > 0`. Points farther from the route than the half
 /// width have no image.
@@ -144,8 +144,8 @@ impl Strip {
     /// * `anchor`: nothing moves where the route is nearest to it, scene coordinates.
     ///
     /// # Errors
-    /// [`StripError::Range`]; [`StripError::Radius`] and [`StripError::Overlap`] if the route does not bear the half width, or overlaps
-    /// itself when it is straightened in part.
+    /// [`StripError::Range`]; [`StripError::Radius`] and [`StripError::Overlap`] if the route is too sharp or too close to itself
+    /// for the half width, or overlaps itself when it is straightened in part.
     pub fn new(route: PlanCurve, half_width: f64, share: f64, anchor: DVec2) -> Result<Self, StripError> {
         in_range("half_width", half_width, 1e-6, 1e9)?;
         in_range("share", share, 0.0, 1.0)?;
@@ -167,7 +167,7 @@ impl Strip {
         Ok(Self { route, unrolled: Arc::new(unrolled), half_width, share, anchor, largest_curvature })
     }
 
-    /// This strip at a share of its strength, 0 < share <= 1; `None` where the curve between overlaps itself.
+    /// This strip at a share of its strength, 0 < share <= 1; `None` where that curve overlaps itself.
     pub(crate) fn eased(&self, share: f64) -> Option<Self> {
         let share = share * self.share;
         let unrolled = unrolled(&self.route, self.half_width, share, self.anchor).ok()?;
@@ -195,7 +195,7 @@ impl Strip {
         self.share
     }
 
-    /// Place of the route where nothing moves, scene coordinates.
+    /// Point of the route where nothing moves, scene coordinates.
     pub fn anchor(&self) -> DVec2 {
         self.route.at(self.anchor).p
     }
@@ -210,7 +210,7 @@ impl Strip {
         carried(&self.route, &self.unrolled, at.g, p.truncate()).extend(p.z)
     }
 
-    /// Distance in plan, scene units, that a displaced point is at least away from the image of the domain; 0 or less inside and near it.
+    /// Lower bound on the distance in plan, scene units, of a displaced point from the image of the domain; 0 or less inside and near it.
     pub fn outside(&self, p_displaced: DVec3) -> f64 {
         self.unrolled.distance(p_displaced.truncate()) - self.half_width
     }
@@ -226,7 +226,7 @@ impl Strip {
     }
 }
 
-/// The curve at a share of the way to the straight line, with the reach in which both are single.
+/// The route with its curvature times `1 - share`, and the reach within which neither strip overlaps itself.
 fn unrolled(route: &PlanCurve, half_width: f64, share: f64, anchor: f64) -> Result<PlanCurve, StripError> {
     if share == 0.0 {
         return Ok(route.clone());
@@ -236,7 +236,7 @@ fn unrolled(route: &PlanCurve, half_width: f64, share: f64, anchor: f64) -> Resu
     Ok(curve.with_reach([first.max(from), last.min(to)]))
 }
 
-/// Where a point of one strip goes that stays at the same place beside the other; equal curves move nothing.
+/// Image of a point that keeps its arc length `g` and distance from one curve to the other; equal curves move nothing.
 fn carried(from: &PlanCurve, to: &PlanCurve, g: f64, p: DVec2) -> DVec2 {
     let (x, y) = (from.relative(g), to.relative(g));
     let v = p - from.origin() - x.p;

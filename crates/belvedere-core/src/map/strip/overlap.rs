@@ -1,4 +1,4 @@
-//! Whether the strip around a curve meets itself.
+//! Whether the strip around a curve overlaps itself.
 
 use super::StripError;
 use super::curve::PlanCurve;
@@ -6,20 +6,20 @@ use glam::{DVec2, IVec2};
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-/// Straight ends reach at most so many lengths and widths.
+/// Longest straight end, in multiples of the curve's length plus the half width.
 const FAR: f64 = 1e4;
 
-/// How far the strip is single along the curve and its straight ends, as arc lengths.
+/// First and last arc length between which the strip, with its straight ends, does not overlap itself.
 ///
 /// A curve of curvature at most 1 / rho stays outside the circles of radius rho that touch it, for an arc length of pi rho to both sides
-/// (Blaschke); so no point within `half_width` < rho of it has two feet that near together. Feet farther apart are excluded where places of
+/// (Blaschke); so no point within `half_width` < rho of it has two feet that near together. Feet farther apart are excluded where points of
 /// the curve that are farther apart along it are farther than two half widths from each other. The proof is in docs/algorithms/strip.md.
 ///
 /// # Errors
 /// [`StripError::Overlap`] if the curve itself comes too close; its straight ends are cut short instead.
 pub(super) fn reach(curve: &PlanCurve, half_width: f64) -> Result<[f64; 2], StripError> {
     let apart = PI / curve.largest_curvature();
-    // Places between nodes are half a spacing from one.
+    // A point between nodes is at most half a spacing from one of them.
     let least = 2.0 * half_width + curve.spacing();
     if let Some((i, j, distance)) = closest(curve, least, apart) {
         let at = curve.origin() + 0.5 * (curve.nodes()[i].p + curve.nodes()[j].p);
@@ -28,7 +28,7 @@ pub(super) fn reach(curve: &PlanCurve, half_width: f64) -> Result<[f64; 2], Stri
     }
     let far = FAR * (curve.length() + half_width);
     let [before, beyond] = ends(curve).map(|end| end.clear_of(curve, least, apart).min(far));
-    // Less than half a circle between the ends: they go apart, or stay as far apart as a U.
+    // With less than half a circle between them, the ends diverge or stay apart like the legs of a U.
     let meet = curve.length() > apart;
     let both = if meet { apart_by(ends(curve), [before, beyond], least) } else { f64::INFINITY };
     Ok([-before.min(both), curve.length() + beyond.min(both)])
@@ -74,7 +74,7 @@ fn ends(curve: &PlanCurve) -> [End; 2] {
 }
 
 impl End {
-    /// How far it may go before it comes near a place of the curve that is farther away along it.
+    /// Length up to which the end stays `least` away from nodes that are more than `apart` from it along the curve.
     fn clear_of(&self, curve: &PlanCurve, least: f64, apart: f64) -> f64 {
         let nodes = curve.nodes().iter().enumerate();
         let limits = nodes.filter_map(|(i, node)| {
@@ -90,7 +90,7 @@ impl End {
     }
 }
 
-/// How far both ends may go before they come near each other, at most the farther of the given lengths.
+/// Length up to which both ends stay `least` apart, by bisection; at most the greater of the given lengths.
 fn apart_by(ends: [End; 2], lengths: [f64; 2], least: f64) -> f64 {
     let near = |reach: f64| {
         let [a, b] = [0, 1].map(|k| (ends[k].from, ends[k].from + lengths[k].min(reach) * ends[k].along));

@@ -1,4 +1,4 @@
-//! From a route to a curve that a strip can follow.
+//! Smooths a route with a Gaussian so that a strip fits it.
 
 use super::curve::PlanCurve;
 use super::{StripError, in_range, overlap};
@@ -10,13 +10,13 @@ pub const BEND_SHARE: f64 = 0.8;
 const SAMPLES: f64 = 8.0;
 /// Nodes of the curve per half width.
 const NODES: f64 = 16.0;
-/// Smoothing reaches so many widths to both sides.
+/// Reach of the Gaussian to both sides, standard deviations.
 const TAILS: f64 = 6.0;
 /// Automatic smoothing grows by this factor until the strip fits.
 const GROWTH: f64 = 1.15;
-/// It begins with this share of the half width.
+/// First standard deviation of automatic smoothing, as a share of the half width.
 const FIRST: f64 = 0.25;
-/// Of a route that smoothing leaves less of, it leaves nothing that could be recognised.
+/// Least share of the route's length that the smoothed route must keep.
 const LEFT: f64 = 0.1;
 /// Most samples and nodes.
 const MOST: f64 = 200_000.0;
@@ -30,7 +30,7 @@ pub struct SmoothedRoute {
     pub smoothing: f64,
     /// Largest distance of the route from the curve, scene units.
     pub off: f64,
-    /// Where that is, scene coordinates.
+    /// Point of the route at that distance, scene coordinates.
     pub off_at: DVec2,
 }
 
@@ -71,7 +71,7 @@ impl SmoothedRoute {
     }
 }
 
-/// The curve by one width of the Gaussian, if the strip fits it.
+/// The route smoothed with standard deviation `sigma`, if the strip fits it.
 fn fitted(route: &Polyline, half_width: f64, sigma: f64) -> Result<PlanCurve, StripError> {
     let curve = route.smoothed(sigma, half_width)?;
     let reach = overlap::reach(&curve, half_width)?;
@@ -80,7 +80,7 @@ fn fitted(route: &Polyline, half_width: f64, sigma: f64) -> Result<PlanCurve, St
 
 /// Distinct points in order.
 struct Polyline {
-    /// Counted from the first.
+    /// Relative to the first point.
     points: Vec<DVec2>,
     origin: DVec2,
     /// Length up to each point.
@@ -115,7 +115,7 @@ impl Polyline {
         self.points.last().copied().unwrap_or_default()
     }
 
-    /// So many samples, evenly along the length.
+    /// `steps + 1` samples, evenly spaced along the length.
     fn resampled(&self, steps: usize) -> Vec<DVec2> {
         let mut k = 0;
         let sample = |i: usize| {
@@ -148,7 +148,7 @@ impl Polyline {
         let (curvature, spacing) = by_arc_length(&places, fine);
         let tangent = places[0][1].normalize_or(DVec2::X);
         let curve = PlanCurve::through(curvature, spacing, 0.0, (DVec2::ZERO, tangent));
-        // What quadrature has turned the whole by is turned back, and the rest shared by both ends.
+        // Turns the curve back by the quadrature error in direction; both ends share the rest of the error.
         let reached = curve.at(curve.length()).p;
         let back = (reached.x * self.end().x + reached.y * self.end().y, reached.perp_dot(self.end()));
         let turn = DVec2::new(back.0, back.1).normalize_or(DVec2::X);
@@ -169,7 +169,7 @@ impl Polyline {
     }
 }
 
-/// Largest curvature, and where: at the places and, by what the tangent turns, between them, for a hairpin may hide there.
+/// Largest curvature and its index: at the samples and, by the turn of the tangent, between them, where a hairpin may hide.
 fn sharpest(places: &[[DVec2; 3]]) -> (f64, usize) {
     let speed = |i: usize| places[i][1].length();
     let at = |i: usize| bend(&places[i]).abs();
@@ -182,7 +182,7 @@ fn sharpest(places: &[[DVec2; 3]]) -> (f64, usize) {
     known.fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a })
 }
 
-/// Curvature of a place with two derivatives; not finite where the curve stands still.
+/// Curvature from two derivatives; not finite where the speed is 0.
 fn bend(place: &[DVec2; 3]) -> f64 {
     place[1].perp_dot(place[2]) / place[1].length().powi(3)
 }
@@ -219,7 +219,7 @@ struct Kernel {
 }
 
 impl Kernel {
-    /// * `sigma`: in steps.
+    /// * `sigma`: standard deviation in steps.
     fn new(sigma: f64) -> Self {
         let tail = (TAILS * sigma).ceil() as usize;
         let value = |i: usize| (-0.5 * (i as f64 / sigma).powi(2)).exp();
@@ -229,14 +229,14 @@ impl Kernel {
             [w, -w * x / s2, w * (x * x / s2 - 1.0) / s2]
         };
         let mut weights: Vec<[f64; 3]> = (0..=tail).map(weight).collect();
-        // What was cut off must not shorten straight parts.
+        // Normalised: the truncated tails must not shorten straight parts.
         let slope: f64 = weights.iter().enumerate().map(|(i, w)| -2.0 * i as f64 * w[1]).sum();
         weights.iter_mut().for_each(|w| w[1] /= slope);
         Self { weights }
     }
 }
 
-/// Samples averaged, mirrored through both ends as often as the Gaussian reaches.
+/// Gaussian average of the samples, which are mirrored through both ends as often as the kernel reaches.
 struct Average {
     samples: Vec<DVec2>,
     end: DVec2,
@@ -246,7 +246,7 @@ struct Average {
 impl Average {
     fn sample(&self, i: isize) -> DVec2 {
         let n = self.samples.len() as isize - 1;
-        // Through both ends: the route shifted by twice the way from end to end.
+        // Mirrored through both ends, the route repeats, shifted by twice the vector from end to end.
         let (turns, rest) = (i.div_euclid(2 * n), i.rem_euclid(2 * n));
         let (start, end) = (self.samples[0], self.end);
         let shift = 2.0 * turns as f64 * (end - start);
@@ -255,7 +255,7 @@ impl Average {
         here + shift
     }
 
-    /// Position and two derivatives by the step.
+    /// Averaged position and its first two derivatives with respect to the step.
     fn at(&self, i: usize) -> [DVec2; 3] {
         let i = i as isize;
         let (mut out, here) = ([DVec2::ZERO; 3], self.sample(i));

@@ -1,15 +1,15 @@
-//! Pieces of a curve in a tree of discs.
+//! Bounding tree of discs over the pieces of a curve.
 
 use glam::DVec2;
 
-/// The curve at a node, counted from the origin.
+/// Position, relative to the curve's origin, and unit tangent at a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Node {
     pub(super) p: DVec2,
     pub(super) tangent: DVec2,
 }
 
-/// A tree over pieces of equal length: the discs of a level lie around two of the level below.
+/// A tree over pieces of equal length: each disc encloses two of the level below.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Discs {
     /// From the pieces up to the whole curve.
@@ -27,7 +27,7 @@ struct Disc {
 impl Discs {
     /// * `spacing`: arc length between nodes; `curvature`: at the nodes, linear between them.
     pub(super) fn new(nodes: &[Node], spacing: f64, curvature: &[f64]) -> Self {
-        // No place of a piece is farther from the middle of its chord than half its length.
+        // No point of a piece is farther from the middle of its chord than half its length.
         let leaf = |(pair, k): (&[Node], &[f64])| Disc {
             center: 0.5 * (pair[0].p + pair[1].p),
             radius: 0.5 * spacing,
@@ -40,9 +40,9 @@ impl Discs {
         Self { levels }
     }
 
-    /// The first answer of `ask` to the pieces within `width` of a point that may hold its foot, nearest branches first.
+    /// Calls `ask` for the pieces within `width` of `q` that may hold its foot, nearest branches first, until one returns `Some`.
     ///
-    /// * `ahead`: how far the point lies ahead of a node, along the tangent there.
+    /// * `ahead`: distance by which `q` lies ahead of a node, along the tangent there.
     pub(super) fn find<T>(
         &self,
         q: DVec2,
@@ -66,7 +66,7 @@ impl Discs {
             return None;
         }
         if level == 0 || disc.bend * (width + 2.0 * disc.radius) < 1.0 {
-            // Nearer than the centres of curvature the point falls back all along these pieces: it passes square once at most.
+            // The point is nearer than the centres of curvature: `ahead` falls along these pieces and has at most one zero.
             return passed([i << level, ((i + 1) << level).min(self.levels[0].len())], ahead).and_then(ask);
         }
         let below = &self.levels[level - 1];
@@ -95,7 +95,7 @@ impl Discs {
         level == 0 || off + radius <= width || below(2 * i) || below(2 * i + 1)
     }
 
-    /// The piece whose middle is nearest, and how far that is.
+    /// The piece whose middle is nearest, and its distance.
     pub(super) fn nearest(&self, q: DVec2) -> (usize, f64) {
         let mut best = (0, f64::INFINITY);
         self.closer(self.levels.len() - 1, 0, q, &mut best);
@@ -126,7 +126,7 @@ impl Discs {
     }
 }
 
-/// Of the pieces between two nodes the one along which a point goes from ahead to behind, by halving; `None` if it does not.
+/// The piece between two nodes on which `ahead` changes from positive to negative, by bisection; `None` if it does not change.
 fn passed([mut first, mut last]: [usize; 2], ahead: &impl Fn(usize) -> f64) -> Option<usize> {
     if !(ahead(first) >= 0.0 && ahead(last) <= 0.0) {
         return None;

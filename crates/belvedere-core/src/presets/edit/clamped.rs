@@ -1,4 +1,4 @@
-//! What an operation did less far than it was asked to.
+//! Values that an operation clamped.
 
 use super::sections::nearest_share;
 use super::{EditError, PresetChange, PresetOperation};
@@ -6,19 +6,19 @@ use crate::deformation::DeformationCurve;
 use crate::presets::{Preset, PresetDocument};
 use glam::DVec2;
 
-/// A value that neighbours stopped on its way, shares of the curve's length.
+/// A value that was clamped by neighbouring tags, in shares of the curve's length.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("preset {preset}: {what} is {got:.4}, not {asked:.4} as asked: {why}")]
 pub struct Clamped {
     /// Preset, its name in quotes or its position.
     pub preset: String,
-    /// What was dragged.
+    /// Name of the clamped value.
     pub what: String,
     /// The value asked for.
     pub asked: f64,
-    /// The value that it has.
+    /// The value after clamping.
     pub got: f64,
-    /// What stopped it.
+    /// Reason for the clamping.
     pub why: &'static str,
 }
 
@@ -26,7 +26,7 @@ pub struct Clamped {
 const SAME: f64 = 1e-6;
 
 impl PresetDocument {
-    /// As [`Self::edited`], and what was done less far than asked: a tag that its neighbours stop, a transition that is too wide.
+    /// As [`Self::edited`], with the values that were clamped: a tag's position between its neighbours, a transition's half width.
     ///
     /// # Errors
     /// Every [`EditError`].
@@ -60,7 +60,7 @@ fn clamped(old: &Preset, new: &Preset, change: &PresetChange, label: &str) -> Ve
     };
     let Some(index) = number.checked_sub(1) else { return Vec::new() };
     let (Some(before), Some(now)) = (old.tags.get(index), new.tags.get(index)) else { return Vec::new() };
-    // A transition that a move of its tag makes narrower was asked to stay.
+    // A move should keep the transition: one that it makes narrower is reported.
     let width = width.unwrap_or(before.delta);
     let found = |what: String, asked: f64, got: f64, why| Clamped { preset: label.to_owned(), what, asked, got, why };
     let place = place

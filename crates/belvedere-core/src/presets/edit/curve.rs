@@ -4,14 +4,14 @@ use super::{EditError, Edited};
 use crate::presets::{Preset, angles};
 use glam::DVec2;
 
-/// Where the two copies of a doubled point go when it is made soft: shares of the legs to the end of the curve, and to other points.
+/// Largest shift of the two copies of a softened point, as a share of the leg to an end of the curve, or to another point.
 const SPREAD_TO_END: f64 = 0.3;
 const SPREAD_TO_POINT: f64 = 0.25;
 /// Fewest control points of a cubic.
 const FEWEST: usize = 4;
 
 impl Edited<'_> {
-    /// A curve of angles becomes one of control points, the same one.
+    /// Replaces the angles of a preset by control points and knots of the same curve.
     pub(super) fn with_points(self) -> Result<Self, EditError> {
         if self.preset.angles.is_some() {
             let spline = self.preset.spline().map_err(|e| self.bad_curve(e))?;
@@ -25,7 +25,7 @@ impl Edited<'_> {
     pub(super) fn give_angles(self, count: usize) -> Result<(), EditError> {
         self.range("number of angles", count as f64, [2.0, 1000.0])?;
         let spline = self.preset.spline().map_err(|e| self.bad_curve(e))?;
-        // A curve of no length is refused when the document is looked at as a whole.
+        // A curve of no length is refused when the document is validated.
         self.preset.angles = angles::of_curve(&spline, count);
         (self.preset.control, self.preset.knots) = (Vec::new(), None);
         Ok(())
@@ -70,7 +70,7 @@ impl Edited<'_> {
         }
         if let Some(knots) = &mut self.preset.knots {
             let at = mean_knot(knots, index);
-            // Of the inner knots the one that belongs to the point.
+            // Removes the inner knot nearest to the point's mean knot.
             let off = |k: &usize| (knots[*k] - at).abs();
             if let Some(nearest) = (4..knots.len() - 4).min_by(|a, b| off(a).total_cmp(&off(b))) {
                 knots.remove(nearest);

@@ -3,7 +3,7 @@
 use super::{EditError, PresetOperation};
 use crate::presets::PresetDocument;
 
-/// A document and what it was before: operations are undone and done again.
+/// A preset document with undo and redo.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PresetHistory {
     past: Vec<PresetDocument>,
@@ -12,10 +12,10 @@ pub struct PresetHistory {
 }
 
 impl PresetHistory {
-    /// Documents that are remembered.
+    /// Most undo steps.
     pub const DEPTH: usize = 256;
 
-    /// A document without a past.
+    /// Starts a history with `document`.
     pub fn new(document: PresetDocument) -> Self {
         Self { past: Vec::new(), present: document, future: Vec::new() }
     }
@@ -25,7 +25,7 @@ impl PresetHistory {
         &self.present
     }
 
-    /// Carries an operation out; what was undone before is forgotten.
+    /// Applies an operation and clears the redo steps.
     ///
     /// # Errors
     /// Every [`EditError`]; then nothing changes.
@@ -39,14 +39,14 @@ impl PresetHistory {
         Ok(())
     }
 
-    /// Takes the last operation back; `false` if there is none.
+    /// Undoes the last operation; `false` if there is nothing to undo.
     pub fn undo(&mut self) -> bool {
         let Some(before) = self.past.pop() else { return false };
         self.future.push(std::mem::replace(&mut self.present, before));
         true
     }
 
-    /// Does again what was undone last; `false` if there is nothing.
+    /// Redoes the operation undone last; `false` if there is nothing to redo.
     pub fn redo(&mut self) -> bool {
         let Some(after) = self.future.pop() else { return false };
         self.past.push(std::mem::replace(&mut self.present, after));

@@ -13,7 +13,7 @@ use super::{BendFrame, DepthUnits, Ease, Preset, PresetDocument, PresetError};
 use crate::bspline::BSplineError;
 use serde::{Deserialize, Serialize};
 
-/// One operation; presets are told by name, or by position from 1, points, tags and sections by position from 1.
+/// One operation. A preset is given by its name or its position from 1; points, tags and sections by their position from 1.
 ///
 /// As text (`PRESET.KEY[.NUMBER]=VALUE`) see [`PresetOperation`]'s `FromStr`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -23,10 +23,10 @@ pub enum PresetOperation {
     Preset {
         /// Name or position.
         preset: String,
-        /// What is done.
+        /// The change.
         change: PresetChange,
     },
-    /// Another preset, from a built-in document.
+    /// Adds a preset from a built-in document.
     Add {
         /// Name of the built-in document; its first preset is taken.
         from: String,
@@ -51,23 +51,23 @@ pub enum PresetOperation {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PresetChange {
-    /// A control point is dragged to (u, v).
+    /// Moves a control point to (u, v).
     MovePoint(usize, [f64; 2]),
-    /// A control point more at curve parameter t in (0, 1); the curve stays as it is.
+    /// Adds a control point at curve parameter t in (0, 1), by knot insertion; the curve stays as it is.
     AddPoint(f64),
-    /// A control point less.
+    /// Removes a control point.
     RemovePoint(usize),
     /// A control point is doubled, which straightens the curve beside it; a doubled one is made single again.
     Corner(usize),
     /// Doubled points are spread along their legs by a share, 0..=1.
     Soften(f64),
-    /// The curve is told by its angles at so many places, evenly along it, instead of by control points.
+    /// Replaces the control points by this number of angles, at evenly spaced arc lengths.
     Angles(usize),
-    /// An angle of a curve that is told by angles, degrees.
+    /// Sets an angle of a curve given by angles, degrees.
     Turn(usize, f64),
-    /// A border is dragged to the place of the curve nearest to (u, v), as far as its neighbours let it.
+    /// Moves a tag to the point of the curve nearest to (u, v), clamped between its neighbours.
     MoveTag(usize, [f64; 2]),
-    /// A border at a share of the curve's length, as far as its neighbours let it.
+    /// Moves a tag to a share of the curve's length, clamped between its neighbours.
     PlaceTag(usize, f64),
     /// Half width of a transition, a share of the length; at most half of the gap to the neighbours.
     TagWidth(usize, f64),
@@ -96,9 +96,9 @@ pub enum PresetChange {
         /// Its viewing angle, degrees.
         phi: f64,
     },
-    /// Another name.
+    /// Renames the preset.
     Rename(String),
-    /// The preset is taken away; the last one stays.
+    /// Removes the preset; the only one cannot be removed.
     Remove,
 }
 
@@ -111,7 +111,7 @@ pub enum EditError {
     NoPreset {
         /// Name or position asked for.
         wanted: String,
-        /// Names, or positions, of those that are there.
+        /// Names, or positions, of the presets in the document.
         known: String,
     },
     /// No point, tag or section of that number.
@@ -123,18 +123,18 @@ pub enum EditError {
         what: &'static str,
         /// Number asked for.
         number: usize,
-        /// How many there are.
+        /// Number of parts of that kind.
         count: usize,
     },
-    /// Something that must stay.
+    /// The operation lacks a precondition.
     #[error("{what}; {remedy}")]
     Needed {
-        /// What is needed.
+        /// The state that forbids the operation.
         what: String,
         /// What to do.
         remedy: &'static str,
     },
-    /// Text that is no operation.
+    /// A text that is not an operation.
     #[error("{text:?} is no operation: {reason}")]
     Text {
         /// The text.
@@ -148,7 +148,7 @@ pub enum EditError {
         /// The name.
         name: String,
     },
-    /// The result would be no valid document.
+    /// The result would not be a valid document.
     #[error(transparent)]
     Invalid(#[from] PresetError),
 }
@@ -265,7 +265,7 @@ impl PresetDocument {
     }
 }
 
-/// A preset under work and its name for messages.
+/// A preset that is being edited and its label for messages.
 struct Edited<'a> {
     preset: &'a mut Preset,
     label: &'a str,

@@ -10,7 +10,7 @@ use glam::DVec2;
 const APART: f64 = 1e-3;
 /// Half width of new transitions.
 const DELTA: f64 = 0.05;
-/// Places of the curve that are compared before the nearest is refined.
+/// Samples of the curve that are compared before the nearest one is refined.
 const PLACES: usize = 512;
 
 impl Edited<'_> {
@@ -76,20 +76,20 @@ impl Edited<'_> {
         Ok(())
     }
 
-    /// Places of the borders beside a border.
+    /// Positions of the borders beside a border, shares of the length.
     fn neighbours(&self, index: usize) -> [f64; 2] {
         let tags = &self.preset.tags;
         [index.checked_sub(1).map_or(0.0, |i| tags[i].u), tags.get(index + 1).map_or(1.0, |t| t.u)]
     }
 
-    /// Places of the borders of a section.
+    /// Positions of the borders of a section, shares of the length.
     fn neighbours_of_section(&self, index: usize) -> [f64; 2] {
         let tags = &self.preset.tags;
         [index.checked_sub(1).map_or(0.0, |i| tags[i].u), tags.get(index).map_or(1.0, |t| t.u)]
     }
 }
 
-/// Share of a curve's length at its place nearest to a point.
+/// Position of a curve's point nearest to `to`, as a share of the length: best sample, then ternary search.
 pub(super) fn nearest_share(curve: &DeformationCurve, to: DVec2) -> f64 {
     let length = curve.length();
     let off = |u: f64| curve.at(u * length).0.distance_squared(to);

@@ -4,7 +4,7 @@ use super::{EditError, PresetChange, PresetOperation};
 use crate::presets::{BendFrame, DepthUnits, Ease};
 use std::str::FromStr;
 
-/// What can be written, for messages.
+/// All keys, for messages.
 const KEYS: &str = "PRESET.point.N=U,V  PRESET.add-point=T  PRESET.remove-point=N  PRESET.corner=N  PRESET.soften=SHARE  PRESET.angles=COUNT  PRESET.angle.N=DEG  \
 PRESET.tag.N=T or U,V  PRESET.width.N=DELTA  PRESET.section.N=ID  PRESET.split=N  PRESET.merge=N  PRESET.range=S,E  PRESET.phi=DEG  \
 PRESET.tau=DEG  PRESET.fade=A,B  PRESET.fov=DEG or none  PRESET.mirror  PRESET.duplicate=NAME,DEG  PRESET.name=NAME  PRESET.remove  \
@@ -33,7 +33,7 @@ impl FromStr for PresetOperation {
     }
 }
 
-/// What stands behind the equals sign.
+/// The text after the equals sign.
 struct Value<'a> {
     value: Option<&'a str>,
 }
