@@ -11,14 +11,14 @@ pub struct Bodies {
     feet: Vec<DVec3>,
 }
 
-/// Stands for the body of a triangle that belongs to none.
+/// Body number of a triangle that belongs to no body.
 const LOOSE: u32 = u32::MAX;
 
 /// Triangles of a box.
 const PER_BOX: usize = 12;
 
 impl Bodies {
-    /// Those of a layer; `None` if it has none.
+    /// The bodies of a layer; `None` if it has none.
     pub fn of(kind: &LayerKind) -> Option<Self> {
         match kind {
             LayerKind::Boxes(layer) if layer.rigid && !layer.boxes.is_empty() => {
@@ -56,8 +56,7 @@ impl Bodies {
         (!feet.is_empty()).then_some(Self { of_triangle: Some(of_triangle), feet })
     }
 
-    /// Where each body stands: the centroid of what it covers in plan, at its lowest height, scene coordinates; of a box the middle of its
-    /// base.
+    /// Foot of each body, scene coordinates: the centroid of its plan, at its lowest height; of a box the middle of its base.
     pub fn feet(&self) -> &[DVec3] {
         &self.feet
     }
@@ -77,10 +76,10 @@ impl Bodies {
     }
 }
 
-/// What a body covers on the map, summed over its triangles. Of a closed body the roof covers it once and the floor once more, so both count
-/// alike.
+/// Area and centroid of a body's plan, summed over its triangles. The roof and the floor of a closed body both count, which leaves the
+/// centroid as it is.
 struct Plan {
-    /// Where sums are taken from: its first corner.
+    /// Origin of the sums: the body's first corner.
     origin: Option<DVec2>,
     area: f64,
     moment: DVec2,
@@ -108,7 +107,7 @@ impl Plan {
         self.lowest = corners.iter().fold(self.lowest, |z, p| z.min(p.z));
     }
 
-    /// Walls alone cover nothing: then the mean of all corners.
+    /// The foot; of a body whose plan has no area, such as walls alone, at the mean of its corners.
     fn foot(&self) -> DVec3 {
         let mean = if self.area > 0.0 { self.moment / self.area } else { self.sum / self.corners.max(1.0) };
         (self.origin.unwrap_or_default() + mean).extend(self.lowest)

@@ -4,7 +4,7 @@ use belvedere_core::DVec2;
 
 /// One of the two triangles of a cell.
 ///
-/// Corners of a cell are given in this order: north-west, north-east, south-west, south-east. Places in a cell are
+/// Corners of a cell are given in this order: north-west, north-east, south-west, south-east. Positions in a cell are
 /// fractions of it, x towards east and y towards south, 0..=1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CellTriangle {
@@ -21,7 +21,7 @@ impl CellTriangle {
         if fractions.x > fractions.y { Self::NorthEast } else { Self::SouthWest }
     }
 
-    /// Which corners of the cell it has.
+    /// Indices of its corners among those of the cell.
     #[inline]
     pub const fn corners(self) -> [usize; 3] {
         match self {
@@ -30,7 +30,7 @@ impl CellTriangle {
         }
     }
 
-    /// Weights of its [`CellTriangle::corners`] at fractions of the cell; outside the triangle they go on linearly.
+    /// Weights of its [`CellTriangle::corners`] at fractions of the cell; linear also outside the triangle.
     #[inline]
     pub fn weights(self, fractions: DVec2) -> [f64; 3] {
         let (u, v) = (fractions.x, fractions.y);
@@ -58,7 +58,7 @@ impl CellTriangle {
 
     /// Height of the drawn surface at fractions of a cell; `None` in a triangle one of whose corners is void.
     ///
-    /// The diagonal belongs to both triangles: it is there if one of them is.
+    /// The diagonal belongs to both triangles: it has a height if one of them has.
     #[inline]
     pub fn surface(corners: [Option<f64>; 4], fractions: DVec2) -> Option<f64> {
         let height = |triangle: Self| {

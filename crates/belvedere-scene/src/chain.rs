@@ -4,7 +4,7 @@ use crate::LineLayer;
 use belvedere_core::DVec3;
 
 impl LineLayer {
-    /// The longest line, with the others that go on where it ends, across gaps of at most `gap` in plan, scene units.
+    /// The longest line, extended at both ends by the nearest other lines, across gaps of at most `gap` in plan, scene units.
     pub fn longest_chain(&self, gap: f64) -> Vec<DVec3> {
         let lines = self.features.iter().map(|f| f.points.clone()).filter(|points| points.len() > 1);
         chain(lines.collect(), gap)
@@ -20,7 +20,7 @@ fn chain(mut rest: Vec<Vec<DVec3>>, gap: f64) -> Vec<DVec3> {
     let mut chain = rest.swap_remove(longest);
     loop {
         let (head, tail) = (chain[0], chain[chain.len() - 1]);
-        // Distance, line, whether it goes to the tail, whether it is turned round.
+        // Distance, index of the line, whether it is joined to the tail, whether it is reversed.
         let mut best: Option<(f64, usize, bool, bool)> = None;
         for (i, line) in rest.iter().enumerate() {
             let (a, b) = (line[0], line[line.len() - 1]);

@@ -5,18 +5,18 @@ use belvedere_core::{DVec2, DVec3};
 use glam::Vec2;
 use std::sync::Arc;
 
-/// What is known of a city. Coordinates are those of its holder: of the file after loading, of the scene once it is placed there.
+/// A city. Coordinates are those of the file after loading, and those of the scene once it is placed there.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct City {
     /// Buildings.
     pub buildings: Vec<Building>,
-    /// Solids that are no buildings.
+    /// Solids that are not buildings.
     pub structures: Vec<Structure>,
     /// Centre lines of streets, railways and rivers.
     pub ways: Vec<Way>,
     /// Land cover.
     pub areas: Vec<CityArea>,
-    /// Pictures that faces wear.
+    /// Pictures on faces.
     pub pictures: Vec<Arc<Texture>>,
 }
 
@@ -29,14 +29,14 @@ pub struct Polygon {
     pub holes: Vec<Vec<DVec2>>,
 }
 
-/// Where the height of a building is from.
+/// Source of the height of a building.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum HeightSource {
     /// The shape itself: median of the roof over the ground.
     Shape,
     /// A height attribute.
     Stated,
-    /// Storeys times 3 m, and 1 m.
+    /// Number of storeys times 3 m, plus 1 m.
     Levels,
     /// Unknown: 9 m.
     Assumed,
@@ -57,7 +57,7 @@ pub struct Building {
     pub base_m: Option<f64>,
     /// Height over its ground, metres, > 0.
     pub height_m: f64,
-    /// Where the height is from.
+    /// Source of the height.
     pub height_source: HeightSource,
     /// Its surfaces; empty = the footprint extruded to its height under a flat roof. Their heights are over the file's datum, or over the
     /// ground where it stands on the terrain (`base_m` is `None`).
@@ -71,7 +71,7 @@ pub struct Structure {
     pub id: String,
     /// Name, possibly empty.
     pub name: String,
-    /// What it is.
+    /// Kind of the solid.
     pub kind: StructureKind,
     /// Its surfaces, at least one.
     pub faces: Vec<CityFace>,
@@ -91,11 +91,11 @@ pub enum StructureKind {
 /// A plane surface in space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CityFace {
-    /// What it is of its solid.
+    /// Role of the face in its solid.
     pub surface: Surface,
     /// Rings, outer first, then holes, closed implicitly; the outer one counter-clockwise seen from outside.
     pub rings: Vec<Vec<DVec3>>,
-    /// The picture that it wears.
+    /// Picture on the face, if it has one.
     pub picture: Option<FacePicture>,
 }
 
@@ -104,7 +104,7 @@ pub struct CityFace {
 pub struct FacePicture {
     /// Its number in [`City::pictures`].
     pub number: u32,
-    /// Place in it of every vertex of the face's rings: (0, 0) is its top left corner, (1, 1) its bottom right.
+    /// Position in it of every vertex of the face's rings: (0, 0) is its top left corner, (1, 1) its bottom right.
     pub rings: Vec<Vec<Vec2>>,
 }
 
@@ -117,7 +117,7 @@ pub enum Surface {
     Wall,
     /// Ground, underside.
     Ground,
-    /// Not told.
+    /// Not stated in the file.
     Other,
 }
 
@@ -126,7 +126,7 @@ pub enum Surface {
 pub struct Way {
     /// Name, possibly empty.
     pub name: String,
-    /// What runs there.
+    /// Class of the road, railway or river.
     pub class: WayClass,
     /// Vertices, at least 2.
     pub points: Vec<DVec2>,
@@ -160,7 +160,7 @@ pub enum WayClass {
 pub struct CityArea {
     /// Name, possibly empty.
     pub name: String,
-    /// What covers it.
+    /// Kind of land cover.
     pub cover: LandCover,
     /// Outline in plan, at least one polygon.
     pub polygons: Vec<Polygon>,

@@ -19,7 +19,7 @@ impl Color {
         Self { r, g, b, a: 255 }
     }
 
-    /// The light of this colour through a filter of another: both linear, parts multiplied.
+    /// Product of this colour and `filter`, channel by channel in linear light; alphas are multiplied, too.
     pub fn times(self, filter: Self) -> Self {
         if filter == Self::rgb(255, 255, 255) {
             return self;

@@ -17,7 +17,7 @@ pub struct Draped {
 /// Lays a polyline on the drawn surface of the terrain ([`Heightfield::surface_at`]): a vertex wherever it crosses an edge of a
 /// triangle, so that it neither floats nor sinks anywhere; split where the ground is missing.
 ///
-/// Repeated points and points that are not finite are dropped. Pieces of no length vanish.
+/// Repeated points and points that are not finite are dropped. Pieces of no length are dropped.
 pub fn drape_polyline(terrain: &Heightfield, line: &[DVec2]) -> Draped {
     let mut out = Draped::default();
     let mut part: Vec<DVec3> = Vec::new();

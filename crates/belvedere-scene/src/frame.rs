@@ -1,4 +1,4 @@
-//! Pictures and who makes them.
+//! Pictures: options, jobs, results and the trait of renderers.
 
 use crate::{Cancelled, Light, Overlay, Progress, Scene};
 use belvedere_core::View;
@@ -26,16 +26,16 @@ pub struct RenderOptions {
     pub threads: usize,
     /// Extra buffers.
     pub aux: Aux,
-    /// What is done to the surfaces of the picture before marks are drawn.
+    /// Stylisation of the surfaces, before marks are drawn.
     pub stylisation: Stylisation,
     /// Marks that belong to no layer.
     pub overlay: Overlay,
-    /// How often each sample is taken, with other thresholds, where representations of styling sections pass into each other; 1 = an
-    /// ordered dither, >= 1.
+    /// Exposures of each sample, with different thresholds, where representations of styling sections blend, >= 1; 1 = an ordered
+    /// dither.
     pub exposures: u32,
     /// How representations of styling sections are put together.
     pub compositing: Compositing,
-    /// Only one representation, by its number among those of the view's sections, wherever it has a weight.
+    /// Draws one representation only, by its number among those of the view's sections, wherever it has a weight; `None` = all.
     pub representation: Option<usize>,
     /// Whether lines, outlines, points and names are drawn, those of the overlay too; else surfaces alone.
     pub marks: bool,
@@ -62,12 +62,12 @@ impl Default for RenderOptions {
     }
 }
 
-/// Drawing over the surfaces of a picture from their depths; nothing by default.
+/// Stylisation of the surfaces of a picture, computed from their depths; none by default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Stylisation {
     /// Strength of dark edges where depth or faces break, 0..=1.
     pub edges: f32,
-    /// Strength of the shade behind what stands out (depth unsharp masking), 0..=10; 3 to 6 are usual.
+    /// Strength of the shade behind surfaces that stand out (depth unsharp masking), 0..=10; 3 to 6 are usual.
     pub unsharp: f32,
 }
 
@@ -87,7 +87,7 @@ pub enum Compositing {
 }
 
 impl FrameStats {
-    /// Work of two drawings of one scene.
+    /// Sum of the work of two drawings of one scene.
     pub fn and(&self, other: &Self) -> Self {
         Self {
             triangles_in: self.triangles_in.max(other.triangles_in),
@@ -104,13 +104,13 @@ impl FrameStats {
 /// Everything a renderer needs for one picture.
 #[derive(Debug, Clone, Copy)]
 pub struct RenderJob<'a> {
-    /// What is looked at.
+    /// The scene.
     pub scene: &'a Scene,
-    /// How.
+    /// The view.
     pub view: &'a View,
     /// The sun.
     pub light: &'a Light,
-    /// Quality.
+    /// Options of the picture.
     pub options: &'a RenderOptions,
     /// Progress and cancellation.
     pub progress: &'a Progress,
@@ -144,9 +144,10 @@ pub struct Frame {
     pub height: usize,
     /// Opaque sRGB colour.
     pub color: Vec<[u8; 3]>,
-    /// Depth at the pixel centre, scene units; infinite where there is only sky. Surfaces only: lines and points leave it alone.
+    /// Depth at the pixel centre, scene units; infinite where there is only sky. Surfaces only: lines and points do not change it.
     pub depth: Vec<f32>,
-    /// What is seen at the pixel centre: 0 = sky, else 1 + index of the layer (lines, outlines and points where they are visible, not where they shine through).
+    /// Layer seen at the pixel centre: 0 = sky, else 1 + index of the layer (lines, outlines and points where they are visible, not where
+    /// they shine through).
     pub id: Vec<u32>,
     /// True world position of the surface at the pixel centre (NaN where sky), if asked for.
     pub world: Option<Vec<[f64; 3]>>,
@@ -154,7 +155,7 @@ pub struct Frame {
     pub stats: FrameStats,
 }
 
-/// A picture that could not be made.
+/// Errors of a renderer.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
@@ -191,7 +192,7 @@ pub trait Renderer {
     fn name(&self) -> &'static str;
     /// Draws one picture.
     fn render(&self, job: &RenderJob<'_>) -> Result<Frame, RenderError>;
-    /// The same into the memory of an earlier frame, which is gone afterwards, also after an error.
+    /// Draws one picture into the memory of an earlier frame, whose content is lost, also after an error.
     fn render_into(&self, job: &RenderJob<'_>, frame: &mut Frame) -> Result<(), RenderError> {
         *frame = self.render(job)?;
         Ok(())

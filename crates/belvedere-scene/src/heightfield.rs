@@ -73,7 +73,7 @@ pub enum HeightfieldError {
 
 /// Heights on a grid of nodes, aligned with the axes of the scene. Row 0 is the northernmost.
 ///
-/// Holes are a mask ([`NodeState::Void`]), never a magic height; the height stored at a void is 0 and means nothing.
+/// Holes are a mask ([`NodeState::Void`]), never a magic height; the height stored at a void is 0 and has no meaning.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heightfield {
     north_west: DVec2,
@@ -81,7 +81,7 @@ pub struct Heightfield {
     cols: usize,
     rows: usize,
     heights: Vec<f32>,
-    /// Nothing where every node is measured: a byte per node matters for large grounds.
+    /// `None` where every node is measured, which saves a byte per node.
     states: Option<Vec<NodeState>>,
     z_range: [f64; 2],
 }
@@ -99,7 +99,7 @@ impl<'a> States<'a> {
         self.len
     }
 
-    /// Whether there is no node; never true of a ground.
+    /// Whether there is no node; never true for a heightfield.
     pub fn is_empty(self) -> bool {
         self.len == 0
     }
@@ -293,7 +293,7 @@ impl Heightfield {
         let mut height = 0.0;
         for (k, w) in corners.into_iter().zip(weights) {
             if w == 0.0 {
-                continue; // on a grid line the nodes beside it do not matter
+                continue; // on a grid line the nodes beside it have no influence
             }
             if self.is_void(k) {
                 return None;

@@ -43,11 +43,11 @@ pub enum Palette {
     Desert,
     /// Rock and ice, for high mountains.
     Glacial,
-    /// Blue to yellow in even steps of lightness: the one that is read most safely.
+    /// Blue to yellow in even steps of lightness: the palette that is read most reliably.
     Clear,
     /// One light grey.
     Plain,
-    /// Colours of its own.
+    /// A colour ramp given by the user.
     Ramp(Arc<Ramp>),
 }
 
@@ -67,7 +67,7 @@ pub struct Drape {
 /// A terrain layer.
 #[derive(Debug, Clone)]
 pub struct TerrainLayer {
-    /// Heights. Shared, so that copies of a scene, and whatever is computed once per ground, agree on which ground it is.
+    /// Heights. Shared: copies of a scene and caches per ground identify the ground by this pointer.
     pub heightfield: Arc<Heightfield>,
     /// Pictures draped over it, later ones on top.
     pub drapes: Vec<Drape>,
@@ -151,7 +151,7 @@ pub struct AreaFeature {
     pub rings: Vec<Vec<DVec2>>,
 }
 
-/// What covers an area.
+/// Surface of an area.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AreaSurface {
     /// Unknown: an outline, and a light fill that everything shows through.
@@ -185,7 +185,7 @@ impl AreaSurface {
         }
     }
 
-    /// Outline where none is given; `None` = no line beside what the surface itself has at its edge.
+    /// Outline where none is given; `None` = no line but the shore or rim that the surface itself has.
     pub fn outline(self) -> Option<Color> {
         match self {
             Self::Outline => Some(Color::rgb(110, 68, 128)),
@@ -219,7 +219,7 @@ pub struct AreaLayer {
     pub outline: Option<Color>,
     /// Outline width on screen, pixels.
     pub width_px: f64,
-    /// What covers it.
+    /// Surface of the areas.
     pub surface: AreaSurface,
     /// Style of hidden parts of the outline.
     pub hidden: Hidden,
@@ -346,7 +346,7 @@ pub enum LayerKind {
 pub struct Layer {
     /// Unique id within the scene.
     pub id: String,
-    /// Whether constructors and measures work for it.
+    /// Whether its features are required: constructors and measures work to make them visible.
     pub must_see: bool,
     /// Content.
     pub kind: LayerKind,
@@ -391,7 +391,7 @@ impl LayerKind {
         }
     }
 
-    /// Takes over the surface of another layer if it is equal, so that memory, and what is computed per surface, is spent once.
+    /// Shares the surface of another layer if it is equal, so that memory and computations per surface are spent once.
     pub fn share_surface(&mut self, other: &Self) {
         match (self, other) {
             (Self::Terrain(a), Self::Terrain(b)) if a.heightfield == b.heightfield => {

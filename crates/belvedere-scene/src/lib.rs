@@ -1,5 +1,5 @@
-//! What is looked at: terrain, lines, areas, points, boxes, meshes, molecules and cities as plain data, never view-dependent;
-//! and the contract between pictures and whoever needs them ([`Renderer`], [`RenderJob`], [`Frame`]).
+//! The scene: terrain, lines, areas, points, boxes, meshes, molecules and cities as plain data, independent of any view;
+//! and the interface between renderers and their callers ([`Renderer`], [`RenderJob`], [`Frame`]).
 
 pub mod bodies;
 pub mod cell;

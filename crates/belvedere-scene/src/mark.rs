@@ -38,7 +38,7 @@ pub enum Symbol {
     Cross,
 }
 
-/// How the points of a layer look beside their colour and size.
+/// Style of the points of a layer, besides colour and size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointStyle {
     /// Shape.
@@ -61,6 +61,6 @@ pub enum DistanceMarkers {
     /// A round distance that gives about ten marks on the longest line of the layer.
     #[default]
     Auto,
-    /// So many scene units along the ground, > 0.
+    /// Distance along the ground, scene units, > 0.
     Every(f64),
 }

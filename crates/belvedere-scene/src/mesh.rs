@@ -40,44 +40,44 @@ pub struct Mesh {
     texturing: Option<Box<Texturing>>,
 }
 
-/// Vertices and triangles that make no mesh.
+/// Errors of a mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// A coordinate that is no number.
+    /// A coordinate is not finite in single precision.
     #[error("vertex {vertex} lies at {position}, which is not finite; repair the mesh")]
     NotFinite {
         /// Number of the vertex.
         vertex: usize,
-        /// Where it lies.
+        /// Its position, scene coordinates.
         position: DVec3,
     },
-    /// A triangle of a vertex that there is not.
+    /// A triangle names a vertex that does not exist.
     #[error("triangle {triangle} names vertex {vertex} of {vertices}; repair the mesh")]
     Index {
         /// Number of the triangle.
         triangle: usize,
         /// The vertex it names.
         vertex: u32,
-        /// Vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
-    /// Colours or normals of another number than what they belong to.
+    /// The number of colours, normals, parts, shares of light or texture positions does not fit.
     #[error("the mesh has {found} {what} for {expected}; give one for each or none")]
     Count {
-        /// What.
+        /// Kind of the values.
         what: &'static str,
-        /// How many.
+        /// Number given.
         found: usize,
-        /// How many are needed.
+        /// Number needed.
         expected: usize,
     },
-    /// More than 32-bit numbers can count.
+    /// More vertices or triangles than `Mesh::MAX`.
     #[error("the mesh has {count} {what}, at most {limit} are possible; split it", limit = Mesh::MAX)]
     TooMany {
-        /// What.
+        /// `vertices` or `triangles`.
         what: &'static str,
-        /// How many.
+        /// Their number.
         count: usize,
     },
 }
@@ -109,7 +109,7 @@ impl Mesh {
         Self::textured(positions, triangles, colors, parts, None)
     }
 
-    /// [`Mesh::in_parts`] that wears pictures, which multiply its colours; without parts if `parts` is empty.
+    /// [`Mesh::in_parts`] with pictures, which multiply its colours; without parts if `parts` is empty.
     ///
     /// # Errors
     /// [`MeshError`].
@@ -164,7 +164,7 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// This mesh with a unit normal per vertex, for smooth shading; zero = none known there.
+    /// This mesh with a unit normal per vertex, for smooth shading; zero = not known there.
     ///
     /// # Errors
     /// [`MeshError::Count`].
@@ -177,7 +177,7 @@ impl Mesh {
         Ok(self)
     }
 
-    /// This mesh moved and turned about its own origin.
+    /// This mesh, given in coordinates of its layer, at a placement in the scene.
     pub fn placed(&self, at: &Placement) -> Self {
         let origin = at.apply(self.origin);
         let turned = |v: &Vec3| at.turn(v.as_dvec3()).as_vec3();
@@ -196,7 +196,7 @@ impl Mesh {
         self.retain(&kept);
     }
 
-    /// Leaves out triangles with all that belongs to them; their vertices stay.
+    /// Removes triangles with their colours, parts, openness and texture positions; vertices stay.
     fn retain(&mut self, kept: &[bool]) {
         let mut keep = kept.iter();
         Arc::make_mut(&mut self.triangles).retain(|_| keep.next() == Some(&true));
@@ -215,7 +215,7 @@ impl Mesh {
         }
     }
 
-    /// Takes over the vertices and triangles of another mesh if they are equal, so that both are known to be one surface.
+    /// Shares the vertices and triangles of another mesh if they are equal, so that both are known to be one surface.
     pub fn share(&mut self, other: &Self) {
         let equal = self.origin == other.origin
             && self.positions.len() == other.positions.len()
@@ -281,7 +281,7 @@ impl Mesh {
         let Some(normals) = &self.normals else { return face };
         let corners = self.triangles[triangle].map(|v| normals[v as usize].as_dvec3());
         let smooth = corners.iter().zip(weights).fold(DVec3::ZERO, |sum, (&n, w)| {
-            // A file may turn normals and corners against each other.
+            // In a file, normals may contradict the order of the corners.
             sum + w * if n.dot(face) < 0.0 { -n } else { n }
         });
         smooth.normalize_or(face)
@@ -303,9 +303,9 @@ impl Mesh {
         }
     }
 
-    /// [`Mesh::color_at`] times what the triangle's picture shows there.
+    /// [`Mesh::color_at`] times the colour of the triangle's picture there.
     ///
-    /// * `footprint`: side of the square that is seen as one colour, scene units.
+    /// * `footprint`: side of the square over which the picture is averaged, scene units.
     pub fn surface_color_at(&self, triangle: usize, weights: [f64; 3], footprint: f64) -> Option<Color> {
         let own = self.color_at(triangle, weights);
         let Some((texture, corners)) = self.texturing.as_ref().and_then(|t| t.of(triangle)) else { return own };
@@ -357,7 +357,7 @@ impl MeshLayer {
         Self { mesh, color, names: Vec::new(), wanted: None, rigid: RigidParts::None }
     }
 
-    /// Numbers of the parts whose path has a step of this name, or is it; capitals do not matter.
+    /// Numbers of the parts whose path, or a step of it, is `name`; case does not matter.
     pub fn parts_named(&self, name: &str) -> Vec<u32> {
         let is =
             |path: &str| path.eq_ignore_ascii_case(name) || path.split('/').any(|step| step.eq_ignore_ascii_case(name));

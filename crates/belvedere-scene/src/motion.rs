@@ -4,26 +4,26 @@ use crate::{BoxShape, LayerKind, MeshLayer, Placement};
 use belvedere_core::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Placements at times; between them straight and even, turning the shorter way round, before and after them at rest.
+/// Placements at times, interpolated linearly (yaw by the shorter turn), constant before the first and after the last.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
     keys: Vec<(f64, Placement)>,
 }
 
-/// Times and placements that make no motion.
+/// Errors of a motion.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MotionError {
-    /// There are none.
+    /// There is no placement.
     #[error("a motion needs at least one row of t, x, y, z, yaw_deg")]
     Empty,
-    /// A number that is not finite.
+    /// A time or placement is not finite.
     #[error("row {row} of a motion holds a number that is not finite; repair it")]
     NotFinite {
         /// From 1.
         row: usize,
     },
-    /// Times that do not rise.
+    /// The times do not rise.
     #[error("row {row} of a motion is at {t} s, after {before} s; times must rise")]
     Order {
         /// From 1.
@@ -55,7 +55,7 @@ impl Motion {
         Ok(Self { keys })
     }
 
-    /// Where the layer is at a time, seconds.
+    /// Placement at time `t`, seconds.
     pub fn at(&self, t: f64) -> Placement {
         let after = self.keys.partition_point(|(at, _)| *at <= t);
         let last = self.keys.len() - 1;
@@ -73,14 +73,14 @@ impl Motion {
         self.keys[self.keys.len() - 1].0
     }
 
-    /// Way of the layer's origin, scene coordinates.
+    /// Positions of the layer's origin at all times, scene coordinates.
     pub fn path(&self) -> Vec<DVec3> {
         self.keys.iter().map(|(_, at)| at.translate).collect()
     }
 }
 
 impl LayerKind {
-    /// The layer as it stands at a placement; `None` for kinds that cannot move.
+    /// The layer at a placement; `None` for kinds that cannot move.
     pub fn placed(&self, at: &Placement) -> Option<Self> {
         match self {
             Self::Boxes(layer) => {

@@ -8,7 +8,7 @@ use belvedere_core::DVec3;
 pub struct OverlayLine {
     /// Vertices, scene coordinates.
     pub points: Vec<DVec3>,
-    /// Whether the line lies on the ground, whatever its heights; it ends where there is none.
+    /// Whether the line is laid on the ground and its heights are ignored; it ends where the ground ends.
     pub on_ground: bool,
     /// Colour.
     pub color: Color,
@@ -16,7 +16,7 @@ pub struct OverlayLine {
     pub width_px: f64,
     /// Colour of the rim; `None` = no rim.
     pub casing: Option<Color>,
-    /// What happens behind surfaces.
+    /// Style of the parts behind surfaces.
     pub hidden: Hidden,
     /// Text at its visible end nearest to the bottom of the picture; possibly empty.
     pub label: String,
@@ -27,14 +27,14 @@ pub struct OverlayLine {
 pub struct OverlayFace {
     /// Corners in order, scene coordinates, at least 3.
     pub corners: Vec<DVec3>,
-    /// Colour with opacity. Behind surfaces less of it is left.
+    /// Colour with opacity; fainter behind surfaces.
     pub color: Color,
 }
 
 /// A marker with a text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OverlayPoint {
-    /// Place, scene coordinates.
+    /// Position, scene coordinates.
     pub position: DVec3,
     /// Shape.
     pub symbol: Symbol,
@@ -42,13 +42,13 @@ pub struct OverlayPoint {
     pub size_px: f64,
     /// Colour.
     pub color: Color,
-    /// What happens behind surfaces.
+    /// Style behind surfaces.
     pub hidden: Hidden,
     /// Text, possibly empty.
     pub label: String,
 }
 
-/// Everything drawn that belongs to no layer and leaves the id buffer alone.
+/// Everything drawn that belongs to no layer; it does not change the id buffer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overlay {
     /// Lines below those of the layers, such as a grid.

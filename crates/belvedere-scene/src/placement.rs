@@ -1,8 +1,8 @@
-//! Where things stand.
+//! Placements of layers.
 
 use belvedere_core::DVec3;
 
-/// Where a layer's own origin is, and how the layer is turned about the vertical.
+/// Position of a layer's own origin, and its rotation about the vertical.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
     /// The layer's own origin, scene coordinates.
@@ -12,12 +12,12 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// A point of the layer, scene coordinates.
+    /// Scene coordinates of a point given in coordinates of the layer.
     pub fn apply(&self, p: DVec3) -> DVec3 {
         self.turn(p) + self.translate
     }
 
-    /// A direction of the layer.
+    /// Scene direction of a direction of the layer.
     pub fn turn(&self, v: DVec3) -> DVec3 {
         let (sin, cos) = self.yaw.sin_cos();
         DVec3::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y, v.z)

@@ -12,7 +12,7 @@ pub struct Cancelled;
 
 type Report = dyn Fn(&str, f64) + Send + Sync;
 
-/// Tells a listener how far work has come and asks it whether to go on. Cheap to clone.
+/// Reports progress to a listener, and carries cancellation and a limit of time. Cheap to clone.
 #[derive(Clone, Default)]
 pub struct Progress {
     report: Option<Arc<Report>>,
@@ -38,7 +38,7 @@ impl Span {
     }
 }
 
-/// What is left for the work after a piece, at least and at most, as a share of the time that is left.
+/// Least and largest share of the remaining time that is kept for the work after a piece.
 const LEAST_REST: f64 = 0.15;
 const MOST_REST: f64 = 0.75;
 
@@ -49,7 +49,7 @@ impl std::fmt::Debug for Progress {
 }
 
 impl Progress {
-    /// Progress that nobody listens to.
+    /// Progress without a listener.
     pub fn silent() -> Self {
         Self::default()
     }
@@ -59,7 +59,7 @@ impl Progress {
         Self { report: Some(Arc::new(report)), ..Self::default() }
     }
 
-    /// Progress that nobody listens to but that is cancelled together with this one: for a part of the work.
+    /// Progress without a listener that is cancelled together with this one: for a part of the work.
     pub fn unheard(&self) -> Self {
         Self { report: None, ..self.clone() }
     }
@@ -89,18 +89,18 @@ impl Progress {
         self.span.is_some()
     }
 
-    /// Time that is left; `None` without a limit.
+    /// Remaining time; `None` without a limit.
     pub fn left(&self) -> Option<Duration> {
         self.span.map(|span| span.left())
     }
 
-    /// For a piece of the work that may take this share of the time that is left, 0..=1.
+    /// Progress for a piece of the work that may take this share of the remaining time, 0..=1.
     pub fn part(&self, share: f64) -> Self {
         self.until(|span| Instant::now() + span.left().mul_f64(share.clamp(0.0, 1.0)))
     }
 
-    /// For a piece of the work after which more is to be done that takes about `rest` times as long as all that was done so far:
-    /// between 0.15 and 0.75 of the time that is left is kept for that.
+    /// Progress for a piece of the work that is followed by work of about `rest` times the time spent so far: between 0.15 and 0.75 of
+    /// the remaining time is kept for that.
     pub fn before(&self, rest: f64) -> Self {
         self.until(|span| {
             let (left, wanted) = (span.left(), span.began.elapsed().mul_f64(rest.clamp(0.0, 1e6)));
@@ -108,7 +108,7 @@ impl Progress {
         })
     }
 
-    /// For a piece of the work without which all would be in vain: it may take at least this share of the time for all of the work.
+    /// Progress for an indispensable piece of the work: it may take at least this share of the time for all of the work.
     pub fn at_least(&self, share: f64) -> Self {
         self.until(|span| span.deadline.max(Instant::now() + span.whole.mul_f64(share.clamp(0.0, 1.0))))
     }
@@ -127,7 +127,7 @@ impl Progress {
         self.cancelled.load(Ordering::Relaxed)
     }
 
-    /// Whether work that can end with something less good should do so: it is cancelled, or its time is up.
+    /// Whether work that can end with an intermediate result should do so: it is cancelled, or its time is up.
     pub fn should_end(&self) -> bool {
         self.is_cancelled() || self.is_late()
     }

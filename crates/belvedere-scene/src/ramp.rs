@@ -9,12 +9,12 @@ pub enum RampHeight {
     Metres(f64),
     /// Share of the ground's range of heights: 0 = lowest, 1 = highest.
     Share(f64),
-    /// -1 = lowest ground, 0 = height 0, 1 = highest ground, straight between.
+    /// -1 = lowest ground, 0 = height 0, 1 = highest ground, linear between.
     Hinged(f64),
 }
 
 impl RampHeight {
-    /// In metres, for ground between two heights.
+    /// This height in metres, for ground with the given lowest and highest height.
     pub fn metres(self, [bottom, top]: [f64; 2]) -> f64 {
         match self {
             Self::Metres(z) => z,
@@ -27,13 +27,13 @@ impl RampHeight {
 /// A colour at a height. Two stops at one height are a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RampStop {
-    /// Where.
+    /// Height of the stop.
     pub height: RampHeight,
     /// The colour there.
     pub color: Color,
 }
 
-/// Colours by height, straight between the stops in sRGB.
+/// Colours by height, linear between the stops in sRGB.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ramp {
     /// Stops, in any order; those of one height in the order from below to above.

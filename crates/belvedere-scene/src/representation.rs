@@ -1,6 +1,6 @@
-//! Representations: which layers show a place in which way.
+//! Representations: alternative sets of layers.
 
-/// One way to show what there is: a set of layers that the styling sections of a preset name.
+/// An alternative form of the scene: a set of layers that the styling sections of a preset name.
 ///
 /// Layers of no representation are shown everywhere. Source: Pasewaldt et al. 2011, section 4.4 ("geometries" of a section).
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

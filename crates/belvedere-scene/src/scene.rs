@@ -40,7 +40,7 @@ impl std::fmt::Display for Crs {
     }
 }
 
-/// What is looked at. Plain data, independent of any view.
+/// A scene: plain data, independent of any view.
 #[derive(Debug, Clone, Default)]
 pub struct Scene {
     /// Title for pictures and reports.
@@ -51,12 +51,12 @@ pub struct Scene {
     pub unit: Unit,
     /// Layers, in file order. The id buffer of a [`crate::Frame`] holds `1 + index` into this list.
     pub layers: Vec<Layer>,
-    /// Ways to show the same, of which styling sections choose; empty = every layer is shown everywhere.
+    /// Alternative sets of layers, of which styling sections choose; empty = every layer is shown everywhere.
     pub representations: Vec<Representation>,
 }
 
 impl Scene {
-    /// This scene with another layer, which nobody has to see.
+    /// This scene with another layer, whose features are not required.
     pub fn with_layer(mut self, id: impl Into<String>, kind: LayerKind) -> Self {
         self.layers.push(Layer { id: id.into(), must_see: false, kind });
         self
@@ -67,8 +67,8 @@ impl Scene {
         self.with_layer(id, LayerKind::Terrain(TerrainLayer::new(heightfield)))
     }
 
-    /// This scene with a line that must be seen, in the usual style: laid on the ground where there is some, at height 0 in a scene
-    /// without terrain.
+    /// This scene with a line that must be seen, in the usual style: laid on the terrain, or at height 0 in a scene without
+    /// terrain.
     pub fn with_line(mut self, id: impl Into<String>, line: &[DVec2]) -> Self {
         let parts = match self.terrain() {
             Some(terrain) => drape_polyline(terrain, line).parts,
@@ -132,7 +132,7 @@ mod tests {
         let representations = vec![of("loa0", &["houses", "church"]), of("loa1", &["blocks", "church"])];
         let scene = Scene { representations, ..scene };
         assert_eq!(scene.shown_by(&["loa1", "loa0"]), [u32::MAX, 0b10, 0b01, 0b11]);
-        // What no scene knows is the first representation.
+        // An id that the scene does not know stands for the first representation.
         assert_eq!(scene.shown_by(&["all"]), [u32::MAX, 0b1, 0b0, 0b1]);
         assert_eq!(Scene { representations: vec![], ..scene }.shown_by(&["all"]), [u32::MAX; 4]);
     }

@@ -4,19 +4,19 @@ use crate::Color;
 use glam::Vec2;
 use std::sync::Arc;
 
-/// What lies beyond the edge of a picture.
+/// Continuation of a picture beyond its edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Wrap {
-    /// The picture again.
+    /// The picture is repeated.
     #[default]
     Repeat,
-    /// Its edge.
+    /// The pixels at its edge are continued.
     Clamp,
-    /// The picture mirrored.
+    /// The picture is mirrored.
     Mirror,
 }
 
-/// A picture that is laid on triangles, with ever coarser copies of itself.
+/// A picture that is laid on triangles, with a mip pyramid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
     levels: Vec<Level>,
@@ -31,14 +31,14 @@ struct Level {
     pixels: Vec<[u8; 4]>,
 }
 
-/// Pictures and how the triangles of a mesh wear them.
+/// Pictures, and their positions on the triangles of a mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Texturing {
     /// Pictures.
     pub textures: Vec<Arc<Texture>>,
     /// Number of the picture of each triangle; [`Texturing::NONE`] = none.
     pub of_triangle: Vec<u32>,
-    /// Place in the picture of each corner of each triangle: (0, 0) is its top left corner, (1, 1) its bottom right.
+    /// Position in the picture of each corner of each triangle: (0, 0) is its top left corner, (1, 1) its bottom right.
     pub corners: Vec<[Vec2; 3]>,
 }
 
@@ -71,7 +71,7 @@ impl Texture {
         [self.levels[0].width, self.levels[0].height]
     }
 
-    /// Colour at a place, of a square of so many pixels along its side there; bilinear.
+    /// Colour at `place`, (0, 0) top left to (1, 1), of a square of `pixels` pixels along its side: nearest mip level, bilinear.
     pub fn at(&self, place: Vec2, pixels: f32) -> Color {
         let wanted = pixels.max(1.0).log2().round() as usize;
         let level = &self.levels[wanted.min(self.levels.len() - 1)];
@@ -104,7 +104,7 @@ impl Level {
         let at = |x: usize, y: usize| self.pixels[y.min(self.height - 1) * self.width + x.min(self.width - 1)];
         let mean = |x: usize, y: usize| {
             let four = [at(2 * x, 2 * y), at(2 * x + 1, 2 * y), at(2 * x, 2 * y + 1), at(2 * x + 1, 2 * y + 1)];
-            // Light adds up, not its codes: these are about its square roots.
+            // The mean is that of linear light, whose square roots the codes are, about.
             std::array::from_fn(|c| {
                 let sum: u32 = four.iter().map(|p| u32::from(p[c]) * u32::from(p[c])).sum();
                 (f64::from(sum) / 4.0).sqrt().round() as u8

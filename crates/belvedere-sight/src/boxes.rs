@@ -1,10 +1,10 @@
-//! Boxes: where a segment meets one, and a tree over many.
+//! Boxes: tests against segments, and a bounding tree.
 
 use crate::{Lift, clip_segment};
 use belvedere_core::{Aabb, DVec3};
 use belvedere_scene::BoxShape;
 
-/// Boxes to a leaf of the tree.
+/// Most boxes in a leaf of the tree.
 const LEAF: usize = 4;
 
 /// An upright box of a scene, turned about the vertical, in coordinates of its own.
@@ -65,14 +65,14 @@ impl UprightBox {
         sign * [DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0), DVec3::Z][axis]
     }
 
-    /// Parameters between which the segment `a b` lies within `reach` of the box, wherever the ground has moved it to.
+    /// Parameters between which the segment `a b` lies within `reach` of the box, for every displacement of the ground under it.
     fn within(&self, a: DVec3, b: DVec3, reach: f64) -> Option<[f64; 2]> {
         let [low, high] = self.lift.map(|l| l * DVec3::Z);
         let (start, end) = (self.local(a), self.local(b));
         clip(start, end - start, &Aabb { min: low - self.half, max: high + self.half }, reach)
     }
 
-    /// How deep inside the box the segment `a b` runs: distance from the middle of its inner part to the nearest side or
+    /// Depth of the segment `a b` inside the box, scene units: distance from the middle of its inner part to the nearest side or
     /// to the top; `None` if it runs outside or along a face.
     pub fn depth_inside(&self, a: DVec3, b: DVec3) -> Option<f64> {
         let (start, end) = (self.local(a), self.local(b));
@@ -82,7 +82,7 @@ impl UprightBox {
         (t0 < t1 && sides.min_element() > 0.0).then(|| sides.x.min(sides.y).min(self.half.z - middle.z))
     }
 
-    /// Whether the ground under the box moves unevenly.
+    /// Whether the displacement of the ground varies under the box.
     pub fn is_sheared(&self) -> bool {
         self.lift[0] != self.lift[1]
     }
@@ -108,7 +108,7 @@ pub struct BoxTree {
 }
 
 impl BoxTree {
-    /// * `boxes`: with the indices of their layers and in them;
+    /// * `boxes`: each with the index of its layer and its index in that;
     /// * `lift`: displacement of the ground that they stand on.
     pub fn new<'b>(boxes: impl IntoIterator<Item = ([usize; 2], &'b BoxShape)>, lift: Option<Lift<'_>>) -> Self {
         let boxes = boxes.into_iter().map(|([layer, index], shape)| UprightBox::new(layer, index, shape, lift));
@@ -135,13 +135,13 @@ impl BoxTree {
         at
     }
 
-    /// Around all boxes, wherever the ground has moved them to.
+    /// Smallest box around all boxes, for every displacement of the ground under them.
     pub fn bounds(&self) -> Aabb {
         self.nodes.first().map_or(Aabb::EMPTY, |(bounds, _)| *bounds)
     }
 
     /// Visits the boxes that come within `reach` (scene units) of the segment `a b`, in no order, with the parameters of
-    /// its part there, until `visit` says false; answers false if it did.
+    /// its part there, until `visit` returns `false`; then the result is `false`.
     pub fn near(&self, a: DVec3, b: DVec3, reach: f64, visit: &mut dyn FnMut(&UprightBox, [f64; 2]) -> bool) -> bool {
         let mut stack = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
         while let Some(i) = stack.pop() {

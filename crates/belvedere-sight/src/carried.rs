@@ -1,12 +1,12 @@
-//! Rigid bodies where a view carries them to.
+//! Rigid bodies, carried by the stages of a view.
 
 use belvedere_core::{RigidMotion, View};
 use belvedere_scene::{Bodies, BoxShape, LayerKind, Mesh, MeshColors, MeshError, Scene};
 
 /// The rigid bodies of a scene, each with its motion by the stages of a view up to the spline bend ([`View::body_motion`]).
 ///
-/// Carried bodies stand in the space that [`Carried::after`] photographs. Rays of that view meet them there; what they meet is
-/// taken back by the motion of its body.
+/// Carried bodies stand in the space that [`Carried::after`] photographs. Rays of that view meet them there; a hit is taken
+/// back to the scene by the motion of its body.
 #[derive(Debug, Clone)]
 pub struct Carried {
     after: View,
@@ -17,13 +17,13 @@ pub struct Carried {
 #[derive(Debug, Clone)]
 pub struct CarriedLayer {
     bodies: Bodies,
-    /// Of each body; `None` where its foot has no image.
+    /// Motion of each body; `None` where its foot has no image.
     motions: Vec<Option<RigidMotion>>,
 }
 
 impl Carried {
-    /// One pass over the triangles of the layers with bodies. `None` if there are none, or no stage that would move them otherwise than
-    /// other points.
+    /// The bodies of a scene: one pass over the triangles of their layers. `None` if there are no bodies, or if the view does not carry
+    /// bodies as a whole.
     pub fn new(scene: &Scene, view: &View) -> Option<Self> {
         if !view.carries_bodies() {
             return None;
@@ -32,7 +32,7 @@ impl Carried {
         layers.iter().any(Option::is_some).then(|| Self { after: view.after_bodies(), layers })
     }
 
-    /// The view of what was carried: curved rays, and the pinhole.
+    /// The view of the carried bodies: curved rays and the pinhole.
     pub fn after(&self) -> &View {
         &self.after
     }
@@ -64,7 +64,7 @@ impl CarriedLayer {
         Some(Self { bodies, motions })
     }
 
-    /// Boxes as triangles.
+    /// The carried boxes as triangles.
     fn boxes(&self, boxes: &[BoxShape]) -> Result<Mesh, MeshError> {
         let (mut places, mut triangles, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
         for (k, (shape, motion)) in boxes.iter().zip(&self.motions).enumerate() {

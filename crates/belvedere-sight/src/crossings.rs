@@ -1,4 +1,4 @@
-//! Where a line of sight meets the edges of the ground's triangles.
+//! Crossings of a line of sight with the edges of the ground's triangles.
 
 use crate::{Edge, EdgeFamily, Field, GridLine};
 use belvedere_core::DVec2;
@@ -12,9 +12,9 @@ pub const AT_NODE: f64 = 1e-9;
 /// `(1 - weight) h[nodes[0]] + weight h[nodes[1]]`, both exact; between crossings (with the diagonals) both are linear.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SightSample {
-    /// 0 at the point, 1 at the eye, in between here.
+    /// Parameter along the line of sight: 0 at the point, 1 at the eye.
     pub tau: f64,
-    /// Ends of the edge as indices into the heights; twice the same where the line passes through a node.
+    /// Ends of the edge as indices into the heights; both the same where the line passes through a node.
     pub nodes: [u32; 2],
     /// Share of the second node, 0..1.
     pub weight: f64,
@@ -40,7 +40,7 @@ impl SightSample {
     }
 }
 
-/// Part of the line of sight, 0..=1, in which the ground counts as the point's own and cannot hide it.
+/// Parameter of the line of sight, 0..=1, up to which the ground lies within the guard and does not count as an occluder.
 ///
 /// * `from`, `eye`: grid coordinates; `guard`: cells.
 pub fn guard_tau(from: DVec2, eye: DVec2, guard: f64) -> f64 {
@@ -90,7 +90,7 @@ impl<'a> SightLine<'a> {
         self.line.dir
     }
 
-    /// Crossings of parts of the line (shares of the way, in order) with families of edges, each once.
+    /// Crossings of parts of the line (ranges of the parameter, in order) with families of edges, each once.
     pub fn samples(&self, parts: &[[f64; 2]], families: &[EdgeFamily]) -> Vec<SightSample> {
         let (nodes, mut out) = (self.field.nodes(), Vec::new());
         for (&part, &family) in parts.iter().flat_map(|part| families.iter().map(move |family| (part, family))) {

@@ -5,8 +5,8 @@ use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
 use belvedere_scene::CellTriangle;
 
-/// Steps along a line over one triangle are at most this long, cells; the surface is bent only by the displacement, whose own grid may cross
-/// the triangle.
+/// Longest step along a line over one triangle, cells: only the displacement bends the surface there, and its own grid may cross the
+/// triangle.
 const STEP: f64 = 0.5;
 
 /// Ground with a vertical displacement: two triangles per cell, whose nodes are displaced, as it is rasterised and written; or plus the
@@ -15,37 +15,37 @@ pub struct DisplacedGround<'a> {
     field: &'a Field,
     delta: &'a Grid,
     faceted: bool,
-    /// Nothing is higher than this.
+    /// Upper bound of the height, scene units.
     highest: f64,
     table: Option<Table>,
 }
 
-/// What many lines of sight over one ground share.
+/// Tables that lines of sight over one ground share.
 struct Table {
     /// Displacement of the nodes.
     moved: Vec<f64>,
-    /// Nothing in a block of [`BLOCK`] x [`BLOCK`] cells is higher.
+    /// Upper bound of the height in each block of [`BLOCK`] x [`BLOCK`] cells.
     highest: Vec<f64>,
     blocks: [usize; 2],
 }
 
-/// Cells per side of a block that a line of sight passes at once where it stays above it.
+/// Cells per side of a block; a line of sight above the block's bound skips it.
 const BLOCK: usize = 8;
 
 /// A vertex of a line of sight: grid coordinates and height.
 pub type SightVertex = (DVec2, f64);
 
-/// The ground that rises most over a line of sight.
+/// The largest height of the ground over a line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Excess {
-    /// By how much, scene units; any negative number if it is below the line everywhere, infinite if there is no line.
+    /// Height over the line, scene units; any negative number if the ground is below the line everywhere, infinite if there is no line.
     pub over: f64,
-    /// Where, grid coordinates; the start of the line where nothing rises over it.
+    /// Position, grid coordinates; the start of the line where nothing rises over it.
     pub at: DVec2,
 }
 
 impl<'a> DisplacedGround<'a> {
-    /// Triangles plus the bilinear displacement.
+    /// Ground of undisplaced triangles plus the bilinear displacement, as it is traced.
     ///
     /// * `delta`: displacement upwards, scene units; 0 beside its grid.
     pub fn new(field: &'a Field, delta: &'a Grid) -> Self {
@@ -53,12 +53,12 @@ impl<'a> DisplacedGround<'a> {
         Self { field, delta, faceted: false, highest, table: None }
     }
 
-    /// Flat triangles between the displaced nodes; likewise.
+    /// Ground of flat triangles between the displaced nodes, as it is rasterised.
     pub fn faceted(field: &'a Field, delta: &'a Grid) -> Self {
         Self { faceted: true, ..Self::new(field, delta) }
     }
 
-    /// Prepared for many lines of sight: one pass over the nodes.
+    /// Adds tables that speed up many lines of sight: one pass over the nodes.
     pub fn prepared(mut self) -> Self {
         let [cols, rows] = self.field.nodes();
         let node = |i: usize| self.displacement(DVec2::new((i % cols) as f64, (i / cols) as f64));
@@ -69,7 +69,7 @@ impl<'a> DisplacedGround<'a> {
             let [x, y] = [b % blocks[0], b / blocks[0]].map(|k| k * BLOCK);
             let [across, down] = [x..=(x + BLOCK).min(cols - 1), y..=(y + BLOCK).min(rows - 1)];
             let nodes = down.flat_map(|y| across.clone().map(move |x| y * cols + x));
-            // Between nodes ground and displacement may be highest at different ones.
+            // Ground and displacement may be largest at different nodes.
             let [h, u, sum] = nodes.fold([f64::NEG_INFINITY; 3], |[h, u, sum], i| {
                 [h.max(height[i]), u.max(moved[i]), sum.max(height[i] + moved[i])]
             });
@@ -104,7 +104,7 @@ impl<'a> DisplacedGround<'a> {
         [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| self.displacement(DVec2::new((col + x) as f64, (row + y) as f64)))
     }
 
-    /// The ground that rises most over a line of sight, from the point to the eye.
+    /// The largest height of the ground over a line of sight, from the point to the eye.
     ///
     /// * `guard`: ground nearer than this to the point does not count, cells.
     pub fn excess(&self, line: &[SightVertex], guard: f64) -> Excess {
@@ -118,14 +118,14 @@ impl<'a> DisplacedGround<'a> {
         worst
     }
 
-    /// The same along a straight part of a line, where that is more than `worst`.
+    /// Replaces `worst` where a straight part of a line has a larger excess.
     fn along(&self, from: SightVertex, to: SightVertex, worst: &mut Excess) {
         let (line, height) = (GridLine::between(from.0, to.0), (from.1, to.1 - from.1));
         let Some([mut t, last]) = line.over(self.field.nodes(), 0.0) else { return };
-        // Enough to step over a border in spite of rounding.
+        // Steps over the border of a cell in spite of rounding.
         let nudge = 1e-9 * line.dir.abs().max_element().recip().min(1e9);
         while t < last {
-            // Above everything, and rising from here.
+            // Above all ground, and rising from here.
             if height.1 >= 0.0 && height.0 + t * height.1 > self.highest {
                 break;
             }
@@ -143,7 +143,7 @@ impl<'a> DisplacedGround<'a> {
         }
     }
 
-    /// The same over the cells of a part of it.
+    /// The same, cell by cell over a part of the line.
     fn in_cells(&self, line: &GridLine, height: (f64, f64), [mut t, last]: [f64; 2], nudge: f64, worst: &mut Excess) {
         let cells = self.field.nodes().map(|n| n - 1);
         while t < last {
@@ -180,7 +180,7 @@ impl<'a> DisplacedGround<'a> {
                 continue;
             }
             let slope = triangle.slope(heights);
-            // What is flat is highest over the line at an end.
+            // Over a flat triangle the excess is largest at an end.
             let steps = if self.faceted { 1.0 } else { (to - from) * line.dir.length() / STEP };
             let count = steps.ceil().max(1.0) as usize;
             let mut over_at = |t: f64| {

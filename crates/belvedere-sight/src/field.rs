@@ -1,4 +1,4 @@
-//! The ground in grid coordinates, lowered by the curvature of the earth: what terrain disocclusion is solved on.
+//! The ground in grid coordinates, lowered by the curvature of the earth: the input of terrain disocclusion.
 
 use belvedere_core::DVec2;
 use belvedere_scene::{CellTriangle, Heightfield, NodeState};
@@ -31,7 +31,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// * `drop`: how far a node at scene x, y lies lower than the data says (curvature of the earth); 0 if flat.
+    /// * `drop`: height, scene units, by which the curvature of the earth lowers a node at scene x, y; 0 if flat.
     ///
     /// Void nodes take the lowest height of the data, so that they never hide anything, and are marked.
     ///
@@ -86,7 +86,7 @@ impl Field {
         &self.heights
     }
 
-    /// Nodes without data.
+    /// Whether each node is without data, row-major.
     pub fn void(&self) -> &[bool] {
         &self.void
     }

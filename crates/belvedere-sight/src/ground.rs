@@ -5,7 +5,7 @@ use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{CellTriangle, Heightfield, NodeState};
 
 /// A heightfield with the smallest and largest height of every block of 2^k x 2^k cells (the "maximum mipmap" of Tevs et
-/// al. 2008), so that a line skips what it clears.
+/// al. 2008), so that a line skips the blocks that it clears.
 pub struct Ground<'a> {
     heightfield: &'a Heightfield,
     ranges: Pyramid<[f32; 2]>,
@@ -14,18 +14,18 @@ pub struct Ground<'a> {
 /// Range of a vertical displacement over the rectangle between two corners (smallest and largest x, y), scene units.
 pub type Lift<'a> = &'a (dyn Fn(DVec2, DVec2) -> [f64; 2] + Sync);
 
-/// Large enough to step over the border of a cell in f64, small enough to be nothing; a parameter of the line.
+/// Step of the line's parameter over the border of a cell: above the rounding of f64, and negligible as a length.
 const NUDGE: f64 = 1e-10;
 
-/// How a walk along a line goes on from a block.
+/// Next step of a walk along a line, from a block.
 enum Step {
-    /// Past it, in larger blocks.
+    /// Leave the block and continue in larger ones.
     Coarser,
-    /// Through the blocks that it is made of.
+    /// Continue in the smaller blocks of the block.
     Finer,
-    /// Past it.
+    /// Leave the block.
     On,
-    /// No further.
+    /// End the walk.
     Stop,
 }
 
@@ -35,7 +35,7 @@ impl<'a> Ground<'a> {
         Self::lifted(heightfield, None)
     }
 
-    /// The same for a surface with a vertical displacement, which the blocks allow for.
+    /// The same for a surface with a vertical displacement, whose range the blocks include.
     pub fn lifted(heightfield: &'a Heightfield, lift: Option<Lift<'_>>) -> Self {
         let hf = heightfield;
         let leaf = |[col, row]: [usize; 2]| {
@@ -53,14 +53,14 @@ impl<'a> Ground<'a> {
         Self { heightfield, ranges: Pyramid::new([hf.cols() - 1, hf.rows() - 1], 1, leaf, parent) }
     }
 
-    /// The heights themselves.
+    /// The heightfield.
     pub fn heightfield(&self) -> &'a Heightfield {
         self.heightfield
     }
 
     /// Smallest height of the straight segment `a b` over the drawn surface, metres; negative = under ground.
     ///
-    /// Exact for the two triangles per cell of [`Heightfield::surface_in_cell`]. Answers `cap` if the segment never
+    /// Exact for the two triangles per cell of [`Heightfield::surface_in_cell`]. Returns `cap` if the segment never
     /// comes closer than that (or never lies over the terrain), and returns early, with any value below `floor`,
     /// once the height is less than `floor`.
     pub fn min_gap(&self, a: DVec3, b: DVec3, cap: f64, floor: f64) -> f64 {
@@ -87,8 +87,8 @@ impl<'a> Ground<'a> {
     }
 
     /// Whether every curve within `reach` (scene units, >= 0) of the straight segment `a b`, point by point, passes the
-    /// surface of [`Ground::lifted`] without touching it. Never wrongly true; false also where blocks as small as
-    /// `reach` cannot tell.
+    /// surface of [`Ground::lifted`] without touching it. `true` is certain; `false` may be wrong where
+    /// blocks as small as `reach` are too coarse.
     pub fn is_clear(&self, a: DVec3, b: DVec3, reach: f64) -> bool {
         let finest = self.ranges.level_of(reach / self.heightfield.spacing().min_element());
         let mut clear = true;
@@ -118,7 +118,7 @@ impl<'a> Ground<'a> {
 
     /// Visits, from `a` to `b`, the cells in which the straight segment comes within `reach` of the heights of the
     /// surface of [`Ground::lifted`], with the parameters (0 at `a`, 1 at `b`) of its part over the cell; until
-    /// `visit` says false.
+    /// `visit` returns `false`.
     pub fn walk(&self, a: DVec3, b: DVec3, reach: f64, visit: &mut dyn FnMut([usize; 2], f64, f64) -> bool) {
         self.near(a, b, reach, 0, visit);
     }
@@ -218,7 +218,7 @@ impl<'a> Ground<'a> {
     }
 }
 
-/// A straight line in space: its plan, its height at the start and what it rises to the end.
+/// A straight line in space: its plan, its height at the start and its rise from start to end.
 struct Line {
     plan: GridLine,
     foot: f64,
@@ -231,7 +231,7 @@ impl Line {
     }
 }
 
-/// Range of no heights.
+/// The empty range of heights.
 const NOTHING: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
 fn union(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {

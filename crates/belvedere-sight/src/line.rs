@@ -7,9 +7,9 @@ use belvedere_scene::CellTriangle;
 /// The segment `start + t * dir`, 0 <= t <= 1, in grid coordinates (x = column, y = row).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GridLine {
-    /// Where it starts.
+    /// Start, grid coordinates.
     pub start: DVec2,
-    /// From there to its end.
+    /// Vector from start to end, cells.
     pub dir: DVec2,
 }
 
@@ -37,7 +37,7 @@ impl GridLine {
     }
 
     /// The block (column, row) at parameter `t`, of `size` blocks of `side` cells each, and the parameter at which the line
-    /// leaves it, which is greater than `t`. The outermost blocks reach on beside the grid.
+    /// leaves it, which is greater than `t`. The outermost blocks extend beyond the grid.
     #[inline]
     pub fn block(&self, side: f64, size: [usize; 2], t: f64) -> ([usize; 2], f64) {
         let at = self.at(t) / side;
@@ -55,7 +55,7 @@ impl GridLine {
         };
         let mut exits = [exit(0, block[0]), exit(1, block[1])];
         for axis in [0, 1] {
-            // On the border, and along it so nearly that rounding keeps it there: it is in the block that it goes to.
+            // On a border, up to rounding, the line counts as in the block that it enters.
             if exits[axis] <= t {
                 block[axis] = if self.dir[axis] > 0.0 { block[axis] + 1 } else { block[axis] - 1 };
                 exits[axis] = exit(axis, block[axis]);
@@ -74,10 +74,10 @@ impl GridLine {
         [[t0, cut], [cut, t1]].map(|part| (CellTriangle::at(start + 0.5 * (part[0] + part[1]) * self.dir), part))
     }
 
-    /// Visits where a part of the line crosses a family of edges of the triangles over a grid of `nodes` (columns, rows):
-    /// with the parameter, the point and the edge.
+    /// Visits the crossings of a part of the line with a family of edges of the triangles over a grid of `nodes` (columns,
+    /// rows): parameter, point and edge.
     ///
-    /// * `slack`: how far beyond the ends of the part a line of the grid may lie to be counted all the same, cells.
+    /// * `slack`: distance beyond the ends of the part, cells, within which grid lines still count.
     #[inline]
     pub fn crossings(
         &self,
@@ -124,7 +124,7 @@ impl EdgeFamily {
     /// All three.
     pub const ALL: [Self; 3] = [Self::Columns, Self::Rows, Self::Diagonals];
 
-    /// What is whole on the lines of the family.
+    /// The coordinate that is a whole number on the lines of the family.
     #[inline]
     pub fn coordinate(self, p: DVec2) -> f64 {
         match self {
@@ -179,7 +179,7 @@ impl Edge {
     }
 }
 
-/// Largest whole number up to `x`, a coordinate; where there is no instruction for it, `f64::floor` is a call.
+/// Largest whole number up to `x`, for coordinates: `f64::floor` is a slower call on processors without that instruction.
 #[inline]
 pub fn floor(x: f64) -> f64 {
     let whole = x as i64 as f64;

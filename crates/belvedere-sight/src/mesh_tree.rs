@@ -1,4 +1,4 @@
-//! A mesh made ready for rays and lines of sight: a tree of bounds over its triangles.
+//! A bounding volume hierarchy over the triangles of a mesh, for rays and lines of sight.
 
 use crate::clip_segment;
 use belvedere_core::{Aabb, DVec3};
@@ -11,7 +11,7 @@ use obvhs::bvh2::leaf_collapser::collapse;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use std::borrow::Cow;
 
-/// Most triangles of a leaf, and what a step down the tree costs in tests of triangles.
+/// Most triangles of a leaf, and the cost of a step down the tree, in triangle tests.
 const LEAF: u32 = 4;
 const STEP_COST: f32 = 2.0;
 
@@ -34,18 +34,18 @@ impl Boundable for Corners<'_> {
 }
 
 impl<'a> MeshTree<'a> {
-    /// Builds the tree: about as long as sorting the triangles.
+    /// Builds the tree, in about the time of sorting the triangles.
     pub fn new(mesh: &'a Mesh) -> Self {
         Self::lifted(mesh, [0.0; 2])
     }
 
-    /// The tree of a mesh whose points may be displaced vertically by something in a range of heights, scene units.
+    /// The tree of a mesh whose points may be displaced vertically within a range, scene units.
     pub fn lifted(mesh: &'a Mesh, lift: [f64; 2]) -> Self {
         let all = (0..mesh.triangles().len() as u32).collect();
         Self::of(Cow::Borrowed(mesh), all, lift)
     }
 
-    /// The tree of a mesh of its own.
+    /// The tree of a mesh that it owns.
     pub fn owned(mesh: Mesh) -> MeshTree<'static> {
         let all = (0..mesh.triangles().len() as u32).collect();
         MeshTree::of(Cow::Owned(mesh), all, [0.0; 2])
@@ -81,19 +81,19 @@ impl<'a> MeshTree<'a> {
         &self.mesh
     }
 
-    /// Whether the mesh stands where it was put.
+    /// Whether the mesh is never displaced.
     pub fn is_still(&self) -> bool {
         self.lift == [0.0; 2]
     }
 
-    /// Around the mesh, wherever it is displaced to.
+    /// Smallest box around the mesh, for every displacement in its range.
     pub fn bounds(&self) -> Aabb {
         let b = self.mesh.bounds();
         Aabb { min: b.min + self.lift[0] * DVec3::Z, max: b.max + self.lift[1] * DVec3::Z }
     }
 
-    /// Visits the triangles whose bounds come within `reach` (scene units) of the straight segment `a b`, the nearer ones to `a` rather
-    /// first. `visit` answers the parameter (0 at `a`, 1 at `b`) beyond which nothing matters any more.
+    /// Visits the triangles whose bounds come within `reach` (scene units) of the straight segment `a b`, roughly
+    /// from `a` to `b`. `visit` returns the parameter (0 at `a`, 1 at `b`) beyond which triangles may be skipped.
     pub fn near(&self, a: DVec3, b: DVec3, reach: f64, visit: &mut dyn FnMut(usize) -> f64) {
         if self.tree.nodes.is_empty() {
             return;
@@ -135,7 +135,7 @@ impl<'a> MeshTree<'a> {
         best
     }
 
-    /// Whether the straight segment `a b` passes any triangle: [`MeshTree::first_crossing`] is something, found sooner.
+    /// Whether the straight segment `a b` passes any triangle: faster than [`MeshTree::first_crossing`].
     pub fn is_crossed(&self, a: DVec3, b: DVec3) -> bool {
         if self.tree.nodes.is_empty() {
             return false;
@@ -156,7 +156,7 @@ impl<'a> MeshTree<'a> {
             }
             for child in [first + 1, first] {
                 if slabs.meet(self.tree.nodes[child].aabb()) {
-                    // A tree deeper than the stack: the slower way has no limit.
+                    // The tree is deeper than the stack: the slower method has no limit.
                     let Some(place) = stack.get_mut(height) else { return self.first_crossing(a, b).is_some() };
                     *place = child as u32;
                     height += 1;
@@ -166,7 +166,7 @@ impl<'a> MeshTree<'a> {
         false
     }
 
-    /// Where the straight segment `a b` passes a triangle. Of the triangles around an edge at least one is passed by a segment through it.
+    /// Parameter at which the straight segment `a b` passes a triangle. A segment through an edge passes at least one triangle at it.
     pub fn crossing(&self, triangle: usize, a: DVec3, b: DVec3) -> Option<f64> {
         let along = b - a;
         let corner = |v: u32| self.mesh.positions()[v as usize].as_dvec3() - (a - self.mesh.origin());
@@ -182,11 +182,11 @@ impl<'a> MeshTree<'a> {
     }
 }
 
-/// A segment and the room around it.
+/// A segment and the growth of the boxes that are tested against it.
 struct Segment {
     a: DVec3,
     along: DVec3,
-    /// What boxes grow by at their smallest and largest corner.
+    /// Growth of a box at its smallest and its largest corner, scene units.
     grow: [DVec3; 2],
 }
 
@@ -205,10 +205,10 @@ impl Segment {
     }
 }
 
-/// Nodes that wait to be looked at, at most.
+/// Size of the stack of nodes to visit.
 const DEPTH: usize = 96;
 
-/// A segment prepared for boxes that it may meet anywhere.
+/// A segment prepared for slab tests against boxes.
 struct Slabs {
     a: DVec3,
     /// 1 / the segment's extent along each axis, huge where it has none.

@@ -4,16 +4,16 @@ use crate::{BoxTree, Carried, Ground, Lift, MeshTree};
 use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{LayerKind, Scene};
 
-/// Everything of a scene that can stand in the way.
+/// Terrain, boxes and meshes of a scene, which can hide points.
 pub struct Obstacles<'a> {
     grounds: Vec<(usize, Ground<'a>)>,
     boxes: BoxTree,
     meshes: Vec<(usize, MeshTree<'a>)>,
-    /// Rigid bodies where a view carries them to, and that view of them.
+    /// Rigid bodies as a view carries them, and the view of the carried bodies.
     bodies: Option<Box<(Obstacles<'static>, View)>>,
 }
 
-/// What is left out.
+/// The layers, and parts of a layer, that are left out.
 #[derive(Debug, Clone, Copy, Default)]
 struct Without<'w> {
     layers: &'w [usize],
@@ -21,15 +21,15 @@ struct Without<'w> {
     parts: Option<(usize, &'w [u32])>,
 }
 
-/// How lines of sight are walked.
+/// Options of the test of a line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SightOptions {
     /// Largest distance between a curved ray and the chords that stand for it near the ground, scene units.
     pub chord_m: f64,
-    /// Clearances are not followed beyond this, scene units; 0 = only whether the point is seen.
+    /// Largest clearance that is measured, scene units; 0 = only whether the point is visible.
     pub cap_m: f64,
-    /// Plan distance from the point within which the sight line must be clear, but the ground that falls away from the
-    /// point towards the eye is no measure of clearance, scene units.
+    /// Plan distance from the point, scene units, within which a height over the ground counts only if it is smaller than
+    /// that of the point itself.
     pub guard_m: f64,
 }
 
@@ -39,7 +39,7 @@ impl<'a> Obstacles<'a> {
         Self::lifted(scene, None)
     }
 
-    /// The same without some layers, by their index: what is looked for does not hide itself.
+    /// The same without some layers, by their index, so that a feature does not hide itself.
     pub fn without(scene: &'a Scene, layers: &[usize]) -> Self {
         Self::of(scene, Without { layers, ..Without::default() }, None, None)
     }
@@ -49,7 +49,7 @@ impl<'a> Obstacles<'a> {
         Self::of(scene, Without { parts: Some((layer, parts)), ..Without::default() }, None, None)
     }
 
-    /// The same where the ground, and what stands on it, may be displaced vertically.
+    /// The same where the ground, and boxes and meshes with it, may be displaced vertically.
     pub fn lifted(scene: &'a Scene, lift: Option<Lift<'_>>) -> Self {
         Self::of(scene, Without::default(), lift, None)
     }
@@ -59,15 +59,15 @@ impl<'a> Obstacles<'a> {
         Self::of(scene, Without::default(), lift, Some(carried))
     }
 
-    /// Rigid bodies alone, where a view carries them to: in the space of [`Carried::after`]. Triangles are numbered by [`belvedere_scene::Mesh::part`].
+    /// Rigid bodies alone, as a view carries them: in the space of [`Carried::after`]. Triangles are numbered by [`belvedere_scene::Mesh::part`].
     pub fn of_bodies(scene: &Scene, carried: &Carried) -> Obstacles<'static> {
         let mesh = |i: usize| Some((i, MeshTree::owned(carried.mesh(scene, i)?)));
         let meshes = (0..scene.layers.len()).filter_map(mesh).collect();
         Obstacles { grounds: Vec::new(), boxes: BoxTree::new([], None), meshes, bodies: None }
     }
 
-    /// What stands in the way of the rays of `view`: where that carries rigid bodies as a whole, [`Obstacles::clearance`] of its rays (and of no
-    /// other view's) meets them where they are carried to.
+    /// Obstacles for the rays of `view`: if it carries rigid bodies as a whole, [`Obstacles::clearance`] tests its rays (and no other
+    /// view's) against the carried bodies.
     pub fn seen_by(scene: &'a Scene, view: &View) -> Self {
         match Carried::new(scene, view) {
             Some(carried) => {
@@ -107,7 +107,7 @@ impl<'a> Obstacles<'a> {
                         None => meshes.push((i, MeshTree::lifted(&m.mesh, lift))),
                     }
                 }
-                // Voxels are no surface.
+                // Lines, areas and points hide nothing; voxels have no surface.
                 LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) | LayerKind::Volume(_) => {}
             }
         }
@@ -129,12 +129,12 @@ impl<'a> Obstacles<'a> {
         &self.meshes
     }
 
-    /// Around all boxes and meshes, wherever the ground has moved them to.
+    /// Smallest box around all boxes and meshes, for every displacement of the ground under them.
     pub fn solid_bounds(&self) -> Aabb {
         self.meshes.iter().fold(self.boxes.bounds(), |b, (_, tree)| b.union(tree.bounds()))
     }
 
-    /// Whether every curve within `reach` (scene units, >= 0) of the straight segment `a b`, point by point, meets nothing.
+    /// Whether every curve within `reach` (scene units, >= 0) of the straight segment `a b`, point by point, meets no obstacle.
     /// Never wrongly true, see [`Ground::is_clear`].
     pub fn is_clear(&self, a: DVec3, b: DVec3, reach: f64) -> bool {
         self.grounds.iter().all(|(_, g)| g.is_clear(a, b, reach)) && self.is_free(a, b, reach)
@@ -159,8 +159,8 @@ impl<'a> Obstacles<'a> {
         heights.map(|h| p.z - h).min_by(f64::total_cmp)
     }
 
-    /// [`Ground::min_gap`] over all obstacles; a segment through a box has a negative gap, and so has one through a mesh: but just,
-    /// for a surface has no depth.
+    /// [`Ground::min_gap`] over all obstacles; a segment through a box has a negative gap, and so has one through a mesh, the smallest
+    /// possible one, for a surface has no depth.
     pub fn min_gap(&self, a: DVec3, b: DVec3, cap: f64, floor: f64) -> f64 {
         let mut best = cap;
         for (_, ground) in &self.grounds {
@@ -181,9 +181,9 @@ impl<'a> Obstacles<'a> {
         best
     }
 
-    /// How clear the sight line of `view` to `p_world` is, where `p_world` has an image at `pixel` and `depth`:
+    /// Clearance of the line of sight of `view` to `p_world`, which has an image at `pixel` and `depth`:
     /// the smallest height of the (curved) ray over the ground between the near plane and the point, in scene units;
-    /// negative = hidden, and how far the ray runs under ground. At most `options.cap_m`.
+    /// negative = hidden, by the depth of the ray under ground. At most `options.cap_m`.
     ///
     /// `lift` is the height of the point over its own ground. Near the point (see [`SightOptions::guard_m`]) only a ray that
     /// comes closer to the ground than that counts.
@@ -199,8 +199,8 @@ impl<'a> Obstacles<'a> {
         self.clearance_to(view, (Some(p_world), lift), (pixel, depth), options)
     }
 
-    /// [`Obstacles::clearance`] of a point on a rigid body that the view carries as a whole: it is seen at `pixel` and `depth`, and where the ray of
-    /// other points is then does not matter.
+    /// [`Obstacles::clearance`] of a point on a rigid body that the view carries as a whole: its image is `pixel` and `depth`; the
+    /// world point of the ray at that depth may be another one, or absent.
     pub fn clearance_of_body(&self, view: &View, (pixel, depth): (DVec2, f64), options: &SightOptions) -> f64 {
         let end = view.ray(pixel).at(depth).ok().map(|r| r.point);
         self.clearance_to(view, (end, 0.0), (pixel, depth), options)
@@ -216,7 +216,7 @@ impl<'a> Obstacles<'a> {
         let beside = self.clearance_beside_bodies(view, (p_world, lift), (pixel, depth), options);
         let Some((bodies, after)) = self.bodies.as_deref().filter(|_| beside >= 0.0) else { return beside };
         let Ok(end) = after.ray(pixel).at(depth) else { return beside };
-        // A surface has no depth: whether it is passed is all there is to tell.
+        // A surface has no depth: the test is only whether the ray passes it.
         let whether = SightOptions { cap_m: 0.0, ..*options };
         let behind = bodies.clearance_beside_bodies(after, (Some(end.point), lift), (pixel, depth), &whether);
         if behind < 0.0 { behind } else { beside }
@@ -242,7 +242,7 @@ impl<'a> Obstacles<'a> {
             let pieces = 12;
             let depth_at = |i: usize| from + (to - from) * i as f64 / pieces as f64;
             let mut chords = Chords { obstacles: self, at: &at, chord_m: options.chord_m, floor, best: cap };
-            // From the point towards the eye: what hides it is usually near it.
+            // From the point towards the eye: occluders are usually near the point.
             for i in (0..pieces).rev() {
                 let (w0, w1) = (depth_at(i), depth_at(i + 1));
                 chords.walk((w0, at(w0)), (w1, at(w1)), 0);
@@ -270,7 +270,7 @@ impl<'a> Obstacles<'a> {
     }
 }
 
-/// Walks a curve by chords, halving them only where the difference could matter.
+/// Walks a curve by chords, which are halved until their error cannot change the result.
 struct Chords<'a> {
     obstacles: &'a Obstacles<'a>,
     at: &'a dyn Fn(f64) -> Option<DVec3>,
@@ -281,7 +281,7 @@ struct Chords<'a> {
 
 /// Chords are halved at most this often.
 const MAX_HALVINGS: u32 = 14;
-/// Where the ray has no point at all (outside the domain of a stage) halving stops earlier.
+/// Most halvings where part of the ray has no world point (outside the domain of a stage).
 const MAX_HALVINGS_OF_NOTHING: u32 = 6;
 
 impl Chords<'_> {

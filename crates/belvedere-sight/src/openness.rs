@@ -1,18 +1,18 @@
-//! Ambient occlusion, computed once: how much of the light from all around reaches a mesh.
+//! Ambient occlusion, computed once: the share of the light from all around that reaches a mesh.
 
 use crate::MeshTree;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Cancelled, Mesh, Progress, triangle_lattice};
 use rayon::prelude::*;
 
-/// How finely ambient occlusion is computed.
+/// Settings of ambient occlusion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OpennessSettings {
-    /// Distance from which on nothing takes light away, scene units, > 0; nearer things take `1 - (r / reach)^2`.
+    /// Distance beyond which surfaces take no light, scene units, > 0; at a distance r they take `1 - (r / reach)^2`.
     pub reach: f64,
-    /// Longest distance between points of one triangle, scene units, > 0.
+    /// Largest spacing of the sample points on a triangle, scene units, > 0.
     pub step: f64,
-    /// Rays of a point.
+    /// Rays per sample point.
     pub rays: usize,
 }
 
@@ -25,25 +25,25 @@ impl OpennessSettings {
 
 /// Most steps along an edge.
 const MOST_STEPS: f64 = 255.0;
-/// Most points of a triangle for each that its area and its longest edge ask for: slivers have fewer steps along their edges.
+/// Most sample points of a triangle per point that its area and its longest edge need; this limits the steps of slivers.
 const SURPLUS: f64 = 4.0;
-/// How far from the surface rays begin, share of the reach.
+/// Distance of ray origins from the surface, share of the reach.
 const LIFT: f64 = 1e-3;
-/// How far points are drawn from the edge of their triangle towards its middle: a share of the way, and at most one of the reach.
+/// Shift of sample points towards the middle of their triangle: a share of that distance, and its limit as a share of the reach.
 const INWARDS: f64 = 0.02;
 const MOST_INWARDS: f64 = 0.01;
-/// A side that gets less than this may be the inside of something closed: the other one is looked at, too.
+/// A side with a smaller share may be the inside of a closed surface: then the other side is sampled, too.
 const INSIDE: f64 = 0.3;
 /// Triangles that are computed at a time.
 const BATCH: usize = 256;
 
-/// Height of the ground at a place; `None` where there is none.
+/// Height of the ground at a position in plan; `None` beside the ground.
 pub type GroundHeight<'a> = dyn Fn(DVec2) -> Option<f64> + Sync + 'a;
 
 /// The mesh with the share of the light from all around that reaches it past itself and the ground, on the lighter side of each triangle.
 ///
-/// Rays are spread by the cosine to the normal; their lengths are spread so that a hit at r counts `1 - (r / reach)^2` on average, and only
-/// whether anything is hit is asked. Source: Pasewaldt et al. 2011, section 6; the rule in our specification, section 7.
+/// Rays are spread by the cosine to the normal; their lengths are spread so that a hit at r counts `1 - (r / reach)^2` on average, and each
+/// ray is only a yes-or-no test. Source: Pasewaldt et al. 2011, section 6; the rule in our specification, section 7.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -81,7 +81,7 @@ pub fn with_ambient_occlusion(
         .collect::<Result<_, Cancelled>>()?;
     let (steps, shares): (Vec<_>, Vec<_>) = batches.into_iter().unzip();
     let (steps, shares) = (steps.concat(), shares.concat());
-    // As many as were just counted.
+    // The lengths fit by construction.
     Ok(mesh.clone().with_open_lattices(&steps, shares).unwrap_or(mesh))
 }
 
@@ -93,11 +93,11 @@ fn steps_of([a, b, c]: [DVec3; 3], step: f64) -> u8 {
     longest.ceil().min((2.0 * SURPLUS * asked).sqrt()).clamp(1.0, MOST_STEPS) as u8
 }
 
-/// Everything that takes light away.
+/// The surfaces that take light away, and the rays that sample them.
 struct Around<'a> {
     tree: &'a MeshTree<'a>,
     ground: Option<&'a GroundHeight<'a>>,
-    /// Towards z, each as long as it looks.
+    /// Rays about +z, each as long as its reach.
     rays: &'a [DVec3],
     lift: f64,
 }
@@ -119,7 +119,7 @@ impl Around<'_> {
         open.count() as f64 / self.rays.len() as f64
     }
 
-    /// Whether a ray comes to the ground. What stands in the ground a little is not shut in by it.
+    /// Whether a ray meets the ground. A point slightly under ground counts as on it.
     fn is_under(&self, from: DVec3, by: DVec3) -> bool {
         let Some(ground) = self.ground.filter(|_| by.z < 0.0) else { return false };
         let height = |share: f64| ground((from + share * by).truncate()).map(|z| from.z - z);
@@ -129,7 +129,7 @@ impl Around<'_> {
     }
 }
 
-/// Directions about z by the cosine rule, each as long as it looks.
+/// Rays about +z, spread by the cosine rule, each as long as its reach.
 fn rays(settings: &OpennessSettings) -> Vec<DVec3> {
     let n = settings.rays.max(1);
     let directions = (0..n).map(|i| {
@@ -141,7 +141,7 @@ fn rays(settings: &OpennessSettings) -> Vec<DVec3> {
     directions.collect()
 }
 
-/// The digits of a number behind the point, in reverse: evenly spread over 0..1.
+/// Radical inverse (van der Corput sequence): evenly spread over 0..1.
 fn radical_inverse(mut number: usize, base: usize) -> f64 {
     let (mut sum, mut digit) = (0.0, 1.0 / base as f64);
     while number > 0 {
@@ -184,7 +184,7 @@ mod tests {
         Mesh::new(&positions, triangles, MeshColors::Layer).unwrap()
     }
 
-    /// What a wall without end takes from the floor at a distance from it, by adding up directions.
+    /// Openness of the floor at a distance from an infinite wall, by quadrature over directions.
     fn by_quadrature(distance: f64, reach: f64) -> f64 {
         let n = 400;
         let mut lost = 0.0;
@@ -226,7 +226,7 @@ mod tests {
         let level = |_: DVec2| Some(10.0);
         let wall = with_ambient_occlusion(wall, Some(&level), &settings(256), &Progress::silent()).unwrap();
         let open = |z: f64| wall.openness_at(0, wall.weights_at(0, DVec3::new(0.0, 95.0, z)));
-        // Half of what it sees is ground, at its foot all of that without distance.
+        // Half of the directions meet the ground, those of its foot at distance 0.
         assert!((open(10.0) - 0.5).abs() < 0.06, "{}", open(10.0));
         assert!(open(20.0) > open(12.0) && open(55.0) > 0.97, "{} {} {}", open(12.0), open(20.0), open(55.0));
     }

@@ -3,7 +3,7 @@
 use belvedere_core::DVec2;
 use rayon::prelude::*;
 
-/// What is known of square blocks of cells, such as bounds of the ground in them, level by level.
+/// Values of square blocks of cells, such as bounds of the ground in them, level by level.
 ///
 /// Blocks of level 0 are `side` cells wide, those of each further level twice as wide, and the last level is one block.
 #[derive(Debug, Clone)]
@@ -14,7 +14,7 @@ pub struct Pyramid<T> {
 #[derive(Debug, Clone)]
 struct Level<T> {
     size: [usize; 2],
-    /// Cells along a side of a block, and one over them.
+    /// Cells along a side of a block, and its inverse.
     side: f64,
     per_cell: f64,
     blocks: Vec<T>,

@@ -1,4 +1,4 @@
-//! How much light comes through volumes along straight and curved rays.
+//! Transmission of light through volumes along straight and curved rays.
 //!
 //! Volumes absorb by their transfer functions, as they are drawn; their colours and shading do not matter here.
 
@@ -6,19 +6,19 @@ use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::volume::BRICK;
 use belvedere_scene::{LayerKind, Scene, VolumeLayer};
 
-/// How far a chord may be from the ray, voxel edges.
+/// Largest distance of a chord from the ray, voxel edges.
 const NEAR: f64 = 0.1;
-/// Parts that a ray is first looked at in.
+/// Parts into which a ray is first divided.
 const PARTS: usize = 16;
-/// Chords are halved at most this often, and where the ray has no point.
+/// Most halvings of a chord, and most where part of the ray has no world point.
 const MAX_HALVINGS: u32 = 14;
 const MAX_HALVINGS_OF_NOTHING: u32 = 6;
 /// Less light than this counts as 0.
 const DARK: f64 = 1e-3;
-/// What lies so near to a point, in voxel edges, is the point itself and does not hide it.
+/// Voxels within this distance of a point, voxel edges, do not hide it.
 const OWN: f64 = 1.0;
 
-/// The volumes of a scene that can stand in the way.
+/// The volumes of a scene that can hide points.
 pub struct Voxels<'a> {
     volumes: Vec<Absorber<'a>>,
 }
@@ -34,8 +34,8 @@ impl<'a> Voxels<'a> {
         Self { volumes: volumes.collect() }
     }
 
-    /// Share of the light from a point that reaches the eye, 0..=1: the product over all volumes of what their steps along the ray of
-    /// `view` let through, from the near plane to within a voxel's edge of the point.
+    /// Share of the light from a point that reaches the eye, 0..=1: the product over all volumes of their transmission along the ray of
+    /// `view`, from the near plane to within a voxel's edge of the point.
     ///
     /// * `pixel`, `depth`: image of the point, pixels and scene units.
     pub fn light(&self, view: &View, pixel: DVec2, depth: f64) -> f64 {
@@ -49,7 +49,7 @@ impl<'a> Voxels<'a> {
     }
 }
 
-/// A volume and where there is anything in it.
+/// A volume and its bricks that absorb light.
 struct Absorber<'a> {
     layer: &'a VolumeLayer,
     /// Largest lattice coordinates.
@@ -72,7 +72,7 @@ impl<'a> Absorber<'a> {
         }
     }
 
-    /// Optical depth of a straight way between two lattice positions: the negative logarithm of what it lets through.
+    /// Optical depth of the straight path between two lattice positions: the negative logarithm of its transmission.
     fn thickness(&self, a: DVec3, b: DVec3) -> f64 {
         let volume = &*self.layer.volume;
         let (mut t0, mut t1) = (0.0f64, 1.0f64);
@@ -114,7 +114,7 @@ impl<'a> Absorber<'a> {
     }
 }
 
-/// Steps after which a way leaves a brick.
+/// Number of steps after which a path leaves a brick.
 fn out_of(brick: [usize; 3], q: DVec3, per_step: DVec3) -> f64 {
     let mut steps = f64::INFINITY;
     for axis in 0..3 {
@@ -133,7 +133,7 @@ struct Walk<'w, 'a> {
     at: Box<dyn Fn(f64) -> Option<DVec3> + 'w>,
     range: [f64; 2],
     thickness: f64,
-    /// More than this leaves no light.
+    /// Optical depth beyond which the light counts as 0.
     dark: f64,
 }
 
@@ -165,7 +165,7 @@ impl<'w, 'a> Walk<'w, 'a> {
         }
         let depth = |i: usize| near + (far - near) * i as f64 / PARTS as f64;
         let ends: Vec<_> = (0..=PARTS).map(|i| (depth(i), (self.at)(depth(i)))).collect();
-        // What hides a point is usually near it.
+        // From the point towards the eye: occluders are usually near the point.
         for pair in ends.windows(2).rev() {
             self.part(pair[0], pair[1], 0);
         }

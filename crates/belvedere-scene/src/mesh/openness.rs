@@ -1,4 +1,4 @@
-//! How much of the light from all around reaches the points of a mesh.
+//! Openness: the share of the light from all around that reaches the points of a mesh.
 
 use super::{Mesh, MeshError};
 
@@ -17,7 +17,7 @@ pub(super) enum Openness {
 /// Shares at points that divide the edges of each triangle into equal steps, row by row away from its second edge; see [`triangle_lattice`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Lattices {
-    /// Of each triangle: its first share, and its steps along an edge.
+    /// Per triangle the index of its first share, and its steps along an edge.
     places: Vec<(u32, u8)>,
     shares: Vec<u8>,
 }
@@ -50,7 +50,7 @@ impl Openness {
         (share / 255.0).clamp(0.0, 1.0)
     }
 
-    /// Leaves out triangles.
+    /// Removes triangles that are not kept.
     pub(super) fn retain(&mut self, kept: &[bool]) {
         if let Self::Lattices(lattices) = self {
             let mut keep = kept.iter();
@@ -58,7 +58,7 @@ impl Openness {
         }
     }
 
-    /// Appends a vertex like another.
+    /// Appends a copy of vertex `v`.
     pub(super) fn copy_of(&mut self, v: usize) {
         if let Self::PerVertex(shares) = self {
             shares.push(shares[v]);
@@ -120,7 +120,7 @@ impl Mesh {
         Ok(self)
     }
 
-    /// Whether it is known how much of the light from all around reaches its points.
+    /// Whether the mesh has shares of the light from all around.
     pub fn has_openness(&self) -> bool {
         self.openness != Openness::Unknown
     }

@@ -1,4 +1,4 @@
-//! Meshes of some of the triangles of another, and with some of them moved.
+//! Meshes made of some triangles of another mesh, or with some triangles moved.
 
 use super::{Mesh, MeshColors, MeshError};
 use belvedere_core::DVec3;
@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 impl Mesh {
-    /// The triangles that `keep` wants, by their numbers, over the same vertices.
+    /// The triangles for whose numbers `keep` is true, over the same vertices.
     pub fn only(&self, keep: &dyn Fn(usize) -> bool) -> Self {
         let kept: Vec<bool> = (0..self.triangles.len()).map(keep).collect();
         let mut out = self.clone();
@@ -14,7 +14,7 @@ impl Mesh {
         out
     }
 
-    /// Every triangle moved by what `offset` says of its number, scene units, finite. Triangles that share vertices and move by
+    /// This mesh with each triangle moved by the `offset` of its number, scene units, finite. Triangles that share vertices and move by
     /// the same keep their shape together; others come apart.
     pub fn moved(&self, offset: &dyn Fn(usize) -> DVec3) -> Self {
         let mut out = self.clone();
@@ -34,7 +34,7 @@ impl Mesh {
     }
 
     /// The triangles that belong to a body, each corner where `carry` puts it (number of the body, scene coordinates; finite in single
-    /// precision), shape alone. [`Mesh::part`] of what comes out is the number of the triangle here.
+    /// precision), without colours. [`Mesh::part`] of the result is the number of the triangle in this mesh.
     ///
     /// # Errors
     /// [`MeshError`], for a corner that is not finite.
@@ -58,7 +58,7 @@ impl Mesh {
         Self::in_parts(&places, triangles, MeshColors::Layer, numbers)
     }
 
-    /// Appends a vertex like another, moved.
+    /// Appends a copy of vertex `v`, moved by `by`, and returns its number.
     fn copy_of(&mut self, v: usize, by: DVec3) -> u32 {
         let moved = (self.positions[v].as_dvec3() + by).as_vec3();
         Arc::make_mut(&mut self.positions).push(moved);

@@ -3,16 +3,16 @@
 use super::near::Cells;
 use super::{Atom, Element};
 
-/// Two atoms are bonded if they are nearer than their covalent radii and this together, angstrom.
+/// Two atoms are bonded if their distance is below the sum of their covalent radii plus this, angstrom.
 ///
 /// Bond lengths in good structures vary by less than 0.2 angstrom, atoms that are not bonded are more than 1 angstrom farther apart;
-/// the figure lies between, as that of other programs does. Atoms nearer than 0.4 angstrom are two readings of one place.
+/// this value lies between, as in other programs. Atoms nearer than 0.4 angstrom are alternative positions of one atom.
 pub const BOND_TOLERANCE: f64 = 0.45;
 
-/// Atoms nearer than this are not bonded but in each other's place, angstrom.
+/// Atoms nearer than this, angstrom, are not bonded: they are alternative positions of one atom.
 const TOO_NEAR: f64 = 0.4;
 
-/// Pairs of indices, the smaller first. Elements that form ions, and unknown ones, are bonded to nothing; a hydrogen to its nearest
+/// Bonds as pairs of indices, the smaller first. Elements that form ions, and unknown ones, are bonded to nothing; a hydrogen to its nearest
 /// partner only. Time and memory are linear in the number of atoms.
 pub(super) fn by_distance(atoms: &[Atom]) -> Vec<[u32; 2]> {
     let able: Vec<u32> = (0..atoms.len() as u32).filter(|&i| atoms[i as usize].element.shares_electrons()).collect();

@@ -52,7 +52,7 @@ const COLORS: [(&str, Color); 17] = [
     ("Br", Color::rgb(154, 64, 48)),
 ];
 
-/// Any other metal; no element at all.
+/// Colours of all other elements, and of unknown ones.
 const METAL: Color = Color::rgb(176, 146, 166);
 const UNKNOWN: Color = Color::rgb(204, 150, 190);
 
@@ -73,7 +73,7 @@ impl Element {
     /// Phosphorus.
     pub const P: Self = Self(15);
 
-    /// The element of a symbol in any case; deuterium is hydrogen. `None` if there is none.
+    /// The element of a symbol in any case; deuterium is hydrogen. `None` for an unknown symbol.
     pub fn from_symbol(symbol: &str) -> Option<Self> {
         if symbol.eq_ignore_ascii_case("D") {
             return Some(Self::H);

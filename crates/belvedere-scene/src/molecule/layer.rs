@@ -5,12 +5,12 @@ use super::{Element, ModelTransform, Molecule, MoleculeColor, MoleculeStyle, Rep
 use crate::{Color, MeshError, MeshLayer};
 use glam::DVec3;
 
-/// A molecule and its surface. The surface is made once; it bends, is drawn, picked and stands in the way like any mesh.
+/// A molecule and its surface. The surface is made once; it is bent, drawn and picked, and hides points, like any mesh.
 #[derive(Debug, Clone)]
 pub struct MoleculeLayer {
     /// All atoms of the file, drawn or not, angstrom.
     pub molecule: Molecule,
-    /// Where it stands.
+    /// Placement in the scene.
     pub placement: ModelTransform,
     /// Triangles of the drawn atoms and bonds, scene coordinates. A triangle's part ([`crate::Mesh::part`]) is the index of its atom.
     pub surface: MeshLayer,
@@ -24,7 +24,7 @@ pub struct MoleculeLayer {
     pub wanted: Option<Selection>,
 }
 
-/// Colours of chains and of residues: told apart at a glance, none of them near that of a mark of the program.
+/// Colours of chains and of residues, distinct from each other and from the colours of marks.
 const SERIES: [Color; 10] = [
     Color::rgb(92, 136, 196),
     Color::rgb(224, 148, 84),
@@ -42,7 +42,7 @@ impl MoleculeLayer {
     /// The layer of the atoms that the style selects, in time linear in their number.
     ///
     /// # Errors
-    /// [`MeshError`] if the triangles do not make a mesh: placed where single precision ends.
+    /// [`MeshError`] if the triangles do not make a mesh: if positions exceed single precision.
     pub fn new(molecule: Molecule, style: &MoleculeStyle, placement: ModelTransform) -> Result<Self, MeshError> {
         let drawn = style.selection.mask(&molecule);
         let colors = colors(&molecule, style);
@@ -58,7 +58,7 @@ impl MoleculeLayer {
         Self { wanted: Some(wanted), ..self }
     }
 
-    /// What people call the atom that a triangle of the surface belongs to.
+    /// Readable name of the atom that a triangle of the surface belongs to.
     pub fn name_of(&self, triangle: usize) -> Option<String> {
         let atom = self.surface.mesh.part(triangle)? as usize;
         (atom < self.molecule.atoms().len()).then(|| self.molecule.name_of(atom))

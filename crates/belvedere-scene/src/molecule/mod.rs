@@ -1,4 +1,4 @@
-//! Molecules: atoms, residues and bonds as plain data, which of them are meant, and their surface as triangles.
+//! Molecules: atoms, residues and bonds as plain data, selections of atoms, and surfaces as triangles.
 
 mod bonds;
 mod element;
@@ -66,20 +66,20 @@ impl std::fmt::Display for Residue {
     }
 }
 
-/// Atoms that make no molecule.
+/// Errors of a molecule.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MoleculeError {
-    /// Nothing there.
+    /// There is no atom.
     #[error("there is no atom; at least one is needed")]
     Empty,
-    /// More than 32-bit numbers can count.
+    /// More atoms than `Molecule::MAX`.
     #[error("there are {atoms} atoms, at most {limit} are possible; leave some out", limit = Molecule::MAX)]
     TooMany {
-        /// How many.
+        /// Number of atoms given.
         atoms: usize,
     },
-    /// A coordinate that is no number, or too large to be drawn.
+    /// A coordinate is not finite, or beyond `Molecule::FARTHEST`.
     #[error(
         "atom {serial} lies at {position}, beyond the {limit} angstrom within which atoms are drawn; repair the file",
         limit = Molecule::FARTHEST
@@ -87,25 +87,25 @@ pub enum MoleculeError {
     Position {
         /// Number in the file.
         serial: i64,
-        /// Where it lies.
+        /// Its position, angstrom.
         position: DVec3,
     },
-    /// A residue that there is not.
+    /// An atom names a residue that does not exist.
     #[error("atom {serial} belongs to residue {residue} of {residues}; repair the file")]
     Residue {
         /// Number in the file.
         serial: i64,
         /// Index of the residue.
         residue: u32,
-        /// Residues there are.
+        /// Number of residues.
         residues: usize,
     },
-    /// A bond to an atom that there is not, or of an atom with itself.
+    /// A bond names an atom that does not exist, or joins an atom with itself.
     #[error("a bond joins atoms {a} and {b} of {atoms}; name two different ones", a = bond[0], b = bond[1])]
     Bond {
         /// Indices of its atoms.
         bond: [u32; 2],
-        /// Atoms there are.
+        /// Number of atoms.
         atoms: usize,
     },
 }
@@ -153,7 +153,7 @@ impl Molecule {
         Ok(Self { atoms, residues, bonds })
     }
 
-    /// A molecule with the bonds that the file names and those that lengths tell, see [`BOND_TOLERANCE`].
+    /// A molecule with the bonds that the file names and those found by distance, see [`BOND_TOLERANCE`].
     ///
     /// # Errors
     /// [`MoleculeError`].
@@ -198,7 +198,7 @@ impl Molecule {
         out
     }
 
-    /// What people call an atom: `atom O5' of chain A DC 1`.
+    /// Readable name of an atom: `atom O5' of chain A DC 1`.
     pub fn name_of(&self, atom: usize) -> String {
         format!("atom {} of {}", self.atoms[atom].name, self.residue_of(atom))
     }

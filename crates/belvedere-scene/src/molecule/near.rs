@@ -13,7 +13,7 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// * `size`: side of a cell, > 0; the farthest that [`Cells::near`] looks.
+    /// * `size`: side of a cell, > 0; also the reach of [`Cells::near`].
     pub(super) fn new(points: Vec<DVec3>, size: f64) -> Self {
         let cell = |p: DVec3| cell_of(p, size);
         let mut order: Vec<u32> = (0..points.len() as u32).collect();

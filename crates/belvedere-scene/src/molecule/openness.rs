@@ -1,4 +1,4 @@
-//! How much of the light from all around reaches a point between atoms.
+//! Openness between atoms: the share of the light from all around that reaches a point.
 
 use super::near::Cells;
 use belvedere_core::DVec3;
@@ -6,17 +6,17 @@ use belvedere_core::DVec3;
 /// Atoms farther than this take no light, angstrom.
 const REACH: f64 = 6.5;
 
-/// How strongly what the neighbours cover darkens.
+/// Strength by which directions that neighbours cover darken a point.
 const STRENGTH: f64 = 0.62;
 
-/// Balls that stand in each other's light.
+/// Balls that shade each other.
 pub(super) struct Shades {
     cells: Cells,
     centers: Vec<DVec3>,
     radii: Vec<f64>,
 }
 
-/// The balls around one, nearest or not.
+/// The balls near one ball: centres and radii.
 pub(super) struct Around(Vec<(DVec3, f64)>);
 
 impl Shades {

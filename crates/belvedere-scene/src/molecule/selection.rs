@@ -1,4 +1,4 @@
-//! Which atoms are meant, in short words: `chain B and resi 12-18`.
+//! Selections of atoms, as short texts: `chain B and resi 12-18`.
 
 use super::{Element, Molecule};
 
@@ -15,20 +15,20 @@ use super::{Element, Molecule};
 /// and, or, not, ( )  not binds first, then and, then or
 /// ```
 ///
-/// Names of chains mind capitals, everything else does not.
+/// Names of chains are case-sensitive, everything else is not.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selection {
     text: String,
     rule: Rule,
 }
 
-/// A text that chooses nothing.
+/// A text that is not a selection.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("selection \"{text}\": {reason}")]
 pub struct SelectionError {
     /// The text, shortened.
     pub text: String,
-    /// What is wrong with it, and what to do.
+    /// The error, and what to do.
     pub reason: String,
 }
 
@@ -103,7 +103,7 @@ impl Selection {
         self.rule.holds(molecule, atom)
     }
 
-    /// Which atoms are chosen, by index.
+    /// Whether each atom is chosen, by index.
     pub fn mask(&self, molecule: &Molecule) -> Vec<bool> {
         (0..molecule.atoms().len()).map(|i| self.holds(molecule, i)).collect()
     }
@@ -168,7 +168,7 @@ impl<'t> Parser<'t> {
         self.tokens.get(self.at - 1).map(String::as_str)
     }
 
-    /// Goes on if the next word is `word`.
+    /// Consumes the next word if it is `word`.
     fn takes(&mut self, word: &str) -> bool {
         let is = self.tokens.get(self.at).is_some_and(|t| t.eq_ignore_ascii_case(word));
         self.at += usize::from(is);
@@ -233,7 +233,7 @@ impl<'t> Parser<'t> {
         if list.split(',').any(str::is_empty) {
             return Err(format!("\"{}\" has a comma too many; write {word} A,B", short(list)));
         }
-        // An empty chain is written as in the files of programs that cannot write nothing.
+        // The empty name of a chain is written as two quotes.
         Ok(list.split(',').map(|s| if s == "\"\"" { String::new() } else { s.to_owned() }).collect())
     }
 

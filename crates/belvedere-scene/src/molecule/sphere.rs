@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 /// A unit ball of triangles: an icosahedron whose faces are cut `n` times along each edge and carried onto the sphere.
 ///
-/// Source: geodesic subdivision; ours is the plain one, even to a fifth.
+/// Source: geodesic subdivision in its plain form; its triangles are even to a fifth.
 pub(super) struct Ball {
     /// Corners on the unit sphere: outward normals.
     pub(super) normals: Vec<DVec3>,
@@ -16,7 +16,7 @@ pub(super) struct Ball {
 }
 
 impl Ball {
-    /// 20 `n`^2 triangles.
+    /// A ball of 20 `n`^2 triangles.
     pub(super) fn new(n: usize) -> Self {
         let n = n.max(1);
         let (corners, faces) = icosahedron();
@@ -50,7 +50,7 @@ impl Ball {
         ball
     }
 
-    /// Factor by which the corners lie outside the sphere that the ball stands for, so that it is neither larger nor smaller.
+    /// Factor by which the corners lie outside the sphere that the ball stands for, so that the ball is as large as the sphere on average.
     pub(super) fn outer(&self) -> f64 {
         2.0 / (1.0 + self.inner)
     }
@@ -84,7 +84,7 @@ fn icosahedron() -> (Vec<DVec3>, Vec<[usize; 3]>) {
 pub(super) fn rod(sides: usize, axis: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let along = axis.normalize_or(DVec3::Z);
     let (u, v) = along.any_orthonormal_pair();
-    // Counter-clockwise seen from the tip, whichever way round the pair runs.
+    // Counter-clockwise seen from the tip, for either orientation of the pair.
     let v = if u.cross(v).dot(along) < 0.0 { -v } else { v };
     let normals = (0..sides).map(|i| {
         let (sin, cos) = (std::f64::consts::TAU * i as f64 / sides as f64).sin_cos();

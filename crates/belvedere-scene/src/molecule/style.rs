@@ -1,4 +1,4 @@
-//! How molecules look and where they stand.
+//! Style and placement of molecules.
 
 use super::Selection;
 use crate::Color;
@@ -17,7 +17,7 @@ pub enum Representation {
     SpaceFilling,
 }
 
-/// Where the colours of atoms come from.
+/// Source of the colours of atoms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum MoleculeColor {
     /// The element, by the convention of Corey, Pauling and Koltun.
@@ -34,9 +34,9 @@ pub enum MoleculeColor {
 /// A colour of its own for some atoms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Paint {
-    /// Which.
+    /// The atoms.
     pub selection: Selection,
-    /// In which colour.
+    /// Their colour.
     pub color: Color,
 }
 
@@ -47,9 +47,9 @@ pub struct MoleculeStyle {
     pub representation: Representation,
     /// Colours.
     pub color: MoleculeColor,
-    /// Colours for some of them, later ones win.
+    /// Colours of selected atoms; later ones win.
     pub paint: Vec<Paint>,
-    /// Atoms that are drawn at all.
+    /// Atoms that are drawn.
     pub selection: Selection,
     /// Cuts along the edge of the icosahedron that a ball is made from, 1..=16; `None` = by the number of atoms.
     pub detail: Option<u32>,
@@ -67,7 +67,7 @@ impl Default for MoleculeStyle {
     }
 }
 
-/// Where a molecule stands: scaled, turned, moved.
+/// Placement of a molecule: scaled, then turned, then moved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModelTransform {
     /// Scene units per angstrom, > 0.

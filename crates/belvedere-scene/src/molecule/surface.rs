@@ -20,21 +20,21 @@ pub(super) fn ball_radius(element: Element, representation: Representation) -> f
 /// Share of the van der Waals radius by which an atom between rods takes light from its neighbours.
 const SHADE: f64 = 0.5;
 
-/// Triangles that balls are made of at most, while they have [`COARSEST`] cuts or more.
+/// Most triangles of all balls together, unless that would need fewer than [`COARSEST`] cuts.
 const TRIANGLES: usize = 3_000_000;
 const COARSEST: usize = 2;
 const FINEST: usize = 8;
 /// Atoms from which on balls are plain icosahedra.
 const VERY_MANY: usize = 150_000;
 
-/// What of the style matters for the shape.
+/// The part of the style that decides the shape.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Look {
     pub(super) representation: Representation,
     pub(super) detail: Option<u32>,
 }
 
-/// A surface and what it is of.
+/// A surface and the numbers of its atoms and bonds.
 pub(super) struct Made {
     pub(super) mesh: Mesh,
     pub(super) atoms: usize,
@@ -50,7 +50,7 @@ struct Piece {
     triangles: Vec<[u32; 3]>,
 }
 
-/// Balls, and rods where there are some, of the atoms that are drawn; each in its colour, each triangle knowing its atom.
+/// Balls of the drawn atoms, and rods unless atoms fill space, in their colours; the part of a triangle is the index of its atom.
 pub(super) fn build(
     molecule: &Molecule,
     drawn: &[bool],
@@ -90,9 +90,9 @@ pub(super) fn build(
     Ok(Made { mesh, atoms: atoms.len(), bonds: bonds.len() })
 }
 
-/// Cuts along the edge of an icosahedron for so many balls.
+/// Cuts along the edge of an icosahedron for a number of balls.
 fn detail(atoms: usize, filling: bool) -> usize {
-    // Of balls that fill space two thirds are buried in others and left out.
+    // Two thirds of the triangles of balls that fill space lie inside others and are left out.
     let most = if filling { 2 * TRIANGLES } else { TRIANGLES };
     let cuts = (most as f64 / (20 * atoms.max(1)) as f64).sqrt() as usize;
     if atoms > VERY_MANY { 1 } else { cuts.clamp(COARSEST, FINEST) }
@@ -128,7 +128,7 @@ impl Maker {
     fn ball(&self, center: DVec3, radius: f64, around: &Around) -> Piece {
         let mut piece = Piece::default();
         let outer = radius * self.ball.outer();
-        // Inside a neighbour nothing is seen; its faces lie a little deeper than its radius.
+        // Triangles inside a neighbour are hidden; its faces lie a little deeper than its radius.
         let share = self.ball.outer() * self.ball.inner;
         let mut number = vec![u32::MAX; self.ball.normals.len()];
         for t in &self.ball.triangles {
@@ -148,7 +148,7 @@ impl Maker {
         piece
     }
 
-    /// From the centre to the middle of a bond.
+    /// Adds the rod from the centre of the atom to the middle of a bond.
     fn half_rod(&self, piece: &mut Piece, center: DVec3, other: DVec3, around: &Around) {
         let half = 0.5 * (other - center);
         let (normals, triangles) = rod(self.sides, half);

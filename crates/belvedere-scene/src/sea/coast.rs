@@ -4,14 +4,14 @@ use crate::{Heightfield, NodeState};
 use belvedere_core::DVec2;
 use std::collections::HashMap;
 
-/// The ground at a coast line stands as high over the sea, metres.
+/// Height of the ground over the sea at a coast line, metres.
 const COAST_M: f64 = 0.5;
-/// Where between a node of the sea and one of the land a coast line may lie, as a share of the way.
+/// Least and largest distance of a coast line from a node of the sea towards one of the land, as a share of their distance.
 const BETWEEN: [f64; 2] = [0.12, 0.5];
 /// Rounds of cutting corners; fewer where a coast has very many.
 const ROUNDS: usize = 2;
 const MANY: usize = 400_000;
-/// Nodes by which the sea goes on outside the ground, so that no coast runs along its edge.
+/// Nodes by which the sea is extended outside the ground, so that no coast runs along its edge.
 const BEYOND: usize = 2;
 
 /// A side between two nodes next to each other, by the node that comes first and whether the other lies to the east.
@@ -22,7 +22,7 @@ pub(super) fn rings(ground: &Heightfield, sea: &[bool], level: f64) -> Vec<Vec<D
     let padded = Padded::new(ground, sea);
     let next = padded.steps();
     let mut starts: Vec<Side> = next.keys().copied().collect();
-    // A map has no order of its own.
+    // The iteration order of a hash map is not deterministic.
     starts.sort_unstable();
     let (mut next, mut rings) = (next, Vec::new());
     for start in starts {
@@ -60,7 +60,7 @@ impl Padded {
         for (i, _) in sea.iter().enumerate().filter(|(_, sea)| **sea) {
             out.sea[(i / ground.cols() + margin) * cols + i % ground.cols() + margin] = true;
         }
-        // Into voids and over the edge.
+        // Extends the sea into voids and over the edge of the ground.
         for _ in 0..BEYOND {
             let before = out.sea.clone();
             for r in 1..rows - 1 {
@@ -77,18 +77,18 @@ impl Padded {
         out
     }
 
-    /// Index of a node of the ground.
+    /// Index in the ground of a padded node; `None` outside the ground.
     fn node(&self, ground: &Heightfield, i: usize) -> Option<usize> {
         let (c, r) = ((i % self.cols).checked_sub(BEYOND + 1)?, (i / self.cols).checked_sub(BEYOND + 1)?);
         (c < ground.cols() && r < ground.rows()).then(|| r * ground.cols() + c)
     }
 
-    /// Whether there is no ground.
+    /// Whether a padded node is a void, or lies outside the ground.
     fn is_nowhere(&self, ground: &Heightfield, i: usize) -> bool {
         self.node(ground, i).is_none_or(|i| ground.states()[i] == NodeState::Void)
     }
 
-    /// From side to side around the sea, which lies to the left: through every square of four nodes that are not all alike.
+    /// Steps of the coast line from side to side (marching squares), the sea to the left, through every square of unlike nodes.
     fn steps(&self) -> HashMap<Side, Side> {
         let mut steps = HashMap::new();
         for r in 0..self.rows - 1 {
@@ -107,7 +107,7 @@ impl Padded {
         steps
     }
 
-    /// Where the coast line crosses a side.
+    /// Scene position at which the coast line crosses a side.
     fn place(&self, ground: &Heightfield, (first, east): Side, level: f64) -> DVec2 {
         let second = if east { first + 1 } else { first + self.cols };
         let (water, land) = if self.sea[first] { (first, second) } else { (second, first) };

@@ -1,4 +1,4 @@
-//! The sea of a ground: found by the heights alone, as areas are drawn.
+//! The sea of a ground, found from the heights alone, as rings to be drawn as areas.
 //!
 //! Sea is a connected stretch of ground at one height, see [`Sea::of`]. Land below sea level is no sea: its heights differ.
 
@@ -37,7 +37,7 @@ impl Sea {
     /// * that reaches the edge of the ground, or voids that do;
     /// * of at least a square kilometre, or a twentieth of the ground;
     /// * with a shore: half the nodes beside it stand less than the spacing of the nodes over it (10 m at least, 100 m at most).
-    ///   What steps up to the land is no sea but a frame of undeclared voids.
+    ///   Level ground with a higher step to the land is a frame of undeclared voids.
     pub fn of(ground: &Heightfield) -> Option<Self> {
         let lowest = ground.z_range()[0];
         let levels = [Some(0.0), (lowest < -f64::from(SAME_M)).then_some(lowest)];
@@ -50,14 +50,14 @@ impl Sea {
     }
 }
 
-/// Nodes around a node, itself left out.
+/// The up to eight neighbours of a node.
 fn around(i: usize, [cols, rows]: [usize; 2]) -> impl Iterator<Item = usize> {
     let (c, r) = (i % cols, i / cols);
     let rows = r.saturating_sub(1)..(r + 2).min(rows);
     rows.flat_map(move |r| (c.saturating_sub(1)..(c + 2).min(cols)).map(move |c| r * cols + c)).filter(move |k| *k != i)
 }
 
-/// The nodes beside it in its row and column.
+/// The up to four neighbours of a node in its row and column.
 fn beside(i: usize, [cols, rows]: [usize; 2]) -> impl Iterator<Item = usize> {
     let (c, r) = (i % cols, i / cols);
     [(c > 0).then(|| i - 1), (c + 1 < cols).then(|| i + 1), (r > 0).then(|| i - cols), (r + 1 < rows).then(|| i + cols)]
@@ -65,7 +65,7 @@ fn beside(i: usize, [cols, rows]: [usize; 2]) -> impl Iterator<Item = usize> {
         .flatten()
 }
 
-/// Marks what is joined with `first` along rows and columns and not marked yet; the nodes in the order of finding.
+/// Flood fill: marks the unmarked nodes that are joined with `first` along rows and columns; returns them as found.
 fn flood(first: usize, size: [usize; 2], marked: &mut [bool], belongs: impl Fn(usize) -> bool) -> Vec<usize> {
     let (mut found, mut next) = (Vec::new(), VecDeque::from([first]));
     marked[first] = true;

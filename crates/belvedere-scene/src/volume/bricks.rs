@@ -1,4 +1,4 @@
-//! Least and greatest values of the cubes that a volume is divided into: what tells where there is nothing to be seen.
+//! Ranges of values in the bricks of a volume, by which empty space is skipped.
 
 use super::VoxelValues;
 use rayon::prelude::*;
@@ -8,7 +8,7 @@ pub const BRICK: usize = 8;
 
 /// Ranges of values, one per brick of [`BRICK`]^3 cells, x fastest.
 ///
-/// A brick's range covers the voxels at its borders, which it shares with its neighbours: whatever is interpolated inside lies in it.
+/// A brick's range covers the voxels at its borders, which it shares with its neighbours, so it holds every interpolated value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bricks {
     dims: [usize; 3],

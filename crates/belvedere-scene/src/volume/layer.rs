@@ -49,10 +49,10 @@ impl VolumeLayer {
         self.transfer.reference_step() * self.volume.voxel_edge()
     }
 
-    /// Positions of voxels that stand for what is visible, scene units: the most opaque of each brick that has any, and of these some,
-    /// evenly chosen. None where nothing is visible.
+    /// Positions of voxels that represent the visible part, scene units: the most opaque voxel of each visible brick, of an even selection
+    /// of these bricks. Empty if nothing is visible.
     ///
-    /// * `most`: how many at most, > 0.
+    /// * `most`: largest number of positions, > 0.
     pub fn visible_voxels(&self, most: usize) -> Vec<DVec3> {
         let dims = self.volume.dims();
         let visible = self.visible_bricks();

@@ -98,7 +98,7 @@ impl VoxelValues {
     }
 }
 
-/// A volume that cannot be.
+/// Errors of a volume.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum VolumeError {
@@ -124,7 +124,7 @@ pub enum VolumeError {
         /// Values found.
         found: usize,
     },
-    /// A value that is no number.
+    /// A value is not finite.
     #[error("voxel {at} has the value {value}, values must be finite numbers; replace it")]
     NotFinite {
         /// Number of the first such voxel.
@@ -132,7 +132,7 @@ pub enum VolumeError {
         /// Its value.
         value: f32,
     },
-    /// Axes that span no space.
+    /// The axes do not span space.
     #[error(
         "the axes of the volume span no space (volume of a voxel {volume:e}, edges {}, {}, {}); give finite, independent axes and spacings other than 0",
         edges[0], edges[1], edges[2]
@@ -145,7 +145,7 @@ pub enum VolumeError {
     },
 }
 
-/// Values on a lattice of voxels and their place in the scene.
+/// Values on a lattice of voxels, placed in the scene.
 ///
 /// Voxel `(i, j, k)` is a sample at `origin + axes * (i, j, k)`; between voxels values are interpolated trilinearly. The volume ends
 /// at its outer voxels: it fills the lattice coordinates `0..=dims - 1`.
@@ -199,7 +199,7 @@ impl Volume {
         Ok(Self { dims, axes, inverse: placed.0, origin, values, range, bricks })
     }
 
-    /// The same voxels elsewhere: scene position `turn * p + offset` for what was at `p`.
+    /// This volume moved: a voxel at scene position `p` goes to `turn * p + offset`.
     ///
     /// # Errors
     /// [`VolumeError::Axes`].

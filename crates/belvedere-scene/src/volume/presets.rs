@@ -36,7 +36,7 @@ const ENGINE: &[Stop] = &[
     (0.86, [246, 178, 78], 0.95),
     (1.0, [255, 236, 196], 1.0),
 ];
-/// Bones, with a breath of what contrast medium fills.
+/// Bones, and faintly the vessels filled with contrast medium.
 const CT_BONE: &[Stop] = &[
     (0.0, [0, 0, 0], 0.0),
     (0.42, [172, 96, 76], 0.0),
@@ -65,18 +65,18 @@ const VESSELS: &[Stop] = &[
     (0.75, [244, 138, 92], 1.0),
     (1.0, [255, 214, 170], 1.0),
 ];
-/// The values themselves: the greater, the lighter and the denser.
+/// Grey levels: greater values are lighter and more opaque.
 const GREY: &[Stop] =
     &[(0.0, [0, 0, 0], 0.0), (0.12, [50, 50, 50], 0.0), (0.5, [150, 150, 150], 0.05), (1.0, [255, 255, 255], 0.30)];
 
 /// Window of the CT functions over values in Hounsfield units (air -1000, water 0): that of bone.
 const HOUNSFIELD: [f64; 2] = [-450.0, 1050.0];
-/// Values that reach below and above these are Hounsfield units.
+/// A volume whose values reach below and above these is in Hounsfield units.
 const AIR_TO_BONE: [f32; 2] = [-500.0, 500.0];
 
 /// Bins of the histogram.
 const BINS: usize = 256;
-/// Voxels that are counted at most.
+/// About the largest number of voxels that are counted.
 const COUNTED: usize = 1 << 21;
 
 impl TransferFunction {
@@ -99,8 +99,8 @@ impl TransferFunction {
         Some(of_stops(name, stops, range))
     }
 
-    /// The wall of a vessel alone, as it is seen from within: nothing of values on the side of the lumen, and all others opaque, so that
-    /// what lies behind the wall is hidden. The function has the name [`WALL`]. Ours.
+    /// The wall of a vessel alone, as it is seen from within: values on the side of the lumen are clear, all others opaque, so that the
+    /// wall hides everything behind it. The function has the name [`WALL`]. Ours.
     ///
     /// * `lumen`, `isovalue`, `wall`: values in the vessel, at its border and in the wall; ascending or descending, finite.
     pub fn wall(lumen: f64, isovalue: f64, wall: f64) -> Self {
@@ -109,7 +109,7 @@ impl TransferFunction {
         Self::trusted(WALL, if wall > lumen { vec![clear, dense] } else { vec![dense, clear] })
     }
 
-    /// A function that the histogram suggests: nothing of the background, what stands out from it as a solid. The background ends at
+    /// A function derived from the histogram: the background is clear, all denser values are solid. The background ends at
     /// the threshold that parts the values into two classes of the least variance within (Otsu 1979); denser parts differ in colour.
     pub fn auto(volume: &Volume) -> Self {
         let range = volume.range().map(f64::from);
@@ -127,7 +127,7 @@ impl TransferFunction {
     }
 }
 
-/// The value that parts a volume's values into background and what stands out from it (Otsu 1979).
+/// The value that parts a volume's values into background and foreground (Otsu 1979).
 pub fn threshold(volume: &Volume) -> f64 {
     let [lo, hi] = volume.range().map(f64::from);
     lo + threshold_share(volume) * (hi - lo)
@@ -169,7 +169,7 @@ fn otsu(counts: &[u64; BINS]) -> usize {
     let moment = |range: std::ops::Range<usize>| range.map(|i| i as f64 * counts[i] as f64).sum::<f64>();
     let all = moment(0..BINS);
     let (mut below, mut sum) = (0.0, 0.0);
-    // Bins that no value falls into part the values alike: the middle of the best is taken.
+    // Empty bins have equal variance: the middle of the best bins is taken.
     let (mut best, mut first, mut last) = (0.0, BINS / 2, BINS / 2);
     for (i, count) in counts.iter().enumerate().take(BINS - 1) {
         below += *count as f64;

@@ -1,11 +1,11 @@
-//! From values to colour and opacity.
+//! Transfer functions: colour and opacity of values.
 
 use crate::Color;
 
 /// Most points of a transfer function.
 const MOST_POINTS: usize = 4096;
 
-/// Opacities above this would let powers lose all digits; a reference step of it lets a millionth through.
+/// Largest opacity: a reference step lets a millionth through. Above it powers of the transmission lose all digits.
 const MOST_OPAQUE: f64 = 1.0 - 1e-6;
 
 /// A value with its colour and opacity.
@@ -19,7 +19,7 @@ pub struct TransferPoint {
     pub opacity: f64,
 }
 
-/// A transfer function that cannot be.
+/// Errors of a transfer function.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TransferError {
@@ -29,7 +29,7 @@ pub enum TransferError {
         /// Points given.
         count: usize,
     },
-    /// Values out of order, or no numbers.
+    /// The values do not ascend, or are not finite.
     #[error("point {at} of the transfer function has the value {value}; values must be finite and ascend")]
     Value {
         /// Number of the point, from 1.
@@ -134,7 +134,7 @@ impl TransferFunction {
         }
     }
 
-    /// Opacity of a value, below 1 so that what it lets through can be multiplied.
+    /// Opacity of a value, below 1 so that transmissions can be multiplied.
     pub fn opacity(&self, value: f64) -> f64 {
         self.at(value)[3].min(MOST_OPAQUE)
     }
@@ -146,7 +146,7 @@ impl TransferFunction {
     }
 }
 
-/// What a distance absorbs, in units of the reference step: `1 - (1 - opacity)^steps`.
+/// Share of light absorbed over a distance in reference steps: `1 - (1 - opacity)^steps`.
 pub fn absorbed(opacity: f64, steps: f64) -> f64 {
     1.0 - (1.0 - opacity).powf(steps)
 }
