@@ -10,10 +10,10 @@ use rayon::prelude::*;
 /// Nodes per side and their distance, metres.
 const NODES: usize = 513;
 const SPACING_M: f64 = 25.0;
-/// Height of the river where it leaves, and its fall per metre of way to the north.
+/// Height of the river at its mouth in the south, metres, and its rise per metre to the north.
 const MOUTH_M: f64 = 720.0;
 const FALL: f64 = 0.002;
-/// Length of a meander and how far it swings to each side, metres.
+/// Length of a meander, and its amplitude to each side, metres.
 const MEANDER_M: f64 = 4_300.0;
 const SWING_M: f64 = 900.0;
 /// Walls and benches: distance from the river, height over it, metres; linear in between.
@@ -30,7 +30,7 @@ const STRATA: [[f64; 2]; 11] = [
     [1_900.0, 905.0],
     [4_000.0, 960.0],
 ];
-/// Side canyons: where they leave the river and their direction, both of the scene, and their length, metres.
+/// Side canyons: direction (east, north) and length, metres.
 const SIDES: [([f64; 2], f64); 6] = [
     ([0.83, 0.55], 3_600.0),
     ([-0.77, 0.64], 3_900.0),
@@ -46,7 +46,7 @@ const SIDES: [([f64; 2], f64); 6] = [
 /// same seed gives the same bytes on every platform.
 ///
 /// # Errors
-/// [`BuiltinError::Heightfield`], in theory.
+/// [`BuiltinError::Heightfield`], which does not occur in practice.
 ///
 /// Source: ours.
 pub fn canyon(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
@@ -90,7 +90,7 @@ struct Land {
     sides: Vec<Side>,
 }
 
-/// A side canyon: from the river on, straight but for noise, rising.
+/// A side canyon that rises from the river, straight but for noise.
 struct Side {
     from: DVec2,
     along: DVec2,
@@ -109,15 +109,15 @@ impl Land {
         land
     }
 
-    /// Where the river is at `y`.
+    /// x of the river at `y`, metres.
     fn river(&self, y: f64) -> f64 {
         let swing = SWING_M * (1.0 + 0.35 * self.noise.at(DVec2::new(y / 3_100.0, 7.5)));
         swing * wave(y / MEANDER_M + self.phase) + 260.0 * self.noise.at(DVec2::new(y / 2_300.0, 0.5))
     }
 
-    /// Distance from the river, metres: across it, shortened where it runs aslant.
+    /// Distance of `p` from the river, metres.
     fn river_distance(&self, p: DVec2) -> f64 {
-        // The nearest of points along the river near here.
+        // Nearest point of the river, by three passes with ever smaller steps.
         let (mut best, mut at) = (f64::INFINITY, p.y);
         for (step, reach) in [(150i32, 14i32), (30, 5), (6, 5)] {
             let middle = at;

@@ -10,13 +10,13 @@ const STONE: Color = Color::rgb(198, 184, 160);
 const TILES: Color = Color::rgb(168, 84, 62);
 const COPPER: Color = Color::rgb(96, 150, 130);
 
-/// Half the width of the nave, its wall and its ridge; the ends of the nave along x, metres.
+/// Half the width of the nave, the heights of its wall and its ridge; the ends of the nave along x, metres.
 const HALF: f64 = 9.0;
 const WALL_M: f64 = 13.0;
 const RIDGE_M: f64 = 22.0;
 const NAVE: [f64; 2] = [-16.0, 20.0];
 
-/// The church: foot in the middle of the origin, its length along x, 64 m high.
+/// The church: on the ground around the origin, its length along x, 64 m high.
 ///
 /// # Errors
 /// None in practice: the mesh is well formed.
@@ -42,7 +42,7 @@ struct Builder {
 }
 
 impl Builder {
-    /// A flat polygon, its corners counter-clockwise from outside.
+    /// Adds a flat polygon, its corners counter-clockwise from outside.
     fn face(&mut self, corners: &[DVec3], color: Color) {
         let first = self.positions.len() as u32;
         self.positions.extend(corners);
@@ -52,7 +52,7 @@ impl Builder {
         }
     }
 
-    /// The walls between rings of corners of equal number, counter-clockwise from above, lower ring first.
+    /// Adds the walls between rings of corners of equal number, counter-clockwise from above, lower ring first.
     fn walls(&mut self, low: &[DVec3], high: &[DVec3], color: Color) {
         for i in 0..low.len() {
             let k = (i + 1) % low.len();

@@ -1,4 +1,4 @@
-//! B-DNA: two strands of random sequence wound about the z axis, built from the place of each atom in a base pair.
+//! B-DNA: two strands of random sequence wound about the z axis, built from the position of each atom in a base pair.
 
 use super::{BuiltinError, SuggestedCamera};
 use crate::noise::seeded;
@@ -10,13 +10,13 @@ use belvedere_scene::{Crs, Layer, LayerKind, Molecule, MoleculeLayer, MoleculeSt
 const TWIST_DEG: f64 = 36.0;
 const RISE: f64 = 3.38;
 
-/// Pairs that can be asked for.
+/// Least and greatest number of base pairs.
 pub(super) const PAIRS: [usize; 2] = [2, 5000];
 
-/// An atom's name and its place in the frame of its base pair, angstrom: x to the major groove, y to the strand, z along it.
+/// An atom's name and its position in the frame of its base pair, angstrom: x to the major groove, y to the strand, z along it.
 type Placed = (&'static str, [f64; 3]);
 
-/// Phosphate and sugar. Ours: the mean places in entry 1BNA of the Protein Data Bank, then moved as little as needed for the bond lengths and
+/// Phosphate and sugar. Ours: the mean positions in entry 1BNA of the Protein Data Bank, then moved as little as needed for the bond lengths and
 /// angles that are usual in nucleic acids, the bond from each O3' to the next phosphate included.
 const BACKBONE: [Placed; 11] = [
     ("P", [0.202, 9.377, -1.331]),
@@ -32,7 +32,7 @@ const BACKBONE: [Placed; 11] = [
     ("C1'", [-2.479, 5.375, 0.0]),
 ];
 
-/// The first three belong to the phosphate, which the first residue of a strand lacks.
+/// Number of atoms of the phosphate, the first of the backbone; the first residue of a strand lacks them.
 const PHOSPHATE: usize = 3;
 
 /// A base: name of its residue, its partner, its atoms.
@@ -147,7 +147,7 @@ struct Builder {
 }
 
 impl Builder {
-    /// The nucleotide of a strand in pair `k`.
+    /// Adds the nucleotide of a strand in pair `k`.
     fn residue(&mut self, base: &Base, k: usize, first: bool, chain: &str) {
         let number = self.residues.len() as i32 + 1;
         let (name, chain) = (base.residue.to_owned(), chain.to_owned());
@@ -163,7 +163,7 @@ impl Builder {
         }
     }
 
-    /// Place of a point of a pair's frame; the other strand is turned half about the frame's x axis.
+    /// Scene position of a point in the frame of pair `k`; strand B is turned by half a turn about the frame's x axis.
     fn place(&self, p: DVec3, k: usize, down: bool) -> DVec3 {
         let p = if down { DVec3::new(p.x, -p.y, -p.z) } else { p };
         let (sin, cos) = (k as f64 * TWIST_DEG.to_radians()).sin_cos();

@@ -1,5 +1,5 @@
-//! A machined block as a scanner sees it: walls with bores and channels, and a denser valve in a chamber that opens above, where level
-//! lines of sight do not look into it.
+//! A machined block as a scanner sees it: walls with bores and channels, and a denser valve in a chamber that is open above and hidden from
+//! level lines of sight.
 
 use super::noise::hash_unit;
 use super::{BuiltinError, SuggestedCamera};
@@ -38,7 +38,7 @@ pub fn engine(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
     Ok((Scene { title, crs: Crs::Local, unit: Unit::Voxel, layers, ..Scene::default() }, camera))
 }
 
-/// Signed distances, negative inside, in voxels.
+/// The block, as signed distances: negative inside, in voxels.
 struct Block {
     /// Positions and radii of bolt holes from above.
     bolts: Vec<(DVec2, f64)>,
@@ -66,7 +66,7 @@ impl Block {
         cast + steel * (STEEL - cast)
     }
 
-    /// The cast housing with everything cut out of it.
+    /// Signed distance of the cast housing, without its bores and chambers.
     fn housing(&self, p: DVec3) -> f64 {
         let body = rounded_box(p - DVec3::new(79.5, 63.5, 42.0), DVec3::new(66.0, 52.0, 33.0), 5.0);
         let flange = rounded_box(p - DVec3::new(79.5, 63.5, 72.0), DVec3::new(72.0, 58.0, 4.5), 2.0);
@@ -86,7 +86,7 @@ impl Block {
     }
 }
 
-/// The valve in the chamber: a stem along x with a head, a ring and coils around it.
+/// Signed distance of the valve in the chamber: a stem along x with a head, a ring and coils around it.
 fn valve(p: DVec3) -> f64 {
     let q = p - DVec3::new(79.5, 92.0, 57.0);
     let across = DVec2::new(q.y, q.z);
@@ -100,13 +100,13 @@ fn valve(p: DVec3) -> f64 {
     stem.min(head).min(ring).min(spring)
 }
 
-/// A box by its half extents, its edges rounded.
+/// Signed distance of a box with rounded edges, given by its half extents.
 fn rounded_box(p: DVec3, half: DVec3, radius: f64) -> f64 {
     let q = p.abs() - half + radius;
     q.max(DVec3::ZERO).length() + q.max_element().min(0.0) - radius
 }
 
-/// A cylinder by the position across and along its axis, its radius and half its length.
+/// Signed distance of a cylinder, given by the position across and along its axis, its radius and half its length.
 fn cylinder(across: DVec2, along: f64, radius: f64, half: f64) -> f64 {
     let q = DVec2::new(across.length() - radius, along.abs() - half);
     q.max(DVec2::ZERO).length() + q.max_element().min(0.0)

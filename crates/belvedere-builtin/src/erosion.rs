@@ -1,4 +1,4 @@
-//! Rivers and slopes shaping a square grid of heights, f64, deterministic.
+//! Erosion of a square grid of heights by rivers, rock falls, creep and ice; f64, deterministic.
 
 /// A square grid of heights that drains through some nodes of its border.
 #[derive(Debug, Clone)]
@@ -13,7 +13,7 @@ pub(crate) struct Land {
     pub(crate) outlet: Vec<bool>,
 }
 
-/// Where water runs.
+/// The drainage network of a land.
 #[derive(Debug, Clone)]
 pub(crate) struct Drainage {
     /// Nodes from the outlets upstream: a node comes after the node it drains to.
@@ -24,7 +24,7 @@ pub(crate) struct Drainage {
     pub(crate) area: Vec<f64>,
 }
 
-/// Area a stream needs before it cuts, square metres: slopes above springs stay smooth.
+/// Least drained area at which a stream erodes, square metres: slopes above springs stay smooth.
 const SPRING_M2: f64 = 12_000.0;
 
 /// Offsets of the eight neighbours, straight ones first.
@@ -93,9 +93,9 @@ impl Land {
         Drainage { order, receiver, area }
     }
 
-    /// One implicit step of stream-power incision `dz/dt = uplift - k sqrt(area) slope`; pits are filled by what the rivers carry.
+    /// One implicit step of stream-power incision `dz/dt = uplift - k sqrt(area) slope`; pits are filled with sediment.
     ///
-    /// * `lift`: metres to rise, per node; `k`: erodibility times duration, 1 (area exponent 1/2, slope exponent 1), per node.
+    /// * `lift`: uplift of the step per node, metres; `k`: erodibility times duration, 1 (area exponent 1/2, slope exponent 1), per node.
     ///
     /// Source: Braun and Willett 2013, eq. 22 with m = 1/2, n = 1.
     pub(crate) fn incise(&mut self, lift: &[f64], k: &[f64], talus: &[f64]) -> Drainage {
@@ -160,7 +160,7 @@ impl Land {
         north + v * (south - north)
     }
 
-    /// Ice: opens valleys into troughs with flat floors and steep walls; where the ice began, high up, a cirque remains.
+    /// Glacial erosion: widens valleys into troughs with flat floors and steep walls, which end in cirques; returns the carved nodes.
     ///
     /// * `ice_m2(z)`: drained area from which a valley at height z held ice, square metres;
     /// * `half_width(area)`: half the width of the floor, metres.

@@ -4,7 +4,7 @@ use super::erosion::{Drainage, Land};
 use belvedere_core::DVec2;
 use std::collections::BTreeMap;
 
-/// Area wanted, square metres.
+/// Wanted area of the lake, square metres.
 const WANTED_M2: f64 = 0.7e6;
 
 /// A lake.
@@ -16,7 +16,7 @@ pub(crate) struct Lake {
     pub(crate) rings: Vec<Vec<DVec2>>,
 }
 
-/// Dams the valley where that makes the lake closest to [`WANTED_M2`], and fills it. `None` if no valley is suited.
+/// Dams the valley in which the area of the lake is closest to [`WANTED_M2`], and fills it. `None` if no valley is suited.
 pub(crate) fn dam(land: &mut Land, water: &Drainage) -> Option<Lake> {
     let (n, cell) = (land.n, land.dx * land.dx);
     let margin = n / 6;
@@ -47,7 +47,7 @@ pub(crate) fn dam(land: &mut Land, water: &Drainage) -> Option<Lake> {
     Some(Lake { nodes, rings })
 }
 
-/// Nodes below `level` that drain through `foot` and hang together with it; empty if they reach the border.
+/// Nodes below `level` that drain through `foot` and are connected with it; empty if they reach the border.
 fn flooded(land: &Land, water: &Drainage, foot: usize, level: f64) -> Vec<usize> {
     let mut seen = std::collections::BTreeSet::from([foot]);
     let (mut nodes, mut next) = (vec![foot], 0);

@@ -75,7 +75,7 @@ fn lake_layer(lake: Lake) -> Layer {
     }
 }
 
-/// From the mouth of the lake's valley along its shore and over a pass to the mouth farthest away.
+/// Route of the trail: from the mouth of the lake's valley along its shore and over a pass to the mouth farthest away.
 fn trail_route(
     seed: u64,
     land: &Land,
@@ -131,7 +131,7 @@ fn trail_route(
     Ok(route)
 }
 
-/// What drives the shape of the land at one resolution.
+/// Parameters of erosion at every node, at one resolution.
 struct Forces {
     /// Uplift per step, metres.
     lift: Vec<f64>,
@@ -165,7 +165,7 @@ fn forces(seed: u64, n: usize, lift_m: f64, k: f64) -> Forces {
     }
 }
 
-/// Valley mouths: one stretch on each side, at seeded positions.
+/// Outlets at the valley mouths: one or two stretches on each side, at seeded positions.
 fn outlets(seed: u64, n: usize) -> Vec<bool> {
     let mut random = seeded(seed ^ 15);
     let mut outlet = vec![false; n * n];

@@ -9,7 +9,7 @@ pub(crate) fn seeded(seed: u64) -> Random {
     Random::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5bf0_3635)
 }
 
-/// In [0, 1): the same number for the same seed, place and stream.
+/// Hash in [0, 1) of seed, place and stream.
 pub(crate) fn hash_unit(seed: u64, place: u64, stream: u64) -> f64 {
     let bits = mix(mix(seed ^ stream.wrapping_mul(0x9e37_79b9_7f4a_7c15)).wrapping_add(place));
     (bits >> 11) as f64 / (1u64 << 53) as f64
@@ -40,7 +40,7 @@ pub(crate) const DIRECTIONS: [DVec2; 16] = {
     ]
 };
 
-/// Gradient noise over the plane, about -1..1, period none.
+/// Gradient noise over the plane, about -1..1, without a period.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Noise {
     seed: u64,

@@ -6,17 +6,17 @@ use belvedere_scene::{Heightfield, NodeState};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// What a metre of way costs: `1 + slope_weight (slope / 0.25)^2 + height_weight h^2 + wander noise`, h = 0 at the lowest and 1 at
+/// Cost of a metre of path: `1 + slope_weight (slope / 0.25)^2 + height_weight h^2 + wander noise`, h = 0 at the lowest and 1 at
 /// the highest node of the terrain searched, noise = 0..1, seeded, some ten nodes wide. All weights >= 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RouteCost {
-    /// Dislike of steep ground; 0.2..=5 is useful.
+    /// Weight of steep ground; 0.2..=5 is useful.
     pub slope_weight: f64,
-    /// Dislike of high ground; 2..=50 is useful.
+    /// Weight of high ground; 2..=50 is useful.
     pub height_weight: f64,
-    /// Irregularity, so that ways over even ground wind as paths do; 0 = none, 0.5..=3 is useful.
+    /// Weight of the noise, by which routes wind over even ground; 0 = none, 0.5..=3 is useful.
     pub wander: f64,
-    /// Seed of the irregularity.
+    /// Seed of the noise.
     pub seed: u64,
 }
 
@@ -26,7 +26,7 @@ impl Default for RouteCost {
     }
 }
 
-/// A route that cannot be found.
+/// Errors of the search for a route.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RouteError {
@@ -65,7 +65,7 @@ pub enum RouteError {
         /// Wander given.
         wander: f64,
     },
-    /// No pair of valley ends with a way between them.
+    /// No path joins a pair of valley ends.
     #[error(
         "no valley route found on terrain of {cols} x {rows} nodes with {void_percent:.0} % voids; at least 16 x 16 nodes of connected ground are needed"
     )]
@@ -79,10 +79,10 @@ pub enum RouteError {
     },
 }
 
-/// Cheapest way over the terrain between two scene positions (A* on the eight neighbours of each node, then smoothed a little).
+/// Cheapest path over the terrain between two scene positions (A* on the eight neighbours of each node, then smoothed a little).
 ///
-/// Keeps a node away from voids. Vertices lie about one grid spacing apart; the first and last are the nodes nearest to `from` and
-/// `to` that lie so, at most 3 spacings away.
+/// Keeps a node away from voids. Vertices lie about one grid spacing apart; the first and last are such nodes nearest to `from`
+/// and `to`, at most 3 spacings away.
 ///
 /// # Errors
 /// [`RouteError::NoGround`], [`RouteError::NoWay`], [`RouteError::Weights`].
@@ -184,7 +184,7 @@ fn no_ground(terrain: &Heightfield, end: &'static str, xy: DVec2) -> RouteError 
     RouteError::NoGround { end, x: xy.x, y: xy.y, x_min: b.min.x, x_max: b.max.x, y_min: b.min.y, y_max: b.max.y }
 }
 
-/// A* over the open (not NaN) nodes; nodes from start to end, and what the way costs.
+/// A* over the open (not NaN) nodes; returns the nodes from start to end and the cost of the path.
 fn search(
     spacing: DVec2,
     window: Window,
@@ -219,7 +219,7 @@ fn search(
             return Some((trace(&came_by, &step, cols, start, end), best[end].into()));
         }
         if f32::from_bits(key) > best[i] + to_go(i) as f32 * 1.000_001 + 1e-3 {
-            continue; // an older, dearer entry
+            continue; // an outdated entry of higher cost
         }
         let (c, r, extra) = ((i % cols) as isize, (i / cols) as isize, irregular(i));
         for (k, &(dc, dr, run)) in step.iter().enumerate() {
@@ -274,12 +274,12 @@ fn smooth(terrain: &Heightfield, nodes: Vec<DVec2>, open: impl Fn(DVec2) -> bool
     line
 }
 
-/// Longest side of the part of the terrain a valley route is looked for in, metres.
+/// Longest side of the window in which a valley route is searched, metres.
 const WINDOW_M: f64 = 24_000.0;
 
-/// A route for terrain that has none: through the valleys of its most mountainous part, 10 to 30 km long where the terrain allows.
+/// A route for terrain without a given one: through the valleys of its most mountainous part, 10 to 30 km long where the terrain allows.
 ///
-/// Of 48 seeded windows the one with the greatest relief and the fewest voids is taken; the ends are low ground on opposite sides of it.
+/// Of 48 seeded windows those with the greatest relief and the fewest voids are tried; the ends are low ground on opposite sides.
 /// Same terrain and seed, same route.
 ///
 /// # Errors
@@ -306,7 +306,7 @@ pub fn valley_route(terrain: &Heightfield, seed: u64) -> Result<Vec<DVec2>, Rout
     })
 }
 
-/// A window at a seeded position and its worth: relief, less for voids.
+/// A window at a seeded position and its rating: relief, reduced by the share of voids.
 fn seeded_window(terrain: &Heightfield, random: &mut Random) -> (f64, Window) {
     let nodes = |count: usize, spacing: f64| count.min((WINDOW_M / spacing) as usize + 1).max(2.min(count));
     let (cols, rows) = (nodes(terrain.cols(), terrain.spacing().x), nodes(terrain.rows(), terrain.spacing().y));
@@ -362,7 +362,7 @@ fn low_ends(terrain: &Heightfield, window: Window, random: &mut Random) -> Vec<[
 mod tests {
     use super::*;
 
-    /// Dijkstra by repeated relaxation of all edges until nothing changes: slow, obvious.
+    /// Bellman-Ford: relaxes all edges until nothing changes; a slow reference.
     fn cheapest_by_relaxation(hf: &Heightfield, from: usize, to: usize, cost: &RouteCost) -> f64 {
         let (cols, rows) = (hf.cols(), hf.rows());
         let [lo, hi] = hf.z_range();

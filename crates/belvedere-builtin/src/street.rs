@@ -42,7 +42,7 @@ fn street_middles(edges: &[[f64; 2]]) -> Vec<f64> {
 /// one corner to the other. The suggested camera sees less than half of it. The same seed gives the same bytes on every platform.
 ///
 /// # Errors
-/// [`BuiltinError::Heightfield`], in theory.
+/// [`BuiltinError::Heightfield`], which does not occur in practice.
 ///
 /// Source: ours.
 pub fn street(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
@@ -103,7 +103,7 @@ fn area_layer(id: &str, features: Vec<AreaFeature>, fill: Color) -> Layer {
     }
 }
 
-/// Towers on the lots of one block; tall ones stand on a podium.
+/// Adds towers on the lots of one block; tall ones stand on a podium.
 fn build_block(random: &mut Random, x: [f64; 2], y: [f64; 2], towers: &mut Vec<BoxShape>) {
     let lots = [(1, 1), (2, 1), (1, 2), (2, 2), (2, 2), (3, 2)][(random.unit() * 6.0) as usize % 6];
     let (lot_x, lot_y) = ((x[1] - x[0]) / f64::from(lots.0), (y[1] - y[0]) / f64::from(lots.1));
@@ -150,7 +150,7 @@ fn shade(c: Color, by: u8) -> Color {
     Color::rgb(c.r.saturating_sub(by), c.g.saturating_sub(by), c.b.saturating_sub(by))
 }
 
-/// Along the streets from the south-west to the north-east, one to three blocks between turns, corners cut by 6 m.
+/// A route along the streets from the south-west to the north-east, one to three blocks between turns, corners cut by 6 m.
 fn route_line(random: &mut Random, xs: &[f64], ys: &[f64]) -> Vec<DVec2> {
     let (mut i, mut j, mut east) = (1, 1, random.unit() < 0.5);
     let (last_i, last_j) = (xs.len() - 2, ys.len() - 2);

@@ -8,18 +8,18 @@ use rayon::prelude::*;
 
 /// Voxels along x, y, z.
 const DIMS: [usize; 3] = [120, 120, 110];
-/// Values of the channel, the wall and the knots; around the tube there is nothing.
+/// Values of the channel, the wall and the knots, and the noise; the value outside the tube is 0.
 const CHANNEL: f64 = 25.0;
 const WALL: f64 = 150.0;
 const KNOT: f64 = 225.0;
 const NOISE: f64 = 2.5;
-/// The middle of the channel: a coil about the middle of the volume, voxels.
+/// Centre line of the channel, a coil about the middle of the volume: radius and rise per step, voxels, and number of steps.
 const COIL: f64 = 38.0;
 const RISE_PER_STEP: f64 = 0.26;
 const STEPS: usize = 240;
 /// Cosine and sine of 3 degrees, the turn of one step: no angles, which differ between platforms in the last bit.
 const TURN: [f64; 2] = [0.998_629_534_754_573_9, 0.052_335_956_242_943_835];
-/// Radius of the channel, what folds take away from it, steps from fold to fold, thickness of the wall, voxels.
+/// Radius of the channel and depth of its folds, voxels; steps from fold to fold; thickness of the wall, voxels.
 const RADIUS: f64 = 10.0;
 const FOLD: f64 = 2.5;
 const FOLD_STEPS: f64 = 16.0;
@@ -55,7 +55,7 @@ pub fn tube(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
     Ok((Scene { title, crs: Crs::Local, unit: Unit::Voxel, layers, ..Scene::default() }, camera))
 }
 
-/// Points of the middle of the channel.
+/// Points of the centre line of the channel.
 fn middle() -> Vec<DVec3> {
     let (mut x, mut y) = (COIL, 0.0);
     let centre = 0.5 * DVec3::from_array(DIMS.map(|n| (n - 1) as f64));
@@ -68,12 +68,12 @@ fn middle() -> Vec<DVec3> {
     points
 }
 
-/// Value at a place.
-/// * `near`: points of the middle that may be nearest, with their numbers; `middle`: all of them.
+/// Value at position `p`, voxels.
+/// * `near`: points of the centre line that may be nearest, with their numbers; `middle`: all of them.
 fn value(p: DVec3, near: &[(usize, DVec3)], middle: &[DVec3]) -> f64 {
     let nearest = near.iter().min_by(|a, b| p.distance_squared(a.1).total_cmp(&p.distance_squared(b.1)));
     let Some(&(at, _)) = nearest else { return 0.0 };
-    // Between the points beside the nearest one.
+    // Foot on the chord between the points beside the nearest one.
     let (a, b) = (middle[at.saturating_sub(1)], middle[(at + 1).min(STEPS - 1)]);
     let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
     let off = p.distance(a.lerp(b, t));

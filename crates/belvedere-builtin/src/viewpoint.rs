@@ -1,4 +1,4 @@
-//! Viewpoints for the built-in scenes: from where a route is in the picture but mostly hidden.
+//! Eyes for the built-in scenes, from which a route is in the picture but mostly hidden.
 
 use super::noise::DIRECTIONS;
 use belvedere_core::{DVec2, DVec3};
@@ -6,7 +6,7 @@ use belvedere_scene::{BoxShape, Heightfield};
 use belvedere_sight::clip_segment;
 use rayon::prelude::*;
 
-/// Where to stand and look.
+/// An eye and the point that it looks at, scene coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Viewpoint {
     pub(crate) eye: DVec3,
@@ -17,7 +17,7 @@ pub(crate) struct Viewpoint {
 const HALF_TAN: f64 = 0.414_213_562_373_095_05;
 /// Width over height of the picture.
 const ASPECT: f64 = 16.0 / 9.0;
-/// Visible share looked for.
+/// Wanted visible share of the line.
 const WANTED_SHARE: f64 = 0.36;
 
 /// Share of `line` in the picture, and visible share of that.
@@ -58,7 +58,7 @@ fn crosses(b: &BoxShape, eye: DVec3, p: DVec3) -> bool {
 }
 
 /// The best of a fixed set of viewpoints around the line: all of it in the picture, [`WANTED_SHARE`] of it visible, seen from
-/// above. `above`: heights over the ground to try, in sides of the terrain; `tilt`: fall over run of the line of sight wanted. Boxes must not be rotated.
+/// above. `above`: heights over the ground to try, in sides of the terrain; `tilt`: wanted fall over run of the line of sight. Boxes must not be rotated.
 pub(crate) fn best_viewpoint(
     terrain: &Heightfield,
     boxes: &[BoxShape],

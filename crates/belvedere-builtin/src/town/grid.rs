@@ -1,4 +1,4 @@
-//! The bent grid of streets, and what lies between them.
+//! The bent grid of streets, and the cells between them.
 
 use crate::noise::{Noise, Random};
 use belvedere_core::DVec2;
@@ -6,10 +6,10 @@ use belvedere_scene::{Polygon, Way, WayClass};
 
 /// Width of the band between the streets along the river, metres.
 const RIVER_BAND_M: f64 = 62.0;
-/// Longest way that the noise moves a crossing, metres, about.
+/// Largest displacement of a crossing by the noise, metres, about.
 const BEND_M: f64 = 38.0;
 
-/// What lies between four streets.
+/// Kind of a cell between four streets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cell {
     Country,
@@ -85,7 +85,7 @@ impl Grid {
         !matches!(self.cell(col, row), Cell::Country | Cell::River)
     }
 
-    /// Class of the street along a line of the grid, of its distance to the main street.
+    /// Class of the street along a line of the grid, by its distance from the main street.
     fn class(&self, line: usize, along: usize) -> WayClass {
         match line.abs_diff(self.middle[along]) {
             0 => WayClass::Primary,
@@ -95,7 +95,7 @@ impl Grid {
         }
     }
 
-    /// Whether the street north from a crossing is there; over the river, whether there is a bridge.
+    /// Whether a street leads north from a crossing; at the river, whether a bridge does.
     pub(super) fn goes_north(&self, col: usize, row: usize) -> bool {
         let class = self.class(col, 0);
         if row == self.river {
@@ -127,14 +127,14 @@ impl Grid {
         }
     }
 
-    /// The cell within its streets, counter-clockwise.
+    /// Outline of the cell inside its streets, counter-clockwise.
     pub(super) fn lot(&self, col: usize, row: usize) -> Vec<DVec2> {
         let corners = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[i, j]| self.node(col + i, row + j));
         let insets = [self.width(row, 1), self.width(col + 1, 0), self.width(row + 1, 1), self.width(col, 0)];
         inset(&corners, &insets.map(|w| 0.5 * w))
     }
 
-    /// Centre lines, one way for each stretch of a street without a gap.
+    /// Centre lines of the streets, one for each stretch without a gap.
     pub(super) fn ways(&self) -> Vec<Way> {
         let mut ways = Vec::new();
         for col in 0..=self.cols() {

@@ -4,7 +4,7 @@ use super::solids::{Rect, Roof, solid};
 use belvedere_core::DVec2;
 use belvedere_scene::{Building, City, CityFace, HeightSource, Polygon};
 
-/// Puts both on the square, a convex counter-clockwise ring whose first side runs east.
+/// Adds both to the square, a convex counter-clockwise ring whose first side runs east.
 pub(super) fn build(square: &[DVec2], city: &mut City) {
     let centre = square.iter().sum::<DVec2>() / square.len() as f64;
     let along = (square[1] - square[0]).normalize_or_zero();

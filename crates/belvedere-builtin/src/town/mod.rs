@@ -12,7 +12,7 @@ use belvedere_core::DVec2;
 use belvedere_scene::{City, CityArea, LandCover, Polygon};
 use grid::{Cell, Grid};
 
-/// Widths of towns that can be made, metres.
+/// Least and greatest width of a town, metres.
 pub const TOWN_SIZES_M: [f64; 2] = [500.0, 5000.0];
 
 /// A town `size_m` metres wide around the origin, on ground of height 0, of some 1500 buildings at 1200 m.

@@ -6,12 +6,12 @@ use crate::noise::Random;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{City, CityArea, LandCover, Polygon, Structure, StructureKind, Surface, Way, WayClass};
 
-/// How far the river runs past the streets, metres.
+/// Length of the river beyond the streets, metres.
 const BEYOND_M: f64 = 160.0;
 /// Bank between the street along the river and the water, metres.
 const BANK_M: f64 = 6.0;
 
-/// The water, its centre line, its bridges, and trees on its banks.
+/// Adds the water, its centre line, its bridges, and trees on its banks.
 pub(super) fn build(grid: &Grid, random: &mut Random, city: &mut City) {
     let row = grid.river();
     let half_streets = [0.5 * grid.width(row, 1) + BANK_M, 0.5 * grid.width(row + 1, 1) + BANK_M];
@@ -47,7 +47,7 @@ pub(super) fn build(grid: &Grid, random: &mut Random, city: &mut City) {
     city.ways.push(Way { name: "River".into(), class: WayClass::Waterway, points: middle });
 }
 
-/// Trees on a lawn, a convex ring of four corners.
+/// Adds trees on a lawn, a convex ring of four corners.
 pub(super) fn plant(lawn: &[DVec2], random: &mut Random, city: &mut City) {
     for _ in 0..34 {
         let (u, v) = (random.range(0.06, 0.94), random.range(0.06, 0.94));

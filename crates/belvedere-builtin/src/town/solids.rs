@@ -52,7 +52,7 @@ pub(super) enum Roof {
     Pyramid,
 }
 
-/// A solid on the ground at 0: walls up to `eaves`, a roof up to `ridge`, metres.
+/// Faces of a solid on the ground at height 0: walls up to `eaves`, a roof up to `ridge`, metres.
 pub(super) fn solid(rect: &Rect, roof: Roof, eaves: f64, ridge: f64) -> Vec<CityFace> {
     let mut p = rect.corners();
     let turned = match roof {
@@ -64,7 +64,7 @@ pub(super) fn solid(rect: &Rect, roof: Roof, eaves: f64, ridge: f64) -> Vec<City
         p.rotate_left(1);
     }
     let (ends, length) = ([0.5 * (p[3] + p[0]), 0.5 * (p[1] + p[2])], p[0].distance(p[1]));
-    // How much of the ridge a hip takes at either end.
+    // Share of the ridge that a hip removes at either end.
     let cut = match roof {
         Roof::Hipped => (0.5 * p[1].distance(p[2]) / length).min(0.5),
         Roof::Pyramid => 0.5,
@@ -94,7 +94,7 @@ pub(super) fn solid(rect: &Rect, roof: Roof, eaves: f64, ridge: f64) -> Vec<City
     faces
 }
 
-/// A closed body of rings one above the other, equal in number of corners, counter-clockwise; the ends may be points.
+/// Faces of a closed body of rings one above the other, equal in number of corners, counter-clockwise; the ends may be points.
 pub(super) fn stacked(rings: &[Vec<DVec3>]) -> Vec<CityFace> {
     let mut faces = Vec::new();
     for pair in rings.windows(2) {
