@@ -58,7 +58,8 @@ fn crosses(b: &BoxShape, eye: DVec3, p: DVec3) -> bool {
 }
 
 /// The best of a fixed set of viewpoints around the line: all of it in the picture, [`WANTED_SHARE`] of it visible, seen from
-/// above. `above`: heights over the ground to try, in sides of the terrain; `tilt`: wanted fall over run of the line of sight. Boxes must not be rotated.
+/// above. `above`: heights over the ground to try, in sides of the terrain; `tilt`: wanted fall over run of the line of sight. Boxes
+/// must not be rotated.
 pub(crate) fn best_viewpoint(
     terrain: &Heightfield,
     boxes: &[BoxShape],

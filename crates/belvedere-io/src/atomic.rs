@@ -1,4 +1,4 @@
-//! Writing a file so that it is there whole or not at all.
+//! Atomic writing: a file exists complete or not at all.
 
 use crate::{IoError, fs};
 use std::io::{self, Write};
@@ -27,7 +27,7 @@ pub fn check_output(path: &Path, overwrite: bool) -> Result<(), IoError> {
     match fs::symlink_metadata(path) {
         Ok(m) if m.is_dir() => Err(IoError::format(path, "is a folder; give the name of a file to write")),
         Ok(m) if m.is_file() || m.is_symlink() => {
-            // what a link to a device leads to is written through, like the device itself
+            // the target device of a link is written directly, like a device
             let regular = m.is_file() || fs::metadata(path).map_or(true, |target| target.is_file());
             if regular && !overwrite { Err(IoError::Exists { path: path.to_owned() }) } else { Ok(()) }
         }

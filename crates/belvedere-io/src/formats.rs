@@ -1,4 +1,4 @@
-//! The table of formats: what each is called, how it is told by content and by name, and who reads it.
+//! The table of formats: name, marks in content and file name, and loader.
 
 use quick_xml::{Reader as XmlReader, events::Event};
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use Mark::{At, Json, Record, Root, Word};
 use Reader::{City, Features, Mesh, Molecule, Terrain, Volume};
 
-/// Whoever reads a format.
+/// The loader that reads a format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reader {
     /// [`crate::load_terrain`].
@@ -28,18 +28,18 @@ pub enum Reader {
 pub struct Format {
     /// Its name.
     pub name: &'static str,
-    /// What such files hold.
+    /// Content of such files, in words.
     pub holds: &'static str,
     /// Endings of the names of its files, in lower case, with their dots.
     pub endings: &'static [&'static str],
     marks: &'static [Mark],
-    /// Who reads it; `None` = nobody yet.
+    /// Loader that reads it; `None` = not read.
     pub reader: Option<Reader>,
-    /// What to do where nobody reads it.
+    /// Advice for formats that are not read.
     pub meanwhile: &'static str,
 }
 
-/// What the content of a format begins with.
+/// Mark by which a format is recognised in the first bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mark {
     /// Bytes at an offset.
@@ -54,7 +54,7 @@ enum Mark {
     Record(&'static [&'static str]),
 }
 
-/// First bytes that are looked at.
+/// Number of first bytes that are examined.
 pub(crate) const HEAD: u64 = 64 << 10;
 
 const ATOMS: &str = "atoms of a molecule";
@@ -106,9 +106,9 @@ const fn unread(
     Format { name, holds, endings, marks, reader: None, meanwhile }
 }
 
-/// Every format that is known. Where several fit a content or a name, the first one is meant.
+/// Every format that is known. Where several fit a content or a name, the first one counts.
 pub const FORMATS: &[Format] = &[
-    // Told by their first bytes.
+    // Recognised by their first bytes.
     unread("LAS or LAZ", CLOUD, &[".las", ".laz"], &[At(0, b"LASF")], AS_DEM),
     unread("E57", CLOUD, &[".e57"], &[At(0, b"ASTM-E57")], AS_DEM),
     unread("FlatGeobuf", FEATURES, &[".fgb"], &[At(0, b"fgb\x03")], AS_GEOJSON),
@@ -146,7 +146,7 @@ pub const FORMATS: &[Format] = &[
     },
     unread("SQLite", "map features in a database", &[".sqlite"], &[At(0, b"SQLite format 3\0")], AS_GEOJSON),
     read(City, "OSM PBF", "a map of OpenStreetMap", &[".pbf"], &[At(6, b"OSMHeader")]),
-    // Told by words of their text.
+    // Recognised by words of their text.
     read(City, "CityJSONSeq", CITY, &[".city.jsonl"], &[Json("\"type\":\"CityJSONFeature\"")]),
     read(City, "CityJSON", CITY, &[".city.json"], &[Json("\"type\":\"CityJSON\""), Json("\"CityObjects\":{")]),
     read(City, "CityGML", CITY, &[".citygml"], &[Root("CityModel")]),
@@ -167,7 +167,7 @@ pub const FORMATS: &[Format] = &[
         &[Word("SECTION\r\n  2\r\nHEADER"), Word("SECTION\n  2\nHEADER")],
         AS_GEOJSON,
     ),
-    // Told by their names.
+    // Recognised by their names.
     read(Terrain, "GeoTIFF", "elevation or a picture", &[".tif", ".tiff"], &[]),
     read(Terrain, "SRTM", "elevation", &[".hgt"], &[]),
     read(Terrain, "ESRI ASCII", "elevation", &[".asc", ".grd", ".txt"], &[]),
@@ -214,7 +214,7 @@ impl Reader {
         of_name(path).is_some_and(|format| format.reader == Some(self))
     }
 
-    /// Whether it may read files of this name, whatever they hold: features and cities also come under names that tell nothing.
+    /// Whether it may read files of this name, depending on their content: features and cities also have unspecific names.
     pub fn may_read(self, path: &Path) -> bool {
         let open: &[&str] = match self {
             Self::Features => &[".json", ".jsonl"],
@@ -226,7 +226,7 @@ impl Reader {
 }
 
 impl Format {
-    /// What to say of a file of this format that nobody reads under its name.
+    /// Advice on a file of this format that no loader reads under its name.
     pub fn advice(&self) -> String {
         match self.reader {
             None => self.meanwhile.to_owned(),

@@ -63,7 +63,7 @@ fn plain(path: &Path) -> Result<Tile, IoError> {
     let os = |e| IoError::os(path, e);
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(os)?;
-    // one byte more than the largest tile tells that it is none
+    // one byte more than the largest tile has, to recognise larger files
     file.take(max_bytes() + 1).read_to_end(&mut bytes).map_err(os)?;
     let file = InputFile::of(path, &bytes);
     Ok(Tile { name: file_name(path), bytes, file })
@@ -90,7 +90,7 @@ fn corner(name: &str) -> Option<[f64; 2]> {
     ((-90.0..90.0).contains(&lat) && (-180.0..180.0).contains(&lon)).then_some([lon, lat])
 }
 
-/// Samples per side of a tile of so many bytes; `None` if it is no tile: its step must divide the degree evenly.
+/// Samples per side of a tile, by its size in bytes; `None` if it is not a tile: its step must divide the degree evenly.
 fn side_of(bytes: usize) -> Option<usize> {
     let side = ((bytes / 2) as f64).sqrt().round() as usize;
     ((2..=MAX_SIDE).contains(&side) && 2 * side * side == bytes && 3600usize.is_multiple_of(side - 1)).then_some(side)

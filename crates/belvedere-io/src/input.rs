@@ -1,4 +1,4 @@
-//! Files that were read: path, size and sha256 of what was found in them, so that nobody has to open them again to tell.
+//! Records of files that were read: path, size and sha256 of the content, taken in the same reading.
 
 use crate::{IoError, fs};
 use serde::{Deserialize, Serialize, Serializer};
@@ -23,7 +23,7 @@ fn displayed<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Erro
 }
 
 impl InputFile {
-    /// The record of a file with this content. Of what lies in an archive it is that of the archive.
+    /// The record of a file with this content; for a file in an archive, that of the archive.
     pub fn of(path: &Path, content: &[u8]) -> Self {
         let archive = fs::archive_of(path);
         if archive != path
@@ -60,7 +60,7 @@ pub fn sha256_of_file(path: &Path) -> Result<String, IoError> {
     sha256_of_chunks(|buffer| file.read(buffer)).map_err(os)
 }
 
-/// sha256 of all that `next` puts into its buffer until it puts nothing.
+/// sha256 of the bytes that `next` writes into its buffer, until it writes none.
 pub(crate) fn sha256_of_chunks<E>(mut next: impl FnMut(&mut [u8]) -> Result<usize, E>) -> Result<String, E> {
     let (mut hasher, mut buffer) = (Sha256::new(), vec![0u8; 1 << 16]);
     loop {

@@ -1,4 +1,4 @@
-//! What is meant by the name of an archive: the one file in it that a loader reads.
+//! Names of archives: they stand for the one file inside that a loader reads.
 
 use crate::formats::{self, ends};
 use crate::fs::{names_in, unpacked_size};
@@ -7,19 +7,19 @@ use std::path::{Path, PathBuf};
 
 /// Names that an error lists.
 const LISTED: usize = 6;
-/// Archives that are files of a format of their own.
+/// Endings of archives that are a format of their own and are not unpacked here.
 const WHOLE: [&str; 5] = [".raw.gz", ".nii.gz", ".kmz", ".3mf", ".usdz"];
 
-/// The file that is meant by `path`: the one file in it for which `reads` holds if it is a ZIP or gzip, else itself.
+/// The file that `path` stands for: if it is a ZIP or gzip, the one file inside for which `reads` holds, else itself.
 ///
-/// * `most`: bytes that may come out of it.
-/// * `reads`: by the name of an entry. An archive of one file alone means that file.
+/// * `most`: largest unpacked size, bytes.
+/// * `reads`: whether an entry of this name is read. An archive of one file stands for that file.
 ///
 /// # Errors
 /// [`IoError::Os`]; [`IoError::Format`] if the archive holds no such file, or several.
 pub(crate) fn content(path: &Path, most: u64, reads: &dyn Fn(&Path) -> bool) -> Result<PathBuf, IoError> {
     let mut path = path.to_owned();
-    // Archives in archives, as deep as names lead into them.
+    // Archives in archives, up to three levels.
     for _ in 0..3 {
         let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
         if WHOLE.iter().any(|f| name.ends_with(f)) {
@@ -71,7 +71,7 @@ fn listed<'a>(names: impl ExactSizeIterator<Item = &'a String>) -> String {
     text
 }
 
-/// The file that is meant by a name, whatever reads it.
+/// The file that a name stands for, for any loader.
 ///
 /// # Errors
 /// As those of loaders for archives: no file that is read, or several.

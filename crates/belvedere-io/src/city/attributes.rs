@@ -1,15 +1,15 @@
-//! What attributes of buildings say: names, heights, storeys, and whether they are landmarks.
+//! Attributes of buildings: names, heights, storeys, and whether they are landmarks.
 
 use belvedere_scene::HeightSource;
 
-/// Metres of a storey, and of what is above the last.
+/// Height of a storey, and of the roof above the last one, metres.
 const STOREY_M: f64 = 3.0;
 const ABOVE_M: f64 = 1.0;
-/// Height of buildings of which nothing is known, metres.
+/// Height of buildings without a known height, metres.
 const ASSUMED_M: f64 = 9.0;
-/// Longest number read.
+/// Most characters of a number that are read.
 const MOST_DIGITS: usize = 40;
-/// Heights beyond are mistakes, metres.
+/// Largest believed height, metres.
 const MOST_M: f64 = 2000.0;
 
 const HEIGHTS: [&str; 8] =
@@ -51,8 +51,8 @@ pub(super) trait Attributes {
     fn text(&self, key: &str) -> Option<String>;
 }
 
-/// Height over ground and where it is from, of what attributes say; what is no number, or out of 0..=2000 m, is counted and not
-/// believed. No storeys at all say nothing.
+/// Height over ground, metres, and its source, from attributes. Values that are not numbers, or not in 0..=2000 m, are counted in `odd`
+/// and ignored. Zero storeys are ignored.
 pub(super) fn height(of: &impl Attributes, odd: &mut usize) -> (f64, HeightSource) {
     let mut believed = |text: Option<String>, metres: fn(&str) -> Option<f64>| {
         let text = text?;
@@ -81,7 +81,7 @@ pub(super) fn is_landmark(of: &impl Attributes) -> bool {
     })
 }
 
-/// A length such as `12`, `12.5 m`, `12,5m`, `40 ft` or, from what is least, `10-12 ft`, metres.
+/// A length such as `12`, `12.5 m`, `12,5m`, `40 ft` or `10-12 ft` (the first number counts), in metres.
 pub(super) fn length_m(text: &str) -> Option<f64> {
     let (number, rest) = first_number(text)?;
     let unit = rest.trim_start_matches(|c: char| !c.is_alphabetic() && c != '\'');
@@ -91,7 +91,7 @@ pub(super) fn length_m(text: &str) -> Option<f64> {
     Some(if feet { 0.3048 * (number + inches / 12.0) } else { number })
 }
 
-/// The number that a text begins with, the longest there is, and what follows: `2;3` is 2, `10-12 m` is 10.
+/// The longest number that a text begins with, and the rest: `2;3` is 2, `10-12 m` is 10.
 fn first_number(text: &str) -> Option<(f64, String)> {
     let text = text.trim().replace(',', ".");
     let of_number = |c: &char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E');

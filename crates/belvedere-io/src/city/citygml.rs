@@ -13,7 +13,7 @@ use glam::{DMat4, DVec3};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 
-/// References to references to references: no model goes deeper.
+/// Longest chain of references.
 const MAX_HOPS: usize = 8;
 
 pub(super) fn load(path: &Path, text: &str, lod: Option<&str>, limits: &Limits) -> Result<Loaded<CityFile>, IoError> {
@@ -41,7 +41,7 @@ pub(super) fn load(path: &Path, text: &str, lod: Option<&str>, limits: &Limits) 
     collector.finish(path, format!("CityGML {version}"), reference, limits)
 }
 
-/// A document and where its references lead.
+/// A document and the targets of its references.
 struct Document<'n> {
     root: &'n Node,
     ids: HashMap<&'n str, &'n Node>,
@@ -50,7 +50,7 @@ struct Document<'n> {
     looks: Looks<'n>,
 }
 
-/// Where gathering stands: what holds for all within an element.
+/// Context of gathering within an element: values inherited by its children.
 #[derive(Clone)]
 struct At {
     lod: String,
@@ -60,7 +60,7 @@ struct At {
     hops: usize,
 }
 
-/// What an object has shown so far.
+/// Faces of an object gathered so far.
 struct Gathered<'n> {
     /// Level of detail and face.
     faces: Vec<(String, NamedFace<'n>)>,
@@ -68,7 +68,7 @@ struct Gathered<'n> {
     own: HashSet<&'n str>,
 }
 
-/// The ids of the rings of a face, possibly empty, whether they are turned round, and the face.
+/// The ids of the rings of a face, possibly empty, whether they are reversed, and the face.
 type NamedFace<'n> = (Vec<(&'n str, bool)>, CityFace);
 
 impl<'n> Document<'n> {
@@ -120,7 +120,7 @@ impl<'n> Document<'n> {
             "RoofSurface" | "OuterCeilingSurface" => at.surface = Some(Surface::Roof),
             "WallSurface" | "ClosureSurface" | "Window" | "Door" => at.surface = Some(Surface::Wall),
             "GroundSurface" | "OuterFloorSurface" => at.surface = Some(Surface::Ground),
-            // Rooms are not seen; roof edges say again what the outline says.
+            // Rooms are not visible; roof edges repeat the outline.
             "interiorRoom" | "appearance" | "lod0RoofEdge" => return Ok(()),
             "ImplicitGeometry" => return self.implicit(node, &at, out),
             "Polygon" | "PolygonPatch" | "Triangle" | "Rectangle" => {
@@ -134,7 +134,7 @@ impl<'n> Document<'n> {
         node.children.iter().try_for_each(|child| self.gather(child, &at, out))
     }
 
-    /// What a reference leads to, unless the object shows it anyway.
+    /// Gathers the target of a reference, unless it belongs to the object itself.
     fn follow(&self, node: &'n Node, at: &At, out: &mut Gathered<'n>) -> Result<(), String> {
         let geometry = matches!(node.name.as_str(), "surfaceMember" | "baseSurface" | "relativeGMLGeometry");
         if !geometry || node.href.is_empty() || out.own.contains(node.href.as_str()) || at.hops >= MAX_HOPS {
@@ -146,7 +146,7 @@ impl<'n> Document<'n> {
         }
     }
 
-    /// A shape that is used at several places, moved to its place.
+    /// Gathers a shape that is used at several positions, moved to its position.
     fn implicit(&self, node: &'n Node, at: &At, out: &mut Gathered<'n>) -> Result<(), String> {
         let Some(shape) = node.child("relativeGMLGeometry") else { return Ok(()) };
         let mut there = Gathered { faces: Vec::new(), own: HashSet::new() };

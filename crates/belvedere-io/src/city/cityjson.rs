@@ -13,7 +13,7 @@ use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Parts of parts of parts: no model goes deeper.
+/// Deepest nesting of parts.
 const MAX_DEPTH: usize = 16;
 
 impl Attributes for Map<String, Value> {
@@ -27,7 +27,7 @@ impl Attributes for Map<String, Value> {
     }
 }
 
-/// Where numbers of vertices lead.
+/// Vertices and templates to which indices refer.
 struct Vertices {
     points: Vec<DVec3>,
     templates: Vec<Value>,
@@ -41,7 +41,7 @@ pub(super) fn load(path: &Path, text: &str, lod: Option<&str>, limits: &Limits) 
     let (head, format) =
         reader.read(text.trim_start_matches('\u{feff}')).map_err(|reason| IoError::format(path, reason))?;
     let said = head.pointer("/metadata/referenceSystem").and_then(Value::as_str).unwrap_or_default();
-    // Coordinates of CityJSON are x, y, z whatever the name of the system demands.
+    // Coordinates of CityJSON are x, y, z for every system.
     reader.out.finish(path, format, Reference::of(said), limits)
 }
 
@@ -113,7 +113,7 @@ impl Reader<'_> {
     }
 }
 
-/// The version of a document that is read.
+/// Version of a document, if it is one that is read.
 fn version(document: &Value) -> Result<String, Fail> {
     if document.get("type").is_some_and(|t| t == "CityJSONFeature") {
         return Err("is a feature without the document that says its transform and system; put that (\"type\": \"CityJSON\") into the first line".into());
@@ -130,13 +130,13 @@ fn version(document: &Value) -> Result<String, Fail> {
     Ok(version)
 }
 
-/// The object that an object is a part of, of a part of ...
+/// The outermost object that an object is a part of.
 fn root<'o>(objects: &'o Map<String, Value>, id: &'o str) -> &'o str {
     let mut at = id;
     for _ in 0..MAX_DEPTH {
         let parent = objects.get(at).and_then(|o| o.pointer("/parents/0")).and_then(Value::as_str);
         match parent.and_then(|p| objects.get_key_value(p)) {
-            // Members of groups stand for themselves.
+            // Members of groups are objects of their own.
             Some((parent, object)) if object.get("type").is_none_or(|t| t != "CityObjectGroup") => at = parent,
             _ => break,
         }
@@ -186,7 +186,7 @@ impl Vertices {
         Ok(faces)
     }
 
-    /// A template, moved to its place.
+    /// The faces of a template, moved to the position of its instance.
     fn instance(&self, geometry: &Value, looks: &Looks<'_>, pictures: &mut PictureList) -> Result<Vec<CityFace>, Fail> {
         let number = geometry.get("template").and_then(Value::as_u64).ok_or("an instance names no template")? as usize;
         let template = self.templates.get(number);
@@ -207,7 +207,7 @@ impl Vertices {
     }
 }
 
-/// How faces of a document look: its `appearance`.
+/// Textures of a document: its `appearance`.
 struct Looks<'d> {
     /// Numbers of the pictures.
     pictures: Vec<u32>,
@@ -216,7 +216,7 @@ struct Looks<'d> {
 }
 
 impl<'d> Looks<'d> {
-    /// * `head`: whose appearance holds where the document has none.
+    /// * `head`: document whose appearance is taken if `document` has none.
     fn of(document: &'d Value, head: &'d Value, pictures: &mut PictureList) -> Self {
         let appearance = document.get("appearance").or(head.get("appearance"));
         let list = |key: &str| appearance.and_then(|a| a.get(key)).and_then(Value::as_array).into_iter().flatten();
@@ -233,7 +233,7 @@ impl<'d> Looks<'d> {
         Self { pictures: numbers, places: list("vertices-texture").map(place).collect(), theme }
     }
 
-    /// Gives the faces of a geometry, in their order, the pictures that it says.
+    /// Gives the faces of a geometry, in their order, their pictures.
     fn dress(&self, geometry: &Value, faces: &mut [CityFace], pictures: &mut PictureList) {
         let Some(themes) = geometry.get("texture").and_then(Value::as_object) else { return };
         let theme = self.theme.and_then(|name| themes.get(name)).or_else(|| themes.values().next());
@@ -245,7 +245,7 @@ impl<'d> Looks<'d> {
             let Some(rings) = rings.and_then(Value::as_array) else { continue };
             let indices = |ring: &Value| ring.as_array().map(|list| list.iter().map(Value::as_u64).collect::<Vec<_>>());
             let rings: Vec<Vec<Option<u64>>> = rings.iter().filter_map(indices).collect();
-            // No number: no picture.
+            // A face without a number has no picture.
             let Some(Some(picture)) = rings.first().and_then(|ring| ring.first()) else { continue };
             let place = |i: &Option<u64>| i.and_then(|i| self.places.get(i as usize)).copied().unwrap_or(Vec2::NAN);
             let places = rings.iter().map(|ring| ring.iter().skip(1).map(place).collect()).collect();
@@ -257,7 +257,7 @@ impl<'d> Looks<'d> {
     }
 }
 
-/// What is said of each surface, in the order of [`gather`]: lists of lists of numbers are surfaces.
+/// The entry of `values` for each surface, in the order of [`gather`]: lists of lists of numbers are surfaces.
 fn pair<'v>(boundaries: &Value, values: Option<&'v Value>, out: &mut Vec<Option<&'v Value>>) {
     let Some(list) = boundaries.as_array() else { return };
     let is_ring = |ring: &Value| ring.as_array().is_some_and(|ring| ring.iter().all(Value::is_u64));
@@ -279,7 +279,7 @@ fn point(value: &Value) -> Option<DVec3> {
     Some(DVec3::new(x.as_f64()?, y.as_f64()?, z.as_f64()?)).filter(|p| p.is_finite())
 }
 
-/// All surfaces of a geometry, whatever it nests.
+/// All surfaces of a geometry, at any depth of nesting.
 fn faces(geometry: &Value, points: &[DVec3]) -> Result<Vec<CityFace>, Fail> {
     let depth = match geometry.get("type").and_then(Value::as_str).unwrap_or_default() {
         "MultiSurface" | "CompositeSurface" => 1,
@@ -297,7 +297,7 @@ fn faces(geometry: &Value, points: &[DVec3]) -> Result<Vec<CityFace>, Fail> {
     Ok(out)
 }
 
-/// * `depth`: lists around a surface.
+/// * `depth`: number of lists around a surface.
 fn gather(
     boundaries: &Value,
     values: Option<&Value>,

@@ -1,4 +1,4 @@
-//! The objects of city models as a city: one level of detail of each, cleaned, sorted by what they are.
+//! The objects of city models as a city: one level of detail of each, cleaned and sorted by kind.
 
 use super::attributes::{self, Attributes};
 use super::pictures::PictureList;
@@ -11,7 +11,7 @@ use glam::{DVec3, Vec2};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// What one object, with all of its parts, shows at one level of detail.
+/// Faces of one object with all of its parts, by level of detail.
 #[derive(Default)]
 pub(super) struct Shown {
     pub(super) faces: BTreeMap<Lod, Vec<CityFace>>,
@@ -22,13 +22,13 @@ pub(super) struct Shown {
 pub(super) struct Lod(u32, String);
 
 impl Lod {
-    /// Of its number, such as `2` or `1.3`.
+    /// The level of a number such as `2` or `1.3`.
     pub(super) fn of_text(text: &str) -> Self {
         Self((1000.0 * text.parse::<f64>().unwrap_or(0.0).clamp(0.0, 1000.0)) as u32, text.to_owned())
     }
 }
 
-/// A city in the making.
+/// Builder of a city.
 #[derive(Default)]
 pub(super) struct Collector<'l> {
     city: City,
@@ -38,7 +38,7 @@ pub(super) struct Collector<'l> {
     left_out: BTreeMap<String, usize>,
     pub(super) pictures: PictureList,
     without_faces: usize,
-    /// Geometries that cannot be read, of objects that have others.
+    /// Number of unreadable geometries of objects that have others.
     pub(super) unread: usize,
 }
 
@@ -48,7 +48,7 @@ impl<'l> Collector<'l> {
         Self { wanted: lod, ..Self::default() }
     }
 
-    /// Takes an object with all of its parts.
+    /// Adds an object with all of its parts.
     ///
     /// * `kind`: as CityJSON names it.
     pub(super) fn add(&mut self, id: &str, kind: &str, about: &impl Attributes, shown: Shown) {
@@ -76,7 +76,7 @@ impl<'l> Collector<'l> {
         }
     }
 
-    /// What a file says, with its oddities.
+    /// The finished city, with warnings.
     pub(super) fn finish(
         self,
         path: &Path,
@@ -121,7 +121,7 @@ impl<'l> Collector<'l> {
     fn chosen(&self, mut shown: Shown) -> Option<Vec<CityFace>> {
         let of_wanted = |wanted: &str| shown.faces.keys().find(|lod| lod.1 == wanted).cloned();
         let wanted = self.wanted.and_then(of_wanted).and_then(|lod| shown.faces.remove(&lod));
-        // Levels of points, lines and other things without a surface do not count.
+        // Levels without surfaces, of points or lines, do not count.
         let shows = |faces: &Vec<CityFace>| faces.iter().any(|f| f.rings.first().is_some_and(|r| r.len() >= 3));
         let mut levels: Vec<Vec<CityFace>> =
             wanted.into_iter().chain(shown.faces.into_values().rev()).filter(|faces| !faces.is_empty()).collect();
@@ -158,7 +158,7 @@ impl<'l> Collector<'l> {
 
     fn building(&mut self, id: String, name: String, about: &impl Attributes, faces: Vec<CityFace>) {
         let (footprint, base, height) = plan::of_solid(&faces, &mut self.repairs);
-        // Plans of no height: what is known of the height is said elsewhere.
+        // A plan without height: its height comes from attributes.
         let (height_m, height_source, faces) = if height > 0.1 {
             (height, HeightSource::Shape, faces)
         } else {
@@ -186,7 +186,7 @@ impl<'l> Collector<'l> {
     }
 }
 
-/// Drops vertices of a ring that repeat the one before, and the last ones that repeat the first, and their places in a picture.
+/// Drops vertices of a ring that repeat the one before, and the last ones that repeat the first, and their texture positions.
 fn without_repeats(ring: &mut Vec<DVec3>, mut places: Vec<Vec2>) -> Vec<Vec2> {
     let mut keep: Vec<bool> = (0..ring.len()).map(|i| i == 0 || ring[i] != ring[i - 1]).collect();
     let first = ring.first().copied();
@@ -200,7 +200,7 @@ fn without_repeats(ring: &mut Vec<DVec3>, mut places: Vec<Vec2>) -> Vec<Vec2> {
     places
 }
 
-/// What a surface on the ground is; `None` for solids.
+/// Land cover of a surface on the ground; `None` for solids.
 fn cover(kind: &str, about: &impl Attributes) -> Option<LandCover> {
     Some(match kind {
         "Road" | "TransportSquare" | "Square" | "Track" => LandCover::Road,

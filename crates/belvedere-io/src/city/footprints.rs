@@ -14,8 +14,8 @@ impl Attributes for BTreeMap<String, String> {
     }
 }
 
-/// What the features of a file are of a city. Polygons that nothing tells are buildings, and lines streets, if nothing tells what any
-/// other of the file is either.
+/// The city that the features of a file make. If no polygon of the file has a known kind, all are buildings; if no line has a known
+/// class, all are residential streets.
 pub(super) fn city(vectors: Vectors) -> Result<Loaded<CityFile>, IoError> {
     let mut city = City::default();
     let (mut repairs, mut unknown, mut points) = (Repairs::default(), 0, 0);
@@ -99,7 +99,7 @@ fn building(feature: &VectorFeature, footprint: Vec<Polygon>, repairs: &mut Repa
     Building { id, name, landmark, footprint, base_m: None, height_m, height_source, faces: Vec::new() }
 }
 
-/// The class of a way, of OpenStreetMap's keys.
+/// The class of a way, by OpenStreetMap's keys.
 pub(super) fn way_class(about: &impl Attributes) -> Option<WayClass> {
     if about.text("waterway").is_some() {
         return Some(WayClass::Waterway);
@@ -119,7 +119,7 @@ pub(super) fn way_class(about: &impl Attributes) -> Option<WayClass> {
     })
 }
 
-/// The land cover of a polygon, of OpenStreetMap's keys.
+/// The land cover of a polygon, by OpenStreetMap's keys.
 pub(super) fn cover(about: &impl Attributes) -> Option<LandCover> {
     let of = |key: &str| about.text(key).unwrap_or_default();
     let (natural, landuse, leisure) = (of("natural"), of("landuse"), of("leisure"));

@@ -14,13 +14,13 @@ pub(super) struct Node {
     pub(super) name: String,
     /// `gml:id`, possibly empty.
     pub(super) id: String,
-    /// Where `xlink:href`, or `uri` or `ring` of a texture, leads, without its `#`, possibly empty.
+    /// Target of `xlink:href`, or of `uri` or `ring` of a texture, without its `#`, possibly empty.
     pub(super) href: String,
     /// `srsName`, possibly empty.
     pub(super) srs: String,
     /// `srsDimension`.
     pub(super) dimension: Option<usize>,
-    /// `orientation` is `-`.
+    /// Whether `orientation` is `-`.
     pub(super) reversed: bool,
     /// `name` of generic attributes, possibly empty.
     pub(super) label: String,
@@ -113,7 +113,7 @@ pub(super) fn parse(text: &str) -> Result<Node, String> {
     }
 }
 
-/// Hands a finished element to its parent; the root comes back.
+/// Adds a finished element to its parent; returns the root.
 fn close(mut node: Node, open: &mut [Node]) -> Option<Node> {
     if node.text.trim().len() < node.text.len() {
         node.text = node.text.trim().to_owned();

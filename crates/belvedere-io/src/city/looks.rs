@@ -1,4 +1,4 @@
-//! Textures of CityGML: which picture lies where on which ring.
+//! Textures of CityGML: pictures and their positions on rings.
 
 use super::gml::Node;
 use super::pictures::{PictureList, wrap};
@@ -13,7 +13,7 @@ pub(super) struct Looks<'n> {
 }
 
 impl<'n> Looks<'n> {
-    /// Those of the theme that tells most rings; textures by a matrix and georeferenced ones are counted as not understood.
+    /// The textures of the theme with the most rings; textures by a matrix are counted as not understood.
     pub(super) fn of(root: &'n Node, pictures: &mut PictureList) -> Self {
         let mut themes = BTreeMap::<&str, Vec<&'n Node>>::new();
         root.walk(&mut |node| {
@@ -27,7 +27,7 @@ impl<'n> Looks<'n> {
             appearances.iter().for_each(|a| a.walk(&mut |n| count += usize::from(n.name == "textureCoordinates")));
             count
         };
-        // Of equal ones the first by name.
+        // Of equal themes the first by name.
         let chosen = themes.into_values().rev().max_by_key(lists);
         let mut looks = Self::default();
         for appearance in chosen.into_iter().flatten() {
@@ -54,14 +54,14 @@ impl<'n> Looks<'n> {
         }
     }
 
-    /// Gives a face the picture that its rings wear.
+    /// Gives a face the picture of its rings.
     ///
-    /// * `rings`: their ids, and whether they were turned round.
+    /// * `rings`: their ids, and whether they were reversed.
     pub(super) fn dress(&self, rings: &[(&'n str, bool)], face: &mut CityFace, pictures: &mut PictureList) {
         let Some((number, _)) = rings.first().and_then(|(id, _)| self.rings.get(id)) else { return };
         let places = rings.iter().zip(&face.rings).map(|((id, reversed), ring)| {
             let mut places = self.rings.get(id).map_or_else(Vec::new, |(_, places)| places.clone());
-            // Some leave out the last place, which is the first again.
+            // Some files leave out the last position, which repeats the first.
             if places.len() + 1 == ring.len() && ring.first() == ring.last() {
                 places.extend(places.first().copied());
             }

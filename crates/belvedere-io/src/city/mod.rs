@@ -32,7 +32,7 @@ use crate::{InputFile, IoError, Limits, Loaded, fs, recognise};
 use belvedere_scene::City;
 use std::path::{Path, PathBuf};
 
-/// What a file says of a city.
+/// A city as read from a file.
 #[derive(Debug, Clone)]
 pub struct CityFile {
     /// The file, for messages.
@@ -41,7 +41,7 @@ pub struct CityFile {
     pub format: String,
     /// Horizontal system of every coordinate; `None` if the file names none.
     pub crs: Option<CoordinateSystem>,
-    /// What the file says of its system and heights, for messages, possibly empty.
+    /// Notes of the file on its system and heights, for messages, possibly empty.
     pub reference: String,
     /// Levels of detail that the file holds, rising.
     pub lods: Vec<String>,
@@ -81,7 +81,7 @@ fn text<'b>(path: &Path, bytes: &'b [u8]) -> Result<&'b str, IoError> {
         .map_err(|e| IoError::format(path, format!("is no UTF-8 text from byte {} on; it is damaged", e.valid_up_to())))
 }
 
-/// Formats that hold nothing but cities.
+/// Formats that hold only cities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Model {
     CityJson,
@@ -89,7 +89,7 @@ enum Model {
     OsmPbf,
 }
 
-/// Whether a file is a city and nothing else, by its first bytes: CityJSON, CityJSONSeq, CityGML or OpenStreetMap's PBF.
+/// Whether a file can only be a city, by its first bytes: CityJSON, CityJSONSeq, CityGML or OpenStreetMap's PBF.
 ///
 /// # Errors
 /// [`IoError::Os`].
@@ -97,7 +97,7 @@ pub fn is_city(path: &Path) -> Result<bool, IoError> {
     model(path).map(|model| model.is_some())
 }
 
-/// The city or map that is meant by the name of an archive, or the file itself.
+/// The city or map inside an archive, or the file itself.
 fn meant(path: &Path, limits: &Limits) -> Result<PathBuf, IoError> {
     if split_table(path).1.is_some() {
         Ok(path.to_owned())
@@ -116,7 +116,7 @@ fn model(path: &Path) -> Result<Option<Model>, IoError> {
 }
 
 impl CityFile {
-    /// Where the heights of buildings are from, in words; empty without buildings.
+    /// Sources of the heights of buildings, in words; empty without buildings.
     pub fn heights(&self) -> String {
         plan::sources(self.city.buildings.iter().map(|b| b.height_source))
     }

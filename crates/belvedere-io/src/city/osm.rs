@@ -15,7 +15,7 @@ use std::path::Path;
 
 type Tags = BTreeMap<String, String>;
 
-/// Values of tags that deny what their keys say, or that name things nobody sees.
+/// Values of tags for which an object is not a way, or not a visible one.
 const NOT_WAYS: [(&str, &[&str]); 3] = [
     ("highway", &["proposed", "construction", "platform", "rest_area", "services", "abandoned", "razed", "raceway"]),
     (
@@ -40,7 +40,7 @@ struct Relation {
     ways: Vec<i64>,
 }
 
-/// What a file says of a city, before its nodes have places.
+/// The ways and relations of a file, and the positions of their nodes.
 #[derive(Default)]
 struct Map {
     relations: Vec<Relation>,
@@ -49,7 +49,7 @@ struct Map {
     counts: [usize; 3],
 }
 
-/// What was left out.
+/// Numbers of objects that were left out.
 #[derive(Default)]
 struct Lost {
     nodes: usize,
@@ -185,13 +185,13 @@ impl Map {
         nodes.iter().map(|n| self.nodes.get(n).copied()).collect()
     }
 
-    /// Runs of at least two nodes whose places are known.
+    /// Runs of at least two nodes whose positions are known.
     fn pieces(&self, nodes: &[i64]) -> Vec<Vec<DVec2>> {
         let known = nodes.split(|n| !self.nodes.contains_key(n)).filter_map(|run| self.places(run));
         known.filter(|run| run.len() >= 2).collect()
     }
 
-    /// Polygons of the rings that the ways of a multipolygon make, whatever their roles say: a ring within an odd number of
+    /// Polygons of the rings that the ways of a multipolygon form; roles are ignored: a ring within an odd number of
     /// others is a hole of the smallest of them.
     fn polygons(&self, ways: &[i64], repairs: &mut Repairs) -> Vec<Polygon> {
         let lines: Vec<&[i64]> = ways.iter().filter_map(|id| self.ways.get(id)).map(|l| l.nodes.as_slice()).collect();
@@ -270,7 +270,7 @@ fn add(
     }
 }
 
-/// Rings of ways joined where they end; what stays open is dropped.
+/// Rings of ways that are joined end to end; open rings are dropped.
 fn closed_rings(lines: &[&[i64]]) -> Vec<Vec<i64>> {
     let mut left: Vec<&[i64]> = lines.iter().copied().filter(|l| l.len() > 1).collect();
     let mut rings = Vec::new();
@@ -295,7 +295,7 @@ fn closed_rings(lines: &[&[i64]]) -> Vec<Vec<i64>> {
 
 /// Whether a ring lies within another that it does not cross.
 fn contains(outer: &[DVec2], ring: &[DVec2]) -> bool {
-    // A vertex that both share tells nothing.
+    // A vertex that both share does not decide.
     let Some(p) = ring.iter().find(|p| !outer.contains(p)) else { return false };
     is_inside([outer], *p)
 }

@@ -1,4 +1,4 @@
-//! Buildings of OpenStreetMap with their parts: what stands above what, what floats, and what lies underground.
+//! Buildings of OpenStreetMap with their parts: raised parts, roofs on posts, and underground buildings.
 //! Source: OpenStreetMap Wiki, "Simple 3D Buildings".
 
 use super::attributes::{self, Attributes, length_m};
@@ -8,7 +8,7 @@ use belvedere_core::polygon::is_inside;
 use belvedere_scene::{Building, Polygon};
 use glam::DVec2;
 
-/// Metres of a storey that is left out below.
+/// Height of a storey below a raised part, metres.
 const STOREY_M: f64 = 3.0;
 /// Thickness of roofs that stand on posts, metres.
 const CANOPY_M: f64 = 0.4;
@@ -16,20 +16,20 @@ const CANOPY_M: f64 = 0.4;
 /// A building or a part of one as it is tagged.
 pub(super) struct Tagged {
     pub(super) building: Building,
-    /// Whether it is a part.
+    /// Whether it is a part of a building.
     pub(super) part: bool,
     heights: Heights,
     roof: Roof,
 }
 
-/// Whether what is tagged so lies underground.
+/// Whether the tags say that an object lies underground.
 pub(super) fn is_underground(about: &impl Attributes) -> bool {
     let is = |key: &str, value: &str| about.text(key).is_some_and(|v| v.eq_ignore_ascii_case(value));
     is("location", "underground") || is("building", "underground") || is("building:part", "underground")
 }
 
 impl Tagged {
-    /// A building or part of this footprint.
+    /// A building or part with this footprint.
     pub(super) fn new(
         id: String,
         about: &impl Attributes,
@@ -42,7 +42,7 @@ impl Tagged {
         let mut rise = 0.0;
         if roof.is_pitched() {
             rise = roof.rise.unwrap_or_else(|| roof.usual_rise(&footprint, height_m));
-            // Storeys are counted up to the eaves, heights up to the top.
+            // Storeys reach up to the eaves, stated heights up to the top.
             if height_source != belvedere_scene::HeightSource::Stated {
                 height_m += rise;
             }
@@ -62,7 +62,7 @@ impl Tagged {
         Self { building, part, heights, roof }
     }
 
-    /// Whether it is more than a block on the ground.
+    /// Whether it has a raised underside or a pitched roof.
     fn is_shaped(&self) -> bool {
         self.heights.under > 0.0 || self.roof.is_pitched()
     }
@@ -72,7 +72,7 @@ impl Tagged {
     }
 }
 
-/// Height of the underside over the ground, if tags tell.
+/// Height of the underside over the ground, metres, if the tags state it.
 fn under(about: &impl Attributes) -> Option<f64> {
     let height = ["min_height", "building:min_height"].iter().find_map(|k| about.text(k));
     let level = ["building:min_level", "min_level"].iter().find_map(|k| about.text(k));
@@ -80,7 +80,7 @@ fn under(about: &impl Attributes) -> Option<f64> {
     height.as_deref().and_then(length_m).or_else(by_level).filter(|h| h.is_finite() && *h > 0.0)
 }
 
-/// Buildings whose parts are drawn in place of their outlines; how many parts there are.
+/// Buildings whose parts replace their outlines, and the number of parts.
 pub(super) fn assembled(tagged: Vec<Tagged>) -> (Vec<Building>, usize) {
     let (parts, outlines): (Vec<Tagged>, Vec<Tagged>) = tagged.into_iter().partition(|t| t.part);
     let count = parts.len();

@@ -1,4 +1,4 @@
-//! Pictures that the faces of city models wear: PNG and JPEG beside the model or below its folder.
+//! Pictures on the faces of city models: PNG and JPEG beside the model or below its folder.
 
 use crate::mesh::{neighbour, picture};
 use crate::{InputFile, Limits};
@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Names of pictures that are told in a warning.
+/// Most names of pictures in a warning.
 const TOLD: usize = 3;
 
 /// The pictures that a model names.
@@ -16,11 +16,11 @@ const TOLD: usize = 3;
 pub(super) struct PictureList {
     named: Vec<(String, [Wrap; 2])>,
     known: HashMap<(String, bool, bool), u32>,
-    /// Faces whose places in their picture do not fit their rings.
+    /// Number of faces whose texture positions do not fit their rings.
     pub(super) odd: usize,
 }
 
-/// What lies beyond the edge of a picture, by the word of CityJSON and CityGML.
+/// Continuation of a picture beyond its edge, by the word of CityJSON and CityGML.
 pub(super) fn wrap(word: &str) -> Wrap {
     match word.trim().to_ascii_lowercase().as_str() {
         "mirror" => Wrap::Mirror,
@@ -30,9 +30,9 @@ pub(super) fn wrap(word: &str) -> Wrap {
 }
 
 impl PictureList {
-    /// Number of a picture.
+    /// Number of a picture, new or known.
     ///
-    /// * `name`: as the model says it, relative to it.
+    /// * `name`: path in the model, relative to the model.
     pub(super) fn number(&mut self, name: &str, wrap: Wrap) -> u32 {
         let name = name.trim().replace('\\', "/").replace("%20", " ");
         let key = (name.clone(), wrap == Wrap::Mirror, wrap == Wrap::Clamp);
@@ -42,7 +42,7 @@ impl PictureList {
         })
     }
 
-    /// The picture of a face whose vertices lie at these places, v up; `None` where they do not fit the rings, which is counted.
+    /// Picture `number` on a face, with texture positions `places`, v up; `None`, and counted, if they do not fit the rings.
     pub(super) fn on(&mut self, number: u32, places: Vec<Vec<Vec2>>, face: &CityFace) -> Option<FacePicture> {
         let fits = places.len() == face.rings.len()
             && places.iter().zip(&face.rings).all(|(p, ring)| p.len() == ring.len())
@@ -52,8 +52,8 @@ impl PictureList {
         fits.then(|| FacePicture { number, rings: places.into_iter().map(down).collect() })
     }
 
-    /// Reads the pictures that the faces of a city wear; faces whose picture cannot be read wear none. Answers the files read and what
-    /// is missing.
+    /// Reads the pictures that the faces of a city wear; faces whose picture cannot be read get none. Returns the files read
+    /// and warnings about missing ones.
     pub(super) fn load(self, city: &mut City, path: &Path, limits: &Limits) -> (Vec<InputFile>, Vec<String>) {
         let (mut files, mut warnings, mut room) = (Vec::new(), Vec::new(), limits.max_bytes);
         let (mut read, mut missing) = (HashMap::<u32, Option<u32>>::new(), BTreeMap::<String, (String, usize)>::new());
@@ -106,7 +106,7 @@ fn decoded(path: &Path, name: &str, wrap: [Wrap; 2], room: u64) -> Result<(Textu
     let limits = Limits { max_bytes: room };
     let (bytes, file) = neighbour(path, name, &limits)?;
     let texture = picture::read(&bytes, wrap, &limits)?;
-    // With its coarser copies.
+    // With the mip pyramid.
     let held = 6 * texture.size().iter().product::<usize>() as u64;
     Ok((texture, file, held))
 }

@@ -9,12 +9,12 @@ use belvedere_scene::{City, Polygon};
 const WEB_MERCATOR: u32 = 3857;
 
 impl CityFile {
-    /// A system in metres for it: its own if that is one for scenes (Web Mercator does not count: away from the equator its metres are too
-    /// long, and houses would be too wide for their heights), else the UTM zone of its first place. `None` if the file names
-    /// no system; `stated` stands in for what it names.
+    /// A system in metres for the city: its own if that suits scenes (Web Mercator does not: its lengths are too great away from the
+    /// equator, so houses would be too wide for their heights), else the UTM zone of its first position. `None` if the file names no
+    /// system; `stated` replaces the one that it names.
     ///
     /// # Errors
-    /// [`IoError`]: places in no UTM zone.
+    /// [`IoError`]: the first position lies in no UTM zone.
     pub fn metric_system(&self, stated: Option<&CoordinateSystem>) -> Result<Option<CoordinateSystem>, IoError> {
         let Some(system) = stated.or(self.crs.as_ref()) else { return Ok(None) };
         if system.suits_scenes() && system.epsg() != Some(WEB_MERCATOR) {
@@ -39,7 +39,7 @@ fn first_place(city: &City) -> Option<DVec2> {
     plan.copied().chain(corners).next()
 }
 
-/// Takes all positions to another system, heights stay; how many shapes lie outside its domain and are left out.
+/// Transforms all positions to another system and keeps heights. Returns the number of shapes outside its domain, which are left out.
 ///
 /// # Errors
 /// Every [`CrsError`] of [`Transform::new`].

@@ -4,12 +4,12 @@ use belvedere_core::polygon::{doubled_area, is_inside};
 use belvedere_scene::{CityFace, HeightSource, Polygon, Surface};
 use glam::{DVec2, DVec3};
 
-/// Coordinates beyond are mistakes: no system of the earth has them. Metres, or whatever the file's unit is.
+/// Largest valid coordinate, in the unit of the file: no coordinate system of the earth has larger ones.
 const FARTHEST: f64 = 1e8;
-/// Buildings higher than this are told of: their file may count in other units. Metres.
+/// Buildings higher than this give a warning, metres: the file may have other units.
 const HIGHEST_M: f64 = 2000.0;
 
-/// What was repaired, for one warning each.
+/// Numbers of repairs, for one warning each.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Repairs {
     /// Rings of fewer than three different vertices.
@@ -18,13 +18,13 @@ pub(super) struct Repairs {
     pub(super) flat_rings: usize,
     /// Footprints that cross themselves.
     pub(super) crossing: usize,
-    /// Heights out of range, or no numbers.
+    /// Heights that are out of range, or not numbers.
     pub(super) heights: usize,
-    /// Polygons with a vertex that is nowhere.
+    /// Polygons with a coordinate beyond the limit, or not finite.
     pub(super) far: usize,
     /// Holes that are not within their outline.
     pub(super) holes: usize,
-    /// Solids higher than any building.
+    /// Solids higher than the limit.
     pub(super) tall: usize,
 }
 
@@ -52,7 +52,7 @@ pub(super) fn normal(ring: &[DVec3]) -> DVec3 {
 }
 
 /// The polygon of rings, outer first: repeated vertices dropped, outer ring counter-clockwise, holes clockwise. `None` if the outer
-/// ring is no polygon.
+/// ring is not valid.
 pub(super) fn polygon(rings: impl IntoIterator<Item = Vec<DVec2>>, repairs: &mut Repairs) -> Option<Polygon> {
     let mut cleaned = rings.into_iter().map(|ring| clean(ring, repairs)).collect::<Vec<_>>().into_iter();
     let mut outer = cleaned.next()??;
@@ -102,7 +102,7 @@ fn clean(mut ring: Vec<DVec2>, repairs: &mut Repairs) -> Option<Vec<DVec2>> {
     (!short && !flat).then_some(ring)
 }
 
-/// Whether two edges of a ring cross; told for rings of up to 2000 vertices.
+/// Whether two edges of a ring cross; tested for rings of up to 2000 vertices, else `false`.
 fn crosses_itself(ring: &[DVec2]) -> bool {
     let n = ring.len();
     let edge = |i: usize| (ring[i], ring[(i + 1) % n]);
@@ -114,7 +114,7 @@ fn crosses_itself(ring: &[DVec2]) -> bool {
     n <= 2000 && (0..n).any(|i| (i + 2..n).any(|j| (i, j) != (0, n - 1) && cross(i, j)))
 }
 
-/// A face whose kind its semantics do not tell: by its direction.
+/// Kind of a face without semantics, by its direction.
 pub(super) fn surface_of(rings: &[Vec<DVec3>]) -> Surface {
     let up = rings.first().map_or(0.0, |ring| normal(ring).normalize_or_zero().z);
     match up {
@@ -133,7 +133,7 @@ pub(super) fn of_solid(faces: &[CityFace], repairs: &mut Repairs) -> (Vec<Polygo
     let base = median(grounds.iter().flat_map(|f| z(f)).collect()).unwrap_or(lowest);
     let roofs: Vec<f64> = faces.iter().filter(|f| f.surface == Surface::Roof).flat_map(z).collect();
     let top = median(roofs).unwrap_or_else(|| all.iter().copied().fold(f64::NEG_INFINITY, f64::max));
-    // Without a floor the roofs tell the plan.
+    // Without a floor the roofs give the footprint.
     let plan = if grounds.is_empty() { faces.iter().filter(|f| f.surface == Surface::Roof).collect() } else { grounds };
     let flat = |f: &&CityFace| {
         let rings = f.rings.iter().map(|ring| ring.iter().map(|p| p.truncate()).collect());
@@ -149,7 +149,7 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// How many heights are from where, for messages.
+/// Number of heights per source, in words for messages.
 pub(super) fn sources(heights: impl Iterator<Item = HeightSource>) -> String {
     let mut counts = std::collections::BTreeMap::new();
     heights.for_each(|source| *counts.entry(source).or_insert(0usize) += 1);

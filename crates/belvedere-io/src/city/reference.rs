@@ -1,4 +1,4 @@
-//! What the names of coordinate systems in city models mean.
+//! Names of coordinate systems in city models.
 
 use crate::crs::CoordinateSystem;
 
@@ -20,7 +20,7 @@ const COMPOUND: [(u32, u32); 9] = [
 pub(super) struct Reference {
     /// The horizontal system, if it is known.
     pub(super) crs: Option<CoordinateSystem>,
-    /// `EPSG:n`, or what is said, possibly empty.
+    /// `EPSG:n`, or the name in the file, possibly empty.
     pub(super) said: String,
     /// Why the system is not known, if one is named.
     pub(super) warning: Option<String>,
@@ -40,7 +40,7 @@ impl Reference {
         let flat = COMPOUND.iter().find(|(compound, _)| *compound == code).map_or(code, |(_, flat)| *flat);
         match CoordinateSystem::from_epsg(flat) {
             Ok(crs) => {
-                // The short form is written by those who mean x and y.
+                // Files with the short form have the order x, y.
                 let north_first = crs.is_geographic() && !name.to_ascii_uppercase().starts_with("EPSG:");
                 Self { crs: Some(crs), said: format!("EPSG:{code}"), warning: None, north_first }
             }

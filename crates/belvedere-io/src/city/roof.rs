@@ -1,26 +1,26 @@
-//! Blocks on slopes: roofs that follow the ground under them, walls from there down to it.
+//! Blocks on slopes: roofs that follow the ground, and walls from the roof down to it.
 
 use super::tin::Tin;
 use belvedere_scene::{CityFace, Polygon, Surface};
 use earcut::Earcut;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Spacing of the places at which ground is looked at, metres.
+/// Spacing of the samples of the ground, metres.
 const LOOK_EVERY_M: f64 = 6.0;
-/// How far a roof may be off the height over its ground, share of that height, and metres.
+/// Largest error of a roof's height over its ground: the greater of a share of the height, and metres.
 const OFF: [f64; 2] = [0.25, 1.0];
-/// Least share of its height by which a roof lies over its ground everywhere.
+/// Least height of a roof over its ground anywhere, as a share of the block's height.
 const CLEAR: f64 = 0.5;
-/// Ground for each triangle that a roof may have more than its outline needs, m^2: a quarter of those of the houses of a suburb.
+/// Area per triangle that a roof may have beyond those of its outline, m^2.
 const LEAST_TRIANGLE_M2: f64 = 250.0;
 
-/// A prism on ground that is not level, closed: its roof lies `height_m` over the ground, flat where one plane is near enough, else
-/// in facets; its floor lies as far below.
+/// A prism on ground that is not level, closed: its roof lies `height_m` over the ground, on one plane where that is near
+/// enough, else in facets; its floor follows the ground `foot_m` or more below it.
 ///
-/// * `ground`: height of the ground by place; `None` where it is not known, which then is taken as the mean.
-/// * `foot_m`: how far the walls reach into the ground, metres, >= 0.
+/// * `ground`: height of the ground at a position; where it is `None` the mean is taken.
+/// * `foot_m`: least depth of the walls in the ground, metres, >= 0.
 ///
-/// `None` if the ground under it is known nowhere.
+/// `None` if no height of the ground under it is known.
 pub fn prism_on(
     footprint: &[Polygon],
     height_m: f64,
@@ -44,11 +44,11 @@ pub fn prism_on(
     Some(faces)
 }
 
-/// Ground as far as it is known, and the plane through it.
+/// Mean of the known ground heights, and the least-squares plane through them.
 struct Under {
     mean: f64,
     origin: DVec2,
-    /// Heights along x, y, and over the origin.
+    /// Slopes along x and y, and height at the origin.
     plane: DVec3,
 }
 
@@ -64,7 +64,7 @@ impl Under {
             sum = [sum[0] + weight, sum[1] + weight * z];
         }
         let mean = (sum[0] > 0.0).then(|| sum[1] / sum[0])?;
-        // Nearly level, or known along a line only: level.
+        // Too steep, or known along a line only: level.
         let solved = matrix.inverse() * (right - matrix * DVec3::new(0.0, 0.0, mean));
         let plane = if solved.is_finite() && solved.truncate().length() < 4.0 { solved } else { DVec3::ZERO };
         Some(Self { mean, origin, plane: plane + DVec3::new(0.0, 0.0, mean) })
@@ -75,7 +75,7 @@ impl Under {
     }
 }
 
-/// One polygon of a block.
+/// The prism over one polygon of a block.
 fn part_on(
     polygon: &Polygon,
     mut tin: Tin,
@@ -141,7 +141,7 @@ fn wall([a, b]: [DVec3; 2], [top_a, top_b]: [f64; 2]) -> CityFace {
     CityFace { surface: Surface::Wall, rings: vec![ring], picture: None }
 }
 
-/// A prism of triangles whose corners lie at the heights `z` and these above.
+/// A prism of triangles: its floor and roof lie at the heights `z` of their corners plus `floor` and `roof`.
 fn faceted(tin: &Tin, z: &[f64], [floor, roof]: [f64; 2]) -> Vec<CityFace> {
     let corner = |v: u32, by: f64| tin.points[v as usize].extend(z[v as usize] + by);
     let mut faces = Vec::new();

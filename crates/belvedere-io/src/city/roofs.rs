@@ -1,4 +1,4 @@
-//! Solids of a footprint, two heights and a shape of roof, as OpenStreetMap's Simple 3D Buildings tell them.
+//! Solids of a footprint, its heights and a shape of roof, as in OpenStreetMap's Simple 3D Buildings.
 //!
 //! A roof is the least of some inclined planes over the footprint, so that one construction makes them all: gabled, hipped, skillion,
 //! pyramidal, domed. Source: OpenStreetMap Wiki, "Simple 3D Buildings" (tags and their meaning).
@@ -9,9 +9,9 @@ use glam::{DVec2, DVec3};
 
 /// Metres per degree of latitude.
 const DEGREE_M: f64 = 111_195.0;
-/// Pitch of roofs of which nothing else is known, as rise over half the span.
+/// Pitch of roofs of unknown rise, as rise over half the span.
 const PITCH: f64 = 0.55;
-/// Rise of such a roof is at most this share of the building's height.
+/// Largest rise of such a roof, as a share of the building's height.
 const MOST_SHARE: f64 = 0.45;
 /// Facets around a dome, and rings up.
 const AROUND: usize = 12;
@@ -27,11 +27,11 @@ pub(super) struct Heights {
     pub(super) top: f64,
 }
 
-/// What tags say of a roof.
+/// The roof that tags describe.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Roof {
     shape: Shape,
-    /// Rise from eaves to top, metres, if it is told.
+    /// Rise from eaves to top, metres, if it is stated.
     pub(super) rise: Option<f64>,
     /// Direction that a skillion falls to, degrees clockwise from north.
     direction: Option<f64>,
@@ -54,7 +54,7 @@ enum Shape {
 }
 
 impl Roof {
-    /// What tags say; shapes that are not known are flat.
+    /// The roof that tags describe; unknown shapes are flat.
     pub(super) fn of(about: &impl Attributes, length: impl Fn(&str) -> Option<f64>) -> Self {
         let shape = about.text("roof:shape").or_else(|| about.text("building:roof:shape")).unwrap_or_default();
         let shape = match shape.to_lowercase().as_str() {
@@ -79,12 +79,12 @@ impl Roof {
         Self { shape, rise: rise.filter(|_| shape != Shape::Flat), direction, across }
     }
 
-    /// Whether it is more than a flat top.
+    /// Whether the roof is not flat.
     pub(super) fn is_pitched(&self) -> bool {
         self.shape != Shape::Flat
     }
 
-    /// A rise where none is told: by a usual pitch over the span of the footprint.
+    /// Rise of a roof without a stated one, metres: by the usual pitch over the span of the footprint.
     pub(super) fn usual_rise(&self, footprint: &[Polygon], height: f64) -> f64 {
         let span = footprint.iter().map(|p| Plan::new(&p.outer, self.across).half[1]).fold(0.0, f64::max);
         let pitch = if self.shape == Shape::Skillion { 2.0 * 0.3 } else { PITCH };
@@ -92,7 +92,7 @@ impl Roof {
     }
 }
 
-/// Degrees clockwise from north of a number or a point of the compass.
+/// Degrees clockwise from north, from a number or a point of the compass.
 fn bearing(text: &str) -> Option<f64> {
     const POINTS: [&str; 16] =
         ["N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"];
@@ -105,7 +105,7 @@ struct Plan {
     middle: DVec2,
     scale: DVec2,
     ring: Vec<DVec2>,
-    /// Along the ridge and across it.
+    /// Unit directions along the ridge and across it.
     axes: [DVec2; 2],
     /// Half the sizes of the box along them, metres.
     half: [f64; 2],
@@ -169,7 +169,7 @@ fn planes(roof: &Roof, plan: &Plan) -> Vec<Plane> {
     let [u, v] = plan.axes;
     let [hu, hv] = plan.half;
     let across = |profile: &[(f64, f64)]| sides(v, hv, profile);
-    // Ends as steep as the sides.
+    // The ends are as steep as the sides.
     let ends = |profile: &[(f64, f64)], lift: f64| -> Vec<Plane> {
         let reach: Vec<(f64, f64)> = profile.iter().map(|(d, h)| (1.0 - (1.0 - d) * hv / hu, *h)).collect();
         sides(u, hu, &reach).into_iter().map(|p| Plane { at: p.at + lift, ..p }).collect()
@@ -275,7 +275,7 @@ pub(super) fn solid(polygon: &Polygon, heights: Heights, roof: &Roof) -> Vec<Cit
     out
 }
 
-/// Places along an edge, 0..=1 with both ends, at which the roof breaks.
+/// Parameters along an edge, 0..=1 with both ends, at which the roof has a break.
 fn breaks(a: DVec2, b: DVec2, planes: &[Plane], centre: DVec2) -> Vec<f64> {
     let mut out = vec![0.0, 1.0];
     for (k, p) in planes.iter().enumerate() {

@@ -14,7 +14,7 @@ use glam::{DVec2, DVec3, Vec2};
 pub struct CityColors {
     /// Roofs.
     pub roof: Color,
-    /// Walls and everything of buildings that is no roof.
+    /// Walls, and all other faces of buildings that are not roofs.
     pub wall: Color,
     /// The ground between, where there is no terrain.
     pub ground: Color,
@@ -31,22 +31,22 @@ const MARGIN: f64 = 0.15;
 
 /// Least height of a roof over the highest ground under it, or the height of the building if that is less, metres.
 const CLEAR_M: f64 = 2.5;
-/// Spacing of the places on outlines, and within wide ones, at which the ground under a building is looked at, metres.
+/// Spacing of the samples of the ground under a building, on its outline and (second) within wide outlines, metres.
 const LOOK_EVERY_M: f64 = 5.0;
 const WIDE_M: f64 = 15.0;
-/// Most parts of an edge, or rows of places, for it.
+/// Most samples per edge, and most rows and columns of samples within.
 const MOST_PARTS: f64 = 40.0;
 
-/// What a city stands on.
+/// The ground of a city.
 #[derive(Clone, Copy)]
 pub enum CityGround<'a> {
-    /// Terrain, its height by place; land cover is not drawn.
+    /// Terrain, as height at a position; land cover is not drawn.
     Terrain(&'a dyn Fn(DVec2) -> Option<f64>),
     /// A level plate: the city's land cover, which must lie side by side, and these pieces between.
     Plate(&'a [Polygon]),
 }
 
-/// Triangles of a city in parts: one per building and structure, by name or else id, one of everything else.
+/// Triangles of a city in parts: one per building and structure, named by its name or else its id, and one for all the rest.
 ///
 /// On a plate, buildings without ground of their own stand at the median height of the others, or at 0.
 pub fn surface(city: &City, colors: &CityColors, ground: CityGround<'_>) -> MeshFile {
@@ -70,7 +70,7 @@ pub fn surface(city: &City, colors: &CityColors, ground: CityGround<'_>) -> Mesh
             let [base, top] = stands(building, ground, plate);
             out.extruded(building, base, top, colors);
         } else {
-            // Without a ground of its own, heights of its surfaces count from the ground.
+            // Without a base of its own, the heights of a building's surfaces are over the ground.
             let base = if building.base_m.is_some() { 0.0 } else { stands(building, ground, plate)[0] };
             building.faces.iter().for_each(|face| out.face(face, base, color_of(face.surface, colors)));
         }
@@ -103,7 +103,7 @@ fn cover(cover: LandCover) -> Color {
     }
 }
 
-/// Least and largest corner of the ground under a city, past its rim; `None` without any place.
+/// Least and largest corner of the plate under a city, with its margin; `None` without any position.
 pub fn plate_extent(city: &City) -> Option<[DVec2; 2]> {
     let of = |polygons: &[Polygon]| polygons.iter().flat_map(|p| p.outer.clone()).collect::<Vec<_>>();
     let faces = city.structures.iter().flat_map(|s| &s.faces).flat_map(|f| &f.rings).flatten().map(|p| p.truncate());
@@ -114,7 +114,7 @@ pub fn plate_extent(city: &City) -> Option<[DVec2; 2]> {
     (low.is_finite() && high.is_finite()).then(|| [low - margin, high + margin])
 }
 
-/// Median height of the grounds that buildings bring; 0 without any.
+/// Median base height of the buildings that state one; 0 if none does.
 fn plate_height(city: &City) -> f64 {
     let mut bases: Vec<f64> = city.buildings.iter().filter_map(|b| b.base_m).collect();
     let middle = bases.len() / 2;
@@ -135,7 +135,7 @@ fn stands(building: &Building, ground: CityGround<'_>, plate: f64) -> [f64; 2] {
     if low > high { [plate, plate + height] } else { [low, (low + height).max(high + height.min(CLEAR_M))] }
 }
 
-/// Corners of an outline, places along its edges, and where it is wide some within.
+/// Samples of the ground under an outline: its corners, points along its edges and, if it is wide, points within.
 fn places_under(polygon: &Polygon) -> impl Iterator<Item = DVec2> + '_ {
     let along = |k: usize| {
         let [a, b] = [polygon.outer[k], polygon.outer[(k + 1) % polygon.outer.len()]];
@@ -152,13 +152,13 @@ fn places_under(polygon: &Polygon) -> impl Iterator<Item = DVec2> + '_ {
 struct Builder {
     mesh: MeshFile,
     colors: Vec<Color>,
-    /// How the triangles wear pictures.
+    /// Pictures on the triangles.
     worn: Texturing,
     earcut: Earcut<f64>,
 }
 
 impl Builder {
-    /// What follows is a part of its own.
+    /// Starts a new part.
     fn part(&mut self, name: String) {
         self.mesh.names.push(name);
     }
@@ -175,7 +175,7 @@ impl Builder {
     fn rings(&mut self, rings: &[Vec<DVec3>], color: Color) {
         let Some(outer) = rings.first() else { return };
         let n = normal(outer);
-        // Seen along the axis that the face is most square to.
+        // Projected along the axis nearest to the face's normal.
         let axis = n.abs().to_array();
         let drop = (0..3).max_by(|a, b| axis[*a].total_cmp(&axis[*b])).unwrap_or(2);
         let [u, v] = [(drop + 1) % 3, (drop + 2) % 3];

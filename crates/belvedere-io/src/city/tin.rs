@@ -1,4 +1,4 @@
-//! Triangles over a polygon that are refined until a height function is met, so that neighbours share their corners.
+//! Triangulation of a polygon, refined by longest-edge bisection until a height function is met; neighbours share their corners.
 
 use belvedere_scene::Polygon;
 use earcut::Earcut;
@@ -21,7 +21,7 @@ pub(super) struct Tin {
     left_of: HashMap<[u32; 2], usize>,
 }
 
-/// A place in a triangle, its share of the corners, and the area that it stands for, m^2.
+/// A sample position in a triangle, its barycentric weights, and the area that it represents, m^2.
 pub(super) struct Sample {
     pub at: DVec2,
     pub triangle: usize,
@@ -30,7 +30,7 @@ pub(super) struct Sample {
 }
 
 impl Tin {
-    /// The triangles of a polygon; `None` if its rings touch, so that an edge had two triangles on one side.
+    /// The triangles of a polygon; `None` if its rings touch, so that an edge has two triangles on one side.
     pub(super) fn of(polygon: &Polygon, earcut: &mut Earcut<f64>) -> Option<Self> {
         let rings = || std::iter::once(&polygon.outer).chain(&polygon.holes);
         let points: Vec<DVec2> = rings().flatten().copied().collect();
@@ -75,7 +75,7 @@ impl Tin {
         edges.filter(|[a, b]| !self.left_of.contains_key(&[*b, *a])).collect()
     }
 
-    /// Places over a triangle, edges among them, at most `step` metres apart where 25 along an edge are enough.
+    /// Samples over a triangle and its edges, at most `step` metres apart, or 25 along an edge.
     pub(super) fn samples(&self, number: usize, step: f64) -> impl Iterator<Item = Sample> + '_ {
         let corners = self.triangles[number];
         let longest = edges(corners).map(|e| self.length(e)).into_iter().fold(0.0, f64::max);

@@ -170,7 +170,7 @@ impl Builder<'_> {
         let material = primitive.material();
         let base = material.pbr_metallic_roughness().base_color_factor().map(f64::from);
         if material.alpha_mode() != AlphaMode::Opaque {
-            // What is all air is no surface.
+            // A fully transparent material is not drawn.
             if base[3] <= 0.0 {
                 return Ok(());
             }

@@ -1,8 +1,8 @@
-//! What is looked at in a glTF file before it is read: which extensions it needs, and whether its parts name parts that there are.
+//! Checks of a glTF file before it is read: required extensions, and indices of parts that must exist.
 
 use serde_json::Value;
 
-/// Extensions that may be required: what they add is read, or changes nothing that is drawn but light and pictures.
+/// Extensions that may be required: they are read, or affect only light and pictures.
 const READ: [&str; 16] = [
     "KHR_mesh_quantization",
     "KHR_lights_punctual",
@@ -28,7 +28,7 @@ const COMPRESSED: [(&str, &str); 3] = [
     ("KHR_meshopt_compression", "meshopt"),
 ];
 
-/// Which member of which list names parts of which other list.
+/// Members of lists that index other lists.
 const NAMES: [(&str, &[&str], &str); 9] = [
     ("scenes", &["nodes"], "nodes"),
     ("nodes", &["children"], "nodes"),
@@ -44,7 +44,7 @@ const NAMES: [(&str, &[&str], &str); 9] = [
 /// The document without requirements that are met.
 ///
 /// # Errors
-/// One sentence: what it requires and is not read, or which part names one that there is not.
+/// One sentence: an extension that is not read, or an index of a part that does not exist.
 pub(super) fn checked(json: &[u8]) -> Result<Vec<u8>, String> {
     let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
     let mut root: Value = serde_json::from_slice(json)

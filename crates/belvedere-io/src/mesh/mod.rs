@@ -17,7 +17,7 @@ use belvedere_scene::{Color, MeshColors, Texturing};
 use glam::DVec3;
 use std::path::Path;
 
-/// What a file holds, in the file's own coordinates.
+/// Content of a mesh file, in the file's own coordinates.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MeshFile {
     /// Name of the format.
@@ -76,7 +76,7 @@ pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoErr
     Ok(loaded)
 }
 
-/// The whole file, if the limits allow for what becomes of it.
+/// The whole file, if the decoded mesh fits the limits.
 fn read_bytes(path: &Path, limits: &Limits) -> Result<Vec<u8>, IoError> {
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     // Vertices and triangles take at most a few times the bytes that a file spends on them.
@@ -92,7 +92,7 @@ pub(crate) fn neighbour(path: &Path, name: &str, limits: &Limits) -> Result<(Vec
     Ok((bytes, record))
 }
 
-/// Leaves out triangles with a vertex that is not finite, and sets such vertices to zero. Answers how many.
+/// Removes triangles with a vertex that is not finite, and sets such vertices to zero. Returns their number.
 fn drop_not_finite(mesh: &mut MeshFile) -> usize {
     let fine: Vec<bool> = mesh.positions.iter().map(|p| p.as_vec3().is_finite()).collect();
     let before = mesh.triangles.len();
@@ -115,7 +115,7 @@ fn drop_not_finite(mesh: &mut MeshFile) -> usize {
     before - mesh.triangles.len()
 }
 
-/// An sRGB colour of shares 0..=1; black where they are no numbers.
+/// An sRGB colour of shares 0..=1; NaN counts as 0.
 fn color(shares: [f64; 3]) -> Color {
     let [r, g, b] = shares.map(|s| (255.0 * s.clamp(0.0, 1.0)).round() as u8);
     Color::rgb(r, g, b)

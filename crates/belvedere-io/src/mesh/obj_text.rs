@@ -1,4 +1,4 @@
-//! Text of OBJ and MTL files as their reader takes it: one statement per line, in UTF-8, without what it stumbles over.
+//! Text of OBJ and MTL files as their reader takes it: one statement per line, in UTF-8, without forms that it rejects.
 
 /// Statements of an OBJ file: lines that end in a backslash are joined with the next, comments behind numbers are cut off.
 pub(super) fn statements(bytes: &[u8]) -> String {
@@ -16,7 +16,7 @@ pub(super) fn statements(bytes: &[u8]) -> String {
 }
 
 /// Statements of an MTL file; a colour of one value is a grey of it (MTL specification, Kd r g b: "if only r is specified, then g and b
-/// are assumed to be equal to r"). What no number stands behind is left out and named.
+/// are assumed to be equal to r"). Statements without their numbers are left out and reported.
 pub(super) fn materials(bytes: &[u8], left_out: &mut Vec<String>) -> String {
     let text = statements(bytes);
     let mut out = String::with_capacity(text.len());

@@ -1,4 +1,4 @@
-//! Pictures that meshes wear: PNG and JPEG.
+//! Pictures on meshes: PNG and JPEG.
 
 use crate::Limits;
 use belvedere_scene::{Texture, Wrap};
@@ -8,7 +8,7 @@ use zune_jpeg::zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options:
 /// Longest side that is read, pixels.
 const LARGEST: usize = 16_384;
 
-/// The picture in these bytes; an error begins with what is wrong with it and ends with what to do.
+/// Decodes a picture; an error states what is wrong and what to do.
 pub(crate) fn read(bytes: &[u8], wrap: [Wrap; 2], limits: &Limits) -> Result<Texture, String> {
     let (width, height, pixels) = if bytes.starts_with(b"\x89PNG") {
         png(bytes, limits)?
@@ -26,7 +26,7 @@ fn fits(width: usize, height: usize, limits: &Limits) -> Result<(), String> {
     if width > LARGEST || height > LARGEST {
         return Err(format!("has {width} x {height} pixels, at most {LARGEST} a side are read; make it smaller"));
     }
-    // With its coarser copies.
+    // With the mip pyramid.
     limits.check(6 * width as u64 * height as u64).map_err(|reason| format!("is too large: {reason}"))
 }
 

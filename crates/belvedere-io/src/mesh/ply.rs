@@ -8,7 +8,7 @@ use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 use std::path::Path;
 
-/// A line of any element: what of it matters to us.
+/// The properties of an element that are read.
 #[derive(Debug, Clone, Default)]
 struct Item {
     position: [Option<f64>; 3],
@@ -86,7 +86,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
     let mut out = MeshFile { format: "PLY", ..MeshFile::default() };
     let (mut normals, mut per_vertex, mut per_triangle) = (Vec::new(), Vec::new(), Vec::new());
     for element in header.elements.values() {
-        // An element takes a byte at least: more of them than bytes are a lie.
+        // An element takes at least one byte: a greater count is invalid.
         if element.count > bytes.len() {
             return Err(bad(format!(
                 "it declares {} x {:?} in {} bytes; it is damaged",

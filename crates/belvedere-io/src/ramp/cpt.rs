@@ -12,7 +12,7 @@ use belvedere_scene::{Color, Ramp, RampHeight, RampStop};
 /// Parts that a slice with colours between hues is cut into.
 const HUE_PARTS: usize = 16;
 
-/// What the comments say of the numbers.
+/// Settings in the comments.
 #[derive(Debug, Default)]
 struct Header {
     /// Numbers of colours are hue, saturation and value.
@@ -55,7 +55,7 @@ pub fn read(text: &str) -> Result<Loaded<Ramp>, String> {
             None => {}
             Some((&"B", color)) => ramp.below = Some(header.tone(color).map_err(fail)?.color),
             Some((&"F", color)) => ramp.above = Some(header.tone(color).map_err(fail)?.color),
-            // Holes stay open.
+            // Voids are not painted.
             Some((&"N", _)) => {}
             Some(_) => slices.push(header.slice(&words).map_err(fail)?),
         }
@@ -150,7 +150,7 @@ impl Header {
         }
     }
 
-    /// What the numbers of the table stand for.
+    /// Meaning of the table's heights.
     fn heights(&self, slices: &[Slice]) -> Box<dyn Fn(f64) -> RampHeight> {
         let z = slices.iter().flatten().map(|e| e.0);
         let (low, high) = z.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(z), b.max(z)));

@@ -26,7 +26,7 @@ pub fn read(text: &str) -> Result<Loaded<Ramp>, String> {
         let Some((first, rest)) = words.split_first() else { continue };
         let color = color(rest).map_err(|e| at_line(i + 1, e))?;
         match *first {
-            // Holes stay open: there is nothing to paint.
+            // Voids are not painted.
             w if w.eq_ignore_ascii_case("nv") => {}
             w if w.eq_ignore_ascii_case("default") => {
                 warnings.push(at_line(i + 1, "\"default\" is ignored: every height has a colour here"));
