@@ -23,7 +23,7 @@ pub(crate) fn decode(text: &str) -> Option<Vec<u8>> {
     Some(out)
 }
 
-/// Bytes decoded from text as they are asked for: units one after the other, each padded by itself, white space anywhere.
+/// Decodes bytes from text on demand: units one after the other, each padded by itself, white space anywhere.
 pub(crate) struct Base64<'a> {
     text: &'a [u8],
     /// Decoded bytes not yet taken: at most 3.

@@ -11,12 +11,12 @@ use std::path::Path;
 /// Steps of the stored coordinates, metres.
 const STEP_M: f64 = 0.001;
 
-/// What is written with a building beside its height.
+/// Figures that are written with a building, besides its height.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BlockFigures {
     /// Share of its footprint that is built.
     pub coverage: f64,
-    /// Buildings that it stands for.
+    /// Number of buildings that it represents.
     pub count: usize,
 }
 
@@ -39,7 +39,7 @@ pub fn write_city_json(
 /// The document.
 ///
 /// # Errors
-/// One sentence for coordinates that are no numbers.
+/// One sentence for coordinates that are not finite.
 pub fn city_json(city: &City, blocks: &[BlockFigures], epsg: Option<u32>) -> Result<String, String> {
     let origin = origin(city);
     let mut vertices = Vertices { origin, places: HashMap::new(), list: Vec::new(), bad: 0 };
@@ -115,7 +115,7 @@ impl Vertices {
         place
     }
 
-    /// A ring without vertices that became one; `None` for fewer than three.
+    /// A ring without vertices that coincide after rounding; `None` for fewer than three.
     fn ring(&mut self, points: &[DVec3]) -> Option<Value> {
         let places = self.ring_places(points);
         (places.len() >= 3).then(|| json!(places))
@@ -254,7 +254,7 @@ fn solid(vertices: &mut Vertices, faces: &[Face]) -> Option<Value> {
     })
 }
 
-/// Faces as one solid for each piece of them that hangs together; `None` unless every piece is closed and seen from outside.
+/// Faces as one solid per connected piece; `None` unless every piece is closed and its faces point outwards.
 fn solids(vertices: &mut Vertices, faces: &[Face]) -> Option<Vec<Option<Value>>> {
     let rings: Vec<Vec<Vec<usize>>> =
         faces.iter().map(|(rings, _)| rings.iter().map(|ring| vertices.ring_places(ring)).collect()).collect();

@@ -13,7 +13,7 @@ use proj4rs::Proj;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// A coordinate reference system that cannot be used, or two that cannot be joined.
+/// Errors of coordinate reference systems and of transforms between them.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CrsError {
@@ -33,7 +33,7 @@ pub enum CrsError {
         /// What is missing.
         reason: String,
     },
-    /// The text is no WKT, or lacks what is needed.
+    /// The text is not WKT, or lacks required parts.
     #[error("CRS text cannot be understood: {reason}; give the EPSG code instead")]
     Text {
         /// What is wrong.
@@ -42,7 +42,7 @@ pub enum CrsError {
     /// A scene without georeference was asked for geographic positions.
     #[error("a scene with crs = \"local\" has no geographic positions; set crs to \"auto\" or an EPSG code")]
     Local,
-    /// Positions in a system that nobody stated are to be placed on the earth.
+    /// Positions in an unstated system cannot be transformed to another system.
     #[error(
         "their coordinate system is not stated, and the numbers are no longitudes and latitudes; state its EPSG code in the file (a \"crs\" member, a .prj), or use them with terrain in a local scene"
     )]
@@ -72,13 +72,13 @@ impl std::fmt::Display for CoordinateSystem {
 }
 
 impl PartialEq for CoordinateSystem {
-    /// Equal definitions, whatever they are called.
+    /// Equal definitions; names do not count.
     fn eq(&self, other: &Self) -> bool {
         self.proj_string == other.proj_string
     }
 }
 
-/// Mean of the conterminous United States, the usual stand-in for the NADCON grids.
+/// Mean shift of the conterminous United States, the usual substitute for the NADCON grids.
 const NAD27_SHIFT: &str = "+ellps=clrk66 +towgs84=-8,160,176";
 
 impl CoordinateSystem {
@@ -112,7 +112,7 @@ impl CoordinateSystem {
         wkt::parse(text)
     }
 
-    /// The plane of a file that states no system; it can be joined with scenes without georeference alone.
+    /// The plane of a file that states no system; it fits only scenes without georeference.
     pub fn local() -> Self {
         let proj = Proj::from_proj_string("+proj=eqc +ellps=WGS84 +units=m").unwrap_or_else(|_| unreachable!());
         let name = "no stated system".to_owned();
@@ -169,7 +169,7 @@ impl CoordinateSystem {
             match part {
                 "+datum=NAD27" => parts.push(NAD27_SHIFT),
                 "+no_defs" | "+wktext" => {}
-                // grids are not at hand; the Helmert shift beside them is
+                // grids are not available; the Helmert shift that goes with them is
                 p if p.starts_with("+nadgrids=") && p != "+nadgrids=@null" => {}
                 p if p.starts_with("+geoidgrids=") || p.starts_with("+vunits=") => {}
                 p => parts.push(p),
@@ -198,7 +198,7 @@ impl CoordinateSystem {
         self.epsg
     }
 
-    /// PROJ string in use, after the replacements that [`CoordinateSystem::datum_note`] tells.
+    /// PROJ string in use, after the replacements reported by [`CoordinateSystem::datum_note`].
     pub fn proj_string(&self) -> &str {
         &self.proj_string
     }
@@ -218,7 +218,7 @@ impl CoordinateSystem {
         !self.local && self.epsg.is_some() && self.metres_per_unit() == Some(1.0) && self.proj.is_normalized_axis()
     }
 
-    /// What is approximate about its datum, if anything: one sentence for warnings. Positions in systems without a note
+    /// Approximation in its datum shift, if there is one: one sentence for warnings. Positions in systems without a note
     /// agree with PROJ's own to 1e-6 m.
     pub fn datum_note(&self) -> Option<String> {
         if self.local {
@@ -250,7 +250,7 @@ impl CoordinateSystem {
     }
 }
 
-/// Whether a Helmert shift moves nothing by more than a few metres.
+/// Whether a Helmert shift moves positions by a few metres at most.
 fn is_small(shift: &str) -> bool {
     /// Radius of the earth in metres per arc second, and per part of a million.
     const PER_SECOND: f64 = 31.0;
@@ -318,7 +318,7 @@ impl Transform {
         convert(&self.from, &self.to, self.identity, p)
     }
 
-    /// As [`Transform::forward_one`], the other way.
+    /// As [`Transform::forward_one`], from output to input.
     pub fn inverse_one(&self, p: DVec2) -> Option<DVec2> {
         convert(&self.to, &self.from, self.identity, p)
     }
@@ -328,7 +328,7 @@ impl Transform {
         bulk(points, |p| self.forward_one(p))
     }
 
-    /// As [`Transform::forward`], the other way.
+    /// As [`Transform::forward`], from output to input.
     pub fn inverse(&self, points: &[DVec2]) -> Vec<Option<DVec2>> {
         bulk(points, |p| self.inverse_one(p))
     }

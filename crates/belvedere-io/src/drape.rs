@@ -18,7 +18,7 @@ pub struct DrapeRequest {
     pub limits: Limits,
     /// Most pixels of the drape; larger pictures are reduced.
     pub max_pixels: usize,
-    /// EPSG code of the picture, instead of what the file says.
+    /// EPSG code of the picture, in place of the file's own.
     pub source_crs: Option<u32>,
 }
 
@@ -216,7 +216,7 @@ impl Picture {
         }
     }
 
-    /// Means of `k` x `k` pixels, weighted by alpha; a rest at the right and below is dropped.
+    /// Means of `k` x `k` pixels, weighted by alpha; remaining pixels at the right and bottom edge are dropped.
     fn reduced(&self, k: usize) -> Self {
         let (width, height) = (self.width / k, self.height / k);
         let mean = |i: usize| {
@@ -239,7 +239,7 @@ impl Picture {
         Self { pixels, width, height, model_from_pixel }
     }
 
-    /// Bilinear colour at pixel coordinates (centres at .5); transparent pixels carry no colour. Transparent outside.
+    /// Bilinear colour at pixel coordinates (centres at .5); colours are weighted by alpha. Transparent outside.
     fn sample(&self, p: DVec2) -> [u8; 4] {
         let (w, h) = (self.width as f64, self.height as f64);
         if !(p.x >= 0.0 && p.y >= 0.0 && p.x <= w && p.y <= h) {
@@ -271,13 +271,13 @@ impl Picture {
     }
 }
 
-/// By how much each side must shrink.
+/// Least integer factor by which both sides must shrink to fit `max_pixels`.
 fn reduction(width: usize, height: usize, max_pixels: usize) -> usize {
     let longest = width.min(height).max(1);
     (1..=longest).find(|k| (width / k) * (height / k) <= max_pixels.max(1)).unwrap_or(longest)
 }
 
-/// Columns and rows of the picture that the terrain needs; `None` if it does not touch the picture.
+/// Columns and rows of the picture over the terrain; `None` if it does not touch the picture.
 fn window(link: &Link, heightfield: &Heightfield, size: [usize; 2]) -> Option<[Range<usize>; 2]> {
     const N: usize = 48;
     let bounds = heightfield.bounds();
@@ -414,7 +414,7 @@ fn world_file(path: &Path) -> Result<Option<Affine>, IoError> {
             let reason = format!("a world file has six numbers, this one starts with {}; correct it", numbers.len());
             return Err(IoError::format(&world, reason));
         };
-        // they belong to the centre of the first pixel
+        // the offsets are those of the centre of the first pixel
         return Ok(Some(Affine([a, b, c, d, e, f]).after_scale_and_shift(1.0, 1.0, -0.5, -0.5)));
     }
     Ok(None)

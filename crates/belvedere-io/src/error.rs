@@ -1,4 +1,4 @@
-//! Files that could not be read or written.
+//! Errors of reading and writing files.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ pub enum IoError {
     Os {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
     /// The content is not what the format demands.
@@ -19,7 +19,7 @@ pub enum IoError {
     Format {
         /// The file.
         path: PathBuf,
-        /// What is wrong, with measured value, limit and remedy.
+        /// The fault, with measured value, limit and remedy.
         reason: String,
     },
     /// An output exists and may not be replaced.

@@ -1,13 +1,13 @@
-//! What a loader returns.
+//! Result of a loader.
 
 use crate::InputFile;
 
-/// A value, the warnings of reading it, and what was read.
+/// A value, the warnings of reading it, and the files that were read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loaded<T> {
     /// The value.
     pub value: T,
-    /// One sentence each: what was odd, measured value, what was done about it.
+    /// One sentence each: the oddity, its measured value, and how it was handled.
     pub warnings: Vec<String>,
     /// The files that were read for it, by the same reading.
     pub files: Vec<InputFile>,
@@ -24,7 +24,7 @@ impl<T> Loaded<T> {
         Self { value, warnings, files: Vec::new() }
     }
 
-    /// This, read from another file.
+    /// Adds a file that was read for the value.
     pub fn with_file(mut self, file: InputFile) -> Self {
         self.files.push(file);
         self

@@ -1,4 +1,4 @@
-//! Rasters as every loader returns them: samples, georeference and what counts as no data.
+//! Rasters as every loader returns them: samples, georeference and no-data value.
 
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -20,7 +20,7 @@ impl Affine {
         self.0[0] * self.0[4] - self.0[1] * self.0[3]
     }
 
-    /// The map that undoes this one; `None` if it is singular or not finite.
+    /// The inverse map; `None` if it is singular or not finite.
     pub fn inverse(&self) -> Option<Self> {
         let [a, b, c, d, e, f] = self.0;
         let det = self.determinant();
@@ -66,7 +66,7 @@ impl std::fmt::Display for SourceCrs {
     }
 }
 
-/// What the coordinates of a CRS are.
+/// Kind of the coordinates of a CRS.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CrsKind {
     /// Not stated.
@@ -165,7 +165,7 @@ impl Samples {
         with_samples!(self, v => v.len())
     }
 
-    /// Whether there is none.
+    /// Whether there is no sample.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -193,7 +193,7 @@ impl Samples {
     }
 }
 
-/// What the bands of a raster mean as a picture.
+/// Meaning of the bands of a raster as a picture.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Photometric {
     /// One band of brightness or of measured values; 0 is black.
@@ -207,10 +207,10 @@ pub enum Photometric {
     Palette(Vec<[u8; 3]>),
 }
 
-/// What the alpha band means.
+/// Meaning of the alpha band.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Alpha {
-    /// There is none.
+    /// There is no alpha band.
     #[default]
     None,
     /// The band of this index; colours are independent of it.
@@ -253,15 +253,15 @@ pub struct RasterInfo {
     pub pixel_is_point: bool,
     /// Coordinate system of the model coordinates.
     pub crs: SourceCrs,
-    /// What its coordinates are.
+    /// Kind of its coordinates.
     pub crs_kind: CrsKind,
-    /// Metres per model unit of a projected CRS if the file says so itself (else the CRS tells).
+    /// Metres per model unit of a projected CRS if the file states it (else that of the CRS).
     pub linear_unit_m: Option<f64>,
     /// EPSG code of the vertical CRS.
     pub vertical_epsg: Option<u32>,
     /// Metres per unit of the heights; 1 unless the file says otherwise.
     pub vertical_unit_m: f64,
-    /// Whether the file says it, or its format does.
+    /// Whether the file or its format states the unit of heights.
     pub vertical_unit_said: bool,
     /// Stored value that means "no data", as stored (before [`Self::scaling`]).
     pub nodata: Option<f64>,
@@ -354,7 +354,7 @@ impl Raster {
     /// The raster as sRGB pixels with straight alpha; alpha is 0 where there is no data.
     ///
     /// # Errors
-    /// One sentence if it is no picture of 8 or 16 bits per sample.
+    /// One sentence if it is not a picture of 8 or 16 bits per sample.
     pub fn to_rgba(&self) -> Result<Vec<[u8; 4]>, String> {
         let info = &self.info;
         if let Photometric::Rgb(bands) = info.photometric
@@ -444,7 +444,7 @@ impl Raster {
     }
 }
 
-/// Bounds on what a loader may take.
+/// Bounds on the memory of a loader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
     /// Most bytes of decoded samples held at once.

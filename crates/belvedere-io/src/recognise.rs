@@ -1,4 +1,4 @@
-//! What a file is that no loader takes up.
+//! Recognition of files that no loader reads.
 
 use crate::formats::{self, Format, HEAD, Reader};
 use crate::table::split_table;
@@ -11,18 +11,18 @@ use std::path::Path;
 pub struct Recognised {
     /// The format.
     pub format: &'static Format,
-    /// Whether its name alone tells it, and its content does not begin like a file of a format that is read: it is damaged.
+    /// Whether the file is damaged: its name is of a format that is read, but its content begins like no known format.
     pub is_broken: bool,
 }
 
-/// What a file is, if its format is known and no loader reads it under its name; `None` for what loaders read, and for what nobody knows.
+/// The format of a file, if it is known and no loader reads it under its name; `None` for files of loaders and of unknown formats.
 ///
 /// # Errors
 /// [`IoError::Os`].
 pub fn recognise(path: &Path) -> Result<Option<Recognised>, IoError> {
     let (path, _) = split_table(path);
     let by_name = formats::of_name(path);
-    // Loaders say themselves what is wrong with a file of theirs; only cities are told by their content.
+    // Loaders report errors in their own files; only cities are recognised by content.
     if by_name.and_then(|format| format.reader).is_some_and(|reader| reader != Reader::City) {
         return Ok(None);
     }
@@ -47,7 +47,7 @@ fn head(path: &Path) -> Result<Vec<u8>, IoError> {
     Ok(head)
 }
 
-/// The error of a loader, or, where the file is of a known format that none reads, that it is.
+/// Replaces the error of a loader if the file is of a known format that no loader reads.
 pub(crate) fn explain(error: IoError) -> IoError {
     let IoError::Format { path, .. } = &error else { return error };
     match recognise(path) {

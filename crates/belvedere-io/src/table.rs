@@ -1,11 +1,11 @@
-//! Names of tables behind names of files.
+//! Names of tables, appended to file names.
 
 use std::path::{Path, PathBuf};
 
-/// What stands between the name of a GeoPackage and that of its table.
+/// Separator between the name of a GeoPackage and that of its table.
 const MARK: &str = "?table=";
 
-/// The file that is meant, and the table of it: `town.gpkg?table=streets` is the table `streets` of `town.gpkg`. Only names of
+/// Splits a path into file and table: `town.gpkg?table=streets` is the table `streets` of `town.gpkg`. Only names of
 /// GeoPackages are split; the table is not empty.
 pub fn split_table(path: &Path) -> (&Path, Option<&str>) {
     let split = path.to_str().and_then(|name| name.rsplit_once(MARK));
@@ -17,7 +17,7 @@ pub fn split_table(path: &Path) -> (&Path, Option<&str>) {
     }
 }
 
-/// A file with a table behind its name, as [`split_table`] takes it apart.
+/// A file name with a table, the inverse of [`split_table`].
 pub fn join_table(file: PathBuf, table: Option<&str>) -> PathBuf {
     let Some(table) = table else { return file };
     let mut name = file.into_os_string();

@@ -43,7 +43,7 @@ pub struct TerrainRequest {
     pub crs: CrsChoice,
     /// Closes holes inside the data by a smooth membrane and marks the nodes [`NodeState::Filled`].
     pub fill_voids: bool,
-    /// Holes of more than this share of the nodes stay open all the same: what would be made up there is no ground.
+    /// Holes of more than this share of the nodes stay open: filled heights there would be invented.
     pub largest_hole: f64,
     /// Makes holes at the edge that are sea ground at 0, marked [`NodeState::Filled`]: those of at least 100 nodes and a
     /// twentieth of the ground, of whose shore nine of ten nodes stand 0 to 30 m high, and half not above 10 m.
@@ -52,11 +52,11 @@ pub struct TerrainRequest {
     pub limits: Limits,
     /// Most nodes of the heightfield; larger sources are thinned out.
     pub max_nodes: usize,
-    /// EPSG code of the sources, instead of what the files say.
+    /// EPSG code of the sources, in place of those in the files.
     pub source_crs: Option<u32>,
-    /// Stored value that means "no data", instead of what the files say.
+    /// Stored value that means "no data", in place of those in the files.
     pub nodata: Option<f64>,
-    /// Metres per unit of the heights, instead of what the files say; > 0.
+    /// Metres per unit of the heights, in place of those in the files; > 0.
     pub vertical_unit_m: Option<f64>,
     /// Bound on the 99th percentile of the resampling error at the source's samples, metres. Where the relief is too
     /// rough for it the grid is made up to twice as fine as the source, within [`Self::refine_to_nodes`].
@@ -83,10 +83,10 @@ impl Default for TerrainRequest {
     }
 }
 
-/// How far the resampled surface is from the source's samples, metres of height, at those samples.
+/// Error of the resampled surface in height, metres, at the source's samples.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct ResampleError {
-    /// Largest.
+    /// Largest error.
     pub max_m: f64,
     /// 99th percentile, rounded up to the next 1/64 m.
     pub p99_m: f64,
@@ -120,7 +120,7 @@ pub struct LoadedTerrain {
 /// Widest extent east to west from the middle for which a UTM zone is chosen by itself, degrees of the equator.
 const UTM_MAX_HALF_WIDTH_DEG: f64 = 20.0;
 
-/// Resampling errors above this are worth a warning; below it they are within what global elevation models promise, metres.
+/// Resampling errors above this give a warning, metres; smaller ones are within the accuracy of global elevation models.
 const WARN_P99_M: f64 = 16.0;
 
 /// Loads one or several rasters (GeoTIFF, `.hgt`, zipped `.hgt`, ESRI ASCII) as the terrain of a scene. Where several
@@ -226,14 +226,14 @@ fn warn_about_voids(path: &Path, voids: usize, share: f64, filled: f64, left_ope
     warnings.push(format!("{}: {voids} samples ({percent:.2} %) hold no data: {fate}", path.display()));
 }
 
-/// What became of holes.
+/// States of the nodes after holes were closed.
 struct ClosedHoles {
     states: Vec<NodeState>,
-    /// How many were too large to be filled.
+    /// Number of holes too large to be filled.
     left_open: usize,
     /// Nodes that became sea.
     sea: usize,
-    /// Whether any is still there.
+    /// Whether any hole remains.
     open: bool,
 }
 
@@ -389,7 +389,7 @@ fn extent(sources: &[SourceGrid]) -> Option<Extent> {
         for p in source.outline() {
             let Some(mut p) = t.forward_one(p) else { continue };
             if let Some(b) = &mut out {
-                // across the antimeridian the shorter way round
+                // across the antimeridian on the shorter side
                 p.x += 360.0 * ((0.5 * (b[0] + b[2]) - p.x) / 360.0).round();
                 *b = [b[0].min(p.x), b[1].min(p.y), b[2].max(p.x), b[3].max(p.y)];
             } else {

@@ -1,8 +1,8 @@
-//! Tables beside the register of PROJ strings: systems that it lacks, datum shifts that it has not or has no longer right, and which
-//! geographic system belongs to a datum and to a projected system.
+//! Tables that supplement the register of PROJ strings: missing systems, missing or outdated datum shifts, and the geographic system of
+//! each datum and projected system.
 //!
-//! The facts are of the EPSG Geodetic Parameter Dataset, as PROJ 9.5 chooses transformations without grids at the middle of a system's
-//! area of use. Lines hold what they say first, then codes, `a-b` being all from a to b.
+//! Source: the EPSG Geodetic Parameter Dataset, with the transformations that PROJ 9.5 chooses without grids at the middle of a system's
+//! area of use. A line holds its value first, then codes; `a-b` stands for all codes from a to b.
 
 use super::CrsError;
 
@@ -12,10 +12,10 @@ const SYSTEMS: &str = include_str!("systems.txt");
 const SHIFTS: &str = include_str!("shifts.txt");
 /// `geographic-code projected-codes`.
 const BASES: &str = include_str!("bases.txt");
-/// `geographic-code names`, in lower case without anything but letters and digits; `=` before names of systems, the others are of datums.
+/// `geographic-code names`, only letters and digits, in lower case; names of systems begin with `=`, the others are of datums.
 const DATUMS: &str = include_str!("datums.txt");
 
-/// Krovak systems whose register has southings and westings, and whose PROJ strings do not.
+/// Krovak systems with southings and westings in the register, but not in their PROJ strings.
 const SOUTH_WEST: [u32; 2] = [2065, 5513];
 
 fn codes(list: &str) -> impl Iterator<Item = std::ops::RangeInclusive<u32>> + '_ {
@@ -30,7 +30,7 @@ fn line_of<'t>(table: &'t str, word: &str) -> Option<&'t str> {
     table.lines().find_map(|line| line.strip_prefix(word)?.strip_prefix(' '))
 }
 
-/// The code of today for codes of other registers and of the past that are in use: ESRI's, and unofficial ones.
+/// The current EPSG code of ESRI's, unofficial and superseded codes that are in use.
 pub(super) fn current_code(code: u32) -> u32 {
     match code {
         900_913 | 3785 | 102_100 | 102_113 | 41_001 => 3857,
@@ -42,7 +42,7 @@ pub(super) fn current_code(code: u32) -> u32 {
     }
 }
 
-/// The PROJ string of an EPSG code, with the datum shift of today.
+/// The PROJ string of an EPSG code, with the current datum shift.
 pub(super) fn definition(code: u32) -> Result<String, CrsError> {
     if SOUTH_WEST.contains(&code) {
         let reason = "its axes run south and west (EPSG:5514 is the same with axes to the east and north)".to_owned();

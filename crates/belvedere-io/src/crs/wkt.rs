@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 mod register;
 
-/// Deeper nesting than any real text has.
+/// Deepest nesting accepted.
 const MAX_DEPTH: usize = 32;
 
 /// `KEYWORD["text", 1.5, CHILD[...]]`.
@@ -110,7 +110,7 @@ pub(super) fn parse(text: &str) -> Result<CoordinateSystem, CrsError> {
     let mut rest = text.trim_start_matches('\u{feff}').trim();
     let root = node(&mut rest, 0)?;
     let horizontal = find(&root).ok_or_else(|| text_error(format!("{} holds no horizontal system", root.keyword)))?;
-    // Codes of other registers are passed over, and those that no table has: names and parameters may tell.
+    // Codes of other registers and unknown codes are ignored: names and parameters may identify the system.
     let stated = horizontal.epsg().map(CoordinateSystem::from_epsg).and_then(Result::ok);
     if let Some(system) =
         stated.or_else(|| code_by_name(horizontal.name()).and_then(|c| CoordinateSystem::from_epsg(c).ok()))
@@ -134,7 +134,7 @@ pub(super) fn parse(text: &str) -> Result<CoordinateSystem, CrsError> {
     }
 }
 
-/// The system that a name alone means, such as `RD_New` or `GCS_Amersfoort`; `None` if it is not known.
+/// The system of a name alone, such as `RD_New` or `GCS_Amersfoort`; `None` if it is not known.
 pub(super) fn by_name(name: &str) -> Option<Result<CoordinateSystem, CrsError>> {
     let named = |name: &str| tables::geographic(&format!("={}", plain(name)));
     code_by_name(name).or_else(|| named(name)).map(CoordinateSystem::from_epsg)
@@ -224,7 +224,7 @@ fn unit(node: &Node) -> Option<f64> {
 }
 
 fn degrees(value: f64, angle_rad: f64) -> f64 {
-    // the common rounding of pi/180 must not move anything
+    // the common rounding of pi/180 must not shift positions
     if (angle_rad - 1f64.to_radians()).abs() < 1e-12 { value } else { (value * angle_rad).to_degrees() }
 }
 
@@ -312,7 +312,7 @@ fn projection(system: &Node, angle_rad: f64) -> Result<String, CrsError> {
     Ok(out)
 }
 
-/// The oblique Mercator projections: their line of azimuth 90 degrees makes the Swiss one, which is simpler.
+/// The oblique Mercator projections; with an azimuth of 90 degrees they are the Swiss projection, which is simpler.
 fn oblique(method: &str, value: &dyn Fn(&[&str]) -> Option<f64>, angle_rad: f64, unit_m: f64) -> String {
     let angle = |names: &[&str]| value(names).map(|v| degrees(v, angle_rad));
     let azimuth = angle(&["azimuth", "Azimuth_of_initial_line"]).unwrap_or(90.0);

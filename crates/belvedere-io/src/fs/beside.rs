@@ -1,8 +1,8 @@
-//! Files that a file names.
+//! Files that another file names.
 
 use std::path::{Path, PathBuf};
 
-/// A file beside `path` that it names; refused if it is remote, absolute or leads out of the folder.
+/// Path of a file that the file `path` names; refused if it is remote, absolute or leads out of the folder.
 pub(crate) fn beside(path: &Path, name: &str) -> Result<PathBuf, String> {
     let relative = Path::new(name);
     let stays =

@@ -1,4 +1,4 @@
-//! Files in memory. A name is a path from one root, whether it begins with `/` or not; a folder is there if a file is in it.
+//! Files in memory. A name is a path from one root, whether it begins with `/` or not; a folder exists if a file is in it.
 
 use std::collections::BTreeMap;
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
@@ -21,7 +21,7 @@ fn files_to_change() -> RwLockWriteGuard<'static, Files> {
 #[derive(Debug)]
 pub struct File(Cursor<Arc<[u8]>>);
 
-/// What is known of a file or folder.
+/// Metadata of a file or folder.
 #[derive(Debug, Clone, Copy)]
 pub struct Metadata {
     /// Size of a file, bytes; `None` = a folder.
@@ -29,7 +29,7 @@ pub struct Metadata {
 }
 
 impl Metadata {
-    /// Size, bytes; none of a folder.
+    /// Size, bytes; 0 for a folder.
     #[allow(clippy::len_without_is_empty)] // the name that std gives it
     pub fn len(&self) -> u64 {
         self.size.unwrap_or(0)
@@ -45,7 +45,7 @@ impl Metadata {
         self.size.is_none()
     }
 
-    /// Never: there are no links.
+    /// Always `false`: there are no links.
     pub fn is_symlink(&self) -> bool {
         false
     }
@@ -60,7 +60,7 @@ impl File {
         content(path.as_ref()).map(|bytes| Self(Cursor::new(bytes)))
     }
 
-    /// What is known of it.
+    /// Metadata of the file.
     ///
     /// # Errors
     /// None; that of a file system may have some.
@@ -81,7 +81,7 @@ impl Seek for File {
     }
 }
 
-/// The one name of a path.
+/// Canonical name of a path.
 fn name_of(path: &Path) -> PathBuf {
     let mut name = PathBuf::new();
     for component in path.components() {
@@ -102,7 +102,7 @@ fn content(path: &Path) -> io::Result<Arc<[u8]>> {
     files().get(&name_of(path)).cloned().ok_or_else(|| missing(path))
 }
 
-/// What is known of a file or folder.
+/// Metadata of a file or folder.
 ///
 /// # Errors
 /// [`io::ErrorKind::NotFound`].
@@ -124,7 +124,7 @@ pub fn symlink_metadata(path: impl AsRef<Path>) -> io::Result<Metadata> {
     metadata(path)
 }
 
-/// The one name of a file or folder that is there.
+/// Canonical path of an existing file or folder.
 ///
 /// # Errors
 /// [`io::ErrorKind::NotFound`].
@@ -148,7 +148,7 @@ pub fn read_to_string(path: impl AsRef<Path>) -> io::Result<String> {
     String::from_utf8(read(path)?).map_err(|e| io::Error::new(io::ErrorKind::InvalidData, e))
 }
 
-/// Puts a file there, in place of one of that name.
+/// Writes a file, replacing one of that name.
 ///
 /// # Errors
 /// None; that of a file system may have some.
@@ -157,7 +157,7 @@ pub fn write(path: impl AsRef<Path>, content: impl Into<Arc<[u8]>>) -> io::Resul
     Ok(())
 }
 
-/// Takes a file away.
+/// Removes a file.
 ///
 /// # Errors
 /// [`io::ErrorKind::NotFound`].

@@ -1,5 +1,5 @@
 //! The file system that everything is read from and written to: the system's own, or in a browser files in memory, by the same names.
-//! Files in archives have names, too: see `packed`.
+//! Paths lead into archives, too: see `packed`.
 
 #[cfg(not(target_family = "wasm"))]
 use std::fs as plain;

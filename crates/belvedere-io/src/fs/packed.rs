@@ -1,7 +1,7 @@
-//! Files in archives by names of their own: `town.zip/roads/a.shp` is the entry `roads/a.shp` of `town.zip`, and `walk.gpx.gz/walk.gpx`
-//! what `walk.gpx.gz` packs. Archives may lie in archives.
+//! Files in archives, named by paths through the archive: `town.zip/roads/a.shp` is the entry `roads/a.shp` of `town.zip`, and `walk.gpx.gz/walk.gpx`
+//! the content of `walk.gpx.gz`. Archives may lie in archives.
 //!
-//! What comes out is bounded: no more than [`MOST_BYTES`], and of entries of ZIP archives no more than they state.
+//! The unpacked size is bounded: no more than [`MOST_BYTES`], and of entries of ZIP archives no more than they state.
 
 use super::plain;
 use flate2::read::MultiGzDecoder;
@@ -15,19 +15,19 @@ const MOST_BYTES: u64 = 2 << 30;
 const KEPT_BYTES: usize = 256 << 20;
 /// Deepest nesting of archives.
 const MOST_DEPTH: usize = 3;
-/// Names that file managers put into archives beside what was packed.
+/// Names of entries that file managers add to archives.
 const BY_FILE_MANAGERS: [&str; 4] = [".ds_store", "thumbs.db", "desktop.ini", "__macosx"];
 
 /// A file that is read.
 #[derive(Debug)]
 pub enum File {
-    /// One of the file system.
+    /// A file of the file system.
     Plain(plain::File),
-    /// One out of an archive.
+    /// A file out of an archive.
     Packed(Cursor<Arc<[u8]>>),
 }
 
-/// What is known of a file or folder.
+/// Metadata of a file or folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Metadata {
     size: u64,
@@ -76,7 +76,7 @@ impl File {
         }
     }
 
-    /// What is known of it.
+    /// Metadata of the file.
     ///
     /// # Errors
     /// As those of [`std::fs::File::metadata`].
@@ -110,7 +110,7 @@ fn of_size(size: usize) -> Metadata {
     Metadata { size: size as u64, is_file: true, is_dir: false, is_symlink: false }
 }
 
-/// What is known of a file or folder, links followed.
+/// Metadata of a file or folder, links followed.
 ///
 /// # Errors
 /// As those of [`std::fs::metadata`].
@@ -121,7 +121,7 @@ pub fn metadata(path: impl AsRef<Path>) -> io::Result<Metadata> {
     }
 }
 
-/// What is known of a file, folder or link.
+/// Metadata of a file, folder or link.
 ///
 /// # Errors
 /// As those of [`std::fs::symlink_metadata`].
@@ -132,7 +132,7 @@ pub fn symlink_metadata(path: impl AsRef<Path>) -> io::Result<Metadata> {
     }
 }
 
-/// The one name of a file or folder that is there.
+/// Canonical path of an existing file or folder.
 ///
 /// # Errors
 /// As those of [`std::fs::canonicalize`].
@@ -165,7 +165,7 @@ pub fn read_to_string(path: impl AsRef<Path>) -> io::Result<String> {
     String::from_utf8(read(path)?).map_err(|e| io::Error::new(io::ErrorKind::InvalidData, e))
 }
 
-/// The file that holds what `path` names: the outermost archive, or `path` itself.
+/// The file on disk that holds the file `path`: the outermost archive, or `path` itself.
 pub(crate) fn archive_of(path: &Path) -> PathBuf {
     match within(path) {
         Some((archive, _)) => archive_of(&archive),
@@ -173,7 +173,7 @@ pub(crate) fn archive_of(path: &Path) -> PathBuf {
     }
 }
 
-/// Archive and entry that a path names; `None` unless what stands before the entry is a file.
+/// Archive and entry that a path names; `None` unless the part of the path before the entry is a file.
 fn within(path: &Path) -> Option<(PathBuf, String)> {
     let mut deeper = 0;
     for above in path.ancestors().skip(1).filter(|a| !a.as_os_str().is_empty()) {
@@ -186,7 +186,7 @@ fn within(path: &Path) -> Option<(PathBuf, String)> {
     None
 }
 
-/// The archive nearest to the end of a path that leads into the file `outer`, and what it is asked for.
+/// The archive nearest to the end of a path that leads into the file `outer`, and the entry in it.
 fn innermost(outer: &Path, path: &Path, deeper: usize) -> Option<(PathBuf, String)> {
     let parts: Vec<&Path> = path.ancestors().skip(1).take(deeper).collect();
     let packs = |part: &&&Path| {
@@ -213,7 +213,7 @@ fn missing(archive: &Path, entry: &str) -> io::Error {
 type Kept = Option<(PathBuf, u64, Arc<[u8]>)>;
 static LAST: Mutex<Kept> = Mutex::new(None);
 
-/// Content of an entry; that of the last one is kept, for readers look at a file more than once.
+/// Content of an entry; the last one is cached, for readers open a file more than once.
 fn unpacked(archive: &Path, entry: &str) -> io::Result<Arc<[u8]>> {
     let stamp = plain::metadata(archive_of(archive)).map(|m| m.len())?;
     let key = std::path::absolute(archive).unwrap_or_else(|_| archive.to_owned()).join(entry);
@@ -266,8 +266,8 @@ const GZIP: &[u8] = b"\x1f\x8b";
 const ZIP: &[u8] = b"PK\x03\x04";
 const EMPTY_ZIP: &[u8] = b"PK\x05\x06";
 
-/// Size of what an archive holds under a name, or as soon as it is certain, something more than `most`; nothing is kept. Of ZIP entries
-/// it is what they state, which bounds what is taken out of them.
+/// Unpacked size of an entry, bytes; for gzip counted up to `most` + 1 and not kept, for ZIP the stated size, which bounds later
+/// unpacking.
 pub(crate) fn unpacked_size(archive: &Path, entry: &str, most: u64) -> io::Result<u64> {
     let packed = read(archive)?;
     if packed.starts_with(GZIP) {
@@ -278,7 +278,7 @@ pub(crate) fn unpacked_size(archive: &Path, entry: &str, most: u64) -> io::Resul
     zip.by_name(entry).map(|found| found.size()).map_err(|e| damaged(archive, e))
 }
 
-/// Names of the files in an archive, without those that file managers put there; `None` if the file is no ZIP or gzip.
+/// Names of the files in an archive, without those of file managers; `None` if the file is not a ZIP or gzip.
 pub(crate) fn names_in(path: &Path) -> io::Result<Option<Vec<String>>> {
     let mut head = Vec::new();
     File::open(path)?.take(4).read_to_end(&mut head)?;
@@ -293,14 +293,14 @@ pub(crate) fn names_in(path: &Path) -> io::Result<Option<Vec<String>>> {
     Ok(Some(names.collect()))
 }
 
-/// Whether an entry is something that was packed, no folder and nothing of a file manager.
+/// Whether an entry is a packed file: not a folder, and not an entry of a file manager.
 fn is_content(name: &str) -> bool {
     let parts = || name.split(['/', '\\']);
     let of_manager = |part: &str| BY_FILE_MANAGERS.contains(&part.to_lowercase().as_str()) || part.starts_with("._");
     !name.ends_with(['/', '\\']) && parts().all(|part| !of_manager(part) && part != "..")
 }
 
-/// Name of what a gzip file packs: its own without the ending, or where that has none, the name that the file states.
+/// Name of the content of a gzip file: its own name without `.gz`, or, if that has no ending, the name stated in the file.
 fn name_in_gzip(path: &Path, packed: &[u8]) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let cut = name.len().saturating_sub(3);

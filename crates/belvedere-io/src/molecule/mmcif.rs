@@ -18,7 +18,7 @@ enum Token<'t> {
     Value(Option<&'t str>),
 }
 
-/// Words and the lines they stand in.
+/// Tokenizer: yields words with their line numbers.
 struct Words<'t> {
     text: &'t str,
     at: usize,
@@ -26,7 +26,7 @@ struct Words<'t> {
 }
 
 impl<'t> Words<'t> {
-    /// Goes on to the next word.
+    /// The next word.
     fn next(&mut self) -> Result<Option<(usize, Token<'t>)>, String> {
         let bytes = self.text.as_bytes();
         loop {
@@ -130,7 +130,7 @@ pub(super) fn read(text: &str) -> Result<Sites, String> {
     Ok(out)
 }
 
-/// The categories that matter, whether as loops or as single values.
+/// The categories that are read, given as loops or as single values.
 fn tables(text: &str) -> Result<(Table<'_>, Table<'_>), String> {
     let (mut sites, mut bonds) = (Table::default(), Table::default());
     let mut words = Words { text, at: 0, line: 1 };
@@ -150,7 +150,7 @@ fn tables(text: &str) -> Result<(Table<'_>, Table<'_>), String> {
             }
             Token::Keyword(word) => {
                 blocks += usize::from(word.get(..5).is_some_and(|w| w.eq_ignore_ascii_case("data_")));
-                // Of several structures the first that has atoms.
+                // Of several structures the first with atoms is read.
                 if blocks > 1 && !sites.rows.is_empty() {
                     break;
                 }
@@ -177,7 +177,7 @@ fn is_in(name: &str, category: &str) -> bool {
     name.get(..category.len()).is_some_and(|n| n.eq_ignore_ascii_case(category))
 }
 
-/// Adds a value that stands alone to the only row of its category.
+/// Adds a value outside a loop to the only row of its category.
 fn single<'t>(table: &mut Table<'t>, name: &'t str, value: Option<&'t str>, line: usize) {
     table.names.push(name);
     match table.rows.first_mut() {
@@ -186,7 +186,7 @@ fn single<'t>(table: &mut Table<'t>, name: &'t str, value: Option<&'t str>, line
     }
 }
 
-/// A word with the line it stands in; `None` at the end of the file.
+/// A word with its line number; `None` at the end of the file.
 type Next<'t> = Option<(usize, Token<'t>)>;
 
 /// Names and values after `loop_`, and the word after them. Values of other categories are passed over.
@@ -221,7 +221,7 @@ fn looped<'t>(words: &mut Words<'t>) -> Result<(Table<'t>, Next<'t>), String> {
     Ok((table, next))
 }
 
-/// Where the items of an atom stand in a row.
+/// Columns of the items of an atom in a row.
 struct Columns {
     group: Option<usize>,
     serial: Option<usize>,
@@ -252,7 +252,7 @@ impl Columns {
                 }
             })
         };
-        // The authors' names are those that papers and people use.
+        // The authors' names are those used in papers.
         Ok(Self {
             position: [must(&["Cartn_x"])?, must(&["Cartn_y"])?, must(&["Cartn_z"])?],
             group: find(&["group_PDB"]),
@@ -299,7 +299,7 @@ impl Columns {
     }
 }
 
-/// Bonds of the kinds covale, disulf and metalc between atoms of the file; those to symmetric copies join nothing here.
+/// Bonds of the kinds covale, disulf and metalc between atoms of the file; those to symmetric copies are ignored.
 fn named_bonds(table: &Table<'_>, sites: &[Site]) -> Vec<[i64; 2]> {
     let find = |item: &str| table.column(&[&format!("{BONDS}{item}")]);
     let end = |n: u32| {

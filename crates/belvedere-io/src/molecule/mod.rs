@@ -10,23 +10,23 @@ use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_scene::Molecule;
 use std::path::Path;
 
-/// What a file holds.
+/// Content of a molecule file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MoleculeFile {
     /// Name of the format.
     pub format: &'static str,
-    /// Atoms of the first model, each at its likeliest place, and their bonds.
+    /// Atoms of the first model, each at its location of highest occupancy, and their bonds.
     pub molecule: Molecule,
     /// Models in the file; the first is read.
     pub models: usize,
-    /// Atoms at other places that were left out.
+    /// Number of atoms at alternate locations that were left out.
     pub alternates: usize,
-    /// Bonds that the file names.
+    /// Number of bonds that the file names.
     pub named_bonds: usize,
 }
 
 /// Reads a molecule. Of several models the first is taken; of alternate locations the one of highest occupancy, of equal ones the first.
-/// Bonds are those that the file names and those that distances tell, see [`belvedere_scene::molecule::BOND_TOLERANCE`].
+/// Bonds are those that the file names and those found by distance, see [`belvedere_scene::molecule::BOND_TOLERANCE`].
 ///
 /// # Errors
 /// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, too large for `limits`, or has no atom.

@@ -1,6 +1,6 @@
 //! PDB: lines of fixed columns.
 //!
-//! Format: wwPDB, version 3.3, and what programs of simulations make of it: no chains, no elements, numbers that run over.
+//! Format: wwPDB, version 3.3, and its variants by simulation programs: no chains, no elements, numbers that overflow their columns.
 
 use super::sites::{Site, Sites};
 use belvedere_scene::molecule::{Element, Residue};
@@ -38,7 +38,7 @@ pub(super) fn read(text: &str) -> Result<Sites, String> {
     Ok(out)
 }
 
-/// What had to be guessed of an atom.
+/// Properties of an atom that had to be guessed.
 struct Odd {
     element: bool,
     serial: bool,
@@ -105,7 +105,7 @@ fn whole(text: &str, width: u32) -> Option<i64> {
     Some(if first.is_ascii_uppercase() { value - from + all } else { value + 16 * 36i64.pow(width - 1) + all })
 }
 
-/// The element that the name of an atom tells: symbols end in its second column, but names of four letters begin in the first.
+/// The element by the name of an atom: symbols end in its second column, but names of four letters begin in the first.
 fn by_name(name: &str, residue: &Residue) -> Option<Element> {
     let letters: String = name.chars().filter(char::is_ascii_alphabetic).collect();
     let ion: String = residue.name.chars().filter(char::is_ascii_alphabetic).collect();

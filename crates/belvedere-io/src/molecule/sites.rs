@@ -1,11 +1,11 @@
-//! From lines of a file to a molecule: residues, alternate locations, models.
+//! Assembles a molecule from the atom lines of a file: residues, alternate locations, models.
 
 use belvedere_scene::Molecule;
 use belvedere_scene::molecule::{Atom, Element, Residue};
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// One line of a file.
+/// One atom line of a file.
 pub(super) struct Site {
     pub(super) serial: i64,
     pub(super) name: String,
@@ -17,7 +17,7 @@ pub(super) struct Site {
     pub(super) occupancy: f64,
 }
 
-/// All lines of the first model, and what else was found.
+/// All atom lines of the first model, named bonds, number of models and warnings.
 #[derive(Default)]
 pub(super) struct Sites {
     pub(super) sites: Vec<Site>,
@@ -28,7 +28,7 @@ pub(super) struct Sites {
     pub(super) warnings: Vec<String>,
 }
 
-/// What became of them.
+/// Figures and warnings of the assembly.
 #[derive(Default)]
 pub(super) struct Found {
     pub(super) models: usize,
@@ -38,7 +38,7 @@ pub(super) struct Found {
 }
 
 impl Sites {
-    /// The molecule.
+    /// Assembles the molecule.
     pub(super) fn finish(self) -> Result<(Molecule, Found), String> {
         let Self { sites, bonds, models, mut warnings } = self;
         if sites.is_empty() {
@@ -67,7 +67,7 @@ impl Sites {
             warnings.push(format!("{unknown} atoms are of no element (such as {first:?}); they are not drawn"));
         }
         let number: HashMap<i64, u32> = atoms.iter().enumerate().map(|(i, a)| (a.serial, i as u32)).collect();
-        // A serial number given twice names nobody.
+        // Serial numbers given twice cannot name atoms.
         let unique = number.len() == atoms.len();
         let at = |serial: &i64| number.get(serial).copied().filter(|_| unique);
         let pair = |[a, b]: &[i64; 2]| Some([at(a)?, at(b)?]).filter(|[a, b]| a != b);
@@ -82,21 +82,21 @@ impl Sites {
     }
 }
 
-/// Where alternate locations compete: chain, number and insertion letter of a residue.
+/// Key of the residue in which alternate locations compete: chain, number and insertion letter of a residue.
 type Place<'s> = (&'s str, i32, Option<char>);
 
 fn place(s: &Site) -> Place<'_> {
     (&s.residue.chain, s.residue.number, s.residue.insertion)
 }
 
-/// Whether each atom stays. Within a residue the letter of highest occupancy is taken, the first of equals, so that what stays fits
-/// together; an atom that has no location of that letter keeps its own likeliest one.
+/// Whether each atom is kept. Within a residue the letter of highest occupancy is taken, the first of equals, so that the kept atoms
+/// fit together; an atom without a location of that letter keeps its own location of highest occupancy.
 fn likeliest(sites: &[Site]) -> Vec<bool> {
     let mut of_place: HashMap<Place<'_>, Best<'_>> = HashMap::new();
     for s in sites.iter().filter(|s| s.alternate.is_some()) {
         Best::offer(&mut of_place, place(s), s);
     }
-    // A residue may have another name at each location, a mutant: its other atoms are not missed.
+    // A residue may have another name at each location, a mutant: atoms of the other names are dropped.
     let fits = |s: &&Site| of_place.get(&place(s)).is_some_and(|b| b.residue == s.residue.name);
     let mut of_atom: HashMap<(Place<'_>, &str), Best<'_>> = HashMap::new();
     for s in sites.iter().filter(|s| s.alternate.is_some()).filter(fits) {
@@ -111,7 +111,7 @@ fn likeliest(sites: &[Site]) -> Vec<bool> {
     sites.iter().map(stays).collect()
 }
 
-/// The likeliest letter so far, and the name of its residue.
+/// The letter of highest occupancy so far, and the name of its residue.
 struct Best<'s> {
     letter: char,
     occupancy: f64,

@@ -1,9 +1,9 @@
-//! Closing holes by a smooth membrane.
+//! Filling of holes by a smooth membrane (Laplace's equation, multigrid).
 
 use crate::IoError;
 use belvedere_scene::Progress;
 
-/// Relaxation sweeps per level. The pyramid brings the smooth part, sweeps only the detail.
+/// Relaxation sweeps per level: the coarser level gives the smooth part, the sweeps only the detail.
 const SWEEPS: usize = 40;
 /// Over-relaxation, 1..2.
 const OMEGA: f32 = 1.75;
@@ -16,7 +16,7 @@ struct Level {
 }
 
 impl Level {
-    /// Height at a node of the next finer level: bilinear between the middles of the coarse cells, of those that are known.
+    /// Height at a node of the next finer level: bilinear between the middles of the known coarse cells.
     fn at_fine(&self, c: usize, r: usize) -> f32 {
         let beside = |fine: usize, n: usize| {
             let near = fine / 2;
@@ -39,7 +39,7 @@ impl Level {
     }
 }
 
-/// Takes holes (NaN, joined along rows and columns) of more than `most` nodes for outside; returns how many there are.
+/// Marks holes (NaN, joined along rows and columns) of more than `most` nodes as outside; returns their number.
 pub(super) fn leave_open(cols: usize, heights: &mut [f32], most: usize) -> usize {
     let mut seen = vec![false; heights.len()];
     let (mut hole, mut large) = (Vec::new(), 0);
@@ -107,7 +107,7 @@ pub(super) fn fill(cols: usize, rows: usize, heights: &mut Vec<f32>, progress: &
     Ok(())
 }
 
-/// Half the size: means of what is known; unknown where nothing is known but something is wanted.
+/// The level of half the size: means of the known nodes; NaN where none is known and one is to be filled, else infinite.
 fn coarser(fine: &Level) -> Level {
     let (cols, rows) = (fine.cols.div_ceil(2), fine.rows.div_ceil(2));
     let mut heights = Vec::with_capacity(cols * rows);

@@ -1,4 +1,4 @@
-//! Where the nodes of one grid lie in another.
+//! Positions of the nodes of one grid in another.
 
 use super::source::SourceGrid;
 use crate::crs::{CoordinateSystem, Transform};
@@ -32,9 +32,9 @@ pub(crate) struct Link {
     index_from_model: Affine,
     /// From the source's system to the scene's; `None` if they are the same (or the scene is local).
     transform: Option<Transform>,
-    /// Middle longitude of a geographic source: longitudes are taken the nearest way round.
+    /// Middle longitude of a geographic source: longitudes are unwrapped around it.
     middle_lon: Option<f64>,
-    /// Scene units per model unit where no transform tells.
+    /// Scene units per model unit if there is no transform.
     scale: f64,
 }
 
@@ -158,7 +158,7 @@ impl<'a> GridMap<'a> {
         Self { step, lattice_cols, lattice, unit: 1000.0 * tolerance, exact }
     }
 
-    /// Images of all nodes of a row; NaN where there is none.
+    /// Images of all nodes of a row; NaN for nodes without image.
     pub(crate) fn row(&self, row: usize, out: &mut [DVec2]) {
         let (j, v) = (row / self.step, (row % self.step) as f64 / self.step as f64);
         let below = if v == 0.0 { 0 } else { self.lattice_cols };
@@ -167,7 +167,7 @@ impl<'a> GridMap<'a> {
             let right = usize::from(part.len() > 1);
             let k = start + i;
             let corners = [k, k + right, k + below, k + below + right].map(|k| self.lattice.get(k).copied().flatten());
-            // where the map jumps (at the antimeridian of a projection) the corners do not belong together
+            // where the map jumps (at the antimeridian of a projection) the corners are not neighbours
             if let [Some(a), Some(b), Some(c), Some(d)] = corners
                 && regular([a, b, c, d], self.step as f64 * self.unit)
             {

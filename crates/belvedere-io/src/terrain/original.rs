@@ -1,4 +1,4 @@
-//! The heights of one file on their own grid, to be written back changed.
+//! The heights of one file on its own grid, to be changed and written back.
 
 use super::source::{self, SourceGrid};
 use super::{LoadedTerrain, TerrainRequest};
@@ -19,8 +19,8 @@ pub struct OriginalTerrain {
     source: SourceGrid,
 }
 
-/// Reads the samples of one raster (GeoTIFF, `.hgt`, zipped `.hgt`, ESRI ASCII); of `request` limits, CRS of the source
-/// and no-data value count.
+/// Reads the samples of one raster (GeoTIFF, `.hgt`, zipped `.hgt`, ESRI ASCII); of `request` the limits, the CRS of the source
+/// and the no-data value are used.
 ///
 /// # Errors
 /// As [`super::load_terrain`].
@@ -46,7 +46,7 @@ impl OriginalTerrain {
         self.source.voids
     }
 
-    /// Lowest and highest height, metres; `None` if all is void.
+    /// Lowest and highest height, metres; `None` if all samples are void.
     pub fn heights_range(&self) -> Option<[f32; 2]> {
         let known = self.source.heights.iter().copied().filter(|h| h.is_finite());
         known.fold(None, |range: Option<[f32; 2]>, h| Some(range.map_or([h; 2], |[lo, hi]| [lo.min(h), hi.max(h)])))
@@ -140,7 +140,7 @@ impl OriginalTerrain {
         Ok([0, 1].map(|k| self.raster(pairs.iter().map(|p| p[k]).collect())))
     }
 
-    /// The same file with the heights of a raster of [`Self::moved`].
+    /// This file with the heights of a raster of [`Self::moved`].
     pub fn with_heights(&self, heights: &Raster) -> Self {
         let mut out = self.clone();
         if let Samples::F32(values) = &heights.samples {
@@ -200,7 +200,7 @@ impl OriginalTerrain {
         self.source.system.as_ref().map_or("no coordinate system", CoordinateSystem::name)
     }
 
-    /// What of the georeference cannot be written, if anything: one sentence.
+    /// One sentence about parts of the georeference that cannot be written, if there are any.
     pub fn georeference_note(&self) -> Option<String> {
         let system = self.source.system.as_ref()?;
         system.epsg().is_none().then(|| {
@@ -212,7 +212,7 @@ impl OriginalTerrain {
     }
 }
 
-/// The heights of a terrain moved by `delta` (metres, at scene x, y), and the moves themselves, as rasters on its own grid; likewise.
+/// The heights of a terrain moved by `delta` (metres, at scene x, y), and the moves themselves, as rasters on its own grid.
 pub fn moved_terrain(terrain: &Heightfield, crs: Crs, delta: impl Fn(DVec2) -> f64) -> [Raster; 2] {
     let (cols, rows) = (terrain.cols(), terrain.rows());
     let mut info = RasterInfo::new(Path::new("terrain"), cols, rows, SampleType::F32);

@@ -1,4 +1,4 @@
-//! Sources onto the axis-aligned grid of a scene.
+//! Resampling of sources to the axis-aligned grid of a scene.
 
 use super::grid_map::{Geometry, GridMap, Link};
 use super::source::{SourceGrid, bilinear};
@@ -31,7 +31,7 @@ pub(crate) struct SceneGrid {
 }
 
 impl SceneGrid {
-    /// Cuts rows and columns off the border that hold no height at all; how many at the west and the north.
+    /// Removes border rows and columns without any height; returns the numbers removed at the west and the north.
     pub(super) fn trim(&mut self) -> [usize; 2] {
         let (cols, rows) = (self.cols, self.rows);
         let has = |c: usize, r: usize| self.heights[r * cols + c].is_finite();
@@ -63,7 +63,7 @@ impl SceneGrid {
     }
 }
 
-/// The source as it is, if it is axis-aligned in the system of the scene.
+/// The source without resampling, if it is axis-aligned in the system of the scene.
 pub(super) fn exact(source: &SourceGrid, target: Option<&CoordinateSystem>) -> Option<SceneGrid> {
     if target.is_some() && source.system.as_ref() != target {
         return None;
@@ -120,13 +120,13 @@ pub(super) fn resample(
     Ok(at_spacing(planned, sources, links, request.max_error_p99_m))
 }
 
-/// 99th percentile of what resampling to the same spacing can cost at a sample, metres, from second differences `d`:
+/// 99th percentile of the possible error of resampling to the same spacing at a sample, metres, from second differences `d`:
 /// a bilinear surface is off by up to `(|d_x| + |d_y|) / 8` between its nodes, and two of them are used.
 fn roughness_p99(source: &SourceGrid) -> f64 {
     let (cols, rows) = (source.cols, source.rows);
     let h = &source.heights;
     let mut histogram = Histogram::new();
-    // a sixteenth of the samples tells enough
+    // a sixteenth of the samples suffices
     for r in (1..rows - 1).step_by(4) {
         for c in (1..cols - 1).step_by(4) {
             let i = r * cols + c;
@@ -243,7 +243,7 @@ fn plan(sources: &[SourceGrid], links: &[Link], factor: f64) -> Result<SceneGrid
 fn shrink(grid: SceneGrid, sources: &[SourceGrid], max_nodes: usize) -> Result<SceneGrid, IoError> {
     let nodes = grid.cols as f64 * grid.rows as f64;
     let samples: usize = sources.iter().map(|s| s.heights.len()).sum();
-    // mostly empty grids are tiles far apart, not detail
+    // mostly empty grids come from tiles far apart, not from detail
     if nodes > 16.0 * samples as f64 {
         let reason = format!(
             "its scene grid would have {} x {} nodes for {samples} samples, the limit is {max_nodes}; the sources lie too far apart, load fewer",
@@ -274,7 +274,7 @@ fn boundary(source: &SourceGrid) -> Vec<DVec2> {
     out
 }
 
-/// Three significant digits, rounded down: a spacing that people can read.
+/// A spacing rounded down to three significant digits, for reading.
 fn round_down(v: f64) -> f64 {
     let digits = v.log10().floor() - 2.0;
     // dividing by a power of ten gives the decimal number's own bits

@@ -1,14 +1,14 @@
-//! Seas that a raster leaves void.
+//! Detection of seas that are void in a raster.
 
 /// Fewest nodes of such a sea, and their least share of the ground.
 const FEWEST: usize = 100;
 const LEAST_SHARE: f64 = 0.05;
-/// Heights of nine of ten nodes of its shore, and the greatest height of half of them, metres.
+/// Range of the heights of nine of ten nodes of the shore, and upper bound of half of them, metres.
 const SHORE_M: [f32; 2] = [0.0, 30.0];
 const LOW_M: f32 = 10.0;
 
-/// Puts the holes (NaN, joined along rows and columns) that are sea at height 0; returns their nodes. A hole is sea if it reaches
-/// the edge of the ground or what lies outside the data (infinite), is large, and has a low shore.
+/// Sets holes (NaN, joined along rows and columns) that are sea to height 0; returns their nodes. A hole is sea if it reaches
+/// the edge of the ground or of the data (beside infinite nodes), is large, and has a low shore.
 pub(super) fn fill(cols: usize, heights: &mut [f32]) -> Vec<usize> {
     let mut seen = vec![false; heights.len()];
     let mut filled = Vec::new();

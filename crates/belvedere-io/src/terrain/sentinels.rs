@@ -2,23 +2,23 @@
 
 use rayon::prelude::*;
 
-/// Such values, in the file's unit of height.
+/// Customary no-data values, in the file's unit of height.
 const CUSTOMARY: [f32; 16] = [
     -9999.0, -99999.0, -999.0, -9998.0, -9999.9, -999.9, -32768.0, -32767.0, -32766.0, -10000.0, 9999.0, 99999.0,
     32767.0, 32768.0, 65535.0, 65534.0,
 ];
-/// Such a value is a height all the same where another height is nearer than this, metres, or than this share of the relief.
+/// Least gap between such a value and all other heights: metres, and share of the relief; with a smaller gap it is a height.
 const GAP_M: f32 = 400.0;
 const GAP_SHARE: f32 = 0.2;
 
-/// Makes customary values void where they stand apart from all other heights; one sentence about it.
+/// Makes customary values void where they are far from all other heights; returns one sentence about it.
 ///
 /// * `heights`: metres, NaN = void.
 /// * `unit`: metres per unit of the file's heights.
 pub(super) fn void(heights: &mut [f32], unit: f32) -> Option<String> {
     let mut said = Vec::new();
     let mut count = 0;
-    // One after the other, the farthest out first: one of them must not make another look like a neighbour.
+    // One at a time, the outermost first: otherwise one such value could be the near neighbour of another.
     while let Some((value, stored)) = apart(heights, unit) {
         let found: usize = heights
             .par_iter_mut()
@@ -43,7 +43,7 @@ pub(super) fn void(heights: &mut [f32], unit: f32) -> Option<String> {
     ))
 }
 
-/// The lowest or the highest height, if it is a customary value and stands apart from the next one; also as stored.
+/// The lowest or the highest height, if it is a customary value far from the next one; in metres and as stored.
 fn apart(heights: &[f32], unit: f32) -> Option<(f32, f32)> {
     let [low, next_low, next_high, high] = outermost(heights)?;
     let customary = |value: f32| CUSTOMARY.into_iter().find(|c| c * unit == value);

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// Beyond this a sample is no height of any planet, metres.
+/// Largest valid height, metres, above that of any planet.
 const MAX_HEIGHT_M: f32 = 1.0e5;
 /// Share of the samples from which a frame of one value is worth a warning.
 const FRAME_SHARE: f64 = 0.01;
@@ -29,7 +29,7 @@ pub(crate) struct SourceGrid {
     pub(crate) heights: Vec<f32>,
     /// Model coordinates of a node, that is of a pixel centre.
     pub(crate) model_from_index: Affine,
-    /// `None` = not known.
+    /// Coordinate system; `None` = not known.
     pub(crate) system: Option<CoordinateSystem>,
     /// Samples in the file and how many of them hold no data.
     pub(crate) samples: usize,
@@ -69,7 +69,7 @@ impl SourceGrid {
     }
 }
 
-/// First of the four nodes around a fractional node that lies inside, and the fractions.
+/// Index of the first of the four nodes around a fractional node, clamped to the grid, and the fractions.
 #[inline]
 fn cell(cols: usize, rows: usize, index: DVec2) -> (usize, f32, f32) {
     let (x, y) = (index.x.clamp(0.0, (cols - 1) as f64), index.y.clamp(0.0, (rows - 1) as f64));
@@ -116,7 +116,7 @@ pub(super) fn read_all(
     Ok(out)
 }
 
-/// The raster that is meant by the name of an archive, or the file itself.
+/// The raster inside an archive, or the file itself.
 pub(crate) fn meant(path: &Path, limits: &Limits) -> Result<PathBuf, IoError> {
     content(path, limits.max_bytes, &|p| Reader::Terrain.reads(p) && !ends(p, &[".txt"]))
 }
@@ -169,7 +169,7 @@ fn read_one(
     Ok(Loaded { value: within(grid, budget, factor, &mut warnings), warnings, files })
 }
 
-/// A source of at most `budget` nodes; `factor` is by how much it is coarser than its file already.
+/// A source of at most `budget` nodes; `factor`: ratio of its spacing to that of the file.
 pub(super) fn within(mut grid: SourceGrid, budget: usize, factor: f64, warnings: &mut Vec<String>) -> SourceGrid {
     let mut thinned = factor;
     if let Some(k) = thinning(grid.cols, grid.rows, budget) {
@@ -186,7 +186,7 @@ pub(super) fn within(mut grid: SourceGrid, budget: usize, factor: f64, warnings:
     grid
 }
 
-/// The raster and by how much it is coarser than the file.
+/// The raster, and the ratio of its spacing to that of the file.
 fn read_raster(
     path: &Path,
     request: &TerrainRequest,
@@ -269,7 +269,7 @@ fn heights(raster: &Raster) -> Vec<f32> {
     }
 }
 
-/// That heights count in metres though the plane counts in feet, where nothing says in which unit heights are.
+/// A warning if the unit of heights is not stated, so that metres are taken, and the plane has another unit.
 fn unit_unsaid(info: &RasterInfo, system: Option<&CoordinateSystem>) -> Option<String> {
     let plane = info.linear_unit_m.or_else(|| system?.metres_per_unit())?;
     if info.vertical_unit_said || (plane - 1.0).abs() < 1e-6 {
@@ -285,7 +285,7 @@ fn unit_unsaid(info: &RasterInfo, system: Option<&CoordinateSystem>) -> Option<S
     ))
 }
 
-/// Makes samples that are no heights void; their number.
+/// Makes samples beyond the largest height void; returns their number.
 fn void_absurd(heights: &mut [f32]) -> usize {
     heights
         .par_iter_mut()
@@ -349,7 +349,7 @@ pub(crate) fn stated_system(
     }
 }
 
-/// Inside the range of longitude and latitude with steps as fine as no metric grid has.
+/// Whether coordinates can only be degrees: in the range of longitude and latitude, with steps finer than any metric grid.
 fn looks_geographic(info: &RasterInfo, to_model: &Affine) -> bool {
     let corners = [[0.0, 0.0], [info.width as f64, info.height as f64]].map(|[c, r]| to_model.apply(c, r));
     let [step_x, step_y] = [to_model.0[0].hypot(to_model.0[3]), to_model.0[1].hypot(to_model.0[4])];
@@ -404,13 +404,13 @@ fn warn_about_frame(path: &Path, heights: &[f32], cols: usize, rows: usize, warn
     }
 }
 
-/// By how much each side must shrink; `None` if it need not.
+/// Factor by which each side must shrink to at most `budget` nodes; `None` if it need not.
 fn thinning(cols: usize, rows: usize, budget: usize) -> Option<usize> {
     let fits = |k: usize| ((cols - 1) / k + 1).saturating_mul((rows - 1) / k + 1) <= budget;
     if fits(1) {
         return None;
     }
-    // a step that divides both sides keeps shared edges of tiles; a little coarser is no loss
+    // a step that divides both sides keeps shared edges of tiles; a slightly larger step is accepted
     let k = (2..cols.max(rows)).find(|&k| fits(k))?;
     let even = (k..=k + k / 2 + 1).find(|&n| (cols - 1).is_multiple_of(n) && (rows - 1).is_multiple_of(n));
     Some(even.unwrap_or(k))

@@ -1,19 +1,19 @@
-//! What areas are: by their properties, else by the names of layer and file. The table is in docs/areas-and-sea.md.
+//! Kind of areas: by their properties, else by the names of layer and file. The table is in docs/areas-and-sea.md.
 
 use super::{Geometry, Vectors};
 use belvedere_scene::AreaSurface::{self, Forest, Glacier, Outline, Park, Water};
 use std::collections::BTreeMap;
 
-/// What the areas of a file are, and why.
+/// Kind of the areas of a file, and the reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AreaKind {
-    /// What covers them; [`AreaSurface::Outline`] where nothing says.
+    /// Surface of the areas; [`AreaSurface::Outline`] if it is not known.
     pub surface: AreaSurface,
-    /// One clause, for records.
+    /// The reason as one clause, for sidecars.
     pub why: String,
 }
 
-/// Properties that only areas of one kind have, whatever they say.
+/// Properties that only areas of one kind have, with any value.
 const KEYS: [(AreaSurface, &[&str]); 3] = [
     // Randolph, GLIMS and Swiss glacier inventories.
     (Glacier, &["rgiid", "rgi_id", "glimsid", "glims_id", "glac_id", "glac_name", "sgi_id", "sgi-id", "glacier_id"]),
@@ -22,7 +22,7 @@ const KEYS: [(AreaSurface, &[&str]); 3] = [
     (Park, &["wdpaid", "wdpa_id", "wdpa_pid", "iucn_cat", "sitecode"]),
 ];
 
-/// Properties and the values that tell: what covers the ground comes before what it is used for.
+/// Properties and values of each kind: land cover comes before land use.
 const VALUES: [(&str, AreaSurface, &[&str]); 11] = [
     ("natural", Glacier, &["glacier"]),
     ("natural", Water, &["water", "bay", "strait"]),
@@ -166,9 +166,9 @@ const WORDS: [(AreaSurface, &[&str]); 4] = [
     ),
 ];
 
-/// What most areas of a file are. Their properties say, where at least half of them are known and nine of ten of those agree;
-/// where few are known, the first of `names`, the file's layer and the file itself that says anything.
-/// * `names`: of the layer that the file is for.
+/// Kind of the areas of a file. Properties decide if they give the kind of at least half of the areas: that of nine of ten of these,
+/// else an outline. Otherwise the first name with a known word decides: of `names`, the file's layer and the file itself.
+/// * `names`: names of the layer that the file is for.
 pub fn area_kind(vectors: &Vectors, names: &[&str]) -> AreaKind {
     let areas: Vec<_> = vectors.features.iter().filter(|f| matches!(f.geometry, Geometry::Polygons(_))).collect();
     let found: Vec<(AreaSurface, String)> = areas.iter().filter_map(|f| of_properties(&f.properties)).collect();
@@ -186,7 +186,7 @@ pub fn area_kind(vectors: &Vectors, names: &[&str]) -> AreaKind {
     AreaKind { surface: Outline, why }
 }
 
-/// The kind that nine of ten of these areas have.
+/// The kind of nine of ten of these areas, else an outline.
 fn of_found(found: &[(AreaSurface, String)], areas: usize) -> AreaKind {
     let kinds = [Glacier, Water, Forest, Park];
     let count = |kind: AreaSurface| found.iter().filter(|f| f.0 == kind).count();
@@ -202,7 +202,7 @@ fn of_found(found: &[(AreaSurface, String)], areas: usize) -> AreaKind {
     AreaKind { surface: Outline, why }
 }
 
-/// What one area is, and by which property.
+/// Kind of one area, and the property that gives it.
 fn of_properties(properties: &BTreeMap<String, String>) -> Option<(AreaSurface, String)> {
     let tags: BTreeMap<String, &str> =
         properties.iter().map(|(k, v)| (k.to_ascii_lowercase(), v.trim())).filter(|(_, v)| !v.is_empty()).collect();
@@ -236,7 +236,7 @@ fn of_properties(properties: &BTreeMap<String, String>) -> Option<(AreaSurface, 
         .or_else(|| keyed(Park))
 }
 
-/// What the words of a name say, and the word.
+/// Kind by the words of a name, and the word that gives it.
 fn of_words(name: &str) -> Option<(AreaSurface, String)> {
     let mut spaced = String::new();
     let mut before = ' ';

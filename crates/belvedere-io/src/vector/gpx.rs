@@ -1,4 +1,4 @@
-//! GPX 1.0 and 1.1: tracks, routes and waypoints. Extensions and everything else are passed over.
+//! GPX 1.0 and 1.1: tracks, routes and waypoints. Extensions and other elements are ignored.
 
 use super::phantom::{self, Phantoms, Recorded};
 use super::{Geometry, VectorFeature, Vectors, Vertex, shorten, vertex};
@@ -13,7 +13,7 @@ use std::path::Path;
 /// Deepest nesting accepted.
 const MAX_DEPTH: usize = 200;
 
-/// What is open at the moment.
+/// State of the parser: the open elements and their content.
 #[derive(Default)]
 struct Parser {
     /// Local names of the open elements.
@@ -260,7 +260,7 @@ impl Parser {
     }
 }
 
-/// Seconds from 1970 on of a time such as `2024-07-06T10:00:00.5Z`; time zones are passed over, for only differences count.
+/// Seconds from 1970 on of a time such as `2024-07-06T10:00:00.5Z`; time zones are ignored, for only differences count.
 fn seconds(text: &str) -> Option<f64> {
     let (date, time) = text.trim().split_once('T')?;
     let mut date = date.splitn(3, '-').map(|n| n.parse::<i64>().ok());

@@ -1,4 +1,4 @@
-//! Lines, areas and points: GPX, GeoJSON, shapefiles and GeoPackages, and how they come to lie on the terrain.
+//! Lines, areas and points: GPX, GeoJSON, shapefiles and GeoPackages, and how they are laid on the terrain.
 
 mod area_kind;
 mod geojson;
@@ -81,7 +81,7 @@ pub struct VectorFeature {
     pub geometry: Geometry,
 }
 
-/// What a vector file holds.
+/// Content of a vector file.
 #[derive(Debug, Clone)]
 pub struct Vectors {
     /// The file, for messages.
@@ -90,7 +90,7 @@ pub struct Vectors {
     pub format: &'static str,
     /// Name of the layer that the file states, possibly empty.
     pub layer: String,
-    /// Coordinate system of every vertex; local if the file states none and its numbers are no degrees.
+    /// Coordinate system of every vertex; local if the file states none and its numbers are not degrees.
     pub crs: CoordinateSystem,
     /// Whether the file states its system; else it is the one that its format has by default, or local.
     pub crs_stated: bool,
@@ -111,9 +111,9 @@ impl Vectors {
     }
 }
 
-/// Reads a GPX, GeoJSON, shapefile or (with the feature `geopackage`) GeoPackage; which of them is told by the content, not by the name.
+/// Reads a GPX, GeoJSON, shapefile or (with the feature `geopackage`) GeoPackage; the content decides which, not the name.
 ///
-/// * `path`: of a GeoPackage with the table that is wanted behind it, see [`crate::split_table`]; by default all of its tables are read.
+/// * `path`: for a GeoPackage optionally with the wanted table appended, see [`crate::split_table`]; by default all of its tables are read.
 ///
 /// # Errors
 /// [`IoError`]: unreadable, none of the formats, broken, without any vertex, or in an unknown coordinate system.
@@ -178,7 +178,7 @@ fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
     Ok(Loaded::new(loaded.value, warnings).with_file(file))
 }
 
-/// Drops NaN and infinities: `None` unless both are finite.
+/// A position; `None` unless both numbers are finite.
 fn vertex(x: f64, y: f64, z: Option<f64>) -> Option<Vertex> {
     let xy = DVec2::new(x, y);
     xy.is_finite().then_some(Vertex { xy, z: z.filter(|z| z.is_finite()) })
@@ -192,12 +192,12 @@ fn not_degrees(features: &[VectorFeature]) -> Option<String> {
         .map(|p| format!("position ({}, {}) is no longitude and latitude (limits 360 and 90 degrees)", p.x, p.y))
 }
 
-/// Whether some number is too large to be a mistaken degree, so that the file counts in something else.
+/// Whether some number is too large to be a mistaken degree, so that the file has another unit.
 fn certainly_not_degrees(features: &[VectorFeature]) -> bool {
     features.iter().flat_map(|f| f.geometry.vertices()).any(|v| v.xy.abs().max_element() > 360.0)
 }
 
-/// Fields that hold names, by what they are called: the best first.
+/// Usual fields of names, the best first.
 const NAME_FIELDS: [&str; 24] = [
     "name",
     "name:en",
@@ -226,7 +226,7 @@ const NAME_FIELDS: [&str; 24] = [
 ];
 
 /// The field that names features among these, if any: one of those that are usual, in any spelling, else the first that ends
-/// in "name" and is no name of a file, layer or user.
+/// in "name" and is not the name of a file, layer or user.
 pub fn name_field<'k>(keys: impl Iterator<Item = &'k str> + Clone) -> Option<&'k str> {
     let usual = NAME_FIELDS.iter().find_map(|field| keys.clone().find(|k| k.eq_ignore_ascii_case(field)));
     let ends_so = |k: &&str| {

@@ -1,4 +1,4 @@
-//! From vectors in their own coordinate system to features of a scene: projected, clipped to the terrain, draped on it.
+//! Vectors as features of a scene: projected to its system, clipped to the terrain and draped on it.
 
 use super::{Geometry, VectorFeature, Vectors, Vertex};
 use crate::crs::{CoordinateSystem, CrsError, Transform};
@@ -16,9 +16,9 @@ const EARTH_M: f64 = 6_371_008.8;
 
 /// Lines of a scene from tracks, routes, lines and outlines of polygons; points are passed over.
 ///
-/// Projected to the scene's system (long straight pieces of the source stay what they are), cut off where the terrain ends or has
+/// Projected to the scene's system (long straight pieces of the source stay straight in the source), cut off where the terrain ends or has
 /// voids (a line may fall into several), laid on its drawn surface. Without terrain the heights of the file are kept, 0 if it has
-/// none. A line across the antimeridian takes the short way. Warnings tell what was cut off.
+/// none. A line across the antimeridian takes the shorter arc. Warnings report what was cut off.
 ///
 /// # Errors
 /// [`IoError`]: no line in the file, nothing on the terrain (both extents are told), systems that cannot be joined.
@@ -73,8 +73,8 @@ pub fn lines_on_terrain(
     Ok(reprojection.done(features))
 }
 
-/// Areas of a scene from polygons, one feature each: outer ring counter-clockwise, holes clockwise, whatever the file says.
-/// Polygons that miss the terrain are dropped and counted; what overlaps it stays whole.
+/// Areas of a scene from polygons, one feature each: outer ring counter-clockwise, holes clockwise, for any orientation in the file.
+/// Polygons that miss the terrain are dropped and counted; those that overlap it stay whole.
 ///
 /// # Errors
 /// [`IoError`]: no polygon in the file, nothing on the terrain (both extents are told), systems that cannot be joined.
@@ -204,19 +204,19 @@ fn without_repeats(mut line: Vec<DVec3>) -> Vec<DVec3> {
 /// A line in the scene's system.
 struct Projected {
     parts: Vec<Vec<DVec3>>,
-    /// Length that was not projected because it lies far away, metres.
+    /// Length that was not projected because it lies far from the terrain, metres.
     dropped_m: f64,
 }
 
-/// From the file's coordinate system to the scene's, with the extent and the warnings of what was projected.
+/// Projection from the file's coordinate system to the scene's; collects the extent of the results and warnings.
 struct Reprojection<'a> {
     vectors: &'a Vectors,
     terrain: Option<&'a Heightfield>,
     scene_crs: Crs,
     transform: Option<Transform>,
-    /// Longitude that longitudes are brought near to, degrees.
+    /// Longitude around which longitudes are unwrapped, degrees.
     near_lon: Option<f64>,
-    /// Part of the source's plane worth projecting: around the terrain.
+    /// Box around the terrain in the source's system: only positions inside are projected.
     near: Option<[DVec2; 2]>,
     extent: Option<[DVec2; 2]>,
     warnings: Vec<String>,
@@ -265,7 +265,7 @@ impl<'a> Reprojection<'a> {
         Ok(reprojection)
     }
 
-    /// Whether numbers that nobody called degrees lie on the terrain as they are.
+    /// Whether coordinates of an unstated system overlap the terrain as they are.
     fn could_be_local(&self) -> bool {
         let (Some(ground), Some([lo, hi])) = (self.terrain.map(Heightfield::bounds), self.vectors.extent()) else {
             return false;
@@ -288,7 +288,7 @@ impl<'a> Reprojection<'a> {
         from_terrain.or_else(|| self.vectors.features.iter().find_map(|f| f.geometry.vertices().next().map(|v| v.xy.x)))
     }
 
-    /// The terrain's extent in the source's system, grown by half its size on all sides; `None` = everything is worth projecting.
+    /// The terrain's extent in the source's system, grown by half its size on all sides; `None` = everything is projected.
     fn surroundings(&self) -> Option<[DVec2; 2]> {
         let transform = self.transform.as_ref().filter(|t| !t.is_identity())?;
         let bounds = self.terrain?.bounds();
@@ -335,7 +335,7 @@ impl<'a> Reprojection<'a> {
         self.extent = Some(self.extent.map_or([xy; 2], |[lo, hi]| [lo.min(xy), hi.max(xy)]));
     }
 
-    /// Vertices of a line with continuous longitudes, as near to the terrain as they come.
+    /// Vertices of a line with continuous longitudes, shifted by full turns as near to the terrain as possible.
     fn unwrapped(&self, line: &[Vertex]) -> Vec<Vertex> {
         let mut out = line.to_vec();
         let Some(middle) = self.near_lon else { return out };

@@ -1,37 +1,37 @@
-//! Positions that nobody was at: exactly 0, 0 far from everything else (a receiver without a fix, a field left empty), and jumps in
-//! recorded tracks that no walker makes.
+//! Phantom positions: exactly 0, 0 far from all other positions (a receiver without a fix, an empty field), and impossible jumps in
+//! recorded tracks.
 
 use super::{Geometry, Vectors, Vertex};
 use glam::DVec2;
 
 /// Mean radius of the earth, metres.
 const EARTH_M: f64 = 6_371_008.8;
-/// 0, 0 is believed where something else lies as near as this, degrees and metres.
+/// A position 0, 0 is valid if another position lies within this distance, degrees and metres.
 const NEAR_DEG: f64 = 1.0;
 const NEAR_M: f64 = 100_000.0;
-/// 0, 0 is believed where the other vertices of a line are apart by more than this share of their distance to it.
+/// A position 0, 0 is valid if the median step of the line's other vertices exceeds this share of their least distance to it.
 const STEP_SHARE: f64 = 0.1;
-/// Speeds that recorded tracks pass by jumps alone, m/s, and times their median speed.
+/// Least speed of a jump in a recorded track: m/s, and as a multiple of the median speed.
 const FASTEST: f64 = 150.0;
 const FASTER: f64 = 8.0;
-/// Steps shorter than this, metres, or than so many times the median step, are no jumps.
+/// Least length of a jump: metres, and as a multiple of the median step.
 const LEAST_M: f64 = 300.0;
 const LEAST_STEPS: f64 = 20.0;
-/// Without times: a step longer than this, metres, and than so many times the median step, is a jump.
+/// Least length of a jump without times: metres, and as a multiple of the median step.
 const FAR_M: f64 = 5_000.0;
 const FAR_STEPS: f64 = 50.0;
-/// Without times: so few vertices, away by more than this, metres, and back, are an excursion that nobody made.
+/// Without times: least distance of a false excursion, metres, and its most vertices.
 const AWAY_M: f64 = 1_000.0;
 const AWAY_VERTICES: usize = 3;
 
-/// What was found.
+/// Numbers of phantom positions and jumps.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(super) struct Phantoms {
     /// Positions at exactly 0, 0 that were dropped.
     pub(super) zeros: usize,
     /// Jumps at which lines were split.
     pub(super) jumps: usize,
-    /// Length of the longest, metres.
+    /// Length of the longest jump, metres.
     pub(super) longest_m: f64,
 }
 
@@ -73,7 +73,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// Whether 0, 0 is nobody's position in a line of these vertices. `near`: how near something else makes it one.
+/// Whether 0, 0 is a phantom in a line of these vertices. `near`: distance of another vertex within which it is valid.
 fn is_phantom_zero(line: &[DVec2], near: f64) -> bool {
     let others = || line.iter().copied().filter(|p| *p != DVec2::ZERO);
     let nearest = others().map(DVec2::length).fold(f64::INFINITY, f64::min);
@@ -85,7 +85,7 @@ fn is_phantom_zero(line: &[DVec2], near: f64) -> bool {
     step <= STEP_SHARE * nearest
 }
 
-/// The runs of a line between positions at exactly 0, 0 where nobody was.
+/// The runs of a line between phantom positions at exactly 0, 0.
 fn between_zeros<T: Copy>(line: &[T], at: impl Fn(&T) -> DVec2, near: f64, found: &mut Phantoms) -> Vec<Vec<T>> {
     let places: Vec<DVec2> = line.iter().map(&at).collect();
     if !places.contains(&DVec2::ZERO) || !is_phantom_zero(&places, near) {
@@ -95,7 +95,7 @@ fn between_zeros<T: Copy>(line: &[T], at: impl Fn(&T) -> DVec2, near: f64, found
     line.split(|v| at(v) == DVec2::ZERO).filter(|run| !run.is_empty()).map(<[T]>::to_vec).collect()
 }
 
-/// The runs of a recorded track without positions where nobody was; longitudes and latitudes.
+/// The runs of a recorded track, split at phantom positions and jumps; longitudes and latitudes.
 pub(super) fn runs(track: &[Recorded], found: &mut Phantoms) -> Vec<Vec<Recorded>> {
     let runs = between_zeros(track, |(v, _)| v.xy, NEAR_DEG, found);
     runs.into_iter().flat_map(|run| without_jumps(&run, found)).collect()
@@ -129,7 +129,7 @@ fn without_jumps(track: &[Recorded], found: &mut Phantoms) -> Vec<Vec<Recorded>>
     out
 }
 
-/// A few vertices away from where the track is before and after them.
+/// Marks both ends of excursions: a few vertices far away from the track before and after them.
 fn mark_excursions(track: &[Recorded], steps: &[f64], step: f64, speeds: &[Option<f64>], jumps: &mut [bool]) {
     let away = |k: usize| steps[k] > AWAY_M.max(LEAST_STEPS * step) && speeds[k].is_none();
     for k in (0..steps.len()).filter(|k| away(*k)) {

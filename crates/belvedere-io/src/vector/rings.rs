@@ -1,4 +1,4 @@
-//! Rings that come without saying which is a hole of which.
+//! Sorting of rings into polygons and holes.
 
 use belvedere_core::polygon::{doubled_area, is_inside};
 use glam::DVec2;
@@ -6,7 +6,7 @@ use glam::DVec2;
 /// Most rings of one shape that are compared with each other; more are taken as separate areas.
 const MAX_NESTED: usize = 20_000;
 
-/// Sorts rings into polygons by which lies inside which, whatever their orientation: rings at even depth are outer rings, each
+/// Sorts rings into polygons by nesting, for any orientation: rings at even depth are outer rings, each
 /// ring at odd depth is a hole of the smallest ring around it. Returns indices, outer ring first.
 pub(super) fn nest(rings: &[Vec<DVec2>]) -> Vec<Vec<usize>> {
     if rings.len() > MAX_NESTED {
@@ -19,7 +19,7 @@ pub(super) fn nest(rings: &[Vec<DVec2>]) -> Vec<Vec<usize>> {
     let areas: Vec<f64> = rings.iter().map(|r| doubled_area(r).abs()).collect();
     let around = |i: usize| {
         let (boxes, areas) = (&boxes, &areas);
-        // of all vertices most decide, so that touching rings do not
+        // the majority of vertices decides, so that touching rings do not mislead
         (0..rings.len()).filter(move |&k| {
             let boxed = boxes[k][0].cmple(boxes[i][0]).all() && boxes[k][1].cmpge(boxes[i][1]).all();
             if k == i || !boxed || areas[k] <= areas[i] {

@@ -111,13 +111,13 @@ impl Bytes<'_> {
     fn f64(self, at: usize) -> Option<f64> {
         self.array(at).map(f64::from_le_bytes)
     }
-    /// A count, not negative.
+    /// A count; `None` if it is negative.
     fn count(self, at: usize) -> Option<usize> {
         usize::try_from(self.le_i32(at)?).ok()
     }
 }
 
-/// Where the records lie by the index (.shx), bytes from the beginning of the .shp; `None` if it is no whole index.
+/// Offsets of the records by the index (.shx), bytes from the beginning of the .shp; `None` if the index is incomplete.
 fn read_index(bytes: &[u8]) -> Option<Vec<usize>> {
     let file = Bytes(bytes);
     if !bytes.starts_with(&MAGIC) || bytes.len() < 100 || !(bytes.len() - 100).is_multiple_of(8) {
@@ -127,8 +127,8 @@ fn read_index(bytes: &[u8]) -> Option<Vec<usize>> {
     (100..bytes.len()).step_by(8).map(word).collect()
 }
 
-/// One geometry per record; `None` for null and empty shapes. Where `index` leads to records, they are taken from there: there may be
-/// anything between them and behind them.
+/// One geometry per record; `None` for null and empty shapes. Records are read at the offsets of `index` if it is valid, for there may
+/// be other bytes between and after them.
 fn read_shapes(
     bytes: &[u8],
     index: Option<&[usize]>,
@@ -191,7 +191,7 @@ fn by_index(bytes: &[u8], index: &[usize], odd: &mut usize) -> Option<Vec<Option
     index.iter().map(|&at| read_shape(content_at(bytes, at)?, odd).ok()).collect()
 }
 
-/// Content of the record whose header stands at a byte.
+/// Content of the record whose header begins at a byte.
 fn content_at(bytes: &[u8], at: usize) -> Option<&[u8]> {
     let from = at.checked_add(8)?;
     let length = Bytes(bytes).be_i32(at + 4).and_then(|w| usize::try_from(w).ok())? * 2;

@@ -2,7 +2,7 @@
 
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
-/// Bytes of the beginning in which an XML declaration is looked for.
+/// Number of first bytes in which an XML declaration is searched.
 const HEAD: usize = 200;
 
 /// The text of a file: by its byte order mark, else as its XML declaration says, else UTF-8, else Windows-1252 (which holds Latin-1)
@@ -51,7 +51,7 @@ fn declared(bytes: &[u8]) -> Option<String> {
     value[1..].split(quote).next().map(|label| label.trim().to_owned()).filter(|label| !label.is_empty())
 }
 
-/// The encoding of a dBASE table: as the `.cpg` file beside it says, else by the language in its header. `None` = neither tells.
+/// The encoding of a dBASE table: as the `.cpg` file beside it says, else by the language in its header. `None` = not stated.
 pub(super) fn table_encoding(cpg: Option<&str>, language: u8) -> Option<&'static Encoding> {
     if let Some(encoding) = cpg.and_then(code_page) {
         return Some(encoding);
@@ -100,7 +100,7 @@ fn code_page(text: &str) -> Option<&'static Encoding> {
 mod tests {
     use super::*;
 
-    /// One text in every encoding that can say it, declared as such.
+    /// One text in every encoding that can express it, with its declaration.
     #[test]
     fn a_declared_encoding_is_believed() {
         for (label, word) in [

@@ -19,11 +19,11 @@ use glam::{DMat3, DVec3};
 use std::io::Read;
 use std::path::Path;
 
-/// Most that deflate makes of a byte, and what small files may grow to besides: what is declared beyond cannot be there.
+/// Largest expansion of a byte by deflate, and bytes allowed besides for small files: a larger declared size is invalid.
 const MOST_GROWTH: u64 = 1040;
 const SMALL: u64 = 1 << 16;
 
-/// What a file holds, in the file's own coordinates.
+/// Content of a volume file, in the file's own coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VolumeFile {
     /// Name of the format.
@@ -47,20 +47,20 @@ pub struct VolumeFile {
 pub struct VolumeRequest {
     /// Name of the array; `None` = the first one of single values.
     pub array: Option<String>,
-    /// How raw samples lie in the file, where its name does not tell.
+    /// Layout of raw samples, where the file name does not state it.
     pub raw: RawLayout,
-    /// Bounds.
+    /// Bounds on memory.
     pub limits: Limits,
 }
 
 /// Reads a volume.
 ///
 /// Samples of 8 and 16 bits stay what they are (signed bytes become 16 bits), all others become 32-bit floating point. Values that
-/// are no finite number become the least one, with a warning.
+/// are not finite become the least value, with a warning.
 ///
 /// # Errors
 /// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, larger than the limits allow, or of a kind that is not supported.
-/// What is allocated is bounded by the size of the file.
+/// Allocations are bounded by the size of the file.
 pub fn load_volume(path: &Path, request: &VolumeRequest) -> Result<Loaded<VolumeFile>, IoError> {
     let path = &content(path, request.limits.max_bytes, &|p| Reader::Volume.reads(p))?;
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
@@ -83,7 +83,7 @@ pub fn load_volume(path: &Path, request: &VolumeRequest) -> Result<Loaded<Volume
     Ok(loaded)
 }
 
-/// A file and what is wanted of it.
+/// A file and the request for it.
 struct Source<'a> {
     path: &'a Path,
     bytes: &'a [u8],
@@ -91,7 +91,7 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// Bytes of so many samples; an error if a file of `stored` bytes cannot hold them.
+    /// Bytes of the samples of these dimensions; an error if a file of `stored` bytes cannot hold them.
     fn expected(&self, dims: [usize; 3], number: Number, stored: usize, packed: bool) -> Result<usize, String> {
         let [x, y, z] = dims.map(|n| n as u128);
         // Each below 2^64, so that three would overflow.

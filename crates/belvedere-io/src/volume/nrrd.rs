@@ -77,7 +77,7 @@ impl Header {
                 return Ok(Self { fields, end: bytes.len() });
             }
         }
-        // A detached header may end with the file.
+        // A detached header may end with its file, without an empty line.
         if fields.contains_key("datafile") && at == bytes.len() {
             return Ok(Self { fields, end: at });
         }
@@ -214,8 +214,8 @@ impl Header {
     }
 }
 
-/// Signs that take coordinates of a space to left, posterior, superior, the directions of DICOM, so that one body stands at one place
-/// and is never mirrored, whichever directions a file names. Other spaces stay as they are.
+/// Signs that take coordinates of a space to left, posterior, superior, the directions of DICOM, so that a body has the same position in
+/// every file and is never mirrored, for any directions that a file names. Other spaces stay as they are.
 fn to_lps(space: &str, warnings: &mut Vec<String>) -> DVec3 {
     let name = space.trim().to_lowercase();
     let long: Vec<&str> = name.split('-').collect();

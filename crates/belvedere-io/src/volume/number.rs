@@ -74,7 +74,7 @@ const NAMES: &[(&str, Number)] = &[
     ("double", Number::Float64),
 ];
 
-/// What became of values on the way.
+/// Numbers of values that were changed by the conversion, and the least value.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Changed {
     pub(super) not_finite: usize,
@@ -83,7 +83,7 @@ pub(super) struct Changed {
 }
 
 impl Number {
-    /// By its name, as NRRD, VTK or numpy write it.
+    /// The type of a name as NRRD, VTK or numpy write it.
     pub fn named(name: &str) -> Option<Self> {
         let name = name.trim().to_ascii_lowercase();
         NAMES.iter().find(|(n, _)| *n == name).map(|(_, number)| *number)
@@ -99,7 +99,7 @@ impl Number {
         }
     }
 
-    /// Samples out of their bytes, a whole number of samples.
+    /// Decodes samples from bytes, a whole number of samples.
     pub(super) fn decode(self, bytes: Vec<u8>, order: ByteOrder) -> (VoxelValues, Changed) {
         macro_rules! each {
             ($t:ty, $to:expr) => {{
@@ -126,7 +126,7 @@ impl Number {
         }
     }
 
-    /// Samples out of text: numbers parted by white space or commas.
+    /// Decodes samples from text: numbers separated by white space or commas.
     pub(super) fn parse(self, text: &str, count: usize) -> Result<(VoxelValues, Changed), String> {
         let words = text.split(|c: char| c.is_whitespace() || c == ',').filter(|w| !w.is_empty());
         let mut bytes = Vec::new();

@@ -1,10 +1,10 @@
-//! Raw samples without a header: name and scene say what they are.
+//! Raw samples without a header: file name and scene state their layout.
 
 use super::{ByteOrder, Number, Source, VolumeFile, gunzip, odd_values};
 use crate::Loaded;
 use glam::{DMat3, DVec3};
 
-/// How raw samples lie in a file; what is not given is taken from a name such as `engine_256x256x128_uint8.raw.gz`.
+/// Layout of raw samples in a file; missing values are taken from a name such as `engine_256x256x128_uint8.raw.gz`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RawLayout {
     /// Samples along x, y, z, x fastest.
@@ -49,7 +49,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, String> {
     Ok(Loaded::new(file, odd_values(source.path, &changed)))
 }
 
-/// Dimensions and type as names such as `engine_256x256x128_uint8.raw` tell them.
+/// Dimensions and type from a name such as `engine_256x256x128_uint8.raw`.
 fn told_by(name: &str) -> (Option<[usize; 3]>, Option<Number>) {
     let words = || name.split(['_', '.', '-', ' ']);
     let dims = words().find_map(|w| {

@@ -32,7 +32,7 @@ pub(super) struct Array {
     pub(super) of_cells: bool,
 }
 
-/// What the XML says.
+/// Content of the XML.
 #[derive(Debug, Default)]
 pub(super) struct Header {
     pub(super) order: ByteOrder,

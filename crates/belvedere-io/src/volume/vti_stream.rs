@@ -4,7 +4,7 @@ use super::ByteOrder;
 use crate::base64::Base64;
 use flate2::{Decompress, FlushDecompress, Status};
 
-/// Where bytes come from.
+/// Source of the bytes.
 pub(super) enum Stream<'a> {
     Raw(&'a [u8]),
     Base64(Base64<'a>),
@@ -25,7 +25,7 @@ impl Stream<'_> {
         }
     }
 
-    /// Most bytes that may still come.
+    /// Most bytes that may still be read.
     pub(super) fn at_most(&self) -> usize {
         match self {
             Self::Raw(bytes) => bytes.len(),

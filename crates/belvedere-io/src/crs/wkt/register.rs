@@ -5,23 +5,23 @@ use super::{GEOGRAPHIC, Node, PROJECTED, plain};
 use crate::crs::CoordinateSystem;
 use std::collections::BTreeMap;
 
-/// Numbers differ by less than this: angles in degrees, lengths in metres, factors.
+/// Largest difference of equal numbers: angles in degrees, lengths in metres, factors.
 const SAME_DEG: f64 = 1e-6;
 const SAME_M: f64 = 0.01;
 const SAME_FACTOR: f64 = 1e-8;
 
-/// The geographic system that a text is on, by the name of its datum or its own.
+/// EPSG code of the geographic system of a text, by its own name or that of its datum.
 fn geographic(system: &Node) -> Option<u32> {
     let geographic = if system.is(&PROJECTED) { system.child(&GEOGRAPHIC)? } else { system };
     let datum = geographic.child(&["DATUM", "GEODETICDATUM", "TRF", "ENSEMBLE"]);
     let meridian = geographic.child(&["PRIMEM", "PRIMEMERIDIAN"]).and_then(|m| m.numbers.first()).copied();
     let by_name = tables::geographic(&format!("={}", plain(geographic.name())));
     let by_datum = || datum.and_then(|d| tables::geographic(&plain(d.name())));
-    // Datums are counted from Greenwich; systems from elsewhere have names of their own.
+    // Datums have the prime meridian of Greenwich; systems of other meridians have names of their own.
     by_name.or_else(|| if meridian.unwrap_or(0.0) == 0.0 { by_datum() } else { None })
 }
 
-/// The code of a text whose parameters make this PROJ string. A text with a datum shift of its own keeps that.
+/// EPSG code of a text with this PROJ string; `None` if no code fits, or if the text has a datum shift of its own.
 pub(super) fn code_of(system: &Node, proj_string: &str) -> Option<u32> {
     if proj_string.contains("+towgs84=") && !proj_string.contains("+towgs84=0,0,0") {
         return None;
@@ -47,7 +47,7 @@ pub(super) fn on_known_datum(system: &Node, proj_string: &str) -> String {
     }
 }
 
-/// What a PROJ string says of a projection, datum apart.
+/// Method and parameters of a projection in a PROJ string, without the datum.
 #[derive(Debug)]
 struct Parameters {
     method: String,
@@ -97,7 +97,7 @@ impl Parameters {
         out
     }
 
-    /// UTM as the transverse Mercator that it is, and one order of parallels.
+    /// Normal form: UTM as transverse Mercator, and standard parallels in one order.
     fn simplify(&mut self, south: bool) {
         if self.method == "utm"
             && let Some(zone) = self.numbers.remove("zone")

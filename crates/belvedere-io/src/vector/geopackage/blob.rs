@@ -7,7 +7,7 @@ use geo_traits::{
     MultiLineStringTrait, MultiPointTrait, MultiPolygonTrait, PointTrait, PolygonTrait,
 };
 
-/// What was odd among the features of a table.
+/// Numbers of oddities among the features of a table.
 #[derive(Debug, Default)]
 pub(super) struct Odd {
     pub(super) without_geometry: usize,
@@ -18,7 +18,7 @@ pub(super) struct Odd {
 }
 
 impl Odd {
-    /// One sentence for each kind that there is.
+    /// One sentence for each kind of oddity that occurred.
     pub(super) fn warnings(&self, table: &str) -> impl Iterator<Item = String> {
         let of = |count: usize, what: &str| (count > 0).then(|| format!("table \"{table}\": {count} {what}"));
         [
@@ -54,7 +54,7 @@ pub(super) fn geometries(blob: &[u8], srs_id: i64, odd: &mut Odd) -> Result<Vec<
     Ok(out)
 }
 
-/// What stands before the well-known binary.
+/// The header before the well-known binary.
 struct Header<'b> {
     srs_id: i32,
     empty: bool,
@@ -87,7 +87,7 @@ impl<'b> Header<'b> {
     }
 }
 
-/// Refuses the kinds that are no points, straight lines and polygons, by their names.
+/// Refuses kinds other than points, straight lines and polygons, by name.
 fn straight(wkb: &[u8]) -> Result<(), String> {
     const NAMES: [&str; 10] = [
         "CircularString",
@@ -121,12 +121,12 @@ fn gather<'a>(g: &'a wkb::reader::Wkb<'a>, odd: &mut Odd, out: &mut Vec<Geometry
         GeometryType::MultiPolygon(m) => Geometry::Polygons(m.polygons().filter_map(|p| polygon(p, odd)).collect()),
         // The crate bounds their nesting.
         GeometryType::GeometryCollection(c) => return c.geometries().for_each(|g| gather(g, odd, out)),
-        // Kinds that well-known binary has not.
+        // Kinds that well-known binary lacks.
         GeometryType::Rect(_) | GeometryType::Triangle(_) | GeometryType::Line(_) => return,
     });
 }
 
-/// A position, its third number as height only where that is one and no measure; `None` if it is not finite.
+/// A position; its third number is the height unless it is a measure; `None` if it is not finite.
 fn position(c: &impl CoordTrait<T = f64>) -> Option<Vertex> {
     let z = matches!(c.dim(), Dimensions::Xyz | Dimensions::Xyzm).then(|| c.nth(2)).flatten();
     vertex(c.x(), c.y(), z)

@@ -1,4 +1,4 @@
-//! The database of a GeoPackage: its tables of features, its coordinate systems, and rows, by SQLite, in memory and within bounds.
+//! The database of a GeoPackage: tables of features, coordinate systems and rows, read by SQLite in memory within bounds.
 
 use rusqlite::config::DbConfig;
 use rusqlite::limits::Limit;
@@ -8,20 +8,20 @@ use rusqlite::{Connection, MAIN_DB, OptionalExtension};
 /// A value of a row.
 pub(super) type Value<'r> = ValueRef<'r>;
 
-/// Largest value in a row, bytes; more than the largest of polygons has.
+/// Largest value in a row, bytes, above that of the largest polygons.
 const MAX_VALUE: usize = 256 << 20;
-/// Steps of SQLite's machine for each byte of a file, beside [`FREE_STEPS`]: rows need fewer than one, views that never end all.
+/// Most steps of SQLite's machine per byte of a file, besides [`FREE_STEPS`]: rows need fewer than one; endless views are stopped.
 const STEPS_PER_BYTE: u64 = 64;
 const FREE_STEPS: u64 = 10_000_000;
-/// Steps between two looks at the bound.
+/// Steps between two checks of the bound.
 const STRIDE: u16 = 10_000;
-/// Views may show a row several times: bytes of geometry for each byte of the file.
+/// Most bytes of geometry per byte of the file: views may repeat a row.
 const REPEATS: usize = 8;
 
 /// A table of features.
 pub(super) struct Table {
     pub(super) name: String,
-    /// Name for people.
+    /// Readable name.
     pub(super) identifier: String,
     /// Number of its coordinate system in this file.
     pub(super) srs_id: i64,
@@ -36,7 +36,7 @@ pub(super) struct System {
     pub(super) definitions: Vec<String>,
 }
 
-/// A database in memory that nothing can change.
+/// A read-only database in memory.
 pub(super) struct Database {
     connection: Connection,
     bytes: usize,
@@ -58,7 +58,7 @@ impl Database {
     pub(super) fn open(mut bytes: Vec<u8>) -> Result<Self, String> {
         let length = bytes.len();
         complete(&bytes)?;
-        // A log that is written ahead cannot be in memory. All that is in the file is there without it.
+        // A write-ahead log cannot be in memory; the file itself is complete without it.
         if let Some([write @ 2, read @ 2]) = bytes.get_mut(18..20) {
             (*write, *read) = (1, 1);
         }
@@ -110,7 +110,7 @@ impl Database {
         Ok(count > 0)
     }
 
-    /// What there is instead of features, in words.
+    /// Kinds of other contents, in words, for the error of a file without features.
     fn other_contents(&self) -> String {
         let query = "SELECT group_concat(DISTINCT data_type) FROM gpkg_contents";
         let kinds: Option<String> = self.connection.query_row(query, [], |row| row.get(0)).unwrap_or_default();
@@ -136,9 +136,9 @@ impl Database {
         }))
     }
 
-    /// Calls `visit` with the place in words, the geometry and the other values of every row.
+    /// Calls `visit` with the row in words, the geometry and the other values of every row.
     ///
-    /// Errors go on in words behind the name of the table.
+    /// Error texts continue a sentence that begins with the name of the table.
     pub(super) fn each_row(
         &self,
         table: &Table,

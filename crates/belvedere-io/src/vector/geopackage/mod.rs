@@ -1,6 +1,6 @@
 //! GeoPackage (OGC 12-128r19): tables of features in an SQLite database. Behind the feature `geopackage`, for SQLite is a C library.
 //!
-//! The file is read once, whole, and the database opened in memory: nothing is ever written beside it, and what is read is what was hashed.
+//! The file is read once, whole, and the database opened in memory: nothing is written beside it, and the bytes read are those that were hashed.
 
 mod blob;
 mod database;
@@ -13,7 +13,7 @@ use database::{Database, Table, Value};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What SQLite files begin with.
+/// First bytes of SQLite files.
 pub(super) const MAGIC: &[u8] = b"SQLite format 3\0";
 
 /// Reads a table of features, or all.
@@ -68,7 +68,7 @@ pub(super) fn load(path: &Path, table: Option<&str>, bytes: Vec<u8>) -> Result<L
     ))
 }
 
-/// Whether another program has not yet written into the file what stands in a log beside it.
+/// Whether a write-ahead log beside the file holds changes that are not yet in it.
 fn unwritten(path: &Path) -> Vec<String> {
     let beside = |ending: &str| {
         let mut name = path.as_os_str().to_owned();
@@ -94,7 +94,7 @@ fn chosen(tables: Vec<Table>, wanted: Option<&str>) -> Result<Vec<Table>, String
     Ok(found)
 }
 
-/// The features of a table, and what was odd among them.
+/// The features of a table, and the oddities among them.
 fn rows(database: &Database, table: &Table) -> Result<(Vec<VectorFeature>, Odd), String> {
     let (mut features, mut odd) = (Vec::new(), Odd::default());
     database.each_row(table, |place, blob, values| {
@@ -124,7 +124,7 @@ fn property(name: &str, value: &Value<'_>) -> Option<(String, String)> {
     Some((shorten(name), text))
 }
 
-/// What to do about tables without a coordinate system that is known.
+/// Advice for tables without a known coordinate system.
 const REMEDY: &str = "set it, as by ogr2ogr -a_srs EPSG:n";
 
 /// The coordinate system of a table.
@@ -163,7 +163,7 @@ fn listed_system(database: &Database, id: i64) -> Result<CoordinateSystem, Strin
     by_text.ok_or_else(|| format!("\"{}\" (srs_id {id}): {reason}", system.name))
 }
 
-/// Takes features to another system; how many lie outside its domain and are dropped.
+/// Transforms features to another system; returns the number outside its domain, which are dropped.
 fn reproject(
     features: &mut Vec<VectorFeature>,
     from: &CoordinateSystem,
