@@ -1,4 +1,4 @@
-//! The built-in scenes: the same everywhere, mountains rather than noise, and a route that is really hidden.
+//! The built-in scenes: the same on every platform, with slopes of mountains and not of noise, and a route that is partly hidden.
 
 use belvedere_builtin::{BuiltinError, SuggestedCamera, canyon, massif, street};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection};
@@ -70,7 +70,7 @@ fn shares(scene: &Scene, camera: &SuggestedCamera, samples: usize) -> (f64, f64)
     (f64::from(framed) / f64::from(count), visible as f64 / f64::from(framed.max(1)))
 }
 
-/// Measured once; other platforms and later versions must reproduce it or say so in the change log.
+/// Recorded once; other platforms and later versions must reproduce it, or the change log must mention the change.
 const MASSIF_7_129: u64 = 0xd9a7_a500_fde0_785f;
 
 #[test]
@@ -221,7 +221,7 @@ fn town_has_towers_and_a_route_clear_of_them() {
     assert_eq!(boxes(&street(3).unwrap().0), boxes(&street(3).unwrap().0));
 }
 
-/// As for the massif.
+/// Recorded like that of the massif.
 const CANYON_7: u64 = 0x04d0_c664_b6a2_f2e3;
 
 #[test]
@@ -232,7 +232,7 @@ fn canyon_is_the_same_bytes_everywhere_deep_and_its_river_runs_down_and_is_hidde
     let river = must_see(&scene);
     let length: f64 = river.windows(2).map(|w| w[0].distance(w[1])).sum();
     assert!((14e3..24e3).contains(&length), "{length} m over 12.8 km");
-    // Nowhere does it climb by more than a boulder, and on the whole it falls.
+    // It never climbs by 2 m between two vertices, and it falls by more than 15 m in all.
     let climbs = river.windows(2).map(|w| w[1].z - w[0].z).fold(0.0, f64::max);
     assert!(climbs < 2.0 && river[0].z - river[river.len() - 1].z > 15.0, "{climbs}");
     let rim = ground.heights().iter().copied().fold(0.0f32, f32::max);

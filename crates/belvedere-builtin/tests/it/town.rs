@@ -1,4 +1,4 @@
-//! The built-in town: the same everywhere, built up without overlaps, its faces closed and turned outward.
+//! The built-in town: the same on every platform, buildings without overlaps, its faces closed and turned outward.
 
 use belvedere_builtin::{BuiltinError, town};
 use belvedere_core::{DVec2, DVec3};
@@ -18,7 +18,7 @@ fn volume(faces: &[CityFace]) -> f64 {
         .sum()
 }
 
-/// Whether each edge between two faces is walked once in either direction.
+/// Whether every edge is used equally often in both directions.
 fn closed(faces: &[CityFace]) -> bool {
     let key = |p: DVec3| [p.x, p.y, p.z].map(|v| (v * 1e6).round() as i64);
     let mut edges: HashMap<_, i32> = HashMap::new();

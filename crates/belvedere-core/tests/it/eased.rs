@@ -1,4 +1,4 @@
-//! Bends that are not all there yet: from the straight picture to the bent one.
+//! Bends at a share of their strength: from the straight picture to the bent one.
 
 use crate::spline_figures::{bend, camera_at};
 use crate::split_rays::{parting, root};
@@ -49,7 +49,7 @@ fn parted() -> View {
     View::new(pinhole, vec![Stage::SplitRays(rays)]).unwrap()
 }
 
-/// Largest distance between the images of points, pixels; `None` for points that one of them does not see.
+/// Largest distance in pixels between the images of points in the two views; points without an image in one of them are skipped.
 fn apart(a: &View, b: &View, near: f64, far: f64) -> f64 {
     let mut random = Random::new(7);
     let straight = a.straightened();

@@ -1,4 +1,4 @@
-//! Curves that are told by angles.
+//! Curves that are stated by angles.
 
 use belvedere_core::DVec2;
 use belvedere_core::deformation::DeformationCurve;
@@ -38,7 +38,7 @@ fn slopes_and_lengths_are_those_that_are_stated() {
     document.validate().unwrap();
     let curve = DeformationCurve::new(&document.presets[0].spline().unwrap()).unwrap();
     assert!((curve.length() - 1.6).abs() < 1e-6, "{}", curve.length());
-    // The curve by adding up its directions.
+    // The curve by summing its directions.
     let steps = 160_000;
     let mut by_sum = DVec2::ZERO;
     for k in 0..steps {

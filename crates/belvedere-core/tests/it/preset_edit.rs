@@ -1,4 +1,4 @@
-//! Authoring of presets: what operations do, what they refuse, and that nothing invalid comes of any.
+//! Authoring of presets: what operations do, what they refuse, and that none gives an invalid document.
 
 use belvedere_core::DVec2;
 use belvedere_core::presets::edit::{EditError, PresetChange, PresetHistory, PresetOperation};
@@ -46,7 +46,7 @@ fn a_point_more_leaves_the_curve_as_it_is() {
                 let t = f64::from(i) / 200.0;
                 assert!(a.point(t).distance(b.point(t)) < 1e-12);
             }
-            // What was added is taken away again: as many points and knots as before.
+            // The added point is removed again: as many points and knots as before.
             let back = after(&new, &["1.remove-point=2"]);
             assert_eq!(back.presets[0].control.len(), old.presets[0].control.len());
         }
@@ -250,7 +250,7 @@ fn what_neighbours_stop_is_said() {
     assert!(stopped[0].contains("tag 1 is 0.6657, not 0.9000"), "{stopped:?}");
     assert!(stopped[1].contains("half width of the transition at tag 1"), "{stopped:?}");
     assert!(said("low.width.2=0.5")[0].contains("is 0.1667, not 0.5000"));
-    // Dragged in the plane of the curve: beyond the far end lies the second tag's place.
+    // Dragged in the plane of the curve to beyond its far end.
     assert_eq!(said("low.tag.1=2,2").len(), 2);
     assert_eq!(said("low.tag.2=2,2").len(), 2);
 }

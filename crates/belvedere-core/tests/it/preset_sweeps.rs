@@ -1,4 +1,4 @@
-//! Built-in presets turn evenly while the camera tilts: how far the points of the ground move on the picture per step.
+//! Built-in presets change evenly while the camera tilts: how far the points of the ground move in the picture per step.
 
 use belvedere_core::map::spline::{ReferencePlane, SplineBend};
 use belvedere_core::presets::{BUILTINS, BendFrame, PresetDocument};
@@ -7,7 +7,7 @@ use belvedere_core::{DVec2, DVec3, Pinhole, Projection, SpaceMap};
 const STEP_DEG: f64 = 0.5;
 const WIDE: f64 = 1280.0;
 const HIGH: f64 = 720.0;
-/// Side of the squares of the picture in which motions are averaged first, pixels: the picture counts, not the crowd at the horizon.
+/// Side in pixels of the squares of the picture in which motions are averaged first, so that the many points near the horizon do not dominate.
 const SQUARE: f64 = 60.0;
 
 fn camera_at(phi_deg: f64) -> Pinhole {
@@ -17,7 +17,7 @@ fn camera_at(phi_deg: f64) -> Pinhole {
     Pinhole::look_at(eye, DVec3::ZERO, up, lens, [WIDE as u32, HIGH as u32], 1.0, None).unwrap()
 }
 
-/// Places on the picture of points of the ground and of roofs.
+/// Pixels of points on the ground and on roofs.
 fn places(document: &PresetDocument, phi_deg: f64) -> Vec<Option<DVec2>> {
     let camera = camera_at(phi_deg);
     let bend = SplineBend::new(&camera, document, &ReferencePlane::level(0.0), DVec3::ZERO).unwrap();
@@ -55,7 +55,7 @@ fn motions(document: &PresetDocument, [first, last]: [f64; 2]) -> Vec<(f64, f64)
     out
 }
 
-/// Largest and smallest motion as multiples of the median, and where they are.
+/// Largest and smallest motion as multiples of the median, each with its angle.
 fn extremes(motions: &[(f64, f64)]) -> [(f64, f64); 2] {
     let mut sorted = motions.to_vec();
     sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -64,8 +64,8 @@ fn extremes(motions: &[(f64, f64)]) -> [(f64, f64); 2] {
     [sorted[sorted.len() - 1], sorted[0]].map(|(phi, motion)| (phi, motion / median))
 }
 
-/// From the horizon to straight down nothing leaps and nothing stands still; between the presets' own angles at half the median at least.
-/// (Straight down a parallel projection turns by the cosine of the angle: the picture of any stands still there.)
+/// From the horizon to straight down the picture neither leaps nor stands still; between the presets' own angles the motion is at least half
+/// the median. (Near straight down the picture of a parallel projection moves with the cosine of the angle, so it stands still there.)
 #[test]
 fn the_demos_turn_evenly_over_all_angles() {
     for name in ["demo", "demo-orthographic"] {
@@ -74,13 +74,13 @@ fn the_demos_turn_evenly_over_all_angles() {
         assert!(most.1 <= 2.0, "{name}: {:.2} times the median at {} degrees", most.1, most.0);
         assert!(least.1 >= 0.35 || name != "demo", "{name}: {:.2} times the median at {} degrees", least.1, least.0);
         let [most, least] = extremes(&motions(&document, [0.0, 80.0]));
-        // The parallel end begins before.
+        // The parallel projection at the steep end begins below 80 degrees.
         let slowest = if name == "demo" { 0.5 } else { 0.25 };
         assert!(most.1 <= 2.0 && least.1 >= slowest, "{name}: {least:?} to {most:?}");
     }
 }
 
-/// The other built-in documents in the range in which their pictures turn: from their angle on they follow the camera.
+/// The other built-in documents, in the range in which their pictures move: above their angle they follow the camera.
 #[test]
 fn single_presets_turn_evenly_from_their_angle_on() {
     for builtin in BUILTINS.iter().filter(|b| !b.name.starts_with("demo")) {

@@ -328,7 +328,7 @@ fn check_warns_of_what_will_look_bad() {
     assert!(warnings.iter().any(|w| matches!(w, PresetWarning::FacesAway { .. })), "{warnings:?}");
 }
 
-/// Lists of equal length are matched by index, as in the paper: what stands in other places blends there and does not slide.
+/// Lists of equal length are matched by index, as in the paper: sections blend in place and do not slide.
 #[test]
 fn sections_of_equal_number_blend_where_they_stand() {
     let mut document = three([(25.0, 2.0), (55.0, 2.0), (80.0, 0.0)]);

@@ -1,4 +1,4 @@
-//! Changes of relief: laws, bounds, and what they are named for.
+//! Changes of relief: laws, bounds, and the effect of each.
 
 use belvedere_core::map::relief::{BaseError, BaseSurface, Relief, ReliefError, ReliefShape};
 use belvedere_core::map::spline::ReferencePlane;
@@ -58,7 +58,7 @@ fn case() -> MapCase<Relief> {
 }
 
 fn levelled_case() -> MapCase<Relief> {
-    // Heights of the base do not turn with the case.
+    // The base surface cannot be rotated with the case, so the case is not moved.
     MapCase::new("levelled", region(), |_| levelled(0.9)).continuity(Continuity::C1)
 }
 

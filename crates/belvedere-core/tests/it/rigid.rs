@@ -1,4 +1,4 @@
-//! Laws of rigid bodies: what a view carries as a whole keeps its shape, and goes where its foot goes.
+//! Laws of rigid bodies: a body that a view moves as a whole keeps its shape and moves with its foot.
 
 use crate::spline_figures::{bend, camera_at};
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
@@ -87,7 +87,7 @@ fn a_body_goes_with_its_foot_and_turns_with_the_ground_there() {
             let off = (motion.rotation() - ground).to_cols_array().iter().fold(0.0f64, |a, v| a.max(v.abs()));
             assert!(off < 1e-9, "{name} at {foot}: the derivative is off by {off}");
         }
-        // To first order: half as far away, a quarter as far off.
+        // The body agrees with the bend to first order: at half the distance from the foot the error is a quarter.
         let foot = DVec3::new(30.0, 20.0, 0.0);
         let motion = view.body_motion(foot).unwrap();
         let off = |r: f64| {
@@ -125,7 +125,7 @@ fn stages_before_the_bend_move_bodies_by_their_foot_alone() {
     let motion = both.body_motion(foot).unwrap();
     assert!(motion.carry(foot).distance(bend.apply(sunk).unwrap()) < 1e-9);
     assert_eq!(motion.rotation(), bend.rotation_at(sunk));
-    // Without such a stage bodies are like everything else.
+    // Without a stage that carries bodies, they are treated like everything else.
     assert!(!View::straight(camera).carries_bodies() && bent.carries_bodies() && !bent.after_bodies().carries_bodies());
 }
 
@@ -147,7 +147,7 @@ fn walls_are_straight_in_the_picture_where_the_bend_would_fold_them() {
         }
         judged += 1;
         bowed += usize::from(bend.is_folded(edge[20]));
-        // What the rest of the chain photographs is the carried body.
+        // The stages after the bend see the carried body.
         let carried = view.after_bodies().project(motion.carry(edge[20])).unwrap();
         assert!(carried.pixel.distance(b) < 1e-9);
     }
@@ -178,7 +178,7 @@ fn curved_rays_after_the_bend_see_carried_bodies_as_they_see_everything() {
         let expected = rays.displace(motion.carry(p)).unwrap();
         assert!(displaced.point.distance(expected.point) < 1e-9 && displaced.segment == expected.segment);
         turned += usize::from(expected.point.distance(motion.carry(p)) > 1e-6);
-        // On the ground under it the body is where the bend is.
+        // At its foot the body is where the ground is.
         let ground = view.displace(foot).unwrap().point;
         assert!(view.of_body(motion).displace(foot).unwrap().point.distance(ground) < 1e-8);
     }

@@ -282,7 +282,7 @@ fn following_tilts_the_picture_above_the_last_plateau_only() {
     let camera = camera_at(89.0, 1000.0);
     let follows = bend(&document, &camera);
     assert!((follows.resolved().follow_deg - 9.0).abs() < 1e-9);
-    // The world deformed at the end of the plateau stands still from there on.
+    // Above the end of the plateau the deformed world no longer changes.
     let at_end = bend(&document, &camera_at(80.0, 1000.0));
     assert_eq!(at_end.resolved().follow_deg, 0.0);
     for p in [DVec3::new(10.0, 300.0, 20.0), DVec3::new(-200.0, -250.0, 5.0)] {

@@ -1,4 +1,4 @@
-//! Bounds of the spline bend against samples of the truth.
+//! Bounds of the spline bend against sampled values.
 
 use crate::spline_figures::{bend, camera_at};
 use belvedere_core::map::spline::SplineBend;
@@ -96,7 +96,7 @@ fn displaced_boxes_contain_the_images_of_their_points() {
 
 #[test]
 fn an_edge_across_a_corner_of_the_curve_has_a_bound_only_on_the_curve_itself() {
-    // Straight, a corner of 45 degrees half way, straight.
+    // Straight, a corner of 45 degrees in the middle, straight.
     let text = r#"{"version": 1, "units": "absolute", "presets": [{"phi": 36, "s": 100, "e": 1100,
         "control": [[0,0],[0.2,0],[0.4,0],[0.5,0],[0.5,0],[0.5,0],[0.6,0.1],[0.8,0.3],[1,0.5]]}]}"#;
     let document: PresetDocument = serde_json::from_str(text).unwrap();

@@ -1,4 +1,4 @@
-//! B-splines and arc length against slow, obvious references.
+//! B-splines and arc length against slow reference implementations.
 
 use belvedere_core::DVec2;
 use belvedere_core::bspline::{BSpline, BSplineError};
@@ -128,7 +128,7 @@ pub(crate) fn dense_lengths(curve: &BSpline, samples: usize) -> Vec<f64> {
     for i in 0..samples {
         let i = i as f64;
         let piece = (speed(i) + 4.0 * speed(i + 0.5) + speed(i + 1.0 - 1e-9)) / (6.0 * samples as f64);
-        // Compensated, or the rounding of so many sums would be seen.
+        // Compensated summation: the rounding errors of this many sums would fail the test.
         let before: f64 = sum;
         sum += piece - lost;
         lost = (sum - before) - (piece - lost);

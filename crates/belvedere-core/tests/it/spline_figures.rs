@@ -73,7 +73,7 @@ fn demo_faces_the_camera_and_never_folds_over_the_whole_range_of_angles() {
     }
 }
 
-/// Tilting from level to straight down in quarter degrees: the ground never turns its back, and nothing leaps.
+/// Tilting from level to straight down in quarter degrees: the ground is never seen from below, and nothing leaps.
 #[test]
 fn demos_sweep_through_all_angles_without_leaps() {
     const STEP_DEG: f64 = 0.25;

@@ -1,4 +1,4 @@
-//! Rays that part at seams, and meet again.
+//! Rays that separate at seams and merge again.
 
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::map::split_rays::{Fork, Merge, Seam, SplitRays, SplitRaysError, SplitSpec};
@@ -58,7 +58,7 @@ fn quarters(s: &Similarity) -> SplitSpec {
     fork(Seam::MIDDLE, quarter(-1.0), quarter(1.0), None)
 }
 
-/// Round an obstacle: out by `out`, back again as from a viewpoint `back` ahead, together from y = 80 on or so.
+/// Round an obstacle: outwards by `out`, back again as from a viewpoint `back` ahead, merged from about y = 80 on.
 fn round(s: &Similarity, out: [f64; 2], back: [f64; 2]) -> SplitSpec {
     let side = |side: f64, out: f64, back: f64| {
         let x = side * 1.5 * out;
@@ -144,7 +144,7 @@ fn rays_run_together_up_to_the_fork_and_part_behind_it() {
     let view = here(&parting(&Similarity::IDENTITY));
     assert!(gap(&view, MIDDLE, 200.0, 24.9) < 1e-9);
     assert!(gap(&view, MIDDLE, 200.0, 60.0) > 10.0);
-    // What lies in the dead angle has no image, what lies before the fork has one.
+    // A point in the dead angle has no image, one in front of the fork has one.
     assert_eq!(view.project(DVec3::new(0.0, 60.0, 0.0)), Err(Miss::OutsideDomain));
     assert!(view.project_all(DVec3::new(0.0, 60.0, 0.0)).is_empty());
     assert_eq!(view.project_all(DVec3::new(0.1, 20.0, 0.0)).len(), 1);
@@ -165,7 +165,7 @@ fn after_a_merge_rays_along_the_seam_are_one_whichever_side_they_came_by() {
         for y in [5.0, 200.0, 360.0, 715.0] {
             assert!(gap(&view, seam_x, y, 14.0) < 1e-8);
             assert!(gap(&view, seam_x, y, 50.0) > 5.0, "the obstacle is gone round");
-            // Depths count differently on the two sides: compare the lines, not the points.
+            // Depths differ between the two sides: compare the lines, not the points.
             let line = |x: f64| {
                 let ray = view.ray(DVec2::new(x, y));
                 [500.0, 900.0].map(|depth| ray.at(depth).unwrap().point)
@@ -195,7 +195,7 @@ fn forks_nest_and_their_parts_keep_their_order() {
     assert_eq!(branches.iter().map(|b| b.rays.turn_count()).collect::<Vec<_>>(), [0, 2, 2]);
     let part = |x: f64, y: f64| branches.iter().position(|b| b.region.contains(DVec2::new(x, y))).unwrap();
     assert_eq!([part(10.0, 10.0), part(10.0, 700.0), part(900.0, 10.0), part(900.0, 700.0)], [0, 0, 1, 2]);
-    // A view of the same on finer pixels.
+    // The same specification at three times the resolution.
     let finer = Pinhole { image: IMAGE.map(|n| 3 * n), ..root(&id) };
     let again = SplitRays::new(&finer, Model::Modified, view.split_rays().unwrap().spec()).unwrap();
     assert_eq!(
@@ -241,7 +241,7 @@ fn what_cannot_be_is_said() {
         ),
         &["right, right of the seam, turn 1", "viewpoint 1"],
     );
-    // One side comes back higher than the other.
+    // One side returns higher than the other.
     let mut uneven = round(&id, [4.0, 4.0], [10.0, 10.0]);
     let raised = &mut uneven.fork.as_mut().unwrap().sides[1].turns[1].viewpoint;
     raised.z -= 3.0;

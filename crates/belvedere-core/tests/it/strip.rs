@@ -1,4 +1,4 @@
-//! Strips along a route, unrolled: laws, an independent reference, bounds, and routes that make none.
+//! Unrolled strips along a route: laws, an independent reference, bounds, and routes that are refused.
 
 use belvedere_core::map::strip::{BEND_SHARE, SmoothedRoute, Strip, StripError};
 use belvedere_core::{Aabb, DVec2, DVec3, Miss, Pinhole, Projection, SpaceMap, Stage, View};
@@ -8,7 +8,7 @@ use belvedere_testkit::laws::{Continuity, Joint, MapCase, Similarity};
 const HALF_WIDTH: f64 = 300.0;
 const SMOOTHING: f64 = 260.0;
 
-/// A road that swings to both sides.
+/// A road with bends to both sides.
 fn road() -> Vec<DVec2> {
     let place = |i: i32| {
         let t = f64::from(i) / 60.0;
@@ -44,7 +44,7 @@ fn case(name: &str, make: fn(&Similarity) -> Strip) -> MapCase<Strip> {
         Joint { point: (at.p + 150.0 * at.normal()).extend(50.0), across: at.tangent.extend(0.0) }
     };
     let joints = [joint(0.0), joint(map.route().length()), joint(20.0 * map.route().spacing())];
-    // Feet a hair from the border may fall to either side of it when everything is moved.
+    // Rounding may put points very near the border on either side of it once the case is moved.
     MapCase::new(name, region(), make)
         .continuity(Continuity::C1)
         .joints(joints)
@@ -97,7 +97,7 @@ fn a_dense_polyline_unrolled_agrees() {
         }
         match map.apply(p) {
             Ok(q) => {
-                // The line through the anchor, along its direction.
+                // The curve straightened to the line through the anchor in the direction of its tangent.
                 let expected = anchor.2 + (g - anchor.0) * anchor.3 + a * anchor.3.perp();
                 assert!(q.truncate().distance(expected) < 0.02 && q.z == p.z, "{p}: {q}, expected {expected}");
                 inside += 1;
@@ -142,7 +142,7 @@ fn nothing_moves_at_the_anchor() {
     }
 }
 
-/// Points of the strip.
+/// A random point of the strip.
 fn places(map: &Strip, random: &mut Random) -> DVec3 {
     let at = map.route().at(random.range(-400.0, map.route().length() + 400.0));
     (at.p + random.range(-1.0, 1.0) * map.half_width() * at.normal()).extend(random.range(0.0, 500.0))
@@ -267,7 +267,7 @@ fn strips_that_overlap_are_refused_and_smoothing_cures_them() {
     let StripError::Overlap { at, distance, widest, .. } = refused else { panic!("{refused:?}") };
     assert!(at.distance(DVec2::new(5200.0, 350.0)) < 100.0 && (distance - 700.0).abs() < 30.0, "{at} {distance}");
     let narrow = SmoothedRoute::new(&turns, 0.99 * widest, Some(240.0)).unwrap();
-    // The straight end would cross the road: it is cut short before.
+    // The straight extension would cross the road: it ends before.
     assert!(narrow.curve.reach()[1] < narrow.curve.length() + 100.0);
     assert!(narrow.curve.reach()[0] < -1e6);
     let smoother = SmoothedRoute::new(&turns, 400.0, None).unwrap();
@@ -323,7 +323,7 @@ fn routes_that_make_no_strip_are_refused() {
     let circle: Vec<DVec2> = (0..=90).map(|i| 1000.0 * DVec2::from_angle(f64::from(i) * 4f64.to_radians())).collect();
     assert!(matches!(refused(&circle, 100.0, None), StripError::Winds { .. }));
     assert!(matches!(refused(&line, 1e-3, None), StripError::TooFine { .. }));
-    // There and back on the same way, with doubled points: nothing but the straight line between the ends is left.
+    // The route leads there and back, with doubled points: only the straight line between the ends is left.
     let back = [line[0], line[0], line[1], line[1], DVec2::new(500.0, 1.0), DVec2::new(500.0, 1.0)];
     let folded = SmoothedRoute::new(&back, 50.0, None).unwrap();
     assert!(folded.off > 100.0, "{} {} {}", folded.off, folded.smoothing, folded.curve.length());

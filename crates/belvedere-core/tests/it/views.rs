@@ -19,7 +19,7 @@ const PERSPECTIVE: Projection = Projection::Perspective { fov_y: 0.8 };
 const ORTHOGRAPHIC: Projection = Projection::Orthographic { height: 2500.0 };
 
 fn earth(s: &Similarity) -> EarthCurvature {
-    // A small planet, so that the bend is seen.
+    // A small planet, so that the curvature is large.
     EarthCurvature { eye: s.point(DVec3::new(100.0, -200.0, 900.0)), radius: s.length(2e5), refraction: 0.13 }
 }
 

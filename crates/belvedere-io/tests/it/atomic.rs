@@ -1,4 +1,4 @@
-//! Outputs are there whole or not at all.
+//! Output files are written whole or not at all.
 
 use belvedere_io::IoError;
 use belvedere_io::atomic::{check_output, write_atomic};
@@ -6,7 +6,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// A folder of its own, removed at the end.
+/// A temporary folder, removed at the end.
 pub(crate) struct Folder(pub(crate) PathBuf);
 
 impl Folder {

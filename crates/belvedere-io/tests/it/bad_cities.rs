@@ -1,4 +1,4 @@
-//! Cities broken in every way we know: one clear line with the place and what to do, or a repair that is counted; soon, and without NaN.
+//! Cities broken in every way we know give one clear line with the place and what to do, or a counted repair; quickly and without NaN.
 
 use crate::support_files::Folder;
 use belvedere_io::{Limits, load_city};
@@ -6,16 +6,16 @@ use belvedere_scene::City;
 use serde_json::{Value, json};
 use std::time::Instant;
 
-/// What makes a file broken.
+/// The change that breaks a file.
 type Change = Box<dyn Fn(&mut Value)>;
 
-/// What must come of a file.
+/// The expected result of a file.
 enum Want {
-    /// An error that holds these words.
+    /// An error that contains these words.
     Error(&'static str),
-    /// A warning that holds these words.
+    /// A warning that contains these words.
     Warning(&'static str),
-    /// Nothing to say.
+    /// No error and no warning.
     Fine,
 }
 use Want::{Error, Fine, Warning};
@@ -56,7 +56,7 @@ fn is_finite(city: &City) -> bool {
     city.buildings.iter().all(of)
 }
 
-/// A box of 10 x 10 x 8 m, and a tree that is nowhere in particular.
+/// A box of 10 x 10 x 8 m.
 fn cube() -> Value {
     json!({
         "type": "CityJSON", "version": "2.0",

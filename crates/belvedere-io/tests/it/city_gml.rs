@@ -1,4 +1,4 @@
-//! CityGML: what it says of buildings and of everything else, and how it breaks.
+//! CityGML: buildings, everything else in it, and broken files.
 
 use crate::support_files::Folder;
 use belvedere_io::{CityFile, Limits, Loaded, load_city};

@@ -1,4 +1,4 @@
-//! OpenStreetMap's PBF: files made here byte by byte, how they break, and a real extract.
+//! OpenStreetMap's PBF: files made here byte by byte, broken ones, and a real extract.
 
 use crate::support_files::Folder;
 use belvedere_io::{CityFile, Limits, Loaded, load_city};
@@ -57,7 +57,7 @@ struct Extract {
     words: Vec<String>,
     nodes: Vec<(i64, f64, f64)>,
     groups: Vec<u8>,
-    /// What the type of members is written as; ways are 1.
+    /// The number written for the type of members; 1 stands for ways.
     member_type: u64,
 }
 
@@ -188,7 +188,7 @@ fn ways_and_multipolygons_become_a_city() {
     }
 }
 
-/// What the surfaces of a building reach over its ground: underside and top, metres.
+/// Lowest and highest z of the surfaces of a building, metres above its ground.
 fn reach(b: &belvedere_scene::Building) -> [f64; 2] {
     let all = b.faces.iter().flat_map(|f| &f.rings).flatten().map(|p| p.z);
     all.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], z| [lo.min(z), hi.max(z)])
@@ -228,7 +228,7 @@ fn parts_float_stand_on_each_other_and_hide_underground() {
     let tower = find("way/1").expect("there");
     assert_eq!((tower.name.as_str(), tower.height_m, reach(tower)), ("Tower", 66.0, [0.0, 66.0]));
     assert!(["way/2", "way/3", "way/4", "way/5", "way/10"].iter().all(|id| find(id).is_none()));
-    // between 10 and 50 m there is the shaft alone: no wall of the outline
+    // between 10 and 50 m there is only the shaft: no wall of the outline
     let wide = |z: f64| {
         let crossing =
             tower.faces.iter().filter(|f| f.rings[0].iter().any(|p| p.z < z) && f.rings[0].iter().any(|p| p.z > z));

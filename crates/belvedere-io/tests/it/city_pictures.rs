@@ -1,4 +1,4 @@
-//! Pictures on the faces of city models: the right part of the right picture at every place, and models whose pictures are amiss.
+//! Pictures on the faces of city models: every point has the right part of the right picture; and models with missing or broken pictures.
 
 use crate::support_files::Folder;
 use belvedere_io::city::{CityColors, CityGround, surface};
@@ -19,7 +19,7 @@ fn write_picture(path: &Path) {
     png::write(path, false, 2, 2, Channels::Rgb, &[RED, GREEN, BLUE, WHITE].concat(), &[]).expect("a picture");
 }
 
-/// A block of 10 m whose south wall (y = 0) wears the picture upright.
+/// A block of 10 m whose south wall (y = 0) has the picture upright.
 fn city_json(image: &str, wall: Value) -> Value {
     let none = json!([[null]]);
     json!({
@@ -72,7 +72,7 @@ fn city_gml(image: &str) -> String {
     )
 }
 
-/// A model in a folder with its picture.
+/// Loads a model from a folder that also has its picture.
 fn load(name: &str, text: &str) -> Loaded<CityFile> {
     let folder = Folder::new();
     let model = folder.file(name, text.as_bytes());
@@ -87,7 +87,7 @@ fn mesh(city: &CityFile) -> Mesh {
     Mesh::textured(&file.positions, file.triangles, file.colors, file.parts, file.texturing).expect("a mesh")
 }
 
-/// The colour at a place of a mesh that lies on one of its triangles.
+/// The colour of a mesh at a point on one of its triangles; `None` elsewhere.
 fn color(mesh: &Mesh, place: DVec3) -> Option<Color> {
     (0..mesh.triangles().len()).find_map(|t| {
         let [a, b, c] = mesh.corners(t);

@@ -1,4 +1,4 @@
-//! Pictures over terrain lie where they belong.
+//! Pictures draped over terrain are at the right position.
 
 use crate::atomic::Folder;
 use belvedere_io::crs::Transform;
@@ -32,7 +32,7 @@ fn pixel_of(d: &Drape, p: DVec2) -> DVec2 {
     DVec2::new(a[0] * p.x + a[1] * p.y + a[2], a[3] * p.x + a[4] * p.y + a[5])
 }
 
-/// Law: in another CRS the colour at a place is that of the source at the same place.
+/// Law: in another CRS the colour at a point is that of the source at the same point.
 #[test]
 fn reprojected_drapes_keep_their_places() {
     for (dem, picture) in [
@@ -72,7 +72,7 @@ fn reprojected_drapes_keep_their_places() {
             beside += off(2);
         }
         let mean = f64::from(sum) / f64::from(3 * count);
-        // nearest against bilinear costs half a pixel of detail, two pixels beside cost far more
+        // nearest against bilinear differs by about half a pixel of detail, an offset of two pixels by far more
         assert!(count > 500 && 2 * sum < beside, "{picture}: {count} pixels, {mean} levels off, {beside} beside {sum}");
     }
 }
@@ -157,7 +157,7 @@ fn odd_rasters_as_drapes_end_well() {
         if !name.ends_with(".tif") && !name.ends_with(".hgt") {
             continue;
         }
-        // over its own place, if it says one in metres
+        // over the extent of the picture, where it has one
         let corners = GeoTiff::open(&path, Limits::default()).ok().and_then(|t| t.value.info().corners());
         let corners = corners.unwrap_or([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]);
         let side = |k: usize, f: fn(f64, f64) -> f64| corners.iter().map(|c| c[k]).reduce(f).unwrap();

@@ -1,4 +1,4 @@
-//! GeoPackages: a real one beside the GeoJSON made of it, one with every field odd, and broken ones.
+//! GeoPackages: a real one against the GeoJSON made from it, one with unusual values in every field, and broken ones.
 
 use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::{Geometry, Limits, Loaded, Vectors, load_city, load_vectors};
@@ -280,7 +280,7 @@ fn tables_in_several_systems_come_to_that_of_the_first() {
     let want = Transform::new(&degrees, &utm).unwrap().forward_one(glam::DVec2::new(15.0, 49.6)).unwrap();
     assert!((value.features[1].geometry.vertices().next().unwrap().xy - want).length() < 1e-6);
     assert!(warnings.iter().any(|w| w.contains("taken to EPSG:32633")), "{warnings:?}");
-    // Undefined degrees are said; an undefined plane is nowhere.
+    // Undefined degrees give a warning; an undefined plane is an error.
     let one = |srs_id: i64| Package::new().table("a", srs_id).row("a", line([1.0, 2.0, 3.0, 4.0], srs_id as i32), "");
     assert!(one(0).load().unwrap().warnings[0].contains("taken as WGS 84"));
     for (srs_id, said) in [(-1, "undefined plane"), (77, "does not list"), (100_002, "is in \"lost\"")] {
@@ -377,7 +377,7 @@ fn a_log_beside_the_file_is_spoken_of_and_files_in_that_mode_are_read() {
     assert!(loaded.warnings[0].contains("a.gpkg-wal (3 bytes)"), "{:?}", loaded.warnings);
     assert_eq!(std::fs::read(&path).unwrap(), bytes);
     assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 2);
-    // The content tells the format, not the name.
+    // The format is recognised by the content, not by the name.
     let other = dir.path().join("a.dat");
     std::fs::write(&other, &bytes).unwrap();
     assert_eq!(load(&other).unwrap().value.format, "GeoPackage");

@@ -1,4 +1,4 @@
-//! GeoTIFF: files made on the spot. Round trips through every layout, and headers that lie.
+//! GeoTIFF: files made by the tests. Round trips through every layout, and headers with wrong values.
 
 use crate::tiff_writer::{Entry, PLAIN, Style};
 use belvedere_io::geotiff::write_geotiff;
@@ -213,7 +213,7 @@ fn a_mask_is_written_as_no_data() {
     std::fs::remove_file(&path).unwrap();
 }
 
-/// Reads hostile bytes: whatever comes, it comes soon and is one sentence.
+/// Reads hostile bytes and checks that it takes no longer than a minute and that an error is one sentence.
 fn survive(bytes: &[u8], what: &str) -> Result<Raster, String> {
     let start = Instant::now();
     let result = read(bytes);

@@ -1,4 +1,4 @@
-//! Kinds of files that were refused or misread once, made in many spellings: meshes, volumes, features, grids.
+//! Kinds of files that were once refused or misread, made in many variants: meshes, volumes, features, grids.
 
 use crate::support_files::Folder;
 use belvedere_io::{Geometry, Limits, MeshFile, TerrainRequest, VolumeRequest, lines_on_terrain, load_mesh};
@@ -167,7 +167,7 @@ fn gltf_parts_that_name_parts_that_are_not_there_are_one_sentence() {
     }
 }
 
-/// One body, written in the spaces that programs use.
+/// One volume, written in the coordinate spaces (NRRD `space`) that programs use.
 #[test]
 fn volumes_of_one_body_stand_at_one_place() {
     let folder = Folder::new();
@@ -248,7 +248,7 @@ fn a_segment_per_point_is_a_line() {
     assert!(loaded.warnings[0].contains("5 segments of a single point"), "{:?}", loaded.warnings);
 }
 
-/// Records apart, behind anything, in any order: where the index says they are.
+/// Records with gaps between them, in any order, are found at the offsets in the index.
 #[test]
 fn the_index_of_a_shapefile_tells_where_its_records_are() {
     let folder = Folder::new();
@@ -323,7 +323,7 @@ fn grids_with_commas_customary_voids_and_feet() {
         assert_eq!(found.value.void_samples, 7, "{odd}: {:?}", found.warnings);
         assert!(found.warnings.iter().any(|w| w.contains("taken as voids")), "{odd}: {:?}", found.warnings);
     }
-    // a value that is said to mean no data settles it
+    // a given no-data value takes precedence
     let said = TerrainRequest { nodata: Some(-1.0), ..usual.clone() };
     assert_eq!(load(&grid(&folder, "c.asc", point, "-32768"), &said).value.void_samples, 0);
     let feet = r#"PROJCS["NAD_1983_StatePlane_New_Mexico_Central_FIPS_3002_Feet",GEOGCS["GCS_North_American_1983",DATUM["D_North_American_1983",SPHEROID["GRS_1980",6378137.0,298.257222101]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["False_Easting",1640416.66666667],PARAMETER["False_Northing",0.0],PARAMETER["Central_Meridian",-106.25],PARAMETER["Scale_Factor",0.9999],PARAMETER["Latitude_Of_Origin",31.0],UNIT["Foot_US",0.304800609601219]]"#;
@@ -344,7 +344,7 @@ fn features_without_a_system_lie_on_ground_without_one() {
     let path = grid(&folder, "a.asc", |v| v.to_string(), "");
     let ground = TerrainRequest { crs: belvedere_io::CrsChoice::Local, ..TerrainRequest::default() };
     let ground = load_terrain(&[path], &ground, &Progress::silent()).unwrap().value.heightfield;
-    // both beyond any degree and within
+    // coordinates both outside and inside the range of degrees
     for (a, b) in [([120.0, 380.0], [290.0, 390.0]), ([120.0, 220.0], [290.0, 230.0])] {
         let text = format!(r#"{{"type":"LineString","coordinates":[{a:?},{b:?}]}}"#);
         let text = text.replace("220.0", "85.0").replace("230.0", "86.0");

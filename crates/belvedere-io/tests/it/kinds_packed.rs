@@ -1,4 +1,4 @@
-//! Everything that is read is also read out of gzip and ZIP, whatever lies beside it there, and archives that cannot be are told.
+//! Every kind of file is also read from gzip and ZIP, whatever else is in the archive, and other archives are errors.
 
 use crate::support_files::Folder;
 use belvedere_io::{Limits, TerrainRequest, VolumeRequest, load_city, load_mesh, load_molecule, load_terrain};
@@ -12,7 +12,7 @@ const GPX: &str = r#"<gpx><trk><name>Way</name><trkseg><trkpt lat="46.92" lon="1
 const ATOM: &str = "ATOM      1  O5'  DC A   1      18.935  34.195  25.617  1.00 64.35           O\n";
 const CITY: &str = r#"{"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],"translate":[0,0,0]},"vertices":[[0,0,0],[9,0,0],[9,9,0],[0,9,0],[0,0,5],[9,0,5],[9,9,5],[0,9,5]],"CityObjects":{"b":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"1","boundaries":[[[0,3,2,1]],[[4,5,6,7]],[[0,1,5,4]],[[1,2,6,5]],[[2,3,7,6]],[[3,0,4,7]]]}]}}}"#;
 
-/// A shapefile of one line, with its system and names.
+/// A shapefile of one line, with its coordinate system and names.
 fn shapefile() -> Vec<(&'static str, Vec<u8>)> {
     let points: [f64; 4] = [11.40, 46.92, 11.41, 46.93];
     let mut content = 3i32.to_le_bytes().to_vec();
@@ -48,7 +48,7 @@ fn zip(entries: &[(&str, Vec<u8>)]) -> Vec<u8> {
     archive.finish().expect("packed").into_inner()
 }
 
-/// What loaders say of a file: something that tells what was read, or the error.
+/// The result of loading a file: a text that identifies the content, or the error.
 fn read(path: &Path, kind: &str) -> Result<String, String> {
     let limits = Limits::default();
     let error = |e: belvedere_io::IoError| e.to_string();
@@ -68,7 +68,7 @@ fn read(path: &Path, kind: &str) -> Result<String, String> {
     }
 }
 
-/// A kind of file, and the names and bytes of one and of what belongs to it.
+/// A kind of file, and names and bytes of an example and its sidecar files.
 type Kind = (&'static str, Vec<(&'static str, Vec<u8>)>);
 
 fn kinds() -> Vec<Kind> {
@@ -162,7 +162,7 @@ fn archives_that_do_not_tell_what_is_meant_are_one_sentence() {
     assert!(error.contains("holds no c.gpx"), "{error}");
 }
 
-/// A thousand times as large as they look.
+/// Archives of zeros, which expand to far more than their size.
 #[test]
 fn archives_do_not_grow_beyond_the_limits() {
     let folder = Folder::new();

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
-/// File, atoms, residues, chains, waters, atoms at other places, and how many atoms of some elements.
+/// File, atoms, residues, chains, waters, alternate positions, and the number of atoms of some elements.
 type Row = (&'static str, usize, usize, usize, usize, usize, &'static [(&'static str, usize)]);
 
 const FILES: &[Row] = &[
@@ -35,7 +35,7 @@ fn real_molecules_hold_what_a_script_counts() {
         for &(symbol, n) in elements {
             assert_eq!(m.atoms().iter().filter(|a| a.element.symbol() == symbol).count(), n, "{name} {symbol}");
         }
-        // Chemistry: nothing has more partners than its element allows, and nearly every hydrogen has one.
+        // Chemistry: hardly any atom has more bonds than its element allows, and nearly every hydrogen has one.
         let mut partners = vec![0usize; m.atoms().len()];
         m.bonds().iter().flatten().for_each(|&i| partners[i as usize] += 1);
         let crowded = m.atoms().iter().zip(&partners).filter(|(a, n)| {
@@ -93,7 +93,7 @@ fn models_locations_hetero_groups_and_named_bonds() {
     let m = &file.molecule;
     assert_eq!((file.models, file.alternates, file.named_bonds), (2, 1, 1));
     let told: Vec<_> = (0..m.atoms().len()).map(|i| (m.atoms()[i].serial, m.name_of(i))).collect();
-    // Of CA the likelier place; of CB the only one.
+    // CA at its likelier position, CB at its only one.
     let expected = [
         (1, "atom N of chain A ALA 5"),
         (3, "atom CA of chain A ALA 5"),
@@ -211,7 +211,7 @@ fn files_cut_short_anywhere_are_read_or_told() {
         }
     }
     assert!(read > 100, "what is whole is read: {read}");
-    // Noise.
+    // Random bytes.
     let noise: Vec<u8> = (0..20_000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
     for name in ["a.pdb", "a.cif", "a.pdb.gz", "a.ent"] {
         made(name, &noise).expect_err("no molecule");

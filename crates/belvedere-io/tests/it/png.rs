@@ -1,4 +1,4 @@
-//! PNG: what is written is what is read, with its text, the same bytes every time.
+//! PNG: pictures and texts are read as they were written, and the bytes are the same every time.
 
 use crate::atomic::Folder;
 use belvedere_io::png::{Channels, encode, read, write};

@@ -1,4 +1,4 @@
-//! Terrain: exact where it can be, measured where it is resampled, never a void that leaks.
+//! Terrain: exact where no resampling is needed, with a measured error where it is, and voids never blend into heights.
 
 use crate::atomic::Folder;
 use crate::tiff_writer::PLAIN;
@@ -98,7 +98,7 @@ fn web_mercator_is_said_to_be_too_long() {
     assert!((utm.source_spacing_m - DVec2::splat(61.7)).abs().max_element() < 0.2, "{}", utm.source_spacing_m);
 }
 
-/// The source's own numbers, read without the loader of terrain.
+/// The samples of the source, read without the terrain loader.
 struct Tile {
     heights: Vec<f64>,
     side: usize,
@@ -167,7 +167,7 @@ fn resampled_nodes_are_bilinear_and_voids_do_not_leak() {
     assert!((terrain.source_spacing_m - DVec2::new(68.5, 92.5)).abs().max_element() < 0.1);
 }
 
-/// Heights at four places, bilinear in the source, by pyproj and numpy.
+/// Heights at four points, bilinear in the source, by pyproj and numpy.
 #[test]
 fn andorra_in_the_scene_is_andorra() {
     let Some(path) = data("andorra/N42E001.hgt") else { return };
@@ -374,7 +374,7 @@ fn feet_and_rotation_become_metres_and_axes() {
     let (local, _) = load(&[path], &request).unwrap();
     assert!((local.heightfield.spacing() - 100.0 * foot).abs().max_element() < 1e-9);
     assert_eq!(local.heightfield.node(3, 4).unwrap().z, 7.0);
-    // a raster turned by 30 degrees: a linear field must come out as it is
+    // a raster turned by 30 degrees: a linear field must be reproduced exactly
     let Some(rotated) = data("odd/rotated.tif") else { return };
     let (terrain, _) = load(&[rotated], &TerrainRequest::default()).unwrap();
     assert!(terrain.resample_error.unwrap().max_m < 1e-3, "{:?}", terrain.resample_error);
@@ -525,7 +525,7 @@ fn requests_that_cannot_be_met_are_one_sentence() {
     assert!(matches!(error, IoError::Cancelled(_)), "{error}");
 }
 
-/// Every odd raster: the right terrain or one clear sentence that names the file, and no endless work.
+/// Every unusual raster gives the right terrain or one clear sentence that names the file, within a minute.
 #[test]
 fn odd_rasters_end_well() {
     let Some(folder) = data("odd") else { return };
@@ -540,7 +540,7 @@ fn odd_rasters_end_well() {
         }
         seen += 1;
         let result = load(&[path], &TerrainRequest::default());
-        // No measurement: what else the machine does must not matter.
+        // A generous limit, so that other load on the machine does not matter.
         assert!(start.elapsed().as_secs_f64() < 60.0, "{name}: {:?}", start.elapsed());
         let good = ["byte", "float32", "float_nan", "gotthard_", "int16", "predictor-3", "rotated", "test_esri"];
         match result {

@@ -148,7 +148,7 @@ fn materials_place_their_picture_upright_and_parts_keep_their_names() {
         let found = layer.mesh.surface_color_at(t, layer.mesh.weights_at(t, at), 0.0);
         assert_eq!(found, Some(Color::rgb(color[0], color[1], color[2])), "{p:?}");
     }
-    // From afar it is the mean of its light.
+    // From far away the colour is the mean of the picture's linear light.
     let far = layer.mesh.surface_color_at(0, [0.2, 0.3, 0.5], 1.0).expect("a colour");
     assert!([far.r, far.g, far.b].iter().all(|v| (170..190).contains(v)), "{far:?}");
 }

@@ -1,4 +1,4 @@
-//! Vector files of the data collection and made-up ones: counts, extents, broken files, and how lines come to lie on terrain.
+//! Vector files of the data collection and made-up ones: counts, extents, broken files, and lines placed on terrain.
 
 use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::{Geometry, Loaded, Vectors, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain};
@@ -315,7 +315,7 @@ fn shapefiles_with_z_and_multipoints_and_null_shapes() {
     assert!(text.contains("record 1"), "{text}");
 }
 
-/// A tilted plane of `n` x `n` nodes, 100 m apart, around a place.
+/// A tilted plane of `n` x `n` nodes, 100 m apart, around a point.
 fn plane(middle: DVec2, n: usize, void: impl Fn(usize, usize) -> bool) -> Heightfield {
     let corner = middle + DVec2::new(-50.0, 50.0) * (n - 1) as f64;
     let heights = (0..n * n).map(|i| 1000.0 + (i % n) as f32 * 3.0 - (i / n) as f32 * 2.0).collect();
@@ -462,7 +462,7 @@ fn unknown_systems_are_refused() {
     assert!(load_vectors(Path::new("/")).is_err());
 }
 
-/// What is left out of a file does not lend its name to what follows.
+/// The name of an element that is left out does not pass to the next one.
 #[test]
 fn gpx_elements_begin_anew_and_what_is_left_out_is_told() {
     let dir = tempfile::tempdir().unwrap();

@@ -54,7 +54,7 @@ fn bytes(number: Number, order: ByteOrder) -> Vec<u8> {
     expected().flat_map(|v| each(v as i32)).collect()
 }
 
-/// What they are: 7 to 125, so that every type holds them.
+/// The values of the made-up volumes: 7 to 125, so that every type can hold them.
 fn expected() -> impl Iterator<Item = f32> {
     (0..60).map(|i| 7.0 + 2.0 * i as f32)
 }
@@ -140,7 +140,7 @@ fn base64(bytes: &[u8]) -> String {
     out
 }
 
-/// A length in the order and width of a file.
+/// A length in the byte order and width of a file.
 fn length(n: usize, wide: bool, order: ByteOrder) -> Vec<u8> {
     let le = if wide { (n as u64).to_le_bytes().to_vec() } else { (n as u32).to_le_bytes().to_vec() };
     if order == ByteOrder::Big { le.into_iter().rev().collect() } else { le }

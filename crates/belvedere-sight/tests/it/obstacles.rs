@@ -4,7 +4,7 @@ use belvedere_scene::{BoxLayer, BoxShape, Color, Heightfield, Layer, LayerKind, 
 use belvedere_sight::{Ground, Obstacles, SightOptions};
 use belvedere_testkit::synthetic::{camera, march, mountains, on_a_small_planet, scene};
 
-/// Smallest gap by looking at ten thousand points of the segment.
+/// Smallest height above the surface at ten thousand points of the segment.
 fn dense_gap(hf: &Heightfield, a: DVec3, b: DVec3) -> f64 {
     let gaps = (0..=10_000).filter_map(|i| {
         let p = a.lerp(b, f64::from(i) / 10_000.0);
@@ -21,7 +21,7 @@ fn smallest_gap_of_a_segment_is_that_of_ten_thousand_points() {
     let mut hidden = 0;
     for i in 0..400 {
         let r = |k: u32| (f64::from(i * 7 + k) * 0.754_877_666).fract();
-        // Some start or end beside the terrain, some run along grid lines.
+        // Some start or end outside the terrain, some run along grid lines.
         let mut a = DVec3::new(size * (1.4 * r(0) - 0.2), size * (1.4 * r(1) - 0.2), 1050.0 + 400.0 * r(2));
         let b = DVec3::new(size * (1.4 * r(3) - 0.2), size * r(4), 1050.0 + 400.0 * r(5));
         if i % 10 == 0 {

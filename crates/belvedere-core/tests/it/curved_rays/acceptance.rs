@@ -1,4 +1,4 @@
-//! What the paper claims of its camera, measured: figures of section 12 of our specification, printed with `--nocapture`.
+//! The paper's claims about its camera, measured: figures of section 12 of our specification, printed with `--nocapture`.
 
 #![allow(clippy::print_stdout, reason = "figures to read")]
 
@@ -91,7 +91,7 @@ fn best_pinhole(places: &[DVec3], pixels: &[DVec2]) -> [f64; 12] {
     least_eigenvector(normal)
 }
 
-/// Of a symmetric matrix, by Jacobi's rotations.
+/// The eigenvector of the least eigenvalue of a symmetric matrix, by Jacobi rotations.
 fn least_eigenvector(mut a: [[f64; 12]; 12]) -> [f64; 12] {
     let mut v: [[f64; 12]; 12] = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
     for _ in 0..60 {
@@ -120,7 +120,7 @@ fn least_eigenvector(mut a: [[f64; 12]; 12]) -> [f64; 12] {
     v.map(|row| row[least])
 }
 
-/// Largest distance between the images of an object and those of the pinhole that fits them best, to the radius of its image.
+/// Largest distance between the images of an object's points and those by the best fitting pinhole, relative to the radius of its image.
 fn distortion(view: &View, center: DVec3, half: f64) -> Option<f64> {
     let lattice = (0..125).map(|i| DVec3::new((i % 5) as f64, (i / 5 % 5) as f64, (i / 25) as f64) / 2.0 - 1.0);
     let shape: Vec<DVec3> = lattice.collect();
@@ -171,7 +171,7 @@ fn a_pinhole_does_not_distort() {
     assert!(worst < 1e-6, "{worst:e}");
 }
 
-/// "Rays are C1": the directions just before and after each joint differ by no more than the step lets see; broken rays have a kink.
+/// "Rays are C1": the directions just before and after each joint differ by no more than the step explains; broken rays have a kink.
 #[test]
 fn rays_have_one_direction_at_each_joint() {
     let spec = cameras::street_corner();

@@ -26,7 +26,7 @@ fn true_error(view: &View, record: usize, p0: DVec3, p1: DVec3) -> Option<f64> {
     Some(worst)
 }
 
-/// A random edge around a point that the picture sees.
+/// A random edge around a point within the picture.
 fn edge(view: &View, random: &mut Random, length: f64) -> (DVec3, DVec3) {
     let pixel = DVec2::new(random.range(0.0, 1280.0), random.range(0.0, 720.0));
     let depth = random.range(10.0, 600.0);
@@ -86,7 +86,7 @@ fn edges_with_known_ends_have_the_same_bound() {
                 bounded += u32::from(found > 0.0 && within.is_finite());
             }
             assert!(compared > 0, "{model:?}: {compared}");
-            // The original model is convex only nearly.
+            // The original model is only nearly convex.
             assert!(bounded > 0 || model == Model::Original || view.records() > 1, "{model:?}");
         }
     }

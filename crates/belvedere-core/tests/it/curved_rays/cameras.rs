@@ -122,7 +122,7 @@ pub(crate) fn chain(knots: &[DVec3], back: f64, share: f64) -> Spec {
     Spec { turns }
 }
 
-/// A random chain of `turns` turns that bend more or less; `None` if the dice give an invalid one.
+/// A random chain of `turns` turns that bend more or less; `None` if the random numbers give an invalid one.
 pub(crate) fn random_chain(random: &mut Random, turns: usize, model: Model, bend: f64) -> Option<Spec> {
     let mut knots = vec![vec(random.range(-5.0, 5.0), random.range(90.0, 120.0), random.range(-5.0, 5.0))];
     let mut direction = DVec3::Y;

@@ -138,7 +138,7 @@ fn overlapping_cells_show_a_point_twice() {
     assert!(twice > 10, "only {twice} points of {} chains are seen twice: the case is too tame", specs.len());
 }
 
-/// Drawing once per record with the margins gives each sighting exactly once, with the same numbers.
+/// Drawing once per record with the margins gives each image of a point exactly once, with the same numbers.
 #[test]
 fn records_share_the_work() {
     for spec in [cameras::zigzag(), cameras::long_bend()] {
@@ -201,7 +201,7 @@ fn rays_of_another_camera_are_refused() {
     assert!(error.to_string().contains("another camera"), "{error}");
 }
 
-/// Moving a plane by next to nothing moves the picture by next to nothing, down to turns of width 0.
+/// A tiny move of a plane moves the picture only a little, down to turns of width 0.
 #[test]
 fn narrow_turns_tend_to_the_kink() {
     let spec = cameras::street_corner();

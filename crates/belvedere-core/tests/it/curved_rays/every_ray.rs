@@ -1,5 +1,5 @@
-//! The law of curved rays, for cameras of every kind that the conditions let through: what a ray passes has the ray's pixel and depth
-//! among its images.
+//! The law of curved rays, for valid cameras of every kind: each point of a ray has the ray's pixel and the point's depth among its
+//! images.
 
 use belvedere_core::map::curved_rays::CurvedRays;
 use belvedere_core::map::split_rays::ImageRegion;
@@ -8,25 +8,25 @@ use belvedere_testkit::Random;
 use belvedere_testkit::rays::{MODELS, RandomRays, random_split};
 
 const IMAGE: [u32; 2] = [640, 480];
-/// Some throws give no camera.
+/// More than the cameras: some seeds give no valid one.
 const SEEDS: u64 = 16_800;
-/// Pixels to a camera.
+/// Pixels per camera.
 const PIXELS: usize = 4;
 
-/// What has been looked at.
+/// Counts and errors of what was checked.
 #[derive(Debug, Default)]
 struct Tried {
     points: usize,
-    /// Beyond the common line of a turn that their ray comes to, and of these before and after the turn.
+    /// Points beyond the common line of the turn before or after their segment; `before` counts those on the segment before the turn.
     beyond_line: usize,
     before: usize,
-    /// Seen more than once.
+    /// Points with more than one image.
     twice: usize,
     worst_px: f64,
     worst_depth: f64,
-    /// Images of places, gone back along their rays.
+    /// Images of random points that were traced back along their rays.
     back: usize,
-    /// Points without their pixel and depth.
+    /// Messages on points whose images lack the expected pixel and depth.
     wrong: Vec<String>,
 }
 
@@ -43,7 +43,7 @@ impl Tried {
     }
 }
 
-/// A pixel of the picture; corners and sides too.
+/// A random position in the picture, often a corner or on a side.
 fn pixel(random: &mut Random) -> DVec2 {
     let size = DVec2::from_array(IMAGE.map(f64::from));
     let at = DVec2::new(random.unit(), random.unit());
@@ -112,7 +112,7 @@ fn rays_of(view: &View) -> CurvedRays {
     view.curved_rays().cloned().expect("curved rays")
 }
 
-/// The other way round: an image in the picture is where a ray passes the point.
+/// The converse: the ray of every image of a point passes through the point.
 fn check_back(view: &View, random: &mut Random, tried: &mut Tried, name: &str) {
     let around = Aabb { min: view.pinhole().eye - 600.0, max: view.pinhole().eye + 600.0 };
     for _ in 0..10 {

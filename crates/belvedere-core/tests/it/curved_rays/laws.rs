@@ -23,7 +23,7 @@ fn continuity(model: Model) -> Continuity {
     }
 }
 
-/// Where some rays of the picture cross the planes of the turns, and how.
+/// Where some rays of the picture cross the planes of the turns, and their directions there.
 fn joints(spec: &Spec, model: Model) -> Vec<Joint> {
     let view = spec.view(model, &Similarity::IDENTITY);
     let mut joints = Vec::new();
@@ -47,7 +47,7 @@ fn map_case(name: &str, spec: fn() -> Spec, model: Model) -> MapCase<CurvedRays>
             for turn in &mut spec.turns {
                 *turn = TurnSpec { viewpoint: DVec3::ZERO, ..*turn };
             }
-            spec.turns.truncate(1); // later turns stand where the first one leads
+            spec.turns.truncate(1); // later turns are placed for the rays that the first one bends
             spec.rays(model, &Similarity::IDENTITY)
         })
         .domain(0.5, in_picture)

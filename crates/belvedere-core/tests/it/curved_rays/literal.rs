@@ -1,4 +1,4 @@
-//! The paper's own constructions, with planes, lines and their intersections only, against the closed form.
+//! The paper's constructions, with planes, lines and their intersections only, against the closed form.
 //!
 //! Nothing here uses phi, m or the forms a and b: reference arcs are quadratic Bezier curves, other arcs their images from
 //! the centre A with the axis through both viewpoints, projections go through the intermediate viewpoint R.
@@ -63,7 +63,7 @@ fn modified_point(before: DVec3, turn: &TurnSpec, s: DVec3, u: f64) -> DVec3 {
     }
     let reference = control_points(before, turn, s_n);
     let p_n = bezier(reference, u);
-    // Any pair of corresponding points will do that is not in line with A and P_n, as S is at mid-arc.
+    // Any pair of corresponding points will do that is not in line with A and P_n; S at mid-arc is in line.
     let (from, to) = if (u - 0.5).abs() < 0.2 { (reference[0], control_points(before, turn, s)[0]) } else { (s_n, s) };
     let z = meet_lines(from, p_n, before, turn.viewpoint);
     meet_lines(z, to, center_a(before, turn, s), p_n)
@@ -234,7 +234,7 @@ fn original_projection_agrees_with_bisection() {
     for pixel in pixels(51, 300) {
         let depth = view.ray(pixel).pieces().unwrap()[1].depth;
         let x = view.ray(pixel).at(0.4 * depth[0] + 0.6 * depth[1]).unwrap().point;
-        // The ray passes t1 beyond the straight ray of the viewpoint on whose side X lies, seen from the other one.
+        // The ray meets t1 beyond the straight ray of the viewpoint on whose side of t1 X lies, as seen from the other viewpoint's.
         let straight = [DVec3::ZERO, turn.viewpoint].map(|eye| t1.meet(eye, x));
         let before_t1 = (x - t1.0).dot(t1.1) * (DVec3::ZERO - t1.0).dot(t1.1) > 0.0;
         let (mut low, other) = if before_t1 { (straight[0], straight[1]) } else { (straight[1], straight[0]) };

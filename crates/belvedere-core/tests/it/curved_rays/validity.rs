@@ -1,4 +1,4 @@
-//! Every condition of a valid camera has its own message, and its remedy heals it; what is no error works.
+//! Every condition of a valid camera has its own message, and its remedy corrects it; unusual but valid cameras work.
 
 use super::cameras::{self, pinhole};
 use belvedere_core::map::curved_rays::{CurvedRays, CurvedRaysError as E, Model, Pencil, Remedy, Sharpness, TurnSpec};
@@ -173,7 +173,7 @@ fn viewpoint_past_the_bend() {
     healed_or_later(&turn, remedy, &e);
 }
 
-/// The remedy heals its own condition; a later one may still ask for more.
+/// The remedy satisfies its own condition; a later condition may still fail.
 fn healed_or_later(turn: &TurnSpec, remedy: &Remedy, first: &E) {
     if let Err(later) = new(&[healed(turn, remedy)]) {
         assert_ne!(std::mem::discriminant(&later), std::mem::discriminant(first), "{first}\nbut then: {later}");
@@ -212,7 +212,7 @@ fn line_in_the_picture() {
     let E::LineInPicture { turn: 1, pixel, beyond, remedy } = &e else { panic!("{e}") };
     assert!(pixel.x == 0.0 && *beyond > 5.0, "{e}");
     new(&[healed(&turn, remedy)]).unwrap_or_else(|again| panic!("{e}\nbut then: {again}"));
-    // Nearest: half way there is still not enough.
+    // The remedy is the smallest move: 99 % of it is not enough.
     let Remedy::MovePoint { to, .. } = remedy else { panic!("{e}") };
     let Pencil::Line { point, dir } = turn.pencil else { panic!() };
     let half = TurnSpec { pencil: Pencil::Line { point: point.lerp(*to, 0.99), dir }, ..turn };
@@ -221,7 +221,7 @@ fn line_in_the_picture() {
 
 #[test]
 fn end_that_is_never_reached() {
-    // The viewpoint after the turn stands almost on t1, and t2 opens wide.
+    // The viewpoint after the turn is almost on t1, and t2 is at a wide angle to it.
     let turn =
         TurnSpec { t2: corner().t1 + DVec3::new(-66.0, 55.0, 0.0), viewpoint: DVec3::new(40.0, 80.0, 0.0), ..corner() };
     let e = error(&[turn]);
@@ -230,7 +230,7 @@ fn end_that_is_never_reached() {
     new(&[healed(&turn, remedy)]).unwrap_or_else(|again| panic!("{e}\nbut then: {again}"));
 }
 
-/// Bezier arcs of rays that hardly reach t2 cross: places would be seen twice, once mirrored.
+/// Bezier arcs of rays that barely reach t2 cross: points would be seen twice, once mirrored.
 #[test]
 fn rays_of_the_original_model_that_cross() {
     let mut crossed = 0;
@@ -286,7 +286,7 @@ fn near_past_the_start() {
     CurvedRays::new(&above, Model::Modified, &[side()]).unwrap_err();
 }
 
-/// Configurations that a construction with points A, R, S would stumble over.
+/// Configurations in which the construction with the points A, R, S is degenerate.
 #[test]
 fn unusual_but_valid() {
     let baseline_in = |direction: DVec3| TurnSpec { viewpoint: 20.0 * direction, ..corner() };
@@ -327,7 +327,7 @@ fn unusual_but_valid() {
     }
 }
 
-/// Any numbers whatever: an error of one readable sentence, or a camera without NaN.
+/// Arbitrary numbers give either an error of one readable sentence or a camera without NaN.
 #[test]
 fn hostile_specifications_never_panic() {
     let mut random = Random::new(0x405);
