@@ -1,4 +1,4 @@
-//! Which points a picture can show, in plan, and where its eye may be.
+//! Selection of the points that a picture can show, in plan, and the check of its eye.
 
 use crate::{Field, ReferencePoint};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection};
@@ -102,7 +102,7 @@ impl Wedge {
     }
 }
 
-/// Why a reference point is not worked for in this view.
+/// Why a reference point is left out in this view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LeftOut {

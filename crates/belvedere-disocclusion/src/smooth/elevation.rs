@@ -57,8 +57,8 @@ impl ElevationRows {
     }
 }
 
-/// Weight of an elevation row on a grid of so many intervals along its longer side, from the one stated for 128: it
-/// goes with the spacing, the square root of the way of [`super::grid_weight`].
+/// Weight of an elevation row on a grid of `intervals` intervals along its longer side, from the weight stated for 128 intervals: it
+/// is proportional to the spacing (that of [`super::grid_weight`] to its square).
 pub fn row_weight(weight: f64, intervals: f64) -> f64 {
     weight * 128.0 / intervals
 }

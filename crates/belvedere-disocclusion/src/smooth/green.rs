@@ -76,7 +76,7 @@ impl Green {
         k(x0, y0) + k(x0, y1) + k(x1, y0) + k(x1, y1)
     }
 
-    /// H^-1 between the bilinear values at two points: sixteen entries, gathered by distance into 36 looks.
+    /// H^-1 between the bilinear values at two points: sixteen entries, gathered by distance into 36 look-ups.
     #[inline(always)]
     pub fn between(&self, a: Between, b: Between) -> f64 {
         let (across, wx) = images([a.col, b.col], [a.x, b.x], self.cols);

@@ -30,8 +30,8 @@ pub enum SmoothError {
     },
 }
 
-/// Weight on a grid of so many intervals along the longer side from the weight stated for 128: w goes with the square
-/// of the spacing, because L does.
+/// Smoothness weight on a grid of `intervals` intervals along the longer side, from the weight stated for 128 intervals: w is
+/// proportional to the square of the spacing, because L is.
 pub fn grid_weight(w: f64, intervals: f64) -> f64 {
     let ratio = 128.0 / intervals;
     w * ratio * ratio

@@ -1,4 +1,4 @@
-//! A better eye for the quadratic program: less ground has to move if the camera moves a little.
+//! Viewpoint adjustment for the quadratic program: a small move of the camera reduces the displacement.
 
 use super::super::visibility_qp::Candidate;
 use super::super::{
@@ -12,7 +12,7 @@ use belvedere_scene::{Progress, Scene};
 /// Nodes of the solver's grid for the search over the whole box.
 const ROUGH_NODES: usize = 33;
 
-/// What the picture of the given eye asks for: an eye must not win by looking away.
+/// Points that the picture of the given eye must show; other eyes are judged by the same points, so that none wins by looking away.
 #[derive(Debug, Clone)]
 pub(super) struct RequiredPoints {
     pub(super) points: Vec<usize>,
@@ -56,7 +56,7 @@ impl TerrainSolver {
     }
 }
 
-/// The solver at one fineness.
+/// Solver on a grid of one resolution.
 struct Level {
     solver: TerrainSolver,
     memory: TerrainMemory,

@@ -1,4 +1,4 @@
-//! Solving beside the drawing: a picture waits for its ground only where that would fall too far behind.
+//! Terrain disocclusion on a thread of its own while pictures are drawn: a picture waits for its ground only if that would lag too far.
 
 use super::super::metrics::{Hides, Judge};
 use super::super::visibility_qp::ViewSight;
@@ -12,8 +12,8 @@ use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
-/// Terrain that makes way while pictures are drawn. A thread of its own solves for the newest view that was asked for; every
-/// picture gets the newest ground there is and says what of the features that ground shows it.
+/// Terrain disocclusion while pictures are drawn. A thread of its own solves for the newest view that was requested; every picture
+/// gets the newest ground that is solved, and the number of points that this ground hides.
 ///
 /// Which ground a picture gets depends on how fast the machine is: films are solved frame by frame instead ([`TerrainSolver`]).
 #[derive(Debug)]
@@ -32,7 +32,7 @@ pub struct LiveTerrain {
 pub struct LiveFrame {
     /// The displacement.
     pub stage: TerrainDisocclusion,
-    /// How many pictures ago the view was asked for that it was solved for, 0..=[`LiveTerrain::LAG`].
+    /// Number of pictures since the view was requested for which it was solved, 0..=[`LiveTerrain::LAG`].
     pub lag: u64,
     /// Reference points in the picture, farther from the eye than three times the guard.
     pub points: usize,
@@ -59,12 +59,12 @@ struct Ground {
 }
 
 impl LiveTerrain {
-    /// A picture waits rather than show ground that was solved for a view more than this many pictures before.
+    /// Largest lag, pictures: a picture waits rather than show ground that was solved for an earlier view than that.
     pub const LAG: u64 = 3;
 
     /// Starts the thread.
     ///
-    /// * `solver`: with the time between two pictures, if the ground shall move gently.
+    /// * `solver`: with a time step between two pictures, if the ground is to move smoothly.
     pub fn new(solver: TerrainSolver, scene: Arc<Scene>) -> Self {
         let (orders, inbox) = channel();
         let (outbox, answers) = channel();
@@ -95,8 +95,8 @@ impl LiveTerrain {
         }
     }
 
-    /// Asks for ground for the view, and gives the newest that there is, whatever view it was solved for: nothing waits. `None`
-    /// before the first is solved.
+    /// Requests ground for the view and returns the newest that is solved, for whatever view, without waiting. `None` before the
+    /// first is solved.
     ///
     /// # Errors
     /// As [`LiveTerrain::frame`].
@@ -155,7 +155,7 @@ impl Drop for LiveTerrain {
     }
 }
 
-/// Solves for the newest view until nobody asks any more.
+/// Solves for the newest view until the inbox is closed.
 fn work(solver: &TerrainSolver, scene: &Scene, inbox: &Receiver<Order>, outbox: &Sender<Answer>, progress: &Progress) {
     let mut memory = TerrainMemory::default();
     let mut points: Arc<[ReferencePoint]> = Arc::new([]);

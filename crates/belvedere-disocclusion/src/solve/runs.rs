@@ -1,4 +1,4 @@
-//! Hidden places put together to parts of features.
+//! Merges hidden points into parts of features.
 
 use super::super::{Field, PointKind, ReferencePoint};
 use super::{UnresolvedReason, UnresolvedRun};
@@ -8,10 +8,10 @@ use std::collections::BTreeMap;
 /// Parts of features, gathered point by point.
 pub(super) struct Runs<'a> {
     field: &'a Field,
-    /// Points of a line or rim farther apart along it have others between them, which are seen.
+    /// Points of a line or rim farther apart than this, scene units, belong to different parts: those between them are seen.
     gap_m: f64,
     pub(super) out: Vec<UnresolvedRun>,
-    /// Runs inside areas by the blocks of the ground in which they lie, of so many cells.
+    /// Runs inside areas by the squares of the ground in which they lie, of `BLOCK` grid cells per side.
     blocks: BTreeMap<(usize, usize, i64, i64), usize>,
 }
 

@@ -1,4 +1,4 @@
-//! Which points a picture shows or would show if nothing hid them: what its shares are of.
+//! Points that a picture shows or would show if nothing hid them; visible shares are shares of these.
 
 use super::super::{Field, ReferencePoint};
 use super::in_picture;

@@ -1,4 +1,4 @@
-//! What is asked of the program, and what it answers.
+//! Input and output of the visibility program.
 
 use crate::TerrainSettings;
 use belvedere_core::DVec2;
@@ -29,7 +29,7 @@ impl Candidate {
     }
 }
 
-/// How points are seen.
+/// Lines of sight from points to the eye.
 pub trait LinesOfSight: Sync {
     /// Appends the line of sight of the point at `grid` (grid coordinates) and height `z`, from the point to the eye, as a
     /// chain of (grid coordinates, height); nothing if the point has none, e.g. outside the domain of a stage.
@@ -66,9 +66,9 @@ impl LinesOfSight for StraightSight {
 pub struct QpOptions {
     /// Ground nearer than this to a candidate cannot hide it, cells.
     pub guard: f64,
-    /// Clearance asked of lines of sight, metres; fades over the fifth of the way next to the candidate.
+    /// Clearance required of lines of sight, metres; it fades over the fifth of the line next to the candidate.
     pub margin: f64,
-    /// How much of that clearance may lack, metres, fading likewise; > 0.
+    /// Tolerance of that clearance, metres, fading likewise; > 0.
     pub tolerance: f64,
     /// Share of both that is left at the candidate itself, 0..=1, of candidates at least `margin` above the ground; with the lowest
     /// lift it becomes less. At 0 rows next to candidates must be met to the millimetre, and there are twice as many.
@@ -105,7 +105,7 @@ impl QpOptions {
 pub struct QpProblem<'a> {
     /// Points that must be seen: those of the frame, dense along features.
     pub candidates: &'a [Candidate],
-    /// How they are seen.
+    /// Lines of sight of the candidates.
     pub sight: &'a dyn LinesOfSight,
     /// Displacement that the solution stays close to, at the solver's nodes; `None` = none. In mode `qp` the smoothed last
     /// frame, in mode `paper+qp` the smooth pass.
@@ -146,7 +146,7 @@ pub enum Reason {
     Infeasible(Certificate),
     /// Still missed, by these metres, when the rounds were used up.
     NotSettled {
-        /// Metres that lack.
+        /// Height by which rows are still missed, metres.
         lacks: f64,
     },
 }
@@ -193,7 +193,7 @@ pub struct QpResult {
     pub energy: f64,
     /// Wall time, milliseconds.
     pub milliseconds: f64,
-    /// Whether it was told to end before its end: what is missed may be more than is named.
+    /// Whether it was stopped before it was done: more may be missed than is listed.
     pub stopped: bool,
 }
 

@@ -4,7 +4,7 @@ use super::metric::Metric;
 use crate::smooth::Between;
 use belvedere_core::DVec2;
 
-/// Two places of a river.
+/// Two points of a river, by their indices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Stretch {
     pub(super) river: u32,
@@ -12,7 +12,7 @@ pub(super) struct Stretch {
     pub(super) downstream: u32,
 }
 
-/// What a row asks for.
+/// The condition of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Constraint {
     /// A node does not rise above its ceiling.

@@ -28,7 +28,7 @@ pub(super) enum RowKey {
     Sight { id: u32, at: DVec2 },
 }
 
-/// A row without a multiplier is forgotten after so many frames; at once if it never had one at the end of a frame.
+/// Frames after which a row without a multiplier is forgotten; at once if it never had one at the end of a frame.
 pub(super) const IDLE: u32 = 3;
 
 /// A row to be added.
@@ -74,7 +74,7 @@ pub(super) struct RowsInPlay {
     shared: Vec<Vec<f64>>,
 }
 
-/// How well rows are to be met.
+/// Tolerances within which rows are to be met.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Accuracy {
     /// Metres, by the active set.
@@ -284,7 +284,7 @@ fn extend(dual: &mut Dual, (rows, shared): (&[Row], &[Vec<f64>]), known: usize, 
     }
 }
 
-/// `a H^-1 b` of a row with others, with the widest registers at hand.
+/// Task for `a H^-1 b` of a row with others, with the widest available SIMD registers.
 struct Products<'a> {
     row: &'a Row,
     rows: &'a [Row],

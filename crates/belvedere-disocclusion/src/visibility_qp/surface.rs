@@ -157,18 +157,18 @@ impl Surface {
         self.displaced.renew(highest, |children| most(children));
     }
 
-    /// Nothing between `a` and `b` (grid) is higher.
+    /// Upper bound of the displaced ground between `a` and `b` (grid coordinates).
     pub(super) fn bound(&self, a: DVec2, b: DVec2) -> f64 {
         bound(&self.displaced, usize::MAX, a, b)
     }
 
-    /// Nothing of the undisplaced ground between `a` and `b` (grid) is higher.
+    /// Upper bound of the undisplaced ground between `a` and `b` (grid coordinates).
     pub(super) fn still_bound(&self, a: DVec2, b: DVec2) -> f64 {
         bound(&self.still, self.still.level_of(BLOCK as f64), a, b)
     }
 
-    /// Nothing of the displacement in a box (least and greatest corner, grid) is higher; and the factor of xy there that is farthest
-    /// from 0, per square cell of the field.
+    /// Upper bound of the displacement in a box (least and greatest corner, grid coordinates); and the factor of xy there that is
+    /// farthest from 0, per square cell of the field.
     pub(super) fn displaced_bound(&self, [low, high]: [DVec2; 2]) -> (f64, f64) {
         let (cols, rows) = (self.lattice.cols.max(2) - 1, self.lattice.rows.max(2) - 1);
         let [low, high] = [low, high].map(|c| c / self.lattice.step);

@@ -23,7 +23,7 @@ pub(super) struct Chord {
 pub(super) struct Clearance {
     /// Asked far from the point, metres.
     pub(super) margin: f64,
-    /// What may lack of it, metres far from the point.
+    /// Tolerance of that clearance far from the point, metres.
     pub(super) tolerance: f64,
     /// Share of both that counts at the point, 0..=1.
     pub(super) near: f64,
@@ -38,7 +38,7 @@ impl Clearance {
     }
 }
 
-/// A place where the ground comes too close.
+/// A position where the ground comes too close to a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Touch {
     /// Grid position.
@@ -53,11 +53,11 @@ pub(super) struct Touch {
     pub(super) excess: f64,
 }
 
-/// What is found along a part of a line.
+/// Result of walking along a part of a line.
 pub(super) struct Found {
-    /// The place that misses most.
+    /// The position where the clearance is missed most.
     pub(super) worst: Option<Touch>,
-    /// By how much the ground may rise before another place can be missed.
+    /// Height by which the ground may rise before the clearance is missed at another position, scene units.
     pub(super) room: f64,
 }
 
@@ -101,7 +101,7 @@ impl Chord {
         (from < to).then_some([from, to])
     }
 
-    /// Where counting begins and ends no kink need lie: the places that miss the asked clearance there, or else the room.
+    /// Tests the ends of a part, where no kink need lie: each is a position that misses the required clearance, or the room left there.
     pub(super) fn ends_of(&self, surface: &Surface, part: [f64; 2], clearance: &Clearance) -> [Result<Touch, f64>; 2] {
         part.map(|t| {
             let end = self.place(surface, t, clearance);
