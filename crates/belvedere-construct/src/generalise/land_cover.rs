@@ -1,4 +1,4 @@
-//! Land cover side by side: what overlaps on maps, so that each place is drawn once.
+//! Land cover without overlaps, so that each point of the ground is drawn once.
 
 use super::shapes::{Land, by_place, land_of, polygons_of, union, without_specks};
 use belvedere_core::DVec2;
@@ -7,7 +7,7 @@ use geo::{BooleanOps, Rect};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Kinds of land cover, what lies over the others first.
+/// Kinds of land cover, from the topmost down.
 const FROM_ABOVE: [LandCover; 6] =
     [LandCover::Road, LandCover::Rail, LandCover::Water, LandCover::Forest, LandCover::Green, LandCover::Other];
 /// Quarterings of the ground.

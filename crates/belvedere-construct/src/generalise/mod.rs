@@ -38,7 +38,7 @@ use rayon::prelude::*;
 
 /// Smallest footprint that counts, m^2.
 const LEAST_AREA_M2: f64 = 0.01;
-/// Widths of cities that are possible, metres: less is degrees, more is damaged.
+/// Range of the width of a city, metres: smaller coordinates are degrees, larger ones are damaged.
 const WIDTHS_M: [f64; 2] = [10.0, 1e6];
 
 /// A city at its levels of abstraction.

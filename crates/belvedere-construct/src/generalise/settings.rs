@@ -1,4 +1,4 @@
-//! What a generalisation can be told.
+//! Settings of a generalisation.
 
 use super::GeneraliseError;
 use belvedere_scene::city::WayClass;

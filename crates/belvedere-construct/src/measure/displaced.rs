@@ -1,5 +1,5 @@
-//! Lines of sight over displaced ground where rays run straight behind it: by the judge of terrain disocclusion itself, triangle by
-//! triangle. Chords of a bent ray may step over a narrow ridge.
+//! Lines of sight over displaced ground where no other stage bends rays: triangle by triangle, by the judge of terrain disocclusion.
+//! Chords of a bent ray may step over a narrow ridge.
 
 use crate::sample::Sample;
 use belvedere_core::grid::Grid;
@@ -7,7 +7,7 @@ use belvedere_core::{DVec2, SpaceMap, Stage, View};
 use belvedere_scene::{LayerKind, Scene};
 use belvedere_sight::{DisplacedGround, Field};
 
-/// Rays that run this far under the ground are still clear: rounding. Scene units.
+/// Depth under the ground down to which a line of sight still counts as clear, scene units: rounding.
 const TOUCH: f64 = 1e-6;
 
 /// The ground of a scene as a view displaces it, and the eye.

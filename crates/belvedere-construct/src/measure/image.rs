@@ -17,7 +17,7 @@ pub(super) struct SampleImage {
     pub(super) folded: bool,
     /// The sample after all stages, scene coordinates.
     pub(super) displaced: Option<DVec3>,
-    /// Of a piece of surface: whether it is seen so slantwise that a hair decides which side shows.
+    /// For a piece of surface: whether it is seen so slantwise that rounding decides which side shows.
     pub(super) edge_on: Option<bool>,
     /// By line of sight; `None` outside the frame.
     pub(super) clearance: Option<f64>,
@@ -61,7 +61,7 @@ pub(super) struct Sight<'a> {
     bodies: BodyViews,
     /// Displaced ground behind which rays are straight.
     displaced: Option<DisplacedSight>,
-    /// What hides beside that ground.
+    /// Obstacles other than that ground.
     beside: Option<Obstacles<'a>>,
 }
 
@@ -77,7 +77,7 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// The views that samples on rigid bodies have their images by.
+/// Views by which samples on rigid bodies are projected.
 pub(super) struct BodyViews(Option<Carried>);
 
 impl BodyViews {
@@ -119,7 +119,7 @@ pub(super) fn all(
     features.iter().map(of).collect()
 }
 
-/// The clearance of a sample on displaced ground, `c` by chords, with the judge's word on whether it is seen; and whether facets alone hide it.
+/// The clearance of a sample on displaced ground, `c` by chords, with the verdict of the judge; and whether facets alone hide it.
 fn over_displaced(
     of: &Sight<'_>,
     (displaced, grounds): &Displaced<'_>,
@@ -180,7 +180,7 @@ fn image(of: &Sight<'_>, view: &View, (layer, sample): (usize, &Sample), sight: 
 /// Cosine of the slant below which a surface is seen edge-on.
 const EDGE_ON: f64 = 0.15;
 
-/// Cosine between the normal of a surface and the way against the ray that sees it; 0 where there is none.
+/// Cosine between the normal of a surface and the direction against the ray that sees it; 0 where there is no such direction.
 pub(super) fn facing(view: &View, p: DVec3, normal: DVec3) -> f64 {
     // Along the ray the pixel stays: across the changes of its x and its y.
     let along = view.jacobian(p).map_or(DVec3::ZERO, |[x, y]| x.cross(y).normalize_or_zero());

@@ -94,7 +94,7 @@ pub fn measure(
     Ok(report::summarise(&features, &straight, &bent, options.near_miss_m, bend, warnings))
 }
 
-/// What shares are judged by.
+/// Samples by which shares are judged.
 pub(crate) fn samples(scene: &Scene, options: &MeasureOptions) -> Vec<SampledFeature> {
     match options.spacing_m {
         Some(spacing) => sample_features(scene, spacing.max(1e-6)),

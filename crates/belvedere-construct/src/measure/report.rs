@@ -22,7 +22,7 @@ pub struct Measures {
     /// Largest difference between the two methods over lines, areas, points and surfaces, straight and bent, after leaving out
     /// near misses; `None` without a renderer.
     pub largest_difference: Option<f64>,
-    /// What the bend does to the picture.
+    /// Displacement, distortion and folds by the bend.
     pub bend: BendMeasure,
     /// Oddities, one sentence each.
     pub warnings: Vec<String>,
@@ -39,7 +39,7 @@ pub struct FeatureMeasure {
     pub name: String,
     /// What amounts count.
     pub unit: Amount,
-    /// Points images.
+    /// Number of samples.
     pub samples: usize,
     /// Length, area or count of the whole feature.
     pub total: f64,
@@ -50,7 +50,7 @@ pub struct FeatureMeasure {
     pub straight: Visibility,
     /// In the picture as it is.
     pub bent: Visibility,
-    /// How far the bends carry what is in either picture: largest distance, scene units.
+    /// Largest displacement by the bends of a sample in either picture, scene units.
     pub displacement_max: f64,
     /// The same, root mean square.
     pub displacement_rms: f64,

@@ -37,7 +37,7 @@ impl Sidestep {
 /// The second viewpoint of a frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PlannedBend {
-    /// Where it is, -1..=1, times `a`.
+    /// Its signed distance from the eye, -1..=1, in units of `a`.
     pub f: f64,
     /// Direction of f > 0 across the view, degrees from the right of the picture upwards.
     pub direction_deg: f64,

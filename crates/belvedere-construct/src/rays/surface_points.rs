@@ -11,7 +11,7 @@ const MOST: usize = 30;
 const SHORT: f64 = 0.45;
 /// Steps along the edges of large triangles, at most.
 const STEPS: usize = 8;
-/// Points are a little inside: what they stand for may stand on something.
+/// Factor by which points lie nearer to the middle than the surface: the target may stand on something.
 const INSIDE: f64 = 0.96;
 
 /// Points along the edges of a box, about evenly far apart: at least 2, or 3 on edges that are not much shorter than the longest.

@@ -1,4 +1,4 @@
-//! What is done, and said, where rows contradict each other on the solver's grid.
+//! Fallbacks for rows that contradict each other on the solver's grid, and their report.
 
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::report::{Fallback, UnresolvedReason};
@@ -35,7 +35,7 @@ fn solve(scene: &Scene, eye: DVec3, look: DVec3, settings: &TerrainSettings) -> 
     solver.solve(scene, &View::straight(pinhole), &mut TerrainMemory::default(), &Progress::silent()).unwrap()
 }
 
-/// Posts and pits of one node are taken as they are, and dug round however deep.
+/// Settings without limits, with posts and pits of one node counted as ground.
 fn free() -> TerrainSettings {
     TerrainSettings { limits: false, spikes: true, ..TerrainSettings::default() }
 }
@@ -65,7 +65,7 @@ fn a_bump_that_the_grid_cannot_hold_is_cut_down() {
     let solved = row(5, 2.5, |x| if x.is_multiple_of(5) && x < 80 { 60.0 } else { 0.0 });
     assert_eq!(solved.report.fallbacks, [Fallback::Detail]);
     assert_all_seen(&solved.report);
-    // Cut down is the post, not the plain beside it.
+    // The post is cut down, not the plain beside it.
     let sunk = |g: DVec2| -solved.stage.delta_at(at(g, 0.0));
     assert!(sunk(DVec2::new(40.0, 16.0)) > sunk(DVec2::new(42.5, 16.0)) + 20.0);
     assert!(solved.report.metrics.max_m < 70.0 && solved.report.metrics.raised_max_m <= 0.5);
@@ -95,7 +95,7 @@ fn ground_inside_the_guard_is_left_before_a_finer_grid_is_taken() {
     assert_eq!(report.fallbacks, [Fallback::Guard], "{report:?}");
     assert_eq!((report.metrics.visible, report.metrics.hidden_in_guard), (0.0, 1.0));
     assert!(!report.guaranteed, "the judge does not agree: {report:?}");
-    // A finer grid has room to show it, and then that is promised.
+    // A finer grid can show it, and then guarantees it.
     let fine = solve(&scene, eye, look, &free()).report;
     assert!(fine.fallbacks.is_empty() && fine.guaranteed && fine.metrics.hidden_in_guard == 0.0, "{fine:?}");
 }

@@ -1,4 +1,4 @@
-//! Terrain solved beside the drawing: what a picture gets, and how old it may be.
+//! Terrain disocclusion on a thread beside drawing: the ground of each picture, and its age.
 
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::DisocclusionError;
@@ -82,7 +82,7 @@ fn pictures_that_do_not_wait_get_the_newest_ground_there_is() {
         assert!(began.elapsed() < std::time::Duration::from_secs(60), "it is never solved");
         std::thread::sleep(std::time::Duration::from_millis(2));
     };
-    // Whatever is asked for next: what there is comes at once, at first that for the view before.
+    // Whatever view is requested next, the newest solved ground comes at once: at first that for the view before.
     let next = live.newest(&view(&scene, 40.0, 250.0)).expect("ground").expect("there is some");
     let moves = |stage: &belvedere_core::TerrainDisocclusion| stage.grid().range() != [0.0; 2];
     assert!(moves(&first) && moves(&next), "nothing makes way");

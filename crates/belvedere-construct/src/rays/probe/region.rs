@@ -12,7 +12,7 @@ const RAYS: [u32; 2] = [24, 14];
 const HALVINGS: usize = 26;
 /// How far a probe looks, in median distances of what the straight picture shows.
 const REACH: f64 = 3.0;
-/// Room around what the straight picture could show, shares of the reach.
+/// Margin around everything that the straight picture could show, share of the reach.
 const AROUND: f64 = 0.25;
 
 /// A box around what is looked at.

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 const NODES: usize = 33;
 pub(crate) const LIFT_M: f64 = 1.0;
-/// Two methods differ by so much at most.
+/// Largest difference between the shares of two methods.
 pub(crate) const AGREES: f64 = 0.005;
 
 /// Ground, its spacing, and a way, an area and a summit on it.

@@ -1,5 +1,5 @@
-//! The figure of the report is that of other methods: of `measure`, by lines of sight and by depth buffers, and of a march along rays. What it
-//! names as hidden the exact tracer hides.
+//! The visible share of the report agrees with other methods: `measure`, by lines of sight and by depth buffers, and a march along
+//! rays. The exact tracer hides the points that the report lists as hidden.
 
 mod compared;
 
