@@ -78,7 +78,7 @@ pub enum ConstructError {
         name: &'static str,
         /// The value.
         value: f64,
-        /// What it must be.
+        /// Condition that it must meet.
         must: &'static str,
     },
     /// A point of a centreline is not in the voxels that it may use.

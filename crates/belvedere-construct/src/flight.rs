@@ -3,7 +3,7 @@
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::Heightfield;
 
-/// Where the camera flies.
+/// Position of the camera relative to the walker.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlightOptions {
     /// Distance in plan from the walker back to the eye, scene units, > 0.

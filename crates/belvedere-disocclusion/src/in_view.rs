@@ -54,7 +54,7 @@ pub fn check_eye(field: &Field, eye: DVec3) -> Result<(), EyeError> {
 pub struct Wedge {
     /// Eye, scene x and y.
     pub eye: DVec2,
-    /// Direction of view, scene x and y; zero if there is none.
+    /// Direction of view, scene x and y; zero if the wedge is all around.
     pub heading: DVec2,
     /// Largest angle to the heading, radians; pi = all around.
     pub half_angle: f64,

@@ -37,7 +37,7 @@ pub struct ReferencePoint {
     pub ground: f64,
     /// Height over the ground at which it must be seen, scene units.
     pub lift: f64,
-    /// What it stands for.
+    /// Part of the feature that it stands for.
     pub kind: PointKind,
     /// Length of line, area, or number of point features that it stands for, scene units; all in plan.
     pub amount: f64,
@@ -303,7 +303,7 @@ impl<'a> PointCollector<'a> {
         self.amount = amount;
     }
 
-    /// Equal parts of an area have equally many points inside; its rims stand for it where none lies inside.
+    /// Equal parts of an area have equally many points inside; if none lies inside, points on its rims stand for it.
     fn area(&mut self, rings: &[Vec<DVec2>], spacing: f64) {
         let first = self.usable.len();
         self.amount = 0.0;

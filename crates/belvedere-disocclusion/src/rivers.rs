@@ -330,7 +330,7 @@ fn place(g: DVec2, bend: bool, [cols, rows]: [usize; 2], height: impl Fn(usize) 
     let inside = g - DVec2::new(col as f64, row as f64);
     let height = CellTriangle::surface(nodes.map(height), inside)?;
     let DVec2 { x, y } = inside;
-    // How far facets lie over the bilinear ground, per unit of its factor of xy.
+    // Height of the facets over the bilinear ground, per unit of its factor of xy.
     let facet = inside.min_element() - x * y;
     let [flat, bilinear] =
         [facet, 0.0].map(|f| [(1.0 - x) * (1.0 - y) + f, x * (1.0 - y) - f, (1.0 - x) * y - f, x * y + f]);

@@ -26,7 +26,7 @@ pub enum SolverMode {
     Qp,
 }
 
-/// What happens to the detail of the ground that the solver's grid cannot hold.
+/// Treatment of the detail of the ground that the solver's grid cannot hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Detail {

@@ -77,7 +77,7 @@ pub struct AdjustedViewpoint {
     pub moved_m: f64,
     /// Energy at the eye that was given and at the new one.
     pub energy: [f64; 2],
-    /// Energies asked for: of the search and of the descent.
+    /// Evaluations of the energy: in the search and in the descent.
     pub evaluations: [usize; 2],
 }
 

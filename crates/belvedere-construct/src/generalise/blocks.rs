@@ -36,13 +36,13 @@ pub(super) fn kind(coverage: f64, ordinary: usize, settings: &GeneraliseSettings
 
 /// Largest part of a building that may stay outside its block, m^2.
 const LEFT_OUT_M2: f64 = 2.0;
-/// How far such parts are widened to join the block, metres.
+/// Distance by which such parts are widened to join the block, metres.
 const JOINT_M: f64 = 0.1;
 /// Largest distance by which merged outlines are simplified, share of the largest simplification.
 const FINE: f64 = 0.2;
 /// Holes smaller than this are chinks between merged outlines, m^2.
 const CHINK_M2: f64 = 25.0;
-/// How far outlines may reach out of their cell where no building does, share of the largest simplification.
+/// Distance by which outlines may reach out of their cell where no building does, share of the largest simplification.
 const STRAY: f64 = 0.6;
 /// Least share of a piece of a block that buildings cover.
 const LEAST_BUILT: f64 = 0.05;

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 /// Largest distance of a neighbour across a street, metres.
 const REACH_M: f64 = 30.0;
-/// Spacing of the points of an outline that look for a neighbour, metres.
+/// Spacing of the points of an outline from which a neighbour is sought, metres.
 const LOOK_EVERY_M: f64 = 2.0;
 
 /// Cells of a level.

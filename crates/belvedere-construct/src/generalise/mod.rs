@@ -94,7 +94,7 @@ pub fn generalise(
     Ok(Generalised { levels: [loa1, loa2], report })
 }
 
-/// Notes on levels of which there is little to say else.
+/// Adds notes on levels whose buildings lie in one cell, or in green cells alone.
 fn notes_of(mut notes: Vec<String>, levels: [&Level; 2]) -> Vec<String> {
     for level in levels {
         let inhabited: Vec<&Cell> = level.cells.iter().filter(|c| !c.buildings.is_empty()).collect();

@@ -193,7 +193,7 @@ pub(super) fn parted(land: Land) -> Land {
     MultiPolygon(land.into_iter().flat_map(of).collect())
 }
 
-/// What of `land` lies in `other`.
+/// The part of `land` that lies in `other`.
 pub(super) fn common(land: &Land, other: &Land) -> Land {
     without_specks(land.intersection(other))
 }

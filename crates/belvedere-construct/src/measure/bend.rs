@@ -10,7 +10,7 @@ use serde::Serialize;
 /// Distortion of the bent picture, over the ground nodes that lie in it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BendMeasure {
-    /// Terrain nodes looked at (a regular subset, at most some ten thousand) that lie in the bent picture.
+    /// Terrain nodes that are tested (a regular subset, at most some ten thousand) and lie in the bent picture.
     pub nodes_in_frame: usize,
     /// Share of them at which the picture folds over (orientation reversed), 0..=1.
     pub folded_share: f64,

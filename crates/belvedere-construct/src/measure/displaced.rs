@@ -59,7 +59,7 @@ impl DisplacedSight {
         [DisplacedGround::faceted(field, delta), DisplacedGround::new(field, delta)].map(DisplacedGround::prepared)
     }
 
-    /// How far each of the grounds rises over the line of sight of a sample; 0 where it does not, `None` beside the ground.
+    /// Height by which each of the grounds rises over the line of sight of a sample; 0 where it does not, `None` beside the ground.
     pub(super) fn over(&self, grounds: &[DisplacedGround<'_>; 2], sample: &Sample) -> Option<[f64; 2]> {
         let at = self.field.grid_from_scene(sample.p_world.truncate());
         let mut out = [0.0; 2];

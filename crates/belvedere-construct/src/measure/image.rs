@@ -1,4 +1,4 @@
-//! Where a view shows the samples of features, and whether by line of sight.
+//! Positions of the samples of features in a picture, and their visibility by line of sight.
 
 use super::displaced::DisplacedSight;
 use crate::sample::{Sample, SampledFeature};
@@ -8,7 +8,7 @@ use belvedere_sight::{Carried, DisplacedGround, Obstacles, SightOptions};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
-/// Where a view shows one sample, and whether.
+/// Position of one sample in a picture, and its visibility.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SampleImage {
     pub(super) pixel: DVec2,
@@ -46,7 +46,7 @@ impl SampleImage {
     }
 }
 
-/// What the depth buffer says of a sample.
+/// Result of the depth test of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct DepthTest {
     /// Nothing was drawn in front of the sample's ground.
@@ -131,7 +131,7 @@ fn over_displaced(
     if traced > 0.0 {
         return (c.min(-facets.max(traced)), false);
     }
-    // Where chords saw something, other things than the ground may hide it.
+    // If the chords found the sample hidden, something other than the ground may hide it.
     let others = match &of.beside {
         Some(beside) if c < 0.0 => {
             beside.clearance(view, (sample.p_world, sample.lift), (image.pixel, image.depth), options)

@@ -22,7 +22,7 @@ use belvedere_scene::{Light, Progress, Renderer, Scene};
 use belvedere_sight::{Obstacles, SightOptions};
 use image::Sight;
 
-/// How to measure.
+/// Options of the measure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasureOptions {
     /// Largest distance between samples of a line, scene units; `None` = an eighth of the grid spacing of the terrain, see

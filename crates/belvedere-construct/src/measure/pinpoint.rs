@@ -6,7 +6,7 @@ use belvedere_scene::{Heightfield, LayerKind, Scene};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Side of the bins that places are sorted into, pixels.
+/// Side of the bins into which positions are sorted, pixels.
 const BIN: f64 = 4.0;
 /// Where a displacement bends a triangle, it is quartered until its edges lie within this of their images, pixels; and the most
 /// quarterings.

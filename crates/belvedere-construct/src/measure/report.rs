@@ -28,7 +28,7 @@ pub struct Measures {
     pub warnings: Vec<String>,
 }
 
-/// What two pictures show of one feature.
+/// Visibility of one feature in two pictures.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FeatureMeasure {
     /// Id of the layer.
@@ -37,7 +37,7 @@ pub struct FeatureMeasure {
     pub feature: usize,
     /// Name, possibly empty.
     pub name: String,
-    /// What amounts count.
+    /// Unit of the amounts.
     pub unit: Amount,
     /// Number of samples.
     pub samples: usize,
@@ -58,7 +58,7 @@ pub struct FeatureMeasure {
     pub displacement_max_px: f64,
 }
 
-/// What one picture shows of one feature.
+/// Visibility of one feature in one picture.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Visibility {
     /// Length, area or count inside the image.

@@ -19,7 +19,7 @@ const WIDTHS: [f64; 2] = [0.25, 0.12];
 /// Share of the target that a mean motion of the picture by its own height must gain.
 const PRICE_OF_MOTION: f64 = 0.25;
 
-/// How the search is bounded.
+/// Options of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AroundOptions {
     /// Margin around the target that must be clear as well, pixels, >= 0.

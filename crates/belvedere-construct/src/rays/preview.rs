@@ -84,7 +84,7 @@ pub struct PreviewReport {
     pub position_m: f64,
     /// Length of the path that is followed from there, scene units: less than wanted where more turns would not fit.
     pub reach_m: f64,
-    /// Length that was asked for, as far as the path goes, scene units.
+    /// Length that was requested, as far as the path goes, scene units.
     #[serde(default)]
     pub wanted_m: f64,
     /// Turns of the rays.
@@ -288,7 +288,7 @@ impl PathPreview {
         const BEHIND: usize = 9;
         let at = |k: usize| position + self.preview_m * (-0.1 + 0.6 * k as f64 / (SAMPLES - 1) as f64);
         let ahead = (0..SAMPLES).map(|k| self.path.at(at(k)).z).sum::<f64>() / SAMPLES as f64;
-        // Where the path goes down the eye stands over what lies behind the position.
+        // Where the path descends, the eye stands over the ground behind the position.
         let behind = |k: usize| self.path.at(position - self.lens.width_m * k as f64 / (BEHIND - 1) as f64).z;
         let highest = (0..BEHIND).map(behind).fold(f64::NEG_INFINITY, f64::max);
         ahead + soft_hinge(highest - ahead, self.lens.rise_m) + self.lens.rise_m

@@ -5,7 +5,7 @@ use belvedere_core::{DVec3, Pinhole};
 use belvedere_scene::{LayerKind, Scene, VolumeLayer};
 use belvedere_sight::Obstacles;
 
-/// How far an eye may stand behind each position of a path, scene units.
+/// Distance behind each position of a path up to which an eye may stand, scene units.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Room {
     positions: Vec<f64>,

@@ -107,7 +107,7 @@ impl Target {
         Self { points, bounds, own_layers: Vec::new(), own_parts: None, radii: Vec::new() }
     }
 
-    /// Balls, such as atoms: middle and radius, scene units. Of many some are looked at, evenly chosen.
+    /// Balls, such as atoms: middle and radius, scene units. Of many balls some are tested, evenly chosen.
     pub fn balls(balls: impl IntoIterator<Item = (DVec3, f64)>) -> Self {
         let all: Vec<(DVec3, f64)> = balls.into_iter().filter(|(p, _)| p.is_finite()).collect();
         let every = all.len().div_ceil(MOST_BALLS).max(1);
@@ -138,7 +138,7 @@ impl Target {
     }
 }
 
-/// What a view shows of a target.
+/// Visibility of a target in a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shown {
     /// Share of its points that are in the picture and seen, 0..=1.

@@ -1,4 +1,4 @@
-//! Target tracking: the second viewpoint steps aside just as far as a moving target needs to stay in sight.
+//! Target tracking: the second viewpoint moves sideways just as far as is needed to keep a moving target in sight.
 //!
 //! Source: Cui et al. 2010, section 5.2: one number f in -1..=1 per frame, searched from where it is, changed at most at a set
 //! speed. The paper compares boxes in the image; here lines of sight to points of the target's box decide, for boxes of walls and
@@ -71,7 +71,7 @@ pub struct TrackingMemory {
     side: f64,
     /// Value of f that is aimed at: kept while it shows the target, for else f would turn round half-way.
     goal: f64,
-    /// How long the straight rays have shown the target with twice the margin, seconds.
+    /// Time for which the straight rays have shown the target with twice the margin, seconds.
     clear_s: f64,
     /// Right direction of the camera in the frame before.
     right: Option<DVec3>,

@@ -25,7 +25,7 @@ pub(super) struct Corner {
     pub(super) edges: [f64; 2],
     /// Half length of the transition, at most.
     pub(super) half_length: f64,
-    /// How far the turn has come in, 0..=1: at 0 it changes nothing.
+    /// Share to which the turn has come in, 0..=1: at 0 it changes nothing.
     pub(super) entered: f64,
 }
 
@@ -44,7 +44,7 @@ pub(super) struct TurnShape {
 /// * `from`: where the leg to the first corner begins.
 pub(super) fn turns(root: &Pinhole, from: DVec3, corners: &[Corner], shape: &TurnShape) -> Option<Vec<TurnSpec>> {
     let mut viewpoint = root.eye;
-    // Where the rays through the corners of the picture are, on the last plane t1.
+    // Points on the last plane t1 of the rays through the corners of the picture.
     let mut rim = rim_rays(root).map(|ray| root.eye + ray);
     let mut specs = Vec::with_capacity(corners.len());
     for (i, turn) in corners.iter().enumerate() {

@@ -51,7 +51,8 @@ enum Kind {
 }
 
 impl Disc {
-    /// * `per_frame`: the most that a place may move in a frame, > 0; `sideways`: whether only the line to the left and right is used.
+    /// * `per_frame`: greatest distance that a position may move in a frame, > 0; `sideways`: whether only the line to the left and
+    ///   right is used.
     pub(super) fn new(per_frame: f64, sideways: bool) -> Self {
         // Slow viewpoints move every few frames by a cell that is not too fine.
         let stride = (CELL / per_frame * (1.0 - 1e-9)).ceil().clamp(1.0, 1e6) as usize;
@@ -165,7 +166,7 @@ impl Kind {
     }
 }
 
-/// Places on one of so many rings, from the right counterclockwise, shares of the radius of the last.
+/// Positions on one of `rings` rings, from the right counterclockwise, shares of the radius of the last.
 pub(super) fn on_ring(ring: usize, rings: usize) -> impl Iterator<Item = [f64; 2]> {
     let count = PER_RING * ring;
     (0..count).map(move |k| direction(k, count).map(|v| v * (ring as f64 / rings as f64)))

@@ -177,7 +177,7 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-/// Value below which the share `q` of sorted `values` lies; 0 if there are none.
+/// Value below which the share `q` of sorted `values` lies; 0 without values.
 pub(crate) fn quantile(values: &[f64], q: f64) -> f64 {
     values.get((q * (values.len().max(1) - 1) as f64).round() as usize).copied().unwrap_or(0.0)
 }

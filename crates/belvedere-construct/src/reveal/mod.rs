@@ -192,7 +192,7 @@ fn promising_views(
         .into_par_iter()
         .enumerate()
         .filter_map(|(i, eye)| {
-            // Where time is up the rest of the eyes is left out, but not those that promise most.
+            // When time is up, the other eyes are left out, but not the most promising ones.
             if i >= EYES_AT_LEAST && progress.should_end() {
                 return None;
             }

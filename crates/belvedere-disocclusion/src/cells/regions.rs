@@ -178,7 +178,7 @@ impl Around {
         slope >= best && (k >= 4 || slope > 0.0)
     }
 
-    /// Nodes 1.. of a row between two others, as many as fill whole registers; returns the next one.
+    /// Handles nodes from 1 on of a row between two others, as many as fill whole SIMD registers; returns the next node.
     #[inline(always)]
     fn inner<S: Simd>(&self, simd: S, lines: [&[f64]; 3], out: &mut [u8]) -> usize {
         let (width, zero) = (S::F64_LANES, simd.splat_f64s(0.0));

@@ -15,7 +15,7 @@ const BACKWARD: u32 = 1;
 /// Distance from a point within which its own cell is changed at once, grid cells; from a hit farther away the line is queued anew.
 const NEAR: f64 = 2.0;
 
-/// What the greedy pass did.
+/// Counts of the greedy pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct GreedyCounters {
     /// Lines of sight followed, parts of them included.

@@ -19,7 +19,7 @@ pub(crate) fn still(field: &Field) -> Result<Grid, GridError> {
     Grid::new(field.scene_from_grid(DVec2::NEG_ONE), size, 2, 2, vec![0.0; 4])
 }
 
-/// What hides a point.
+/// The kind of ground that hides a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Hides {
     /// Ground that rises over its line of sight by this height, scene units; infinite if the point has no line.
@@ -31,7 +31,7 @@ pub(crate) enum Hides {
 }
 
 impl Hides {
-    /// How far the ground rises over the line of sight.
+    /// Height by which that ground rises over the line of sight, scene units.
     pub(crate) fn over(self) -> f64 {
         match self {
             Self::Ground(over) | Self::InGuard(over) | Self::Facets(over) => over,
@@ -49,7 +49,7 @@ pub(crate) enum Verdict {
 }
 
 impl Verdict {
-    /// What hides the point, if something does.
+    /// The ground that hides the point; `None` if it is seen, or lies on no ground.
     pub(crate) fn hides(self) -> Option<Hides> {
         match self {
             Self::Hidden(hides) => Some(hides),
@@ -131,7 +131,8 @@ impl<'a> Judge<'a> {
         Some(())
     }
 
-    /// What rises most over the line of sight of a point at grid coordinates, `lift` above the ground; `None` beside the ground.
+    /// The largest rise of the ground over the line of sight of a point at grid coordinates, `lift` above the ground; `None` beside
+    /// the ground.
     ///
     /// * `guard`: ground nearer than this does not count, cells.
     #[cfg(test)]

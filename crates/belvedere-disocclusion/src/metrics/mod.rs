@@ -46,7 +46,7 @@ pub struct TerrainMetrics {
     pub visible_dense: f64,
     /// Share of that kind of features that only ground nearer than the guard hides, 0..=1.
     pub hidden_in_guard: f64,
-    /// How far the ground rises over the line of sight that it hides most; 0 if nothing is hidden.
+    /// Largest height by which the ground rises over a line of sight; 0 if nothing is hidden.
     pub hidden_worst_m: f64,
     /// Root mean square displacement of the nodes.
     pub rms_m: f64,
@@ -72,7 +72,7 @@ pub struct TerrainMetrics {
     pub frame: Option<FrameChange>,
 }
 
-/// How much the ground moved from one frame to the next.
+/// Motion of the ground from one frame to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FrameChange {
     /// Root mean square over the nodes.

@@ -15,7 +15,7 @@ pub struct Green {
 /// A point between nodes: the first node of its cell, and how far into the cell it lies along x and y, 0..=1.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Between {
-    /// Column of the cell, <= columns - 2 where there are as many.
+    /// Column of the cell, <= columns - 2 if there are two columns or more.
     pub col: u32,
     /// Row of the cell.
     pub row: u32,

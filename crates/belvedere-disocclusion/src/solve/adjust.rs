@@ -20,8 +20,9 @@ pub(super) struct RequiredPoints {
 }
 
 impl TerrainSolver {
-    /// The eye near that of `base` from which less ground has to move for what `base` shows, see [`adjust_viewpoint`]. The camera
-    /// keeps looking at `target`. Energies are those of mode qp along straight lines of sight, whatever the mode and later stages.
+    /// The eye near that of `base` from which the ground must move less to show what `base` shows, see [`adjust_viewpoint`]. The
+    /// camera keeps looking at `target`. Energies are those of mode qp along straight lines of sight, whatever the mode and later
+    /// stages.
     ///
     /// `None` where the eye of `base` cannot be used.
     ///

@@ -76,7 +76,7 @@ impl Agreement<'_> {
         let mut told = ground.to_vec();
         let mut asked = problem.candidates.to_vec();
         let mut known: BTreeSet<u32> = asked.iter().map(|c| c.id).collect();
-        // Where time is up the report says what is hidden.
+        // When time is up, the report lists the hidden points.
         if self.progress.should_end() {
             return Ok((QpResult { stopped: true, ..result }, 0));
         }

@@ -49,7 +49,7 @@ impl LinesOfSight for EnteringSight<'_> {
     }
 }
 
-/// Candidates that are not in `asked`.
+/// Candidates of `all` that are not in `asked`.
 pub(super) fn others(all: Vec<Candidate>, asked: &[Candidate]) -> Vec<Candidate> {
     let known: std::collections::BTreeSet<u32> = asked.iter().map(|c| c.id).collect();
     all.into_iter().filter(|c| !known.contains(&c.id)).collect()

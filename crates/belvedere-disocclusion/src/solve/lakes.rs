@@ -91,7 +91,7 @@ pub(super) struct Water {
 impl Lakes {
     pub(super) fn new(waters: &[Water], field: &Field) -> Self {
         let mut lakes = Vec::<Lake>::new();
-        // Where areas overlap they are one lake: files of several layers hold the same one twice.
+        // Overlapping areas are one lake: files with several layers contain the same lake twice.
         let mut owner = BTreeMap::<u32, usize>::new();
         for water in waters {
             let rings: Vec<Vec<DVec2>> =

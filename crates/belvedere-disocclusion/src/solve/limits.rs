@@ -46,7 +46,7 @@ pub struct LimitsReport {
     pub held_most_m: f64,
 }
 
-/// The terrain by cells of the solver's grid, so that most displacements are known to keep the limits without a look at every node.
+/// Bounds of the terrain by cells of the solver's grid: most displacements are known to keep the limits without testing every node.
 #[derive(Debug, Clone)]
 pub(super) struct LimitedTerrain {
     limits: Limits,

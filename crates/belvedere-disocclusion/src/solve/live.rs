@@ -36,9 +36,9 @@ pub struct LiveFrame {
     pub lag: u64,
     /// Reference points in the picture, farther from the eye than three times the guard.
     pub points: usize,
-    /// How many of them this ground hides from this eye.
+    /// Number of these points that this ground hides from this eye.
     pub hidden: usize,
-    /// How far the ground rises over the line of sight that it hides most, scene units; 0 if nothing is hidden.
+    /// Largest height by which the ground rises over a line of sight, scene units; 0 if nothing is hidden.
     pub hidden_worst_m: f64,
 }
 
@@ -78,7 +78,7 @@ impl LiveTerrain {
     /// Ground for the next picture, and whether it shows what it should from the eye of `base`.
     ///
     /// # Errors
-    /// Those of [`TerrainSolver::solve`], for this view or one of the last; the next view may be asked for all the same.
+    /// Those of [`TerrainSolver::solve`], for this view or an earlier one; the next view may be requested all the same.
     pub fn frame(&mut self, base: &View) -> Result<LiveFrame, DisocclusionError> {
         self.ask(base);
         while let Ok(answer) = self.answers.try_recv() {
@@ -111,7 +111,7 @@ impl LiveTerrain {
     fn ask(&mut self, base: &View) {
         self.frame += 1;
         let order = Order { frame: self.frame, view: base.clone() };
-        // A thread that has ended answers nothing: who waits for it finds that out.
+        // If the thread has ended, waiting for its answer reports that.
         if let Some(orders) = &self.orders {
             let _ = orders.send(order);
         }

@@ -111,7 +111,7 @@ impl TerrainMemory {
         Self { prepared: Some(prepared), last: None }
     }
 
-    /// What was prepared before, or now.
+    /// The preparation in memory if it fits, or a new one.
     pub(super) fn prepared_for(
         &mut self,
         scene: &Scene,

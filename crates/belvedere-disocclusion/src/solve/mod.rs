@@ -42,7 +42,7 @@ use std::sync::Arc;
 /// Share of the time for solving; the rest is for judging.
 const SOLVING: f64 = 0.85;
 
-/// Terrain disocclusion as a constructor: the ground of a scene makes way for what must be seen.
+/// Terrain disocclusion as a constructor: the ground of a scene moves so that its required features are seen.
 #[derive(Debug, Clone)]
 pub struct TerrainSolver {
     settings: TerrainSettings,
@@ -92,7 +92,7 @@ impl TerrainSolver {
     /// Solves for the features that must be seen, in the picture of `base`.
     ///
     /// * `base`: the camera with the stages before (earth) and after (spline, curved rays); a terrain stage in it is left out;
-    /// * `memory`: that of the frame before, of the same scene; new where there is none.
+    /// * `memory`: that of the frame before, of the same scene; a new one for the first frame;
     ///
     /// # Errors
     /// [`DisocclusionError::NoTerrain`], [`DisocclusionError::NothingToSee`], [`DisocclusionError::Eye`], [`DisocclusionError::Field`],
@@ -143,7 +143,7 @@ impl TerrainSolver {
         Ok((stage, frame_result.field))
     }
 
-    /// The passes of one frame, without figures; the memory lends what it has prepared. `asked` stands for what `base` shows.
+    /// The passes of one frame, without figures; the memory lends its preparation. `asked` replaces the points that `base` shows.
     fn run(
         &self,
         scene: &Scene,
@@ -239,7 +239,7 @@ fn at_every_node(field: &Field, values: &[f64]) -> Result<Grid, GridError> {
 }
 
 /// Values at nodes `step` cells apart over the field as a grid of the scene. The rim is repeated one node farther out, so
-/// that rounding leaves no place of the ground beside the grid.
+/// that rounding leaves no point of the ground beside the grid.
 fn spread(field: &Field, [cols, rows]: [usize; 2], step: DVec2, values: &[f64]) -> Result<Grid, GridError> {
     let inner = |i: usize, n: usize| i.saturating_sub(1).min(n - 1);
     let padded = (0..(cols + 2) * (rows + 2)).map(|i| {

@@ -133,7 +133,7 @@ impl Passes<'_> {
         }
     }
 
-    /// Greedy and smooth pass; answers the change of detail at every node, if detail is scaled.
+    /// Greedy and smooth pass; returns the change of detail at every node, if detail is scaled.
     fn paper(
         &self,
         prepared: &mut Prepared,
@@ -245,7 +245,7 @@ impl Passes<'_> {
             problem = QpProblem { candidates: asked, ..problem };
             result = qp.solve_with(&problem, self.progress)?;
         }
-        // Where a lake sinks with all its banks the limits fill up most of it again: that is not worth another solution.
+        // If a lake sinks with all its banks, the limits fill up most of it again: that is not worth another solution.
         let in_vain = prepared.limited.as_ref().is_some_and(|limited| {
             !prepared.waters.lakes.is_empty()
                 && limited.beyond(&prepared.grid, &result.u) > FAR_BEYOND * self.field.relief()

@@ -51,7 +51,7 @@ pub struct TerrainReport {
     /// Lakes and how they moved: each as a whole.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lakes: Vec<LakeReport>,
-    /// The rivers that were asked not to run uphill, and how they run.
+    /// The rivers that must not run uphill, and how they run.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rivers: Vec<RiverReport>,
     /// Whether every candidate in view is guaranteed to be seen in this picture, no river that was named runs uphill by more than
@@ -151,7 +151,7 @@ pub enum UnresolvedReason {
     NearerThanGuard,
     /// It has no line of sight, for it lies outside the domain of a later stage.
     NoLineOfSight,
-    /// Rows contradict each other: no displacement down to `depth_m` shows all that is asked.
+    /// Rows contradict each other: no displacement down to `depth_m` shows all points that are demanded.
     Infeasible {
         /// Displacements down to this are ruled out.
         depth_m: f64,

@@ -37,7 +37,7 @@ pub(super) struct Context<'a> {
     pub(super) traced: bool,
     /// That of the frame before.
     pub(super) previous: Option<&'a Grid>,
-    /// Where time is short not every dense point is judged.
+    /// When time is short, not every dense point is judged.
     pub(super) progress: &'a Progress,
 }
 
@@ -211,7 +211,7 @@ fn hidden(
     runs.out
 }
 
-/// What cannot be seen, and whether that is nothing of what the program looks after.
+/// Parts that cannot be seen, and whether the program's own points are all seen.
 struct Named {
     runs: Vec<UnresolvedRun>,
     program_met: bool,

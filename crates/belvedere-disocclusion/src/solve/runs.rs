@@ -15,7 +15,7 @@ pub(super) struct Runs<'a> {
     blocks: BTreeMap<(usize, usize, i64, i64), usize>,
 }
 
-/// Cells per side of the blocks by which hidden places inside areas are gathered.
+/// Grid cells per side of the squares by which hidden points inside areas are gathered.
 const BLOCK: f64 = 4.0;
 
 impl<'a> Runs<'a> {
@@ -35,7 +35,7 @@ impl<'a> Runs<'a> {
     ) {
         let (x, y) = ((grid.x / BLOCK).floor() as i64, (grid.y / BLOCK).floor() as i64);
         if kind == PointKind::Inside {
-            // Places inside an area are gathered by where they lie.
+            // Points inside an area are gathered by their position.
             let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (layer, feature, x + dx, y + dy)));
             let mut known = around.filter_map(|block| self.blocks.get(&block).copied());
             let same = |k: &usize| std::mem::discriminant(&self.out[*k].reason) == std::mem::discriminant(&reason);

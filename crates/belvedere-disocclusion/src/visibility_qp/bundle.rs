@@ -16,7 +16,7 @@ const MOST: usize = LANES;
 const SPREAD: f64 = 3.0;
 /// Short parts of lines are tested one by one unless the bounds of the finest blocks leave this clearance, scene units.
 const SOME: f64 = 0.5;
-/// What rounding may change in a height, scene units.
+/// Largest change of a height by rounding, scene units.
 const ROUNDING: f64 = 1e-6;
 /// Length of the pieces along which lines are followed, grid cells.
 const FINE: f64 = 2.0;
@@ -184,7 +184,7 @@ fn ends(lines: &[Line], surface: &Surface, clearance: &Clearance, touches: &mut 
     room
 }
 
-/// What encloses the lines of a bundle: a box of points that shrinks into the eye, and the lowest line.
+/// Bounds of the lines of a bundle: a box of points that shrinks into the eye, and the lowest line.
 struct Fan {
     points: [DVec2; 2],
     eye: DVec2,

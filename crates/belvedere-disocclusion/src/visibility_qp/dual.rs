@@ -113,8 +113,8 @@ impl Dual {
         false
     }
 
-    /// From the feasible multipliers `m`: add rows that are missed, walk to the solution on the active rows, and drop on
-    /// the way what reaches zero. The objective never rises.
+    /// From the feasible multipliers `m`: adds rows that are missed, moves to the solution on the active rows, and drops rows whose
+    /// multiplier reaches zero on the way. The objective never rises.
     fn descend(&mut self, m: Vec<f64>, tolerance: f64, go_on: &(dyn Fn() -> bool + Sync)) -> bool {
         let now: Vec<usize> = (0..self.len()).filter(|&i| self.active[i] != (m[i] > 0.0)).collect();
         self.exchange(&now);

@@ -209,7 +209,7 @@ impl<S: Simd> Register<S> {
         }
     }
 
-    /// Takes places within the parts into account.
+    /// Takes positions within the parts into account.
     ///
     /// * `facet`: how far facets lie over the bilinear displacement, per factor of xy in a cell of the field.
     #[inline(always)]
@@ -333,7 +333,7 @@ mod tests {
                                 }
                             });
                         }
-                        // Between kinks it bulges at most by so much.
+                        // Largest height by which the ground bulges between kinks.
                         let bulge = 0.25 * surface.displaced_bound([DVec2::ZERO, last]).1;
                         let between = (0..=300).map(|k| missing(part[0] + (part[1] - part[0]) * f64::from(k) / 300.0));
                         let most = between.fold(all, f64::max);

@@ -103,7 +103,7 @@ impl MatrixFree {
         self.product.iter().enumerate().map(of).sum()
     }
 
-    /// Cycles until no row is missed by more than it may be, or by `enough` if that is more. Answers whether that was reached.
+    /// Runs cycles until no row is missed by more than it may be, or by `enough` if that is more. Returns whether that was reached.
     ///
     /// * `cycles`: at most;
     /// * `go_on`: asked between steps; false stops with the best so far.
@@ -183,7 +183,7 @@ impl MatrixFree {
         (0..self.m.len()).map(of).sum()
     }
 
-    /// Rows without a multiplier leave the face, and of each group the one that is missed most joins it. Answers how many changed.
+    /// Rows without a multiplier leave the face, and of each group the most missed row joins it. Returns the number of rows that changed.
     fn turn(&self, e: &mut Equations) -> usize {
         let mut changed = 0;
         for group in self.order.chunks(GROUP) {

@@ -35,8 +35,8 @@ pub trait LinesOfSight: Sync {
     /// chain of (grid coordinates, height); nothing if the point has none, e.g. outside the domain of a stage.
     fn trace(&self, grid: DVec2, z: f64, out: &mut Vec<(DVec2, f64)>);
 
-    /// The eye (grid coordinates, height) if every line is a straight segment to it or to a place over it that depends on the point's
-    /// place alone, so that lines depend linearly on the heights of their points.
+    /// The eye (grid coordinates, height) if every line is a straight segment to it, or to a point over it that depends only on the
+    /// plan position of the candidate, so that lines depend linearly on the heights of their points.
     fn straight(&self) -> Option<(DVec2, f64)> {
         None
     }
@@ -75,7 +75,7 @@ pub struct QpOptions {
     pub near: f64,
     /// Most a node may rise, metres.
     pub ceiling: f64,
-    /// How far a node may exceed its ceiling, metres, > 0.
+    /// Height by which a node may exceed its ceiling, metres, > 0.
     pub ceiling_tolerance: f64,
     /// Price of a metre of occlusion squared: rows may be missed by a slack at this price; `None` = they must be met.
     pub slack_price: Option<f64>,
@@ -119,7 +119,7 @@ pub struct QpProblem<'a> {
 pub struct SolvedRow {
     /// Candidate whose line of sight it keeps clear; `None` = a node below its ceiling, or a river that does not rise.
     pub candidate: Option<u32>,
-    /// Where the ground comes near the line, grid coordinates.
+    /// Position at which the ground comes near the line, grid coordinates.
     pub at: DVec2,
     /// Share of the way from the candidate to the eye.
     pub tau: f64,
@@ -142,7 +142,7 @@ pub enum Reason {
     TooNear,
     /// It has no line of sight.
     NoLine,
-    /// No displacement of the solver's grid within the depth limit shows all that is asked.
+    /// No displacement of the solver's grid within the depth limit shows all points that are demanded.
     Infeasible(Certificate),
     /// Still missed, by these metres, when the rounds were used up.
     NotSettled {
@@ -187,7 +187,7 @@ pub struct QpResult {
     pub added: usize,
     /// Rounds in which all lines of sight were checked.
     pub rounds: usize,
-    /// Candidates that are not seen as asked.
+    /// Candidates that are not seen with the required clearance.
     pub unresolved: Vec<Unresolved>,
     /// `1/2 |u - u*|_H^2`.
     pub energy: f64,

@@ -5,7 +5,7 @@ use pulp::Simd;
 /// The most numbers that a register holds.
 pub(super) const LANES: usize = 8;
 
-/// A number for each place; registers with fewer take the first ones.
+/// A number for each position; shorter registers take the first ones.
 pub(super) type Lane = [f64; LANES];
 
 /// The first register of a lane.

@@ -23,7 +23,7 @@ pub(super) enum Constraint {
     Sight { candidate: usize, at: DVec2, tau: f64 },
 }
 
-/// At most eight nodes: four around the ground sample, four around the point that must be seen; or around two places of a river.
+/// A row with at most eight nodes: four around the ground sample and four around the candidate, or around two points of a river.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Row {
     pub(super) nodes: [u32; 8],
@@ -50,7 +50,7 @@ impl Row {
         }
     }
 
-    /// Whether it must be met at any price: no displacement meets those that may not be missed.
+    /// Whether it must be met at any price, without slack.
     pub(super) fn is_firm(&self) -> bool {
         matches!(self.constraint, Constraint::Ceiling(_) | Constraint::River(_))
     }

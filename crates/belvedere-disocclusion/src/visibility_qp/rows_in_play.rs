@@ -20,7 +20,7 @@ pub(super) struct RememberedRow {
     pub(super) idle: u32,
 }
 
-/// Where to find a row again.
+/// Key by which a row is found again in the next frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum RowKey {
     Ceiling(u32),
@@ -70,7 +70,7 @@ pub(super) struct RowsInPlay {
     allowed: Vec<f64>,
     multipliers: Multipliers,
     idle: Vec<u32>,
-    /// What ties take of the products of rows; empty without ties and without a matrix.
+    /// Parts of the rows that ties subtract from products of rows; empty without ties and without a matrix.
     shared: Vec<Vec<f64>>,
 }
 
@@ -141,7 +141,7 @@ impl RowsInPlay {
         matches!(self.multipliers, Multipliers::MatrixFree(_))
     }
 
-    /// Finds the multipliers. Answers whether all rows are met as asked.
+    /// Finds the multipliers. Returns whether all rows are met within their tolerances.
     ///
     /// * `go_on`: asked between steps; false stops with the best so far.
     pub(super) fn solve(
@@ -202,7 +202,7 @@ impl RowsInPlay {
         }
     }
 
-    /// What to remember for the next frame.
+    /// Rows to remember for the next frame.
     pub(super) fn kept(&self, id: impl Fn(usize) -> u32) -> Vec<RememberedRow> {
         let mut out = Vec::new();
         for (i, row) in self.rows.iter().enumerate() {
@@ -217,7 +217,7 @@ impl RowsInPlay {
                 out.push(RememberedRow { key, multiplier, idle });
             }
         }
-        // What leaves first comes last, so that most of the factor stays.
+        // Rows that leave first come last, so that most of the factor stays.
         out.sort_by(|a, b| b.multiplier.total_cmp(&a.multiplier));
         out
     }

@@ -124,7 +124,7 @@ impl QpSolver {
         self.solve_with(problem, &Progress::silent())
     }
 
-    /// As [`Self::solve`]; tells how far it is, and ends with the best so far when it should.
+    /// As [`Self::solve`]; reports its progress, and ends with the best result so far when it should.
     ///
     /// # Errors
     /// Every [`QpError`].
@@ -212,7 +212,7 @@ impl QpSolver {
             self.push(&mut frame, new);
         }
         if o.slack_price.is_some() {
-            // What is still missed was left hidden at its price.
+            // Positions that are still missed were left hidden at their price.
             missed.clear();
         }
         self.report(&frame, &missed, depth, &mut out);
@@ -452,7 +452,7 @@ impl Frame<'_> {
         let tolerance = self.clearance.tolerance;
         let left = (worst.max(tolerance) / tolerance).ln() / (first.max(2.0 * tolerance) / tolerance).ln();
         let stage = format!("quadratic program, round {round}, {} rows, {worst:.1} m missed", self.pool.rows.len());
-        // Whether to stop is asked at the end of each round.
+        // Whether to stop is tested at the end of each round.
         let _ = self.progress.tick(&stage, 0.5 + 0.4 * (1.0 - left));
     }
 }

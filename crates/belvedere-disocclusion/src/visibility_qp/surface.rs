@@ -13,8 +13,8 @@ const FINEST: usize = 2;
 /// Facets that lie less over the bilinear displacement do so by rounding.
 const AT_EDGE: f64 = 1e-12;
 
-/// How far a displacement that is flat on the triangles of the field lies over the bilinear one at `g`, per unit of the latter's
-/// factor of xy in the cell of the field.
+/// Height of a displacement that is flat on the triangles of the field over the bilinear one at `g`, per unit of the latter's factor
+/// of xy in the cell of the field.
 pub(super) fn facet_in_cell(g: DVec2) -> f64 {
     let inside = g - g.floor();
     inside.min_element() - inside.x * inside.y
@@ -47,7 +47,7 @@ impl Lattice {
         Between { col: col as u32, row: row as u32, x: s.x - col as f64, y: s.y - row as f64 }
     }
 
-    /// How far a displacement that is flat on the triangles of the field lies over the bilinear one at `g`, per unit of the latter's
+    /// Height of a displacement that is flat on the triangles of the field over the bilinear one at `g`, per unit of the latter's
     /// factor of xy in a cell of the lattice.
     pub(super) fn facet(&self, g: DVec2) -> f64 {
         facet_in_cell(g) / (self.step.x * self.step.y)
@@ -248,7 +248,7 @@ mod tests {
             let facet = surface.displacement(g, true);
             assert!((facet - flat).abs() < 1e-9, "{g}: {facet} and {flat}");
             most = most.max((facet - surface.displacement(g, false)).abs());
-            // What the metric takes for the same.
+            // The value that the metric uses.
             let (nodes, weights) = lattice.weights_over(g, true);
             let far = lattice.between(DVec2::new(7.3, 2.2));
             let entry = |j: u32| green.between(Between::node(j, 5, 4), far);

@@ -79,7 +79,7 @@ impl LinesOfSight for ViewSight {
         out.push((grid, z));
         let mut from = (image.depth, p);
         for k in 1..=PIECES {
-            // Beyond the domain of a stage there is nothing that could be in the way.
+            // Beyond the domain of a stage there is nothing that could hide the point.
             let Some(to) = at(depth(k)) else { break };
             self.halve(&at, from, (depth(k), to), 0, out);
             out.push(self.grid(to));

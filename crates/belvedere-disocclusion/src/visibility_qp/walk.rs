@@ -1,4 +1,4 @@
-//! Where the ground comes too close to a line of sight.
+//! Search along a line of sight for positions where the ground comes too close.
 
 use super::surface::{Lattice, Surface};
 use crate::smooth::Between;
@@ -18,7 +18,7 @@ pub(super) struct Chord {
     pub(super) faceted: bool,
 }
 
-/// Clearance asked of lines of sight.
+/// Clearance required of lines of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Clearance {
     /// Asked far from the point, metres.
@@ -49,7 +49,7 @@ pub(super) struct Touch {
     pub(super) ground: f64,
     /// Height of the line.
     pub(super) z: f64,
-    /// How far the asked clearance is missed, metres.
+    /// Height by which the required clearance is missed, metres.
     pub(super) excess: f64,
 }
 
@@ -110,8 +110,8 @@ impl Chord {
         })
     }
 
-    /// Calls `touch` with the worst place of each short piece of a part where the asked clearance is missed by more than
-    /// the tolerance. `room` becomes no more than what is left elsewhere.
+    /// Calls `touch` with the worst position of each short piece of a part where the required clearance is missed by more than the
+    /// tolerance. `room` becomes no more than the room left elsewhere.
     pub(super) fn walk(
         &self,
         surface: &Surface,
@@ -162,7 +162,7 @@ impl Chord {
         }
     }
 
-    /// Cuts a part at the lines of the solver's grid and takes the worst place of all pieces.
+    /// Cuts a part at the lines of the solver's grid and takes the worst position of all pieces.
     fn by_cells(&self, surface: &Surface, [a, b]: [f64; 2], clearance: &Clearance, found: &mut Found) {
         let step = surface.lattice.step;
         let (p, d) = (self.ends[0] / step, (self.ends[1] - self.ends[0]) / step);
@@ -246,7 +246,7 @@ impl Chord {
         }
     }
 
-    /// The place at a parameter.
+    /// The position at a parameter.
     fn place(&self, surface: &Surface, t: f64, clearance: &Clearance) -> Touch {
         self.touch(surface, t, self.at(t), surface.ground(self.at(t)), clearance)
     }
@@ -327,7 +327,7 @@ impl<'a> Gap<'a> {
         self.judge(chord, t, chord.at(t), surface.ground(chord.at(t)), &mut Found::new())
     }
 
-    /// Takes a place into account; returns its excess beyond the tolerance.
+    /// Takes a position into account; returns its excess beyond the tolerance.
     #[inline]
     fn judge(&self, chord: &Chord, t: f64, at: DVec2, ground: f64, found: &mut Found) -> f64 {
         let tau = Chord::mix(chord.tau, t);

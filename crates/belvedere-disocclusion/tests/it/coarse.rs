@@ -55,7 +55,7 @@ fn scaled_detail_hides_nothing_that_the_program_holds_for_seen() {
         for eye in EYES {
             let report = report(&scene, eye, &settings);
             assert!(report.visible_before < 0.9, "{eye:?} {report:?}");
-            // Right before a place, detail that is bilinear in a cell as wide as this hides what its facets do not.
+            // Right before a point, detail that is bilinear in so wide a grid cell hides points that its facets do not.
             let m = &report.metrics;
             assert!(m.visible_dense + m.hidden_in_guard > 0.98, "{eye:?} {detail:?} {report:?}");
             assert!(detail == Detail::Scaled || m.visible == 1.0, "{eye:?} {report:?}");

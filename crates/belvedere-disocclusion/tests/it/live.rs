@@ -52,7 +52,7 @@ fn ground_is_never_older_than_the_limit_and_what_it_hides_is_said() {
         late += u64::from(frame.lag > 0);
     }
     assert!(late > 0, "24 pictures without any drawing between them, and no solution came too late for one");
-    // The eye sinks from one picture to the next: old ground cannot show everything, and that must be said.
+    // The eye sinks from one picture to the next: old ground cannot show everything, and the frame must report that.
     let far = live.frame(&view(&scene, 24.0, 60.0)).expect("ground");
     assert_eq!(far.hidden > 0, far.hidden_worst_m > 0.0);
     assert!(far.lag == 0 || far.hidden > 0, "ground for an eye 190 m higher hides nothing, lag {}", far.lag);

@@ -203,7 +203,7 @@ fn marks(view: &View, images: &[Option<Image>]) -> Marks {
     };
     let mut places: Vec<Vec<f64>> = vec![Vec::new(); COMPARED[0] * COMPARED[1]];
     for i in &seen {
-        // Every place knows its neighbours.
+        // A cell also takes the rates of its eight neighbours.
         let [x, y] = place(i);
         for near_y in y.saturating_sub(1)..=(y + 1).min(COMPARED[1] - 1) {
             for near_x in x.saturating_sub(1)..=(x + 1).min(COMPARED[0] - 1) {

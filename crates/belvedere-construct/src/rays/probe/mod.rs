@@ -131,7 +131,7 @@ pub struct Found {
 pub struct ProbeReport {
     /// Turns of the rays that were found.
     pub turns: usize,
-    /// How many of them have come in; in a film they do so one after the other.
+    /// Number of turns that have come in; in a film they do so one after the other.
     pub entered: f64,
     /// Share of the surface that the straight picture shows.
     pub seen_straight: f64,

@@ -5,7 +5,7 @@ use belvedere_core::random::Random;
 use belvedere_core::{Aabb, DVec3};
 use belvedere_scene::{LayerKind, Scene};
 
-/// How far in front of its surface a point lies, shares of the extent of the region.
+/// Distance of a point in front of its surface, share of the extent of the region.
 const IN_FRONT: f64 = 2e-5;
 
 /// A point that stands for a piece of a surface.

@@ -34,7 +34,7 @@ impl Voxels {
                 kind => kind.triangles().into_iter().for_each(|m| voxels.add_mesh(&m.mesh)),
             }
         }
-        // What is solid reaches half a cell from the middle of its cell, on the average.
+        // The solid part of a cell reaches half a cell from its middle, on the average.
         let open: Vec<bool> = voxels.solid.iter().map(|solid| !solid).collect();
         let free = squared(&open, size, [1.0; 3], Around::Nothing).into_iter();
         let free = free.map(|d| ((f64::from(d.sqrt()) - 0.5) * cell).max(0.0) as f32);

@@ -135,7 +135,7 @@ impl<'a> Ways<'a> {
     }
 }
 
-/// A cell whose neighbours are still to be looked at; the cheapest comes first, the first of equals.
+/// A cell whose neighbours are not tested yet; the cheapest comes first, and of equals the first.
 #[derive(Debug, PartialEq)]
 struct Open {
     cost: f32,

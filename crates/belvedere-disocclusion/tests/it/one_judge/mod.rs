@@ -12,7 +12,7 @@ use compared::{AGREES, Case, Compared, LIFT_M, case, compared, made};
 /// As published, promised on coarse ground twice, and at a price.
 const SEEDS: [u64; 4] = [2, 3, 4, 7];
 
-/// Places that the report holds for hidden and the exact tracer shows; `None` if it names none.
+/// Number of points that the report lists as hidden and the exact tracer shows; `None` if the report lists none.
 fn shown_though_named(case: &Case, view: &View, report: &TerrainReport) -> Option<usize> {
     let by_ground = |r: &&UnresolvedRun| {
         use UnresolvedReason::{Between, InsideGuard, Judged, Limits, Smoothed};
