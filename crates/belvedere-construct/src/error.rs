@@ -35,7 +35,7 @@ pub enum ConstructError {
         /// Ids of the layers.
         layers: String,
     },
-    /// There is no terrain.
+    /// The scene has no terrain.
     #[error("the scene has no terrain layer; reveal needs one")]
     NoTerrain,
     /// The eye is under ground.

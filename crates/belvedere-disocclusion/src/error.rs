@@ -16,7 +16,7 @@ pub enum DisocclusionError {
     /// Cancelled through [`belvedere_scene::Progress`].
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// There is no terrain.
+    /// The scene has no terrain.
     #[error("the scene has no terrain layer; terrain disocclusion needs one")]
     NoTerrain,
     /// No layer of the scene must be seen.

@@ -49,7 +49,7 @@ impl RiverLine {
     /// The lines of the layers `ids`.
     ///
     /// # Errors
-    /// [`RiverError`] if one of them is no line layer of the scene.
+    /// [`RiverError`] if one of them is not a line layer of the scene.
     pub fn of(scene: &Scene, ids: &[String]) -> Result<Vec<Self>, RiverError> {
         let mut out = Vec::new();
         for id in ids {
@@ -67,7 +67,7 @@ impl RiverLine {
         Ok(out)
     }
 
-    /// The same with each point moved to other coordinates; points without any are left out.
+    /// The line with each point moved to other coordinates; points without such coordinates are left out.
     pub fn mapped(&self, to: impl Fn(DVec2) -> Option<DVec2>) -> Self {
         Self { points: self.points.iter().filter_map(|p| to(*p)).collect(), ..self.clone() }
     }
@@ -84,7 +84,7 @@ pub struct RiverReport {
     pub name: String,
     /// Largest height of a point over one upstream of it on the elevation model, metres: its noise.
     pub rise_before_m: f64,
-    /// The same on the displaced ground.
+    /// The largest such height on the displaced ground, metres.
     pub rise_after_m: f64,
     /// Largest height by which a point rises over those upstream more than on the elevation model, metres; 0 but for rounding.
     pub excess_m: f64,
@@ -223,7 +223,7 @@ impl River {
         self.places.iter().filter(move |place| place.bend || !GROUNDS[ground])
     }
 
-    /// Its bends, downstream.
+    /// The points at which the ground along the river bends, downstream.
     pub(crate) fn bends(&self) -> impl Iterator<Item = &Place> {
         self.places.iter().filter(|place| place.bend)
     }

@@ -76,7 +76,7 @@ fn around(terrain: &Heightfield, i: usize, reach: isize) -> impl Iterator<Item =
     offsets(terrain, i, reach).map(|(.., h)| h)
 }
 
-/// The same with how many columns and rows they are away.
+/// Heights of these nodes, with the numbers of columns and rows by which they are away.
 fn offsets(terrain: &Heightfield, i: usize, reach: isize) -> impl Iterator<Item = (isize, isize, f64)> + '_ {
     let (cols, rows) = (terrain.cols() as isize, terrain.rows() as isize);
     let (col, row) = (i as isize % cols, i as isize / cols);

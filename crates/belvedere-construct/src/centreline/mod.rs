@@ -26,7 +26,7 @@ const SPACING: f64 = 0.5;
 /// A centreline.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Centreline {
-    /// From the first point to the second, scene coordinates.
+    /// Points from the first given point to the second, scene coordinates.
     pub points: Vec<DVec3>,
     /// Figures.
     pub report: CentrelineReport,

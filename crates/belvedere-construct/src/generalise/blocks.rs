@@ -87,7 +87,7 @@ pub(super) struct Site<'a> {
     pub ordinary: &'a [&'a Land],
     /// Buildings that keep their shape.
     pub landmarks: &'a [&'a Land],
-    /// Blocks and landmarks of the finer level that it holds; none if there is no finer level.
+    /// Blocks and landmarks of the finer level in the cell; empty if there is no finer level.
     pub finer: &'a [&'a Land],
 }
 

@@ -86,7 +86,7 @@ fn share_vertices(mut polygons: Vec<&mut Polygon>) {
             on_edge.clear();
             let [from, to] = [square(a.min(b) - ON_EDGE_M), square(a.max(b) + ON_EDGE_M)];
             for x in from[0]..=to[0] {
-                // Of a row of squares those that the edge passes.
+                // The squares of a row that the edge passes.
                 let [left, right] = [x as f64 * SIDE_M, (x + 1) as f64 * SIDE_M]
                     .map(|at| if along.x.abs() < 1e-12 { None } else { Some(a.y + (at - a.x) / along.x * along.y) });
                 let (low, high) = match (left, right) {

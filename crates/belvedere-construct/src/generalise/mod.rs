@@ -53,7 +53,7 @@ pub struct Generalised {
 /// The levels of abstraction of `city`, whose coordinates are metres.
 ///
 /// # Errors
-/// [`GeneraliseError`]: no building with an area, coordinates that are no metres, settings out of range, cancelled.
+/// [`GeneraliseError`]: no building with an area, coordinates that are not metres, settings out of range, cancelled.
 pub fn generalise(
     city: &City,
     settings: &GeneraliseSettings,

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 /// Ground and streets that divide the cells of a level.
 pub(super) struct Dividers {
-    /// Its ground.
+    /// Ground of the dividers.
     pub land: Land,
     /// Indices in `City::ways`.
     pub ways: Vec<usize>,

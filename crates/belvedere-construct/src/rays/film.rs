@@ -34,9 +34,9 @@ type Seen = (f32, bool);
 /// Visible share of the target in one frame, by position of the second viewpoint.
 #[derive(Debug, Clone, Default)]
 struct Known {
-    /// From f = -1 to 1 sideways.
+    /// At values of f from -1 to 1, sideways.
     sideways: Vec<Seen>,
-    /// On `side` rings, from the first to the rim; empty before the wide search.
+    /// At the positions of `side` rings, from the first ring to the rim; empty before the wide search.
     wide: Vec<Seen>,
     side: usize,
 }

@@ -179,7 +179,7 @@ pub(super) struct Search<'a> {
     right: DVec3,
     /// Distance of the second viewpoint at f = 1.
     reach: f64,
-    /// `None`: the target is so near that there is no room for a bend.
+    /// Distances of t0, t1, t2 from the eye; `None` if the target is too near for a bend.
     planes: Option<[f64; 3]>,
     direction_deg: f64,
     tried: usize,
@@ -221,7 +221,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// From the eye to the second viewpoint.
+    /// Vector from the eye to the second viewpoint.
     fn offset(&self, f: f64, direction_deg: f64) -> DVec3 {
         let (sin, cos) = direction_deg.to_radians().sin_cos();
         let across = if direction_deg == 0.0 { self.right } else { cos * self.right - sin * self.base.pinhole().down };

@@ -113,7 +113,7 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
 
 /// The first change of values on a line.
 struct Edge {
-    /// From the lumen to the wall.
+    /// Change of the values from the lumen to the wall.
     rise: f64,
     /// Its greatest slope, values per step.
     steepest: f64,

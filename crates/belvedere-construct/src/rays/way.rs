@@ -21,7 +21,7 @@ const AXES: [[f64; 2]; SENSES] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.
 /// Positions of the second viewpoint, and the moves from one to another.
 #[derive(Debug, Clone)]
 pub(super) struct Disc {
-    /// To the right and upwards, shares of `a`.
+    /// Offset of each to the right and upwards, shares of `a`.
     pub(super) places: Vec<[f64; 2]>,
     /// Frames from one move to the next.
     pub(super) stride: usize,

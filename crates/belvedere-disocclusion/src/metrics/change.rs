@@ -32,7 +32,7 @@ pub(super) fn at_nodes(field: &Field, delta: &Grid) -> Vec<f64> {
     (0..field.heights().len()).into_par_iter().with_min_len(4096).map(at).collect()
 }
 
-/// Over the nodes with data.
+/// Size of the displacement over the nodes with data.
 pub(super) fn size(field: &Field, u: &[f64]) -> Size {
     let solid = || u.iter().zip(field.void()).filter(|(_, v)| !**v).map(|(u, _)| *u);
     let (sum, count) = solid().fold((0.0, 0usize), |(s, n), u| (s + u * u, n + 1));

@@ -86,18 +86,18 @@ pub(crate) struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
-    /// Over facets between displaced nodes, as ground is rasterised and written.
+    /// Judge over facets between displaced nodes, as ground is rasterised and written.
     pub(crate) fn faceted(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
         Self { grounds: vec![DisplacedGround::faceted(field, delta)], sight }
     }
 
-    /// Over ground plus the bilinear displacement, as it is traced.
+    /// Judge over ground plus the bilinear displacement, as it is traced.
     #[cfg(test)]
     pub(crate) fn bilinear(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
         Self { grounds: vec![DisplacedGround::new(field, delta)], sight }
     }
 
-    /// Over facets and over the bilinear displacement.
+    /// Judge over facets and over the bilinear displacement.
     pub(crate) fn of_both(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
         Self { grounds: vec![DisplacedGround::faceted(field, delta), DisplacedGround::new(field, delta)], sight }
     }

@@ -128,7 +128,7 @@ impl Smoother {
 /// L x into `out`: sum of the neighbours minus their number times the value, for a grid of `cols` columns, row-major.
 ///
 /// # Panics
-/// If the sizes differ or are no multiple of `cols`.
+/// If the sizes differ or are not a multiple of `cols`.
 pub fn laplacian(cols: usize, x: &[f64], out: &mut [f64]) {
     assert!(cols > 0 && x.len().is_multiple_of(cols) && x.len() == out.len(), "values of a grid");
     let rows = x.len() / cols;

@@ -236,7 +236,7 @@ impl Prepared {
         inside.into_iter().chain(near).map(|i| self.check[i]).collect()
     }
 
-    /// The same as candidates, whose ids follow those of all others.
+    /// The points by which the result is judged as candidates, whose ids follow those of all others.
     pub(super) fn check_in_view(&self, in_view: &super::PointsInView<'_>) -> Vec<Candidate> {
         let first = self.dense.len() + self.points.len();
         let of = |i: usize| Candidate::faceted((first + i) as u32, self.check[i].grid, self.check[i].lift);

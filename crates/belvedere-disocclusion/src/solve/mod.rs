@@ -201,7 +201,7 @@ fn ground(scene: &Scene) -> Option<&Arc<Heightfield>> {
     })
 }
 
-/// A frame before its figures.
+/// The solution of one frame, without the figures of its report.
 struct SolvedFrame {
     prepared: Prepared,
     /// The ground as the eye sees it.

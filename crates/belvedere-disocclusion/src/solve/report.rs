@@ -155,7 +155,7 @@ pub enum UnresolvedReason {
     Infeasible {
         /// Displacements down to this are ruled out.
         depth_m: f64,
-        /// By how much the weighted rows miss at best, > 0.
+        /// Height by which the weighted rows are missed at best, > 0.
         gap_m: f64,
         /// Rows of the proof.
         rows: usize,

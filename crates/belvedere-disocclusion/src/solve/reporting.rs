@@ -35,7 +35,7 @@ pub(super) struct Context<'a> {
     pub(super) delta: &'a Grid,
     /// See [`Deformation::traced`].
     pub(super) traced: bool,
-    /// That of the frame before.
+    /// Displacement of the frame before.
     pub(super) previous: Option<&'a Grid>,
     /// When time is short, not every dense point is judged.
     pub(super) progress: &'a Progress,
@@ -46,7 +46,7 @@ pub(super) fn sampled(all: Vec<ReferencePoint>, few: bool) -> (Vec<ReferencePoin
     if !few || all.len() <= MOST_SAMPLED {
         return (all, 1);
     }
-    // Those that stand for something alone.
+    // Only points that stand for a length, an area or a feature.
     let counted: Vec<ReferencePoint> = all.iter().filter(|p| p.amount > 0.0).copied().collect();
     let every = counted.len().div_ceil(MOST_SAMPLED).max(1);
     (counted.into_iter().step_by(every).collect(), all.len().div_ceil(MOST_SAMPLED))
@@ -211,7 +211,7 @@ fn hidden(
     runs.out
 }
 
-/// Parts that cannot be seen, and whether the program's own points are all seen.
+/// Parts that cannot be seen, and whether none of them was left by the quadratic program.
 struct Named {
     runs: Vec<UnresolvedRun>,
     program_met: bool,

@@ -63,7 +63,7 @@ impl<'a> Runs<'a> {
     }
 }
 
-/// Of two reasons of one kind the first, with the larger rise of ground over a line of sight.
+/// The first of two reasons of one kind, with the larger rise of ground over a line of sight of both.
 fn worse(first: UnresolvedReason, next: UnresolvedReason) -> UnresolvedReason {
     use UnresolvedReason::{Between, Facets, InsideGuard, Judged, Limits, Smoothed};
     match (first, next) {

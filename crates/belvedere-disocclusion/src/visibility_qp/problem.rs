@@ -6,7 +6,7 @@ use belvedere_core::DVec2;
 /// A point that must be seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
-    /// The same in every frame: rows are remembered by it.
+    /// Identifier, the same in every frame: rows are remembered by it.
     pub id: u32,
     /// Grid coordinates, on the field.
     pub grid: DVec2,
@@ -18,12 +18,12 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Over ground with the bilinear displacement.
+    /// A candidate over ground with the bilinear displacement.
     pub fn new(id: u32, grid: DVec2, lift: f64) -> Self {
         Self { id, grid, lift, faceted: false }
     }
 
-    /// Over ground of facets.
+    /// A candidate over ground of facets.
     pub fn faceted(id: u32, grid: DVec2, lift: f64) -> Self {
         Self { id, grid, lift, faceted: true }
     }
@@ -121,7 +121,7 @@ pub struct SolvedRow {
     pub candidate: Option<u32>,
     /// Position at which the ground comes near the line, grid coordinates.
     pub at: DVec2,
-    /// Share of the way from the candidate to the eye.
+    /// Share of the distance from the candidate to the eye in plan.
     pub tau: f64,
     /// Nodes.
     pub nodes: [u32; 8],
@@ -157,7 +157,7 @@ pub enum Reason {
 pub struct Certificate {
     /// Displacements down to this are ruled out, metres.
     pub depth: f64,
-    /// By how much the sum of the rows is missed at best, metres per unit of multiplier, > 0.
+    /// Height by which the sum of the rows is missed at best, metres per unit of multiplier, > 0.
     pub gap: f64,
     /// Candidates of the rows with their multipliers, which add up to 1 together with those of the ceilings.
     pub rows: Vec<(u32, f64)>,

@@ -31,7 +31,7 @@ pub(super) struct Row {
     pub(super) len: usize,
     pub(super) bound: f64,
     pub(super) constraint: Constraint,
-    /// The same as bilinear values at points, with their factors: two for the ground sample, two for the point that must be seen.
+    /// The row as bilinear values at points, with their factors: two for the ground sample, two for the point that must be seen.
     pub(super) points: [(f64, Between); 4],
 }
 

@@ -35,11 +35,11 @@ pub(super) const IDLE: u32 = 3;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NewRow {
     pub(super) row: Row,
-    /// By how much the target exceeds it.
+    /// Height by which the target displacement exceeds the bound, metres.
     pub(super) excess: f64,
     /// Inverse price of its slack, 0 = none.
     pub(super) soft: f64,
-    /// By how much it may be missed where there are too many rows for an exact solution, metres.
+    /// Height by which it may be missed where there are too many rows for an exact solution, metres.
     pub(super) allowed: f64,
     /// Multiplier to begin with.
     pub(super) multiplier: f64,
@@ -47,7 +47,7 @@ pub(super) struct NewRow {
     pub(super) idle: u32,
 }
 
-/// With more rows than this no matrix over all of them is made. Below it the active set is quicker, and exact.
+/// Most rows for which a matrix over all of them is made. Up to it the active set is quicker, and exact.
 const MOST_EXACT: usize = 2000;
 /// Cycles of the solver without a matrix in rounds that need not be exact, and in the others.
 const CYCLES: [usize; 2] = [2, 10];
@@ -77,9 +77,9 @@ pub(super) struct RowsInPlay {
 /// Tolerances within which rows are to be met.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Accuracy {
-    /// Metres, by the active set.
+    /// Tolerance of the active set, metres.
     pub(super) exact: f64,
-    /// Metres that suffice in this round where there is no matrix; 0 = what each row allows.
+    /// Tolerance of this round where there is no matrix, metres; 0 = the allowed miss of each row.
     pub(super) enough: f64,
 }
 
@@ -163,7 +163,7 @@ impl RowsInPlay {
         }
     }
 
-    /// By how much the solution misses a row, metres; 0 where it is exact.
+    /// Height by which the solution misses a row, metres; 0 where it is exact.
     pub(super) fn missed(&self, row: usize) -> f64 {
         match &self.multipliers {
             Multipliers::ActiveSet(_) => 0.0,

@@ -14,7 +14,7 @@ const DEPENDENT: f64 = 1e-12;
 pub(super) struct Ties {
     /// At least two nodes each.
     sets: Vec<Vec<u32>>,
-    /// Of `C H^-1 C^T`.
+    /// Cholesky factor of `C H^-1 C^T`.
     factor: Cholesky,
     lattice: [usize; 2],
 }

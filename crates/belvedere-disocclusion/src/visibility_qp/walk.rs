@@ -12,9 +12,9 @@ pub(super) struct Chord {
     pub(super) ends: [DVec2; 2],
     /// Heights of the line there.
     pub(super) z: [f64; 2],
-    /// Share of the way to the eye there: 0 at the point, 1 at the eye.
+    /// Share of the distance to the eye there: 0 at the point, 1 at the eye.
     pub(super) tau: [f64; 2],
-    /// Over ground with flat triangles, see [`super::Candidate::faceted`].
+    /// Whether the ground has flat triangles, see [`super::Candidate::faceted`].
     pub(super) faceted: bool,
 }
 
@@ -32,7 +32,7 @@ pub(super) struct Clearance {
 }
 
 impl Clearance {
-    /// Share of margin and tolerance that counts at `tau`: all of it but for the fifth of the way next to the point.
+    /// Share of margin and tolerance that counts at `tau`: all of it but for the fifth of the line next to the point.
     pub(super) fn share(&self, tau: f64) -> f64 {
         self.near + (1.0 - self.near) * (5.0 * tau).clamp(0.0, 1.0)
     }
@@ -43,7 +43,7 @@ impl Clearance {
 pub(super) struct Touch {
     /// Grid position.
     pub(super) at: DVec2,
-    /// Share of the way to the eye.
+    /// Share of the distance to the eye.
     pub(super) tau: f64,
     /// Ground without its displacement.
     pub(super) ground: f64,

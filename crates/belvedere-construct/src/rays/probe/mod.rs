@@ -145,7 +145,7 @@ pub struct ProbeReport {
     pub gained_by_turn: Vec<f64>,
     /// Mean of 1 minus the ratio of the smallest to the largest scale at a place, over what is seen; 0 = none.
     pub distortion: f64,
-    /// The same of the straight picture.
+    /// Mean distortion of the straight picture.
     pub distortion_straight: f64,
     /// Mean angle by which the camera's up is turned in the picture, over what is seen, degrees.
     pub roll_deg: f64,

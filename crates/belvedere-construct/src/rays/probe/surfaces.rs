@@ -63,7 +63,7 @@ pub(super) fn surface_points(scene: &Scene, region: &Aabb, count: usize) -> Vec<
         // Large triangles reach far out of the region.
         points = on_triangles(wanted * (wanted / points.len().max(1)).min(16));
     }
-    // Of the many points on the ground some, each for more of it.
+    // Some of the many points on the ground are kept, each for a larger area.
     let wanted = (count as f64 * ground_area / all).ceil().max(1.0) as usize;
     let every = ground.len().div_ceil(wanted).max(1);
     points.extend(ground.into_iter().step_by(every).map(|p| SurfacePoint { area: p.area * every as f64, ..p }));
