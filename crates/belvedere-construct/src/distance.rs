@@ -45,11 +45,11 @@ pub(crate) fn squared(inside: &[bool], dims: [usize; 3], spacing: [f64; 3], arou
     out
 }
 
-/// Room for one line of cells.
+/// Buffers for one line of cells.
 struct Line {
     around: Around,
     values: Vec<f64>,
-    /// Parabolas of the envelope: where they stand, and from where on each is the lowest.
+    /// Parabolas of the envelope: the cell at which each stands, and the coordinate from which on it is the lowest.
     stands: Vec<usize>,
     from: Vec<f64>,
 }
@@ -59,7 +59,7 @@ impl Line {
         Self { around, values: vec![0.0; n + 2], stands: vec![0; n + 2], from: vec![0.0; n + 3] }
     }
 
-    /// Replaces a line of squared distances by those that ways along it allow.
+    /// Replaces a line of squared distances by the lower envelope of their parabolas along the line.
     fn pass(&mut self, data: &mut [f32], first: usize, stride: usize, n: usize, spacing: f64) {
         // One cell at each end of the line belongs to what is around.
         let end = if self.around == Around::Outside { 0.0 } else { f64::INFINITY };

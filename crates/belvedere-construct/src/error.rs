@@ -1,4 +1,4 @@
-//! What can go wrong when a view is judged or chosen.
+//! Errors of measures and constructors.
 
 use belvedere_core::{PinholeError, ViewError};
 use belvedere_scene::{Cancelled, RenderError};
@@ -35,7 +35,7 @@ pub enum ConstructError {
         /// Ids of the layers.
         layers: String,
     },
-    /// There is no terrain.
+    /// The scene has no terrain.
     #[error("the scene has no terrain layer; reveal needs one")]
     NoTerrain,
     /// The eye is under ground.
@@ -78,7 +78,7 @@ pub enum ConstructError {
         name: &'static str,
         /// The value.
         value: f64,
-        /// What it must be.
+        /// Condition that it must meet.
         must: &'static str,
     },
     /// A point of a centreline is not in the voxels that it may use.
@@ -97,10 +97,10 @@ pub enum ConstructError {
         value: Option<f64>,
         /// Range of values.
         values: [f64; 2],
-        /// How far around was looked, scene units.
+        /// Radius of the search around the point, scene units.
         reach: f64,
     },
-    /// The two points of a centreline are in voxels that do not hang together.
+    /// The two points of a centreline are in voxels that are not connected.
     #[error(
         "the points are not connected by voxels of {} to {}: the {voxels} voxels that hang together with `from` come within {distance:.1} of `to`, at [{:.1}, {:.1}, {:.1}]; widen values or move a point",
         values[0], values[1], nearest[0], nearest[1], nearest[2]
@@ -108,14 +108,14 @@ pub enum ConstructError {
     NotConnected {
         /// Range of values.
         values: [f64; 2],
-        /// Voxels that hang together with the first point.
+        /// Voxels connected with the first point.
         voxels: usize,
         /// Distance of the nearest of them from the second point, scene units.
         distance: f64,
         /// That voxel, scene coordinates.
         nearest: [f64; 3],
     },
-    /// The voxels that hang together fill too large a box.
+    /// The connected voxels fill too large a box.
     #[error("the voxels around `from` fill a box of {voxels} voxels, at most {most} are searched; narrow values")]
     TooManyVoxels {
         /// Voxels of the box.
@@ -126,7 +126,7 @@ pub enum ConstructError {
     /// A path has no point in the volume whose wall is to be found.
     #[error("the path has no point inside the volume; lead it through the vessel, or name another transfer function")]
     PathOutside,
-    /// What a path runs through does not differ from what lies around it.
+    /// The values along a path do not differ from those around it.
     #[error(
         "no wall lies around the path: it runs through values of {lumen:.1} with a spread of {spread:.1}, and {share_percent:.0} % of the lines across it meet a clear edge, at least 25 % needed; lead it through the vessel, or name another transfer function"
     )]

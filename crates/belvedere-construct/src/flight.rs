@@ -3,7 +3,7 @@
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::Heightfield;
 
-/// Where the camera flies.
+/// Position of the camera relative to the walker.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlightOptions {
     /// Distance in plan from the walker back to the eye, scene units, > 0.
@@ -15,7 +15,7 @@ pub struct FlightOptions {
 }
 
 impl FlightOptions {
-    /// 800 behind, 500 above, 1500 ahead for routes of 10 km and more; shorter routes are followed from as much nearer.
+    /// 800 behind, 500 above, 1500 ahead for routes of 10 km and more; for shorter routes in proportion to their length, down to 1 %.
     pub fn for_length(length_m: f64) -> Self {
         let scale = (length_m / 10_000.0).clamp(0.01, 1.0);
         Self { behind_m: 800.0 * scale, above_m: 500.0 * scale, ahead_m: 1500.0 * scale }
@@ -219,7 +219,7 @@ struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    /// Heights by `of`; where there is no ground that of the nearest point along the path that has some, 0 without any.
+    /// Heights by `of`; where there is no ground, that of the nearest point along the path that has ground; 0 if no point has.
     fn filled(&self, path: &[DVec2], of: impl Fn(&Self, DVec2) -> Option<f64>) -> Vec<f64> {
         let known: Vec<Option<f64>> = path.iter().map(|p| of(self, *p)).collect();
         let mut out: Vec<f64> = Vec::with_capacity(path.len());

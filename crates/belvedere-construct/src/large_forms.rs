@@ -1,4 +1,4 @@
-//! The large forms of terrain: what is left of it after a wide average.
+//! The large forms of terrain: its average by a wide Gaussian.
 
 use belvedere_core::DVec2;
 use belvedere_core::map::relief::BaseSurface;
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 const PER_SIGMA: f64 = 2.0;
 /// Control heights on the longer side at most.
 const MOST: f64 = 2048.0;
-/// Reach of the average, `sigma`.
+/// Reach of the average, multiples of `sigma`.
 const REACH: f64 = 4.0;
 
 /// Terrain averaged by a Gaussian of standard deviation `sigma`, scene units, > 0, over the nodes with data; `None` without any.

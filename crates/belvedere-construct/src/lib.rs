@@ -1,4 +1,4 @@
-//! From an intent to the stages of a view, and the measures that judge them.
+//! Constructors, which choose the stages of a view for a given purpose, and the measures that judge them.
 //!
 //! [`measure()`] says what a picture shows of the features it is made for; [`reveal()`] chooses a view and a bend that
 //! show more of them.

@@ -21,23 +21,25 @@ pub fn sample_features(scene: &Scene, spacing: f64) -> Vec<SampledFeature> {
 
 /// Lattice points inside one area, at most about, where a view is searched for.
 const MOST_INSIDE: f64 = 4000.0;
-/// Points in the boxes of all areas together where their share is judged, within bounds, and in that of one. They are scattered evenly (Roberts's
-/// sequence, by powers of the plastic number): shadows begin along straight lines, which a square lattice would meet with whole rows. A third as many
-/// give shares half a per cent off where shadows of bumps are as fine as the grid.
+/// Range of the number of points in the boxes of all areas together where shares are judged, and range for one area. They are
+/// scattered evenly (Roberts's sequence, by powers of the plastic number): shadows begin along straight lines, which a square lattice
+/// would meet with whole rows. With a third as many points shares are half a per cent off where shadows of bumps are as fine as the
+/// grid.
 const JUDGED_ALL: [f64; 2] = [16_000.0, 60_000.0];
 const MOST_JUDGED: f64 = 16_000.0;
 const FEWEST_JUDGED: f64 = 100.0;
 const PLASTIC: DVec2 = DVec2::new(0.754_877_666_246_692_8, 0.569_840_290_998_053_3);
-/// Samples of lines and rims are judged so many times as densely as views are searched for by, those inside areas so many times in either
-/// direction.
+/// Factors by which samples are denser where shares are judged than where views are searched for: along lines and rims, and inside
+/// areas in either direction.
 const DENSER: [f64; 2] = [4.0, 8.0];
 
-/// On all lines together at least so many samples, about, unless they would lie so many times as dense as usual.
+/// Where shares are judged, about this many samples lie on all lines together at least, unless they would be more than `FINEST` times
+/// as dense as usual.
 const LEAST_ON_LINES: f64 = 3000.0;
 const FINEST: f64 = 200.0;
 
 /// The samples that shares are judged by: as [`sample_features`], but every eighth of a grid cell along lines, and inside areas some
-/// thousands. Where a feature begins to be hidden does then not change shares by as much as half a per cent.
+/// thousands. The position at which a feature begins to be hidden then changes shares by less than half a per cent.
 pub fn judged_samples(scene: &Scene) -> Vec<SampledFeature> {
     let terrain = scene.terrain();
     let usual = default_spacing(scene).max(1e-6);
@@ -162,7 +164,8 @@ fn along(points: &[DVec3], (spacing, in_plan): (f64, bool), make: impl Fn(DVec3,
     out
 }
 
-/// * `spacing`: along rims; `step`: of the lattice inside; `scattered`: so many points in its box, within bounds, that are no square lattice.
+/// * `spacing`: along rims; `step`: of the lattice inside; `scattered`: range of the number of points scattered in its box in place
+///   of the lattice.
 fn area_samples(
     f: &AreaFeature,
     (spacing, step, scattered): (f64, f64, Option<[f64; 2]>),

@@ -12,21 +12,21 @@ const SAMPLES: [f64; 2] = [1000.0, 6000.0];
 /// less than what is seen.
 const IN_FRONT: f64 = 2e-5;
 
-/// Where the random numbers begin: every sampling of a surface gives the same points.
+/// Seed of the random numbers: every sampling of a surface gives the same points.
 const SEED: u64 = 0x5eed;
 
-/// What is sampled, and what it is called.
+/// Samples of a surface, with its name.
 pub(crate) struct SampledSurface {
     pub(crate) name: String,
     pub(crate) samples: Vec<Sample>,
 }
 
-/// Points on the surface of a layer: a share of the area each, in stretches of equal area, at random within them.
+/// Points on the surface of a layer, each for the same share of its area (stratified random sampling).
 ///
 /// * Meshes: all of them, or their wanted parts. Molecules: the drawn surface of the wanted atoms, or of all. Boxes: their walls and tops.
 /// * `spacing`: distance between points, scene units; between 1000 and 6000 points are made whatever it says.
 ///
-/// `None` for layers that are no surface of their own.
+/// `None` for layers that have no surface of their own.
 pub(crate) fn surface(kind: &LayerKind, spacing: f64) -> Option<SampledSurface> {
     let (name, numbers, triangles) = match kind {
         LayerKind::Boxes(layer) => of_boxes(layer),
@@ -48,7 +48,7 @@ pub(crate) fn surface(kind: &LayerKind, spacing: f64) -> Option<SampledSurface> 
     Some(SampledSurface { name, samples })
 }
 
-/// What is sampled: its name, and triangles with their numbers in the layer.
+/// The name of a surface, and its triangles with their numbers in the layer.
 type Surface = (String, Vec<u32>, Vec<[DVec3; 3]>);
 
 fn of_boxes(layer: &BoxLayer) -> Surface {

@@ -1,4 +1,4 @@
-//! What can go wrong before terrain is solved. A place that cannot be made visible is a result, not an error.
+//! Errors of terrain disocclusion. A reference point that cannot be made visible is a result, not an error.
 
 use belvedere_core::grid::GridError;
 use belvedere_scene::Cancelled;
@@ -16,7 +16,7 @@ pub enum DisocclusionError {
     /// Cancelled through [`belvedere_scene::Progress`].
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// There is no terrain.
+    /// The scene has no terrain.
     #[error("the scene has no terrain layer; terrain disocclusion needs one")]
     NoTerrain,
     /// No layer of the scene must be seen.
@@ -25,7 +25,7 @@ pub enum DisocclusionError {
         /// Layers of the scene.
         layers: usize,
     },
-    /// Rivers that are no lines of the scene.
+    /// A river is not a line layer of the scene.
     #[error(transparent)]
     River(#[from] RiverError),
     /// A parameter out of range.
@@ -50,10 +50,10 @@ pub enum DisocclusionError {
     /// A quadratic program that cannot be set up.
     #[error(transparent)]
     Qp(#[from] QpError),
-    /// A displacement that is no grid.
+    /// A displacement that does not form a grid.
     #[error(transparent)]
     Grid(#[from] GridError),
-    /// A pinhole and its stages that make no view.
+    /// A pinhole whose stages do not form a view.
     #[error(transparent)]
     View(#[from] belvedere_core::ViewError),
 }

@@ -1,4 +1,4 @@
-//! Ground that still covers what must be seen: how see-through it is drawn, and what is behind it.
+//! Ground that still covers required features: its opacity, and the terrain with that ground cut away.
 
 use crate::solve::Covered;
 use crate::visibility_qp::{LinesOfSight, ViewSight};

@@ -1,4 +1,4 @@
-//! Which points a picture can show, in plan, and where its eye may be.
+//! Selection of the points that a picture can show, in plan, and the check of its eye.
 
 use crate::{Field, ReferencePoint};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection};
@@ -54,7 +54,7 @@ pub fn check_eye(field: &Field, eye: DVec3) -> Result<(), EyeError> {
 pub struct Wedge {
     /// Eye, scene x and y.
     pub eye: DVec2,
-    /// Direction of view, scene x and y; zero if there is none.
+    /// Direction of view, scene x and y; zero if the wedge is all around.
     pub heading: DVec2,
     /// Largest angle to the heading, radians; pi = all around.
     pub half_angle: f64,
@@ -102,7 +102,7 @@ impl Wedge {
     }
 }
 
-/// Why a reference point is not worked for in this view.
+/// Why a reference point is left out in this view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LeftOut {

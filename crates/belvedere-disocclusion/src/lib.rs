@@ -1,10 +1,10 @@
-//! Terrain that makes way: the ground moves as little as possible so that what must be seen is seen.
+//! Terrain disocclusion: the ground moves as little as possible so that the required features are visible.
 //!
-//! After Deng et al. 2013 (*Occlusion-free mountain navigation*): a greedy pass and a smooth one; and a quadratic program
-//! that guarantees what those two only try. [`TerrainSolver`] goes from [`TerrainSettings`] and a scene to a displacement and a
+//! After Deng et al. 2013 (*Occlusion-free mountain navigation*): a greedy and a smooth pass; and a quadratic program that guarantees
+//! visibility, which those two do not. [`TerrainSolver`] goes from [`TerrainSettings`] and a scene to a displacement and a
 //! [`TerrainReport`].
 
-// The inside is public for the feature `internals` only.
+// Internal modules are public only with the feature `internals`.
 #![cfg_attr(not(feature = "internals"), allow(unreachable_pub, unused_imports, dead_code))]
 
 mod cells;
@@ -39,7 +39,7 @@ use settings::stated_spacing;
 use smooth::{Hierarchy, SmoothPass, Smoother, grid_weight, temporal_weight};
 use viewpoint::{ViewpointEnergy, adjust_viewpoint, height_slope};
 
-/// What a [`TerrainReport`] is made of.
+/// Types of the parts of a [`TerrainReport`].
 pub mod report {
     pub use super::rivers::RiverReport;
     pub use super::spikes::Spike;

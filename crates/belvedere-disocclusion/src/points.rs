@@ -37,17 +37,18 @@ pub struct ReferencePoint {
     pub ground: f64,
     /// Height over the ground at which it must be seen, scene units.
     pub lift: f64,
-    /// What it stands for.
+    /// Part of the feature that it stands for.
     pub kind: PointKind,
     /// Length of line, area, or number of point features that it stands for, scene units; all in plan.
     pub amount: f64,
 }
 
-/// Where shares are judged, points on all lines together at least, about, unless they would lie nearer to one another than so many cells.
+/// Where shares are judged, about this many points lie on all lines together at least, unless their spacing would be less than
+/// `FINEST` grid cells.
 const LEAST_ON_LINES: f64 = 4000.0;
 const FINEST: f64 = 0.002;
 
-/// Why nothing can be done for a point.
+/// Why a point cannot be a reference point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UnusableReason {
@@ -68,9 +69,9 @@ pub struct Unusable {
     pub along_m: f64,
     /// Grid coordinates.
     pub grid: DVec2,
-    /// What it would have stood for.
+    /// Part of the feature that it would have stood for.
     pub kind: PointKind,
-    /// Why not.
+    /// Why it cannot be used.
     pub reason: UnusableReason,
 }
 
@@ -91,16 +92,17 @@ pub fn reference_points(
     collect_points(PointCollector::new(field, false), scene, settings, spacing)
 }
 
-/// Points that the quadratic program looks after: as [`reference_points`] `settings.candidates` apart, but each on the nearest bend
-/// of the drawn line that is no farther than half of that: its own corner, or an edge of the ground's mesh. Between two bends line and
-/// ground are straight, so a line is hidden first at a bend.
+/// Candidate points of the quadratic program: as [`reference_points`] `settings.candidates` apart, but each on the nearest bend of
+/// the drawn line that is no farther than half of that: a corner of the line, or an edge of the ground's mesh. Between two bends line
+/// and ground are straight, so a line is hidden first at a bend.
 pub(super) fn candidate_points(scene: &Scene, field: &Field, settings: &TerrainSettings) -> Vec<ReferencePoint> {
     collect_points(PointCollector::new(field, true), scene, settings, settings.candidates).0
 }
 
-/// Points by which a result is judged: as [`reference_points`] `spacing` apart, but inside areas scattered evenly; and, for no
-/// length or area, on the edges of the ground's triangles inside areas and wherever lines and rims cross those. Over flat triangles a straight piece of them is hidden first at an end. Ground hides of a flat triangle what lies beyond a straight edge, farthest at the rim of the triangle or of the area: where no edge is
-/// hidden, nothing between them is.
+/// Points by which a result is judged: as [`reference_points`] `spacing` apart, but scattered evenly inside areas. Further points
+/// stand for no length or area: they lie on the edges of the ground's triangles inside areas, and wherever lines and rims cross these
+/// edges. On a flat triangle a straight piece of a feature is hidden first at one of its ends, and an area first at the rim of the
+/// triangle or of the area. So if no edge is hidden, nothing between the edges is.
 pub(super) fn judged_points(
     scene: &Scene,
     field: &Field,
@@ -111,7 +113,7 @@ pub(super) fn judged_points(
     collect_points(out, scene, settings, spacing).0
 }
 
-/// What is made of features: lines, areas and points are never added up.
+/// Number of kinds of features: lines, areas and points, whose shares are never added up.
 pub(super) const KINDS: usize = 3;
 
 impl PointKind {
@@ -202,7 +204,7 @@ fn collect_points(
     (out.usable, out.unusable)
 }
 
-/// Puts points where they belong.
+/// Collects the points of features.
 struct PointCollector<'a> {
     field: &'a Field,
     /// Whether points along paths move to bends.
@@ -214,7 +216,7 @@ struct PointCollector<'a> {
     lift: f64,
     /// See [`ReferencePoint::amount`].
     amount: f64,
-    /// Areas that share the points inside.
+    /// Number of areas, which share the number of points inside.
     areas: usize,
     usable: Vec<ReferencePoint>,
     unusable: Vec<Unusable>,
@@ -301,7 +303,7 @@ impl<'a> PointCollector<'a> {
         self.amount = amount;
     }
 
-    /// Equal parts of an area have equally many points inside; its rims stand for it where none lies inside.
+    /// Equal parts of an area have equally many points inside; if none lies inside, points on its rims stand for it.
     fn area(&mut self, rings: &[Vec<DVec2>], spacing: f64) {
         let first = self.usable.len();
         self.amount = 0.0;
@@ -357,13 +359,13 @@ impl<'a> PointCollector<'a> {
     }
 }
 
-/// Where shares are judged, points inside the boxes of areas: 16 to a grid cell, within bounds for all areas together, for one of them, and for
-/// the smallest.
+/// Where shares are judged, number of points in the box of an area: 16 per grid cell, within bounds for all areas together, at most
+/// `MOST_INSIDE` and at least `FEWEST_INSIDE` for one of them.
 const INSIDE_A_CELL: f64 = 16.0;
 const INSIDE_ALL: [f64; 2] = [16_000.0, 60_000.0];
 const MOST_INSIDE: f64 = 16_000.0;
 const FEWEST_INSIDE: f64 = 100.0;
-/// Share of the golden section.
+/// Fractional part of the golden ratio.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Points on the edges of triangles inside one area, at most about.
 const MOST_ON_EDGES: f64 = 800_000.0;
@@ -383,13 +385,14 @@ impl PointCollector<'_> {
         }
     }
 
-    /// Points that stand for no area, on the edges of the ground's triangles in a box that lie inside the rings: each cell has those of its node, and of its
-    /// upper, left and diagonal edge.
+    /// Points on the edges of the ground's triangles in a box that lie inside the rings, which stand for no area: each grid cell has
+    /// those of its node, and of its upper, left and diagonal edge.
     fn on_edges(&mut self, rings: &[Vec<DVec2>], [low, high]: [DVec2; 2]) {
         let last = DVec2::new((self.field.cols() - 1) as f64, (self.field.rows() - 1) as f64);
         let (low, high) = (low.floor().max(DVec2::ZERO), high.ceil().min(last));
         let cells = (high - low).max(DVec2::ZERO).element_product();
-        // Nothing of visible size hides between points a fifth of a cell apart; on huge areas halves of edges, then nodes, have to do.
+        // Points a fifth of a grid cell apart leave no gap of visible size; on huge areas halves of edges, then nodes alone, have to
+        // suffice.
         let points = |parts: usize| (3 * parts - 2) as f64 * cells;
         let parts = [5, 2].into_iter().find(|&parts| points(parts) <= MOST_ON_EDGES).unwrap_or(1);
         let every = (points(parts) / MOST_ON_EDGES).sqrt().ceil().max(1.0);
@@ -420,7 +423,7 @@ impl PointCollector<'_> {
     }
 }
 
-/// The shares of a straight way at which it crosses the mesh, at most [`MOST_POINTS`] of each family of its lines.
+/// Parameters (0..1) at which a straight segment crosses the mesh, at most [`MOST_POINTS`] of each family of its lines.
 pub(super) fn mesh_crossings(from: DVec2, step: DVec2) -> impl Iterator<Item = f64> {
     let lines = [(from.x, step.x), (from.y, step.y), (from.x - from.y, step.x - step.y)];
     lines.into_iter().flat_map(|(from, step)| {
@@ -430,7 +433,7 @@ pub(super) fn mesh_crossings(from: DVec2, step: DVec2) -> impl Iterator<Item = f
     })
 }
 
-/// The share of a straight way, `share` or less than `reach` away from it, at which the way ends or crosses the mesh.
+/// Parameter nearest to `share`, by less than `reach`, at which a straight segment ends or crosses the mesh; `share` if there is none.
 fn nearest_bend(from: DVec2, step: DVec2, share: f64, reach: f64) -> f64 {
     let at = from + share * step;
     let lines = [(from.x, step.x, at.x), (from.y, step.y, at.y), (from.x - from.y, step.x - step.y, at.x - at.y)];

@@ -1,19 +1,20 @@
 //! Rivers that do not run uphill: the displaced ground along a line rises downstream by no more than the elevation model does there.
 //!
-//! Places along a river, downstream, have heights h. Its *bed* is their running minimum, so that h - bed is how far the elevation model
-//! rises over the lowest place upstream: its noise there. Where bed + u does not rise downstream, the displaced ground h + u lies over the
-//! lowest displaced place upstream by at most that noise, at every place: linear in the displacement u, and true without displacement.
+//! The points along a river, downstream, have heights h. Its *bed* is their running minimum, so h - bed is the noise of the elevation
+//! model: the height of a point over the lowest one upstream. Where bed + u does not rise downstream, the displaced ground h + u lies
+//! over the lowest displaced point upstream by at most that noise. This condition is linear in the displacement u, and u = 0 meets
+//! it.
 
 use crate::points::mesh_crossings;
 use belvedere_core::DVec2;
 use belvedere_scene::{CellTriangle, LayerKind, Scene};
 use serde::Serialize;
 
-/// A displaced river may rise by so much more than the elevation model does, metres.
+/// Height by which a displaced river may rise downstream more than the elevation model does, metres.
 pub const RIVER_TOLERANCE_M: f64 = 0.05;
-/// What rises by no more is left as it is where displacements of nodes are changed, metres.
+/// Rises up to this height are left when displacements of nodes are corrected, metres.
 const SAME: f64 = 1e-4;
-/// Passes along one river in which nodes change, and rounds of all rivers, at most.
+/// Most passes along one river that change nodes, and most rounds of all rivers.
 const PASSES: usize = 200;
 const ROUNDS: usize = 500;
 /// Weights below this are rounding.
@@ -21,7 +22,7 @@ const NONE: f64 = 1e-9;
 /// Share of a river whose heights stand for one of its ends.
 const END_SHARE: f64 = 0.1;
 
-/// A river that is no line layer of the scene.
+/// A river is not a line layer of the scene.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("rivers: \"{id}\" is no line layer of the scene; line layers are: {}", if lines.is_empty() { "none".into() } else { lines.join(", ") })]
 pub struct RiverError {
@@ -40,7 +41,7 @@ pub struct RiverLine {
     pub feature: usize,
     /// Its name; empty if it has none.
     pub name: String,
-    /// Places along it, scene x, y or grid coordinates, in either direction.
+    /// Points along it, scene x, y or grid coordinates, in either direction.
     pub points: Vec<DVec2>,
 }
 
@@ -48,7 +49,7 @@ impl RiverLine {
     /// The lines of the layers `ids`.
     ///
     /// # Errors
-    /// [`RiverError`] if one of them is no line layer of the scene.
+    /// [`RiverError`] if one of them is not a line layer of the scene.
     pub fn of(scene: &Scene, ids: &[String]) -> Result<Vec<Self>, RiverError> {
         let mut out = Vec::new();
         for id in ids {
@@ -66,7 +67,7 @@ impl RiverLine {
         Ok(out)
     }
 
-    /// The same with each point moved to other coordinates; points without any are left out.
+    /// The line with each point moved to other coordinates; points without such coordinates are left out.
     pub fn mapped(&self, to: impl Fn(DVec2) -> Option<DVec2>) -> Self {
         Self { points: self.points.iter().filter_map(|p| to(*p)).collect(), ..self.clone() }
     }
@@ -81,18 +82,18 @@ pub struct RiverReport {
     pub feature: usize,
     /// Its name; empty if it has none.
     pub name: String,
-    /// Farthest that a place lies over a place upstream of it on the elevation model: its noise.
+    /// Largest height of a point over one upstream of it on the elevation model, metres: its noise.
     pub rise_before_m: f64,
-    /// The same on the displaced ground.
+    /// The largest such height on the displaced ground, metres.
     pub rise_after_m: f64,
-    /// By how much a place rises over those upstream more than on the elevation model, at most; 0 but for rounding.
+    /// Largest height by which a point rises over those upstream more than on the elevation model, metres; 0 but for rounding.
     pub excess_m: f64,
 }
 
 /// Both grounds that a displacement makes: flat facets, as files hold it, and the bilinear one.
 pub(crate) const GROUNDS: [bool; 2] = [true, false];
 
-/// A place on a river.
+/// A point on a river.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place {
     /// Grid coordinates.
@@ -104,7 +105,7 @@ pub(crate) struct Place {
     /// Lowest height from the spring to here.
     pub(crate) bed: f64,
     nodes: [u32; 4],
-    /// Of the nodes, for [`GROUNDS`].
+    /// Weights of the nodes, for each of [`GROUNDS`].
     weights: [[f64; 4]; 2],
 }
 
@@ -125,7 +126,7 @@ pub(crate) struct River {
     layer: usize,
     feature: usize,
     name: String,
-    /// Downstream: wherever it crosses the mesh, and between.
+    /// Points in order downstream: wherever the river crosses the mesh, and between.
     places: Vec<Place>,
 }
 
@@ -161,7 +162,7 @@ impl Rivers {
         Self { rivers: rivers.into_iter().filter(|river| river.places.len() > 1).collect() }
     }
 
-    /// Whether none lies on the grid.
+    /// Whether no river lies on the grid.
     pub fn is_empty(&self) -> bool {
         self.rivers.is_empty()
     }
@@ -170,15 +171,15 @@ impl Rivers {
         &self.rivers
     }
 
-    /// Nodes of the grid beside the rivers.
+    /// Nodes of the grid cells that the rivers run through; a node may occur more than once.
     pub(crate) fn nodes(&self) -> impl Iterator<Item = u32> + '_ {
         self.rivers.iter().flat_map(|river| &river.places).flat_map(|place| place.nodes)
     }
 
-    /// Lowers nodes of a displacement until no river rises downstream by more than on the undisplaced ground; what does not already keeps
-    /// its displacement. Answers whether that was reached.
+    /// Lowers nodes of a displacement until no river rises downstream by more than on the undisplaced ground; a river that does not
+    /// rise more keeps its displacement. Returns whether that was reached.
     ///
-    /// * `together`: lowers what moves together with lowered nodes, and answers whether it changed any.
+    /// * `together`: lowers nodes that move together with lowered ones, and returns whether it changed any.
     pub fn settle(&self, u: &mut [f64], mut together: impl FnMut(&mut [f64]) -> bool) -> bool {
         for _ in 0..ROUNDS {
             let mut sank = false;
@@ -208,7 +209,7 @@ impl Rivers {
         }
     }
 
-    /// How the rivers run.
+    /// Report of every river.
     ///
     /// * `u`: displacement of every node.
     pub fn report(&self, u: &[f64]) -> Vec<RiverReport> {
@@ -217,17 +218,17 @@ impl Rivers {
 }
 
 impl River {
-    /// Places at which the river on one of [`GROUNDS`] may turn uphill.
+    /// Points at which the river on one of [`GROUNDS`] may turn uphill.
     fn places_over(&self, ground: usize) -> impl DoubleEndedIterator<Item = &Place> {
         self.places.iter().filter(move |place| place.bend || !GROUNDS[ground])
     }
 
-    /// Its bends, downstream.
+    /// The points at which the ground along the river bends, downstream.
     pub(crate) fn bends(&self) -> impl Iterator<Item = &Place> {
         self.places.iter().filter(|place| place.bend)
     }
 
-    /// Lowers nodes on the way downstream; where that lowers places just upstream, too, goes on from there.
+    /// Lowers nodes in order downstream; steps back where this also lowers points just upstream. Returns whether any node changed.
     fn sink(&self, u: &mut [f64], ground: usize) -> bool {
         let places: Vec<&Place> = self.places_over(ground).collect();
         let mut lowest = vec![f64::INFINITY; places.len() + 1];
@@ -290,10 +291,11 @@ impl River {
     }
 }
 
-/// Places on the way from one edge of the mesh to the next: between edges facets are flat, but the bilinear displacement bulges.
+/// Parts of a river between two edges of the mesh: there facets are flat, but the bilinear displacement bulges.
 const PARTS: usize = 16;
 
-/// Where a line begins, ends, turns and crosses the mesh, and places between, grid coordinates; and whether each is one of the former.
+/// Positions at which a line begins, ends, turns and crosses the mesh, and positions between, grid coordinates; each with whether it
+/// is one of the former.
 fn stations(points: &[DVec2], [cols, rows]: [usize; 2]) -> Vec<(DVec2, bool)> {
     let last = DVec2::new((cols - 1) as f64, (rows - 1) as f64);
     let mut out: Vec<(DVec2, bool)> = points.first().map(|p| (*p, true)).into_iter().collect();
@@ -316,7 +318,7 @@ fn stations(points: &[DVec2], [cols, rows]: [usize; 2]) -> Vec<(DVec2, bool)> {
     out
 }
 
-/// A place on a grid; `None` beside it and where there is no data. Its bed is not known yet.
+/// The point of a river at a position; `None` beside the grid and where there is no data. Its bed is set later.
 fn place(g: DVec2, bend: bool, [cols, rows]: [usize; 2], height: impl Fn(usize) -> Option<f64>) -> Option<Place> {
     let last = DVec2::new((cols - 1) as f64, (rows - 1) as f64);
     if !(g.cmpge(DVec2::ZERO).all() && g.cmple(last).all()) {
@@ -328,14 +330,14 @@ fn place(g: DVec2, bend: bool, [cols, rows]: [usize; 2], height: impl Fn(usize) 
     let inside = g - DVec2::new(col as f64, row as f64);
     let height = CellTriangle::surface(nodes.map(height), inside)?;
     let DVec2 { x, y } = inside;
-    // How far facets lie over the bilinear ground, per unit of its factor of xy.
+    // Height of the facets over the bilinear ground, per unit of its factor of xy.
     let facet = inside.min_element() - x * y;
     let [flat, bilinear] =
         [facet, 0.0].map(|f| [(1.0 - x) * (1.0 - y) + f, x * (1.0 - y) - f, (1.0 - x) * y - f, x * y + f]);
     Some(Place { grid: g, bend, height, bed: height, nodes: nodes.map(|n| n as u32), weights: [flat, bilinear] })
 }
 
-/// Whether the last part of a river lies over its first.
+/// Whether the last part of a river lies higher than its first part.
 fn runs_up(places: &[Place]) -> bool {
     let end = ((places.len() as f64 * END_SHARE) as usize).max(1);
     let middle = |part: &[Place]| {

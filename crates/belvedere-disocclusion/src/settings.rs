@@ -26,7 +26,7 @@ pub enum SolverMode {
     Qp,
 }
 
-/// What happens to the detail of the ground that the solver's grid cannot hold.
+/// Treatment of the detail of the ground that the solver's grid cannot hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Detail {
@@ -55,8 +55,8 @@ pub struct TerrainSettings {
     pub mu: f64,
     /// Weight of displacement in the change inside a cell, >= 0.
     pub mu_dev: f64,
-    /// Smoothness weight, stated for a solver's grid of 129 nodes; `None` = 0.6 (paper, paper+qp) or 0.3 (qp), there so much more
-    /// that the smoothing is no longer than [`LONGEST_SMOOTHING_M`].
+    /// Smoothness weight, stated for a solver's grid of 129 nodes; `None` = 0.6 (paper, paper+qp) or 0.3 (qp). The default of mode qp
+    /// is raised where the smoothing would be longer than [`LONGEST_SMOOTHING_M`].
     pub w: Option<f64>,
     /// Weight of the elevation rows, >= 0.
     pub rows_weight: f64,
@@ -74,10 +74,10 @@ pub struct TerrainSettings {
     pub candidates: f64,
     /// Only features up to this distance along the path from the eye, metres; `None` = all.
     pub ahead_m: Option<f64>,
-    /// Whether the ground must still look like ground: no more than a fifth of the relief below the lowest, nor more than twice as steep as
-    /// all but a thousandth of the terrain. Of modes with a quadratic program.
+    /// Whether the displaced ground is limited: at most a fifth of the relief below the lowest node, and at most twice as steep as
+    /// the slope that 999 of 1000 triangles of the terrain stay below. Only in modes with a quadratic program.
     pub limits: bool,
-    /// Whether spikes of the data are ground, to be dug round like other ground.
+    /// Whether spikes of the elevation model count as ground; if not, the solver replaces them by the median of their surroundings.
     pub spikes: bool,
     /// Ids of line layers along which the displaced ground rises downstream by no more than the elevation model does.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -145,7 +145,7 @@ impl TerrainSettings {
     }
 }
 
-/// Cells to keep by default on terrain with so many nodes.
+/// Default number of cells on terrain with `nodes` nodes.
 pub(super) fn default_cells(nodes: usize) -> usize {
     (nodes / 1600).max(1)
 }

@@ -1,23 +1,24 @@
 //! Spikes: single samples of an elevation model that stand far above or below all their neighbours.
 //!
-//! Ground that makes way for a spike is dug into a funnel around a fault of the data. So the solver takes a spike for as high as the
-//! median of its neighbours, and says so. A summit is no spike: towers have sides, and what stands alone on coarse grids is no farther above
-//! its neighbours than ground of the same model is steep elsewhere, or than its neighbours differ.
+//! Ground that is cleared for a spike would be dug into a funnel around an error of the data. So the solver takes a spike to be as
+//! high as the median of its surroundings, and reports it. A summit is not a spike: a tower is several samples wide, and a single
+//! high sample of a coarse grid rises no farther over its neighbours than slopes elsewhere in the model do, or than its neighbours
+//! differ.
 
 use belvedere_scene::{Heightfield, NodeState};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::Arc;
 
-/// Samples that differ less from any neighbour, as a slope, are looked at no closer.
+/// Least slope of a sample over its surroundings for which it is tested further, rise over run.
 const SLOPE: f64 = 0.5;
 /// Neighbours that may belong to a spike, too: resampling spreads a sample over up to four nodes.
 const SHARED: usize = 3;
-/// The slope to all neighbours is so many times that which all but a hundredth of the neighbours in the model have: bad models have a
+/// Least slope of a spike, as a multiple of the slope that 99 of 100 pairs of neighbours in the model stay below: bad models have a
 /// spike in every few hundred samples.
 const STEEPER: f64 = 5.0;
 const STEEP_SHARE: f64 = 0.99;
-/// The difference is so many times that by which half of the surroundings differ from their median.
+/// Least height of a spike over its surroundings, as a multiple of their median absolute deviation.
 const ROUGHER: f64 = 6.0;
 
 /// A single sample far above or below all its neighbours.
@@ -27,7 +28,7 @@ pub struct Spike {
     pub at: [f64; 2],
     /// Height in the data.
     pub height_m: f64,
-    /// Median height of its neighbours, which is solved with.
+    /// Median height of the nodes two columns or rows away, which the solver uses.
     pub taken_m: f64,
 }
 
@@ -75,7 +76,7 @@ fn around(terrain: &Heightfield, i: usize, reach: isize) -> impl Iterator<Item =
     offsets(terrain, i, reach).map(|(.., h)| h)
 }
 
-/// The same with how many columns and rows they are away.
+/// Heights of these nodes, with the numbers of columns and rows by which they are away.
 fn offsets(terrain: &Heightfield, i: usize, reach: isize) -> impl Iterator<Item = (isize, isize, f64)> + '_ {
     let (cols, rows) = (terrain.cols() as isize, terrain.rows() as isize);
     let (col, row) = (i as isize % cols, i as isize / cols);
@@ -94,8 +95,9 @@ fn ring(terrain: &Heightfield, i: usize) -> impl Iterator<Item = f64> + '_ {
     offsets(terrain, i, 2).filter(|(dx, dy, _)| dx.abs() == 2 || dy.abs() == 2).map(|(.., h)| h)
 }
 
-/// By how much a node lies above what is around it, or below: above all nodes two columns or rows away, and all but three of its
-/// neighbours, which may belong to the same sample where a file was resampled. `None` if neither, or beside too few nodes.
+/// Height of a node over its surroundings, or depth below them, metres: relative to all nodes two columns or rows away and to all but
+/// three of its neighbours, which may belong to the same sample where a file was resampled. `None` if it lies neither above nor
+/// below, or has too few neighbours.
 fn apart(terrain: &Heightfield, i: usize) -> Option<f64> {
     if terrain.states()[i] == NodeState::Void {
         return None;
@@ -132,13 +134,13 @@ fn usual_slope(terrain: &Heightfield) -> f64 {
     if slopes.is_empty() {
         return 0.0;
     }
-    // Few slopes of small terrain are a hundredth: the eight of two spikes are not to set the measure.
+    // On small terrain a hundredth is only a few slopes: the eight slopes at two spikes must not be the measure.
     let last = slopes.len().saturating_sub(1);
     let k = ((last as f64 * STEEP_SHARE) as usize).min(last.saturating_sub(8));
     f64::from(*slopes.select_nth_unstable_by(k, f32::total_cmp).1)
 }
 
-/// By how much half of the nodes around a node, without it, differ from their median.
+/// Median absolute deviation of the heights around a node, without its own.
 fn roughness(terrain: &Heightfield, i: usize) -> f64 {
     let heights: Vec<f64> = around(terrain, i, 2).collect();
     let middle = median(heights.clone());

@@ -77,7 +77,7 @@ pub struct AdjustedViewpoint {
     pub moved_m: f64,
     /// Energy at the eye that was given and at the new one.
     pub energy: [f64; 2],
-    /// Energies asked for: of the search and of the descent.
+    /// Evaluations of the energy: in the search and in the descent.
     pub evaluations: [usize; 2],
 }
 
@@ -112,7 +112,7 @@ pub fn adjust_viewpoint(
     Some(AdjustedViewpoint { eye, moved_m: eye.distance(user), energy: [start, end], evaluations: search.asked })
 }
 
-/// A place of the box whose energy was asked for.
+/// A point of the box that was evaluated.
 #[derive(Clone, Copy)]
 struct Trial {
     q: DVec3,
@@ -132,7 +132,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The eye of a place q of the box (-1..1: azimuth, distance, height).
+    /// The eye at a point q of the box (-1..1: azimuth, distance, height).
     fn eye(&self, q: DVec3) -> DVec3 {
         if q == DVec3::ZERO {
             return self.user;
@@ -143,7 +143,7 @@ impl Search<'_> {
         place.extend(self.user.z + q.z * self.options.height_m)
     }
 
-    /// Cost of a place whose deformation energy is given; `None` if the eye is under ground or the energy unusable.
+    /// Cost of a point q of the box, from its deformation energy; `None` if the eye is under ground or the energy unusable.
     fn cost(&self, q: DVec3, energy: Option<f64>) -> Option<f64> {
         let eye = self.eye(q);
         let energy = energy.filter(|e| e.is_finite())?;
@@ -164,7 +164,7 @@ impl Search<'_> {
         self.cost(q, energy).map(|cost| Trial { q, cost, slope })
     }
 
-    /// The best place of a lattice over the box by the cheap energy, compared with the cheap energy of the middle.
+    /// The best point of a lattice over the box by the coarse energy, relative to the coarse energy of the middle.
     fn scan(&mut self) -> Option<DVec3> {
         let count = self.options.search.map(|n| n.max(1));
         let at = |i: usize, n: usize| if n > 1 { 2.0 * i as f64 / (n - 1) as f64 - 1.0 } else { 0.0 };

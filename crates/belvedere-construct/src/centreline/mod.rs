@@ -1,10 +1,10 @@
-//! The centreline between two points of a volume: a way through voxels of certain values, such as those of a vessel or a bore, that
-//! keeps away from their borders.
+//! The centreline between two points of a volume: a path through voxels of certain values, such as those of a vessel or a bore, that
+//! keeps away from their border.
 //!
-//! 1. The voxels that hang together with the first point, face to face, values within the range.
-//! 2. `distance`: how far from each the nearest other voxel is.
-//! 3. `way`: the way on which the lengths of steps over that clearance sum up to the least.
-//! 4. The way smoothed; points that would leave the voxels stay.
+//! 1. The voxels that are connected with the first point face to face, with values within the range.
+//! 2. `distance`: the distance of each of them to the nearest other voxel, its clearance.
+//! 3. `way`: the cheapest path (Dijkstra); a step costs its length over the clearance.
+//! 4. The path is smoothed; points that smoothing would move out of the voxels stay.
 
 mod way;
 
@@ -15,7 +15,7 @@ use belvedere_scene::Volume;
 use serde::{Deserialize, Serialize};
 use way::Cells;
 
-/// A point may lie so far from voxels of the range, shortest voxel edges.
+/// Largest distance of a given point from a voxel of the range, shortest voxel edges.
 const NEAR: f64 = 3.0;
 /// Most voxels of the box that is searched: nine bytes each.
 const MOST_VOXELS: usize = 1 << 27;
@@ -26,7 +26,7 @@ const SPACING: f64 = 0.5;
 /// A centreline.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Centreline {
-    /// From the first point to the second, scene coordinates.
+    /// Points from the first given point to the second, scene coordinates.
     pub points: Vec<DVec3>,
     /// Figures.
     pub report: CentrelineReport,
@@ -37,11 +37,11 @@ pub struct Centreline {
 pub struct CentrelineReport {
     /// Its length, scene units.
     pub length: f64,
-    /// Least and median distance from its points to the nearest voxel of other values, scene units.
+    /// Least distance from its points to the nearest voxel of other values, scene units.
     pub least_clearance: f64,
-    /// Median of these distances.
+    /// Median of these distances, scene units.
     pub median_clearance: f64,
-    /// Voxels that hang together with the first point.
+    /// Voxels that are connected with the first point.
     pub voxels: usize,
     /// Range of values.
     pub values: [f64; 2],
@@ -50,9 +50,9 @@ pub struct CentrelineReport {
 /// The centreline from one point to another.
 ///
 /// * `from`, `to`: scene coordinates; the nearest voxel of the range within 3 voxel edges counts.
-/// * `values`: least and greatest value of the voxels that the way may use.
+/// * `values`: least and greatest value of the voxels that the path may use.
 ///
-/// Axes of the volume that are not perpendicular are taken for such in distances. Deterministic.
+/// Distances treat the axes of the volume as perpendicular, even if they are not. Deterministic.
 ///
 /// # Errors
 /// [`ConstructError::PointOutside`] where no voxel near a point is in the range, [`ConstructError::NotConnected`],
@@ -152,7 +152,7 @@ impl Lattice<'_> {
         })
     }
 
-    /// The error of points in different parts, with how near the part of the first comes to the second.
+    /// The error for points in different parts, with the distance of the first point's part from the second point.
     fn apart(&self, part: &Part, to: DVec3) -> ConstructError {
         let places = (0..part.inside.len()).filter(|i| part.inside[*i]).map(|i| {
             let p = self.volume.scene_from_lattice(part.voxel(i));
@@ -164,7 +164,7 @@ impl Lattice<'_> {
     }
 }
 
-/// Voxels that hang together, in the smallest box around them.
+/// Connected voxels, in the smallest box around them.
 struct Part {
     first: [usize; 3],
     dims: [usize; 3],
@@ -235,9 +235,9 @@ impl Part {
     }
 }
 
-/// A way of even spacing with its corners rounded; both ends stay, and so do points whose smooth place is not allowed.
+/// The path at even spacing with rounded corners; both ends stay, and so do points whose smoothed position is not allowed.
 ///
-/// Smoothing alone would pull bends inwards: what it takes away is smoothed again and given back (twicing, Tukey 1977).
+/// Smoothing alone would pull bends inwards, so the difference that it makes is smoothed and added again (twicing, Tukey 1977).
 fn smoothed(way: Vec<DVec3>, edge: f64, allowed: impl Fn(DVec3) -> bool) -> Vec<DVec3> {
     let even = resampled(&way, SPACING * edge);
     let once = averaged(&even);
@@ -269,7 +269,7 @@ fn resampled(way: &[DVec3], spacing: f64) -> Vec<DVec3> {
     out
 }
 
-/// Averages with the weights of a Gaussian; towards the ends over less and less, so that they stay.
+/// Gaussian averages, over fewer and fewer values towards the ends, which stay.
 fn averaged(values: &[DVec3]) -> Vec<DVec3> {
     let sigma = SMOOTH / SPACING;
     let reach = (3.0 * sigma).ceil() as usize;

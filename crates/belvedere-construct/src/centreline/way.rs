@@ -1,11 +1,11 @@
-//! The cheapest way through voxels.
+//! The cheapest path through voxels.
 //!
-//! Source: Dijkstra 1959. A step costs its length over the clearance in it, so that the way keeps to the middle.
+//! Source: Dijkstra 1959. A step costs its length over the clearance in it, so that the path keeps to the middle.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Voxels that a way may use.
+/// Voxels that a path may use.
 pub(super) struct Cells<'c> {
     /// Voxels along x, y, z.
     pub(super) dims: [usize; 3],
@@ -22,7 +22,7 @@ fn steps() -> Vec<[i64; 3]> {
 }
 
 impl Cells<'_> {
-    /// Numbers of the voxels of the cheapest way, both ends included; `None` if there is none. Of equally cheap ones always the same.
+    /// Numbers of the voxels of the cheapest path, both ends included; `None` if there is no path. Of equally cheap paths always the same.
     ///
     /// A diagonal step needs all voxels beside it that share its faces, so that walls one voxel thick are tight.
     pub(super) fn cheapest(&self, from: usize, to: usize) -> Option<Vec<usize>> {

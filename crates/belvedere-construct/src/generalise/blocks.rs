@@ -1,4 +1,4 @@
-//! Blocks: what stands for the buildings of a cell.
+//! Blocks: the footprints that stand for the buildings of a cell.
 
 use super::settings::GeneraliseSettings;
 use super::shapes::{
@@ -7,7 +7,7 @@ use super::shapes::{
 };
 use geo::{Area, BooleanOps, MultiPolygon};
 
-/// What a cell is drawn as.
+/// How a cell is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CellKind {
@@ -21,7 +21,7 @@ pub enum CellKind {
     Landmarks,
 }
 
-/// What a cell becomes by the share of it that is built.
+/// Kind of a cell, by its built share.
 pub(super) fn kind(coverage: f64, ordinary: usize, settings: &GeneraliseSettings) -> CellKind {
     if coverage < settings.green_below {
         CellKind::Green
@@ -34,15 +34,15 @@ pub(super) fn kind(coverage: f64, ordinary: usize, settings: &GeneraliseSettings
     }
 }
 
-/// Parts of buildings outside their block that are left there, m^2.
+/// Largest part of a building that may stay outside its block, m^2.
 const LEFT_OUT_M2: f64 = 2.0;
-/// How far such parts are widened to join the block, metres.
+/// Distance by which such parts are widened to join the block, metres.
 const JOINT_M: f64 = 0.1;
-/// Share of the largest simplification by which what was put together is simplified.
+/// Largest distance by which merged outlines are simplified, share of the largest simplification.
 const FINE: f64 = 0.2;
-/// Smaller holes are chinks between what was put together, m^2.
+/// Holes smaller than this are chinks between merged outlines, m^2.
 const CHINK_M2: f64 = 25.0;
-/// How far outlines may reach out of their cell where no building does, share of the largest simplification.
+/// Distance by which outlines may reach out of their cell where no building does, share of the largest simplification.
 const STRAY: f64 = 0.6;
 /// Least share of a piece of a block that buildings cover.
 const LEAST_BUILT: f64 = 0.05;
@@ -57,16 +57,16 @@ pub(super) struct Grain {
     pub closing_m: f64,
     /// Largest distance by which outlines move, metres.
     pub simplify_m: f64,
-    /// The same of small outlines, share of the square root of their area.
+    /// Largest such distance for small outlines, share of the square root of their area.
     pub of_size: f64,
     /// Smaller holes are filled, m^2.
     pub hole_m2: f64,
-    /// Share of its rectangle from which on an outline is drawn as that.
+    /// Share of its least rectangle that an outline must fill to be drawn as that rectangle.
     pub as_rectangle: f64,
 }
 
 impl Grain {
-    /// That of the finer level (`times` = 1), or of the coarser one (2).
+    /// Grain of the finer level (`times` = 1), or of the coarser one (2).
     pub(super) fn of(settings: &GeneraliseSettings, times: f64) -> Self {
         let closing_m = 0.5 * (1.0 + times) * settings.closing_m;
         Self {
@@ -79,7 +79,7 @@ impl Grain {
     }
 }
 
-/// What a block is made of.
+/// Input of a block.
 pub(super) struct Site<'a> {
     /// Ground of the cell.
     pub cell: &'a Land,
@@ -87,7 +87,7 @@ pub(super) struct Site<'a> {
     pub ordinary: &'a [&'a Land],
     /// Buildings that keep their shape.
     pub landmarks: &'a [&'a Land],
-    /// Blocks and landmarks of the finer level that it holds; none if there is no finer level.
+    /// Blocks and landmarks of the finer level in the cell; empty if there is no finer level.
     pub finer: &'a [&'a Land],
 }
 
@@ -95,9 +95,9 @@ pub(super) struct Site<'a> {
 pub(super) struct Footprint {
     /// Outline.
     pub land: Land,
-    /// Ground that its buildings cover, each place once, m^2.
+    /// Ground that its buildings cover, overlaps counted once, m^2.
     pub built_m2: f64,
-    /// What of that lies in the outline, m^2.
+    /// Part of that ground that lies in the outline, m^2.
     pub covered_m2: f64,
 }
 

@@ -7,9 +7,9 @@ use belvedere_core::DVec2;
 use geo::{Area, BooleanOps, Centroid, ConvexHull, InteriorPoint, MultiPolygon};
 use rayon::prelude::*;
 
-/// Farther than this across a street there is no neighbour, metres.
+/// Largest distance of a neighbour across a street, metres.
 const REACH_M: f64 = 30.0;
-/// Spacing of the points of an outline that look for a neighbour, metres.
+/// Spacing of the points of an outline from which a neighbour is sought, metres.
 const LOOK_EVERY_M: f64 = 2.0;
 
 /// Cells of a level.
@@ -40,8 +40,8 @@ pub(super) fn cells(extent: &Land, streets: &Land, settings: &GeneraliseSettings
     Cells { lands, merged }
 }
 
-/// For every piece the piece that it becomes part of, and how many are part of another. The smallest look first; what grew enough
-/// stays.
+/// For every piece the piece that it joins, and the number of pieces that joined another. The smallest piece goes first; a piece that
+/// has grown large enough stays.
 fn neighbours_of_small(pieces: &[Land], smallest: f64) -> (Vec<usize>, usize) {
     let index = CellIndex::new(pieces);
     let mut areas: Vec<f64> = pieces.iter().map(area).collect();
@@ -72,7 +72,7 @@ fn neighbours_of_small(pieces: &[Land], smallest: f64) -> (Vec<usize>, usize) {
     (roots, merged)
 }
 
-/// The other piece that most of the outline has as its nearest, across a street.
+/// The other piece that is nearest, across a street, for most points of the outline.
 fn faced_most(index: &CellIndex<'_>, piece: &Land, own: usize) -> Option<usize> {
     let mut votes: Vec<(usize, f64)> = Vec::new();
     for line in piece.iter().flat_map(|p| p.exterior().lines()) {

@@ -1,4 +1,4 @@
-//! What can go wrong when a city is generalised.
+//! Errors of the generalisation of a city.
 
 use belvedere_scene::Cancelled;
 
@@ -9,13 +9,13 @@ pub enum GeneraliseError {
     /// Cancelled through [`belvedere_scene::Progress`].
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// There is nothing to put together.
+    /// No building has an area.
     #[error("none of the {buildings} buildings has an outline with an area; load a file with building footprints")]
     NoBuildings {
         /// Buildings of the city.
         buildings: usize,
     },
-    /// Coordinates that are no metres, or are damaged.
+    /// Coordinates that are not metres, or are damaged.
     #[error("the city is {width:.6} by {height:.6} units wide, 10 to 1000000 m are possible; {}", extent_hint(*width, *height))]
     Extent {
         /// Width, units of the coordinates.

@@ -1,4 +1,4 @@
-//! Which cell holds a point, and which cells have an edge near a box, without asking all of them.
+//! Index of cells by squares of the plane: the cell that holds a point, and the cells with an edge near a box.
 
 use super::shapes::Land;
 use belvedere_core::DVec2;
@@ -38,7 +38,7 @@ fn edges_of(land: &Land) -> impl Iterator<Item = [DVec2; 2]> {
 }
 
 impl<'a> CellIndex<'a> {
-    /// Side of the squares, metres, unless that were too many of them.
+    /// Side of the squares, metres; they are larger where there would be too many.
     const SIDE_M: f64 = 24.0;
     const MOST_SQUARES: f64 = 1e6;
 

@@ -1,4 +1,4 @@
-//! Land cover side by side: what overlaps on maps, so that each place is drawn once.
+//! Land cover without overlaps, so that each point of the ground is drawn once.
 
 use super::shapes::{Land, by_place, land_of, polygons_of, union, without_specks};
 use belvedere_core::DVec2;
@@ -7,7 +7,7 @@ use geo::{BooleanOps, Rect};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Kinds of land cover, what lies over the others first.
+/// Kinds of land cover, from the topmost down.
 const FROM_ABOVE: [LandCover; 6] =
     [LandCover::Road, LandCover::Rail, LandCover::Water, LandCover::Forest, LandCover::Green, LandCover::Other];
 /// Quarterings of the ground.
@@ -86,7 +86,7 @@ fn share_vertices(mut polygons: Vec<&mut Polygon>) {
             on_edge.clear();
             let [from, to] = [square(a.min(b) - ON_EDGE_M), square(a.max(b) + ON_EDGE_M)];
             for x in from[0]..=to[0] {
-                // Of a row of squares those that the edge passes.
+                // The squares of a row that the edge passes.
                 let [left, right] = [x as f64 * SIDE_M, (x + 1) as f64 * SIDE_M]
                     .map(|at| if along.x.abs() < 1e-12 { None } else { Some(a.y + (at - a.x) / along.x * along.y) });
                 let (low, high) = match (left, right) {

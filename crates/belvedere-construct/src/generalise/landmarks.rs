@@ -1,6 +1,6 @@
 //! Landmarks: buildings that stand out of their cell, which keep their shape.
 
-/// A building as far as its height matters.
+/// Footprint, height and mark of a building.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Volume {
     /// Footprint, m^2.
@@ -11,7 +11,7 @@ pub(super) struct Volume {
     pub tagged: bool,
 }
 
-/// Fewer buildings have no outliers.
+/// Least number of buildings among which outliers are sought.
 const LEAST: usize = 5;
 
 /// Mean height weighted by area, metres; 0 without buildings.
@@ -20,8 +20,9 @@ pub(super) fn mean_height(buildings: impl Iterator<Item = Volume>) -> f64 {
     if area > 0.0 { volume / area } else { 0.0 }
 }
 
-/// The landmarks among `candidates`, which are some of the buildings `cell` of a cell: places in `buildings`. A landmark is told
-/// by its attributes, or is higher than the mean by two standard deviations and half as high again as the mean by area.
+/// The landmarks among `candidates`, which are some of the buildings `cell` of a cell: indices in `buildings`. A building is a
+/// landmark by its attributes, or if it is higher than the mean by two standard deviations and half as high again as the mean by
+/// area.
 pub(super) fn landmarks(buildings: &[Volume], cell: &[usize], candidates: impl Fn(usize) -> bool) -> Vec<usize> {
     let n = cell.len() as f64;
     let mean = cell.iter().map(|i| buildings[*i].height_m).sum::<f64>() / n.max(1.0);

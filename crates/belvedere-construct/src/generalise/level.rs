@@ -17,7 +17,7 @@ pub struct Level {
     pub name: &'static str,
     /// Blocks, in the order of `blocks`, then landmarks in their own shape; green cells as areas; the ways that divide.
     pub city: City,
-    /// What is known of each block.
+    /// Data of each block.
     pub blocks: Vec<Block>,
     /// All cells.
     pub cells: Vec<Cell>,
@@ -25,10 +25,10 @@ pub struct Level {
     pub streets: Vec<Polygon>,
 }
 
-/// What a block stands for.
+/// The buildings that a block stands for.
 #[derive(Debug, Clone)]
 pub struct Block {
-    /// Its cell, place in [`Level::cells`].
+    /// Index of its cell in [`Level::cells`].
     pub cell: usize,
     /// Share of its footprint that the buildings that it stands for cover, at most 1.
     pub coverage: f64,
@@ -51,20 +51,20 @@ pub struct Cell {
     pub coverage: f64,
     /// What it is drawn as.
     pub kind: CellKind,
-    /// Its buildings that a block stands for or that are not shown, places in the city's list.
+    /// Its buildings that a block stands for or that are not shown, indices in the city's list.
     pub buildings: Vec<usize>,
-    /// Its landmarks, places in the city's list.
+    /// Its landmarks, indices in the city's list.
     pub landmarks: Vec<usize>,
 }
 
 /// Buildings that have an area.
 pub(super) struct Input<'a> {
     pub city: &'a City,
-    /// Place of every one in the city's list.
+    /// Index of each in the city's list.
     pub places: Vec<usize>,
     /// Outlines.
     pub lands: Vec<Land>,
-    /// What heights need.
+    /// Footprint areas and heights.
     pub volumes: Vec<Volume>,
 }
 
@@ -83,7 +83,7 @@ impl Input<'_> {
     }
 }
 
-/// A cell on its way to its block; places are those of [`Input`].
+/// A cell before its block is made; indices are those of [`Input`].
 struct Made {
     land: Land,
     coverage: f64,
@@ -113,13 +113,13 @@ impl MadeBlock {
     }
 }
 
-/// Blocks of the finer level with one building of each, place in [`Input`]; and landmarks of it.
+/// Blocks of the finer level, each with the index of one of its buildings in [`Input`], and its landmarks.
 pub(super) struct Finer {
     pub blocks: Vec<(Land, usize)>,
     pub landmarks: Vec<usize>,
 }
 
-/// What tells one level from the other.
+/// Settings that differ between the levels.
 pub(super) struct Plan<'a> {
     pub name: &'static str,
     /// The level that the blocks are put together from.
@@ -246,7 +246,7 @@ fn figures(
 const LEAST_COVERED: f64 = 0.9;
 const VOLUME_OFF: f64 = 0.1;
 
-/// A cell that misses the bars of coverage or volume.
+/// Report of a cell whose block misses the required coverage or volume.
 fn failing(input: &Input<'_>, cell: String, m: &Made) -> Option<FailingCell> {
     let held = input.volume_of(&m.ordinary) + input.volume_of(&m.landmarks);
     let shown = m.block.as_ref().map_or(0.0, MadeBlock::volume_m3) + input.volume_of(&m.landmarks);

@@ -38,7 +38,7 @@ use rayon::prelude::*;
 
 /// Smallest footprint that counts, m^2.
 const LEAST_AREA_M2: f64 = 0.01;
-/// Widths of cities that are possible, metres: less is degrees, more is damaged.
+/// Range of the width of a city, metres: smaller coordinates are degrees, larger ones are damaged.
 const WIDTHS_M: [f64; 2] = [10.0, 1e6];
 
 /// A city at its levels of abstraction.
@@ -53,7 +53,7 @@ pub struct Generalised {
 /// The levels of abstraction of `city`, whose coordinates are metres.
 ///
 /// # Errors
-/// [`GeneraliseError`]: no building with an area, coordinates that are no metres, settings out of range, cancelled.
+/// [`GeneraliseError`]: no building with an area, coordinates that are not metres, settings out of range, cancelled.
 pub fn generalise(
     city: &City,
     settings: &GeneraliseSettings,
@@ -94,7 +94,7 @@ pub fn generalise(
     Ok(Generalised { levels: [loa1, loa2], report })
 }
 
-/// Notes on levels of which there is little to say else.
+/// Adds notes on levels whose buildings lie in one cell, or in green cells alone.
 fn notes_of(mut notes: Vec<String>, levels: [&Level; 2]) -> Vec<String> {
     for level in levels {
         let inhabited: Vec<&Cell> = level.cells.iter().filter(|c| !c.buildings.is_empty()).collect();

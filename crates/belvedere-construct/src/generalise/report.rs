@@ -1,4 +1,4 @@
-//! What a generalisation says about itself.
+//! Report of a generalisation.
 
 use serde::Serialize;
 
@@ -15,7 +15,7 @@ pub struct GeneraliseReport {
     pub triangles: usize,
     /// The levels, finest first.
     pub levels: Vec<LevelReport>,
-    /// What was odd or assumed.
+    /// Oddities and assumptions, one sentence each.
     pub notes: Vec<String>,
     /// Time, seconds.
     pub seconds: f64,
@@ -46,15 +46,15 @@ pub struct LevelReport {
     pub landmarks: usize,
     /// Footprints of the blocks, m^2.
     pub block_area_m2: f64,
-    /// Ground of the buildings that blocks stand for, each place once, m^2.
+    /// Ground of the buildings that blocks stand for, overlaps counted once, m^2.
     pub built_area_m2: f64,
-    /// Share of that which lies in their blocks.
+    /// Share of that ground that lies in their blocks.
     pub covered_share: f64,
     /// Triangles of blocks and landmarks on level ground.
     pub triangles: usize,
     /// Area of the blocks over their buildings times height, and the volume of the landmarks, m^3.
     pub volume_m3: f64,
-    /// The same as a share of all that came in.
+    /// That volume as a share of the volume of all buildings that have an area.
     pub volume_share: f64,
     /// Whether that share lies in 0.9..=1.1.
     pub volume_kept: bool,

@@ -1,4 +1,4 @@
-//! What a generalisation can be told.
+//! Settings of a generalisation.
 
 use super::GeneraliseError;
 use belvedere_scene::city::WayClass;
@@ -62,7 +62,7 @@ impl GeneraliseSettings {
     }
 }
 
-/// Half the width of the ground that a way keeps free, metres; `None` for ways that divide no blocks.
+/// Half the width of the ground that a street, railway or waterway keeps free, metres; `None` for classes that divide no blocks.
 pub fn half_width_m(class: WayClass) -> Option<f64> {
     Some(match class {
         WayClass::Motorway => 12.0,

@@ -22,7 +22,7 @@ fn ring(points: &[DVec2]) -> Option<LineString<f64>> {
         .then(|| LineString::from(points.iter().map(|p| (p.x, p.y)).collect::<Vec<_>>()))
 }
 
-/// The land of an outline; rings that cross themselves or each other are put in order, rings that are no numbers left out.
+/// The land of an outline; rings that cross themselves or each other are repaired, rings that are not finite are left out.
 pub(super) fn land_of(polygons: &[Polygon]) -> Land {
     let parts: Vec<Land> = polygons
         .iter()
@@ -193,7 +193,7 @@ pub(super) fn parted(land: Land) -> Land {
     MultiPolygon(land.into_iter().flat_map(of).collect())
 }
 
-/// What of `land` lies in `other`.
+/// The part of `land` that lies in `other`.
 pub(super) fn common(land: &Land, other: &Land) -> Land {
     without_specks(land.intersection(other))
 }

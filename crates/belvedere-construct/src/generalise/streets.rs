@@ -7,11 +7,11 @@ use belvedere_scene::city::{City, LandCover, Way, WayClass};
 use geo::LineString;
 use rayon::prelude::*;
 
-/// What divides the cells of a level.
+/// Ground and streets that divide the cells of a level.
 pub(super) struct Dividers {
-    /// Its ground.
+    /// Ground of the dividers.
     pub land: Land,
-    /// Places in `City::ways`.
+    /// Indices in `City::ways`.
     pub ways: Vec<usize>,
 }
 

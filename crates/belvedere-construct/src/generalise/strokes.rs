@@ -12,7 +12,7 @@ const MOST_BEND: f64 = std::f64::consts::FRAC_PI_4;
 /// Share of the length of all streets that main runs make up.
 const MAIN_SHARE: f64 = 1.0 / 3.0;
 
-/// Streets of the longest runs, a third of the length of all of `streets` (places in `ways`).
+/// Streets of the longest runs, a third of the length of all of `streets` (indices in `ways`).
 pub(super) fn longest_strokes(ways: &[Way], streets: &[usize]) -> Vec<usize> {
     let mut root: Vec<usize> = (0..streets.len()).collect();
     for [a, b] in continuations(ways, streets) {
@@ -47,7 +47,7 @@ fn find(root: &[usize], mut i: usize) -> usize {
     i
 }
 
-/// Pairs of streets that go on in each other where their ends meet: at every end the straightest pairs first.
+/// Pairs of streets that continue each other where their ends meet: at every end the straightest pairs first.
 fn continuations(ways: &[Way], streets: &[usize]) -> Vec<[usize; 2]> {
     let key = |p: DVec2| [(p.x * 2.0).round() as i64, (p.y * 2.0).round() as i64];
     let mut ends: BTreeMap<[i64; 2], Vec<(usize, DVec2)>> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! What the bends do to the picture as a whole: how far they carry the ground, how they stretch it, whether it folds.
+//! Measures of the bends over the whole picture: displacement of the ground, anisotropy and folds.
 
 use super::image::SampleImage;
 use crate::sample::SampledFeature;
@@ -10,7 +10,7 @@ use serde::Serialize;
 /// Distortion of the bent picture, over the ground nodes that lie in it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BendMeasure {
-    /// Terrain nodes looked at (a regular subset, at most some ten thousand) that lie in the bent picture.
+    /// Terrain nodes that are tested (a regular subset, at most some ten thousand) and lie in the bent picture.
     pub nodes_in_frame: usize,
     /// Share of them at which the picture folds over (orientation reversed), 0..=1.
     pub folded_share: f64,
@@ -19,9 +19,9 @@ pub struct BendMeasure {
     pub facing_min: Option<f64>,
     /// The same for the straight picture.
     pub facing_min_straight: Option<f64>,
-    /// Largest distance by which the bends carry a node, scene units.
+    /// Largest displacement of a node by the bends, scene units.
     pub displacement_max: f64,
-    /// Root mean square of that distance.
+    /// Root mean square of these displacements, scene units.
     pub displacement_rms: f64,
     /// Largest distance between the straight and the bent image of a node that is in both, pixels.
     pub displacement_max_px: f64,
@@ -34,14 +34,14 @@ pub struct BendMeasure {
     pub anisotropy_mean_straight: f64,
 }
 
-/// How far the bends carry samples: scene units, and pixels.
+/// Displacement of samples by the bends: scene units, and pixels.
 pub(super) struct Displacement {
     pub(super) max: f64,
     pub(super) rms: f64,
     pub(super) max_px: f64,
 }
 
-/// How far samples in either picture are carried.
+/// Displacement of the samples in either picture.
 pub(super) fn displacement(straight: &[(f64, SampleImage)], bent: &[(f64, SampleImage)]) -> Displacement {
     let mut out = Displacement { max: 0.0, rms: 0.0, max_px: 0.0 };
     let mut weight = 0.0;

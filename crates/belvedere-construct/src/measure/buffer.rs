@@ -111,27 +111,28 @@ impl Job<'_> {
     }
 }
 
-/// The picture for the depth test draws bent edges straight within this, pixels: the half pixel of usual pictures is metres of ground, which
-/// hide places that neither the displaced ground nor its facets hide.
+/// Tolerance within which the picture for the depth test draws bent edges straight, pixels: half a pixel, as in usual pictures, is
+/// metres of ground, which hide points that neither the displaced ground nor its facets hide.
 const STRAIGHT_PX: f64 = 0.05;
-/// Depths for one sample: at its own place, then at the four pixel centres around it.
+/// Depths for one sample: at its own pixel position, then at the four pixel centres around it.
 const PLACES: usize = 5;
-/// Drawn depths that differ from pinpointed ones by more than this share are another surface, or wrong.
+/// Largest relative difference between a drawn and a pinpointed depth; beyond it the pixel shows another surface, or is wrong.
 const AGREES: f64 = 1e-3;
-/// Where ground is seen slantwise or breaks off, renderers may draw what lies a part of a pixel beside: up to this share beyond what lies around.
+/// Share by which a drawn depth may lie outside the depths around its sample: where ground is seen slantwise or breaks off, renderers
+/// may draw ground a part of a pixel beside.
 const BESIDE: f64 = 0.01;
-/// Share of the pixel centres that a picture must show as pinpointed, to be trusted with that.
+/// Share of the pixel centres at which a picture must show the pinpointed depth, to be trusted with that tolerance.
 const TRUSTED: f64 = 0.5;
-/// The ground of a sample without lift lies at its own depth: rounding.
+/// Relative tolerance of the depth of a sample on the ground: rounding.
 const TOUCH: f64 = 1e-7;
 
-/// Depths of the terrain at the places of all samples in the frame that stand for no surface in space.
+/// Depths of the terrain at the pixel positions of all samples in the frame that stand for no surface in space.
 struct Pinpoint {
     depths: Vec<f64>,
-    /// The same over flat triangles between displaced nodes, where ground is displaced upwards alone; the sample's own place is that over
-    /// them, and its own depth there comes after it.
+    /// The same over flat triangles between displaced nodes, if ground is displaced upwards alone; the sample's own pixel position is
+    /// then the one on these triangles. The second list holds the samples' own depths there.
     flat: Option<(Vec<f64>, Vec<f64>)>,
-    /// Whether the picture shows the terrain where it is.
+    /// Whether the picture shows the terrain at the pinpointed depths.
     trusted: bool,
     /// Whether a layer, by its index, can hide the terrain.
     solid: Vec<bool>,
@@ -185,7 +186,7 @@ impl Pinpoint {
         Self { trusted, depths, flat, solid }
     }
 
-    /// Whether the terrain leaves a sample free, between the pixels too; `None` where the picture shows something else than the terrain.
+    /// Whether the terrain does not hide a sample, between the pixels too; `None` where the picture shows something other than the terrain.
     /// * `index`: of the sample among those that stand for no surface.
     fn seen(&self, index: usize, j: &SampleImage, frame: &Frame) -> Option<bool> {
         let at = index * PLACES..(index + 1) * PLACES;
@@ -228,13 +229,13 @@ fn flat_image(scene: &Scene, view: &View, sample: &Sample) -> Option<(DVec2, f64
     view.pinhole().project(sample.p_world.truncate().extend(ground + sample.lift)).ok()
 }
 
-/// The four pixel centres around a place.
+/// The four pixel centres around a pixel position.
 fn around(at: DVec2) -> [DVec2; 4] {
     let corner = (at - 0.5).floor() + 0.5;
     [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(dx, dy)| corner + DVec2::new(dx, dy))
 }
 
-/// Index of the pixel at a place; `None` beside the picture.
+/// Index of the pixel at a pixel position; `None` beside the picture.
 fn pixel(at: DVec2, frame: &Frame) -> Option<usize> {
     let inside = at.x >= 0.0 && at.y >= 0.0 && at.x < frame.width as f64 && at.y < frame.height as f64;
     inside.then(|| at.y as usize * frame.width + at.x as usize)

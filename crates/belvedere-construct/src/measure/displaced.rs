@@ -1,5 +1,5 @@
-//! Lines of sight over displaced ground where rays run straight behind it: by the judge of terrain disocclusion itself, triangle by
-//! triangle. Chords of a bent ray may step over a narrow ridge.
+//! Lines of sight over displaced ground where no other stage bends rays: triangle by triangle, by the judge of terrain disocclusion.
+//! Chords of a bent ray may step over a narrow ridge.
 
 use crate::sample::Sample;
 use belvedere_core::grid::Grid;
@@ -7,7 +7,7 @@ use belvedere_core::{DVec2, SpaceMap, Stage, View};
 use belvedere_scene::{LayerKind, Scene};
 use belvedere_sight::{DisplacedGround, Field};
 
-/// Rays that run this far under the ground are still clear: rounding. Scene units.
+/// Depth under the ground down to which a line of sight still counts as clear, scene units: rounding.
 const TOUCH: f64 = 1e-6;
 
 /// The ground of a scene as a view displaces it, and the eye.
@@ -59,7 +59,7 @@ impl DisplacedSight {
         [DisplacedGround::faceted(field, delta), DisplacedGround::new(field, delta)].map(DisplacedGround::prepared)
     }
 
-    /// How far each of the grounds rises over the line of sight of a sample; 0 where it does not, `None` beside the ground.
+    /// Height by which each of the grounds rises over the line of sight of a sample; 0 where it does not, `None` beside the ground.
     pub(super) fn over(&self, grounds: &[DisplacedGround<'_>; 2], sample: &Sample) -> Option<[f64; 2]> {
         let at = self.field.grid_from_scene(sample.p_world.truncate());
         let mut out = [0.0; 2];

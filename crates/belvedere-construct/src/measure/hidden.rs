@@ -1,4 +1,4 @@
-//! What a view hides of the features that must be seen, part by part.
+//! Parts of the required features that a view hides.
 
 use super::image::{self, SampleImage, Sight};
 use super::{MeasureOptions, samples, sight_options};
@@ -13,13 +13,13 @@ use serde::Serialize;
 pub enum HiddenReason {
     /// Something stands before it.
     Covered {
-        /// How far at most that rises over the line of sight, scene units.
+        /// Largest rise of it over the line of sight, scene units.
         over_m: f64,
     },
     /// Only facets between displaced nodes stand before it, as ground is written and rasterised: the exact picture, and what is picked in it,
     /// show it.
     Facets {
-        /// How far at most those rise over the line of sight, scene units.
+        /// Largest rise of the facets over the line of sight, scene units.
         over_m: f64,
     },
     /// The picture folds over there.
@@ -47,12 +47,12 @@ pub struct HiddenRun {
     pub points: usize,
     /// Length, area or count of what is hidden.
     pub amount: f64,
-    /// Why; of all samples of that reason the largest figure.
+    /// Reason, with the largest rise of all samples of that reason.
     #[serde(flatten)]
     pub reason: HiddenReason,
 }
 
-/// What `view` hides of what must be seen inside its image, by lines of sight along its rays; in the order of the features.
+/// The parts of required features inside the image that `view` hides, by lines of sight along its rays; in the order of the features.
 ///
 /// # Errors
 /// [`belvedere_scene::Cancelled`].
@@ -111,7 +111,7 @@ fn runs(feature: &SampledFeature, images: &[SampleImage]) -> Vec<HiddenRun> {
     out
 }
 
-/// Whether `next` says more of a part than `first`: ground before facets, and of those what rises farther.
+/// Whether `next` is a worse reason than `first`: ground is worse than facets, and of two such reasons the larger rise is worse.
 fn worse(first: HiddenReason, next: HiddenReason) -> bool {
     use HiddenReason::{Covered, Facets};
     match (first, next) {

@@ -1,4 +1,4 @@
-//! Where a view shows the samples of features, and whether by line of sight.
+//! Positions of the samples of features in a picture, and their visibility by line of sight.
 
 use super::displaced::DisplacedSight;
 use crate::sample::{Sample, SampledFeature};
@@ -8,7 +8,7 @@ use belvedere_sight::{Carried, DisplacedGround, Obstacles, SightOptions};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
-/// Where a view shows one sample, and whether.
+/// Position of one sample in a picture, and its visibility.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SampleImage {
     pub(super) pixel: DVec2,
@@ -17,7 +17,7 @@ pub(super) struct SampleImage {
     pub(super) folded: bool,
     /// The sample after all stages, scene coordinates.
     pub(super) displaced: Option<DVec3>,
-    /// Of a piece of surface: whether it is seen so slantwise that a hair decides which side shows.
+    /// For a piece of surface: whether it is seen so slantwise that rounding decides which side shows.
     pub(super) edge_on: Option<bool>,
     /// By line of sight; `None` outside the frame.
     pub(super) clearance: Option<f64>,
@@ -46,7 +46,7 @@ impl SampleImage {
     }
 }
 
-/// What the depth buffer says of a sample.
+/// Result of the depth test of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct DepthTest {
     /// Nothing was drawn in front of the sample's ground.
@@ -61,7 +61,7 @@ pub(super) struct Sight<'a> {
     bodies: BodyViews,
     /// Displaced ground behind which rays are straight.
     displaced: Option<DisplacedSight>,
-    /// What hides beside that ground.
+    /// Obstacles other than that ground.
     beside: Option<Obstacles<'a>>,
 }
 
@@ -77,7 +77,7 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// The views that samples on rigid bodies have their images by.
+/// Views by which samples on rigid bodies are projected.
 pub(super) struct BodyViews(Option<Carried>);
 
 impl BodyViews {
@@ -119,7 +119,7 @@ pub(super) fn all(
     features.iter().map(of).collect()
 }
 
-/// The clearance of a sample on displaced ground, `c` by chords, with the judge's word on whether it is seen; and whether facets alone hide it.
+/// The clearance of a sample on displaced ground, `c` by chords, with the verdict of the judge; and whether facets alone hide it.
 fn over_displaced(
     of: &Sight<'_>,
     (displaced, grounds): &Displaced<'_>,
@@ -131,7 +131,7 @@ fn over_displaced(
     if traced > 0.0 {
         return (c.min(-facets.max(traced)), false);
     }
-    // Where chords saw something, other things than the ground may hide it.
+    // If the chords found the sample hidden, something other than the ground may hide it.
     let others = match &of.beside {
         Some(beside) if c < 0.0 => {
             beside.clearance(view, (sample.p_world, sample.lift), (image.pixel, image.depth), options)
@@ -180,7 +180,7 @@ fn image(of: &Sight<'_>, view: &View, (layer, sample): (usize, &Sample), sight: 
 /// Cosine of the slant below which a surface is seen edge-on.
 const EDGE_ON: f64 = 0.15;
 
-/// Cosine between the normal of a surface and the way against the ray that sees it; 0 where there is none.
+/// Cosine between the normal of a surface and the direction against the ray that sees it; 0 where there is no such direction.
 pub(super) fn facing(view: &View, p: DVec3, normal: DVec3) -> f64 {
     // Along the ray the pixel stays: across the changes of its x and its y.
     let along = view.jacobian(p).map_or(DVec3::ZERO, |[x, y]| x.cross(y).normalize_or_zero());

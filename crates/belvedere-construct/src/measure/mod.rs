@@ -22,7 +22,7 @@ use belvedere_scene::{Light, Progress, Renderer, Scene};
 use belvedere_sight::{Obstacles, SightOptions};
 use image::Sight;
 
-/// How to measure.
+/// Options of the measure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasureOptions {
     /// Largest distance between samples of a line, scene units; `None` = an eighth of the grid spacing of the terrain, see
@@ -94,7 +94,7 @@ pub fn measure(
     Ok(report::summarise(&features, &straight, &bent, options.near_miss_m, bend, warnings))
 }
 
-/// What shares are judged by.
+/// Samples by which shares are judged.
 pub(crate) fn samples(scene: &Scene, options: &MeasureOptions) -> Vec<SampledFeature> {
     match options.spacing_m {
         Some(spacing) => sample_features(scene, spacing.max(1e-6)),

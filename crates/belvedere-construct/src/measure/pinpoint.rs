@@ -1,24 +1,26 @@
-//! Depths of the terrain at places of a picture, as fine as arithmetic: the triangles of the ground are carried into the picture and
-//! asked whether they cover each place, however small. A picture can only tell what its pixels resolve.
+//! Depths of the terrain at positions of a picture, to the precision of arithmetic: the triangles of the ground are projected into
+//! the picture and tested against each position, however small they are. A drawn picture resolves no more than its pixels.
 
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Heightfield, LayerKind, Scene};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Side of the bins that places are sorted into, pixels.
+/// Side of the bins into which positions are sorted, pixels.
 const BIN: f64 = 4.0;
-/// Where a displacement bends a triangle, it is quartered until its edges lie within this of their images, pixels; so often at most.
+/// Where a displacement bends a triangle, it is quartered until its edges lie within this of their images, pixels; and the most
+/// quarterings.
 const STRAIGHT: (f64, u32) = (0.01, 5);
-/// The same where ground is displaced upwards alone: a pixel far away is tens of metres of ground, which lines of sight pass by decimetres.
+/// The same where ground is displaced upwards alone: a pixel far away is tens of metres of ground, which lines of sight clear by
+/// decimetres.
 const UPRIGHT: (f64, u32) = (1e-3, 7);
-/// Triangles that reach behind the near plane are quartered so often, and left out where they reach behind it still.
+/// Quarterings of triangles that reach behind the near plane; parts that still reach behind it are left out.
 const QUARTERINGS: u32 = 6;
 
 /// A vertex in the picture: pixel, and what is linear over the picture of a plane in space (inverse depth; depth of parallel pictures).
 type Vertex = Option<(DVec2, f64)>;
 
-/// Places of the picture, sorted by bins.
+/// Positions in the picture, sorted into square bins.
 struct Bins<'a> {
     places: &'a [DVec2],
     cols: usize,
@@ -47,14 +49,14 @@ impl<'a> Bins<'a> {
         Self { places, cols, rows, first, order }
     }
 
-    /// Whether a box touches a bin that holds a place.
+    /// Whether a box touches a bin that holds a position.
     fn holds(&self, low: DVec2, high: DVec2) -> bool {
         let mut any = false;
         self.near(low, high, |_, _| any = true);
         any
     }
 
-    /// Calls `visit` with every place in the bins that a box touches.
+    /// Calls `visit` with every position in the bins that a box touches.
     fn near(&self, low: DVec2, high: DVec2, mut visit: impl FnMut(usize, DVec2)) {
         let size = DVec2::new(self.cols as f64, self.rows as f64) * BIN;
         if !(high.x >= 0.0 && high.y >= 0.0 && low.x <= size.x && low.y <= size.y) {
@@ -71,7 +73,7 @@ impl<'a> Bins<'a> {
     }
 }
 
-/// Depth of the nearest terrain at each place (pixels) of the picture of `view`; infinite where there is none.
+/// Depth of the nearest terrain at each position (pixels) of the picture of `view`; infinite where there is no terrain.
 ///
 /// * `flat`: triangles stay flat between their corners, as rasterisers may draw ground that is displaced upwards, however it is displaced between
 ///   them.
@@ -120,7 +122,7 @@ fn over_terrain(hf: &Heightfield, view: &View, bins: &Bins<'_>, (found, flat): (
     strips.into_par_iter().for_each(strip);
 }
 
-/// Rows of cells that are carried into the picture one after the other.
+/// Rows of grid cells that one task projects.
 const STRIP: usize = 16;
 
 struct Draw<'a> {
@@ -128,16 +130,16 @@ struct Draw<'a> {
     found: &'a [AtomicU64],
     vertex: &'a (dyn Fn(DVec3) -> Vertex + Sync),
     parallel: bool,
-    /// Whether the view bends what is straight.
+    /// Whether the view bends straight lines.
     bent: bool,
-    /// What counts as straight, pixels.
+    /// Tolerance within which an edge counts as straight, pixels.
     straight_px: f64,
-    /// How often a triangle is quartered for that, at most.
+    /// Most quarterings of a triangle that is not straight.
     bendings: u32,
 }
 
 impl Draw<'_> {
-    /// The four halves as large: `a ab ca`, `ab b bc`, `ca bc c` and the middle one.
+    /// The four triangles of half the size: `a ab ca`, `ab b bc`, `ca bc c` and the middle one.
     fn quarters(&self, [a, b, c]: [(DVec3, Vertex); 3]) -> [[(DVec3, Vertex); 3]; 4] {
         let middle = |a: (DVec3, Vertex), b: (DVec3, Vertex)| {
             let p = 0.5 * (a.0 + b.0);
@@ -159,7 +161,7 @@ impl Draw<'_> {
         };
         let (low, high) = (a.0.min(b.0).min(c.0), a.0.max(b.0).max(c.0));
         if self.bent && quarterings < self.bendings {
-            // What bends it leaves the box a little.
+            // A bent triangle may reach out of the box of its corners.
             let beside = 0.25 * (high - low);
             if !self.bins.holds(low - beside, high + beside) {
                 return;

@@ -22,13 +22,13 @@ pub struct Measures {
     /// Largest difference between the two methods over lines, areas, points and surfaces, straight and bent, after leaving out
     /// near misses; `None` without a renderer.
     pub largest_difference: Option<f64>,
-    /// What the bend does to the picture.
+    /// Displacement, distortion and folds by the bend.
     pub bend: BendMeasure,
     /// Oddities, one sentence each.
     pub warnings: Vec<String>,
 }
 
-/// What two pictures show of one feature.
+/// Visibility of one feature in two pictures.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FeatureMeasure {
     /// Id of the layer.
@@ -37,37 +37,37 @@ pub struct FeatureMeasure {
     pub feature: usize,
     /// Name, possibly empty.
     pub name: String,
-    /// What amounts count.
+    /// Unit of the amounts.
     pub unit: Amount,
-    /// Points images.
+    /// Number of samples.
     pub samples: usize,
     /// Length, area or count of the whole feature.
     pub total: f64,
-    /// Of a surface: mean distance between samples, scene units.
+    /// Mean distance between the samples of a surface, scene units.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface_spacing: Option<f64>,
-    /// In the picture without bends.
+    /// Visibility in the picture without bends.
     pub straight: Visibility,
-    /// In the picture as it is.
+    /// Visibility in the picture as it is.
     pub bent: Visibility,
-    /// How far the bends carry what is in either picture: largest distance, scene units.
+    /// Largest displacement by the bends of a sample in either picture, scene units.
     pub displacement_max: f64,
-    /// The same, root mean square.
+    /// Root mean square of these displacements, scene units.
     pub displacement_rms: f64,
     /// Largest distance between the two images of a sample that is in both, pixels.
     pub displacement_max_px: f64,
 }
 
-/// What one picture shows of one feature.
+/// Visibility of one feature in one picture.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Visibility {
     /// Length, area or count inside the image.
     pub in_frame: f64,
-    /// By line of sight along the ray.
+    /// Visible amount by line of sight along the ray.
     pub sight: MethodShare,
-    /// By the depth buffer; `None` without a renderer.
+    /// Visible amount by the depth buffer; `None` without a renderer.
     pub buffer: Option<MethodShare>,
-    /// Difference of the two shares over the samples that are no near misses.
+    /// Difference of the two shares over the samples that are not near misses.
     pub difference: Option<f64>,
     /// Share of those samples on which the methods disagree, either way.
     pub mismatched_share: Option<f64>,
@@ -89,7 +89,7 @@ pub struct MethodShare {
     pub visible: f64,
     /// Visible share of the in-frame amount, 0..=1; `None` if nothing is in the frame.
     pub share: Option<f64>,
-    /// The same without near misses.
+    /// Visible share without near misses.
     pub share_without_near_misses: Option<f64>,
 }
 

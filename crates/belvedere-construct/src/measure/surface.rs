@@ -4,8 +4,8 @@ use super::image::{SampleImage, facing};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::Frame;
 
-/// Whether a sample faces the eye and the four pixels around it show its layer, at its depth: each votes with its bilinear weight, and expects the depth of
-/// the sample's tangent plane.
+/// Whether a sample faces the eye and the four pixels around it show its layer at its depth: each votes with its bilinear weight, and
+/// expects the depth of the sample's tangent plane.
 pub(super) fn in_buffer(
     view: &View,
     (p, normal): (DVec3, DVec3),

@@ -1,8 +1,8 @@
 //! The near part of a preview's camera: an eye close behind the position, whose rays become those of an eye far behind it.
 //!
-//! A turn with parallel planes whose second viewpoint lies straight behind the first one changes no direction of view: rays leave the
-//! near eye as wide as those of the far eye are at the planes, and go on as if they came from there. So nothing before the position
-//! has to be cut away, and what lies behind it is seen as from afar. Ours.
+//! The second viewpoint of a turn with parallel planes lies straight behind the first, so that the direction of view stays. Rays
+//! leave the near eye at the width that the rays of the far eye have at the planes, and run on as if they came from the far eye. So
+//! nothing before the position has to be cut away, and what lies beyond it is seen as from the far eye. Ours.
 
 use crate::ConstructError;
 use belvedere_core::map::curved_rays::{Pencil, Sharpness, TurnSpec};

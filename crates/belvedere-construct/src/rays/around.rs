@@ -13,16 +13,16 @@ use serde::Serialize;
 /// Directions across the view, and steps of the second viewpoint's distance.
 const DIRECTIONS: usize = 16;
 const REACHES: [f64; 9] = [0.06, 0.12, 0.2, 0.3, 0.42, 0.56, 0.75, 1.0, 1.4];
-/// Distance of t0 and width of the transition, shares of the way to the target.
+/// Distance of t0 and width of the transition, shares of the distance to the target.
 const STARTS: [f64; 8] = [0.05, 0.12, 0.22, 0.34, 0.46, 0.58, 0.7, 0.8];
 const WIDTHS: [f64; 2] = [0.25, 0.12];
-/// A picture may move by its own height on the average for the whole of the target.
+/// Share of the target that a mean motion of the picture by its own height must gain.
 const PRICE_OF_MOTION: f64 = 0.25;
 
-/// How the search is bounded.
+/// Options of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AroundOptions {
-    /// The target must be clear with so much around it, pixels, >= 0.
+    /// Margin around the target that must be clear as well, pixels, >= 0.
     pub grow_px: f64,
     /// Whether the camera may turn so that the target stays in the middle of the picture.
     pub may_turn: bool,
@@ -48,9 +48,9 @@ pub struct BendFound {
 pub struct BendReport {
     /// Share of the target that straight rays show.
     pub visible_straight: f64,
-    /// Share that the answer shows.
+    /// Share of the target that the bent view shows.
     pub visible: f64,
-    /// Light of the target that comes through volumes along straight rays, 0..=1; it is seen from one half on.
+    /// Light of the target that comes through volumes along straight rays, 0..=1; from 0.5 on it counts as seen.
     pub light_straight: f64,
     /// Most light that any bend that was tried lets through.
     pub light_best: f64,
@@ -169,7 +169,7 @@ fn turned(base: &View, sidestep: &Sidestep, center: DVec3) -> Option<View> {
     View::new(pinhole.ok()?, base.stages().to_vec()).ok()
 }
 
-/// Points all over the scene.
+/// Points on the bounds of every layer, and those of the target.
 fn surroundings(scene: &Scene, target: &Target) -> Vec<DVec3> {
     let solid = scene.layers.iter().map(belvedere_scene::Layer::bounds).filter(|b| !b.is_empty());
     let mut points: Vec<DVec3> = solid.flat_map(|b| Target::around(b).points).collect();

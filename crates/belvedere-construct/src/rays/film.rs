@@ -1,9 +1,9 @@
-//! Target tracking of a film: the way of the second viewpoint through all frames, planned before the first is drawn.
+//! Target tracking of a film: the path of the second viewpoint through all frames, planned before the first is drawn.
 //!
-//! Ours: the paper tracks live, where the motion to come is unknown. A film knows it. In every frame the share of the target that is
-//! seen is found for places of the second viewpoint to the left and right; where no way among those shows the whole target throughout,
-//! or it turns round more than once, for places up, down and aslant as well, first few, then more. The way that hides the target in
-//! the fewest frames, and of those the one that turns, moves and bends least, is a shortest path over frames and places.
+//! Ours: the paper tracks live, where future motion is unknown. In a film it is known. In every frame the visible share of the target
+//! is found for positions of the second viewpoint to the left and right. If no path over these shows the whole target throughout, or
+//! f turns round more than once, positions up, down and aslant are added, first few, then more. The path that hides the target in the
+//! fewest frames, and of those the one that turns, moves and bends least, is a shortest path over frames and positions.
 
 use super::tracking::{Search, WHOLE};
 use super::way::{Disc, PER_RING, on_ring};
@@ -16,11 +16,11 @@ use std::f64::consts::TAU;
 
 /// Steps of f on either side of 0, at most.
 const MOST: usize = 250;
-/// Rings of places, first and second search up, down and aslant.
+/// Rings of positions in the first and the second search up, down and aslant.
 const WIDE: [usize; 2] = [4, 8];
 /// A frame that does not show the whole target costs more than any motion.
 const HIDDEN: f64 = 1e6;
-/// Cost of a second in which nothing of the target is seen, beyond that it is not whole.
+/// Cost of a second in which nothing of the target is seen, in addition to `HIDDEN`.
 const LESS: f64 = 40.0;
 /// Cost of bending to f = 1 for a second, and of doing so upwards or downwards; moving f by 1 costs 1.
 const BENT: f64 = 0.3;
@@ -31,12 +31,12 @@ const TIGHT: f64 = 0.5;
 /// Share of the target that is seen, and whether it has its margin.
 type Seen = (f32, bool);
 
-/// What is known of a frame.
+/// Visible share of the target in one frame, by position of the second viewpoint.
 #[derive(Debug, Clone, Default)]
 struct Known {
-    /// From f = -1 to 1 sideways.
+    /// At values of f from -1 to 1, sideways.
     sideways: Vec<Seen>,
-    /// On `side` rings, from the first to the rim; empty before the wide search.
+    /// At the positions of `side` rings, from the first ring to the rim; empty before the wide search.
     wide: Vec<Seen>,
     side: usize,
 }
@@ -94,7 +94,7 @@ impl FilmPlanner {
         self.next += 1;
     }
 
-    /// Plans by what is known. Whether another pass over all frames, with more places to look from, may find a better way.
+    /// Plans the bends from the passes so far. Returns whether another pass over all frames, with more positions, may find a better path.
     pub fn wants_more(&mut self) -> bool {
         let disc = Disc::new(self.options.cap_per_s * self.time_step_s, self.pass == 0);
         let knots = self.frames.len().div_ceil(disc.stride);
@@ -122,7 +122,7 @@ impl FilmPlanner {
         better && self.pass <= WIDE.len()
     }
 
-    /// What a place costs in a frame.
+    /// Cost of a position in a frame.
     fn cost(&self, known: &Known, [x, y]: [f64; 2]) -> f64 {
         let (share, is_clear) = known.at([x, y]);
         let share = f64::from(share);
@@ -150,7 +150,7 @@ impl Known {
             .unwrap_or_default()
     }
 
-    /// What is seen from places around one that are known, and whether it is known itself: at most two on two rings each.
+    /// Visible shares at the known positions around a position (at most two on two rings each), and whether the position itself is known.
     fn around(&self, [x, y]: [f64; 2]) -> (impl Iterator<Item = Seen>, bool) {
         let [ring, turn] = [x.hypot(y) * self.side as f64, y.atan2(x) / TAU + 1.0];
         let ends = |at: f64| [(at + 1e-6).floor() as usize, (at - 1e-6).ceil() as usize];
@@ -167,7 +167,7 @@ impl Known {
         (corners.into_iter().flatten(), is_exact)
     }
 
-    /// A place that is known, not only its surroundings.
+    /// Visible share at a position that is itself known; `None` elsewhere.
     fn exactly(&self, place: [f64; 2]) -> Option<Seen> {
         if place[1] == 0.0 {
             return Some(self.sideways(place[0]));
@@ -176,7 +176,7 @@ impl Known {
         around.next().filter(|_| is_exact)
     }
 
-    /// What is seen from a place: as much as from all of the places around it that are known.
+    /// Visible share at a position: the least of those at the known positions around it.
     fn at(&self, place: [f64; 2]) -> Seen {
         match place[1] == 0.0 {
             true => self.sideways(place[0]),
@@ -190,7 +190,7 @@ fn both(a: Seen, b: Seen) -> Seen {
     (a.0.min(b.0), a.1 && b.1)
 }
 
-/// A place on the way from one to another: its distance from the middle changes evenly.
+/// A position between two others: its distance from the middle changes evenly.
 fn between(from: [f64; 2], to: [f64; 2], share: f64) -> [f64; 2] {
     let [x, y] = [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
     let across = from[0] * to[0] + from[1] * to[1] <= 0.0;

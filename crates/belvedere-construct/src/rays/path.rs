@@ -1,4 +1,4 @@
-//! A polyline by arc length, and fewer points that stand for it.
+//! A polyline by arc length, and its simplification.
 
 use super::turns::HAIRPIN;
 use belvedere_core::DVec3;
@@ -9,7 +9,7 @@ pub(super) struct Control {
     /// Arc length of the path there.
     pub(super) s: f64,
     pub(super) at: DVec3,
-    /// How far from here the path itself begins to turn and has turned, where it does so by degrees.
+    /// Half the length over which the path itself turns here; `None` if it turns at once.
     pub(super) half_length: Option<f64>,
 }
 
@@ -54,8 +54,8 @@ impl Path {
         self.points.windows(2).map(|w| off_segment(p, level(w[0]), level(w[1]))).fold(f64::INFINITY, f64::min)
     }
 
-    /// The points that are left when none of the others lies farther than `tolerance` from the line through them, with their arc
-    /// lengths; both ends are among them (Douglas, Peucker 1973).
+    /// Simplifies the path (Douglas, Peucker 1973): keeps points so that none of the others lies farther than `tolerance` from the
+    /// line through them. Returns them with their arc lengths; both ends are among them.
     ///
     /// * `flat`: distances and directions count in plan only.
     pub(super) fn simplified(&self, tolerance: f64, flat: bool) -> Vec<(f64, DVec3)> {
@@ -77,8 +77,8 @@ impl Path {
 }
 
 impl Path {
-    /// The simplified path with every bend as one corner: vertices nearer than `merge` that turn to the same side become the place where
-    /// the legs before and after them meet.
+    /// The simplified path with every bend as one corner: vertices nearer than `merge` that turn to the same side become the point
+    /// where the legs before and after them meet.
     pub(super) fn controls(&self, tolerance: f64, merge: f64, flat: bool) -> Vec<Control> {
         let all = self.simplified(tolerance, flat);
         let corner = |(s, at): (f64, DVec3)| Control { s, at, half_length: None };

@@ -15,19 +15,19 @@ use belvedere_core::map::curved_rays::{Model, Sharpness};
 use belvedere_core::{CurvedRays, DVec3, Pinhole, Projection, Stage, View};
 use serde::{Deserialize, Serialize};
 
-/// The camera swings into the next leg over at most these shares of the leg before it, of the preview and of the width of the picture:
-/// over more would be gentler, but a camera that looks aside sees the wall of a canyon.
+/// Longest swing of the camera into the next leg, shares of the leg before it, of the preview and of the width of the picture. A
+/// longer swing would be gentler, but a camera that looks aside sees the wall of a canyon.
 const SWING: [f64; 3] = [0.5, 0.06, 0.5];
-/// Between the position and the turn, the place about which it swings, as a share.
+/// Point about which the camera swings, share of the path from the position to the turn.
 const SWINGS_ABOUT: f64 = 0.5;
-/// Where the position stands over terrain, shares of the picture's height from its lower edge.
+/// Height of the position in the picture over terrain, share of the picture's height from its lower edge.
 const FOOT: f64 = 0.06;
-/// How far before the position rays become those of the far eye, widths of the picture: at least, and at most.
+/// Distance before the position at which rays become those of the far eye, widths of the picture: least and greatest.
 const BEFORE: [f64; 2] = [0.08, 0.6];
-/// Length of transitions where there is no place for longer ones, shares of the usual.
+/// Length of transitions where longer ones do not fit, share of the usual length.
 const SHORTEST: f64 = 1e-3;
-/// Distance of the near eye from the plane behind which rays are those of the far one, widths of the picture: at least, and at most;
-/// least room for it.
+/// Distance of the near eye from the plane behind which rays are those of the far eye, widths of the picture: least and greatest; and
+/// least room behind a position, share of the greatest.
 const BACK: [f64; 2] = [0.05, 0.7];
 const LEAST_ROOM: f64 = 0.05;
 /// Tolerances of the simplified path that are tried, shares of the picture's width.
@@ -47,14 +47,15 @@ pub struct Lens {
 }
 
 impl Lens {
-    /// For a preview of a length: as far behind, a quarter as wide; over terrain a tenth as high.
+    /// Lens for a preview of length `preview_m`: the eye is as far behind, the picture a quarter as wide; over terrain the eye is a
+    /// tenth as high.
     pub fn for_preview(preview_m: f64, over_terrain: bool) -> Self {
         let rise_m = if over_terrain { 0.1 * preview_m } else { 0.0 };
         Self { behind_m: preview_m, width_m: 0.25 * preview_m, rise_m }
     }
 }
 
-/// A path, how much of it is shown ahead, and the camera.
+/// A path, the length of it that is shown ahead, and the camera.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathPreview {
     path: Path,
@@ -83,7 +84,7 @@ pub struct PreviewReport {
     pub position_m: f64,
     /// Length of the path that is followed from there, scene units: less than wanted where more turns would not fit.
     pub reach_m: f64,
-    /// Length that was asked for, as far as the path goes, scene units.
+    /// Length that was requested, as far as the path goes, scene units.
     #[serde(default)]
     pub wanted_m: f64,
     /// Turns of the rays.
@@ -194,7 +195,7 @@ impl PathPreview {
         let mut count = legs.turns.len();
         let mut found = None;
         while found.is_none() {
-            // Length of all transitions, and of the first one beside that.
+            // Arguments: near plane, length of all transitions, and a further factor on the first one; shares of the usual.
             let rays = |near: f64, length: f64, first_length: f64| {
                 let far = Pinhole { near: near * root.near, ..root.clone() };
                 let shape = TurnShape { behind: self.lens.behind_m, length, m: Sharpness::Bend };
@@ -206,7 +207,7 @@ impl PathPreview {
                 let ahead = turns(&far, legs.here, &corners, &shape)?;
                 CurvedRays::new(&root, Model::Modified, &[vec![first], ahead].concat()).ok()
             };
-            // Rather planes farther before the position than short transitions; but not where the eye has no room.
+            // Planes farther before the position are preferred to short transitions, but not where the eye has no room.
             let [most, roomy, least] = self.before(position).map(|before| 1.0 - before / root.near);
             found = largest([SHORTEST, 1.0], |all| rays(most, all, SHORTEST).map(|_| all)).and_then(|all| {
                 largest([roomy, least], |near| rays(near, all, 1.0))
@@ -258,7 +259,7 @@ impl PathPreview {
         Legs { here, direction: direction(next), turns }
     }
 
-    /// How far before the position rays become those of the far eye: at most, at most where the eye is to have room, and at least.
+    /// Distances before the position at which rays may become those of the far eye: greatest, greatest with room for the eye, and least.
     fn before(&self, position: f64) -> [f64; 3] {
         let width = self.lens.width_m.min(self.lens.behind_m);
         let room = self.room(position);
@@ -273,20 +274,21 @@ impl PathPreview {
         (room - before).clamp((0.2 * room).max(BACK[0] * width), BACK[1] * width)
     }
 
-    /// How far behind a position the near eye may stand.
+    /// Distance behind a position up to which the near eye may stand, scene units.
     fn room(&self, position: f64) -> f64 {
         let most = self.lens.width_m.min(0.5 * self.lens.behind_m);
         let room = self.room.as_ref().map_or(most, |room| room.at(position));
         room.clamp(LEAST_ROOM * most, most)
     }
 
-    /// Height of the eye over terrain: that of the path around it, evenly, and the rise.
+    /// Height of the eye over terrain: the mean height of the path around the position, plus the rise; more where the path behind is
+    /// higher.
     fn eye_height(&self, position: f64) -> f64 {
         const SAMPLES: usize = 33;
         const BEHIND: usize = 9;
         let at = |k: usize| position + self.preview_m * (-0.1 + 0.6 * k as f64 / (SAMPLES - 1) as f64);
         let ahead = (0..SAMPLES).map(|k| self.path.at(at(k)).z).sum::<f64>() / SAMPLES as f64;
-        // Where the path goes down the eye stands over what lies behind the position.
+        // Where the path descends, the eye stands over the ground behind the position.
         let behind = |k: usize| self.path.at(position - self.lens.width_m * k as f64 / (BEHIND - 1) as f64).z;
         let highest = (0..BEHIND).map(behind).fold(f64::NEG_INFINITY, f64::max);
         ahead + soft_hinge(highest - ahead, self.lens.rise_m) + self.lens.rise_m
@@ -300,9 +302,9 @@ impl PathPreview {
     /// The camera before any turn: behind the position, swinging into the next leg while it comes to a turn.
     fn root(&self, legs: &Legs, position: f64, image: [u32; 2], far: Option<f64>) -> Result<Pinhole, ConstructError> {
         let Lens { behind_m, width_m, rise_m } = self.lens;
-        // Where rays begin: at the position, while the camera swings at the turn that it comes to.
-        // It swings about a place half way to the turn: about the turn itself the picture of what lies behind that would stay where it is,
-        // but the eye would come nearer to the walls.
+        // Rays begin at the position; while the camera swings, their beginning moves on to the turn. The camera swings about a point
+        // half-way to the turn: if it swung about the turn, the picture of the ground behind the turn would stay, but the eye would
+        // come nearer to the walls.
         let (direction, at, begin) = match legs.turns.first() {
             Some(turn) => {
                 let over = self.swing(turn.edges[0]);
@@ -330,14 +332,14 @@ impl PathPreview {
     }
 }
 
-/// What lies ahead of a position.
+/// The position, the direction and the turns ahead of it.
 struct Legs {
     here: DVec3,
     direction: DVec3,
     turns: Vec<Corner>,
 }
 
-/// The direction between two, by a share of their angle.
+/// Direction between two others, at a share of the angle from the first to the second.
 fn turned(from: DVec3, to: DVec3, share: f64) -> DVec3 {
     let angle = from.angle_between(to);
     if angle < 1e-9 {
@@ -348,7 +350,7 @@ fn turned(from: DVec3, to: DVec3, share: f64) -> DVec3 {
     cos * from + sin * across
 }
 
-/// 0 up to 0, half of `round` less than `x` from `round` on; C1.
+/// Smooth hinge (C1): 0 for `x` <= 0, `x - round / 2` for `x` >= `round`.
 fn soft_hinge(x: f64, round: f64) -> f64 {
     if x <= 0.0 {
         0.0
@@ -359,7 +361,7 @@ fn soft_hinge(x: f64, round: f64) -> f64 {
     }
 }
 
-/// 0 up to 0, 1 from 1 on, even between but for its ends; C1.
+/// Smooth ramp (C1): 0 for `x` <= 0, 1 for `x` >= 1, linear between but for its ends.
 fn soft_ramp(x: f64) -> f64 {
     const ENDS: f64 = 0.2;
     let (x, slope) = (x.clamp(0.0, 1.0), 1.0 / (1.0 - ENDS));

@@ -1,29 +1,29 @@
-//! How much room there is around a path: behind every position for an eye, and to both sides for a picture.
+//! Room around a path: behind every position for an eye, and to both sides for a picture.
 
 use super::path::Path;
 use belvedere_core::{DVec3, Pinhole};
 use belvedere_scene::{LayerKind, Scene, VolumeLayer};
 use belvedere_sight::Obstacles;
 
-/// How far an eye may stand behind each position of a path, scene units.
+/// Distance behind each position of a path up to which an eye may stand, scene units.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Room {
     positions: Vec<f64>,
     behind: Vec<f64>,
 }
 
-/// Distances that are tried, and the distance of the eye from ground and walls, shares of the width of the picture.
+/// Number of distances that are tried; and least distance of the eye from ground and walls, share of the width of the picture.
 const STEPS: u32 = 24;
 const MARGIN: f64 = 0.04;
-/// Without obstacles: how far the eye may be from the path, over the point that it stands behind, share of the width of the picture.
+/// Without obstacles: greatest distance of the eye from the path in plan, share of the width of the picture.
 const ASIDE: f64 = 0.1;
-/// Voxels absorb less than this where there is room in a volume, share of the light per reference step; positions at which is looked
-/// whether a path runs through such, and how many must be, as a share.
+/// Opacity per reference step below which a volume is clear; number of positions at which a path is tested for running through clear
+/// voxels, and share of them that must be clear.
 const CLEAR: f64 = 0.1;
 const LOOKED_AT: u32 = 64;
 const MOSTLY: f64 = 0.5;
 
-/// What an eye may not stand in.
+/// Obstacles and volumes that an eye must keep clear of.
 pub(super) struct Surroundings<'a> {
     /// Ground and walls, if there are any.
     pub(super) obstacles: Option<&'a Obstacles<'a>>,
@@ -35,8 +35,8 @@ pub(super) struct Surroundings<'a> {
 }
 
 impl Room {
-    /// Room up to `most` behind positions: no more than behind the ones before and after, so that between them there is as much; from
-    /// one to the next it changes by at most their distance.
+    /// Room behind positions up to `most`, scene units: no more than behind the positions before and after, so that it holds between
+    /// them too; from one position to the next it changes by at most their distance.
     ///
     /// * `cameras`: by rising position the camera far behind it, whose near plane holds the position; at least one.
     pub(super) fn new(cameras: &[(f64, Pinhole)], around: &Surroundings<'_>, most: f64) -> Self {
@@ -66,7 +66,8 @@ impl Room {
 }
 
 impl Surroundings<'_> {
-    /// Width of the corridor at points beside which `right` points, up to the width of the picture: that which most of them have.
+    /// Width of the corridor across the path, up to the width of the picture: the median over points, each given with its direction
+    /// to the right.
     pub(super) fn corridor(&self, places: &[(DVec3, DVec3)]) -> f64 {
         let step = 0.5 * self.width / f64::from(STEPS);
         let mut widths: Vec<f64> = places
@@ -84,7 +85,7 @@ impl Surroundings<'_> {
         widths.get(widths.len() / 2).copied().unwrap_or(self.width)
     }
 
-    /// How far one can go back from the near plane of a camera towards its eye.
+    /// Free distance back from the near plane of a camera towards its eye, scene units.
     fn free_behind(&self, far: &Pinhole, most: f64) -> f64 {
         let at = |back: f64| far.eye + (far.near - back) * far.forward;
         let step = most / f64::from(STEPS);
@@ -123,7 +124,7 @@ pub(super) fn vessels<'a>(scene: &'a Scene, path: &Path) -> Vec<&'a VolumeLayer>
     volumes.filter(runs_through).collect()
 }
 
-/// What a volume absorbs at a place per reference step; `None` outside it.
+/// Opacity of a volume at a position per reference step; `None` outside it.
 fn opacity(layer: &VolumeLayer, p: DVec3) -> Option<f64> {
     layer.volume.at(layer.volume.lattice_from_scene(p)).map(|value| layer.transfer.opacity(value))
 }

@@ -8,7 +8,7 @@ use belvedere_core::{CurvedRays, DVec3, Pinhole, Stage, View};
 /// go on as if they came from that viewpoint. Parallel planes, so that modified and original rays are the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sidestep {
-    /// From the eye to the second viewpoint, scene units.
+    /// Vector from the eye to the second viewpoint, scene units.
     pub offset: DVec3,
     /// Distances of t0, t1, t2 from the eye along the direction of view, scene units, rising.
     pub planes: [f64; 3],
@@ -37,7 +37,7 @@ impl Sidestep {
 /// The second viewpoint of a frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PlannedBend {
-    /// Where it is, -1..=1, times `a`.
+    /// Its signed distance from the eye, -1..=1, in units of `a`.
     pub f: f64,
     /// Direction of f > 0 across the view, degrees from the right of the picture upwards.
     pub direction_deg: f64,

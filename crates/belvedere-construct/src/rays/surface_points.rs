@@ -11,7 +11,7 @@ const MOST: usize = 30;
 const SHORT: f64 = 0.45;
 /// Steps along the edges of large triangles, at most.
 const STEPS: usize = 8;
-/// Points are a little inside: what they stand for may stand on something.
+/// Factor by which points lie nearer to the middle than the surface: the target may stand on something.
 const INSIDE: f64 = 0.96;
 
 /// Points along the edges of a box, about evenly far apart: at least 2, or 3 on edges that are not much shorter than the longest.
@@ -40,12 +40,12 @@ fn lattice(size: DVec3) -> impl Iterator<Item = DVec3> {
     on_surface.map(move |[x, y, z]| DVec3::new(share(x, nx), share(y, ny), share(z, nz)) * size)
 }
 
-/// On a box along the axes.
+/// Points on the surface of a box along the axes.
 pub(super) fn on_bounds(bounds: Aabb) -> Vec<DVec3> {
     lattice(bounds.max - bounds.min).map(|p| bounds.center() + p).collect()
 }
 
-/// On boxes, each as it is turned.
+/// Points on the surfaces of boxes, each as it is turned.
 pub(super) fn on_boxes(boxes: &[BoxShape]) -> Vec<DVec3> {
     let points = boxes.iter().flat_map(|shape| {
         let (sin, cos) = shape.yaw.sin_cos();
@@ -58,7 +58,7 @@ pub(super) fn on_boxes(boxes: &[BoxShape]) -> Vec<DVec3> {
     if boxes.len() > 1 { spread(&points) } else { points }
 }
 
-/// On triangles.
+/// Points on triangles.
 pub(super) fn on_triangles(triangles: impl Iterator<Item = [DVec3; 3]> + Clone) -> Vec<DVec3> {
     let bounds = Aabb::of(triangles.clone().flatten());
     let longest = (bounds.max - bounds.min).max_element();
@@ -75,7 +75,7 @@ pub(super) fn on_triangles(triangles: impl Iterator<Item = [DVec3; 3]> + Clone) 
     spread(&points).into_iter().map(|p| middle + INSIDE * (p - middle)).collect()
 }
 
-/// Of many points one in each cell of a coarse lattice over their bounds, that farthest from the middle.
+/// One of the points in each cell of a coarse lattice over their bounds: the one farthest from the middle.
 fn spread(points: &[DVec3]) -> Vec<DVec3> {
     let bounds = Aabb::of(points.iter().copied());
     let size = (bounds.max - bounds.min).max(DVec3::splat(f64::MIN_POSITIVE));

@@ -1,11 +1,11 @@
-//! What is to be seen, and how much of it a view shows.
+//! Targets: things that must be seen, and the share of them that a view shows.
 
 use super::surface_points;
 use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{LayerKind, Scene, Unit};
 use belvedere_sight::{Obstacles, SightOptions, Voxels};
 
-/// Something to be seen.
+/// A thing that must be seen, as points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Target {
     /// Points that stand for it, scene coordinates.
@@ -21,9 +21,9 @@ pub struct Target {
     pub radii: Vec<f64>,
 }
 
-/// Balls that are looked at, at most.
+/// Most balls that are tested.
 const MOST_BALLS: usize = 64;
-/// Light through volumes from which on a point is seen: as much as makes a pixel show what lies behind them.
+/// Share of light that volumes must let through for a point to be seen.
 const SEEN: f64 = 0.5;
 
 impl Target {
@@ -101,13 +101,13 @@ impl Target {
         (!own.is_empty()).then_some(Self { own_parts: Some((index, numbers)), ..balls })
     }
 
-    /// What lies in a box.
+    /// The points of a box.
     pub fn around(bounds: Aabb) -> Self {
         let points = surface_points::on_bounds(bounds);
         Self { points, bounds, own_layers: Vec::new(), own_parts: None, radii: Vec::new() }
     }
 
-    /// Balls, such as atoms: middle and radius, scene units. Of many some are looked at, evenly chosen.
+    /// Balls, such as atoms: middle and radius, scene units. Of many balls some are tested, evenly chosen.
     pub fn balls(balls: impl IntoIterator<Item = (DVec3, f64)>) -> Self {
         let all: Vec<(DVec3, f64)> = balls.into_iter().filter(|(p, _)| p.is_finite()).collect();
         let every = all.len().div_ceil(MOST_BALLS).max(1);
@@ -138,7 +138,7 @@ impl Target {
     }
 }
 
-/// What a view shows of a target.
+/// Visibility of a target in a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shown {
     /// Share of its points that are in the picture and seen, 0..=1.
@@ -178,7 +178,7 @@ impl<'a> TargetSight<'a> {
         Self { scene, lowest, target, obstacles, voxels, sight }
     }
 
-    /// Height of a place above the terrain, or beside it above the lowest of the scene, metres; infinite in scenes without ground.
+    /// Height of a position above the terrain, or beside it above the lowest of the scene, metres; infinite in scenes without ground.
     pub(super) fn height_above_ground(&self, place: DVec3) -> f64 {
         let ground = self.scene.terrain().and_then(|t| t.surface_at(place.truncate())).or(self.lowest);
         ground.map_or(f64::INFINITY, |ground| place.z - ground)
@@ -186,7 +186,7 @@ impl<'a> TargetSight<'a> {
 
     /// Share of the target's points that are in the picture and seen, 0..=1.
     ///
-    /// * `grow_px`: the points are pushed apart sideways and upwards in the picture by so much first, pixels.
+    /// * `grow_px`: distance by which the points are first moved apart in the picture, sideways and upwards, pixels.
     pub fn share(&self, view: &View, grow_px: f64) -> f64 {
         self.shown(view, grow_px).share
     }
@@ -245,7 +245,7 @@ impl<'a> TargetSight<'a> {
         }
         let by = grow_px * depth / pinhole.scale_px();
         let (x, y) = (v.dot(pinhole.right), v.dot(pinhole.down));
-        // Down there is what the target stands on.
+        // Points do not move down, into what the target stands on.
         let up = if y < 0.0 { -by * pinhole.down } else { DVec3::ZERO };
         p + up + if x == 0.0 { DVec3::ZERO } else { x.signum() * by * pinhole.right }
     }

@@ -1,4 +1,4 @@
-//! Target tracking: the second viewpoint steps aside just as far as a moving target needs to stay in sight.
+//! Target tracking: the second viewpoint moves sideways just as far as is needed to keep a moving target in sight.
 //!
 //! Source: Cui et al. 2010, section 5.2: one number f in -1..=1 per frame, searched from where it is, changed at most at a set
 //! speed. The paper compares boxes in the image; here lines of sight to points of the target's box decide, for boxes of walls and
@@ -14,11 +14,11 @@ use serde::{Deserialize, Serialize};
 const DIRECTIONS_DEG: [f64; 4] = [0.0, 90.0, 45.0, 135.0];
 /// Shares from here on count as the whole target.
 pub(super) const WHOLE: f64 = 0.999;
-/// A target must have been clear, with twice the margin, for so long before the rays straighten again, seconds.
+/// Time for which a target must have been clear, with twice the margin, before the rays straighten again, seconds.
 const CLEAR_FOR_S: f64 = 0.25;
-/// The second viewpoint keeps so far above the ground, metres, unless the eye itself is lower.
+/// Least height of the second viewpoint above the ground, metres, unless the eye itself is lower.
 const LEAST_HEIGHT_M: f64 = 2.0;
-/// Where the whole target cannot be shown, so much more of it is worth bending for.
+/// Gain of the visible share for which rays bend further where the whole target cannot be shown.
 const WORTH: f64 = 0.05;
 
 /// Parameters; the defaults are those of the scene file.
@@ -32,7 +32,7 @@ pub struct TrackingOptions {
     pub f_step: f64,
     /// Largest change of f per second, > 0.
     pub cap_per_s: f64,
-    /// The target must be clear with so much around it, pixels, >= 0.
+    /// Margin around the target that must be clear as well, pixels, >= 0.
     pub grow_px: f64,
 }
 
@@ -63,26 +63,26 @@ impl TrackingOptions {
     }
 }
 
-/// What is remembered from frame to frame. Same inputs and same memory, same result.
+/// Memory between frames. The same inputs and memory give the same result.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TrackingMemory {
     f: f64,
     /// Sign of the last motion: the side that is searched first.
     side: f64,
-    /// Where it is going: kept while that shows the target, else it would turn round half way.
+    /// Value of f that is aimed at: kept while it shows the target, for else f would turn round half-way.
     goal: f64,
-    /// How long the straight rays have shown the target with twice the margin, seconds.
+    /// Time for which the straight rays have shown the target with twice the margin, seconds.
     clear_s: f64,
-    /// The direction of f, of the frame before.
+    /// Right direction of the camera in the frame before.
     right: Option<DVec3>,
     /// Direction of f > 0 across the view, degrees from the right of the picture upwards.
     direction_deg: f64,
-    /// What a plan says of the next frame.
+    /// Bend that a plan sets for the next frame.
     planned: Option<PlannedBend>,
 }
 
 impl TrackingMemory {
-    /// The next frame takes this bend; searches for one of its own if there is none.
+    /// Sets the bend of the next frame; with `None` the tracker searches for one.
     pub fn follow(&mut self, bend: Option<PlannedBend>) {
         self.planned = bend;
     }
@@ -101,12 +101,12 @@ pub struct Tracked {
     pub report: TrackingReport,
 }
 
-/// What became of the target.
+/// Report of the tracking in one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TrackingReport {
-    /// Where the second viewpoint is, -1 (left) ..= 1 (right), times `a`.
+    /// Position of the second viewpoint, -1 (left) ..= 1 (right), in units of `a`.
     pub f: f64,
-    /// Where it goes to.
+    /// Value of f that it moves towards.
     pub goal: f64,
     /// Direction of f > 0 across the view, degrees from the right of the picture upwards; 0 unless only that shows the target.
     #[serde(default)]
@@ -179,7 +179,7 @@ pub(super) struct Search<'a> {
     right: DVec3,
     /// Distance of the second viewpoint at f = 1.
     reach: f64,
-    /// `None`: the target is so near that there is no room for a bend.
+    /// Distances of t0, t1, t2 from the eye; `None` if the target is too near for a bend.
     planes: Option<[f64; 3]>,
     direction_deg: f64,
     tried: usize,
@@ -221,7 +221,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// From the eye to the second viewpoint.
+    /// Vector from the eye to the second viewpoint.
     fn offset(&self, f: f64, direction_deg: f64) -> DVec3 {
         let (sin, cos) = direction_deg.to_radians().sin_cos();
         let across = if direction_deg == 0.0 { self.right } else { cos * self.right - sin * self.base.pinhole().down };
@@ -235,7 +235,7 @@ impl<'a> Search<'a> {
         self.sight.height_above_ground(viewpoint) >= LEAST_HEIGHT_M.min(self.sight.height_above_ground(eye))
     }
 
-    /// Share of the target that is seen with f in a direction, degrees; nothing through a camera that is not possible.
+    /// Share of the target that is seen with f in a direction, degrees; 0 if such a camera is not possible.
     pub(super) fn seen(&self, (f, direction_deg): (f64, f64), grow_px: f64) -> f64 {
         let view = self.view_in(f, direction_deg).ok().filter(|_| f == 0.0 || self.stands(f, direction_deg));
         view.map_or(0.0, |view| self.sight.share(&view, grow_px))
@@ -259,14 +259,14 @@ impl<'a> Search<'a> {
         best.1
     }
 
-    /// Share of the target that is seen; nothing through a camera that is not possible.
+    /// Share of the target that is seen; 0 if such a camera is not possible.
     fn share(&mut self, f: f64, grow_px: f64) -> f64 {
         self.tried += 1;
         self.seen((f, self.direction_deg), grow_px)
     }
 
-    /// Where f should go: to 0 where straight rays show the target; nowhere where the present ones do; else to the nearest camera
-    /// that does.
+    /// Value of f to aim at: 0 where straight rays show the target; the present one where it does; else that of the nearest camera
+    /// that shows it.
     fn goal(&mut self, memory: &mut TrackingMemory, time_step_s: Option<f64>) -> f64 {
         let grow = self.options.grow_px;
         let film = time_step_s.is_some();
@@ -278,7 +278,7 @@ impl<'a> Search<'a> {
         }
         let is_seen = self.share(memory.f, grow) >= WHOLE;
         let rested = memory.clear_s >= CLEAR_FOR_S;
-        // What hides the target half way is waited for.
+        // In a film the rays do not straighten while something would hide the target half-way.
         if rested && (!film || !is_seen || self.shows_all_the_way(memory.f, 0.0)) {
             return 0.0;
         }

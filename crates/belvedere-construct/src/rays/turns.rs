@@ -25,11 +25,11 @@ pub(super) struct Corner {
     pub(super) edges: [f64; 2],
     /// Half length of the transition, at most.
     pub(super) half_length: f64,
-    /// How far the turn has come in, 0..=1: at 0 it changes nothing.
+    /// Share to which the turn has come in, 0..=1: at 0 it changes nothing.
     pub(super) entered: f64,
 }
 
-/// What the corners do not say.
+/// Parameters that all corners share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct TurnShape {
     /// Distance of every viewpoint behind its corner, scene units, > 0.
@@ -44,7 +44,7 @@ pub(super) struct TurnShape {
 /// * `from`: where the leg to the first corner begins.
 pub(super) fn turns(root: &Pinhole, from: DVec3, corners: &[Corner], shape: &TurnShape) -> Option<Vec<TurnSpec>> {
     let mut viewpoint = root.eye;
-    // Where the rays through the corners of the picture are, on the last plane t1.
+    // Points on the last plane t1 of the rays through the corners of the picture.
     let mut rim = rim_rays(root).map(|ray| root.eye + ray);
     let mut specs = Vec::with_capacity(corners.len());
     for (i, turn) in corners.iter().enumerate() {
@@ -77,7 +77,7 @@ pub(super) fn turns(root: &Pinhole, from: DVec3, corners: &[Corner], shape: &Tur
     Some(specs)
 }
 
-/// What `make` gives for the largest number of a range for which it gives something; changes smoothly with what `make` depends on.
+/// Result of `make` for the largest number of a range for which it gives one; changes smoothly with what `make` depends on.
 pub(super) fn largest<T>([least, most]: [f64; 2], make: impl Fn(f64) -> Option<T>) -> Option<T> {
     const STEPS: usize = 12;
     if let Some(made) = make(most) {
@@ -95,7 +95,7 @@ pub(super) fn largest<T>([least, most]: [f64; 2], make: impl Fn(f64) -> Option<T
     Some(best)
 }
 
-/// 0 up to 0, 1 from 1 on, C1 between.
+/// Smooth step (C1): 0 for `x` <= 0, 1 for `x` >= 1.
 pub(super) fn smoothstep(x: f64) -> f64 {
     let x = x.clamp(0.0, 1.0);
     x * x * (3.0 - 2.0 * x)

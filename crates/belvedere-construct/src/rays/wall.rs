@@ -19,14 +19,14 @@ const DIRECTIONS: usize = 16;
 /// Distance of the values of a line, and of those that a slope is taken over, voxel edges.
 const STEP: f64 = 0.5;
 const SLOPE_OVER: usize = 4;
-/// Values leave the lumen where they differ from it by so many times its spread.
+/// Difference from the value of the lumen from which on values have left it, multiple of the lumen's spread.
 const LEAVES: f64 = 5.0;
 /// The least spread, share of the range of values: half a step of a byte.
 const LEAST_SPREAD: f64 = 2e-3;
-/// An edge ends where its slope falls below this share of its steepest; the wall may lie so many voxel edges farther.
+/// Share of its steepest slope below which an edge ends, and greatest distance of the wall beyond that end, voxel edges.
 const FLAT: f64 = 0.25;
 const BEYOND: f64 = 1.5;
-/// So many of the lines, as a share, must meet an edge to the same side.
+/// Least share of the lines that must meet an edge to the same side.
 const LEAST_SHARE: f64 = 0.25;
 
 /// The wall around a path.
@@ -113,7 +113,7 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
 
 /// The first change of values on a line.
 struct Edge {
-    /// From the lumen to the wall.
+    /// Change of the values from the lumen to the wall.
     rise: f64,
     /// Its greatest slope, values per step.
     steepest: f64,
@@ -123,7 +123,7 @@ struct Edge {
 struct Lines<'v> {
     volume: &'v Volume,
     lumen: f64,
-    /// Values that differ by more from those of the lumen have left it.
+    /// Difference from the value of the lumen beyond which values have left it.
     leaves: f64,
 }
 

@@ -1,15 +1,16 @@
-//! The cheapest way of a second viewpoint through the frames of a film: a shortest path (Bellman 1957) over frames and places on a disc.
+//! The cheapest path of a second viewpoint through the frames of a film: a shortest path (Bellman 1957) over frames and positions on
+//! a disc.
 //!
-//! Ours. Places lie on rings around the middle of the disc of radius 1 across the view, so that f can rest while its direction turns. The
-//! last senses of motion, outwards or inwards and round, are part of the state, so that turning round has a price.
+//! Ours. Positions lie on rings around the middle of the disc of radius 1 across the view, so that f can rest while its direction
+//! turns. The last senses of motion, outwards or inwards and round, are part of the state, so that turning round has a price.
 
 use rayon::prelude::*;
 
 /// Rings around the middle, at most: all states fit 16 bits.
 const MOST: usize = 40;
-/// Places on the first ring; every ring has so many more: the axes and diagonals are among them.
+/// Positions on the first ring; every further ring has this many more, so that the axes and diagonals are among them.
 pub(super) const PER_RING: usize = 8;
-/// Distance of rings that is fine enough.
+/// Distance of rings that is aimed at, share of the radius of the disc.
 const CELL: f64 = 0.05;
 /// Cost of turning round; moving by 1 costs 1.
 const TURN: f64 = 1.0;
@@ -17,18 +18,18 @@ const TURN: f64 = 1.0;
 const SENSES: usize = 4;
 const AXES: [[f64; 2]; SENSES] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
 
-/// Places of the second viewpoint, and how far it may go from one to another.
+/// Positions of the second viewpoint, and the moves from one to another.
 #[derive(Debug, Clone)]
 pub(super) struct Disc {
-    /// To the right and upwards, shares of `a`.
+    /// Offset of each to the right and upwards, shares of `a`.
     pub(super) places: Vec<[f64; 2]>,
     /// Frames from one move to the next.
     pub(super) stride: usize,
-    /// For every place the moves that end there.
+    /// For every position the moves that end there.
     moves: Vec<Vec<Move>>,
 }
 
-/// A move to a place.
+/// A move to a position.
 #[derive(Debug, Clone, Copy)]
 struct Move {
     from: usize,
@@ -45,12 +46,13 @@ enum Kind {
     Across,
     /// To the middle, along this axis.
     In(usize),
-    /// From the middle; for every axis whether it is back where that came from.
+    /// From the middle; for every axis along which the middle was reached, whether the move goes back to that side.
     Out([bool; SENSES]),
 }
 
 impl Disc {
-    /// * `per_frame`: the most that a place may move in a frame, > 0; `sideways`: whether only the line to the left and right is used.
+    /// * `per_frame`: greatest distance that a position may move in a frame, > 0; `sideways`: whether only the line to the left and
+    ///   right is used.
     pub(super) fn new(per_frame: f64, sideways: bool) -> Self {
         // Slow viewpoints move every few frames by a cell that is not too fine.
         let stride = (CELL / per_frame * (1.0 - 1e-9)).ceil().clamp(1.0, 1e6) as usize;
@@ -77,9 +79,9 @@ impl Disc {
         Self { places: places.into_iter().map(|(_, place)| place).collect(), stride, moves }
     }
 
-    /// The cheapest way: its cost, and the place of every knot by its number.
+    /// The cheapest path: its cost, and the number of its position at every knot.
     ///
-    /// * `cost`: what each place costs at a knot.
+    /// * `cost`: cost of each position at a knot.
     pub(super) fn cheapest(&self, knots: usize, cost: impl Fn(usize) -> Vec<f64>) -> (f64, Vec<usize>) {
         let mut total: Vec<[f64; SENSES]> = Vec::new();
         let mut parents: Vec<Vec<[u16; SENSES]>> = Vec::new();
@@ -123,7 +125,7 @@ impl Disc {
 impl Move {
     fn new((number, from): (usize, (usize, [f64; 2])), to: (usize, [f64; 2]), cell: f64) -> Self {
         let length = distance(from.1, to.1);
-        // Of two ways of the same length the slower one.
+        // Of two paths of the same length the one with shorter steps is cheaper.
         let cost = length * (1.0 + 0.02 * length / cell);
         let round = from.1[0] * to.1[1] - from.1[1] * to.1[0];
         let along = dot(from.1, to.1);
@@ -142,7 +144,7 @@ impl Move {
 }
 
 impl Kind {
-    /// The senses after a move, either of them, and how many turn round by it.
+    /// The senses after a move, two that are possible, and the number of senses that the move reverses.
     fn sense_after(self, before: usize) -> ([usize; 2], u32) {
         match self {
             Kind::Stay => ([before; 2], 0),
@@ -164,7 +166,7 @@ impl Kind {
     }
 }
 
-/// Places on one of so many rings, from the right counterclockwise, shares of the radius of the last.
+/// Positions on one of `rings` rings, from the right counterclockwise, shares of the radius of the last.
 pub(super) fn on_ring(ring: usize, rings: usize) -> impl Iterator<Item = [f64; 2]> {
     let count = PER_RING * ring;
     (0..count).map(move |k| direction(k, count).map(|v| v * (ring as f64 / rings as f64)))

@@ -1,4 +1,4 @@
-//! How good a picture would be: what it shows of the features, and whether it fills the image as a straight one does.
+//! Evaluation of a candidate picture: the share of the features that it shows, and how well it fills the image.
 
 use crate::measure::bend::{facing, nodes};
 use crate::sample::{Sample, SampledFeature};
@@ -17,8 +17,8 @@ pub struct Evaluation {
     pub in_margin: f64,
     /// Visible share of what is inside the image, 0..=1; 0 if nothing is.
     pub visible: f64,
-    /// Angle under which flat ground would be seen if the features in the image filled four fifths of its height, from
-    /// the nearest to the farthest, radians: what a bend can come to from this eye (a logarithmic spiral, ours).
+    /// Angle under which flat ground would be seen if the features in the image filled four fifths of its height, from the nearest to
+    /// the farthest, radians: the best that a bend can reach from this eye (a logarithmic spiral, ours).
     pub attainable: f64,
     /// Vertical extent of the middle nine tenths of the features in the image, share of the image height.
     pub spread: f64,
@@ -177,7 +177,7 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-/// Value below which the share `q` of sorted `values` lies; 0 if there are none.
+/// Value below which the share `q` of sorted `values` lies; 0 without values.
 pub(crate) fn quantile(values: &[f64], q: f64) -> f64 {
     values.get((q * (values.len().max(1) - 1) as f64).round() as usize).copied().unwrap_or(0.0)
 }

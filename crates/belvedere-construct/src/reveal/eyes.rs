@@ -13,7 +13,7 @@ const DISTANCES: [f64; 4] = [1.12, 0.85, 0.62, 0.45];
 /// Middle shares of the features that the picture is centred on: all of them, or the denser half.
 const CORES: [f64; 2] = [0.98, 0.6];
 
-/// A camera to be evaluated, with what is known about it before.
+/// A camera to be evaluated, and its heading.
 #[derive(Debug, Clone)]
 pub(crate) struct Eye {
     pub(crate) pinhole: Pinhole,

@@ -26,7 +26,7 @@ use rayon::prelude::*;
 use search::{BendSearch, Candidate, stride_for};
 use serde::Serialize;
 
-/// What an earlier call found: the next search for the same scene starts there. Same inputs and same memory, same result.
+/// Memory of an earlier call, from whose result the next search for the same scene starts. The same inputs and memory give the same result.
 #[derive(Debug, Clone, Default)]
 pub struct RevealMemory {
     start: Option<search::SearchStart>,
@@ -90,7 +90,7 @@ pub struct RevealReport {
 ///
 /// * `base`: a camera, with earth curvature at most; its other stages are left out.
 /// * `memory`: where the search of an earlier frame ended;
-/// * `progress`: where its time is up the best so far is taken.
+/// * `progress`: when its time is up, the best view so far is taken.
 ///
 /// Everything is evaluated by line of sight along the rays, so no renderer is needed; [`crate::measure()`] with a renderer
 /// is the independent check. Deterministic, whatever the number of threads.
@@ -192,7 +192,7 @@ fn promising_views(
         .into_par_iter()
         .enumerate()
         .filter_map(|(i, eye)| {
-            // Where time is up the rest of the eyes is left out, but not those that promise most.
+            // When time is up, the other eyes are left out, but not the most promising ones.
             if i >= EYES_AT_LEAST && progress.should_end() {
                 return None;
             }
@@ -219,7 +219,7 @@ fn promising_views(
     Ok(kept.into_iter().map(|(_, view, a)| (view, a)).collect())
 }
 
-/// How promising a straight picture is: it should look natural, hold the features, and hide a good deal of them.
+/// Score of a straight picture: it should look natural, hold the features, and hide many of them.
 fn straight_score(a: &Evaluation, heading_deg: f64, options: &RevealOptions) -> f64 {
     let most = 0.85 * (options.goal_share / options.goal_gain).min(0.6);
     let hidden = 3.0 * (a.visible - most).max(0.0) + 1.5 * (0.25 - a.visible).max(0.0);

@@ -1,6 +1,6 @@
-//! What a search for a view and a bend is to reach.
+//! Options of the search for a view and a bend.
 
-/// What is to be reached, and how the search is bounded.
+/// Goals and limits of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RevealOptions {
     /// Picture size, pixels; used when no view is given.

@@ -1,4 +1,4 @@
-//! Looks for the bend that shows most of the features without spoiling the picture.
+//! Search for the bend that shows most of the features in a natural picture: a coarse lattice, then ever smaller steps.
 
 use super::evaluate::{Evaluation, Evaluator, quantile};
 use super::options::RevealOptions;

@@ -1,4 +1,4 @@
-//! What `reveal` promises, on real mountains.
+//! Goals of `reveal` on real mountains.
 
 use crate::reveal::assert_bars;
 use belvedere_construct::{RevealMemory, RevealOptions, reveal};

@@ -1,4 +1,4 @@
-//! Ways through voxels that are known.
+//! Centrelines through voxels of known shape.
 
 use belvedere_construct::centreline::centreline;
 use belvedere_core::{DMat3, DVec3};

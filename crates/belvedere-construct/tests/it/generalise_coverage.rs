@@ -43,7 +43,7 @@ fn boxed<'a>(buildings: impl Iterator<Item = &'a belvedere_scene::city::Building
     buildings.flat_map(|b| &b.footprint).map(Boxed::of).collect()
 }
 
-/// Every building lies in what the level shows, every piece of a block lies over buildings.
+/// Checks that every building lies in the blocks and landmarks of a level, and every piece of a block lies over buildings.
 fn check(name: &str, city: &City, level: &Level) {
     let (buildings, shown) = (boxed(city.buildings.iter()), boxed(level.city.buildings.iter()));
     for (number, one) in buildings.iter().enumerate() {

@@ -19,7 +19,7 @@ fn frame(scene: &Scene, view: &View) -> Frame {
     CpuRenderer::default().render(&job).unwrap()
 }
 
-/// Share of the lower half of a frame in which there is nothing.
+/// Share of the lower half of a frame in which nothing is drawn.
 fn sky(frame: &Frame) -> f64 {
     let lower = &frame.id[frame.id.len() / 2..];
     lower.iter().filter(|id| **id == 0).count() as f64 / lower.len() as f64

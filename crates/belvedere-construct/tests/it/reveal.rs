@@ -10,7 +10,7 @@ fn run(scene: &Scene, base: Option<&View>) -> Result<Revealed, ConstructError> {
     reveal(scene, base, &RevealOptions::default(), &mut RevealMemory::default(), &Progress::silent())
 }
 
-/// What the command promises, judged by the measure with the renderer and not by the search's own figures.
+/// Checks the goals of the command by the measure with the renderer, not by the search's own figures.
 pub(crate) fn assert_bars(name: &str, scene: &Scene, found: &Revealed) {
     let m = measure(scene, &found.view, Some(&CpuRenderer::default()), &MeasureOptions::default(), &Progress::silent())
         .unwrap();

@@ -94,7 +94,7 @@ fn a_moving_target_stays_in_sight_where_any_side_step_shows_it() {
                 "seed {seed}, frame {k}: {before} -> {f}"
             );
             before = f;
-            // Brute force over f, by pixels: the truth that the tracker does not know.
+            // Brute force over f, by pixels, independent of the tracker.
             let depth = (target.center() - base.pinhole().eye).dot(base.pinhole().forward);
             let reach = 0.5 * depth;
             let planes = [0.5 * depth, 0.625 * depth, 0.75 * depth];
@@ -227,7 +227,7 @@ fn film_past_towers(seed: u64, towers: usize) -> (usize, [usize; 2], usize) {
             side = step.signum();
         }
         before = bend.f;
-        // Brute force by pixels, which the plan does not know.
+        // Brute force by pixels, independent of the plan.
         let whole = |view: &View| pixels(now, view) == pixels(&scene(Vec::new(), at(k)), view);
         let depth = (target.center() - base.pinhole().eye).dot(base.pinhole().forward);
         let planes = [0.5 * depth, 0.625 * depth, 0.75 * depth];

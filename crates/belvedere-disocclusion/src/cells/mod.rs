@@ -1,4 +1,4 @@
-//! Cells: the ground divided into one piece per significant summit.
+//! Terrain cells: the ground divided into one piece per significant summit.
 
 mod neighbours;
 mod pairs;
@@ -19,8 +19,8 @@ use tables::Tables;
 /// Label of void nodes, which belong to no cell.
 pub const NO_CELL: u32 = u32::MAX;
 
-/// One piece of the ground per significant summit: everything from which steepest ascent leads there, or to a lesser
-/// summit that gives way to it.
+/// Partition of the ground into one cell per significant summit: all nodes from which steepest ascent ends at that summit, or at a
+/// lesser summit that is merged into it.
 ///
 /// Cells are numbered by the index of their summit. Nodes are ordered by height and, where heights are equal, by index:
 /// there are no plateaus and no ties.
@@ -74,7 +74,8 @@ impl Cells {
         &self.summits
     }
 
-    /// Height of each summit over the highest saddle that leads to a higher one, scene units; infinite where there is none.
+    /// Persistence of each summit: its height over the highest saddle that leads to a higher summit, scene units; infinite if no
+    /// saddle does.
     pub fn persistence(&self) -> &[f64] {
         &self.persistence
     }
@@ -89,8 +90,8 @@ impl Cells {
         self.tables.mean(cell)
     }
 
-    /// Share of a cell's nodes strictly higher than `h` (scene units over the field's datum), and their mean height over
-    /// the datum; (0, the highest) if there is none.
+    /// Share of a cell's nodes strictly higher than `h` (scene units over the field's datum), and their mean height over the datum;
+    /// (0, the greatest height) if no node is higher.
     pub fn higher(&self, cell: usize, h: f64) -> (f64, f64) {
         self.tables.higher(cell, h)
     }

@@ -1,4 +1,4 @@
-//! Which cells touch, and how much.
+//! Adjacency of terrain cells, with the shares of their common borders.
 
 use super::NO_CELL;
 use super::pairs::Pairs;
@@ -14,7 +14,7 @@ pub(super) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Border = edges of the grid between nodes of two cells; the rim of the terrain and voids are no border.
+    /// A border consists of the grid edges between nodes of two cells; the rim of the terrain and edges to voids do not count.
     pub(super) fn new(cols: usize, labels: &[u32], cells: usize) -> Self {
         let bands: Vec<Pairs<u32>> = labels
             .par_chunks(BAND * cols)

@@ -1,10 +1,10 @@
-//! A value for each pair of regions.
+//! Hash table with a value for each pair of regions.
 
 /// Hash table from unordered pairs of different numbers to a value; open addressing, a power of two in size.
 pub(super) struct Pairs<T> {
     slots: Vec<(u64, T)>,
     used: usize,
-    /// Slot asked for last: neighbours mostly ask for the same.
+    /// Slot that was found last: neighbouring nodes mostly need the same one.
     last: usize,
 }
 

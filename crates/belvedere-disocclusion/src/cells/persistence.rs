@@ -1,4 +1,4 @@
-//! Which summits matter.
+//! Persistence of summits: regions are merged at their saddles, from the highest saddle down (union-find).
 
 use super::super::Field;
 use super::NO_CELL;
@@ -7,15 +7,15 @@ use super::regions::{BAND, Regions};
 use rayon::prelude::*;
 use std::cmp::Ordering::{self, Equal};
 
-/// How summits give way to higher ones as the water that surrounds them falls.
+/// For every region the saddle at which its summit is merged into a higher one.
 pub(super) struct Persistence {
-    /// Summit minus the saddle at which it gives way; infinite if it never does.
+    /// Height of the summit over that saddle, scene units; infinite if the summit is never merged.
     height: Vec<f64>,
-    /// The region beyond that saddle, itself if there is none.
+    /// Region beyond that saddle; the region itself if its summit is never merged.
     across: Vec<u32>,
 }
 
-/// The summits that stay.
+/// The summits that are kept, and the cell of every region.
 pub(super) struct Kept {
     /// Cell of each region.
     pub(super) cell_of: Vec<u32>,
@@ -25,11 +25,11 @@ pub(super) struct Kept {
     pub(super) persistence: Vec<f64>,
 }
 
-/// The highest way from one region to another: height and index of the lower of two touching nodes. Ordered as nodes are,
-/// the lowest possible one by default.
+/// Highest saddle between two regions: height and index of the lower of two adjacent nodes. Saddles are ordered as nodes are; the
+/// default is the lowest possible one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 struct Saddle {
-    /// Bits of the height such that they are ordered as heights.
+    /// Bits of the height, changed so that they have the order of the heights.
     key: u64,
     node: u32,
 }
@@ -71,8 +71,8 @@ impl Persistence {
         out
     }
 
-    /// The `keep` most persistent summits and every one that gives way to none; of equals the higher one. The regions of
-    /// the others follow the regions beyond their saddles to one that is kept.
+    /// Keeps the `keep` most persistent summits and every one that is never merged; of equal ones the higher. The region of any other
+    /// summit joins the region beyond its saddle, and so on up to a kept one.
     pub(super) fn keep(&self, field: &Field, regions: &Regions, keep: usize) -> Kept {
         let order = Order(field.heights());
         let mut ranked: Vec<u32> = (0..self.height.len() as u32).collect();
@@ -173,7 +173,7 @@ impl Line<'_> {
         self.meet(last, below, last, out);
     }
 
-    /// Node `i` touches node `j`, which comes later in this row or in the next one.
+    /// Records that node `i` is adjacent to node `j`, which comes later in this row or in the next one.
     #[inline(always)]
     fn meet(&self, i: usize, other: &Self, j: usize, out: &mut Pairs<Saddle>) {
         let (a, b) = (self.of[i], other.of[j]);

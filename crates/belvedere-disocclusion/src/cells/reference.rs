@@ -1,4 +1,4 @@
-//! The partition in its most obvious form, for tests.
+//! Plain reference of the partition into cells, for tests.
 
 use super::super::Field;
 use super::NO_CELL;

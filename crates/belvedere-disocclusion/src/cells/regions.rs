@@ -1,4 +1,4 @@
-//! Steepest ascent.
+//! Regions of steepest ascent, one for every summit.
 
 use super::super::Field;
 use super::NO_CELL;
@@ -49,8 +49,8 @@ impl Regions {
     }
 }
 
-/// Within a band: the region, counted from the first summit of the band, or where the ascent leaves the band. Returns the
-/// summits. Every path is walked once: up to where the answer is known, and back.
+/// Finds for every node of a band its region, counted from the first summit of the band, or the node at which its ascent leaves the
+/// band. Returns the summits. Every path is followed once, up to the first node whose answer is known, and back.
 fn climb(first_row: usize, cols: usize, ascent: &[u8], out: &mut [u32]) -> Vec<u32> {
     let first = first_row * cols;
     let offset = STEPS.map(|(x, y)| y * cols as isize + x);
@@ -71,7 +71,7 @@ fn climb(first_row: usize, cols: usize, ascent: &[u8], out: &mut [u32]) -> Vec<u
                 break out[node];
             }
             path.push(node);
-            // Beside the band the index wraps or runs over.
+            // Outside the band the index wraps around or lies beyond the end.
             let next = node.wrapping_add_signed(offset[ascent[node] as usize]);
             if next >= out.len() {
                 break (first.wrapping_add(next)) as u32 | LEAVES;
@@ -118,7 +118,7 @@ impl Rims {
     }
 }
 
-/// The inner nodes of a row, with the widest registers at hand.
+/// Task for the inner nodes of a row, with the widest available SIMD registers.
 struct Inner<'a> {
     around: &'a Around,
     lines: [&'a [f64]; 3],
@@ -140,7 +140,7 @@ struct Around {
 }
 
 const STEPS: [(isize, isize); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
-/// Beyond the neighbours: a node without a higher one, and one without data.
+/// Codes beyond the eight neighbours: a node without a higher neighbour, and one without data.
 const SUMMIT: u8 = 8;
 const VOID: u8 = 9;
 
@@ -150,8 +150,8 @@ impl Around {
         Self { per_m: STEPS.map(|(x, y)| 1.0 / (x as f64 * d.x).hypot(y as f64 * d.y)) }
     }
 
-    /// For each node of some rows the neighbour in the direction of steepest ascent, [`SUMMIT`] or [`VOID`]. Of equally
-    /// steep ways the one to the largest index.
+    /// For each node of some rows the neighbour in the direction of steepest ascent, [`SUMMIT`] or [`VOID`]; of equally steep
+    /// directions the one to the largest index.
     fn ascent(&self, field: &Field, first: usize, count: usize) -> Vec<u8> {
         let (cols, rows) = (field.cols(), field.rows());
         let mut out = vec![SUMMIT; cols * count];
@@ -178,7 +178,7 @@ impl Around {
         slope >= best && (k >= 4 || slope > 0.0)
     }
 
-    /// Nodes 1.. of a row between two others, as many as fill whole registers; returns the next one.
+    /// Handles nodes from 1 on of a row between two others, as many as fill whole SIMD registers; returns the next node.
     #[inline(always)]
     fn inner<S: Simd>(&self, simd: S, lines: [&[f64]; 3], out: &mut [u8]) -> usize {
         let (width, zero) = (S::F64_LANES, simd.splat_f64s(0.0));

@@ -1,4 +1,4 @@
-//! Heights of each cell by drawers.
+//! Heights of each cell in bins, with sums from each bin upwards.
 
 use super::super::Field;
 use super::NO_CELL;
@@ -7,8 +7,8 @@ use rayon::prelude::*;
 /// Heights per drawer, on average.
 const DRAWER: usize = 16;
 
-/// For each cell its heights over the datum, in drawers of equal range from the lowest to the highest, and what lies in and
-/// above each drawer. Drawers are looked through; sorting them would cost more than all looks.
+/// For each cell its heights over the datum, in drawers (bins) of equal range from the lowest to the highest, and the sum of all
+/// heights in and above each drawer. Heights within a drawer are not sorted: sorting would cost more than all searches.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Tables {
     /// First entry of each cell, and the end.

@@ -12,12 +12,12 @@ const SIDE: usize = 16;
 pub struct BlockMaxima {
     /// Blocks along both axes.
     size: [usize; 2],
-    /// Over the datum, row-major. Nodes on a common border count for both blocks.
+    /// Highest node of each block over the datum, row-major. Nodes on a common border count for both blocks.
     highest: Vec<f64>,
 }
 
 impl BlockMaxima {
-    /// Of the ground without any displacement.
+    /// Bounds of the ground without any displacement.
     pub fn new(field: &Field) -> Self {
         let (cols, rows) = (field.cols(), field.rows());
         let size = [cols, rows].map(|n| (n - 1).div_ceil(SIDE));

@@ -2,7 +2,7 @@
 //!
 //! Heights are over the datum, the lowest height of the ground: scaling acts about it.
 
-/// What is done to the heights of a piece of ground: `z = scale h + shift` with h its original height; (1) to (4).
+/// Affine change of the heights of a piece of ground: `z = scale h + shift` with h its original height; (1) to (4).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Affine {
     /// Factor, 0..=1.
@@ -12,10 +12,10 @@ pub(super) struct Affine {
 }
 
 impl Affine {
-    /// Nothing is done.
+    /// Leaves heights as they are.
     pub(super) const IDENTITY: Self = Self { scale: 1.0, shift: 0.0 };
 
-    /// The height of what was `h` high.
+    /// Height of ground whose original height is `h`.
     pub(super) fn of(&self, h: f64) -> f64 {
         self.scale * h + self.shift
     }
@@ -23,28 +23,28 @@ impl Affine {
 
 /// (5): the factor that brings ground of height `z` down to a line of sight of height `limit`.
 ///
-/// The height of the line stands above the fraction bar: the other way round the ground would rise.
+/// The height of the line is the numerator: the inverse ratio would raise the ground.
 pub(super) fn scale_to_clear(limit: f64, z: f64) -> f64 {
     limit / z
 }
 
-/// (6): the displacement that does the same.
+/// (6): the displacement that brings ground of height `z` down to that line of sight.
 pub(super) fn shift_to_clear(limit: f64, z: f64) -> f64 {
     limit - z
 }
 
 /// (7): scaling by `scale` with share `lambda` and displacement by `shift` with share `1 - lambda`, after `now`.
 ///
-/// It lies between the two, so what either of them clears is clear for every `lambda` in 0..=1.
+/// The result lies between the two: ground that each of them alone brings below a line is below it for every `lambda` in 0..=1.
 pub(super) fn blended(now: Affine, scale: f64, shift: f64, lambda: f64) -> Affine {
     let factor = 1.0 + (scale - 1.0) * lambda;
     Affine { scale: factor * now.scale, shift: factor * now.shift + (1.0 - lambda) * shift }
 }
 
-/// Everything that the cost (10) of a blend depends on.
+/// Arguments of the cost (10) of a blend.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BlendCost<'a> {
-    /// What is done to the hit piece so far.
+    /// Affine change of the hit cell so far.
     pub(super) now: Affine,
     /// [`scale_to_clear`] of the hit.
     pub(super) scale: f64,
@@ -56,7 +56,7 @@ pub(super) struct BlendCost<'a> {
     pub(super) higher_mean: f64,
     /// Mean original height of the cell.
     pub(super) mean: f64,
-    /// For each neighbour its share of the cell's border and what is done to it.
+    /// For each neighbour its share of the cell's border, and its affine change.
     pub(super) neighbours: &'a [(f64, Affine)],
     /// Weight of (9).
     pub(super) eta: f64,
@@ -67,7 +67,7 @@ pub(super) struct BlendCost<'a> {
 }
 
 impl BlendCost<'_> {
-    /// The `lambda` in 0..=1 of least cost. (10) is a parabola in it, so this is its vertex; 0 where nothing depends on it.
+    /// The `lambda` of least cost: the vertex of the parabola (10), clamped to 0..=1; 0 if the cost does not depend on `lambda`.
     pub(super) fn best_lambda(&self) -> f64 {
         let Affine { scale: a, shift: b } = self.now;
         // scale = a + p lambda, shift = e + q lambda.
@@ -106,7 +106,7 @@ impl BlendCost<'_> {
         self.neighbours.iter().map(step).sum()
     }
 
-    /// (10): what (7) with `lambda` costs.
+    /// (10): cost of the blend (7) with `lambda`.
     pub(super) fn of(&self, lambda: f64) -> f64 {
         let total = blended(self.now, self.scale, self.shift, lambda);
         self.deviation(total) + self.eta * self.discontinuity(total)

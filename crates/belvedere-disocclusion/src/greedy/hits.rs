@@ -1,4 +1,4 @@
-//! The ground over a line of sight.
+//! Search for ground above a line of sight.
 
 use super::super::{Cells, Field, NO_CELL, ReferencePoint};
 use super::blocks::BlockMaxima;
@@ -63,7 +63,7 @@ pub(super) struct Hit {
 pub(super) struct Tracer<'a> {
     pub(super) field: &'a Field,
     pub(super) cells: &'a Cells,
-    /// `None`: every crossing is looked at.
+    /// `None`: every crossing is tested.
     pub(super) blocks: Option<&'a BlockMaxima>,
     /// Eye in grid coordinates, and its height over the datum.
     pub(super) eye: (DVec2, f64),
@@ -72,7 +72,7 @@ pub(super) struct Tracer<'a> {
 }
 
 impl Tracer<'_> {
-    /// The ground over the line of sight of a point, from the point to the eye; only what is nearer to the eye than `below` counts.
+    /// Finds the ground over the line of sight of a point, from the point to the eye; only ground nearer to the eye than `below` counts.
     pub(super) fn hits(&self, target: &Target, below: f64, transforms: &[CellTransform], out: &mut Vec<Hit>) {
         out.clear();
         let Self { field, cells, slack, eye: (eye, eye_z), .. } = *self;

@@ -1,7 +1,7 @@
 //! The greedy pass: cell by cell, far to near, the ground is scaled and displaced until every point is seen.
 //!
-//! `equations` holds the formulas, `pass` the order of the points and what each of them does to the cells, `hits` what hides a
-//! point, `blocks` what need not be looked at.
+//! `equations` holds the formulas, `pass` the order of the points and the changes of the cells, `hits` the search for ground that
+//! hides a point, `blocks` the bounds by which most of that search is skipped.
 
 mod blocks;
 mod equations;

@@ -20,7 +20,7 @@ pub struct Naive {
 impl Naive {
     /// Runs the pass, in the plane of [`Field`] (straight lines of sight).
     ///
-    /// * `cells`, `blocks`: of `field`; without blocks every crossing of every line is looked at, with the same result;
+    /// * `cells`, `blocks`: of `field`; without blocks every crossing of every line is tested, with the same result;
     /// * `eye`: scene coordinates, see [`check_eye`];
     /// * `points`: those in view, see [`in_view`].
     ///

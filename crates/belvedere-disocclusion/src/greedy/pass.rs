@@ -1,4 +1,4 @@
-//! The order in which points are followed, and what each of them does to the ground.
+//! The greedy pass: lines of sight are followed far to near, and each lowers the cells that hide its point.
 
 use super::super::{Cells, Field, ReferencePoint, TerrainSettings};
 use super::blocks::BlockMaxima;
@@ -10,12 +10,12 @@ use std::collections::BinaryHeap;
 
 /// Heights that differ by less than this share of the relief are equal.
 const EQUAL: f64 = 1e-12;
-/// How often all of a cell may be changed although that lowers points farther away that were finished.
+/// How many times a whole cell may be changed although this lowers finished points farther away.
 const BACKWARD: u32 = 1;
-/// A point's own cell is changed from here on, cells; what hides it farther away is treated as a point of its own.
+/// Distance from a point within which its own cell is changed at once, grid cells; from a hit farther away the line is queued anew.
 const NEAR: f64 = 2.0;
 
-/// What the greedy pass did.
+/// Counts of the greedy pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct GreedyCounters {
     /// Lines of sight followed, parts of them included.
@@ -32,7 +32,7 @@ pub struct GreedyCounters {
     pub backward: usize,
     /// Rings of cells divided.
     pub splits: usize,
-    /// Cells that are not as they were.
+    /// Cells that were changed.
     pub cells_changed: usize,
     /// Points that this pass could not make visible.
     pub unresolved: usize,
@@ -91,7 +91,7 @@ struct Pass<'a> {
 
 /// Follows every line of sight until the queue is empty.
 ///
-/// * `blocks`: of `field`; without them the result is the same, only later.
+/// * `blocks`: of `field`; without them the result is the same, but takes longer.
 pub(super) fn run(
     field: &Field,
     cells: &Cells,
@@ -140,7 +140,7 @@ impl Pass<'_> {
         }
     }
 
-    /// Clears a line of sight of what was found on it, cell by cell.
+    /// Clears a line of sight of its hits, cell by cell.
     fn clear_line(&mut self, entry: Entry, hits: &mut Vec<Hit>) {
         let target = self.targets[entry.point];
         if entry.whole {
@@ -172,8 +172,8 @@ impl Pass<'_> {
         }
     }
 
-    /// How far from the eye another point's cell may be changed: without bounds, unless that lowers points farther away
-    /// that were finished, and did so before.
+    /// Distance from the eye up to which the cell of another point may be changed: infinite, unless that lowers finished points
+    /// farther away and has done so before.
     fn reach(&mut self, entry: &Entry, cell: usize) -> f64 {
         let mut points = self.on_cell[cell].iter().copied();
         let lowers_finished = points.any(|i| !self.waiting[i] && self.whole(i) > *entry);
@@ -188,13 +188,13 @@ impl Pass<'_> {
         entry.below
     }
 
-    /// The entry that a point has if all of its line is to be followed.
+    /// Queue entry for the whole line of a point.
     fn whole(&self, point: usize) -> Entry {
         let target = &self.targets[point];
         Entry { rho: target.rho, point, below: target.own, whole: true }
     }
 
-    /// Lowers a cell, nearer to the eye than `below`, so far that none of its hits is left.
+    /// Lowers the part of a cell that is nearer to the eye than `below` until none of its hits is left.
     fn clear(&mut self, cell: usize, below: f64, hits: &[Hit]) {
         let mine = || hits.iter().filter(|h| h.cell == cell);
         let shift = mine().map(|h| shift_to_clear(h.limit, h.z)).fold(f64::INFINITY, f64::min);
@@ -233,7 +233,7 @@ impl Pass<'_> {
         }
     }
 
-    /// Drops the hits of a cell that are hits no more; whether all of them are.
+    /// Drops the hits of a cell that no longer rise over the line; returns whether none is left.
     fn cleared(&self, cell: usize, hits: &mut Vec<Hit>) -> bool {
         let slack = 2.0 * self.slack;
         hits.retain_mut(|h| {

@@ -1,4 +1,4 @@
-//! The greedy pass in its most obvious form, for tests: everything is looked at again after every change.
+//! Plain reference of the greedy pass, for tests: everything is tested again after every change.
 
 use super::super::{Cells, Field, ReferencePoint, TerrainSettings};
 use super::GreedyCounters;
@@ -82,7 +82,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// What all changes together do to a cell at a distance.
+    /// All changes of a cell at a distance from the eye, one after the other.
     pub(super) fn at(&self, cell: usize, rho: f64) -> Affine {
         let mine = self.changes.iter().filter(|c| c.cell == cell && rho < c.below);
         mine.fold(Affine::IDENTITY, |now, c| {

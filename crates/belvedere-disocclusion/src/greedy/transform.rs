@@ -1,4 +1,4 @@
-//! What is done to a cell: one affine transform per ring around the eye.
+//! Change of a cell: one affine transform per ring around the eye.
 
 use super::equations::Affine;
 

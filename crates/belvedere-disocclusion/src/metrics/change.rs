@@ -1,4 +1,4 @@
-//! How much the nodes of the ground move, and how unevenly.
+//! Displacement of the nodes of the ground, and how uneven it is.
 
 use super::super::{Cells, Field, NO_CELL};
 use belvedere_core::DVec2;
@@ -32,7 +32,7 @@ pub(super) fn at_nodes(field: &Field, delta: &Grid) -> Vec<f64> {
     (0..field.heights().len()).into_par_iter().with_min_len(4096).map(at).collect()
 }
 
-/// Over the nodes with data.
+/// Size of the displacement over the nodes with data.
 pub(super) fn size(field: &Field, u: &[f64]) -> Size {
     let solid = || u.iter().zip(field.void()).filter(|(_, v)| !**v).map(|(u, _)| *u);
     let (sum, count) = solid().fold((0.0, 0usize), |(s, n), u| (s + u * u, n + 1));
@@ -43,7 +43,7 @@ pub(super) fn size(field: &Field, u: &[f64]) -> Size {
     }
 }
 
-/// Value below which `share` of the values lie; 0 of nothing.
+/// Value below which `share` of the values lie; 0 without values.
 fn quantile(values: &mut [f64], share: f64) -> f64 {
     if values.is_empty() {
         return 0.0;
@@ -52,13 +52,13 @@ fn quantile(values: &mut [f64], share: f64) -> f64 {
     *values.select_nth_unstable_by(k, f64::total_cmp).1
 }
 
-/// How far the lowest ground after lies below the lowest before; 0 if it does not.
+/// Depth of the lowest displaced node below the lowest undisplaced one, scene units; 0 if it is not lower.
 pub(super) fn sunk_below(field: &Field, u: &[f64]) -> f64 {
     let after = field.heights().iter().zip(u).zip(field.void()).filter(|(_, void)| !**void).map(|((h, u), _)| h + u);
     (field.datum() - after.fold(f64::INFINITY, f64::min)).max(0.0)
 }
 
-/// The steepest way between two neighbours with data along the lines of the grid, degrees: before and after.
+/// Steepest slope between two neighbours with data along the lines of the grid, degrees: before and after.
 pub(super) fn steepest(field: &Field, u: &[f64]) -> [f64; 2] {
     let (cols, h, d) = (field.cols(), field.heights(), field.spacing());
     let mut steepest = [0.0f64; 2];

@@ -1,4 +1,4 @@
-//! What the displaced ground hides, by lines of sight over it: as it is rasterised and written, and as it is traced.
+//! The judge: points that the displaced ground hides, by lines of sight over it, as it is rasterised and written and as it is traced.
 
 use super::super::visibility_qp::LinesOfSight;
 use super::super::{Field, KINDS, ReferencePoint};
@@ -7,31 +7,31 @@ use belvedere_core::grid::{Grid, GridError};
 use belvedere_sight::{DisplacedGround, SightVertex};
 use rayon::prelude::*;
 
-/// Rays that run this far under the ground are still clear: rounding. Scene units.
+/// Depth under the ground down to which a line of sight still counts as clear, scene units: rounding.
 const TOUCH: f64 = 1e-6;
-/// Points from which on grounds are prepared for them.
+/// Number of points from which on it is worth preparing the grounds.
 const MANY: usize = 20_000;
 
-/// No displacement at all.
+/// A displacement of zero everywhere.
 pub(crate) fn still(field: &Field) -> Result<Grid, GridError> {
     // One cell more on every side, so that rounding leaves nothing beside it.
     let size = DVec2::new((field.cols() + 1) as f64, (field.rows() + 1) as f64) * field.spacing();
     Grid::new(field.scene_from_grid(DVec2::NEG_ONE), size, 2, 2, vec![0.0; 4])
 }
 
-/// What hides a point.
+/// The kind of ground that hides a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Hides {
-    /// Ground that rises so far over its line of sight; infinite if it has none.
+    /// Ground that rises over its line of sight by this height, scene units; infinite if the point has no line.
     Ground(f64),
-    /// Only ground nearer to it than the guard.
+    /// Only ground nearer to it than the guard, which rises by this height.
     InGuard(f64),
-    /// Only the facets of the rasterised and written ground, not the ground that is traced, which is judged too.
+    /// Only the facets of the rasterised and written ground, by this height, not the ground that is traced, which is judged too.
     Facets(f64),
 }
 
 impl Hides {
-    /// How far the ground rises over the line of sight.
+    /// Height by which that ground rises over the line of sight, scene units.
     pub(crate) fn over(self) -> f64 {
         match self {
             Self::Ground(over) | Self::InGuard(over) | Self::Facets(over) => over,
@@ -39,7 +39,7 @@ impl Hides {
     }
 }
 
-/// What becomes of a point.
+/// The judgement of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Verdict {
     /// It lies beside the ground or in a hole.
@@ -49,7 +49,7 @@ pub(crate) enum Verdict {
 }
 
 impl Verdict {
-    /// What hides the point, if something does.
+    /// The ground that hides the point; `None` if it is seen, or lies on no ground.
     pub(crate) fn hides(self) -> Option<Hides> {
         match self {
             Self::Hidden(hides) => Some(hides),
@@ -58,8 +58,8 @@ impl Verdict {
     }
 }
 
-/// Share of what the points stand for that is seen, 0..=1; 1 if there are none. Lines by length, areas by area in plan, point features by
-/// number: of these the least.
+/// Visible share of the features that the points stand for, 0..=1; 1 without points. Lines count by length, areas by area in plan,
+/// point features by number; the least of the three is returned.
 pub(crate) fn share_seen(points: &[ReferencePoint], verdicts: &[Verdict]) -> f64 {
     shares(points, verdicts)[0]
 }
@@ -79,30 +79,30 @@ pub(super) fn shares(points: &[ReferencePoint], verdicts: &[Verdict]) -> [f64; 2
         .fold([1.0, 0.0], |least, kind| if kind[0] < least[0] { kind } else { least })
 }
 
-/// Judges points over one or more grounds: what one of them hides is hidden. No ground is too near to hide a point.
+/// Judges points over one or more grounds: a point that one of them hides is hidden, however near the ground is.
 pub(crate) struct Judge<'a> {
     grounds: Vec<DisplacedGround<'a>>,
     sight: &'a dyn LinesOfSight,
 }
 
 impl<'a> Judge<'a> {
-    /// Over facets between displaced nodes, as ground is rasterised and written.
+    /// Judge over facets between displaced nodes, as ground is rasterised and written.
     pub(crate) fn faceted(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
         Self { grounds: vec![DisplacedGround::faceted(field, delta)], sight }
     }
 
-    /// Over ground plus the bilinear displacement, as it is traced.
+    /// Judge over ground plus the bilinear displacement, as it is traced.
     #[cfg(test)]
     pub(crate) fn bilinear(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
         Self { grounds: vec![DisplacedGround::new(field, delta)], sight }
     }
 
-    /// Over both.
+    /// Judge over facets and over the bilinear displacement.
     pub(crate) fn of_both(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
         Self { grounds: vec![DisplacedGround::faceted(field, delta), DisplacedGround::new(field, delta)], sight }
     }
 
-    /// Prepares the grounds where there are so many points that it is worth it.
+    /// Prepares the grounds if there are enough points for that to pay.
     pub(crate) fn prepared(mut self, points: usize) -> Self {
         if points >= MANY {
             self.grounds = self.grounds.into_iter().map(DisplacedGround::prepared).collect();
@@ -120,7 +120,7 @@ impl<'a> Judge<'a> {
         let (mut line, mut traced) = (Vec::new(), f64::NAN);
         for (i, ground) in self.grounds.iter().enumerate() {
             let z = ground.height_at(g)? + lift;
-            // Behind bends lines take long to trace, and mostly both grounds are as high.
+            // Lines through later stages take long to trace, and both grounds mostly have the same height at the point.
             if !((z - traced).abs() <= TOUCH) {
                 line.clear();
                 self.sight.trace(g, z, &mut line);
@@ -131,7 +131,8 @@ impl<'a> Judge<'a> {
         Some(())
     }
 
-    /// What rises most over the line of sight of a point at grid coordinates, `lift` above the ground; `None` beside the ground.
+    /// The largest rise of the ground over the line of sight of a point at grid coordinates, `lift` above the ground; `None` beside
+    /// the ground.
     ///
     /// * `guard`: ground nearer than this does not count, cells.
     #[cfg(test)]
@@ -146,8 +147,8 @@ impl<'a> Judge<'a> {
         worst
     }
 
-    /// For each point and each ground (facets first) the place that hides the point most, with how far it rises over the line; `None`
-    /// where the point is seen, has no line, or no ground.
+    /// For each point and each ground (facets first) the position at which the ground hides the point most, and its rise over the
+    /// line; `None` where the point is seen, has no line, or lies on no ground.
     pub(crate) fn hiding(self, points: &[(DVec2, f64)]) -> Vec<[Option<(DVec2, f64)>; 2]> {
         let judge = self.prepared(points.len());
         let of = |&(g, lift): &(DVec2, f64)| {
@@ -161,9 +162,9 @@ impl<'a> Judge<'a> {
         points.par_iter().map(of).collect()
     }
 
-    /// What becomes of each point.
+    /// Judges each point.
     ///
-    /// * `guard`: what only ground nearer than this hides, cells, is told apart.
+    /// * `guard`: points that only ground nearer than this hides, grid cells, are told apart.
     pub(crate) fn judge(&self, points: &[ReferencePoint], guard: f64) -> Vec<Verdict> {
         let of = |p: &ReferencePoint| {
             let (mut near, mut far, mut last) = (f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY);

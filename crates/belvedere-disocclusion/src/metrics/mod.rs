@@ -1,4 +1,4 @@
-//! What a deformed ground is judged by.
+//! Measures of a displaced ground: visible shares, size and unevenness of the displacement, change between frames.
 
 mod change;
 mod judge;
@@ -12,7 +12,7 @@ use super::{Cells, Field, ReferencePoint};
 use belvedere_core::grid::Grid;
 use serde::Serialize;
 
-/// A displacement of the ground, and what it was made for.
+/// A displacement of the ground, and the points that it was made for.
 #[derive(Clone, Copy)]
 pub struct Deformation<'a> {
     /// The ground as it was.
@@ -27,25 +27,26 @@ pub struct Deformation<'a> {
     pub points: &'a [ReferencePoint],
     /// Points in view that stand for equal parts of the features, such as [`super::reference_points`] every fifth of a cell.
     pub dense: &'a [ReferencePoint],
-    /// How points are seen.
+    /// Lines of sight of the points.
     pub sight: &'a dyn LinesOfSight,
     /// Whether ground that is traced is judged too, or only what is rasterised and written, as of films.
     pub traced: bool,
-    /// What only ground nearer than this to a point hides is told apart, cells.
+    /// Points that only ground nearer than this hides are told apart, grid cells.
     pub guard: f64,
 }
 
-/// How well the ground makes way and how much it is changed. Lengths in scene units.
+/// Visibility on a displaced ground, and the size of the displacement. Lengths in scene units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct TerrainMetrics {
     /// Share of the reference points that are seen, 0..=1; 1 without points in view.
     pub visible: f64,
-    /// Share of what the dense points stand for that is seen, over the ground as it is drawn and as it is written, 0..=1; 1 without points
-    /// in view. Lines count by length, areas by area in plan, point features by number; of these the least.
+    /// Visible share of the features that the dense points stand for, over the ground as it is drawn and as it is written, 0..=1; 1
+    /// without points in view. Lines count by length, areas by area in plan, point features by number; the least of the three is
+    /// given.
     pub visible_dense: f64,
-    /// Share of the same kind of features that nothing hides but ground nearer to it than the guard, 0..=1.
+    /// Share of that kind of features that only ground nearer than the guard hides, 0..=1.
     pub hidden_in_guard: f64,
-    /// How far the ground rises over the line of sight that it hides most; 0 if nothing is hidden.
+    /// Largest height by which the ground rises over a line of sight; 0 if nothing is hidden.
     pub hidden_worst_m: f64,
     /// Root mean square displacement of the nodes.
     pub rms_m: f64,
@@ -53,11 +54,11 @@ pub struct TerrainMetrics {
     pub max_m: f64,
     /// Largest displacement upwards; 0 if there is none.
     pub raised_max_m: f64,
-    /// How far the lowest ground lies below the lowest before; 0 if it does not.
+    /// Depth of the lowest displaced node below the lowest undisplaced one; 0 if it is not lower.
     pub sunk_below_m: f64,
-    /// The steepest way between two neighbouring nodes before, degrees.
+    /// Steepest slope between two neighbouring nodes before the displacement, degrees.
     pub steepest_before_deg: f64,
-    /// And after.
+    /// Steepest slope between two neighbouring nodes after it, degrees.
     pub steepest_deg: f64,
     /// Mean angle between the normals before and after, degrees.
     pub normal_mean_deg: f64,
@@ -71,7 +72,7 @@ pub struct TerrainMetrics {
     pub frame: Option<FrameChange>,
 }
 
-/// How much the ground moved from one frame to the next.
+/// Motion of the ground from one frame to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FrameChange {
     /// Root mean square over the nodes.

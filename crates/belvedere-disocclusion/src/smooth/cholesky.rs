@@ -1,4 +1,4 @@
-//! The paper's own way: normal equations, factorised once.
+//! The paper's method: normal equations and one sparse Cholesky factorisation.
 
 use std::collections::BTreeMap;
 

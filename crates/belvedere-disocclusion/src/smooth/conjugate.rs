@@ -3,7 +3,7 @@
 use super::elevation::ElevationRows;
 use super::smoother::Smoother;
 
-/// How a solution came about.
+/// Iterations and residual of a solution.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Convergence {
     /// Iterations, each with one solve with H.

@@ -1,11 +1,11 @@
-//! Elevation rows W: the displacement at fixed points is asked to be what the naive terrain has there.
+//! Elevation rows W: the displacement at fixed points is drawn towards that of the naive terrain.
 
 use belvedere_core::DVec2;
 
 use super::hierarchy::Hierarchy;
 
 /// Rows of W, `weight * (bilinear row of B)` at fixed points of the map: reference points of all features and kept
-/// summits. They depend on no view; a frame changes only the heights asked for (equation (14)).
+/// summits. They do not depend on the view; a frame changes only their target heights (equation (14)).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ElevationRows {
     nodes: Vec<[u32; 4]>,
@@ -48,7 +48,7 @@ impl ElevationRows {
         }
     }
 
-    /// `out += W^T h`, `h(i)` = displacement asked for at point i, times the weight of its row.
+    /// `out += W^T h`, `h(i)` = target displacement at point i, times the weight of its row.
     pub fn add_wanted(&self, h: impl Fn(usize) -> f64, out: &mut [f64]) {
         for (i, (nodes, factors)) in self.nodes.iter().zip(&self.factors).enumerate() {
             let value = self.weight * h(i);
@@ -57,8 +57,8 @@ impl ElevationRows {
     }
 }
 
-/// Weight of an elevation row on a grid of so many intervals along its longer side, from the one stated for 128: it
-/// goes with the spacing, the square root of the way of [`super::grid_weight`].
+/// Weight of an elevation row on a grid of `intervals` intervals along its longer side, from the weight stated for 128 intervals: it
+/// is proportional to the spacing (that of [`super::grid_weight`] to its square).
 pub fn row_weight(weight: f64, intervals: f64) -> f64 {
     weight * 128.0 / intervals
 }

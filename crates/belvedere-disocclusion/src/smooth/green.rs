@@ -15,7 +15,7 @@ pub struct Green {
 /// A point between nodes: the first node of its cell, and how far into the cell it lies along x and y, 0..=1.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Between {
-    /// Column of the cell, <= columns - 2 where there are as many.
+    /// Column of the cell, <= columns - 2 if there are two columns or more.
     pub col: u32,
     /// Row of the cell.
     pub row: u32,
@@ -76,7 +76,7 @@ impl Green {
         k(x0, y0) + k(x0, y1) + k(x1, y0) + k(x1, y1)
     }
 
-    /// H^-1 between the bilinear values at two points: sixteen entries, gathered by distance into 36 looks.
+    /// H^-1 between the bilinear values at two points: sixteen entries, gathered by distance into 36 look-ups.
     #[inline(always)]
     pub fn between(&self, a: Between, b: Between) -> f64 {
         let (across, wx) = images([a.col, b.col], [a.x, b.x], self.cols);

@@ -26,10 +26,10 @@ impl Hierarchy {
         Self::with([cols, rows], coarse, DVec2::new(step(cols, coarse[0]), step(rows, coarse[1])))
     }
 
-    /// Every coarse node is a fine one, or lies beside the fine grid: the last ones may, by less than a step.
+    /// A grid whose nodes are fine nodes; only the last column and row may lie beside the fine grid, by less than a step.
     ///
-    /// A displacement of the coarse nodes bends fine cells nowhere but at their edges, so that it hides nothing once it is
-    /// taken at the fine nodes.
+    /// A displacement of its nodes bends fine cells only at their edges, so that it hides nothing more once it is sampled at the fine
+    /// nodes.
     ///
     /// * `nodes`: coarse nodes along the longer side, about.
     pub fn whole(cols: usize, rows: usize, nodes: usize) -> Self {
@@ -159,7 +159,7 @@ impl Hierarchy {
     }
 }
 
-/// Cell and place in it (0..=1) of coordinate `x` among `m` nodes, clamped. The last node is the end of the last cell.
+/// Cell of coordinate `x` among `m` nodes and the position in that cell (0..=1), clamped. The last node is the end of the last cell.
 fn cell(x: f64, m: usize) -> (u32, f64) {
     let x = x.clamp(0.0, (m - 1) as f64);
     let i = (x as usize).min(m.max(2) - 2);

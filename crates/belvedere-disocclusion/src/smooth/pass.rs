@@ -10,15 +10,15 @@ use super::temporal::temporal_weight;
 
 /// Residual of the elevation system, relative.
 const TOLERANCE: f64 = 1e-6;
-/// Iterations after which it is left as it is.
+/// Conjugate gradient iterations at most.
 const ITERATIONS: usize = 60;
 
-/// What the smooth pass found.
+/// Result of the smooth pass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Smoothed {
     /// Displacement at the coarse nodes.
     pub u: Vec<f64>,
-    /// Of the elevation rows; `None` without rows, where the solution is direct.
+    /// Convergence with elevation rows; `None` without rows, where the solution is direct.
     pub convergence: Option<Convergence>,
 }
 

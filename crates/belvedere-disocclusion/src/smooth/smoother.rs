@@ -30,8 +30,8 @@ pub enum SmoothError {
     },
 }
 
-/// Weight on a grid of so many intervals along the longer side from the weight stated for 128: w goes with the square
-/// of the spacing, because L does.
+/// Smoothness weight on a grid of `intervals` intervals along the longer side, from the weight stated for 128 intervals: w is
+/// proportional to the square of the spacing, because L is.
 pub fn grid_weight(w: f64, intervals: f64) -> f64 {
     let ratio = 128.0 / intervals;
     w * ratio * ratio
@@ -128,7 +128,7 @@ impl Smoother {
 /// L x into `out`: sum of the neighbours minus their number times the value, for a grid of `cols` columns, row-major.
 ///
 /// # Panics
-/// If the sizes differ or are no multiple of `cols`.
+/// If the sizes differ or are not a multiple of `cols`.
 pub fn laplacian(cols: usize, x: &[f64], out: &mut [f64]) {
     assert!(cols > 0 && x.len().is_multiple_of(cols) && x.len() == out.len(), "values of a grid");
     let rows = x.len() / cols;

@@ -1,4 +1,4 @@
-//! A better eye for the quadratic program: less ground has to move if the camera moves a little.
+//! Viewpoint adjustment for the quadratic program: a small move of the camera reduces the displacement.
 
 use super::super::visibility_qp::Candidate;
 use super::super::{
@@ -12,7 +12,7 @@ use belvedere_scene::{Progress, Scene};
 /// Nodes of the solver's grid for the search over the whole box.
 const ROUGH_NODES: usize = 33;
 
-/// What the picture of the given eye asks for: an eye must not win by looking away.
+/// Points that the picture of the given eye must show; other eyes are judged by the same points, so that none wins by looking away.
 #[derive(Debug, Clone)]
 pub(super) struct RequiredPoints {
     pub(super) points: Vec<usize>,
@@ -20,8 +20,9 @@ pub(super) struct RequiredPoints {
 }
 
 impl TerrainSolver {
-    /// The eye near that of `base` from which less ground has to move for what `base` shows, see [`adjust_viewpoint`]. The camera
-    /// keeps looking at `target`. Energies are those of mode qp along straight lines of sight, whatever the mode and later stages.
+    /// The eye near that of `base` from which the ground must move less to show what `base` shows, see [`adjust_viewpoint`]. The
+    /// camera keeps looking at `target`. Energies are those of mode qp along straight lines of sight, whatever the mode and later
+    /// stages.
     ///
     /// `None` where the eye of `base` cannot be used.
     ///
@@ -56,7 +57,7 @@ impl TerrainSolver {
     }
 }
 
-/// The solver at one fineness.
+/// Solver on a grid of one resolution.
 struct Level {
     solver: TerrainSolver,
     memory: TerrainMemory,

@@ -1,11 +1,12 @@
-//! The quadratic program agrees with the judge.
+//! Agreement of the quadratic program with the judge: hidden points become candidates, and the program is solved again.
 //!
-//! The program looks after candidates, over ground of triangles plus a displacement that is bilinear between the nodes of its own
-//! grid, or flat on the terrain's triangles, as files hold it. What it leaves hidden all the same lies between two candidates; or the
-//! ground hides it that is not its own: at first it looks at that of files. So both grounds are judged, and hidden places become
-//! candidates over the ground that hides them. Where detail moves too, both are drawn as one displacement that is bilinear between the
-//! nodes of the terrain, on cells of hundreds of metres other ground by many metres. Where such ground rises over the line of sight of a
-//! candidate, the program is told that it stands so much higher there; so, too, where a lake is level that is not to the program's grid.
+//! The program checks candidates over one of two grounds: the terrain plus a displacement that is bilinear between the nodes of its
+//! own grid, or one that is flat on the terrain's triangles, as files hold it. At first it checks the latter. A point that it leaves
+//! hidden lies between two candidates, or the other ground hides it. So both grounds are judged, and hidden points become candidates
+//! over the ground that hides them. Where detail moves too, both grounds are drawn with one displacement that is bilinear between the
+//! nodes of the terrain; on grid cells of hundreds of metres it differs from the program's by many metres. Where such ground rises
+//! over the line of sight of a known candidate, the program's heights are raised by that much; likewise at a small lake, which is
+//! level on the ground but not on the program's grid.
 
 use super::super::metrics::Judge;
 use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult, QpSolver};
@@ -17,19 +18,19 @@ use belvedere_core::DVec2;
 use belvedere_scene::Progress;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Judgements at most.
+/// Judgements at most, without lakes.
 const ROUNDS: usize = 8;
-/// And over ground with lakes.
+/// Judgements at most, on ground with lakes.
 const ROUNDS_WITH_LAKES: usize = 2;
-/// In the ids of candidates over ground with the bilinear displacement.
+/// Bit that marks the ids of candidates over ground with the bilinear displacement.
 pub(super) const BILINEAR: u32 = 1 << 31;
-/// Room left over what was found, metres: the places that hide nothing yet are not to come up in the next round.
+/// Height added to a raise, metres, so that neighbouring positions do not rise over the line in the next round.
 const ROOM_M: f64 = 0.25;
 
-/// Ground nearer than this to a point is not told to stand higher, cells: the point would stand on it.
+/// Ground nearer than this to a point is not raised, grid cells: the point would rise with it.
 const NEAR: f64 = 1.5;
 
-/// What the program is to agree on with the judge.
+/// Arguments of the agreement between the program and the judge.
 pub(super) struct Agreement<'a> {
     pub(super) field: &'a Field,
     /// The solver's grid.
@@ -46,16 +47,16 @@ pub(super) struct Agreement<'a> {
 /// A point that is hidden.
 struct Found {
     candidate: Candidate,
-    /// Where ground hides it most, and by how much, metres.
+    /// Position at which ground hides it most, grid coordinates, and the rise of that ground over the line, metres.
     at: DVec2,
     over: f64,
 }
 
 impl Agreement<'_> {
-    /// Solves until nothing is hidden that the program holds for seen, or nothing more is gained. Answers the best result and, of ground
-    /// with lakes, how many points it hides.
+    /// Judges and solves until the judge finds no hidden point that the program counts as seen, or solving again gains nothing.
+    /// Returns the best result and, on ground with lakes, the number of points that it hides.
     ///
-    /// * `qp`: knows `ground`, the undisplaced one with its change of detail; `result`: its solution.
+    /// * `qp`: the solver, set to `ground`, the undisplaced ground with its change of detail; `result`: its solution.
     pub(super) fn reach(
         &self,
         qp: &mut QpSolver,
@@ -63,7 +64,7 @@ impl Agreement<'_> {
         problem: &QpProblem<'_>,
         result: QpResult,
     ) -> Result<(QpResult, usize), DisocclusionError> {
-        // At a price the program leaves places covered.
+        // With a price of slack the program leaves points covered on purpose.
         if self.options.slack_price.is_some() {
             return Ok((result, 0));
         }
@@ -75,13 +76,13 @@ impl Agreement<'_> {
         let mut told = ground.to_vec();
         let mut asked = problem.candidates.to_vec();
         let mut known: BTreeSet<u32> = asked.iter().map(|c| c.id).collect();
-        // Where time is up the report says what is hidden.
+        // When time is up, the report lists the hidden points.
         if self.progress.should_end() {
             return Ok((QpResult { stopped: true, ..result }, 0));
         }
         let mut found = self.hidden(problem, &result)?;
         let (mut best, mut fewest) = (result, found.len());
-        // What a small lake hides that is levelled after solving, the program cannot mend.
+        // The program cannot show points that a small lake hides, for such a lake is made level after solving.
         let most = if self.waters.lakes.is_empty() { ROUNDS } else { ROUNDS_WITH_LAKES };
         for _ in 1..most {
             if found.is_empty() || self.progress.should_end() {
@@ -121,7 +122,7 @@ impl Agreement<'_> {
         Ok((best, if self.waters.lakes.is_empty() { 0 } else { fewest }))
     }
 
-    /// Points that a solution leaves hidden though it does not name them.
+    /// Points that a solution leaves hidden and does not list as unresolved.
     fn hidden(&self, problem: &QpProblem<'_>, result: &QpResult) -> Result<Vec<Found>, DisocclusionError> {
         self.progress.tick("what the displaced ground hides", 0.9)?;
         let delta = match (self.detail, self.waters.is_empty()) {
@@ -142,7 +143,7 @@ impl Agreement<'_> {
         Ok(found)
     }
 
-    /// Nodes of the cell around a place.
+    /// The four nodes of the grid cell around a position.
     fn around(&self, at: DVec2) -> [usize; 4] {
         let index = |v: f64, n: usize| (v.max(0.0) as usize).min(n.saturating_sub(2));
         let (cols, rows) = (self.field.cols(), self.field.rows());
@@ -151,10 +152,10 @@ impl Agreement<'_> {
     }
 }
 
-/// New candidates from one judgement at most, about: what is near them is mostly seen with them.
+/// New candidates from one judgement at most: points near them mostly become visible with them.
 const MOST_NEW: usize = 4000;
 
-/// Of the hidden points of one cell, or of some cells where there are very many, the one that is hidden most.
+/// The most hidden point of each grid cell, or of each larger square if there are very many.
 fn worst_of_cells(found: &[Found]) -> Vec<&Found> {
     let mut size = 1.0;
     loop {

@@ -1,20 +1,20 @@
-//! What is done when rows of the quadratic program contradict each other on the solver's grid.
+//! Fallbacks for rows of the quadratic program that contradict each other on the solver's grid.
 //!
-//! In this order: slack, which the program buys by itself; the detail of the ground around what is missed is cut down; ground
-//! nearer to a place than the guard is left as it is; finer grids are taken, to which the ground's own belongs.
+//! They are tried in this order: slack, which the program buys by itself; cutting down the detail of the ground around rows with
+//! slack; leaving ground nearer to a point than the guard as it is; finer grids, up to the terrain's own where that is small enough.
 
 use super::super::visibility_qp::{QpResult, Reason, SolvedRow};
 use super::super::{Field, Hierarchy};
 use belvedere_core::DVec2;
 use serde::Serialize;
 
-/// A way out of contradicting rows.
+/// A fallback for contradicting rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fallback {
     /// Bumps that the solver's grid cannot hold were cut down where they hide something.
     Detail,
-    /// Ground nearer to a place than the guard was left as it is.
+    /// Ground nearer to a point than the guard was left as it is.
     Guard,
     /// The program was solved again on a finer grid.
     FinerGrid {
@@ -28,7 +28,7 @@ const MOST_NODES: usize = 513;
 /// Radius in which detail is cut down, steps of the solver's grid.
 const REACH: f64 = 1.5;
 
-/// Candidates that the program could not settle, though they have a line of sight.
+/// Number of candidates that the program could not make visible, though they have a line of sight.
 pub(super) fn stuck(result: &QpResult) -> usize {
     let open = |reason: &Reason| matches!(reason, Reason::Infeasible(_) | Reason::NotSettled { .. });
     result.unresolved.iter().filter(|u| open(&u.reason)).count()
@@ -44,8 +44,8 @@ pub(super) fn finer(grid: &Hierarchy, field: &Field) -> impl Iterator<Item = Hie
     std::iter::successors(Some(grid.clone()), half).skip(1)
 }
 
-/// Ground whose bumps over what the solver's grid can hold are cut down around the rows that were bought, by less and less
-/// towards [`REACH`] steps away; the change of every node, <= 0.
+/// Cuts down the bumps that the solver's grid cannot hold around the rows with slack, fading to nothing [`REACH`] steps away. Returns
+/// the change of every node, scene units, <= 0.
 pub(super) fn cut_detail(field: &Field, ground: &[f64], grid: &Hierarchy, rows: &[SolvedRow]) -> Vec<f64> {
     let smooth = grid.prolong(&grid.restrict(ground));
     let mut gain = vec![0.0f64; ground.len()];

@@ -1,9 +1,9 @@
-//! A ground that could be taken where time is up.
+//! A displacement that can be used when time is up.
 
 use super::super::visibility_qp::{QpResult, SolvedRow, Unresolved};
 use super::{LimitsReport, Outcome, QpReport, Taken};
 
-/// A ground that could be taken.
+/// A displacement that can be used when time is up.
 pub(super) struct Ground {
     pub(super) taken: Taken,
     pub(super) coarse: Vec<f64>,
@@ -42,7 +42,7 @@ impl Ground {
         Self { qp, unresolved, rows: active, ..Self::plain(taken, u) }
     }
 
-    /// Takes the place of what was done.
+    /// Replaces the outcome by this ground.
     pub(super) fn put(self, done: &mut Outcome) {
         let Self { coarse, full, limited, qp, unresolved, rows, .. } = self;
         (done.coarse, done.full, done.fine) = (coarse, full, None);

@@ -9,14 +9,14 @@ use belvedere_scene::{AreaSurface, LayerKind, Scene};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Water is level where four fifths of its heights lie as near together, metres: models of 90 m give that for small lakes between steep
-/// banks. Rivers drawn as areas fall by more, or they stay within it.
+/// An area of water is level if four fifths of its heights lie within this range, metres: elevation models of 90 m scatter as much on
+/// small lakes between steep banks. Rivers drawn as areas that fall by more are not level.
 const LEVEL_M: f64 = 30.0;
-/// What rises farther over the water than this inside a shore is bank, metres: models round to it.
+/// Ground inside a shore that rises over the water by more than this is bank, metres: elevation models are rounded to it.
 pub const BANK_M: f64 = 1.0;
-/// Nodes of the solver's grid that are tied at most: of larger waters every second one, and so on.
+/// Nodes of the solver's grid that are tied at most; if there are more, every second column and row is taken, then every third, and so on.
 const MOST_TIED: usize = 800;
-/// Fewer nodes of the solver's grid do not stand for a lake.
+/// Least number of nodes of the solver's grid that can stand for a lake.
 const FEWEST_TIED: usize = 4;
 
 /// A lake and how it moved.
@@ -30,9 +30,9 @@ pub struct LakeReport {
     pub name: String,
     /// Middle height of the elevation model on it.
     pub height_m: f64,
-    /// By how much it moved.
+    /// Displacement of the lake, metres.
     pub moved_m: f64,
-    /// Largest difference of that between two nodes on it; 0 but for rounding.
+    /// Largest difference of displacement between two of its nodes, metres; 0 but for rounding.
     pub range_m: f64,
     /// Nodes of the terrain on it.
     pub nodes: usize,
@@ -46,9 +46,10 @@ struct Lake {
     name: String,
     height: f64,
     nodes: Vec<u32>,
-    /// Nodes of the bank inside the shore, and how far they rise over the water: they sink with it at least, and to its level at most.
+    /// Nodes of the bank inside the shore, with their height over the water, metres: they sink at least as far as the water, and at
+    /// most to its level.
     bank: Vec<(u32, f64)>,
-    /// Nodes beside: they sink with the water at least, so that it does not run up a bank that stayed.
+    /// Nodes next to the lake: they sink at least as far as the water, so that it does not run up a bank that stayed.
     shore: Vec<u32>,
 }
 
@@ -90,7 +91,7 @@ pub(super) struct Water {
 impl Lakes {
     pub(super) fn new(waters: &[Water], field: &Field) -> Self {
         let mut lakes = Vec::<Lake>::new();
-        // Where areas overlap they are one lake: files of several layers hold the same one twice.
+        // Overlapping areas are one lake: files with several layers contain the same lake twice.
         let mut owner = BTreeMap::<u32, usize>::new();
         for water in waters {
             let rings: Vec<Vec<DVec2>> =
@@ -129,7 +130,7 @@ impl Lakes {
         self.lakes.iter().map(|lake| lake.nodes.as_slice())
     }
 
-    /// The nodes of a solver's grid on each lake; none where they are too few to stand for it.
+    /// The nodes of a solver's grid on each lake, which are tied together; empty for a lake with too few of them.
     pub(super) fn tied(&self, grid: &Hierarchy) -> Vec<Vec<u32>> {
         let tied = |own: Vec<[usize; 2]>| if own.len() < FEWEST_TIED { Vec::new() } else { own };
         let places: Vec<Vec<[usize; 2]>> = self.lakes.iter().map(|lake| self.on_grid(lake, grid)).map(tied).collect();
@@ -151,8 +152,9 @@ impl Lakes {
         on.map(|[x, y]| [x / across, y / down]).collect()
     }
 
-    /// Makes a displacement of the terrain's nodes level on each lake: as the tied nodes of the solver's grid that lie on it. Where none are
-    /// tied, as the node that sinks least, for what rises does not become hidden. The shore sinks with the water at least.
+    /// Makes a displacement of the terrain's nodes level on each lake: the mean over the tied nodes of the solver's grid. Where none
+    /// are tied, that of the node that sinks least, for water that rises does not become hidden. The shore sinks at least as far as
+    /// the water.
     pub(super) fn level(&self, grid: &Hierarchy, u: &mut [f64]) {
         let step = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
         for lake in &self.lakes {
@@ -170,7 +172,7 @@ impl Lakes {
         }
     }
 
-    /// Where a node of a lake was lowered, lowers the whole lake as far, with its shore; answers whether any was.
+    /// Lowers each lake, with its shore and bank, to its lowest node; returns whether any lake was not level.
     pub(super) fn sink(&self, u: &mut [f64]) -> bool {
         let mut sank = false;
         for lake in &self.lakes {
@@ -185,12 +187,12 @@ impl Lakes {
         sank
     }
 
-    /// Zero on every lake: detail of the ground does not change there.
+    /// Sets the change of detail to zero on every lake.
     pub(super) fn clear(&self, detail: &mut [f64]) {
         self.nodes().flatten().for_each(|n| detail[*n as usize] = 0.0);
     }
 
-    /// How the lakes moved.
+    /// Report of every lake.
     ///
     /// * `moved`: displacement of a node of the terrain.
     pub(super) fn report(&self, moved: impl Fn(usize) -> f64) -> Vec<LakeReport> {

@@ -1,8 +1,9 @@
-//! Ground that still looks like ground: neither far below the lowest of the terrain nor much steeper than its steepest.
+//! Limits of the displaced ground: its depth below the lowest node of the terrain, and its slope.
 //!
-//! The program knows no such limits. What it digs too deep or too steep is filled up again: with the least ground over it that keeps
-//! them. That is never higher than the terrain was, for the terrain keeps them itself. Over a level floor below the eye nothing that
-//! was seen is hidden: lines of sight run above the floor. Where steep sides are filled up, something may be hidden; the judge sees that.
+//! The program does not know these limits. Ground that it digs too deep or too steep is filled up again, to the least surface above
+//! it that keeps them. This is never higher than the terrain was, which keeps the limits itself. Filling up to a level floor below
+//! the eye hides nothing that was seen, for lines of sight run above the floor. Filling up steep sides may hide something; the judge
+//! finds that.
 
 use super::super::{Field, Hierarchy};
 use super::waters::Waters;
@@ -11,28 +12,28 @@ use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BinaryHeap};
 
-/// The ground may lie below the lowest of the terrain by this share of the relief.
+/// Depth to which the ground may sink below the lowest node of the terrain, share of the relief.
 const DEEPER: f64 = 0.2;
-/// And be so many times as steep as all but a thousandth of the terrain.
+/// Steepest slope of the ground, as a multiple of the slope that 999 of 1000 triangles of the terrain stay below.
 const STEEPER: f64 = 2.0;
 const STEEP_SHARE: f64 = 0.999;
-/// Ways along rows, columns and diagonals that are at most this share as steep bound the slope in all directions between.
+/// Cosine of 22.5 degrees: if slopes along rows, columns and diagonals are this share of a limit, no direction between exceeds it.
 const DIRECTIONS: f64 = 0.923_879_532_511_286_7;
 /// Rounds in which ground is filled up for rivers at most.
 const RIVER_ROUNDS: usize = 200;
-/// Ground within this of a limit keeps it, metres.
+/// Tolerance of the limits, metres.
 const KEPT: f64 = 1e-6;
 
-/// What is asked of the displaced ground.
+/// Limits that the displaced ground must keep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Limits {
     /// Lowest height.
     floor: f64,
-    /// Steepest way between two nodes, but for those that were steeper.
+    /// Steepest slope between two nodes, rise over run; pairs of nodes that were steeper may stay so.
     slope: f64,
 }
 
-/// What the limits did.
+/// Report of the limits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LimitsReport {
     /// Lowest height that the ground may have: a fifth of the relief below the lowest.
@@ -41,15 +42,15 @@ pub struct LimitsReport {
     pub steepest_deg: f64,
     /// Share of the ground that the program alone would have sunk deeper or made steeper, 0..=1.
     pub held_share: f64,
-    /// How much deeper at most, metres.
+    /// Largest height by which ground was filled up, metres.
     pub held_most_m: f64,
 }
 
-/// The terrain by cells of the solver's grid, so that most displacements are known to keep the limits without a look at every node.
+/// Bounds of the terrain by cells of the solver's grid: most displacements are known to keep the limits without testing every node.
 #[derive(Debug, Clone)]
 pub(super) struct LimitedTerrain {
     limits: Limits,
-    /// Lowest node and steepest way of the blocks.
+    /// Lowest height and steepest slope of each block.
     blocks: Vec<[f64; 2]>,
     spacing: f64,
 }
@@ -67,7 +68,7 @@ impl LimitedTerrain {
         Self { limits, blocks, spacing: field.spacing().min_element() }
     }
 
-    /// Whether a displacement surely keeps the limits.
+    /// Whether a displacement certainly keeps the limits, by bounds for each block.
     pub(super) fn surely_kept(&self, grid: &Hierarchy, u: &[f64]) -> bool {
         let cols = grid.cols().max(2) - 1;
         let reach = grid.step().min_element() * self.spacing;
@@ -85,7 +86,7 @@ impl LimitedTerrain {
         })
     }
 
-    /// How far a displacement lies below the lowest height at most, or less.
+    /// Estimate, from one node per block, of the greatest depth of a displacement below the lowest height that is allowed.
     pub(super) fn beyond(&self, grid: &Hierarchy, u: &[f64]) -> f64 {
         let cols = grid.cols().max(2) - 1;
         let node = |i: usize| (i / cols).min(grid.rows() - 1) * grid.cols() + i % cols;
@@ -112,8 +113,8 @@ impl Limits {
         Self { floor: field.datum() - DEEPER * field.relief(), slope: DIRECTIONS * STEEPER * steep }
     }
 
-    /// Ground over the displaced one that keeps the limits, and with it lakes level and rivers from running uphill; without rivers it is the
-    /// least.
+    /// Raises the displaced ground until it keeps the limits, lakes are level and no river runs uphill; without rivers the result is
+    /// the least such ground.
     fn keep(&self, field: &Field, waters: &Waters, u: &mut [f64]) -> Option<LimitsReport> {
         let (h, lakes) = (field.heights(), &waters.lakes);
         let solid = |i: usize| !field.void()[i];
@@ -222,7 +223,7 @@ fn ways(field: &Field, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
     })
 }
 
-/// Lowest node and steepest way between neighbours of a block of cells, from its first to its last columns and rows of nodes.
+/// Lowest height and steepest slope between neighbours of a block of grid cells, from its first to its last columns and rows of nodes.
 fn lowest_and_steepest(field: &Field, [x0, x1]: [usize; 2], [y0, y1]: [usize; 2]) -> [f64; 2] {
     let (cols, h, void, d) = (field.cols(), field.heights(), field.void(), field.spacing());
     let steps = [(1, 0, d.x), (0, 1, d.y), (1, 1, d.length()), (-1, 1, d.length())].map(|(x, y, d)| (x, y, d.recip()));

@@ -1,4 +1,4 @@
-//! Solving beside the drawing: a picture waits for its ground only where that would fall too far behind.
+//! Terrain disocclusion on a thread of its own while pictures are drawn: a picture waits for its ground only if that would lag too far.
 
 use super::super::metrics::{Hides, Judge};
 use super::super::visibility_qp::ViewSight;
@@ -12,8 +12,8 @@ use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
-/// Terrain that makes way while pictures are drawn. A thread of its own solves for the newest view that was asked for; every
-/// picture gets the newest ground there is and says what of the features that ground shows it.
+/// Terrain disocclusion while pictures are drawn. A thread of its own solves for the newest view that was requested; every picture
+/// gets the newest ground that is solved, and the number of points that this ground hides.
 ///
 /// Which ground a picture gets depends on how fast the machine is: films are solved frame by frame instead ([`TerrainSolver`]).
 #[derive(Debug)]
@@ -32,13 +32,13 @@ pub struct LiveTerrain {
 pub struct LiveFrame {
     /// The displacement.
     pub stage: TerrainDisocclusion,
-    /// How many pictures ago the view was asked for that it was solved for, 0..=[`LiveTerrain::LAG`].
+    /// Number of pictures since the view was requested for which it was solved, 0..=[`LiveTerrain::LAG`].
     pub lag: u64,
     /// Reference points in the picture, farther from the eye than three times the guard.
     pub points: usize,
-    /// How many of them this ground hides from this eye.
+    /// Number of these points that this ground hides from this eye.
     pub hidden: usize,
-    /// How far the ground rises over the line of sight that it hides most, scene units; 0 if nothing is hidden.
+    /// Largest height by which the ground rises over a line of sight, scene units; 0 if nothing is hidden.
     pub hidden_worst_m: f64,
 }
 
@@ -59,12 +59,12 @@ struct Ground {
 }
 
 impl LiveTerrain {
-    /// A picture waits rather than show ground that was solved for a view more than this many pictures before.
+    /// Largest lag, pictures: a picture waits rather than show ground that was solved for an earlier view than that.
     pub const LAG: u64 = 3;
 
     /// Starts the thread.
     ///
-    /// * `solver`: with the time between two pictures, if the ground shall move gently.
+    /// * `solver`: with a time step between two pictures, if the ground is to move smoothly.
     pub fn new(solver: TerrainSolver, scene: Arc<Scene>) -> Self {
         let (orders, inbox) = channel();
         let (outbox, answers) = channel();
@@ -78,7 +78,7 @@ impl LiveTerrain {
     /// Ground for the next picture, and whether it shows what it should from the eye of `base`.
     ///
     /// # Errors
-    /// Those of [`TerrainSolver::solve`], for this view or one of the last; the next view may be asked for all the same.
+    /// Those of [`TerrainSolver::solve`], for this view or an earlier one; the next view may be requested all the same.
     pub fn frame(&mut self, base: &View) -> Result<LiveFrame, DisocclusionError> {
         self.ask(base);
         while let Ok(answer) = self.answers.try_recv() {
@@ -95,8 +95,8 @@ impl LiveTerrain {
         }
     }
 
-    /// Asks for ground for the view, and gives the newest that there is, whatever view it was solved for: nothing waits. `None`
-    /// before the first is solved.
+    /// Requests ground for the view and returns the newest that is solved, for whatever view, without waiting. `None` before the
+    /// first is solved.
     ///
     /// # Errors
     /// As [`LiveTerrain::frame`].
@@ -111,7 +111,7 @@ impl LiveTerrain {
     fn ask(&mut self, base: &View) {
         self.frame += 1;
         let order = Order { frame: self.frame, view: base.clone() };
-        // A thread that has ended answers nothing: who waits for it finds that out.
+        // If the thread has ended, waiting for its answer reports that.
         if let Some(orders) = &self.orders {
             let _ = orders.send(order);
         }
@@ -155,7 +155,7 @@ impl Drop for LiveTerrain {
     }
 }
 
-/// Solves for the newest view until nobody asks any more.
+/// Solves for the newest view until the inbox is closed.
 fn work(solver: &TerrainSolver, scene: &Scene, inbox: &Receiver<Order>, outbox: &Sender<Answer>, progress: &Progress) {
     let mut memory = TerrainMemory::default();
     let mut points: Arc<[ReferencePoint]> = Arc::new([]);

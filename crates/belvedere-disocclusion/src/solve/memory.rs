@@ -1,4 +1,4 @@
-//! What is prepared once per terrain and what is remembered between frames.
+//! Preparation, once per terrain, and memory between frames.
 
 use super::super::settings::MOST_W;
 use super::super::visibility_qp::{Candidate, QpOptions, QpSolver};
@@ -19,9 +19,9 @@ use belvedere_scene::{Heightfield, Scene};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What the frames before leave to the next one. Same scene, views and memory, same result.
+/// Memory between frames. The same scene, views and memory give the same result.
 ///
-/// It belongs to one scene; other terrain, features or parameters make it begin anew.
+/// It belongs to one scene; other terrain, features or parameters reset it.
 #[derive(Debug, Clone, Default)]
 pub struct TerrainMemory {
     prepared: Option<Prepared>,
@@ -41,7 +41,7 @@ struct Last {
 pub(super) struct Prepared {
     settings: TerrainSettings,
     ground: Arc<Heightfield>,
-    /// The same with spikes at the median of their neighbours: what is solved on.
+    /// The ground with spikes replaced by the median of their surroundings, on which the solver works.
     pub(super) despiked: Arc<Heightfield>,
     pub(super) spikes: Vec<Spike>,
     features: Vec<RequiredFeature>,
@@ -57,15 +57,15 @@ pub(super) struct Prepared {
     pub(super) dense: Vec<ReferencePoint>,
     /// Points every tenth of a cell, by which the result is judged.
     check: Vec<ReferencePoint>,
-    /// Where the ground must stay plausible.
+    /// Limits of the displaced ground.
     pub(super) limited: Option<Arc<LimitedTerrain>>,
-    /// Of modes with a greedy pass.
+    /// Cells and bounds of blocks, in modes with a greedy pass.
     pub(super) cells: Option<Arc<(Cells, BlockMaxima)>>,
-    /// Of modes with a greedy pass.
+    /// The smooth pass, in modes with a greedy pass.
     pub(super) smooth: Option<SmoothPass>,
-    /// Of modes with a quadratic program, and for rivers: the one of frames without a frame before.
+    /// Quadratic program for frames without a frame before, in modes with such a program, and for rivers.
     pub(super) still: Option<Program>,
-    /// And the one that keeps near the frame before, in films.
+    /// Quadratic program that stays near the frame before, in films.
     pub(super) moving: Option<Program>,
 }
 
@@ -106,12 +106,12 @@ const JUMP_SHARE: f64 = 0.05;
 const JUMP_COS: f64 = 0.939_692_620_785_908_4;
 
 impl TerrainMemory {
-    /// A memory of preparations alone.
+    /// A memory that holds preparations alone.
     pub(super) fn holding(prepared: Prepared) -> Self {
         Self { prepared: Some(prepared), last: None }
     }
 
-    /// What was prepared before, or now.
+    /// The preparation in memory if it fits, or a new one.
     pub(super) fn prepared_for(
         &mut self,
         scene: &Scene,
@@ -229,14 +229,14 @@ impl Prepared {
         })
     }
 
-    /// Points every tenth of a cell that the picture may show, those too near to the eye to be asked for included unless `far` alone count.
+    /// Points every tenth of a grid cell that the picture may show; without `far`, also those too near to the eye to be demanded.
     pub(super) fn dense_in_view(&self, in_view: &super::PointsInView<'_>, far: bool) -> Vec<ReferencePoint> {
         let (inside, near) = in_view.indices(&self.check);
         let near = near.into_iter().filter(|_| !far);
         inside.into_iter().chain(near).map(|i| self.check[i]).collect()
     }
 
-    /// The same as candidates, whose ids follow those of all others.
+    /// The points by which the result is judged as candidates, whose ids follow those of all others.
     pub(super) fn check_in_view(&self, in_view: &super::PointsInView<'_>) -> Vec<Candidate> {
         let first = self.dense.len() + self.points.len();
         let of = |i: usize| Candidate::faceted((first + i) as u32, self.check[i].grid, self.check[i].lift);
@@ -255,10 +255,10 @@ impl Prepared {
     }
 }
 
-/// Ground is cleared as near as this to a place, cells: ground right before a place hides it too.
+/// Ground is cleared from this distance to a point on, grid cells: ground right before a point hides it too.
 const CLEARED_CELLS: f64 = 0.05;
 
-/// How near the quadratic program clears the ground: at once, or from the guard on where rows nearer than that contradict others.
+/// Options of the program: with `from_guard` ground is cleared from the guard on, because rows nearer than that contradict others.
 pub(super) fn options(settings: &TerrainSettings, from_guard: bool) -> QpOptions {
     let guard = if from_guard { settings.guard } else { settings.guard.min(CLEARED_CELLS) };
     QpOptions { guard, ..QpOptions::of(settings) }

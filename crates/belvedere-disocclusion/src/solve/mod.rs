@@ -1,4 +1,4 @@
-//! Settings and memory to a stage and its report.
+//! The solver: from settings and memory to a terrain stage and its report.
 
 mod adjust;
 mod agreement;
@@ -42,7 +42,7 @@ use std::sync::Arc;
 /// Share of the time for solving; the rest is for judging.
 const SOLVING: f64 = 0.85;
 
-/// Terrain disocclusion as a constructor: the ground of a scene makes way for what must be seen.
+/// Terrain disocclusion as a constructor: the ground of a scene moves so that its required features are seen.
 #[derive(Debug, Clone)]
 pub struct TerrainSolver {
     settings: TerrainSettings,
@@ -55,7 +55,7 @@ pub struct TerrainSolver {
 pub struct Solved {
     /// The displacement.
     pub stage: TerrainDisocclusion,
-    /// What it achieves.
+    /// Report of what it achieves.
     pub report: TerrainReport,
 }
 
@@ -74,8 +74,8 @@ impl TerrainSolver {
         Self { time_step_s: Some(seconds).filter(|s| *s > 0.0 && s.is_finite()), ..self }
     }
 
-    /// A solver whose reports count what lies above and below the picture as well, between its left and its right border: for ground that
-    /// is written to files and looked at from the same eye by others.
+    /// A solver whose reports also count points above and below the picture, between its left and its right border: for ground that
+    /// is written to files and viewed from the same eye with other cameras.
     pub fn in_plan(self) -> Self {
         Self { in_plan: true, ..self }
     }
@@ -92,7 +92,7 @@ impl TerrainSolver {
     /// Solves for the features that must be seen, in the picture of `base`.
     ///
     /// * `base`: the camera with the stages before (earth) and after (spline, curved rays); a terrain stage in it is left out;
-    /// * `memory`: that of the frame before, of the same scene; new where there is none.
+    /// * `memory`: that of the frame before, of the same scene; a new one for the first frame;
     ///
     /// # Errors
     /// [`DisocclusionError::NoTerrain`], [`DisocclusionError::NothingToSee`], [`DisocclusionError::Eye`], [`DisocclusionError::Field`],
@@ -129,7 +129,7 @@ impl TerrainSolver {
         Ok(Solved { stage: TerrainDisocclusion::new(delta), report })
     }
 
-    /// As [`TerrainSolver::solve`], without the figures, which take longer than the solution; also the ground as the eye sees it.
+    /// As [`TerrainSolver::solve`], without the figures, which take longer than the solution; also returns the ground as seen from the eye.
     fn advance(
         &self,
         scene: &Scene,
@@ -143,7 +143,7 @@ impl TerrainSolver {
         Ok((stage, frame_result.field))
     }
 
-    /// The passes of one frame, without figures; the memory lends what it has prepared. `asked` stands for what `base` shows.
+    /// The passes of one frame, without figures; the memory lends its preparation. `asked` replaces the points that `base` shows.
     fn run(
         &self,
         scene: &Scene,
@@ -201,7 +201,7 @@ fn ground(scene: &Scene) -> Option<&Arc<Heightfield>> {
     })
 }
 
-/// A frame before its figures.
+/// The solution of one frame, without the figures of its report.
 struct SolvedFrame {
     prepared: Prepared,
     /// The ground as the eye sees it.
@@ -239,7 +239,7 @@ fn at_every_node(field: &Field, values: &[f64]) -> Result<Grid, GridError> {
 }
 
 /// Values at nodes `step` cells apart over the field as a grid of the scene. The rim is repeated one node farther out, so
-/// that rounding leaves no place of the ground beside the grid.
+/// that rounding leaves no point of the ground beside the grid.
 fn spread(field: &Field, [cols, rows]: [usize; 2], step: DVec2, values: &[f64]) -> Result<Grid, GridError> {
     let inner = |i: usize, n: usize| i.saturating_sub(1).min(n - 1);
     let padded = (0..(cols + 2) * (rows + 2)).map(|i| {
@@ -253,7 +253,7 @@ fn since(began: Instant) -> f64 {
     began.elapsed().as_secs_f64() * 1e3
 }
 
-/// How far the ground lies lower at scene x, y because the earth is round.
+/// Drop of the ground at scene x, y by the curvature of the earth, scene units.
 fn drop_at(earth: &EarthCurvature, p: DVec2) -> f64 {
     earth.apply(p.extend(0.0)).map_or(0.0, |q| -q.z)
 }
@@ -266,17 +266,17 @@ struct Outcome {
     full: Option<Vec<f64>>,
     /// Displacement at the nodes of a finer grid, where the solver's was too coarse.
     fine: Option<(Hierarchy, Vec<f64>)>,
-    /// Ways out of contradicting rows that were taken.
+    /// Fallbacks that were used for contradicting rows.
     fallbacks: Vec<Fallback>,
-    /// What kept the ground plausible, where it had to.
+    /// Report of the limits, if they changed the ground.
     limited: Option<LimitsReport>,
     greedy: Option<super::GreedyCounters>,
     greedy_unresolved: Vec<usize>,
     qp: Option<QpReport>,
     qp_unresolved: Vec<Unresolved>,
-    /// Whether the program was told to end before its end.
+    /// Whether the program was stopped before it was done.
     stopped: bool,
-    /// The ground that was taken then.
+    /// The ground that was taken in that case.
     taken: Option<Taken>,
     /// Rows of the quadratic program with a multiplier.
     rows: Vec<SolvedRow>,

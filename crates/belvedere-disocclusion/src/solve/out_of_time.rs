@@ -1,8 +1,9 @@
-//! What is taken where time is up: of several grounds the one that shows most.
+//! Choice of a ground when time is up: of several the one that shows most.
 //!
-//! A program that is stopped leaves ground that is right for nothing: it may show less than the ground that did not move. So the same
-//! program is solved for a sample of what was asked, which takes a fraction of the time; and where not even that is done, the greedy and
-//! smooth pass is made, which takes about as long as one round. Each ground is made plausible and judged as the report judges it.
+//! A program that is stopped leaves unfinished ground, which may show less than the undisplaced one. So the same program is solved
+//! for samples of its candidates, which takes a fraction of the time. If the best ground still shows too little, the greedy and
+//! smooth pass is made, which takes about as long as one round. The limits are applied to each ground, which is judged as the report
+//! judges it.
 
 use super::super::metrics::{Judge, share_seen, still};
 use super::super::visibility_qp::{Candidate, QpProblem, QpSolver};
@@ -14,19 +15,19 @@ use super::{Outcome, PointsInView, Taken, delta_of, reporting};
 use crate::DisocclusionError;
 use belvedere_core::DVec2;
 
-/// Of so many candidates one is asked for, one solution after the other.
+/// Each solution demands one of this many candidates; the solutions are made in this order.
 const SAMPLES: [usize; 3] = [32, 8, 3];
 /// Fewer candidates than these are not worth a solution of their own.
 const FEWEST: usize = 24;
 /// Share of the time for all of the work that the first sample has at least.
 const FIRST_SAMPLE: f64 = 0.1;
-/// Share of what is in view that is worth another ground that moves more.
+/// Gain of the visible share for which another ground is taken.
 const WORTH: f64 = 0.001;
-/// Nothing else is tried for what is seen up to this share.
+/// Visible share from which on the greedy and smooth pass is not tried.
 const ENOUGH: f64 = 0.9;
 
 impl Passes<'_> {
-    /// Solutions for samples of what was asked, the coarsest first, as many as there is time for.
+    /// Solutions for samples of the candidates, the coarsest first, as many as time allows.
     pub(super) fn samples(&self, qp: &mut QpSolver, problem: &QpProblem<'_>) -> Result<Vec<Ground>, DisocclusionError> {
         let mut out = Vec::new();
         let worth = SAMPLES.into_iter().filter(|every| problem.candidates.len() / every >= FEWEST);
@@ -45,12 +46,12 @@ impl Passes<'_> {
                 break;
             }
         }
-        // No frame after is to begin where time was up.
+        // The next frame must not begin with rows of a sample.
         qp.reset();
         Ok(out)
     }
 
-    /// Puts the ground that shows most in the place of the unfinished one.
+    /// Replaces the unfinished ground by the one that shows most, if that shows more.
     pub(super) fn take_best(
         &self,
         prepared: &Prepared,
@@ -97,7 +98,7 @@ impl Passes<'_> {
         Ok(())
     }
 
-    /// Makes a ground plausible and judges it.
+    /// Applies the limits to a ground and returns its visible share.
     pub(super) fn share_limited(
         &self,
         prepared: &Prepared,

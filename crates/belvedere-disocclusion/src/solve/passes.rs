@@ -14,13 +14,13 @@ use belvedere_scene::Instant;
 use belvedere_scene::Progress;
 use std::borrow::Cow;
 
-/// Share of the time that the quadratic program has; the rest is for what is taken where it is not done by then.
+/// Share of the time for the quadratic program; the rest is for the alternatives if it is not done by then.
 const PROGRAM_TIME: f64 = 0.6;
 
 /// Ground that sinks below the limits by more than this share of the relief is not refined.
 const FAR_BEYOND: f64 = 0.2;
 
-/// What finer grids are tried on.
+/// Arguments of the solution on finer grids.
 struct Finer<'a> {
     /// The solver's grid.
     coarse: &'a Hierarchy,
@@ -36,9 +36,9 @@ struct Finer<'a> {
 
 pub(super) struct Passes<'a> {
     pub(super) settings: &'a TerrainSettings,
-    /// The ground as the eye sees it.
+    /// The ground as seen from the eye: lowered by the curvature of the earth.
     pub(super) field: &'a Field,
-    /// Whether that lies lower than the data say, for the earth is curved.
+    /// Whether that differs from the data, for the earth is curved.
     pub(super) lowered: bool,
     pub(super) weights: Weights,
     /// Seconds between frames and time constant of coherence; `None` for single pictures.
@@ -98,7 +98,7 @@ impl Passes<'_> {
         Ok(done)
     }
 
-    /// See [`Self::samples`]; none where the ground's detail changed, which they would not know, and in films.
+    /// See [`Self::samples`]; empty in films, in modes other than qp, and where detail of the ground changed, which samples ignore.
     fn samples_of(
         &self,
         prepared: &mut Prepared,
@@ -115,7 +115,7 @@ impl Passes<'_> {
         self.samples(qp, &QpProblem { candidates, sight, target: None, ceilings: None })
     }
 
-    /// Fills up what is dug too deep or too steep.
+    /// Applies the limits: fills up ground that is dug too deep or too steep.
     fn limit(&self, prepared: &Prepared, done: &mut Outcome) {
         let Some(limited) = &prepared.limited else { return };
         let coarse = done.full.is_none() && done.fine.is_none();
@@ -133,7 +133,7 @@ impl Passes<'_> {
         }
     }
 
-    /// Greedy and smooth pass; answers the change of detail at every node, if detail is scaled.
+    /// Greedy and smooth pass; returns the change of detail at every node, if detail is scaled.
     fn paper(
         &self,
         prepared: &mut Prepared,
@@ -192,7 +192,7 @@ impl Passes<'_> {
         Ok(())
     }
 
-    /// What the quadratic program stays near to; `None` = no displacement.
+    /// Displacement that the quadratic program stays close to; `None` = zero.
     fn target(&self, prepared: &Prepared, done: &Outcome) -> Result<Option<Vec<f64>>, DisocclusionError> {
         let Weights { w, g } = prepared.weights();
         Ok(match (self.settings.mode, self.last) {
@@ -221,7 +221,7 @@ impl Passes<'_> {
         let target = self.target(prepared, done)?;
         let warm = self.last.is_some() && prepared.moving.is_some();
         let weights = if warm { self.weights } else { Weights { g: 0.0, ..self.weights } };
-        // Films are judged frame by frame, not mended: what one frame asks for and the next does not would make the ground jump.
+        // In films hidden points do not become candidates: one that is demanded in a single frame would make the ground jump.
         let check = if self.frame.is_some() { Vec::new() } else { prepared.check_in_view(in_view) };
         let Some(program) = (if warm { &mut prepared.moving } else { &mut prepared.still }) else { return Ok(()) };
         let qp = &mut program.solver;
@@ -229,7 +229,7 @@ impl Passes<'_> {
             Some(detail) => self.field.heights().iter().zip(detail).map(|(h, d)| h + d).collect(),
             None => self.field.heights().into(),
         };
-        // The program was made with the ground itself; bounds over other ground take time.
+        // The solver was made for the undisplaced ground; bounds for other ground take time.
         let mut foreign = self.lowered || detail.is_some();
         if foreign || program.foreign {
             qp.set_heights(&ground)?;
@@ -241,11 +241,11 @@ impl Passes<'_> {
         let mut result = qp.solve_with(&problem, self.progress)?;
         self.progress.tick("quadratic program", 0.9)?;
         if fallback::stuck(&result) > 0 && wider.len() > asked.len() {
-            // What the picture does not show yet is not to cost it anything.
+            // Points beside the picture must not keep points in it from being shown.
             problem = QpProblem { candidates: asked, ..problem };
             result = qp.solve_with(&problem, self.progress)?;
         }
-        // Where a lake sinks with all its banks the limits fill up most of it again: that is not worth another solution.
+        // If a lake sinks with all its banks, the limits fill up most of it again: that is not worth another solution.
         let in_vain = prepared.limited.as_ref().is_some_and(|limited| {
             !prepared.waters.lakes.is_empty()
                 && limited.beyond(&prepared.grid, &result.u) > FAR_BEYOND * self.field.relief()
@@ -301,17 +301,17 @@ impl Passes<'_> {
         Ok(())
     }
 
-    /// Whether another way out is worth trying.
+    /// Whether candidates are unresolved and there is time for another fallback.
     fn stuck(&self, result: &QpResult) -> bool {
         fallback::stuck(result) > 0 && !self.progress.should_end()
     }
 
-    /// The same, where lakes hide something that the program does not know of: to its grid small ones are not level.
+    /// The same, also if lakes hide points: small lakes are not level on the program's grid.
     fn unfinished(&self, result: &QpResult, hidden: usize) -> bool {
         fallback::stuck(result) + hidden > 0 && !self.progress.should_end()
     }
 
-    /// Solves again on finer and finer grids until nothing is missed any more; answers the best result.
+    /// Solves again on finer and finer grids until no candidate is missed; returns the best result.
     fn on_finer_grids(
         &self,
         grids: &Finer<'_>,

@@ -1,4 +1,4 @@
-//! What of the features the picture is asked to show.
+//! Reference and candidate points that a picture must show.
 
 use super::super::visibility_qp::{Candidate, LinesOfSight, RememberedLines, StraightSight, ViewSight};
 use super::super::{Field, LeftOut, ReferencePoint, TerrainSettings, Wedge, in_view};
@@ -7,7 +7,7 @@ use super::in_picture;
 use super::memory::{self, Prepared};
 use belvedere_core::View;
 
-/// What of the features the picture is asked to show.
+/// Reference and candidate points that a picture must show.
 pub(super) struct PointsInView<'a> {
     field: &'a Field,
     base: &'a View,
@@ -20,7 +20,7 @@ pub(super) struct PointsInView<'a> {
     pub(super) too_near: Vec<usize>,
     /// Dense points and, after them, the reference points.
     pub(super) candidates: Vec<Candidate>,
-    /// Of films, what lies beside the picture, likewise.
+    /// In films, the same for points beside the picture.
     pub(super) entering: Vec<Candidate>,
     pub(super) sight: Box<dyn LinesOfSight + 'a>,
     /// Whether lines of sight do not run straight to the eye: later stages bend them, or the picture is a parallel one.
@@ -28,7 +28,7 @@ pub(super) struct PointsInView<'a> {
 }
 
 impl<'a> PointsInView<'a> {
-    /// * `film`: asks by degrees for what lies beside the picture.
+    /// * `film`: also demands points beside the picture, gradually.
     pub(super) fn new(
         field: &'a Field,
         prepared: &Prepared,
@@ -70,7 +70,7 @@ impl<'a> PointsInView<'a> {
         dense.chain(points.iter().map(|&i| candidate(offset + i, &prepared.points[i]))).collect()
     }
 
-    /// Which of the points are asked for, and which would be if they were not too near.
+    /// Indices of the points that are demanded, and of those that would be if they were not too near to the eye.
     pub(super) fn indices(&self, points: &[ReferencePoint]) -> (Vec<usize>, Vec<usize>) {
         let near = memory::ahead(self.field, points, self.wedge.eye, self.ahead_m);
         let in_frame = |p: &ReferencePoint| {

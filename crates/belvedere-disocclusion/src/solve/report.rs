@@ -1,4 +1,4 @@
-//! What a displacement achieves and what it costs, ready for JSON.
+//! Report of a displacement: visibility, displacement and cost, written as JSON.
 
 use super::super::visibility_qp::QpResult;
 use super::super::{GreedyCounters, PointKind, TerrainMetrics, TerrainSettings};
@@ -21,19 +21,19 @@ pub struct TerrainReport {
     pub solver_grid: [usize; 2],
     /// Reference points in view.
     pub points: usize,
-    /// Places that were asked for: reference points and candidates in view. 0 = nothing was, the ground stays as it is.
+    /// Number of points that are demanded: reference points and candidates in view. 0 = no point is, and the ground stays as it is.
     pub asked: usize,
-    /// What is seen and how far the ground moved, by a judge that knows nothing of the solver; dense points lie every tenth of a cell along
-    /// lines and rims and on the edges of the ground's triangles inside areas, and those count that lie in the picture (but see
+    /// Visibility and displacement, by a judge that is independent of the solver. Dense points lie every tenth of a grid cell along
+    /// lines and rims and on the edges of the ground's triangles inside areas; those in the picture count (but see
     /// [`super::TerrainSolver::in_plan`]).
     #[serde(flatten)]
     pub metrics: TerrainMetrics,
-    /// Of so many dense points one was judged: 1, but more in the frames of films and where time was up, whose judgement is not to take
-    /// longer than their solution. There a guarantee needs all reference points and all judged ones to be seen.
+    /// One of this many dense points was judged: 1, but more in frames of films and where time was up, so that judging takes no
+    /// longer than solving. Where it is more than 1, a guarantee needs all reference points and all judged points to be seen.
     pub judged_every: usize,
-    /// [`TerrainMetrics::visible`] before the ground gave way.
+    /// [`TerrainMetrics::visible`] without the displacement.
     pub visible_before: f64,
-    /// [`TerrainMetrics::visible_dense`] before.
+    /// [`TerrainMetrics::visible_dense`] without the displacement.
     pub visible_dense_before: f64,
     /// The greedy pass; `None` in mode qp.
     pub greedy: Option<GreedyCounters>,
@@ -41,17 +41,17 @@ pub struct TerrainReport {
     pub qp: Option<QpReport>,
     /// Features that the ground moves for most, at most three, the most expensive first; empty in mode paper.
     pub costliest: Vec<FeatureCost>,
-    /// Ways out of contradicting rows that were taken, in their order; empty as a rule.
+    /// Fallbacks that were used for contradicting rows, in their order; usually empty.
     pub fallbacks: Vec<Fallback>,
-    /// What was filled up because it was dug deeper or steeper than ground is; `None` where nothing was.
+    /// Ground that was filled up to keep the limits of depth and slope; `None` if the limits changed nothing.
     pub limited: Option<LimitsReport>,
-    /// Spikes of the elevation model, the farthest out first: for solving they were taken to be as high as their neighbours.
+    /// Spikes of the elevation model, the largest first; the solver replaced them by the median of their surroundings.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub spikes: Vec<Spike>,
     /// Lakes and how they moved: each as a whole.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lakes: Vec<LakeReport>,
-    /// The rivers that were asked not to run uphill, and how they run.
+    /// The rivers that must not run uphill, and how they run.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rivers: Vec<RiverReport>,
     /// Whether every candidate in view is guaranteed to be seen in this picture, no river that was named runs uphill by more than
@@ -61,32 +61,32 @@ pub struct TerrainReport {
     pub guaranteed: bool,
     /// Whether the solver was out of time and ended with the best it had.
     pub out_of_time: bool,
-    /// Which ground that was: what shows most of those that could be had in the time.
+    /// Which ground was taken when time was up: the one that shows most.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub taken: Option<Taken>,
-    /// What cannot be seen, and why.
+    /// Parts of features that cannot be seen, with the reason.
     pub unresolved: Vec<UnresolvedRun>,
-    /// What else the judge finds hidden of what is in view, and why: places between two that were looked after.
+    /// Other parts in view that the judge finds hidden, with the reason: points between two candidates.
     pub hidden: Vec<UnresolvedRun>,
-    /// Places that stay covered at the slack price; what facets alone cover is in `hidden`.
+    /// Points that stay covered at the price of slack; those that only facets cover are in `hidden`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub covered: Vec<Covered>,
     /// Times.
     pub times: TerrainTimes,
 }
 
-/// A place that stays covered, in the exact picture too, because clearing it costs more than the slack price allows.
+/// A point that stays covered, in the exact picture too, because clearing it costs more than the price of slack allows.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Covered {
     /// Scene x, y.
     pub at: [f64; 2],
-    /// Height over the ground at which it is wanted.
+    /// Height over the ground at which it must be seen.
     pub lift_m: f64,
     /// How far the ground rises over its line of sight.
     pub over_m: f64,
 }
 
-/// What a feature costs.
+/// Cost of a feature.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FeatureCost {
     /// Index of the layer in the scene.
@@ -127,7 +127,7 @@ impl QpReport {
 /// Wall times, milliseconds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct TerrainTimes {
-    /// Cells, points, tables; next to nothing after the first frame.
+    /// Preparation of cells, points and tables; nearly 0 after the first frame.
     pub prepare_ms: f64,
     /// Greedy pass.
     pub greedy_ms: f64,
@@ -135,7 +135,7 @@ pub struct TerrainTimes {
     pub smooth_ms: f64,
     /// Quadratic program.
     pub qp_ms: f64,
-    /// These figures.
+    /// Figures of this report.
     pub report_ms: f64,
 }
 
@@ -151,18 +151,18 @@ pub enum UnresolvedReason {
     NearerThanGuard,
     /// It has no line of sight, for it lies outside the domain of a later stage.
     NoLineOfSight,
-    /// Rows contradict each other: no displacement down to `depth_m` shows all that is asked.
+    /// Rows contradict each other: no displacement down to `depth_m` shows all points that are demanded.
     Infeasible {
         /// Displacements down to this are ruled out.
         depth_m: f64,
-        /// By how much the weighted rows miss at best, > 0.
+        /// Height by which the weighted rows are missed at best, > 0.
         gap_m: f64,
         /// Rows of the proof.
         rows: usize,
     },
     /// The quadratic program used up its rounds.
     NotSettled {
-        /// Metres that lack.
+        /// Height by which rows are still missed, metres.
         lacks_m: f64,
     },
     /// The greedy pass could not show it.
@@ -172,12 +172,12 @@ pub enum UnresolvedReason {
         /// How far the ground rises over its line of sight.
         over_m: f64,
     },
-    /// The program holds it for seen and the judge does not.
+    /// The program counts it as seen, the judge as hidden.
     Judged {
         /// How far the ground rises over its line of sight.
         over_m: f64,
     },
-    /// Between two places that are seen.
+    /// It lies between two points that are seen.
     Between {
         /// How far the ground rises over its line of sight.
         over_m: f64,
@@ -216,7 +216,7 @@ pub struct UnresolvedRun {
     pub at: [f64; 2],
     /// Points.
     pub points: usize,
-    /// Why; of a run of points the first one's figures, but the largest of those that say how far ground rises.
+    /// Reason, with the figures of the first point, but the largest rise of ground over a line of sight of all points.
     #[serde(flatten)]
     pub reason: UnresolvedReason,
 }
@@ -225,17 +225,17 @@ pub struct UnresolvedRun {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(tag = "ground", rename_all = "snake_case")]
 pub enum Taken {
-    /// As it was: nothing else showed more.
+    /// The undisplaced ground: no other showed more.
     Unmoved,
-    /// That of the frame before.
+    /// The ground of the frame before.
     FrameBefore,
-    /// The quadratic program's for a sample of what was asked.
+    /// The solution of the quadratic program for a sample of its candidates.
     Sample {
-        /// Of so many points one was asked for.
+        /// One of this many candidates was demanded.
         every: usize,
     },
-    /// The quadratic program's, unfinished.
+    /// The unfinished solution of the quadratic program.
     Unfinished,
-    /// That of the greedy and the smooth pass.
+    /// The ground of the greedy and the smooth pass.
     SinglePass,
 }

@@ -1,4 +1,4 @@
-//! From an outcome to its report.
+//! Builds the report of an outcome.
 
 use super::super::metrics::{Hides, Judge, Judged, judged, share_seen, still};
 use super::super::visibility_qp::{Reason, SolvedRow, Unresolved};
@@ -17,7 +17,7 @@ use belvedere_core::{DVec2, View};
 use belvedere_scene::{Instant, Progress};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Share of what is in view that must be seen for a promise to be kept: a hair's breadth is left to rounding.
+/// Visible share from which on a guarantee counts as kept: the rest is left to rounding.
 const AGREES: f64 = 0.9999;
 /// Dense points that are judged at most, about, in frames of films and where time was up.
 const MOST_SAMPLED: usize = 1000;
@@ -35,24 +35,24 @@ pub(super) struct Context<'a> {
     pub(super) delta: &'a Grid,
     /// See [`Deformation::traced`].
     pub(super) traced: bool,
-    /// That of the frame before.
+    /// Displacement of the frame before.
     pub(super) previous: Option<&'a Grid>,
-    /// Where time is short not every dense point is judged.
+    /// When time is short, not every dense point is judged.
     pub(super) progress: &'a Progress,
 }
 
-/// Dense points to judge, all or about [`MOST_SAMPLED`]; of how many each is one.
+/// Dense points to judge, all or about [`MOST_SAMPLED`], and the number of points that each of them stands for.
 pub(super) fn sampled(all: Vec<ReferencePoint>, few: bool) -> (Vec<ReferencePoint>, usize) {
     if !few || all.len() <= MOST_SAMPLED {
         return (all, 1);
     }
-    // Those that stand for something alone.
+    // Only points that stand for a length, an area or a feature.
     let counted: Vec<ReferencePoint> = all.iter().filter(|p| p.amount > 0.0).copied().collect();
     let every = counted.len().div_ceil(MOST_SAMPLED).max(1);
     (counted.into_iter().step_by(every).collect(), all.len().div_ceil(MOST_SAMPLED))
 }
 
-/// Whether to judge all of so many dense points would take more than half of the time that is left, by what a sample takes.
+/// Whether judging all dense points would take more than half of the time left, extrapolated from a sample.
 fn too_many(progress: &Progress, judge: &Judge<'_>, all: &[ReferencePoint], guard: f64) -> bool {
     let Some(left) = progress.left() else { return false };
     let every = all.len().div_ceil(MOST_SAMPLED / 4).max(1);
@@ -185,7 +185,7 @@ fn costliest(prepared: &Prepared, rows: &[SolvedRow]) -> Vec<FeatureCost> {
     out
 }
 
-/// Dense points that are hidden although no place that is named stands for them.
+/// Dense points that are hidden although no listed point stands for them.
 fn hidden(
     c: &Context<'_>,
     done: &Outcome,
@@ -211,7 +211,7 @@ fn hidden(
     runs.out
 }
 
-/// What cannot be seen, and whether that is nothing of what the program looks after.
+/// Parts that cannot be seen, and whether none of them was left by the quadratic program.
 struct Named {
     runs: Vec<UnresolvedRun>,
     program_met: bool,

@@ -1,4 +1,4 @@
-//! Hidden places put together to parts of features.
+//! Merges hidden points into parts of features.
 
 use super::super::{Field, PointKind, ReferencePoint};
 use super::{UnresolvedReason, UnresolvedRun};
@@ -8,14 +8,14 @@ use std::collections::BTreeMap;
 /// Parts of features, gathered point by point.
 pub(super) struct Runs<'a> {
     field: &'a Field,
-    /// Points of a line or rim farther apart along it have others between them, which are seen.
+    /// Points of a line or rim farther apart than this, scene units, belong to different parts: those between them are seen.
     gap_m: f64,
     pub(super) out: Vec<UnresolvedRun>,
-    /// Runs inside areas by the blocks of the ground in which they lie, of so many cells.
+    /// Runs inside areas by the squares of the ground in which they lie, of `BLOCK` grid cells per side.
     blocks: BTreeMap<(usize, usize, i64, i64), usize>,
 }
 
-/// Cells per side of the blocks by which hidden places inside areas are gathered.
+/// Grid cells per side of the squares by which hidden points inside areas are gathered.
 const BLOCK: f64 = 4.0;
 
 impl<'a> Runs<'a> {
@@ -35,7 +35,7 @@ impl<'a> Runs<'a> {
     ) {
         let (x, y) = ((grid.x / BLOCK).floor() as i64, (grid.y / BLOCK).floor() as i64);
         if kind == PointKind::Inside {
-            // Places inside an area are gathered by where they lie.
+            // Points inside an area are gathered by their position.
             let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (layer, feature, x + dx, y + dy)));
             let mut known = around.filter_map(|block| self.blocks.get(&block).copied());
             let same = |k: &usize| std::mem::discriminant(&self.out[*k].reason) == std::mem::discriminant(&reason);
@@ -63,7 +63,7 @@ impl<'a> Runs<'a> {
     }
 }
 
-/// Of two reasons of one kind the first, with the larger rise of ground over a line of sight.
+/// The first of two reasons of one kind, with the larger rise of ground over a line of sight of both.
 fn worse(first: UnresolvedReason, next: UnresolvedReason) -> UnresolvedReason {
     use UnresolvedReason::{Between, Facets, InsideGuard, Judged, Limits, Smoothed};
     match (first, next) {

@@ -1,4 +1,4 @@
-//! Which points a picture shows or would show if nothing hid them: what its shares are of.
+//! Points that a picture shows or would show if nothing hid them; visible shares are shares of these.
 
 use super::super::{Field, ReferencePoint};
 use super::in_picture;
@@ -19,7 +19,7 @@ impl Shown {
         Self::with(base, None, in_plan)
     }
 
-    /// The same over displaced ground.
+    /// The picture of `base` over displaced ground; `in_plan`: all that lies above and below it as well.
     pub(super) fn after(base: &View, delta: &Grid, in_plan: bool) -> Result<Self, DisocclusionError> {
         Self::with(base, Some(delta), in_plan)
     }
@@ -45,7 +45,7 @@ impl Shown {
         }
     }
 
-    /// Those of the points that lie in it.
+    /// The points that lie in it.
     pub(super) fn of(&self, field: &Field, points: &[ReferencePoint]) -> Vec<ReferencePoint> {
         points.par_iter().filter(|p| self.holds(field, p)).copied().collect()
     }

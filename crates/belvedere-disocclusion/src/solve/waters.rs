@@ -6,7 +6,7 @@ use crate::rivers::{RiverLine, Rivers};
 use belvedere_core::DVec2;
 use belvedere_scene::{Heightfield, NodeState};
 
-/// Detail of the ground does not change on rivers, and by less and less towards them from so many nodes away.
+/// Distance from rivers within which the change of detail fades to zero, nodes.
 const FADE: usize = 4;
 
 /// Lakes and rivers.
@@ -43,7 +43,7 @@ impl Waters {
         whole
     }
 
-    /// Zero on lakes and rivers: detail of the ground does not change there.
+    /// Sets the change of detail to zero on lakes and rivers, and fades it out towards rivers.
     pub(super) fn clear(&self, detail: &mut [f64], field: &Field) {
         self.lakes.clear(detail);
         if self.rivers.is_empty() {

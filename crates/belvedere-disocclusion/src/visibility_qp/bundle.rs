@@ -14,13 +14,13 @@ use std::ops::Range;
 const MOST: usize = LANES;
 /// Cells between the points of a bundle at most.
 const SPREAD: f64 = 3.0;
-/// Short parts are looked at unless blocks leave this room, scene units, for the same reason.
+/// Short parts of lines are tested one by one unless the bounds of the finest blocks leave this clearance, scene units.
 const SOME: f64 = 0.5;
-/// What rounding may change in a height, scene units.
+/// Largest change of a height by rounding, scene units.
 const ROUNDING: f64 = 1e-6;
-/// Cells of the pieces that lines are followed along.
+/// Length of the pieces along which lines are followed, grid cells.
 const FINE: f64 = 2.0;
-/// Larger blocks are not believed to be out of the way if they leave less room, scene units: room saves walks later on.
+/// Longer parts are halved if the bounds of blocks leave less clearance than this, scene units: a known clearance saves later walks.
 const WISH: f64 = 2.0;
 
 /// Lines of sight that are followed as one.
@@ -34,8 +34,8 @@ pub(super) enum Bundle {
 #[derive(Debug, Clone)]
 pub(super) struct Together {
     members: Range<usize>,
-    /// By how much the ground may rise against all lines before a place can be missed that is not on a `near` part; negative
-    /// if that is not known.
+    /// Height by which the ground may rise towards all lines before a position outside the `near` parts can be missed, scene units;
+    /// negative if it is not known.
     room: f64,
     near: Vec<Near>,
 }
@@ -46,7 +46,7 @@ struct Near {
     part: [f64; 2],
     /// Least and greatest corner, grid.
     corners: [DVec2; 2],
-    /// As of the bundle, for this part.
+    /// The same height for this part.
     room: f64,
 }
 
@@ -72,7 +72,7 @@ impl Bundle {
         out
     }
 
-    /// The displacement changed: takes what the ground rose and the lines sank at most from the room.
+    /// Updates the room after a change of the displacement: subtracts bounds of the rise of the ground and of the fall of the lines.
     pub(super) fn moved(&mut self, seen: &[CandidateLine], rise: &Rise) {
         match self {
             Self::SingleLine(one) => one.moved(seen, rise),
@@ -80,7 +80,7 @@ impl Bundle {
         }
     }
 
-    /// All places where the asked clearance is missed. Where there is room left nothing is looked at.
+    /// All positions where the required clearance is missed. Parts of lines with room left are skipped.
     pub(super) fn walk(
         &mut self,
         seen: &[CandidateLine],
@@ -138,7 +138,7 @@ impl Together {
         touches
     }
 
-    /// Looks at the near parts without room.
+    /// Tests the near parts that have no room left.
     fn look(&mut self, lines: &[Line], surface: &Surface, clearance: &Clearance, touches: &mut Vec<(usize, Touch)>) {
         let tight = |n: &&mut Near| n.room <= 0.0;
         let parts: Vec<[f64; 2]> = self.near.iter_mut().filter(tight).map(|n| n.part).collect();
@@ -170,7 +170,7 @@ impl Together {
     }
 }
 
-/// The ends of the parts of lines: places that are missed, and the room that is left at the others.
+/// Tests the ends of the parts of lines: collects those where the clearance is missed, and returns the room left at the others.
 fn ends(lines: &[Line], surface: &Surface, clearance: &Clearance, touches: &mut Vec<(usize, Touch)>) -> f64 {
     let mut room = f64::INFINITY;
     for (k, chord, part) in lines {
@@ -184,7 +184,7 @@ fn ends(lines: &[Line], surface: &Surface, clearance: &Clearance, touches: &mut 
     room
 }
 
-/// What encloses the lines of a bundle: a box of points that shrinks into the eye, and the lowest line.
+/// Bounds of the lines of a bundle: a box of points that shrinks into the eye, and the lowest line.
 struct Fan {
     points: [DVec2; 2],
     eye: DVec2,

@@ -8,7 +8,7 @@ use belvedere_core::DVec2;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// How far along a line of sight a row of the frame before is looked for, cells.
+/// Distance along a line of sight within which a row of the frame before is found again, grid cells.
 const FOLLOW: f64 = 2.5;
 
 /// A candidate with its line of sight.
@@ -120,7 +120,7 @@ impl CandidateLine {
     }
 }
 
-/// Chords of a polyline; its share of the way is measured in plan.
+/// Chords of a polyline; the share of its length is measured in plan.
 fn chords(line: &[(DVec2, f64)], faceted: bool) -> Arc<[Chord]> {
     let length = |p: &[(DVec2, f64)]| (p[1].0 - p[0].0).length();
     let total: f64 = line.windows(2).map(length).sum();

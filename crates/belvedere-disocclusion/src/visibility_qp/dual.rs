@@ -62,7 +62,7 @@ impl Dual {
         self.m[row] * self.scale[row]
     }
 
-    /// What was given of a row: inverse weight of its slack, and its excess.
+    /// Terms of a row as they were given: inverse weight of its slack, and its excess.
     pub(super) fn terms(&self, row: usize) -> [f64; 2] {
         let scale = self.scale[row];
         [self.soft[row] / (scale * scale), self.excess[row] / scale]
@@ -113,8 +113,8 @@ impl Dual {
         false
     }
 
-    /// From the feasible multipliers `m`: add rows that are missed, walk to the solution on the active rows, and drop on
-    /// the way what reaches zero. The objective never rises.
+    /// From the feasible multipliers `m`: adds rows that are missed, moves to the solution on the active rows, and drops rows whose
+    /// multiplier reaches zero on the way. The objective never rises.
     fn descend(&mut self, m: Vec<f64>, tolerance: f64, go_on: &(dyn Fn() -> bool + Sync)) -> bool {
         let now: Vec<usize> = (0..self.len()).filter(|&i| self.active[i] != (m[i] > 0.0)).collect();
         self.exchange(&now);
@@ -235,7 +235,7 @@ impl Dual {
     }
 }
 
-/// With the widest registers at hand.
+/// Task of `solution` for the widest available SIMD registers.
 struct Solution<'a>(&'a mut Dual);
 
 impl WithSimd for Solution<'_> {
@@ -247,7 +247,7 @@ impl WithSimd for Solution<'_> {
     }
 }
 
-/// Likewise.
+/// Task of `gradient` for the widest available SIMD registers.
 struct Gradient<'a>(&'a Dual, &'a mut Vec<f64>);
 
 impl WithSimd for Gradient<'_> {

@@ -10,10 +10,10 @@ use pulp::{Arch, Simd, WithSimd};
 pub(super) struct Lanes {
     /// Points by axis; the third is x - y.
     p: [Lane; 3],
-    /// Ways to the eye, likewise, and one over them.
+    /// Vectors from the points to the eye, by the same axes, and their inverses.
     d: [Lane; 3],
     per: [Lane; 3],
-    /// Heights at the points and what they rise by to the eye.
+    /// Heights of the lines at the points, and their rise from there to the eye.
     z: [Lane; 2],
     part: [Lane; 2],
     /// Clearance without its tolerance: at the point, and by how much more far from it.
@@ -45,14 +45,14 @@ impl Lanes {
         }
     }
 
-    /// For each part (the same for all lines): by how much the place of a line that misses the asked clearance by most does
-    /// so, beyond the tolerance; negative where all kinks and ends keep it.
+    /// For each part (the same for all lines) and each line, the largest height by which it misses the required clearance beyond the
+    /// tolerance; negative where all kinks and ends keep it.
     pub(super) fn most(&self, surface: &Surface, parts: &[[f64; 2]], out: &mut Vec<Lane>) {
         Arch::new().dispatch(Most { lanes: self, surface, parts, out });
     }
 }
 
-/// With the widest registers at hand.
+/// Task for the widest available SIMD registers.
 struct Most<'a> {
     lanes: &'a Lanes,
     surface: &'a Surface,
@@ -88,7 +88,7 @@ struct Register<S: Simd> {
     faceted: bool,
 }
 
-/// Where lines are at some parameters of theirs.
+/// Positions of the lines, each at a parameter of its own.
 #[derive(Clone, Copy)]
 struct Place<S: Simd> {
     t: S::f64s,
@@ -179,7 +179,7 @@ impl<S: Simd> Register<S> {
         let [first, end] = self.range(FAMILY, 1.0, within);
         let (mut k, until) = (first.max(limits[0]), end.min(limits[1]));
         let stride = [surface.cols, 1, surface.cols + 1][FAMILY];
-        // What runs along the edges.
+        // The coordinate that runs along the edges.
         let along = usize::from(FAMILY == 0);
         while k <= until {
             let (t, line) = (self.crossing(FAMILY, k), simd.splat_f64s(k));
@@ -209,7 +209,7 @@ impl<S: Simd> Register<S> {
         }
     }
 
-    /// Takes places within the parts into account.
+    /// Takes positions within the parts into account.
     ///
     /// * `facet`: how far facets lie over the bilinear displacement, per factor of xy in a cell of the field.
     #[inline(always)]
@@ -333,7 +333,7 @@ mod tests {
                                 }
                             });
                         }
-                        // Between kinks it bulges at most by so much.
+                        // Largest height by which the ground bulges between kinks.
                         let bulge = 0.25 * surface.displaced_bound([DVec2::ZERO, last]).1;
                         let between = (0..=300).map(|k| missing(part[0] + (part[1] - part[0]) * f64::from(k) / 300.0));
                         let most = between.fold(all, f64::max);

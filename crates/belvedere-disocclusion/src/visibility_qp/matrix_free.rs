@@ -16,16 +16,16 @@ const NEARNESS: f64 = 1e-2;
 const NEARNESS_RANGE: [f64; 2] = [1e-5, 1.0];
 const NEARER: f64 = 8.0;
 const FARTHER: f64 = 0.25;
-/// Changes of the face per cycle, and how many in a row may come without fewer rows changing.
+/// Changes of the face (the active set) per cycle at most, and changes in succession without fewer rows changing at most.
 const NEWTON_STEPS: usize = 40;
 const PATIENCE: usize = 5;
 /// Conjugate gradient steps on a face while many rows change, and afterwards.
 const CONJUGATE_STEPS: [usize; 2] = [25, 60];
-/// Faces are solved to this share of what rows may be missed by.
+/// Tolerance of the equations on a face, share of the allowed miss of each row.
 const EXACT: f64 = 0.2;
-/// Neighbouring rows with a common factor.
+/// Number of neighbouring rows that share one Cholesky factor.
 const CROWD: usize = 96;
-/// Of so many neighbouring rows only the most missed one joins a face at a time: those beside it are mostly met with it.
+/// Number of neighbouring rows of which only the most missed one joins a face at a time: the others are mostly met with it.
 const GROUP: usize = 8;
 /// A pivot below this share of its diagonal counts as dependent.
 const DEPENDENT: f64 = 1e-6;
@@ -39,19 +39,19 @@ pub(super) struct MatrixFree {
     /// Inverse price of slack, 0 = none.
     soft: Vec<f64>,
     excess: Vec<f64>,
-    /// What a row may be missed by in the end, metres.
+    /// Height by which a row may be missed in the end, metres.
     allowed: Vec<f64>,
     m: Vec<f64>,
     /// `K m`, of the rows at the last solution.
     product: Vec<f64>,
     nearness: f64,
-    /// Neighbours follow each other.
+    /// Order of the rows in which neighbours follow each other.
     order: Vec<usize>,
     /// Values at the nodes of the solver's grid.
     nodes: Vec<f64>,
 }
 
-/// What one cycle solves: `(K + diagonal) m = wanted` on the face, m = 0 off it.
+/// Equations of one cycle: `(K + diagonal) m = wanted` on the face, m = 0 off it.
 struct Equations {
     wanted: Vec<f64>,
     diagonal: Vec<f64>,
@@ -91,7 +91,8 @@ impl MatrixFree {
         self.m[row] * self.soft[row]
     }
 
-    /// By how much a row is missed, slack apart; negative where it has room, infinite before the first solution.
+    /// Height by which a row is missed beyond its slack, metres; negative where it is met with a margin, infinite before the first
+    /// solution.
     pub(super) fn missed(&self, row: usize) -> f64 {
         self.product.get(row).map_or(f64::INFINITY, |product| self.excess[row] - product - self.slack(row))
     }
@@ -102,7 +103,7 @@ impl MatrixFree {
         self.product.iter().enumerate().map(of).sum()
     }
 
-    /// Cycles until no row is missed by more than it may be, or by `enough` if that is more. Answers whether that was reached.
+    /// Runs cycles until no row is missed by more than it may be, or by `enough` if that is more. Returns whether that was reached.
     ///
     /// * `cycles`: at most;
     /// * `go_on`: asked between steps; false stops with the best so far.
@@ -132,7 +133,7 @@ impl MatrixFree {
         (0..self.m.len()).all(|i| self.missed(i) <= self.allowed[i].max(enough))
     }
 
-    /// One proximal step; without progress the multipliers stay and the next step is nearer.
+    /// One proximal step; without progress the multipliers stay and the proximal weight of the next step is greater.
     fn cycle(&mut self, metric: &mut Metric, go_on: &(dyn Fn() -> bool + Sync)) {
         let n = self.m.len();
         let near: Vec<f64> = self.square.iter().map(|square| self.nearness * square).collect();
@@ -182,7 +183,7 @@ impl MatrixFree {
         (0..self.m.len()).map(of).sum()
     }
 
-    /// Rows without a multiplier leave the face, and of each group the one that is missed most joins it. Answers how many changed.
+    /// Rows without a multiplier leave the face, and of each group the most missed row joins it. Returns the number of rows that changed.
     fn turn(&self, e: &mut Equations) -> usize {
         let mut changed = 0;
         for group in self.order.chunks(GROUP) {
@@ -257,7 +258,7 @@ impl MatrixFree {
         self.rows.par_iter().with_min_len(2048).map(|row| row.at(nodes)).collect()
     }
 
-    /// The same of some rows for them alone.
+    /// `K v` at the rows `held`, with `v` given at these rows alone.
     fn times_on(&mut self, metric: &mut Metric, held: &[usize], v: &[f64]) -> Vec<f64> {
         self.spread(metric, held.iter().copied().zip(v.iter().copied()));
         let (rows, nodes) = (&self.rows, &self.nodes);

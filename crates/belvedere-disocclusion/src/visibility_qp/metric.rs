@@ -42,7 +42,7 @@ impl Metric {
         }
     }
 
-    /// What ties take of the products of a row with this one; `None` without ties. See [`Ties::shared`].
+    /// The part of a row that ties subtract from its products with other rows; `None` without ties. See [`Ties::shared`].
     pub(super) fn shared(&self, points: &[(f64, Between); 4]) -> Option<Vec<f64>> {
         self.ties.as_ref().map(|ties| ties.shared(points, &self.green))
     }

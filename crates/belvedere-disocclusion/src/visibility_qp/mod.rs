@@ -1,6 +1,6 @@
 //! Guaranteed visibility: the displacement of least change and bending under which every candidate is seen.
 //!
-//! `min 1/2 |u - u*|_H^2` over displacements u of the solver's grid, subject to one row per place where the ground
+//! `min 1/2 |u - u*|_H^2` over displacements u of the solver's grid, subject to one row per position where the ground
 //! would come too close to a line of sight, and to a ceiling for every node. That a point is seen is linear in u, so the
 //! program is convex and its solution is the only one. Not in the paper.
 

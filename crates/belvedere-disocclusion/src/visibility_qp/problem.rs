@@ -1,4 +1,4 @@
-//! What is asked of the program, and what it answers.
+//! Input and output of the visibility program.
 
 use crate::TerrainSettings;
 use belvedere_core::DVec2;
@@ -6,7 +6,7 @@ use belvedere_core::DVec2;
 /// A point that must be seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
-    /// The same in every frame: rows are remembered by it.
+    /// Identifier, the same in every frame: rows are remembered by it.
     pub id: u32,
     /// Grid coordinates, on the field.
     pub grid: DVec2,
@@ -18,25 +18,25 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Over ground with the bilinear displacement.
+    /// A candidate over ground with the bilinear displacement.
     pub fn new(id: u32, grid: DVec2, lift: f64) -> Self {
         Self { id, grid, lift, faceted: false }
     }
 
-    /// Over ground of facets.
+    /// A candidate over ground of facets.
     pub fn faceted(id: u32, grid: DVec2, lift: f64) -> Self {
         Self { id, grid, lift, faceted: true }
     }
 }
 
-/// How points are seen.
+/// Lines of sight from points to the eye.
 pub trait LinesOfSight: Sync {
     /// Appends the line of sight of the point at `grid` (grid coordinates) and height `z`, from the point to the eye, as a
     /// chain of (grid coordinates, height); nothing if the point has none, e.g. outside the domain of a stage.
     fn trace(&self, grid: DVec2, z: f64, out: &mut Vec<(DVec2, f64)>);
 
-    /// The eye (grid coordinates, height) if every line is a straight segment to it or to a place over it that depends on the point's
-    /// place alone, so that lines depend linearly on the heights of their points.
+    /// The eye (grid coordinates, height) if every line is a straight segment to it, or to a point over it that depends only on the
+    /// plan position of the candidate, so that lines depend linearly on the heights of their points.
     fn straight(&self) -> Option<(DVec2, f64)> {
         None
     }
@@ -66,16 +66,16 @@ impl LinesOfSight for StraightSight {
 pub struct QpOptions {
     /// Ground nearer than this to a candidate cannot hide it, cells.
     pub guard: f64,
-    /// Clearance asked of lines of sight, metres; fades over the fifth of the way next to the candidate.
+    /// Clearance required of lines of sight, metres; it fades over the fifth of the line next to the candidate.
     pub margin: f64,
-    /// How much of that clearance may lack, metres, fading likewise; > 0.
+    /// Tolerance of that clearance, metres, fading likewise; > 0.
     pub tolerance: f64,
     /// Share of both that is left at the candidate itself, 0..=1, of candidates at least `margin` above the ground; with the lowest
     /// lift it becomes less. At 0 rows next to candidates must be met to the millimetre, and there are twice as many.
     pub near: f64,
     /// Most a node may rise, metres.
     pub ceiling: f64,
-    /// How far a node may exceed its ceiling, metres, > 0.
+    /// Height by which a node may exceed its ceiling, metres, > 0.
     pub ceiling_tolerance: f64,
     /// Price of a metre of occlusion squared: rows may be missed by a slack at this price; `None` = they must be met.
     pub slack_price: Option<f64>,
@@ -105,7 +105,7 @@ impl QpOptions {
 pub struct QpProblem<'a> {
     /// Points that must be seen: those of the frame, dense along features.
     pub candidates: &'a [Candidate],
-    /// How they are seen.
+    /// Lines of sight of the candidates.
     pub sight: &'a dyn LinesOfSight,
     /// Displacement that the solution stays close to, at the solver's nodes; `None` = none. In mode `qp` the smoothed last
     /// frame, in mode `paper+qp` the smooth pass.
@@ -119,9 +119,9 @@ pub struct QpProblem<'a> {
 pub struct SolvedRow {
     /// Candidate whose line of sight it keeps clear; `None` = a node below its ceiling, or a river that does not rise.
     pub candidate: Option<u32>,
-    /// Where the ground comes near the line, grid coordinates.
+    /// Position at which the ground comes near the line, grid coordinates.
     pub at: DVec2,
-    /// Share of the way from the candidate to the eye.
+    /// Share of the distance from the candidate to the eye in plan.
     pub tau: f64,
     /// Nodes.
     pub nodes: [u32; 8],
@@ -142,11 +142,11 @@ pub enum Reason {
     TooNear,
     /// It has no line of sight.
     NoLine,
-    /// No displacement of the solver's grid within the depth limit shows all that is asked.
+    /// No displacement of the solver's grid within the depth limit shows all points that are demanded.
     Infeasible(Certificate),
     /// Still missed, by these metres, when the rounds were used up.
     NotSettled {
-        /// Metres that lack.
+        /// Height by which rows are still missed, metres.
         lacks: f64,
     },
 }
@@ -157,7 +157,7 @@ pub enum Reason {
 pub struct Certificate {
     /// Displacements down to this are ruled out, metres.
     pub depth: f64,
-    /// By how much the sum of the rows is missed at best, metres per unit of multiplier, > 0.
+    /// Height by which the sum of the rows is missed at best, metres per unit of multiplier, > 0.
     pub gap: f64,
     /// Candidates of the rows with their multipliers, which add up to 1 together with those of the ceilings.
     pub rows: Vec<(u32, f64)>,
@@ -187,13 +187,13 @@ pub struct QpResult {
     pub added: usize,
     /// Rounds in which all lines of sight were checked.
     pub rounds: usize,
-    /// Candidates that are not seen as asked.
+    /// Candidates that are not seen with the required clearance.
     pub unresolved: Vec<Unresolved>,
     /// `1/2 |u - u*|_H^2`.
     pub energy: f64,
     /// Wall time, milliseconds.
     pub milliseconds: f64,
-    /// Whether it was told to end before its end: what is missed may be more than is named.
+    /// Whether it was stopped before it was done: more may be missed than is listed.
     pub stopped: bool,
 }
 

@@ -1,11 +1,11 @@
-//! Places on a grid, several in a register.
+//! SIMD registers that hold several grid positions.
 
 use pulp::Simd;
 
 /// The most numbers that a register holds.
 pub(super) const LANES: usize = 8;
 
-/// A number for each place; registers with fewer take the first ones.
+/// A number for each position; shorter registers take the first ones.
 pub(super) type Lane = [f64; LANES];
 
 /// The first register of a lane.
@@ -26,7 +26,7 @@ pub(super) fn store<S: Simd>(register: S::f64s) -> Lane {
 /// counts as 0, and so does NaN.
 #[inline(always)]
 pub(super) fn split<S: Simd>(simd: S, x: S::f64s, last: f64) -> (S::f64s, S::f64s) {
-    // Adding it rounds to whole numbers.
+    // Adding this rounds to a whole number.
     const WHOLE: f64 = 6_755_399_441_055_744.0;
     let x = simd.max_f64s(x, simd.splat_f64s(0.0));
     let middle = simd.min_f64s(simd.sub_f64s(x, simd.splat_f64s(0.5)), simd.splat_f64s(last));

@@ -1,4 +1,4 @@
-//! Lines of sight that are not traced again where their points hardly moved.
+//! Cache of traced lines of sight, for points that hardly move.
 
 use super::problem::LinesOfSight;
 use belvedere_core::DVec2;
@@ -11,8 +11,8 @@ const STEP_M: f64 = 0.04;
 /// A line as it was traced: number of its step of height, and its vertices.
 type Traced = (i64, Arc<[(DVec2, f64)]>);
 
-/// Lines of sight that take long to trace. Between judgements and solutions of one picture points move by centimetres, and their lines
-/// with them: by all of it at the point, by nothing at the eye. Answers do not depend on what was traced before.
+/// Cache of lines of sight that take long to trace. Between judgements and solutions of one picture points move by centimetres, and
+/// their lines with them: fully at the point, not at all at the eye. Answers do not depend on the lines that were traced before.
 pub(crate) struct RememberedLines<S> {
     sight: S,
     /// The last line of each point.

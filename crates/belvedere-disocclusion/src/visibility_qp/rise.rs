@@ -1,4 +1,4 @@
-//! By how much the ground rose between two displacements, at most.
+//! Upper bounds of the rise of the ground from one displacement to the next.
 
 use super::surface::Lattice;
 use belvedere_core::DVec2;
@@ -6,14 +6,14 @@ use belvedere_core::DVec2;
 /// Largest rise of the ground by blocks of the solver's grid.
 pub(super) struct Rise<'a> {
     lattice: &'a Lattice,
-    /// By how much each node of the solver's grid rose.
+    /// Rise of each node of the solver's grid, scene units.
     pub(super) change: &'a [f64],
     cols: usize,
     rows: usize,
     /// Cells per block.
     size: DVec2,
     most: Vec<f64>,
-    /// Nothing rises more.
+    /// Largest rise of any node, scene units.
     pub(super) greatest: f64,
 }
 
@@ -35,7 +35,7 @@ impl<'a> Rise<'a> {
         Self { lattice, change, cols, rows, size: lattice.step * SIDE as f64, most, greatest }
     }
 
-    /// Nothing in a box (least and greatest corner, grid) rises more.
+    /// Upper bound of the rise in a box (least and greatest corner, grid coordinates).
     pub(super) fn within(&self, corners: [DVec2; 2]) -> f64 {
         let Lattice { cols, rows, step } = *self.lattice;
         let [low, high] = corners.map(|c| c / step);
@@ -50,7 +50,7 @@ impl<'a> Rise<'a> {
         most
     }
 
-    /// Nothing on straight ways (grid) from one box (least and greatest corner) to another rises more.
+    /// Upper bound of the rise on straight lines from one box to another (least and greatest corners, grid coordinates).
     pub(super) fn along(&self, from: [DVec2; 2], to: [DVec2; 2]) -> f64 {
         let ([a, b], [c, d]) = (from.map(|p| p / self.size), to.map(|p| p / self.size));
         let pieces = (c - a).abs().max_element().clamp(1.0, 1e4).ceil();

@@ -4,7 +4,7 @@ use super::metric::Metric;
 use crate::smooth::Between;
 use belvedere_core::DVec2;
 
-/// Two places of a river.
+/// Two points of a river, by their indices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Stretch {
     pub(super) river: u32,
@@ -12,7 +12,7 @@ pub(super) struct Stretch {
     pub(super) downstream: u32,
 }
 
-/// What a row asks for.
+/// The condition of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Constraint {
     /// A node does not rise above its ceiling.
@@ -23,7 +23,7 @@ pub(super) enum Constraint {
     Sight { candidate: usize, at: DVec2, tau: f64 },
 }
 
-/// At most eight nodes: four around the ground sample, four around the point that must be seen; or around two places of a river.
+/// A row with at most eight nodes: four around the ground sample and four around the candidate, or around two points of a river.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Row {
     pub(super) nodes: [u32; 8],
@@ -31,7 +31,7 @@ pub(super) struct Row {
     pub(super) len: usize,
     pub(super) bound: f64,
     pub(super) constraint: Constraint,
-    /// The same as bilinear values at points, with their factors: two for the ground sample, two for the point that must be seen.
+    /// The row as bilinear values at points, with their factors: two for the ground sample, two for the point that must be seen.
     pub(super) points: [(f64, Between); 4],
 }
 
@@ -50,7 +50,7 @@ impl Row {
         }
     }
 
-    /// Whether it must be met at any price: no displacement meets those that may not be missed.
+    /// Whether it must be met at any price, without slack.
     pub(super) fn is_firm(&self) -> bool {
         matches!(self.constraint, Constraint::Ceiling(_) | Constraint::River(_))
     }

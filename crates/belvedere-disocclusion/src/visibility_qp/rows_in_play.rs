@@ -20,7 +20,7 @@ pub(super) struct RememberedRow {
     pub(super) idle: u32,
 }
 
-/// Where to find a row again.
+/// Key by which a row is found again in the next frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum RowKey {
     Ceiling(u32),
@@ -28,18 +28,18 @@ pub(super) enum RowKey {
     Sight { id: u32, at: DVec2 },
 }
 
-/// A row without a multiplier is forgotten after so many frames; at once if it never had one at the end of a frame.
+/// Frames after which a row without a multiplier is forgotten; at once if it never had one at the end of a frame.
 pub(super) const IDLE: u32 = 3;
 
 /// A row to be added.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NewRow {
     pub(super) row: Row,
-    /// By how much the target exceeds it.
+    /// Height by which the target displacement exceeds the bound, metres.
     pub(super) excess: f64,
     /// Inverse price of its slack, 0 = none.
     pub(super) soft: f64,
-    /// By how much it may be missed where there are too many rows for an exact solution, metres.
+    /// Height by which it may be missed where there are too many rows for an exact solution, metres.
     pub(super) allowed: f64,
     /// Multiplier to begin with.
     pub(super) multiplier: f64,
@@ -47,7 +47,7 @@ pub(super) struct NewRow {
     pub(super) idle: u32,
 }
 
-/// With more rows than this no matrix over all of them is made. Below it the active set is quicker, and exact.
+/// Most rows for which a matrix over all of them is made. Up to it the active set is quicker, and exact.
 const MOST_EXACT: usize = 2000;
 /// Cycles of the solver without a matrix in rounds that need not be exact, and in the others.
 const CYCLES: [usize; 2] = [2, 10];
@@ -70,16 +70,16 @@ pub(super) struct RowsInPlay {
     allowed: Vec<f64>,
     multipliers: Multipliers,
     idle: Vec<u32>,
-    /// What ties take of the products of rows; empty without ties and without a matrix.
+    /// Parts of the rows that ties subtract from products of rows; empty without ties and without a matrix.
     shared: Vec<Vec<f64>>,
 }
 
-/// How well rows are to be met.
+/// Tolerances within which rows are to be met.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Accuracy {
-    /// Metres, by the active set.
+    /// Tolerance of the active set, metres.
     pub(super) exact: f64,
-    /// Metres that suffice in this round where there is no matrix; 0 = what each row allows.
+    /// Tolerance of this round where there is no matrix, metres; 0 = the allowed miss of each row.
     pub(super) enough: f64,
 }
 
@@ -141,7 +141,7 @@ impl RowsInPlay {
         matches!(self.multipliers, Multipliers::MatrixFree(_))
     }
 
-    /// Finds the multipliers. Answers whether all rows are met as asked.
+    /// Finds the multipliers. Returns whether all rows are met within their tolerances.
     ///
     /// * `go_on`: asked between steps; false stops with the best so far.
     pub(super) fn solve(
@@ -163,7 +163,7 @@ impl RowsInPlay {
         }
     }
 
-    /// By how much the solution misses a row, metres; 0 where it is exact.
+    /// Height by which the solution misses a row, metres; 0 where it is exact.
     pub(super) fn missed(&self, row: usize) -> f64 {
         match &self.multipliers {
             Multipliers::ActiveSet(_) => 0.0,
@@ -202,7 +202,7 @@ impl RowsInPlay {
         }
     }
 
-    /// What to remember for the next frame.
+    /// Rows to remember for the next frame.
     pub(super) fn kept(&self, id: impl Fn(usize) -> u32) -> Vec<RememberedRow> {
         let mut out = Vec::new();
         for (i, row) in self.rows.iter().enumerate() {
@@ -217,7 +217,7 @@ impl RowsInPlay {
                 out.push(RememberedRow { key, multiplier, idle });
             }
         }
-        // What leaves first comes last, so that most of the factor stays.
+        // Rows that leave first come last, so that most of the factor stays.
         out.sort_by(|a, b| b.multiplier.total_cmp(&a.multiplier));
         out
     }
@@ -284,7 +284,7 @@ fn extend(dual: &mut Dual, (rows, shared): (&[Row], &[Vec<f64>]), known: usize, 
     }
 }
 
-/// `a H^-1 b` of a row with others, with the widest registers at hand.
+/// Task for `a H^-1 b` of a row with others, with the widest available SIMD registers.
 struct Products<'a> {
     row: &'a Row,
     rows: &'a [Row],

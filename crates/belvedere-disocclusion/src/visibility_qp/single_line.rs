@@ -5,14 +5,14 @@ use super::rise::Rise;
 use super::surface::Surface;
 use super::walk::{Clearance, Touch};
 
-/// With room for this many times the greatest rise it is not asked where the ground rose.
+/// If the room is more than this many times the greatest rise, that rise is subtracted without looking up the rise along the line.
 const AMPLE: f64 = 8.0;
 
 /// The line of one candidate.
 #[derive(Debug, Clone)]
 pub(super) struct SingleLine {
     member: usize,
-    /// For each chord, by how much the ground may rise against it before a place can be missed; negative if that is not known.
+    /// For each chord, height by which the ground may rise towards it before a position can be missed, scene units; negative if not known.
     rooms: Vec<f64>,
 }
 
@@ -22,7 +22,7 @@ impl SingleLine {
         Self { member, rooms: vec![-1.0; seen.chords.len()] }
     }
 
-    /// The displacement changed: takes what the ground rose and the line sank at most from the rooms.
+    /// Updates the rooms after a change of the displacement: subtracts bounds of the rise of the ground and of the fall of the line.
     pub(super) fn moved(&mut self, seen: &[CandidateLine], rise: &Rise) {
         let seen = &seen[self.member];
         let sank = (-seen.displacement(rise.change)).max(0.0);
@@ -32,7 +32,7 @@ impl SingleLine {
         }
     }
 
-    /// All places where the asked clearance is missed, but for chords with room left.
+    /// All positions where the required clearance is missed; chords with room left are skipped.
     pub(super) fn walk(
         &mut self,
         seen: &[CandidateLine],

@@ -1,4 +1,4 @@
-//! Rows are found where they are missed, a few per round, until none is missed.
+//! The visibility program by row generation: each round adds some rows where the clearance is missed, until no row is missed.
 
 use super::bundle::Bundle;
 use super::candidate_line::CandidateLine;
@@ -24,20 +24,20 @@ use std::collections::BTreeMap;
 const EXACT: f64 = 1e-6;
 /// Rounds of ceilings between two checks of the lines of sight, at most.
 const CEILING_ROUNDS: usize = 40;
-/// The ground may sink to this many times relief and height of the eye; beyond, rows become soft.
+/// Depth to which the ground may sink, as a multiple of the range of heights of ground and lines; beyond it rows become soft.
 const DEPTH: f64 = 4.0;
 /// Price of slack where rows contradict each other.
 const LAST_PRICE: f64 = 1e3;
 /// New rows per round at most.
 const MOST_NEW: usize = 2000;
-/// While something is missed by more than this, metres, rounds without a matrix only meet rows to within a share of it, and at
-/// most to some metres.
+/// While a row is missed by more than this, metres, rounds without a matrix meet rows only to within `ROUGH_SHARE` of the largest
+/// miss, at most `ROUGH` metres.
 const FINE: f64 = 0.4;
 const ROUGH_SHARE: f64 = 0.05;
 const ROUGH: f64 = 3.0;
-/// Rounds without a new row in which rows or ceilings may still be missed.
+/// Rounds in succession without a new row, at most, while rows or ceilings are still missed.
 const STALLED: usize = 6;
-/// Rows stand for what is missed as near as this to them, steps of the solver's grid.
+/// Distance up to which a row stands for a missed position, steps of the solver's grid.
 const KNOWN: f64 = 0.5;
 
 /// The program over one terrain. Remembers rows, multipliers and displacement between frames.
@@ -50,7 +50,7 @@ pub struct QpSolver {
     kept: Vec<RememberedRow>,
 }
 
-/// What one frame works with.
+/// State of the solution of one frame.
 struct Frame<'a> {
     problem: QpProblem<'a>,
     target: Vec<f64>,
@@ -124,7 +124,7 @@ impl QpSolver {
         self.solve_with(problem, &Progress::silent())
     }
 
-    /// As [`Self::solve`]; tells how far it is, and ends with the best so far when it should.
+    /// As [`Self::solve`]; reports its progress, and ends with the best result so far when it should.
     ///
     /// # Errors
     /// Every [`QpError`].
@@ -212,7 +212,7 @@ impl QpSolver {
             self.push(&mut frame, new);
         }
         if o.slack_price.is_some() {
-            // What is still missed was left hidden at its price.
+            // Positions that are still missed were left hidden at their price.
             missed.clear();
         }
         self.report(&frame, &missed, depth, &mut out);
@@ -228,7 +228,7 @@ impl QpSolver {
         target
     }
 
-    /// How far the ground may sink.
+    /// Greatest depth to which the ground may sink, scene units.
     fn depth(&self, frame: &Frame) -> f64 {
         let [low, mut high] = self.surface.range;
         // Lines may end over the eye.
@@ -239,7 +239,7 @@ impl QpSolver {
         DEPTH * (high - low)
     }
 
-    /// The rows of the frame before, where they are now.
+    /// Takes over the rows of the frame before, at their present positions.
     fn take_up(&self, frame: &mut Frame) {
         let by_id: BTreeMap<u32, usize> =
             frame.seen.iter().enumerate().map(|(k, s)| (frame.problem.candidates[s.index].id, k)).collect();
@@ -292,8 +292,8 @@ impl QpSolver {
         self.push(frame, rows);
     }
 
-    /// Solves with the rows in play and adds ceilings until no node rises above its own, and likewise rows of rivers; without a matrix it adds them once, for
-    /// the next round. Answers whether rows and ceilings are met as they must be in the end.
+    /// Solves with the rows in play and adds ceilings until no node rises above its own, and likewise rows of rivers; without a
+    /// matrix it adds them once, for the next round. Returns whether rows and ceilings are met as they must be in the end.
     fn settle(&mut self, frame: &mut Frame, enough: f64) -> bool {
         let mut u = vec![0.0; frame.target.len()];
         let mut settled = false;
@@ -377,7 +377,7 @@ impl QpSolver {
 }
 
 impl Frame<'_> {
-    /// Sets aside what cannot be seen at all.
+    /// Removes candidates without a line of sight or too near to the eye, and lists them as unresolved.
     fn drop_without_line(&mut self, guard: f64, unresolved: &mut Vec<Unresolved>) {
         let candidates = self.problem.candidates;
         self.seen.retain(|s| {
@@ -391,7 +391,7 @@ impl Frame<'_> {
         });
     }
 
-    /// The displacement changes: what room that takes.
+    /// Updates the room of all bundles for a new displacement.
     fn moved(&mut self, surface: &Surface, after: &[f64]) {
         let change: Vec<f64> = surface.u.iter().zip(after).map(|(b, a)| a - b).collect();
         let rise = Rise::new(&surface.lattice, &change);
@@ -399,16 +399,16 @@ impl Frame<'_> {
         self.bundles.par_iter_mut().with_min_len(32).for_each(|b| b.moved(seen, &rise));
     }
 
-    /// All places where the asked clearance is missed; first the index in `seen`. Where lines still have room they are not
-    /// followed.
+    /// All positions where the required clearance is missed, with the index of their line in `seen`. Lines with room left are not followed.
     fn missed(&mut self, surface: &Surface) -> Vec<(usize, Touch)> {
         let (seen, clearance, progress) = (&self.seen, &self.clearance, self.progress);
         let walk = |b: &mut Bundle| if progress.should_end() { Vec::new() } else { b.walk(seen, surface, clearance) };
         self.bundles.par_iter_mut().with_min_len(8).flat_map_iter(walk).collect()
     }
 
-    /// Rows for the worst of each bunch of neighbours; bunches get smaller from round to round, but are never so small that there
-    /// are too many rows. What is missed no more than the rows beside it brings none: those are to be met first.
+    /// Rows for the most missed position of each group of neighbours. Groups get smaller from round to round, but stay large enough
+    /// that there are not too many rows. A position that is missed no more than a row next to it brings no row: that row is to be met
+    /// first.
     fn thinned(&self, surface: &Surface, missed: &[(usize, Touch)], round: usize) -> Vec<Row> {
         let step = surface.lattice.step;
         let key = |at: DVec2, grid: DVec2, size: DVec2| {
@@ -447,12 +447,12 @@ impl Frame<'_> {
         }
     }
 
-    /// Says how far the rounds are: what is missed falls from round to round.
+    /// Reports progress: the largest miss falls from round to round.
     fn tell(&self, round: usize, worst: f64, first: f64) {
         let tolerance = self.clearance.tolerance;
         let left = (worst.max(tolerance) / tolerance).ln() / (first.max(2.0 * tolerance) / tolerance).ln();
         let stage = format!("quadratic program, round {round}, {} rows, {worst:.1} m missed", self.pool.rows.len());
-        // Whether to stop is asked at the end of each round.
+        // Whether to stop is tested at the end of each round.
         let _ = self.progress.tick(&stage, 0.5 + 0.4 * (1.0 - left));
     }
 }

@@ -13,8 +13,8 @@ const FINEST: usize = 2;
 /// Facets that lie less over the bilinear displacement do so by rounding.
 const AT_EDGE: f64 = 1e-12;
 
-/// How far a displacement that is flat on the triangles of the field lies over the bilinear one at `g`, per unit of the latter's
-/// factor of xy in the cell of the field.
+/// Height of a displacement that is flat on the triangles of the field over the bilinear one at `g`, per unit of the latter's factor
+/// of xy in the cell of the field.
 pub(super) fn facet_in_cell(g: DVec2) -> f64 {
     let inside = g - g.floor();
     inside.min_element() - inside.x * inside.y
@@ -47,7 +47,7 @@ impl Lattice {
         Between { col: col as u32, row: row as u32, x: s.x - col as f64, y: s.y - row as f64 }
     }
 
-    /// How far a displacement that is flat on the triangles of the field lies over the bilinear one at `g`, per unit of the latter's
+    /// Height of a displacement that is flat on the triangles of the field over the bilinear one at `g`, per unit of the latter's
     /// factor of xy in a cell of the lattice.
     pub(super) fn facet(&self, g: DVec2) -> f64 {
         facet_in_cell(g) / (self.step.x * self.step.y)
@@ -157,18 +157,18 @@ impl Surface {
         self.displaced.renew(highest, |children| most(children));
     }
 
-    /// Nothing between `a` and `b` (grid) is higher.
+    /// Upper bound of the displaced ground between `a` and `b` (grid coordinates).
     pub(super) fn bound(&self, a: DVec2, b: DVec2) -> f64 {
         bound(&self.displaced, usize::MAX, a, b)
     }
 
-    /// Nothing of the undisplaced ground between `a` and `b` (grid) is higher.
+    /// Upper bound of the undisplaced ground between `a` and `b` (grid coordinates).
     pub(super) fn still_bound(&self, a: DVec2, b: DVec2) -> f64 {
         bound(&self.still, self.still.level_of(BLOCK as f64), a, b)
     }
 
-    /// Nothing of the displacement in a box (least and greatest corner, grid) is higher; and the factor of xy there that is farthest
-    /// from 0, per square cell of the field.
+    /// Upper bound of the displacement in a box (least and greatest corner, grid coordinates); and the factor of xy there that is
+    /// farthest from 0, per square cell of the field.
     pub(super) fn displaced_bound(&self, [low, high]: [DVec2; 2]) -> (f64, f64) {
         let (cols, rows) = (self.lattice.cols.max(2) - 1, self.lattice.rows.max(2) - 1);
         let [low, high] = [low, high].map(|c| c / self.lattice.step);
@@ -248,7 +248,7 @@ mod tests {
             let facet = surface.displacement(g, true);
             assert!((facet - flat).abs() < 1e-9, "{g}: {facet} and {flat}");
             most = most.max((facet - surface.displacement(g, false)).abs());
-            // What the metric takes for the same.
+            // The value that the metric uses.
             let (nodes, weights) = lattice.weights_over(g, true);
             let far = lattice.between(DVec2::new(7.3, 2.2));
             let entry = |j: u32| green.between(Between::node(j, 5, 4), far);

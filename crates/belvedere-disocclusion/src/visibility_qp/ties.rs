@@ -14,7 +14,7 @@ const DEPENDENT: f64 = 1e-12;
 pub(super) struct Ties {
     /// At least two nodes each.
     sets: Vec<Vec<u32>>,
-    /// Of `C H^-1 C^T`.
+    /// Cholesky factor of `C H^-1 C^T`.
     factor: Cholesky,
     lattice: [usize; 2],
 }
@@ -50,7 +50,7 @@ impl Ties {
         out
     }
 
-    /// The level displacement next to `u` in the norm of the metric, in place.
+    /// The level displacement nearest to `u` in the norm of the metric, in place.
     ///
     /// * `solve`: `H^-1` in place.
     pub(super) fn level(&self, u: &mut [f64], solve: impl FnOnce(&mut [f64])) {
@@ -63,14 +63,14 @@ impl Ties {
         }
         solve(&mut change);
         u.iter_mut().zip(change).for_each(|(u, c)| *u -= c);
-        // What rounding leaves.
+        // Removes the differences that rounding leaves.
         for set in &self.sets {
             let mean = set.iter().map(|n| u[*n as usize]).sum::<f64>() / set.len() as f64;
             set.iter().for_each(|n| u[*n as usize] = mean);
         }
     }
 
-    /// What the equalities share with a row: the product of two rows is less by the product of what they share.
+    /// Part of a row that the equalities take: they reduce the product of two rows by the product of these parts.
     pub(super) fn shared(&self, points: &[(f64, Between); 4], green: &Green) -> Vec<f64> {
         let [cols, rows] = self.lattice;
         let value = |node: u32| -> f64 {
@@ -83,7 +83,7 @@ impl Ties {
     }
 }
 
-/// Product of what two rows share.
+/// Product of these parts of two rows.
 pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
     dot(a, b)
 }

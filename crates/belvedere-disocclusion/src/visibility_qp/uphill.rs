@@ -1,15 +1,15 @@
-//! Rows that keep rivers from running uphill: `bed + u` at a place is no higher than at one upstream of it.
+//! Rows that keep rivers from running uphill: `bed + u` at a point is no higher than at one upstream of it.
 //!
-//! Over flat facets; what the bilinear displacement does otherwise is mended with the nodes after solving.
+//! They hold over flat facets; rises of the bilinear displacement are corrected at the nodes after solving.
 
 use super::row::{Constraint, Row, Stretch};
 use super::surface::Lattice;
 use crate::rivers::{Place, River, Rivers};
 use belvedere_core::DVec2;
 
-/// What rises by no more brings no row, metres; the displacement of nodes is mended by that after solving.
+/// Rises up to this height bring no row, metres; they are corrected at the nodes after solving.
 pub(super) const ALLOWED: f64 = 0.05;
-/// Nor what rises by less than this share of the largest rise: much of it goes with that.
+/// Rises of less than this share of the largest one bring no row: many of them vanish with it.
 const WORTH: f64 = 0.1;
 
 /// Rivers on the solver's grid.
@@ -21,7 +21,7 @@ pub(super) struct Uphill {
 #[derive(Debug, Clone)]
 struct Course {
     places: Vec<Station>,
-    /// Indices of places about a step of the solver's grid apart.
+    /// Indices of points about a step of the solver's grid apart.
     steps: Vec<usize>,
 }
 

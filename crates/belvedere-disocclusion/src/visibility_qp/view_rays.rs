@@ -6,7 +6,7 @@ use belvedere_core::{DVec2, DVec3, View};
 
 /// A chord leaves the ray that it stands for by less than this in height, metres; the usual margin is twenty times that.
 const BOW: f64 = 0.05;
-/// And by less than this in plan, cells.
+/// Largest such distance in plan, cells.
 const BOW_PLAN: f64 = 0.02;
 /// Chords are halved at most this often.
 const HALVINGS: u32 = 9;
@@ -79,7 +79,7 @@ impl LinesOfSight for ViewSight {
         out.push((grid, z));
         let mut from = (image.depth, p);
         for k in 1..=PIECES {
-            // Beyond the domain of a stage there is nothing that could be in the way.
+            // Beyond the domain of a stage there is nothing that could hide the point.
             let Some(to) = at(depth(k)) else { break };
             self.halve(&at, from, (depth(k), to), 0, out);
             out.push(self.grid(to));

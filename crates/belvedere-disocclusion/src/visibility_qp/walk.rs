@@ -1,4 +1,4 @@
-//! Where the ground comes too close to a line of sight.
+//! Search along a line of sight for positions where the ground comes too close.
 
 use super::surface::{Lattice, Surface};
 use crate::smooth::Between;
@@ -12,18 +12,18 @@ pub(super) struct Chord {
     pub(super) ends: [DVec2; 2],
     /// Heights of the line there.
     pub(super) z: [f64; 2],
-    /// Share of the way to the eye there: 0 at the point, 1 at the eye.
+    /// Share of the distance to the eye there: 0 at the point, 1 at the eye.
     pub(super) tau: [f64; 2],
-    /// Over ground with flat triangles, see [`super::Candidate::faceted`].
+    /// Whether the ground has flat triangles, see [`super::Candidate::faceted`].
     pub(super) faceted: bool,
 }
 
-/// Clearance asked of lines of sight.
+/// Clearance required of lines of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Clearance {
     /// Asked far from the point, metres.
     pub(super) margin: f64,
-    /// What may lack of it, metres far from the point.
+    /// Tolerance of that clearance far from the point, metres.
     pub(super) tolerance: f64,
     /// Share of both that counts at the point, 0..=1.
     pub(super) near: f64,
@@ -32,32 +32,32 @@ pub(super) struct Clearance {
 }
 
 impl Clearance {
-    /// Share of margin and tolerance that counts at `tau`: all of it but for the fifth of the way next to the point.
+    /// Share of margin and tolerance that counts at `tau`: all of it but for the fifth of the line next to the point.
     pub(super) fn share(&self, tau: f64) -> f64 {
         self.near + (1.0 - self.near) * (5.0 * tau).clamp(0.0, 1.0)
     }
 }
 
-/// A place where the ground comes too close.
+/// A position where the ground comes too close to a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Touch {
     /// Grid position.
     pub(super) at: DVec2,
-    /// Share of the way to the eye.
+    /// Share of the distance to the eye.
     pub(super) tau: f64,
     /// Ground without its displacement.
     pub(super) ground: f64,
     /// Height of the line.
     pub(super) z: f64,
-    /// How far the asked clearance is missed, metres.
+    /// Height by which the required clearance is missed, metres.
     pub(super) excess: f64,
 }
 
-/// What is found along a part of a line.
+/// Result of walking along a part of a line.
 pub(super) struct Found {
-    /// The place that misses most.
+    /// The position where the clearance is missed most.
     pub(super) worst: Option<Touch>,
-    /// By how much the ground may rise before another place can be missed.
+    /// Height by which the ground may rise before the clearance is missed at another position, scene units.
     pub(super) room: f64,
 }
 
@@ -101,7 +101,7 @@ impl Chord {
         (from < to).then_some([from, to])
     }
 
-    /// Where counting begins and ends no kink need lie: the places that miss the asked clearance there, or else the room.
+    /// Tests the ends of a part, where no kink need lie: each is a position that misses the required clearance, or the room left there.
     pub(super) fn ends_of(&self, surface: &Surface, part: [f64; 2], clearance: &Clearance) -> [Result<Touch, f64>; 2] {
         part.map(|t| {
             let end = self.place(surface, t, clearance);
@@ -110,8 +110,8 @@ impl Chord {
         })
     }
 
-    /// Calls `touch` with the worst place of each short piece of a part where the asked clearance is missed by more than
-    /// the tolerance. `room` becomes no more than what is left elsewhere.
+    /// Calls `touch` with the worst position of each short piece of a part where the required clearance is missed by more than the
+    /// tolerance. `room` becomes no more than the room left elsewhere.
     pub(super) fn walk(
         &self,
         surface: &Surface,
@@ -162,7 +162,7 @@ impl Chord {
         }
     }
 
-    /// Cuts a part at the lines of the solver's grid and takes the worst place of all pieces.
+    /// Cuts a part at the lines of the solver's grid and takes the worst position of all pieces.
     fn by_cells(&self, surface: &Surface, [a, b]: [f64; 2], clearance: &Clearance, found: &mut Found) {
         let step = surface.lattice.step;
         let (p, d) = (self.ends[0] / step, (self.ends[1] - self.ends[0]) / step);
@@ -246,7 +246,7 @@ impl Chord {
         }
     }
 
-    /// The place at a parameter.
+    /// The position at a parameter.
     fn place(&self, surface: &Surface, t: f64, clearance: &Clearance) -> Touch {
         self.touch(surface, t, self.at(t), surface.ground(self.at(t)), clearance)
     }
@@ -327,7 +327,7 @@ impl<'a> Gap<'a> {
         self.judge(chord, t, chord.at(t), surface.ground(chord.at(t)), &mut Found::new())
     }
 
-    /// Takes a place into account; returns its excess beyond the tolerance.
+    /// Takes a position into account; returns its excess beyond the tolerance.
     #[inline]
     fn judge(&self, chord: &Chord, t: f64, at: DVec2, ground: f64, found: &mut Found) -> f64 {
         let tau = Chord::mix(chord.tau, t);

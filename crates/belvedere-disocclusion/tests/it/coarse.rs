@@ -1,4 +1,4 @@
-//! Cells of hundreds of metres: what the program holds for seen is seen on the ground that is drawn, or is named.
+//! Grid cells of hundreds of metres: points that the program counts as seen are seen on the drawn ground, or are listed as hidden.
 
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::report::{UnresolvedReason, UnresolvedRun};
@@ -7,7 +7,7 @@ use belvedere_scene::{Heightfield, NodeState, Progress, Scene};
 use belvedere_testkit::Random;
 use belvedere_testkit::synthetic::{line_layer, terrain_layer};
 
-/// Ridges of 1200 m on 97 x 97 nodes 300 m apart, every node up to 120 m off; a way across.
+/// Ridges of 1200 m on 97 x 97 nodes 300 m apart, every node up to 120 m off; a path across.
 fn scene() -> Scene {
     let n = 97usize;
     let mut random = Random::new(31);
@@ -55,7 +55,7 @@ fn scaled_detail_hides_nothing_that_the_program_holds_for_seen() {
         for eye in EYES {
             let report = report(&scene, eye, &settings);
             assert!(report.visible_before < 0.9, "{eye:?} {report:?}");
-            // Right before a place, detail that is bilinear in a cell as wide as this hides what its facets do not.
+            // Right before a point, detail that is bilinear in so wide a grid cell hides points that its facets do not.
             let m = &report.metrics;
             assert!(m.visible_dense + m.hidden_in_guard > 0.98, "{eye:?} {detail:?} {report:?}");
             assert!(detail == Detail::Scaled || m.visible == 1.0, "{eye:?} {report:?}");

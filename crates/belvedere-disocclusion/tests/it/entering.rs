@@ -1,4 +1,4 @@
-//! Films: ground gives way by degrees for what comes into the picture, and so it returns when that has left.
+//! Films: ground moves gradually for points that come into the picture, and returns gradually when they have left it.
 
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::{TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver};
@@ -52,7 +52,7 @@ fn what_comes_into_the_picture_moves_its_ground_by_degrees() {
     // Beside the picture by d of 15 degrees the line passes the wall 3000 m (d / 15)^3 higher, so 106 m of need end at 4.9 degrees, and
     // a quarter of a degree changes at most 3 x 0.25 / 4.9 of them.
     assert!(step < 0.16 * most, "{step} of {most} from one frame to the next");
-    // Nothing is asked for long before, and nothing stays behind.
+    // There is no displacement long before the hut comes in, and none is left in the end.
     let [first, last] = [&frames[0], &frames[320]].map(|r| r.metrics.max_m);
     assert!(first == 0.0 && last < 0.01 * most, "{first} and {last}");
 }

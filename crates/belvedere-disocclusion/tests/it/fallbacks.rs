@@ -1,4 +1,4 @@
-//! What is done, and said, where rows contradict each other on the solver's grid.
+//! Fallbacks for rows that contradict each other on the solver's grid, and their report.
 
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::report::{Fallback, UnresolvedReason};
@@ -10,7 +10,7 @@ use belvedere_testkit::synthetic::{line_layer, terrain_layer};
 
 const SPACING: f64 = 30.0;
 
-/// Ground of `cols` x `rows` nodes with places at `points` (grid) that must be seen.
+/// Ground of `cols` x `rows` nodes with required point features at `points` (grid).
 fn scene(cols: usize, rows: usize, height: impl Fn(usize, usize) -> f64, points: &[DVec2]) -> Scene {
     let heights = (0..cols * rows).map(|i| height(i % cols, i / cols) as f32).collect();
     let states = vec![NodeState::Measured; cols * rows];
@@ -35,7 +35,7 @@ fn solve(scene: &Scene, eye: DVec3, look: DVec3, settings: &TerrainSettings) -> 
     solver.solve(scene, &View::straight(pinhole), &mut TerrainMemory::default(), &Progress::silent()).unwrap()
 }
 
-/// Posts and pits of one node are taken as they are, and dug round however deep.
+/// Settings without limits, with posts and pits of one node counted as ground.
 fn free() -> TerrainSettings {
     TerrainSettings { limits: false, spikes: true, ..TerrainSettings::default() }
 }
@@ -46,7 +46,7 @@ fn five_nodes() -> TerrainSettings {
 
 const EYE: DVec2 = DVec2::new(94.0, 16.0);
 
-/// A place every `gap` cells along row 16 of 97 x 33 nodes, seen from 60 m over the far end of the row.
+/// A point feature every `gap` grid cells along row 16 of 97 x 33 nodes, seen from 60 m over the far end of the row.
 fn row(gap: usize, offset: f64, height: impl Fn(usize) -> f64) -> Solved {
     let places: Vec<DVec2> = (0..75 / gap).map(|k| DVec2::new((k * gap) as f64 + offset, 16.0)).collect();
     let scene = scene(97, 33, |x, y| if y == 16 { height(x) } else { 0.0 }, &places);
@@ -61,11 +61,11 @@ fn assert_all_seen(report: &TerrainReport) {
 
 #[test]
 fn a_bump_that_the_grid_cannot_hold_is_cut_down() {
-    // A post of one vertex right in front of every place: five nodes cannot lower one and not the other.
+    // A post of one node is right in front of every point: five nodes cannot lower the post and leave the point.
     let solved = row(5, 2.5, |x| if x.is_multiple_of(5) && x < 80 { 60.0 } else { 0.0 });
     assert_eq!(solved.report.fallbacks, [Fallback::Detail]);
     assert_all_seen(&solved.report);
-    // Cut down is the post, not the plain beside it.
+    // The post is cut down, not the plain beside it.
     let sunk = |g: DVec2| -solved.stage.delta_at(at(g, 0.0));
     assert!(sunk(DVec2::new(40.0, 16.0)) > sunk(DVec2::new(42.5, 16.0)) + 20.0);
     assert!(solved.report.metrics.max_m < 70.0 && solved.report.metrics.raised_max_m <= 0.5);
@@ -73,7 +73,7 @@ fn a_bump_that_the_grid_cannot_hold_is_cut_down() {
 
 #[test]
 fn pits_need_a_finer_grid() {
-    // No bump rises over what the grid holds, but every place lies at the bottom of a hole.
+    // No bump rises over the ground that the grid holds, but every point lies at the bottom of a hole.
     let solved = row(6, 3.0, |x| if x % 6 == 3 { -60.0 } else { 0.0 });
     let [Fallback::FinerGrid { nodes }] = solved.report.fallbacks[..] else { panic!("{:?}", solved.report.fallbacks) };
     assert!(nodes > 5 && nodes <= 97, "{nodes}");
@@ -95,14 +95,14 @@ fn ground_inside_the_guard_is_left_before_a_finer_grid_is_taken() {
     assert_eq!(report.fallbacks, [Fallback::Guard], "{report:?}");
     assert_eq!((report.metrics.visible, report.metrics.hidden_in_guard), (0.0, 1.0));
     assert!(!report.guaranteed, "the judge does not agree: {report:?}");
-    // A finer grid has room to show it, and then that is promised.
+    // A finer grid can show it, and then guarantees it.
     let fine = solve(&scene, eye, look, &free()).report;
     assert!(fine.fallbacks.is_empty() && fine.guaranteed && fine.metrics.hidden_in_guard == 0.0, "{fine:?}");
 }
 
 #[test]
 fn what_lies_between_two_holes_is_not_counted_among_them() {
-    // A way along row 8, over ground without data from column 20 to 25 and from 40 to 43.
+    // A path along row 8, over ground without data from column 20 to 25 and from 40 to 43.
     let (cols, rows) = (61, 17);
     let hole = |x: usize| (20..=25).contains(&x) || (40..=43).contains(&x);
     let state = |i: usize| if hole(i % cols) { NodeState::Void } else { NodeState::Measured };

@@ -1,4 +1,4 @@
-//! Terrain solved beside the drawing: what a picture gets, and how old it may be.
+//! Terrain disocclusion on a thread beside drawing: the ground of each picture, and its age.
 
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::DisocclusionError;
@@ -52,7 +52,7 @@ fn ground_is_never_older_than_the_limit_and_what_it_hides_is_said() {
         late += u64::from(frame.lag > 0);
     }
     assert!(late > 0, "24 pictures without any drawing between them, and no solution came too late for one");
-    // The eye sinks from one picture to the next: old ground cannot show everything, and that must be said.
+    // The eye sinks from one picture to the next: old ground cannot show everything, and the frame must report that.
     let far = live.frame(&view(&scene, 24.0, 60.0)).expect("ground");
     assert_eq!(far.hidden > 0, far.hidden_worst_m > 0.0);
     assert!(far.lag == 0 || far.hidden > 0, "ground for an eye 190 m higher hides nothing, lag {}", far.lag);
@@ -82,7 +82,7 @@ fn pictures_that_do_not_wait_get_the_newest_ground_there_is() {
         assert!(began.elapsed() < std::time::Duration::from_secs(60), "it is never solved");
         std::thread::sleep(std::time::Duration::from_millis(2));
     };
-    // Whatever is asked for next: what there is comes at once, at first that for the view before.
+    // Whatever view is requested next, the newest solved ground comes at once: at first that for the view before.
     let next = live.newest(&view(&scene, 40.0, 250.0)).expect("ground").expect("there is some");
     let moves = |stage: &belvedere_core::TerrainDisocclusion| stage.grid().range() != [0.0; 2];
     assert!(moves(&first) && moves(&next), "nothing makes way");

@@ -1,4 +1,4 @@
-//! What is remembered between frames, and when it must not be.
+//! Memory between frames, and the changes after which it must not be used.
 
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, TerrainDisocclusion, View};
 use belvedere_disocclusion::{Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver};

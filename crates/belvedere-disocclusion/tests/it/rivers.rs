@@ -65,8 +65,8 @@ impl Valley {
     }
 }
 
-/// By how much a stream, given upstream, rises downstream on displaced ground more than on the ground as it was, at any of many places along
-/// it; over flat facets between displaced nodes, and over the displacement as it is given.
+/// Height by which a stream, given upstream, rises downstream on displaced ground more than on the undisplaced one, the largest at
+/// many points along it; over flat facets between displaced nodes, and over the displacement as it is given.
 fn excess(hf: &Heightfield, upstream: &[DVec2], moved: impl Fn(DVec2) -> f64) -> f64 {
     let faceted = |p: DVec2| {
         let g = (p - hf.north_west()) * DVec2::new(1.0, -1.0) / hf.spacing();
@@ -93,8 +93,8 @@ fn excess(hf: &Heightfield, upstream: &[DVec2], moved: impl Fn(DVec2) -> f64) ->
     most
 }
 
-/// Solves for seeded valleys with and without the river, and checks what the former promises; answers in how many of them the stream runs
-/// uphill where nobody asks.
+/// Solves for seeded valleys with and without the river, and checks the guarantee of the former; returns the number of valleys in
+/// which the stream runs uphill without it.
 fn uphill_of(seeds: &[u64], spacing: f64, steep: f64) -> usize {
     let mut uphill = 0;
     for &seed in seeds {
@@ -132,7 +132,7 @@ fn rivers_run_downhill_in_steep_valleys() {
 
 #[test]
 fn what_a_river_costs_is_said() {
-    // Showing all of the way takes ground along which the stream would rise by some metres.
+    // Showing all of the trail takes ground along which the stream would rise by some metres.
     let valley = Valley::new(6, 90.0, 0.5);
     let [free, kept] = [false, true].map(|rivers| valley.solve(TerrainSettings::default(), rivers).report);
     assert!(free.guaranteed && free.metrics.visible_dense >= 0.9999);
@@ -220,7 +220,7 @@ fn rivers_that_are_no_lines_of_the_scene_are_refused_by_name() {
     }
 }
 
-/// The way down by steepest descent from a node, over small pits.
+/// The path of steepest descent from a node, over small pits.
 fn traced(hf: &Heightfield, from: [usize; 2]) -> Vec<[usize; 2]> {
     let height = |[x, y]: [usize; 2]| hf.heights()[y * hf.cols() + x];
     let mut path = vec![from];

@@ -34,7 +34,7 @@ fn the_report_prints_the_smoothness_in_force() {
     assert_eq!(literal.w, 0.3);
     assert!((literal.smoothing_length_m - 860.0 / 0.3f64.sqrt()).abs() < 1e-9);
     assert!(literal.metrics.rms_m > 0.0 && coarse.metrics.rms_m < literal.metrics.rms_m, "{literal:?}");
-    // What the report says is what was solved.
+    // The solution was made with the weight that is reported.
     let same = report(860.0, Some(coarse.w));
     assert_eq!(same.metrics, coarse.metrics);
 }

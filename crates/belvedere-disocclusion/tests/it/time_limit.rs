@@ -1,4 +1,4 @@
-//! What is taken where time is up: never less than the ground showed before, and never ground beyond its limits.
+//! Choice of a ground when time is up: it never shows less than the undisplaced ground, and never exceeds the limits.
 
 use belvedere_core::View;
 use belvedere_disocclusion::report::Taken;

@@ -1,4 +1,4 @@
-//! The published trends of the two-pass method: what smoothness and the price of steps do.
+//! The published trends of the two-pass method: effects of the smoothness weight and of the price of steps.
 
 use belvedere_core::DVec3;
 use belvedere_core::grid::Grid;

@@ -11,7 +11,7 @@ const USER: DVec3 = DVec3::new(0.0, -1000.0, 500.0);
 const TARGET: DVec3 = DVec3::new(0.0, 0.0, 100.0);
 const FLAT: &dyn Fn(DVec2) -> Option<f64> = &|_| Some(0.0);
 
-/// Square of what a ridge at y = -300 sticks out of the line of sight to the target, plus a little.
+/// Energy that is the square of the height by which a ridge at y = -300 rises over the line of sight to the target, in metres.
 struct Ridge {
     top: f64,
     asked: usize,

@@ -1,4 +1,4 @@
-//! The lens of a preview by what is around its path, and room for its eye.
+//! The lens of a preview, fitted to the surroundings of its path, and the room for its eye.
 
 use super::{Lens, PathPreview, TOLERANCES, TRIALS};
 use crate::ConstructError;
@@ -8,27 +8,27 @@ use belvedere_core::DVec3;
 use belvedere_scene::Scene;
 use belvedere_sight::Obstacles;
 
-/// Widths that are tried, shares of the usual one; at how many positions and by how many samples of the path they are judged.
+/// Widths that are tried, shares of the usual one; and the numbers of positions and of samples of the path by which they are judged.
 const NARROWER: [f64; 3] = [1.0, 0.7, 0.5];
 const POSITIONS: u32 = 5;
 const SAMPLES: f64 = 60.0;
-/// Samples stand so high over the path, shares of the eye's height: rivers are drawn in valleys that a coarse model has filled.
+/// Height of the samples over the path, share of the eye's height: rivers are drawn in valleys that a coarse model has filled.
 const LIFT: f64 = 0.01;
-/// A narrower picture must show so much more.
+/// Gain of the visible share for which another width or tolerance is taken.
 const WORTH: f64 = 0.03;
-/// The corridor is so wide at least, widths of the picture, measured so high over the path, widths of the picture.
+/// Least width of the corridor, and the height over the path at which it is measured, widths of the picture.
 const CORRIDOR: f64 = 0.5;
 const EYE: f64 = 0.25;
-/// Distance of positions at which room is looked for, widths of the picture; of so many at most. Beside these while the camera swings,
-/// some for every turn, of so many in all.
+/// Distance of the positions at which room is sought, widths of the picture, and their greatest number; range of the number of
+/// further positions for every turn, while the camera swings, and their greatest number in all.
 const ROOM_SPACING: f64 = 0.05;
 const MOST_ROOMS: f64 = 200.0;
 const SWING_ROOMS: [usize; 2] = [4, 24];
 const MOST_SWING_ROOMS: usize = 800;
 
 impl PathPreview {
-    /// Prepares a preview whose camera is chosen: of some widths and tolerances that with which most of the path ahead is seen in
-    /// `scene`, from positions all along it. `usual` is the widest.
+    /// Prepares a preview with a fitted camera: of several widths and tolerances the ones with which most of the path ahead is seen
+    /// in `scene`, from positions all along it. `usual` is the widest.
     ///
     /// # Errors
     /// As [`PathPreview::new`].
@@ -50,7 +50,7 @@ impl PathPreview {
                 let lens = Lens { width_m, rise_m, ..usual };
                 let next = Self { lens, ..first.clone() }.with_tolerance(share * width_m).standing_in(scene, image)?;
                 let seen = next.seen_ahead(scene, image)?;
-                // A wide picture shows where the path runs.
+                // The wider picture is preferred, for it shows where the path runs.
                 if seen > best.0 + WORTH {
                     best = (seen, next);
                 }
@@ -106,7 +106,7 @@ impl PathPreview {
         (0..TRIED).map(lens).find(|lens| !is_wide(lens)).unwrap_or(self.lens)
     }
 
-    /// The same with the eye clear of ground and walls.
+    /// The same preview with the eye kept clear of ground and walls.
     ///
     /// # Errors
     /// As [`PathPreview::at`].

@@ -1,29 +1,29 @@
-//! A way that rays are led along, and the camera that does it.
+//! A chain of corners that rays are led round, and the camera that does it.
 
 use super::super::turns::{Corner, HAIRPIN, STRAIGHT, TRANSITION, TurnShape, largest, smoothstep, turns};
 use super::voxels::Voxels;
 use belvedere_core::map::curved_rays::{Model, Sharpness};
 use belvedere_core::{CurvedRays, DVec3, Stage, View};
 
-/// Shares of the usual length of transitions that are tried, at least and at most.
+/// Range of the length of transitions, shares of the usual length.
 const LENGTHS: [f64; 2] = [1e-3, 1.0];
 
-/// How far ahead of the last corner the point lies that the rays look at, cells.
+/// Distance from the last corner to the point that the rays look at, cells.
 const AHEAD_CELLS: f64 = 12.0;
 
-/// Where rays turn, and what they look at in the end.
+/// The corners at which rays turn, and the point that they look at in the end.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Chain {
     /// The corners, then a point ahead of the last leg; at least two points.
     pub(super) points: Vec<DVec3>,
     pub(super) shape: TurnShape,
-    /// Clearance that the way keeps, per unit of its length.
+    /// Clearance that the path keeps, per unit of its length.
     pub(super) clearance_per_length: f64,
 }
 
 impl Chain {
-    /// The way `points` (from the first that the eye sees), and on in the direction `look`, with as few corners as its clearance allows;
-    /// `None` if it needs no corner, turns back on itself, or has more than `most` corners.
+    /// The path `points` (from the first that the eye sees), continued in the direction `look`, with as few corners as its clearance
+    /// allows; `None` if it needs no corner, turns by more than `HAIRPIN`, or has more than `most` corners.
     pub(super) fn simplified(
         eye: DVec3,
         points: &[DVec3],
@@ -37,7 +37,7 @@ impl Chain {
         let (mut at, mut length, mut kept) = (0, 0.0, Vec::new());
         while at < last {
             let free = |to: &usize| voxels.is_free(all[at], all[*to], length, per_length);
-            // A cell after the other is free in any case.
+            // Neighbouring cells of the path are free of each other in any case.
             let next = (at + 2..=last).rev().find(free).unwrap_or(at + 1);
             length += all[at].distance(all[next]);
             kept.push(all[next]);
@@ -62,20 +62,20 @@ impl Chain {
         })
     }
 
-    /// Length of the way from the eye to the last corner, scene units.
+    /// Length of the path from the eye to the last corner, scene units.
     pub(super) fn length(&self, eye: DVec3) -> f64 {
         let from = std::iter::once(&eye).chain(&self.points);
         from.zip(&self.points[..self.points.len() - 1]).map(|(a, b)| a.distance(*b)).sum()
     }
 
-    /// Number of turns; 0 for a way that turns back on itself.
+    /// Number of turns; 0 for a path that turns by more than `HAIRPIN`.
     pub(super) fn turns(&self, eye: DVec3) -> usize {
         self.corners(eye, f64::INFINITY).map_or(0, |c| c.len())
     }
 
     /// The corners seen from an eye; `None` if one turns too far.
     ///
-    /// * `entered`: how many turns have come in, the last of them in part.
+    /// * `entered`: number of turns that have come in, the last of them in part.
     fn corners(&self, eye: DVec3, entered: f64) -> Option<Vec<Corner>> {
         let mut corners: Vec<Corner> = Vec::new();
         let (mut from, mut s) = (eye, 0.0);
@@ -97,9 +97,9 @@ impl Chain {
         Some(corners)
     }
 
-    /// `base` with rays that follow the way as far as the turns have come in; `None` where there is no such camera.
+    /// `base` with rays that follow the path as far as the turns have come in; `None` where there is no such camera.
     ///
-    /// * `entered`: how many turns have come in, the last of them in part; infinite for all.
+    /// * `entered`: number of turns that have come in, the last of them in part; infinite for all.
     pub(super) fn view(&self, base: &View, entered: f64) -> Option<View> {
         let root = base.pinhole();
         let mut corners = self.corners(root.eye, entered)?;

@@ -1,4 +1,4 @@
-//! Where a probe should end: what would be seen from there that is not seen from the eye.
+//! Goals of a probe: cells and directions from which surfaces are seen that the eye does not see.
 
 use super::chain::Chain;
 use super::judge::Unseen;
@@ -8,34 +8,35 @@ use belvedere_core::DVec3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Blocks along the longest side of the region; of each block one cell is looked from.
+/// Blocks along the longest side of the region; one cell of each block is tried.
 const BLOCKS: usize = 20;
 /// Points that goals are scored by, at most.
 const POINTS: usize = 320;
-/// Goals that are handed on.
+/// Most chains that are returned.
 const BEST: usize = 32;
 /// Angles of the last turn, degrees, and the number of directions that it is made in.
 const TURNS_DEG: [f64; 3] = [25.0, 45.0, 68.0];
 const ROUND: u32 = 8;
-/// What one goal shows is worth so much less in the next.
+/// Factor on the worth of a point for later goals after a goal has shown it.
 const AGAIN: f64 = 0.6;
 
-/// How wide a probe looks, and what for.
+/// Field of view of a probe, and limits of its path.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ProbeFrustum {
     pub(super) eye: DVec3,
-    /// What is up in the picture.
+    /// Up direction of the picture.
     pub(super) up: DVec3,
-    /// Cosine of half the angle.
+    /// Cosine of half the angle of view.
     pub(super) cosine: f64,
-    /// How far, scene units.
+    /// Distance within which a point is seen, scene units.
     pub(super) reach: f64,
-    /// Most turns of a way.
+    /// Most turns of a path.
     pub(super) turns: usize,
     pub(super) clearance_per_length: f64,
 }
 
-/// Ways at whose ends a last turn shows most of `unseen`, for their cost, each something else.
+/// Greedy choice of paths at whose ends a last turn shows most of `unseen`, for their cost; points that one path shows are worth less
+/// for the next.
 pub(super) fn best_ways(ways: &Ways<'_>, voxels: &Voxels, unseen: &[Unseen], frustum: &ProbeFrustum) -> Vec<Chain> {
     let longest = voxels.size().into_iter().max().unwrap_or(1);
     let edge = longest.div_ceil(BLOCKS).max(1);
@@ -71,7 +72,7 @@ pub(super) fn best_ways(ways: &Ways<'_>, voxels: &Voxels, unseen: &[Unseen], fru
     chains
 }
 
-/// Directions that a last turn leads to from the one that a way arrives in.
+/// Directions of view after a last turn, from the direction in which a path arrives.
 fn looks(arrival: DVec3, up: DVec3) -> impl Iterator<Item = DVec3> {
     let right = arrival.cross(up).normalize_or(arrival.any_orthonormal_vector());
     let over = right.cross(arrival);
@@ -82,7 +83,7 @@ fn looks(arrival: DVec3, up: DVec3) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// A cell, where a probe looks from there, and what it sees.
+/// A cell, a direction of view from there, and the points that are seen.
 #[derive(Debug, Clone, Copy)]
 struct Goal {
     cell: usize,

@@ -1,4 +1,4 @@
-//! What a picture shows of the surfaces of a scene, and what bending does to it.
+//! Judges views by the surfaces that their pictures show, and by distortion.
 
 use super::surfaces::SurfacePoint;
 use belvedere_core::{DVec2, DVec3, View};
@@ -6,13 +6,13 @@ use belvedere_scene::Scene;
 use belvedere_sight::{Obstacles, SightOptions};
 use rayon::prelude::*;
 
-/// Part of the picture that a piece of surface must cover to count in full, times its share of the pieces.
+/// A piece of surface counts in full if it covers this share of the picture, divided by the number of pieces.
 const FULL_SIZE: f64 = 0.2;
-/// What lies beside the straight picture counts so much of what is hidden in it.
+/// Weight of points outside the straight picture, relative to points hidden in it.
 const BESIDE: f64 = 0.15;
-/// What is lost counts so much of what is gained.
+/// Weight of lost surface, relative to gained surface.
 const LOSS: f64 = 0.5;
-/// What a distorted, a turned (by a radian) and a badly sampled picture costs: so much of what the straight one shows.
+/// Price of distortion, of roll (per radian) and of undersampling, shares of the surface that the straight picture shows.
 const DISTORTION: f64 = 2.5;
 const ROLL: f64 = 0.8;
 const UNDERSAMPLED: f64 = 0.3;
@@ -24,9 +24,9 @@ pub(super) struct Judge<'a> {
     obstacles: Obstacles<'a>,
     sight: SightOptions,
     pub(super) points: Vec<SurfacePoint>,
-    /// What the straight view shows of each point.
+    /// Images of the points in the straight view; `None` where a point is not seen.
     straight: Vec<Option<Image>>,
-    /// What it is worth to see each point, for a unit of area.
+    /// Worth of seeing each point, per unit of area.
     interest: Vec<f64>,
     straight_marks: Marks,
 }
@@ -48,11 +48,11 @@ struct Image {
 pub(super) struct Unseen {
     pub(super) at: DVec3,
     pub(super) normal: DVec3,
-    /// What it is worth to see it.
+    /// Worth of seeing it.
     pub(super) worth: f64,
 }
 
-/// What a picture looks like.
+/// Distortion, roll and undersampling of a picture.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Marks {
     /// Mean of 1 - the ratio of scales across and along the bend, by what is seen; 0 = as through a long lens.
@@ -63,20 +63,20 @@ pub(super) struct Marks {
     pub(super) undersampled: f64,
 }
 
-/// What a view shows.
+/// The verdict on a view.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Verdict {
-    /// Shares of the surface: seen, seen and not in the straight picture, seen in that alone.
+    /// Shares of the surface: seen; seen but not in the straight picture; seen in the straight picture alone.
     pub(super) seen: f64,
     pub(super) gained: f64,
     pub(super) lost: f64,
     pub(super) marks: Marks,
-    /// The larger the better; 0 = as good as straight.
+    /// Score: the larger the better; 0 = as good as the straight picture.
     pub(super) score: f64,
 }
 
 impl<'a> Judge<'a> {
-    /// * `region`: extent of what is looked at, scene units.
+    /// * `region`: extent of the region that is judged, scene units.
     pub(super) fn new(scene: &'a Scene, base: &View, points: Vec<SurfacePoint>, region: f64) -> Self {
         let cell = scene.terrain().map_or(0.0, |t| t.spacing().max_element());
         let sight = SightOptions { chord_m: 2e-4 * region + 0.02 * cell, cap_m: 0.0, guard_m: 1.5 * cell };
@@ -88,7 +88,7 @@ impl<'a> Judge<'a> {
             interest: Vec::new(),
             straight_marks: Marks::default(),
         };
-        // Wide open ground is worth no more than all that stands on it.
+        // Wide open ground is worth no more, in all, than the surfaces that stand on it.
         let area = |on_ground| judge.points.iter().filter(|p| p.on_ground == on_ground).map(|p| p.area).sum::<f64>();
         let [ground, standing] = [true, false].map(area);
         let of_ground = if standing > 0.0 { (standing / ground).min(1.0) } else { 1.0 };
@@ -125,7 +125,7 @@ impl<'a> Judge<'a> {
         if all > 0.0 { seen / all } else { 0.0 }
     }
 
-    /// What a view shows of every `stride`-th point.
+    /// The verdict on a view by every `stride`-th point.
     pub(super) fn verdict(&self, view: &View, stride: usize) -> Verdict {
         let images = self.images(view, stride);
         let mut out = Verdict { marks: marks(view, &images), ..Verdict::default() };
@@ -203,7 +203,7 @@ fn marks(view: &View, images: &[Option<Image>]) -> Marks {
     };
     let mut places: Vec<Vec<f64>> = vec![Vec::new(); COMPARED[0] * COMPARED[1]];
     for i in &seen {
-        // Every place knows its neighbours.
+        // A cell also takes the rates of its eight neighbours.
         let [x, y] = place(i);
         for near_y in y.saturating_sub(1)..=(y + 1).min(COMPARED[1] - 1) {
             for near_x in x.saturating_sub(1)..=(x + 1).min(COMPARED[0] - 1) {

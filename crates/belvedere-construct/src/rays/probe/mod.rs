@@ -1,9 +1,9 @@
 //! Auto-probing: turns of the rays that nobody placed, into what the straight picture does not show.
 //!
-//! Ours, beyond the paper (Cui et al. 2010 leave the construction to the user). Space is divided into cells with their clearance; the
-//! shortest ways lead from the cells that the eye sees to others, and those from whose ends most unseen surface is seen become chains of
-//! turns, by the builder of the path preview. The best few are improved place by place; the one that shows most that is new, for what
-//! it distorts and loses, is taken if it is better than no turn at all.
+//! Ours, beyond the paper (Cui et al. 2010 leave the construction to the user). Space is divided into cells with their clearance. The
+//! cheapest paths (Dijkstra) lead from the cells that the eye sees to others, and those from whose ends most unseen surface is seen
+//! become chains of turns, by the builder of the path preview. The best few are improved coordinate by coordinate; the chain that
+//! shows most new surface, for its distortion and losses, is taken if it is better than no turn at all.
 
 mod chain;
 mod goals;
@@ -27,23 +27,23 @@ use surfaces::surface_points;
 use voxels::Voxels;
 use ways::{Price, Ways};
 
-/// Points on surfaces that decide, and every how many of them the search looks at.
+/// Number of surface points by which views are judged, and the stride at which the search takes them.
 const POINTS: usize = 3000;
 const SEARCH_STRIDE: usize = 6;
-/// Shares of the picture's half height that ways keep clear, one after the other.
+/// Clearances of paths that are tried one after the other, shares of the picture's half height.
 const CLEARANCES: [f64; 4] = [1.0, 0.5, 0.25, 0.12];
-/// A turn of a radian costs as much as so many cells, and a unit of length as two at a clearance of so many cells.
+/// Length that a turn of a radian costs, cells; and clearance at which a unit of length costs twice as much, cells.
 const TURN_CELLS: f64 = 4.0;
 const TIGHT_CELLS: f64 = 1.0;
-/// Ways end at this length, shares of the reach.
+/// Greatest length of a path, share of the reach.
 const LONGEST: f64 = 1.3;
-/// Rays do not turn nearer to the eye than this, shares of the reach: there they would take the whole picture along.
+/// Least distance from the eye at which rays turn, share of the reach: nearer turns would carry the whole picture along.
 const FIRST_LEG: f64 = 0.08;
 /// Chains that are improved.
 const POLISHED: usize = 8;
-/// Another turn must be worth so much more, shares of what the straight picture shows.
+/// Score that every turn must gain, share of the surface that the straight picture shows.
 const TURN_WORTH: f64 = 0.02;
-/// In a film, a chain is left when it is worth less than this share of what it was, and no other is sought for a while, seconds.
+/// In a film, share of its first score below which a chain is given up, and time until another is sought, seconds.
 const KEPT_WORTH: f64 = 0.4;
 const PAUSE_S: f64 = 1.0;
 
@@ -52,7 +52,8 @@ const PAUSE_S: f64 = 1.0;
 pub struct ProbeOptions {
     /// Turns at most, 1..=6.
     pub turns: usize,
-    /// How far from the eye is looked, scene units, > 0; by default three times the median distance of what the straight picture shows.
+    /// Distance from the eye within which surfaces count, scene units, > 0; by default three times the median distance of what the
+    /// straight picture shows.
     pub reach: Option<f64>,
     /// Turns that come in or go per second of a film, > 0.
     pub cap_per_s: f64,
@@ -79,15 +80,15 @@ impl ProbeOptions {
     }
 }
 
-/// What is remembered from frame to frame. Same inputs and same memory, same result.
+/// Memory between frames. The same inputs and memory give the same result.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ProbeMemory {
     chain: Option<Kept>,
-    /// How many turns of it have come in.
+    /// Number of its turns that have come in.
     entered: f64,
-    /// Whether it goes again.
+    /// Whether its turns are being withdrawn.
     leaving: bool,
-    /// Until another is sought, seconds.
+    /// Time until another chain is sought, seconds.
     pause_s: f64,
 }
 
@@ -95,9 +96,9 @@ pub struct ProbeMemory {
 #[derive(Debug, Clone, PartialEq)]
 struct Kept {
     chain: Chain,
-    /// What it was worth when it was found.
+    /// Its score when it was found.
     score: f64,
-    /// Distance of its first corner then.
+    /// Distance of its first corner from the eye when it was found, scene units.
     first: f64,
     gained_by_turn: Vec<f64>,
     found: Found,
@@ -119,7 +120,7 @@ pub struct Found {
     pub cells: [usize; 3],
     /// Their edge, scene units.
     pub cell_m: f64,
-    /// How far from the eye was looked, scene units.
+    /// Distance from the eye within which surfaces count, scene units.
     pub reach_m: f64,
     /// Cameras that were tried.
     pub tried: usize,
@@ -130,7 +131,7 @@ pub struct Found {
 pub struct ProbeReport {
     /// Turns of the rays that were found.
     pub turns: usize,
-    /// How many of them have come in; in a film they do so one after the other.
+    /// Number of turns that have come in; in a film they do so one after the other.
     pub entered: f64,
     /// Share of the surface that the straight picture shows.
     pub seen_straight: f64,
@@ -144,17 +145,17 @@ pub struct ProbeReport {
     pub gained_by_turn: Vec<f64>,
     /// Mean of 1 minus the ratio of the smallest to the largest scale at a place, over what is seen; 0 = none.
     pub distortion: f64,
-    /// The same of the straight picture.
+    /// Mean distortion of the straight picture.
     pub distortion_straight: f64,
     /// Mean angle by which the camera's up is turned in the picture, over what is seen, degrees.
     pub roll_deg: f64,
     /// Share of what is seen that is drawn at less than half the scale of its surroundings.
     pub undersampled: f64,
-    /// Clearance that the way of the probe keeps, shares of half the picture's height there.
+    /// Clearance that the path of the probe keeps, shares of half the picture's height there.
     pub clearance: f64,
-    /// Length of the way, scene units.
+    /// Length of the path, scene units.
     pub length_m: f64,
-    /// Where it turns, and its end; scene coordinates.
+    /// Corners of the path, and its end; scene coordinates.
     pub way: Vec<[f64; 3]>,
     /// How the search went.
     pub search: Found,
@@ -276,7 +277,7 @@ impl ProbeMemory {
         }
     }
 
-    /// Turns come in, or go.
+    /// Lets turns come in at the set speed, or withdraws them.
     fn move_on(&mut self, base: &View, options: &ProbeOptions, time_step_s: Option<f64>) {
         let Some(kept) = &self.chain else {
             self.entered = 0.0;

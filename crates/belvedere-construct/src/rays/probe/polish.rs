@@ -1,4 +1,4 @@
-//! Improves a chain of turns place by place.
+//! Improves a chain of turns by changing one coordinate at a time.
 
 use super::chain::Chain;
 use super::judge::Judge;
@@ -9,7 +9,7 @@ use belvedere_core::map::curved_rays::Sharpness;
 use belvedere_scene::{Cancelled, Progress};
 use rayon::prelude::*;
 
-/// Steps of places, in cells, from round to round.
+/// Steps by which points are moved, cells, one for each round.
 const STEPS: [f64; 4] = [3.0, 3.0, 1.5, 0.75];
 /// Distances of the viewpoints and lengths of the transitions are multiplied by these.
 const FACTORS: [f64; 2] = [1.35, 1.0 / 1.35];
@@ -18,8 +18,8 @@ const LENGTHS: [f64; 2] = [0.05, 1.6];
 /// Sharpness that is tried.
 const SHARPNESS: [Sharpness; 3] = [Sharpness::Bend, Sharpness::Value(0.8), Sharpness::Value(1.5)];
 
-/// The chain at which no single change of a place, a distance, a length or the sharpness makes the picture better, as far as a few rounds
-/// get; with its score, and how many cameras were tried.
+/// The chain after some rounds of changing one coordinate of a point, one distance, one length or the sharpness where that improves
+/// the picture; with its score, and the number of cameras that were tried.
 pub(super) fn polished(
     chain: Chain,
     score: f64,

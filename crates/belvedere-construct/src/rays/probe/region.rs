@@ -1,4 +1,4 @@
-//! The part of a scene that a probe looks at.
+//! The part of a scene in which a probe searches.
 
 use super::voxels::Voxels;
 use belvedere_core::{Aabb, DVec2, DVec3, View};
@@ -8,18 +8,18 @@ use rayon::prelude::*;
 
 /// Rays by which the straight picture is measured, across and down.
 const RAYS: [u32; 2] = [24, 14];
-/// How often a ray is halved to find where it ends.
+/// Number of halvings that find the end of a ray.
 const HALVINGS: usize = 26;
-/// How far a probe looks, in median distances of what the straight picture shows.
+/// Reach of a probe, multiple of the median distance that the straight picture shows.
 const REACH: f64 = 3.0;
-/// Room around what the straight picture could show, shares of the reach.
+/// Margin around everything that the straight picture could show, share of the reach.
 const AROUND: f64 = 0.25;
 
-/// A box around what is looked at.
+/// The box in which a probe searches.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Region {
     pub(super) bounds: Aabb,
-    /// How far from the eye, scene units.
+    /// Distance from the eye, scene units.
     pub(super) reach: f64,
 }
 
@@ -45,7 +45,7 @@ impl Region {
         let ends = corners.map(|(x, y)| pinhole.unproject(DVec2::new(x, y), reach));
         let frustum = Aabb::of(ends.into_iter().chain([pinhole.eye]));
         let around = AROUND * reach;
-        // What stands lies within; ways may pass over and beside it, not under it.
+        // Everything solid lies within; paths may pass over and beside it, not under it.
         let [low, high] = [solid.min - DVec3::new(around, around, 0.0), solid.max + around];
         let min = (frustum.min - around).max(low.min(pinhole.eye));
         let max = (frustum.max + around).min(high.max(pinhole.eye));

@@ -5,7 +5,7 @@ use belvedere_core::random::Random;
 use belvedere_core::{Aabb, DVec3};
 use belvedere_scene::{LayerKind, Scene};
 
-/// How far in front of its surface a point lies, shares of the extent of the region.
+/// Distance of a point in front of its surface, share of the extent of the region.
 const IN_FRONT: f64 = 2e-5;
 
 /// A point that stands for a piece of a surface.
@@ -63,7 +63,7 @@ pub(super) fn surface_points(scene: &Scene, region: &Aabb, count: usize) -> Vec<
         // Large triangles reach far out of the region.
         points = on_triangles(wanted * (wanted / points.len().max(1)).min(16));
     }
-    // Of the many points on the ground some, each for more of it.
+    // Some of the many points on the ground are kept, each for a larger area.
     let wanted = (count as f64 * ground_area / all).ceil().max(1.0) as usize;
     let every = ground.len().div_ceil(wanted).max(1);
     points.extend(ground.into_iter().step_by(every).map(|p| SurfacePoint { area: p.area * every as f64, ..p }));

@@ -1,4 +1,4 @@
-//! Space in cells: where something stands, and how much room there is elsewhere.
+//! Space divided into cells: solid cells, and the clearance of the others.
 
 use crate::distance::{Around, squared};
 use belvedere_core::{Aabb, DVec2, DVec3};
@@ -15,7 +15,7 @@ pub(super) struct Voxels {
     cell: f64,
     size: [usize; 3],
     solid: Vec<bool>,
-    /// From the middle of each cell, scene units.
+    /// Clearance of the middle of each cell, scene units.
     clearance: Vec<f32>,
 }
 
@@ -34,7 +34,7 @@ impl Voxels {
                 kind => kind.triangles().into_iter().for_each(|m| voxels.add_mesh(&m.mesh)),
             }
         }
-        // What is solid reaches half a cell from the middle of its cell, on the average.
+        // The solid part of a cell reaches half a cell from its middle, on the average.
         let open: Vec<bool> = voxels.solid.iter().map(|solid| !solid).collect();
         let free = squared(&open, size, [1.0; 3], Around::Nothing).into_iter();
         let free = free.map(|d| ((f64::from(d.sqrt()) - 0.5) * cell).max(0.0) as f32);
@@ -90,13 +90,13 @@ impl Voxels {
         inside.then(|| self.index(at.map(|v| v as usize)))
     }
 
-    /// Room around the middle of a cell, scene units: no surface comes nearer, but for half a cell.
+    /// Clearance of the middle of a cell, scene units: no surface comes nearer, but for half a cell.
     pub(super) fn clearance(&self, index: usize) -> f64 {
         f64::from(self.clearance[index])
     }
 
-    /// Whether a straight way keeps a clearance that rises with the length of the way, where it begins at `length` already; outside the
-    /// cells everything is free.
+    /// Whether a straight path keeps a clearance that grows with the length of the path, which is `length` at its beginning; outside
+    /// the cells everything is free.
     ///
     /// * `per_length`: clearance needed for a unit of length.
     pub(super) fn is_free(&self, from: DVec3, to: DVec3, length: f64, per_length: f64) -> bool {

@@ -1,6 +1,6 @@
-//! Shortest ways through free cells, from what the eye sees into what it does not.
+//! Cheapest paths through free cells, from cells that the eye sees to those that it does not.
 //!
-//! Source: Dijkstra 1959, on cells that know in which direction the way to them arrives, so that turning has a price.
+//! Source: Dijkstra 1959, on cells that know in which direction the path to them arrives, so that turning has a price.
 
 use super::voxels::Voxels;
 use belvedere_core::DVec3;
@@ -12,25 +12,25 @@ use std::collections::BinaryHeap;
 const DIRECTIONS: usize = 26;
 /// A step turns from the one before by at most this angle, cosine: 60 degrees.
 const LEAST_COSINE: f64 = 0.499;
-/// Marks cells whose way comes straight from the eye.
+/// Marks cells that are reached straight from the eye.
 const FROM_EYE: u8 = u8::MAX;
-/// Marks cells that no way leads to.
+/// Marks cells that no path reaches.
 const UNREACHED: u8 = u8::MAX - 1;
 
-/// What ways cost beside their length.
+/// Cost of paths beside their length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Price {
     /// Clearance needed for a unit of length from the eye.
     pub(super) clearance_per_length: f64,
-    /// Length that a turn of a radian costs as much as.
+    /// Length that a turn of a radian costs, scene units.
     pub(super) per_radian: f64,
-    /// A unit of length where the clearance is this costs as much as two.
+    /// Clearance at which a unit of length costs twice as much, scene units.
     pub(super) tight: f64,
-    /// Ways end at this length.
+    /// Greatest length of a path, scene units.
     pub(super) longest: f64,
 }
 
-/// The cheapest way to every cell that can be reached.
+/// The cheapest path to every cell that can be reached.
 pub(super) struct Ways<'a> {
     voxels: &'a Voxels,
     eye: DVec3,
@@ -41,9 +41,9 @@ pub(super) struct Ways<'a> {
 }
 
 impl<'a> Ways<'a> {
-    /// All ways that begin with a straight line from `eye` to one of the cells `seen`.
+    /// Finds the cheapest paths that begin with a straight line from `eye` to one of the cells `seen`.
     ///
-    /// Of all ways to a cell only the cheapest is gone on with, though a dearer one might turn less in the next step.
+    /// Of all paths to a cell only the cheapest is continued, though a dearer one might turn less in the next step.
     pub(super) fn new(
         voxels: &'a Voxels,
         eye: DVec3,
@@ -86,7 +86,7 @@ impl<'a> Ways<'a> {
         Ok(ways)
     }
 
-    /// Tries a step from a cell, the way to which costs `cost`.
+    /// Tries a step from a cell, the path to which costs `cost`.
     fn step(&mut self, from: usize, direction: usize, cost: f64, price: &Price, open: &mut BinaryHeap<Open>) {
         let by = step(direction);
         let Some(cell) = self.voxels.neighbour(from, by) else { return };
@@ -102,17 +102,17 @@ impl<'a> Ways<'a> {
         }
     }
 
-    /// Cells that ways lead to.
+    /// Cells that paths lead to.
     pub(super) fn reached(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.arrival.len()).filter(|i| self.arrival[*i] != UNREACHED)
     }
 
-    /// Cost of the cheapest way to a cell.
+    /// Cost of the cheapest path to a cell.
     pub(super) fn cost(&self, cell: usize) -> f64 {
         f64::from(self.cost[cell])
     }
 
-    /// Unit direction in which the cheapest way comes to a cell.
+    /// Unit direction in which the cheapest path arrives at a cell.
     pub(super) fn arrival(&self, cell: usize) -> DVec3 {
         match self.arrival[cell] {
             FROM_EYE | UNREACHED => (self.voxels.center(cell) - self.eye).normalize_or(DVec3::Y),
@@ -120,7 +120,7 @@ impl<'a> Ways<'a> {
         }
     }
 
-    /// Middles of the cells of the cheapest way, from the last that the eye sees straight.
+    /// Middles of the cells of the cheapest path, from the last that the eye sees straight.
     pub(super) fn points(&self, end: usize) -> Vec<DVec3> {
         let mut points = vec![self.voxels.center(end)];
         let mut at = end;
@@ -135,7 +135,7 @@ impl<'a> Ways<'a> {
     }
 }
 
-/// A cell whose neighbours are still to be looked at; the cheapest comes first, the first of equals.
+/// A cell whose neighbours are not tested yet; the cheapest comes first, and of equals the first.
 #[derive(Debug, PartialEq)]
 struct Open {
     cost: f32,

@@ -14,10 +14,10 @@ use rayon::prelude::*;
 
 const NODES: usize = 33;
 pub(crate) const LIFT_M: f64 = 1.0;
-/// Two methods differ by so much at most.
+/// Largest difference between the shares of two methods.
 pub(crate) const AGREES: f64 = 0.005;
 
-/// Ground, its spacing, and a way, an area and a summit on it.
+/// Ground, its spacing, and a path, an area and a summit on it.
 pub(crate) struct Case {
     pub(crate) scene: Scene,
     spacing: f64,
@@ -44,7 +44,7 @@ pub(crate) fn made(seed: u64) -> Heightfield {
     Heightfield::new(DVec2::new(0.0, size), DVec2::splat(spacing), NODES, NODES, heights, states).unwrap()
 }
 
-/// A way, an area and a summit on square ground without holes, and an eye at its southern rim.
+/// A path, an area and a summit on square ground without holes, and an eye at its southern rim.
 ///
 /// * `image`: of the picture, pixels.
 pub(crate) fn case(hf: Heightfield, seed: u64, image: [u32; 2]) -> Case {
@@ -125,7 +125,7 @@ impl Ground<'_> {
         Some(self.view.displace(p.extend(still)).ok()?.point.z)
     }
 
-    /// Whether the picture shows the place, and whether no ground rises over its line of sight; `None` beside the picture.
+    /// Whether the picture shows the position and no ground rises over its line of sight; `None` beside the picture.
     fn seen(&self, xy: DVec2) -> Option<bool> {
         let pinhole = self.view.pinhole();
         let shown = self.view.project(xy.extend(self.flat(&self.still, xy)? + LIFT_M)).ok()?;
@@ -154,7 +154,7 @@ impl Ground<'_> {
         Some(clear(false) && (!self.view.is_bent() || clear(true)))
     }
 
-    /// Share of what the places stand for that is seen.
+    /// Visible share of what the positions stand for.
     fn share(&self, places: Vec<(DVec2, f64)>) -> Option<f64> {
         let shown: Vec<(bool, f64)> =
             places.into_par_iter().filter_map(|(xy, amount)| Some((self.seen(xy)?, amount))).collect();
@@ -164,7 +164,7 @@ impl Ground<'_> {
     }
 }
 
-/// Least share of way, area and summit by the march.
+/// Least visible share of path, area and summit by the march.
 fn marched(case: &Case, view: &View) -> f64 {
     let hf = case.scene.terrain().unwrap();
     let nodes = hf.cols();

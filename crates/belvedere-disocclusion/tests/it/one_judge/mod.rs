@@ -1,5 +1,5 @@
-//! The figure of the report is that of other methods: of `measure`, by lines of sight and by depth buffers, and of a march along rays. What it
-//! names as hidden the exact tracer hides.
+//! The visible share of the report agrees with other methods: `measure`, by lines of sight and by depth buffers, and a march along
+//! rays. The exact tracer hides the points that the report lists as hidden.
 
 mod compared;
 
@@ -12,7 +12,7 @@ use compared::{AGREES, Case, Compared, LIFT_M, case, compared, made};
 /// As published, promised on coarse ground twice, and at a price.
 const SEEDS: [u64; 4] = [2, 3, 4, 7];
 
-/// Places that the report holds for hidden and the exact tracer shows; `None` if it names none.
+/// Number of points that the report lists as hidden and the exact tracer shows; `None` if the report lists none.
 fn shown_though_named(case: &Case, view: &View, report: &TerrainReport) -> Option<usize> {
     let by_ground = |r: &&UnresolvedRun| {
         use UnresolvedReason::{Between, InsideGuard, Judged, Limits, Smoothed};

@@ -1,6 +1,6 @@
-//! What mode `qp` promises, on real mountains, judged by rays that know nothing of the solver's rows.
+//! The guarantee of mode `qp` on real mountains, judged by rays that are independent of the solver's rows.
 //!
-//! A few eyes each; `BELVEDERE_EYES=20` judges as many (minutes).
+//! A few eyes for each place; `BELVEDERE_EYES=20` judges 20 (minutes).
 
 use belvedere_builtin::valley_route;
 use belvedere_core::DVec2;

@@ -1,4 +1,4 @@
-//! Against the slow solution, on small ground.
+//! The solver compared with the slow reference, on small ground.
 
 use super::reference::{DenseRow, Small};
 use belvedere_core::DVec2;

@@ -1,4 +1,4 @@
-//! The paper's own way to solve the smooth pass, against ours.
+//! The paper's method for the smooth pass compared with ours.
 
 use belvedere_core::DVec2;
 use belvedere_disocclusion::error::SmoothError;

@@ -123,7 +123,7 @@ fn elevation_rows_converge_in_six_iterations_cold_and_two_warm() {
     let mut x = vec![0.0; b.len()];
     let cold = cg.solve(&mut smoother, &rows, &b, &mut x, 1e-6, 60);
     assert!(cold.iterations <= 6 && cold.residual <= 1e-6, "{cold:?}");
-    // The residual told is the true one, by the stencil.
+    // The reported residual is the true one, computed by the stencil.
     let (mut work, mut back) = (b.clone(), b.clone());
     smoother.apply(&x, &mut work, &mut back);
     rows.add_normal(&x, &mut back);
