@@ -72,7 +72,7 @@ pub fn figures(folder: &Path, scenes: &[PathBuf], options: &OpenOptions, overwri
     Ok(written)
 }
 
-/// What pictures of an area show.
+/// Endings of the picture names of an area.
 const PICTURES: [&str; 6] = ["pair", "steps", "profile", "w", "eta", "times"];
 
 fn figures_of(area: &Area, folder: &Path, overwrite: bool, written: &mut Vec<PathBuf>) -> Result<AreaRecord> {
@@ -120,5 +120,5 @@ fn figures_of(area: &Area, folder: &Path, overwrite: bool, written: &mut Vec<Pat
     })
 }
 
-/// Goes with every picture.
+/// Comment in the metadata of every picture.
 const NOTE: &str = "displaced ground unless a panel says perspective; not to scale, not for navigation";
