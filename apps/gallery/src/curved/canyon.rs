@@ -23,7 +23,7 @@ fn ahead(easel: &Easel<'_>, length: f64, image: [u32; 2]) -> Result<Session> {
 
 /// Shares of the distance to the first turn at which the pictures of [`collapse`] are taken.
 const WAYS: [f64; 4] = [0.0, 0.5, 0.8, 0.95];
-/// For [`collapse`]: length of the preview, metres; its lens, given so that none is searched for; distance in plan, metres, from which on
+/// For `collapse`: length of the preview, metres; its lens, given so that none is searched for; distance in plan, metres, from which on
 /// two bend points count as different turns.
 const SHORT: f64 = 1500.0;
 const LENS: &str = "lens = { behind_m = 1500.0, width_m = 375.0, rise_m = 150.0 }\n";

@@ -160,7 +160,7 @@ impl Tiles {
 }
 
 /// Position along an axis of level `k`, [`CELL`] steps from node to node.
-/// * `at`: position on level 0, [`CELL`] steps from node to node.
+/// * `at`: position on level 0, `CELL` steps from node to node.
 #[inline(always)]
 pub(crate) fn level_position(at: i32, k: u32) -> u32 {
     // Node i of level k lies at (i + 0.5) 2^k - 0.5 of level 0, and is number i + 1 with the rim.
