@@ -32,8 +32,9 @@ const SAME_SURFACE: f64 = 0.02;
 
 /// Draws scenes by following curved rays: slow, without subdivision, as exact as the colours allow.
 ///
-/// [`belvedere_scene::RenderOptions::tolerance_px`] concerns the lines alone. Depth, id and world position are those of the pixel centres; coverage samples are
-/// traced where a pixel's neighbours lie on another surface, elsewhere the pixel has the colour of its centre.
+/// [`belvedere_scene::RenderOptions::tolerance_px`] concerns the lines alone. Depth, id and world position are those of the pixel
+/// centres. Coverage samples are traced where a pixel's neighbours are on another surface; elsewhere the pixel has the colour of its
+/// centre.
 ///
 /// ```
 /// use belvedere_core::{DVec3, Pinhole, Projection, View};

@@ -26,15 +26,16 @@ pub struct Picked {
     pub segment: u32,
     /// Id of the layer.
     pub layer: String,
-    /// Name of the feature of a line, area or point layer, of the part of a mesh, or of the atom of a molecule; null for other surfaces and features without a
-    /// name.
+    /// Name of the feature of a line, area or point layer, of the part of a mesh, or of the atom of a molecule; null for other surfaces
+    /// and for features without a name.
     pub feature: Option<String>,
 }
 
 /// Objects at pixels (origin at the outer corner of the top-left pixel, centres at .5), by the exact tracer.
 ///
-/// A visible line or point within half its width of the pixel counts before the surface, the last layer first; areas belong to the ground
-/// they are painted on; a volume is seen where it has absorbed half of the light. Pixels outside the image are answered as far as the camera has rays there.
+/// A visible line or point within half its width of the pixel takes precedence over the surface, and of several the one in the last
+/// layer. Areas belong to the ground on which they are painted. A volume is reported where it has absorbed half of the light. Pixels
+/// outside the image have results as far as the camera has rays there.
 ///
 /// # Errors
 /// [`BelvedereError::UnderGround`], [`BelvedereError::Cancelled`].

@@ -40,8 +40,9 @@ fn usual_areas() -> Vec<(PathBuf, Option<&'static str>)> {
     builtin.into_iter().chain(REAL.map(|(name, text)| (scene(&data, name), Some(text)))).collect()
 }
 
-/// Draws the figures of terrain disocclusion into `folder`, which is made if need be, for the areas of `scenes` (two built-in ones
-/// if there are none, and two real ranges where `BELVEDERE_DATA` names their files): pictures, `figures.json` with every report, and `index.html`. Returns the files.
+/// Draws the figures of terrain disocclusion into `folder`, which is created if necessary, for the areas of `scenes` (two built-in
+/// ones if there are none, and two real ranges where `BELVEDERE_DATA` names their files): pictures, `figures.json` with every report,
+/// and `index.html`. Returns the files.
 ///
 /// # Errors
 /// A file that exists if `overwrite` is false; those of opening, solving and drawing a scene.
